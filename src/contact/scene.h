@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "contact/shape.h"
+#include "spatial/box.h"
+#include "spatial/pose.h"
+
+namespace hvas::contact {
+
+using BodyId = Id<struct ContactBodyTag>;
+
+/** One contact point between the held shape H and a scene body S, or the ground. */
+struct Contact {
+  Vec3 p_WC{Vec3::Zero()};    ///< On the held part's surface (or the projected scene edge) [m].
+  Vec3 nhat_W{Vec3::UnitZ()}; ///< Unit, out of S: moving H along it separates.
+  double distance{0};         ///< Signed gap [m]; negative is penetration.
+  BodyId body;                ///< Invalid for the ground.
+  std::uint32_t held_face{kNoFace};
+  std::uint32_t scene_face{kNoFace};
+  bool is_exact{false};       ///< Refined on an analytic face; else the field's trilinear value.
+};
+
+/** Contacts between two sets of faces that something else answers for (a captured mate's fit).
+ A contact is left out when its held face and its scene face are both in the pair's sets; sample
+ points on an edge belong to every face that meets there. */
+struct IgnoredPair {
+  BodyId body;
+  std::span<const std::uint32_t> held_faces;   ///< Sorted.
+  std::span<const std::uint32_t> scene_faces;  ///< Sorted.
+};
+
+struct QueryOptions {
+  double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
+  std::span<const IgnoredPair> ignored{};
+  BodyId self;           ///< This body of the scene is the held one itself: skipped.
+};
+
+struct QueryStats {
+  std::uint32_t bodies_tested{0};
+  std::uint32_t points_tested{0};
+  std::uint32_t candidates{0};   ///< Points within the margin, before reduction.
+  bool is_truncated{false};      ///< The point budget or a capacity was reached.
+};
+
+/** Everything a query writes to: sized once, so that a query allocates nothing. One per thread. */
+class QueryWorkspace {
+ public:
+  static constexpr int kMaxContacts = 64;
+
+  QueryWorkspace();
+  ~QueryWorkspace();
+  QueryWorkspace(QueryWorkspace&&) noexcept;
+  QueryWorkspace& operator=(QueryWorkspace&&) noexcept;
+
+  [[nodiscard]] std::span<const Contact> contacts() const noexcept;
+  [[nodiscard]] const QueryStats& stats() const noexcept;
+  /** The deepest distance met, over all points and not only the reported ones [m]; +inf if none. */
+  [[nodiscard]] double deepest() const noexcept;
+
+  struct Data;
+  [[nodiscard]] Data& data() noexcept { return *data_; }
+
+ private:
+  std::unique_ptr<Data> data_;
+};
+
+/** Bodies in the world, each a shared shape at a pose, in a bounding-volume tree.
+
+ Adding and removing allocate; SetPose, SetEnabled and Query do not and are RT-safe. */
+class Scene {
+ public:
+  Scene();
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  BodyId Add(std::shared_ptr<const Shape> shape, const spatial::Pose& X_WB);
+  void SetPose(BodyId body, const spatial::Pose& X_WB) noexcept;
+  void SetEnabled(BodyId body, bool is_enabled) noexcept;
+  [[nodiscard]] bool is_enabled(BodyId body) const noexcept;
+  [[nodiscard]] const spatial::Pose& pose(BodyId body) const noexcept;
+  [[nodiscard]] const Shape& shape(BodyId body) const noexcept;
+  [[nodiscard]] std::size_t size() const noexcept;
+
+  /** A horizontal ground plane (a table) at height z, facing up; NaN for none. */
+  void SetGround(double z_W) noexcept;
+
+  /** Finds contacts of `held` at X_WH with all enabled bodies (both directions: held points against
+   scene fields, scene edge points against the held field) and the ground, refined on exact faces,
+   reduced to at most QueryWorkspace::kMaxContacts that span the contact. Results in `workspace`.
+   RT-safe. */
+  void Query(const Shape& held, const spatial::Pose& X_WH, const QueryOptions& options,
+             QueryWorkspace* workspace) const noexcept;
+
+  /** True when nothing comes closer than -tolerance; stops at the first deeper point. RT-safe. */
+  [[nodiscard]] bool IsFree(const Shape& held, const spatial::Pose& X_WH, double tolerance,
+                            const QueryOptions& options, QueryWorkspace* workspace) const noexcept;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace hvas::contact

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "base/id.h"
+#include "base/result.h"
+#include "spatial/box.h"
+#include "spatial/surface.h"
+
+namespace hvas::contact {
+
+inline constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
+
+/** What a contact shape is made from: a closed triangle mesh, outward, and the surface under each
+ face. In the body frame, SI. */
+struct ShapeSource {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> triangle_face;     ///< For each triangle, an index into faces.
+  std::vector<spatial::Surface> faces;
+};
+
+struct ShapeOptions {
+  double voxel{0};          ///< Edge of a cell of the distance field [m]; 0: chosen from the part.
+  double point_spacing{0};  ///< Of the point shell on faces [m]; 0: chosen. Edges get half of it.
+};
+
+/** Immutable contact shape: block distance field, point shell in a sphere tree, exact faces. */
+class Shape {
+ public:
+  struct Data;
+
+  /** Builds a shape. Errors: kInvalid for an empty or non-finite mesh. Takes up to seconds. */
+  static Result<std::shared_ptr<const Shape>> Build(const ShapeSource& source,
+                                                    const ShapeOptions& options);
+
+  explicit Shape(std::unique_ptr<const Data> data);
+  ~Shape();
+
+  [[nodiscard]] const spatial::Box& box_B() const noexcept;
+  [[nodiscard]] double voxel() const noexcept;
+  [[nodiscard]] std::size_t point_count() const noexcept;
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+  [[nodiscard]] const Data& data() const noexcept { return *data_; }
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+
+}  // namespace hvas::contact

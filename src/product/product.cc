@@ -1,0 +1,35 @@
+#include "product/product.h"
+
+#include <algorithm>
+
+namespace hvas::product {
+
+int Product::depth() const {
+  int deepest = 0;
+  for (const Occurrence& occurrence : occurrences) {
+    int levels = 1;
+    for (SubassemblyId id = occurrence.parent; id.is_valid(); id = subassemblies[id.index()].parent) {
+      ++levels;
+    }
+    deepest = std::max(deepest, levels);
+  }
+  return deepest;
+}
+
+double Product::volume() const {
+  double sum = 0;
+  for (const Occurrence& occurrence : occurrences) {
+    sum += part_of(occurrence.id).mass.volume;
+  }
+  return sum;
+}
+
+double Product::mass() const {
+  double sum = 0;
+  for (const Occurrence& occurrence : occurrences) {
+    sum += part_of(occurrence.id).mass.mass;
+  }
+  return sum;
+}
+
+}  // namespace hvas::product
