@@ -20,16 +20,19 @@ struct Diagnostic {
 class Diagnostics {
  public:
   void Add(Diagnostic diagnostic) { items_.push_back(std::move(diagnostic)); }
+
   void Warn(std::string code, std::string entity, std::string message, std::string remedy = {}) {
     Add({Severity::kWarning, std::move(code), std::move(entity), std::move(message),
          std::move(remedy)});
   }
+
   void Note(std::string code, std::string entity, std::string message, std::string remedy = {}) {
     Add({Severity::kNote, std::move(code), std::move(entity), std::move(message),
          std::move(remedy)});
   }
 
   [[nodiscard]] const std::vector<Diagnostic>& items() const { return items_; }
+
   [[nodiscard]] int Count(Severity severity) const {
     int count = 0;
     for (const Diagnostic& item : items_) {

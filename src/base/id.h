@@ -12,11 +12,15 @@ template <typename Tag>
 class Id {
  public:
   constexpr Id() = default;
+
   constexpr explicit Id(std::size_t index) : value_(static_cast<std::uint32_t>(index)) {}
 
   [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
+
   [[nodiscard]] constexpr std::size_t index() const { return value_; }
+
   [[nodiscard]] constexpr bool is_valid() const { return value_ != kInvalid; }
+
   constexpr auto operator<=>(const Id&) const = default;
 
  private:

@@ -27,9 +27,13 @@ std::uint64_t Random::NextBits() {
   return result;
 }
 
-double Random::Uniform() { return static_cast<double>(NextBits() >> 11) * 0x1.0p-53; }
+double Random::Uniform() {
+  return static_cast<double>(NextBits() >> 11) * 0x1.0p-53;
+}
 
-double Random::Uniform(double low, double high) { return low + (high - low) * Uniform(); }
+double Random::Uniform(double low, double high) {
+  return low + (high - low) * Uniform();
+}
 
 double Random::Normal() {
   for (;;) {

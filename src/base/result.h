@@ -9,12 +9,12 @@ namespace hvas {
 
 /** What kind of thing went wrong; the command line turns it into an exit status. */
 enum class ErrorCode {
-  kNotFound,      ///< A file or a named entity does not exist.
-  kUnreadable,    ///< The bytes are not what they claim to be.
-  kUnsupported,   ///< Understood, but outside what HVAS can do.
-  kInvalid,       ///< A value is out of its documented range.
-  kOutOfResource, ///< Disk, memory or time ran out.
-  kInternal,      ///< A bug in HVAS.
+  kNotFound,       ///< A file or a named entity does not exist.
+  kUnreadable,     ///< The bytes are not what they claim to be.
+  kUnsupported,    ///< Understood, but outside what HVAS can do.
+  kInvalid,        ///< A value is out of its documented range.
+  kOutOfResource,  ///< Disk, memory or time ran out.
+  kInternal,       ///< A bug in HVAS.
 };
 
 /** An error that a person can act on: what happened, where, and what to do about it. */
