@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace hvas::mates {
+
+using Vec2 = Eigen::Vector2d;
+using Triangle2 = std::array<Vec2, 3>;
+
+/** Area that two sets of plane triangles have in common, and its centroid. */
+struct Overlap {
+  double area{0};               ///< [m^2]
+  Vec2 centroid{Vec2::Zero()};  ///< [m]; zero where the area is zero.
+};
+
+/** Exact up to rounding, when the triangles within each set do not overlap each other. Either
+ orientation. Sweeps over x, so its cost goes with the number of triangle pairs that meet. */
+[[nodiscard]] Overlap CalcOverlap(const std::vector<Triangle2>& a, const std::vector<Triangle2>& b);
+
+}  // namespace hvas::mates

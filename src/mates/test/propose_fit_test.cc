@@ -1,0 +1,56 @@
+#include "mates/propose_fit.h"
+
+#include <gtest/gtest.h>
+
+namespace hvas::mates {
+namespace {
+
+using product::FitKind;
+
+TEST(ClassifyName, ReadsTheNamesOfRealLibraries) {
+  for (const char* name : {"Screw", "hex-bolt_2", "BOLTS", "M3x16", "BHCS M4 x 8", "DIN 912 - 20",
+                           "ISO4762", "iso_7380 M3", "STAR_SCREW M2", "SHCS_M2.5X6"}) {
+    EXPECT_EQ(ClassifyName(name), FastenerKind::kScrew) << name;
+  }
+  for (const char* name :
+       {"nut", "NUT_M2", "Hex Nut M10", "heat-set M3", "Heatset insert", "DIN934", "ISO 4032 M5"}) {
+    EXPECT_EQ(ClassifyName(name), FastenerKind::kNut) << name;
+  }
+  for (const char* name : {"plate", "minute hand", "donut", "rod", "MR126ZZ", "arm3", "Motor",
+                           "M5stack", "washer M5", "ISO 286", "DIN 9120", ""}) {
+    EXPECT_EQ(ClassifyName(name), FastenerKind::kNone) << name;
+  }
+}
+
+TEST(ProposeFit, FollowsItsTable) {
+  const auto propose = [](double hole_mm, double shaft_mm, FastenerKind hole = FastenerKind::kNone,
+                          FastenerKind shaft = FastenerKind::kNone, bool nut_on_shaft = false) {
+    return ProposeFit({hole_mm / 2e3, shaft_mm / 2e3, hole, shaft, nut_on_shaft});
+  };
+  EXPECT_EQ(propose(40, 40).code, "H7/g6");
+  EXPECT_EQ(propose(40, 40).kind, FitKind::kClearance);
+  EXPECT_DOUBLE_EQ(propose(40, 40).nominal_diameter, 0.04);
+  EXPECT_EQ(propose(40.03, 40).code, "H7/g6");
+  EXPECT_EQ(propose(40.08, 40).code, "H8/f7");
+  EXPECT_EQ(propose(40.15, 40).code, "H9/d9");
+  EXPECT_EQ(propose(3.4, 3).code, "H11/c11");
+  EXPECT_EQ(propose(40, 40.03).code, "H7/p6");
+  EXPECT_EQ(propose(40, 40.03).kind, FitKind::kInterference);
+  // A tapped hole drawn with its minor diameter, without any name.
+  EXPECT_EQ(propose(2.5, 3).kind, FitKind::kThread);
+  EXPECT_EQ(propose(2.5, 3).code, "");
+  EXPECT_DOUBLE_EQ(propose(2.5, 3).nominal_diameter, 0.003);
+  // The same in a large shaft is no thread.
+  EXPECT_EQ(propose(39, 40).kind, FitKind::kInterference);
+  EXPECT_EQ(propose(3, 3, FastenerKind::kNone, FastenerKind::kScrew).kind, FitKind::kThread);
+  EXPECT_EQ(propose(3.4, 3, FastenerKind::kNone, FastenerKind::kScrew).kind, FitKind::kClearance);
+  EXPECT_EQ(propose(3, 3, FastenerKind::kNone, FastenerKind::kScrew, true).kind,
+            FitKind::kClearance);
+  EXPECT_EQ(propose(5, 5, FastenerKind::kNut).kind, FitKind::kThread);
+  EXPECT_EQ(propose(5.1, 5, FastenerKind::kNut, FastenerKind::kScrew).kind, FitKind::kThread);
+  EXPECT_TRUE(propose(5, 5).is_proposed);
+  EXPECT_FALSE(propose(5, 5).reason.empty());
+}
+
+}  // namespace
+}  // namespace hvas::mates
