@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "base/diagnostics.h"
+#include "cad/import.h"
+#include "product/product.h"
+
+class TopoDS_Face;
+class TopoDS_Shape;
+
+namespace hvas::cad {
+
+using FaceColorFn = std::function<std::optional<product::Color>(const TopoDS_Face&)>;
+
+/** How much there is in a shape, before any work on it. */
+struct ShapeContent {
+  int solids{0};
+  int faces{0};
+};
+
+[[nodiscard]] ShapeContent CountContent(const TopoDS_Shape& shape);
+
+/** Fills mesh, faces, box, mass, solid_count and shape_hash of a part from its B-rep; name and
+ material must be there already. Faces outside any solid count only where there is no solid.
+ Colours come from `color_of`. @returns false when nothing could be meshed. */
+[[nodiscard]] bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
+                                  const FaceColorFn& color_of, product::Part* part,
+                                  Diagnostics* diagnostics);
+
+}  // namespace hvas::cad

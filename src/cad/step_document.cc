@@ -1,0 +1,139 @@
+#include "cad/step_document.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <Message_ProgressIndicator.hxx>
+#include <Message_ProgressScope.hxx>
+#include <STEPCAFControl_Controller.hxx>
+#include <STEPCAFControl_ExternFile.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TDocStd_Document.hxx>
+#include <XCAFApp_Application.hxx>
+
+namespace hvas::cad {
+namespace {
+
+constexpr const char* kStepRemedy = "choose a STEP file (.step or .stp; AP203, AP214 or AP242)";
+
+/** Hands OpenCASCADE's progress on. */
+class Indicator : public Message_ProgressIndicator {
+ public:
+  explicit Indicator(const ProgressFn* progress) : progress_(progress) {}
+
+ private:
+  void Show(const Message_ProgressScope& /*scope*/, const Standard_Boolean /*force*/) override {
+    const double fraction = GetPosition();
+    if (*progress_ && fraction >= shown_ + 0.01) {
+      shown_ = fraction;
+      (*progress_)("transfer", fraction);
+    }
+  }
+
+  const ProgressFn* progress_;
+  double shown_{0};
+};
+
+void InitialiseOnce() {
+  static const bool kIsDone = [] {
+    STEPCAFControl_Controller::Init();
+    // Its messages go to std::cout; what matters in them comes back as a status.
+    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    return true;
+  }();
+  static_cast<void>(kIsDone);
+}
+
+void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagnostics) {
+  std::vector<std::string> missing;
+  using ExternFiles =
+      NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>;
+  for (ExternFiles::Iterator it(reader.ExternFiles()); it.More(); it.Next()) {
+    const Handle(STEPCAFControl_ExternFile)& file = it.Value();
+    if (file.IsNull() || file->GetLoadStatus() != IFSelect_RetDone || !file->GetTransferStatus()) {
+      missing.emplace_back(it.Key().ToCString());
+    }
+  }
+  std::sort(missing.begin(), missing.end());
+  for (const std::string& name : missing) {
+    diagnostics->Warn("missing-file", name,
+                      "the assembly refers to this file, which could not be read",
+                      "put it beside the assembly");
+  }
+}
+
+}  // namespace
+
+Result<std::filesystem::path> CheckStepFile(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::canonical(file, error);
+  if (error) {
+    return Fail(ErrorCode::kNotFound, "there is no such file", file.string(), "check the path");
+  }
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return Fail(ErrorCode::kUnreadable, "this is not a file", file.string(), kStepRemedy);
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    return Fail(ErrorCode::kUnreadable, "the file cannot be opened", file.string(),
+                "check its permissions");
+  }
+  std::array<char, 4096> head{};
+  stream.read(head.data(), head.size());
+  const std::string text(head.data(), static_cast<std::size_t>(stream.gcount()));
+  if (text.empty()) {
+    return Fail(ErrorCode::kUnreadable, "the file is empty", file.string(), kStepRemedy);
+  }
+  if (text.find("ISO-10303-21") == std::string::npos) {
+    return Fail(ErrorCode::kUnreadable, "this is not a STEP file", file.string(), kStepRemedy);
+  }
+  return path;
+}
+
+Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& file,
+                                                  const ProgressFn& progress,
+                                                  Diagnostics* diagnostics) {
+  InitialiseOnce();
+  const std::string name = file.filename().string();
+  STEPCAFControl_Reader reader;
+  reader.SetColorMode(true);
+  reader.SetNameMode(true);
+  reader.SetLayerMode(true);
+  reader.SetPropsMode(true);
+  reader.SetMatMode(true);
+  reader.SetGDTMode(false);
+  reader.SetViewMode(false);
+  if (progress) {
+    progress("read", 0);
+  }
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+    return Fail(ErrorCode::kUnreadable, "the STEP file is damaged", name,
+                "export it again from the CAD system");
+  }
+  Handle(TDocStd_Document) document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  const opencascade::handle<Indicator> indicator = new Indicator(&progress);
+  if (!reader.Transfer(document, indicator->Start())) {
+    CloseDocument(document);
+    return Fail(ErrorCode::kUnreadable, "the STEP file holds no product that can be read", name,
+                "export it again from the CAD system");
+  }
+  ReportMissingFiles(reader, diagnostics);
+  return document;
+}
+
+void CloseDocument(const Handle(TDocStd_Document) & document) {
+  XCAFApp_Application::GetApplication()->Close(document);
+}
+
+}  // namespace hvas::cad
