@@ -1,0 +1,26 @@
+/** Draws the example products and writes NAME.step, NAME.truth.json and NAME.hvas.json for each. */
+#include <exception>
+#include <filesystem>
+
+#include <Standard_Failure.hxx>
+#include <fmt/core.h>
+
+#include "truth.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "usage: make_products FOLDER\n");
+    return 2;
+  }
+  try {
+    std::filesystem::create_directories(argv[1]);
+    hvas::products::WriteProduct(hvas::products::DrawBushing(), argv[1]);
+  } catch (const Standard_Failure& failure) {
+    fmt::print(stderr, "make_products: {}\n", failure.GetMessageString());
+    return 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "make_products: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
