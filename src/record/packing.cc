@@ -1,0 +1,110 @@
+#include "record/packing.h"
+
+#include <bit>
+#include <cstring>
+
+namespace hvas::record {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "packing copies bytes as they are");
+
+class ByteWriter {
+public:
+  explicit ByteWriter(std::byte *to) : to_(to) {}
+
+  template <typename T> void operator()(const T &value) noexcept {
+    std::memcpy(to_, &value, sizeof(value));
+    to_ += sizeof(value);
+  }
+
+private:
+  std::byte *to_;
+};
+
+class ByteReader {
+public:
+  explicit ByteReader(const std::byte *from) : from_(from) {}
+
+  template <typename T> void operator()(T &value) noexcept {
+    std::memcpy(&value, from_, sizeof(value));
+    from_ += sizeof(value);
+  }
+
+private:
+  const std::byte *from_;
+};
+
+// A pose as plain numbers: p, then q as w, x, y, z.
+using FlatPose = std::array<double, 7>;
+
+FlatPose Flatten(const spatial::Pose &X) {
+  const Quat &q = X.q();
+  return {X.p().x(), X.p().y(), X.p().z(), q.w(), q.x(), q.y(), q.z()};
+}
+
+spatial::Pose Unflatten(const FlatPose &v) {
+  return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
+}
+
+// The one place that knows the order of the fields. `F` is a ByteWriter or a
+// ByteReader.
+template <typename F, typename Tick, typename Poses>
+void VisitFields(F &f, Tick &tick, Poses &poses) noexcept {
+  const auto vector = [&f](auto &v) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      f(v[i]);
+    }
+  };
+  f(tick.t_ns);
+  f(poses[0]);
+  vector(tick.device_twist.w);
+  vector(tick.device_twist.v);
+  f(tick.device_buttons);
+  f(tick.status);
+  f(poses[1]);
+  f(poses[2]);
+  vector(tick.F_true_W.t);
+  vector(tick.F_true_W.f);
+  vector(tick.F_felt_W.t);
+  vector(tick.F_felt_W.f);
+  f(tick.held);
+  f(tick.state);
+  f(tick.contact_count);
+  f(tick.depth);
+  f(tick.deepest);
+  for (auto &contact : tick.contacts) {
+    vector(contact.p_WC);
+    vector(contact.nhat_W);
+    f(contact.distance);
+  }
+}
+
+constexpr std::size_t kFieldBytes =
+    sizeof(std::int64_t) + 3 * sizeof(FlatPose) + 18 * sizeof(double) +
+    3 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + sizeof(std::uint16_t) +
+    2 * sizeof(double) + TickRecord::kContacts * 7 * sizeof(float);
+static_assert(kFieldBytes == kPackedTickSize);
+
+} // namespace
+
+void Pack(const TickRecord &tick,
+          std::span<std::byte, kPackedTickSize> bytes) noexcept {
+  const std::array<FlatPose, 3> poses{Flatten(tick.device_pose),
+                                      Flatten(tick.X_WH), Flatten(tick.X_WD)};
+  ByteWriter writer(bytes.data());
+  VisitFields(writer, tick, poses);
+}
+
+TickRecord Unpack(std::span<const std::byte, kPackedTickSize> bytes) noexcept {
+  TickRecord tick;
+  std::array<FlatPose, 3> poses{};
+  ByteReader reader(bytes.data());
+  VisitFields(reader, tick, poses);
+  tick.device_pose = Unflatten(poses[0]);
+  tick.X_WH = Unflatten(poses[1]);
+  tick.X_WD = Unflatten(poses[2]);
+  return tick;
+}
+
+} // namespace hvas::record

@@ -1,0 +1,193 @@
+// What is left of a record after the process was killed or the file was
+// damaged.
+
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "record/reader.h"
+#include "record/recorder.h"
+#include "record/test/sample.h"
+
+namespace hvas::record {
+namespace {
+
+// Runs a recording child, kills it once it has added `kill_after` ticks, and
+// returns how many it had added by then.
+std::int64_t RecordAndKill(const RecorderOptions &options,
+                           std::int64_t kill_after,
+                           std::chrono::microseconds pause) {
+  using Counter = std::atomic<std::int64_t>;
+  static_assert(Counter::is_always_lock_free);
+  void *shared = ::mmap(nullptr, sizeof(Counter), PROT_READ | PROT_WRITE,
+                        MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  EXPECT_NE(shared, MAP_FAILED);
+  auto *added = new (shared) Counter(0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    auto recorder = Recorder::Create(options, {{"product", "victim"}});
+    for (std::int64_t i = 0; recorder; ++i) {
+      if ((*recorder)->AddTick(MakeTick(i))) {
+        added->store(i + 1);
+      }
+      if (pause.count() > 0) {
+        std::this_thread::sleep_for(pause);
+      }
+    }
+    ::_exit(1);
+  }
+  int status = 0;
+  while (added->load() < kill_after &&
+         ::waitpid(child, &status, WNOHANG) == 0) {
+    std::this_thread::yield();
+  }
+  ::kill(child, SIGKILL);
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  const std::int64_t count = added->load();
+  ::munmap(shared, sizeof(Counter));
+  return count;
+}
+
+void ExpectAtMostOneSecondLost(const std::filesystem::path &path,
+                               std::int64_t added) {
+  Result<Reader> reader = Reader::Open(path);
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_FALSE(reader->is_complete());
+  EXPECT_EQ(reader->meta().at("product"), "victim");
+  ASSERT_TRUE(reader->Verify().has_value());
+  const std::vector<TickRecord> ticks = reader->ReadTicks({}).value();
+  EXPECT_GE(static_cast<std::int64_t>(ticks.size()) * kTickNs,
+            added * kTickNs - 1'000'000'000);
+  EXPECT_LE(static_cast<std::int64_t>(ticks.size()), added + 1);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    ASSERT_EQ(ticks[i].t_ns, static_cast<std::int64_t>(i) * kTickNs)
+        << "no gap";
+  }
+}
+
+TEST(KilledRecorder, LosesAtMostOneSecondAndNeverTheFile) {
+  for (const std::int64_t kill_after : {1, 499, 1250, 3001, 7777, 20000}) {
+    SCOPED_TRACE(kill_after);
+    const TemporaryFile file("killed.hvas");
+    const std::int64_t added = RecordAndKill({file.path()}, kill_after, {});
+    ASSERT_GE(added, kill_after);
+    ExpectAtMostOneSecondLost(file.path(), added);
+  }
+}
+
+TEST(KilledRecorder, LosesAtMostOneSecondWhenThreadedInRealTime) {
+  const TemporaryFile file("killed_threaded.hvas");
+  // A millisecond of session a millisecond: sleeping takes a little longer than
+  // asked.
+  const std::int64_t added =
+      RecordAndKill({file.path(), true}, 1500, std::chrono::microseconds(900));
+  ExpectAtMostOneSecondLost(file.path(), added);
+  EXPECT_GT(Reader::Open(file.path())->tick_count(), 500);
+}
+
+// Runs SQL on a record behind HVAS' back.
+void Tamper(const std::filesystem::path &path, const char *sql) {
+  sqlite3 *database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK);
+  EXPECT_EQ(sqlite3_changes(database), 1);
+  sqlite3_close(database);
+}
+
+class DamagedRecord : public ::testing::Test {
+protected:
+  DamagedRecord() : file_("damaged.hvas") {
+    const auto recorder = Recorder::Create({file_.path()}, {});
+    for (int i = 0; i < 1000; ++i) {
+      (*recorder)->AddTick(MakeTick(i));
+    }
+    for (int i = 0; i < 3; ++i) {
+      (*recorder)->AddEvent(MakeEvent(i));
+    }
+    EXPECT_TRUE((*recorder)->Finish().has_value());
+  }
+
+  TemporaryFile file_;
+};
+
+TEST_F(DamagedRecord, ChunkIsFoundAndWhatIsBeforeItCanBeRead) {
+  Tamper(file_.path(),
+         "UPDATE chunk SET ticks = zeroblob(length(ticks)) WHERE id = 3");
+  Reader reader = Reader::Open(file_.path()).value();
+  int visited = 0;
+  const Result<void> done =
+      reader.ForEachTick({}, [&](const TickRecord &) { return ++visited > 0; });
+  ASSERT_FALSE(done.has_value());
+  EXPECT_EQ(done.error().code, ErrorCode::kUnreadable);
+  EXPECT_NE(done.error().message.find("Chunk 3"), std::string::npos);
+  EXPECT_EQ(visited, 500);
+  EXPECT_FALSE(reader.Verify().has_value());
+}
+
+TEST_F(DamagedRecord, FlippedByteInTheFileIsFound) {
+  // In the middle of the tick data, past the first pages.
+  const auto middle =
+      static_cast<std::streamoff>(std::filesystem::file_size(file_.path()) / 2);
+  std::fstream stream(file_.path(),
+                      std::ios::in | std::ios::out | std::ios::binary);
+  stream.seekg(middle);
+  const int byte = stream.get();
+  stream.seekp(middle);
+  stream.put(static_cast<char>(byte ^ 0x10));
+  stream.close();
+  EXPECT_FALSE(Reader::Open(file_.path())->Verify().has_value());
+}
+
+TEST_F(DamagedRecord, EventIsFound) {
+  Tamper(file_.path(), "UPDATE event SET json = '{}' WHERE id = 2");
+  const auto events = Reader::Open(file_.path())->ReadEvents();
+  ASSERT_FALSE(events.has_value());
+  EXPECT_NE(events.error().message.find("Event 2"), std::string::npos);
+}
+
+TEST_F(DamagedRecord, MissingChunkIsFoundByTheDigest) {
+  Tamper(file_.path(), "DELETE FROM chunk WHERE id = 2");
+  const auto verified = Reader::Open(file_.path())->Verify();
+  ASSERT_FALSE(verified.has_value());
+  EXPECT_EQ(verified.error().code, ErrorCode::kUnreadable);
+}
+
+TEST_F(DamagedRecord, NewerLayoutIsRefusedWithItsNumber) {
+  Tamper(file_.path(), "UPDATE schema_version SET version = 99");
+  const auto reader = Reader::Open(file_.path());
+  ASSERT_FALSE(reader.has_value());
+  EXPECT_EQ(reader.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(reader.error().message.find("99"), std::string::npos);
+}
+
+TEST(ReaderError, TellsAMissingFileFromAWrongOne) {
+  const auto missing = Reader::Open("/nonexistent/session.hvas");
+  ASSERT_FALSE(missing.has_value());
+  EXPECT_EQ(missing.error().code, ErrorCode::kNotFound);
+
+  const TemporaryFile text("text.hvas");
+  std::ofstream(text.path()) << std::string(5000, 'x');
+  const auto wrong = Reader::Open(text.path());
+  ASSERT_FALSE(wrong.has_value());
+  EXPECT_EQ(wrong.error().code, ErrorCode::kUnreadable);
+
+  const TemporaryFile other("other.sqlite");
+  sqlite3 *database = nullptr;
+  ASSERT_EQ(sqlite3_open(other.path().c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "CREATE TABLE t (x)", nullptr, nullptr, nullptr);
+  sqlite3_close(database);
+  const auto foreign = Reader::Open(other.path());
+  ASSERT_FALSE(foreign.has_value());
+  EXPECT_EQ(foreign.error().code, ErrorCode::kUnreadable);
+}
+
+} // namespace
+} // namespace hvas::record

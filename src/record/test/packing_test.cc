@@ -1,0 +1,109 @@
+#include "record/packing.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "record/test/sample.h"
+
+namespace hvas::record {
+namespace {
+
+using Bytes = std::array<std::byte, kPackedTickSize>;
+
+Bytes PackOne(const TickRecord &tick) {
+  Bytes bytes{};
+  Pack(tick, bytes);
+  return bytes;
+}
+
+void ExpectEqual(const spatial::Pose &a, const spatial::Pose &b) {
+  EXPECT_EQ(a.p(), b.p());
+  EXPECT_EQ(a.q().coeffs(), b.q().coeffs());
+}
+
+void ExpectEqual(const spatial::Wrench &a, const spatial::Wrench &b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.f, b.f);
+}
+
+TEST(Packing, BringsEveryFieldBackBitForBit) {
+  for (int i = 0; i < 100; ++i) {
+    const TickRecord tick = MakeTick(i);
+    const TickRecord back = Unpack(PackOne(tick));
+    EXPECT_EQ(back.t_ns, tick.t_ns);
+    ExpectEqual(back.device_pose, tick.device_pose);
+    EXPECT_EQ(back.device_twist.w, tick.device_twist.w);
+    EXPECT_EQ(back.device_twist.v, tick.device_twist.v);
+    EXPECT_EQ(back.device_buttons, tick.device_buttons);
+    EXPECT_EQ(back.status, tick.status);
+    ExpectEqual(back.X_WH, tick.X_WH);
+    ExpectEqual(back.X_WD, tick.X_WD);
+    ExpectEqual(back.F_true_W, tick.F_true_W);
+    ExpectEqual(back.F_felt_W, tick.F_felt_W);
+    EXPECT_EQ(back.held, tick.held);
+    EXPECT_EQ(back.state, tick.state);
+    EXPECT_EQ(back.contact_count, tick.contact_count);
+    EXPECT_EQ(back.depth, tick.depth);
+    EXPECT_EQ(back.deepest, tick.deepest);
+    for (std::size_t k = 0; k < tick.contacts.size(); ++k) {
+      EXPECT_EQ(back.contacts[k].p_WC, tick.contacts[k].p_WC);
+      EXPECT_EQ(back.contacts[k].nhat_W, tick.contacts[k].nhat_W);
+      EXPECT_EQ(back.contacts[k].distance, tick.contacts[k].distance);
+    }
+  }
+}
+
+// The layout is a file format: these offsets may not move without a new schema
+// version.
+TEST(Packing, PutsFieldsAtTheirPlacesLittleEndian) {
+  TickRecord tick;
+  tick.t_ns = 0x0102030405060708;
+  tick.device_pose = spatial::Pose(Quat(0.5, 0.5, -0.5, 0.5), Vec3(1, 2, 3));
+  tick.device_buttons = 0x11223344;
+  tick.held = 7;
+  const Bytes bytes = PackOne(tick);
+  EXPECT_EQ(bytes[0], std::byte{0x08});
+  EXPECT_EQ(bytes[7], std::byte{0x01});
+  const auto number = [&bytes](std::size_t offset) {
+    double value = 0;
+    std::memcpy(&value, &bytes[offset], sizeof(value));
+    return value;
+  };
+  EXPECT_EQ(number(8), 1); // p
+  EXPECT_EQ(number(24), 3);
+  EXPECT_EQ(number(32), 0.5); // w of q first
+  EXPECT_EQ(number(48), -0.5);
+  EXPECT_EQ(bytes[112], std::byte{0x44}); // after the twist
+  EXPECT_EQ(bytes[328], std::byte{0x07}); // after two poses and two wrenches
+}
+
+TEST(Packing, KeepsSpecialNumbers) {
+  TickRecord tick;
+  tick.depth = -0.0;
+  const TickRecord back = Unpack(PackOne(tick));
+  EXPECT_TRUE(std::signbit(back.depth));
+  EXPECT_EQ(back.deepest, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(back.held, kNoOccurrence);
+}
+
+TEST(Packing, UsesEveryByte) {
+  // Over many ticks every byte takes many values: none is padding. The last
+  // byte of a float or double (sign and exponent) takes the fewest.
+  std::array<std::set<std::byte>, kPackedTickSize> seen;
+  for (int i = 0; i < 300; ++i) {
+    const Bytes bytes = PackOne(MakeTick(1000003 * i));
+    for (std::size_t k = 0; k < bytes.size(); ++k) {
+      seen[k].insert(bytes[k]);
+    }
+  }
+  for (std::size_t k = 8; k < seen.size(); ++k) {
+    EXPECT_GT(seen[k].size(), 1u) << k;
+  }
+}
+
+} // namespace
+} // namespace hvas::record

@@ -1,0 +1,245 @@
+#include "record/recorder.h"
+
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "record/packing.h"
+#include "record/reader.h"
+#include "record/test/sample.h"
+
+namespace hvas::record {
+namespace {
+
+constexpr int kTicks = 1234; // Not a multiple of the chunk.
+
+std::unique_ptr<Recorder> MakeRecorder(const RecorderOptions &options,
+                                       const Meta &meta = {}) {
+  Result<std::unique_ptr<Recorder>> recorder = Recorder::Create(options, meta);
+  EXPECT_TRUE(recorder.has_value()) << recorder.error().ToString();
+  return std::move(*recorder);
+}
+
+void Fill(Recorder *recorder, int ticks) {
+  for (int i = 0; i < ticks; ++i) {
+    while (!recorder->AddTick(MakeTick(i))) {
+      std::this_thread::yield();
+    }
+    if (i % 100 == 0) {
+      recorder->AddEvent(MakeEvent(i));
+    }
+  }
+}
+
+std::string DigestOf(const std::function<void(Recorder *)> &fill) {
+  const std::unique_ptr<Recorder> recorder = MakeRecorder({});
+  fill(recorder.get());
+  EXPECT_TRUE(recorder->Finish().has_value());
+  return recorder->Digest();
+}
+
+bool IsSame(const TickRecord &a, const TickRecord &b) {
+  std::array<std::byte, kPackedTickSize> bytes_a{};
+  std::array<std::byte, kPackedTickSize> bytes_b{};
+  Pack(a, bytes_a);
+  Pack(b, bytes_b);
+  return bytes_a == bytes_b;
+}
+
+class RecorderRoundTrip : public ::testing::TestWithParam<bool> {};
+
+TEST_P(RecorderRoundTrip, ReadsBackWhatWasAdded) {
+  const TemporaryFile file(GetParam() ? "threaded.hvas" : "plain.hvas");
+  const Meta meta{
+      {"product", "gear pump"}, {"seed", "7"}, {"model", R"({"a": [1, 2]})"}};
+  const std::unique_ptr<Recorder> recorder =
+      MakeRecorder({file.path(), GetParam()}, meta);
+  Fill(recorder.get(), kTicks);
+  ASSERT_TRUE(recorder->Finish().has_value());
+  // The same ticks can only be refused when the ring was full, and then they
+  // were offered again.
+  EXPECT_EQ(recorder->tick_count(), kTicks);
+
+  Result<Reader> reader = Reader::Open(file.path());
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_TRUE(reader->is_complete());
+  EXPECT_EQ(reader->tick_count(), kTicks);
+  for (const auto &[key, value] : meta) {
+    EXPECT_EQ(reader->meta().at(key), value);
+  }
+  EXPECT_GT(std::stoll(reader->meta().at(kMetaStarted)),
+            1'600'000'000'000'000'000);
+  EXPECT_EQ(reader->meta().at(kMetaDigest), recorder->Digest());
+  EXPECT_EQ(reader->Verify().value(), recorder->Digest());
+
+  const std::vector<TickRecord> ticks = reader->ReadTicks({}).value();
+  ASSERT_EQ(ticks.size(), static_cast<std::size_t>(kTicks));
+  for (int i = 0; i < kTicks; ++i) {
+    ASSERT_TRUE(IsSame(ticks[static_cast<std::size_t>(i)], MakeTick(i))) << i;
+  }
+  const std::vector<Event> events = reader->ReadEvents().value();
+  ASSERT_EQ(events.size(), 13u);
+  for (int i = 0; i < 13; ++i) {
+    const Event &event = events[static_cast<std::size_t>(i)];
+    const Event expected = MakeEvent(100 * i);
+    EXPECT_EQ(event.t_ns, expected.t_ns);
+    EXPECT_EQ(event.kind, expected.kind);
+    EXPECT_EQ(event.occurrence, expected.occurrence);
+    EXPECT_EQ(event.json, expected.json);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, RecorderRoundTrip, ::testing::Bool());
+
+TEST(Recorder, LeavesASingleFile) {
+  const TemporaryFile file("single.hvas");
+  Fill(MakeRecorder({file.path()}).get(), 300);
+  EXPECT_TRUE(std::filesystem::exists(file.path()));
+  EXPECT_FALSE(std::filesystem::exists(file.path().string() + "-wal"));
+  EXPECT_FALSE(std::filesystem::exists(file.path().string() + "-shm"));
+}
+
+TEST(Reader, GivesTheTicksOfASpanOfTime) {
+  const TemporaryFile file("span.hvas");
+  Fill(MakeRecorder({file.path()}).get(), kTicks);
+  Reader reader = Reader::Open(file.path()).value();
+  const std::vector<TickRecord> ticks =
+      reader.ReadTicks({240 * kTickNs, 260 * kTickNs}).value();
+  ASSERT_EQ(ticks.size(), 21u) << "both ends belong to the span";
+  EXPECT_EQ(ticks.front().t_ns, 240 * kTickNs);
+  EXPECT_EQ(ticks.back().t_ns, 260 * kTickNs);
+  int visited = 0;
+  ASSERT_TRUE(
+      reader.ForEachTick({}, [&](const TickRecord &) { return ++visited < 5; })
+          .has_value());
+  EXPECT_EQ(visited, 5);
+}
+
+// N7, and the digest by which two runs of one seed are compared.
+TEST(RecorderDigest, IsEqualForEqualSessionsHoweverTheyAreRecorded) {
+  const TemporaryFile file("digest.hvas");
+  const TemporaryFile threaded_file("digest_threaded.hvas");
+  const std::string digest = DigestOf([](Recorder *r) { Fill(r, kTicks); });
+  EXPECT_EQ(digest, DigestOf([](Recorder *r) { Fill(r, kTicks); }));
+
+  const std::unique_ptr<Recorder> plain =
+      MakeRecorder({file.path()}, {{"seed", "1"}});
+  Fill(plain.get(), kTicks);
+  EXPECT_EQ(plain->Digest(), digest) << "before the end, too";
+  ASSERT_TRUE(plain->Finish().has_value());
+  EXPECT_EQ(plain->Digest(), digest);
+
+  const std::unique_ptr<Recorder> threaded =
+      MakeRecorder({threaded_file.path(), true});
+  Fill(threaded.get(), kTicks);
+  ASSERT_TRUE(threaded->Finish().has_value());
+  EXPECT_EQ(threaded->Digest(), digest);
+}
+
+TEST(RecorderDigest, ChangesWithEveryTickAndEvent) {
+  const std::string digest = DigestOf([](Recorder *r) { Fill(r, 50); });
+  const auto with_last = [](TickRecord last) {
+    return DigestOf([&last](Recorder *r) {
+      Fill(r, 49);
+      r->AddTick(last);
+    });
+  };
+  TickRecord last = MakeTick(49);
+  EXPECT_EQ(with_last(last), digest);
+  last.depth = std::nextafter(last.depth, 1.0);
+  EXPECT_NE(with_last(last), digest);
+  EXPECT_NE(DigestOf([](Recorder *r) { Fill(r, 49); }), digest);
+  EXPECT_NE(DigestOf([](Recorder *r) {
+              Fill(r, 50);
+              r->AddEvent(MakeEvent(1));
+            }),
+            digest);
+}
+
+TEST(Recorder, CountsWhatAFullRingRefused) {
+  RecorderOptions options;
+  options.is_threaded = true;
+  options.ring_ticks = 16;
+  const std::unique_ptr<Recorder> recorder = MakeRecorder(options);
+  const TickRecord tick = MakeTick(1);
+  std::uint64_t refused = 0;
+  constexpr int kBurst = 20000; // In far less than the writer's pause.
+  for (int i = 0; i < kBurst; ++i) {
+    refused += recorder->AddTick(tick) ? 0 : 1;
+  }
+  ASSERT_TRUE(recorder->Finish().has_value());
+  EXPECT_GT(refused, 0u);
+  EXPECT_EQ(recorder->dropped_ticks(), refused);
+  EXPECT_EQ(recorder->tick_count() + static_cast<std::int64_t>(refused),
+            kBurst);
+}
+
+TEST(Recorder, TakesEventsFromOtherThreads) {
+  const TemporaryFile file("events.hvas");
+  const std::unique_ptr<Recorder> recorder = MakeRecorder({file.path(), true});
+  std::thread physics([&] {
+    for (int i = 0; i < 200; ++i) {
+      recorder->AddEvent(MakeEvent(i));
+    }
+  });
+  Fill(recorder.get(), 300); // Adds 3 events of its own.
+  physics.join();
+  ASSERT_TRUE(recorder->Finish().has_value());
+  EXPECT_EQ(Reader::Open(file.path())->ReadEvents()->size(), 203u);
+}
+
+TEST(RecorderError, NamesAFolderThatDoesNotExist) {
+  RecorderOptions options;
+  options.path = "/nonexistent/folder/session.hvas";
+  const auto recorder = Recorder::Create(options, {});
+  ASSERT_FALSE(recorder.has_value());
+  EXPECT_EQ(recorder.error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(recorder.error().where, options.path.string());
+  EXPECT_FALSE(recorder.error().remedy.empty());
+}
+
+TEST(RecorderError, DoesNotOverwriteWhatIsNotARecord) {
+  const TemporaryFile file("precious.step");
+  std::ofstream(file.path())
+      << "ISO-10303-21; somebody's model, long enough to be one.";
+  const auto recorder = Recorder::Create({file.path()}, {});
+  ASSERT_FALSE(recorder.has_value());
+  EXPECT_EQ(recorder.error().code, ErrorCode::kInvalid);
+  std::string first;
+  std::ifstream(file.path()) >> first;
+  EXPECT_EQ(first, "ISO-10303-21;");
+  EXPECT_FALSE(Recorder::Create({std::filesystem::temp_directory_path()}, {})
+                   .has_value());
+}
+
+TEST(Recorder, ReplacesAnOlderRecord) {
+  const TemporaryFile file("replaced.hvas");
+  Fill(MakeRecorder({file.path()}).get(), 700);
+  Fill(MakeRecorder({file.path()}).get(), 20);
+  EXPECT_EQ(Reader::Open(file.path())->tick_count(), 20);
+}
+
+TEST(RecorderError, GoesOnWithoutTheFileWhenThereIsNoRoom) {
+  const TemporaryFile file("full.hvas");
+  RecorderOptions options;
+  options.path = file.path();
+  options.max_file_bytes = 1 << 20;
+  const std::unique_ptr<Recorder> recorder = MakeRecorder(options);
+  Fill(recorder.get(), 5000); // 2 MB
+  ASSERT_TRUE(recorder->error().has_value());
+  const Result<void> finished = recorder->Finish();
+  ASSERT_FALSE(finished.has_value());
+  EXPECT_EQ(finished.error().code, ErrorCode::kOutOfResource);
+  EXPECT_EQ(recorder->Digest(), DigestOf([](Recorder *r) { Fill(r, 5000); }));
+  // What was written before is whole.
+  Reader reader = Reader::Open(file.path()).value();
+  EXPECT_FALSE(reader.is_complete());
+  EXPECT_GT(reader.tick_count(), 1000);
+  EXPECT_TRUE(reader.Verify().has_value());
+  EXPECT_LE(std::filesystem::file_size(file.path()), 1u << 20);
+}
+
+} // namespace
+} // namespace hvas::record

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+#include "base/random.h"
+#include "record/tick_record.h"
+
+namespace hvas::record {
+
+inline constexpr std::int64_t kTickNs = 1'000'000;
+
+/** A tick with every field set, decided by its number alone. */
+inline TickRecord MakeTick(std::int64_t number) {
+  Random random(static_cast<std::uint64_t>(number) + 1);
+  const auto vector = [&random] {
+    const double x = random.Uniform(-1, 1);
+    const double y = random.Uniform(-1, 1);
+    return Vec3(x, y, random.Uniform(-1, 1));
+  };
+  const auto pose = [&] {
+    const Vec3 p = vector();
+    return spatial::Pose(spatial::RotationFromVector(vector()), p);
+  };
+  TickRecord tick;
+  tick.t_ns = number * kTickNs;
+  tick.device_pose = pose();
+  tick.device_twist = {vector(), vector()};
+  tick.device_buttons = static_cast<std::uint32_t>(random.NextBits());
+  tick.status = static_cast<std::uint32_t>(random.NextBits());
+  tick.X_WH = pose();
+  tick.X_WD = pose();
+  tick.F_true_W = {vector(), vector()};
+  tick.F_felt_W = {vector(), vector()};
+  tick.held = static_cast<std::uint32_t>(random.NextBits());
+  tick.state = static_cast<std::uint8_t>(random.NextBits());
+  tick.contact_count = static_cast<std::uint16_t>(random.NextBits());
+  tick.depth = random.Uniform(-1, 1);
+  tick.deepest = random.Uniform(-1, 1);
+  for (ContactRecord &contact : tick.contacts) {
+    contact.p_WC = vector().cast<float>();
+    contact.nhat_W = vector().cast<float>();
+    contact.distance = static_cast<float>(random.Uniform(-1, 1));
+  }
+  return tick;
+}
+
+inline Event MakeEvent(std::int64_t number) {
+  return {number * kTickNs, number % 2 == 0 ? "seated" : "captured",
+          number % 3 == 0 ? kNoOccurrence : static_cast<std::uint32_t>(number),
+          "{\"depth_mm\": " + std::to_string(number) +
+              ", \"name\": \"Büchse\"}"};
+}
+
+/** A file name of this process' own, removed with its side files at the end. */
+class TemporaryFile {
+public:
+  explicit TemporaryFile(const std::string &name)
+      : path_(std::filesystem::temp_directory_path() /
+              ("hvas_" + std::to_string(::getpid()) + "_" + name)) {
+    Remove();
+  }
+  ~TemporaryFile() { Remove(); }
+  TemporaryFile(const TemporaryFile &) = delete;
+  TemporaryFile &operator=(const TemporaryFile &) = delete;
+
+  [[nodiscard]] const std::filesystem::path &path() const { return path_; }
+
+private:
+  void Remove() const {
+    std::error_code ignored;
+    for (const char *suffix : {"", "-wal", "-shm", "-journal"}) {
+      std::filesystem::remove(path_.string() + suffix, ignored);
+    }
+  }
+
+  std::filesystem::path path_;
+};
+
+} // namespace hvas::record
