@@ -1,0 +1,72 @@
+#include "mates/capture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hvas::mates {
+
+using product::MateKind;
+using spatial::Pose;
+
+CaptureMate MakeCaptureMate(const product::Mate& mate, product::OccurrenceId held) {
+  const bool holds_shaft = mate.b.occurrence == held;
+  CaptureMate capture;
+  capture.kind = mate.kind;
+  capture.placed_low = holds_shaft ? mate.hole_low : mate.shaft_low;
+  capture.placed_high = holds_shaft ? mate.hole_high : mate.shaft_high;
+  capture.held_low = holds_shaft ? mate.shaft_low : mate.hole_low;
+  capture.held_high = holds_shaft ? mate.shaft_high : mate.hole_high;
+  if (mate.kind == MateKind::kFaceFace) {
+    capture.reach = std::sqrt(std::max(0.0, mate.overlap) / std::numbers::pi);
+  }
+  return capture;
+}
+
+MateDeviation CalcDeviation(const CaptureMate& mate, const Pose& X_WM, const Pose& X_WN) noexcept {
+  const Vec3 zhat_M_W = X_WM.q() * Vec3::UnitZ();
+  const Vec3 zhat_N_W = X_WN.q() * Vec3::UnitZ();
+  const bool is_axis = mate.kind == MateKind::kAxisHole;
+  const double cosine = (is_axis ? 1.0 : -1.0) * zhat_M_W.dot(zhat_N_W);
+  MateDeviation deviation;
+  // atan2 is accurate for parallel and opposed directions, where acos is not.
+  deviation.angle = std::atan2(zhat_M_W.cross(zhat_N_W).norm(), cosine);
+  const Vec3 p_MN_W = X_WN.p() - X_WM.p();
+  const double along = zhat_M_W.dot(p_MN_W);
+  if (!is_axis) {
+    const Vec3 in_plane_W = p_MN_W - along * zhat_M_W;
+    deviation.distance = std::abs(along);
+    deviation.gap = std::max(0.0, in_plane_W.norm() - mate.reach);
+    return deviation;
+  }
+  // Where the ends of the held span are along the placed axis.
+  const double end_low = along + mate.held_low * cosine;
+  const double end_high = along + mate.held_high * cosine;
+  const double low = std::min(end_low, end_high);
+  const double high = std::max(end_low, end_high);
+  deviation.gap = std::max({0.0, mate.placed_low - high, low - mate.placed_high});
+  const double meeting =
+      0.5 * (std::clamp(mate.placed_low, low, high) + std::clamp(mate.placed_high, low, high));
+  // A held axis square to the placed one meets it anywhere: then its origin stands for it.
+  const double share = high - low > 1e-12 ? (meeting - end_low) / (end_high - end_low) : 0.5;
+  const double s = mate.held_low + share * (mate.held_high - mate.held_low);
+  deviation.distance = zhat_M_W.cross(p_MN_W + s * zhat_N_W).norm();
+  return deviation;
+}
+
+double CalcCaptureRatio(MateKind kind, const MateDeviation& deviation,
+                        const CaptureThresholds& thresholds) noexcept {
+  const bool is_axis = kind == MateKind::kAxisHole;
+  const double distance_limit = is_axis ? thresholds.axis_distance : thresholds.face_distance;
+  const double gap_limit = is_axis ? thresholds.axial_gap : thresholds.in_plane_gap;
+  return std::max({deviation.angle / thresholds.angle, deviation.distance / distance_limit,
+                   deviation.gap / gap_limit});
+}
+
+bool IsCaptured(MateKind kind, const MateDeviation& deviation, bool was_captured,
+                const CaptureThresholds& thresholds) noexcept {
+  return CalcCaptureRatio(kind, deviation, thresholds) <=
+         (was_captured ? thresholds.release_ratio : 1.0);
+}
+
+}  // namespace hvas::mates
