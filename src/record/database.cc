@@ -6,66 +6,58 @@ namespace hvas::record {
 namespace {
 
 // Turns a result code into words that a person can act on.
-Unexpected FailWith(sqlite3 *database, int code, const std::string &path) {
-  const std::string reason =
-      database != nullptr ? sqlite3_errmsg(database) : sqlite3_errstr(code);
+Unexpected FailWith(sqlite3* database, int code, const std::string& path) {
+  const std::string reason = database != nullptr ? sqlite3_errmsg(database) : sqlite3_errstr(code);
   switch (code & 0xff) {
-  case SQLITE_NOTADB:
-    return Fail(ErrorCode::kUnreadable,
-                "This is not a session record: " + reason + ".", path,
-                "Name a file that HVAS recorded");
-  case SQLITE_CORRUPT:
-    return Fail(ErrorCode::kUnreadable,
-                "The record is damaged: " + reason + ".", path,
-                "Restore the file from a copy");
-  case SQLITE_CANTOPEN:
-  case SQLITE_PERM:
-  case SQLITE_READONLY:
-    return Fail(ErrorCode::kNotFound,
-                "The record cannot be opened or written: " + reason + ".", path,
-                "Check that the folder exists and may be written");
-  case SQLITE_FULL:
-    return Fail(ErrorCode::kOutOfResource,
-                "There is no room for more of the record.", path,
-                "Free disk space or raise the record's size limit");
-  case SQLITE_BUSY:
-  case SQLITE_LOCKED:
-    return Fail(ErrorCode::kOutOfResource,
-                "Another program holds the record: " + reason + ".", path,
-                "Close it and try again");
-  case SQLITE_IOERR:
-    return Fail(ErrorCode::kOutOfResource,
-                "The disk refused the record: " + reason + ".", path,
-                "Check the disk and its free space");
-  default:
-    return Fail(ErrorCode::kInternal, "SQLite: " + reason + ".", path);
+    case SQLITE_NOTADB:
+      return Fail(ErrorCode::kUnreadable, "This is not a session record: " + reason + ".", path,
+                  "Name a file that HVAS recorded");
+    case SQLITE_CORRUPT:
+      return Fail(ErrorCode::kUnreadable, "The record is damaged: " + reason + ".", path,
+                  "Restore the file from a copy");
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+    case SQLITE_READONLY:
+      return Fail(ErrorCode::kNotFound, "The record cannot be opened or written: " + reason + ".",
+                  path, "Check that the folder exists and may be written");
+    case SQLITE_FULL:
+      return Fail(ErrorCode::kOutOfResource, "There is no room for more of the record.", path,
+                  "Free disk space or raise the record's size limit");
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return Fail(ErrorCode::kOutOfResource, "Another program holds the record: " + reason + ".",
+                  path, "Close it and try again");
+    case SQLITE_IOERR:
+      return Fail(ErrorCode::kOutOfResource, "The disk refused the record: " + reason + ".", path,
+                  "Check the disk and its free space");
+    default:
+      return Fail(ErrorCode::kInternal, "SQLite: " + reason + ".", path);
   }
 }
 
-} // namespace
+}  // namespace
 
-void Statement::Finalizer::operator()(sqlite3_stmt *statement) const {
+void Statement::Finalizer::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
 }
 
-Statement &Statement::Bind(int index, std::int64_t value) {
+Statement& Statement::Bind(int index, std::int64_t value) {
   sqlite3_bind_int64(statement_.get(), index, value);
   return *this;
 }
 
-Statement &Statement::Bind(int index, std::string_view text) {
-  sqlite3_bind_text64(statement_.get(), index, text.data(), text.size(),
-                      SQLITE_TRANSIENT, SQLITE_UTF8);
+Statement& Statement::Bind(int index, std::string_view text) {
+  sqlite3_bind_text64(statement_.get(), index, text.data(), text.size(), SQLITE_TRANSIENT,
+                      SQLITE_UTF8);
   return *this;
 }
 
-Statement &Statement::Bind(int index, std::span<const std::byte> blob) {
-  sqlite3_bind_blob64(statement_.get(), index, blob.data(), blob.size(),
-                      SQLITE_TRANSIENT);
+Statement& Statement::Bind(int index, std::span<const std::byte> blob) {
+  sqlite3_bind_blob64(statement_.get(), index, blob.data(), blob.size(), SQLITE_TRANSIENT);
   return *this;
 }
 
-Statement &Statement::BindNull(int index) {
+Statement& Statement::BindNull(int index) {
   sqlite3_bind_null(statement_.get(), index);
   return *this;
 }
@@ -92,17 +84,17 @@ std::int64_t Statement::ReadInt(int column) const {
 }
 
 std::string Statement::ReadText(int column) const {
-  const unsigned char *text = sqlite3_column_text(statement_.get(), column);
+  const unsigned char* text = sqlite3_column_text(statement_.get(), column);
   const int size = sqlite3_column_bytes(statement_.get(), column);
-  return text == nullptr ? std::string()
-                         : std::string(reinterpret_cast<const char *>(text),
-                                       static_cast<std::size_t>(size));
+  return text == nullptr
+             ? std::string()
+             : std::string(reinterpret_cast<const char*>(text), static_cast<std::size_t>(size));
 }
 
 std::span<const std::byte> Statement::ReadBlob(int column) const {
-  const void *blob = sqlite3_column_blob(statement_.get(), column);
+  const void* blob = sqlite3_column_blob(statement_.get(), column);
   const int size = sqlite3_column_bytes(statement_.get(), column);
-  return {static_cast<const std::byte *>(blob),
+  return {static_cast<const std::byte*>(blob),
           blob == nullptr ? 0 : static_cast<std::size_t>(size)};
 }
 
@@ -110,16 +102,15 @@ bool Statement::is_null(int column) const {
   return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
 }
 
-void Database::Closer::operator()(sqlite3 *database) const {
+void Database::Closer::operator()(sqlite3* database) const {
   sqlite3_close_v2(database);
 }
 
-Result<Database> Database::Open(const std::filesystem::path &path, Mode mode) {
+Result<Database> Database::Open(const std::filesystem::path& path, Mode mode) {
   const int flags =
       SQLITE_OPEN_NOMUTEX |
-      (mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY
-                               : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-  sqlite3 *raw = nullptr;
+      (mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  sqlite3* raw = nullptr;
   const int code = sqlite3_open_v2(path.c_str(), &raw, flags, nullptr);
   Database database(raw, path.string());
   if (code != SQLITE_OK) {
@@ -129,9 +120,8 @@ Result<Database> Database::Open(const std::filesystem::path &path, Mode mode) {
   return database;
 }
 
-Result<void> Database::Execute(const std::string &sql) {
-  const int code =
-      sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr);
+Result<void> Database::Execute(const std::string& sql) {
+  const int code = sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) {
     return FailWith(database_.get(), code, path_);
   }
@@ -139,9 +129,9 @@ Result<void> Database::Execute(const std::string &sql) {
 }
 
 Result<Statement> Database::Prepare(std::string_view sql) {
-  sqlite3_stmt *raw = nullptr;
-  const int code = sqlite3_prepare_v2(
-      database_.get(), sql.data(), static_cast<int>(sql.size()), &raw, nullptr);
+  sqlite3_stmt* raw = nullptr;
+  const int code =
+      sqlite3_prepare_v2(database_.get(), sql.data(), static_cast<int>(sql.size()), &raw, nullptr);
   if (code != SQLITE_OK) {
     return FailWith(database_.get(), code, path_);
   }
@@ -163,4 +153,4 @@ Result<std::int64_t> Database::QueryInt(std::string_view sql) {
   return statement->ReadInt(0);
 }
 
-} // namespace hvas::record
+}  // namespace hvas::record

@@ -17,16 +17,15 @@ namespace hvas::record {
 
 /** A prepared statement: bind from 1, read columns from 0, as SQLite counts. */
 class Statement {
-public:
-  Statement &Bind(int index, std::int64_t value);
-  Statement &Bind(int index, std::string_view text);
-  Statement &Bind(int index, std::span<const std::byte> blob);
-  Statement &BindNull(int index);
+ public:
+  Statement& Bind(int index, std::int64_t value);
+  Statement& Bind(int index, std::string_view text);
+  Statement& Bind(int index, std::span<const std::byte> blob);
+  Statement& BindNull(int index);
 
   /** True when there is a row to read, false at the end. */
   Result<bool> Step();
-  /** Runs a statement that gives no rows, and makes it ready for the next
-   * bindings. */
+  /** Runs a statement that gives no rows, and makes it ready for the next bindings. */
   Result<void> Run();
 
   [[nodiscard]] std::int64_t ReadInt(int column) const;
@@ -35,40 +34,42 @@ public:
   [[nodiscard]] std::span<const std::byte> ReadBlob(int column) const;
   [[nodiscard]] bool is_null(int column) const;
 
-private:
+ private:
   friend class Database;
+
   struct Finalizer {
-    void operator()(sqlite3_stmt *statement) const;
+    void operator()(sqlite3_stmt* statement) const;
   };
-  Statement(sqlite3 *database, sqlite3_stmt *statement, std::string path)
+
+  Statement(sqlite3* database, sqlite3_stmt* statement, std::string path)
       : database_(database), statement_(statement), path_(std::move(path)) {}
 
-  sqlite3 *database_;
+  sqlite3* database_;
   std::unique_ptr<sqlite3_stmt, Finalizer> statement_;
   std::string path_;
 };
 
 /** A connection to an SQLite file; one thread at a time. */
 class Database {
-public:
+ public:
   enum class Mode { kReadOnly, kCreate };
 
-  static Result<Database> Open(const std::filesystem::path &path, Mode mode);
+  static Result<Database> Open(const std::filesystem::path& path, Mode mode);
 
-  Result<void> Execute(const std::string &sql);
+  Result<void> Execute(const std::string& sql);
   Result<Statement> Prepare(std::string_view sql);
   /** The first column of the first row. */
   Result<std::int64_t> QueryInt(std::string_view sql);
 
-private:
+ private:
   struct Closer {
-    void operator()(sqlite3 *database) const;
+    void operator()(sqlite3* database) const;
   };
-  Database(sqlite3 *database, std::string path)
-      : database_(database), path_(std::move(path)) {}
+
+  Database(sqlite3* database, std::string path) : database_(database), path_(std::move(path)) {}
 
   std::unique_ptr<sqlite3, Closer> database_;
   std::string path_;
 };
 
-} // namespace hvas::record
+}  // namespace hvas::record

@@ -6,52 +6,52 @@
 namespace hvas::record {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "packing copies bytes as they are");
+static_assert(std::endian::native == std::endian::little, "packing copies bytes as they are");
 
 class ByteWriter {
-public:
-  explicit ByteWriter(std::byte *to) : to_(to) {}
+ public:
+  explicit ByteWriter(std::byte* to) : to_(to) {}
 
-  template <typename T> void operator()(const T &value) noexcept {
+  template <typename T>
+  void operator()(const T& value) noexcept {
     std::memcpy(to_, &value, sizeof(value));
     to_ += sizeof(value);
   }
 
-private:
-  std::byte *to_;
+ private:
+  std::byte* to_;
 };
 
 class ByteReader {
-public:
-  explicit ByteReader(const std::byte *from) : from_(from) {}
+ public:
+  explicit ByteReader(const std::byte* from) : from_(from) {}
 
-  template <typename T> void operator()(T &value) noexcept {
+  template <typename T>
+  void operator()(T& value) noexcept {
     std::memcpy(&value, from_, sizeof(value));
     from_ += sizeof(value);
   }
 
-private:
-  const std::byte *from_;
+ private:
+  const std::byte* from_;
 };
 
 // A pose as plain numbers: p, then q as w, x, y, z.
 using FlatPose = std::array<double, 7>;
 
-FlatPose Flatten(const spatial::Pose &X) {
-  const Quat &q = X.q();
+FlatPose Flatten(const spatial::Pose& X) {
+  const Quat& q = X.q();
   return {X.p().x(), X.p().y(), X.p().z(), q.w(), q.x(), q.y(), q.z()};
 }
 
-spatial::Pose Unflatten(const FlatPose &v) {
+spatial::Pose Unflatten(const FlatPose& v) {
   return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
 }
 
-// The one place that knows the order of the fields. `F` is a ByteWriter or a
-// ByteReader.
+// The one place that knows the order of the fields. `F` is a ByteWriter or a ByteReader.
 template <typename F, typename Tick, typename Poses>
-void VisitFields(F &f, Tick &tick, Poses &poses) noexcept {
-  const auto vector = [&f](auto &v) {
+void VisitFields(F& f, Tick& tick, Poses& poses) noexcept {
+  const auto vector = [&f](auto& v) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       f(v[i]);
     }
@@ -73,25 +73,24 @@ void VisitFields(F &f, Tick &tick, Poses &poses) noexcept {
   f(tick.contact_count);
   f(tick.depth);
   f(tick.deepest);
-  for (auto &contact : tick.contacts) {
+  for (auto& contact : tick.contacts) {
     vector(contact.p_WC);
     vector(contact.nhat_W);
     f(contact.distance);
   }
 }
 
-constexpr std::size_t kFieldBytes =
-    sizeof(std::int64_t) + 3 * sizeof(FlatPose) + 18 * sizeof(double) +
-    3 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + sizeof(std::uint16_t) +
-    2 * sizeof(double) + TickRecord::kContacts * 7 * sizeof(float);
+constexpr std::size_t kFieldBytes = sizeof(std::int64_t) + 3 * sizeof(FlatPose) +
+                                    18 * sizeof(double) + 3 * sizeof(std::uint32_t) +
+                                    sizeof(std::uint8_t) + sizeof(std::uint16_t) +
+                                    2 * sizeof(double) + TickRecord::kContacts * 7 * sizeof(float);
 static_assert(kFieldBytes == kPackedTickSize);
 
-} // namespace
+}  // namespace
 
-void Pack(const TickRecord &tick,
-          std::span<std::byte, kPackedTickSize> bytes) noexcept {
-  const std::array<FlatPose, 3> poses{Flatten(tick.device_pose),
-                                      Flatten(tick.X_WH), Flatten(tick.X_WD)};
+void Pack(const TickRecord& tick, std::span<std::byte, kPackedTickSize> bytes) noexcept {
+  const std::array<FlatPose, 3> poses{Flatten(tick.device_pose), Flatten(tick.X_WH),
+                                      Flatten(tick.X_WD)};
   ByteWriter writer(bytes.data());
   VisitFields(writer, tick, poses);
 }
@@ -107,4 +106,4 @@ TickRecord Unpack(std::span<const std::byte, kPackedTickSize> bytes) noexcept {
   return tick;
 }
 
-} // namespace hvas::record
+}  // namespace hvas::record

@@ -7,14 +7,11 @@
 
 namespace hvas::record {
 
-/** Bytes of a tick in a file: its fields in order, little-endian, without gaps.
- */
+/** Bytes of a tick in a file: its fields in order, little-endian, without gaps. */
 inline constexpr std::size_t kPackedTickSize = 407;
 
-void Pack(const TickRecord &tick,
-          std::span<std::byte, kPackedTickSize> bytes) noexcept;
+void Pack(const TickRecord& tick, std::span<std::byte, kPackedTickSize> bytes) noexcept;
 
-[[nodiscard]] TickRecord
-Unpack(std::span<const std::byte, kPackedTickSize> bytes) noexcept;
+[[nodiscard]] TickRecord Unpack(std::span<const std::byte, kPackedTickSize> bytes) noexcept;
 
-} // namespace hvas::record
+}  // namespace hvas::record

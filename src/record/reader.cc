@@ -10,11 +10,10 @@
 
 namespace hvas::record {
 
-Result<Reader> Reader::Open(const std::filesystem::path &path) {
+Result<Reader> Reader::Open(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
-    return Fail(ErrorCode::kNotFound, "There is no such record.",
-                path.string());
+    return Fail(ErrorCode::kNotFound, "There is no such record.", path.string());
   }
   Result<Database> database = Database::Open(path, Database::Mode::kReadOnly);
   if (!database) {
@@ -36,21 +35,18 @@ Result<void> Reader::CheckKind() {
     return Unexpected(id.error());
   }
   if (*id != kApplicationId) {
-    return Fail(ErrorCode::kUnreadable, "This is not a session record.",
-                path_.string(), "Name a file that HVAS recorded");
+    return Fail(ErrorCode::kUnreadable, "This is not a session record.", path_.string(),
+                "Name a file that HVAS recorded");
   }
-  const Result<std::int64_t> version =
-      database_.QueryInt("SELECT version FROM schema_version");
+  const Result<std::int64_t> version = database_.QueryInt("SELECT version FROM schema_version");
   if (!version) {
     return Unexpected(version.error());
   }
   if (*version > kSchemaVersion) {
-    return Fail(
-        ErrorCode::kUnsupported,
-        fmt::format(
-            "The record has layout {}, newer than {}, the newest known here.",
-            *version, kSchemaVersion),
-        path_.string(), "Open it with the version of HVAS that wrote it");
+    return Fail(ErrorCode::kUnsupported,
+                fmt::format("The record has layout {}, newer than {}, the newest known here.",
+                            *version, kSchemaVersion),
+                path_.string(), "Open it with the version of HVAS that wrote it");
   }
   return {};
 }
@@ -79,13 +75,11 @@ Result<void> Reader::ReadMeta() {
   return {};
 }
 
-Result<void>
-Reader::ForEachTick(Span span,
-                    const std::function<bool(const TickRecord &)> &visit) {
-  Result<Statement> rows =
-      database_.Prepare("SELECT id, count, checksum, ticks FROM chunk WHERE "
-                        "last_t_ns >= ? AND first_t_ns <= ? "
-                        "ORDER BY id");
+Result<void> Reader::ForEachTick(Span span, const std::function<bool(const TickRecord&)>& visit) {
+  Result<Statement> rows = database_.Prepare(
+      "SELECT id, count, checksum, ticks FROM chunk WHERE "
+      "last_t_ns >= ? AND first_t_ns <= ? "
+      "ORDER BY id");
   if (!rows) {
     return Unexpected(rows.error());
   }
@@ -102,16 +96,13 @@ Reader::ForEachTick(Span span,
     const auto count = static_cast<std::size_t>(rows->ReadInt(1));
     if (bytes.size() != count * kPackedTickSize ||
         static_cast<std::int64_t>(Checksum64(bytes)) != rows->ReadInt(2)) {
-      return Fail(
-          ErrorCode::kUnreadable,
-          fmt::format("Chunk {} of the record is damaged.", rows->ReadInt(0)),
-          path_.string(), "Restore the file from a copy");
+      return Fail(ErrorCode::kUnreadable,
+                  fmt::format("Chunk {} of the record is damaged.", rows->ReadInt(0)),
+                  path_.string(), "Restore the file from a copy");
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const TickRecord tick =
-          Unpack(bytes.subspan(i * kPackedTickSize).first<kPackedTickSize>());
-      if (tick.t_ns >= span.first_ns && tick.t_ns <= span.last_ns &&
-          !visit(tick)) {
+      const TickRecord tick = Unpack(bytes.subspan(i * kPackedTickSize).first<kPackedTickSize>());
+      if (tick.t_ns >= span.first_ns && tick.t_ns <= span.last_ns && !visit(tick)) {
         return {};
       }
     }
@@ -120,7 +111,7 @@ Reader::ForEachTick(Span span,
 
 Result<std::vector<TickRecord>> Reader::ReadTicks(Span span) {
   std::vector<TickRecord> ticks;
-  const Result<void> done = ForEachTick(span, [&ticks](const TickRecord &tick) {
+  const Result<void> done = ForEachTick(span, [&ticks](const TickRecord& tick) {
     ticks.push_back(tick);
     return true;
   });
@@ -131,9 +122,9 @@ Result<std::vector<TickRecord>> Reader::ReadTicks(Span span) {
 }
 
 Result<std::vector<Event>> Reader::ReadEvents() {
-  Result<Statement> rows =
-      database_.Prepare("SELECT id, t_ns, kind, occurrence, json, checksum "
-                        "FROM event ORDER BY id");
+  Result<Statement> rows = database_.Prepare(
+      "SELECT id, t_ns, kind, occurrence, json, checksum "
+      "FROM event ORDER BY id");
   if (!rows) {
     return Unexpected(rows.error());
   }
@@ -146,16 +137,14 @@ Result<std::vector<Event>> Reader::ReadEvents() {
     if (!*row) {
       return events;
     }
-    Event event{rows->ReadInt(1), rows->ReadText(2), kNoOccurrence,
-                rows->ReadText(4)};
+    Event event{rows->ReadInt(1), rows->ReadText(2), kNoOccurrence, rows->ReadText(4)};
     if (!rows->is_null(3)) {
       event.occurrence = static_cast<std::uint32_t>(rows->ReadInt(3));
     }
     if (static_cast<std::int64_t>(CalcChecksum(event)) != rows->ReadInt(5)) {
-      return Fail(
-          ErrorCode::kUnreadable,
-          fmt::format("Event {} of the record is damaged.", rows->ReadInt(0)),
-          path_.string(), "Restore the file from a copy");
+      return Fail(ErrorCode::kUnreadable,
+                  fmt::format("Event {} of the record is damaged.", rows->ReadInt(0)),
+                  path_.string(), "Restore the file from a copy");
     }
     events.push_back(std::move(event));
   }
@@ -164,7 +153,7 @@ Result<std::vector<Event>> Reader::ReadEvents() {
 Result<std::string> Reader::Verify() {
   SessionDigest digest;
   std::array<std::byte, kPackedTickSize> bytes{};
-  const Result<void> done = ForEachTick({}, [&](const TickRecord &tick) {
+  const Result<void> done = ForEachTick({}, [&](const TickRecord& tick) {
     Pack(tick, bytes);
     digest.AddTick(bytes);
     return true;
@@ -176,16 +165,15 @@ Result<std::string> Reader::Verify() {
   if (!events) {
     return Unexpected(events.error());
   }
-  for (const Event &event : *events) {
+  for (const Event& event : *events) {
     digest.AddEvent(event);
   }
   const std::string hex = digest.Hex();
   if (is_complete() && meta_.at(kMetaDigest) != hex) {
-    return Fail(ErrorCode::kUnreadable,
-                "The record is not the one that was written.", path_.string(),
-                "Restore the file from a copy");
+    return Fail(ErrorCode::kUnreadable, "The record is not the one that was written.",
+                path_.string(), "Restore the file from a copy");
   }
   return hex;
 }
 
-} // namespace hvas::record
+}  // namespace hvas::record

@@ -19,13 +19,12 @@ namespace {
 constexpr std::chrono::milliseconds kPollPeriod{20};
 constexpr std::int64_t kFlushPeriodNs = 2 * kNsPerSecond / 5;
 
-// Takes ticks and events to the digest and, while the disk is well, to the
-// file.
+// Takes ticks and events to the digest and, while the disk is well, to the file.
 class Sink {
-public:
+ public:
   explicit Sink(std::optional<SessionFile> file) : file_(std::move(file)) {}
 
-  void Add(const TickRecord &tick) {
+  void Add(const TickRecord& tick) {
     std::array<std::byte, kPackedTickSize> bytes{};
     Pack(tick, bytes);
     digest_.AddTick(bytes);
@@ -34,7 +33,7 @@ public:
     }
   }
 
-  void Add(const Event &event) {
+  void Add(const Event& event) {
     digest_.AddEvent(event);
     if (is_writing()) {
       Note(file_->AddEvent(event));
@@ -49,20 +48,20 @@ public:
 
   void Close(std::uint64_t dropped_ticks) {
     if (is_writing()) {
-      Note(file_->Close({{kMetaDigest, digest_.Hex()},
-                         {kMetaDropped, std::to_string(dropped_ticks)}}));
+      Note(file_->Close(
+          {{kMetaDigest, digest_.Hex()}, {kMetaDropped, std::to_string(dropped_ticks)}}));
     }
     file_.reset();
   }
 
-  [[nodiscard]] const SessionDigest &digest() const { return digest_; }
-  [[nodiscard]] const std::optional<Error> &error() const { return error_; }
+  [[nodiscard]] const SessionDigest& digest() const { return digest_; }
 
-private:
-  [[nodiscard]] bool is_writing() const {
-    return file_.has_value() && !error_.has_value();
-  }
-  void Note(const Result<void> &done) {
+  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+ private:
+  [[nodiscard]] bool is_writing() const { return file_.has_value() && !error_.has_value(); }
+
+  void Note(const Result<void>& done) {
     if (!done) {
       error_ = done.error();
     }
@@ -73,10 +72,10 @@ private:
   std::optional<Error> error_;
 };
 
-} // namespace
+}  // namespace
 
 struct Recorder::Impl {
-  Impl(std::optional<SessionFile> file, const RecorderOptions &options)
+  Impl(std::optional<SessionFile> file, const RecorderOptions& options)
       : sink(std::move(file)), is_threaded(options.is_threaded) {
     if (is_threaded) {
       ring.emplace(options.ring_ticks);
@@ -109,8 +108,7 @@ struct Recorder::Impl {
     }
   }
 
-  mutable std::mutex
-      mutex; // Guards the sink; never taken by AddTick() when threaded.
+  mutable std::mutex mutex;  // Guards the sink; never taken by AddTick() when threaded.
   Sink sink;
   const bool is_threaded;
   bool is_finished{false};
@@ -123,26 +121,26 @@ struct Recorder::Impl {
 
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-Recorder::~Recorder() { static_cast<void>(Finish()); }
+Recorder::~Recorder() {
+  static_cast<void>(Finish());
+}
 
-Result<std::unique_ptr<Recorder>>
-Recorder::Create(const RecorderOptions &options, const Meta &meta) {
+Result<std::unique_ptr<Recorder>> Recorder::Create(const RecorderOptions& options,
+                                                   const Meta& meta) {
   std::optional<SessionFile> file;
   if (!options.path.empty()) {
     Meta whole = meta;
     whole[kMetaStarted] = std::to_string(WallClockNs());
-    Result<SessionFile> created =
-        SessionFile::Create(options.path, whole, options.max_file_bytes);
+    Result<SessionFile> created = SessionFile::Create(options.path, whole, options.max_file_bytes);
     if (!created) {
       return Unexpected(created.error());
     }
     file.emplace(std::move(*created));
   }
-  return std::unique_ptr<Recorder>(
-      new Recorder(std::make_unique<Impl>(std::move(file), options)));
+  return std::unique_ptr<Recorder>(new Recorder(std::make_unique<Impl>(std::move(file), options)));
 }
 
-bool Recorder::AddTick(const TickRecord &tick) noexcept {
+bool Recorder::AddTick(const TickRecord& tick) noexcept {
   if (impl_->is_threaded) {
     return impl_->ring->TryPush(tick);
   }
@@ -151,7 +149,7 @@ bool Recorder::AddTick(const TickRecord &tick) noexcept {
   return true;
 }
 
-void Recorder::AddEvent(const Event &event) {
+void Recorder::AddEvent(const Event& event) {
   const std::scoped_lock lock(impl_->mutex);
   impl_->sink.Add(event);
 }
@@ -194,4 +192,4 @@ std::optional<Error> Recorder::error() const {
   return impl_->sink.error();
 }
 
-} // namespace hvas::record
+}  // namespace hvas::record

@@ -7,7 +7,7 @@ void SessionDigest::AddTick(std::span<const std::byte> packed_tick) {
   ++tick_count_;
 }
 
-void SessionDigest::AddEvent(const Event &event) {
+void SessionDigest::AddEvent(const Event& event) {
   events_.AddInt(event.t_ns);
   events_.AddText(event.kind);
   events_.AddInt(event.occurrence);
@@ -24,11 +24,11 @@ std::string SessionDigest::Hex() const {
   return both.Hex();
 }
 
-std::uint64_t CalcChecksum(const Event &event) {
+std::uint64_t CalcChecksum(const Event& event) {
   SessionDigest one;
   one.AddEvent(event);
   const std::string hex = one.Hex();
   return Checksum64(std::as_bytes(std::span(hex)));
 }
 
-} // namespace hvas::record
+}  // namespace hvas::record

@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kCommitPeriodNs = kNsPerSecond / 2;
 constexpr std::int64_t kPageSize = 4096;
 
-constexpr const char *kSchema = R"(
+constexpr const char* kSchema = R"(
 CREATE TABLE schema_version (version INTEGER NOT NULL);
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE chunk (
@@ -36,9 +36,8 @@ CREATE TABLE event (
   checksum INTEGER NOT NULL);
 )";
 
-// A record, or an empty file, may be replaced; anything else is somebody's
-// work.
-Result<void> RemoveOldRecord(const std::filesystem::path &path) {
+// A record, or an empty file, may be replaced; anything else is somebody's work.
+Result<void> RemoveOldRecord(const std::filesystem::path& path) {
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status)) {
@@ -49,40 +48,36 @@ Result<void> RemoveOldRecord(const std::filesystem::path &path) {
     is_ours = std::filesystem::file_size(path, ignored) == 0;
     if (!is_ours) {
       Result<Database> old = Database::Open(path, Database::Mode::kReadOnly);
-      is_ours = old && old->QueryInt("PRAGMA application_id").value_or(0) ==
-                           kApplicationId;
+      is_ours = old && old->QueryInt("PRAGMA application_id").value_or(0) == kApplicationId;
     }
   }
   if (!is_ours) {
-    return Fail(ErrorCode::kInvalid,
-                "What is there is not a session record and is kept.",
+    return Fail(ErrorCode::kInvalid, "What is there is not a session record and is kept.",
                 path.string(), "Choose another name for the record");
   }
-  for (const char *suffix : {"", "-wal", "-shm", "-journal"}) {
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
     std::filesystem::remove(path.string() + suffix, ignored);
   }
   return {};
 }
 
-Result<void> CreateSchema(Database *database, std::int64_t max_bytes) {
+Result<void> CreateSchema(Database* database, std::int64_t max_bytes) {
   std::string sql = fmt::format(
       "PRAGMA page_size={}; PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL;"
       "PRAGMA application_id={};",
       kPageSize, kApplicationId);
   if (max_bytes > 0) {
-    sql += fmt::format("PRAGMA max_page_count={};",
-                       std::max<std::int64_t>(max_bytes / kPageSize, 1));
+    sql +=
+        fmt::format("PRAGMA max_page_count={};", std::max<std::int64_t>(max_bytes / kPageSize, 1));
   }
   sql += "BEGIN;" + std::string(kSchema) +
-         fmt::format("INSERT INTO schema_version VALUES ({}); COMMIT;",
-                     kSchemaVersion);
+         fmt::format("INSERT INTO schema_version VALUES ({}); COMMIT;", kSchemaVersion);
   return database->Execute(sql);
 }
 
-} // namespace
+}  // namespace
 
-Result<SessionFile> SessionFile::Create(const std::filesystem::path &path,
-                                        const Meta &meta,
+Result<SessionFile> SessionFile::Create(const std::filesystem::path& path, const Meta& meta,
                                         std::int64_t max_bytes) {
   Result<void> done = RemoveOldRecord(path);
   if (!done) {
@@ -96,22 +91,20 @@ Result<SessionFile> SessionFile::Create(const std::filesystem::path &path,
   if (!done) {
     return Unexpected(done.error());
   }
-  Result<Statement> meta_in =
-      database->Prepare("INSERT OR REPLACE INTO meta VALUES (?, ?)");
-  Result<Statement> chunk_in =
-      database->Prepare("INSERT INTO chunk (first_t_ns, last_t_ns, count, "
-                        "checksum, ticks) VALUES (?, ?, ?, ?, ?)");
-  Result<Statement> event_in =
-      database->Prepare("INSERT INTO event (t_ns, kind, occurrence, json, "
-                        "checksum) VALUES (?, ?, ?, ?, ?)");
-  for (const Result<Statement> *statement : {&meta_in, &chunk_in, &event_in}) {
+  Result<Statement> meta_in = database->Prepare("INSERT OR REPLACE INTO meta VALUES (?, ?)");
+  Result<Statement> chunk_in = database->Prepare(
+      "INSERT INTO chunk (first_t_ns, last_t_ns, count, "
+      "checksum, ticks) VALUES (?, ?, ?, ?, ?)");
+  Result<Statement> event_in = database->Prepare(
+      "INSERT INTO event (t_ns, kind, occurrence, json, "
+      "checksum) VALUES (?, ?, ?, ?, ?)");
+  for (const Result<Statement>* statement : {&meta_in, &chunk_in, &event_in}) {
     if (!*statement) {
       return Unexpected(statement->error());
     }
   }
   SessionFile file(std::move(*database),
-                   Statements{std::move(*meta_in), std::move(*chunk_in),
-                              std::move(*event_in)});
+                   Statements{std::move(*meta_in), std::move(*chunk_in), std::move(*event_in)});
   file.chunk_.reserve(kChunkTicks * kPackedTickSize);
   done = file.AddMeta(meta);
   if (!done) {
@@ -124,7 +117,7 @@ Result<SessionFile> SessionFile::Create(const std::filesystem::path &path,
   return file;
 }
 
-Result<void> SessionFile::AddMeta(const Meta &meta) {
+Result<void> SessionFile::AddMeta(const Meta& meta) {
   Result<void> done = BeginIfNeeded(0);
   for (auto it = meta.begin(); done && it != meta.end(); ++it) {
     done = statements_.meta.Bind(1, it->first).Bind(2, it->second).Run();
@@ -132,8 +125,7 @@ Result<void> SessionFile::AddMeta(const Meta &meta) {
   return done;
 }
 
-Result<void> SessionFile::AddTick(std::int64_t t_ns,
-                                  std::span<const std::byte> packed_tick) {
+Result<void> SessionFile::AddTick(std::int64_t t_ns, std::span<const std::byte> packed_tick) {
   Result<void> done = BeginIfNeeded(t_ns);
   if (!done) {
     return done;
@@ -150,12 +142,12 @@ Result<void> SessionFile::AddTick(std::int64_t t_ns,
   return done ? CommitIfDue(t_ns) : done;
 }
 
-Result<void> SessionFile::AddEvent(const Event &event) {
+Result<void> SessionFile::AddEvent(const Event& event) {
   Result<void> done = BeginIfNeeded(event.t_ns);
   if (!done) {
     return done;
   }
-  Statement &statement = statements_.event;
+  Statement& statement = statements_.event;
   statement.Bind(1, event.t_ns).Bind(2, event.kind).Bind(4, event.json);
   statement.Bind(5, static_cast<std::int64_t>(CalcChecksum(event)));
   if (event.occurrence == kNoOccurrence) {
@@ -192,8 +184,7 @@ Result<void> SessionFile::BeginIfNeeded(std::int64_t t_ns) {
 }
 
 Result<void> SessionFile::CommitIfDue(std::int64_t t_ns) {
-  return std::llabs(t_ns - transaction_start_ns_.value_or(t_ns)) >=
-                 kCommitPeriodNs
+  return std::llabs(t_ns - transaction_start_ns_.value_or(t_ns)) >= kCommitPeriodNs
              ? Commit()
              : Result<void>();
 }
@@ -210,7 +201,7 @@ Result<void> SessionFile::Commit() {
   return database_.Execute("COMMIT");
 }
 
-Result<void> SessionFile::Close(const Meta &meta) {
+Result<void> SessionFile::Close(const Meta& meta) {
   Result<void> done = AddMeta(meta);
   if (done) {
     done = Commit();
@@ -218,4 +209,4 @@ Result<void> SessionFile::Close(const Meta &meta) {
   return done ? database_.Execute("PRAGMA journal_mode=DELETE") : done;
 }
 
-} // namespace hvas::record
+}  // namespace hvas::record

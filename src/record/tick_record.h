@@ -9,53 +9,43 @@
 
 namespace hvas::record {
 
-inline constexpr std::uint32_t kNoOccurrence =
-    std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::uint32_t kNoOccurrence = std::numeric_limits<std::uint32_t>::max();
 
-/** One contact of a tick, in single precision: for display and statistics, not
- * for replay. */
+/** One contact of a tick, in single precision: for display and statistics, not for replay. */
 struct ContactRecord {
-  Eigen::Vector3f p_WC{Eigen::Vector3f::Zero()}; ///< [m]
-  Eigen::Vector3f nhat_W{
-      Eigen::Vector3f::Zero()}; ///< Out of the part that is touched.
-  float distance{0};            ///< [m]; negative is penetration.
+  Eigen::Vector3f p_WC{Eigen::Vector3f::Zero()};    ///< [m]
+  Eigen::Vector3f nhat_W{Eigen::Vector3f::Zero()};  ///< Out of the part that is touched.
+  float distance{0};                                ///< [m]; negative is penetration.
 };
 
-/** All that a haptic tick took in and gave out, by which it can be replayed and
- judged. What the clock of the machine decides (compute time) is not here: equal
- sessions have equal records. */
+/** All that a haptic tick took in and gave out, by which it can be replayed and judged. What the
+ clock of the machine decides (compute time) is not here: equal sessions have equal records. */
 struct TickRecord {
   static constexpr int kContacts = 2;
 
-  std::int64_t t_ns{0};        ///< Session time.
-  spatial::Pose device_pose;   ///< Handle in the device's base frame, as the
-                               ///< device gave it.
-  spatial::Twist device_twist; ///< Likewise [rad/s, m/s].
-  std::uint32_t device_buttons{0}; ///< Bit mask.
-  std::uint32_t status{
-      0};             ///< Bit mask of what the tick had to report; 0: all well.
-  spatial::Pose X_WH; ///< Tracked: the hand in the world.
-  spatial::Pose
-      X_WD; ///< Displayed: where the held part (or the pointer) is shown.
-  spatial::Wrench F_true_W; ///< As physics has it, about Do [N m, N].
-  spatial::Wrench F_felt_W; ///< As sent to the hand, about Do [N m, N].
-  std::uint32_t held{kNoOccurrence}; ///< Occurrence in the hand.
-  std::uint8_t state{0};             ///< State of the held part.
-  std::uint16_t contact_count{
-      0};          ///< Contacts found; the deepest ones are kept below.
-  double depth{0}; ///< Insertion depth [m], growing inwards.
-  double deepest{
-      std::numeric_limits<double>::infinity()}; ///< Smallest gap met [m].
+  std::int64_t t_ns{0};               ///< Session time.
+  spatial::Pose device_pose;          ///< Handle in the device's base frame, as the device gave it.
+  spatial::Twist device_twist;        ///< Likewise [rad/s, m/s].
+  std::uint32_t device_buttons{0};    ///< Bit mask.
+  std::uint32_t status{0};            ///< Bit mask of what the tick had to report; 0: all well.
+  spatial::Pose X_WH;                 ///< Tracked: the hand in the world.
+  spatial::Pose X_WD;                 ///< Displayed: where the held part (or the pointer) is shown.
+  spatial::Wrench F_true_W;           ///< As physics has it, about Do [N m, N].
+  spatial::Wrench F_felt_W;           ///< As sent to the hand, about Do [N m, N].
+  std::uint32_t held{kNoOccurrence};  ///< Occurrence in the hand.
+  std::uint8_t state{0};              ///< State of the held part.
+  std::uint16_t contact_count{0};     ///< Contacts found; the deepest ones are kept below.
+  double depth{0};                    ///< Insertion depth [m], growing inwards.
+  double deepest{std::numeric_limits<double>::infinity()};  ///< Smallest gap met [m].
   std::array<ContactRecord, kContacts> contacts{};
 };
 
 /** Something that happened, with what is worth knowing about it. */
 struct Event {
-  std::int64_t t_ns{0}; ///< Session time.
-  std::string kind;     ///< Stable key, for example "seated".
-  std::uint32_t occurrence{
-      kNoOccurrence}; ///< The part that it is about, if any.
-  std::string json;   ///< Details as a JSON object; may be empty.
+  std::int64_t t_ns{0};                     ///< Session time.
+  std::string kind;                         ///< Stable key, for example "seated".
+  std::uint32_t occurrence{kNoOccurrence};  ///< The part that it is about, if any.
+  std::string json;                         ///< Details as a JSON object; may be empty.
 };
 
-} // namespace hvas::record
+}  // namespace hvas::record

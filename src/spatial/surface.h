@@ -16,9 +16,8 @@ enum class SurfaceKind { kPlane, kCylinder, kCone, kSphere, kTorus, kFreeform };
  | sphere | centre | - | radius | - |
  | torus | centre | axis | major radius | minor radius |
 
- `outward` is +1 where the material lies on the inner side of the surface (a
- shaft, a ball) and -1 where it lies outside (a hole). For a plane it is +1 and
- the axis points out of the material. */
+ `outward` is +1 where the material lies on the inner side of the surface (a shaft, a ball) and -1
+ where it lies outside (a hole). For a plane it is +1 and the axis points out of the material. */
 struct Surface {
   SurfaceKind kind{SurfaceKind::kFreeform};
   Vec3 origin{Vec3::Zero()};
@@ -28,21 +27,17 @@ struct Surface {
   double outward{1};
 };
 
-/** Signed distance to a surface and its gradient (unit, out of the material).
- */
+/** Signed distance to a surface and its gradient (unit, out of the material). */
 struct SurfaceDistance {
-  double distance{0}; ///< [m], positive outside the material.
+  double distance{0};  ///< [m], positive outside the material.
   Vec3 gradient{Vec3::Zero()};
-  bool is_valid{false}; ///< False for freeform surfaces and on an axis, where
-                        ///< there is no gradient.
+  bool is_valid{false};  ///< False for freeform surfaces and on an axis: no gradient.
 };
 
-/** Exact distance from a point to an analytic surface, in the surface's frame.
- * RT-safe. */
-[[nodiscard]] SurfaceDistance CalcDistance(const Surface &surface,
-                                           const Vec3 &p) noexcept;
+/** Exact distance from a point to an analytic surface, in the surface's frame. RT-safe. */
+[[nodiscard]] SurfaceDistance CalcDistance(const Surface& surface, const Vec3& p) noexcept;
 
 /** The same surface in another frame: A's coordinates of what is given in B. */
-[[nodiscard]] Surface Transform(const Pose &X_AB, const Surface &surface_B);
+[[nodiscard]] Surface Transform(const Pose& X_AB, const Surface& surface_B);
 
-} // namespace hvas::spatial
+}  // namespace hvas::spatial

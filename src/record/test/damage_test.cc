@@ -1,5 +1,8 @@
-// What is left of a record after the process was killed or the file was
-// damaged.
+// What is left of a record after the process was killed or the file was damaged.
+
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -8,9 +11,6 @@
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
-#include <sys/mman.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "record/reader.h"
 #include "record/recorder.h"
@@ -19,17 +19,16 @@
 namespace hvas::record {
 namespace {
 
-// Runs a recording child, kills it once it has added `kill_after` ticks, and
-// returns how many it had added by then.
-std::int64_t RecordAndKill(const RecorderOptions &options,
-                           std::int64_t kill_after,
+// Runs a recording child, kills it once it has added `kill_after` ticks, and returns how many it
+// had added by then.
+std::int64_t RecordAndKill(const RecorderOptions& options, std::int64_t kill_after,
                            std::chrono::microseconds pause) {
   using Counter = std::atomic<std::int64_t>;
   static_assert(Counter::is_always_lock_free);
-  void *shared = ::mmap(nullptr, sizeof(Counter), PROT_READ | PROT_WRITE,
-                        MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* shared =
+      ::mmap(nullptr, sizeof(Counter), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   EXPECT_NE(shared, MAP_FAILED);
-  auto *added = new (shared) Counter(0);
+  auto* added = new (shared) Counter(0);
   const pid_t child = ::fork();
   if (child == 0) {
     auto recorder = Recorder::Create(options, {{"product", "victim"}});
@@ -44,8 +43,7 @@ std::int64_t RecordAndKill(const RecorderOptions &options,
     ::_exit(1);
   }
   int status = 0;
-  while (added->load() < kill_after &&
-         ::waitpid(child, &status, WNOHANG) == 0) {
+  while (added->load() < kill_after && ::waitpid(child, &status, WNOHANG) == 0) {
     std::this_thread::yield();
   }
   ::kill(child, SIGKILL);
@@ -56,20 +54,17 @@ std::int64_t RecordAndKill(const RecorderOptions &options,
   return count;
 }
 
-void ExpectAtMostOneSecondLost(const std::filesystem::path &path,
-                               std::int64_t added) {
+void ExpectAtMostOneSecondLost(const std::filesystem::path& path, std::int64_t added) {
   Result<Reader> reader = Reader::Open(path);
   ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
   EXPECT_FALSE(reader->is_complete());
   EXPECT_EQ(reader->meta().at("product"), "victim");
   ASSERT_TRUE(reader->Verify().has_value());
   const std::vector<TickRecord> ticks = reader->ReadTicks({}).value();
-  EXPECT_GE(static_cast<std::int64_t>(ticks.size()) * kTickNs,
-            added * kTickNs - 1'000'000'000);
+  EXPECT_GE(static_cast<std::int64_t>(ticks.size()) * kTickNs, added * kTickNs - 1'000'000'000);
   EXPECT_LE(static_cast<std::int64_t>(ticks.size()), added + 1);
   for (std::size_t i = 0; i < ticks.size(); ++i) {
-    ASSERT_EQ(ticks[i].t_ns, static_cast<std::int64_t>(i) * kTickNs)
-        << "no gap";
+    ASSERT_EQ(ticks[i].t_ns, static_cast<std::int64_t>(i) * kTickNs) << "no gap";
   }
 }
 
@@ -85,8 +80,7 @@ TEST(KilledRecorder, LosesAtMostOneSecondAndNeverTheFile) {
 
 TEST(KilledRecorder, LosesAtMostOneSecondWhenThreadedInRealTime) {
   const TemporaryFile file("killed_threaded.hvas");
-  // A millisecond of session a millisecond: sleeping takes a little longer than
-  // asked.
+  // A millisecond of session a millisecond: sleeping takes a little longer than asked.
   const std::int64_t added =
       RecordAndKill({file.path(), true}, 1500, std::chrono::microseconds(900));
   ExpectAtMostOneSecondLost(file.path(), added);
@@ -94,8 +88,8 @@ TEST(KilledRecorder, LosesAtMostOneSecondWhenThreadedInRealTime) {
 }
 
 // Runs SQL on a record behind HVAS' back.
-void Tamper(const std::filesystem::path &path, const char *sql) {
-  sqlite3 *database = nullptr;
+void Tamper(const std::filesystem::path& path, const char* sql) {
+  sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
   EXPECT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK);
   EXPECT_EQ(sqlite3_changes(database), 1);
@@ -103,7 +97,7 @@ void Tamper(const std::filesystem::path &path, const char *sql) {
 }
 
 class DamagedRecord : public ::testing::Test {
-protected:
+ protected:
   DamagedRecord() : file_("damaged.hvas") {
     const auto recorder = Recorder::Create({file_.path()}, {});
     for (int i = 0; i < 1000; ++i) {
@@ -119,12 +113,11 @@ protected:
 };
 
 TEST_F(DamagedRecord, ChunkIsFoundAndWhatIsBeforeItCanBeRead) {
-  Tamper(file_.path(),
-         "UPDATE chunk SET ticks = zeroblob(length(ticks)) WHERE id = 3");
+  Tamper(file_.path(), "UPDATE chunk SET ticks = zeroblob(length(ticks)) WHERE id = 3");
   Reader reader = Reader::Open(file_.path()).value();
   int visited = 0;
   const Result<void> done =
-      reader.ForEachTick({}, [&](const TickRecord &) { return ++visited > 0; });
+      reader.ForEachTick({}, [&](const TickRecord&) { return ++visited > 0; });
   ASSERT_FALSE(done.has_value());
   EXPECT_EQ(done.error().code, ErrorCode::kUnreadable);
   EXPECT_NE(done.error().message.find("Chunk 3"), std::string::npos);
@@ -134,10 +127,8 @@ TEST_F(DamagedRecord, ChunkIsFoundAndWhatIsBeforeItCanBeRead) {
 
 TEST_F(DamagedRecord, FlippedByteInTheFileIsFound) {
   // In the middle of the tick data, past the first pages.
-  const auto middle =
-      static_cast<std::streamoff>(std::filesystem::file_size(file_.path()) / 2);
-  std::fstream stream(file_.path(),
-                      std::ios::in | std::ios::out | std::ios::binary);
+  const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(file_.path()) / 2);
+  std::fstream stream(file_.path(), std::ios::in | std::ios::out | std::ios::binary);
   stream.seekg(middle);
   const int byte = stream.get();
   stream.seekp(middle);
@@ -180,7 +171,7 @@ TEST(ReaderError, TellsAMissingFileFromAWrongOne) {
   EXPECT_EQ(wrong.error().code, ErrorCode::kUnreadable);
 
   const TemporaryFile other("other.sqlite");
-  sqlite3 *database = nullptr;
+  sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(other.path().c_str(), &database), SQLITE_OK);
   sqlite3_exec(database, "CREATE TABLE t (x)", nullptr, nullptr, nullptr);
   sqlite3_close(database);
@@ -189,5 +180,5 @@ TEST(ReaderError, TellsAMissingFileFromAWrongOne) {
   EXPECT_EQ(foreign.error().code, ErrorCode::kUnreadable);
 }
 
-} // namespace
-} // namespace hvas::record
+}  // namespace
+}  // namespace hvas::record

@@ -14,18 +14,18 @@ namespace {
 
 using Bytes = std::array<std::byte, kPackedTickSize>;
 
-Bytes PackOne(const TickRecord &tick) {
+Bytes PackOne(const TickRecord& tick) {
   Bytes bytes{};
   Pack(tick, bytes);
   return bytes;
 }
 
-void ExpectEqual(const spatial::Pose &a, const spatial::Pose &b) {
+void ExpectEqual(const spatial::Pose& a, const spatial::Pose& b) {
   EXPECT_EQ(a.p(), b.p());
   EXPECT_EQ(a.q().coeffs(), b.q().coeffs());
 }
 
-void ExpectEqual(const spatial::Wrench &a, const spatial::Wrench &b) {
+void ExpectEqual(const spatial::Wrench& a, const spatial::Wrench& b) {
   EXPECT_EQ(a.t, b.t);
   EXPECT_EQ(a.f, b.f);
 }
@@ -57,8 +57,7 @@ TEST(Packing, BringsEveryFieldBackBitForBit) {
   }
 }
 
-// The layout is a file format: these offsets may not move without a new schema
-// version.
+// The layout is a file format: these offsets may not move without a new schema version.
 TEST(Packing, PutsFieldsAtTheirPlacesLittleEndian) {
   TickRecord tick;
   tick.t_ns = 0x0102030405060708;
@@ -73,12 +72,12 @@ TEST(Packing, PutsFieldsAtTheirPlacesLittleEndian) {
     std::memcpy(&value, &bytes[offset], sizeof(value));
     return value;
   };
-  EXPECT_EQ(number(8), 1); // p
+  EXPECT_EQ(number(8), 1);  // p
   EXPECT_EQ(number(24), 3);
-  EXPECT_EQ(number(32), 0.5); // w of q first
+  EXPECT_EQ(number(32), 0.5);  // w of q first
   EXPECT_EQ(number(48), -0.5);
-  EXPECT_EQ(bytes[112], std::byte{0x44}); // after the twist
-  EXPECT_EQ(bytes[328], std::byte{0x07}); // after two poses and two wrenches
+  EXPECT_EQ(bytes[112], std::byte{0x44});  // after the twist
+  EXPECT_EQ(bytes[328], std::byte{0x07});  // after two poses and two wrenches
 }
 
 TEST(Packing, KeepsSpecialNumbers) {
@@ -91,8 +90,7 @@ TEST(Packing, KeepsSpecialNumbers) {
 }
 
 TEST(Packing, UsesEveryByte) {
-  // Over many ticks every byte takes many values: none is padding. The last
-  // byte of a float or double (sign and exponent) takes the fewest.
+  // Over many ticks every byte takes more than one value: none is padding.
   std::array<std::set<std::byte>, kPackedTickSize> seen;
   for (int i = 0; i < 300; ++i) {
     const Bytes bytes = PackOne(MakeTick(1000003 * i));
@@ -105,5 +103,5 @@ TEST(Packing, UsesEveryByte) {
   }
 }
 
-} // namespace
-} // namespace hvas::record
+}  // namespace
+}  // namespace hvas::record

@@ -13,16 +13,15 @@
 namespace hvas::record {
 namespace {
 
-constexpr int kTicks = 1234; // Not a multiple of the chunk.
+constexpr int kTicks = 1234;  // Not a multiple of the chunk.
 
-std::unique_ptr<Recorder> MakeRecorder(const RecorderOptions &options,
-                                       const Meta &meta = {}) {
+std::unique_ptr<Recorder> MakeRecorder(const RecorderOptions& options, const Meta& meta = {}) {
   Result<std::unique_ptr<Recorder>> recorder = Recorder::Create(options, meta);
   EXPECT_TRUE(recorder.has_value()) << recorder.error().ToString();
   return std::move(*recorder);
 }
 
-void Fill(Recorder *recorder, int ticks) {
+void Fill(Recorder* recorder, int ticks) {
   for (int i = 0; i < ticks; ++i) {
     while (!recorder->AddTick(MakeTick(i))) {
       std::this_thread::yield();
@@ -33,14 +32,14 @@ void Fill(Recorder *recorder, int ticks) {
   }
 }
 
-std::string DigestOf(const std::function<void(Recorder *)> &fill) {
+std::string DigestOf(const std::function<void(Recorder*)>& fill) {
   const std::unique_ptr<Recorder> recorder = MakeRecorder({});
   fill(recorder.get());
   EXPECT_TRUE(recorder->Finish().has_value());
   return recorder->Digest();
 }
 
-bool IsSame(const TickRecord &a, const TickRecord &b) {
+bool IsSame(const TickRecord& a, const TickRecord& b) {
   std::array<std::byte, kPackedTickSize> bytes_a{};
   std::array<std::byte, kPackedTickSize> bytes_b{};
   Pack(a, bytes_a);
@@ -52,25 +51,21 @@ class RecorderRoundTrip : public ::testing::TestWithParam<bool> {};
 
 TEST_P(RecorderRoundTrip, ReadsBackWhatWasAdded) {
   const TemporaryFile file(GetParam() ? "threaded.hvas" : "plain.hvas");
-  const Meta meta{
-      {"product", "gear pump"}, {"seed", "7"}, {"model", R"({"a": [1, 2]})"}};
-  const std::unique_ptr<Recorder> recorder =
-      MakeRecorder({file.path(), GetParam()}, meta);
+  const Meta meta{{"product", "gear pump"}, {"seed", "7"}, {"model", R"({"a": [1, 2]})"}};
+  const std::unique_ptr<Recorder> recorder = MakeRecorder({file.path(), GetParam()}, meta);
   Fill(recorder.get(), kTicks);
   ASSERT_TRUE(recorder->Finish().has_value());
-  // The same ticks can only be refused when the ring was full, and then they
-  // were offered again.
+  // The same ticks can only be refused when the ring was full, and then they were offered again.
   EXPECT_EQ(recorder->tick_count(), kTicks);
 
   Result<Reader> reader = Reader::Open(file.path());
   ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
   EXPECT_TRUE(reader->is_complete());
   EXPECT_EQ(reader->tick_count(), kTicks);
-  for (const auto &[key, value] : meta) {
+  for (const auto& [key, value] : meta) {
     EXPECT_EQ(reader->meta().at(key), value);
   }
-  EXPECT_GT(std::stoll(reader->meta().at(kMetaStarted)),
-            1'600'000'000'000'000'000);
+  EXPECT_GT(std::stoll(reader->meta().at(kMetaStarted)), 1'600'000'000'000'000'000);
   EXPECT_EQ(reader->meta().at(kMetaDigest), recorder->Digest());
   EXPECT_EQ(reader->Verify().value(), recorder->Digest());
 
@@ -82,7 +77,7 @@ TEST_P(RecorderRoundTrip, ReadsBackWhatWasAdded) {
   const std::vector<Event> events = reader->ReadEvents().value();
   ASSERT_EQ(events.size(), 13u);
   for (int i = 0; i < 13; ++i) {
-    const Event &event = events[static_cast<std::size_t>(i)];
+    const Event& event = events[static_cast<std::size_t>(i)];
     const Event expected = MakeEvent(100 * i);
     EXPECT_EQ(event.t_ns, expected.t_ns);
     EXPECT_EQ(event.kind, expected.kind);
@@ -105,15 +100,12 @@ TEST(Reader, GivesTheTicksOfASpanOfTime) {
   const TemporaryFile file("span.hvas");
   Fill(MakeRecorder({file.path()}).get(), kTicks);
   Reader reader = Reader::Open(file.path()).value();
-  const std::vector<TickRecord> ticks =
-      reader.ReadTicks({240 * kTickNs, 260 * kTickNs}).value();
+  const std::vector<TickRecord> ticks = reader.ReadTicks({240 * kTickNs, 260 * kTickNs}).value();
   ASSERT_EQ(ticks.size(), 21u) << "both ends belong to the span";
   EXPECT_EQ(ticks.front().t_ns, 240 * kTickNs);
   EXPECT_EQ(ticks.back().t_ns, 260 * kTickNs);
   int visited = 0;
-  ASSERT_TRUE(
-      reader.ForEachTick({}, [&](const TickRecord &) { return ++visited < 5; })
-          .has_value());
+  ASSERT_TRUE(reader.ForEachTick({}, [&](const TickRecord&) { return ++visited < 5; }).has_value());
   EXPECT_EQ(visited, 5);
 }
 
@@ -121,27 +113,25 @@ TEST(Reader, GivesTheTicksOfASpanOfTime) {
 TEST(RecorderDigest, IsEqualForEqualSessionsHoweverTheyAreRecorded) {
   const TemporaryFile file("digest.hvas");
   const TemporaryFile threaded_file("digest_threaded.hvas");
-  const std::string digest = DigestOf([](Recorder *r) { Fill(r, kTicks); });
-  EXPECT_EQ(digest, DigestOf([](Recorder *r) { Fill(r, kTicks); }));
+  const std::string digest = DigestOf([](Recorder* r) { Fill(r, kTicks); });
+  EXPECT_EQ(digest, DigestOf([](Recorder* r) { Fill(r, kTicks); }));
 
-  const std::unique_ptr<Recorder> plain =
-      MakeRecorder({file.path()}, {{"seed", "1"}});
+  const std::unique_ptr<Recorder> plain = MakeRecorder({file.path()}, {{"seed", "1"}});
   Fill(plain.get(), kTicks);
   EXPECT_EQ(plain->Digest(), digest) << "before the end, too";
   ASSERT_TRUE(plain->Finish().has_value());
   EXPECT_EQ(plain->Digest(), digest);
 
-  const std::unique_ptr<Recorder> threaded =
-      MakeRecorder({threaded_file.path(), true});
+  const std::unique_ptr<Recorder> threaded = MakeRecorder({threaded_file.path(), true});
   Fill(threaded.get(), kTicks);
   ASSERT_TRUE(threaded->Finish().has_value());
   EXPECT_EQ(threaded->Digest(), digest);
 }
 
 TEST(RecorderDigest, ChangesWithEveryTickAndEvent) {
-  const std::string digest = DigestOf([](Recorder *r) { Fill(r, 50); });
+  const std::string digest = DigestOf([](Recorder* r) { Fill(r, 50); });
   const auto with_last = [](TickRecord last) {
-    return DigestOf([&last](Recorder *r) {
+    return DigestOf([&last](Recorder* r) {
       Fill(r, 49);
       r->AddTick(last);
     });
@@ -150,8 +140,8 @@ TEST(RecorderDigest, ChangesWithEveryTickAndEvent) {
   EXPECT_EQ(with_last(last), digest);
   last.depth = std::nextafter(last.depth, 1.0);
   EXPECT_NE(with_last(last), digest);
-  EXPECT_NE(DigestOf([](Recorder *r) { Fill(r, 49); }), digest);
-  EXPECT_NE(DigestOf([](Recorder *r) {
+  EXPECT_NE(DigestOf([](Recorder* r) { Fill(r, 49); }), digest);
+  EXPECT_NE(DigestOf([](Recorder* r) {
               Fill(r, 50);
               r->AddEvent(MakeEvent(1));
             }),
@@ -165,15 +155,14 @@ TEST(Recorder, CountsWhatAFullRingRefused) {
   const std::unique_ptr<Recorder> recorder = MakeRecorder(options);
   const TickRecord tick = MakeTick(1);
   std::uint64_t refused = 0;
-  constexpr int kBurst = 20000; // In far less than the writer's pause.
+  constexpr int kBurst = 20000;  // In far less than the writer's pause.
   for (int i = 0; i < kBurst; ++i) {
     refused += recorder->AddTick(tick) ? 0 : 1;
   }
   ASSERT_TRUE(recorder->Finish().has_value());
   EXPECT_GT(refused, 0u);
   EXPECT_EQ(recorder->dropped_ticks(), refused);
-  EXPECT_EQ(recorder->tick_count() + static_cast<std::int64_t>(refused),
-            kBurst);
+  EXPECT_EQ(recorder->tick_count() + static_cast<std::int64_t>(refused), kBurst);
 }
 
 TEST(Recorder, TakesEventsFromOtherThreads) {
@@ -184,7 +173,7 @@ TEST(Recorder, TakesEventsFromOtherThreads) {
       recorder->AddEvent(MakeEvent(i));
     }
   });
-  Fill(recorder.get(), 300); // Adds 3 events of its own.
+  Fill(recorder.get(), 300);  // Adds 3 events of its own.
   physics.join();
   ASSERT_TRUE(recorder->Finish().has_value());
   EXPECT_EQ(Reader::Open(file.path())->ReadEvents()->size(), 203u);
@@ -202,16 +191,14 @@ TEST(RecorderError, NamesAFolderThatDoesNotExist) {
 
 TEST(RecorderError, DoesNotOverwriteWhatIsNotARecord) {
   const TemporaryFile file("precious.step");
-  std::ofstream(file.path())
-      << "ISO-10303-21; somebody's model, long enough to be one.";
+  std::ofstream(file.path()) << "ISO-10303-21; somebody's model, long enough to be one.";
   const auto recorder = Recorder::Create({file.path()}, {});
   ASSERT_FALSE(recorder.has_value());
   EXPECT_EQ(recorder.error().code, ErrorCode::kInvalid);
   std::string first;
   std::ifstream(file.path()) >> first;
   EXPECT_EQ(first, "ISO-10303-21;");
-  EXPECT_FALSE(Recorder::Create({std::filesystem::temp_directory_path()}, {})
-                   .has_value());
+  EXPECT_FALSE(Recorder::Create({std::filesystem::temp_directory_path()}, {}).has_value());
 }
 
 TEST(Recorder, ReplacesAnOlderRecord) {
@@ -227,12 +214,12 @@ TEST(RecorderError, GoesOnWithoutTheFileWhenThereIsNoRoom) {
   options.path = file.path();
   options.max_file_bytes = 1 << 20;
   const std::unique_ptr<Recorder> recorder = MakeRecorder(options);
-  Fill(recorder.get(), 5000); // 2 MB
+  Fill(recorder.get(), 5000);  // 2 MB
   ASSERT_TRUE(recorder->error().has_value());
   const Result<void> finished = recorder->Finish();
   ASSERT_FALSE(finished.has_value());
   EXPECT_EQ(finished.error().code, ErrorCode::kOutOfResource);
-  EXPECT_EQ(recorder->Digest(), DigestOf([](Recorder *r) { Fill(r, 5000); }));
+  EXPECT_EQ(recorder->Digest(), DigestOf([](Recorder* r) { Fill(r, 5000); }));
   // What was written before is whole.
   Reader reader = Reader::Open(file.path()).value();
   EXPECT_FALSE(reader.is_complete());
@@ -241,5 +228,5 @@ TEST(RecorderError, GoesOnWithoutTheFileWhenThereIsNoRoom) {
   EXPECT_LE(std::filesystem::file_size(file.path()), 1u << 20);
 }
 
-} // namespace
-} // namespace hvas::record
+}  // namespace
+}  // namespace hvas::record

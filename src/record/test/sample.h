@@ -1,11 +1,11 @@
 #pragma once
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <string>
 #include <system_error>
 #include <utility>
-
-#include <unistd.h>
 
 #include "base/random.h"
 #include "record/tick_record.h"
@@ -24,7 +24,8 @@ inline TickRecord MakeTick(std::int64_t number) {
   };
   const auto pose = [&] {
     const Vec3 p = vector();
-    return spatial::Pose(spatial::RotationFromVector(vector()), p);
+    const Vec3 v = vector();
+    return spatial::Pose(Quat(random.Uniform(-1, 1), v.x(), v.y(), v.z()).normalized(), p);
   };
   TickRecord tick;
   tick.t_ns = number * kTickNs;
@@ -41,7 +42,7 @@ inline TickRecord MakeTick(std::int64_t number) {
   tick.contact_count = static_cast<std::uint16_t>(random.NextBits());
   tick.depth = random.Uniform(-1, 1);
   tick.deepest = random.Uniform(-1, 1);
-  for (ContactRecord &contact : tick.contacts) {
+  for (ContactRecord& contact : tick.contacts) {
     contact.p_WC = vector().cast<float>();
     contact.nhat_W = vector().cast<float>();
     contact.distance = static_cast<float>(random.Uniform(-1, 1));
@@ -52,28 +53,29 @@ inline TickRecord MakeTick(std::int64_t number) {
 inline Event MakeEvent(std::int64_t number) {
   return {number * kTickNs, number % 2 == 0 ? "seated" : "captured",
           number % 3 == 0 ? kNoOccurrence : static_cast<std::uint32_t>(number),
-          "{\"depth_mm\": " + std::to_string(number) +
-              ", \"name\": \"Büchse\"}"};
+          "{\"depth_mm\": " + std::to_string(number) + ", \"name\": \"Büchse\"}"};
 }
 
 /** A file name of this process' own, removed with its side files at the end. */
 class TemporaryFile {
-public:
-  explicit TemporaryFile(const std::string &name)
+ public:
+  explicit TemporaryFile(const std::string& name)
       : path_(std::filesystem::temp_directory_path() /
               ("hvas_" + std::to_string(::getpid()) + "_" + name)) {
     Remove();
   }
+
   ~TemporaryFile() { Remove(); }
-  TemporaryFile(const TemporaryFile &) = delete;
-  TemporaryFile &operator=(const TemporaryFile &) = delete;
 
-  [[nodiscard]] const std::filesystem::path &path() const { return path_; }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-private:
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
   void Remove() const {
     std::error_code ignored;
-    for (const char *suffix : {"", "-wal", "-shm", "-journal"}) {
+    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
       std::filesystem::remove(path_.string() + suffix, ignored);
     }
   }
@@ -81,4 +83,4 @@ private:
   std::filesystem::path path_;
 };
 
-} // namespace hvas::record
+}  // namespace hvas::record

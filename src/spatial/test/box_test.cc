@@ -7,9 +7,8 @@
 namespace hvas::spatial {
 namespace {
 
-Vec3 Corner(const Box &box, int i) {
-  return {(i & 1) != 0 ? box.high.x() : box.low.x(),
-          (i & 2) != 0 ? box.high.y() : box.low.y(),
+Vec3 Corner(const Box& box, int i) {
+  return {(i & 1) != 0 ? box.high.x() : box.low.x(), (i & 2) != 0 ? box.high.y() : box.low.y(),
           (i & 4) != 0 ? box.high.z() : box.low.z()};
 }
 
@@ -67,5 +66,5 @@ TEST(BoxTransform, KeepsEmptyEmpty) {
   EXPECT_TRUE(Transform(Pose(Vec3(1, 2, 3)), Box()).is_empty());
 }
 
-} // namespace
-} // namespace hvas::spatial
+}  // namespace
+}  // namespace hvas::spatial

@@ -13,20 +13,19 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double Difference(const Pose &X, const Pose &Y) {
+double Difference(const Pose& X, const Pose& Y) {
   return std::max((X.p() - Y.p()).norm(), (X.R() - Y.R()).norm());
 }
 
-Eigen::Matrix4d Homogeneous(const Pose &X) {
+Eigen::Matrix4d Homogeneous(const Pose& X) {
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
   T.topLeftCorner<3, 3>() = X.R();
   T.topRightCorner<3, 1>() = X.p();
   return T;
 }
 
-// The matrix exponential by scaling and squaring of its series: no trigonometry
-// in it.
-Mat3 ExpBySeries(const Vec3 &theta_u) {
+// The matrix exponential by scaling and squaring of its series: no trigonometry in it.
+Mat3 ExpBySeries(const Vec3& theta_u) {
   constexpr int kSquarings = 10;
   const Mat3 A = Skew(theta_u) / std::ldexp(1.0, kSquarings);
   Mat3 term = Mat3::Identity();
@@ -67,17 +66,15 @@ TEST(Pose, StaysAUnitQuaternionOverAMillionProducts) {
 
 TEST(RotationVector, ComesBackFromItsRotation) {
   Random random(3);
-  const double angles[] = {0,    1e-300, 1e-16,      1e-12,      1e-9,
-                           3e-9, 1e-8,   1e-6,       0.1,        1,
-                           2,    3,      kPi - 1e-6, kPi - 1e-9, kPi - 1e-12};
+  const double angles[] = {0,   1e-300, 1e-16, 1e-12, 1e-9,       3e-9,       1e-8,       1e-6,
+                           0.1, 1,      2,     3,     kPi - 1e-6, kPi - 1e-9, kPi - 1e-12};
   for (const double angle : angles) {
     for (int i = 0; i < 50; ++i) {
       const Vec3 theta_u = angle * RandomDirection(&random);
       const Vec3 back = RotationVector(RotationFromVector(theta_u));
       EXPECT_LT((back - theta_u).norm(), 1e-12) << angle;
       if (angle < 1e-3) {
-        // Small rotations keep their relative precision, not only their
-        // absolute one.
+        // Small rotations keep their relative precision, not only their absolute one.
         EXPECT_LE((back - theta_u).norm(), 1e-14 * angle) << angle;
       }
     }
@@ -101,10 +98,9 @@ TEST(RotationVector, IsTheSameForBothSignsOfTheQuaternionAndNeverLongerThanPi) {
     const Quat minus(-q.w(), -q.x(), -q.y(), -q.z());
     EXPECT_EQ(RotationVector(q), RotationVector(minus));
     EXPECT_LE(RotationVector(q).norm(), kPi + 1e-15);
-    EXPECT_LT((RotationFromVector(RotationVector(q)).toRotationMatrix() -
-               q.toRotationMatrix())
-                  .norm(),
-              1e-14);
+    EXPECT_LT(
+        (RotationFromVector(RotationVector(q)).toRotationMatrix() - q.toRotationMatrix()).norm(),
+        1e-14);
   }
 }
 
@@ -112,10 +108,8 @@ TEST(RotationFromVector, IsTheMatrixExponential) {
   Random random(6);
   for (int i = 0; i < 200; ++i) {
     const Vec3 theta_u = RandomVector(&random, 3);
-    EXPECT_LT(
-        (RotationFromVector(theta_u).toRotationMatrix() - ExpBySeries(theta_u))
-            .norm(),
-        1e-12);
+    EXPECT_LT((RotationFromVector(theta_u).toRotationMatrix() - ExpBySeries(theta_u)).norm(),
+              1e-12);
   }
 }
 
@@ -125,15 +119,13 @@ TEST(RotationBetween, IsExpressedInTheCommonFrame) {
     const Quat q_AB1 = RandomRotation(&random);
     const Quat q_AB2 = RandomRotation(&random);
     const Vec3 theta_u_A = RotationBetween(q_AB1, q_AB2);
-    EXPECT_LT(((RotationFromVector(theta_u_A) * q_AB1).toRotationMatrix() -
-               q_AB2.toRotationMatrix())
-                  .norm(),
-              1e-14);
+    EXPECT_LT(
+        ((RotationFromVector(theta_u_A) * q_AB1).toRotationMatrix() - q_AB2.toRotationMatrix())
+            .norm(),
+        1e-14);
     // Seen from another frame, the same rotation has turned coordinates.
     const Quat q_WA = RandomRotation(&random);
-    EXPECT_LT(
-        (RotationBetween(q_WA * q_AB1, q_WA * q_AB2) - q_WA * theta_u_A).norm(),
-        1e-12);
+    EXPECT_LT((RotationBetween(q_WA * q_AB1, q_WA * q_AB2) - q_WA * theta_u_A).norm(), 1e-12);
   }
 }
 
@@ -161,9 +153,7 @@ TEST(Integrate, HasTheDerivativeThatTheTwistSays) {
   for (int i = 0; i < 100; ++i) {
     const Pose X_WB = RandomPose(&random, 1);
     const Twist V_WB{RandomVector(&random, 2), RandomVector(&random, 2)};
-    const Mat3 dR =
-        (Integrate(X_WB, V_WB, kH).R() - Integrate(X_WB, V_WB, -kH).R()) /
-        (2 * kH);
+    const Mat3 dR = (Integrate(X_WB, V_WB, kH).R() - Integrate(X_WB, V_WB, -kH).R()) / (2 * kH);
     EXPECT_LT((dR - Skew(V_WB.w) * X_WB.R()).norm(), 1e-8);
   }
 }
@@ -175,16 +165,14 @@ TEST(RotationTaking, TakesOneDirectionToTheOtherTheShortWay) {
     const Vec3 b = RandomDirection(&random);
     const Quat q = RotationTaking(a, b);
     EXPECT_LT((q * a - b).norm(), 1e-14);
-    EXPECT_NEAR(RotationVector(q).norm(),
-                std::atan2(a.cross(b).norm(), a.dot(b)), 1e-12);
+    EXPECT_NEAR(RotationVector(q).norm(), std::atan2(a.cross(b).norm(), a.dot(b)), 1e-12);
     EXPECT_LT((RotationTaking(a, a) * b - b).norm(), 1e-14);
   }
 }
 
 TEST(RotationTaking, IsExactAtAndNearAHalfTurn) {
   Random random(13);
-  for (const double tilt :
-       {0.0, 1e-16, 1e-15, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3, 0.1}) {
+  for (const double tilt : {0.0, 1e-16, 1e-15, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3, 0.1}) {
     SCOPED_TRACE(tilt);
     for (int i = 0; i < 50; ++i) {
       const Vec3 a = RandomDirection(&random);
@@ -236,5 +224,5 @@ TEST(Wrench, AddsAndNegatesBothParts) {
   EXPECT_EQ((-F).f, Vec3(-6, -7, -8));
 }
 
-} // namespace
-} // namespace hvas::spatial
+}  // namespace
+}  // namespace hvas::spatial
