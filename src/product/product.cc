@@ -7,8 +7,9 @@ namespace hvas::product {
 int Product::depth() const {
   int deepest = 0;
   for (const Occurrence& occurrence : occurrences) {
-    int levels = 1;
-    for (SubassemblyId id = occurrence.parent; id.is_valid(); id = subassemblies[id.index()].parent) {
+    int levels = 0;
+    for (SubassemblyId id = occurrence.parent; id.is_valid();
+         id = subassemblies[id.index()].parent) {
       ++levels;
     }
     deepest = std::max(deepest, levels);

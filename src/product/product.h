@@ -12,8 +12,8 @@
 #include "spatial/pose.h"
 #include "spatial/surface.h"
 
-/** The hierarchical constraint-based data model of paper X (section 3, X2): product Z, subassembly B,
- part L, feature T, surface J, polygon M, as immutable values in SI.
+/** The hierarchical constraint-based data model of paper X (section 3, X2): product Z, subassembly
+ B, part L, feature T, surface J, polygon M, as immutable values in SI.
 
  Elements of neighbouring layers are tied by membership (the mappings H); elements of one layer by
  constraints C: inner ones hold a part's shape, external ones (mates) are the assembly relations. */
@@ -37,22 +37,22 @@ struct Color {
 
 struct Material {
   std::string name;
-  double density{7850};     ///< [kg/m^3]
-  bool is_assumed{true};    ///< True where the file gave none, or an absurd one.
+  double density{7850};   ///< [kg/m^3]
+  bool is_assumed{true};  ///< True where the file gave none, or an absurd one.
 };
 
 struct MassProperties {
-  double volume{0};                ///< [m^3]
-  double mass{0};                  ///< [kg]
-  Vec3 p_BoBcm_B{Vec3::Zero()};    ///< Centre of mass in the part frame B [m].
-  Mat3 I_BBcm_B{Mat3::Zero()};     ///< Inertia about the centre of mass [kg m^2].
+  double volume{0};              ///< [m^3]
+  double mass{0};                ///< [kg]
+  Vec3 p_BoBcm_B{Vec3::Zero()};  ///< Centre of mass in the part frame B [m].
+  Mat3 I_BBcm_B{Mat3::Zero()};   ///< Inertia about the centre of mass [kg m^2].
 };
 
 /** Layer J, with its polygons (layer M) as a range of Part::mesh.triangles. */
 struct Face {
-  Surface surface;                  ///< In B. Recognised also where the file has a B-spline.
-  bool is_recognised{false};        ///< True where the file's surface was not analytic itself.
-  double area{0};                   ///< [m^2]
+  Surface surface;            ///< In B. Recognised also where the file has a B-spline.
+  bool is_recognised{false};  ///< True where the file's surface was not analytic itself.
+  double area{0};             ///< [m^2]
   Box box_B;
   std::uint32_t first_triangle{0};
   std::uint32_t triangle_count{0};
@@ -72,13 +72,13 @@ enum class FeatureKind { kHole, kShaft, kPlane };
 struct Feature {
   FeatureKind kind{FeatureKind::kPlane};
   std::vector<FaceId> faces;
-  Vec3 origin_B{Vec3::Zero()};     ///< On the axis (any point), or on the plane (area centroid).
-  Vec3 axis_B{Vec3::UnitZ()};      ///< Axis direction, or outward normal.
-  double radius{0};                ///< [m]; 0 for planes.
-  double span_low{0};              ///< Extent along axis_B relative to origin_B [m]; 0 for planes.
+  Vec3 origin_B{Vec3::Zero()};  ///< On the axis (any point), or on the plane (area centroid).
+  Vec3 axis_B{Vec3::UnitZ()};   ///< Axis direction, or outward normal.
+  double radius{0};             ///< [m]; 0 for planes.
+  double span_low{0};           ///< Extent along axis_B relative to origin_B [m]; 0 for planes.
   double span_high{0};
-  double coverage{0};              ///< Angle of the full turn that the faces cover [rad].
-  double area{0};                  ///< [m^2]
+  double coverage{0};  ///< Angle of the full turn that the faces cover [rad].
+  double area{0};      ///< [m^2]
 };
 
 enum class InnerConstraintKind { kParallel, kPerpendicular, kCoaxial, kCoplanar };
@@ -159,23 +159,24 @@ struct Mate {
   double hole_low{0}, hole_high{0};    ///< Axial span of the hole [m]; 0 for planes.
   double shaft_low{0}, shaft_high{0};  ///< Axial span of the shaft, assembled [m].
   double hole_radius{0}, shaft_radius{0};
-  double overlap{0};                   ///< Engaged length [m], or overlapping area [m^2].
-  std::optional<Fit> fit;              ///< Axis-hole only.
+  double overlap{0};       ///< Engaged length [m], or overlapping area [m^2].
+  std::optional<Fit> fit;  ///< Axis-hole only.
 };
 
 struct Product {
   std::string name;
-  std::string source;                      ///< File name without directories.
+  std::string source;  ///< File name without directories.
   std::vector<Part> parts;
   std::vector<Subassembly> subassemblies;  ///< [0] is the product.
   std::vector<Occurrence> occurrences;
-  std::vector<Mate> mates;                 ///< External constraints; empty until inferred.
+  std::vector<Mate> mates;  ///< External constraints; empty until inferred.
   Box box_W;
 
   [[nodiscard]] const Part& part_of(OccurrenceId id) const {
     return parts[occurrences[id.index()].part.index()];
   }
-  /** Levels of the tree, parts included: a flat product has 2. */
+
+  /** Levels of subassemblies above the deepest part, the product included: a flat product has 1. */
   [[nodiscard]] int depth() const;
   [[nodiscard]] double volume() const;  ///< Of all occurrences [m^3].
   [[nodiscard]] double mass() const;    ///< Of all occurrences [kg].
