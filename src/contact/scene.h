@@ -17,13 +17,13 @@ using BodyId = Id<struct ContactBodyTag>;
 
 /** One contact point between the held shape H and a scene body S, or the ground. */
 struct Contact {
-  Vec3 p_WC{Vec3::Zero()};    ///< On the held part's surface (or the projected scene edge) [m].
-  Vec3 nhat_W{Vec3::UnitZ()}; ///< Unit, out of S: moving H along it separates.
-  double distance{0};         ///< Signed gap [m]; negative is penetration.
-  BodyId body;                ///< Invalid for the ground.
+  Vec3 p_WC{Vec3::Zero()};     ///< On the held part's surface (or the projected scene edge) [m].
+  Vec3 nhat_W{Vec3::UnitZ()};  ///< Unit, out of S: moving H along it separates.
+  double distance{0};          ///< Signed gap [m]; negative is penetration.
+  BodyId body;                 ///< Invalid for the ground.
   std::uint32_t held_face{kNoFace};
   std::uint32_t scene_face{kNoFace};
-  bool is_exact{false};       ///< Refined on an analytic face; else the field's trilinear value.
+  bool is_exact{false};  ///< Refined on an analytic face; else the field's trilinear value.
 };
 
 /** Contacts between two sets of faces that something else answers for (a captured mate's fit).
@@ -38,14 +38,14 @@ struct IgnoredPair {
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
   std::span<const IgnoredPair> ignored{};
-  BodyId self;           ///< This body of the scene is the held one itself: skipped.
+  BodyId self;  ///< This body of the scene is the held one itself: skipped.
 };
 
 struct QueryStats {
   std::uint32_t bodies_tested{0};
   std::uint32_t points_tested{0};
-  std::uint32_t candidates{0};   ///< Points within the margin, before reduction.
-  bool is_truncated{false};      ///< The point budget or a capacity was reached.
+  std::uint32_t candidates{0};  ///< Points within the margin, before reduction.
+  bool is_truncated{false};     ///< The point budget or a capacity was reached.
 };
 
 /** Everything a query writes to: sized once, so that a query allocates nothing. One per thread. */
@@ -64,6 +64,7 @@ class QueryWorkspace {
   [[nodiscard]] double deepest() const noexcept;
 
   struct Data;
+
   [[nodiscard]] Data& data() noexcept { return *data_; }
 
  private:

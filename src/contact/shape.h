@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max
 struct ShapeSource {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> triangle_face;     ///< For each triangle, an index into faces.
+  std::vector<std::uint32_t> triangle_face;  ///< For each triangle, an index into faces.
   std::vector<spatial::Surface> faces;
 };
 
@@ -45,6 +45,7 @@ class Shape {
   [[nodiscard]] double voxel() const noexcept;
   [[nodiscard]] std::size_t point_count() const noexcept;
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
+
   [[nodiscard]] const Data& data() const noexcept { return *data_; }
 
  private:

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "contact/shape_data.h"
+
+namespace hvas::contact {
+
+/** Voxel that resolves the part's radii within the memory that a part may take. */
+[[nodiscard]] double ChooseVoxel(const Mesh& mesh, const std::vector<spatial::Surface>& faces);
+
+/** Fills data->field and data->exact's zones from data->mesh, data->exact.faces and data->voxel. */
+void BuildField(Shape::Data* data);
+
+/** For each face the largest distance between its mesh and its surface; faces whose surface does
+ not fit the mesh become freeform, faces oriented the wrong way are turned round. */
+void CheckFaces(const Mesh& mesh, ExactTable* exact);
+
+}  // namespace hvas::contact

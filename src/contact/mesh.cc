@@ -1,0 +1,306 @@
+#include "contact/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+
+#include "spatial/box.h"
+
+namespace hvas::contact {
+namespace {
+
+constexpr double kWeldRelative = 1e-9;  // Of the diagonal.
+const double kCosSharpBetweenFaces = std::cos(8.0 * std::numbers::pi / 180.0);
+const double kCosSharpInFreeform = std::cos(30.0 * std::numbers::pi / 180.0);
+
+std::uint64_t CellKey(const std::array<std::int64_t, 3>& cell) {
+  std::uint64_t key = 0x9e3779b97f4a7c15ULL;
+  for (const std::int64_t c : cell) {
+    key ^= static_cast<std::uint64_t>(c) + 0x9e3779b97f4a7c15ULL + (key << 6U) + (key >> 2U);
+    key *= 0xff51afd7ed558ccdULL;
+  }
+  return key;
+}
+
+// Finds the welded vertex of each given one. Cells are a hundred tolerances wide, so that nearly
+// every point looks into one cell only.
+class Welder {
+ public:
+  Welder(double tolerance, std::size_t count) : tolerance_(tolerance), cell_(100 * tolerance) {
+    cells_.reserve(count);
+  }
+
+  std::uint32_t Add(const Vec3& p, std::vector<Vec3>* welded) {
+    std::array<std::int64_t, 3> low{};
+    std::array<std::int64_t, 3> high{};
+    std::array<std::int64_t, 3> home{};
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      low[i] = static_cast<std::int64_t>(std::floor((p[k] - tolerance_) / cell_));
+      high[i] = static_cast<std::int64_t>(std::floor((p[k] + tolerance_) / cell_));
+      home[i] = static_cast<std::int64_t>(std::floor(p[k] / cell_));
+    }
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          const auto found = cells_.find(CellKey({x, y, z}));
+          for (std::uint32_t v = found == cells_.end() ? kNoFace : found->second; v != kNoFace;
+               v = next_[v]) {
+            if (((*welded)[v] - p).norm() <= tolerance_) {
+              return v;
+            }
+          }
+        }
+      }
+    }
+    const auto v = static_cast<std::uint32_t>(welded->size());
+    welded->push_back(p);
+    const auto [entry, is_new] = cells_.try_emplace(CellKey(home), v);
+    next_.push_back(is_new ? kNoFace : entry->second);
+    entry->second = v;
+    return v;
+  }
+
+ private:
+  double tolerance_;
+  double cell_;
+  std::unordered_map<std::uint64_t, std::uint32_t> cells_;
+  std::vector<std::uint32_t> next_;
+};
+
+struct HalfEdge {
+  std::uint32_t from, to, triangle;
+  std::uint8_t edge;
+};
+
+void FindNeighbours(Mesh* mesh) {
+  std::vector<HalfEdge> edges;
+  edges.reserve(3 * mesh->triangles.size());
+  for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const auto& v = mesh->triangles[t];
+      edges.push_back({v[k], v[(k + 1U) % 3U], t, k});
+    }
+  }
+  const auto key = [](const HalfEdge& e) {
+    return std::pair(std::min(e.from, e.to), std::max(e.from, e.to));
+  };
+  std::sort(edges.begin(), edges.end(), [&](const HalfEdge& a, const HalfEdge& b) {
+    return key(a) != key(b) ? key(a) < key(b) : a.triangle < b.triangle;
+  });
+  mesh->neighbour.assign(mesh->triangles.size(), {kNoFace, kNoFace, kNoFace});
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i;
+    while (end < edges.size() && key(edges[end]) == key(edges[i])) {
+      ++end;
+    }
+    // Opposite half edges are paired in order; a bundle of four (two bodies that touch along an
+    // edge) gives two pairs.
+    for (std::size_t a = i; a < end; ++a) {
+      auto& mine = mesh->neighbour[edges[a].triangle][edges[a].edge];
+      for (std::size_t b = i; b < end && mine == kNoFace; ++b) {
+        auto& other = mesh->neighbour[edges[b].triangle][edges[b].edge];
+        if (edges[b].from == edges[a].to && other == kNoFace) {
+          mine = edges[b].triangle;
+          other = edges[a].triangle;
+        }
+      }
+    }
+    i = end;
+  }
+}
+
+EdgeKind ClassifyEdge(const Mesh& mesh, const std::vector<spatial::Surface>& faces, std::uint32_t t,
+                      std::size_t k) {
+  const std::uint32_t n = mesh.neighbour[t][k];
+  if (n == kNoFace) {
+    return EdgeKind::kOpen;
+  }
+  const std::uint32_t f = mesh.face[t];
+  const std::uint32_t g = mesh.face[n];
+  const bool is_freeform = faces[f].kind == spatial::SurfaceKind::kFreeform;
+  if (f == g && !is_freeform) {
+    return EdgeKind::kSmooth;
+  }
+  // Across faces the surfaces' own normals decide: the facets of a coarse mesh meet at an angle
+  // even where the surfaces are tangent.
+  const Vec3& a = mesh.vertices[mesh.triangles[t][k]];
+  const Vec3& b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
+  const auto normal_of = [&](std::uint32_t triangle) {
+    const auto exact = spatial::CalcDistance(faces[mesh.face[triangle]], a);
+    return exact.is_valid && exact.gradient.dot(mesh.normal[triangle]) > 0.5
+               ? exact.gradient
+               : mesh.normal[triangle];
+  };
+  const Vec3 n1 = f == g ? mesh.normal[t] : normal_of(t);
+  const Vec3 n2 = f == g ? mesh.normal[n] : normal_of(n);
+  if (n1.isZero() || n2.isZero() ||
+      n1.dot(n2) > (f == g ? kCosSharpInFreeform : kCosSharpBetweenFaces)) {
+    return EdgeKind::kSmooth;
+  }
+  // Counter-clockwise about n1, the edge runs along n1 x n2 at a convex edge.
+  return n1.cross(n2).dot(b - a) > 0 ? EdgeKind::kConvex : EdgeKind::kConcave;
+}
+
+void ClassifyVertices(Mesh* mesh) {
+  const std::size_t count = mesh->vertices.size();
+  mesh->vertex_kind.assign(count, VertexKind::kSmooth);
+  mesh->vertex_faces.assign(count, {kNoFace, kNoFace});
+  mesh->vertex_normal.assign(count, Vec3::Zero());
+  mesh->is_vertex_open.assign(count, 0);
+  std::vector<std::uint16_t> sharp_ends(count, 0);
+  for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
+    const auto& v = mesh->triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 e1 = (mesh->vertices[v[(k + 1) % 3]] - mesh->vertices[v[k]]).normalized();
+      const Vec3 e2 = (mesh->vertices[v[(k + 2) % 3]] - mesh->vertices[v[k]]).normalized();
+      mesh->vertex_normal[v[k]] += std::acos(std::clamp(e1.dot(e2), -1.0, 1.0)) * mesh->normal[t];
+      const EdgeKind kind = mesh->edge_kind[t][k];
+      if (kind == EdgeKind::kSmooth) {
+        continue;
+      }
+      const std::uint32_t n = mesh->neighbour[t][k];
+      const std::uint32_t f = mesh->face[t];
+      const std::uint32_t g = n == kNoFace ? f : mesh->face[n];
+      const std::array<std::uint32_t, 2> pair{std::min(f, g), std::max(f, g)};
+      for (const std::uint32_t end : {v[k], v[(k + 1) % 3]}) {
+        ++sharp_ends[end];
+        if (kind == EdgeKind::kOpen) {
+          mesh->is_vertex_open[end] = 1;
+        }
+        if (mesh->vertex_kind[end] == VertexKind::kSmooth) {
+          mesh->vertex_kind[end] = VertexKind::kOnEdge;
+          mesh->vertex_faces[end] = pair;
+        } else if (mesh->vertex_faces[end] != pair) {
+          mesh->vertex_kind[end] = VertexKind::kCorner;
+        }
+      }
+    }
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    // An edge is seen from both its triangles: an edge passing through leaves four ends.
+    if (mesh->vertex_kind[v] == VertexKind::kOnEdge && sharp_ends[v] != 4) {
+      mesh->vertex_kind[v] = VertexKind::kCorner;
+    }
+  }
+}
+
+}  // namespace
+
+TrianglePoint CalcClosestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b,
+                                    const Vec3& c) noexcept {
+  const Vec3 ab = b - a;
+  const Vec3 ac = c - a;
+  const Vec3 ap = p - a;
+  const double d1 = ab.dot(ap);
+  const double d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) {
+    return {a, TriangleFeature::kCorner0};
+  }
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp);
+  const double d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) {
+    return {b, TriangleFeature::kCorner1};
+  }
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    return {a + d1 / (d1 - d3) * ab, TriangleFeature::kEdge0};
+  }
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp);
+  const double d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) {
+    return {c, TriangleFeature::kCorner2};
+  }
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    return {a + d2 / (d2 - d6) * ac, TriangleFeature::kEdge2};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), TriangleFeature::kEdge1};
+  }
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) {
+    return {a, TriangleFeature::kCorner0};  // No area.
+  }
+  const double scale = 1 / sum;
+  return {a + vb * scale * ab + vc * scale * ac, TriangleFeature::kInside};
+}
+
+Vec3 Mesh::Pseudonormal(std::uint32_t triangle, TriangleFeature feature) const noexcept {
+  if (feature == TriangleFeature::kInside) {
+    return normal[triangle];
+  }
+  if (feature <= TriangleFeature::kEdge2) {
+    const std::uint32_t n = neighbour[triangle][static_cast<std::size_t>(feature) - 1];
+    return n == kNoFace ? normal[triangle] : Vec3(normal[triangle] + normal[n]);
+  }
+  return vertex_normal[triangles[triangle][static_cast<std::size_t>(feature) - 4]];
+}
+
+bool Mesh::IsOpenAt(std::uint32_t triangle, TriangleFeature feature) const noexcept {
+  if (is_closed || feature == TriangleFeature::kInside) {
+    return false;
+  }
+  if (feature <= TriangleFeature::kEdge2) {
+    return neighbour[triangle][static_cast<std::size_t>(feature) - 1] == kNoFace;
+  }
+  return is_vertex_open[triangles[triangle][static_cast<std::size_t>(feature) - 4]] != 0;
+}
+
+double Mesh::CalcWindingNumber(const Vec3& p) const {
+  double sum = 0;
+  for (const auto& t : triangles) {
+    const Vec3 a = vertices[t[0]] - p;
+    const Vec3 b = vertices[t[1]] - p;
+    const Vec3 c = vertices[t[2]] - p;
+    const double la = a.norm();
+    const double lb = b.norm();
+    const double lc = c.norm();
+    sum +=
+        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (2 * std::numbers::pi);
+}
+
+Mesh MakeMesh(const ShapeSource& source, const Vec3& p_BC) {
+  spatial::Box box;
+  for (const Vec3& v : source.vertices) {
+    box.Add(v);
+  }
+  Mesh mesh;
+  Welder welder(kWeldRelative * std::max(box.size().norm(), 1e-9), source.vertices.size());
+  std::vector<std::uint32_t> weld(source.vertices.size());
+  for (std::size_t i = 0; i < weld.size(); ++i) {
+    weld[i] = welder.Add(source.vertices[i] - p_BC, &mesh.vertices);
+  }
+  for (std::size_t i = 0; i < source.triangles.size(); ++i) {
+    const auto& s = source.triangles[i];
+    const std::array<std::uint32_t, 3> t{weld[s[0]], weld[s[1]], weld[s[2]]};
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
+      continue;
+    }
+    const Vec3& a = mesh.vertices[t[0]];
+    const Vec3 cross = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+    mesh.triangles.push_back(t);
+    mesh.face.push_back(source.triangle_face[i]);
+    // A sliver without area keeps the mesh closed; its neighbours carry the sign.
+    const double length = cross.norm();
+    mesh.normal.push_back(length > 0 ? Vec3(cross / length) : Vec3::Zero());
+  }
+  FindNeighbours(&mesh);
+  mesh.edge_kind.resize(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh.edge_kind[t][k] = ClassifyEdge(mesh, source.faces, t, k);
+      mesh.is_closed = mesh.is_closed && mesh.edge_kind[t][k] != EdgeKind::kOpen;
+    }
+  }
+  ClassifyVertices(&mesh);
+  return mesh;
+}
+
+}  // namespace hvas::contact

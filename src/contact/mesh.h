@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "contact/shape.h"
+
+namespace hvas::contact {
+
+/** Where on a triangle the closest point lies: the inside, edge k (from corner k to k + 1) or
+ * corner k. */
+enum class TriangleFeature : std::uint8_t {
+  kInside,
+  kEdge0,
+  kEdge1,
+  kEdge2,
+  kCorner0,
+  kCorner1,
+  kCorner2
+};
+
+struct TrianglePoint {
+  Vec3 q{Vec3::Zero()};
+  TriangleFeature feature{TriangleFeature::kInside};
+};
+
+/** Closest point of triangle abc to p; Ericson, Real-Time Collision Detection, 5.1.5. RT-safe. */
+[[nodiscard]] TrianglePoint CalcClosestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b,
+                                                  const Vec3& c) noexcept;
+
+/** How two triangles meet at an edge. Smooth also stands for edges inside one face. */
+enum class EdgeKind : std::uint8_t { kSmooth, kConvex, kConcave, kOpen };
+
+/** What a vertex is to the faces around it. */
+enum class VertexKind : std::uint8_t { kSmooth, kOnEdge, kCorner };
+
+/** The welded triangles of a shape with what sign and face decisions need. */
+struct Mesh {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> face;  ///< Of each triangle.
+  std::vector<Vec3> normal;         ///< Unit, of each triangle.
+  std::vector<std::array<std::uint32_t, 3>>
+      neighbour;  ///< Triangle across edge k; kNoFace if none.
+  std::vector<std::array<EdgeKind, 3>> edge_kind;
+  std::vector<VertexKind> vertex_kind;
+  std::vector<Vec3> vertex_normal;  ///< Angle-weighted pseudonormal, not unit.
+  std::vector<std::array<std::uint32_t, 2>> vertex_faces;  ///< For kOnEdge: the two faces.
+  std::vector<std::uint8_t> is_vertex_open;
+  bool is_closed{true};
+
+  [[nodiscard]] TrianglePoint ClosestOn(std::uint32_t triangle, const Vec3& p) const noexcept {
+    const auto& t = triangles[triangle];
+    return CalcClosestOnTriangle(p, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+  }
+
+  /** The pseudonormal of a feature (not unit): (p - q) . n > 0 exactly when p is outside, for the
+   closest feature of a closed mesh; Baerentzen and Aanaes, IEEE TVCG 11(3), 2005. */
+  [[nodiscard]] Vec3 Pseudonormal(std::uint32_t triangle, TriangleFeature feature) const noexcept;
+  /** True when the feature lies at a gap of the mesh, where the pseudonormal tells nothing. */
+  [[nodiscard]] bool IsOpenAt(std::uint32_t triangle, TriangleFeature feature) const noexcept;
+  /** Generalised winding number of the whole mesh about p: 1 inside, 0 outside; Jacobson 2013. */
+  [[nodiscard]] double CalcWindingNumber(const Vec3& p) const;
+};
+
+/** Welds the vertices, drops triangles without area, finds neighbours and classifies edges.
+ @param p_BC  Subtracted from all vertices, so that coordinates are small. */
+[[nodiscard]] Mesh MakeMesh(const ShapeSource& source, const Vec3& p_BC);
+
+}  // namespace hvas::contact

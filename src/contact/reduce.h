@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "contact/scene.h"
+
+namespace hvas::contact {
+
+/** Reduces a stream of contacts to a few that span it. Contacts are grouped by body, scene face and
+ direction of the normal; each group keeps its deepest and its extremes along eight tangents, which
+ for faces that touch flat are the corners of the contact. Fixed size, RT-safe. */
+class ContactReducer {
+ public:
+  void Clear() noexcept;
+
+  /** @param nhat_S  The contact's normal in the scene body, which the groups go by.
+   @param p_S  Its position there. */
+  void Add(const Contact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept;
+
+  /** Writes the deepest of every group, deepest group first, then extremes, until `out` is full.
+   Returns how many were written. */
+  std::size_t Select(std::span<Contact> out) noexcept;
+
+  [[nodiscard]] double deepest() const noexcept { return deepest_; }
+
+  [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
+
+  [[nodiscard]] bool is_full() const noexcept { return is_full_; }
+
+ private:
+  static constexpr std::size_t kMaxGroups = 256;
+  static constexpr std::size_t kSlots = 512;
+  static constexpr std::size_t kTangents = 8;
+
+  struct Kept {
+    Contact contact;
+    std::uint32_t number{0};  // In the order of arrival.
+  };
+
+  struct Group {
+    std::uint64_t key{0};
+    Vec3 u{Vec3::Zero()};
+    Vec3 v{Vec3::Zero()};
+    Kept deepest;
+    std::array<double, kTangents> reach{};
+    std::array<Kept, kTangents> extremes;
+  };
+
+  Group* Find(std::uint64_t key, const Vec3& nhat_S) noexcept;
+
+  std::array<Group, kMaxGroups> groups_;
+  std::array<std::uint16_t, kSlots> slots_{};  // Group number + 1.
+  std::size_t group_count_{0};
+  std::uint32_t count_{0};
+  double deepest_{0};
+  bool is_full_{false};
+};
+
+}  // namespace hvas::contact

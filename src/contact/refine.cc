@@ -1,0 +1,276 @@
+#include "contact/refine.h"
+
+#include <cmath>
+#include <limits>
+
+namespace hvas::contact {
+namespace {
+
+constexpr double kOnFeature = 1e-9;  // [m]; nearer than this the direction to a feature is noise.
+
+struct Closest {
+  double squared{std::numeric_limits<double>::infinity()};
+  Vec3 q{Vec3::Zero()};
+  std::uint32_t triangle{kNoFace};
+  TriangleFeature feature{TriangleFeature::kInside};
+};
+
+// The feature of the solid behind a feature of a triangle.
+struct SolidFeature {
+  VertexKind kind{VertexKind::kSmooth};  // Smooth: inside a face.
+  std::uint32_t face{kNoFace};
+  std::uint32_t other_face{kNoFace};
+  bool is_concave{false};
+};
+
+SolidFeature FeatureOf(const Mesh& mesh, const Closest& closest) {
+  const std::uint32_t t = closest.triangle;
+  SolidFeature result;
+  result.face = mesh.face[t];
+  if (closest.feature == TriangleFeature::kInside) {
+    return result;
+  }
+  const auto index = static_cast<std::size_t>(closest.feature);
+  if (closest.feature <= TriangleFeature::kEdge2) {
+    const EdgeKind kind = mesh.edge_kind[t][index - 1];
+    if (kind == EdgeKind::kConvex || kind == EdgeKind::kConcave) {
+      result.kind = VertexKind::kOnEdge;
+      result.other_face = mesh.face[mesh.neighbour[t][index - 1]];
+      result.is_concave = kind == EdgeKind::kConcave;
+    }
+    return result;
+  }
+  const std::uint32_t v = mesh.triangles[t][index - 4];
+  result.kind = mesh.vertex_kind[v];
+  if (result.kind != VertexKind::kSmooth) {
+    // The faces of the two edges at this corner; both belong to it.
+    const auto& pair = mesh.vertex_faces[v];
+    result.other_face = pair[0] == result.face ? pair[1] : pair[0];
+    for (const std::size_t k : {index - 4, (index - 2) % 3}) {
+      result.is_concave = result.is_concave || mesh.edge_kind[t][k] == EdgeKind::kConcave;
+    }
+  }
+  return result;
+}
+
+Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t face,
+                 const Vec3& p, double sign, const Vec3& field_gradient) {
+  Refined result;
+  result.face = face;
+  const double mesh_distance = std::sqrt(closest.squared);
+  const auto exact = spatial::CalcDistance(shape.exact.faces[face], p);
+  const double tolerance = 2 * shape.exact.deviation[face] + kOnFeature;
+  if (exact.is_valid && std::abs(std::abs(exact.distance) - mesh_distance) <= tolerance) {
+    result.distance = exact.distance;
+    result.gradient = exact.gradient;
+    result.is_exact = true;
+    return result;
+  }
+  result.distance = sign * mesh_distance;
+  const bool is_off = mesh_distance > 1e3 * kOnFeature;
+  result.gradient =
+      is_off ? Vec3(sign / mesh_distance * (p - closest.q)) : shape.mesh.normal[closest.triangle];
+  if (result.gradient.isZero()) {
+    result.gradient = field_gradient;
+  }
+  return result;
+}
+
+Refined FromEdge(const Shape::Data& shape, const Closest& closest, const SolidFeature& feature,
+                 const Vec3& p, double sign) {
+  Refined result;
+  result.face = feature.face;
+  result.other_face = feature.other_face;
+  Vec3 q = closest.q;
+  const Vec3 normal = shape.mesh.Pseudonormal(closest.triangle, closest.feature).normalized();
+  if (feature.kind == VertexKind::kOnEdge) {
+    const double tolerance =
+        4 * (shape.exact.deviation[feature.face] + shape.exact.deviation[feature.other_face]) +
+        kOnFeature;
+    Vec3 on_curve = q;
+    if (ProjectOnEdge(shape.exact.faces[feature.face], shape.exact.faces[feature.other_face], p,
+                      &on_curve) &&
+        (on_curve - q).norm() <= tolerance) {
+      q = on_curve;
+      result.is_exact = true;
+    }
+  } else {
+    result.is_exact = true;  // Corners are where the mesh has them.
+  }
+  const double distance = (p - q).norm();
+  if (distance > 1e2 * kOnFeature) {
+    const double side = (p - q).dot(normal) >= 0 ? 1 : -1;
+    result.distance = side * distance;
+    result.gradient = side / distance * (p - q);
+  } else {
+    result.distance = sign * distance;
+    result.gradient = normal;
+  }
+  return result;
+}
+
+class ZoneList {
+ public:
+  ZoneList(const Shape::Data& shape, std::uint32_t list, const Vec3& p, double from_centre)
+      : shape_(shape),
+        begin_(shape.exact.list_begin[list]),
+        end_(shape.exact.list_begin[list + 1]),
+        p_(p),
+        from_centre_(from_centre) {}
+
+  Closest Find(const FaceFilter& filter) const noexcept {
+    Closest best;
+    double best_distance = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = begin_; i < end_; ++i) {
+      const ListedTriangle& entry = shape_.exact.listed[i];
+      if (static_cast<double>(entry.distance) - from_centre_ > best_distance) {
+        break;
+      }
+      if (filter.Drops(shape_.mesh.face[entry.triangle])) {
+        continue;
+      }
+      const TrianglePoint point = shape_.mesh.ClosestOn(entry.triangle, p_);
+      const double squared = (point.q - p_).squaredNorm();
+      if (squared < best.squared) {
+        best = {squared, point.q, entry.triangle, point.feature};
+        best_distance = std::sqrt(squared) + 1e-6 * from_centre_;
+      }
+    }
+    return best;
+  }
+
+ private:
+  const Shape::Data& shape_;
+  std::uint32_t begin_;
+  std::uint32_t end_;
+  const Vec3& p_;
+  double from_centre_;
+};
+
+Refined FromFeature(const Shape::Data& shape, const Closest& closest, const SolidFeature& feature,
+                    const Vec3& p, double field_distance, const Vec3& field_gradient) {
+  const Vec3 normal = shape.mesh.Pseudonormal(closest.triangle, closest.feature);
+  double sign = (p - closest.q).dot(normal) >= 0 ? 1 : -1;
+  if (shape.mesh.IsOpenAt(closest.triangle, closest.feature)) {
+    sign = field_distance >= 0 ? 1 : -1;
+  }
+  return feature.kind == VertexKind::kSmooth
+             ? FromFace(shape, closest, feature.face, p, sign, field_gradient)
+             : FromEdge(shape, closest, feature, p, sign);
+}
+
+// The faces that something else answers for are gone, but the material behind them is not: what
+// lies beyond them counts only where it faces p. Where a kept face meets an ignored one in a
+// concave edge, the kept one goes on beyond the edge, as for a pin at the bottom of its hole.
+Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec3& p,
+                       const FaceFilter& filter, const Vec3& field_gradient) {
+  Refined none;
+  none.is_valid = false;
+  const Closest closest = list.Find(filter);
+  if (closest.triangle == kNoFace) {
+    return none;
+  }
+  const SolidFeature feature = FeatureOf(shape.mesh, closest);
+  const bool touches_ignored = feature.other_face != kNoFace && filter.Drops(feature.other_face);
+  if (touches_ignored && !feature.is_concave) {
+    return none;
+  }
+  const double reach = std::sqrt(closest.squared);
+  if (touches_ignored) {
+    const auto exact = spatial::CalcDistance(shape.exact.faces[feature.face], p);
+    if (!exact.is_valid || std::abs(exact.distance) > reach + kOnFeature) {
+      return none;
+    }
+    Refined result;
+    result.distance = exact.distance;
+    result.gradient = exact.gradient;
+    result.face = feature.face;
+    result.is_exact = true;
+    return result;
+  }
+  const Refined result = FromFeature(shape, closest, feature, p, 1.0, field_gradient);
+  return result.distance >= 0 ? result : none;
+}
+
+}  // namespace
+
+bool ProjectOnEdge(const spatial::Surface& a, const spatial::Surface& b, const Vec3& p,
+                   Vec3* q) noexcept {
+  constexpr int kMaxSteps = 6;
+  constexpr double kConverged = 1e-11;  // [m]
+  Vec3 x = *q;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const auto da = spatial::CalcDistance(a, x);
+    const auto db = spatial::CalcDistance(b, x);
+    if (!da.is_valid || !db.is_valid) {
+      return false;
+    }
+    const Vec3 tangent = da.gradient.cross(db.gradient);
+    const double det = tangent.squaredNorm();
+    if (det < 1e-3) {
+      return false;
+    }
+    const Vec3 step = (-da.distance * db.gradient.cross(tangent) -
+                       db.distance * tangent.cross(da.gradient) + (p - x).dot(tangent) * tangent) /
+                      det;
+    x += step;
+    if (step.squaredNorm() < kConverged * kConverged) {
+      *q = x;
+      return true;
+    }
+  }
+  *q = x;
+  return std::abs(spatial::CalcDistance(a, x).distance) < kOnFeature &&
+         std::abs(spatial::CalcDistance(b, x).distance) < kOnFeature;
+}
+
+Refined Refine(const Shape::Data& shape, const Vec3& p, double field_distance,
+               const Vec3& field_gradient, const FaceFilter& filter) noexcept {
+  Refined trilinear;
+  trilinear.distance = field_distance;
+  trilinear.gradient = field_gradient;
+  const FieldView& field = shape.field.view;
+  const double inverse = 1 / shape.voxel;
+  int cell[3];
+  Vec3 centre;
+  for (int k = 0; k < 3; ++k) {
+    const double u = (p[k] - static_cast<double>(field.origin[k])) * inverse;
+    if (!(u >= 0 && u < kBlockCells * field.blocks[k])) {
+      return trilinear;
+    }
+    cell[k] = static_cast<int>(u);
+    centre[k] = static_cast<double>(field.origin[k]) + ((cell[k] & ~1) + 1) * shape.voxel;
+  }
+  const int block =
+      field.top[((cell[2] >> 3) * field.blocks[1] + (cell[1] >> 3)) * field.blocks[0] +
+                (cell[0] >> 3)];
+  if (block < 0) {
+    return trilinear;
+  }
+  const int index = block * kZonesPerBlock + ((cell[2] & 7) >> 1) * 16 + ((cell[1] & 7) >> 1) * 4 +
+                    ((cell[0] & 7) >> 1);
+  const std::uint32_t code = shape.exact.zones[static_cast<std::size_t>(index)];
+  const std::uint32_t payload = code & zone::kPayload;
+  if ((code & ~zone::kPayload) == zone::kList) {
+    const ZoneList list(shape, payload, p, (p - centre).norm());
+    const Closest closest = list.Find({});
+    const SolidFeature feature = FeatureOf(shape.mesh, closest);
+    if (filter.Drops(feature.face) || filter.Drops(feature.other_face)) {
+      return WithoutIgnored(shape, list, p, filter, field_gradient);
+    }
+    return FromFeature(shape, closest, feature, p, field_distance, field_gradient);
+  }
+  trilinear.face = payload;
+  trilinear.is_valid = !filter.Drops(payload);
+  if ((code & ~zone::kPayload) == zone::kExact) {
+    const auto exact = spatial::CalcDistance(shape.exact.faces[payload], p);
+    if (exact.is_valid) {
+      trilinear.distance = exact.distance;
+      trilinear.gradient = exact.gradient;
+      trilinear.is_exact = true;
+    }
+  }
+  return trilinear;
+}
+
+}  // namespace hvas::contact

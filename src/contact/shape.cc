@@ -1,0 +1,112 @@
+#include "contact/shape.h"
+
+#include <cmath>
+
+#include "contact/field_build.h"
+#include "contact/shape_data.h"
+#include "contact/shell_build.h"
+
+namespace hvas::contact {
+namespace {
+
+constexpr std::size_t kMaxFaces = 65536;  // What a query's face masks hold.
+
+Result<void> Check(const ShapeSource& source) {
+  const auto fail = [](const char* message) {
+    return Fail(ErrorCode::kInvalid, message, "contact shape", "check the part's tessellation");
+  };
+  if (source.triangles.empty() || source.vertices.empty()) {
+    return fail("The mesh is empty.");
+  }
+  if (source.triangle_face.size() != source.triangles.size()) {
+    return fail("Every triangle must name its face.");
+  }
+  if (source.faces.size() > kMaxFaces) {
+    return fail("The part has more than 65536 faces.");
+  }
+  for (const Vec3& v : source.vertices) {
+    if (!v.allFinite()) {
+      return fail("The mesh has a vertex that is not finite.");
+    }
+  }
+  for (std::size_t i = 0; i < source.triangles.size(); ++i) {
+    for (const std::uint32_t v : source.triangles[i]) {
+      if (v >= source.vertices.size()) {
+        return fail("A triangle names a vertex that does not exist.");
+      }
+    }
+    if (source.triangle_face[i] >= source.faces.size()) {
+      return fail("A triangle names a face that does not exist.");
+    }
+  }
+  return {};
+}
+
+template <typename T>
+std::size_t Bytes(const std::vector<T>& v) {
+  return v.capacity() * sizeof(T);
+}
+
+std::size_t Bytes(const Shell& s) {
+  return Bytes(s.nodes) + Bytes(s.x) + Bytes(s.y) + Bytes(s.z) + Bytes(s.leaf_count) +
+         Bytes(s.faces);
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
+                                                  const ShapeOptions& options) {
+  if (auto check = Check(source); !check) {
+    return Unexpected(check.error());
+  }
+  auto data = std::make_unique<Data>();
+  for (const auto& triangle : source.triangles) {
+    for (const std::uint32_t v : triangle) {
+      data->box_B.Add(source.vertices[v]);
+    }
+  }
+  data->p_BC = data->box_B.centre();
+  data->mesh = MakeMesh(source, data->p_BC);
+  if (data->mesh.triangles.empty()) {
+    return Fail(ErrorCode::kInvalid, "The mesh has no triangle with an area.", "contact shape");
+  }
+  for (const spatial::Surface& face : source.faces) {
+    data->exact.faces.push_back(face);
+    data->exact.faces.back().origin -= data->p_BC;
+  }
+  CheckFaces(data->mesh, &data->exact);
+  data->voxel = options.voxel > 0 ? options.voxel : ChooseVoxel(data->mesh, data->exact.faces);
+  BuildField(data.get());
+  BuildShells(options.point_spacing > 0 ? options.point_spacing : ChooseSpacing(data->mesh),
+              data.get());
+  return std::make_shared<const Shape>(std::move(data));
+}
+
+Shape::Shape(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
+
+Shape::~Shape() = default;
+
+const spatial::Box& Shape::box_B() const noexcept {
+  return data_->box_B;
+}
+
+double Shape::voxel() const noexcept {
+  return data_->voxel;
+}
+
+std::size_t Shape::point_count() const noexcept {
+  return data_->shell.point_count;
+}
+
+std::size_t Shape::memory_bytes() const noexcept {
+  const Data& d = *data_;
+  const Mesh& m = d.mesh;
+  return sizeof(Data) + Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normal) +
+         Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) + Bytes(m.vertex_normal) +
+         Bytes(m.vertex_faces) + Bytes(m.is_vertex_open) + Bytes(d.field.top) +
+         Bytes(d.field.nodes) + Bytes(d.field.slack) + Bytes(d.field.coarse) +
+         Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
+         Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.shell) + Bytes(d.edges);
+}
+
+}  // namespace hvas::contact

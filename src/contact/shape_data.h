@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "contact/kernel.h"
+#include "contact/mesh.h"
+#include "contact/shape.h"
+
+namespace hvas::contact {
+
+struct Field {
+  FieldView view;  ///< Points into the vectors below.
+  std::vector<std::int32_t> top;
+  std::vector<std::int16_t> nodes;
+  std::vector<float> slack;
+  std::vector<float> coarse;
+};
+
+/** What decides the distance in a cube of 2^3 cells. The upper two bits say how, the rest is a face
+ or a list. */
+namespace zone {
+inline constexpr std::uint32_t kPayload = 0x3fffffffU;
+inline constexpr std::uint32_t kExact = 0x00000000U;   ///< One analytic face.
+inline constexpr std::uint32_t kSmooth = 0x40000000U;  ///< One face without an exact distance.
+inline constexpr std::uint32_t kList = 0x80000000U;    ///< Several: the triangles decide.
+inline constexpr std::uint32_t kFar =
+    0xc0000000U;  ///< Far from the surface; payload: nearest face.
+}  // namespace zone
+
+inline constexpr int kZonesPerBlock = 64;
+
+/** A triangle that may be the closest one in a zone, with its distance from the zone's centre. */
+struct ListedTriangle {
+  std::uint32_t triangle;
+  float distance;
+};
+
+struct ExactTable {
+  std::vector<spatial::Surface> faces;    ///< Centred frame.
+  std::vector<double> deviation;          ///< Largest distance of a face's mesh from its surface.
+  std::vector<std::uint32_t> zones;       ///< kZonesPerBlock a block.
+  std::vector<std::uint32_t> list_begin;  ///< Into listed; one more than there are lists.
+  std::vector<ListedTriangle> listed;     ///< Each list by increasing distance.
+};
+
+inline constexpr std::size_t kMaxPointFaces = 4;
+
+/** Points on the surface in a sphere tree. */
+struct Shell {
+  ShellView view;  ///< Points into the vectors below.
+  std::vector<SphereNode> nodes;
+  std::vector<float> x, y, z;
+  std::vector<std::uint8_t> leaf_count;
+  std::vector<std::array<std::uint32_t, kMaxPointFaces>> faces;  ///< kNoFace where unused.
+  std::size_t point_count{0};
+};
+
+/** The centred frame C has its origin at the centre of the part's box and the axes of B. */
+struct Shape::Data {
+  spatial::Box box_B;
+  Vec3 p_BC{Vec3::Zero()};
+  double voxel{0};
+  Mesh mesh;
+  Field field;
+  ExactTable exact;
+  Shell shell;  ///< All samples.
+  Shell edges;  ///< Those on convex edges and corners only.
+};
+
+}  // namespace hvas::contact

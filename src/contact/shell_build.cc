@@ -1,0 +1,339 @@
+#include "contact/shell_build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "base/random.h"
+#include "contact/refine.h"
+#include "spatial/box.h"
+
+namespace hvas::contact {
+namespace {
+
+constexpr double kMaxFaceSamples = 15000;
+constexpr double kEdgeRatio = 0.5;  // Spacing of edge samples over that of face samples.
+constexpr int kTriesPerSample = 6;  // Random tries for each sample that would fill the area.
+constexpr double kDensity = 0.75;   // Smallest distance of samples over the spacing.
+constexpr std::uint64_t kSeed = 20260721;
+
+using PointFaces = std::array<std::uint32_t, kMaxPointFaces>;
+
+struct Sample {
+  Vec3 p;
+  PointFaces faces;
+  bool is_edge;
+};
+
+PointFaces FacesOf(std::initializer_list<std::uint32_t> faces) {
+  PointFaces out;
+  out.fill(kNoFace);
+  std::copy(faces.begin(), faces.end(), out.begin());
+  return out;
+}
+
+// Samples no closer to each other than a radius, Poisson-disk fashion; only samples that share a
+// face see each other, so that the sides of a thin wall do not.
+class Sampler {
+ public:
+  explicit Sampler(double cell) : cell_(cell) {}
+
+  bool TryAdd(const Sample& sample, double radius) {
+    const auto cell = CellOf(sample.p);
+    for (std::int64_t i = 0; i < 27; ++i) {
+      const auto found =
+          cells_.find(Key({cell[0] + i % 3 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i / 9 - 1}));
+      for (std::uint32_t s = found == cells_.end() ? kNoFace : found->second; s != kNoFace;
+           s = next_[s]) {
+        if ((samples_[s].p - sample.p).squaredNorm() < radius * radius &&
+            Share(samples_[s], sample)) {
+          return false;
+        }
+      }
+    }
+    Add(sample);
+    return true;
+  }
+
+  void Add(const Sample& sample) {
+    const auto index = static_cast<std::uint32_t>(samples_.size());
+    samples_.push_back(sample);
+    const auto [entry, is_new] = cells_.try_emplace(Key(CellOf(sample.p)), index);
+    next_.push_back(is_new ? kNoFace : entry->second);
+    entry->second = index;
+  }
+
+  [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
+
+ private:
+  static bool Share(const Sample& a, const Sample& b) {
+    // An edge sees its own edge and the faces beside it, but not another edge of the same face.
+    int shared = 0;
+    for (const std::uint32_t f : a.faces) {
+      shared +=
+          f != kNoFace && std::find(b.faces.begin(), b.faces.end(), f) != b.faces.end() ? 1 : 0;
+    }
+    return a.is_edge && b.is_edge && a.faces[1] != kNoFace ? shared >= 2 : shared >= 1;
+  }
+
+  std::array<std::int64_t, 3> CellOf(const Vec3& p) const {
+    return {static_cast<std::int64_t>(std::floor(p.x() / cell_)),
+            static_cast<std::int64_t>(std::floor(p.y() / cell_)),
+            static_cast<std::int64_t>(std::floor(p.z() / cell_))};
+  }
+
+  // Distinct within a million cells a side; 15,000 samples span far fewer.
+  static std::uint64_t Key(const std::array<std::int64_t, 3>& c) {
+    constexpr std::int64_t kHalf = 1 << 20;
+    return (static_cast<std::uint64_t>(c[0] + kHalf) << 42U) ^
+           (static_cast<std::uint64_t>(c[1] + kHalf) << 21U) ^
+           static_cast<std::uint64_t>(c[2] + kHalf);
+  }
+
+  double cell_;
+  std::vector<Sample> samples_;
+  std::vector<std::uint32_t> next_;
+  std::unordered_map<std::uint64_t, std::uint32_t> cells_;
+};
+
+void AddCorners(const Mesh& mesh, Sampler* sampler) {
+  std::vector<PointFaces> faces(mesh.vertices.size(), FacesOf({}));
+  std::vector<std::uint8_t> is_convex(mesh.vertices.size(), 0);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[t][k];
+      auto& list = faces[v];
+      if (std::find(list.begin(), list.end(), mesh.face[t]) == list.end()) {
+        const auto free = std::find(list.begin(), list.end(), kNoFace);
+        if (free != list.end()) {
+          *free = mesh.face[t];
+        }
+      }
+      if (mesh.edge_kind[t][k] == EdgeKind::kConvex || mesh.edge_kind[t][k] == EdgeKind::kOpen) {
+        is_convex[v] = 1;
+        is_convex[mesh.triangles[t][(k + 1) % 3]] = 1;
+      }
+    }
+  }
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (mesh.vertex_kind[v] == VertexKind::kCorner && is_convex[v] != 0) {
+      sampler->Add({mesh.vertices[v], faces[v], true});
+    }
+  }
+}
+
+void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
+  const Mesh& mesh = data.mesh;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t n = mesh.neighbour[t][k];
+      if (mesh.edge_kind[t][k] != EdgeKind::kConvex || n < t) {
+        continue;
+      }
+      const Vec3& a = mesh.vertices[mesh.triangles[t][k]];
+      const Vec3& b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
+      const std::uint32_t f = mesh.face[t];
+      const std::uint32_t g = mesh.face[n];
+      const double tolerance = 4 * (data.exact.deviation[f] + data.exact.deviation[g]) + 1e-9;
+      const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
+      // The middle of a short edge too, so that an edge between two near corners gets its point.
+      for (int i = 0; i <= 2 * pieces; i += pieces == 1 ? 1 : 2) {
+        Vec3 p = a + (0.5 * i / pieces) * (b - a);
+        Vec3 q = p;
+        if (f != g && ProjectOnEdge(data.exact.faces[f], data.exact.faces[g], p, &q) &&
+            (q - p).norm() <= tolerance) {
+          p = q;
+        }
+        sampler->TryAdd({p, f == g ? FacesOf({f}) : FacesOf({f, g}), true}, 0.9 * spacing);
+      }
+    }
+  }
+}
+
+void AddFaces(const Shape::Data& data, double spacing, Sampler* sampler) {
+  const Mesh& mesh = data.mesh;
+  Random random(kSeed);
+  std::vector<std::vector<std::uint32_t>> triangles(data.exact.faces.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    triangles[mesh.face[t]].push_back(t);
+  }
+  std::vector<double> sum;
+  for (std::uint32_t f = 0; f < triangles.size(); ++f) {
+    sum.clear();
+    double area = 0;
+    for (const std::uint32_t t : triangles[f]) {
+      const auto& v = mesh.triangles[t];
+      area += 0.5 * (mesh.vertices[v[1]] - mesh.vertices[v[0]])
+                        .cross(mesh.vertices[v[2]] - mesh.vertices[v[0]])
+                        .norm();
+      sum.push_back(area);
+    }
+    if (!(area > 0)) {
+      continue;
+    }
+    const int tries = 8 + static_cast<int>(kTriesPerSample * area / (spacing * spacing));
+    bool has_sample = false;
+    for (int i = 0; i < tries; ++i) {
+      const auto pick = std::lower_bound(sum.begin(), sum.end(), random.Uniform() * area);
+      const std::uint32_t t = triangles[f][static_cast<std::size_t>(
+          std::min<std::ptrdiff_t>(pick - sum.begin(), std::ssize(sum) - 1))];
+      const auto& v = mesh.triangles[t];
+      const double root = std::sqrt(random.Uniform());
+      const double share = random.Uniform();
+      Vec3 p = (1 - root) * mesh.vertices[v[0]] + root * (1 - share) * mesh.vertices[v[1]] +
+               root * share * mesh.vertices[v[2]];
+      const auto exact = spatial::CalcDistance(data.exact.faces[f], p);
+      if (exact.is_valid) {
+        p -= exact.distance * exact.gradient;
+      }
+      const Sample sample{p, FacesOf({f}), false};
+      if (sampler->TryAdd(sample, kDensity * spacing)) {
+        has_sample = true;
+      } else if (!has_sample && i == tries - 1) {
+        sampler->Add(sample);
+      }
+    }
+  }
+}
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const std::vector<Sample>& samples, Shell* shell)
+      : samples_(samples), shell_(shell) {}
+
+  void Build(std::vector<std::uint32_t> order) {
+    order_ = std::move(order);
+    shell_->point_count = order_.size();
+    if (!order_.empty()) {
+      shell_->nodes.emplace_back();
+      Fill(0, {0, order_.size()});
+    }
+    shell_->view = {shell_->nodes.data(),      shell_->x.data(),
+                    shell_->y.data(),          shell_->z.data(),
+                    shell_->leaf_count.data(), static_cast<std::uint32_t>(shell_->nodes.size())};
+  }
+
+ private:
+  struct Range {
+    std::size_t begin, end;
+
+    [[nodiscard]] std::size_t count() const { return end - begin; }
+  };
+
+  spatial::Box BoxOf(const Range& range) const {
+    spatial::Box box;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      box.Add(samples_[order_[i]].p);
+    }
+    return box;
+  }
+
+  // Halves each range three times along its longest side, in multiples of a leaf.
+  std::vector<Range> Split(const Range& whole) {
+    std::vector<Range> ranges{whole};
+    for (int level = 0; level < 3; ++level) {
+      std::vector<Range> next;
+      for (const Range& r : ranges) {
+        if (r.count() <= 8) {
+          next.push_back(r);
+          continue;
+        }
+        Eigen::Index axis = 0;
+        BoxOf(r).size().maxCoeff(&axis);
+        const std::size_t middle = r.begin + std::max<std::size_t>(8, (r.count() / 2 + 4) / 8 * 8);
+        const auto at = [&](std::size_t i) {
+          return order_.begin() + static_cast<std::ptrdiff_t>(i);
+        };
+        std::nth_element(at(r.begin), at(middle), at(r.end), [&](std::uint32_t a, std::uint32_t b) {
+          const double pa = samples_[a].p[axis];
+          const double pb = samples_[b].p[axis];
+          return pa != pb ? pa < pb : a < b;
+        });
+        next.push_back({r.begin, middle});
+        next.push_back({middle, r.end});
+      }
+      ranges = std::move(next);
+    }
+    return ranges;
+  }
+
+  void Fill(std::size_t node, const Range& whole) {
+    const std::vector<Range> ranges = Split(whole);
+    for (std::size_t k = 0; k < 8; ++k) {
+      SphereNode& n = shell_->nodes[node];
+      if (k >= ranges.size()) {
+        n.x[k] = n.y[k] = n.z[k] = 0;
+        n.radius[k] = -std::numeric_limits<float>::infinity();
+        n.child[k] = -1;
+        continue;
+      }
+      const Vec3 centre = BoxOf(ranges[k]).centre();
+      double radius = 0;
+      for (std::size_t i = ranges[k].begin; i < ranges[k].end; ++i) {
+        radius = std::max(radius, (samples_[order_[i]].p - centre).norm());
+      }
+      n.x[k] = static_cast<float>(centre.x());
+      n.y[k] = static_cast<float>(centre.y());
+      n.z[k] = static_cast<float>(centre.z());
+      // Room for single precision, of the tree and of the coarse grid's distance.
+      n.radius[k] = static_cast<float>(radius * 1.0001 + 2e-6 * centre.norm() + 1e-7);
+      if (ranges[k].count() <= 8) {
+        n.child[k] = -2 - AddLeaf(ranges[k]);
+      } else {
+        const std::size_t child = shell_->nodes.size();
+        n.child[k] = static_cast<std::int32_t>(child);
+        shell_->nodes.emplace_back();
+        Fill(child, ranges[k]);
+      }
+    }
+  }
+
+  std::int32_t AddLeaf(const Range& range) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Sample& s = samples_[order_[std::min(range.begin + i, range.end - 1)]];
+      shell_->x.push_back(static_cast<float>(s.p.x()));
+      shell_->y.push_back(static_cast<float>(s.p.y()));
+      shell_->z.push_back(static_cast<float>(s.p.z()));
+      shell_->faces.push_back(s.faces);
+    }
+    shell_->leaf_count.push_back(static_cast<std::uint8_t>(range.count()));
+    return static_cast<std::int32_t>(shell_->leaf_count.size()) - 1;
+  }
+
+  const std::vector<Sample>& samples_;
+  Shell* shell_;
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace
+
+double ChooseSpacing(const Mesh& mesh) {
+  spatial::Box box;
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3& a = mesh.vertices[t[0]];
+    box.Add(a);
+    area += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+  }
+  return std::max({box.size().norm() / 100, std::sqrt(area / kMaxFaceSamples), 20e-6});
+}
+
+void BuildShells(double spacing, Shape::Data* data) {
+  Sampler sampler(spacing);
+  AddCorners(data->mesh, &sampler);
+  AddEdges(*data, kEdgeRatio * spacing, &sampler);
+  AddFaces(*data, spacing, &sampler);
+  std::vector<std::uint32_t> all;
+  std::vector<std::uint32_t> edges;
+  for (std::uint32_t i = 0; i < sampler.samples().size(); ++i) {
+    all.push_back(i);
+    if (sampler.samples()[i].is_edge) {
+      edges.push_back(i);
+    }
+  }
+  TreeBuilder(sampler.samples(), &data->shell).Build(std::move(all));
+  TreeBuilder(sampler.samples(), &data->edges).Build(std::move(edges));
+}
+
+}  // namespace hvas::contact

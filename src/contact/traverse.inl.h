@@ -1,0 +1,225 @@
+// The query's inner loop over packs of eight lanes. Included once by each kernel's source.
+#pragma once
+
+#include "contact/kernel.h"
+
+namespace hvas::contact {
+
+template <typename P>
+class Traversal {
+  using Float = typename P::Float;
+  using Int = typename P::Int;
+  using Mask = typename P::Mask;
+
+ public:
+  Traversal(const ShellView& shell, const FieldView& field, const FloatPose& X_FS, float margin,
+            HitBuffer* out)
+      : shell_(shell), field_(field), X_(X_FS), margin_(margin), out_(out) {}
+
+  void Run() {
+    if (shell_.node_count == 0) {
+      return;
+    }
+    constexpr int kStack = 256;
+    std::int32_t stack[kStack];
+    int size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+      const SphereNode& node = shell_.nodes[stack[--size]];
+      unsigned near = NearChildren(node);
+      while (near != 0) {
+        const int lane = __builtin_ctz(near);
+        near &= near - 1;
+        const std::int32_t child = node.child[lane];
+        if (child < -1) {
+          Leaf(-2 - child);
+        } else if (child >= 0 && size < kStack) {
+          stack[size++] = child;
+        } else if (child >= 0) {
+          out_->is_truncated = true;
+        }
+      }
+    }
+  }
+
+ private:
+  void Transform(const Float& x, const Float& y, const Float& z, Float* out) const {
+    for (int k = 0; k < 3; ++k) {
+      const Float a = P::Mul(P::Set(X_.R[3 * k]), x);
+      const Float b = P::Mul(P::Set(X_.R[3 * k + 1]), y);
+      const Float c = P::Mul(P::Set(X_.R[3 * k + 2]), z);
+      out[k] = P::Add(P::Add(a, b), P::Add(c, P::Set(X_.p[k])));
+    }
+  }
+
+  // A sphere may hold a hit unless its centre is further away than its radius: by the nearest
+  // coarse node's distance (which changes by at most the way to it) and by the part's box.
+  unsigned NearChildren(const SphereNode& node) const {
+    Float c[3];
+    Transform(P::Load(node.x), P::Load(node.y), P::Load(node.z), c);
+    const Float zero = P::Set(0.0F);
+    Float to_node = zero;
+    Float to_box = zero;
+    Int index = P::SetInt(0);
+    const float inverse = 1.0F / field_.coarse_cell;
+    for (int k = 2; k >= 0; --k) {
+      const Float origin = P::Set(field_.coarse_origin[k]);
+      Float u = P::Mul(P::Sub(c[k], origin), P::Set(inverse));
+      u = P::Min(P::Max(u, zero), P::Set(static_cast<float>(field_.coarse_count[k] - 1)));
+      const Int i = P::Truncate(P::Add(u, P::Set(0.5F)));
+      const Float at = P::Add(P::Mul(P::ToFloat(i), P::Set(field_.coarse_cell)), origin);
+      const Float d = P::Sub(c[k], at);
+      to_node = P::Add(to_node, P::Mul(d, d));
+      const Float below = P::Sub(P::Set(field_.low[k]), c[k]);
+      const Float above = P::Sub(c[k], P::Set(field_.high[k]));
+      const Float outside = P::Max(P::Max(below, above), zero);
+      to_box = P::Add(to_box, P::Mul(outside, outside));
+      index = P::AddInt(P::MulInt(index, P::SetInt(field_.coarse_count[k])), i);
+    }
+    const Float phi = P::Gather(field_.coarse, index);
+    const Float bound = P::Max(P::Sub(phi, P::Sqrt(to_node)), P::Sqrt(to_box));
+    const Float reach = P::Add(P::Load(node.radius), P::Set(margin_));
+    return P::Bits(P::Less(bound, reach));
+  }
+
+  struct Sample {
+    Float distance;
+    Float gradient[3];
+  };
+
+  // Trilinear value and gradient in cells given by block, cell within it and weights.
+  Sample Interpolate(const Int& base, const Float* w) const {
+    Float d[8];
+    const int offsets[4] = {0, 9, 81, 90};
+    for (int k = 0; k < 4; ++k) {
+      P::GatherPair(field_.nodes, P::AddInt(base, P::SetInt(offsets[k])), &d[2 * k], &d[2 * k + 1]);
+    }
+    const auto mix = [](const Float& a, const Float& slope, const Float& weight) {
+      return P::Add(a, P::Mul(slope, weight));
+    };
+    Float e[4];
+    Float x[4];
+    for (int k = 0; k < 4; ++k) {
+      e[k] = P::Sub(d[2 * k + 1], d[2 * k]);
+      x[k] = mix(d[2 * k], e[k], w[0]);
+    }
+    const Float dy0 = P::Sub(x[1], x[0]);
+    const Float dy1 = P::Sub(x[3], x[2]);
+    const Float y0 = mix(x[0], dy0, w[1]);
+    const Float y1 = mix(x[2], dy1, w[1]);
+    const Float dz = P::Sub(y1, y0);
+    const Float scale = P::Set(field_.quantum);
+    const Float slope = P::Set(field_.quantum / field_.voxel);
+    const Float dx0 = mix(e[0], P::Sub(e[1], e[0]), w[1]);
+    const Float dx1 = mix(e[2], P::Sub(e[3], e[2]), w[1]);
+    Sample s;
+    s.distance = P::Mul(mix(y0, dz, w[2]), scale);
+    s.gradient[0] = P::Mul(mix(dx0, P::Sub(dx1, dx0), w[2]), slope);
+    s.gradient[1] = P::Mul(mix(dy0, P::Sub(dy1, dy0), w[2]), slope);
+    s.gradient[2] = P::Mul(dz, slope);
+    return s;
+  }
+
+  void Leaf(std::int32_t leaf) {
+    const std::int32_t first = 8 * leaf;
+    const unsigned count = shell_.leaf_count[leaf];
+    const unsigned used = (1U << count) - 1U;
+    out_->points_tested += count;
+    Float p[3];
+    Transform(P::Load(shell_.x + first), P::Load(shell_.y + first), P::Load(shell_.z + first), p);
+    const Float zero = P::Set(0.0F);
+    const float inverse = 1.0F / field_.voxel;
+    Int block = P::SetInt(0);
+    Int cell = P::SetInt(0);
+    Float w[3];
+    Mask inside = P::Less(P::Set(-1.0F), zero);
+    for (int k = 2; k >= 0; --k) {
+      const Float u = P::Mul(P::Sub(p[k], P::Set(field_.origin[k])), P::Set(inverse));
+      const Float end = P::Set(static_cast<float>(8 * field_.blocks[k]));
+      inside = P::And(inside, P::And(P::Less(P::Set(-0.5F), u), P::Less(u, end)));
+      const Float clamped = P::Max(P::Min(u, P::Sub(end, P::Set(0.5F))), zero);
+      const Int i = P::Truncate(clamped);
+      w[k] = P::Sub(clamped, P::ToFloat(i));
+      block = P::AddInt(P::MulInt(block, P::SetInt(field_.blocks[k])), P::ShiftRight3(i));
+      cell = P::AddInt(P::MulInt(cell, P::SetInt(9)), P::AndInt(i, 7));
+    }
+    const Int top = P::GatherInt(field_.top, block);
+    const Mask has = P::And(inside, P::LessInt(P::SetInt(-1), top));
+    const unsigned has_bits = P::Bits(has) & used;
+    alignas(32) float position[3][8];
+    for (int k = 0; k < 3; ++k) {
+      P::Store(p[k], position[k]);
+    }
+    if (has_bits != 0) {
+      const Int b = P::MaxInt(top, P::SetInt(0));
+      const Sample s = Interpolate(P::AddInt(P::MulInt(b, P::SetInt(kBlockNodes)), cell), w);
+      const Float limit = P::Add(P::Set(margin_), P::Gather(field_.slack, b));
+      unsigned hits = P::Bits(P::Less(s.distance, limit)) & has_bits;
+      if (hits != 0) {
+        PushInBand(hits, s, position, first);
+      }
+    }
+    const unsigned rest = used & ~has_bits;
+    if (rest != 0) {
+      PushCoarse(rest, position, first);
+    }
+  }
+
+  void PushInBand(unsigned hits, const Sample& s, const float (*position)[8], std::int32_t first) {
+    alignas(32) float distance[8];
+    alignas(32) float gradient[3][8];
+    P::Store(s.distance, distance);
+    for (int k = 0; k < 3; ++k) {
+      P::Store(s.gradient[k], gradient[k]);
+    }
+    // Near the band's inner end nodes are clamped: deeper than here the coarse grid knows better.
+    const float deep = -0.5F * field_.band;
+    for (; hits != 0; hits &= hits - 1) {
+      const int lane = __builtin_ctz(hits);
+      Hit hit{static_cast<std::uint32_t>(first + lane),
+              distance[lane],
+              {gradient[0][lane], gradient[1][lane], gradient[2][lane]}};
+      if (distance[lane] < deep) {
+        const float at[3] = {position[0][lane], position[1][lane], position[2][lane]};
+        float slope[3];
+        const float coarse = CalcCoarse(field_, at, slope);
+        if (coarse < hit.distance) {
+          hit.distance = coarse;
+          for (int k = 0; k < 3; ++k) {
+            hit.gradient[k] = slope[k];
+          }
+        }
+      }
+      Push(hit);
+    }
+  }
+
+  // Beyond the narrow band, inside or outside.
+  void PushCoarse(unsigned lanes, const float (*position)[8], std::int32_t first) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      const float at[3] = {position[0][lane], position[1][lane], position[2][lane]};
+      Hit hit{static_cast<std::uint32_t>(first + lane), 0.0F, {}};
+      hit.distance = CalcCoarse(field_, at, hit.gradient);
+      if (hit.distance < margin_) {
+        Push(hit);
+      }
+    }
+  }
+
+  void Push(const Hit& hit) {
+    if (out_->count < out_->capacity) {
+      out_->hits[out_->count++] = hit;
+    } else {
+      out_->is_truncated = true;
+    }
+  }
+
+  const ShellView& shell_;
+  const FieldView& field_;
+  const FloatPose& X_;
+  float margin_;
+  HitBuffer* out_;
+};
+
+}  // namespace hvas::contact
