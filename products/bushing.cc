@@ -14,8 +14,7 @@ Solid MakeChuck() {
   // The lead-in at the top of the jaws is where a bushing meets them.
   const Solid jaw = Turn({{40, 30}, {74, 30}, {74, 42}, {66, 50}, {42, 50}, {40, 48}}, kJawAngle);
   for (int i = 0; i < 3; ++i) {
-    gp_Trsf turn;
-    turn.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), i * 2 * pi / 3 - kJawAngle / 2);
+    const gp_Trsf turn = RotationAboutZ(i * 2 * pi / 3 - kJawAngle / 2);
     chuck = Join(chuck, Move(jaw, turn));
   }
   return chuck;

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
   try {
     std::filesystem::create_directories(argv[1]);
     hvas::products::WriteProduct(hvas::products::DrawBushing(), argv[1]);
+    hvas::products::WriteProduct(hvas::products::DrawGearPump(), argv[1]);
+    hvas::products::WriteProduct(hvas::products::DrawFrame500(), argv[1]);
   } catch (const Standard_Failure& failure) {
     fmt::print(stderr, "make_products: {}\n", failure.GetMessageString());
     return 1;

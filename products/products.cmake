@@ -3,11 +3,11 @@
 find_path(HVAS_OCCT_INCLUDE Standard_Version.hxx PATH_SUFFIXES opencascade REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
-add_library(hvas_drawings STATIC bushing.cc relations.cc solid.cc truth.cc write_step.cc)
+add_library(hvas_drawings STATIC bushing.cc frame_500.cc gear.cc gear_pump.cc gear_pump_parts.cc relations.cc solid.cc truth.cc write_step.cc)
 target_include_directories(hvas_drawings PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
 target_include_directories(hvas_drawings SYSTEM PUBLIC ${HVAS_OCCT_INCLUDE})
 target_link_libraries(hvas_drawings PUBLIC hvas_settings fmt::fmt nlohmann_json::nlohmann_json
-                      TKXDESTEP TKSTEP TKSTEPAttr TKSTEPBase TKXSBase TKXCAF TKLCAF TKCDF TKBO TKPrim TKShHealing TKTopAlgo
+                      TKXDESTEP TKSTEP TKSTEPAttr TKSTEPBase TKXSBase TKXCAF TKLCAF TKCDF TKBO TKFillet TKPrim TKShHealing TKTopAlgo
                       TKGeomAlgo TKGeomBase TKBRep TKG3d TKMath TKernel)
 
 add_executable(make_products make_products.cc)

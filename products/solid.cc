@@ -4,6 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include <BRepAdaptor_Curve.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
@@ -11,6 +12,7 @@
 #include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
+#include <BRepFilletAPI_MakeChamfer.hxx>
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
@@ -123,7 +125,7 @@ Solid RoundedPlate(double x_size, double y_size, double corner_radius, double z0
   return {Prism(wire.Wire(), z0, z1), (x_size * y_size - (4 - pi) * r * r) * (z1 - z0)};
 }
 
-Solid RoundEndedBar(double length, double width, double z0, double z1) {
+Solid RoundEndedBar(double length, double width, double z0, double z1, double chamfer) {
   const double r = width / 2, x = length / 2 - r;
   BRepBuilderAPI_MakeWire wire;
   const auto p = [](double px, double py) { return gp_Pnt(px, py, 0); };
@@ -131,7 +133,19 @@ Solid RoundEndedBar(double length, double width, double z0, double z1) {
   wire.Add(Arc(p(x, -r), p(x + r, 0), p(x, r)));
   wire.Add(Line(p(x, r), p(-x, r)));
   wire.Add(Arc(p(-x, r), p(-x - r, 0), p(-x, -r)));
-  return {Prism(wire.Wire(), z0, z1), (2 * x * width + pi * r * r) * (z1 - z0)};
+  const TopoDS_Shape bar = Prism(wire.Wire(), z0, z1);
+  const auto area = [x](double radius) { return 4 * x * radius + pi * radius * radius; };
+  if (chamfer == 0) return {bar, area(r) * (z1 - z0)};
+  BRepFilletAPI_MakeChamfer chamfers(bar);
+  for (TopExp_Explorer it(bar, TopAbs_EDGE); it.More(); it.Next()) {
+    // Each rim is one smooth contour: an edge that it has already is refused without harm.
+    const TopoDS_Edge edge = TopoDS::Edge(it.Current());
+    const BRepAdaptor_Curve curve(edge);
+    const double za = curve.Value(curve.FirstParameter()).Z();
+    if (std::abs(za - curve.Value(curve.LastParameter()).Z()) < 1e-9) chamfers.Add(chamfer, edge);
+  }
+  return {OnlySolid(chamfers.Shape()),
+          area(r) * (z1 - z0 - 2 * chamfer) + 2 * Integrate(area, r - chamfer, r, 1)};
 }
 
 Solid Hexagon(double across_flats, double z0, double z1) {
@@ -184,15 +198,30 @@ gp_Trsf Translation(double x, double y, double z) {
   return motion;
 }
 
-gp_Trsf AxisTo(double x, double y, double z, const gp_Dir& direction) {
+gp_Trsf Frame(double x, double y, double z, const gp_Dir& z_axis, const gp_Dir& x_axis) {
   gp_Trsf motion;
-  motion.SetTransformation(gp_Ax3(gp_Pnt(x, y, z), direction), gp_Ax3());
+  motion.SetTransformation(gp_Ax3(gp_Pnt(x, y, z), z_axis, x_axis), gp_Ax3());
+  return motion;
+}
+
+gp_Trsf RotationAboutZ(double angle) {
+  gp_Trsf motion;
+  motion.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), angle);
   return motion;
 }
 
 double CalcVolume(const TopoDS_Shape& shape) {
   GProp_GProps properties;
-  BRepGProp::VolumeProperties(shape, properties, 1e-9);
+  BRepGProp::VolumeProperties(shape, properties);
+  return properties.Mass();
+}
+
+double CalcVolumeFinely(const TopoDS_Shape& shape) {
+  // Not VolumeProperties with a tolerance, which misses by 1e-4 on a gear's end faces, whatever
+  // the tolerance.
+  GProp_GProps properties;
+  BRepGProp::VolumePropertiesGK(shape, properties, 1e-6, /*OnlyClosed=*/Standard_False,
+                                /*IsUseSpan=*/Standard_True);
   return properties.Mass();
 }
 

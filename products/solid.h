@@ -42,8 +42,10 @@ struct RadiusHeight {
 [[nodiscard]] Solid RoundedPlate(double x_size, double y_size, double corner_radius, double z0,
                                  double z1);
 
-/** Slot with round ends: straight part from -length/2 + width/2 to length/2 - width/2 along x. */
-[[nodiscard]] Solid RoundEndedBar(double length, double width, double z0, double z1);
+/** Bar of the given length along x and width along y, with half-round ends. Its rims at `z0` and
+ `z1` are chamfered by 45 degrees over `chamfer`. */
+[[nodiscard]] Solid RoundEndedBar(double length, double width, double z0, double z1,
+                                  double chamfer = 0);
 
 /** Regular hexagon about z, measured across flats (flats look to +-x). */
 [[nodiscard]] Solid Hexagon(double across_flats, double z0, double z1);
@@ -61,11 +63,17 @@ struct RadiusHeight {
 [[nodiscard]] Solid Move(const Solid& body, const gp_Trsf& motion);
 [[nodiscard]] gp_Trsf Translation(double x, double y, double z);
 
-/** The motion that takes the z axis through the origin to `direction` through (x, y, z). */
-[[nodiscard]] gp_Trsf AxisTo(double x, double y, double z, const gp_Dir& direction);
+/** The motion that takes the origin to (x, y, z), and the z and x axes to the given ones. */
+[[nodiscard]] gp_Trsf Frame(double x, double y, double z, const gp_Dir& z_axis,
+                            const gp_Dir& x_axis);
+[[nodiscard]] gp_Trsf RotationAboutZ(double angle);
 
-/** Of the shape itself, by the kernel. */
+/** Of the shape itself, by the kernel's fast rule: faces bounded by splines come out to about 1e-4.
+ */
 [[nodiscard]] double CalcVolume(const TopoDS_Shape& shape);
+
+/** Of the shape itself, by the kernel's adaptive rule, to 1e-6 or better. */
+[[nodiscard]] double CalcVolumeFinely(const TopoDS_Shape& shape);
 
 /** Integral of `f` over [a, b] by Gauss-Legendre on `panels` panels of five points. */
 template <typename F>
