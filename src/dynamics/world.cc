@@ -20,10 +20,11 @@ constexpr double kUnitsPerMetre = 100;
 constexpr double kMargin = 0.02;           // Rounding of the hulls' edges, at most [unit].
 constexpr double kMarginOfInradius = 0.2;  // The same, of small and thin bodies.
 constexpr std::size_t kHullPoints = 64;
-constexpr double kSleepSpeed = 0.2;   // [unit/s], 2 mm/s.
-constexpr double kSleepRate = 0.1;    // [rad/s]
-constexpr double kSleepTime = 0.5;    // Slower than both for this long: asleep [s].
-constexpr double kSettleStep = 0.01;  // [s]
+constexpr double kSleepSpeed = 0.5;    // [unit/s], 5 mm/s.
+constexpr double kSleepRate = 0.3;     // [rad/s]
+constexpr double kSleepTime = 0.5;     // Slower than both for this long: asleep [s].
+constexpr int kSolverIterations = 60;  // With 10, heaps go on shaking for tens of seconds.
+constexpr double kSettleStep = 0.01;   // [s]
 
 btVector3 ToUnits(const Vec3& v) {
   return {kUnitsPerMetre * v.x(), kUnitsPerMetre * v.y(), kUnitsPerMetre * v.z()};
@@ -150,6 +151,7 @@ World::Impl::Impl(const WorldOptions& world_options)
   // Correct penetration by moving, not by speed, however shallow: else resting bodies hop.
   info.m_splitImpulsePenetrationThreshold = 0;
   info.m_restitution = 0;
+  info.m_numIterations = kSolverIterations;
   table_shape.setMargin(0);
   table.setCollisionShape(&table_shape);
   table.setFriction(std::sqrt(options.friction));

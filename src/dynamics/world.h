@@ -23,7 +23,7 @@ struct WorldOptions {
   double table_z{0};                ///< Height of the table, which has no edge [m].
   double gravity{9.81};             ///< Downwards [m/s2].
   double friction{0.3};             ///< Coulomb's coefficient between any two things.
-  double rolling_resistance{1e-4};  ///< Arm of the normal force against rolling [m].
+  double rolling_resistance{5e-4};  ///< Arm of the normal force against rolling [m].
   double max_substep{1.0 / 240};    ///< Steps are cut into equal ones not longer than this [s].
 };
 

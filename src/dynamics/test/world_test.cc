@@ -319,17 +319,43 @@ TEST(World, EqualCallsGiveEqualBits) {
   }
 }
 
-TEST(World, ThirtyBodiesSettleOnTheTable) {
+// Settles a world and prints what it took: simulated time, and time on this machine.
+bool SettleAndPrint(World* world, const char* what, double max_time) {
+  const auto start = std::chrono::steady_clock::now();
+  double time = 0;
+  while (time < max_time && !world->Settle(0.1)) {
+    time += 0.1;
+  }
+  const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
+  std::cout << what << ": " << taken.count() << " ms for " << time << " s\n";
+  return time < max_time;
+}
+
+TEST(World, ThirtyPartsLaidOutComeToRestSoon) {
+  World world({});
+  std::vector<BodyId> ids;
+  std::vector<Solid> solids;
+  for (int i = 0; i < 30; ++i) {
+    const double size = 0.004 + 0.002 * i;
+    solids.push_back(i % 2 == 0 ? MakeBox({size, size / 2, size / 3})
+                                : MakeCylinder(size / 4, size));
+    const spatial::Pose X_WB(spatial::RotationFromVector({0.1 * i, 0.05 * i, 0}),
+                             Vec3(0.12 * (i % 6), 0.12 * (i / 6), 0.08));
+    ids.push_back(Add(&world, solids.back(), X_WB));
+  }
+  EXPECT_TRUE(SettleAndPrint(&world, "30 parts apart", 5));
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    EXPECT_NEAR(Lowest(world, ids[i], solids[i]), 0, 2e-4) << i;
+  }
+}
+
+TEST(World, ThirtyPartsInAHeapComeToRest) {
   World world({});
   std::vector<BodyId> ids;
   const std::vector<Solid> solids = MakeHeap(&world, &ids, 9, 30);
-  const auto start = std::chrono::steady_clock::now();
-  const bool is_settled = world.Settle(10);
-  const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
-  std::cout << "30 bodies settled in " << taken.count() << " ms\n";
-  EXPECT_TRUE(is_settled);
+  EXPECT_TRUE(SettleAndPrint(&world, "30 parts in a heap", 20));
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    EXPECT_GT(Lowest(world, ids[i], solids[i]), -2e-4) << i;
+    EXPECT_GT(Lowest(world, ids[i], solids[i]), -3e-4) << i;
     EXPECT_LT(Lowest(world, ids[i], solids[i]), 0.1) << i;
   }
 }
