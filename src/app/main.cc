@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/assemble.h"
 #include "app/inspect.h"
 
 int main(int argc, char** argv) {
@@ -9,6 +10,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int status = 0;
   hvas::app::AddInspect(&app, &status);
+  hvas::app::AddAssemble(&app, &status);
   CLI11_PARSE(app, argc, argv);
   return status;
 }

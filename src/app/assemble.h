@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "haptics/options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hvas::app {
+
+struct AssembleOptions {
+  std::filesystem::path file;
+  std::vector<std::string> order;  ///< Parts to begin with, by name, path or id.
+  std::uint64_t seed{1};
+  std::vector<std::string> fits;  ///< "AXIS=FIT".
+  haptics::Condition condition{haptics::Condition::kHybrid};
+  bool is_realtime{false};
+  std::filesystem::path record;  ///< Empty: no file; the digest is made all the same.
+  double limit_s{0};             ///< Session time after which to stop; 0: none.
+  bool is_json{false};
+  bool is_quiet{false};
+};
+
+/** Lays the parts of a product out on a table and lets a simulated person assemble them one by one.
+ Prints a table, or one JSON document, on stdout.
+ @returns The exit status: 0 when every part is in its place, 1 on an error, 2 when one is not. */
+[[nodiscard]] int RunAssemble(const AssembleOptions& options);
+
+/** Adds `hvas assemble` to the command line; `status` receives what RunAssemble returns. */
+void AddAssemble(CLI::App* app, int* status);
+
+}  // namespace hvas::app

@@ -1,0 +1,66 @@
+#include "app/session_recorder.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+namespace hvas::app {
+namespace {
+
+constexpr std::uint32_t kGripButton = 1;
+constexpr std::uint32_t kTruncatedStatus = 1u << 16;  // above the gate's bits
+
+const char* ToString(simulation::SimulationEvent::Kind kind) {
+  switch (kind) {
+    case simulation::SimulationEvent::Kind::kTaken:
+      return "taken";
+    case simulation::SimulationEvent::Kind::kState:
+      return "state";
+    case simulation::SimulationEvent::Kind::kDropped:
+      return "dropped";
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+void SessionRecorder::OnTick(const device::DeviceState& device,
+                             const haptics::TickOutput& out) noexcept {
+  record::TickRecord tick;
+  tick.t_ns = device.t_ns;
+  tick.device_pose = device.X_DH;
+  tick.device_twist = device.V_DH;
+  tick.device_buttons = device.is_gripping ? kGripButton : 0;
+  tick.status = out.gate_actions | (out.is_truncated ? kTruncatedStatus : 0);
+  tick.X_WH = out.X_WT;
+  tick.X_WD = out.X_WD;
+  tick.F_true_W = out.F_true_W;
+  tick.F_felt_W = out.F_H_W;
+  tick.held = out.occurrence.value();
+  tick.state = static_cast<std::uint8_t>(out.state);
+  tick.contact_count = static_cast<std::uint16_t>(
+      std::clamp(out.contact_count, 0, int{std::numeric_limits<std::uint16_t>::max()}));
+  tick.depth = out.insertion_depth;
+  tick.deepest = out.deepest;
+  if (out.contact_count > 0) {
+    tick.contacts[0].p_WC = out.p_WC.cast<float>();
+    tick.contacts[0].nhat_W = out.f_C_W.normalized().cast<float>();
+    tick.contacts[0].distance = static_cast<float>(out.deepest);
+  }
+  recorder_->AddTick(tick);
+}
+
+void SessionRecorder::OnEvent(const simulation::SimulationEvent& event) {
+  nlohmann::ordered_json details;
+  details["state"] = haptics::ToString(event.state);
+  if (event.kind == simulation::SimulationEvent::Kind::kDropped) {
+    details["seated"] = event.was_seated;
+    details["path_m"] = event.metrics.path;
+    details["peak_true_n"] = event.metrics.peak_true;
+    details["peak_felt_n"] = event.metrics.peak_felt;
+  }
+  recorder_->AddEvent({event.t_ns, ToString(event.kind), event.occurrence.value(), details.dump()});
+}
+
+}  // namespace hvas::app

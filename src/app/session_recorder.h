@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "record/recorder.h"
+#include "simulation/simulation.h"
+
+namespace hvas::app {
+
+/** Puts what the loops produce into a record. */
+class SessionRecorder final : public simulation::Sink {
+ public:
+  explicit SessionRecorder(record::Recorder* recorder) : recorder_(recorder) {}
+
+  void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override;
+  void OnEvent(const simulation::SimulationEvent& event) override;
+
+ private:
+  record::Recorder* recorder_;
+};
+
+}  // namespace hvas::app

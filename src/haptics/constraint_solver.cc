@@ -1,0 +1,174 @@
+#include "haptics/constraint_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hvas::haptics {
+
+void ConstraintSolver::Begin(double mass, const Mat3& I_W, const Vec3& p_WCm,
+                             const spatial::Twist& V_0, double dt) noexcept {
+  dt_ = dt;
+  p_WCm_ = p_WCm;
+  contact_count_ = 0;
+  bounded_count_ = 0;
+  is_factored_ = false;
+  A_.setZero();
+  A_.topLeftCorner<3, 3>() = I_W;
+  A_.bottomRightCorner<3, 3>() = mass * Mat3::Identity();
+  rhs_.head<3>() = I_W * V_0.w;
+  rhs_.tail<3>() = mass * V_0.v;
+}
+
+void ConstraintSolver::AddWrench(const spatial::Wrench& F_Cm_W) noexcept {
+  rhs_.head<3>() += dt_ * F_Cm_W.t;
+  rhs_.tail<3>() += dt_ * F_Cm_W.f;
+}
+
+void ConstraintSolver::AddPointSpring(const Vec3& p_WQ, const Vec3& f0, const Mat3& K) noexcept {
+  // Velocity of Q: v - [r] w, with r from the centre of mass to Q.
+  const Vec3 r = p_WQ - p_WCm_;
+  const Mat3 S = spatial::Skew(r);
+  const Mat3 KS = K * S;
+  const double dt2 = dt_ * dt_;
+  A_.topLeftCorner<3, 3>() += dt2 * (S.transpose() * KS);
+  A_.topRightCorner<3, 3>() -= dt2 * (S.transpose() * K);
+  A_.bottomLeftCorner<3, 3>() -= dt2 * KS;
+  A_.bottomRightCorner<3, 3>() += dt2 * K;
+  rhs_.head<3>() += dt_ * r.cross(f0);
+  rhs_.tail<3>() += dt_ * f0;
+}
+
+void ConstraintSolver::AddAngularSpring(const Vec3& t0, const Mat3& K) noexcept {
+  A_.topLeftCorner<3, 3>() += dt_ * dt_ * K;
+  rhs_.head<3>() += dt_ * t0;
+}
+
+void ConstraintSolver::AddPointDamper(const Vec3& p_WQ, const Vec3& v_target, double b) noexcept {
+  const Vec3 r = p_WQ - p_WCm_;
+  const Mat3 S = spatial::Skew(r);
+  A_.topLeftCorner<3, 3>() += dt_ * b * (S.transpose() * S);
+  A_.topRightCorner<3, 3>() -= dt_ * b * S.transpose();
+  A_.bottomLeftCorner<3, 3>() -= dt_ * b * S;
+  A_.bottomRightCorner<3, 3>() += dt_ * b * Mat3::Identity();
+  rhs_.head<3>() += dt_ * b * r.cross(v_target);
+  rhs_.tail<3>() += dt_ * b * v_target;
+}
+
+void ConstraintSolver::AddAngularDamper(const Vec3& w_target, double b) noexcept {
+  A_.topLeftCorner<3, 3>() += dt_ * b * Mat3::Identity();
+  rhs_.head<3>() += dt_ * b * w_target;
+}
+
+void ConstraintSolver::AddContact(const Vec3& p_WC, const Vec3& nhat_W, double velocity_bias,
+                                  double friction, double compliance) noexcept {
+  if (contact_count_ == kMaxContacts) {
+    return;
+  }
+  const Vec3 r = p_WC - p_WCm_;
+  const Quat q_WC = spatial::FrameFromZ(nhat_W);
+  ContactRows& rows = contacts_[static_cast<std::size_t>(contact_count_++)];
+  rows.friction = friction;
+  rows.normal = {};
+  rows.normal.J << r.cross(nhat_W), nhat_W;
+  rows.normal.bias = velocity_bias;
+  rows.normal.softness = compliance / (dt_ * dt_);
+  const Vec3 tangents[2] = {q_WC * Vec3::UnitX(), q_WC * Vec3::UnitY()};
+  for (int k = 0; k < 2; ++k) {
+    rows.tangent[k] = {};
+    rows.tangent[k].J << r.cross(tangents[k]), tangents[k];
+  }
+}
+
+int ConstraintSolver::AddBoundedRow(const Vec6& J, double bound) noexcept {
+  if (bounded_count_ == kMaxBoundedRows) {
+    return -1;
+  }
+  const int index = bounded_count_++;
+  bounded_[static_cast<std::size_t>(index)] = {};
+  bounded_[static_cast<std::size_t>(index)].J = J;
+  bounds_[static_cast<std::size_t>(index)] = bound * dt_;
+  return index;
+}
+
+void ConstraintSolver::Factor() noexcept {
+  if (!is_factored_) {
+    factor_.compute(A_);
+    is_factored_ = true;
+  }
+}
+
+spatial::Twist ConstraintSolver::SolveUnconstrained() noexcept {
+  Factor();
+  const Vec6 V = factor_.solve(rhs_);
+  return {V.head<3>(), V.tail<3>()};
+}
+
+void ConstraintSolver::Prepare(Row* row) noexcept {
+  row->W = factor_.solve(row->J);
+  row->inverse = 1.0 / (row->J.dot(row->W) + row->softness);
+  row->lambda = 0;
+}
+
+void ConstraintSolver::Relax(Row* row, double low, double high) noexcept {
+  const double residual = row->J.dot(V_) - row->bias + row->softness * row->lambda;
+  const double lambda = std::clamp(row->lambda - residual * row->inverse, low, high);
+  V_ += (lambda - row->lambda) * row->W;
+  row->lambda = lambda;
+}
+
+spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
+  Factor();
+  V_ = factor_.solve(rhs_);
+  const std::span<ContactRows> contacts(contacts_.data(), static_cast<std::size_t>(contact_count_));
+  const auto bounded_count = static_cast<std::size_t>(bounded_count_);
+  for (ContactRows& rows : contacts) {
+    Prepare(&rows.normal);
+    if (rows.friction > 0) {
+      Prepare(&rows.tangent[0]);
+      Prepare(&rows.tangent[1]);
+    }
+  }
+  for (std::size_t i = 0; i < bounded_count; ++i) {
+    Prepare(&bounded_[i]);
+  }
+  constexpr double kConverged = 1e-9;  // [m/s or rad/s]
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    const Vec6 V_before = V_;
+    for (std::size_t i = 0; i < bounded_count; ++i) {
+      Relax(&bounded_[i], -bounds_[i], bounds_[i]);
+    }
+    for (ContactRows& rows : contacts) {
+      if (rows.friction > 0) {
+        const double limit = rows.friction * rows.normal.lambda;
+        Relax(&rows.tangent[0], -limit, limit);
+        Relax(&rows.tangent[1], -limit, limit);
+      }
+    }
+    // Normals last: what remains of the error is in friction, not in penetration.
+    for (ContactRows& rows : contacts) {
+      Relax(&rows.normal, 0, std::numeric_limits<double>::infinity());
+    }
+    if ((V_ - V_before).squaredNorm() < kConverged * kConverged) {
+      break;
+    }
+  }
+  return {V_.head<3>(), V_.tail<3>()};
+}
+
+Vec3 ConstraintSolver::contact_force(int i) const noexcept {
+  const ContactRows& rows = contacts_[static_cast<std::size_t>(i)];
+  return (rows.normal.lambda * rows.normal.J.tail<3>() +
+          rows.tangent[0].lambda * rows.tangent[0].J.tail<3>() +
+          rows.tangent[1].lambda * rows.tangent[1].J.tail<3>()) /
+         dt_;
+}
+
+double ConstraintSolver::normal_force(int i) const noexcept {
+  return contacts_[static_cast<std::size_t>(i)].normal.lambda / dt_;
+}
+
+double ConstraintSolver::bounded_force(int row) const noexcept {
+  return row < 0 ? 0.0 : bounded_[static_cast<std::size_t>(row)].lambda / dt_;
+}
+
+}  // namespace hvas::haptics

@@ -1,0 +1,313 @@
+#include "haptics/haptic_tick.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hvas::haptics {
+namespace {
+
+constexpr double kSoftStartTime = 0.3;    // [s]
+constexpr double kMinVirtualMass = 0.05;  // [kg]; lighter parts are felt as this inertia
+constexpr double kMaxVirtualMass =
+    1.0;  // [kg]; heavier ones too: weight is mapped, inertia bounded
+constexpr double kMaxCouplingShare = 0.9;  // of the device's force
+
+double MinimumJerk(double s) noexcept {
+  return s * s * s * (10 + s * (-15 + 6 * s));
+}
+
+/** Rotational inertia for a virtual mass: the part's own shape, never thinner than a small ball. */
+Mat3 VirtualInertia(const HeldPart& part, double virtual_mass) noexcept {
+  const double scale = part.mass > 0 ? virtual_mass / part.mass : 0.0;
+  constexpr double kBallRadius = 0.02;  // [m]
+  return scale * part.I_BBcm_B + 0.4 * virtual_mass * kBallRadius * kBallRadius * Mat3::Identity();
+}
+
+}  // namespace
+
+const char* ToString(HoldState state) noexcept {
+  switch (state) {
+    case HoldState::kEmpty:
+      return "empty";
+    case HoldState::kFree:
+      return "free";
+    case HoldState::kNear:
+      return "near";
+    case HoldState::kCaptured:
+      return "captured";
+    case HoldState::kMating:
+      return "mating";
+    case HoldState::kSeated:
+      return "seated";
+  }
+  return "unknown";
+}
+
+HapticTick::HapticTick(const TickOptions& options, const contact::Scene* scene)
+    : options_(options),
+      scene_(scene),
+      force_map_(options.largest_true_force, kMaxCouplingShare * options.device.max_force),
+      torque_map_(options.largest_true_force * 0.05, kMaxCouplingShare * options.device.max_torque),
+      gate_({options.device.max_force, options.device.max_torque, 400, 40}) {}
+
+void HapticTick::Take(const HeldPart* part) noexcept {
+  part_ = part;
+  state_ = HoldState::kFree;
+  is_first_tick_ = true;
+  X_WD_ = part->X_WB_start;
+  V_D_ = {};
+  soft_start_ = 0;
+  has_start_ = false;
+  seat_progress_ = 0;
+  guide_.Reset();
+}
+
+spatial::Pose HapticTick::Drop() noexcept {
+  const spatial::Pose X_WB = state_ == HoldState::kSeated ? part_->X_WB_goal : X_WD_;
+  part_ = nullptr;
+  state_ = HoldState::kEmpty;
+  return X_WB;
+}
+
+HapticTick::Tracked HapticTick::CalcTracked(const device::DeviceState& state) const noexcept {
+  // The hand's workspace is the world: scaling and clutching belong to the device mapping.
+  const spatial::Pose X_WT = state.X_DH * X_HB_;
+  const Vec3 r = X_WT * part_->p_BoBcm_B - state.X_DH.p();
+  return {X_WT, {state.V_DH.w, state.V_DH.v + state.V_DH.w.cross(r)}};
+}
+
+TickOutput HapticTick::Tick(const device::DeviceState& state) noexcept {
+  TickOutput out;
+  out.deepest = std::numeric_limits<double>::infinity();
+  const bool is_usable = state.is_valid && spatial::IsFinite(state.X_DH) &&
+                         state.V_DH.v.allFinite() && state.V_DH.w.allFinite();
+  out.X_WT = is_usable ? state.X_DH : spatial::Pose();
+  out.X_WD = out.X_WT;
+  if (part_ != nullptr) {
+    out.occurrence = part_->occurrence;
+    if (is_usable) {
+      if (is_first_tick_) {
+        X_HB_ = state.X_DH.Inverse() * X_WD_;
+        is_first_tick_ = false;
+      }
+      const Tracked tracked = CalcTracked(state);
+      out.X_WT = tracked.X_WT;
+      Hold(tracked, &out);
+      // About the hand's point: the coupling acts at the centre of mass.
+      out.F_H_W = out.F_felt_W;
+      out.F_H_W.t += (tracked.X_WT * part_->p_BoBcm_B - state.X_DH.p()).cross(out.F_felt_W.f);
+    }
+    out.X_WD = X_WD_;
+  }
+  out.state = state_;
+  out.F_H_W = gate_.Pass(out.F_H_W, options_.dt);
+  out.gate_actions = gate_.actions();
+  return out;
+}
+
+void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
+  soft_start_ = std::min(1.0, soft_start_ + options_.dt / kSoftStartTime);
+  if (state_ == HoldState::kSeated) {
+    MoveIntoPlace();
+    out->F_felt_W = CalcCouplingWrench(tracked);
+    out->F_true_W = out->F_felt_W;
+    return;
+  }
+  if (options_.condition != Condition::kCollision) {
+    guide_.Update(*part_, options_.guidance, X_WD_, tracked.X_WT, options_.dt);
+  }
+  const Vec3 p_WCm = X_WD_ * part_->p_BoBcm_B;
+  const double virtual_mass = std::clamp(part_->mass, kMinVirtualMass, kMaxVirtualMass);
+  const Mat3 R_WB = X_WD_.R();
+  solver_.Begin(virtual_mass, R_WB * VirtualInertia(*part_, virtual_mass) * R_WB.transpose(), p_WCm,
+                V_D_, options_.dt);
+  AddCoupling(tracked, p_WCm);
+  weight_true_ = part_->mass * options_.gravity_W.norm();
+  weight_felt_ = soft_start_ * force_map_.Felt(weight_true_);
+  solver_.AddWrench({Vec3::Zero(), weight_felt_ * options_.gravity_W.normalized()});
+  AddGuidance(p_WCm);
+  AddContacts(out, p_WCm);
+  MoveDisplayed(solver_.Solve(options_.contact.iterations), p_WCm);
+  RecordContacts(out);
+
+  out->F_felt_W = CalcCouplingWrench(tracked);
+  out->F_true_W = out->F_felt_W;
+  out->F_true_W.f += (weight_true_ * soft_start_ - weight_felt_) * options_.gravity_W.normalized();
+  out->insertion_depth = guide_.insertion_depth();
+  if (axial_row_ >= 0 && guide_.axis() != nullptr) {
+    out->axial_felt = solver_.bounded_force(axial_row_);
+    out->axial_true = std::copysign(force_map_.True(std::abs(out->axial_felt)), out->axial_felt);
+    out->F_true_W.f += (out->axial_true - out->axial_felt) * guide_.axis()->axis_W;
+  }
+  UpdateState(tracked);
+}
+
+void HapticTick::AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept {
+  // X(1), X(2), with the damper's sign mended, and never more than the device can give.
+  const CouplingGains& gains = options_.coupling;
+  const Vec3 e = tracked.X_WT * part_->p_BoBcm_B - p_WCm;
+  const double max_force = kMaxCouplingShare * options_.device.max_force;
+  const double k = e.norm() * gains.k_lin > max_force ? max_force / e.norm() : gains.k_lin;
+  solver_.AddPointSpring(p_WCm, k * e, k * Mat3::Identity());
+  solver_.AddPointDamper(p_WCm, tracked.V_T.v, gains.b_lin * k / gains.k_lin);
+  const Vec3 theta = spatial::RotationBetween(X_WD_.q(), tracked.X_WT.q());
+  const double max_torque = kMaxCouplingShare * options_.device.max_torque;
+  const double k_rot =
+      theta.norm() * gains.k_rot > max_torque ? max_torque / theta.norm() : gains.k_rot;
+  solver_.AddAngularSpring(k_rot * theta, k_rot * Mat3::Identity());
+  solver_.AddAngularDamper(tracked.V_T.w, gains.b_rot * k_rot / gains.k_rot);
+}
+
+spatial::Wrench HapticTick::CalcCouplingWrench(const Tracked& tracked) const noexcept {
+  const CouplingGains& gains = options_.coupling;
+  const Vec3 e = X_WD_ * part_->p_BoBcm_B - tracked.X_WT * part_->p_BoBcm_B;
+  const double max_force = kMaxCouplingShare * options_.device.max_force;
+  const double k = e.norm() * gains.k_lin > max_force ? max_force / e.norm() : gains.k_lin;
+  const Vec3 theta = spatial::RotationBetween(tracked.X_WT.q(), X_WD_.q());
+  const double max_torque = kMaxCouplingShare * options_.device.max_torque;
+  const double k_rot =
+      theta.norm() * gains.k_rot > max_torque ? max_torque / theta.norm() : gains.k_rot;
+  const double b = gains.b_lin * k / gains.k_lin;
+  const double b_rot = gains.b_rot * k_rot / gains.k_rot;
+  return {k_rot * theta + b_rot * (V_D_.w - tracked.V_T.w), k * e + b * (V_D_.v - tracked.V_T.v)};
+}
+
+void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
+  axial_row_ = -1;
+  if (options_.condition == Condition::kCollision || guide_.captured_count() == 0) {
+    has_start_ = false;
+    guide_.AddSprings(*part_, options_.guidance, &solver_);
+    return;
+  }
+  guide_.AddSprings(*part_, options_.guidance, &solver_);
+  const MateGeometry* axis = guide_.axis();
+  if (axis == nullptr) {
+    return;
+  }
+  // X(9): attraction along the axis towards the final pose, and about it.
+  const Vec3& a = axis->axis_W;
+  const double to_go = a.dot(part_->X_WB_goal * part_->p_BoBcm_B - p_WCm);
+  const double to_turn = a.dot(spatial::RotationBetween(X_WD_.q(), part_->X_WB_goal.q()));
+  if (!has_start_) {
+    has_start_ = true;
+    start_distance_ = std::abs(to_go);
+    start_angle_ = std::abs(to_turn);
+  }
+  const auto pull = [this](double rest, double start, double strongest) {
+    const double share = start > 0 ? std::min(1.0, std::abs(rest) / start) : 0.0;
+    return std::copysign(soft_start_ * share * strongest, rest);
+  };
+  solver_.AddWrench({pull(to_turn, start_angle_, options_.guidance.attraction_torque) * a,
+                     pull(to_go, start_distance_, options_.guidance.attraction_force) * a});
+
+  // W5, W8, W9: the fit resists motion along and about the axis up to what physics says at this
+  // depth, felt through the map; at rest it holds, and never pushes.
+  if (guide_.is_aligned()) {
+    const double friction = options_.contact.friction * guide_.lateral_force();
+    const double felt = force_map_.Felt(guide_.CalcAxialResistance(*part_)) + friction;
+    const HeldMate& mate = part_->mates[guide_.axis_index()];
+    const Vec3 r = axis->p_WQ - p_WCm;
+    Vec6 J;
+    J << r.cross(a), a;
+    axial_row_ = solver_.AddBoundedRow(J, felt);
+    J << a, Vec3::Zero();
+    solver_.AddBoundedRow(J, felt * mate.radius);
+  }
+}
+
+void HapticTick::AddContacts(TickOutput* out, const Vec3& p_WCm) noexcept {
+  if (options_.condition == Condition::kConstraint) {
+    return;
+  }
+  const ContactOptions& contact = options_.contact;
+  const spatial::Twist V = solver_.SolveUnconstrained();
+  const double reach = 0.5 * part_->shape->box_B().size().norm();
+  const double speed =
+      std::min(contact.max_speed, V.v.norm()) + std::min(contact.max_turn_rate, V.w.norm()) * reach;
+  std::array<contact::IgnoredPair, 2 * MateGuide::kMaxMates> ignored;
+  contact::QueryOptions query;
+  query.margin = contact.min_margin + 1.5 * speed * options_.dt;
+  query.ignored = {ignored.data(), guide_.CollectIgnored(*part_, ignored)};
+  query.self = part_->body;
+  scene_->Query(*part_->shape, X_WD_, query, &workspace_);
+  out->deepest = workspace_.deepest();
+  out->is_truncated = workspace_.stats().is_truncated;
+  for (const contact::Contact& c : workspace_.contacts()) {
+    const double bias = -c.distance / options_.dt;
+    solver_.AddContact(c.p_WC, c.nhat_W, std::min(bias, contact.recovery_speed), contact.friction,
+                       contact.compliance);
+  }
+  (void)p_WCm;
+}
+
+void HapticTick::MoveDisplayed(const spatial::Twist& V_Cm, const Vec3& p_WCm) noexcept {
+  V_D_ = V_Cm;
+  const double speed = V_D_.v.norm();
+  const double turn = V_D_.w.norm();
+  const double scale = std::min({1.0, speed > 0 ? options_.contact.max_speed / speed : 1.0,
+                                 turn > 0 ? options_.contact.max_turn_rate / turn : 1.0});
+  V_D_.v *= scale;
+  V_D_.w *= scale;
+  const Quat q = (spatial::RotationFromVector(V_D_.w * options_.dt) * X_WD_.q()).normalized();
+  const Vec3 p_Cm = p_WCm + V_D_.v * options_.dt;
+  X_WD_ = {q, p_Cm - q * part_->p_BoBcm_B};
+}
+
+void HapticTick::RecordContacts(TickOutput* out) const noexcept {
+  double hardest = 0;
+  const auto contacts = workspace_.contacts();
+  for (int i = 0; i < solver_.contact_count(); ++i) {
+    const double force = solver_.normal_force(i);
+    if (force <= 1e-6) {
+      continue;
+    }
+    ++out->contact_count;
+    if (force > hardest) {
+      hardest = force;
+      const contact::Contact& c = contacts[static_cast<std::size_t>(i)];
+      out->p_WC = c.p_WC;
+      out->f_C_W = solver_.contact_force(i);
+      out->contact_body = c.body;
+    }
+  }
+}
+
+bool HapticTick::HasArrived() const noexcept {
+  const GuidanceOptions& guidance = options_.guidance;
+  const Vec3 d = X_WD_ * part_->p_BoBcm_B - part_->X_WB_goal * part_->p_BoBcm_B;
+  const double angle = spatial::RotationBetween(X_WD_.q(), part_->X_WB_goal.q()).norm();
+  const bool is_guided = guide_.captured_count() > 0;
+  return d.norm() < (is_guided ? guidance.seat_distance : guidance.loose_seat_distance) &&
+         angle < guidance.seat_angle && (is_guided || part_->mates.empty());
+}
+
+void HapticTick::UpdateState(const Tracked& tracked) noexcept {
+  (void)tracked;
+  if (HasArrived()) {
+    state_ = HoldState::kSeated;
+    seat_progress_ = 0;
+    X_WD_seat_start_ = X_WD_;
+  } else if (guide_.captured_count() > 0) {
+    state_ = guide_.is_aligned() ? HoldState::kMating : HoldState::kCaptured;
+  } else {
+    state_ = guide_.is_near() ? HoldState::kNear : HoldState::kFree;
+  }
+}
+
+void HapticTick::MoveIntoPlace() noexcept {
+  // The last fraction of a millimetre, to the exact pose that the mates resolve to (X9).
+  const spatial::Pose X_before = X_WD_;
+  seat_progress_ = std::min(1.0, seat_progress_ + options_.dt / options_.guidance.seat_time);
+  const double s = MinimumJerk(seat_progress_);
+  const Vec3 theta = spatial::RotationBetween(X_WD_seat_start_.q(), part_->X_WB_goal.q());
+  X_WD_ =
+      seat_progress_ >= 1
+          ? part_->X_WB_goal
+          : spatial::Pose((spatial::RotationFromVector(s * theta) * X_WD_seat_start_.q()),
+                          X_WD_seat_start_.p() + s * (part_->X_WB_goal.p() - X_WD_seat_start_.p()));
+  V_D_.w = spatial::RotationBetween(X_before.q(), X_WD_.q()) / options_.dt;
+  V_D_.v = (X_WD_ * part_->p_BoBcm_B - X_before * part_->p_BoBcm_B) / options_.dt;
+}
+
+}  // namespace hvas::haptics

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstdint>
+
+#include "contact/scene.h"
+#include "device/device.h"
+#include "haptics/constraint_solver.h"
+#include "haptics/force_map.h"
+#include "haptics/held_part.h"
+#include "haptics/mate_guide.h"
+#include "haptics/options.h"
+#include "haptics/safety_gate.h"
+
+namespace hvas::haptics {
+
+/** States of a held part, in the order in which an assembly passes through them. */
+enum class HoldState : std::uint8_t {
+  kEmpty,     ///< Nothing in the hand.
+  kFree,      ///< Held, no mate in range.
+  kNear,      ///< A mate is close.
+  kCaptured,  ///< A mate guides the part onto its axis.
+  kMating,    ///< On the axis; the faces of the mate answer by their fit.
+  kSeated,    ///< In its place; moves exactly there and stays.
+};
+
+[[nodiscard]] const char* ToString(HoldState state) noexcept;
+
+/** What a tick gives: the wrench for the device, and everything a record wants to know. */
+struct TickOutput {
+  spatial::Wrench F_H_W;  ///< For the device, after the gate, about the hand's point.
+  spatial::Wrench
+      F_true_W;  ///< As physics has it, before the map, about the displayed centre of mass.
+  spatial::Wrench F_felt_W;  ///< After the map, before the gate, about the same point.
+  spatial::Pose X_WT;        ///< Tracked part (or the hand, when it is empty).
+  spatial::Pose X_WD;        ///< Displayed part (or the hand).
+  HoldState state{HoldState::kEmpty};
+  product::OccurrenceId occurrence;
+  double insertion_depth{0};  ///< l [m].
+  double axial_true{0};       ///< Along the captured axis, against the motion in [N].
+  double axial_felt{0};
+  double deepest{0};        ///< Deepest contact [m], negative inside; +inf where none is near.
+  int contact_count{0};     ///< Contacts that press.
+  Vec3 p_WC{Vec3::Zero()};  ///< The contact that presses hardest.
+  Vec3 f_C_W{Vec3::Zero()};
+  contact::BodyId contact_body;  ///< And the body it is with; invalid for the ground or none.
+  std::uint32_t gate_actions{0};
+  bool is_truncated{false};  ///< A contact query met its budget.
+};
+
+/** The haptic tick of one hand: X(1), X(2) coupling, contact on the displayed part (X7), guidance
+ (X8..X10), fit (W5, W8, W9), weight and friction (X11), one force map (N4), gate (N6).
+
+ Owned by one thread. Take and Drop allocate nothing but must not run during Tick. */
+class HapticTick {
+ public:
+  /** @param scene  Bodies in the world; outlives this object. The held part's own body is skipped
+   by its id. */
+  HapticTick(const TickOptions& options, const contact::Scene* scene);
+
+  /** Takes up a part where it lies; the hand's present pose becomes its grip. `part` outlives the
+   hold. RT-safe. */
+  void Take(const HeldPart* part) noexcept;
+
+  /** Lets go. Returns the part's pose: its exact place when it was seated. RT-safe. */
+  spatial::Pose Drop() noexcept;
+
+  /** One tick. Always returns a safe wrench. RT-safe. */
+  TickOutput Tick(const device::DeviceState& state) noexcept;
+
+  [[nodiscard]] const HeldPart* held() const noexcept { return part_; }
+
+  [[nodiscard]] HoldState state() const noexcept { return state_; }
+
+  [[nodiscard]] const TickOptions& options() const noexcept { return options_; }
+
+ private:
+  struct Tracked {
+    spatial::Pose X_WT;
+    spatial::Twist V_T;  ///< At the part's centre of mass, in W.
+  };
+
+  [[nodiscard]] Tracked CalcTracked(const device::DeviceState& state) const noexcept;
+  void Hold(const Tracked& tracked, TickOutput* out) noexcept;
+  void AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept;
+  void AddGuidance(const Vec3& p_WCm) noexcept;
+  void AddContacts(TickOutput* out, const Vec3& p_WCm) noexcept;
+  void MoveDisplayed(const spatial::Twist& V_Cm, const Vec3& p_WCm) noexcept;
+  void UpdateState(const Tracked& tracked) noexcept;
+  [[nodiscard]] bool HasArrived() const noexcept;
+  void MoveIntoPlace() noexcept;
+  [[nodiscard]] spatial::Wrench CalcCouplingWrench(const Tracked& tracked) const noexcept;
+  void RecordContacts(TickOutput* out) const noexcept;
+
+  TickOptions options_;
+  const contact::Scene* scene_;
+  contact::QueryWorkspace workspace_;
+  ForceMap force_map_;
+  ForceMap torque_map_;
+  SafetyGate gate_;
+  ConstraintSolver solver_;
+  MateGuide guide_;
+
+  const HeldPart* part_{nullptr};
+  HoldState state_{HoldState::kEmpty};
+  bool is_first_tick_{true};
+  spatial::Pose X_HB_;  ///< Grip: the tracked part in the hand.
+  spatial::Pose X_WD_;
+  spatial::Twist V_D_;        ///< Displayed, at the centre of mass, in W.
+  double soft_start_{0};      ///< 0..1 over the first moments of a hold.
+  double start_distance_{0};  ///< d_0 of X(9) [m].
+  double start_angle_{0};
+  bool has_start_{false};
+  double seat_progress_{0};
+  spatial::Pose X_WD_seat_start_;
+  int axial_row_{-1};
+  double weight_true_{0};
+  double weight_felt_{0};
+};
+
+}  // namespace hvas::haptics

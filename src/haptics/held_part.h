@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "contact/scene.h"
+#include "contact/shape.h"
+#include "fits/fit_force.h"
+#include "mates/capture.h"
+#include "product/product.h"
+#include "spatial/pose.h"
+
+namespace hvas::haptics {
+
+/** Faces that a captured mate answers for. The neighbours are the faces that share an edge with the
+ mating faces: a shaft's rim passes the rim of its hole at no distance at all. Sorted. */
+struct MateFaces {
+  std::vector<std::uint32_t> mating;
+  std::vector<std::uint32_t> with_neighbours;
+};
+
+/** A mate of the held part with a part that is already in its place. */
+struct HeldMate {
+  product::MateId id;
+  spatial::Pose X_WM;  ///< Connector of the placed side.
+  spatial::Pose X_BN;  ///< Connector of the held side. z as X_WM's (axes) or opposed (planes).
+  mates::CaptureMate capture;  ///< Kind and spans, for recognition.
+  double radius{0};            ///< Nominal, of the hole [m]; 0 for planes.
+  bool is_stop{false};         ///< A plane that ends the insertion, not one that guides it.
+  std::shared_ptr<const fits::FitForce> fit;  ///< Null for planes and threads.
+  contact::BodyId body;                       ///< The placed part in the scene.
+  std::shared_ptr<const MateFaces> held_faces;
+  std::shared_ptr<const MateFaces> placed_faces;
+};
+
+/** Everything the tick needs to know of the part in the hand; built outside the tick, then
+ * constant. */
+struct HeldPart {
+  product::OccurrenceId occurrence;
+  contact::BodyId body;
+  std::shared_ptr<const contact::Shape> shape;
+  double mass{0};  ///< [kg]
+  Vec3 p_BoBcm_B{Vec3::Zero()};
+  Mat3 I_BBcm_B{Mat3::Zero()};
+  spatial::Pose X_WB_start;          ///< Where it lies when it is taken up.
+  spatial::Pose X_WB_goal;           ///< Its place in the product.
+  Vec3 insertion_W{-Vec3::UnitZ()};  ///< Unit, the way in.
+  std::vector<HeldMate> mates;
+};
+
+}  // namespace hvas::haptics

@@ -1,0 +1,200 @@
+#include "haptics/mate_guide.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hvas::haptics {
+namespace {
+
+constexpr double kAlignedDistance = 20e-6;  // [m] beyond the clearance
+constexpr double kAlignedAngle = 1e-3;      // [rad]
+constexpr double kNearRatio = 3;            // of the capture thresholds
+constexpr double kHandRatio = 3;            // the hand may stray this far before a mate lets go
+constexpr double kFirstStiffness = 1.0;     // [N/m, N m/rad] where the ramp starts
+
+using product::MateKind;
+
+/** Radius within which the axis is free: the clearance space S(l) where the shaft is engaged, W(4).
+ It opens over the first half millimetre, so that nothing jumps at the rim. */
+double FreeRadius(const HeldMate& mate, const MateGeometry& geometry) noexcept {
+  if (mate.fit == nullptr || geometry.engaged <= 0) {
+    return 0;
+  }
+  constexpr double kOpening = 0.5e-3;
+  const double clearance = mate.fit->CalcRadialPlay(geometry.engaged);
+  return clearance * std::min(1.0, geometry.engaged / kOpening);
+}
+
+/** Geometric ramp: most of the way is made where the mate is as stiff as the hand. */
+double RampedStiffness(double full, double ramp) noexcept {
+  return ramp <= 0 ? 0 : kFirstStiffness * std::pow(full / kFirstStiffness, ramp);
+}
+
+/** Stiffness that never pulls harder than `max_pull` at this deviation. */
+double Bounded(double stiffness, double deviation, double max_pull) noexcept {
+  return deviation * stiffness > max_pull ? max_pull / deviation : stiffness;
+}
+
+/** A guiding mate holds the part across its way; a stop only squares it. */
+bool IsGuide(const HeldMate& mate) noexcept {
+  return mate.capture.kind == MateKind::kAxisHole || !mate.is_stop;
+}
+
+}  // namespace
+
+MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) noexcept {
+  MateGeometry g;
+  const bool is_plane = mate.capture.kind == MateKind::kFaceFace;
+  const spatial::Pose X_WN = X_WB * mate.X_BN;
+  g.axis_W = mate.X_WM.q() * Vec3::UnitZ();
+  const Vec3 held_axis = X_WN.q() * Vec3(0, 0, is_plane ? -1 : 1);
+  const Vec3 d = X_WN.p() - mate.X_WM.p();
+  const Vec3 cross = held_axis.cross(g.axis_W);
+  g.angle = std::atan2(cross.norm(), held_axis.dot(g.axis_W));
+  g.tilt_W = cross.norm() > 1e-12 ? Vec3(g.angle / cross.norm() * cross) : Vec3::Zero();
+  const double along = d.dot(g.axis_W);
+  if (is_plane) {
+    g.p_WQ = X_WN.p();
+    g.offset_W = along * g.axis_W;
+  } else {
+    // The held axis' point beside the placed origin.
+    const double cosine = std::max(0.1, held_axis.dot(g.axis_W));
+    g.p_WQ = X_WN.p() - along / cosine * held_axis;
+    g.offset_W = g.p_WQ - mate.X_WM.p();
+    g.offset_W -= g.offset_W.dot(g.axis_W) * g.axis_W;
+    const double low = std::max(mate.capture.placed_low, mate.capture.held_low + along);
+    const double high = std::min(mate.capture.placed_high, mate.capture.held_high + along);
+    g.engaged = std::max(0.0, high - low);
+  }
+  g.distance = g.offset_W.norm();
+  return g;
+}
+
+void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
+                       const spatial::Pose& X_WB, const spatial::Pose& X_WT, double dt) noexcept {
+  is_near_ = false;
+  is_aligned_ = true;
+  captured_count_ = 0;
+  insertion_depth_ = 0;
+  axis_ = nullptr;
+  const std::size_t count = std::min(part.mates.size(), kMaxMates);
+  for (std::size_t i = 0; i < count; ++i) {
+    const HeldMate& mate = part.mates[i];
+    MateState& state = mates_[i];
+    state.geometry = CalcMateGeometry(mate, X_WB);
+    const MateGeometry& g = state.geometry;
+    const auto deviation = [&mate](const spatial::Pose& X) {
+      return mates::CalcDeviation(mate.capture, mate.X_WM, X * mate.X_BN);
+    };
+    const MateKind kind = mate.capture.kind;
+    const mates::MateDeviation now = deviation(X_WB);
+    // An engaged shaft can only be drawn out along its axis; before that the hand's wish counts.
+    if (!state.is_captured || g.engaged <= 0) {
+      state.is_captured =
+          mates::IsCaptured(kind, now, state.is_captured, options.capture) &&
+          mates::CalcCaptureRatio(kind, deviation(X_WT), options.capture) < kHandRatio;
+    }
+    is_near_ = is_near_ || mates::CalcCaptureRatio(kind, now, options.capture) < kNearRatio;
+    const double direction = state.is_captured ? 1.0 : -1.0;
+    state.ramp = std::clamp(state.ramp + direction * dt / options.ramp_time, 0.0, 1.0);
+    if (!state.is_captured) {
+      continue;
+    }
+    ++captured_count_;
+    if (IsGuide(mate)) {
+      const double free = FreeRadius(mate, g);
+      is_aligned_ = is_aligned_ && state.ramp >= 1 && g.distance < free + kAlignedDistance &&
+                    g.angle < kAlignedAngle + (g.engaged > 0 ? 2 * free / g.engaged : 0);
+    }
+    if (kind == MateKind::kAxisHole) {
+      if (axis_ == nullptr || g.engaged > insertion_depth_) {
+        axis_ = &state.geometry;
+        axis_index_ = i;
+      }
+      insertion_depth_ = std::max(insertion_depth_, g.engaged);
+    }
+  }
+  is_aligned_ = is_aligned_ && captured_count_ > 0;
+}
+
+void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
+                           ConstraintSolver* solver) noexcept {
+  lateral_force_ = 0;
+  const std::size_t count = std::min(part.mates.size(), kMaxMates);
+  for (std::size_t i = 0; i < count; ++i) {
+    const MateState& state = mates_[i];
+    if (state.ramp <= 0) {
+      continue;
+    }
+    const HeldMate& mate = part.mates[i];
+    const MateGeometry& g = state.geometry;
+    const Mat3 along = g.axis_W * g.axis_W.transpose();
+    const Mat3 across = Mat3::Identity() - along;
+    const double tilt_free =
+        mate.capture.kind == MateKind::kAxisHole && g.engaged > 0
+            ? std::min(0.5 * options.capture.angle, 2 * FreeRadius(mate, g) / g.engaged)
+            : 0;
+    const double tilt = g.tilt_W.norm();
+    if (tilt > tilt_free || tilt_free == 0) {
+      const double excess = tilt - tilt_free;
+      const double k =
+          Bounded(RampedStiffness(options.k_rot, state.ramp), excess, options.max_torque);
+      const double part_of = tilt > 0 ? excess / tilt : 1.0;
+      solver->AddAngularSpring(k * part_of * g.tilt_W, k * across);
+    }
+    if (mate.capture.kind == MateKind::kFaceFace) {
+      if (!mate.is_stop) {
+        const double k =
+            Bounded(RampedStiffness(options.k_lin, state.ramp), g.distance, options.max_force);
+        solver->AddPointSpring(g.p_WQ, -k * g.offset_W, k * along);
+      }
+      continue;
+    }
+    // Potential k (r - S)^2 / 2 outside the clearance space, W(5); its exact Hessian is
+    // k [(1 - S/r)(I - a a^T) + (S/r) e e^T].
+    const double free = FreeRadius(mate, g);
+    const double r = g.distance;
+    if (r > free || free == 0) {
+      const double k =
+          Bounded(RampedStiffness(options.k_lin, state.ramp), r - free, options.max_force);
+      const double ratio = r > 0 ? free / r : 0.0;
+      const Vec3 e = r > 0 ? Vec3(g.offset_W / r) : Vec3::Zero();
+      if (g.engaged > 0) {
+        lateral_force_ += k * (r - free);
+      }
+      solver->AddPointSpring(g.p_WQ, -k * (r - free) * e,
+                             k * ((1 - ratio) * across + ratio * e * e.transpose()));
+    }
+  }
+}
+
+std::size_t MateGuide::CollectIgnored(const HeldPart& part,
+                                      std::span<contact::IgnoredPair> pairs) const noexcept {
+  std::size_t written = 0;
+  if (!is_aligned_) {
+    return 0;
+  }
+  const std::size_t count = std::min(part.mates.size(), kMaxMates);
+  for (std::size_t i = 0; i < count && written + 2 <= pairs.size(); ++i) {
+    const HeldMate& mate = part.mates[i];
+    if (!mates_[i].is_captured || !IsGuide(mate)) {
+      continue;
+    }
+    pairs[written++] = {mate.body, mate.held_faces->mating, mate.placed_faces->with_neighbours};
+    pairs[written++] = {mate.body, mate.held_faces->with_neighbours, mate.placed_faces->mating};
+  }
+  return written;
+}
+
+double MateGuide::CalcAxialResistance(const HeldPart& part) const noexcept {
+  double sum = 0;
+  const std::size_t count = std::min(part.mates.size(), kMaxMates);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mates_[i].is_captured && part.mates[i].fit != nullptr) {
+      sum += part.mates[i].fit->CalcAxialResistance(mates_[i].geometry.engaged);
+    }
+  }
+  return sum;
+}
+
+}  // namespace hvas::haptics

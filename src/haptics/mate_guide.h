@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "haptics/constraint_solver.h"
+#include "haptics/held_part.h"
+#include "haptics/options.h"
+
+namespace hvas::haptics {
+
+/** Where the held part stands to one mate. */
+struct MateGeometry {
+  Vec3 axis_W{Vec3::UnitZ()};  ///< Of the placed side: axis, or outward normal.
+  Vec3 p_WQ{Vec3::Zero()};     ///< The held side's point that the mate acts on.
+  Vec3 offset_W{
+      Vec3::Zero()};          ///< From where Q belongs to Q: across the axis, or along the normal.
+  Vec3 tilt_W{Vec3::Zero()};  ///< Small rotation that takes the held axis to the placed one [rad].
+  double angle{0};            ///< |tilt| (X(7)) [rad].
+  double distance{0};         ///< |offset| [m].
+  double engaged{0};          ///< Length of the overlap: the insertion depth l [m].
+};
+
+/** Geometry of a mate at a pose of the held part. RT-safe. */
+[[nodiscard]] MateGeometry CalcMateGeometry(const HeldMate& mate,
+                                            const spatial::Pose& X_WB) noexcept;
+
+/** Recognises, captures, guides by and releases the mates of the held part (X5, X8..X10).
+
+ A captured mate pulls by springs whose stiffness grows from nothing to its full value along a
+ geometric ramp, and fades the same way: nothing the hand feels ever jumps. RT-safe. */
+class MateGuide {
+ public:
+  static constexpr std::size_t kMaxMates = 96;
+
+  void Reset() noexcept { mates_.fill({}); }
+
+  /** Captures and releases for the part at X_WB (displayed) while the hand wants X_WT. */
+  void Update(const HeldPart& part, const GuidanceOptions& options, const spatial::Pose& X_WB,
+              const spatial::Pose& X_WT, double dt) noexcept;
+
+  /** Adds the springs of all captured mates. */
+  void AddSprings(const HeldPart& part, const GuidanceOptions& options,
+                  ConstraintSolver* solver) noexcept;
+
+  [[nodiscard]] bool is_near() const noexcept { return is_near_; }
+
+  [[nodiscard]] int captured_count() const noexcept { return captured_count_; }
+
+  /** All captured mates are on their axes, and their faces answer by their fit. */
+  [[nodiscard]] bool is_aligned() const noexcept { return is_aligned_; }
+
+  [[nodiscard]] bool is_captured(std::size_t i) const noexcept { return mates_[i].is_captured; }
+
+  [[nodiscard]] const MateGeometry& geometry(std::size_t i) const noexcept {
+    return mates_[i].geometry;
+  }
+
+  /** Fills pairs of faces that contact leaves to the mates; returns how many were written. */
+  std::size_t CollectIgnored(const HeldPart& part,
+                             std::span<contact::IgnoredPair> pairs) const noexcept;
+
+  /** Sum over captured fits at the present depth: true axial resistance [N], and the lateral force
+   with which the bores hold the shaft back (for W5's Coulomb friction). */
+  [[nodiscard]] double CalcAxialResistance(const HeldPart& part) const noexcept;
+
+  [[nodiscard]] double lateral_force() const noexcept { return lateral_force_; }
+
+  /** Deepest engagement of a captured axis mate [m]. */
+  [[nodiscard]] double insertion_depth() const noexcept { return insertion_depth_; }
+
+  /** Axis of the first captured axis mate, or null. */
+  [[nodiscard]] const MateGeometry* axis() const noexcept { return axis_; }
+
+  [[nodiscard]] std::size_t axis_index() const noexcept { return axis_index_; }
+
+ private:
+  struct MateState {
+    bool is_captured{false};
+    double ramp{0};  ///< 0: no guidance, 1: full stiffness.
+    MateGeometry geometry;
+  };
+
+  std::array<MateState, kMaxMates> mates_{};
+  bool is_near_{false};
+  bool is_aligned_{false};
+  int captured_count_{0};
+  double insertion_depth_{0};
+  double lateral_force_{0};
+  const MateGeometry* axis_{nullptr};
+  std::size_t axis_index_{0};
+};
+
+}  // namespace hvas::haptics

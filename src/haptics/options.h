@@ -1,0 +1,61 @@
+#pragma once
+
+#include "device/device.h"
+#include "mates/capture.h"
+#include "spatial/pose.h"
+
+namespace hvas::haptics {
+
+/** The three conditions of X14. */
+enum class Condition {
+  kCollision,   ///< Contact only: no mate is captured.
+  kConstraint,  ///< Mates only: parts can interpenetrate.
+  kHybrid,      ///< Both, and the force of the fit.
+};
+
+/** Spring and damper between the tracked and the displayed part, X(1) and X(2). */
+struct CouplingGains {
+  double k_lin{1000};  ///< [N/m]
+  double b_lin{8};     ///< [N s/m]
+  double k_rot{3};     ///< [N m/rad]
+  double b_rot{0.02};  ///< [N m s/rad]
+};
+
+/** When a mate is captured and how it guides. */
+struct GuidanceOptions {
+  mates::CaptureThresholds capture;
+  double ramp_time{0.25};            ///< From first touch of guidance to full stiffness [s].
+  double k_lin{1e6};                 ///< Full stiffness across an axis [N/m].
+  double k_rot{1e4};                 ///< Full stiffness against tilt [N m/rad].
+  double max_force{20};              ///< Guidance never pulls harder [N].
+  double max_torque{2};              ///< [N m]
+  double attraction_force{1.0};      ///< K1 F_max of X(9) [N].
+  double attraction_torque{0.02};    ///< The same about a free axis [N m].
+  double seat_distance{0.15e-3};     ///< From the goal, to count as arrived [m].
+  double seat_angle{0.06};           ///< [rad]
+  double loose_seat_distance{3e-3};  ///< For a part without any mate [m].
+  double seat_time{0.12};            ///< Of the last, exact, movement into place [s].
+};
+
+struct ContactOptions {
+  double compliance{2e-6};      ///< [m/N]; 20 um at 10 N.
+  double friction{0.15};        ///< Coulomb, steel on steel.
+  double recovery_speed{0.02};  ///< Penetration is undone no faster [m/s].
+  double min_margin{60e-6};     ///< Contacts are looked for at least this far away [m].
+  double max_speed{1.0};        ///< The displayed part moves no faster [m/s].
+  double max_turn_rate{10.0};   ///< [rad/s]
+  int iterations{30};
+};
+
+struct TickOptions {
+  Condition condition{Condition::kHybrid};
+  CouplingGains coupling;
+  GuidanceOptions guidance;
+  ContactOptions contact;
+  Vec3 gravity_W{0, 0, -9.81};       ///< [m/s^2]
+  double largest_true_force{100e3};  ///< Felt at the device's full force [N].
+  device::DeviceProfile device;
+  double dt{1e-3};  ///< [s]
+};
+
+}  // namespace hvas::haptics

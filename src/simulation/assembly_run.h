@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simulation/simulated_person.h"
+#include "simulation/simulation.h"
+
+namespace hvas::simulation {
+
+/** How one part fared. */
+struct PartResult {
+  product::OccurrenceId occurrence;
+  bool is_seated{false};
+  std::string reason;          ///< Why not, when it is not seated.
+  double time{0};              ///< From taking it up to letting go [s].
+  double path{0};              ///< [m]
+  double peak_true{0};         ///< [N]
+  double peak_felt{0};         ///< [N]
+  double deepest{0};           ///< Deepest penetration met [m].
+  int mates{0};                ///< With parts that were in place.
+  double pose_error{0};        ///< Of the origin, from the file's pose [m].
+  double pose_error_angle{0};  ///< [rad]
+};
+
+/** Lets the simulated person assemble a model, one part after the other, and keeps the account.
+ As a Sink it stands between the loops and the record. */
+class AssemblyRun final : public Sink {
+ public:
+  /** @param downstream  Gets everything too; may be null. */
+  AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream);
+
+  void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override;
+  void OnEvent(const SimulationEvent& event) override;
+
+  /** After every physics step, on its thread: gives the person the next part. */
+  void Advance();
+
+  [[nodiscard]] bool is_done() const { return is_done_; }
+
+  [[nodiscard]] const std::vector<PartResult>& results() const { return results_; }
+
+  /** Called with the number done of all, and the last result. */
+  std::function<void(std::size_t, std::size_t, const PartResult&)> on_part;
+
+ private:
+  void Finish(PartResult result);
+  [[nodiscard]] PersonTask MakeTask(const SequenceStep& step) const;
+
+  Simulation* simulation_;
+  SimulatedPerson* person_;
+  Sink* downstream_;
+  std::vector<PartResult> results_;
+  std::size_t next_step_{0};
+  std::size_t total_{0};
+  bool is_assigned_{false};
+  int finished_before_{0};
+  bool has_dropped_{false};
+  SimulationEvent dropped_;
+  double lift_height_{0.05};
+  bool is_done_{false};
+};
+
+/** Where a person stands who has all parts on the table in front: the first pose of the hand. */
+[[nodiscard]] spatial::Pose StartOfHand(const Model& model);
+
+}  // namespace hvas::simulation

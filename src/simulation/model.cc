@@ -1,0 +1,269 @@
+#include "simulation/model.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <set>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "dynamics/world.h"
+#include "simulation/fit_of_mate.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::OccurrenceId;
+using product::Product;
+
+constexpr double kTableGap = 10e-3;     // [m] between parts on the table
+constexpr double kTransferGap = 30e-3;  // [m] between a carried part and the product
+constexpr double kSettleTime = 3.0;     // [s]
+
+contact::ShapeSource MakeShapeSource(const product::Part& part) {
+  contact::ShapeSource source;
+  source.vertices = part.mesh.vertices;
+  source.triangles = part.mesh.triangles;
+  source.triangle_face.resize(part.mesh.triangles.size());
+  for (std::size_t f = 0; f < part.faces.size(); ++f) {
+    const product::Face& face = part.faces[f];
+    source.faces.push_back(face.surface);
+    std::fill_n(source.triangle_face.begin() + face.first_triangle, face.triangle_count,
+                static_cast<std::uint32_t>(f));
+  }
+  return source;
+}
+
+/** Shapes of all parts that occur, built on several threads; one error stops all. */
+Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
+    const Product& product, const CompileOptions& options) {
+  std::vector<std::shared_ptr<const contact::Shape>> shapes(product.parts.size());
+  std::vector<Error> errors(product.parts.size());
+  std::atomic<std::size_t> next{0};
+  std::atomic<std::size_t> done{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < shapes.size(); i = next++) {
+      auto shape = contact::Shape::Build(MakeShapeSource(product.parts[i]), options.shape);
+      if (shape) {
+        shapes[i] = *shape;
+      } else {
+        errors[i] = shape.error();
+      }
+      ++done;
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 1; i < options.threads; ++i) {
+    threads.emplace_back(work);
+  }
+  work();
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (shapes[i] == nullptr) {
+      Error error = errors[i];
+      error.where = fmt::format("{}, part '{}'", product.source, product.parts[i].name);
+      return Unexpected(error);
+    }
+  }
+  return shapes;
+}
+
+/** A surface without a solid weighs nothing in the file; in the hand it needs some inertia. */
+dynamics::MassProperties MakeMass(const product::Part& part) {
+  constexpr double kLeastMass = 1e-4;  // [kg]
+  const product::MassProperties& mass = part.mass;
+  if (mass.mass > kLeastMass && mass.I_BBcm_B.determinant() > 0) {
+    return {mass.mass, mass.p_BoBcm_B, mass.I_BBcm_B};
+  }
+  const double radius = 0.25 * part.box_B.size().norm();
+  const double least = std::max(kLeastMass, mass.mass);
+  return {least, part.box_B.centre(), 0.4 * least * radius * radius * Mat3::Identity()};
+}
+
+/** Lays the loose parts out in rows on the table, as drawn, and lets them come to rest. */
+Result<void> LayOut(Model* model) {
+  const Product& product = *model->product;
+  double reach = 0;
+  for (const product::Part& part : product.parts) {
+    reach = std::max(reach, 0.5 * part.box_B.size().norm());
+  }
+  model->centre_W = product.box_W.centre();
+  const double radius = 0.5 * product.box_W.size().norm();
+  model->transfer_radius = radius + reach + kTransferGap;
+  model->table_z = model->centre_W.z() - model->transfer_radius - reach - kTransferGap;
+  std::vector<std::size_t> order(model->bodies.size());
+  double area = 0;
+  const auto cell = [&](std::size_t i) {
+    return model->bodies[i].shape->box_B().size().norm() + kTableGap;
+  };
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = i;
+    area += cell(i) * cell(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t x, std::size_t y) { return cell(x) > cell(y); });
+  const double width = std::max(1.5 * std::sqrt(area), cell(order.front()));
+  const double left = model->centre_W.x() - 0.5 * width;
+  double x = left;
+  double y = model->centre_W.y() + model->transfer_radius + reach;
+  double row_depth = 0;
+  dynamics::World world(TableOptions(*model));
+  std::vector<dynamics::BodyId> ids;
+  std::vector<std::size_t> members;
+  for (const std::size_t i : order) {
+    Body& body = model->bodies[i];
+    const double size = cell(i);
+    if (x + size > left + width) {
+      x = left;
+      y += row_depth;
+      row_depth = 0;
+    }
+    row_depth = std::max(row_depth, size);
+    const spatial::Box box =
+        spatial::Transform(spatial::Pose(body.X_WB_goal.q(), Vec3::Zero()), body.shape->box_B());
+    const Vec3 place(x + 0.5 * size, y + 0.5 * size, model->table_z + 1e-3);
+    const Vec3 bottom(box.centre().x(), box.centre().y(), box.low.z());
+    body.X_WB_start = spatial::Pose(body.X_WB_goal.q(), place - bottom);
+    x += size;
+    const auto id =
+        world.AddBody(product.part_of(body.occurrence).mesh.vertices, body.mass, body.X_WB_start);
+    if (!id) {
+      return Unexpected(id.error());
+    }
+    ids.push_back(*id);
+    members.push_back(i);
+  }
+  (void)world.Settle(kSettleTime);
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    model->bodies[members[k]].X_WB_start = world.pose(ids[k]);
+  }
+  return {};
+}
+
+}  // namespace
+
+dynamics::WorldOptions TableOptions(const Model& model) {
+  dynamics::WorldOptions options;
+  options.table_z = model.table_z;
+  return options;
+}
+
+haptics::MateFaces CollectMateFaces(const product::Part& part, const product::Feature& feature) {
+  // Faces share an edge where two of their vertices coincide; meshes of neighbouring CAD faces meet
+  // in the same points.
+  using Key = std::array<std::int64_t, 3>;
+  const double grid = std::max(1e-9, 1e-7 * part.box_B.size().norm());
+  const auto key = [grid](const Vec3& p) {
+    return Key{std::llround(p.x() / grid), std::llround(p.y() / grid), std::llround(p.z() / grid)};
+  };
+  const auto vertices_of = [&](std::size_t f) {
+    std::set<Key> keys;
+    const product::Face& face = part.faces[f];
+    for (std::uint32_t t = 0; t < face.triangle_count; ++t) {
+      for (const std::uint32_t v : part.mesh.triangles[face.first_triangle + t]) {
+        keys.insert(key(part.mesh.vertices[v]));
+      }
+    }
+    return keys;
+  };
+  haptics::MateFaces faces;
+  std::set<Key> own;
+  for (const product::FaceId id : feature.faces) {
+    faces.mating.push_back(id.value());
+    own.merge(vertices_of(id.index()));
+  }
+  std::sort(faces.mating.begin(), faces.mating.end());
+  faces.with_neighbours = faces.mating;
+  for (std::size_t f = 0; f < part.faces.size(); ++f) {
+    if (std::binary_search(faces.mating.begin(), faces.mating.end(), f)) {
+      continue;
+    }
+    int shared = 0;
+    for (const Key& vertex : vertices_of(f)) {
+      shared += own.count(vertex) > 0 ? 1 : 0;
+    }
+    if (shared >= 2) {
+      faces.with_neighbours.push_back(static_cast<std::uint32_t>(f));
+    }
+  }
+  std::sort(faces.with_neighbours.begin(), faces.with_neighbours.end());
+  return faces;
+}
+
+Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
+                                             const CompileOptions& options,
+                                             Diagnostics* diagnostics) {
+  if (product->occurrences.empty()) {
+    return Fail(ErrorCode::kInvalid, "the product has no parts", product->source);
+  }
+  const auto report = [&options](const std::string& stage, double fraction) {
+    if (options.progress) {
+      options.progress(stage, fraction);
+    }
+  };
+  auto model = std::make_shared<Model>();
+  model->product = product;
+  model->seed = options.seed;
+  report("contact shapes", 0);
+  const auto shapes = BuildShapes(*product, options);
+  if (!shapes) {
+    return Unexpected(shapes.error());
+  }
+  for (const product::Occurrence& occurrence : product->occurrences) {
+    model->bodies.push_back({occurrence.id, (*shapes)[occurrence.part.index()],
+                             MakeMass(product->part_of(occurrence.id)), occurrence.X_WB,
+                             occurrence.X_WB});
+  }
+
+  report("mates", 0);
+  std::map<std::pair<product::PartId, product::FeatureId>,
+           std::shared_ptr<const haptics::MateFaces>>
+      faces_of;
+  const auto faces = [&](const product::Connector& connector) {
+    const product::PartId part = product->occurrences[connector.occurrence.index()].part;
+    auto& entry = faces_of[{part, connector.feature}];
+    if (entry == nullptr) {
+      entry = std::make_shared<haptics::MateFaces>(
+          CollectMateFaces(product->parts[part.index()],
+                           product->parts[part.index()].features[connector.feature.index()]));
+    }
+    return entry;
+  };
+  model->mates_of.resize(product->occurrences.size());
+  SequenceInput input;
+  for (const product::Mate& mate : product->mates) {
+    ModelMate compiled;
+    compiled.id = mate.id;
+    compiled.faces_a = faces(mate.a);
+    compiled.faces_b = faces(mate.b);
+    compiled.fit = MakeFitForce(*product, mate, options.seed, diagnostics);
+    input.faces_a.push_back(compiled.faces_a);
+    input.faces_b.push_back(compiled.faces_b);
+    model->mates.push_back(std::move(compiled));
+    model->mates_of[mate.a.occurrence.index()].push_back(mate.id);
+    model->mates_of[mate.b.occurrence.index()].push_back(mate.id);
+  }
+
+  contact::Scene scene;
+  for (const Body& body : model->bodies) {
+    (void)scene.Add(body.shape, body.X_WB_goal);
+  }
+  input.product = product.get();
+  input.scene = &scene;
+  input.progress = [&report](double fraction) { report("order of assembly", fraction); };
+  model->sequence = PlanSequence(input);
+  report("layout", 0);
+  if (const auto laid_out = LayOut(model.get()); !laid_out) {
+    return Unexpected(laid_out.error());
+  }
+  report("ready", 1);
+  return std::shared_ptr<const Model>(std::move(model));
+}
+
+}  // namespace hvas::simulation

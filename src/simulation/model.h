@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/result.h"
+#include "contact/scene.h"
+#include "contact/shape.h"
+#include "dynamics/world.h"
+#include "fits/fit_force.h"
+#include "haptics/held_part.h"
+#include "product/product.h"
+#include "simulation/sequence.h"
+
+namespace hvas::simulation {
+
+/** A part as the loops see it. */
+struct Body {
+  product::OccurrenceId occurrence;
+  std::shared_ptr<const contact::Shape> shape;
+  dynamics::MassProperties mass;  ///< Never without mass: what has none gets a little.
+  spatial::Pose X_WB_goal;        ///< As drawn.
+  spatial::Pose X_WB_start;       ///< Lying on the table.
+};
+
+/** A mate with what the loops need besides its geometry. */
+struct ModelMate {
+  product::MateId id;
+  std::shared_ptr<const haptics::MateFaces> faces_a;
+  std::shared_ptr<const haptics::MateFaces> faces_b;
+  std::shared_ptr<const fits::FitForce> fit;  ///< Null for planes and threads.
+};
+
+struct CompileOptions {
+  std::uint64_t seed{1};  ///< Draws the actual sizes of the fits.
+  contact::ShapeOptions shape;
+  int threads{2};
+  std::function<void(const std::string& stage, double fraction)> progress;
+};
+
+/** Immutable; shared by all loops. A change of fit or mate compiles a new one. */
+struct Model {
+  std::shared_ptr<const product::Product> product;
+  std::vector<Body> bodies;                            ///< By OccurrenceId.
+  std::vector<ModelMate> mates;                        ///< By MateId.
+  std::vector<std::vector<product::MateId>> mates_of;  ///< By OccurrenceId.
+  Sequence sequence;
+  double table_z{0};            ///< [m]
+  Vec3 centre_W{Vec3::Zero()};  ///< Of the product.
+  double transfer_radius{0};    ///< A part carried this far from the centre meets nothing [m].
+  std::uint64_t seed{1};
+};
+
+/** Builds shapes, fits, the order of assembly and the layout of the parts on the table.
+ Errors: kInvalid when the product has no parts or a shape cannot be built. */
+Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
+                                             const CompileOptions& options,
+                                             Diagnostics* diagnostics);
+
+/** The world of dynamics in which a model's loose parts lie. */
+[[nodiscard]] dynamics::WorldOptions TableOptions(const Model& model);
+
+/** Faces of a feature and the faces that share an edge with them. */
+[[nodiscard]] haptics::MateFaces CollectMateFaces(const product::Part& part,
+                                                  const product::Feature& feature);
+
+}  // namespace hvas::simulation

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "device/device.h"
+#include "haptics/haptic_tick.h"
+
+namespace hvas::simulation {
+
+/** What reaches a person's hand and ear in a millisecond: the wrench of the device, and the sounds
+ of capture and of seating (W7). Nothing else of the simulation's state. */
+struct OperatorInput {
+  std::int64_t t_ns{0};
+  spatial::Wrench F_H_W;
+  bool hears_capture{false};
+  bool hears_seated{false};
+};
+
+/** What moves the hand: a device driver, a recording, or a simulated person. The rest of the
+ program cannot tell them apart. */
+class Operator {
+ public:
+  Operator() = default;
+  Operator(const Operator&) = delete;
+  Operator& operator=(const Operator&) = delete;
+  virtual ~Operator() = default;
+
+  /** The device's next sample. RT-safe. */
+  virtual device::DeviceState Step(const OperatorInput& input) noexcept = 0;
+};
+
+}  // namespace hvas::simulation

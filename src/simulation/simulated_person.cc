@@ -1,0 +1,295 @@
+#include "simulation/simulated_person.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hvas::simulation {
+namespace {
+
+constexpr double kDt = 1e-3;  // [s]; a device sample
+constexpr double kGraspTime_s = 0.35;
+constexpr double kSettleTime_s = 0.25;
+constexpr double kReleaseTime_s = 0.2;
+constexpr double kShortestReach_s = 0.35;
+constexpr double kStandOff = 6e-3;    // [m] before anything engages, where approach ends
+constexpr double kFirstPush = 4.0;    // [N]; what the hand tries first
+constexpr double kPushRate = 6.0;     // [N/s]; how it presses harder
+constexpr double kProgress = 0.1e-3;  // [m] of way in that counts as progress
+constexpr double kStuckBeforeSearch_s = 1.0;
+constexpr double kBackOff = 8e-3;        // [m] before trying elsewhere
+constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
+constexpr double kLearnTime_s = 0.3;     // of a carried weight
+
+double MinimumJerk(double s) {
+  return s * s * s * (10 + s * (-15 + 6 * s));
+}
+
+}  // namespace
+
+SimulatedPerson::SimulatedPerson(const PersonOptions& options, std::uint64_t seed,
+                                 const spatial::Pose& X_WH)
+    : options_(options), random_(seed), X_WH_(X_WH), p_ref_(X_WH.p()), q_ref_(X_WH.q()) {
+  for (double& phase : tremor_phase_) {
+    phase = random_.Uniform(0, 2 * std::numbers::pi);
+  }
+}
+
+void SimulatedPerson::Begin(const PersonTask& task) noexcept {
+  task_ = task;
+  gave_up_ = false;
+  search_count_ = 0;
+  is_gripping_ = false;
+  for (int k = 0; k < 3; ++k) {
+    aim_offset_[k] = options_.aim_error * random_.Normal();
+    aim_turn_[k] = options_.aim_error_angle * random_.Normal();
+  }
+  StartReaches(Phase::kReach);
+  AddReach(task.X_WG_start.p(), task.X_WG_start.q(), 1.5 * options_.carry_speed, false);
+}
+
+void SimulatedPerson::StartReaches(Phase phase) noexcept {
+  phase_ = phase;
+  phase_time_s_ = 0;
+  reach_count_ = 0;
+  reach_index_ = 0;
+  reach_time_s_ = 0;
+}
+
+void SimulatedPerson::AddReach(const Vec3& p_to, const Quat& q_to, double speed,
+                               bool is_arc) noexcept {
+  if (reach_count_ == kMaxReaches) {
+    return;
+  }
+  Reach& reach = reaches_[reach_count_];
+  const bool is_first = reach_count_ == 0;
+  reach.p_from = is_first ? p_ref_ : reaches_[reach_count_ - 1].p_to;
+  reach.q_from = is_first ? q_ref_ : reaches_[reach_count_ - 1].q_to;
+  reach.p_to = p_to;
+  reach.q_to = q_to;
+  reach.centre = task_.centre_W;
+  reach.is_arc = is_arc;
+  double length = (p_to - reach.p_from).norm();
+  if (is_arc) {
+    const Vec3 a = reach.p_from - reach.centre;
+    const Vec3 b = p_to - reach.centre;
+    length = std::atan2(a.cross(b).norm(), a.dot(b)) * std::max(a.norm(), b.norm());
+  }
+  reach.duration_s = std::max(kShortestReach_s, length / speed);
+  ++reach_count_;
+}
+
+bool SimulatedPerson::FollowReaches() noexcept {
+  if (reach_index_ >= reach_count_) {
+    return true;
+  }
+  const Reach& reach = reaches_[reach_index_];
+  reach_time_s_ += kDt;
+  const double s = MinimumJerk(std::min(1.0, reach_time_s_ / reach.duration_s));
+  q_ref_ = reach.q_from.slerp(s, reach.q_to);
+  if (reach.is_arc) {
+    const Vec3 a = reach.p_from - reach.centre;
+    const Vec3 b = reach.p_to - reach.centre;
+    const Vec3 turn = spatial::RotationVector(spatial::RotationTaking(a, b));
+    const double radius = (1 - s) * a.norm() + s * b.norm();
+    p_ref_ = reach.centre + radius * (spatial::RotationFromVector(s * turn) * a.normalized());
+  } else {
+    p_ref_ = reach.p_from + s * (reach.p_to - reach.p_from);
+  }
+  if (reach_time_s_ >= reach.duration_s) {
+    ++reach_index_;
+    reach_time_s_ = 0;
+  }
+  return reach_index_ >= reach_count_;
+}
+
+void SimulatedPerson::PlanCarry() noexcept {
+  const Vec3 lifted = task_.X_WG_start.p() + Vec3(0, 0, task_.lift_height);
+  const Vec3 out = (lifted - task_.centre_W).normalized();
+  // Where the way in crosses the sphere on which nothing is met.
+  const Vec3 d = task_.extraction_W;
+  const Vec3 from_centre = task_.X_WG_goal.p() - task_.centre_W;
+  const double b = from_centre.dot(d);
+  const double discriminant =
+      b * b - from_centre.squaredNorm() + task_.transfer_radius * task_.transfer_radius;
+  const double way =
+      std::max(task_.engage_distance + 2 * kStandOff, -b + std::sqrt(std::max(0.0, discriminant)));
+  const Quat& q = task_.X_WG_goal.q();
+  StartReaches(Phase::kCarry);
+  AddReach(lifted, task_.X_WG_start.q(), options_.carry_speed, false);
+  AddReach(task_.centre_W + task_.transfer_radius * out, task_.X_WG_start.q(), options_.carry_speed,
+           false);
+  AddReach(task_.X_WG_goal.p() + way * d, q, options_.carry_speed, true);
+}
+
+void SimulatedPerson::PlanReturn() noexcept {
+  const Vec3 d = task_.extraction_W;
+  const Vec3 lifted = task_.X_WG_start.p() + Vec3(0, 0, task_.lift_height);
+  const Vec3 out = (lifted - task_.centre_W).normalized();
+  const Quat q = q_ref_;
+  const double way = task_.engage_distance + kStandOff + 2 * task_.transfer_radius;
+  gave_up_ = true;
+  StartReaches(Phase::kGiveUp);
+  AddReach(p_ref_ + way * d, q, options_.carry_speed, false);
+  AddReach(task_.centre_W + way * out, q, options_.carry_speed, true);
+  AddReach(lifted, task_.X_WG_start.q(), options_.carry_speed, false);
+  AddReach(task_.X_WG_start.p() + Vec3(0, 0, 2e-3), task_.X_WG_start.q(), options_.approach_speed,
+           false);
+}
+
+void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
+  const Vec3& d = task_.extraction_W;
+  const double hand_travel = (X_WH_.p() - task_.X_WG_goal.p()).dot(d);
+  if (input.hears_seated) {
+    phase_ = Phase::kSettle;
+    phase_time_s_ = 0;
+    return;
+  }
+  if (phase_time_s_ > options_.patience_s) {
+    PlanReturn();
+    return;
+  }
+  if (is_backing_off_) {
+    travel_ += options_.insert_speed * kDt;
+    is_backing_off_ = hand_travel < best_travel_ + kBackOff;
+    if (!is_backing_off_) {
+      best_travel_ = hand_travel;
+      stuck_time_s_ = 0;
+    }
+  } else {
+    if (hand_travel < best_travel_ - kProgress) {
+      best_travel_ = hand_travel;
+      stuck_time_s_ = 0;
+    }
+    stuck_time_s_ += kDt;
+    // Presses harder the longer nothing moves; the arm's spring turns the lead into a force.
+    const double push = std::min(options_.push_limit, kFirstPush + kPushRate * stuck_time_s_);
+    const double lead = push / options_.stiffness;
+    travel_ = std::max(travel_ - options_.insert_speed * kDt, hand_travel - lead);
+    const double time_at_limit = stuck_time_s_ - (options_.push_limit - kFirstPush) / kPushRate;
+    if (time_at_limit > kStuckBeforeSearch_s) {
+      // Missed: back off and try beside, on a spiral of golden angles.
+      ++search_count_;
+      is_backing_off_ = true;
+      const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+      const double radius = kSearchPitch * std::sqrt(static_cast<double>(search_count_));
+      const Quat q = spatial::FrameFromZ(d);
+      const double angle = golden * search_count_ + random_.Uniform(0, 0.5);
+      search_offset_ = q * Vec3(radius * std::cos(angle), radius * std::sin(angle), 0);
+      for (int k = 0; k < 3; ++k) {
+        aim_turn_[k] = options_.aim_error_angle * random_.Normal();
+      }
+    }
+  }
+  p_ref_ = task_.X_WG_goal.p() + travel_ * d + aim_offset_ + search_offset_;
+  q_ref_ = spatial::RotationFromVector(aim_turn_) * task_.X_WG_goal.q();
+}
+
+Vec3 SimulatedPerson::Tremor() noexcept {
+  Vec3 tremor;
+  constexpr double kFrequencies[3] = {8.3, 9.7, 11.4};  // [Hz]
+  for (int k = 0; k < 3; ++k) {
+    tremor[k] = options_.tremor *
+                std::sin(2 * std::numbers::pi * kFrequencies[k] * t_s_ + tremor_phase_[k]);
+  }
+  return tremor;
+}
+
+void SimulatedPerson::MoveHand(const spatial::Wrench& F_H_W) noexcept {
+  if (phase_ == Phase::kCarry || phase_ == Phase::kGrasp) {
+    carried_force_ += (F_H_W.f - carried_force_) * (kDt / kLearnTime_s);
+  } else if (!is_gripping_) {
+    carried_force_ -= carried_force_ * (kDt / 0.05);
+  }
+  const Vec3 p_wanted = p_ref_ + Tremor();
+  const Vec3 f = options_.stiffness * (p_wanted - X_WH_.p()) +
+                 options_.damping * (v_ref_ - V_H_.v) + F_H_W.f - carried_force_;
+  const Vec3 t = options_.turn_stiffness * spatial::RotationBetween(X_WH_.q(), q_ref_) -
+                 options_.turn_damping * V_H_.w + F_H_W.t;
+  V_H_.v += kDt / options_.mass * f;
+  V_H_.w += kDt / options_.inertia * t;
+  X_WH_ = spatial::Integrate(X_WH_, V_H_, kDt);
+}
+
+device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
+  t_s_ += kDt;
+  phase_time_s_ += kDt;
+  const Vec3 p_ref_before = p_ref_;
+  switch (phase_) {
+    case Phase::kDone: {
+      PersonTask task;
+      if (tasks_.TryPop(&task)) {
+        Begin(task);
+      }
+      break;
+    }
+    case Phase::kReach:
+      if (FollowReaches() && phase_time_s_ > reaches_[0].duration_s + 0.3) {
+        phase_ = Phase::kGrasp;
+        phase_time_s_ = 0;
+        is_gripping_ = true;
+      }
+      break;
+    case Phase::kGrasp:
+      if (phase_time_s_ > kGraspTime_s) {
+        PlanCarry();
+      }
+      break;
+    case Phase::kCarry:
+      if (FollowReaches()) {
+        travel_ = task_.engage_distance + kStandOff;
+        StartReaches(Phase::kApproach);
+        AddReach(task_.X_WG_goal.p() + travel_ * task_.extraction_W + aim_offset_,
+                 spatial::RotationFromVector(aim_turn_) * task_.X_WG_goal.q(),
+                 options_.approach_speed, false);
+      }
+      break;
+    case Phase::kApproach:
+      if (input.hears_seated) {
+        phase_ = Phase::kSettle;
+        phase_time_s_ = 0;
+      } else if (FollowReaches()) {
+        phase_ = Phase::kInsert;
+        phase_time_s_ = 0;
+        best_travel_ = (X_WH_.p() - task_.X_WG_goal.p()).dot(task_.extraction_W);
+        stuck_time_s_ = 0;
+        search_offset_.setZero();
+        is_backing_off_ = false;
+      }
+      break;
+    case Phase::kInsert:
+      StepInsert(input);
+      break;
+    case Phase::kSettle:
+      p_ref_ += (X_WH_.p() - p_ref_) * (kDt / 0.08);
+      if (phase_time_s_ > kSettleTime_s) {
+        phase_ = Phase::kRelease;
+        phase_time_s_ = 0;
+        is_gripping_ = false;
+      }
+      break;
+    case Phase::kRelease:
+      if (phase_time_s_ > kReleaseTime_s) {
+        phase_ = Phase::kDone;
+        finished_count_.fetch_add(1, std::memory_order_release);
+      }
+      break;
+    case Phase::kGiveUp:
+      if (FollowReaches()) {
+        phase_ = Phase::kRelease;
+        phase_time_s_ = 0;
+        is_gripping_ = false;
+      }
+      break;
+  }
+  v_ref_ = (p_ref_ - p_ref_before) / kDt;
+  MoveHand(input.F_H_W);
+  device::DeviceState state;
+  state.t_ns = input.t_ns;
+  state.X_DH = X_WH_;
+  state.V_DH = V_H_;
+  state.is_gripping = is_gripping_;
+  return state;
+}
+
+}  // namespace hvas::simulation

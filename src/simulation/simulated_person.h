@@ -1,0 +1,137 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "base/random.h"
+#include "base/ring.h"
+#include "simulation/operator.h"
+
+namespace hvas::simulation {
+
+/** What the person has been told about one part: where it lies, where it should go and which way
+ * in. */
+struct PersonTask {
+  product::OccurrenceId occurrence;
+  spatial::Pose
+      X_WG_start;  ///< Grip frame, lying on the table: at the centre of mass, turned as the part.
+  spatial::Pose X_WG_goal;
+  Vec3 extraction_W{Vec3::UnitZ()};
+  double engage_distance{0};    ///< [m] from the goal, where insertion begins.
+  Vec3 centre_W{Vec3::Zero()};  ///< The product's.
+  double transfer_radius{0};    ///< [m] at which it may be carried around the product.
+  double lift_height{0.05};     ///< [m] that clears the other parts on the table.
+};
+
+/** An arm and its habits. Values of the arm are of the order published for hands that hold a haptic
+ device or keep a posture: Dolan, Friedman and Nagurka, IEEE Trans. SMC 23(3), 1993; Tsuji et al.,
+ Biological Cybernetics 72, 1995; Fu and Cavusoglu, IEEE Trans. SMC B 42(6), 2012. */
+struct PersonOptions {
+  double mass{0.8};               ///< At the hand [kg].
+  double stiffness{400};          ///< [N/m]
+  double damping{25};             ///< [N s/m]
+  double inertia{3e-3};           ///< Of the hand's turning [kg m^2].
+  double turn_stiffness{6};       ///< [N m/rad]
+  double turn_damping{0.2};       ///< [N m s/rad]
+  double carry_speed{0.45};       ///< Mean speed of a reach [m/s].
+  double approach_speed{0.15};    ///< Towards the place [m/s].
+  double insert_speed{0.04};      ///< [m/s]
+  double aim_error{0.7e-3};       ///< Standard deviation of where the hand believes to be [m].
+  double aim_error_angle{0.015};  ///< The same of how it is turned [rad].
+  double tremor{0.05e-3};         ///< Physiological tremor, 8..12 Hz, amplitude [m].
+  double push_limit{16};          ///< The hand never wants more than this [N].
+  double patience_s{25};          ///< On one part, from the beginning of insertion [s].
+};
+
+/** A simulated person: an arm impedance that follows minimum-jerk reaches (Flash and Hogan, J.
+ Neuroscience 5(7), 1985), feels the device's force, presses harder when stuck, searches when it
+ misses, and gives up after a time. Seeded. It knows where the part should go and what the hand
+ feels and hears. RT-safe. */
+class SimulatedPerson final : public Operator {
+ public:
+  SimulatedPerson(const PersonOptions& options, std::uint64_t seed, const spatial::Pose& X_WH);
+
+  /** Gives the person a part to do; it is begun when the last one is done. One other thread may
+   call this while Step runs. False when too many wait already. */
+  bool Assign(const PersonTask& task) noexcept { return tasks_.TryPush(task); }
+
+  /** Parts that were begun and let go again, in their place or not. Any thread. */
+  [[nodiscard]] int finished_count() const noexcept {
+    return finished_count_.load(std::memory_order_acquire);
+  }
+
+  [[nodiscard]] bool gave_up() const noexcept { return gave_up_; }
+
+  [[nodiscard]] int searches() const noexcept { return search_count_; }
+
+  device::DeviceState Step(const OperatorInput& input) noexcept override;
+
+ private:
+  enum class Phase {
+    kDone,
+    kReach,     ///< Empty hand to the part.
+    kGrasp,     ///< Close the hand.
+    kCarry,     ///< Around the product to the way in.
+    kApproach,  ///< Along the way in, until just before it engages.
+    kInsert,    ///< Slowly, feeling; searches and presses.
+    kSettle,    ///< Heard it seat: waits a moment.
+    kRelease,
+    kGiveUp,  ///< Brings the part back to the table.
+  };
+
+  /** One straight or circular reach, minimum jerk in time. */
+  struct Reach {
+    Vec3 p_from{Vec3::Zero()}, p_to{Vec3::Zero()};
+    Quat q_from{Quat::Identity()}, q_to{Quat::Identity()};
+    Vec3 centre{Vec3::Zero()};
+    bool is_arc{false};  ///< Great circle about the centre with interpolated radius.
+    double duration_s{0};
+  };
+
+  void Begin(const PersonTask& task) noexcept;
+  void StartReaches(Phase phase) noexcept;
+  void AddReach(const Vec3& p_to, const Quat& q_to, double speed, bool is_arc) noexcept;
+  /** Advances the reference along the reaches; true when all are done. */
+  bool FollowReaches() noexcept;
+  void PlanCarry() noexcept;
+  void PlanReturn() noexcept;
+  void StepInsert(const OperatorInput& input) noexcept;
+  void MoveHand(const spatial::Wrench& F_H_W) noexcept;
+  [[nodiscard]] Vec3 Tremor() noexcept;
+
+  PersonOptions options_;
+  Random random_;
+  Phase phase_{Phase::kDone};
+  PersonTask task_;
+  std::atomic<bool> gave_up_{false};
+  std::atomic<int> search_count_{0};
+  std::atomic<int> finished_count_{0};
+  Ring<PersonTask> tasks_{4};
+
+  spatial::Pose X_WH_;  ///< The hand.
+  spatial::Twist V_H_;
+  Vec3 p_ref_{Vec3::Zero()};  ///< Where it wants to be.
+  Quat q_ref_{Quat::Identity()};
+  Vec3 v_ref_{Vec3::Zero()};
+  bool is_gripping_{false};
+  Vec3 carried_force_{Vec3::Zero()};  ///< Slowly learned load that the arm holds up.
+  Vec3 aim_offset_{Vec3::Zero()};     ///< Of this part: where the hand wrongly believes to be.
+  Vec3 aim_turn_{Vec3::Zero()};
+
+  static constexpr int kMaxReaches = 6;
+  Reach reaches_[kMaxReaches];
+  int reach_count_{0};
+  int reach_index_{0};
+  double reach_time_s_{0};
+  double phase_time_s_{0};
+
+  double travel_{0};       ///< Reference distance still to go along the way in [m].
+  double best_travel_{0};  ///< Least hand distance reached.
+  double stuck_time_s_{0};
+  Vec3 search_offset_{Vec3::Zero()};
+  bool is_backing_off_{false};
+  double tremor_phase_[3]{};
+  double t_s_{0};
+};
+
+}  // namespace hvas::simulation

@@ -1,0 +1,254 @@
+#include "simulation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mates/resolve.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::MateKind;
+using product::OccurrenceId;
+
+constexpr double kReach = 0.03;      // [m] from a part's centre of mass, to take it up
+constexpr double kStopCosine = 0.5;  // a plane facing the way in ends it; one along it guides
+constexpr double kPhysicsStep = Simulation::kHapticStep * Simulation::kTicksPerPhysics;
+
+}  // namespace
+
+Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options)
+    : model_(std::move(model)),
+      options_(options),
+      haptic_(options, &scene_),
+      commands_(4 * model_->bodies.size() + 64),
+      events_(256),
+      world_(TableOptions(*model_)),
+      parts_(model_->bodies.size()) {
+  for (const Body& body : model_->bodies) {
+    const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
+    Part& part = parts_[id.index()];
+    part.X_WB = body.X_WB_start;
+    const product::Part& shape = model_->product->part_of(body.occurrence);
+    // Compile has added the same bodies to a world of its own: this cannot fail.
+    part.body = *world_.AddBody(shape.mesh.vertices, body.mass, body.X_WB_start);
+  }
+  scene_.SetGround(model_->table_z);
+  for (const SequenceStep& step : model_->sequence.steps) {
+    parts_[step.occurrence.index()].insertion_W = -step.extraction_W;
+  }
+  Frame frame;
+  frame.X_WB.resize(parts_.size());
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    frame.X_WB[i] = parts_[i].X_WB;
+  }
+  for (int slot = 0; slot < 3; ++slot) {
+    frames_.Write(frame);
+  }
+}
+
+haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) noexcept {
+  Command command;
+  while (commands_.TryPop(&command)) {
+    if (command.kind == Command::Kind::kTake) {
+      haptic_.Take(command.part);
+      metrics_ = {};
+      metrics_.t_taken_ns = device.t_ns;
+      p_last_Cm_ = command.X_WB * command.part->p_BoBcm_B;
+      events_.TryPush({device.t_ns, SimulationEvent::Kind::kTaken, command.part->occurrence,
+                       haptics::HoldState::kFree, command.X_WB, false, metrics_});
+    } else {
+      scene_.SetPose(command.body, command.X_WB);
+    }
+  }
+  if (haptic_.held() != nullptr && device.is_valid && !device.is_gripping) {
+    const haptics::HeldPart& part = *haptic_.held();
+    const bool was_seated = haptic_.state() == haptics::HoldState::kSeated;
+    const spatial::Pose X_WB = haptic_.Drop();
+    scene_.SetPose(part.body, X_WB);
+    events_.TryPush({device.t_ns, SimulationEvent::Kind::kDropped, part.occurrence,
+                     haptics::HoldState::kEmpty, X_WB, was_seated, metrics_});
+  }
+  const haptics::TickOutput out = haptic_.Tick(device);
+  Measure(out);
+  if (out.state != last_state_) {
+    last_state_ = out.state;
+    events_.TryPush({device.t_ns, SimulationEvent::Kind::kState, out.occurrence, out.state,
+                     out.X_WD, false, metrics_});
+  }
+  reports_.Write({device.t_ns, device.X_DH, device.is_gripping && device.is_valid, out});
+  return out;
+}
+
+void Simulation::Measure(const haptics::TickOutput& out) noexcept {
+  if (haptic_.held() == nullptr) {
+    return;
+  }
+  const Vec3 p_Cm = out.X_WD * haptic_.held()->p_BoBcm_B;
+  metrics_.path += (p_Cm - p_last_Cm_).norm();
+  p_last_Cm_ = p_Cm;
+  metrics_.peak_true = std::max(metrics_.peak_true, out.F_true_W.f.norm());
+  metrics_.peak_felt = std::max(metrics_.peak_felt, out.F_H_W.f.norm());
+  metrics_.deepest = std::max(metrics_.deepest, -out.deepest);
+  const double force = out.f_C_W.norm();
+  if (out.contact_count > 0 && out.contact_body.is_valid() && force > metrics_.hardest_force) {
+    metrics_.hardest_force = force;
+    metrics_.hardest = out.contact_body;
+  }
+}
+
+void Simulation::PhysicsStep(Sink* sink) {
+  SimulationEvent event;
+  while (events_.TryPop(&event)) {
+    HandleEvent(event);
+    if (sink != nullptr) {
+      sink->OnEvent(event);
+    }
+  }
+  if (reports_.Update()) {
+    const Report& report = reports_.value();
+    if (!report.is_gripping) {
+      is_waiting_for_grip_to_open_ = false;
+    } else if (held_ == nullptr && !is_waiting_for_grip_to_open_) {
+      TakeNearest(report.X_WH.p());
+    }
+    PushBodies(report);
+  }
+  world_.Step(kPhysicsStep);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& part = parts_[i];
+    if (part.placement == Placement::kLoose && !world_.is_asleep(part.body)) {
+      part.X_WB = world_.pose(part.body);
+      Command command;
+      command.body = contact::BodyId(i);
+      command.X_WB = part.X_WB;
+      commands_.TryPush(command);
+    }
+  }
+  Frame& frame = frames_.back();
+  frame.t_ns = reports_.value().t_ns;
+  frame.tick = reports_.value().out;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    frame.X_WB[i] = parts_[i].placement == Placement::kHeld ? frame.tick.X_WD : parts_[i].X_WB;
+  }
+  frames_.Publish();
+}
+
+const Frame& Simulation::Publish() {
+  frames_.Update();
+  return frames_.value();
+}
+
+void Simulation::HandleEvent(const SimulationEvent& event) {
+  if (event.kind != SimulationEvent::Kind::kDropped) {
+    return;
+  }
+  Part& part = parts_[event.occurrence.index()];
+  part.X_WB = event.X_WB;
+  held_ = nullptr;
+  if (event.was_seated) {
+    part.placement = Placement::kPlaced;
+    world_.Remove(part.body);
+  } else {
+    part.placement = Placement::kLoose;
+    world_.SetPose(part.body, event.X_WB);
+    world_.SetKinematic(part.body, false);
+  }
+}
+
+void Simulation::PlaceInFixture(OccurrenceId id) {
+  Part& part = parts_[id.index()];
+  part.placement = Placement::kPlaced;
+  part.X_WB = model_->bodies[id.index()].X_WB_goal;
+  world_.Remove(part.body);
+  scene_.SetPose(contact::BodyId(id.index()), part.X_WB);
+}
+
+void Simulation::TakeNearest(const Vec3& p_WH) {
+  OccurrenceId nearest;
+  double least = kReach;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (parts_[i].placement != Placement::kLoose) {
+      continue;
+    }
+    const double distance = (parts_[i].X_WB * model_->bodies[i].mass.p_BoBcm_B - p_WH).norm();
+    if (distance < least) {
+      least = distance;
+      nearest = OccurrenceId(i);
+    }
+  }
+  if (!nearest.is_valid()) {
+    is_waiting_for_grip_to_open_ = true;  // closed on nothing: open before the next try
+    return;
+  }
+  held_ = MakeHeldPart(nearest);
+  Part& part = parts_[nearest.index()];
+  part.placement = Placement::kHeld;
+  world_.SetKinematic(part.body, true);
+  Command command;
+  command.kind = Command::Kind::kTake;
+  command.part = held_.get();
+  command.X_WB = part.X_WB;
+  commands_.TryPush(command);
+}
+
+std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(OccurrenceId id) const {
+  const Body& body = model_->bodies[id.index()];
+  auto held = std::make_unique<haptics::HeldPart>();
+  held->occurrence = id;
+  held->body = contact::BodyId(id.index());
+  held->shape = body.shape;
+  held->mass = body.mass.mass;
+  held->p_BoBcm_B = body.mass.p_BoBcm_B;
+  held->I_BBcm_B = body.mass.I_BBcm_B;
+  held->X_WB_start = parts_[id.index()].X_WB;
+  held->insertion_W = parts_[id.index()].insertion_W;
+  std::vector<mates::MateConstraint> constraints;
+  for (const product::MateId mate_id : model_->mates_of[id.index()]) {
+    const product::Mate& mate = model_->product->mates[mate_id.index()];
+    const ModelMate& compiled = model_->mates[mate_id.index()];
+    const bool is_a = mate.a.occurrence == id;
+    const OccurrenceId other = is_a ? mate.b.occurrence : mate.a.occurrence;
+    if (parts_[other.index()].placement != Placement::kPlaced) {
+      continue;
+    }
+    const mates::MateConstraint constraint =
+        mates::MakeConstraint(mate, id, parts_[other.index()].X_WB);
+    haptics::HeldMate entry;
+    entry.id = mate_id;
+    entry.X_WM = constraint.X_WM;
+    entry.X_BN = constraint.X_BN;
+    entry.capture = mates::MakeCaptureMate(mate, id);
+    entry.radius = mate.hole_radius;
+    const double facing = std::abs((constraint.X_WM.q() * Vec3::UnitZ()).dot(held->insertion_W));
+    entry.is_stop = mate.kind == MateKind::kFaceFace && facing > kStopCosine;
+    entry.fit = compiled.fit;
+    entry.body = contact::BodyId(other.index());
+    entry.held_faces = is_a ? compiled.faces_a : compiled.faces_b;
+    entry.placed_faces = is_a ? compiled.faces_b : compiled.faces_a;
+    held->mates.push_back(std::move(entry));
+    constraints.push_back(constraint);
+  }
+  // The place is where the mates say; what they leave free is taken from the drawing (X9).
+  held->X_WB_goal =
+      constraints.empty()
+          ? body.X_WB_goal
+          : mates::ResolveToward(
+                constraints,
+                spatial::Pose(body.X_WB_goal.q(), body.X_WB_goal.p() - 0.01 * held->insertion_W),
+                body.X_WB_goal)
+                .X_WB;
+  return held;
+}
+
+void Simulation::PushBodies(const Report& report) {
+  if (!report.out.contact_body.is_valid()) {
+    return;
+  }
+  const Part& part = parts_[report.out.contact_body.index()];
+  if (part.placement == Placement::kLoose) {
+    world_.ApplyImpulse(part.body, -kPhysicsStep * report.out.f_C_W, report.out.p_WC);
+  }
+}
+
+}  // namespace hvas::simulation

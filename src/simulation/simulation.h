@@ -1,0 +1,155 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/ring.h"
+#include "base/triple_buffer.h"
+#include "contact/scene.h"
+#include "dynamics/world.h"
+#include "haptics/haptic_tick.h"
+#include "simulation/model.h"
+
+namespace hvas::simulation {
+
+/** What one hold of a part amounted to. */
+struct HoldMetrics {
+  std::int64_t t_taken_ns{0};
+  double path{0};           ///< Of the displayed centre of mass [m].
+  double peak_true{0};      ///< Largest true force [N].
+  double peak_felt{0};      ///< Largest force given to the device [N].
+  double deepest{0};        ///< Deepest penetration, >= 0 [m].
+  contact::BodyId hardest;  ///< Body pressed hardest while the hand was inserting; may be invalid.
+  double hardest_force{0};  ///< [N]
+};
+
+/** Something that happened in a tick. */
+struct SimulationEvent {
+  enum class Kind : std::uint8_t { kTaken, kState, kDropped };
+  std::int64_t t_ns{0};
+  Kind kind{Kind::kState};
+  product::OccurrenceId occurrence;
+  haptics::HoldState state{haptics::HoldState::kEmpty};
+  spatial::Pose X_WB;      ///< kDropped: where the part was let go.
+  bool was_seated{false};  ///< kDropped: it was in its place.
+  HoldMetrics metrics;     ///< kDropped: of the whole hold.
+};
+
+/** Receives what the loops produce. OnTick runs on the haptic thread and must be RT-safe; OnEvent
+ runs on the physics thread. */
+class Sink {
+ public:
+  Sink() = default;
+  Sink(const Sink&) = delete;
+  Sink& operator=(const Sink&) = delete;
+  virtual ~Sink() = default;
+  virtual void OnTick(const device::DeviceState& device,
+                      const haptics::TickOutput& out) noexcept = 0;
+  virtual void OnEvent(const SimulationEvent& event) = 0;
+};
+
+/** What a viewer needs: poses of all parts and of the hand. */
+struct Frame {
+  std::int64_t t_ns{0};
+  std::vector<spatial::Pose> X_WB;  ///< By OccurrenceId.
+  haptics::TickOutput tick;
+};
+
+enum class Placement : std::uint8_t { kLoose, kHeld, kPlaced };
+
+/** All that changes while a model is assembled. Three loops may run it at once, each function from
+ its own thread: HapticTick (1 kHz), PhysicsStep (100 Hz), Publish (30 Hz). Called in turn from one
+ thread it gives the same results every time. */
+class Simulation {
+ public:
+  static constexpr double kHapticStep = 1e-3;  // [s]
+  static constexpr int kTicksPerPhysics = 10;
+  static constexpr int kTicksPerFrame = 33;
+
+  Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options);
+
+  /** Haptic thread. RT-safe. */
+  haptics::TickOutput HapticTick(const device::DeviceState& device) noexcept;
+
+  /** Physics thread: free bodies, taking up and letting go. `sink` may be null. */
+  void PhysicsStep(Sink* sink);
+
+  /** Publish thread: the newest state of everything. */
+  const Frame& Publish();
+
+  /** Puts a part in its place without a hand: the base in its fixture. Before the loops run. */
+  void PlaceInFixture(product::OccurrenceId id);
+
+  /** Physics thread, or before the loops run. */
+  [[nodiscard]] Placement placement(product::OccurrenceId id) const {
+    return parts_[id.index()].placement;
+  }
+
+  [[nodiscard]] const spatial::Pose& pose(product::OccurrenceId id) const {
+    return parts_[id.index()].X_WB;
+  }
+
+  /** The way in for a part, which tells its guiding planes from its stops. Physics thread. */
+  void SetInsertion(product::OccurrenceId id, const Vec3& insertion_W) {
+    parts_[id.index()].insertion_W = insertion_W;
+  }
+
+  [[nodiscard]] const Model& model() const { return *model_; }
+
+  [[nodiscard]] const haptics::TickOptions& options() const { return options_; }
+
+ private:
+  struct Part {
+    Placement placement{Placement::kLoose};
+    spatial::Pose X_WB;
+    Vec3 insertion_W{-Vec3::UnitZ()};
+    dynamics::BodyId body;
+  };
+
+  /** From physics to haptics. */
+  struct Command {
+    enum class Kind : std::uint8_t { kTake, kSetPose } kind{Kind::kSetPose};
+    const haptics::HeldPart* part{nullptr};
+    contact::BodyId body;
+    spatial::Pose X_WB;
+  };
+
+  /** From haptics to physics, newest wins. */
+  struct Report {
+    std::int64_t t_ns{0};
+    spatial::Pose X_WH;
+    bool is_gripping{false};
+    haptics::TickOutput out;
+  };
+
+  void Measure(const haptics::TickOutput& out) noexcept;
+  void HandleEvent(const SimulationEvent& event);
+  void TakeNearest(const Vec3& p_WH);
+  [[nodiscard]] std::unique_ptr<haptics::HeldPart> MakeHeldPart(product::OccurrenceId id) const;
+  void PushBodies(const Report& report);
+
+  std::shared_ptr<const Model> model_;
+  haptics::TickOptions options_;
+  contact::Scene scene_;  // Written by the haptic thread only, once the loops run.
+  haptics::HapticTick haptic_;
+  haptics::HoldState last_state_{haptics::HoldState::kEmpty};
+  HoldMetrics metrics_;
+  Vec3 p_last_Cm_{Vec3::Zero()};
+
+  Ring<Command> commands_;
+  Ring<SimulationEvent> events_;
+  TripleBuffer<Report> reports_;
+  TripleBuffer<Frame> frames_;
+
+  dynamics::World world_;
+  std::vector<Part> parts_;
+  std::unique_ptr<haptics::HeldPart> held_;  // Kept until haptics has let go of it.
+  bool is_waiting_for_grip_to_open_{false};
+};
+
+}  // namespace hvas::simulation
