@@ -123,10 +123,11 @@ struct World::Impl {
 
   [[nodiscard]] Body& At(BodyId id) { return *bodies[id.index()]; }
 
-  void Place(Body* body, const spatial::Pose& X_WB) const;
+  void Place(Body* body, const spatial::Pose& X_WB);
   void WakeNeighbours(const Body& body);
   void Substep(double dt, double share_done);
   void ReadPoses();
+  [[nodiscard]] bool is_at_rest() const;
 
   WorldOptions options;
   btDefaultCollisionConfiguration configuration;
@@ -145,6 +146,7 @@ World::Impl::Impl(const WorldOptions& world_options)
   gDeactivationTime = kSleepTime;
   // A plane gives one contact a query unless it is asked again with slightly turned bodies.
   configuration.setPlaneConvexMultipointIterations(4, 4);
+  world.setForceUpdateAllAabbs(false);  // Place() does it for those asleep.
   world.setGravity({0, 0, -kUnitsPerMetre * options.gravity});
   btContactSolverInfo& info = world.getSolverInfo();
   info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
@@ -168,7 +170,7 @@ World::Impl::~Impl() {
   world.removeCollisionObject(&table);
 }
 
-void World::Impl::Place(Body* body, const spatial::Pose& X_WB) const {
+void World::Impl::Place(Body* body, const spatial::Pose& X_WB) {
   body->X_WB = X_WB;
   const btTransform X_WP = ToUnits(X_WB * body->X_BP);
   btRigidBody& rigid = *body->rigid;
@@ -178,6 +180,9 @@ void World::Impl::Place(Body* body, const spatial::Pose& X_WB) const {
   rigid.setAngularVelocity({0, 0, 0});
   rigid.clearForces();
   rigid.updateInertiaTensor();
+  if (rigid.getBroadphaseHandle() != nullptr) {
+    world.updateSingleAabb(&rigid);
+  }
 }
 
 void World::Impl::WakeNeighbours(const Body& body) {
@@ -221,6 +226,12 @@ void World::Impl::ReadPoses() {
       body->X_WB = ToMetres(body->rigid->getWorldTransform()) * body->X_PB;
     }
   }
+}
+
+bool World::Impl::is_at_rest() const {
+  return std::all_of(bodies.begin(), bodies.end(), [](const std::unique_ptr<Body>& body) {
+    return body == nullptr || !body->rigid->isActive();
+  });
 }
 
 World::World(const WorldOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -322,6 +333,9 @@ void World::ApplyImpulse(BodyId id, const Vec3& impulse_W, const Vec3& p_WQ) {
 }
 
 void World::Step(double dt) {
+  if (impl_->is_at_rest()) {
+    return;
+  }
   const int count =
       std::max(1, static_cast<int>(std::ceil(dt / impl_->options.max_substep - 1e-9)));
   for (int i = 1; i <= count; ++i) {
@@ -331,16 +345,10 @@ void World::Step(double dt) {
 }
 
 bool World::Settle(double max_time) {
-  const auto is_at_rest = [](const std::unique_ptr<Body>& body) {
-    return body == nullptr || body->is_kinematic || !body->rigid->isActive();
-  };
-  const auto is_settled = [&] {
-    return std::all_of(impl_->bodies.begin(), impl_->bodies.end(), is_at_rest);
-  };
-  for (double time = 0; time < max_time && !is_settled(); time += kSettleStep) {
+  for (double time = 0; time < max_time && !impl_->is_at_rest(); time += kSettleStep) {
     Step(kSettleStep);
   }
-  return is_settled();
+  return impl_->is_at_rest();
 }
 
 const spatial::Pose& World::pose(BodyId body) const {

@@ -300,6 +300,27 @@ TEST(World, DroppedBodyFallsAndAHeldOneDoesNot) {
   EXPECT_NEAR(Lowest(world, body, block), 0, 1e-4);
 }
 
+// What sleeps keeps its pose to the bit, also while others move and when a kinematic body was put
+// on it; a part dropped on it finds it.
+TEST(World, SleeperKeepsItsPoseAndIsStillThere) {
+  World world({});
+  const Solid block = MakeBox({0.03, 0.03, 0.03});
+  const BodyId sleeper = Add(&world, block, At(0, 0, 0.016));
+  const BodyId far_kinematic = Add(&world, block, At(1, 0, 0.1));
+  world.SetKinematic(far_kinematic, true);
+  ASSERT_TRUE(world.Settle(3));
+  const spatial::Pose pose = world.pose(sleeper);
+  world.SetPose(far_kinematic, At(0.5, 0, 0.1));
+  const BodyId on_far = Add(&world, block, At(0.5, 0, 0.14));
+  ASSERT_TRUE(world.Settle(3));
+  EXPECT_EQ(world.pose(sleeper).p(), pose.p());
+  EXPECT_EQ(world.pose(sleeper).q().coeffs(), pose.q().coeffs());
+  EXPECT_NEAR(Lowest(world, on_far, block), 0.115, 2e-4) << "it lies where the other was put";
+  const BodyId on_sleeper = Add(&world, block, At(0, 0, 0.06));
+  ASSERT_TRUE(world.Settle(3));
+  EXPECT_NEAR(Lowest(world, on_sleeper, block), 0.03, 2e-4);
+}
+
 TEST(World, EqualCallsGiveEqualBits) {
   std::string first;
   for (int run = 0; run < 2; ++run) {
