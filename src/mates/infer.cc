@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -184,15 +185,53 @@ double CalcAxisDistance(const Vec3& axis, const Vec3& p_on_axis, const Vec3& q) 
   return axis.cross(q - p_on_axis).norm();
 }
 
+/** By the part's name, the occurrence's, or, where those say nothing ("SOLID"), that of the
+ subassembly which holds it and no other solid part. */
+FastenerKind ClassifyOccurrence(const Product& product, const Occurrence& occurrence) {
+  const FastenerKind by_part = ClassifyName(product.part_of(occurrence.id).name);
+  if (by_part != FastenerKind::kNone) {
+    return by_part;
+  }
+  const FastenerKind by_name = ClassifyName(occurrence.name);
+  if (by_name != FastenerKind::kNone || !occurrence.parent.is_valid()) {
+    return by_name;
+  }
+  const product::Subassembly& parent = product.subassemblies[occurrence.parent.index()];
+  int solid_parts = 0;
+  for (const OccurrenceId id : parent.occurrences) {
+    solid_parts += product.part_of(id).solid_count > 0 ? 1 : 0;
+  }
+  const bool stands_for_it =
+      parent.parent.is_valid() && parent.subassemblies.empty() && solid_parts <= 1;
+  return stands_for_it ? ClassifyName(parent.name) : FastenerKind::kNone;
+}
+
+/** Those of `triangles` whose boxes meet the box of `other`. */
+std::vector<Triangle2> SelectNear(const std::vector<Triangle2>& triangles,
+                                  const std::vector<Triangle2>& other) {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = -low;
+  for (const Triangle2& t : other) {
+    low = low.cwiseMin(t[0]).cwiseMin(t[1]).cwiseMin(t[2]);
+    high = high.cwiseMax(t[0]).cwiseMax(t[1]).cwiseMax(t[2]);
+  }
+  std::vector<Triangle2> selected;
+  for (const Triangle2& t : triangles) {
+    if ((t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() <= high.array()).all() &&
+        (t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() >= low.array()).all()) {
+      selected.push_back(t);
+    }
+  }
+  return selected;
+}
+
 class Inference {
  public:
   Inference(Product* product, const InferenceLimits& limits) : product_(product), limits_(limits) {
     placed_.reserve(product->occurrences.size());
     for (const Occurrence& occurrence : product->occurrences) {
       placed_.push_back(Place(*product, occurrence, limits));
-      const Part& part = product->part_of(occurrence.id);
-      FastenerKind kind = ClassifyName(part.name);
-      fasteners_.push_back(kind != FastenerKind::kNone ? kind : ClassifyName(occurrence.name));
+      fasteners_.push_back(ClassifyOccurrence(*product, occurrence));
     }
     cos_angle_ = std::cos(limits.angle);
   }
@@ -276,26 +315,26 @@ class Inference {
     axis_hits_.push_back({hole_occurrence, shaft_occurrence, &hole, &shaft, low, high});
   }
 
-  /** The triangles of a plane feature in the plane's own frame; made once for each. */
-  const std::vector<Triangle2>& TrianglesOf(std::size_t occurrence, const PlacedFeature& feature) {
-    const auto key = std::pair(occurrence, feature.id.index());
-    const auto found = triangles_.find(key);
-    if (found != triangles_.end()) {
-      return found->second;
+  [[nodiscard]] std::size_t CountTriangles(std::size_t occurrence, FeatureId id) const {
+    const Part& part = product_->part_of(placed_[occurrence].id);
+    std::size_t count = 0;
+    for (const product::FaceId face : part.features[id.index()].faces) {
+      count += part.faces[face.index()].triangle_count;
     }
-    const Pose X_WP(spatial::FrameFromZ(feature.axis_W), feature.origin_W);
-    return triangles_.emplace(key, Flatten(occurrence, feature, X_WP)).first->second;
+    return count;
   }
 
-  [[nodiscard]] std::vector<Triangle2> Flatten(std::size_t occurrence, const PlacedFeature& feature,
-                                               const Pose& X_WP) const {
+  /** The triangles of a plane feature in the frame P of a plane. */
+  [[nodiscard]] std::vector<Triangle2> Flatten(std::size_t occurrence, FeatureId id,
+                                               const Pose& X_PW) const {
     const Occurrence& placed = product_->occurrences[occurrence];
     const Part& part = product_->part_of(placed.id);
-    const Pose X_PB = X_WP.Inverse() * placed.X_WB;
+    const Pose X_PB = X_PW * placed.X_WB;
     const Mat3 R_PB = X_PB.R();
     std::vector<Triangle2> triangles;
-    for (const product::FaceId id : part.features[feature.id.index()].faces) {
-      const Face& face = part.faces[id.index()];
+    triangles.reserve(CountTriangles(occurrence, id));
+    for (const product::FaceId face_id : part.features[id.index()].faces) {
+      const Face& face = part.faces[face_id.index()];
       for (std::uint32_t t = 0; t < face.triangle_count; ++t) {
         Triangle2 flat;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -306,6 +345,17 @@ class Inference {
       }
     }
     return triangles;
+  }
+
+  /** The same in the plane's own frame, for features that are asked for again and again. */
+  const std::vector<Triangle2>& FlattenOnce(std::size_t occurrence, const PlacedFeature& feature,
+                                            const Pose& X_PW) {
+    const auto key = std::pair(occurrence, feature.id.index());
+    const auto found = triangles_.find(key);
+    if (found != triangles_.end()) {
+      return found->second;
+    }
+    return triangles_.emplace(key, Flatten(occurrence, feature.id, X_PW)).first->second;
   }
 
   void TestPlanes(const OccurrencePair& pair, const PlacedFeature& a, const PlacedFeature& b,
@@ -320,15 +370,22 @@ class Inference {
     if (std::abs(a.axis_W.dot(between_W)) >= gap + limits_.angle * between_W.norm()) {
       return;
     }
-    const Pose X_WP(spatial::FrameFromZ(a.axis_W), a.origin_W);
-    const Overlap overlap = CalcOverlap(TrianglesOf(pair.a, a), Flatten(pair.b, b, X_WP));
+    // In the frame of the finer one (a base plate has many neighbours), near the other only.
+    const bool is_a_finer = CountTriangles(pair.a, a.id) >= CountTriangles(pair.b, b.id);
+    const PlacedFeature& fine = is_a_finer ? a : b;
+    const PlacedFeature& coarse = is_a_finer ? b : a;
+    const Pose X_WP(spatial::FrameFromZ(fine.axis_W), fine.origin_W);
+    const Pose X_PW = X_WP.Inverse();
+    const std::vector<Triangle2> near = Flatten(is_a_finer ? pair.b : pair.a, coarse.id, X_PW);
+    const Overlap overlap =
+        CalcOverlap(SelectNear(FlattenOnce(is_a_finer ? pair.a : pair.b, fine, X_PW), near), near);
     const double least =
         std::max(limits_.area_ratio * std::min(a.area, b.area), limits_.area * scale * scale);
     if (overlap.area <= least) {
       return;
     }
     const Vec3 centroid_W = X_WP * Vec3(overlap.centroid.x(), overlap.centroid.y(), 0);
-    if (std::abs(b.axis_W.dot(centroid_W - b.origin_W)) >= gap) {
+    if (std::abs(coarse.axis_W.dot(centroid_W - coarse.origin_W)) >= gap) {
       return;
     }
     hits->push_back({&a, &b, overlap.area, centroid_W});
@@ -338,6 +395,7 @@ class Inference {
     for (std::size_t i = 0; i < axis_hits_.size(); ++i) {
       hits_of_hole_[axis_hits_[i].hole].push_back(i);
       hits_of_shaft_[axis_hits_[i].shaft].push_back(i);
+      hits_of_part_[axis_hits_[i].shaft_occurrence].push_back(i);
     }
   }
 
@@ -370,6 +428,23 @@ class Inference {
       }
     }
     return filled > 0.1 * hit.length();
+  }
+
+  /** True for a wide hole around a shaft which another part guides on the same axis. */
+  [[nodiscard]] bool IsLoosePassage(const AxisHit& hit) const {
+    const auto is_loose = [this](const AxisHit& h) {
+      return h.radius_difference() >
+             limits_.radius_difference * ScaleOf(h.hole_occurrence, h.shaft_occurrence);
+    };
+    if (!is_loose(hit)) {
+      return false;
+    }
+    const std::vector<std::size_t>& others = hits_of_part_.at(hit.shaft_occurrence);
+    return std::any_of(others.begin(), others.end(), [&](std::size_t i) {
+      const AxisHit& other = axis_hits_[i];
+      return other.hole_occurrence != hit.hole_occurrence && !is_loose(other) &&
+             IsSameAxis(hit, other);
+    });
   }
 
   [[nodiscard]] bool IsSameAxis(const AxisHit& s, const AxisHit& t) const {
@@ -407,7 +482,7 @@ class Inference {
     std::vector<std::vector<const AxisHit*>> groups;
     for (std::size_t i = begin; i < end; ++i) {
       const AxisHit& hit = axis_hits_[i];
-      if (HasPartBetween(hit)) {
+      if (HasPartBetween(hit) || IsLoosePassage(hit)) {
         continue;
       }
       const auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
@@ -522,6 +597,7 @@ class Inference {
   // Looked up only, never iterated: their order may depend on addresses.
   std::map<const PlacedFeature*, std::vector<std::size_t>> hits_of_hole_;
   std::map<const PlacedFeature*, std::vector<std::size_t>> hits_of_shaft_;
+  std::map<std::size_t, std::vector<std::size_t>> hits_of_part_;  // By the shaft's occurrence.
   std::map<std::pair<std::size_t, std::size_t>, std::vector<Triangle2>> triangles_;
 };
 

@@ -26,9 +26,10 @@ struct InferenceLimits {
 
  Axis-hole: hole and shaft on one axis that engage; one mate for each pair of parts and axis, on the
  features that fit tightest among the long engagements; none where a third part (a bushing) lies
- between. Face-face: opposing planes that touch over an area; one mate for each pair of parts and
- plane. Both connectors of a mate coincide exactly in the drawn pose, whatever play the drawing has,
- so the drawn pose fulfils all mates at once. Nothing is moved.
+ between, nor for a wide passage around a shaft that another part guides. Face-face: opposing planes
+ that touch over an area; one mate for each pair of parts and plane. Both connectors of a mate
+ coincide exactly in the drawn pose, whatever play the drawing has, so the drawn pose fulfils all
+ mates at once. Nothing is moved.
 
  Notes parts without a mate ("no-mate") and drawn interference ("drawn-interference"). */
 void Infer(product::Product* product, Diagnostics* diagnostics, const InferenceLimits& limits = {});

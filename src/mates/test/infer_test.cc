@@ -203,6 +203,23 @@ TEST(Infer, ABushingBetweenShaftAndHousingLeavesTwoMates) {
   EXPECT_EQ(product.mates.size(), 1U);
 }
 
+TEST(Infer, AWidePassageAroundAGuidedShaftIsNoMate) {
+  Product product;
+  Part* bearing = AddPart(&product, "bearing");
+  AddCylinder(bearing, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 10e-3, 0, 20e-3);
+  Part* cover = AddPart(&product, "cover");
+  AddCylinder(cover, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 11e-3, 20e-3, 26e-3);
+  Part* shaft = AddPart(&product, "shaft");
+  AddCylinder(shaft, FeatureKind::kShaft, Vec3::Zero(), Vec3::UnitZ(), 10e-3, -10e-3, 50e-3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    AddOccurrence(&product, product::PartId(i), Pose());
+  }
+  Diagnostics diagnostics;
+  Infer(&product, &diagnostics);
+  ASSERT_EQ(product.mates.size(), 1U);
+  EXPECT_EQ(product.mates[0].a.occurrence.index(), 0U);
+}
+
 TEST(Infer, CoplanarFacesOfAPairMakeOneMate) {
   Product product;
   Part* rail = AddPart(&product, "rail");
