@@ -28,17 +28,50 @@ struct NearTriangle {
 
 using NearList = std::vector<NearTriangle>;
 
-// Keeps, of the triangles given, those that are closest to some point within `radius` of c.
-void Filter(const Mesh& mesh, const NearList& list, const Vec3& c, double radius, NearList* out) {
+// A sphere around each triangle, whose centre lies on the triangle.
+struct Spheres {
+  std::vector<Vec3> centre;
+  std::vector<double> radius;
+
+  explicit Spheres(const Mesh& mesh) {
+    for (const auto& t : mesh.triangles) {
+      const Vec3& a = mesh.vertices[t[0]];
+      const Vec3& b = mesh.vertices[t[1]];
+      const Vec3& c = mesh.vertices[t[2]];
+      const Vec3 m = (a + b + c) / 3;
+      centre.push_back(m);
+      radius.push_back(std::max({(a - m).norm(), (b - m).norm(), (c - m).norm()}));
+    }
+  }
+};
+
+// Keeps, of the triangles given, those that may be closest to some point within `radius` of c.
+// First by their spheres; then by their distance where the sphere is large against `radius`, so
+// says little. The distances written are lower bounds, and exact where `is_exact` asks for it.
+void Filter(const Mesh& mesh, const Spheres& spheres, const NearList& list, const Vec3& c,
+            double radius, bool is_exact, NearList* out) {
   double least = std::numeric_limits<double>::infinity();
+  for (const NearTriangle& entry : list) {
+    least = std::min(least, (spheres.centre[entry.triangle] - c).squaredNorm());
+  }
+  least = std::sqrt(least);
   out->clear();
   for (const NearTriangle& entry : list) {
     const double limit = (least + 2 * radius) * kFilterSlack;
-    const double distance = (mesh.ClosestOn(entry.triangle, c).q - c).norm();
-    if (distance <= limit) {
-      out->push_back({entry.triangle, distance});
+    const double size = spheres.radius[entry.triangle];
+    const double squared = (spheres.centre[entry.triangle] - c).squaredNorm();
+    if (squared > (limit + size) * (limit + size)) {
+      continue;
+    }
+    double distance = std::max(std::sqrt(squared) - size, 0.0);
+    if (is_exact || size > 0.5 * radius) {
+      distance = (mesh.ClosestOn(entry.triangle, c).q - c).norm();
+      if (distance > limit) {
+        continue;
+      }
       least = std::min(least, distance);
     }
+    out->push_back({entry.triangle, distance});
   }
   const double limit = (least + 2 * radius) * kFilterSlack;
   out->erase(std::remove_if(out->begin(), out->end(),
@@ -52,12 +85,10 @@ void SortByDistance(NearList* list) {
   });
 }
 
-double LeastDistance(const NearList& list) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const NearTriangle& entry : list) {
-    least = std::min(least, entry.distance);
-  }
-  return least;
+NearTriangle LeastOf(const NearList& list) {
+  return *std::min_element(
+      list.begin(), list.end(),
+      [](const NearTriangle& a, const NearTriangle& b) { return a.distance < b.distance; });
 }
 
 struct Nearest {
@@ -65,21 +96,26 @@ struct Nearest {
   std::uint32_t triangle{kNoFace};
 };
 
-// Signed distance at p from a list sorted by distance to a point that p is `offset` away from.
-Nearest CalcNearest(const Mesh& mesh, const NearList& list, const Vec3& p, double offset) {
+// Signed distance at p from a list with lower bounds of the distances to a point that p is `offset`
+// away from. Begins with the triangle `hint`.
+Nearest CalcNearest(const Mesh& mesh, const NearList& list, const Vec3& p, double offset,
+                    std::uint32_t hint) {
   double best = std::numeric_limits<double>::infinity();
   Nearest nearest;
   TrianglePoint best_point;
-  for (const NearTriangle& entry : list) {
-    if (entry.distance - offset > best * kFilterSlack) {
-      break;
-    }
-    const TrianglePoint point = mesh.ClosestOn(entry.triangle, p);
+  const auto look = [&](std::uint32_t triangle) {
+    const TrianglePoint point = mesh.ClosestOn(triangle, p);
     const double distance = (point.q - p).norm();
     if (distance < best) {
       best = distance;
       best_point = point;
-      nearest.triangle = entry.triangle;
+      nearest.triangle = triangle;
+    }
+  };
+  look(hint);
+  for (const NearTriangle& entry : list) {
+    if (entry.distance - offset <= best * kFilterSlack && entry.triangle != hint) {
+      look(entry.triangle);
     }
   }
   bool is_inside =
@@ -98,9 +134,15 @@ using Index3 = std::array<int, 3>;
 template <typename Leaf, typename Skip>
 class Descent {
  public:
-  Descent(const Mesh& mesh, const Vec3& origin, double side, const Index3& count, Leaf leaf,
-          Skip skip)
-      : mesh_(mesh), origin_(origin), side_(side), count_(count), leaf_(leaf), skip_(skip) {}
+  Descent(const Mesh& mesh, const Spheres& spheres, const Vec3& origin, double side,
+          const Index3& count, Leaf leaf, Skip skip)
+      : mesh_(mesh),
+        spheres_(spheres),
+        origin_(origin),
+        side_(side),
+        count_(count),
+        leaf_(leaf),
+        skip_(skip) {}
 
   void Run() {
     int width = 1;
@@ -125,7 +167,7 @@ class Descent {
         origin_ + side_ * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5 * width));
     const double radius = kHalfDiagonal * side_ * width;
     NearList list;
-    Filter(mesh_, parent, centre, radius, &list);
+    Filter(mesh_, spheres_, parent, centre, radius, false, &list);
     if (skip_(low, width, centre, radius, list)) {
       return;
     }
@@ -141,6 +183,7 @@ class Descent {
   }
 
   const Mesh& mesh_;
+  const Spheres& spheres_;
   Vec3 origin_;
   double side_;
   Index3 count_;
@@ -149,9 +192,9 @@ class Descent {
 };
 
 template <typename Leaf, typename Skip>
-void Descend(const Mesh& mesh, const Vec3& origin, double side, const Index3& count, Leaf leaf,
-             Skip skip) {
-  Descent<Leaf, Skip>(mesh, origin, side, count, leaf, skip).Run();
+void Descend(const Mesh& mesh, const Spheres& spheres, const Vec3& origin, double side,
+             const Index3& count, Leaf leaf, Skip skip) {
+  Descent<Leaf, Skip>(mesh, spheres, origin, side, count, leaf, skip).Run();
 }
 
 // Runs work(i) for i < count on two threads; the results do not depend on who does what.
@@ -185,21 +228,40 @@ struct Block {
 
 class BlockBuilder {
  public:
-  explicit BlockBuilder(const Shape::Data& data) : data_(data), h_(data.voxel) {}
+  BlockBuilder(const Shape::Data& data, const Spheres& spheres)
+      : data_(data), spheres_(spheres), h_(data.voxel) {}
 
   void Build(Block* block) {
-    for (int z = 0; z < kZonesPerBlock; ++z) {
-      BuildZone({z % 4, (z / 4) % 4, z / 16}, block);
+    // By way of the eight octants, so that each zone's list is cut from a short one.
+    NearList octant;
+    for (int o = 0; o < 8; ++o) {
+      const Index3 low{2 * (o & 1), 2 * ((o >> 1) & 1), 2 * (o >> 2)};
+      const Vec3 centre = block->origin + 2 * h_ * (Vec3(low[0], low[1], low[2]) + Vec3::Ones());
+      Filter(data_.mesh, spheres_, block->list, centre, 4 * kHalfDiagonal * h_, false, &octant);
+      for (int z = 0; z < 8; ++z) {
+        BuildZone({low[0] + (z & 1), low[1] + ((z >> 1) & 1), low[2] + (z >> 2)}, octant, block);
+      }
     }
     block->list = {};
   }
 
  private:
-  void BuildZone(const Index3& zone, Block* block) {
+  void BuildZone(const Index3& zone, const NearList& octant, Block* block) {
     const Vec3 centre = block->origin + h_ * (2.0 * Vec3(zone[0], zone[1], zone[2]) + Vec3::Ones());
     const double radius = 2 * kHalfDiagonal * h_;
-    Filter(data_.mesh, block->list, centre, radius, &list_);
-    SortByDistance(&list_);
+    Filter(data_.mesh, spheres_, octant, centre, radius, false, &list_);
+    hint_ = LeastOf(list_).triangle;
+    face_ = data_.mesh.face[hint_];
+    is_one_face_ = std::all_of(list_.begin(), list_.end(), [&](const NearTriangle& n) {
+      return data_.mesh.face[n.triangle] == face_;
+    });
+    is_exact_ = is_one_face_ && AgreesWithFace(centre);
+    DecideZone(centre, radius,
+               &block->zones[static_cast<std::size_t>(zone[2] * 16 + zone[1] * 4 + zone[0])]);
+    FillNodes(zone, centre, block);
+  }
+
+  void FillNodes(const Index3& zone, const Vec3& centre, Block* block) {
     const double quantum = kBandVoxels * h_ / 32767;
     Index3 end{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -208,8 +270,7 @@ class BlockBuilder {
     for (int k = 2 * zone[2]; k < end[2]; ++k) {
       for (int j = 2 * zone[1]; j < end[1]; ++j) {
         for (int i = 2 * zone[0]; i < end[0]; ++i) {
-          const Vec3 p = block->origin + h_ * Vec3(i, j, k);
-          const double phi = CalcNearest(data_.mesh, list_, p, (p - centre).norm()).distance;
+          const double phi = DistanceAt(block->origin + h_ * Vec3(i, j, k), centre);
           block->is_near = block->is_near || std::abs(phi) < kBandVoxels * h_;
           block->is_inside = phi < 0;
           const double units = std::clamp(phi / quantum, -32767.0, 32767.0);
@@ -218,31 +279,36 @@ class BlockBuilder {
         }
       }
     }
-    Zone& out = block->zones[static_cast<std::size_t>(zone[2] * 16 + zone[1] * 4 + zone[0])];
-    DecideZone(centre, radius, &out);
   }
 
-  void DecideZone(const Vec3& centre, double radius, Zone* out) const {
-    const std::uint32_t face = data_.mesh.face[list_.front().triangle];
-    if (list_.front().distance > kExactVoxels * h_ + radius) {
-      out->code = zone::kFar | face;
-      return;
+  double DistanceAt(const Vec3& p, const Vec3& centre) {
+    if (is_exact_) {
+      const auto exact = spatial::CalcDistance(data_.exact.faces[face_], p);
+      if (exact.is_valid) {
+        return exact.distance;
+      }
     }
-    const bool is_one_face = std::all_of(list_.begin(), list_.end(), [&](const NearTriangle& n) {
-      return data_.mesh.face[n.triangle] == face;
-    });
-    const bool is_freeform = data_.exact.faces[face].kind == spatial::SurfaceKind::kFreeform;
-    if (is_one_face && is_freeform && !HasSharpEdge()) {
-      out->code = zone::kSmooth | face;
-      return;
-    }
-    if (is_one_face && !is_freeform && AgreesWithFace(centre, face)) {
-      out->code = zone::kExact | face;
-      return;
-    }
-    out->code = zone::kList;
-    for (const NearTriangle& entry : list_) {
-      out->list.push_back({entry.triangle, static_cast<float>(entry.distance * (1 - 1e-6))});
+    const Nearest nearest = CalcNearest(data_.mesh, list_, p, (p - centre).norm(), hint_);
+    hint_ = nearest.triangle;
+    return nearest.distance;
+  }
+
+  void DecideZone(const Vec3& centre, double radius, Zone* out) {
+    if (LeastOf(list_).distance > kExactVoxels * h_ + radius) {
+      out->code = zone::kFar | face_;
+    } else if (is_exact_) {
+      out->code = zone::kExact | face_;
+    } else if (is_one_face_ && !HasSharpEdge() &&
+               data_.exact.faces[face_].kind == spatial::SurfaceKind::kFreeform) {
+      out->code = zone::kSmooth | face_;
+    } else {
+      out->code = zone::kList;
+      NearList listed;
+      Filter(data_.mesh, spheres_, list_, centre, radius, true, &listed);
+      SortByDistance(&listed);
+      for (const NearTriangle& entry : listed) {
+        out->list.push_back({entry.triangle, static_cast<float>(entry.distance * (1 - 1e-6))});
+      }
     }
   }
 
@@ -258,17 +324,20 @@ class BlockBuilder {
   }
 
   // The unbounded surface may come closer than the face does, on the far side of an axis.
-  bool AgreesWithFace(const Vec3& centre, std::uint32_t face) const {
-    const double tolerance = 2 * data_.exact.deviation[face] + 1e-9;
+  bool AgreesWithFace(const Vec3& centre) {
+    if (data_.exact.faces[face_].kind == spatial::SurfaceKind::kFreeform) {
+      return false;
+    }
+    const double tolerance = 2 * data_.exact.deviation[face_] + 1e-9;
     for (int i = 0; i < 9; ++i) {
-      Vec3 offset = Vec3::Zero();
+      Vec3 p = centre;
       if (i < 8) {
-        offset = h_ * Vec3((i & 1) * 2.0 - 1, ((i >> 1) & 1) * 2.0 - 1, (i >> 2) * 2.0 - 1);
+        p += h_ * Vec3((i & 1) * 2.0 - 1, ((i >> 1) & 1) * 2.0 - 1, (i >> 2) * 2.0 - 1);
       }
-      const Vec3 p = centre + offset;
-      const auto exact = spatial::CalcDistance(data_.exact.faces[face], p);
-      const double mesh = CalcNearest(data_.mesh, list_, p, offset.norm()).distance;
-      if (!exact.is_valid || std::abs(exact.distance - mesh) > tolerance) {
+      const auto exact = spatial::CalcDistance(data_.exact.faces[face_], p);
+      const Nearest nearest = CalcNearest(data_.mesh, list_, p, (p - centre).norm(), hint_);
+      hint_ = nearest.triangle;
+      if (!exact.is_valid || std::abs(exact.distance - nearest.distance) > tolerance) {
         return false;
       }
     }
@@ -276,11 +345,17 @@ class BlockBuilder {
   }
 
   const Shape::Data& data_;
+  const Spheres& spheres_;
   double h_;
+  // Of the zone at hand.
   NearList list_;
+  std::uint32_t hint_{0};
+  std::uint32_t face_{0};
+  bool is_one_face_{false};
+  bool is_exact_{false};
 };
 
-void BuildBlocks(Shape::Data* data) {
+void BuildBlocks(const Spheres& spheres, Shape::Data* data) {
   FieldView& view = data->field.view;
   const double side = kBlockCells * data->voxel;
   const Vec3 origin(static_cast<double>(view.origin[0]), static_cast<double>(view.origin[1]),
@@ -303,11 +378,11 @@ void BuildBlocks(Shape::Data* data) {
   };
   const auto skip = [&](const Index3& low, int width, const Vec3& centre, double radius,
                         NearList& list) {
-    if (LeastDistance(list) <= kBandVoxels * data->voxel + radius) {
+    const NearTriangle least = LeastOf(list);
+    if (least.distance <= kBandVoxels * data->voxel + radius) {
       return false;
     }
-    SortByDistance(&list);
-    if (CalcNearest(data->mesh, list, centre, 0).distance < 0) {
+    if (CalcNearest(data->mesh, list, centre, 0, least.triangle).distance < 0) {
       for (int z = low[2]; z < std::min(low[2] + width, count[2]); ++z) {
         for (int y = low[1]; y < std::min(low[1] + width, count[1]); ++y) {
           for (int x = low[0]; x < std::min(low[0] + width, count[0]); ++x) {
@@ -318,8 +393,8 @@ void BuildBlocks(Shape::Data* data) {
     }
     return true;
   };
-  Descend(data->mesh, origin, side, count, leaf, skip);
-  ForEach(blocks.size(), [&](std::size_t i) { BlockBuilder(*data).Build(&blocks[i]); });
+  Descend(data->mesh, spheres, origin, side, count, leaf, skip);
+  ForEach(blocks.size(), [&](std::size_t i) { BlockBuilder(*data, spheres).Build(&blocks[i]); });
 
   ExactTable& exact = data->exact;
   exact.list_begin.push_back(0);
@@ -346,7 +421,7 @@ void BuildBlocks(Shape::Data* data) {
   data->field.nodes.shrink_to_fit();
 }
 
-void BuildCoarse(Shape::Data* data) {
+void BuildCoarse(const Spheres& spheres, Shape::Data* data) {
   FieldView& view = data->field.view;
   const Vec3 size = data->box_B.size();
   const double cell = std::max(4 * data->voxel, size.norm() / 56);
@@ -365,10 +440,10 @@ void BuildCoarse(Shape::Data* data) {
                                 static_cast<std::size_t>(count[2]),
                             0.0F);
   Descend(
-      data->mesh, origin - Vec3::Constant(0.5 * side), side, count,
+      data->mesh, spheres, origin - Vec3::Constant(0.5 * side), side, count,
       [&](const Index3& low, const Vec3& centre, NearList& list) {
-        SortByDistance(&list);
-        const double phi = CalcNearest(data->mesh, list, centre, 0).distance;
+        const double phi =
+            CalcNearest(data->mesh, list, centre, 0, LeastOf(list).triangle).distance;
         data->field
             .coarse[static_cast<std::size_t>((low[2] * count[1] + low[1]) * count[0] + low[0])] =
             static_cast<float>(phi);
@@ -412,7 +487,8 @@ void MeasureSlack(Shape::Data* data) {
         const auto i = static_cast<std::size_t>(k);
         p[k] = static_cast<double>(view.origin[k]) + h * (8 * at[i] + cell[i] + 0.5);
       }
-      worst = std::max(worst, phi - Refine(*data, p, phi, Vec3::UnitZ(), {}).distance);
+      const Hit field{0, static_cast<float>(phi), {0.0F, 0.0F, 1.0F}};
+      worst = std::max(worst, phi - Refine(*data, p, field, {}).distance);
     }
     data->field.slack[static_cast<std::size_t>(block)] =
         static_cast<float>(kSafety * worst + 2 * static_cast<double>(view.quantum));
@@ -446,8 +522,8 @@ double ChooseVoxel(const Mesh& mesh, const std::vector<spatial::Surface>& faces)
   }
   const double bytes = 2.0 * kBlockNodes + 4.0 * kZonesPerBlock;
   const double by_memory = std::sqrt(area * kBlocksPerPatch * bytes / kMemoryAim) / kBlockCells;
-  const double least = std::max({by_memory, size / 300, kSmallestVoxel});
-  const double most = std::max(least, std::min(size / 60, kLargestVoxel));
+  const double least = std::max({by_memory, size / 400, kSmallestVoxel});
+  const double most = std::max(least, std::min(size / 150, kLargestVoxel));
   return std::clamp(radius / 6, least, most);
 }
 
@@ -496,8 +572,9 @@ void BuildField(Shape::Data* data) {
     view.blocks[k] = static_cast<int>(std::ceil(2 * reach / (kBlockCells * data->voxel)));
     view.origin[k] = static_cast<float>(-0.5 * view.blocks[k] * kBlockCells * data->voxel);
   }
-  BuildBlocks(data);
-  BuildCoarse(data);
+  const Spheres spheres(data->mesh);
+  BuildBlocks(spheres, data);
+  BuildCoarse(spheres, data);
   view.top = data->field.top.data();
   view.nodes = data->field.nodes.data();
   view.coarse = data->field.coarse.data();

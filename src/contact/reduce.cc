@@ -51,15 +51,15 @@ ContactReducer::Group* ContactReducer::Find(std::uint64_t key, const Vec3& nhat_
   const Mat3 frame = spatial::FrameFromZ(nhat_S).toRotationMatrix();
   group.u = frame.col(0);
   group.v = frame.col(1);
-  group.deepest.contact.distance = std::numeric_limits<double>::infinity();
+  group.least = std::numeric_limits<double>::infinity();
   group.reach.fill(-std::numeric_limits<double>::infinity());
   return &group;
 }
 
-void ContactReducer::Add(const Contact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept {
+void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept {
   const std::uint32_t number = count_++;
   deepest_ = std::min(deepest_, contact.distance);
-  const std::uint64_t key = (static_cast<std::uint64_t>(contact.body.value()) << 40U) |
+  const std::uint64_t key = (static_cast<std::uint64_t>(contact.body) << 40U) |
                             (static_cast<std::uint64_t>(contact.scene_face) << 8U) |
                             DirectionCell(nhat_S);
   Group* group = Find(key, nhat_S);
@@ -67,7 +67,8 @@ void ContactReducer::Add(const Contact& contact, const Vec3& nhat_S, const Vec3&
     is_full_ = true;
     return;
   }
-  if (contact.distance < group->deepest.contact.distance) {
+  if (contact.distance < group->least) {
+    group->least = contact.distance;
     group->deepest = {contact, number};
   }
   const double a = group->u.dot(p_S);
@@ -83,15 +84,15 @@ void ContactReducer::Add(const Contact& contact, const Vec3& nhat_S, const Vec3&
   }
 }
 
-std::size_t ContactReducer::Select(std::span<Contact> out) noexcept {
+std::size_t ContactReducer::Select(std::span<RawContact> out) noexcept {
   std::array<std::uint16_t, kMaxGroups> order;
   for (std::size_t i = 0; i < group_count_; ++i) {
     order[i] = static_cast<std::uint16_t>(i);
   }
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(group_count_),
             [&](std::uint16_t a, std::uint16_t b) {
-              const double da = groups_[a].deepest.contact.distance;
-              const double db = groups_[b].deepest.contact.distance;
+              const double da = groups_[a].least;
+              const double db = groups_[b].least;
               return da != db ? da < db : groups_[a].key < groups_[b].key;
             });
   std::size_t written = 0;

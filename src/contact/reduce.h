@@ -4,9 +4,23 @@
 #include <cstdint>
 #include <span>
 
-#include "contact/scene.h"
+#include "spatial/pose.h"
 
 namespace hvas::contact {
+
+/** A contact as it is found: a sample of one shape in the field of the other. Frames are centred.
+ */
+struct RawContact {
+  double distance{0};
+  Vec3 p{Vec3::Zero()};         ///< The sample, in the frame of the shape it belongs to.
+  Vec3 gradient{Vec3::Zero()};  ///< Unit, out of the other shape, in that shape's frame.
+  std::uint32_t body{0};
+  std::uint32_t point{0};  ///< Of the shell it came from.
+  std::uint32_t held_face{0};
+  std::uint32_t scene_face{0};
+  bool is_reverse{false};  ///< The sample is the scene body's, the field the held shape's.
+  bool is_exact{false};
+};
 
 /** Reduces a stream of contacts to a few that span it. Contacts are grouped by body, scene face and
  direction of the normal; each group keeps its deepest and its extremes along eight tangents, which
@@ -17,11 +31,14 @@ class ContactReducer {
 
   /** @param nhat_S  The contact's normal in the scene body, which the groups go by.
    @param p_S  Its position there. */
-  void Add(const Contact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept;
+  void Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept;
 
   /** Writes the deepest of every group, deepest group first, then extremes, until `out` is full.
    Returns how many were written. */
-  std::size_t Select(std::span<Contact> out) noexcept;
+  std::size_t Select(std::span<RawContact> out) noexcept;
+
+  /** How many of the selected are a group's deepest; they come first. */
+  [[nodiscard]] std::size_t group_count() const noexcept { return group_count_; }
 
   [[nodiscard]] double deepest() const noexcept { return deepest_; }
 
@@ -35,7 +52,7 @@ class ContactReducer {
   static constexpr std::size_t kTangents = 8;
 
   struct Kept {
-    Contact contact;
+    RawContact contact;
     std::uint32_t number{0};  // In the order of arrival.
   };
 
@@ -43,8 +60,9 @@ class ContactReducer {
     std::uint64_t key{0};
     Vec3 u{Vec3::Zero()};
     Vec3 v{Vec3::Zero()};
-    Kept deepest;
+    double least{0};
     std::array<double, kTangents> reach{};
+    Kept deepest;
     std::array<Kept, kTangents> extremes;
   };
 

@@ -8,6 +8,22 @@ namespace {
 
 constexpr double kOnFeature = 1e-9;  // [m]; nearer than this the direction to a feature is noise.
 
+// Unit gradient; where the field has none (on a medial axis), away from the part's centre.
+Vec3 DirectionOf(const Hit& field, const Vec3& p) {
+  const Vec3 g(static_cast<double>(field.gradient[0]), static_cast<double>(field.gradient[1]),
+               static_cast<double>(field.gradient[2]));
+  const double norm = g.norm();
+  if (norm > 1e-3) {
+    return g / norm;
+  }
+  return p.norm() > 0 ? Vec3(p.normalized()) : Vec3::UnitZ();
+}
+
+Refined Trilinear(const Hit& field, const Vec3& p) {
+  return {
+      static_cast<double>(field.distance), DirectionOf(field, p), kNoFace, kNoFace, false, true};
+}
+
 struct Closest {
   double squared{std::numeric_limits<double>::infinity()};
   Vec3 q{Vec3::Zero()};
@@ -54,7 +70,7 @@ SolidFeature FeatureOf(const Mesh& mesh, const Closest& closest) {
 }
 
 Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t face,
-                 const Vec3& p, double sign, const Vec3& field_gradient) {
+                 const Vec3& p, double sign, const Hit& field) {
   Refined result;
   result.face = face;
   const double mesh_distance = std::sqrt(closest.squared);
@@ -71,7 +87,7 @@ Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t
   result.gradient =
       is_off ? Vec3(sign / mesh_distance * (p - closest.q)) : shape.mesh.normal[closest.triangle];
   if (result.gradient.isZero()) {
-    result.gradient = field_gradient;
+    result.gradient = DirectionOf(field, p);
   }
   return result;
 }
@@ -148,14 +164,14 @@ class ZoneList {
 };
 
 Refined FromFeature(const Shape::Data& shape, const Closest& closest, const SolidFeature& feature,
-                    const Vec3& p, double field_distance, const Vec3& field_gradient) {
+                    const Vec3& p, const Hit& field) {
   const Vec3 normal = shape.mesh.Pseudonormal(closest.triangle, closest.feature);
   double sign = (p - closest.q).dot(normal) >= 0 ? 1 : -1;
   if (shape.mesh.IsOpenAt(closest.triangle, closest.feature)) {
-    sign = field_distance >= 0 ? 1 : -1;
+    sign = field.distance >= 0 ? 1 : -1;
   }
   return feature.kind == VertexKind::kSmooth
-             ? FromFace(shape, closest, feature.face, p, sign, field_gradient)
+             ? FromFace(shape, closest, feature.face, p, sign, field)
              : FromEdge(shape, closest, feature, p, sign);
 }
 
@@ -163,7 +179,7 @@ Refined FromFeature(const Shape::Data& shape, const Closest& closest, const Soli
 // lies beyond them counts only where it faces p. Where a kept face meets an ignored one in a
 // concave edge, the kept one goes on beyond the edge, as for a pin at the bottom of its hole.
 Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec3& p,
-                       const FaceFilter& filter, const Vec3& field_gradient) {
+                       const FaceFilter& filter, const Hit& field) {
   Refined none;
   none.is_valid = false;
   const Closest closest = list.Find(filter);
@@ -188,7 +204,7 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
     result.is_exact = true;
     return result;
   }
-  const Refined result = FromFeature(shape, closest, feature, p, 1.0, field_gradient);
+  const Refined result = FromFeature(shape, closest, feature, p, field);
   return result.distance >= 0 ? result : none;
 }
 
@@ -224,28 +240,24 @@ bool ProjectOnEdge(const spatial::Surface& a, const spatial::Surface& b, const V
          std::abs(spatial::CalcDistance(b, x).distance) < kOnFeature;
 }
 
-Refined Refine(const Shape::Data& shape, const Vec3& p, double field_distance,
-               const Vec3& field_gradient, const FaceFilter& filter) noexcept {
-  Refined trilinear;
-  trilinear.distance = field_distance;
-  trilinear.gradient = field_gradient;
-  const FieldView& field = shape.field.view;
+Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
+               const FaceFilter& filter) noexcept {
+  const FieldView& grid = shape.field.view;
   const double inverse = 1 / shape.voxel;
   int cell[3];
   Vec3 centre;
   for (int k = 0; k < 3; ++k) {
-    const double u = (p[k] - static_cast<double>(field.origin[k])) * inverse;
-    if (!(u >= 0 && u < kBlockCells * field.blocks[k])) {
-      return trilinear;
+    const double u = (p[k] - static_cast<double>(grid.origin[k])) * inverse;
+    if (!(u >= 0 && u < kBlockCells * grid.blocks[k])) {
+      return Trilinear(field, p);
     }
     cell[k] = static_cast<int>(u);
-    centre[k] = static_cast<double>(field.origin[k]) + ((cell[k] & ~1) + 1) * shape.voxel;
+    centre[k] = static_cast<double>(grid.origin[k]) + ((cell[k] & ~1) + 1) * shape.voxel;
   }
-  const int block =
-      field.top[((cell[2] >> 3) * field.blocks[1] + (cell[1] >> 3)) * field.blocks[0] +
-                (cell[0] >> 3)];
+  const int block = grid.top[((cell[2] >> 3) * grid.blocks[1] + (cell[1] >> 3)) * grid.blocks[0] +
+                             (cell[0] >> 3)];
   if (block < 0) {
-    return trilinear;
+    return Trilinear(field, p);
   }
   const int index = block * kZonesPerBlock + ((cell[2] & 7) >> 1) * 16 + ((cell[1] & 7) >> 1) * 4 +
                     ((cell[0] & 7) >> 1);
@@ -256,21 +268,24 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, double field_distance,
     const Closest closest = list.Find({});
     const SolidFeature feature = FeatureOf(shape.mesh, closest);
     if (filter.Drops(feature.face) || filter.Drops(feature.other_face)) {
-      return WithoutIgnored(shape, list, p, filter, field_gradient);
+      return WithoutIgnored(shape, list, p, filter, field);
     }
-    return FromFeature(shape, closest, feature, p, field_distance, field_gradient);
+    return FromFeature(shape, closest, feature, p, field);
   }
-  trilinear.face = payload;
-  trilinear.is_valid = !filter.Drops(payload);
+  if (filter.Drops(payload)) {
+    Refined none;
+    none.is_valid = false;
+    return none;
+  }
   if ((code & ~zone::kPayload) == zone::kExact) {
     const auto exact = spatial::CalcDistance(shape.exact.faces[payload], p);
     if (exact.is_valid) {
-      trilinear.distance = exact.distance;
-      trilinear.gradient = exact.gradient;
-      trilinear.is_exact = true;
+      return {exact.distance, exact.gradient, payload, kNoFace, true, true};
     }
   }
-  return trilinear;
+  Refined result = Trilinear(field, p);
+  result.face = payload;
+  return result;
 }
 
 }  // namespace hvas::contact

@@ -26,8 +26,8 @@ struct FaceFilter {
 
 /** The distance at p on the analytic surfaces, with faces trimmed by their triangles; `field` is
  the interpolated value there, which stays where nothing better is known. RT-safe. */
-[[nodiscard]] Refined Refine(const Shape::Data& shape, const Vec3& p, double field_distance,
-                             const Vec3& field_gradient, const FaceFilter& filter) noexcept;
+[[nodiscard]] Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
+                             const FaceFilter& filter) noexcept;
 
 /** The closest point to p on the curve where two analytic surfaces meet, from a start near it: a
  few steps of Newton's method. False when they do not meet there. RT-safe. */

@@ -77,8 +77,8 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
   CheckFaces(data->mesh, &data->exact);
   data->voxel = options.voxel > 0 ? options.voxel : ChooseVoxel(data->mesh, data->exact.faces);
   BuildField(data.get());
-  BuildShells(options.point_spacing > 0 ? options.point_spacing : ChooseSpacing(data->mesh),
-              data.get());
+  data->spacing = options.point_spacing > 0 ? options.point_spacing : ChooseSpacing(data->mesh);
+  BuildShells(data.get());
   return std::make_shared<const Shape>(std::move(data));
 }
 
@@ -106,7 +106,7 @@ std::size_t Shape::memory_bytes() const noexcept {
          Bytes(m.vertex_faces) + Bytes(m.is_vertex_open) + Bytes(d.field.top) +
          Bytes(d.field.nodes) + Bytes(d.field.slack) + Bytes(d.field.coarse) +
          Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
-         Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.shell) + Bytes(d.edges);
+         Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.shell) + Bytes(d.features);
 }
 
 }  // namespace hvas::contact

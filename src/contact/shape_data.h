@@ -65,8 +65,10 @@ struct Shape::Data {
   Mesh mesh;
   Field field;
   ExactTable exact;
+  double spacing{0};
   Shell shell;  ///< All samples.
-  Shell edges;  ///< Those on convex edges and corners only.
+  Shell
+      features;  ///< Those that can touch a flat face first: on convex edges, corners, round faces.
 };
 
 }  // namespace hvas::contact

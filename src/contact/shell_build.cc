@@ -24,6 +24,7 @@ struct Sample {
   Vec3 p;
   PointFaces faces;
   bool is_edge;
+  bool is_feature;
 };
 
 PointFaces FacesOf(std::initializer_list<std::uint32_t> faces) {
@@ -118,7 +119,7 @@ void AddCorners(const Mesh& mesh, Sampler* sampler) {
   }
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     if (mesh.vertex_kind[v] == VertexKind::kCorner && is_convex[v] != 0) {
-      sampler->Add({mesh.vertices[v], faces[v], true});
+      sampler->Add({mesh.vertices[v], faces[v], true, true});
     }
   }
 }
@@ -145,56 +146,92 @@ void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
             (q - p).norm() <= tolerance) {
           p = q;
         }
-        sampler->TryAdd({p, f == g ? FacesOf({f}) : FacesOf({f, g}), true}, 0.9 * spacing);
+        sampler->TryAdd({p, f == g ? FacesOf({f}) : FacesOf({f, g}), true, true}, 0.9 * spacing);
       }
     }
   }
 }
 
-void AddFaces(const Shape::Data& data, double spacing, Sampler* sampler) {
+// How a face is sampled: `stretch` takes its points to a space in which samples are equally far
+// apart in all directions.
+struct FacePlan {
+  Mat3 stretch{Mat3::Identity()};
+  double area_scale{1};
+  bool is_feature{true};
+};
+
+FacePlan PlanOf(const spatial::Surface& face) {
+  constexpr double kSparse = 1.0 / 3;
+  FacePlan plan;
+  if (face.kind == spatial::SurfaceKind::kFreeform || face.kind == spatial::SurfaceKind::kTorus) {
+    return plan;
+  }
+  if (face.kind == spatial::SurfaceKind::kPlane || face.outward < 0) {
+    plan.stretch *= kSparse;
+    plan.area_scale = kSparse * kSparse;
+    plan.is_feature = false;
+  } else if (face.kind != spatial::SurfaceKind::kSphere) {
+    plan.stretch -= (1 - kSparse) * face.axis * face.axis.transpose();
+    plan.area_scale = kSparse;
+  }
+  return plan;
+}
+
+void AddFace(const Shape::Data& data, std::uint32_t f, const std::vector<std::uint32_t>& triangles,
+             Random* random, std::vector<Sample>* out) {
   const Mesh& mesh = data.mesh;
-  Random random(kSeed);
-  std::vector<std::vector<std::uint32_t>> triangles(data.exact.faces.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    triangles[mesh.face[t]].push_back(t);
-  }
+  const double spacing = data.spacing;
   std::vector<double> sum;
-  for (std::uint32_t f = 0; f < triangles.size(); ++f) {
-    sum.clear();
-    double area = 0;
-    for (const std::uint32_t t : triangles[f]) {
-      const auto& v = mesh.triangles[t];
-      area += 0.5 * (mesh.vertices[v[1]] - mesh.vertices[v[0]])
-                        .cross(mesh.vertices[v[2]] - mesh.vertices[v[0]])
-                        .norm();
-      sum.push_back(area);
+  double area = 0;
+  for (const std::uint32_t t : triangles) {
+    const auto& v = mesh.triangles[t];
+    area += 0.5 * (mesh.vertices[v[1]] - mesh.vertices[v[0]])
+                      .cross(mesh.vertices[v[2]] - mesh.vertices[v[0]])
+                      .norm();
+    sum.push_back(area);
+  }
+  if (!(area > 0)) {
+    return;
+  }
+  const FacePlan plan = PlanOf(data.exact.faces[f]);
+  Sampler stretched(spacing);
+  const int tries =
+      8 + static_cast<int>(kTriesPerSample * plan.area_scale * area / (spacing * spacing));
+  for (int i = 0; i < tries; ++i) {
+    const auto pick = std::lower_bound(sum.begin(), sum.end(), random->Uniform() * area);
+    const std::uint32_t t = triangles[static_cast<std::size_t>(
+        std::min<std::ptrdiff_t>(pick - sum.begin(), std::ssize(sum) - 1))];
+    const auto& v = mesh.triangles[t];
+    const double root = std::sqrt(random->Uniform());
+    const double share = random->Uniform();
+    Vec3 p = (1 - root) * mesh.vertices[v[0]] + root * (1 - share) * mesh.vertices[v[1]] +
+             root * share * mesh.vertices[v[2]];
+    const auto exact = spatial::CalcDistance(data.exact.faces[f], p);
+    if (exact.is_valid) {
+      p -= exact.distance * exact.gradient;
     }
-    if (!(area > 0)) {
-      continue;
-    }
-    const int tries = 8 + static_cast<int>(kTriesPerSample * area / (spacing * spacing));
-    bool has_sample = false;
-    for (int i = 0; i < tries; ++i) {
-      const auto pick = std::lower_bound(sum.begin(), sum.end(), random.Uniform() * area);
-      const std::uint32_t t = triangles[f][static_cast<std::size_t>(
-          std::min<std::ptrdiff_t>(pick - sum.begin(), std::ssize(sum) - 1))];
-      const auto& v = mesh.triangles[t];
-      const double root = std::sqrt(random.Uniform());
-      const double share = random.Uniform();
-      Vec3 p = (1 - root) * mesh.vertices[v[0]] + root * (1 - share) * mesh.vertices[v[1]] +
-               root * share * mesh.vertices[v[2]];
-      const auto exact = spatial::CalcDistance(data.exact.faces[f], p);
-      if (exact.is_valid) {
-        p -= exact.distance * exact.gradient;
-      }
-      const Sample sample{p, FacesOf({f}), false};
-      if (sampler->TryAdd(sample, kDensity * spacing)) {
-        has_sample = true;
-      } else if (!has_sample && i == tries - 1) {
-        sampler->Add(sample);
-      }
+    const Sample sample{plan.stretch * p, FacesOf({f}), false, plan.is_feature};
+    if (stretched.TryAdd(sample, kDensity * spacing)) {
+      out->push_back(sample);
+      out->back().p = p;
     }
   }
+}
+
+std::vector<Sample> SampleAll(const Shape::Data& data) {
+  Sampler edges(data.spacing);
+  AddCorners(data.mesh, &edges);
+  AddEdges(data, kEdgeRatio * data.spacing, &edges);
+  std::vector<Sample> samples = edges.samples();
+  std::vector<std::vector<std::uint32_t>> triangles(data.exact.faces.size());
+  for (std::uint32_t t = 0; t < data.mesh.triangles.size(); ++t) {
+    triangles[data.mesh.face[t]].push_back(t);
+  }
+  Random random(kSeed);
+  for (std::uint32_t f = 0; f < triangles.size(); ++f) {
+    AddFace(data, f, triangles[f], &random, &samples);
+  }
+  return samples;
 }
 
 class TreeBuilder {
@@ -319,21 +356,18 @@ double ChooseSpacing(const Mesh& mesh) {
   return std::max({box.size().norm() / 100, std::sqrt(area / kMaxFaceSamples), 20e-6});
 }
 
-void BuildShells(double spacing, Shape::Data* data) {
-  Sampler sampler(spacing);
-  AddCorners(data->mesh, &sampler);
-  AddEdges(*data, kEdgeRatio * spacing, &sampler);
-  AddFaces(*data, spacing, &sampler);
+void BuildShells(Shape::Data* data) {
+  const std::vector<Sample> samples = SampleAll(*data);
   std::vector<std::uint32_t> all;
-  std::vector<std::uint32_t> edges;
-  for (std::uint32_t i = 0; i < sampler.samples().size(); ++i) {
+  std::vector<std::uint32_t> features;
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
     all.push_back(i);
-    if (sampler.samples()[i].is_edge) {
-      edges.push_back(i);
+    if (samples[i].is_feature) {
+      features.push_back(i);
     }
   }
-  TreeBuilder(sampler.samples(), &data->shell).Build(std::move(all));
-  TreeBuilder(sampler.samples(), &data->edges).Build(std::move(edges));
+  TreeBuilder(samples, &data->shell).Build(std::move(all));
+  TreeBuilder(samples, &data->features).Build(std::move(features));
 }
 
 }  // namespace hvas::contact

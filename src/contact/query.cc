@@ -1,0 +1,227 @@
+#include "contact/query.h"
+
+#include <algorithm>
+
+namespace hvas::contact {
+namespace {
+
+constexpr std::size_t kMaxPairsPerBody = 8;  // Bits of a face mask; further pairs share the last.
+const std::uint32_t kGroundBody = BodyId{}.value();
+
+Vec3 PointOf(const Shell& shell, std::uint32_t i) {
+  return {static_cast<double>(shell.x[i]), static_cast<double>(shell.y[i]),
+          static_cast<double>(shell.z[i])};
+}
+
+using PointFaces = std::array<std::uint32_t, kMaxPointFaces>;
+
+std::uint8_t BitsOf(const PointFaces& faces, const std::vector<std::uint8_t>& mask) {
+  std::uint8_t bits = 0;
+  for (const std::uint32_t f : faces) {
+    if (f != kNoFace) {
+      bits = static_cast<std::uint8_t>(bits | mask[f]);
+    }
+  }
+  return bits;
+}
+
+// Of the faces that meet at a sample, the one that looks most along the direction.
+std::uint32_t FacingFace(const Shape::Data& shape, const PointFaces& faces, const Vec3& p,
+                         const Vec3& direction) {
+  if (faces[1] == kNoFace) {
+    return faces[0];
+  }
+  std::uint32_t best = faces[0];
+  double best_cosine = -2;
+  for (const std::uint32_t f : faces) {
+    if (f == kNoFace) {
+      continue;
+    }
+    const auto exact = spatial::CalcDistance(shape.exact.faces[f], p);
+    const double cosine = exact.is_valid ? exact.gradient.dot(direction) : -1;
+    if (cosine > best_cosine) {
+      best_cosine = cosine;
+      best = f;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void QueryWorkspace::Data::Clear() noexcept {
+  reducer.Clear();
+  contact_count = 0;
+  stats = {};
+  deepest = std::numeric_limits<double>::infinity();
+}
+
+FloatPose RelativePose::Single() const {
+  FloatPose out{};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      out.R[3 * i + j] = static_cast<float>(R(i, j));
+    }
+    out.p[i] = static_cast<float>(p[i]);
+  }
+  return out;
+}
+
+void BodyQuery::Body(BodyId id, const Placed& scene) noexcept {
+  if (is_stopped_ || !BoxesTouch(RelativePose(scene, held_), scene)) {
+    return;
+  }
+  ++work_->stats.bodies_tested;
+  const bool has_ignored = SetMasks(id, 0xff);
+  Samples<false>(held_, held_.shape->shell, scene, has_ignored, id.value());
+  Samples<true>(scene, scene.shape->features, held_, has_ignored, id.value());
+  if (has_ignored) {
+    SetMasks(id, 0);
+  }
+}
+
+bool BodyQuery::BoxesTouch(const RelativePose& X_SH, const Placed& scene) const noexcept {
+  const Vec3 half_S = scene.half() + Vec3::Constant(margin_);
+  const Vec3 half_H = held_.half();
+  const Mat3 turn = X_SH.R.cwiseAbs();
+  const Vec3 reach_S = half_S + turn * half_H;
+  const Vec3 reach_H = half_H + turn.transpose() * half_S;
+  const Vec3 p_H = X_SH.R.transpose() * X_SH.p;
+  return (X_SH.p.cwiseAbs().array() <= reach_S.array()).all() &&
+         (p_H.cwiseAbs().array() <= reach_H.array()).all();
+}
+
+// Marks (keep = 0xff) or clears (keep = 0) the faces of this body's ignored pairs.
+bool BodyQuery::SetMasks(BodyId id, std::uint8_t keep) noexcept {
+  std::size_t pair = 0;
+  for (const IgnoredPair& ignored : options_.ignored) {
+    if (ignored.body != id) {
+      continue;
+    }
+    const auto bit =
+        static_cast<std::uint8_t>(1U << std::min<std::size_t>(pair++, kMaxPairsPerBody - 1));
+    const auto mark = [&](std::span<const std::uint32_t> faces, std::vector<std::uint8_t>* mask) {
+      for (const std::uint32_t f : faces) {
+        if (f < kMaxQueryFaces) {
+          (*mask)[f] = static_cast<std::uint8_t>(((*mask)[f] | bit) & keep);
+        }
+      }
+    };
+    mark(ignored.held_faces, &work_->held_mask);
+    mark(ignored.scene_faces, &work_->scene_mask);
+  }
+  return pair > 0;
+}
+
+template <bool kIsReverse>
+void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed& field,
+                        bool has_ignored, std::uint32_t body) noexcept {
+  if (is_stopped_) {
+    return;
+  }
+  const RelativePose X(field, sampled);
+  HitBuffer hits;
+  hits.hits = work_->hits.data();
+  hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
+  // Room for the rounding of single precision coordinates.
+  const double rounding = 4e-7 * (X.p.norm() + sampled.half().norm() + field.half().norm());
+  traverse_(shell.view, field.shape->field.view, X.Single(), static_cast<float>(margin_ + rounding),
+            &hits);
+  work_->stats.points_tested += hits.points_tested;
+  work_->stats.is_truncated = work_->stats.is_truncated || hits.is_truncated;
+
+  const std::vector<std::uint8_t>& own_mask = kIsReverse ? work_->scene_mask : work_->held_mask;
+  const std::vector<std::uint8_t>& other_mask = kIsReverse ? work_->held_mask : work_->scene_mask;
+  RawContact contact;
+  contact.body = body;
+  contact.is_reverse = kIsReverse;
+  for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
+    const Hit& hit = hits.hits[i];
+    contact.p = PointOf(shell, hit.point);
+    const PointFaces& faces = shell.faces[hit.point];
+    const Vec3 p_F = X * contact.p;
+    FaceFilter filter;
+    if (has_ignored) {
+      filter = {other_mask.data(), BitsOf(faces, own_mask)};
+    }
+    const Refined r = Refine(*field.shape, p_F, hit, filter);
+    if (!r.is_valid || r.distance >= margin_) {
+      continue;
+    }
+    contact.distance = r.distance;
+    contact.gradient = r.gradient;
+    contact.is_exact = r.is_exact;
+    contact.point = hit.point;
+    if constexpr (kIsReverse) {
+      const Vec3 nhat_S = X.R.transpose() * -r.gradient;
+      contact.held_face = r.face;
+      contact.scene_face = FacingFace(*sampled.shape, faces, contact.p, nhat_S);
+      Add(contact, nhat_S, contact.p);
+    } else {
+      contact.held_face = faces[0];
+      if (faces[1] != kNoFace) {
+        contact.held_face =
+            FacingFace(*sampled.shape, faces, contact.p, X.R.transpose() * -r.gradient);
+      }
+      contact.scene_face = r.face;
+      Add(contact, r.gradient, p_F);
+    }
+  }
+}
+
+void BodyQuery::Ground(double z_W) noexcept {
+  const Shell& shell = held_.shape->shell;
+  if (shell.nodes.empty() || is_stopped_) {
+    return;
+  }
+  std::array<std::int32_t, 256> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  const Vec3 up_H = held_.R_WC.row(2);
+  const double limit = z_W + margin_ - held_.p_WC.z();
+  while (size > 0 && !is_stopped_) {
+    const SphereNode& node = shell.nodes[static_cast<std::size_t>(stack[--size])];
+    for (int k = 0; k < 8; ++k) {
+      const Vec3 centre(static_cast<double>(node.x[k]), static_cast<double>(node.y[k]),
+                        static_cast<double>(node.z[k]));
+      if (node.child[k] == -1 || up_H.dot(centre) - static_cast<double>(node.radius[k]) >= limit) {
+        continue;
+      }
+      if (node.child[k] < -1) {
+        GroundLeaf(z_W, static_cast<std::size_t>(-2 - node.child[k]));
+      } else if (size < stack.size()) {
+        stack[size++] = node.child[k];
+      } else {
+        work_->stats.is_truncated = true;
+      }
+    }
+  }
+}
+
+void BodyQuery::GroundLeaf(double z_W, std::size_t leaf) noexcept {
+  const Shell& shell = held_.shape->shell;
+  work_->stats.points_tested += shell.leaf_count[leaf];
+  RawContact contact;
+  contact.body = kGroundBody;
+  contact.scene_face = kNoFace;
+  contact.is_exact = true;
+  contact.gradient = Vec3::UnitZ();
+  for (std::uint32_t i = 0; i < shell.leaf_count[leaf] && !is_stopped_; ++i) {
+    contact.point = static_cast<std::uint32_t>(8 * leaf) + i;
+    contact.p = PointOf(shell, contact.point);
+    const Vec3 p_W = held_.R_WC * contact.p + held_.p_WC;
+    contact.distance = p_W.z() - z_W;
+    if (contact.distance < margin_) {
+      contact.held_face = FacingFace(*held_.shape, shell.faces[contact.point], contact.p,
+                                     -held_.R_WC.row(2).transpose());
+      Add(contact, Vec3::UnitZ(), p_W);
+    }
+  }
+}
+
+void BodyQuery::Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept {
+  work_->reducer.Add(contact, nhat_S, p_S);
+  is_stopped_ = contact.distance < stop_distance_;
+}
+
+}  // namespace hvas::contact

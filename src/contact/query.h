@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "contact/reduce.h"
+#include "contact/refine.h"
+#include "contact/scene.h"
+#include "contact/shape_data.h"
+
+namespace hvas::contact {
+
+inline constexpr std::size_t kMaxQueryHits = 32768;
+inline constexpr std::size_t kMaxQueryFaces = 65536;
+
+struct QueryWorkspace::Data {
+  std::vector<Hit> hits = std::vector<Hit>(kMaxQueryHits);
+  ContactReducer reducer;
+  std::array<RawContact, kMaxContacts> raw;
+  std::array<Contact, kMaxContacts> contacts;
+  std::size_t contact_count{0};
+  QueryStats stats;
+  double deepest{std::numeric_limits<double>::infinity()};
+  // For each face, bit i when it is in the i-th ignored pair of the body at hand; else all zero.
+  std::vector<std::uint8_t> held_mask = std::vector<std::uint8_t>(kMaxQueryFaces);
+  std::vector<std::uint8_t> scene_mask = std::vector<std::uint8_t>(kMaxQueryFaces);
+
+  void Clear() noexcept;
+};
+
+/** Where a shape's centred frame is in the world. */
+struct Placed {
+  const Shape::Data* shape;
+  Mat3 R_WC;
+  Vec3 p_WC;
+
+  Placed(const Shape& s, const spatial::Pose& X_WB)
+      : shape(&s.data()), R_WC(X_WB.R()), p_WC(X_WB.p() + R_WC * s.data().p_BC) {}
+
+  [[nodiscard]] Vec3 half() const { return 0.5 * shape->box_B.size(); }
+};
+
+/** Takes coordinates of b's centred frame to a's. */
+struct RelativePose {
+  Mat3 R;
+  Vec3 p;
+
+  RelativePose(const Placed& a, const Placed& b)
+      : R(a.R_WC.transpose() * b.R_WC), p(a.R_WC.transpose() * (b.p_WC - a.p_WC)) {}
+
+  [[nodiscard]] Vec3 operator*(const Vec3& q) const { return R * q + p; }
+
+  [[nodiscard]] FloatPose Single() const;
+};
+
+/** The query of one held shape, body by body, into a workspace's reducer. Ends at the first contact
+ below `stop_distance`. RT-safe. */
+class BodyQuery {
+ public:
+  BodyQuery(const Placed& held, const QueryOptions& options, double margin, double stop_distance,
+            TraverseFunction traverse, QueryWorkspace::Data* work)
+      : held_(held),
+        options_(options),
+        margin_(margin),
+        stop_distance_(stop_distance),
+        traverse_(traverse),
+        work_(work) {}
+
+  void Body(BodyId id, const Placed& scene) noexcept;
+  void Ground(double z_W) noexcept;
+
+  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
+
+ private:
+  [[nodiscard]] bool BoxesTouch(const RelativePose& X_SH, const Placed& scene) const noexcept;
+  bool SetMasks(BodyId id, std::uint8_t keep) noexcept;
+  template <bool kIsReverse>
+  void Samples(const Placed& sampled, const Shell& shell, const Placed& field, bool has_ignored,
+               std::uint32_t body) noexcept;
+  void GroundLeaf(double z_W, std::size_t leaf) noexcept;
+  void Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept;
+
+  const Placed& held_;
+  const QueryOptions& options_;
+  double margin_;
+  double stop_distance_;
+  TraverseFunction traverse_;
+  QueryWorkspace::Data* work_;
+  bool is_stopped_{false};
+};
+
+/** Moves a contact's sample over the face or edge it lies on to where the distance to the other
+ shape is least, as far as the next samples. Without this the answer would depend on where samples
+ happen to be. RT-safe. */
+void Slide(const Shape::Data& sampled, const Shell& shell, const Shape::Data& field,
+           const RelativePose& X_FS, RawContact* contact) noexcept;
+/** The same over the ground, a plane in the sampled shape's frame. */
+void SlideOnPlane(const Shape::Data& sampled, const Shell& shell, const spatial::Surface& plane,
+                  RawContact* contact) noexcept;
+
+}  // namespace hvas::contact

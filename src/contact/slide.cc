@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <cmath>
+
+#include "contact/query.h"
+
+namespace hvas::contact {
+namespace {
+
+constexpr int kMaxSteps = 3;
+constexpr double kWorthwhile = 2e-8;  // [m]; a slide that can gain less is left out.
+constexpr double kOnSurface = 1e-7;   // [m]
+
+// The face, or the two faces at an edge, on which a sample may move.
+class Track {
+ public:
+  Track(const Shape::Data& shape, const std::array<std::uint32_t, kMaxPointFaces>& faces)
+      : shape_(shape), faces_(faces) {
+    reach_ = shape.spacing * (faces[1] == kNoFace ? 3.0 : 0.75);
+    is_usable_ =
+        faces[2] == kNoFace && IsExact(faces[0]) && (faces[1] == kNoFace || IsExact(faces[1]));
+  }
+
+  [[nodiscard]] bool is_usable() const { return is_usable_; }
+
+  [[nodiscard]] double reach() const { return reach_; }
+
+  // The part of a direction that lies along the track at p.
+  [[nodiscard]] Vec3 Along(const Vec3& p, const Vec3& direction) const {
+    const Vec3 n = spatial::CalcDistance(Surface(0), p).gradient;
+    if (faces_[1] == kNoFace) {
+      return direction - direction.dot(n) * n;
+    }
+    const Vec3 tangent = n.cross(spatial::CalcDistance(Surface(1), p).gradient);
+    const double squared = tangent.squaredNorm();
+    return squared > 0 ? Vec3(direction.dot(tangent) / squared * tangent) : Vec3::Zero();
+  }
+
+  [[nodiscard]] bool Project(Vec3* p) const {
+    if (faces_[1] != kNoFace) {
+      const Vec3 wanted = *p;
+      return ProjectOnEdge(Surface(0), Surface(1), wanted, p);
+    }
+    const auto exact = spatial::CalcDistance(Surface(0), *p);
+    *p -= exact.distance * exact.gradient;
+    return exact.is_valid;
+  }
+
+  // True where the trimmed part of the track goes as far as p.
+  [[nodiscard]] bool Reaches(const Vec3& p) const {
+    constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
+    const Refined r = Refine(shape_, p, kNowhere, {});
+    return r.is_exact && std::abs(r.distance) < kOnSurface;
+  }
+
+ private:
+  [[nodiscard]] const spatial::Surface& Surface(std::size_t i) const {
+    return shape_.exact.faces[faces_[i]];
+  }
+
+  [[nodiscard]] bool IsExact(std::uint32_t f) const {
+    return shape_.exact.faces[f].kind != spatial::SurfaceKind::kFreeform;
+  }
+
+  const Shape::Data& shape_;
+  const std::array<std::uint32_t, kMaxPointFaces>& faces_;
+  double reach_{0};
+  bool is_usable_{false};
+};
+
+struct State {
+  Vec3 p;
+  double distance;
+  Vec3 gradient;  // In the sampled shape's frame.
+};
+
+// Steepest descent along the track with a secant step: the slope at two points gives the bottom of
+// the parabola through them, which is exact for shapes that curve evenly.
+template <typename Evaluate>
+State Descend(const Track& track, const State& start, Evaluate evaluate) {
+  State best = start;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const Vec3 downhill = -track.Along(best.p, best.gradient);
+    const double slope = downhill.norm();
+    const double left = track.reach() - (best.p - start.p).norm();
+    if (slope * left < kWorthwhile) {
+      break;
+    }
+    const Vec3 direction = downhill / slope;
+    const State from = best;
+    const auto look = [&](double length, State* out) {
+      out->p = from.p + length * direction;
+      return track.Project(&out->p) && evaluate(out);
+    };
+    State probe;
+    const double first = 0.25 * left;
+    double length = first;
+    if (look(first, &probe)) {
+      const double change = track.Along(probe.p, probe.gradient).dot(direction) + slope;
+      length = change > 0 ? std::min(first * slope / change, left) : left;
+      if (probe.distance < best.distance && track.Reaches(probe.p)) {
+        best = probe;
+      }
+    } else {
+      length = 0.1 * first;
+    }
+    State bottom;
+    if (look(length, &bottom) && bottom.distance < best.distance && track.Reaches(bottom.p)) {
+      best = bottom;
+    }
+    if (best.distance > from.distance - 1e-10) {
+      break;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void Slide(const Shape::Data& sampled, const Shell& shell, const Shape::Data& field,
+           const RelativePose& X_FS, RawContact* contact) noexcept {
+  const Track track(sampled, shell.faces[contact->point]);
+  if (!track.is_usable() || !contact->is_exact) {
+    return;
+  }
+  const std::uint32_t face = contact->is_reverse ? contact->held_face : contact->scene_face;
+  const auto evaluate = [&](State* s) {
+    constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
+    const Refined r = Refine(field, X_FS * s->p, kNowhere, {});
+    s->distance = r.distance;
+    s->gradient = X_FS.R.transpose() * r.gradient;
+    return r.is_exact && r.face == face;
+  };
+  const State end = Descend(
+      track, {contact->p, contact->distance, X_FS.R.transpose() * contact->gradient}, evaluate);
+  contact->p = end.p;
+  contact->distance = end.distance;
+  contact->gradient = X_FS.R * end.gradient;
+}
+
+void SlideOnPlane(const Shape::Data& sampled, const Shell& shell, const spatial::Surface& plane,
+                  RawContact* contact) noexcept {
+  const Track track(sampled, shell.faces[contact->point]);
+  if (!track.is_usable()) {
+    return;
+  }
+  const auto evaluate = [&](State* s) {
+    s->distance = spatial::CalcDistance(plane, s->p).distance;
+    s->gradient = plane.axis;
+    return true;
+  };
+  const State end = Descend(track, {contact->p, contact->distance, plane.axis}, evaluate);
+  contact->p = end.p;
+  contact->distance = end.distance;
+}
+
+}  // namespace hvas::contact
