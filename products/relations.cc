@@ -126,7 +126,9 @@ const Relations::Features& Relations::FeaturesOf(const PartDefinition& part) {
     if ((face.Orientation() == TopAbs_REVERSED) == plane.Direct()) {
       plane.SetAxis(plane.Axis().Reversed());
     }
-    features.planes.push_back({plane, face, BoxOf(face)});
+    Bnd_Box box = BoxOf(face);
+    box.SetGap(kLineTolerance);  // Faces that touch have boxes that touch, give or take a rounding.
+    features.planes.push_back({plane, face, box});
   }
   std::erase_if(features.cylinders, [](const CylinderFeature& cylinder) {
     return std::ranges::count(cylinder.turn, true) < kLeastTurn_deg;

@@ -115,20 +115,39 @@ void WriteColors(const Drawing& drawing, const Handle(XSControl_WorkSession) & s
   }
 }
 
-/** Puts right what the kernel's writer gets wrong: densities in g^3 cm^2 where g cm^-3 is meant,
- and no name for an occurrence that is called as its part. */
-void MendEntities(const Handle(StepData_StepModel) & model) {
+/** The kernel's writer states densities in g^3 cm^2 where it means g cm^-3. */
+void MendDensityUnits(const Handle(StepData_StepModel) & model) {
   for (int i = 1; i <= model->NbEntities(); ++i) {
     const auto element = Handle(StepBasic_DerivedUnitElement)::DownCast(model->Value(i));
-    if (!element.IsNull()) {
-      const Handle(StepBasic_NamedUnit) unit = element->Unit();
-      const bool is_mass = unit->IsKind(STANDARD_TYPE(StepBasic_SiUnitAndMassUnit));
-      element->SetExponent(is_mass ? 1 : -3);
-    }
+    if (element.IsNull()) continue;
+    const bool is_mass = element->Unit()->IsKind(STANDARD_TYPE(StepBasic_SiUnitAndMassUnit));
+    element->SetExponent(is_mass ? 1 : -3);
+  }
+}
+
+/** Names every occurrence; the kernel's writer loses the names of those placed at their origin. */
+void NameOccurrences(const Drawing& drawing, const Handle(StepData_StepModel) & model) {
+  struct Uses {
+    const AssemblyDefinition* assembly{nullptr};
+    std::size_t seen{0};
+  };
+
+  std::map<std::string, Uses> uses;
+  for (const AssemblyDefinition& assembly : drawing.assemblies)
+    uses[assembly.name] = {&assembly};
+  const auto product_name = [](const Handle(StepBasic_ProductDefinition) & definition) {
+    return std::string(definition->Formation()->OfProduct()->Name()->ToCString());
+  };
+  for (int i = 1; i <= model->NbEntities(); ++i) {
     const auto use = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(i));
-    if (!use.IsNull() && use->Name()->IsEmpty()) {
-      use->SetName(use->RelatedProductDefinition()->Formation()->OfProduct()->Name());
+    if (use.IsNull()) continue;
+    Uses& parent = uses.at(product_name(use->RelatingProductDefinition()));
+    const AssemblyDefinition::Child& child = parent.assembly->children.at(parent.seen++);
+    if (product_name(use->RelatedProductDefinition()) !=
+        (child.part != nullptr ? child.part->name : child.assembly->name)) {
+      throw std::runtime_error("occurrences of " + parent.assembly->name + " are out of order");
     }
+    use->SetName(Text(child.name));
   }
 }
 
@@ -201,7 +220,8 @@ void WriteStep(const Drawing& drawing, const std::string& path) {
   }
   const Handle(StepData_StepModel) model = writer.ChangeWriter().Model();
   WriteColors(drawing, writer.ChangeWriter().WS(), model);
-  MendEntities(model);
+  MendDensityUnits(model);
+  NameOccurrences(drawing, model);
   FixHeader(model, drawing.name);
   if (writer.Write(path.c_str()) != IFSelect_RetDone) {
     throw std::runtime_error("cannot write " + path);
