@@ -62,8 +62,24 @@ Polygon ClipLeft(const Polygon& in, const Vec2& p, const Vec2& q) {
   return out;
 }
 
+/** True where an edge of `t` has all of `other` on its outer side. */
+bool HasSeparatingEdge(const Triangle2& t, const Triangle2& other) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2& p = t[k];
+    const Vec2 edge = t[(k + 1) % 3] - p;
+    if (Cross(edge, other[0] - p) <= 0 && Cross(edge, other[1] - p) <= 0 &&
+        Cross(edge, other[2] - p) <= 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /** Adds the area, and the area times the centroid, of what two triangles share. */
 void AddCommon(const Triangle2& a, const Triangle2& b, double* area, Vec2* moment) {
+  if (HasSeparatingEdge(a, b) || HasSeparatingEdge(b, a)) {
+    return;
+  }
   Polygon polygon;
   std::copy(a.begin(), a.end(), polygon.corners.begin());
   polygon.count = 3;
