@@ -91,7 +91,7 @@ struct PlacedPart {
 /** All leaves of the tree, depth first in the order drawn. */
 [[nodiscard]] std::vector<PlacedPart> Flatten(const Drawing& drawing);
 
-/** Levels of the tree, parts included: a flat product has 2. */
+/** Levels of subassemblies above the deepest part, the product included: a flat product has 1. */
 [[nodiscard]] int CalcDepth(const Drawing& drawing);
 
 /** Writes AP242 STEP in millimetres: names, colours, materials. The same drawing gives the same

@@ -178,7 +178,7 @@ void Flatten(const AssemblyDefinition& assembly, const gp_Trsf& X_WA, const std:
 }
 
 int CalcDepth(const AssemblyDefinition& assembly) {
-  int deepest = 1;
+  int deepest = 0;
   for (const AssemblyDefinition::Child& child : assembly.children) {
     if (child.assembly != nullptr) deepest = std::max(deepest, CalcDepth(*child.assembly));
   }
