@@ -3,7 +3,10 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <string>
+
+#include "fits/iso286.h"
 
 namespace hvas::mates {
 namespace {
@@ -135,22 +138,37 @@ Fit MakeThread(double shaft_radius, std::string reason) {
   return {FitKind::kThread, "", 2 * shaft_radius, true, std::move(reason)};
 }
 
-/** Running fits from close to loose, with the largest drawn diametral clearance each is taken for,
- as a part of d^(1/3) (the way ISO 286 tolerances grow): about what the class gives at most. */
-std::string_view ChooseClearanceCode(double diameter, double clearance) {
-  struct Step {
-    std::string_view code;
-    double most_um_per_cbrt_mm;
-  };
+std::optional<fits::FitLimits> FindLimits(std::string_view code, double nominal) {
+  const Result<fits::FitClass> fit = fits::ParseFit(code);
+  const Result<fits::FitLimits> limits =
+      fit ? fits::CalcFitLimits(*fit, nominal) : Unexpected(fit.error());
+  return limits ? std::optional(*limits) : std::nullopt;
+}
 
-  constexpr std::array kSteps{Step{"H7/g6", 14.6}, Step{"H8/f7", 26.0}, Step{"H9/d9", 60.0}};
-  const double scale = std::cbrt(diameter * 1e3);
-  for (const Step& step : kSteps) {
-    if (clearance * 1e6 <= step.most_um_per_cbrt_mm * scale) {
-      return step.code;
+/** The closest running fit that may have the drawn clearance, or the widest that the size has. */
+std::string ChooseClearanceCode(double nominal, double clearance) {
+  constexpr double kRounding = 1e-9;  // [m]
+  std::string widest;
+  for (const std::string_view code : {"H7/g6", "H8/f7", "H9/d9", "H11/c11"}) {
+    if (const auto limits = FindLimits(code, nominal)) {
+      widest = code;
+      if (limits->max_clearance + kRounding >= clearance) {
+        break;
+      }
     }
   }
-  return "H11/c11";
+  return widest;
+}
+
+/** The lightest press fit that is one at this size: H7/p6 may have clearance below 3 mm. */
+std::string ChoosePressCode(double nominal) {
+  for (const std::string_view code : {"H7/p6", "H7/r6", "H7/s6"}) {
+    const auto limits = FindLimits(code, nominal);
+    if (limits && limits->kind == fits::FitKind::kInterference) {
+      return std::string(code);
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -201,13 +219,13 @@ Fit ProposeFit(const FitEvidence& evidence) {
   }
   const double nominal = 2 * evidence.hole_radius;
   if (clearance < -2 * kEqual) {
-    return {FitKind::kInterference, "H7/p6", nominal, true,
+    return {FitKind::kInterference, ChoosePressCode(nominal), nominal, true,
             "drawn interference of " + Describe(-clearance)};
   }
   if (!is_larger) {
-    return {FitKind::kClearance, "H7/g6", nominal, true, "drawn equal"};
+    return {FitKind::kClearance, ChooseClearanceCode(nominal, 0), nominal, true, "drawn equal"};
   }
-  return {FitKind::kClearance, std::string(ChooseClearanceCode(d, clearance)), nominal, true,
+  return {FitKind::kClearance, ChooseClearanceCode(nominal, clearance), nominal, true,
           "drawn clearance of " + Describe(clearance)};
 }
 

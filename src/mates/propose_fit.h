@@ -29,11 +29,12 @@ struct FitEvidence {
  | any | nut on a screw | thread |
  | hole not larger | screw in a hole without a nut behind it, or a nut on a rod | thread |
  | interference above 1.5 % of d, d <= 12 mm | any | thread |
- | interference above 1 um (radius) | none | H7/p6 |
+ | interference above 1 um (radius) | none | the lightest press fit of H7/p6, H7/r6, H7/s6 |
  | equal within 1 um | none, or a through hole | H7/g6 |
  | clearance | any other | the tightest of H7/g6, H8/f7, H9/d9, H11/c11 that may have it |
 
- The nominal diameter is the drawn hole's, that of the shaft for threads. */
+ The code is empty where ISO 286 has none for the size. The nominal diameter is the drawn hole's,
+ that of the shaft for threads. */
 [[nodiscard]] product::Fit ProposeFit(const FitEvidence& evidence);
 
 }  // namespace hvas::mates

@@ -36,6 +36,11 @@ TEST(ProposeFit, FollowsItsTable) {
   EXPECT_EQ(propose(3.4, 3).code, "H11/c11");
   EXPECT_EQ(propose(40, 40.03).code, "H7/p6");
   EXPECT_EQ(propose(40, 40.03).kind, FitKind::kInterference);
+  // H7/p6 may have clearance at 2 mm; beyond 3150 mm ISO 286 has nothing to say.
+  EXPECT_EQ(propose(2, 2.01).code, "H7/r6");
+  EXPECT_EQ(propose(600, 602).code, "H7/p6");
+  EXPECT_EQ(propose(600.5, 600).code, "H9/d9");
+  EXPECT_EQ(propose(4000, 4000).code, "");
   // A tapped hole drawn with its minor diameter, without any name.
   EXPECT_EQ(propose(2.5, 3).kind, FitKind::kThread);
   EXPECT_EQ(propose(2.5, 3).code, "");
