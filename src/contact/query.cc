@@ -13,11 +13,9 @@ Vec3 PointOf(const Shell& shell, std::uint32_t i) {
           static_cast<double>(shell.z[i])};
 }
 
-using PointFaces = std::array<std::uint32_t, kMaxPointFaces>;
-
-std::uint8_t BitsOf(const PointFaces& faces, const std::vector<std::uint8_t>& mask) {
+std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
   std::uint8_t bits = 0;
-  for (const std::uint32_t f : faces) {
+  for (const std::uint32_t f : sample.faces) {
     if (f != kNoFace) {
       bits = static_cast<std::uint8_t>(bits | mask[f]);
     }
@@ -25,26 +23,24 @@ std::uint8_t BitsOf(const PointFaces& faces, const std::vector<std::uint8_t>& ma
   return bits;
 }
 
-// Of the faces that meet at a sample, the one that looks most along the direction.
-std::uint32_t FacingFace(const Shape::Data& shape, const PointFaces& faces, const Vec3& p,
-                         const Vec3& direction) {
-  if (faces[1] == kNoFace) {
-    return faces[0];
-  }
-  std::uint32_t best = faces[0];
-  double best_cosine = -2;
-  for (const std::uint32_t f : faces) {
-    if (f == kNoFace) {
-      continue;
+// Whether a sample can be where its part touches something in `direction`, seen from the part, and
+// which of its faces does. A side wall that happens to be near another part's top face cannot:
+// moving along the wall it would never meet it.
+bool Faces(const SampleFaces& sample, float limit, const Vec3& direction, std::uint32_t* face) {
+  *face = sample.faces[0];
+  double best = -2;
+  for (std::size_t i = 0; i < kMaxPointFaces && sample.faces[i] != kNoFace; ++i) {
+    const double cosine = sample.normal(i).dot(direction);
+    if (cosine > best) {
+      best = cosine;
+      *face = sample.faces[i];
     }
-    const auto exact = spatial::CalcDistance(shape.exact.faces[f], p);
-    const double cosine = exact.is_valid ? exact.gradient.dot(direction) : -1;
-    if (cosine > best_cosine) {
-      best_cosine = cosine;
-      best = f;
+    const bool is_corner = sample.faces[2] != kNoFace;  // May be hollow on one side.
+    if (cosine < static_cast<double>(limit) && !is_corner) {
+      return false;
     }
   }
-  return best;
+  return best > static_cast<double>(limit);
 }
 
 }  // namespace
@@ -132,13 +128,15 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
 
   const std::vector<std::uint8_t>& own_mask = kIsReverse ? work_->scene_mask : work_->held_mask;
   const std::vector<std::uint8_t>& other_mask = kIsReverse ? work_->held_mask : work_->scene_mask;
+  // So deep that something is wrong whatever way the sample looks.
+  const double deep = -0.5 * sampled.shape->spacing;
   RawContact contact;
   contact.body = body;
   contact.is_reverse = kIsReverse;
   for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
     const Hit& hit = hits.hits[i];
     contact.p = PointOf(shell, hit.point);
-    const PointFaces& faces = shell.faces[hit.point];
+    const SampleFaces& faces = shell.faces[hit.point];
     const Vec3 p_F = X * contact.p;
     FaceFilter filter;
     if (has_ignored) {
@@ -148,22 +146,20 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     if (!r.is_valid || r.distance >= margin_) {
       continue;
     }
+    const Vec3 towards = X.R.transpose() * -r.gradient;  // In the sampled shape's frame.
+    std::uint32_t own_face = kNoFace;
+    if (!Faces(faces, shell.facing[hit.point], towards, &own_face) && r.distance > deep) {
+      continue;
+    }
     contact.distance = r.distance;
     contact.gradient = r.gradient;
     contact.is_exact = r.is_exact;
     contact.point = hit.point;
+    contact.held_face = kIsReverse ? r.face : own_face;
+    contact.scene_face = kIsReverse ? own_face : r.face;
     if constexpr (kIsReverse) {
-      const Vec3 nhat_S = X.R.transpose() * -r.gradient;
-      contact.held_face = r.face;
-      contact.scene_face = FacingFace(*sampled.shape, faces, contact.p, nhat_S);
-      Add(contact, nhat_S, contact.p);
+      Add(contact, towards, contact.p);
     } else {
-      contact.held_face = faces[0];
-      if (faces[1] != kNoFace) {
-        contact.held_face =
-            FacingFace(*sampled.shape, faces, contact.p, X.R.transpose() * -r.gradient);
-      }
-      contact.scene_face = r.face;
       Add(contact, r.gradient, p_F);
     }
   }
@@ -212,8 +208,7 @@ void BodyQuery::GroundLeaf(double z_W, std::size_t leaf) noexcept {
     const Vec3 p_W = held_.R_WC * contact.p + held_.p_WC;
     contact.distance = p_W.z() - z_W;
     if (contact.distance < margin_) {
-      contact.held_face = FacingFace(*held_.shape, shell.faces[contact.point], contact.p,
-                                     -held_.R_WC.row(2).transpose());
+      Faces(shell.faces[contact.point], -1.0F, -held_.R_WC.row(2).transpose(), &contact.held_face);
       Add(contact, Vec3::UnitZ(), p_W);
     }
   }

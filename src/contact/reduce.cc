@@ -1,6 +1,7 @@
 #include "contact/reduce.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -12,14 +13,16 @@ constexpr double kDiagonal = 0.70710678118654752440;
 // A direction's cell on a cube whose faces are cut in 5 x 5: cells of about 20 degrees. Odd, so
 // that the axes lie in the middle of a cell and rounding does not split a plane.
 std::uint64_t DirectionCell(const Vec3& n) {
-  Eigen::Index axis = 0;
-  n.cwiseAbs().maxCoeff(&axis);
-  const double scale = 1 / std::abs(n[axis]);
-  const auto cut = [](double x) {
-    return static_cast<std::uint64_t>(std::clamp(std::floor((x + 1) * 2.5), 0.0, 4.0));
-  };
-  const std::uint64_t face = 2 * static_cast<std::uint64_t>(axis) + (n[axis] < 0 ? 1U : 0U);
-  return (face * 5 + cut(n[(axis + 1) % 3] * scale)) * 5 + cut(n[(axis + 2) % 3] * scale);
+  const double x = std::abs(n.x());
+  const double y = std::abs(n.y());
+  const double z = std::abs(n.z());
+  const int axis = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+  const double scale = 2.5 / std::abs(n[axis]);
+  const auto cut = [](double t) { return std::clamp(static_cast<int>(t + 2.5), 0, 4); };
+  const int side = 2 * axis + (n[axis] < 0 ? 1 : 0);
+  const int a = cut(n[axis == 2 ? 0 : axis + 1] * scale);
+  const int b = cut(n[axis == 0 ? 2 : axis - 1] * scale);
+  return static_cast<std::uint64_t>((side * 5 + a) * 5 + b);
 }
 
 }  // namespace
@@ -76,11 +79,14 @@ void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Ve
   const double c = kDiagonal * (a + b);
   const double d = kDiagonal * (a - b);
   const double reach[kTangents] = {a, -a, b, -b, c, -c, d, -d};
+  unsigned further = 0;
   for (std::size_t k = 0; k < kTangents; ++k) {
-    if (reach[k] > group->reach[k]) {
-      group->reach[k] = reach[k];
-      group->extremes[k] = {contact, number};
-    }
+    further |= (reach[k] > group->reach[k] ? 1U : 0U) << k;
+  }
+  for (; further != 0; further &= further - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(further));
+    group->reach[k] = reach[k];
+    group->extremes[k] = {contact, number};
   }
 }
 

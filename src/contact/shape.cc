@@ -49,7 +49,7 @@ std::size_t Bytes(const std::vector<T>& v) {
 
 std::size_t Bytes(const Shell& s) {
   return Bytes(s.nodes) + Bytes(s.x) + Bytes(s.y) + Bytes(s.z) + Bytes(s.leaf_count) +
-         Bytes(s.faces);
+         Bytes(s.faces) + Bytes(s.facing);
 }
 
 }  // namespace

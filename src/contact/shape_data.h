@@ -47,13 +47,25 @@ struct ExactTable {
 
 inline constexpr std::size_t kMaxPointFaces = 4;
 
+/** The faces that meet at a sample and their normals. Unused: kNoFace and zero. */
+struct SampleFaces {
+  std::array<std::uint32_t, kMaxPointFaces> faces;
+  std::array<std::array<float, 3>, kMaxPointFaces> normals;  ///< Out of the material.
+
+  [[nodiscard]] Vec3 normal(std::size_t i) const noexcept {
+    return {static_cast<double>(normals[i][0]), static_cast<double>(normals[i][1]),
+            static_cast<double>(normals[i][2])};
+  }
+};
+
 /** Points on the surface in a sphere tree. */
 struct Shell {
   ShellView view;  ///< Points into the vectors below.
   std::vector<SphereNode> nodes;
   std::vector<float> x, y, z;
   std::vector<std::uint8_t> leaf_count;
-  std::vector<std::array<std::uint32_t, kMaxPointFaces>> faces;  ///< kNoFace where unused.
+  std::vector<SampleFaces> faces;
+  std::vector<float> facing;  ///< Of each point: least cosine of its normal against a contact's.
   std::size_t point_count{0};
 };
 

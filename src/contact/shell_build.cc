@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <unordered_map>
 
 #include "base/random.h"
@@ -25,6 +26,7 @@ struct Sample {
   PointFaces faces;
   bool is_edge;
   bool is_feature;
+  std::array<Vec3, kMaxPointFaces> normals{};
 };
 
 PointFaces FacesOf(std::initializer_list<std::uint32_t> faces) {
@@ -98,17 +100,26 @@ class Sampler {
   std::unordered_map<std::uint64_t, std::uint32_t> cells_;
 };
 
-void AddCorners(const Mesh& mesh, Sampler* sampler) {
-  std::vector<PointFaces> faces(mesh.vertices.size(), FacesOf({}));
+// The normal of a triangle's face at p.
+Vec3 NormalAt(const Shape::Data& data, std::uint32_t t, const Vec3& p) {
+  const auto exact = spatial::CalcDistance(data.exact.faces[data.mesh.face[t]], p);
+  return exact.is_valid ? exact.gradient : data.mesh.normal[t];
+}
+
+void AddCorners(const Shape::Data& data, Sampler* sampler) {
+  const Mesh& mesh = data.mesh;
+  std::vector<Sample> corners(mesh.vertices.size(), {Vec3::Zero(), FacesOf({}), true, true});
   std::vector<std::uint8_t> is_convex(mesh.vertices.size(), 0);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh.triangles[t][k];
-      auto& list = faces[v];
+      auto& list = corners[v].faces;
       if (std::find(list.begin(), list.end(), mesh.face[t]) == list.end()) {
         const auto free = std::find(list.begin(), list.end(), kNoFace);
         if (free != list.end()) {
           *free = mesh.face[t];
+          corners[v].normals[static_cast<std::size_t>(free - list.begin())] =
+              NormalAt(data, t, mesh.vertices[v]);
         }
       }
       if (mesh.edge_kind[t][k] == EdgeKind::kConvex || mesh.edge_kind[t][k] == EdgeKind::kOpen) {
@@ -119,9 +130,17 @@ void AddCorners(const Mesh& mesh, Sampler* sampler) {
   }
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     if (mesh.vertex_kind[v] == VertexKind::kCorner && is_convex[v] != 0) {
-      sampler->Add({mesh.vertices[v], faces[v], true, true});
+      corners[v].p = mesh.vertices[v];
+      sampler->Add(corners[v]);
     }
   }
+}
+
+// Where a flat face goes over into a fillet there is no edge, but flat contact ends there.
+bool IsFlatBoundary(const Shape::Data& data, std::uint32_t f, std::uint32_t g) {
+  const bool is_flat_f = data.exact.faces[f].kind == spatial::SurfaceKind::kPlane;
+  const bool is_flat_g = data.exact.faces[g].kind == spatial::SurfaceKind::kPlane;
+  return f != g && is_flat_f != is_flat_g;
 }
 
 void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
@@ -129,7 +148,11 @@ void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t n = mesh.neighbour[t][k];
-      if (mesh.edge_kind[t][k] != EdgeKind::kConvex || n < t) {
+      const EdgeKind kind = mesh.edge_kind[t][k];
+      const bool is_wanted =
+          kind == EdgeKind::kConvex || (kind == EdgeKind::kSmooth && n != kNoFace &&
+                                        IsFlatBoundary(data, mesh.face[t], mesh.face[n]));
+      if (!is_wanted || n < t) {
         continue;
       }
       const Vec3& a = mesh.vertices[mesh.triangles[t][k]];
@@ -146,7 +169,14 @@ void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
             (q - p).norm() <= tolerance) {
           p = q;
         }
-        sampler->TryAdd({p, f == g ? FacesOf({f}) : FacesOf({f, g}), true, true}, 0.9 * spacing);
+        Sample sample{p, f == g ? FacesOf({f}) : FacesOf({f, g}), true, true};
+        sample.normals[0] = NormalAt(data, t, p);
+        if (f == g) {
+          sample.normals[0] = (mesh.normal[t] + mesh.normal[n]).normalized();
+        } else {
+          sample.normals[1] = NormalAt(data, n, p);
+        }
+        sampler->TryAdd(sample, 0.9 * spacing);
       }
     }
   }
@@ -210,7 +240,8 @@ void AddFace(const Shape::Data& data, std::uint32_t f, const std::vector<std::ui
     if (exact.is_valid) {
       p -= exact.distance * exact.gradient;
     }
-    const Sample sample{plan.stretch * p, FacesOf({f}), false, plan.is_feature};
+    Sample sample{plan.stretch * p, FacesOf({f}), false, plan.is_feature};
+    sample.normals[0] = exact.is_valid ? exact.gradient : mesh.normal[t];
     if (stretched.TryAdd(sample, kDensity * spacing)) {
       out->push_back(sample);
       out->back().p = p;
@@ -220,7 +251,7 @@ void AddFace(const Shape::Data& data, std::uint32_t f, const std::vector<std::ui
 
 std::vector<Sample> SampleAll(const Shape::Data& data) {
   Sampler edges(data.spacing);
-  AddCorners(data.mesh, &edges);
+  AddCorners(data, &edges);
   AddEdges(data, kEdgeRatio * data.spacing, &edges);
   std::vector<Sample> samples = edges.samples();
   std::vector<std::vector<std::uint32_t>> triangles(data.exact.faces.size());
@@ -234,10 +265,40 @@ std::vector<Sample> SampleAll(const Shape::Data& data) {
   return samples;
 }
 
+// Two parts touch where their normals are opposed: a sample's normal may differ from that by as
+// much as the surface turns on the way to the next sample, and some for the way that is still to
+// go.
+double FacingLimit(const Shape::Data& data, const Sample& sample) {
+  constexpr double kAllowed = 0.5;      // [rad]
+  constexpr double kUnknownTurn = 1.0;  // [rad], of freeform faces.
+  constexpr double kEdge = -0.3;        // Edges: each of their faces may look away this much.
+  if (sample.is_edge) {
+    return kEdge;
+  }
+  const spatial::Surface& face = data.exact.faces[sample.faces[0]];
+  double radius = std::numeric_limits<double>::infinity();
+  switch (face.kind) {
+    case spatial::SurfaceKind::kPlane:
+      break;
+    case spatial::SurfaceKind::kTorus:
+      radius = face.second;
+      break;
+    case spatial::SurfaceKind::kCone:
+      radius = (sample.p - face.origin).norm() * std::tan(face.second);
+      break;
+    case spatial::SurfaceKind::kFreeform:
+      radius = data.spacing / kUnknownTurn;
+      break;
+    default:
+      radius = face.radius;
+  }
+  return std::cos(std::min(kAllowed + data.spacing / radius, 0.75 * std::numbers::pi));
+}
+
 class TreeBuilder {
  public:
-  TreeBuilder(const std::vector<Sample>& samples, Shell* shell)
-      : samples_(samples), shell_(shell) {}
+  TreeBuilder(const Shape::Data& data, const std::vector<Sample>& samples, Shell* shell)
+      : data_(data), samples_(samples), shell_(shell) {}
 
   void Build(std::vector<std::uint32_t> order) {
     order_ = std::move(order);
@@ -332,12 +393,20 @@ class TreeBuilder {
       shell_->x.push_back(static_cast<float>(s.p.x()));
       shell_->y.push_back(static_cast<float>(s.p.y()));
       shell_->z.push_back(static_cast<float>(s.p.z()));
-      shell_->faces.push_back(s.faces);
+      SampleFaces faces{s.faces, {}};
+      for (std::size_t f = 0; f < kMaxPointFaces; ++f) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          faces.normals[f][k] = static_cast<float>(s.normals[f][static_cast<Eigen::Index>(k)]);
+        }
+      }
+      shell_->faces.push_back(faces);
+      shell_->facing.push_back(static_cast<float>(FacingLimit(data_, s)));
     }
     shell_->leaf_count.push_back(static_cast<std::uint8_t>(range.count()));
     return static_cast<std::int32_t>(shell_->leaf_count.size()) - 1;
   }
 
+  const Shape::Data& data_;
   const std::vector<Sample>& samples_;
   Shell* shell_;
   std::vector<std::uint32_t> order_;
@@ -366,8 +435,8 @@ void BuildShells(Shape::Data* data) {
       features.push_back(i);
     }
   }
-  TreeBuilder(samples, &data->shell).Build(std::move(all));
-  TreeBuilder(samples, &data->features).Build(std::move(features));
+  TreeBuilder(*data, samples, &data->shell).Build(std::move(all));
+  TreeBuilder(*data, samples, &data->features).Build(std::move(features));
 }
 
 }  // namespace hvas::contact

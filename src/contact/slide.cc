@@ -13,8 +13,8 @@ constexpr double kOnSurface = 1e-7;   // [m]
 // The face, or the two faces at an edge, on which a sample may move.
 class Track {
  public:
-  Track(const Shape::Data& shape, const std::array<std::uint32_t, kMaxPointFaces>& faces)
-      : shape_(shape), faces_(faces) {
+  Track(const Shape::Data& shape, const SampleFaces& sample) : shape_(shape), faces_(sample.faces) {
+    const auto& faces = sample.faces;
     reach_ = shape.spacing * (faces[1] == kNoFace ? 3.0 : 0.75);
     is_usable_ =
         faces[2] == kNoFace && IsExact(faces[0]) && (faces[1] == kNoFace || IsExact(faces[1]));
