@@ -13,7 +13,7 @@ namespace hvas {
  When it is full, the new value is refused and counted: nothing that was accepted is ever lost. The
  constructor allocates; the rest is RT-safe when T's assignment is. */
 template <typename T>
-class Ring {
+class Ring {  // NOLINT(clang-analyzer-optin.performance.Padding): each side has its cache line.
  public:
   /** Holds at least `capacity` values (rounded up to a power of two). */
   explicit Ring(std::size_t capacity)

@@ -19,7 +19,8 @@ std::vector<Vec3> SelectSpread(std::span<const Vec3> points, std::size_t count) 
     }
   };
   for (int code = 0; code < 27; ++code) {
-    const Vec3 direction(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
+    const Vec3 direction =
+        Eigen::Vector3i(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).cast<double>();
     const auto farthest = std::max_element(
         points.begin(), points.end(),
         [&](const Vec3& a, const Vec3& b) { return a.dot(direction) < b.dot(direction); });

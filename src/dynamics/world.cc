@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -38,14 +39,14 @@ Vec3 ToMetres(const btVector3& v) {
   return ToVec3(v) / kUnitsPerMetre;
 }
 
-btTransform ToUnits(const spatial::Pose& X) {
-  const Quat& q = X.q();
-  return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), ToUnits(X.p()));
+btTransform ToUnits(const spatial::Pose& pose) {
+  const Quat& q = pose.q();
+  return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), ToUnits(pose.p()));
 }
 
-spatial::Pose ToMetres(const btTransform& X) {
-  const btQuaternion q = X.getRotation();
-  return {Quat(q.w(), q.x(), q.y(), q.z()).normalized(), ToMetres(X.getOrigin())};
+spatial::Pose ToMetres(const btTransform& transform) {
+  const btQuaternion q = transform.getRotation();
+  return {Quat(q.w(), q.x(), q.y(), q.z()).normalized(), ToMetres(transform.getOrigin())};
 }
 
 // The principal axes P of a body, at its centre of mass.
@@ -56,11 +57,11 @@ struct PrincipalFrame {
 
 PrincipalFrame CalcPrincipalFrame(const MassProperties& properties) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(properties.I_BBcm_B);
-  Mat3 R = solver.eigenvectors();
-  if (R.determinant() < 0) {
-    R.col(2) = -R.col(2);
+  Mat3 R_BP = solver.eigenvectors();
+  if (R_BP.determinant() < 0) {
+    R_BP.col(2) = -R_BP.col(2);
   }
-  return {{Quat(R).normalized(), properties.p_BoBcm_B}, solver.eigenvalues()};
+  return {{Quat(R_BP).normalized(), properties.p_BoBcm_B}, solver.eigenvalues()};
 }
 
 // The hull of the points, moved inwards by its margin, so that with the margin around it the faces
@@ -204,10 +205,10 @@ void World::Impl::WakeNeighbours(const Body& body) {
 void World::Impl::Substep(double dt, double share_done) {
   for (const std::unique_ptr<Body>& body : bodies) {
     if (body != nullptr && body->target.has_value()) {
-      const spatial::Pose X(body->X_WB.q().slerp(share_done, body->target->q()),
-                            body->X_WB.p() + share_done * (body->target->p() - body->X_WB.p()));
+      const spatial::Pose X_WB(body->X_WB.q().slerp(share_done, body->target->q()),
+                               body->X_WB.p() + share_done * (body->target->p() - body->X_WB.p()));
       // Bullet takes the velocity with which it pushes from this and the last transform.
-      body->rigid->setWorldTransform(ToUnits(X * body->X_BP));
+      body->rigid->setWorldTransform(ToUnits(X_WB * body->X_BP));
     }
   }
   world.stepSimulation(dt, 0);
@@ -345,7 +346,8 @@ void World::Step(double dt) {
 }
 
 bool World::Settle(double max_time) {
-  for (double time = 0; time < max_time && !impl_->is_at_rest(); time += kSettleStep) {
+  const auto steps = static_cast<std::int64_t>(std::ceil(max_time / kSettleStep));
+  for (std::int64_t i = 0; i < steps && !impl_->is_at_rest(); ++i) {
     Step(kSettleStep);
   }
   return impl_->is_at_rest();

@@ -39,9 +39,9 @@ class ByteReader {
 // A pose as plain numbers: p, then q as w, x, y, z.
 using FlatPose = std::array<double, 7>;
 
-FlatPose Flatten(const spatial::Pose& X) {
-  const Quat& q = X.q();
-  return {X.p().x(), X.p().y(), X.p().z(), q.w(), q.x(), q.y(), q.z()};
+FlatPose Flatten(const spatial::Pose& pose) {
+  const Quat& q = pose.q();
+  return {pose.p().x(), pose.p().y(), pose.p().z(), q.w(), q.x(), q.y(), q.z()};
 }
 
 spatial::Pose Unflatten(const FlatPose& v) {
@@ -80,10 +80,10 @@ void VisitFields(F& f, Tick& tick, Poses& poses) noexcept {
   }
 }
 
-constexpr std::size_t kFieldBytes = sizeof(std::int64_t) + 3 * sizeof(FlatPose) +
-                                    18 * sizeof(double) + 3 * sizeof(std::uint32_t) +
-                                    sizeof(std::uint8_t) + sizeof(std::uint16_t) +
-                                    2 * sizeof(double) + TickRecord::kContacts * 7 * sizeof(float);
+constexpr std::size_t kFieldBytes =
+    sizeof(std::int64_t) + 3 * sizeof(FlatPose) + 18 * sizeof(double) + 3 * sizeof(std::uint32_t) +
+    sizeof(std::uint8_t) + sizeof(std::uint16_t) + 2 * sizeof(double) +
+    std::size_t{7} * TickRecord::kContacts * sizeof(float);
 static_assert(kFieldBytes == kPackedTickSize);
 
 }  // namespace

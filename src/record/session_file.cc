@@ -193,7 +193,7 @@ Result<void> SessionFile::Commit() {
   if (!transaction_start_ns_.has_value()) {
     return {};
   }
-  const Result<void> done = WriteChunk();
+  Result<void> done = WriteChunk();
   if (!done) {
     return done;
   }

@@ -85,7 +85,9 @@ std::vector<Solid> MakeHeap(World* world, std::vector<BodyId>* ids, std::uint64_
     solids.push_back(i % 2 == 0 ? MakeBox({a, b, random.Uniform(0.005, 0.06)})
                                 : MakeCylinder(0.5 * a, b));
     const Quat q = Quat(random.Normal(), random.Normal(), random.Normal(), random.Normal());
-    const Vec3 p(0.07 * (i % 4), 0.07 * (i / 4 % 3), 0.06 + 0.1 * (i / 12));
+    const int row = i / 4 % 3;
+    const int layer = i / 12;
+    const Vec3 p(0.07 * (i % 4), 0.07 * row, 0.06 + 0.1 * layer);
     ids->push_back(Add(world, solids.back(), spatial::Pose(q.normalized(), p)));
   }
   return solids;
@@ -94,9 +96,9 @@ std::vector<Solid> MakeHeap(World* world, std::vector<BodyId>* ids, std::uint64_
 std::string DigestOf(const World& world, const std::vector<BodyId>& ids) {
   Digest digest;
   for (const BodyId id : ids) {
-    const spatial::Pose& X = world.pose(id);
-    for (const double value :
-         {X.p().x(), X.p().y(), X.p().z(), X.q().w(), X.q().x(), X.q().y(), X.q().z()}) {
+    const spatial::Pose& X_WB = world.pose(id);
+    for (const double value : {X_WB.p().x(), X_WB.p().y(), X_WB.p().z(), X_WB.q().w(), X_WB.q().x(),
+                               X_WB.q().y(), X_WB.q().z()}) {
       digest.AddDouble(value);
     }
   }
@@ -357,11 +359,12 @@ TEST(World, ThirtyPartsLaidOutComeToRestSoon) {
   std::vector<BodyId> ids;
   std::vector<Solid> solids;
   for (int i = 0; i < 30; ++i) {
+    const int row = i / 6;
     const double size = 0.004 + 0.002 * i;
     solids.push_back(i % 2 == 0 ? MakeBox({size, size / 2, size / 3})
                                 : MakeCylinder(size / 4, size));
     const spatial::Pose X_WB(spatial::RotationFromVector({0.1 * i, 0.05 * i, 0}),
-                             Vec3(0.12 * (i % 6), 0.12 * (i / 6), 0.08));
+                             Vec3(0.12 * (i % 6), 0.12 * row, 0.08));
     ids.push_back(Add(&world, solids.back(), X_WB));
   }
   EXPECT_TRUE(SettleAndPrint(&world, "30 parts apart", 5));

@@ -98,8 +98,8 @@ void Tamper(const std::filesystem::path& path, const char* sql) {
 
 class DamagedRecord : public ::testing::Test {
  protected:
-  DamagedRecord() : file_("damaged.hvas") {
-    const auto recorder = Recorder::Create({file_.path()}, {});
+  DamagedRecord() : file("damaged.hvas") {
+    const auto recorder = Recorder::Create({file.path()}, {});
     for (int i = 0; i < 1000; ++i) {
       (*recorder)->AddTick(MakeTick(i));
     }
@@ -109,12 +109,12 @@ class DamagedRecord : public ::testing::Test {
     EXPECT_TRUE((*recorder)->Finish().has_value());
   }
 
-  TemporaryFile file_;
+  TemporaryFile file;
 };
 
 TEST_F(DamagedRecord, ChunkIsFoundAndWhatIsBeforeItCanBeRead) {
-  Tamper(file_.path(), "UPDATE chunk SET ticks = zeroblob(length(ticks)) WHERE id = 3");
-  Reader reader = Reader::Open(file_.path()).value();
+  Tamper(file.path(), "UPDATE chunk SET ticks = zeroblob(length(ticks)) WHERE id = 3");
+  Reader reader = Reader::Open(file.path()).value();
   int visited = 0;
   const Result<void> done =
       reader.ForEachTick({}, [&](const TickRecord&) { return ++visited > 0; });
@@ -127,33 +127,33 @@ TEST_F(DamagedRecord, ChunkIsFoundAndWhatIsBeforeItCanBeRead) {
 
 TEST_F(DamagedRecord, FlippedByteInTheFileIsFound) {
   // In the middle of the tick data, past the first pages.
-  const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(file_.path()) / 2);
-  std::fstream stream(file_.path(), std::ios::in | std::ios::out | std::ios::binary);
+  const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(file.path()) / 2);
+  std::fstream stream(file.path(), std::ios::in | std::ios::out | std::ios::binary);
   stream.seekg(middle);
   const int byte = stream.get();
   stream.seekp(middle);
   stream.put(static_cast<char>(byte ^ 0x10));
   stream.close();
-  EXPECT_FALSE(Reader::Open(file_.path())->Verify().has_value());
+  EXPECT_FALSE(Reader::Open(file.path())->Verify().has_value());
 }
 
 TEST_F(DamagedRecord, EventIsFound) {
-  Tamper(file_.path(), "UPDATE event SET json = '{}' WHERE id = 2");
-  const auto events = Reader::Open(file_.path())->ReadEvents();
+  Tamper(file.path(), "UPDATE event SET json = '{}' WHERE id = 2");
+  const auto events = Reader::Open(file.path())->ReadEvents();
   ASSERT_FALSE(events.has_value());
   EXPECT_NE(events.error().message.find("Event 2"), std::string::npos);
 }
 
 TEST_F(DamagedRecord, MissingChunkIsFoundByTheDigest) {
-  Tamper(file_.path(), "DELETE FROM chunk WHERE id = 2");
-  const auto verified = Reader::Open(file_.path())->Verify();
+  Tamper(file.path(), "DELETE FROM chunk WHERE id = 2");
+  const auto verified = Reader::Open(file.path())->Verify();
   ASSERT_FALSE(verified.has_value());
   EXPECT_EQ(verified.error().code, ErrorCode::kUnreadable);
 }
 
 TEST_F(DamagedRecord, NewerLayoutIsRefusedWithItsNumber) {
-  Tamper(file_.path(), "UPDATE schema_version SET version = 99");
-  const auto reader = Reader::Open(file_.path());
+  Tamper(file.path(), "UPDATE schema_version SET version = 99");
+  const auto reader = Reader::Open(file.path());
   ASSERT_FALSE(reader.has_value());
   EXPECT_EQ(reader.error().code, ErrorCode::kUnsupported);
   EXPECT_NE(reader.error().message.find("99"), std::string::npos);

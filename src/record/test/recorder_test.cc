@@ -78,7 +78,7 @@ TEST_P(RecorderRoundTrip, ReadsBackWhatWasAdded) {
   ASSERT_EQ(events.size(), 13u);
   for (int i = 0; i < 13; ++i) {
     const Event& event = events[static_cast<std::size_t>(i)];
-    const Event expected = MakeEvent(100 * i);
+    const Event expected = MakeEvent(std::int64_t{100} * i);
     EXPECT_EQ(event.t_ns, expected.t_ns);
     EXPECT_EQ(event.kind, expected.kind);
     EXPECT_EQ(event.occurrence, expected.occurrence);
