@@ -116,6 +116,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     return;
   }
   const RelativePose X(field, sampled);
+  const Mat3 R_back = -X.R.transpose();
   HitBuffer hits;
   hits.hits = work_->hits.data();
   hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
@@ -146,8 +147,13 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     if (!r.is_valid || r.distance >= margin_) {
       continue;
     }
-    const Vec3 towards = X.R.transpose() * -r.gradient;  // In the sampled shape's frame.
+    const Vec3 towards = R_back * r.gradient;  // In the sampled shape's frame.
     std::uint32_t own_face = kNoFace;
+    // An edge is met by its own samples: they know its direction, a face's samples would guess it.
+    const bool is_face_at_edge = faces.faces[1] == kNoFace && r.other_face != kNoFace;
+    if (is_face_at_edge && r.distance > deep) {
+      continue;
+    }
     if (!Faces(faces, shell.facing[hit.point], towards, &own_face) && r.distance > deep) {
       continue;
     }

@@ -106,7 +106,7 @@ Refined FromEdge(const Shape::Data& shape, const Closest& closest, const SolidFe
     Vec3 on_curve = q;
     if (ProjectOnEdge(shape.exact.faces[feature.face], shape.exact.faces[feature.other_face], p,
                       &on_curve) &&
-        (on_curve - q).norm() <= tolerance) {
+        std::abs((p - on_curve).norm() - std::sqrt(closest.squared)) <= tolerance) {
       q = on_curve;
       result.is_exact = true;
     }

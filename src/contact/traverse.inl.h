@@ -172,18 +172,18 @@ class Traversal {
     for (int k = 0; k < 3; ++k) {
       P::Store(s.gradient[k], gradient[k]);
     }
-    // Near the band's inner end nodes are clamped: deeper than here the coarse grid knows better.
-    const float deep = -0.5F * field_.band;
+    // Towards the band's ends nodes are clamped: there the coarse grid knows better.
+    const float reliable = 0.5F * field_.band;
     for (; hits != 0; hits &= hits - 1) {
       const int lane = __builtin_ctz(hits);
       Hit hit{static_cast<std::uint32_t>(first + lane),
               distance[lane],
               {gradient[0][lane], gradient[1][lane], gradient[2][lane]}};
-      if (distance[lane] < deep) {
+      if (distance[lane] < -reliable || distance[lane] > reliable) {
         const float at[3] = {position[0][lane], position[1][lane], position[2][lane]};
         float slope[3];
         const float coarse = CalcCoarse(field_, at, slope);
-        if (coarse < hit.distance) {
+        if (distance[lane] < 0 ? coarse < hit.distance : coarse > hit.distance) {
           hit.distance = coarse;
           for (int k = 0; k < 3; ++k) {
             hit.gradient[k] = slope[k];
