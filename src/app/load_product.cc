@@ -14,9 +14,9 @@ Result<product::Product> LoadProduct(
     return product;
   }
   mates::Infer(&*product, diagnostics);
-  const std::filesystem::path side_file = mates::SideFileOf(file);
+  const std::filesystem::path side_file = mates::FindAssignmentFile(file);
   if (std::filesystem::exists(side_file)) {
-    if (const auto applied = mates::ApplySideFile(&*product, side_file, diagnostics); !applied) {
+    if (const auto applied = mates::ApplyAssignments(side_file, &*product); !applied) {
       return Unexpected(applied.error());
     }
   }

@@ -11,6 +11,7 @@ constexpr double kSoftStartTime = 0.3;    // [s]
 constexpr double kMinVirtualMass = 0.05;  // [kg]; lighter parts are felt as this inertia
 constexpr double kMaxVirtualMass =
     1.0;  // [kg]; heavier ones too: weight is mapped, inertia bounded
+constexpr double kSeatTolerance = 50e-6;   // [m]; no deeper on the last bit into place
 constexpr double kMaxCouplingShare = 0.9;  // of the device's force
 
 double MinimumJerk(double s) noexcept {
@@ -109,7 +110,7 @@ TickOutput HapticTick::Tick(const device::DeviceState& state) noexcept {
 void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   soft_start_ = std::min(1.0, soft_start_ + options_.dt / kSoftStartTime);
   if (state_ == HoldState::kSeated) {
-    MoveIntoPlace();
+    MoveIntoPlace(out);
     out->F_felt_W = CalcCouplingWrench(tracked);
     out->F_true_W = out->F_felt_W;
     return;
@@ -127,7 +128,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   weight_felt_ = soft_start_ * force_map_.Felt(weight_true_);
   solver_.AddWrench({Vec3::Zero(), weight_felt_ * options_.gravity_W.normalized()});
   AddGuidance(p_WCm);
-  AddContacts(out, p_WCm);
+  AddContacts(out);
   MoveDisplayed(solver_.Solve(options_.contact.iterations), p_WCm);
   RecordContacts(out);
 
@@ -140,7 +141,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
     out->axial_true = std::copysign(force_map_.True(std::abs(out->axial_felt)), out->axial_felt);
     out->F_true_W.f += (out->axial_true - out->axial_felt) * guide_.axis()->axis_W;
   }
-  UpdateState(tracked);
+  UpdateState();
 }
 
 void HapticTick::AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept {
@@ -216,7 +217,15 @@ void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
   }
 }
 
-void HapticTick::AddContacts(TickOutput* out, const Vec3& p_WCm) noexcept {
+contact::QueryOptions HapticTick::MakeQuery(double margin) noexcept {
+  contact::QueryOptions query;
+  query.margin = margin;
+  query.ignored = {ignored_.data(), guide_.CollectIgnored(*part_, ignored_)};
+  query.self = part_->body;
+  return query;
+}
+
+void HapticTick::AddContacts(TickOutput* out) noexcept {
   if (options_.condition == Condition::kConstraint) {
     return;
   }
@@ -225,11 +234,7 @@ void HapticTick::AddContacts(TickOutput* out, const Vec3& p_WCm) noexcept {
   const double reach = 0.5 * part_->shape->box_B().size().norm();
   const double speed =
       std::min(contact.max_speed, V.v.norm()) + std::min(contact.max_turn_rate, V.w.norm()) * reach;
-  std::array<contact::IgnoredPair, 2 * MateGuide::kMaxMates> ignored;
-  contact::QueryOptions query;
-  query.margin = contact.min_margin + 1.5 * speed * options_.dt;
-  query.ignored = {ignored.data(), guide_.CollectIgnored(*part_, ignored)};
-  query.self = part_->body;
+  contact::QueryOptions query = MakeQuery(contact.min_margin + 1.5 * speed * options_.dt);
   scene_->Query(*part_->shape, X_WD_, query, &workspace_);
   out->deepest = workspace_.deepest();
   out->is_truncated = workspace_.stats().is_truncated;
@@ -238,7 +243,6 @@ void HapticTick::AddContacts(TickOutput* out, const Vec3& p_WCm) noexcept {
     solver_.AddContact(c.p_WC, c.nhat_W, std::min(bias, contact.recovery_speed), contact.friction,
                        contact.compliance);
   }
-  (void)p_WCm;
 }
 
 void HapticTick::MoveDisplayed(const spatial::Twist& V_Cm, const Vec3& p_WCm) noexcept {
@@ -273,17 +277,39 @@ void HapticTick::RecordContacts(TickOutput* out) const noexcept {
   }
 }
 
-bool HapticTick::HasArrived() const noexcept {
+bool HapticTick::HasArrived() noexcept {
   const GuidanceOptions& guidance = options_.guidance;
+  const bool is_guided = guide_.captured_count() > 0;
+  if (!is_guided && !part_->mates.empty() && options_.condition != Condition::kCollision) {
+    return false;
+  }
   const Vec3 d = X_WD_ * part_->p_BoBcm_B - part_->X_WB_goal * part_->p_BoBcm_B;
   const double angle = spatial::RotationBetween(X_WD_.q(), part_->X_WB_goal.q()).norm();
-  const bool is_guided = guide_.captured_count() > 0;
-  return d.norm() < (is_guided ? guidance.seat_distance : guidance.loose_seat_distance) &&
-         angle < guidance.seat_angle && (is_guided || part_->mates.empty());
+  if (d.norm() > guidance.loose_seat_distance || angle > guidance.seat_angle) {
+    return false;
+  }
+  // Along the way in, and across an axis, a part is home or it is not; where only planes or nothing
+  // at all hold it, it is set straight over the last bit, if nothing is there.
+  const double along = std::abs(d.dot(part_->insertion_W));
+  const double tight = guide_.axis() != nullptr ? d.norm() : along;
+  if (is_guided && tight > guidance.seat_distance) {
+    return false;
+  }
+  X_WD_seat_start_ = X_WD_;
+  if (options_.condition == Condition::kConstraint || d.norm() <= guidance.seat_distance) {
+    return true;
+  }
+  constexpr double kSamples[] = {0.25, 0.5, 0.75};
+  for (const double s : kSamples) {
+    if (!scene_->IsFree(*part_->shape, CalcSeatPose(s), kSeatTolerance, MakeQuery(0),
+                        &workspace_)) {
+      return false;
+    }
+  }
+  return true;
 }
 
-void HapticTick::UpdateState(const Tracked& tracked) noexcept {
-  (void)tracked;
+void HapticTick::UpdateState() noexcept {
   if (HasArrived()) {
     state_ = HoldState::kSeated;
     seat_progress_ = 0;
@@ -295,19 +321,29 @@ void HapticTick::UpdateState(const Tracked& tracked) noexcept {
   }
 }
 
-void HapticTick::MoveIntoPlace() noexcept {
+spatial::Pose HapticTick::CalcSeatPose(double progress) const noexcept {
+  if (progress >= 1) {
+    return part_->X_WB_goal;
+  }
+  const double s = MinimumJerk(progress);
+  const Vec3& p_BoBcm_B = part_->p_BoBcm_B;
+  const Vec3 p_from = X_WD_seat_start_ * p_BoBcm_B;
+  const Vec3 theta = spatial::RotationBetween(X_WD_seat_start_.q(), part_->X_WB_goal.q());
+  const Quat q = spatial::RotationFromVector(s * theta) * X_WD_seat_start_.q();
+  return {q, p_from + s * (part_->X_WB_goal * p_BoBcm_B - p_from) - q * p_BoBcm_B};
+}
+
+void HapticTick::MoveIntoPlace(TickOutput* out) noexcept {
   // The last fraction of a millimetre, to the exact pose that the mates resolve to (X9).
   const spatial::Pose X_before = X_WD_;
   seat_progress_ = std::min(1.0, seat_progress_ + options_.dt / options_.guidance.seat_time);
-  const double s = MinimumJerk(seat_progress_);
-  const Vec3 theta = spatial::RotationBetween(X_WD_seat_start_.q(), part_->X_WB_goal.q());
-  X_WD_ =
-      seat_progress_ >= 1
-          ? part_->X_WB_goal
-          : spatial::Pose((spatial::RotationFromVector(s * theta) * X_WD_seat_start_.q()),
-                          X_WD_seat_start_.p() + s * (part_->X_WB_goal.p() - X_WD_seat_start_.p()));
+  X_WD_ = CalcSeatPose(seat_progress_);
   V_D_.w = spatial::RotationBetween(X_before.q(), X_WD_.q()) / options_.dt;
   V_D_.v = (X_WD_ * part_->p_BoBcm_B - X_before * part_->p_BoBcm_B) / options_.dt;
+  if (seat_progress_ < 1 && options_.condition != Condition::kConstraint) {
+    scene_->Query(*part_->shape, X_WD_, MakeQuery(0), &workspace_);
+    out->deepest = workspace_.deepest();
+  }
 }
 
 }  // namespace hvas::haptics

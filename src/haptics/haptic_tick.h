@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "contact/scene.h"
@@ -83,11 +84,13 @@ class HapticTick {
   void Hold(const Tracked& tracked, TickOutput* out) noexcept;
   void AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept;
   void AddGuidance(const Vec3& p_WCm) noexcept;
-  void AddContacts(TickOutput* out, const Vec3& p_WCm) noexcept;
+  void AddContacts(TickOutput* out) noexcept;
+  [[nodiscard]] contact::QueryOptions MakeQuery(double margin) noexcept;
   void MoveDisplayed(const spatial::Twist& V_Cm, const Vec3& p_WCm) noexcept;
-  void UpdateState(const Tracked& tracked) noexcept;
-  [[nodiscard]] bool HasArrived() const noexcept;
-  void MoveIntoPlace() noexcept;
+  void UpdateState() noexcept;
+  [[nodiscard]] bool HasArrived() noexcept;
+  [[nodiscard]] spatial::Pose CalcSeatPose(double progress) const noexcept;
+  void MoveIntoPlace(TickOutput* out) noexcept;
   [[nodiscard]] spatial::Wrench CalcCouplingWrench(const Tracked& tracked) const noexcept;
   void RecordContacts(TickOutput* out) const noexcept;
 
@@ -99,6 +102,7 @@ class HapticTick {
   SafetyGate gate_;
   ConstraintSolver solver_;
   MateGuide guide_;
+  std::array<contact::IgnoredPair, 2 * MateGuide::kMaxMates> ignored_;
 
   const HeldPart* part_{nullptr};
   HoldState state_{HoldState::kEmpty};

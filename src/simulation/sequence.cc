@@ -75,6 +75,7 @@ class Planner {
   std::vector<std::vector<MateView>> mates_of_;
   std::vector<spatial::Box> boxes_;
   std::vector<std::vector<Attempt>> attempts_;  // of the last try, by occurrence
+  std::vector<std::ptrdiff_t> mates_at_attempt_;
   contact::QueryWorkspace workspace_;
 };
 
@@ -211,8 +212,11 @@ void Planner::Remove(OccurrenceId id) {
 
 bool Planner::TryRemove(OccurrenceId id, std::vector<SequenceStep>* removed) {
   std::vector<Attempt>& attempts = attempts_[id.index()];
-  if (!attempts.empty()) {
-    // Nothing has changed for this part while all that blocked it is still there.
+  const auto present =
+      std::count_if(mates_of_[id.index()].begin(), mates_of_[id.index()].end(),
+                    [this](const MateView& view) { return is_present_[view.other.index()]; });
+  if (!attempts.empty() && present == mates_at_attempt_[id.index()]) {
+    // Nothing has changed for this part while its mates and all that blocked it are still there.
     const bool is_unchanged =
         std::all_of(attempts.begin(), attempts.end(), [this](const Attempt& a) {
           return a.blocker && a.blocker->occurrence.is_valid() &&
@@ -222,6 +226,7 @@ bool Planner::TryRemove(OccurrenceId id, std::vector<SequenceStep>* removed) {
       return false;
     }
   }
+  mates_at_attempt_[id.index()] = present;
   std::vector<Attempt> tried;
   bool mates_forbid_all = true;
   for (const Vec3& direction : CandidateDirections(id)) {
@@ -266,6 +271,7 @@ Sequence Planner::Plan() {
                    [&](OccurrenceId x, OccurrenceId y) { return size(x) < size(y); });
   const std::size_t total = rest.size();
   attempts_.resize(product_.occurrences.size());
+  mates_at_attempt_.resize(product_.occurrences.size(), -1);
   std::vector<SequenceStep> removed;
   Sequence sequence;
   while (rest.size() > 1) {

@@ -15,8 +15,9 @@ constexpr double kShortestReach_s = 0.35;
 constexpr double kStandOff = 6e-3;    // [m] before anything engages, where approach ends
 constexpr double kFirstPush = 4.0;    // [N]; what the hand tries first
 constexpr double kPushRate = 6.0;     // [N/s]; how it presses harder
-constexpr double kProgress = 0.1e-3;  // [m] of way in that counts as progress
-constexpr double kStuckBeforeSearch_s = 1.0;
+constexpr double kSlowShare = 0.4;    // of the speed of insertion; slower than that presses harder
+constexpr double kStillSpeed = 1e-3;  // [m/s] that counts as not moving
+constexpr double kStuckBeforeSearch_s = 0.6;
 constexpr double kBackOff = 8e-3;        // [m] before trying elsewhere
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime_s = 0.3;     // of a carried weight
@@ -151,26 +152,24 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   }
   if (is_backing_off_) {
     travel_ += options_.insert_speed * kDt;
-    is_backing_off_ = hand_travel < best_travel_ + kBackOff;
-    if (!is_backing_off_) {
-      best_travel_ = hand_travel;
-      stuck_time_s_ = 0;
-    }
+    is_backing_off_ = hand_travel < back_off_from_ + kBackOff;
+    stuck_time_s_ = 0;
+    push_ = kFirstPush;
   } else {
-    if (hand_travel < best_travel_ - kProgress) {
-      best_travel_ = hand_travel;
-      stuck_time_s_ = 0;
-    }
-    stuck_time_s_ += kDt;
-    // Presses harder the longer nothing moves; the arm's spring turns the lead into a force.
-    const double push = std::min(options_.push_limit, kFirstPush + kPushRate * stuck_time_s_);
-    const double lead = push / options_.stiffness;
+    // Presses harder while little moves; the arm's spring turns the lead into a force.
+    const double speed = -V_H_.v.dot(d);
+    const bool is_slow = speed < kSlowShare * options_.insert_speed;
+    push_ = std::clamp(push_ + (is_slow ? kPushRate : -kPushRate) * kDt, kFirstPush,
+                       options_.push_limit);
+    const double lead = push_ / options_.stiffness;
     travel_ = std::max(travel_ - options_.insert_speed * kDt, hand_travel - lead);
-    const double time_at_limit = stuck_time_s_ - (options_.push_limit - kFirstPush) / kPushRate;
-    if (time_at_limit > kStuckBeforeSearch_s) {
+    const bool is_stuck = push_ >= options_.push_limit && speed < kStillSpeed;
+    stuck_time_s_ = is_stuck ? stuck_time_s_ + kDt : 0.0;
+    if (stuck_time_s_ > kStuckBeforeSearch_s) {
       // Missed: back off and try beside, on a spiral of golden angles.
       ++search_count_;
       is_backing_off_ = true;
+      back_off_from_ = hand_travel;
       const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
       const double radius = kSearchPitch * std::sqrt(static_cast<double>(search_count_));
       const Quat q = spatial::FrameFromZ(d);
@@ -251,7 +250,7 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
       } else if (FollowReaches()) {
         phase_ = Phase::kInsert;
         phase_time_s_ = 0;
-        best_travel_ = (X_WH_.p() - task_.X_WG_goal.p()).dot(task_.extraction_W);
+        push_ = kFirstPush;
         stuck_time_s_ = 0;
         search_offset_.setZero();
         is_backing_off_ = false;

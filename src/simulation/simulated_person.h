@@ -125,8 +125,9 @@ class SimulatedPerson final : public Operator {
   double reach_time_s_{0};
   double phase_time_s_{0};
 
-  double travel_{0};       ///< Reference distance still to go along the way in [m].
-  double best_travel_{0};  ///< Least hand distance reached.
+  double travel_{0};         ///< Reference distance still to go along the way in [m].
+  double push_{0};           ///< Force that the hand is ready to press with [N].
+  double back_off_from_{0};  ///< Hand's distance to go when it stopped pressing [m].
   double stuck_time_s_{0};
   Vec3 search_offset_{Vec3::Zero()};
   bool is_backing_off_{false};
