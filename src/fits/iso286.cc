@@ -43,7 +43,7 @@ Unexpected NotDefined(const std::string& what, double size_mm, const std::string
 }
 
 std::optional<Error> CheckSize(double size_mm) {
-  if (size_mm > 0 && size_mm <= kItRanges_mm.back()) {
+  if (size_mm > 0 && size_mm <= kItRangesMm.back()) {
     return std::nullopt;
   }
   return Error{ErrorCode::kInvalid,
@@ -53,19 +53,20 @@ std::optional<Error> CheckSize(double size_mm) {
 }
 
 /** IT in micrometres; kNo where undefined. */
-double FindIt_um(int grade, double size_mm) {
+double FindIt(int grade, double size_mm) {
   if (grade < kFinestGrade || grade > kCoarsestGrade || (grade >= 14 && size_mm <= 1)) {
     return kNo;
   }
-  return kIt_um[static_cast<std::size_t>(grade - kFinestGrade)][FindRange(kItRanges_mm, size_mm)];
+  return kItUm[static_cast<std::size_t>(grade - kFinestGrade)][FindRange(kItRangesMm, size_mm)];
 }
 
+/** A tabulated deviation in micrometres; kNo where undefined. */
 template <std::size_t kCount>
-double Find_um(const std::array<DeviationRow, kCount>& rows, std::string_view letters,
-               double size_mm) {
+double FindDeviation(const std::array<DeviationRow, kCount>& rows, std::string_view letters,
+                     double size_mm) {
   for (const DeviationRow& row : rows) {
     if (row.letters == letters) {
-      return row.value_um[FindRange(kDeviationRanges_mm, size_mm)];
+      return row.value_um[FindRange(kDeviationRangesMm, size_mm)];
     }
   }
   return kNo;
@@ -86,19 +87,20 @@ struct Fundamental {
 Fundamental FindShaft(const std::string& letters, int grade, double size_mm) {
   if (Has(kUpperDeviations, letters)) {
     const bool excluded = (letters == "a" || letters == "b") && size_mm <= 1;
-    return {true, excluded ? kNo : Find_um(kUpperDeviations, letters, size_mm)};
+    return {true, excluded ? kNo : FindDeviation(kUpperDeviations, letters, size_mm)};
   }
   if (letters == "j") {
-    return {false, Find_um(kShaftJ, "j" + std::to_string(grade), size_mm)};
+    return {false, FindDeviation(kShaftJ, "j" + std::to_string(grade), size_mm)};
   }
   if (letters == "k" && (grade < 4 || grade > 7)) {
     return {false, 0};
   }
-  return {false, Find_um(kLowerDeviations, letters, size_mm)};
+  return {false, FindDeviation(kLowerDeviations, letters, size_mm)};
 }
 
-/** ES of the holes K to ZC: the shaft's ei turned round, with what the standard adds. */
-double FindUpperOfHole_um(const std::string& shaft_letters, int grade, double size_mm) {
+/** ES of the holes K to ZC in micrometres: the shaft's ei turned round, with what the standard
+ * adds. */
+double FindUpperOfHole(const std::string& shaft_letters, int grade, double size_mm) {
   const bool is_kmn = shaft_letters == "k" || shaft_letters == "m" || shaft_letters == "n";
   const bool has_delta_size = size_mm > 3 && size_mm <= 500;
   if (shaft_letters == "k" && grade > 8) {
@@ -115,7 +117,7 @@ double FindUpperOfHole_um(const std::string& shaft_letters, int grade, double si
   if (shaft_letters == "m" && grade == 6 && size_mm > 250 && size_mm <= 315) {
     return -9;  // The standard's one exception; the rule would give -11.
   }
-  const double ei_um = Find_um(kLowerDeviations, shaft_letters, size_mm);
+  const double ei_um = FindDeviation(kLowerDeviations, shaft_letters, size_mm);
   if (ei_um == kNo) {
     return kNo;
   }
@@ -125,12 +127,12 @@ double FindUpperOfHole_um(const std::string& shaft_letters, int grade, double si
   if (grade < 3) {
     return kNo;  // Delta is tabulated from IT3.
   }
-  return -ei_um + FindIt_um(grade, size_mm) - FindIt_um(grade - 1, size_mm);
+  return -ei_um + FindIt(grade, size_mm) - FindIt(grade - 1, size_mm);
 }
 
 Fundamental FindHole(const std::string& letters, int grade, double size_mm) {
   if (letters == "J") {
-    return {true, Find_um(kHoleJ, "J" + std::to_string(grade), size_mm)};
+    return {true, FindDeviation(kHoleJ, "J" + std::to_string(grade), size_mm)};
   }
   std::string small = letters;
   for (char& c : small) {
@@ -140,7 +142,7 @@ Fundamental FindHole(const std::string& letters, int grade, double size_mm) {
     const Fundamental shaft = FindShaft(small, grade, size_mm);
     return {false, shaft.value_um == kNo ? kNo : -shaft.value_um};
   }
-  return {true, FindUpperOfHole_um(small, grade, size_mm)};
+  return {true, FindUpperOfHole(small, grade, size_mm)};
 }
 
 bool IsLetter(const std::string& letters) {
@@ -242,7 +244,7 @@ Result<double> CalcStandardTolerance(int grade, double nominal) {
   if (auto error = CheckSize(size_mm)) {
     return Unexpected(*std::move(error));
   }
-  const double it_um = FindIt_um(grade, size_mm);
+  const double it_um = FindIt(grade, size_mm);
   if (it_um == kNo) {
     return NotDefined("IT" + GradeName(grade), size_mm, "choose another grade");
   }
@@ -266,7 +268,7 @@ Result<Limits> CalcLimits(const ToleranceClass& tolerance_class, double nominal)
     return NotDefined("class " + tolerance_class.ToString(), size_mm, "choose another class");
   }
   // In micrometres until the end, so that limits are what a table prints.
-  const double it_um = FindIt_um(tolerance_class.grade, size_mm);
+  const double it_um = FindIt(tolerance_class.grade, size_mm);
   const double lower_um = deviation.is_upper ? deviation.value_um - it_um : deviation.value_um;
   return Limits{units::FromUm(lower_um), units::FromUm(lower_um + it_um)};
 }

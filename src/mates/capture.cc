@@ -34,9 +34,9 @@ MateDeviation CalcDeviation(const CaptureMate& mate, const Pose& X_WM, const Pos
   const Vec3 p_MN_W = X_WN.p() - X_WM.p();
   const double along = zhat_M_W.dot(p_MN_W);
   if (!is_axis) {
-    const Vec3 in_plane_W = p_MN_W - along * zhat_M_W;
+    const Vec3 p_MNFlat_W = p_MN_W - along * zhat_M_W;
     deviation.distance = std::abs(along);
-    deviation.gap = std::max(0.0, in_plane_W.norm() - mate.reach);
+    deviation.gap = std::max(0.0, p_MNFlat_W.norm() - mate.reach);
     return deviation;
   }
   // Where the ends of the held span are along the placed axis.

@@ -70,7 +70,7 @@ struct AxisHit {
 
   [[nodiscard]] double radius_difference() const { return hole->radius - shaft->radius; }
 
-  [[nodiscard]] Vec3 end_W(double s) const { return hole->origin_W + s * hole->axis_W; }
+  [[nodiscard]] Vec3 CalcPoint(double s) const { return hole->origin_W + s * hole->axis_W; }
 };
 
 struct PlaneHit {
@@ -418,9 +418,9 @@ class Inference {
             std::abs(inner.radius_difference()) < difference &&
             inner.hole->radius < outer.shaft->radius) {
           const double inner_first =
-              hit.hole->axis_W.dot(inner.end_W(inner.low) - hit.hole->origin_W);
+              hit.hole->axis_W.dot(inner.CalcPoint(inner.low) - hit.hole->origin_W);
           const double inner_last =
-              hit.hole->axis_W.dot(inner.end_W(inner.high) - hit.hole->origin_W);
+              hit.hole->axis_W.dot(inner.CalcPoint(inner.high) - hit.hole->origin_W);
           const double low = std::max({hit.low, outer.low, std::min(inner_first, inner_last)});
           const double high = std::min({hit.high, outer.high, std::max(inner_first, inner_last)});
           filled += std::max(0.0, high - low);
@@ -450,7 +450,7 @@ class Inference {
   [[nodiscard]] bool IsSameAxis(const AxisHit& s, const AxisHit& t) const {
     const double limit = limits_.axis_distance * ScaleOf(s.hole_occurrence, s.shaft_occurrence);
     return std::abs(s.hole->axis_W.dot(t.hole->axis_W)) >= cos_angle_ &&
-           CalcAxisDistance(s.hole->axis_W, s.hole->origin_W, t.end_W(0.5 * (t.low + t.high))) <
+           CalcAxisDistance(s.hole->axis_W, s.hole->origin_W, t.CalcPoint(0.5 * (t.low + t.high))) <
                limit;
   }
 
@@ -501,7 +501,7 @@ class Inference {
 
   void AddAxisMate(const AxisHit& hit) {
     const double middle = 0.5 * (hit.low + hit.high);
-    const Pose X_WM(spatial::FrameFromZ(hit.hole->axis_W), hit.end_W(middle));
+    const Pose X_WM(spatial::FrameFromZ(hit.hole->axis_W), hit.CalcPoint(middle));
     Mate mate = MakeMate(MateKind::kAxisHole, hit.hole_occurrence, hit.hole->id, X_WM,
                          hit.shaft_occurrence, hit.shaft->id, X_WM);
     const double sense = hit.hole->axis_W.dot(hit.shaft->axis_W) < 0 ? -1.0 : 1.0;

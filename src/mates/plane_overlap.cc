@@ -48,7 +48,7 @@ Polygon ClipLeft(const Polygon& in, const Vec2& p, const Vec2& q) {
   const Vec2 edge = q - p;
   for (int i = 0; i < in.count; ++i) {
     const Vec2& current = in.corners[static_cast<std::size_t>(i)];
-    const Vec2& next = in.corners[static_cast<std::size_t>((i + 1) % in.count)];
+    const Vec2& next = in.corners[static_cast<std::size_t>(i + 1 < in.count ? i + 1 : 0)];
     const double side_current = Cross(edge, current - p);
     const double side_next = Cross(edge, next - p);
     if (side_current >= 0) {
@@ -89,7 +89,7 @@ void AddCommon(const Triangle2& a, const Triangle2& b, double* area, Vec2* momen
   for (int i = 1; i + 1 < polygon.count; ++i) {
     const Vec2& p = polygon.corners[0];
     const Vec2& q = polygon.corners[static_cast<std::size_t>(i)];
-    const Vec2& r = polygon.corners[static_cast<std::size_t>(i + 1)];
+    const Vec2& r = polygon.corners[static_cast<std::size_t>(i) + 1];
     const double piece = 0.5 * Cross(q - p, r - p);
     *area += piece;
     *moment += piece / 3.0 * (p + q + r);

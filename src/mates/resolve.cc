@@ -17,7 +17,7 @@ constexpr int kMaxHalvings = 8;
 using Row = Eigen::Matrix<double, 1, 7>;
 using Triangle = Eigen::Matrix<double, 6, 7>;
 
-Vec3 AxisOf(const Pose& X) {
+Vec3 AxisOf(const Pose& X_WC) {
   return X.q() * Vec3::UnitZ();
 }
 
@@ -117,20 +117,21 @@ Equations Linearise(std::span<const MateConstraint> mates, const Pose& X_WB, con
   return equations;
 }
 
-/** Turns the first `count` columns of A among each other until they are orthogonal and in order of
- falling length, and those of V with them: one-sided Jacobi (Hestenes, 1958). A V^T stays what it
- was; with V = I before, the lengths are A's singular values and V its right vectors. */
-void MakeColumnsOrthogonal(int count, Mat6* A, Mat6* V) {
+/** Turns the first `count` columns of a matrix among each other until they are orthogonal and in
+ order of falling length, and those of a second one with them: one-sided Jacobi (Hestenes, 1958).
+ With the identity as the second, the lengths become the first one's singular values and the second
+ its right vectors. */
+void MakeColumnsOrthogonal(int count, Mat6* matrix, Mat6* follower) {
   constexpr int kMaxSweeps = 30;
   bool is_done = false;
   for (int sweep = 0; sweep < kMaxSweeps && !is_done; ++sweep) {
     is_done = true;
     for (Eigen::Index i = 0; i + 1 < count; ++i) {
       for (Eigen::Index j = i + 1; j < count; ++j) {
-        const double aa = A->col(i).squaredNorm();
-        const double bb = A->col(j).squaredNorm();
-        const double ab = A->col(i).dot(A->col(j));
-        if (!(ab * ab > 1e-30 * aa * bb) && !(bb > aa)) {
+        const double aa = matrix->col(i).squaredNorm();
+        const double bb = matrix->col(j).squaredNorm();
+        const double ab = matrix->col(i).dot(matrix->col(j));
+        if (!(ab * ab > 1e-30 * aa * bb) && !(bb > (1 + 1e-12) * aa)) {
           continue;
         }
         is_done = false;
@@ -138,10 +139,10 @@ void MakeColumnsOrthogonal(int count, Mat6* A, Mat6* V) {
         const double angle = 0.5 * std::atan2(2 * ab, aa - bb);
         const double c = std::cos(angle);
         const double s = std::sin(angle);
-        for (Mat6* M : {A, V}) {
-          const Vec6 first = c * M->col(i) + s * M->col(j);
-          M->col(j) = c * M->col(j) - s * M->col(i);
-          M->col(i) = first;
+        for (Mat6* turned : {matrix, follower}) {
+          const Vec6 first = c * turned->col(i) + s * turned->col(j);
+          turned->col(j) = c * turned->col(j) - s * turned->col(i);
+          turned->col(i) = first;
         }
       }
     }
@@ -150,13 +151,13 @@ void MakeColumnsOrthogonal(int count, Mat6* A, Mat6* V) {
 
 /** Splits the unknowns into held and free directions. */
 struct Split {
-  Mat6 A;                    // U times the singular values.
-  Mat6 V{Mat6::Identity()};  // Columns: held directions first, by falling singular value.
+  Mat6 images;  // Of the directions, by the equations: orthogonal to each other.
+  Mat6 directions{Mat6::Identity()};  // Columns: held directions first, by falling singular value.
   int rank{0};
 
-  explicit Split(const Mat6& equations) : A(equations) {
-    MakeColumnsOrthogonal(6, &A, &V);
-    while (rank < 6 && A.col(rank).norm() > kRankTolerance * A.col(0).norm()) {
+  explicit Split(const Mat6& equations) : images(equations) {
+    MakeColumnsOrthogonal(6, &images, &directions);
+    while (rank < 6 && images.col(rank).norm() > kRankTolerance * images.col(0).norm()) {
       ++rank;
     }
   }
@@ -164,7 +165,7 @@ struct Split {
   [[nodiscard]] Vec6 ShortestStep(const Vec6& right) const {
     Vec6 step = Vec6::Zero();
     for (int k = 0; k < rank; ++k) {
-      step += V.col(k) * (A.col(k).dot(right) / A.col(k).squaredNorm());
+      step += directions.col(k) * (images.col(k).dot(right) / images.col(k).squaredNorm());
     }
     return step;
   }
@@ -172,7 +173,7 @@ struct Split {
   [[nodiscard]] Vec6 ProjectOnFree(const Vec6& x) const {
     Vec6 out = Vec6::Zero();
     for (int k = rank; k < 6; ++k) {
-      out += V.col(k) * V.col(k).dot(x);
+      out += directions.col(k) * directions.col(k).dot(x);
     }
     return out;
   }
@@ -200,11 +201,11 @@ double CalcResidual(std::span<const MateConstraint> mates, const Pose& X_WB, dou
 }
 
 /** Gauss-Newton with halved steps where the full one does not help. */
-Resolution Iterate(std::span<const MateConstraint> mates, const Pose& X_WB_start) {
+Resolution Iterate(std::span<const MateConstraint> mates, const Pose& X_WBStart) {
   Resolution result;
-  result.X_WB = X_WB_start;
-  const double length = CalcScale(mates, X_WB_start).length;
-  result.residual = CalcResidual(mates, X_WB_start, length);
+  result.X_WB = X_WBStart;
+  const double length = CalcScale(mates, X_WBStart).length;
+  result.residual = CalcResidual(mates, X_WBStart, length);
   for (; result.iterations < kMaxIterations && result.residual > 1e-3 * kConverged;
        ++result.iterations) {
     const Scale scale = CalcScale(mates, result.X_WB);
@@ -231,9 +232,9 @@ Resolution Iterate(std::span<const MateConstraint> mates, const Pose& X_WB_start
 
 /** A start near the solution, from anywhere: the first mate's axis aligned, then the turn about it
  that a second mate asks for. */
-Pose Prealign(std::span<const MateConstraint> mates, const Pose& X_WB_start) {
+Pose Prealign(std::span<const MateConstraint> mates, const Pose& X_WBStart) {
   const MateConstraint& first = mates.front();
-  Pose X_WB = AlignToAxis(first, X_WB_start);
+  Pose X_WB = AlignToAxis(first, X_WBStart);
   const Vec3 zhat_W = TargetOf(first);
   const Vec3 p_WO = (X_WB * first.X_BN).p();
   const auto square = [&](const Vec3& x) { return Vec3(x - zhat_W.dot(x) * zhat_W); };
@@ -285,13 +286,13 @@ FreeTwists CalcFreeTwists(std::span<const MateConstraint> mates, const Pose& X_W
   free.length = scale.length;
   const int count = 6 - split.rank;
   // Turns the free basis so that it ends with the directions that do not rotate.
-  Mat6 N = Mat6::Zero();
-  N.leftCols(count) = split.V.rightCols(count);
+  Mat6 basis = Mat6::Zero();
+  basis.leftCols(count) = split.directions.rightCols(count);
   Mat6 rotation = Mat6::Zero();
-  rotation.topRows<3>() = N.topRows<3>();
-  MakeColumnsOrthogonal(count, &rotation, &N);
+  rotation.topRows<3>() = basis.topRows<3>();
+  MakeColumnsOrthogonal(count, &rotation, &basis);
   for (Eigen::Index k = 0; k < count; ++k) {
-    Vec6 x = N.col(count - 1 - k);
+    Vec6 x = basis.col(count - 1 - k);
     const bool is_translation = x.head<3>().norm() < kRankTolerance;
     if (is_translation) {
       x.head<3>().setZero();
@@ -305,37 +306,37 @@ FreeTwists CalcFreeTwists(std::span<const MateConstraint> mates, const Pose& X_W
   return free;
 }
 
-Pose AlignToAxis(const MateConstraint& mate, const Pose& X_WB_start) noexcept {
-  const Pose X_WN = X_WB_start * mate.X_BN;
+Pose AlignToAxis(const MateConstraint& mate, const Pose& X_WBStart) noexcept {
+  const Pose X_WN = X_WBStart * mate.X_BN;
   const Quat turn = spatial::RotationTaking(AxisOf(X_WN), TargetOf(mate));
   const Vec3 zhat_W = AxisOf(mate.X_WM);
   const Vec3 p_NM_W = mate.X_WM.p() - X_WN.p();
   const double along = zhat_W.dot(p_NM_W);
   const Vec3 shift_W =
       mate.kind == MateKind::kAxisHole ? Vec3(p_NM_W - along * zhat_W) : Vec3(along * zhat_W);
-  return {(turn * X_WB_start.q()).normalized(),
-          X_WN.p() + turn * (X_WB_start.p() - X_WN.p()) + shift_W};
+  return {(turn * X_WBStart.q()).normalized(),
+          X_WN.p() + turn * (X_WBStart.p() - X_WN.p()) + shift_W};
 }
 
-Resolution Resolve(std::span<const MateConstraint> mates, const Pose& X_WB_start) noexcept {
-  Resolution result = Iterate(mates, X_WB_start);
+Resolution Resolve(std::span<const MateConstraint> mates, const Pose& X_WBStart) noexcept {
+  Resolution result = Iterate(mates, X_WBStart);
   if (result.is_converged || mates.size() < 2) {
     return result;
   }
-  Resolution retry = Iterate(mates, Prealign(mates, X_WB_start));
+  Resolution retry = Iterate(mates, Prealign(mates, X_WBStart));
   retry.iterations += result.iterations;
   return retry.residual < result.residual ? retry : result;
 }
 
-Resolution ResolveToward(std::span<const MateConstraint> mates, const Pose& X_WB_start,
-                         const Pose& X_WB_goal) noexcept {
-  Resolution result = Resolve(mates, X_WB_start);
+Resolution ResolveToward(std::span<const MateConstraint> mates, const Pose& X_WBStart,
+                         const Pose& X_WBGoal) noexcept {
+  Resolution result = Resolve(mates, X_WBStart);
   for (int i = 0; i < kMaxIterations; ++i) {
     const Scale scale = CalcScale(mates, result.X_WB);
     const Split split(Linearise(mates, result.X_WB, scale).matrix());
     Vec6 error;
-    error.head<3>() = scale.length * spatial::RotationBetween(result.X_WB.q(), X_WB_goal.q());
-    error.tail<3>() = X_WB_goal * (result.X_WB.Inverse() * scale.p_WR) - scale.p_WR;
+    error.head<3>() = scale.length * spatial::RotationBetween(result.X_WB.q(), X_WBGoal.q());
+    error.tail<3>() = X_WBGoal * (result.X_WB.Inverse() * scale.p_WR) - scale.p_WR;
     const Vec6 step = split.ProjectOnFree(error);
     if (step.norm() < 1e-3 * kConverged) {
       break;

@@ -60,15 +60,15 @@ struct Resolution {
 
 /** The pose that fulfils all mates and is nearest to the start in what they leave free. */
 [[nodiscard]] Resolution Resolve(std::span<const MateConstraint> mates,
-                                 const Pose& X_WB_start) noexcept;
+                                 const Pose& X_WBStart) noexcept;
 
 /** The pose that fulfils all mates and is nearest to the goal in what they leave free. */
-[[nodiscard]] Resolution ResolveToward(std::span<const MateConstraint> mates,
-                                       const Pose& X_WB_start, const Pose& X_WB_goal) noexcept;
+[[nodiscard]] Resolution ResolveToward(std::span<const MateConstraint> mates, const Pose& X_WBStart,
+                                       const Pose& X_WBGoal) noexcept;
 
 /** One axis in closed form, as in paper X: turns about V_base x V_part through P_part by the angle
  of X(7), then moves by the part of P_base - P_part square to the axis, X(8). Parallel axes turn by
  nothing, opposed ones by half a turn about any axis square to them. */
-[[nodiscard]] Pose AlignToAxis(const MateConstraint& mate, const Pose& X_WB_start) noexcept;
+[[nodiscard]] Pose AlignToAxis(const MateConstraint& mate, const Pose& X_WBStart) noexcept;
 
 }  // namespace hvas::mates

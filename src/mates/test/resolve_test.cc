@@ -152,13 +152,13 @@ TEST(Resolve, DoesNotDependOnTheWorldFrame) {
   for (const Case& c : MakeCases()) {
     const Pose X_WB = DrawPose(&random);
     const Pose X_AW = DrawPose(&random);
-    const Pose X_WB_start = X_WB * DrawSmall(&random, 5e-3, 0.1);
+    const Pose X_WBStart = X_WB * DrawSmall(&random, 5e-3, 0.1);
     std::vector<MateConstraint> mates = MakeMates(c, X_WB);
-    const Pose in_w = Resolve(mates, X_WB_start).X_WB;
+    const Pose in_w = Resolve(mates, X_WBStart).X_WB;
     for (MateConstraint& mate : mates) {
       mate.X_WM = X_AW * mate.X_WM;
     }
-    const Pose in_a = Resolve(mates, X_AW * X_WB_start).X_WB;
+    const Pose in_a = Resolve(mates, X_AW * X_WBStart).X_WB;
     EXPECT_LT((in_a.p() - (X_AW * in_w).p()).norm(), 1e-9) << c.name;
     EXPECT_LT(spatial::RotationBetween(in_a.q(), (X_AW * in_w).q()).norm(), 1e-8) << c.name;
   }
@@ -168,24 +168,24 @@ TEST(Resolve, DoesNotDependOnTheWorldFrame) {
 TEST(Resolve, OneAxisEqualsThePapersClosedForm) {
   Random random(33);
   for (int draw = 0; draw < 200; ++draw) {
-    const Pose X_WB_start = DrawPose(&random);
+    const Pose X_WBStart = DrawPose(&random);
     const MateConstraint mate =
         MakeMate(MateKind::kAxisHole, DrawPose(&random), Vec3(0.01, -0.02, 0.03),
                  Vec3(0.3, 0.5, random.Uniform(-1, 1)).normalized());
     const Vec3 P_base = mate.X_WM.p();
     const Vec3 V_base = mate.X_WM.R().col(2);
-    const Vec3 P_part = X_WB_start * mate.X_BN.p();             // X(3)
-    const Vec3 V_part = X_WB_start.R() * mate.X_BN.R().col(2);  // X(5)
-    const double alpha = std::acos(V_base.dot(V_part));         // X(7)
+    const Vec3 P_part = X_WBStart * mate.X_BN.p();             // X(3)
+    const Vec3 V_part = X_WBStart.R() * mate.X_BN.R().col(2);  // X(5)
+    const double alpha = std::acos(V_base.dot(V_part));        // X(7)
     const Vec3 u = V_part.cross(V_base).normalized();
     const Mat3 K = spatial::Skew(u);
     const Mat3 turn = Mat3::Identity() + std::sin(alpha) * K + (1 - std::cos(alpha)) * K * K;
     const Vec3 offset = P_base - P_part;
     const Vec3 shift = offset - V_base.dot(offset) * V_base;
     EXPECT_NEAR(shift.norm(), V_base.cross(P_part - P_base).norm(), 1e-12);  // X(8)
-    const Vec3 p_paper = P_part + turn * (X_WB_start.p() - P_part) + shift;
-    const Mat3 R_paper = turn * X_WB_start.R();
-    for (const Pose& X_WB : {Resolve({&mate, 1}, X_WB_start).X_WB, AlignToAxis(mate, X_WB_start)}) {
+    const Vec3 p_paper = P_part + turn * (X_WBStart.p() - P_part) + shift;
+    const Mat3 R_paper = turn * X_WBStart.R();
+    for (const Pose& X_WB : {Resolve({&mate, 1}, X_WBStart).X_WB, AlignToAxis(mate, X_WBStart)}) {
       EXPECT_LT((X_WB.p() - p_paper).norm(), 1e-7);
       EXPECT_LT((X_WB.R() - R_paper).norm(), 1e-7);
     }
@@ -217,19 +217,19 @@ TEST(ResolveToward, ReachesTheGoalWhereTheMatesAllowAndIsNearestOtherwise) {
     for (int draw = 0; draw < 50; ++draw) {
       const Pose X_WB = DrawPose(&random);
       const std::vector<MateConstraint> mates = MakeMates(c, X_WB);
-      const Pose X_WB_start = X_WB * DrawSmall(&random, 5e-3, 0.17);
-      const Resolution exact = ResolveToward(mates, X_WB_start, X_WB);
+      const Pose X_WBStart = X_WB * DrawSmall(&random, 5e-3, 0.17);
+      const Resolution exact = ResolveToward(mates, X_WBStart, X_WB);
       EXPECT_TRUE(exact.is_converged) << c.name;
       EXPECT_LT((exact.X_WB.p() - X_WB.p()).norm(), 1e-8) << c.name;
       EXPECT_LT(spatial::RotationBetween(exact.X_WB.q(), X_WB.q()).norm(), 1e-7) << c.name;
       // A goal beside the mates: no free motion brings it nearer, to first order.
-      const Pose X_WB_goal = X_WB * DrawSmall(&random, 0.02, 0.3);
-      const Resolution result = ResolveToward(mates, X_WB_start, X_WB_goal);
+      const Pose X_WBGoal = X_WB * DrawSmall(&random, 0.02, 0.3);
+      const Resolution result = ResolveToward(mates, X_WBStart, X_WBGoal);
       EXPECT_TRUE(result.is_converged) << c.name << ' ' << result.residual;
       const FreeTwists free = CalcFreeTwists(mates, result.X_WB);
-      const Vec3 turn = spatial::RotationBetween(result.X_WB.q(), X_WB_goal.q());
+      const Vec3 turn = spatial::RotationBetween(result.X_WB.q(), X_WBGoal.q());
       const Vec3 p_BR = result.X_WB.Inverse() * free.p_WR;
-      const Vec3 shift = X_WB_goal * p_BR - free.p_WR;
+      const Vec3 shift = X_WBGoal * p_BR - free.p_WR;
       for (int k = 0; k < free.count(); ++k) {
         const Twist& twist = free.basis[static_cast<std::size_t>(k)];
         const Vec3 v_R = twist.v + twist.w.cross(free.p_WR - result.X_WB.p());
