@@ -18,7 +18,7 @@ using Row = Eigen::Matrix<double, 1, 7>;
 using Triangle = Eigen::Matrix<double, 6, 7>;
 
 Vec3 AxisOf(const Pose& X_WC) {
-  return X.q() * Vec3::UnitZ();
+  return X_WC.q() * Vec3::UnitZ();
 }
 
 /** Where z_N has to point. */
