@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
 #include <Poly_Triangulation.hxx>
+#include <ShapeUpgrade_ShapeDivideAngle.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -35,6 +37,7 @@ using spatial::SurfaceKind;
 constexpr double kRecognitionTolerance = 1e-6;          // [m]
 constexpr double kRelativeRecognitionTolerance = 1e-6;  // Of the part's diagonal, for huge parts.
 
+constexpr double kLeastGap = 100;            // Hole in a mesh, in deflections squared.
 constexpr double kIntegrationError = 1e-10;  // Relative.
 
 GProp_GProps CalcVolume(const TopoDS_Shape& solid, const gp_Pnt& about) {
@@ -86,6 +89,11 @@ std::size_t CountTriangles(const TopoDS_Shape& shape) {
   return count;
 }
 
+bool IsMeshed(const TopoDS_Face& face) {
+  TopLoc_Location location;
+  return !BRep_Tool::Triangulation(face, location).IsNull();
+}
+
 std::size_t MeshOnce(const TopoDS_Shape& shape, double deflection, double angle) {
   BRepTools::Clean(shape);  // Else a finer mesh keeps what it can of the coarser one.
   IMeshTools_Parameters parameters;
@@ -130,11 +138,36 @@ double MeshShape(const TopoDS_Shape& shape, double diagonal, const ImportOptions
   return deflection;
 }
 
+/** Cuts a face that BRepMesh gives up (cones with a seam are among them) into pieces that it can
+ do; of several ways the one that leaves the least undone. */
+std::vector<TopoDS_Face> MeshInPieces(const TopoDS_Face& face, double deflection, double angle) {
+  std::vector<TopoDS_Face> best;
+  std::size_t least_undone = std::numeric_limits<std::size_t>::max();
+  for (const double cut_deg : {90.0, 50.0, 35.0}) {
+    ShapeUpgrade_ShapeDivideAngle divide(units::FromDeg(cut_deg), face);
+    divide.Perform();
+    MeshOnce(divide.Result(), deflection, angle);
+    std::vector<TopoDS_Face> pieces;
+    std::size_t undone = 0;
+    for (TopExp_Explorer it(divide.Result(), TopAbs_FACE); it.More(); it.Next()) {
+      pieces.push_back(TopoDS::Face(it.Current()));
+      undone += IsMeshed(pieces.back()) ? 0U : 1U;
+    }
+    if (undone < least_undone) {
+      least_undone = undone;
+      best = std::move(pieces);
+    }
+    if (undone == 0) {
+      break;
+    }
+  }
+  return best;
+}
+
 /** Appends a face's triangles with outward orientation; slivers without an area are left out. */
 void AppendTriangles(const TopoDS_Face& face, Part* part, Face* out) {
   TopLoc_Location location;
   const Handle(Poly_Triangulation) source = BRep_Tool::Triangulation(face, location);
-  out->first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
   if (source.IsNull()) {
     return;
   }
@@ -289,10 +322,17 @@ bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
   for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next()) {
     const TopoDS_Face& source = TopoDS::Face(it.Current());
     Face face;
-    AppendTriangles(source, part, &face);
-    unmeshed += face.triangle_count == 0 ? 1 : 0;
-    SetSurface(source, deflection, tolerance, *part, &face, diagnostics);
     face.area = CalcArea(source);
+    face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
+    if (IsMeshed(source)) {
+      AppendTriangles(source, part, &face);
+    } else if (face.area > kLeastGap * deflection * deflection) {
+      for (const TopoDS_Face& piece : MeshInPieces(source, deflection, options.max_angle)) {
+        AppendTriangles(piece, part, &face);
+      }
+      unmeshed += face.triangle_count == 0 ? 1 : 0;
+    }
+    SetSurface(source, deflection, tolerance, *part, &face, diagnostics);
     face.color = color_of(source);
     part->box_B.Add(face.box_B);
     part->faces.push_back(face);
