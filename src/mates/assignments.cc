@@ -27,9 +27,13 @@ using product::Product;
 
 constexpr double kSameDiameter = 0.01;  // As a part of the diameter.
 
+/** By its name, its path, or the end of its path ("tier 1/post 1"). */
 bool IsCalled(const Product& product, product::OccurrenceId id, std::string_view name) {
   const Occurrence& occurrence = product.occurrences[id.index()];
-  return occurrence.name == name || occurrence.path == name;
+  const std::string_view path = occurrence.path;
+  return occurrence.name == name || path == name ||
+         (path.size() > name.size() && path.ends_with(name) &&
+          path[path.size() - name.size() - 1] == '/' && !name.empty());
 }
 
 /** The fit for one mate from what somebody wrote. */

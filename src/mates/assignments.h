@@ -17,7 +17,8 @@ namespace hvas::mates {
      {"format": "hvas-assignments-1",
       "fits": [{"hole": "housing", "shaft": "dowel pin 1", "diameter_mm": 6, "fit": "H7/k6"}]}
 
- hole and shaft are names of occurrences, or their paths where names repeat; an entry applies to all
+ hole and shaft are names of occurrences, or their paths or ends of paths ("tier 1/post 1") where
+ names repeat; an entry applies to all
  mates between occurrences of these names whose hole or shaft has the diameter within 1 % (any, when
  diameter_mm is left out). "fit" is an ISO 286 code, or "thread".
  Errors name the file, the entry and a remedy; then no fit is changed. @returns how many mates got

@@ -120,8 +120,12 @@ TEST_F(Assignments, CommandLineTakesAMateANameOrAll) {
   EXPECT_EQ(product_.mates[2].fit->kind, FitKind::kThread);
   ASSERT_TRUE(AssignFit(&product_, "m2=H7/g6").has_value());
   EXPECT_EQ(product_.mates[2].fit->code, "H7/g6");
-  for (const char* text : {"", "H7/p6", "=H7/p6", "m9=H7/p6", "nobody=H7/p6", "m1=", "m1=H7",
-                           "m1x=H7/p6", "all=p6/H7"}) {
+  product_.occurrences[1].path = "top/tier 2/pin 1";
+  ASSERT_TRUE(AssignFit(&product_, "tier 2/pin 1=H7/h6").has_value());
+  EXPECT_EQ(product_.mates[0].fit->code, "H7/h6");
+  EXPECT_EQ(product_.mates[1].fit->code, "H8/f7");
+  for (const char* text : {"", "H7/p6", "=H7/p6", "ier 2/pin 1=H7/h6", "m9=H7/p6", "nobody=H7/p6",
+                           "m1=", "m1=H7", "m1x=H7/p6", "all=p6/H7"}) {
     const Result<void> result = AssignFit(&product_, text);
     ASSERT_FALSE(result.has_value()) << text;
     EXPECT_FALSE(result.error().remedy.empty()) << text;
