@@ -1,0 +1,164 @@
+#include "product/features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace hvas::product {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/** Appends a face whose triangles start at the part's last triangle so far. */
+Face& StartFace(Part* part, const Surface& surface) {
+  Face face;
+  face.surface = surface;
+  face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
+  part->faces.push_back(face);
+  return part->faces.back();
+}
+
+void AddQuad(Part* part, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  Face& face = part->faces.back();
+  const auto first = static_cast<std::uint32_t>(part->mesh.vertices.size());
+  for (const Vec3& p : {a, b, c, d}) {
+    part->mesh.vertices.push_back(p);
+    face.box_B.Add(p);
+    part->box_B.Add(p);
+  }
+  part->mesh.triangles.push_back({first, first + 1, first + 2});
+  part->mesh.triangles.push_back({first, first + 2, first + 3});
+  face.triangle_count += 2;
+  face.area += 0.5 * ((b - a).cross(c - a).norm() + (c - a).cross(d - a).norm());
+}
+
+/** A cylindrical face about the axis through (x, 0, 0) along z, from angle `from` on. */
+void AddCylinder(Part* part, double x, double radius, double outward, double from, double sweep,
+                 double low, double high) {
+  Surface surface;
+  surface.kind = SurfaceKind::kCylinder;
+  surface.origin = {x, 0, 0.123};
+  surface.axis = part->faces.size() % 2 == 0 ? Vec3(0, 0, 1) : Vec3(0, 0, -1);
+  surface.radius = radius;
+  surface.outward = outward;
+  StartFace(part, surface);
+  constexpr int kSteps = 24;
+  for (int i = 0; i < kSteps; ++i) {
+    const double a = from + sweep * i / kSteps;
+    const double b = from + sweep * (i + 1) / kSteps;
+    const Vec3 pa(x + radius * std::cos(a), radius * std::sin(a), 0);
+    const Vec3 pb(x + radius * std::cos(b), radius * std::sin(b), 0);
+    AddQuad(part, pa + Vec3(0, 0, low), pb + Vec3(0, 0, low), pb + Vec3(0, 0, high),
+            pa + Vec3(0, 0, high));
+  }
+}
+
+/** A square of the plane z = height that faces up or down. */
+void AddSquare(Part* part, double x, double height, double side, double up) {
+  Surface surface;
+  surface.origin = {0, 0, height};
+  surface.kind = SurfaceKind::kPlane;
+  surface.axis = {0, 0, up};
+  StartFace(part, surface);
+  AddQuad(part, {x, 0, height}, {x + side, 0, height}, {x + side, side, height}, {x, side, height});
+}
+
+TEST(BuildFeatures, MergesHalvesAndQuartersIntoOneHole) {
+  Part part;
+  AddCylinder(&part, 0, 0.005, -1, 0, kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, -1, kPi, 0.5 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, -1, 1.5 * kPi, 0.5 * kPi, 0, 0.01);
+  BuildFeatures(&part);
+  ASSERT_EQ(part.features.size(), 1u);
+  const Feature& hole = part.features[0];
+  EXPECT_EQ(hole.kind, FeatureKind::kHole);
+  EXPECT_EQ(hole.faces.size(), 3u);
+  EXPECT_NEAR(hole.coverage, 2 * kPi, 1e-9);
+  EXPECT_NEAR(hole.span_high - hole.span_low, 0.01, 1e-12);
+  EXPECT_LT((hole.origin_B - Vec3(0, 0, 0.005)).norm(), 1e-12);
+}
+
+TEST(BuildFeatures, JoinsFacesThatTouchAlongTheAxisAndSplitsAtAGap) {
+  Part part;
+  AddCylinder(&part, 0, 0.005, 1, 0, 2 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, 1, 0, 2 * kPi, 0.01, 0.03);
+  AddCylinder(&part, 0, 0.005, 1, 0, 2 * kPi, 0.031, 0.04);
+  BuildFeatures(&part);
+  ASSERT_EQ(part.features.size(), 2u);
+  EXPECT_NEAR(part.features[0].span_high - part.features[0].span_low, 0.03, 1e-12);
+  EXPECT_EQ(part.features[1].kind, FeatureKind::kShaft);
+  // Both halves of the shaft are still known to share their axis.
+  ASSERT_EQ(part.inner_constraints.size(), 1u);
+  EXPECT_EQ(part.inner_constraints[0].kind, InnerConstraintKind::kCoaxial);
+}
+
+TEST(BuildFeatures, KeepsHolesAndShaftsOfOneAxisApart) {
+  Part part;
+  AddCylinder(&part, 0, 0.005, -1, 0, 2 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, 1, 0, 2 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.00501, 1, 0, 2 * kPi, 0, 0.01);
+  BuildFeatures(&part);
+  EXPECT_EQ(part.features.size(), 3u);
+}
+
+TEST(BuildFeatures, DropsFilletsAndKeepsABoreOpenedByASlit) {
+  Part part;
+  AddCylinder(&part, 0, 0.005, 1, 0, 0.5 * kPi, 0, 0.01);  // A fillet.
+  AddCylinder(&part, 0.1, 0.005, -1, 0, kPi, 0, 0.01);     // One end of a slot.
+  AddCylinder(&part, 0.2, 0.005, -1, 0.1, 1.8 * kPi, 0, 0.01);
+  BuildFeatures(&part);
+  ASSERT_EQ(part.features.size(), 1u);
+  EXPECT_NEAR(part.features[0].coverage, 1.8 * kPi, 1e-9);
+}
+
+TEST(BuildFeatures, MergesPadsOfOnePlaneOnly) {
+  Part part;
+  AddSquare(&part, 0, 0.02, 0.01, 1);
+  AddSquare(&part, 0.03, 0.02, 0.01, 1);     // The same plane.
+  AddSquare(&part, 0.06, 0.02, 0.01, -1);    // The same plane seen from below.
+  AddSquare(&part, 0.09, 0.02001, 0.01, 1);  // 10 um higher.
+  BuildFeatures(&part);
+  ASSERT_EQ(part.features.size(), 3u);
+  EXPECT_EQ(part.features[0].faces.size(), 2u);
+  EXPECT_NEAR(part.features[0].area, 2e-4, 1e-12);
+  EXPECT_LT((part.features[0].origin_B - Vec3(0.02, 0.005, 0.02)).norm(), 1e-12);
+  ASSERT_EQ(part.inner_constraints.size(), 2u);
+  EXPECT_EQ(part.inner_constraints[0].kind, InnerConstraintKind::kCoplanar);
+  EXPECT_EQ(part.inner_constraints[1].kind, InnerConstraintKind::kParallel);
+}
+
+TEST(BuildFeatures, TiesAHoleToThePlaneItIsDrilledInto) {
+  Part part;
+  AddSquare(&part, -0.05, 0, 0.1, -1);
+  AddCylinder(&part, 0, 0.005, -1, 0, 2 * kPi, 0, 0.01);
+  AddCylinder(&part, 0.03, 0.005, -1, 0, 2 * kPi, 0, 0.01);
+  BuildFeatures(&part);
+  ASSERT_EQ(part.features.size(), 3u);  // Holes first.
+  EXPECT_EQ(part.features[2].kind, FeatureKind::kPlane);
+  const auto count = [&part](InnerConstraintKind kind) {
+    return std::count_if(part.inner_constraints.begin(), part.inner_constraints.end(),
+                         [kind](const InnerConstraint& c) { return c.kind == kind; });
+  };
+  EXPECT_EQ(count(InnerConstraintKind::kPerpendicular), 2);
+  EXPECT_EQ(count(InnerConstraintKind::kParallel), 1);
+  EXPECT_EQ(part.inner_constraints.size(), 3u);
+}
+
+TEST(ProductDepth, CountsLevelsOfSubassemblies) {
+  Product product;
+  product.parts.emplace_back();
+  product.subassemblies.resize(2);
+  product.subassemblies[0].id = SubassemblyId(0);
+  product.subassemblies[1].id = SubassemblyId(1);
+  product.subassemblies[1].parent = SubassemblyId(0);
+  product.occurrences.resize(1);
+  product.occurrences[0].parent = SubassemblyId(0);
+  EXPECT_EQ(product.depth(), 1);
+  product.occurrences[0].parent = SubassemblyId(1);
+  EXPECT_EQ(product.depth(), 2);
+}
+
+}  // namespace
+}  // namespace hvas::product
