@@ -26,7 +26,7 @@ struct Sample {
   PointFaces faces;
   bool is_edge;
   bool is_feature;
-  std::array<Vec3, kMaxPointFaces> normals{};
+  std::array<Vec3, kMaxPointFaces> normals{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };
 
 PointFaces FacesOf(std::initializer_list<std::uint32_t> faces) {
