@@ -30,7 +30,7 @@ struct GuidanceOptions {
   double max_force{20};              ///< Guidance never pulls harder [N].
   double max_torque{2};              ///< [N m]
   double attraction_force{1.0};      ///< K1 F_max of X(9) [N].
-  double attraction_torque{0.02};    ///< The same about a free axis [N m].
+  double attraction_torque{0.15};    ///< The same about a free axis [N m].
   double seat_distance{0.15e-3};     ///< From the goal, to count as arrived [m].
   double seat_angle{0.06};           ///< [rad]
   double loose_seat_distance{3e-3};  ///< For a part without any mate [m].

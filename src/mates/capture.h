@@ -41,7 +41,7 @@ struct MateDeviation {
 struct CaptureThresholds {
   double angle{0.17453292519943295};  ///< 10 deg [rad].
   double axis_distance{5e-3};         ///< [m]
-  double axial_gap{5e-3};             ///< [m]
+  double axial_gap{30e-3};            ///< Before the shaft's end; the papers set no limit [m].
   double face_distance{3e-3};         ///< [m]
   double in_plane_gap{5e-3};          ///< [m]
   double release_ratio{1.5};  ///< A captured mate is released beyond this multiple of them, >= 1.

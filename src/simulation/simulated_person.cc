@@ -17,7 +17,7 @@ constexpr double kFirstPush = 4.0;    // [N]; what the hand tries first
 constexpr double kPushRate = 6.0;     // [N/s]; how it presses harder
 constexpr double kSlowShare = 0.4;    // of the speed of insertion; slower than that presses harder
 constexpr double kStillSpeed = 1e-3;  // [m/s] that counts as not moving
-constexpr double kStuckBeforeSearch_s = 0.6;
+constexpr double kStuckBeforeSearch_s = 1.2;
 constexpr double kBackOff = 8e-3;        // [m] before trying elsewhere
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime_s = 0.3;     // of a carried weight
@@ -156,15 +156,16 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     stuck_time_s_ = 0;
     push_ = kFirstPush;
   } else {
-    // Presses harder while little moves; the arm's spring turns the lead into a force.
+    // Presses harder while little moves, but not beyond what the device pushes back with: the arm's
+    // spring turns the lead into a force.
     const double speed = -V_H_.v.dot(d);
     const bool is_slow = speed < kSlowShare * options_.insert_speed;
-    push_ = std::clamp(push_ + (is_slow ? kPushRate : -kPushRate) * kDt, kFirstPush,
-                       options_.push_limit);
+    const bool is_at_limit = input.F_H_W.f.norm() >= options_.push_limit;
+    push_ = std::max(kFirstPush, push_ + (is_slow && !is_at_limit ? kPushRate : -kPushRate) * kDt);
     const double lead = push_ / options_.stiffness;
     travel_ = std::max(travel_ - options_.insert_speed * kDt, hand_travel - lead);
-    const bool is_stuck = push_ >= options_.push_limit && speed < kStillSpeed;
-    stuck_time_s_ = is_stuck ? stuck_time_s_ + kDt : 0.0;
+    const bool is_stuck = speed < kStillSpeed && push_ > kFirstPush;
+    stuck_time_s_ = is_stuck ? stuck_time_s_ + kDt : std::max(0.0, stuck_time_s_ - kDt);
     if (stuck_time_s_ > kStuckBeforeSearch_s) {
       // Missed: back off and try beside, on a spiral of golden angles.
       ++search_count_;

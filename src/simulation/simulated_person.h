@@ -39,7 +39,7 @@ struct PersonOptions {
   double aim_error{0.7e-3};       ///< Standard deviation of where the hand believes to be [m].
   double aim_error_angle{0.015};  ///< The same of how it is turned [rad].
   double tremor{0.05e-3};         ///< Physiological tremor, 8..12 Hz, amplitude [m].
-  double push_limit{16};          ///< The hand never wants more than this [N].
+  double push_limit{6.8};         ///< Felt force beyond which it does not press harder [N].
   double patience_s{25};          ///< On one part, from the beginning of insertion [s].
 };
 
