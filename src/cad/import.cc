@@ -1,5 +1,6 @@
 #include "cad/import.h"
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <exception>
@@ -77,6 +78,15 @@ Result<Product> ImportChecked(const std::filesystem::path& file, const ImportOpt
   const Result<void> built = BuildProduct(*document, options, progress, &product, diagnostics);
   CloseDocument(*document);
   if (!built) {
+    const auto missing =
+        std::count_if(diagnostics->items().begin(), diagnostics->items().end(),
+                      [](const Diagnostic& item) { return item.code == "missing-file"; });
+    if (missing > 0) {
+      return Fail(
+          ErrorCode::kNotFound,
+          fmt::format("the assembly keeps its parts in {} other files that are not there", missing),
+          product.source, "put them beside the assembly");
+    }
     return Unexpected(built.error());
   }
   CheckSize(product, diagnostics);

@@ -1,12 +1,15 @@
 #include "cad/part_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Copy.hxx>
 #include <BRepGProp.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
@@ -20,6 +23,7 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
+#include <TopoDS_Solid.hxx>
 #include <fmt/format.h>
 
 #include "base/units.h"
@@ -48,13 +52,27 @@ GProp_GProps CalcVolume(const TopoDS_Shape& solid, const gp_Pnt& about) {
   return properties;
 }
 
-/** What a part is made of: its solids, turned right side out, or without any its loose faces. */
+/** What a part is made of: its solids, turned right side out; without any the solids inside its
+ closed shells; else its loose faces. */
 struct Body {
   TopoDS_Compound shape;
   GProp_GProps volume;
   int solid_count{0};
   int reversed_count{0};
+  bool is_closed_shell{false};
 };
+
+void AddSolid(TopoDS_Shape solid, const gp_Pnt& centre, Body* body) {
+  GProp_GProps volume = CalcVolume(solid, centre);
+  if (volume.Mass() < 0) {
+    solid.Reverse();
+    volume = CalcVolume(solid, centre);
+    ++body->reversed_count;
+  }
+  BRep_Builder().Add(body->shape, solid);
+  body->volume.Add(volume);
+  ++body->solid_count;
+}
 
 Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre) {
   Body body;
@@ -62,17 +80,20 @@ Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre) {
   const BRep_Builder builder;
   builder.MakeCompound(body.shape);
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
-    TopoDS_Shape solid = it.Current();
-    GProp_GProps volume = CalcVolume(solid, centre);
-    if (volume.Mass() < 0) {
-      solid.Reverse();
-      volume = CalcVolume(solid, centre);
-      ++body.reversed_count;
-    }
-    builder.Add(body.shape, solid);
-    body.volume.Add(volume);
-    ++body.solid_count;
+    AddSolid(it.Current(), centre, &body);
   }
+  if (body.solid_count > 0) {
+    return body;
+  }
+  for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next()) {
+    if (BRep_Tool::IsClosed(it.Current())) {
+      TopoDS_Solid solid;
+      builder.MakeSolid(solid);
+      builder.Add(solid, it.Current());
+      AddSolid(solid, centre, &body);
+    }
+  }
+  body.is_closed_shell = body.solid_count > 0;
   if (body.solid_count == 0) {
     builder.Add(body.shape, shape);
   }
@@ -94,11 +115,16 @@ bool IsMeshed(const TopoDS_Face& face) {
   return !BRep_Tool::Triangulation(face, location).IsNull();
 }
 
-std::size_t MeshOnce(const TopoDS_Shape& shape, double deflection, double angle) {
+std::size_t MeshOnce(const TopoDS_Shape& shape, double deflection, double angle,
+                     double interior_factor = 1) {
   BRepTools::Clean(shape);  // Else a finer mesh keeps what it can of the coarser one.
   IMeshTools_Parameters parameters;
   parameters.Deflection = units::ToMm(deflection);
   parameters.Angle = angle;
+  if (interior_factor > 1) {
+    parameters.DeflectionInterior = interior_factor * parameters.Deflection;
+    parameters.AngleInterior = 1;
+  }
   const BRepMesh_IncrementalMesh mesher(shape, parameters);
   return CountTriangles(shape);
 }
@@ -143,10 +169,15 @@ double MeshShape(const TopoDS_Shape& shape, double diagonal, const ImportOptions
 std::vector<TopoDS_Face> MeshInPieces(const TopoDS_Face& face, double deflection, double angle) {
   std::vector<TopoDS_Face> best;
   std::size_t least_undone = std::numeric_limits<std::size_t>::max();
-  for (const double cut_deg : {90.0, 50.0, 35.0}) {
-    ShapeUpgrade_ShapeDivideAngle divide(units::FromDeg(cut_deg), face);
+  constexpr std::array<std::pair<double, double>, 6> kWays{
+      {{90, 1}, {50, 1}, {35, 1}, {90, 2}, {90, 4}, {90, 16}}};  // Cut [deg], coarser by.
+  for (const auto& [cut_deg, coarser] : kWays) {
+    // A copy does not know how the neighbours divided their edges; the way out when that is the
+    // snag.
+    const TopoDS_Shape source = coarser > 1 ? BRepBuilderAPI_Copy(face).Shape() : face;
+    ShapeUpgrade_ShapeDivideAngle divide(units::FromDeg(cut_deg), source);
     divide.Perform();
-    MeshOnce(divide.Result(), deflection, angle);
+    MeshOnce(divide.Result(), coarser * deflection, angle, coarser > 1 ? 100 : 1);
     std::vector<TopoDS_Face> pieces;
     std::size_t undone = 0;
     for (TopExp_Explorer it(divide.Result(), TopAbs_FACE); it.More(); it.Next()) {
@@ -341,7 +372,9 @@ bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
     return false;
   }
   SetMass(body, part);
-  if (body.reversed_count > 0) {
+  if (body.is_closed_shell) {
+    diagnostics->Note("closed-shell", part->name, "closed surfaces, taken as a solid");
+  } else if (body.reversed_count > 0) {
     diagnostics->Note(
         "reversed-solid", part->name,
         fmt::format("{} solids were inside out and were turned", body.reversed_count));

@@ -23,7 +23,8 @@ struct ShapeContent {
 [[nodiscard]] ShapeContent CountContent(const TopoDS_Shape& shape);
 
 /** Fills mesh, faces, box, mass, solid_count and shape_hash of a part from its B-rep; name and
- material must be there already. Faces outside any solid count only where there is no solid.
+ material must be there already. Closed shells count as
+ solids where there is no solid, other faces outside any solid where there is neither.
  Colours come from `color_of`. @returns false when nothing could be meshed. */
 [[nodiscard]] bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
                                   const FaceColorFn& color_of, product::Part* part,

@@ -342,6 +342,18 @@ TEST(BuildProduct, TurnsSolidsThatAreInsideOut) {
   EXPECT_EQ(product.parts[0].features.front().kind, FeatureKind::kHole);
 }
 
+TEST(BuildProduct, TakesAClosedShellAsASolid) {
+  DocumentBuilder builder;
+  builder.AddPart(TopExp_Explorer(MakePlate(), TopAbs_SHELL).Current(), "shell");
+  Diagnostics diagnostics;
+  const Product product = BuildInMemory(&builder, &diagnostics);
+  ASSERT_EQ(product.parts.size(), 1u);
+  EXPECT_EQ(CountCode(diagnostics, "closed-shell"), 1);
+  EXPECT_EQ(product.parts[0].solid_count, 1);
+  EXPECT_NEAR(product.parts[0].mass.volume, kPlateVolume, 1e-9 * kPlateVolume);
+  ExpectConsistent(product.parts[0]);
+}
+
 TEST(BuildProduct, MakesAMirroredInstanceAPartOfItsOwn) {
   DocumentBuilder builder;
   const TDF_Label plate = builder.AddPart(MakePlate(), "plate");
