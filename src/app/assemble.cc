@@ -81,6 +81,7 @@ nlohmann::ordered_json ToJson(const Model& model, const Outcome& outcome,
                              {"name", model.product->occurrences[part.occurrence.index()].path},
                              {"seated", part.is_seated},
                              {"reason", part.reason},
+                             {"note", part.note},
                              {"time_s", part.time},
                              {"path_m", part.path},
                              {"peak_true_n", part.peak_true},
@@ -120,7 +121,7 @@ void PrintTable(const Model& model, const Outcome& outcome, bool is_realtime) {
     fmt::print("{:>3}  {:<44} {:>7.2f} {:>7.3f} {:>11.2f} {:>7.2f} {:>5} {:>8.1e} {:>9.1e}  {}\n",
                i + 1, name, part.time, part.path, part.peak_true, part.peak_felt, part.mates,
                units::ToUm(part.pose_error), 1e6 * part.pose_error_angle,
-               part.time == 0 ? "in the fixture" : "");
+               part.time == 0 ? "in the fixture" : part.note);
   }
   const ExecutionReport& run = outcome.execution;
   const auto us = [](std::int64_t time_ns) { return 1e-3 * static_cast<double>(time_ns); };

@@ -52,7 +52,9 @@ struct Scene::Data {
   void Run(const spatial::Box& box_W, const QueryOptions& options,
            BodyQuery* query) const noexcept {
     tree.Query(box_W, [&](std::uint32_t item) {
-      if (BodyId{item} != options.self) {
+      if (BodyId{item} != options.self &&
+          std::find(options.left_out.begin(), options.left_out.end(), BodyId{item}) ==
+              options.left_out.end()) {
         query->Body(BodyId{item}, Place(item));
       }
       return !query->is_stopped();

@@ -38,7 +38,8 @@ struct IgnoredPair {
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
   std::span<const IgnoredPair> ignored{};
-  BodyId self;  ///< This body of the scene is the held one itself: skipped.
+  std::span<const BodyId> left_out{};  ///< Bodies that are not asked at all.
+  BodyId self;                         ///< This body of the scene is the held one itself: skipped.
 };
 
 struct QueryStats {

@@ -221,6 +221,7 @@ contact::QueryOptions HapticTick::MakeQuery(double margin) noexcept {
   contact::QueryOptions query;
   query.margin = margin;
   query.ignored = {ignored_.data(), guide_.CollectIgnored(*part_, ignored_)};
+  query.left_out = part_->overlapped;
   query.self = part_->body;
   return query;
 }

@@ -47,6 +47,7 @@ struct HeldPart {
   spatial::Pose X_WB_goal;           ///< Its place in the product.
   Vec3 insertion_W{-Vec3::UnitZ()};  ///< Unit, the way in.
   std::vector<HeldMate> mates;
+  std::vector<contact::BodyId> overlapped;  ///< Lie in it as drawn: no contact with them.
 };
 
 }  // namespace hvas::haptics

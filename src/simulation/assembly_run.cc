@@ -59,6 +59,26 @@ void AssemblyRun::Finish(PartResult result) {
   }
 }
 
+std::string AssemblyRun::DescribeOverlaps(OccurrenceId id) const {
+  const Model& model = simulation_->model();
+  const DrawnOverlap* deepest = nullptr;
+  int count = 0;
+  for (const DrawnOverlap& overlap : model.sequence.overlaps) {
+    if (overlap.a == id || overlap.b == id) {
+      ++count;
+      deepest = deepest == nullptr || overlap.depth > deepest->depth ? &overlap : deepest;
+    }
+  }
+  if (deepest == nullptr) {
+    return {};
+  }
+  const OccurrenceId other = deepest->a == id ? deepest->b : deepest->a;
+  return fmt::format("overlaps {}{} as drawn, by {:.3f} mm: contact between them is left out",
+                     model.product->occurrences[other.index()].path,
+                     count > 1 ? fmt::format(" and {} more", count - 1) : "",
+                     units::ToMm(deepest->depth));
+}
+
 void AssemblyRun::Advance() {
   const Model& model = simulation_->model();
   const auto& steps = model.sequence.steps;
@@ -96,6 +116,7 @@ void AssemblyRun::Advance() {
     } else {
       result.reason = "could not be taken up from the table";
     }
+    result.note = DescribeOverlaps(step.occurrence);
     const spatial::Pose& X_WB = simulation_->pose(step.occurrence);
     const spatial::Pose& X_goal = model.bodies[step.occurrence.index()].X_WB_goal;
     result.pose_error = (X_WB.p() - X_goal.p()).norm();

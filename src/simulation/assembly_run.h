@@ -15,6 +15,7 @@ struct PartResult {
   product::OccurrenceId occurrence;
   bool is_seated{false};
   std::string reason;          ///< Why not, when it is not seated.
+  std::string note;            ///< What was odd about it although it is; may be empty.
   double time{0};              ///< From taking it up to letting go [s].
   double path{0};              ///< [m]
   double peak_true{0};         ///< [N]
@@ -47,6 +48,7 @@ class AssemblyRun final : public Sink {
 
  private:
   void Finish(PartResult result);
+  [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id) const;
   [[nodiscard]] PersonTask MakeTask(const SequenceStep& step) const;
 
   Simulation* simulation_;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <optional>
 
 #include <fmt/format.h>
@@ -31,7 +31,6 @@ struct MateView {
 struct Blocker {
   OccurrenceId occurrence;
   double travelled{0};  // [m] before it was met
-  double depth{0};      // [m]
 };
 
 class Planner {
@@ -55,6 +54,8 @@ class Planner {
   Sequence Plan();
 
  private:
+  void FindOverlaps();
+  [[nodiscard]] std::vector<contact::IgnoredPair> CollectIgnored(OccurrenceId id) const;
   [[nodiscard]] std::vector<Vec3> CandidateDirections(OccurrenceId id) const;
   [[nodiscard]] bool MatesAllow(OccurrenceId id, const Vec3& direction) const;
   [[nodiscard]] std::optional<Blocker> FindBlocker(OccurrenceId id, const Vec3& direction);
@@ -74,7 +75,9 @@ class Planner {
   std::vector<bool> is_present_;
   std::vector<std::vector<MateView>> mates_of_;
   std::vector<spatial::Box> boxes_;
-  std::vector<std::vector<Attempt>> attempts_;  // of the last try, by occurrence
+  std::vector<DrawnOverlap> overlaps_;
+  std::vector<std::vector<contact::BodyId>> overlapped_;  // by occurrence
+  std::vector<std::vector<Attempt>> attempts_;            // of the last try, by occurrence
   std::vector<std::ptrdiff_t> mates_at_attempt_;
   contact::QueryWorkspace workspace_;
 };
@@ -173,7 +176,7 @@ std::string Planner::Describe(OccurrenceId id) const {
   return id.is_valid() ? product_.occurrences[id.index()].path : std::string("the table");
 }
 
-std::optional<Blocker> Planner::FindBlocker(OccurrenceId id, const Vec3& direction) {
+std::vector<contact::IgnoredPair> Planner::CollectIgnored(OccurrenceId id) const {
   std::vector<contact::IgnoredPair> ignored;
   for (const MateView& view : mates_of_[id.index()]) {
     if (!is_present_[view.other.index()] || view.mate->kind != MateKind::kAxisHole) {
@@ -185,9 +188,50 @@ std::optional<Blocker> Planner::FindBlocker(OccurrenceId id, const Vec3& directi
     ignored.push_back({body, own->mating, other->with_neighbours});
     ignored.push_back({body, own->with_neighbours, other->mating});
   }
+  return ignored;
+}
+
+void Planner::FindOverlaps() {
+  overlapped_.resize(product_.occurrences.size());
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    const contact::BodyId self(occurrence.id.index());
+    const std::vector<contact::IgnoredPair> ignored = CollectIgnored(occurrence.id);
+    contact::QueryOptions query;
+    query.margin = -kDepthTolerance;
+    query.ignored = ignored;
+    query.self = self;
+    std::vector<contact::BodyId>& left_out = overlapped_[self.index()];
+    // A query reports a limited number of contacts: ask again without those found until none is
+    // left.
+    for (bool is_clear = false; !is_clear;) {
+      query.left_out = left_out;
+      input_.scene->Query(input_.scene->shape(self), occurrence.X_WB, query, &workspace_);
+      std::map<contact::BodyId, double> depths;
+      for (const contact::Contact& contact : workspace_.contacts()) {
+        if (contact.body.is_valid() && contact.distance < -kDepthTolerance) {
+          double& depth = depths[contact.body];
+          depth = std::max(depth, -contact.distance);
+        }
+      }
+      is_clear = depths.empty();
+      for (const auto& [body, depth] : depths) {
+        left_out.push_back(body);
+        const auto& mirrored = overlapped_[body.index()];
+        if (std::find(mirrored.begin(), mirrored.end(), self) == mirrored.end()) {
+          overlapped_[body.index()].push_back(self);
+          overlaps_.push_back({occurrence.id, OccurrenceId(body.index()), depth});
+        }
+      }
+    }
+  }
+}
+
+std::optional<Blocker> Planner::FindBlocker(OccurrenceId id, const Vec3& direction) {
+  const std::vector<contact::IgnoredPair> ignored = CollectIgnored(id);
   contact::QueryOptions query;
   query.margin = -kDepthTolerance;
   query.ignored = ignored;
+  query.left_out = overlapped_[id.index()];
   query.self = contact::BodyId(id.index());
   const contact::Shape& shape = input_.scene->shape(query.self);
   const product::Pose& X_WB = product_.occurrences[id.index()].X_WB;
@@ -199,7 +243,7 @@ std::optional<Blocker> Planner::FindBlocker(OccurrenceId id, const Vec3& directi
       const auto contacts = workspace_.contacts();
       const OccurrenceId other =
           contacts.empty() ? OccurrenceId() : OccurrenceId(contacts[0].body.index());
-      return Blocker{other, s, -workspace_.deepest()};
+      return Blocker{other, s};
     }
   }
   return std::nullopt;
@@ -273,7 +317,9 @@ Sequence Planner::Plan() {
   attempts_.resize(product_.occurrences.size());
   mates_at_attempt_.resize(product_.occurrences.size(), -1);
   std::vector<SequenceStep> removed;
+  FindOverlaps();
   Sequence sequence;
+  sequence.overlaps = overlaps_;
   while (rest.size() > 1) {
     std::vector<OccurrenceId> blocked;
     const OccurrenceId base = rest.back();
@@ -301,11 +347,8 @@ Sequence Planner::Plan() {
                                              });
       if (farthest != attempts.end() && farthest->blocker) {
         const Blocker& blocker = *farthest->blocker;
-        reason = blocker.travelled == 0
-                     ? fmt::format("overlaps {} as drawn by {:.3f} mm",
-                                   Describe(blocker.occurrence), units::ToMm(blocker.depth))
-                     : fmt::format("no free path: meets {} after {:.1f} mm along its best way out",
-                                   Describe(blocker.occurrence), units::ToMm(blocker.travelled));
+        reason = fmt::format("no free path: meets {} after {:.1f} mm along its best way out",
+                             Describe(blocker.occurrence), units::ToMm(blocker.travelled));
       }
       sequence.gaps.push_back({id, reason});
       Remove(id);
@@ -327,6 +370,7 @@ Result<Sequence> Reorder(const product::Product& product, const Sequence& sequen
                          const std::vector<std::string>& names) {
   Sequence result;
   result.gaps = sequence.gaps;
+  result.overlaps = sequence.overlaps;
   std::vector<SequenceStep> rest = sequence.steps;
   for (const std::string& name : names) {
     const auto found = std::find_if(rest.begin(), rest.end(), [&](const SequenceStep& step) {

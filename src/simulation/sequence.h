@@ -19,6 +19,14 @@ struct SequenceStep {
   bool is_base{false};        ///< The first part: it is held in the fixture.
 };
 
+/** Two parts that lie in one another as drawn, beyond what a mate between them explains. Contact
+ between the two is left out: the drawing, not the hand, has put them there. */
+struct DrawnOverlap {
+  product::OccurrenceId a;
+  product::OccurrenceId b;
+  double depth{0};  ///< [m]
+};
+
 /** A part that cannot be brought in, and why. */
 struct SequenceGap {
   product::OccurrenceId occurrence;
@@ -28,6 +36,7 @@ struct SequenceGap {
 struct Sequence {
   std::vector<SequenceStep> steps;  ///< In the order of assembly.
   std::vector<SequenceGap> gaps;
+  std::vector<DrawnOverlap> overlaps;
 };
 
 struct SequenceInput {

@@ -229,6 +229,11 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(OccurrenceId id) con
     held->mates.push_back(std::move(entry));
     constraints.push_back(constraint);
   }
+  for (const DrawnOverlap& overlap : model_->sequence.overlaps) {
+    if (overlap.a == id || overlap.b == id) {
+      held->overlapped.emplace_back((overlap.a == id ? overlap.b : overlap.a).index());
+    }
+  }
   // The place is where the mates say; what they leave free is taken from the drawing (X9).
   held->X_WB_goal =
       constraints.empty()
