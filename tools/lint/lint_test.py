@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Tests of the lints: each catches what it is there for, and lets pass what it should."""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import layers  # noqa: E402
+import rt_symbols  # noqa: E402
+
+TABLE = """
+| room | holds | may know | outside libraries |
+|---|---|---|---|
+| `base` | results | - | fmt |
+| `middle` | things | base | - |
+| `top` | all | middle | CLI |
+"""
+
+
+class Layers(unittest.TestCase):
+    def setUp(self):
+        self.root = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        self.write("docs/architecture.md", TABLE)
+
+    def write(self, path, text):
+        (self.root / path).parent.mkdir(parents=True, exist_ok=True)
+        (self.root / path).write_text(text)
+
+    def problems(self):
+        rooms, outside = layers.read_table(self.root / "docs/architecture.md")
+        reach, libraries = layers.close(rooms, outside)
+        return [
+            *layers.check_sources(self.root, rooms, reach, libraries),
+            *layers.check_links(self.root, rooms, reach, libraries),
+        ]
+
+    def test_downward_includes_pass_also_through_other_rooms(self):
+        self.write("src/top/a.cc", '#include <vector>\n#include <CLI/CLI.hpp>\n#include "base/x.h"\n#include "top/a.h"\n')
+        self.write("src/top/CMakeLists.txt", "hvas_library(top SOURCES a.cc DEPS hvas::middle hvas::base CLI11::CLI11)")
+        self.assertEqual(self.problems(), [])
+
+    def test_upward_include_is_caught_with_its_line(self):
+        self.write("src/base/a.h", '#pragma once\n#include "middle/m.h"\n')
+        self.assertEqual(self.problems(), ['src/base/a.h:2: base may not know middle: #include "middle/m.h"'])
+
+    def test_upward_link_is_caught(self):
+        self.write("src/base/CMakeLists.txt", "hvas_library(base SOURCES a.cc DEPS hvas::top)")
+        self.assertEqual(len(self.problems()), 1)
+
+    def test_library_of_another_room_is_caught_in_source_and_link(self):
+        self.write("src/middle/a.cc", "#include <CLI/CLI.hpp>\n")
+        self.write("src/middle/CMakeLists.txt", "hvas_library(middle SOURCES a.cc DEPS CLI11::CLI11)")
+        self.assertEqual(len(self.problems()), 2)
+
+    def test_unknown_library_is_caught(self):
+        self.write("src/base/a.cc", "#include <boost/asio.hpp>\n")
+        self.assertEqual(len(self.problems()), 1)
+
+    def test_gtest_is_for_tests(self):
+        self.write("src/base/test/a_test.cc", "#include <gtest/gtest.h>\n")
+        self.assertEqual(self.problems(), [])
+        self.write("src/base/a.cc", "#include <gtest/gtest.h>\n")
+        self.assertEqual(len(self.problems()), 1)
+
+    def test_circle_in_the_table_is_caught(self):
+        self.write("docs/architecture.md", TABLE.replace("| results | - |", "| results | top |"))
+        self.assertRaises(ValueError, self.problems)
+
+
+# A tick that allocates only behind a local function in another file, and a clean one.
+TICK = """
+namespace hvas { int Far(int n) noexcept; int Near(int n) noexcept; }
+namespace { __attribute__((noinline)) int Step(int n) noexcept { return hvas::Far(n) + 1; } }
+namespace hvas {
+int Dirty(int n) noexcept { return Step(n) + 1; }
+int Clean(int n) noexcept { return Near(n) + 1; }
+int SetUp() { return *new int(3); }
+}
+"""
+FAR = """
+namespace hvas {
+int* kept;
+int Far(int n) noexcept { kept = new int(n); return *kept; }
+int Near(int n) noexcept { return n * n; }
+}
+"""
+
+
+class RtSymbols(unittest.TestCase):
+    def setUp(self):
+        self.root = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        self.objects = {}
+        for name, text in {"tick": TICK, "far": FAR}.items():
+            source, target = self.root / f"{name}.cc", self.root / f"{name}.cc.o"
+            source.write_text(text)
+            subprocess.run(["g++", "-O2", "-fPIC", "-c", source, "-o", target], check=True)
+            self.objects[f"room/{name}"] = target
+        self.addCleanup(setattr, rt_symbols, "ROOTS", rt_symbols.ROOTS)
+        self.addCleanup(setattr, rt_symbols, "TICK_ONLY", rt_symbols.TICK_ONLY)
+
+    def reached(self, *roots):
+        rt_symbols.ROOTS = list(roots)
+        return list(rt_symbols.check_reachable(self.objects))
+
+    def test_allocation_behind_other_files_is_caught_with_its_way(self):
+        problems = self.reached(r"hvas::Dirty\(int\)")
+        self.assertEqual(len(problems), 1)
+        self.assertIn("hvas::Far(int)\n    operator new", problems[0])
+
+    def test_set_up_beside_a_clean_tick_passes(self):
+        self.assertEqual(self.reached(r"hvas::Clean\(int\)"), [])
+
+    def test_root_that_is_gone_is_caught(self):
+        self.assertEqual(len(self.reached(r"hvas::Gone\(int\)")), 1)
+
+    def test_tick_only_file_that_names_new_is_caught(self):
+        rt_symbols.TICK_ONLY = ["room/far", "room/gone"]
+        self.assertEqual(len(list(rt_symbols.check_tick_only(self.objects))), 2)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=0)
