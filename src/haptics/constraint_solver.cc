@@ -109,11 +109,47 @@ void ConstraintSolver::Prepare(Row* row) noexcept {
   row->lambda = 0;
 }
 
+void ConstraintSolver::PrepareFriction(ContactRows* rows) noexcept {
+  Row& x = rows->tangent[0];
+  Row& y = rows->tangent[1];
+  Prepare(&x);
+  Prepare(&y);
+  const double a = x.J.dot(x.W);
+  const double c = y.J.dot(y.W);
+  rows->coupling = x.J.dot(y.W);
+  rows->gradient_step = 1 / (0.5 * (a + c) + std::hypot(0.5 * (a - c), rows->coupling));
+}
+
 void ConstraintSolver::Relax(Row* row, double low, double high) noexcept {
   const double residual = row->J.dot(V_) - row->bias + row->softness * row->lambda;
   const double lambda = std::clamp(row->lambda - residual * row->inverse, low, high);
   V_ += (lambda - row->lambda) * row->W;
   row->lambda = lambda;
+}
+
+void ConstraintSolver::RelaxFriction(ContactRows* rows) noexcept {
+  // Coulomb's disc, no square about two chosen axes: the world has no preferred direction. If
+  // sticking needs no more than the disc has it is solved exactly, else a projected gradient step
+  // turns the force against the sliding.
+  Row& x = rows->tangent[0];
+  Row& y = rows->tangent[1];
+  const double limit = rows->friction * rows->normal.lambda;
+  const Eigen::Vector2d slip(x.J.dot(V_), y.J.dot(V_));
+  const Eigen::Vector2d before(x.lambda, y.lambda);
+  const double a = 1 / x.inverse;
+  const double c = 1 / y.inverse;
+  const double determinant = a * c - rows->coupling * rows->coupling;
+  Eigen::Vector2d lambda = before - Eigen::Vector2d(c * slip.x() - rows->coupling * slip.y(),
+                                                    a * slip.y() - rows->coupling * slip.x()) /
+                                        determinant;
+  if (lambda.norm() > limit) {
+    lambda = before - rows->gradient_step * slip;
+    const double size = lambda.norm();
+    lambda *= size > limit ? limit / size : 1.0;
+  }
+  V_ += (lambda.x() - x.lambda) * x.W + (lambda.y() - y.lambda) * y.W;
+  x.lambda = lambda.x();
+  y.lambda = lambda.y();
 }
 
 spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
@@ -124,8 +160,7 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
   for (ContactRows& rows : contacts) {
     Prepare(&rows.normal);
     if (rows.friction > 0) {
-      Prepare(&rows.tangent[0]);
-      Prepare(&rows.tangent[1]);
+      PrepareFriction(&rows);
     }
   }
   for (std::size_t i = 0; i < bounded_count; ++i) {
@@ -139,9 +174,7 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
     }
     for (ContactRows& rows : contacts) {
       if (rows.friction > 0) {
-        const double limit = rows.friction * rows.normal.lambda;
-        Relax(&rows.tangent[0], -limit, limit);
-        Relax(&rows.tangent[1], -limit, limit);
+        RelaxFriction(&rows);
       }
     }
     // Normals last: what remains of the error is in friction, not in penetration.

@@ -79,11 +79,15 @@ class ConstraintSolver {
     Row normal;
     Row tangent[2];
     double friction{0};
+    double coupling{0};       // Of the two tangents: J_0 A^-1 J_1^T
+    double gradient_step{0};  // One over the larger eigenvalue of the tangents' block
   };
 
   void Factor() noexcept;
   void Prepare(Row* row) noexcept;
+  void PrepareFriction(ContactRows* rows) noexcept;
   void Relax(Row* row, double low, double high) noexcept;
+  void RelaxFriction(ContactRows* rows) noexcept;
 
   Mat6 A_{Mat6::Identity()};
   Vec6 rhs_{Vec6::Zero()};

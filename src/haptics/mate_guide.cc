@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kAlignedDistance = 20e-6;  // [m] beyond the clearance
 constexpr double kAlignedAngle = 1e-3;      // [rad]
+constexpr double kLeaveFactor = 10;         // of these, before an aligned mate counts as left
 constexpr double kNearRatio = 3;            // of the capture thresholds
 constexpr double kHandRatio = 3;            // the hand may stray this far before a mate lets go
 constexpr double kFirstStiffness = 1.0;     // [N/m, N m/rad] where the ramp starts
@@ -73,7 +74,7 @@ MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) n
 void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
                        const spatial::Pose& X_WB, const spatial::Pose& X_WT, double dt) noexcept {
   is_near_ = false;
-  is_aligned_ = true;
+  is_aligned_ = false;
   captured_count_ = 0;
   insertion_depth_ = 0;
   axis_ = nullptr;
@@ -98,14 +99,12 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
     const double direction = state.is_captured ? 1.0 : -1.0;
     state.ramp = std::clamp(state.ramp + direction * dt / options.ramp_time, 0.0, 1.0);
     if (!state.is_captured) {
+      state.is_aligned = false;
       continue;
     }
     ++captured_count_;
-    if (IsGuide(mate)) {
-      const double free = FreeRadius(mate, g);
-      is_aligned_ = is_aligned_ && state.ramp >= 1 && g.distance < free + kAlignedDistance &&
-                    g.angle < kAlignedAngle + (g.engaged > 0 ? 2 * free / g.engaged : 0);
-    }
+    UpdateAlignment(mate, &state);
+    is_aligned_ = is_aligned_ || state.is_aligned;
     if (kind == MateKind::kAxisHole) {
       if (axis_ == nullptr || g.engaged > insertion_depth_) {
         axis_ = &state.geometry;
@@ -114,7 +113,18 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
       insertion_depth_ = std::max(insertion_depth_, g.engaged);
     }
   }
-  is_aligned_ = is_aligned_ && captured_count_ > 0;
+}
+
+void MateGuide::UpdateAlignment(const HeldMate& mate, MateState* state) noexcept {
+  const MateGeometry& g = state->geometry;
+  if (state->is_aligned && g.engaged > 0) {
+    return;  // inside a hole, the fit answers until the shaft is out again
+  }
+  const double slack = state->is_aligned ? kLeaveFactor : 1.0;
+  const double free = FreeRadius(mate, g);
+  const double tilt_free = g.engaged > 0 ? 2 * free / g.engaged : 0;
+  const bool is_across = !IsGuide(mate) || g.distance < free + slack * kAlignedDistance;
+  state->is_aligned = state->ramp >= 1 && is_across && g.angle < tilt_free + slack * kAlignedAngle;
 }
 
 void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
@@ -171,13 +181,10 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
 std::size_t MateGuide::CollectIgnored(const HeldPart& part,
                                       std::span<contact::IgnoredPair> pairs) const noexcept {
   std::size_t written = 0;
-  if (!is_aligned_) {
-    return 0;
-  }
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count && written + 2 <= pairs.size(); ++i) {
     const HeldMate& mate = part.mates[i];
-    if (!mates_[i].is_captured || !IsGuide(mate)) {
+    if (!mates_[i].is_aligned || !IsGuide(mate)) {
       continue;
     }
     pairs[written++] = {mate.body, mate.held_faces->mating, mate.placed_faces->with_neighbours};
@@ -190,7 +197,7 @@ double MateGuide::CalcAxialResistance(const HeldPart& part) const noexcept {
   double sum = 0;
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count; ++i) {
-    if (mates_[i].is_captured && part.mates[i].fit != nullptr) {
+    if (mates_[i].is_aligned && part.mates[i].fit != nullptr) {
       sum += part.mates[i].fit->CalcAxialResistance(mates_[i].geometry.engaged);
     }
   }

@@ -47,7 +47,7 @@ class MateGuide {
 
   [[nodiscard]] int captured_count() const noexcept { return captured_count_; }
 
-  /** All captured mates are on their axes, and their faces answer by their fit. */
+  /** A captured mate is on its axis (or square to its plane); its faces answer by their fit. */
   [[nodiscard]] bool is_aligned() const noexcept { return is_aligned_; }
 
   [[nodiscard]] bool is_captured(std::size_t i) const noexcept { return mates_[i].is_captured; }
@@ -77,9 +77,12 @@ class MateGuide {
  private:
   struct MateState {
     bool is_captured{false};
-    double ramp{0};  ///< 0: no guidance, 1: full stiffness.
+    bool is_aligned{false};  ///< Came onto its axis, and has not left the hole since.
+    double ramp{0};          ///< 0: no guidance, 1: full stiffness.
     MateGeometry geometry;
   };
+
+  static void UpdateAlignment(const HeldMate& mate, MateState* state) noexcept;
 
   std::array<MateState, kMaxMates> mates_{};
   bool is_near_{false};

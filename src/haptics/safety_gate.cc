@@ -1,7 +1,5 @@
 #include "haptics/safety_gate.h"
 
-#include <algorithm>
-
 namespace hvas::haptics {
 namespace {
 
@@ -9,6 +7,10 @@ namespace {
 std::uint32_t Limit(const Vec3& wanted, double max_norm, double max_step, Vec3* last) noexcept {
   std::uint32_t actions = kGatePassed;
   Vec3 target = wanted;
+  constexpr double kHuge = 1e100;  // The square of anything up to this is finite.
+  if (const double largest = target.cwiseAbs().maxCoeff(); largest > kHuge) {
+    target *= kHuge / largest;
+  }
   const double norm = target.norm();
   if (norm > max_norm) {
     target *= max_norm / norm;
@@ -34,7 +36,7 @@ spatial::Wrench SafetyGate::Pass(const spatial::Wrench& F_W, double dt) noexcept
     wanted = {};
     actions_ |= kGateNotFinite;
   }
-  const double step = std::max(dt, 0.0);
+  const double step = dt > 0 ? dt : 0.0;  // Also for a dt that is no number.
   actions_ |= Limit(wanted.f, limits_.max_force, limits_.max_force_rate * step, &last_.f);
   actions_ |= Limit(wanted.t, limits_.max_torque, limits_.max_torque_rate * step, &last_.t);
   return last_;

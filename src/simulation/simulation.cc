@@ -188,7 +188,7 @@ void Simulation::TakeNearest(const Vec3& p_WH) {
   Command command;
   command.kind = Command::Kind::kTake;
   command.part = held_.get();
-  command.X_WB = part.X_WB;
+  command.X_WB = held_->X_WB_start;
   commands_.TryPush(command);
 }
 
@@ -201,7 +201,7 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(OccurrenceId id) con
   held->mass = body.mass.mass;
   held->p_BoBcm_B = body.mass.p_BoBcm_B;
   held->I_BBcm_B = body.mass.I_BBcm_B;
-  held->X_WB_start = parts_[id.index()].X_WB;
+  held->X_WB_start = ClearOfTable(id);
   held->insertion_W = parts_[id.index()].insertion_W;
   std::vector<mates::MateConstraint> constraints;
   for (const product::MateId mate_id : model_->mates_of[id.index()]) {
@@ -244,6 +244,18 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(OccurrenceId id) con
                 body.X_WB_goal)
                 .X_WB;
   return held;
+}
+
+spatial::Pose Simulation::ClearOfTable(OccurrenceId id) const {
+  // Free bodies are hulls with few corners; the exact shape may reach a little below the table.
+  constexpr double kGap = 10e-6;  // [m]
+  const spatial::Pose& X_WB = parts_[id.index()].X_WB;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vec3& vertex : model_->product->part_of(id).mesh.vertices) {
+    lowest = std::min(lowest, (X_WB * vertex).z());
+  }
+  const double lift = std::max(0.0, model_->table_z + kGap - lowest);
+  return {X_WB.q(), X_WB.p() + Vec3(0, 0, lift)};
 }
 
 void Simulation::PushBodies(const Report& report) {

@@ -131,6 +131,7 @@ class Simulation {
   void HandleEvent(const SimulationEvent& event);
   void TakeNearest(const Vec3& p_WH);
   [[nodiscard]] std::unique_ptr<haptics::HeldPart> MakeHeldPart(product::OccurrenceId id) const;
+  [[nodiscard]] spatial::Pose ClearOfTable(product::OccurrenceId id) const;
   void PushBodies(const Report& report);
 
   std::shared_ptr<const Model> model_;
