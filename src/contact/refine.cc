@@ -36,7 +36,6 @@ struct SolidFeature {
   VertexKind kind{VertexKind::kSmooth};  // Smooth: inside a face.
   std::uint32_t face{kNoFace};
   std::uint32_t other_face{kNoFace};
-  bool is_concave{false};
 };
 
 SolidFeature FeatureOf(const Mesh& mesh, const Closest& closest) {
@@ -52,7 +51,6 @@ SolidFeature FeatureOf(const Mesh& mesh, const Closest& closest) {
     if (kind == EdgeKind::kConvex || kind == EdgeKind::kConcave) {
       result.kind = VertexKind::kOnEdge;
       result.other_face = mesh.face[mesh.neighbour[t][index - 1]];
-      result.is_concave = kind == EdgeKind::kConcave;
     }
     return result;
   }
@@ -62,9 +60,6 @@ SolidFeature FeatureOf(const Mesh& mesh, const Closest& closest) {
     // The faces of the two edges at this corner; both belong to it.
     const auto& pair = mesh.vertex_faces[v];
     result.other_face = pair[0] == result.face ? pair[1] : pair[0];
-    for (const std::size_t k : {index - 4, (index - 2) % 3}) {
-      result.is_concave = result.is_concave || mesh.edge_kind[t][k] == EdgeKind::kConcave;
-    }
   }
   return result;
 }
@@ -175,6 +170,22 @@ Refined FromFeature(const Shape::Data& shape, const Closest& closest, const Soli
              : FromEdge(shape, closest, feature, p, sign);
 }
 
+// True where the closest feature lies on a concave edge between a kept face and an ignored one. At
+// a corner only the corner's own edges with ignored faces count: a plane that meets the ignored
+// bore in its convex rim may meet a wall in a concave edge at the same corner.
+bool IsConcaveWithIgnored(const Mesh& mesh, const Closest& closest, const FaceFilter& filter) {
+  const std::uint32_t t = closest.triangle;
+  const auto index = static_cast<std::size_t>(closest.feature);
+  const auto is_concave = [&](std::size_t k) {
+    return mesh.edge_kind[t][k] == EdgeKind::kConcave &&
+           filter.Drops(mesh.face[mesh.neighbour[t][k]]);
+  };
+  if (closest.feature <= TriangleFeature::kEdge2) {
+    return is_concave(index - 1);
+  }
+  return is_concave(index - 4) || is_concave((index - 2) % 3);
+}
+
 // The faces that something else answers for are gone, but the material behind them is not: what
 // lies beyond them counts only where it faces p. Where a kept face meets an ignored one in a
 // concave edge, the kept one goes on beyond the edge, as for a pin at the bottom of its hole.
@@ -188,7 +199,7 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
   }
   const SolidFeature feature = FeatureOf(shape.mesh, closest);
   const bool touches_ignored = feature.other_face != kNoFace && filter.Drops(feature.other_face);
-  if (touches_ignored && !feature.is_concave) {
+  if (touches_ignored && !IsConcaveWithIgnored(shape.mesh, closest, filter)) {
     return none;
   }
   const double reach = std::sqrt(closest.squared);
