@@ -26,6 +26,14 @@ double FreeRadius(const HeldMate& mate, const MateGeometry& geometry) noexcept {
   return clearance * std::min(1.0, geometry.engaged / kOpening);
 }
 
+/** Tilt that the clearance leaves: 2 S over the engaged length. A length of less than a diameter
+ holds no tilt by itself; there the guidance does (X14). */
+double FreeTilt(const HeldMate& mate, const MateGeometry& geometry) noexcept {
+  return geometry.engaged > 0
+             ? 2 * FreeRadius(mate, geometry) / std::max(geometry.engaged, 2 * mate.radius)
+             : 0;
+}
+
 /** Geometric ramp: most of the way is made where the mate is as stiff as the hand. */
 double RampedStiffness(double full, double ramp) noexcept {
   return ramp <= 0 ? 0 : kFirstStiffness * std::pow(full / kFirstStiffness, ramp);
@@ -122,7 +130,7 @@ void MateGuide::UpdateAlignment(const HeldMate& mate, MateState* state) noexcept
   }
   const double slack = state->is_aligned ? kLeaveFactor : 1.0;
   const double free = FreeRadius(mate, g);
-  const double tilt_free = g.engaged > 0 ? 2 * free / g.engaged : 0;
+  const double tilt_free = FreeTilt(mate, g);
   const bool is_across = !IsGuide(mate) || g.distance < free + slack * kAlignedDistance;
   state->is_aligned = state->ramp >= 1 && is_across && g.angle < tilt_free + slack * kAlignedAngle;
 }
@@ -140,10 +148,7 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const MateGeometry& g = state.geometry;
     const Mat3 along = g.axis_W * g.axis_W.transpose();
     const Mat3 across = Mat3::Identity() - along;
-    const double tilt_free =
-        mate.capture.kind == MateKind::kAxisHole && g.engaged > 0
-            ? std::min(0.5 * options.capture.angle, 2 * FreeRadius(mate, g) / g.engaged)
-            : 0;
+    const double tilt_free = mate.capture.kind == MateKind::kAxisHole ? FreeTilt(mate, g) : 0;
     const double tilt = g.tilt_W.norm();
     if (tilt > tilt_free || tilt_free == 0) {
       const double excess = tilt - tilt_free;
