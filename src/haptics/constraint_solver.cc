@@ -60,7 +60,8 @@ void ConstraintSolver::AddAngularDamper(const Vec3& w_target, double b) noexcept
 }
 
 void ConstraintSolver::AddContact(const Vec3& p_WC, const Vec3& nhat_W, double velocity_bias,
-                                  double friction, double compliance) noexcept {
+                                  double friction, double compliance,
+                                  double recovery_speed) noexcept {
   if (contact_count_ == kMaxContacts) {
     return;
   }
@@ -68,6 +69,7 @@ void ConstraintSolver::AddContact(const Vec3& p_WC, const Vec3& nhat_W, double v
   const Quat q_WC = spatial::FrameFromZ(nhat_W);
   ContactRows& rows = contacts_[static_cast<std::size_t>(contact_count_++)];
   rows.friction = friction;
+  rows.recovery_speed = recovery_speed;
   rows.normal = {};
   rows.normal.J << r.cross(nhat_W), nhat_W;
   rows.normal.bias = velocity_bias;
@@ -127,6 +129,15 @@ void ConstraintSolver::Relax(Row* row, double low, double high) noexcept {
   row->lambda = lambda;
 }
 
+void ConstraintSolver::RelaxNormal(ContactRows* rows) noexcept {
+  // Up to the recovery speed the force is what the depth asks for, whatever the load; beyond it the
+  // contact lets go. A bound on the bias alone would let a hard press sink in for ever.
+  Row& row = rows->normal;
+  const double slack = row.J.dot(row.W);
+  const double at_recovery = row.lambda + (rows->recovery_speed - row.J.dot(V_)) / slack;
+  Relax(&row, 0, std::max(0.0, at_recovery));
+}
+
 void ConstraintSolver::RelaxFriction(ContactRows* rows) noexcept {
   // Coulomb's disc, no square about two chosen axes: the world has no preferred direction. If
   // sticking needs no more than the disc has it is solved exactly, else a projected gradient step
@@ -179,7 +190,7 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
     }
     // Normals last: what remains of the error is in friction, not in penetration.
     for (ContactRows& rows : contacts) {
-      Relax(&rows.normal, 0, std::numeric_limits<double>::infinity());
+      RelaxNormal(&rows);
     }
     if ((V_ - V_before).squaredNorm() < kConverged * kConverged) {
       break;

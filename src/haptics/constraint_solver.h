@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 
 #include "spatial/pose.h"
@@ -43,9 +44,11 @@ class ConstraintSolver {
   void AddAngularDamper(const Vec3& w_target, double b) noexcept;
 
   /** A unilateral contact at p_WC with unit normal away from the obstacle. `velocity_bias` is what
-   the normal velocity must at least be: -phi/dt for a gap, a bounded recovery speed otherwise. */
+   the normal velocity must at least be, -phi/dt, less what the compliance takes; the contact pushes
+   no harder than needed to separate at `recovery_speed`. */
   void AddContact(const Vec3& p_WC, const Vec3& nhat_W, double velocity_bias, double friction,
-                  double compliance) noexcept;
+                  double compliance,
+                  double recovery_speed = std::numeric_limits<double>::infinity()) noexcept;
 
   /** Resists motion J V with a force of at most `bound` (dry friction). Returns the row's index. */
   int AddBoundedRow(const Vec6& J, double bound) noexcept;
@@ -79,6 +82,7 @@ class ConstraintSolver {
     Row normal;
     Row tangent[2];
     double friction{0};
+    double recovery_speed{0};
     double coupling{0};       // Of the two tangents: J_0 A^-1 J_1^T
     double gradient_step{0};  // One over the larger eigenvalue of the tangents' block
   };
@@ -87,6 +91,7 @@ class ConstraintSolver {
   void Prepare(Row* row) noexcept;
   void PrepareFriction(ContactRows* rows) noexcept;
   void Relax(Row* row, double low, double high) noexcept;
+  void RelaxNormal(ContactRows* rows) noexcept;
   void RelaxFriction(ContactRows* rows) noexcept;
 
   Mat6 A_{Mat6::Identity()};

@@ -240,9 +240,9 @@ void HapticTick::AddContacts(TickOutput* out) noexcept {
   out->deepest = workspace_.deepest();
   out->is_truncated = workspace_.stats().is_truncated;
   for (const contact::Contact& c : workspace_.contacts()) {
-    const double bias = -c.distance / options_.dt;
-    solver_.AddContact(c.p_WC, c.nhat_W, std::min(bias, contact.recovery_speed), contact.friction,
-                       contact.compliance);
+    const double bias = -std::max(c.distance, -contact.max_depth) / options_.dt;
+    solver_.AddContact(c.p_WC, c.nhat_W, bias, contact.friction, contact.compliance,
+                       contact.recovery_speed);
   }
 }
 

@@ -41,6 +41,7 @@ struct ContactOptions {
   double compliance{2e-6};      ///< [m/N]; 20 um at 10 N.
   double friction{0.15};        ///< Coulomb, steel on steel.
   double recovery_speed{0.02};  ///< Penetration is undone no faster [m/s].
+  double max_depth{100e-6};     ///< A contact pushes no harder than at this depth [m].
   double min_margin{60e-6};     ///< Contacts are looked for at least this far away [m].
   double max_speed{1.0};        ///< The displayed part moves no faster [m/s].
   double max_turn_rate{10.0};   ///< [rad/s]
