@@ -1,9 +1,8 @@
 #include "app/inspect.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,9 +13,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/load_product.h"
 #include "app/product_json.h"
+#include "app/progress.h"
 #include "base/units.h"
-#include "cad/import.h"
 #include "mates/infer.h"
 
 namespace hvas::app {
@@ -26,16 +26,6 @@ using product::Mate;
 using product::MateKind;
 using product::Product;
 using units::ToMm;
-
-/** One line on a terminal that is written over and gone at the end. */
-void ShowProgress(std::string_view stage, double fraction) {
-  if (fraction >= 1) {
-    fmt::print(stderr, "\r\033[K");
-  } else {
-    fmt::print(stderr, "\r\033[K{} {:.0f} %", stage, 100 * fraction);
-  }
-  std::fflush(stderr);
-}
 
 /** The tree with one line for each subassembly and part; equal neighbours are counted, not listed.
  */
@@ -137,17 +127,16 @@ void PrintText(const Product& product, const Diagnostics& diagnostics) {
 }  // namespace
 
 int RunInspect(const InspectOptions& options) {
-  cad::ProgressFn progress;
-  if (!options.is_quiet && isatty(STDERR_FILENO) != 0) {
+  std::function<void(std::string_view, double)> progress;
+  if (!options.is_quiet && IsWatched()) {
     progress = ShowProgress;
   }
   Diagnostics diagnostics;
-  auto product = cad::ImportStep(options.file, {}, &diagnostics, progress);
+  const auto product = LoadProduct(options.file, {}, &diagnostics, progress);
   if (!product) {
     fmt::print(stderr, "hvas: {}\n", product.error().ToString());
     return 1;
   }
-  mates::Infer(&*product, &diagnostics);
   if (options.is_json) {
     // Names that are no UTF-8 in the file must not cost the whole answer.
     fmt::print("{}\n", ToJson(*product, diagnostics)

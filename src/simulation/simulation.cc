@@ -15,6 +15,14 @@ constexpr double kReach = 0.03;      // [m] from a part's centre of mass, to tak
 constexpr double kStopCosine = 0.5;  // a plane facing the way in ends it; one along it guides
 constexpr double kPhysicsStep = Simulation::kHapticStep * Simulation::kTicksPerPhysics;
 
+Frame MakeFirstFrame(const Model& model) {
+  Frame frame;
+  for (const Body& body : model.bodies) {
+    frame.X_WB.push_back(body.X_WB_start);
+  }
+  return frame;
+}
+
 }  // namespace
 
 Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options)
@@ -23,6 +31,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
       haptic_(options, &scene_),
       commands_(4 * model_->bodies.size() + 64),
       events_(256),
+      frames_(MakeFirstFrame(*model_)),
       world_(TableOptions(*model_)),
       parts_(model_->bodies.size()) {
   for (const Body& body : model_->bodies) {
@@ -36,14 +45,6 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
   scene_.SetGround(model_->table_z);
   for (const SequenceStep& step : model_->sequence.steps) {
     parts_[step.occurrence.index()].insertion_W = -step.extraction_W;
-  }
-  Frame frame;
-  frame.X_WB.resize(parts_.size());
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    frame.X_WB[i] = parts_[i].X_WB;
-  }
-  for (int slot = 0; slot < 3; ++slot) {
-    frames_.Write(frame);
   }
 }
 
