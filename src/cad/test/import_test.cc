@@ -19,7 +19,7 @@
 #include <gtest/gtest.h>
 
 #include "cad/assembly_tree.h"
-#include "step_fixture.h"
+#include "cad/test/step_fixture.h"
 
 namespace hvas::cad {
 namespace {

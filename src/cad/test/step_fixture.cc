@@ -1,4 +1,4 @@
-#include "step_fixture.h"
+#include "cad/test/step_fixture.h"
 
 #include <unistd.h>
 

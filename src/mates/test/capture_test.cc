@@ -100,7 +100,8 @@ TEST(CalcDeviation, FacesGiveHeightAndInPlaneGapBeyondTheirReach) {
   EXPECT_NEAR(deviation.gap, 5e-3, 1e-15);  // 15 mm from the centre, 10 mm of reach.
 }
 
-// W7: captured at 10 deg and 5 mm (axis), 3 mm (face); X5 leaves only beyond 1.5 times that.
+// W7: captured at 10 deg and 5 mm (axis), 3 mm (face), and 30 mm before the span, for which the
+// papers have no number; X5 leaves only beyond 1.5 times that.
 TEST(IsCaptured, TakesAtTheThresholdsAndReleasesBeyondTheHysteresis) {
   const CaptureThresholds thresholds;
   const auto axis = [&](double angle_deg, double distance_mm, double gap_mm, bool was) {
@@ -108,11 +109,11 @@ TEST(IsCaptured, TakesAtTheThresholdsAndReleasesBeyondTheHysteresis) {
                       {units::FromDeg(angle_deg), distance_mm * 1e-3, gap_mm * 1e-3}, was,
                       thresholds);
   };
-  EXPECT_TRUE(axis(9.99, 4.99, 4.99, false));
+  EXPECT_TRUE(axis(9.99, 4.99, 29.9, false));
   EXPECT_FALSE(axis(10.01, 0, 0, false));
   EXPECT_FALSE(axis(0, 5.01, 0, false));
-  EXPECT_FALSE(axis(0, 0, 5.01, false));
-  EXPECT_TRUE(axis(14.99, 7.49, 7.49, true));
+  EXPECT_FALSE(axis(0, 0, 30.1, false));
+  EXPECT_TRUE(axis(14.99, 7.49, 44.9, true));
   EXPECT_FALSE(axis(15.01, 0, 0, true));
   const auto face = [&](double distance_mm, bool was) {
     return IsCaptured(MateKind::kFaceFace, {0, distance_mm * 1e-3, 0}, was, thresholds);
