@@ -6,12 +6,13 @@
 namespace hvas::haptics {
 namespace {
 
-constexpr double kAlignedDistance = 20e-6;  // [m] beyond the clearance
-constexpr double kAlignedAngle = 1e-3;      // [rad]
-constexpr double kLeaveFactor = 10;         // of these, before an aligned mate counts as left
-constexpr double kNearRatio = 3;            // of the capture thresholds
-constexpr double kHandRatio = 3;            // the hand may stray this far before a mate lets go
-constexpr double kFirstStiffness = 1.0;     // [N/m, N m/rad] where the ramp starts
+constexpr double kAlignedDistance = 20e-6;     // [m] beyond the clearance
+constexpr double kAlignedAngle = 1e-3;         // [rad]
+constexpr double kLeaveFactor = 10;            // of these, before an aligned mate counts as left
+constexpr double kNearRatio = 3;               // of the capture thresholds
+constexpr double kHandRatio = 3;               // the hand may stray this far before a mate lets go
+constexpr double kFirstStiffness = 1.0;        // [N/m] where the ramp starts
+constexpr double kFirstRotStiffness = 2.5e-3;  // [N m/rad], the same at 50 mm: neither goes ahead
 
 using product::MateKind;
 
@@ -35,8 +36,8 @@ double FreeTilt(const HeldMate& mate, const MateGeometry& geometry) noexcept {
 }
 
 /** Geometric ramp: most of the way is made where the mate is as stiff as the hand. */
-double RampedStiffness(double full, double ramp) noexcept {
-  return ramp <= 0 ? 0 : kFirstStiffness * std::pow(full / kFirstStiffness, ramp);
+double RampedStiffness(double first, double full, double ramp) noexcept {
+  return ramp <= 0 ? 0 : first * std::pow(full / first, ramp);
 }
 
 /** Stiffness that never pulls harder than `max_pull` at this deviation. */
@@ -66,14 +67,17 @@ MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) n
     g.p_WQ = X_WN.p();
     g.offset_W = along * g.axis_W;
   } else {
-    // The held axis' point beside the placed origin.
+    // Where the axes meet, as recognition has it: the end of the held span that faces the placed
+    // one, or the middle of what they share. Further off, a tilt would count as an offset.
     const double cosine = std::max(0.1, held_axis.dot(g.axis_W));
-    g.p_WQ = X_WN.p() - along / cosine * held_axis;
+    const double held_low = along + cosine * mate.capture.held_low;
+    const double held_high = along + cosine * mate.capture.held_high;
+    const double low = std::clamp(mate.capture.placed_low, held_low, held_high);
+    const double high = std::clamp(mate.capture.placed_high, held_low, held_high);
+    g.engaged = high - low;
+    g.p_WQ = X_WN.p() + (0.5 * (low + high) - along) / cosine * held_axis;
     g.offset_W = g.p_WQ - mate.X_WM.p();
     g.offset_W -= g.offset_W.dot(g.axis_W) * g.axis_W;
-    const double low = std::max(mate.capture.placed_low, mate.capture.held_low + along);
-    const double high = std::min(mate.capture.placed_high, mate.capture.held_high + along);
-    g.engaged = std::max(0.0, high - low);
   }
   g.distance = g.offset_W.norm();
   return g;
@@ -152,15 +156,15 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const double tilt = g.tilt_W.norm();
     if (tilt > tilt_free || tilt_free == 0) {
       const double excess = tilt - tilt_free;
-      const double k =
-          Bounded(RampedStiffness(options.k_rot, state.ramp), excess, options.max_torque);
+      const double k = Bounded(RampedStiffness(kFirstRotStiffness, options.k_rot, state.ramp),
+                               excess, options.max_torque);
       const double part_of = tilt > 0 ? excess / tilt : 1.0;
       solver->AddAngularSpring(k * part_of * g.tilt_W, k * across);
     }
     if (mate.capture.kind == MateKind::kFaceFace) {
       if (!mate.is_stop) {
-        const double k =
-            Bounded(RampedStiffness(options.k_lin, state.ramp), g.distance, options.max_force);
+        const double k = Bounded(RampedStiffness(kFirstStiffness, options.k_lin, state.ramp),
+                                 g.distance, options.max_force);
         solver->AddPointSpring(g.p_WQ, -k * g.offset_W, k * along);
       }
       continue;
@@ -170,8 +174,8 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const double free = FreeRadius(mate, g);
     const double r = g.distance;
     if (r > free || free == 0) {
-      const double k =
-          Bounded(RampedStiffness(options.k_lin, state.ramp), r - free, options.max_force);
+      const double k = Bounded(RampedStiffness(kFirstStiffness, options.k_lin, state.ramp),
+                               r - free, options.max_force);
       const double ratio = r > 0 ? free / r : 0.0;
       const Vec3 e = r > 0 ? Vec3(g.offset_W / r) : Vec3::Zero();
       if (g.engaged > 0) {

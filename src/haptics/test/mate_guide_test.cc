@@ -96,13 +96,17 @@ TEST(CalcMateGeometry, AgreesWithRecognition) {
   for (int draw = 0; draw < 1000; ++draw) {
     for (const MateKind kind : {MateKind::kAxisHole, MateKind::kFaceFace}) {
       HeldMate mate;
-      // Spans that meet at the placed origin, where guidance measures the distance.
-      mate.capture = {kind, 0, 0, -100, 100, 1};
+      mate.capture = {kind,
+                      random.Uniform(-0.05, 0),
+                      random.Uniform(0, 0.05),
+                      random.Uniform(-0.05, 0),
+                      random.Uniform(0, 0.05),
+                      1};
       mate.X_WM = {DrawRotation(&random), DrawVector(&random, 1)};
       mate.X_BN = {DrawRotation(&random), DrawVector(&random, 0.1)};
       const Quat flip = kind == MateKind::kFaceFace ? Quat(0, 1, 0, 0) : Quat::Identity();
       const Quat q_MN = spatial::RotationFromVector(DrawVector(&random, 0.7)) * flip;
-      const Pose X_WB = mate.X_WM * Pose(q_MN, DrawVector(&random, 0.05)) * mate.X_BN.Inverse();
+      const Pose X_WB = mate.X_WM * Pose(q_MN, DrawVector(&random, 0.1)) * mate.X_BN.Inverse();
       const MateGeometry g = CalcMateGeometry(mate, X_WB);
       const mates::MateDeviation deviation =
           mates::CalcDeviation(mate.capture, mate.X_WM, X_WB * mate.X_BN);
@@ -116,7 +120,7 @@ TEST(CalcMateGeometry, AgreesWithRecognition) {
       // The offset is across the axis, or along the normal, and ends on the held axis.
       if (kind == MateKind::kAxisHole) {
         EXPECT_NEAR(g.offset_W.dot(g.axis_W), 0, 1e-15);
-        EXPECT_NEAR((g.p_WQ - g.offset_W - mate.X_WM.p()).norm(), 0, 1e-13);
+        EXPECT_NEAR((g.p_WQ - g.offset_W - mate.X_WM.p()).cross(g.axis_W).norm(), 0, 1e-13);
         EXPECT_NEAR((g.p_WQ - X_WB * mate.X_BN.p()).cross(held).norm(), 0, 1e-13);
       } else {
         EXPECT_NEAR(g.offset_W.cross(g.axis_W).norm(), 0, 1e-15);
@@ -305,21 +309,23 @@ TEST(MateGuide, StiffnessIsTheDerivativeOfTheForce) {
 }
 
 // X(15): a tilted shaft is turned back; inside the play it may tilt as far as the hole lets it.
+// What is engaged by less than a diameter is held as if it were one.
 TEST(MateGuide, TiltIsFreeWithinThePlayAndHeldBeyond) {
   const double play = 50e-6;
-  const double depth = 20e-3;
   FullGuide full(MakePart({MakeAxisMate(MakeClearance(play), contact::BodyId(0))}));
-  const double free = 2 * play / depth;
-  const auto at = [&](double angle) {
-    // Turned about the placed origin's height, so that the axes meet there.
-    const Quat q = spatial::RotationFromVector(Vec3(angle, 0, 0));
-    return Pose(q, q * Vec3(0, 0, kLength - depth));
-  };
-  EXPECT_EQ(full.Force(at(0.9 * free)).norm(), 0);
-  const Vec6 F = full.Force(at(free + 1e-3));
-  EXPECT_NEAR(F[0], -full.options.k_rot * 1e-3, 0.01 * full.options.k_rot * 1e-3);
-  EXPECT_NEAR(F[1], 0, 1e-6);
-  EXPECT_NEAR(F[2], 0, 1e-6);
+  for (const double depth : {10e-3, 30e-3, 48e-3}) {
+    const double free = 2 * play / std::max(depth, 2 * testing::kShaftRadius);
+    const auto at = [&](double angle) {
+      // Turned about the middle of the engagement, where guidance measures the offset.
+      const Quat q = spatial::RotationFromVector(Vec3(angle, 0, 0));
+      const Vec3 middle(0, 0, kLength - 0.5 * depth);
+      return Pose(q, middle - q * Vec3(0, 0, 0.5 * depth));
+    };
+    EXPECT_EQ(full.Force(at(0.95 * free)).norm(), 0) << depth;
+    const Vec6 F = full.Force(at(free + 1e-3));
+    EXPECT_NEAR(F[0], -full.options.k_rot * 1e-3, 0.01 * full.options.k_rot * 1e-3) << depth;
+    EXPECT_NEAR(F.tail<5>().norm(), 0, 1e-6);
+  }
 }
 
 // Guidance never pulls harder than it may, however far the part is.
