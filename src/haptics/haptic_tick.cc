@@ -206,7 +206,7 @@ void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
   // depth, felt through the map; at rest it holds, and never pushes.
   if (guide_.is_aligned()) {
     const double friction = options_.contact.friction * guide_.lateral_force();
-    const double felt = force_map_.Felt(guide_.CalcAxialResistance(*part_)) + friction;
+    const double felt = force_map_.Felt(guide_.CalcAxialResistance(*part_) + friction);
     const HeldMate& mate = part_->mates[guide_.axis_index()];
     const Vec3 r = axis->p_WQ - p_WCm;
     Vec6 J;
