@@ -16,6 +16,27 @@ using testing::Build;
 
 constexpr double kHalfMicrometre = 0.5e-6;
 
+// Parts that several tests share, built once.
+const std::shared_ptr<const Shape>& FittedBushing() {
+  static const auto shape = Build(testing::Bushing(20e-3, 30e-3, 80e-3));
+  return shape;
+}
+
+const std::shared_ptr<const Shape>& FittedShaft() {
+  static const auto shape = Build(testing::Shaft(19.99e-3, 100e-3));
+  return shape;
+}
+
+const std::shared_ptr<const Shape>& PlateWithDowelHole() {
+  static const auto shape = Build(testing::Bushing(3e-3, 30e-3, 15e-3));
+  return shape;
+}
+
+const std::shared_ptr<const Shape>& SmallBall() {
+  static const auto shape = Build(testing::Ball(5e-3, 30e-6));
+  return shape;
+}
+
 class QueryTest : public ::testing::Test {
  protected:
   double Deepest(const Scene& scene, const Shape& held, const Pose& X_WH) {
@@ -47,8 +68,8 @@ Quat RandomRotation(Random* random) {
 // Test C of the contact study: a shaft pressed 0.1 mm into a bore, the direction turning.
 TEST_F(QueryTest, ShaftInBoreHasTheExactDepthAndNormal) {
   Scene scene;
-  scene.Add(Build(testing::Bushing(20e-3, 30e-3, 80e-3)), {});
-  const auto shaft = Build(testing::Shaft(19.99e-3, 100e-3));
+  scene.Add(FittedBushing(), {});
+  const auto shaft = FittedShaft();
   for (int i = 0; i < 24; ++i) {
     const double angle = 0.261 * i;
     const double depth = Deepest(scene, *shaft, Pose(InPlane(110e-6, angle) + Vec3(0, 0, -10e-3)));
@@ -66,7 +87,7 @@ TEST_F(QueryTest, ShaftInBoreHasTheExactDepthAndNormal) {
 // Test D: a dowel of 5.98 mm in a hole of 6 mm begins to touch at 10 um of eccentricity.
 TEST_F(QueryTest, DowelBeginsToTouchAtItsClearance) {
   Scene scene;
-  scene.Add(Build(testing::Bushing(3e-3, 30e-3, 15e-3)), {});
+  scene.Add(PlateWithDowelHole(), {});
   const auto dowel = Build(testing::Shaft(2.99e-3, 20e-3));
   for (int i = 0; i < 12; ++i) {
     const double angle = 0.53 * i;
@@ -111,15 +132,16 @@ TEST_F(QueryTest, BallMeetsEveryKindOfFaceAtTheExactDepth) {
   const Vec3 on_cone = Vec3(15e-3, 0, 15e-3) + out * Vec3(std::cos(slope), 0, std::sin(slope));
   const std::vector<BallCase> cases = {
       {"plane", testing::Block({30e-3, 30e-3, 5e-3}), Vec3(3.3e-3, 1.7e-3, 5e-3 + out), 5},
-      {"cylinder", testing::Shaft(20e-3, 60e-3), InPlane(20e-3 + out, 0.4) + Vec3(0, 0, 31e-3), 1},
-      {"bore", testing::Bushing(20e-3, 30e-3, 60e-3), InPlane(20e-3 - out, 0.4) + Vec3(0, 0, 31e-3),
-       3},
-      {"cone", testing::Cone(20e-3, 10e-3, 30e-3), on_cone, 1},
+      {"cylinder", testing::Shaft(20e-3, 60e-3, 30e-6),
+       InPlane(20e-3 + out, 0.4) + Vec3(0, 0, 31e-3), 1},
+      {"bore", testing::Bushing(20e-3, 30e-3, 60e-3, 30e-6),
+       InPlane(20e-3 - out, 0.4) + Vec3(0, 0, 31e-3), 3},
+      {"cone", testing::Cone(20e-3, 10e-3, 30e-3, 30e-6), on_cone, 1},
       {"sphere", testing::Ball(10e-3, 30e-6), (10e-3 + out) * Vec3(0.48, 0.6, 0.64), 0},
       {"torus", testing::Ring(20e-3, 5e-3, 30e-6),
        InPlane(20e-3, 0.7) + (5e-3 + out) * (InPlane(0.6, 0.7) + Vec3(0, 0, 0.8)), 0},
   };
-  const auto ball = Build(testing::Ball(r, 30e-6));
+  const auto ball = SmallBall();
   for (const BallCase& c : cases) {
     const auto solid = Build(c.solid);
     Scene scene;
@@ -135,8 +157,8 @@ TEST_F(QueryTest, BallMeetsEveryKindOfFaceAtTheExactDepth) {
 }
 
 TEST_F(QueryTest, DoesNotDependOnTheWorldFrame) {
-  const auto bushing = Build(testing::Bushing(20e-3, 30e-3, 80e-3));
-  const auto shaft = Build(testing::Shaft(19.99e-3, 100e-3));
+  const auto bushing = FittedBushing();
+  const auto shaft = FittedShaft();
   const Pose X_SH(spatial::RotationFromVector({2e-4, -1e-4, 0.3}), Vec3(8e-6, 3e-6, -10e-3));
   Scene here;
   here.Add(bushing, {});
@@ -152,7 +174,7 @@ TEST_F(QueryTest, DoesNotDependOnTheWorldFrame) {
 }
 
 TEST_F(QueryTest, ActionEqualsReactionWhenTheRolesAreSwapped) {
-  const auto plate = Build(testing::Bushing(3e-3, 30e-3, 15e-3));
+  const auto plate = PlateWithDowelHole();
   const auto block = Build(testing::Block({5e-3, 4e-3, 3e-3}));
   Random random(11);
   int touching = 0;
@@ -188,7 +210,7 @@ TEST_F(QueryTest, GroundHoldsTheLowestPoints) {
     EXPECT_EQ(c.nhat_W, Vec3::UnitZ());
   }
   // A cylinder on its side rolls on a line whatever way its samples are turned.
-  const auto shaft = Build(testing::Shaft(20e-3, 60e-3));
+  const auto shaft = Build(testing::Shaft(20e-3, 60e-3, 30e-6));
   for (int i = 0; i < 20; ++i) {
     const Quat q = spatial::RotationFromVector({0.5 * std::numbers::pi, 0, 0}) *
                    spatial::RotationFromVector({0, 0, 0.0123 * i});
@@ -238,8 +260,8 @@ TEST_F(QueryTest, SkipsDisabledBodiesAndItself) {
 
 TEST_F(QueryTest, AShaftSlidingPastARimIsNotHeldBackByIt) {
   Scene scene;
-  scene.Add(Build(testing::Bushing(20e-3, 30e-3, 80e-3)), {});
-  const auto shaft = Build(testing::Shaft(19.99e-3, 100e-3));
+  scene.Add(FittedBushing(), {});
+  const auto shaft = FittedShaft();
   for (int i = 0; i < 40; ++i) {
     Deepest(scene, *shaft, Pose(Vec3(9e-6, 0, -10e-3 - 37e-6 * i)));
     for (const Contact& c : work_.contacts()) {
@@ -251,7 +273,7 @@ TEST_F(QueryTest, AShaftSlidingPastARimIsNotHeldBackByIt) {
 TEST_F(QueryTest, MarginReachesBeyondTheNarrowBand) {
   Scene scene;
   scene.Add(Build(testing::Block({20e-3, 20e-3, 5e-3})), {});
-  const auto ball = Build(testing::Ball(5e-3, 30e-6));
+  const auto ball = SmallBall();
   options_.margin = 3e-3;
   // Speculative only: a tenth of the coarse cell is good enough out there.
   EXPECT_NEAR(Deepest(scene, *ball, Pose(Vec3(0, 0, 12.5e-3))), 2.5e-3, 0.2e-3);

@@ -31,19 +31,19 @@ void* operator new(std::size_t size, std::align_val_t align) {
   throw std::bad_alloc();
 }
 
-void operator delete(void* p) noexcept {
+[[gnu::noinline]] void operator delete(void* p) noexcept {
   std::free(p);
 }
 
-void operator delete(void* p, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
   std::free(p);
 }
 
-void operator delete(void* p, std::align_val_t) noexcept {
+[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept {
   std::free(p);
 }
 
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
   std::free(p);
 }
 
@@ -55,7 +55,7 @@ using spatial::Pose;
 class RealtimeTest : public ::testing::Test {
  protected:
   RealtimeTest() {
-    const auto cup = testing::Build(testing::Cup(3e-3, 20e-3, 5e-3, 20e-3));
+    static const auto cup = testing::Build(testing::Cup(3e-3, 20e-3, 5e-3, 20e-3));
     for (int i = 0; i < 20; ++i) {
       cups_.push_back(scene_.Add(cup, Pose(Vec3(0.05 * i, 0, 0))));
     }
