@@ -71,11 +71,10 @@ spatial::Pose HapticTick::Drop() noexcept {
   return X_WB;
 }
 
-HapticTick::Tracked HapticTick::CalcTracked(const device::DeviceState& state) const noexcept {
-  // The hand's workspace is the world: scaling and clutching belong to the device mapping.
-  const spatial::Pose X_WT = state.X_DH * X_HB_;
-  const Vec3 r = X_WT * part_->p_BoBcm_B - state.X_DH.p();
-  return {X_WT, {state.V_DH.w, state.V_DH.v + state.V_DH.w.cross(r)}};
+HapticTick::Tracked HapticTick::CalcTracked(const Hand& hand) const noexcept {
+  const spatial::Pose X_WT = hand.X_WH * X_HB_;
+  const Vec3 r = X_WT * part_->p_BoBcm_B - hand.X_WH.p();
+  return {X_WT, {hand.V_WH.w, hand.V_WH.v + hand.V_WH.w.cross(r)}};
 }
 
 TickOutput HapticTick::Tick(const device::DeviceState& state) noexcept {
@@ -83,26 +82,29 @@ TickOutput HapticTick::Tick(const device::DeviceState& state) noexcept {
   out.deepest = std::numeric_limits<double>::infinity();
   const bool is_usable = state.is_valid && spatial::IsFinite(state.X_DH) &&
                          state.V_DH.v.allFinite() && state.V_DH.w.allFinite();
-  out.X_WT = is_usable ? state.X_DH : spatial::Pose();
+  const Hand hand = is_usable ? MapToScene(options_.workspace, state) : Hand{};
+  out.X_WH = hand.X_WH;
+  out.X_WT = hand.X_WH;
   out.X_WD = out.X_WT;
   if (part_ != nullptr) {
     out.occurrence = part_->occurrence;
     if (is_usable) {
       if (is_first_tick_) {
-        X_HB_ = state.X_DH.Inverse() * X_WD_;
+        X_HB_ = hand.X_WH.Inverse() * X_WD_;
         is_first_tick_ = false;
       }
-      const Tracked tracked = CalcTracked(state);
+      const Tracked tracked = CalcTracked(hand);
       out.X_WT = tracked.X_WT;
       Hold(tracked, &out);
       // About the hand's point: the coupling acts at the centre of mass.
       out.F_H_W = out.F_felt_W;
-      out.F_H_W.t += (tracked.X_WT * part_->p_BoBcm_B - state.X_DH.p()).cross(out.F_felt_W.f);
+      out.F_H_W.t += (tracked.X_WT * part_->p_BoBcm_B - hand.X_WH.p()).cross(out.F_felt_W.f);
     }
     out.X_WD = X_WD_;
   }
   out.state = state_;
   out.F_H_W = gate_.Pass(out.F_H_W, options_.dt);
+  out.F_H_D = MapToDevice(options_.workspace, out.F_H_W);
   out.gate_actions = gate_.actions();
   return out;
 }

@@ -28,7 +28,9 @@ enum class HoldState : std::uint8_t {
 
 /** What a tick gives: the wrench for the device, and everything a record wants to know. */
 struct TickOutput {
-  spatial::Wrench F_H_W;  ///< For the device, after the gate, about the hand's point.
+  spatial::Wrench F_H_D;  ///< For the device: after the gate, about the hand's point, in its base.
+  spatial::Wrench F_H_W;  ///< The same in W.
+  spatial::Pose X_WH;     ///< The hand.
   spatial::Wrench
       F_true_W;  ///< As physics has it, before the map, about the displayed centre of mass.
   spatial::Wrench F_felt_W;  ///< After the map, before the gate, about the same point.
@@ -80,7 +82,7 @@ class HapticTick {
     spatial::Twist V_T;  ///< At the part's centre of mass, in W.
   };
 
-  [[nodiscard]] Tracked CalcTracked(const device::DeviceState& state) const noexcept;
+  [[nodiscard]] Tracked CalcTracked(const Hand& hand) const noexcept;
   void Hold(const Tracked& tracked, TickOutput* out) noexcept;
   void AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept;
   void AddGuidance(const Vec3& p_WCm) noexcept;

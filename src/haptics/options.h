@@ -1,6 +1,7 @@
 #pragma once
 
 #include "device/device.h"
+#include "haptics/workspace_mapping.h"
 #include "mates/capture.h"
 #include "spatial/pose.h"
 
@@ -50,6 +51,7 @@ struct ContactOptions {
 
 struct TickOptions {
   Condition condition{Condition::kHybrid};
+  WorkspaceMapping workspace;
   CouplingGains coupling;
   GuidanceOptions guidance;
   ContactOptions contact;

@@ -28,7 +28,7 @@ class HapticLoop {
   void Tick() noexcept {
     OperatorInput input;
     input.t_ns = t_ns_;
-    input.F_H_W = last_.F_H_W;
+    input.F_H_D = last_.F_H_D;
     input.hears_seated = last_.state == haptics::HoldState::kSeated;
     input.hears_capture = last_.state == haptics::HoldState::kCaptured &&
                           state_before_ != haptics::HoldState::kCaptured;

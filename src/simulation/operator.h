@@ -9,7 +9,7 @@ namespace hvas::simulation {
  of capture and of seating (W7). Nothing else of the simulation's state. */
 struct OperatorInput {
   std::int64_t t_ns{0};
-  spatial::Wrench F_H_W;
+  spatial::Wrench F_H_D;  ///< On the hand, in the device's base frame.
   bool hears_capture{false};
   bool hears_seated{false};
 };

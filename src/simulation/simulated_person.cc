@@ -160,7 +160,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     // spring turns the lead into a force.
     const double speed = -V_H_.v.dot(d);
     const bool is_slow = speed < kSlowShare * options_.insert_speed;
-    const bool is_at_limit = input.F_H_W.f.norm() >= options_.push_limit;
+    const bool is_at_limit = input.F_H_D.f.norm() >= options_.push_limit;
     push_ = std::max(kFirstPush, push_ + (is_slow && !is_at_limit ? kPushRate : -kPushRate) * kDt);
     const double lead = push_ / options_.stiffness;
     travel_ = std::max(travel_ - options_.insert_speed * kDt, hand_travel - lead);
@@ -283,7 +283,7 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
       break;
   }
   v_ref_ = (p_ref_ - p_ref_before) / kDt;
-  MoveHand(input.F_H_W);
+  MoveHand(input.F_H_D);
   device::DeviceState state;
   state.t_ns = input.t_ns;
   state.X_DH = X_WH_;

@@ -77,7 +77,7 @@ haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) no
     events_.TryPush({device.t_ns, SimulationEvent::Kind::kState, out.occurrence, out.state,
                      out.X_WD, false, metrics_});
   }
-  reports_.Write({device.t_ns, device.X_DH, device.is_gripping && device.is_valid, out});
+  reports_.Write({device.t_ns, device.is_gripping && device.is_valid, out});
   return out;
 }
 
@@ -111,7 +111,7 @@ void Simulation::PhysicsStep(Sink* sink) {
     if (!report.is_gripping) {
       is_waiting_for_grip_to_open_ = false;
     } else if (held_ == nullptr && !is_waiting_for_grip_to_open_) {
-      TakeNearest(report.X_WH.p());
+      TakeNearest(report.out.X_WH.p());
     }
     PushBodies(report);
   }

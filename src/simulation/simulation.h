@@ -122,7 +122,6 @@ class Simulation {
   /** From haptics to physics, newest wins. */
   struct Report {
     std::int64_t t_ns{0};
-    spatial::Pose X_WH;
     bool is_gripping{false};
     haptics::TickOutput out;
   };
