@@ -21,7 +21,7 @@ class Id {
 
   [[nodiscard]] constexpr bool is_valid() const { return value_ != kInvalid; }
 
-  constexpr auto operator<=>(const Id&) const = default;
+  constexpr auto operator<=>(const Id&) const = default;  // NOLINT(modernize-use-nullptr): clang 14
 
  private:
   static constexpr std::uint32_t kInvalid = std::numeric_limits<std::uint32_t>::max();

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Runs clang-tidy-14 over the sources of a build folder: tidy.py BUILD_FOLDER [-j N] [FILE...]
+"""Runs clang-tidy-14 over the sources of a build folder: tidy.py BUILD_FOLDER [-j N] [--tests | FILE...]
 
-A source that has passed is not looked at again until it, a header of ours that it includes, its
+Tests, which take as long as all else, are left out unless --tests asks for them alone. A source that has passed is not looked at again until it, a header of ours that it includes, its
 command line or .clang-tidy changes. FILEs select sources by the end of their path.
 """
 
@@ -52,11 +52,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", type=lambda p: pathlib.Path(p).resolve())
     parser.add_argument("-j", type=int, default=1, metavar="N")
+    parser.add_argument("--tests", action="store_true")
     parser.add_argument("files", nargs="*")
-    args = parser.parse_args()
+    args = parser.parse_intermixed_args()
     entries = json.loads((args.build / "compile_commands.json").read_text())
     if args.files:
         entries = [e for e in entries if e["file"].endswith(tuple(args.files))]
+    else:
+        entries = [e for e in entries if ("/test/" in e["file"]) == args.tests]
     headers = read_dependencies(args.build)
     passed_folder = args.build / "tidy"
     passed_folder.mkdir(exist_ok=True)
