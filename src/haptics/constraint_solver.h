@@ -22,7 +22,7 @@ namespace hvas::haptics {
  No allocation after construction; RT-safe throughout. */
 class ConstraintSolver {
  public:
-  static constexpr int kMaxContacts = 64;
+  static constexpr int kMaxContacts = 128;
   static constexpr int kMaxBoundedRows = 4;
 
   /** Starts a step. Inertia about the centre of mass, in W. */

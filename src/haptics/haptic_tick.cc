@@ -62,6 +62,13 @@ void HapticTick::Take(const HeldPart* part) noexcept {
   has_start_ = false;
   seat_progress_ = 0;
   guide_.Reset();
+  reach_ = 0;
+  for (std::size_t member = 0; member < shape_count(); ++member) {
+    const HeldShape held = MakeHeldShape(member, spatial::Pose(), 0);
+    const spatial::Box& box = held.shape->box_B();
+    reach_ = std::max(
+        reach_, (held.X_WS * box.centre() - part->p_BoBcm_B).norm() + 0.5 * box.size().norm());
+  }
 }
 
 spatial::Pose HapticTick::Drop() noexcept {
@@ -219,13 +226,24 @@ void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
   }
 }
 
-contact::QueryOptions HapticTick::MakeQuery(double margin) noexcept {
-  contact::QueryOptions query;
-  query.margin = margin;
-  query.ignored = {ignored_.data(), guide_.CollectIgnored(*part_, ignored_)};
-  query.left_out = part_->overlapped;
-  query.self = part_->body;
-  return query;
+HapticTick::HeldShape HapticTick::MakeHeldShape(std::size_t member, const spatial::Pose& X_WB,
+                                                double margin) noexcept {
+  HeldShape held;
+  held.query.margin = margin;
+  held.query.ignored = {ignored_.data(), guide_.CollectIgnored(*part_, ignored_, member)};
+  if (member == 0) {
+    held.shape = part_->shape.get();
+    held.X_WS = X_WB;
+    held.query.left_out = part_->left_out;
+    held.query.self = part_->body;
+  } else {
+    const HeldMember& other = part_->members[member - 1];
+    held.shape = other.shape.get();
+    held.X_WS = X_WB * other.X_BS;
+    held.query.left_out = other.left_out;
+    held.query.self = other.body;
+  }
+  return held;
 }
 
 void HapticTick::AddContacts(TickOutput* out) noexcept {
@@ -234,17 +252,47 @@ void HapticTick::AddContacts(TickOutput* out) noexcept {
   }
   const ContactOptions& contact = options_.contact;
   const spatial::Twist V = solver_.SolveUnconstrained();
-  const double reach = 0.5 * part_->shape->box_B().size().norm();
-  const double speed =
-      std::min(contact.max_speed, V.v.norm()) + std::min(contact.max_turn_rate, V.w.norm()) * reach;
-  contact::QueryOptions query = MakeQuery(contact.min_margin + 1.5 * speed * options_.dt);
-  scene_->Query(*part_->shape, X_WD_, query, &workspace_);
-  out->deepest = workspace_.deepest();
-  out->is_truncated = workspace_.stats().is_truncated;
-  for (const contact::Contact& c : workspace_.contacts()) {
-    const double bias = -std::max(c.distance, -contact.max_depth) / options_.dt;
-    solver_.AddContact(c.p_WC, c.nhat_W, bias, contact.friction, contact.compliance,
-                       contact.recovery_speed);
+  const double speed = std::min(contact.max_speed, V.v.norm()) +
+                       std::min(contact.max_turn_rate, V.w.norm()) * reach_;
+  const double margin = contact.min_margin + 1.5 * speed * options_.dt;
+  const double settling = options_.dt + contact.settling_time;
+  for (std::size_t member = 0; member < shape_count(); ++member) {
+    const HeldShape held = MakeHeldShape(member, X_WD_, margin);
+    scene_->Query(*held.shape, held.X_WS, held.query, &workspace_);
+    out->deepest = std::min(out->deepest, workspace_.deepest());
+    out->is_truncated = out->is_truncated || workspace_.stats().is_truncated;
+    for (const contact::Contact& c : workspace_.contacts()) {
+      const auto index = static_cast<std::size_t>(solver_.contact_count());
+      if (index == contacts_.size()) {
+        out->is_truncated = true;
+        break;
+      }
+      contacts_[index] = c;
+      // A spring with a dashpot: F = (-phi - settling_time phi') / c. A blow sinks in no deeper
+      // than a lasting load.
+      const double time = c.distance > 0 ? options_.dt : settling;
+      const double bias = -std::max(c.distance, -contact.max_depth) / time;
+      solver_.AddContact(c.p_WC, c.nhat_W, bias, contact.friction,
+                         contact.compliance * options_.dt / settling, contact.recovery_speed);
+    }
+  }
+}
+
+bool HapticTick::IsFreeAt(const spatial::Pose& X_WB) noexcept {
+  for (std::size_t member = 0; member < shape_count(); ++member) {
+    const HeldShape held = MakeHeldShape(member, X_WB, 0);
+    if (!scene_->IsFree(*held.shape, held.X_WS, kSeatTolerance, held.query, &workspace_)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void HapticTick::MeasureDepth(TickOutput* out) noexcept {
+  for (std::size_t member = 0; member < shape_count(); ++member) {
+    const HeldShape held = MakeHeldShape(member, X_WD_, 0);
+    scene_->Query(*held.shape, held.X_WS, held.query, &workspace_);
+    out->deepest = std::min(out->deepest, workspace_.deepest());
   }
 }
 
@@ -263,7 +311,6 @@ void HapticTick::MoveDisplayed(const spatial::Twist& V_Cm, const Vec3& p_WCm) no
 
 void HapticTick::RecordContacts(TickOutput* out) const noexcept {
   double hardest = 0;
-  const auto contacts = workspace_.contacts();
   for (int i = 0; i < solver_.contact_count(); ++i) {
     const double force = solver_.normal_force(i);
     if (force <= 1e-6) {
@@ -272,7 +319,7 @@ void HapticTick::RecordContacts(TickOutput* out) const noexcept {
     ++out->contact_count;
     if (force > hardest) {
       hardest = force;
-      const contact::Contact& c = contacts[static_cast<std::size_t>(i)];
+      const contact::Contact& c = contacts_[static_cast<std::size_t>(i)];
       out->p_WC = c.p_WC;
       out->f_C_W = solver_.contact_force(i);
       out->contact_body = c.body;
@@ -304,8 +351,7 @@ bool HapticTick::HasArrived() noexcept {
   }
   constexpr double kSamples[] = {0.25, 0.5, 0.75};
   for (const double s : kSamples) {
-    if (!scene_->IsFree(*part_->shape, CalcSeatPose(s), kSeatTolerance, MakeQuery(0),
-                        &workspace_)) {
+    if (!IsFreeAt(CalcSeatPose(s))) {
       return false;
     }
   }
@@ -344,8 +390,7 @@ void HapticTick::MoveIntoPlace(TickOutput* out) noexcept {
   V_D_.w = spatial::RotationBetween(X_before.q(), X_WD_.q()) / options_.dt;
   V_D_.v = (X_WD_ * part_->p_BoBcm_B - X_before * part_->p_BoBcm_B) / options_.dt;
   if (seat_progress_ < 1 && options_.condition != Condition::kConstraint) {
-    scene_->Query(*part_->shape, X_WD_, MakeQuery(0), &workspace_);
-    out->deepest = workspace_.deepest();
+    MeasureDepth(out);
   }
 }
 

@@ -87,7 +87,20 @@ class HapticTick {
   void AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept;
   void AddGuidance(const Vec3& p_WCm) noexcept;
   void AddContacts(TickOutput* out) noexcept;
-  [[nodiscard]] contact::QueryOptions MakeQuery(double margin) noexcept;
+
+  /** A part that is in the hand: the one itself, or a member of its subassembly. */
+  struct HeldShape {
+    const contact::Shape* shape;
+    spatial::Pose X_WS;
+    contact::QueryOptions query;
+  };
+
+  [[nodiscard]] std::size_t shape_count() const noexcept { return 1 + part_->members.size(); }
+
+  [[nodiscard]] HeldShape MakeHeldShape(std::size_t member, const spatial::Pose& X_WB,
+                                        double margin) noexcept;
+  [[nodiscard]] bool IsFreeAt(const spatial::Pose& X_WB) noexcept;
+  void MeasureDepth(TickOutput* out) noexcept;
   void MoveDisplayed(const spatial::Twist& V_Cm, const Vec3& p_WCm) noexcept;
   void UpdateState() noexcept;
   [[nodiscard]] bool HasArrived() noexcept;
@@ -105,9 +118,12 @@ class HapticTick {
   ConstraintSolver solver_;
   MateGuide guide_;
   std::array<contact::IgnoredPair, 2 * MateGuide::kMaxMates> ignored_;
+  std::array<contact::Contact, ConstraintSolver::kMaxContacts>
+      contacts_;  // As given to the solver.
 
   const HeldPart* part_{nullptr};
   HoldState state_{HoldState::kEmpty};
+  double reach_{0};  ///< Largest distance of a held point from the centre of mass [m].
   bool is_first_tick_{true};
   spatial::Pose X_HB_;  ///< Grip: the tracked part in the hand.
   spatial::Pose X_WD_;

@@ -23,8 +23,9 @@ struct MateFaces {
 /** A mate of the held part with a part that is already in its place. */
 struct HeldMate {
   product::MateId id;
-  spatial::Pose X_WM;  ///< Connector of the placed side.
-  spatial::Pose X_BN;  ///< Connector of the held side. z as X_WM's (axes) or opposed (planes).
+  spatial::Pose X_WM;     ///< Connector of the placed side.
+  spatial::Pose X_BN;     ///< Connector of the held side. z as X_WM's (axes) or opposed (planes).
+  std::size_t member{0};  ///< Whose face it is: 0 for the part itself, else members[member - 1].
   mates::CaptureMate capture;  ///< Kind and spans, for recognition.
   double radius{0};            ///< Nominal, of the hole [m]; 0 for planes.
   bool is_stop{false};         ///< A plane that ends the insertion, not one that guides it.
@@ -32,6 +33,16 @@ struct HeldMate {
   contact::BodyId body;                       ///< The placed part in the scene.
   std::shared_ptr<const MateFaces> held_faces;
   std::shared_ptr<const MateFaces> placed_faces;
+};
+
+/** A further part that moves with the one in the hand, when a subassembly is held as one body (X3).
+ */
+struct HeldMember {
+  product::OccurrenceId occurrence;
+  contact::BodyId body;
+  std::shared_ptr<const contact::Shape> shape;
+  spatial::Pose X_BS;                     ///< In the frame of the part in the hand.
+  std::vector<contact::BodyId> left_out;  ///< The rest of the subassembly, and what it overlaps.
 };
 
 /** Everything the tick needs to know of the part in the hand; built outside the tick, then
@@ -47,7 +58,8 @@ struct HeldPart {
   spatial::Pose X_WB_goal;           ///< Its place in the product.
   Vec3 insertion_W{-Vec3::UnitZ()};  ///< Unit, the way in.
   std::vector<HeldMate> mates;
-  std::vector<contact::BodyId> overlapped;  ///< Lie in it as drawn: no contact with them.
+  std::vector<contact::BodyId> left_out;  ///< Lie in it as drawn, or move with it: no contact.
+  std::vector<HeldMember> members;        ///< Of a subassembly, besides this part.
 };
 
 }  // namespace hvas::haptics

@@ -187,13 +187,13 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
   }
 }
 
-std::size_t MateGuide::CollectIgnored(const HeldPart& part,
-                                      std::span<contact::IgnoredPair> pairs) const noexcept {
+std::size_t MateGuide::CollectIgnored(const HeldPart& part, std::span<contact::IgnoredPair> pairs,
+                                      std::size_t member) const noexcept {
   std::size_t written = 0;
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count && written + 2 <= pairs.size(); ++i) {
     const HeldMate& mate = part.mates[i];
-    if (!mates_[i].is_aligned || !IsGuide(mate)) {
+    if (!mates_[i].is_aligned || !IsGuide(mate) || mate.member != member) {
       continue;
     }
     pairs[written++] = {mate.body, mate.held_faces->mating, mate.placed_faces->with_neighbours};

@@ -56,9 +56,10 @@ class MateGuide {
     return mates_[i].geometry;
   }
 
-  /** Fills pairs of faces that contact leaves to the mates; returns how many were written. */
-  std::size_t CollectIgnored(const HeldPart& part,
-                             std::span<contact::IgnoredPair> pairs) const noexcept;
+  /** Fills pairs of faces that contact leaves to the mates of a member (0: the part itself);
+   returns how many were written. */
+  std::size_t CollectIgnored(const HeldPart& part, std::span<contact::IgnoredPair> pairs,
+                             std::size_t member = 0) const noexcept;
 
   /** Sum over captured fits at the present depth: true axial resistance [N], and the lateral force
    with which the bores hold the shaft back (for W5's Coulomb friction). */

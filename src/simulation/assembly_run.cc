@@ -13,7 +13,7 @@ using product::OccurrenceId;
 AssemblyRun::AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream)
     : simulation_(simulation), person_(person), downstream_(downstream) {
   const Model& model = simulation_->model();
-  total_ = model.sequence.steps.size() + model.sequence.gaps.size();
+  total_ = model.bodies.size();
   for (const Body& body : model.bodies) {
     lift_height_ = std::max(lift_height_, 1.2 * body.shape->box_B().size().norm());
   }
@@ -39,24 +39,18 @@ void AssemblyRun::OnEvent(const SimulationEvent& event) {
 PersonTask AssemblyRun::MakeTask(const SequenceStep& step) const {
   const Model& model = simulation_->model();
   const Body& body = model.bodies[step.occurrence.index()];
-  const spatial::Pose X_BG(body.mass.p_BoBcm_B);
+  const spatial::Pose X_BG(CombineMass(model, step).p_BoBcm_B);
   PersonTask task;
   task.occurrence = step.occurrence;
   task.X_WG_start = simulation_->pose(step.occurrence) * X_BG;
   task.X_WG_goal = body.X_WB_goal * X_BG;
+  task.X_WG_goal = {task.X_WG_goal.q(), task.X_WG_goal.p() + step.offset_W};
   task.extraction_W = step.extraction_W;
   task.engage_distance = step.engage_distance;
   task.centre_W = model.centre_W;
   task.transfer_radius = model.transfer_radius;
   task.lift_height = lift_height_;
   return task;
-}
-
-void AssemblyRun::Finish(PartResult result) {
-  results_.push_back(std::move(result));
-  if (on_part) {
-    on_part(results_.size(), total_, results_.back());
-  }
 }
 
 std::string AssemblyRun::DescribeOverlaps(OccurrenceId id) const {
@@ -79,6 +73,74 @@ std::string AssemblyRun::DescribeOverlaps(OccurrenceId id) const {
                      units::ToMm(deepest->depth));
 }
 
+PartResult& AssemblyRun::ResultOf(OccurrenceId id) {
+  for (PartResult& result : results_) {
+    if (result.occurrence == id) {
+      return result;
+    }
+  }
+  results_.emplace_back();
+  results_.back().occurrence = id;
+  return results_.back();
+}
+
+std::string AssemblyRun::ExplainFailure() const {
+  if (!has_dropped_) {
+    return "could not be taken up";
+  }
+  const HoldMetrics& metrics = dropped_.metrics;
+  if (!metrics.hardest.is_valid()) {
+    return fmt::format("gave up after {} searches; nothing was met", person_->searches());
+  }
+  return fmt::format("gave up after {} searches; {} stood in the way with up to {:.1f} N",
+                     person_->searches(),
+                     simulation_->model().product->occurrences[metrics.hardest.index()].path,
+                     metrics.hardest_force);
+}
+
+void AssemblyRun::FinishStep(const SequenceStep& step) {
+  const Model& model = simulation_->model();
+  PartResult& result = ResultOf(step.occurrence);
+  const bool was_seated = has_dropped_ && dropped_.was_seated;
+  if (has_dropped_) {
+    const HoldMetrics& metrics = dropped_.metrics;
+    result.time += 1e-9 * static_cast<double>(dropped_.t_ns - metrics.t_taken_ns);
+    result.path += metrics.path;
+    result.peak_true = std::max(result.peak_true, metrics.peak_true);
+    result.peak_felt = std::max(result.peak_felt, metrics.peak_felt);
+    result.deepest = std::max(result.deepest, metrics.deepest);
+  }
+  const std::string reason = was_seated ? std::string() : ExplainFailure();
+  result.reason = reason;
+  result.note = DescribeOverlaps(step.occurrence);
+  for (const product::MateId id : model.mates_of[step.occurrence.index()]) {
+    const product::Mate& mate = model.product->mates[id.index()];
+    const OccurrenceId other =
+        mate.a.occurrence == step.occurrence ? mate.b.occurrence : mate.a.occurrence;
+    const bool is_new = step.kind == SequenceStep::Kind::kInsert && step.members.empty();
+    result.mates += is_new && simulation_->placement(other) == Placement::kPlaced ? 1 : 0;
+  }
+  for (const OccurrenceId member : step.members) {
+    PartResult& other = ResultOf(member);
+    other.reason = reason.empty() ? other.reason : "its subassembly " + reason;
+  }
+  Update(step.occurrence);
+  if (on_part) {
+    const auto seated = std::count_if(results_.begin(), results_.end(),
+                                      [](const PartResult& part) { return part.is_seated; });
+    on_part(static_cast<std::size_t>(seated), total_, ResultOf(step.occurrence));
+  }
+}
+
+void AssemblyRun::Update(OccurrenceId id) {
+  PartResult& result = ResultOf(id);
+  result.is_seated = simulation_->placement(id) == Placement::kPlaced;
+  const spatial::Pose& X_WB = simulation_->pose(id);
+  const spatial::Pose& X_goal = simulation_->model().bodies[id.index()].X_WB_goal;
+  result.pose_error = (X_WB.p() - X_goal.p()).norm();
+  result.pose_error_angle = spatial::RotationBetween(X_goal.q(), X_WB.q()).norm();
+}
+
 void AssemblyRun::Advance() {
   const Model& model = simulation_->model();
   const auto& steps = model.sequence.steps;
@@ -87,65 +149,36 @@ void AssemblyRun::Advance() {
       return;
     }
     is_assigned_ = false;
-    const SequenceStep& step = steps[next_step_++];
-    PartResult result;
-    result.occurrence = step.occurrence;
-    result.is_seated = simulation_->placement(step.occurrence) == Placement::kPlaced;
-    for (const product::MateId id : model.mates_of[step.occurrence.index()]) {
-      const product::Mate& mate = model.product->mates[id.index()];
-      const OccurrenceId other =
-          mate.a.occurrence == step.occurrence ? mate.b.occurrence : mate.a.occurrence;
-      result.mates += simulation_->placement(other) == Placement::kPlaced ? 1 : 0;
-    }
-    if (has_dropped_) {
-      const HoldMetrics& metrics = dropped_.metrics;
-      result.time = 1e-9 * static_cast<double>(dropped_.t_ns - metrics.t_taken_ns);
-      result.path = metrics.path;
-      result.peak_true = metrics.peak_true;
-      result.peak_felt = metrics.peak_felt;
-      result.deepest = metrics.deepest;
-      if (!result.is_seated) {
-        result.reason =
-            metrics.hardest.is_valid()
-                ? fmt::format("gave up after {} searches; {} stood in the way with up to {:.1f} N",
-                              person_->searches(),
-                              model.product->occurrences[metrics.hardest.index()].path,
-                              metrics.hardest_force)
-                : fmt::format("gave up after {} searches; nothing was met", person_->searches());
-      }
-    } else {
-      result.reason = "could not be taken up from the table";
-    }
-    result.note = DescribeOverlaps(step.occurrence);
-    const spatial::Pose& X_WB = simulation_->pose(step.occurrence);
-    const spatial::Pose& X_goal = model.bodies[step.occurrence.index()].X_WB_goal;
-    result.pose_error = (X_WB.p() - X_goal.p()).norm();
-    result.pose_error_angle = spatial::RotationBetween(X_goal.q(), X_WB.q()).norm();
-    Finish(result);
+    FinishStep(steps[next_step_++]);
   }
-  while (next_step_ < steps.size() && steps[next_step_].is_base) {
-    simulation_->PlaceInFixture(steps[next_step_].occurrence);
-    PartResult result;
-    result.occurrence = steps[next_step_].occurrence;
-    result.is_seated = true;
-    Finish(result);
-    ++next_step_;
-  }
-  if (next_step_ == steps.size()) {
-    if (!is_done_) {
-      for (const SequenceGap& gap : model.sequence.gaps) {
-        PartResult result;
-        result.occurrence = gap.occurrence;
-        result.reason = gap.reason;
-        Finish(result);
-      }
+  for (; next_step_ < steps.size(); ++next_step_) {
+    const SequenceStep& step = steps[next_step_];
+    if (step.kind == SequenceStep::Kind::kBase) {
+      simulation_->PlaceInFixture(step.occurrence);
+      Update(step.occurrence);
+      ResultOf(step.occurrence).note = DescribeOverlaps(step.occurrence);
+      continue;
     }
-    is_done_ = true;
+    // Of a subassembly only that moves which has got into it.
+    SequenceStep possible = step;
+    std::erase_if(possible.members, [this](OccurrenceId id) {
+      return simulation_->placement(id) == Placement::kLoose;
+    });
+    simulation_->Prepare(possible);
+    has_dropped_ = false;
+    finished_before_ = person_->finished_count();
+    is_assigned_ = person_->Assign(MakeTask(possible));
     return;
   }
-  has_dropped_ = false;
-  finished_before_ = person_->finished_count();
-  is_assigned_ = person_->Assign(MakeTask(steps[next_step_]));
+  if (!is_done_) {
+    for (const SequenceGap& gap : model.sequence.gaps) {
+      ResultOf(gap.occurrence).reason = gap.reason;
+    }
+    for (const product::Occurrence& occurrence : model.product->occurrences) {
+      Update(occurrence.id);
+    }
+  }
+  is_done_ = true;
 }
 
 spatial::Pose StartOfHand(const Model& model) {

@@ -43,11 +43,14 @@ class AssemblyRun final : public Sink {
 
   [[nodiscard]] const std::vector<PartResult>& results() const { return results_; }
 
-  /** Called with the number done of all, and the last result. */
+  /** Called after every step with the number of parts in place, of all, and the last result. */
   std::function<void(std::size_t, std::size_t, const PartResult&)> on_part;
 
  private:
-  void Finish(PartResult result);
+  [[nodiscard]] PartResult& ResultOf(product::OccurrenceId id);
+  [[nodiscard]] std::string ExplainFailure() const;
+  void FinishStep(const SequenceStep& step);
+  void Update(product::OccurrenceId id);
   [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id) const;
   [[nodiscard]] PersonTask MakeTask(const SequenceStep& step) const;
 

@@ -86,13 +86,47 @@ dynamics::MassProperties MakeMass(const product::Part& part) {
   return {least, part.box_B.centre(), 0.4 * least * radius * radius * Mat3::Identity()};
 }
 
-/** Lays the loose parts out in rows on the table, as drawn, and lets them come to rest. */
-Result<void> LayOut(Model* model) {
+spatial::Box DrawnBox(const Product& product, OccurrenceId id) {
+  return spatial::Transform(product.occurrences[id.index()].X_WB, product.part_of(id).box_B);
+}
+
+/** Gives every subassembly that is put together first its place on the shelf: beside the product,
+ on the other side than the table's parts. Returns the largest radius of what is carried. */
+double PlaceOnShelf(Model* model) {
   const Product& product = *model->product;
   double reach = 0;
   for (const product::Part& part : product.parts) {
     reach = std::max(reach, 0.5 * part.box_B.size().norm());
   }
+  std::map<OccurrenceId, spatial::Box> boxes;  // by the part that leads
+  double widest = 0;
+  for (const SequenceStep& step : model->sequence.steps) {
+    if (step.kind == SequenceStep::Kind::kPark) {
+      spatial::Box& box = boxes[step.occurrence];
+      box = DrawnBox(product, step.occurrence);
+      for (const OccurrenceId member : step.members) {
+        box.Add(DrawnBox(product, member));
+      }
+      widest = std::max(widest, box.size().norm());
+    }
+  }
+  reach = std::max(reach, 0.5 * widest);
+  const double radius = 0.5 * product.box_W.size().norm() + reach + kTransferGap;
+  double place = -0.5 * (widest + kTableGap) * static_cast<double>(boxes.size() - 1);
+  for (SequenceStep& step : model->sequence.steps) {
+    if (step.kind == SequenceStep::Kind::kPark) {
+      const Vec3 shelf = product.box_W.centre() + Vec3(place, -(radius + widest + kTableGap), 0);
+      step.offset_W = shelf - boxes[step.occurrence].centre();
+      place += widest + kTableGap;
+    }
+  }
+  return reach;
+}
+
+/** Lays the loose parts out in rows on the table, as drawn, and lets them come to rest. */
+Result<void> LayOut(Model* model) {
+  const Product& product = *model->product;
+  const double reach = PlaceOnShelf(model);
   model->centre_W = product.box_W.centre();
   const double radius = 0.5 * product.box_W.size().norm();
   model->transfer_radius = radius + reach + kTransferGap;
@@ -147,6 +181,26 @@ Result<void> LayOut(Model* model) {
 }
 
 }  // namespace
+
+dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& step) {
+  const Body& leader = model.bodies[step.occurrence.index()];
+  dynamics::MassProperties sum = leader.mass;
+  for (const OccurrenceId id : step.members) {
+    const Body& body = model.bodies[id.index()];
+    const spatial::Pose X_BS = leader.X_WB_goal.Inverse() * body.X_WB_goal;
+    const Vec3 p_BoScm_B = X_BS * body.mass.p_BoBcm_B;
+    const double mass = sum.mass + body.mass.mass;
+    const Vec3 d = p_BoScm_B - sum.p_BoBcm_B;
+    const Mat3 R_BS = X_BS.R();
+    // Both about the common centre of mass: Steiner with the reduced mass.
+    const double reduced = sum.mass * body.mass.mass / mass;
+    sum.I_BBcm_B += R_BS * body.mass.I_BBcm_B * R_BS.transpose() +
+                    reduced * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+    sum.p_BoBcm_B += body.mass.mass / mass * d;
+    sum.mass = mass;
+  }
+  return sum;
+}
 
 dynamics::WorldOptions TableOptions(const Model& model) {
   dynamics::WorldOptions options;

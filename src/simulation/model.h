@@ -61,6 +61,9 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
                                              const CompileOptions& options,
                                              Diagnostics* diagnostics);
 
+/** Mass of what moves in a step, about the leading part's frame, with its members as drawn. */
+[[nodiscard]] dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& step);
+
 /** The world of dynamics in which a model's loose parts lie. */
 [[nodiscard]] dynamics::WorldOptions TableOptions(const Model& model);
 

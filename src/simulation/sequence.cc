@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,9 @@ using product::OccurrenceId;
 using product::Product;
 
 constexpr double kDepthTolerance = 50e-6;  // [m]; drawn surfaces may touch this deep
-constexpr double kParallel = 1e-3;         // sine or cosine that counts as zero
+constexpr double kShortestStep = 0.25e-3;  // [m] between looks along a way
+constexpr double kLongestStep = 2e-3;
+constexpr double kParallel = 1e-3;  // sine or cosine that counts as zero
 
 struct MateView {
   const Mate* mate;
@@ -33,56 +36,102 @@ struct Blocker {
   double travelled{0};  // [m] before it was met
 };
 
+/** Parts that move as one: a single part, or what is there of a subassembly. The first leads. */
+using Unit = std::vector<OccurrenceId>;
+
 class Planner {
  public:
-  explicit Planner(const SequenceInput& input)
-      : input_(input), product_(*input.product), is_present_(product_.occurrences.size(), true) {
-    mates_of_.resize(product_.occurrences.size());
-    for (const Mate& mate : product_.mates) {
-      const product::Pose& X_WA = product_.occurrences[mate.a.occurrence.index()].X_WB;
-      const product::Pose& X_WB = product_.occurrences[mate.b.occurrence.index()].X_WB;
-      const Vec3 axis_a = (X_WA * mate.a.X_BM).q() * Vec3::UnitZ();
-      const Vec3 axis_b = (X_WB * mate.b.X_BM).q() * Vec3::UnitZ();
-      mates_of_[mate.a.occurrence.index()].push_back({&mate, mate.b.occurrence, axis_a, true});
-      mates_of_[mate.b.occurrence.index()].push_back({&mate, mate.a.occurrence, axis_b, false});
-    }
-    for (const product::Occurrence& occurrence : product_.occurrences) {
-      boxes_.push_back(spatial::Transform(occurrence.X_WB, product_.part_of(occurrence.id).box_B));
-    }
-  }
+  explicit Planner(const SequenceInput& input);
 
   Sequence Plan();
 
  private:
-  void FindOverlaps();
-  [[nodiscard]] std::vector<contact::IgnoredPair> CollectIgnored(OccurrenceId id) const;
-  [[nodiscard]] std::vector<Vec3> CandidateDirections(OccurrenceId id) const;
-  [[nodiscard]] bool MatesAllow(OccurrenceId id, const Vec3& direction) const;
-  [[nodiscard]] std::optional<Blocker> FindBlocker(OccurrenceId id, const Vec3& direction);
-  [[nodiscard]] double ExitDistance(OccurrenceId id, const Vec3& direction) const;
-  [[nodiscard]] double EngageDistance(OccurrenceId id, const Vec3& direction) const;
-  [[nodiscard]] std::string Describe(OccurrenceId id) const;
-  bool TryRemove(OccurrenceId id, std::vector<SequenceStep>* removed);
-  void Remove(OccurrenceId id);
-
   struct Attempt {
     Vec3 direction;
     std::optional<Blocker> blocker;  // none: the mates forbid it
   };
 
+  /** What was tried last, so that it is tried again only when something has changed. */
+  struct Memory {
+    std::vector<Attempt> attempts;
+    std::ptrdiff_t mates_around{-1};
+  };
+
+  void FindOverlaps();
+
+  [[nodiscard]] bool IsAround(OccurrenceId id) const {
+    return is_present_[id.index()] && !is_in_unit_[id.index()];
+  }
+
+  void SetUnit(const Unit& unit, bool is_in_unit) {
+    for (const OccurrenceId id : unit) {
+      is_in_unit_[id.index()] = is_in_unit;
+    }
+  }
+
+  [[nodiscard]] double SizeOf(OccurrenceId id) const;
+  [[nodiscard]] std::string Describe(OccurrenceId id) const;
+  [[nodiscard]] std::vector<contact::IgnoredPair> CollectIgnored(OccurrenceId id) const;
+  [[nodiscard]] std::vector<Vec3> CandidateDirections(const Unit& unit) const;
+  [[nodiscard]] bool MatesAllow(const Unit& unit, const Vec3& direction) const;
+  [[nodiscard]] double ExitDistance(const Unit& unit, const Vec3& direction) const;
+  [[nodiscard]] double EngageDistance(const Unit& unit, const Vec3& direction) const;
+  [[nodiscard]] std::optional<Blocker> FindBlocker(const Unit& unit, const Vec3& direction);
+  [[nodiscard]] std::optional<SequenceStep> TryRemove(const Unit& unit, Memory* memory);
+  void SetPresent(const Unit& unit, bool is_present);
+  [[nodiscard]] std::string ExplainStuck(OccurrenceId id) const;
+
+  /** Takes apart the parts given, with nothing else there; appends the steps that put them
+   together, those of subassemblies first. */
+  void PlanLevel(Unit parts, Sequence* sequence);
+  /** Finds a subassembly that comes out of `rest` as one body, and plans it. */
+  [[nodiscard]] bool TakeOutSubassembly(Unit* rest, std::vector<SequenceStep>* removed,
+                                        Sequence* sequence);
+  [[nodiscard]] Unit PresentBelow(product::SubassemblyId id) const;
+
   const SequenceInput& input_;
   const Product& product_;
   std::vector<bool> is_present_;
+  std::vector<bool> is_in_unit_;
   std::vector<std::vector<MateView>> mates_of_;
   std::vector<spatial::Box> boxes_;
   std::vector<DrawnOverlap> overlaps_;
   std::vector<std::vector<contact::BodyId>> overlapped_;  // by occurrence
-  std::vector<std::vector<Attempt>> attempts_;            // of the last try, by occurrence
-  std::vector<std::ptrdiff_t> mates_at_attempt_;
+  std::vector<Memory> memories_;                          // by occurrence, of the present level
   contact::QueryWorkspace workspace_;
+  std::size_t planned_{0};
 };
 
-std::vector<Vec3> Planner::CandidateDirections(OccurrenceId id) const {
+Planner::Planner(const SequenceInput& input)
+    : input_(input),
+      product_(*input.product),
+      is_present_(product_.occurrences.size(), true),
+      is_in_unit_(product_.occurrences.size(), false),
+      mates_of_(product_.occurrences.size()),
+      memories_(product_.occurrences.size()) {
+  for (const Mate& mate : product_.mates) {
+    const product::Pose& X_WA = product_.occurrences[mate.a.occurrence.index()].X_WB;
+    const product::Pose& X_WB = product_.occurrences[mate.b.occurrence.index()].X_WB;
+    const Vec3 axis_a = (X_WA * mate.a.X_BM).q() * Vec3::UnitZ();
+    const Vec3 axis_b = (X_WB * mate.b.X_BM).q() * Vec3::UnitZ();
+    mates_of_[mate.a.occurrence.index()].push_back({&mate, mate.b.occurrence, axis_a, true});
+    mates_of_[mate.b.occurrence.index()].push_back({&mate, mate.a.occurrence, axis_b, false});
+  }
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    boxes_.push_back(spatial::Transform(occurrence.X_WB, product_.part_of(occurrence.id).box_B));
+  }
+}
+
+double Planner::SizeOf(OccurrenceId id) const {
+  const product::Part& part = product_.part_of(id);
+  return part.mass.volume > 0 ? part.mass.volume : part.box_B.size().prod();
+}
+
+std::string Planner::Describe(OccurrenceId id) const {
+  return id.is_valid() ? product_.occurrences[id.index()].path : std::string("the table");
+}
+
+std::vector<Vec3> Planner::CandidateDirections(const Unit& unit) const {
   std::vector<Vec3> directions;
   const auto add = [&directions](const Vec3& d) {
     for (const Vec3& known : directions) {
@@ -92,15 +141,17 @@ std::vector<Vec3> Planner::CandidateDirections(OccurrenceId id) const {
     }
     directions.push_back(d);
   };
-  for (const MateView& view : mates_of_[id.index()]) {
-    if (!is_present_[view.other.index()]) {
-      continue;
-    }
-    if (view.mate->kind == MateKind::kAxisHole) {
-      add(view.axis_W);
-      add(-view.axis_W);
-    } else {
-      add(-view.axis_W);  // away from the partner's face
+  for (const OccurrenceId id : unit) {
+    for (const MateView& view : mates_of_[id.index()]) {
+      if (!IsAround(view.other)) {
+        continue;
+      }
+      if (view.mate->kind == MateKind::kAxisHole) {
+        add(view.axis_W);
+        add(-view.axis_W);
+      } else {
+        add(-view.axis_W);  // away from the partner's face
+      }
     }
   }
   for (const Vec3& d : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0),
@@ -113,28 +164,33 @@ std::vector<Vec3> Planner::CandidateDirections(OccurrenceId id) const {
   return directions;
 }
 
-bool Planner::MatesAllow(OccurrenceId id, const Vec3& direction) const {
-  for (const MateView& view : mates_of_[id.index()]) {
-    if (!is_present_[view.other.index()]) {
-      continue;
-    }
-    const double along = view.axis_W.dot(direction);
-    if (view.mate->kind == MateKind::kAxisHole) {
-      if (std::abs(along) < 1 - kParallel) {
-        return false;
+bool Planner::MatesAllow(const Unit& unit, const Vec3& direction) const {
+  for (const OccurrenceId id : unit) {
+    for (const MateView& view : mates_of_[id.index()]) {
+      if (!IsAround(view.other)) {
+        continue;
       }
-    } else if (along > kParallel) {
-      return false;  // the outward normal points into the partner
+      const double along = view.axis_W.dot(direction);
+      if (view.mate->kind == MateKind::kAxisHole) {
+        if (std::abs(along) < 1 - kParallel) {
+          return false;
+        }
+      } else if (along > kParallel) {
+        return false;  // the outward normal points into the partner
+      }
     }
   }
   return true;
 }
 
-double Planner::ExitDistance(OccurrenceId id, const Vec3& direction) const {
-  const spatial::Box& box = boxes_[id.index()];
+double Planner::ExitDistance(const Unit& unit, const Vec3& direction) const {
+  spatial::Box box;
+  for (const OccurrenceId id : unit) {
+    box.Add(boxes_[id.index()]);
+  }
   double farthest = 0;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    if (i == id.index() || !is_present_[i]) {
+    if (!IsAround(OccurrenceId(i))) {
       continue;
     }
     // Distance after which the boxes are apart for good: the earliest over the three axes.
@@ -154,32 +210,30 @@ double Planner::ExitDistance(OccurrenceId id, const Vec3& direction) const {
   return farthest;
 }
 
-double Planner::EngageDistance(OccurrenceId id, const Vec3& direction) const {
+double Planner::EngageDistance(const Unit& unit, const Vec3& direction) const {
   double farthest = 0;
   bool has_axis = false;
-  for (const MateView& view : mates_of_[id.index()]) {
-    const Mate& mate = *view.mate;
-    if (!is_present_[view.other.index()] || mate.kind != MateKind::kAxisHole) {
-      continue;
+  for (const OccurrenceId id : unit) {
+    for (const MateView& view : mates_of_[id.index()]) {
+      const Mate& mate = *view.mate;
+      if (!IsAround(view.other) || mate.kind != MateKind::kAxisHole) {
+        continue;
+      }
+      has_axis = true;
+      const bool is_shaft = !view.is_a;
+      const double sense = view.axis_W.dot(direction) * (is_shaft ? 1.0 : -1.0);
+      const double travel =
+          sense > 0 ? mate.hole_high - mate.shaft_low : mate.shaft_high - mate.hole_low;
+      farthest = std::max(farthest, travel);
     }
-    has_axis = true;
-    const bool is_shaft = !view.is_a;
-    const double sense = view.axis_W.dot(direction) * (is_shaft ? 1.0 : -1.0);
-    const double travel =
-        sense > 0 ? mate.hole_high - mate.shaft_low : mate.shaft_high - mate.hole_low;
-    farthest = std::max(farthest, travel);
   }
-  return has_axis ? farthest : std::min(ExitDistance(id, direction), 20e-3);
-}
-
-std::string Planner::Describe(OccurrenceId id) const {
-  return id.is_valid() ? product_.occurrences[id.index()].path : std::string("the table");
+  return has_axis ? farthest : std::min(ExitDistance(unit, direction), 20e-3);
 }
 
 std::vector<contact::IgnoredPair> Planner::CollectIgnored(OccurrenceId id) const {
   std::vector<contact::IgnoredPair> ignored;
   for (const MateView& view : mates_of_[id.index()]) {
-    if (!is_present_[view.other.index()] || view.mate->kind != MateKind::kAxisHole) {
+    if (!IsAround(view.other) || view.mate->kind != MateKind::kAxisHole) {
       continue;
     }
     const auto& own = (view.is_a ? input_.faces_a : input_.faces_b)[view.mate->id.index()];
@@ -226,137 +280,233 @@ void Planner::FindOverlaps() {
   }
 }
 
-std::optional<Blocker> Planner::FindBlocker(OccurrenceId id, const Vec3& direction) {
-  const std::vector<contact::IgnoredPair> ignored = CollectIgnored(id);
-  contact::QueryOptions query;
-  query.margin = -kDepthTolerance;
-  query.ignored = ignored;
-  query.left_out = overlapped_[id.index()];
-  query.self = contact::BodyId(id.index());
-  const contact::Shape& shape = input_.scene->shape(query.self);
-  const product::Pose& X_WB = product_.occurrences[id.index()].X_WB;
-  const double exit = ExitDistance(id, direction);
-  const double step = std::clamp(0.01 * shape.box_B().size().norm(), 0.25e-3, 2e-3);
+std::optional<Blocker> Planner::FindBlocker(const Unit& unit, const Vec3& direction) {
+  struct Member {
+    OccurrenceId id;
+    std::vector<contact::IgnoredPair> ignored;
+    std::vector<contact::BodyId> left_out;
+  };
+
+  std::vector<Member> members;
+  double step = kLongestStep;
+  for (const OccurrenceId id : unit) {
+    Member member{id, CollectIgnored(id), overlapped_[id.index()]};
+    for (const OccurrenceId other : unit) {
+      member.left_out.emplace_back(other.index());
+    }
+    members.push_back(std::move(member));
+    const contact::Shape& shape = input_.scene->shape(contact::BodyId(id.index()));
+    step = std::min(step, std::max(kShortestStep, 0.01 * shape.box_B().size().norm()));
+  }
+  const double exit = ExitDistance(unit, direction);
   for (double s = 0; s <= exit; s += step) {
-    const spatial::Pose X(X_WB.q(), X_WB.p() + s * direction);
-    if (!input_.scene->IsFree(shape, X, kDepthTolerance, query, &workspace_)) {
-      const auto contacts = workspace_.contacts();
-      const OccurrenceId other =
-          contacts.empty() ? OccurrenceId() : OccurrenceId(contacts[0].body.index());
-      return Blocker{other, s};
+    for (const Member& member : members) {
+      contact::QueryOptions query;
+      query.margin = -kDepthTolerance;
+      query.ignored = member.ignored;
+      query.left_out = member.left_out;
+      query.self = contact::BodyId(member.id.index());
+      const product::Pose& X_WB = product_.occurrences[member.id.index()].X_WB;
+      const spatial::Pose X(X_WB.q(), X_WB.p() + s * direction);
+      if (!input_.scene->IsFree(input_.scene->shape(query.self), X, kDepthTolerance, query,
+                                &workspace_)) {
+        const auto contacts = workspace_.contacts();
+        return Blocker{contacts.empty() ? OccurrenceId() : OccurrenceId(contacts[0].body.index()),
+                       s};
+      }
     }
   }
   return std::nullopt;
 }
 
-void Planner::Remove(OccurrenceId id) {
-  is_present_[id.index()] = false;
-  input_.scene->SetEnabled(contact::BodyId(id.index()), false);
+void Planner::SetPresent(const Unit& unit, bool is_present) {
+  for (const OccurrenceId id : unit) {
+    is_present_[id.index()] = is_present;
+    input_.scene->SetEnabled(contact::BodyId(id.index()), is_present);
+  }
 }
 
-bool Planner::TryRemove(OccurrenceId id, std::vector<SequenceStep>* removed) {
-  std::vector<Attempt>& attempts = attempts_[id.index()];
-  const auto present =
-      std::count_if(mates_of_[id.index()].begin(), mates_of_[id.index()].end(),
-                    [this](const MateView& view) { return is_present_[view.other.index()]; });
-  if (!attempts.empty() && present == mates_at_attempt_[id.index()]) {
-    // Nothing has changed for this part while its mates and all that blocked it are still there.
-    const bool is_unchanged =
-        std::all_of(attempts.begin(), attempts.end(), [this](const Attempt& a) {
-          return a.blocker && a.blocker->occurrence.is_valid() &&
-                 is_present_[a.blocker->occurrence.index()];
-        });
-    if (is_unchanged) {
-      return false;
+std::optional<SequenceStep> Planner::TryRemove(const Unit& unit, Memory* memory) {
+  SetUnit(unit, true);
+  std::ptrdiff_t mates_around = 0;
+  for (const OccurrenceId id : unit) {
+    mates_around += std::count_if(mates_of_[id.index()].begin(), mates_of_[id.index()].end(),
+                                  [this](const MateView& view) { return IsAround(view.other); });
+  }
+  const auto still_blocked = [this](const Attempt& attempt) {
+    return attempt.blocker && attempt.blocker->occurrence.is_valid() &&
+           IsAround(attempt.blocker->occurrence);
+  };
+  std::optional<SequenceStep> step;
+  const bool is_unchanged =
+      !memory->attempts.empty() && mates_around == memory->mates_around &&
+      std::all_of(memory->attempts.begin(), memory->attempts.end(), still_blocked);
+  if (!is_unchanged) {
+    std::vector<Attempt> tried;
+    for (const Vec3& direction : CandidateDirections(unit)) {
+      if (!MatesAllow(unit, direction)) {
+        continue;
+      }
+      const auto known = std::find_if(
+          memory->attempts.begin(), memory->attempts.end(),
+          [&](const Attempt& a) { return a.direction == direction && still_blocked(a); });
+      if (known != memory->attempts.end()) {
+        tried.push_back(*known);
+        continue;
+      }
+      const std::optional<Blocker> blocker = FindBlocker(unit, direction);
+      if (!blocker) {
+        step.emplace();
+        step->occurrence = unit.front();
+        step->members.assign(unit.begin() + 1, unit.end());
+        step->extraction_W = direction;
+        step->engage_distance = EngageDistance(unit, direction);
+        break;
+      }
+      tried.push_back({direction, blocker});
+    }
+    if (tried.empty()) {
+      tried.push_back({Vec3::Zero(), std::nullopt});
+    }
+    *memory = {std::move(tried), mates_around};
+  }
+  SetUnit(unit, false);
+  if (step) {
+    SetPresent(unit, false);
+  }
+  return step;
+}
+
+std::string Planner::ExplainStuck(OccurrenceId id) const {
+  const Blocker* farthest = nullptr;
+  for (const Attempt& attempt : memories_[id.index()].attempts) {
+    if (attempt.blocker &&
+        (farthest == nullptr || attempt.blocker->travelled > farthest->travelled)) {
+      farthest = &*attempt.blocker;
     }
   }
-  mates_at_attempt_[id.index()] = present;
-  std::vector<Attempt> tried;
-  bool mates_forbid_all = true;
-  for (const Vec3& direction : CandidateDirections(id)) {
-    if (!MatesAllow(id, direction)) {
+  return farthest == nullptr
+             ? std::string("its mates leave no straight way out")
+             : fmt::format("no free path: meets {} after {:.1f} mm along its best way out",
+                           Describe(farthest->occurrence), units::ToMm(farthest->travelled));
+}
+
+Unit Planner::PresentBelow(product::SubassemblyId id) const {
+  Unit unit;
+  const product::Subassembly& node = product_.subassemblies[id.index()];
+  for (const OccurrenceId occurrence : node.occurrences) {
+    if (is_present_[occurrence.index()]) {
+      unit.push_back(occurrence);
+    }
+  }
+  for (const product::SubassemblyId child : node.subassemblies) {
+    const Unit below = PresentBelow(child);
+    unit.insert(unit.end(), below.begin(), below.end());
+  }
+  return unit;
+}
+
+bool Planner::TakeOutSubassembly(Unit* rest, std::vector<SequenceStep>* removed,
+                                 Sequence* sequence) {
+  for (const product::Subassembly& node : product_.subassemblies) {
+    Unit unit = PresentBelow(node.id);
+    const bool has_base = std::find(unit.begin(), unit.end(), rest->back()) != unit.end();
+    if (unit.size() < 2 || unit.size() >= rest->size() || has_base) {
       continue;
     }
-    mates_forbid_all = false;
-    const auto known = std::find_if(attempts.begin(), attempts.end(), [&](const Attempt& a) {
-      return a.blocker && a.direction == direction && a.blocker->occurrence.is_valid() &&
-             is_present_[a.blocker->occurrence.index()];
-    });
-    if (known != attempts.end()) {
-      tried.push_back(*known);
+    std::stable_sort(unit.begin(), unit.end(),
+                     [this](OccurrenceId x, OccurrenceId y) { return SizeOf(x) > SizeOf(y); });
+    Memory memory;
+    std::optional<SequenceStep> step = TryRemove(unit, &memory);
+    if (!step) {
       continue;
     }
-    const std::optional<Blocker> blocker = FindBlocker(id, direction);
-    if (!blocker) {
-      removed->push_back({id, direction, EngageDistance(id, direction), false});
-      Remove(id);
-      return true;
+    rest->erase(std::remove_if(rest->begin(), rest->end(),
+                               [&unit](OccurrenceId id) {
+                                 return std::find(unit.begin(), unit.end(), id) != unit.end();
+                               }),
+                rest->end());
+    // Put together by itself, with nothing else there, then set aside until its turn.
+    const Unit others = *rest;
+    SetPresent(others, false);
+    SetPresent(unit, true);
+    const std::size_t first = sequence->steps.size();
+    PlanLevel(unit, sequence);
+    SetPresent(unit, false);
+    SetPresent(others, true);
+    // Only what went into it moves with it, led by its base: the last one that was put in a
+    // fixture.
+    std::set<OccurrenceId> members;
+    for (std::size_t i = first; i < sequence->steps.size(); ++i) {
+      members.insert(sequence->steps[i].occurrence);
+      if (sequence->steps[i].kind == SequenceStep::Kind::kBase) {
+        step->occurrence = sequence->steps[i].occurrence;
+      }
     }
-    tried.push_back({direction, blocker});
+    members.erase(step->occurrence);
+    step->members.assign(members.begin(), members.end());
+    SequenceStep park = *step;
+    park.kind = SequenceStep::Kind::kPark;
+    park.extraction_W = Vec3::UnitY();
+    park.engage_distance = 0;
+    sequence->steps.push_back(std::move(park));
+    removed->push_back(std::move(*step));
+    return true;
   }
-  if (mates_forbid_all) {
-    tried.push_back({Vec3::Zero(), std::nullopt});
-  }
-  attempts = std::move(tried);
   return false;
 }
 
-Sequence Planner::Plan() {
-  std::vector<OccurrenceId> rest;
-  for (const product::Occurrence& occurrence : product_.occurrences) {
-    rest.push_back(occurrence.id);
-  }
-  const auto size = [this](OccurrenceId id) {
-    const product::Part& part = product_.part_of(id);
-    return part.mass.volume > 0 ? part.mass.volume : part.box_B.size().prod();
-  };
+void Planner::PlanLevel(Unit rest, Sequence* sequence) {
   // Small parts come off first (they go in last); the largest is the base and stays.
   std::stable_sort(rest.begin(), rest.end(),
-                   [&](OccurrenceId x, OccurrenceId y) { return size(x) < size(y); });
-  const std::size_t total = rest.size();
-  attempts_.resize(product_.occurrences.size());
-  mates_at_attempt_.resize(product_.occurrences.size(), -1);
+                   [this](OccurrenceId x, OccurrenceId y) { return SizeOf(x) < SizeOf(y); });
+  for (const OccurrenceId id : rest) {
+    memories_[id.index()] = {};
+  }
   std::vector<SequenceStep> removed;
-  FindOverlaps();
-  Sequence sequence;
-  sequence.overlaps = overlaps_;
   while (rest.size() > 1) {
-    std::vector<OccurrenceId> blocked;
-    const OccurrenceId base = rest.back();
-    rest.pop_back();
+    Unit blocked;
     for (const OccurrenceId id : rest) {
-      if (!TryRemove(id, &removed)) {
+      std::optional<SequenceStep> step;
+      if (id != rest.back()) {
+        step = TryRemove({id}, &memories_[id.index()]);
+      }
+      if (step) {
+        removed.push_back(std::move(*step));
+        ++planned_;
+      } else {
         blocked.push_back(id);
       }
       if (input_.progress) {
-        input_.progress(static_cast<double>(removed.size() + sequence.gaps.size()) /
-                        static_cast<double>(total));
+        input_.progress(static_cast<double>(planned_) /
+                        static_cast<double>(product_.occurrences.size()));
       }
     }
     const bool is_stuck = blocked.size() == rest.size();
     rest = std::move(blocked);
-    rest.push_back(base);
-    if (is_stuck && rest.size() > 1) {
+    if (is_stuck && rest.size() > 1 && !TakeOutSubassembly(&rest, &removed, sequence)) {
       const OccurrenceId id = rest.front();
-      std::string reason = "its mates leave no straight way out";
-      const auto& attempts = attempts_[id.index()];
-      const auto farthest = std::max_element(attempts.begin(), attempts.end(),
-                                             [](const Attempt& a, const Attempt& b) {
-                                               return (a.blocker ? a.blocker->travelled : -1) <
-                                                      (b.blocker ? b.blocker->travelled : -1);
-                                             });
-      if (farthest != attempts.end() && farthest->blocker) {
-        const Blocker& blocker = *farthest->blocker;
-        reason = fmt::format("no free path: meets {} after {:.1f} mm along its best way out",
-                             Describe(blocker.occurrence), units::ToMm(blocker.travelled));
-      }
-      sequence.gaps.push_back({id, reason});
-      Remove(id);
+      sequence->gaps.push_back({id, ExplainStuck(id)});
+      SetPresent({id}, false);
       rest.erase(rest.begin());
     }
   }
-  sequence.steps.push_back({rest.front(), Vec3::UnitZ(), 0, true});
-  sequence.steps.insert(sequence.steps.end(), removed.rbegin(), removed.rend());
+  SequenceStep base;
+  base.kind = SequenceStep::Kind::kBase;
+  base.occurrence = rest.front();
+  sequence->steps.push_back(base);
+  sequence->steps.insert(sequence->steps.end(), removed.rbegin(), removed.rend());
+}
+
+Sequence Planner::Plan() {
+  FindOverlaps();
+  Sequence sequence;
+  sequence.overlaps = overlaps_;
+  Unit all;
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    all.push_back(occurrence.id);
+  }
+  PlanLevel(std::move(all), &sequence);
   return sequence;
 }
 
@@ -371,13 +521,22 @@ Result<Sequence> Reorder(const product::Product& product, const Sequence& sequen
   Sequence result;
   result.gaps = sequence.gaps;
   result.overlaps = sequence.overlaps;
-  std::vector<SequenceStep> rest = sequence.steps;
+  // Subassemblies are put together before the product's base is in the fixture; they stay there.
+  const auto last_park =
+      std::find_if(sequence.steps.rbegin(), sequence.steps.rend(),
+                   [](const SequenceStep& step) { return step.kind == SequenceStep::Kind::kPark; });
+  result.steps.assign(sequence.steps.begin(), last_park.base());
+  std::vector<SequenceStep> rest(last_park.base(), sequence.steps.end());
+  result.steps.push_back(rest.front());  // The base stays first, named or not.
   for (const std::string& name : names) {
     const auto found = std::find_if(rest.begin(), rest.end(), [&](const SequenceStep& step) {
       const product::Occurrence& occurrence = product.occurrences[step.occurrence.index()];
       return occurrence.path == name || occurrence.name == name ||
              fmt::format("o{}", step.occurrence.value()) == name;
     });
+    if (found == rest.begin()) {
+      continue;
+    }
     if (found == rest.end()) {
       return Fail(ErrorCode::kNotFound, fmt::format("no part left to order is called '{}'", name),
                   product.source, "hvas inspect lists names and ids");
@@ -385,7 +544,7 @@ Result<Sequence> Reorder(const product::Product& product, const Sequence& sequen
     result.steps.push_back(*found);
     rest.erase(found);
   }
-  result.steps.insert(result.steps.end(), rest.begin(), rest.end());
+  result.steps.insert(result.steps.end(), rest.begin() + 1, rest.end());
   return result;
 }
 

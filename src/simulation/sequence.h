@@ -11,12 +11,19 @@
 
 namespace hvas::simulation {
 
-/** One part's way into the product. */
+/** One move of the assembly. */
 struct SequenceStep {
-  product::OccurrenceId occurrence;
-  Vec3 extraction_W{Vec3::UnitZ()};  ///< Unit; the way out. The way in is the reverse.
-  double engage_distance{0};  ///< From the goal along the way out until nothing is engaged [m].
-  bool is_base{false};        ///< The first part: it is held in the fixture.
+  enum class Kind {
+    kBase,    ///< The first part of a product or subassembly: it is put into the fixture.
+    kInsert,  ///< From the table, or from the shelf, into its place.
+    kPark,    ///< A finished subassembly goes as one body onto the shelf, out of the way.
+  };
+  Kind kind{Kind::kInsert};
+  product::OccurrenceId occurrence;            ///< The part, or the base of the subassembly.
+  std::vector<product::OccurrenceId> members;  ///< What else moves with it (X3).
+  Vec3 extraction_W{Vec3::UnitZ()};            ///< Unit; the way out. The way in is the reverse.
+  double engage_distance{0};                   ///< From the goal until nothing is engaged [m].
+  Vec3 offset_W{Vec3::Zero()};                 ///< kPark: from the drawn place to the shelf [m].
 };
 
 /** Two parts that lie in one another as drawn, beyond what a mate between them explains. Contact
@@ -49,11 +56,14 @@ struct SequenceInput {
 };
 
 /** Takes the product apart along straight lines that its mates leave free, nothing in the way, and
- turns the order round (X17, N10). Deterministic. Disables bodies of the scene as it goes. */
+ turns the order round (X17, N10). Where no single part comes out, a subassembly of the file may
+ come out as one body (X3); then it is put together first, by itself, and set on a shelf until its
+ turn. Deterministic. Disables bodies of the scene as it goes. */
 [[nodiscard]] Sequence PlanSequence(const SequenceInput& input);
 
 /** Re-orders: parts named (or given by path or index "o12") first, in the order given; the others
- follow in the order found. Errors: kNotFound for a name that matches nothing. */
+ follow in the order found. Subassemblies that are put together first stay first.
+ Errors: kNotFound for a name that matches nothing that can be moved. */
 Result<Sequence> Reorder(const product::Product& product, const Sequence& sequence,
                          const std::vector<std::string>& names);
 

@@ -12,6 +12,7 @@ using product::MateKind;
 using product::OccurrenceId;
 
 constexpr double kReach = 0.03;      // [m] from a part's centre of mass, to take it up
+constexpr double kApproach = 0.01;   // [m] before its place, where a part's mates are resolved from
 constexpr double kStopCosine = 0.5;  // a plane facing the way in ends it; one along it guides
 constexpr double kPhysicsStep = Simulation::kHapticStep * Simulation::kTicksPerPhysics;
 
@@ -43,9 +44,6 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
     part.body = *world_.AddBody(shape.mesh.vertices, body.mass, body.X_WB_start);
   }
   scene_.SetGround(model_->table_z);
-  for (const SequenceStep& step : model_->sequence.steps) {
-    parts_[step.occurrence.index()].insertion_W = -step.extraction_W;
-  }
 }
 
 haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) noexcept {
@@ -67,6 +65,9 @@ haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) no
     const bool was_seated = haptic_.state() == haptics::HoldState::kSeated;
     const spatial::Pose X_WB = haptic_.Drop();
     scene_.SetPose(part.body, X_WB);
+    for (const haptics::HeldMember& member : part.members) {
+      scene_.SetPose(member.body, X_WB * member.X_BS);
+    }
     events_.TryPush({device.t_ns, SimulationEvent::Kind::kDropped, part.occurrence,
                      haptics::HoldState::kEmpty, X_WB, was_seated, metrics_});
   }
@@ -130,7 +131,13 @@ void Simulation::PhysicsStep(Sink* sink) {
   frame.t_ns = reports_.value().t_ns;
   frame.tick = reports_.value().out;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    frame.X_WB[i] = parts_[i].placement == Placement::kHeld ? frame.tick.X_WD : parts_[i].X_WB;
+    frame.X_WB[i] = parts_[i].X_WB;
+  }
+  if (held_ != nullptr && frame.tick.occurrence == held_->occurrence) {
+    frame.X_WB[held_->occurrence.index()] = frame.tick.X_WD;
+    for (const haptics::HeldMember& member : held_->members) {
+      frame.X_WB[member.occurrence.index()] = frame.tick.X_WD * member.X_BS;
+    }
   }
   frames_.Publish();
 }
@@ -144,17 +151,30 @@ void Simulation::HandleEvent(const SimulationEvent& event) {
   if (event.kind != SimulationEvent::Kind::kDropped) {
     return;
   }
-  Part& part = parts_[event.occurrence.index()];
-  part.X_WB = event.X_WB;
-  held_ = nullptr;
-  if (event.was_seated) {
-    part.placement = Placement::kPlaced;
-    world_.Remove(part.body);
-  } else {
-    part.placement = Placement::kLoose;
-    world_.SetPose(part.body, event.X_WB);
-    world_.SetKinematic(part.body, false);
+  const bool is_shelf = held_step_.kind == SequenceStep::Kind::kPark;
+  const auto settle = [&](OccurrenceId id, const spatial::Pose& X_WB) {
+    Part& part = parts_[id.index()];
+    part.X_WB = X_WB;
+    if (event.was_seated && !is_shelf) {
+      part.placement = Placement::kPlaced;
+    } else if (is_shelf || !held_step_.members.empty()) {
+      part.placement = Placement::kParked;  // a subassembly does not fall apart
+    } else {
+      part.placement = Placement::kLoose;
+      world_.SetPose(part.body, X_WB);
+      world_.SetKinematic(part.body, false);
+      return;
+    }
+    if (part.is_in_world) {
+      part.is_in_world = false;
+      world_.Remove(part.body);
+    }
+  };
+  settle(event.occurrence, event.X_WB);
+  for (const haptics::HeldMember& member : held_->members) {
+    settle(member.occurrence, event.X_WB * member.X_BS);
   }
+  held_ = nullptr;
 }
 
 void Simulation::PlaceInFixture(OccurrenceId id) {
@@ -162,10 +182,40 @@ void Simulation::PlaceInFixture(OccurrenceId id) {
   part.placement = Placement::kPlaced;
   part.X_WB = model_->bodies[id.index()].X_WB_goal;
   world_.Remove(part.body);
+  part.is_in_world = false;
   scene_.SetPose(contact::BodyId(id.index()), part.X_WB);
 }
 
+SequenceStep Simulation::StepOf(OccurrenceId id) const {
+  for (const SequenceStep& step : model_->sequence.steps) {
+    if (step.occurrence == id && step.kind == SequenceStep::Kind::kInsert) {
+      return step;
+    }
+  }
+  SequenceStep step;
+  step.occurrence = id;
+  return step;
+}
+
+bool Simulation::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
+  const Vec3 p_WCm = parts_[step.occurrence.index()].X_WB * CombineMass(*model_, step).p_BoBcm_B;
+  if ((p_WCm - p_WH).norm() > kReach) {
+    return false;
+  }
+  const auto is_free = [&](OccurrenceId id) {
+    const Placement placement = parts_[id.index()].placement;
+    return step.members.empty()
+               ? placement == Placement::kLoose
+               : placement == Placement::kPlaced || placement == Placement::kParked;
+  };
+  return is_free(step.occurrence) && std::all_of(step.members.begin(), step.members.end(), is_free);
+}
+
 void Simulation::TakeNearest(const Vec3& p_WH) {
+  if (prepared_ && CanTake(*prepared_, p_WH)) {
+    Take(*prepared_);
+    return;
+  }
   OccurrenceId nearest;
   double least = kReach;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -178,14 +228,27 @@ void Simulation::TakeNearest(const Vec3& p_WH) {
       nearest = OccurrenceId(i);
     }
   }
-  if (!nearest.is_valid()) {
+  if (nearest.is_valid()) {
+    Take(StepOf(nearest));
+  } else {
     is_waiting_for_grip_to_open_ = true;  // closed on nothing: open before the next try
-    return;
   }
-  held_ = MakeHeldPart(nearest);
-  Part& part = parts_[nearest.index()];
-  part.placement = Placement::kHeld;
-  world_.SetKinematic(part.body, true);
+}
+
+void Simulation::Take(const SequenceStep& step) {
+  held_step_ = step;
+  held_ = MakeHeldPart(step);
+  const auto hold = [this](OccurrenceId id) {
+    Part& part = parts_[id.index()];
+    part.placement = Placement::kHeld;
+    if (part.is_in_world) {
+      world_.SetKinematic(part.body, true);
+    }
+  };
+  hold(step.occurrence);
+  for (const OccurrenceId id : step.members) {
+    hold(id);
+  }
   Command command;
   command.kind = Command::Kind::kTake;
   command.part = held_.get();
@@ -193,24 +256,48 @@ void Simulation::TakeNearest(const Vec3& p_WH) {
   commands_.TryPush(command);
 }
 
-std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(OccurrenceId id) const {
-  const Body& body = model_->bodies[id.index()];
-  auto held = std::make_unique<haptics::HeldPart>();
-  held->occurrence = id;
-  held->body = contact::BodyId(id.index());
-  held->shape = body.shape;
-  held->mass = body.mass.mass;
-  held->p_BoBcm_B = body.mass.p_BoBcm_B;
-  held->I_BBcm_B = body.mass.I_BBcm_B;
-  held->X_WB_start = ClearOfTable(id);
-  held->insertion_W = parts_[id.index()].insertion_W;
-  std::vector<mates::MateConstraint> constraints;
+std::vector<contact::BodyId> Simulation::LeftOut(OccurrenceId id, const SequenceStep& step) const {
+  std::vector<contact::BodyId> bodies;
+  for (const DrawnOverlap& overlap : model_->sequence.overlaps) {
+    if (overlap.a == id || overlap.b == id) {
+      bodies.emplace_back((overlap.a == id ? overlap.b : overlap.a).index());
+    }
+  }
+  if (!step.members.empty()) {
+    bodies.emplace_back(step.occurrence.index());
+    for (const OccurrenceId member : step.members) {
+      bodies.emplace_back(member.index());
+    }
+  }
+  return bodies;
+}
+
+void Simulation::AddMembers(const SequenceStep& step, haptics::HeldPart* held) const {
+  const spatial::Pose X_BW = model_->bodies[step.occurrence.index()].X_WB_goal.Inverse();
+  for (const OccurrenceId id : step.members) {
+    haptics::HeldMember member;
+    member.occurrence = id;
+    member.body = contact::BodyId(id.index());
+    member.shape = model_->bodies[id.index()].shape;
+    member.X_BS = X_BW * model_->bodies[id.index()].X_WB_goal;
+    member.left_out = LeftOut(id, step);
+    held->members.push_back(std::move(member));
+  }
+}
+
+void Simulation::AddMates(const SequenceStep& step, std::size_t member,
+                          haptics::HeldPart* held) const {
+  const OccurrenceId id = member == 0 ? step.occurrence : step.members[member - 1];
+  const spatial::Pose X_BS = member == 0 ? spatial::Pose() : held->members[member - 1].X_BS;
   for (const product::MateId mate_id : model_->mates_of[id.index()]) {
     const product::Mate& mate = model_->product->mates[mate_id.index()];
     const ModelMate& compiled = model_->mates[mate_id.index()];
     const bool is_a = mate.a.occurrence == id;
     const OccurrenceId other = is_a ? mate.b.occurrence : mate.a.occurrence;
-    if (parts_[other.index()].placement != Placement::kPlaced) {
+    const bool is_own =
+        other == step.occurrence ||
+        std::find(step.members.begin(), step.members.end(), other) != step.members.end();
+    if (is_own || parts_[other.index()].placement != Placement::kPlaced) {
       continue;
     }
     const mates::MateConstraint constraint =
@@ -218,7 +305,8 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(OccurrenceId id) con
     haptics::HeldMate entry;
     entry.id = mate_id;
     entry.X_WM = constraint.X_WM;
-    entry.X_BN = constraint.X_BN;
+    entry.X_BN = X_BS * constraint.X_BN;
+    entry.member = member;
     entry.capture = mates::MakeCaptureMate(mate, id);
     entry.radius = mate.hole_radius;
     const double facing = std::abs((constraint.X_WM.q() * Vec3::UnitZ()).dot(held->insertion_W));
@@ -228,22 +316,41 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(OccurrenceId id) con
     entry.held_faces = is_a ? compiled.faces_a : compiled.faces_b;
     entry.placed_faces = is_a ? compiled.faces_b : compiled.faces_a;
     held->mates.push_back(std::move(entry));
-    constraints.push_back(constraint);
   }
-  for (const DrawnOverlap& overlap : model_->sequence.overlaps) {
-    if (overlap.a == id || overlap.b == id) {
-      held->overlapped.emplace_back((overlap.a == id ? overlap.b : overlap.a).index());
-    }
+}
+
+std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& step) const {
+  const OccurrenceId id = step.occurrence;
+  const Body& body = model_->bodies[id.index()];
+  const dynamics::MassProperties mass = CombineMass(*model_, step);
+  auto held = std::make_unique<haptics::HeldPart>();
+  held->occurrence = id;
+  held->body = contact::BodyId(id.index());
+  held->shape = body.shape;
+  held->mass = mass.mass;
+  held->p_BoBcm_B = mass.p_BoBcm_B;
+  held->I_BBcm_B = mass.I_BBcm_B;
+  held->X_WB_start = step.members.empty() ? ClearOfTable(id) : parts_[id.index()].X_WB;
+  held->insertion_W = -step.extraction_W;
+  held->left_out = LeftOut(id, step);
+  AddMembers(step, held.get());
+  if (step.kind == SequenceStep::Kind::kPark) {
+    held->X_WB_goal = {body.X_WB_goal.q(), body.X_WB_goal.p() + step.offset_W};
+    return held;
+  }
+  for (std::size_t member = 0; member <= step.members.size(); ++member) {
+    AddMates(step, member, held.get());
   }
   // The place is where the mates say; what they leave free is taken from the drawing (X9).
-  held->X_WB_goal =
-      constraints.empty()
-          ? body.X_WB_goal
-          : mates::ResolveToward(
-                constraints,
-                spatial::Pose(body.X_WB_goal.q(), body.X_WB_goal.p() - 0.01 * held->insertion_W),
-                body.X_WB_goal)
-                .X_WB;
+  std::vector<mates::MateConstraint> constraints;
+  for (const haptics::HeldMate& mate : held->mates) {
+    constraints.push_back({mate.capture.kind, mate.X_WM, mate.X_BN});
+  }
+  const spatial::Pose X_before(body.X_WB_goal.q(),
+                               body.X_WB_goal.p() - kApproach * held->insertion_W);
+  held->X_WB_goal = constraints.empty()
+                        ? body.X_WB_goal
+                        : mates::ResolveToward(constraints, X_before, body.X_WB_goal).X_WB;
   return held;
 }
 

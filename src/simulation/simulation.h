@@ -60,7 +60,12 @@ struct Frame {
   haptics::TickOutput tick;
 };
 
-enum class Placement : std::uint8_t { kLoose, kHeld, kPlaced };
+enum class Placement : std::uint8_t {
+  kLoose,  ///< On the table, or falling.
+  kHeld,
+  kPlaced,  ///< In the product, or in the subassembly that is being put together.
+  kParked,  ///< On the shelf with its subassembly.
+};
 
 /** All that changes while a model is assembled. Three loops may run it at once, each function from
  its own thread: HapticTick (1 kHz), PhysicsStep (100 Hz), Publish (30 Hz). Called in turn from one
@@ -94,10 +99,10 @@ class Simulation {
     return parts_[id.index()].X_WB;
   }
 
-  /** The way in for a part, which tells its guiding planes from its stops. Physics thread. */
-  void SetInsertion(product::OccurrenceId id, const Vec3& insertion_W) {
-    parts_[id.index()].insertion_W = insertion_W;
-  }
+  /** What the next part to be taken up is for: its place, its way in, and what moves with it.
+   Physics thread. Parts that nobody prepared go to their drawn place by their step of the sequence.
+ */
+  void Prepare(const SequenceStep& step) { prepared_ = step; }
 
   [[nodiscard]] const Model& model() const { return *model_; }
 
@@ -107,8 +112,8 @@ class Simulation {
   struct Part {
     Placement placement{Placement::kLoose};
     spatial::Pose X_WB;
-    Vec3 insertion_W{-Vec3::UnitZ()};
     dynamics::BodyId body;
+    bool is_in_world{true};  ///< Of dynamics: until it is part of the product.
   };
 
   /** From physics to haptics. */
@@ -129,7 +134,14 @@ class Simulation {
   void Measure(const haptics::TickOutput& out) noexcept;
   void HandleEvent(const SimulationEvent& event);
   void TakeNearest(const Vec3& p_WH);
-  [[nodiscard]] std::unique_ptr<haptics::HeldPart> MakeHeldPart(product::OccurrenceId id) const;
+  void Take(const SequenceStep& step);
+  [[nodiscard]] SequenceStep StepOf(product::OccurrenceId id) const;
+  [[nodiscard]] bool CanTake(const SequenceStep& step, const Vec3& p_WH) const;
+  [[nodiscard]] std::unique_ptr<haptics::HeldPart> MakeHeldPart(const SequenceStep& step) const;
+  void AddMembers(const SequenceStep& step, haptics::HeldPart* held) const;
+  void AddMates(const SequenceStep& step, std::size_t member, haptics::HeldPart* held) const;
+  [[nodiscard]] std::vector<contact::BodyId> LeftOut(product::OccurrenceId id,
+                                                     const SequenceStep& step) const;
   [[nodiscard]] spatial::Pose ClearOfTable(product::OccurrenceId id) const;
   void PushBodies(const Report& report);
 
@@ -149,6 +161,8 @@ class Simulation {
   dynamics::World world_;
   std::vector<Part> parts_;
   std::unique_ptr<haptics::HeldPart> held_;  // Kept until haptics has let go of it.
+  SequenceStep held_step_;
+  std::optional<SequenceStep> prepared_;
   bool is_waiting_for_grip_to_open_{false};
 };
 

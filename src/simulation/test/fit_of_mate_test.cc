@@ -1,0 +1,164 @@
+#include "simulation/fit_of_mate.h"
+
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "fits/iso286.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::FitKind;
+using product::Product;
+
+constexpr double kRadius = 20e-3;  // W7's rig
+constexpr double kHub = 40e-3;
+constexpr double kLength = 50e-3;
+
+/** A bore of W7's size in a hub, and a shaft, as features only. */
+Product Rig(const std::string& code) {
+  Product product;
+  product.parts.resize(2);
+  product::Part& hub = product.parts[0];
+  hub.box_B.Add(Vec3(-kHub, -kHub, 0));
+  hub.box_B.Add(Vec3(kHub, kHub, kLength));
+  product::Feature bore;
+  bore.kind = product::FeatureKind::kHole;
+  bore.radius = kRadius;
+  hub.features.push_back(bore);
+  product.parts[1].features.resize(1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    product::Occurrence occurrence;
+    occurrence.id = product::OccurrenceId(i);
+    occurrence.part = product::PartId(i);
+    product.occurrences.push_back(occurrence);
+  }
+  product::Mate mate;
+  mate.id = product::MateId(0);
+  mate.kind = product::MateKind::kAxisHole;
+  mate.a = {product::OccurrenceId(0), product::FeatureId(0), {}};
+  mate.b = {product::OccurrenceId(1), product::FeatureId(0), {}};
+  mate.hole_radius = mate.shaft_radius = kRadius;
+  mate.overlap = kLength;
+  mate.fit = product::Fit{FitKind::kInterference, code, 2 * kRadius, false, "for the test"};
+  product.mates.push_back(mate);
+  return product;
+}
+
+std::shared_ptr<const fits::FitForce> Make(const Product& product, std::uint64_t seed,
+                                           Diagnostics* diagnostics = nullptr) {
+  Diagnostics own;
+  return MakeFitForce(product, product.mates[0], seed, diagnostics == nullptr ? &own : diagnostics);
+}
+
+TEST(MakeFitForceTest, EqualSeedsDrawEqualSizesAndOthersOthers) {  // W2
+  const Product product = Rig("H7/k6");
+  std::set<double> clearances;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const auto first = Make(product, seed);
+    const auto second = Make(product, seed);
+    ASSERT_NE(first, nullptr);
+    EXPECT_EQ(first->mean_clearance(), second->mean_clearance());
+    for (double depth = 0; depth <= kLength; depth += 1e-3) {
+      EXPECT_EQ(first->CalcClearance(depth), second->CalcClearance(depth));
+      EXPECT_EQ(first->CalcAxialResistance(depth), second->CalcAxialResistance(depth));
+    }
+    clearances.insert(std::round(first->mean_clearance() * 1e8));
+  }
+  EXPECT_GT(clearances.size(), 10u);  // of about 40 half micrometres
+}
+
+TEST(MakeFitForceTest, SizesStayWithinTheZonesOfTheStandard) {  // W2, W3
+  for (const char* code : {"H7/g6", "H7/k6", "H7/p6"}) {
+    const Product product = Rig(code);
+    const auto limits = fits::CalcFitLimits(*fits::ParseFit(code), 2 * kRadius);
+    ASSERT_TRUE(limits.has_value());
+    double least = 1;
+    double most = -1;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+      const double clearance = 2 * Make(product, seed)->mean_clearance();
+      least = std::min(least, clearance);
+      most = std::max(most, clearance);
+    }
+    EXPECT_GE(least, limits->min_clearance - 1e-9) << code;
+    EXPECT_LE(most, limits->max_clearance + 1e-9) << code;
+    // And they fill them: normal with a sixth of each zone.
+    EXPECT_GT(most - least, 0.4 * (limits->max_clearance - limits->min_clearance)) << code;
+  }
+}
+
+TEST(MakeFitForceTest, MatesOfOneProductDrawTheirOwnSizes) {
+  Product product = Rig("H7/k6");
+  product.mates.push_back(product.mates[0]);
+  product.mates[1].id = product::MateId(1);
+  Diagnostics diagnostics;
+  int equal = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    equal += MakeFitForce(product, product.mates[0], seed, &diagnostics)->CalcClearance(0) ==
+                     MakeFitForce(product, product.mates[1], seed, &diagnostics)->CalcClearance(0)
+                 ? 1
+                 : 0;
+  }
+  EXPECT_EQ(equal, 0);
+}
+
+/** 1 - c_0^2 as W(7) has it, from a pressure and the interference there. */
+double MeasureWallTerm(const fits::FitForce& fit) {
+  constexpr double kYoung = 210e9;
+  for (double depth = 0; depth <= kLength; depth += 0.1e-3) {
+    if (fit.CalcClearance(depth) < -1e-6) {
+      return fit.CalcPressure(depth) / -fit.CalcClearance(depth) * 2 * kRadius / kYoung;
+    }
+  }
+  return std::nan("");
+}
+
+TEST(MakeFitForceTest, WallOfTheHubComesFromItsOutsideOrFromItsBox) {  // W(7)
+  Product product = Rig("H7/p6");
+  // No outside cylinder: half the width of the box across the bore.
+  EXPECT_NEAR(MeasureWallTerm(*Make(product, 3)), 1 - std::pow(kRadius / kHub, 2), 1e-9);
+  // A coaxial outside: its radius; a cylinder elsewhere does not count.
+  product::Feature outside;
+  outside.kind = product::FeatureKind::kShaft;
+  outside.radius = 30e-3;
+  product.parts[0].features.push_back(outside);
+  product::Feature aside = outside;
+  aside.radius = 25e-3;
+  aside.origin_B = Vec3(10e-3, 0, 0);
+  product.parts[0].features.push_back(aside);
+  EXPECT_NEAR(MeasureWallTerm(*Make(product, 3)), 1 - std::pow(kRadius / 30e-3, 2), 1e-9);
+}
+
+TEST(MakeFitForceTest, PlanesThreadsAndMatesWithoutACodeHaveNoFitForce) {
+  Diagnostics diagnostics;
+  Product product = Rig("");
+  EXPECT_EQ(Make(product, 1, &diagnostics), nullptr);
+  product = Rig("H7/p6");
+  product.mates[0].fit->kind = FitKind::kThread;
+  EXPECT_EQ(Make(product, 1, &diagnostics), nullptr);
+  product.mates[0].fit.reset();
+  product.mates[0].kind = product::MateKind::kFaceFace;
+  EXPECT_EQ(Make(product, 1, &diagnostics), nullptr);
+  EXPECT_TRUE(diagnostics.items().empty());
+}
+
+TEST(MakeFitForceTest, UndefinedCodeOrSizeGivesADiagnosticWithARemedy) {
+  Product too_large = Rig("H7/p6");
+  too_large.mates[0].fit->nominal_diameter = 5;  // [m]; the standard ends at 3.15 m
+  for (const Product& product : {Rig("H7/zz9"), Rig("H7"), Rig("press"), too_large}) {
+    Diagnostics diagnostics;
+    EXPECT_EQ(Make(product, 1, &diagnostics), nullptr);
+    ASSERT_EQ(diagnostics.items().size(), 1u);
+    const Diagnostic& item = diagnostics.items()[0];
+    EXPECT_EQ(item.severity, Severity::kWarning);
+    EXPECT_EQ(item.code, "fit-undefined");
+    EXPECT_EQ(item.entity, "mate m0");
+    EXPECT_FALSE(item.message.empty());
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--fit", item.remedy);
+  }
+}
+
+}  // namespace
+}  // namespace hvas::simulation

@@ -1,0 +1,154 @@
+#include "simulation/model.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::FaceId;
+using product::FeatureKind;
+using product::OccurrenceId;
+using product::Product;
+using Faces = std::vector<std::uint32_t>;
+
+haptics::MateFaces CollectOfHole(const contact::ShapeSource& source) {
+  Product product;
+  const auto id = testing::AddPart(&product, "part", source);
+  const product::Part& part = product.parts[id.index()];
+  for (const product::Feature& feature : part.features) {
+    if (feature.kind == FeatureKind::kHole) {
+      return CollectMateFaces(part, feature);
+    }
+  }
+  ADD_FAILURE() << "no hole";
+  return {};
+}
+
+TEST(CollectMateFacesTest, NeighboursOfABoreAreTheFacesThatShareItsEdges) {  // X9
+  // Bushing: 0 bottom, 1 outside, 2 top, 3 bore. Cup: 4 floor.
+  const haptics::MateFaces through =
+      CollectOfHole(contact::testing::Bushing(5e-3, 10e-3, 20e-3, 20e-6));
+  EXPECT_EQ(through.mating, (Faces{3}));
+  EXPECT_EQ(through.with_neighbours, (Faces{0, 2, 3}));
+  const haptics::MateFaces blind = CollectOfHole(contact::testing::Cup(5e-3, 10e-3, 4e-3, 20e-3));
+  EXPECT_EQ(blind.mating, (Faces{3}));
+  EXPECT_EQ(blind.with_neighbours, (Faces{2, 3, 4}));
+}
+
+TEST(CollectMateFacesTest, BoreInTwoPiecesMatesWithBoth) {
+  using contact::testing::CylinderZ;
+  using contact::testing::PlaneAt;
+  const haptics::MateFaces faces =
+      CollectOfHole(contact::testing::Lathe({{{{5e-3, 20e-3}, {5e-3, 8e-3}}, CylinderZ(5e-3, -1)},
+                                             {{{5e-3, 0}, {10e-3, 0}}, PlaneAt(0, -1)},
+                                             {{{10e-3, 0}, {10e-3, 20e-3}}, CylinderZ(10e-3, 1)},
+                                             {{{10e-3, 20e-3}, {5e-3, 20e-3}}, PlaneAt(20e-3, 1)},
+                                             {{{5e-3, 8e-3}, {5e-3, 0}}, CylinderZ(5e-3, -1)}},
+                                            40));
+  EXPECT_EQ(faces.mating, (Faces{0, 4}));
+  EXPECT_EQ(faces.with_neighbours, (Faces{0, 1, 3, 4}));
+}
+
+TEST(CollectMateFacesTest, NeighboursOfABoxFaceAreTheFourAroundIt) {
+  Product product;
+  const auto id =
+      testing::AddPart(&product, "box", contact::testing::Block(Vec3(5e-3, 6e-3, 7e-3)));
+  for (const product::Feature& feature : product.parts[id.index()].features) {
+    const haptics::MateFaces faces = CollectMateFaces(product.parts[id.index()], feature);
+    ASSERT_EQ(faces.mating.size(), 1u);
+    EXPECT_EQ(faces.with_neighbours.size(), 5u);
+    const std::uint32_t opposite = faces.mating[0] ^ 1u;
+    EXPECT_FALSE(
+        std::binary_search(faces.with_neighbours.begin(), faces.with_neighbours.end(), opposite));
+  }
+}
+
+TEST(CompileTest, PartsLieApartOnTheTableBelowTheProduct) {
+  const Model& model = *testing::PegInBlockModel();
+  ASSERT_EQ(model.bodies.size(), 2u);
+  ASSERT_EQ(model.mates.size(), model.product->mates.size());
+  std::vector<spatial::Box> boxes;
+  for (const Body& body : model.bodies) {
+    double lowest = 1;
+    spatial::Box box;
+    for (const Vec3& p_B : model.product->part_of(body.occurrence).mesh.vertices) {
+      const Vec3 p_W = body.X_WB_start * p_B;
+      box.Add(p_W);
+      lowest = std::min(lowest, p_W.z());
+    }
+    // Bullet keeps its bodies a hair above or below what they lie on.
+    EXPECT_NEAR(lowest, model.table_z, 0.5e-3);
+    boxes.push_back(box);
+    // Neither in the product nor where parts are carried around it.
+    EXPECT_GT((box.centre() - model.centre_W).norm(), model.transfer_radius);
+    EXPECT_LT(box.high.z(), model.product->box_W.low.z());
+  }
+  EXPECT_FALSE(boxes[0].Overlaps(boxes[1]));
+}
+
+TEST(CompileTest, MatesAreListedForBothOfTheirParts) {
+  const Model& model = *testing::PegInBlockModel();
+  ASSERT_GE(model.mates.size(), 2u);  // bore and floor
+  EXPECT_EQ(model.mates_of[0], model.mates_of[1]);
+  EXPECT_EQ(model.mates_of[0].size(), model.mates.size());
+  for (const ModelMate& mate : model.mates) {
+    const bool is_axis = model.product->mates[mate.id.index()].kind == product::MateKind::kAxisHole;
+    EXPECT_EQ(mate.fit != nullptr, is_axis);
+  }
+}
+
+TEST(CompileTest, EmptyProductIsAnError) {
+  Diagnostics diagnostics;
+  auto product = std::make_shared<Product>();
+  product->source = "nothing.step";
+  const auto model = Compile(product, testing::FastOptions(), &diagnostics);
+  ASSERT_FALSE(model.has_value());
+  EXPECT_EQ(model.error().code, ErrorCode::kInvalid);
+  EXPECT_EQ(model.error().where, "nothing.step");
+}
+
+TEST(CompileTest, ShapeThatCannotBeBuiltIsAnErrorThatNamesThePart) {
+  Diagnostics diagnostics;
+  Product product = testing::PegInBlock();
+  product.source = "rig.step";
+  product.parts[1].mesh.vertices[0].x() = std::numeric_limits<double>::quiet_NaN();
+  const auto model =
+      Compile(std::make_shared<Product>(product), testing::FastOptions(), &diagnostics);
+  ASSERT_FALSE(model.has_value());
+  EXPECT_EQ(model.error().code, ErrorCode::kInvalid);
+  EXPECT_EQ(model.error().where, "rig.step, part 'peg'");
+}
+
+TEST(CompileTest, PartWithoutAMassCanStillBeHeld) {
+  Diagnostics diagnostics;
+  Product product = testing::PegInBlock();
+  product.parts[1].mass = {};
+  const auto model =
+      Compile(std::make_shared<Product>(product), testing::FastOptions(), &diagnostics);
+  ASSERT_TRUE(model.has_value()) << model.error().ToString();
+  const dynamics::MassProperties& mass = (*model)->bodies[1].mass;
+  EXPECT_GT(mass.mass, 0);
+  EXPECT_GT(mass.I_BBcm_B.determinant(), 0);
+  EXPECT_TRUE(product.parts[1].box_B.Contains(mass.p_BoBcm_B));
+}
+
+TEST(CompileTest, NumberOfThreadsDoesNotChangeTheModel) {
+  Diagnostics diagnostics;
+  CompileOptions options = testing::FastOptions();
+  options.threads = 1;
+  const auto one =
+      *Compile(std::make_shared<Product>(testing::PegInBlock()), options, &diagnostics);
+  const Model& two = *testing::PegInBlockModel();
+  for (std::size_t i = 0; i < two.bodies.size(); ++i) {
+    EXPECT_EQ(one->bodies[i].X_WB_start.p(), two.bodies[i].X_WB_start.p());
+    EXPECT_EQ(one->bodies[i].X_WB_start.q().coeffs(), two.bodies[i].X_WB_start.q().coeffs());
+    EXPECT_EQ(one->bodies[i].shape->point_count(), two.bodies[i].shape->point_count());
+  }
+}
+
+}  // namespace
+}  // namespace hvas::simulation

@@ -1,0 +1,177 @@
+#include "simulation/test/small_products.h"
+
+#include <cmath>
+#include <utility>
+
+#include "mates/infer.h"
+#include "product/features.h"
+
+namespace hvas::simulation::testing {
+namespace {
+
+constexpr double kDeviation = 20e-6;  // [m] of chords from circles
+
+/** Volume integrals over the tetrahedra from the origin to each triangle. */
+product::MassProperties CalcMass(const product::Mesh& mesh, double density) {
+  double volume = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();  // integral of p p^T
+  for (const auto& t : mesh.triangles) {
+    const Vec3& a = mesh.vertices[t[0]];
+    const Vec3& b = mesh.vertices[t[1]];
+    const Vec3& c = mesh.vertices[t[2]];
+    const double piece = a.dot(b.cross(c)) / 6;
+    const Vec3 sum = a + b + c;
+    volume += piece;
+    first += piece / 4 * sum;
+    second += piece / 20 *
+              (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+  }
+  product::MassProperties mass;
+  mass.volume = volume;
+  mass.mass = density * volume;
+  mass.p_BoBcm_B = first / volume;
+  const Mat3 central = second - volume * mass.p_BoBcm_B * mass.p_BoBcm_B.transpose();
+  mass.I_BBcm_B = density * (central.trace() * Mat3::Identity() - central);
+  return mass;
+}
+
+product::Face MeasureFace(const product::Mesh& mesh, std::uint32_t first, std::uint32_t count,
+                          const spatial::Surface& surface) {
+  product::Face face;
+  face.surface = surface;
+  face.first_triangle = first;
+  face.triangle_count = count;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const auto& t = mesh.triangles[i];
+    const Vec3& a = mesh.vertices[t[0]];
+    face.area += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+    for (const std::uint32_t v : t) {
+      face.box_B.Add(mesh.vertices[v]);
+    }
+  }
+  return face;
+}
+
+}  // namespace
+
+PartId AddPart(Product* product, const std::string& name, const contact::ShapeSource& source) {
+  product::Part part;
+  part.id = PartId(product->parts.size());
+  part.name = name;
+  part.solid_count = 1;
+  part.mesh.vertices = source.vertices;
+  part.mesh.triangles = source.triangles;
+  std::uint32_t first = 0;
+  for (std::uint32_t f = 0; f < source.faces.size(); ++f) {
+    std::uint32_t count = 0;
+    while (first + count < source.triangle_face.size() &&
+           source.triangle_face[first + count] == f) {
+      ++count;
+    }
+    part.faces.push_back(MeasureFace(part.mesh, first, count, source.faces[f]));
+    part.box_B.Add(part.faces.back().box_B);
+    first += count;
+  }
+  part.mass = CalcMass(part.mesh, part.material.density);
+  product::BuildFeatures(&part);
+  product->parts.push_back(std::move(part));
+  return product->parts.back().id;
+}
+
+OccurrenceId Place(Product* product, PartId part, const std::string& name, const Pose& X_WB) {
+  if (product->subassemblies.empty()) {
+    product->subassemblies.emplace_back();
+    product->subassemblies[0].id = product::SubassemblyId(0);
+    product->subassemblies[0].name = product->name;
+  }
+  product::Occurrence occurrence;
+  occurrence.id = OccurrenceId(product->occurrences.size());
+  occurrence.part = part;
+  occurrence.parent = product::SubassemblyId(0);
+  occurrence.name = name;
+  occurrence.path = product->name + "/" + name;
+  occurrence.X_WB = X_WB;
+  product->subassemblies[0].occurrences.push_back(occurrence.id);
+  product->occurrences.push_back(occurrence);
+  return occurrence.id;
+}
+
+void Complete(Product* product) {
+  product->box_W = {};
+  for (const product::Occurrence& occurrence : product->occurrences) {
+    product->box_W.Add(spatial::Transform(occurrence.X_WB, product->part_of(occurrence.id).box_B));
+  }
+  Diagnostics diagnostics;
+  mates::Infer(product, &diagnostics);
+}
+
+Product PegInBlock(const Pose& X_WP) {
+  Product product;
+  product.name = "rig";
+  const PartId block =
+      AddPart(&product, "block", contact::testing::Cup(kBoreRadius, 15e-3, kFloor, kBlockHeight));
+  const PartId peg =
+      AddPart(&product, "peg", contact::testing::Shaft(kBoreRadius, kPegLength, kDeviation));
+  Place(&product, block, "block", X_WP);
+  Place(&product, peg, "peg", X_WP * Pose(Vec3(0, 0, kFloor)));
+  Complete(&product);
+  return product;
+}
+
+Product CoinUnderLid() {
+  Product product;
+  product.name = "box";
+  const PartId cup = AddPart(&product, "cup", contact::testing::Cup(10e-3, 15e-3, 5e-3, 25e-3));
+  const PartId coin = AddPart(&product, "coin", contact::testing::Shaft(5e-3, 10e-3, kDeviation));
+  const PartId lid = AddPart(&product, "lid", contact::testing::Shaft(15e-3, 4e-3, kDeviation));
+  Place(&product, cup, "cup");
+  Place(&product, coin, "coin", Pose(Vec3(1e-3, 0, 5e-3)));
+  Place(&product, lid, "lid", Pose(Vec3(0, 0, 25e-3)));
+  Complete(&product);
+  return product;
+}
+
+Product CaptiveRing() {
+  using contact::testing::CylinderZ;
+  using contact::testing::PlaneAt;
+  constexpr double kNeck = 5e-3;
+  constexpr double kFlange = 10e-3;
+  constexpr double kLow = 6e-3;
+  constexpr double kHigh = 16e-3;
+  constexpr double kEnd = 22e-3;
+  Product product;
+  product.name = "captive";
+  const PartId spool =
+      AddPart(&product, "spool",
+              contact::testing::Lathe({{{{0, 0}, {kFlange, 0}}, PlaneAt(0, -1)},
+                                       {{{kFlange, 0}, {kFlange, kLow}}, CylinderZ(kFlange, 1)},
+                                       {{{kFlange, kLow}, {kNeck, kLow}}, PlaneAt(kLow, 1)},
+                                       {{{kNeck, kLow}, {kNeck, kHigh}}, CylinderZ(kNeck, 1)},
+                                       {{{kNeck, kHigh}, {kFlange, kHigh}}, PlaneAt(kHigh, -1)},
+                                       {{{kFlange, kHigh}, {kFlange, kEnd}}, CylinderZ(kFlange, 1)},
+                                       {{{kFlange, kEnd}, {0, kEnd}}, PlaneAt(kEnd, 1)}},
+                                      contact::testing::Segments(kFlange, kDeviation)));
+  const PartId ring =
+      AddPart(&product, "ring", contact::testing::Bushing(kNeck, 12e-3, 8e-3, kDeviation));
+  Place(&product, spool, "spool");
+  Place(&product, ring, "ring", Pose(Vec3(0, 0, 7e-3)));
+  Complete(&product);
+  return product;
+}
+
+CompileOptions FastOptions() {
+  CompileOptions options;
+  options.threads = 2;
+  return options;
+}
+
+const std::shared_ptr<const Model>& PegInBlockModel() {
+  static const std::shared_ptr<const Model> model = [] {
+    Diagnostics diagnostics;
+    return *Compile(std::make_shared<Product>(PegInBlock()), FastOptions(), &diagnostics);
+  }();
+  return model;
+}
+
+}  // namespace hvas::simulation::testing

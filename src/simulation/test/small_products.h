@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "contact/test/parts.h"
+#include "product/product.h"
+#include "simulation/model.h"
+
+/** Small products with known geometry, made without a file. Lengths in metres. */
+namespace hvas::simulation::testing {
+
+using product::OccurrenceId;
+using product::PartId;
+using product::Product;
+using spatial::Pose;
+
+/** Adds a shape as a steel part with faces, features, mass, centre and inertia of its mesh. */
+PartId AddPart(Product* product, const std::string& name, const contact::ShapeSource& source);
+
+/** Adds a part at a place; its path is "name of the product/name". */
+OccurrenceId Place(Product* product, PartId part, const std::string& name,
+                   const Pose& X_WB = Pose());
+
+/** Infers the mates and gives the box: to be called once everything is in place. */
+void Complete(Product* product);
+
+inline constexpr double kBoreRadius = 5e-3;
+inline constexpr double kBlockHeight = 25e-3;
+inline constexpr double kFloor = 5e-3;
+inline constexpr double kPegLength = 30e-3;
+
+/** A round block (radius 15 mm, 25 mm high) with a blind bore from above down to 5 mm, and a peg
+ 30 mm long on the floor of the bore. */
+Product PegInBlock(const Pose& X_WP = Pose());
+
+/** A cup, a coin that lies loose on its floor, and a lid that lies on the rim. */
+Product CoinUnderLid();
+
+/** A ring between two flanges that turn it into a captive, with 1 mm of play to either side. */
+Product CaptiveRing();
+
+/** The model of PegInBlock, compiled once in a program. */
+const std::shared_ptr<const Model>& PegInBlockModel();
+
+/** Shapes as coarse as small parts allow, for speed. */
+CompileOptions FastOptions();
+
+}  // namespace hvas::simulation::testing
