@@ -197,7 +197,7 @@ Solid MakeDriveShaft() {
   // A tooth of the drive gear points at the other gear.
   Solid shaft = GearShaft(-pi / 2, front);
   shaft = Cut(shaft, Hole(5, kShaftEnd, 15));
-  constexpr double kLength = kKeyLength + 0.4, kWidth = kKeyWidth + 0.04;
+  constexpr double kLength = kKeyLength + 0.4, kWidth = kKeyWidth;
   const Solid slot = Move(RoundEndedBar(kLength, kWidth, kKeyBottom, kEndRadius + 1),
                           Frame(0, 0, kKeyMiddle, kY, kZ));
   return Cut(shaft, slot, KeywayVolume(kLength, kWidth, kKeyBottom, kEndRadius));

@@ -265,7 +265,7 @@ TEST(GearPump, HasTheMatesCountedByHand) {
   EXPECT_EQ(truth["mate_counts"]["axis_hole"], nominal + clearance);
   const int on_housing = 2 + 2 + 2 + 1 + 3;  // Bushings, dowels, gears, gasket, rings.
   const int on_cover = 1 + 2 + 1 + 8;        // Gasket, bushings, seal, lock washers.
-  const int others = 2 + 2 + 2 + 8 + 3;      // Gears on bushings; key, hub; disc; screws; plugs.
+  const int others = 2 + 3 + 1 + 2 + 8 + 3;  // Gears on bushings; key; hub; disc; screws; plugs.
   EXPECT_EQ(truth["mate_counts"]["face_face"], on_housing + on_cover + others);
 }
 
