@@ -40,7 +40,7 @@ struct GuidanceOptions {
 
 struct ContactOptions {
   double compliance{2e-6};      ///< [m/N]; 20 um at 10 N.
-  double settling_time{10e-3};  ///< Of a contact under a new load [s].
+  double settling_time{2e-3};   ///< Of a contact under a new load [s].
   double friction{0.15};        ///< Coulomb, steel on steel.
   double recovery_speed{0.02};  ///< Penetration is undone no faster [m/s].
   double max_depth{100e-6};     ///< A contact pushes no harder than at this depth [m].
