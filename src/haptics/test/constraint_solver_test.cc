@@ -441,13 +441,13 @@ TEST(ConstraintSolver, DoesNotDependOnTheFrame) {
   EXPECT_GT(pressing, 20);
 }
 
-// 64 contacts at the most: further ones change nothing, and the count says so.
+// So many contacts and no more: further ones change nothing, and the count says so.
 TEST(ConstraintSolver, CapacityIsKept) {
   const auto solve = [](int contacts, ConstraintSolver* solver) {
     solver->Begin(kMass, Inertia(), Vec3::Zero(), {Vec3::Zero(), Vec3(0, 0, -0.2)}, kDt);
     for (int i = 0; i < contacts; ++i) {
       const double a = 0.1 * i;
-      // From the 65th on they would push upwards hard.
+      // Those beyond the capacity would push upwards hard.
       solver->AddContact(0.03 * Vec3(std::cos(a), std::sin(a), -0.2), Vec3::UnitZ(),
                          i < ConstraintSolver::kMaxContacts ? 0 : 1, 0.1, 2e-6);
     }
@@ -457,8 +457,8 @@ TEST(ConstraintSolver, CapacityIsKept) {
   ConstraintSolver over;
   const Twist V = solve(ConstraintSolver::kMaxContacts, &full);
   const Twist V_over = solve(ConstraintSolver::kMaxContacts + 10, &over);
-  EXPECT_EQ(full.contact_count(), 64);
-  EXPECT_EQ(over.contact_count(), 64);
+  EXPECT_EQ(full.contact_count(), ConstraintSolver::kMaxContacts);
+  EXPECT_EQ(over.contact_count(), ConstraintSolver::kMaxContacts);
   EXPECT_EQ(V.v, V_over.v);
   EXPECT_EQ(V.w, V_over.w);
 

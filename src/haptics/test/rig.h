@@ -222,6 +222,51 @@ struct Rig {
   std::unique_ptr<ScriptedHand> hand;
 };
 
+/** A part without mates over a block with its top at z = 0, for contact alone. */
+struct BlockRig {
+  BlockRig(std::shared_ptr<const contact::Shape> shape, double mass,
+           const spatial::Pose& X_WB_start, TickOptions the_options = {})
+      : options(std::move(the_options)) {
+    static const auto block =
+        contact::testing::Build(contact::testing::Block(Vec3(0.1, 0.1, 0.02)));
+    scene.Add(block, spatial::Pose(Vec3(0, 0, -0.02)));
+    part.occurrence = product::OccurrenceId(1);
+    part.body = scene.Add(shape, X_WB_start);
+    part.shape = std::move(shape);
+    part.mass = mass;
+    part.I_BBcm_B = 0.4 * mass * 4e-4 * Mat3::Identity();
+    part.X_WB_start = X_WB_start;
+    part.X_WB_goal = spatial::Pose(Vec3(1, 1, 1));
+    tick = std::make_unique<HapticTick>(options, &scene);
+    hand = std::make_unique<ScriptedHand>(tick.get(), X_WB_start);
+    tick->Take(&part);
+  }
+
+  TickOptions options;
+  contact::Scene scene;
+  HeldPart part;
+  std::unique_ptr<HapticTick> tick;
+  std::unique_ptr<ScriptedHand> hand;
+};
+
+/** Largest change of the felt force from one tick to the next, before the gate [N]. */
+inline double CalcLargestJump(const std::vector<Sample>& samples) {
+  double largest = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    largest = std::max(largest, (samples[i].out.F_felt_W.f - samples[i - 1].out.F_felt_W.f).norm());
+  }
+  return largest;
+}
+
+/** Deepest contact of a run [m]. */
+inline double CalcDeepest(const std::vector<Sample>& samples) {
+  double deepest = 0;
+  for (const Sample& s : samples) {
+    deepest = std::max(deepest, -s.out.deepest);
+  }
+  return deepest;
+}
+
 /** The shaft upright with its tip at a height over the bushing's top. */
 inline spatial::Pose Above(double height, double x = 0, double y = 0) {
   return spatial::Pose(Vec3(x, y, kLength + height));
