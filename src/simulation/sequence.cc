@@ -385,10 +385,21 @@ std::string Planner::ExplainStuck(OccurrenceId id) const {
       farthest = &*attempt.blocker;
     }
   }
-  return farthest == nullptr
-             ? std::string("its mates leave no straight way out")
-             : fmt::format("no free path: meets {} after {:.1f} mm along its best way out",
-                           Describe(farthest->occurrence), units::ToMm(farthest->travelled));
+  if (farthest != nullptr) {
+    return fmt::format("no free path: meets {} after {:.1f} mm along its best way out",
+                       Describe(farthest->occurrence), units::ToMm(farthest->travelled));
+  }
+  std::set<OccurrenceId> partners;
+  for (const MateView& view : mates_of_[id.index()]) {
+    if (is_present_[view.other.index()]) {
+      partners.insert(view.other);
+    }
+  }
+  std::string names;
+  for (const OccurrenceId partner : partners) {
+    names += (names.empty() ? "" : " and ") + Describe(partner);
+  }
+  return fmt::format("its mates with {} leave no straight way out", names);
 }
 
 Unit Planner::PresentBelow(product::SubassemblyId id) const {

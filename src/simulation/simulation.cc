@@ -183,7 +183,11 @@ void Simulation::PlaceInFixture(OccurrenceId id) {
   part.X_WB = model_->bodies[id.index()].X_WB_goal;
   world_.Remove(part.body);
   part.is_in_world = false;
-  scene_.SetPose(contact::BodyId(id.index()), part.X_WB);
+  // Behind what is still on its way to the haptic thread, which alone writes to its scene.
+  Command command;
+  command.body = contact::BodyId(id.index());
+  command.X_WB = part.X_WB;
+  commands_.TryPush(command);
 }
 
 SequenceStep Simulation::StepOf(OccurrenceId id) const {

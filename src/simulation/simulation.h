@@ -87,7 +87,7 @@ class Simulation {
   /** Publish thread: the newest state of everything. */
   const Frame& Publish();
 
-  /** Puts a part in its place without a hand: the base in its fixture. Before the loops run. */
+  /** Puts a part in its place without a hand: the base in its fixture. Physics thread. */
   void PlaceInFixture(product::OccurrenceId id);
 
   /** Physics thread, or before the loops run. */

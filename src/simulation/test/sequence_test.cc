@@ -68,9 +68,9 @@ TEST(SequenceTest, PegComesOutAlongItsBoreHoweverTheProductLies) {  // X17
     ASSERT_EQ(planned.order(), (Names{"block", "peg"}));
     EXPECT_TRUE(planned.sequence.gaps.empty());
     EXPECT_TRUE(planned.sequence.overlaps.empty());
-    EXPECT_TRUE(planned.sequence.steps[0].is_base);
+    EXPECT_EQ(planned.sequence.steps[0].kind, SequenceStep::Kind::kBase);
     const SequenceStep& peg = planned.sequence.steps[1];
-    EXPECT_FALSE(peg.is_base);
+    EXPECT_EQ(peg.kind, SequenceStep::Kind::kInsert);
     // The bore is blind: the one way out is up, as the product has it.
     EXPECT_LT((peg.extraction_W - X_WP.q() * Vec3::UnitZ()).norm(), 1e-9);
     // Out until the peg's tip has passed the rim.
@@ -83,7 +83,7 @@ TEST(SequenceTest, PartUnderALidGoesInBeforeTheLid) {  // X17, N10
   EXPECT_EQ(planned.order(), (Names{"cup", "coin", "lid"}));
   EXPECT_TRUE(planned.sequence.gaps.empty());
   for (const SequenceStep& step : planned.sequence.steps) {
-    EXPECT_TRUE(step.is_base || step.extraction_W.z() > 0.999);
+    EXPECT_TRUE(step.kind == SequenceStep::Kind::kBase || step.extraction_W.z() > 0.999);
   }
 }
 

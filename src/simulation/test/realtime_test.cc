@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include "simulation/test/session.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using testing::PegInBlockModel;
+using testing::Session;
+
+TEST(RealtimeTest, ThreeLoopsShareASessionOfTwoSeconds) {  // X4; meant for the thread sanitizer
+  Session session(PegInBlockModel());
+  int physics_steps = 0;
+  Execution execution = session.MakeExecution(2.0);
+  execution.advance = [&] {
+    ++physics_steps;
+    session.run.Advance();
+  };
+  const ExecutionReport report = RunRealtime(execution);
+  EXPECT_GT(report.ticks, 0u);
+  EXPECT_EQ(report.ticks, session.watch.ticks);
+  EXPECT_EQ(report.compute.count(), report.ticks);
+  EXPECT_EQ(report.wake_up.count(), report.ticks);
+  EXPECT_LE(report.late_wake_ups, report.ticks);
+  EXPECT_LE(report.overruns, report.ticks);
+  EXPECT_GE(report.session_ns, 2'000'000'000);
+  EXPECT_EQ(report.session_ns, static_cast<std::int64_t>(report.ticks) * 1'000'000);
+  // Deadlines are absolute: session time is never ahead of the clock.
+  EXPECT_GE(report.wall_ns, report.session_ns - 1'000'000);
+  EXPECT_GT(physics_steps, 1);
+  EXPECT_FALSE(report.scheduling.empty());
+  EXPECT_TRUE(session.watch.is_finite);
+  // The base is in its fixture, and what was published last is from the end of the session.
+  const Frame& frame = session.simulation.Publish();
+  EXPECT_EQ(frame.X_WB[0].p(), PegInBlockModel()->bodies[0].X_WB_goal.p());
+  EXPECT_GT(frame.t_ns, 0);
+  EXPECT_LE(frame.t_ns, report.session_ns);
+}
+
+TEST(RealtimeTest, RunEndsWhenItIsDone) {
+  Session session(PegInBlockModel());
+  Execution execution = session.MakeExecution(60);
+  int steps = 0;
+  execution.is_done = [&steps] { return ++steps > 20; };
+  const ExecutionReport report = RunRealtime(execution);
+  EXPECT_LT(report.session_ns, 60'000'000'000);
+}
+
+}  // namespace
+}  // namespace hvas::simulation
