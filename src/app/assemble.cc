@@ -15,6 +15,7 @@
 #include "app/progress.h"
 #include "app/session_recorder.h"
 #include "base/units.h"
+#include "contact/shape_cache.h"
 #include "record/recorder.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
@@ -156,6 +157,10 @@ Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
   }
   simulation::CompileOptions compile;
   compile.seed = options.seed;
+  if (const auto directory = contact::ShapeCache::DefaultDirectory();
+      directory && options.is_cache_used) {
+    compile.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
+  }
   if (is_watched) {
     compile.progress = [](const std::string& stage, double fraction) {
       ShowProgress(stage, fraction);
@@ -264,6 +269,11 @@ int RunAssemble(const AssembleOptions& options) {
   if (!model) {
     return fail(model.error());
   }
+  for (const Diagnostic& item : diagnostics.items()) {
+    if (item.code == "shape-cache") {
+      fmt::print(stderr, "hvas: {}: {} ({})\n", item.entity, item.message, item.remedy);
+    }
+  }
   auto outcome = Assemble(*model, options, is_watched);
   if (!outcome) {
     return fail(outcome.error());
@@ -309,6 +319,9 @@ void AddAssemble(CLI::App* app, int* status) {
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", options->is_json, "Print one JSON document");
   command->add_flag("--quiet,-q", options->is_quiet, "No progress");
+  command->add_flag("!--no-cache", options->is_cache_used,
+                    "Prepare all parts anew; else what contact needs is kept in "
+                    "$XDG_CACHE_HOME/hvas or ~/.cache/hvas (HVAS_CACHE=off: never)");
   command->footer(
       "Exit status: 0 when every part is in its place, 2 when one is not, 1 on an error.\n"
       "Examples:\n"

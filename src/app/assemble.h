@@ -24,6 +24,7 @@ struct AssembleOptions {
   double limit_s{0};             ///< Session time after which to stop; 0: none.
   bool is_json{false};
   bool is_quiet{false};
+  bool is_cache_used{true};  ///< Keeps and takes contact shapes on disk.
 };
 
 /** Lays the parts of a product out on a table and lets a simulated person assemble them one by one.

@@ -575,11 +575,9 @@ void BuildField(Shape::Data* data) {
   const Spheres spheres(data->mesh);
   BuildBlocks(spheres, data);
   BuildCoarse(spheres, data);
-  view.top = data->field.top.data();
-  view.nodes = data->field.nodes.data();
-  view.coarse = data->field.coarse.data();
+  data->field.Bind();
   MeasureSlack(data);
-  view.slack = data->field.slack.data();
+  data->field.Bind();
 }
 
 }  // namespace hvas::contact

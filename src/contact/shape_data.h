@@ -16,6 +16,13 @@ struct Field {
   std::vector<std::int16_t> nodes;
   std::vector<float> slack;
   std::vector<float> coarse;
+
+  void Bind() {
+    view.top = top.data();
+    view.nodes = nodes.data();
+    view.slack = slack.data();
+    view.coarse = coarse.data();
+  }
 };
 
 /** What decides the distance in a cube of 2^3 cells. The upper two bits say how, the rest is a face
@@ -67,6 +74,11 @@ struct Shell {
   std::vector<SampleFaces> faces;
   std::vector<float> facing;  ///< Of each point: least cosine of its normal against a contact's.
   std::size_t point_count{0};
+
+  void Bind() {
+    view = {nodes.data(), x.data(),          y.data(),
+            z.data(),     leaf_count.data(), static_cast<std::uint32_t>(nodes.size())};
+  }
 };
 
 /** The centred frame C has its origin at the centre of the part's box and the axes of B. */

@@ -307,9 +307,7 @@ class TreeBuilder {
       shell_->nodes.emplace_back();
       Fill(0, {0, order_.size()});
     }
-    shell_->view = {shell_->nodes.data(),      shell_->x.data(),
-                    shell_->y.data(),          shell_->z.data(),
-                    shell_->leaf_count.data(), static_cast<std::uint32_t>(shell_->nodes.size())};
+    shell_->Bind();
   }
 
  private:

@@ -47,7 +47,10 @@ Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
   std::atomic<std::size_t> done{0};
   const auto work = [&] {
     for (std::size_t i = next++; i < shapes.size(); i = next++) {
-      auto shape = contact::Shape::Build(MakeShapeSource(product.parts[i]), options.shape);
+      const contact::ShapeSource source = MakeShapeSource(product.parts[i]);
+      auto shape = options.shape_cache != nullptr
+                       ? options.shape_cache->LoadOrBuild(source, options.shape)
+                       : contact::Shape::Build(source, options.shape);
       if (shape) {
         shapes[i] = *shape;
       } else {
@@ -268,6 +271,11 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   const auto shapes = BuildShapes(*product, options);
   if (!shapes) {
     return Unexpected(shapes.error());
+  }
+  const auto problem =
+      options.shape_cache != nullptr ? options.shape_cache->TakeProblem() : std::nullopt;
+  if (problem) {
+    diagnostics->Warn("shape-cache", problem->where, problem->message, problem->remedy);
   }
   for (const product::Occurrence& occurrence : product->occurrences) {
     model->bodies.push_back({occurrence.id, (*shapes)[occurrence.part.index()],

@@ -10,6 +10,7 @@
 #include "base/result.h"
 #include "contact/scene.h"
 #include "contact/shape.h"
+#include "contact/shape_cache.h"
 #include "dynamics/world.h"
 #include "fits/fit_force.h"
 #include "haptics/held_part.h"
@@ -38,6 +39,7 @@ struct ModelMate {
 struct CompileOptions {
   std::uint64_t seed{1};  ///< Draws the actual sizes of the fits.
   contact::ShapeOptions shape;
+  std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
   int threads{2};
   std::function<void(const std::string& stage, double fraction)> progress;
 };
