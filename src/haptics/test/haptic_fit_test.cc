@@ -51,14 +51,14 @@ TEST(Guidance, CaptureBringsTheShaftOntoTheAxis) {
   double largest_overshoot = 0;
   double largest_rest = 0;
   double largest_offset = 0;
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < 4; ++i) {
     for (const double offset : {0.0, 2.5e-3, 4.9e-3}) {
       for (const double angle_deg : {-9.9, -5.0, 0.0, 5.0, 9.9}) {
-        const double heading = 2 * std::numbers::pi * i / 8;
+        const double heading = 0.25 * std::numbers::pi * i;
         const Quat q = spatial::RotationFromVector(Vec3(0, angle_deg * std::numbers::pi / 180, 0));
         Rig rig(MakeFit("H7/g6"), Pose(q, Vec3(offset * std::cos(heading),
                                                offset * std::sin(heading), kLength + 15e-3)));
-        rig.hand->Wait(1);
+        rig.hand->Wait(0.8);
         bool was_mating = false;
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < rig.hand->samples.size(); ++k) {
@@ -271,16 +271,16 @@ TEST(Insertion, ExtractionIsOpposed) {
 // N6: in and out again, on the axis or beside it, the hand never gets back more than it gave.
 TEST(Insertion, ClosedLoopsGiveNoEnergy) {
   for (const char* name : {"H7/g6", "H7/k6", "H7/p6"}) {
-    for (const double offset : {0.0, 2e-3, 4e-3}) {
+    for (const double offset : {0.0, 4e-3}) {
       Rig rig(MakeFit(name), Above(45e-3, offset));
-      rig.hand->Wait(3);
+      rig.hand->Wait(2);
       ASSERT_EQ(rig.hand->last().state, HoldState::kNear);
       const std::size_t start = rig.hand->samples.size();
       rig.hand->MoveSoftly(Vec3(0, 0, -80e-3), 2.5);
       rig.hand->Wait(0.3);
       const double depth = rig.hand->last().insertion_depth;
       rig.hand->MoveSoftly(Vec3(0, 0, 80e-3), 2.5);
-      rig.hand->Wait(3);
+      rig.hand->Wait(1);
       double energy = 0;
       for (std::size_t i = start; i < rig.hand->samples.size(); ++i) {
         const Sample& s = rig.hand->samples[i];

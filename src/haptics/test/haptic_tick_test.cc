@@ -30,7 +30,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kBallRadius = 20e-3;
 
 const std::shared_ptr<const contact::Shape>& BallShape() {
-  static const auto shape = Build(Ball(kBallRadius, 5e-6));
+  static const auto shape = Build(Ball(kBallRadius, 20e-6));
   return shape;
 }
 
