@@ -52,6 +52,7 @@ using product::SubassemblyId;
 constexpr std::size_t kMaxOccurrences = 1000000;
 constexpr double kScaleTolerance = 1e-6;
 
+using FaceEntities = NCollection_DataMap<TopoDS_Shape, std::uint64_t, TopTools_ShapeMapHasher>;
 using FaceColors = NCollection_DataMap<TopoDS_Shape, Color, TopTools_ShapeMapHasher>;
 
 std::string ToUtf8(const TCollection_ExtendedString& text) {
@@ -122,14 +123,16 @@ std::optional<TDF_Label> MaterialLabel(const TDF_Label& label) {
 class TreeBuilder {
  public:
   TreeBuilder(const Handle(TDocStd_Document) & document, const ImportOptions& options,
-              const ProgressFn& progress, Product* product, Diagnostics* diagnostics)
+              const ProgressFn& progress, Product* product, Diagnostics* diagnostics,
+              const FaceEntityFn& entity_of)
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
         colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
         materials_(XCAFDoc_DocumentTool::MaterialTool(document->Main())),
         options_(options),
         progress_(progress),
         product_(product),
-        diagnostics_(diagnostics) {}
+        diagnostics_(diagnostics),
+        entity_of_(entity_of) {}
 
   Result<void> Build();
 
@@ -169,6 +172,7 @@ class TreeBuilder {
   const ProgressFn& progress_;
   Product* product_;
   Diagnostics* diagnostics_;
+  const FaceEntityFn& entity_of_;
   std::vector<PartSource> sources_;  // One for each of product_->parts.
   std::map<std::pair<std::string, long>, std::optional<PartId>> known_;  // By entry and scale.
   std::vector<Siblings> siblings_;  // One for each subassembly.
@@ -355,6 +359,7 @@ bool TreeBuilder::BuildPart(const PartSource& source, Part* part) {
   if (!has_color && source.instance_color) {
     part->color = *source.instance_color;
   }
+  FaceEntities entities;  // Of the moved faces.
   TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(source.definition);
   if (source.scale != 1) {
     gp_Trsf scaling;
@@ -364,6 +369,12 @@ bool TreeBuilder::BuildPart(const PartSource& source, Part* part) {
     for (FaceColors::Iterator it(face_colors); it.More(); it.Next()) {
       moved.Bind(transform.ModifiedShape(it.Key()), it.Value());
     }
+    if (entity_of_) {
+      for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+        entities.Bind(transform.ModifiedShape(it.Current()),
+                      entity_of_(TopoDS::Face(it.Current())));
+      }
+    }
     face_colors = moved;
     shape = transform.Shape();
   }
@@ -371,7 +382,11 @@ bool TreeBuilder::BuildPart(const PartSource& source, Part* part) {
     const Color* color = face_colors.Seek(face);
     return color != nullptr ? std::optional(*color) : std::nullopt;
   };
-  if (!BuildPartShape(shape, options_, color_of, part, diagnostics_)) {
+  const FaceEntityFn entity_of = [this, &entities](const TopoDS_Face& face) -> std::uint64_t {
+    const std::uint64_t* entity = entities.Seek(face);
+    return entity != nullptr ? *entity : entity_of_ ? entity_of_(face) : 0;
+  };
+  if (!BuildPartShape(shape, options_, color_of, part, diagnostics_, entity_of)) {
     diagnostics_->Warn("no-mesh", part->name, "the part could not be meshed; left out",
                        "heal the part in the CAD system and export it again");
     return false;
@@ -457,8 +472,9 @@ Result<void> TreeBuilder::Build() {
 }  // namespace
 
 Result<void> BuildProduct(const Handle(TDocStd_Document) & document, const ImportOptions& options,
-                          const ProgressFn& progress, Product* product, Diagnostics* diagnostics) {
-  return TreeBuilder(document, options, progress, product, diagnostics).Build();
+                          const ProgressFn& progress, Product* product, Diagnostics* diagnostics,
+                          const FaceEntityFn& entity_of) {
+  return TreeBuilder(document, options, progress, product, diagnostics, entity_of).Build();
 }
 
 }  // namespace hvas::cad

@@ -3,6 +3,7 @@
 #include "base/diagnostics.h"
 #include "base/result.h"
 #include "cad/import.h"
+#include "cad/step_document.h"
 #include "product/product.h"
 
 class TDocStd_Document;
@@ -22,6 +23,7 @@ namespace hvas::cad {
  @pre product->name is the name to use where the document has none. */
 [[nodiscard]] Result<void> BuildProduct(const opencascade::handle<TDocStd_Document>& document,
                                         const ImportOptions& options, const ProgressFn& progress,
-                                        product::Product* product, Diagnostics* diagnostics);
+                                        product::Product* product, Diagnostics* diagnostics,
+                                        const FaceEntityFn& entity_of = {});
 
 }  // namespace hvas::cad

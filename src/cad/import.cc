@@ -4,8 +4,11 @@
 #include <array>
 #include <csignal>
 #include <exception>
+#include <fstream>
 #include <mutex>
 #include <new>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include <OSD.hxx>
@@ -17,6 +20,7 @@
 #include "base/units.h"
 #include "cad/assembly_tree.h"
 #include "cad/step_document.h"
+#include "cad/tolerances.h"
 
 namespace hvas::cad {
 namespace {
@@ -66,16 +70,48 @@ void CheckSize(const Product& product, Diagnostics* diagnostics) {
   }
 }
 
+/** The text of a file that states tolerances; empty where it states none, or cannot be had. */
+std::string ReadToleranceText(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) {
+    return {};
+  }
+  std::string text(size, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return MayHoldTolerances(text) ? text : std::string();
+}
+
+/** Reads the tolerances into a product; whatever goes wrong with them is no more than a warning. */
+void AddTolerances(std::string text, Product* product, Diagnostics* diagnostics) {
+  if (text.empty()) {
+    return;
+  }
+  try {
+    ReadTolerances(std::move(text), product, diagnostics);
+  } catch (const std::exception& exception) {
+    diagnostics->Warn("tolerances-unread", product->source,
+                      fmt::format("the tolerances could not be read: {}", exception.what()),
+                      "export the file again from the CAD system");
+  }
+}
+
 Result<Product> ImportChecked(const std::filesystem::path& file, const ImportOptions& options,
                               const ProgressFn& progress, Diagnostics* diagnostics) {
-  const auto document = ReadStepDocument(file, progress, diagnostics);
+  std::string tolerance_text = ReadToleranceText(file);
+  FaceEntityFn entity_of;
+  const auto document =
+      ReadStepDocument(file, progress, diagnostics, tolerance_text.empty() ? nullptr : &entity_of);
   if (!document) {
     return Unexpected(document.error());
   }
   Product product;
   product.name = file.stem().string();
   product.source = file.filename().string();
-  const Result<void> built = BuildProduct(*document, options, progress, &product, diagnostics);
+  const Result<void> built =
+      BuildProduct(*document, options, progress, &product, diagnostics, entity_of);
   CloseDocument(*document);
   if (!built) {
     const auto missing =
@@ -89,6 +125,7 @@ Result<Product> ImportChecked(const std::filesystem::path& file, const ImportOpt
     }
     return Unexpected(built.error());
   }
+  AddTolerances(std::move(tolerance_text), &product, diagnostics);
   CheckSize(product, diagnostics);
   if (progress) {
     progress("done", 1);

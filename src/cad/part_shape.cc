@@ -336,7 +336,8 @@ ShapeContent CountContent(const TopoDS_Shape& shape) {
 }
 
 bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
-                    const FaceColorFn& color_of, Part* part, Diagnostics* diagnostics) {
+                    const FaceColorFn& color_of, Part* part, Diagnostics* diagnostics,
+                    const FaceEntityFn& entity_of) {
   Bnd_Box box_mm;
   BRepBndLib::AddClose(shape, box_mm);
   if (box_mm.IsVoid() || box_mm.IsOpen()) {
@@ -365,6 +366,7 @@ bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
     }
     SetSurface(source, deflection, tolerance, *part, &face, diagnostics);
     face.color = color_of(source);
+    face.entity = entity_of ? entity_of(source) : 0;
     part->box_B.Add(face.box_B);
     part->faces.push_back(face);
   }

@@ -5,6 +5,7 @@
 
 #include "base/diagnostics.h"
 #include "cad/import.h"
+#include "cad/step_document.h"
 #include "product/product.h"
 
 class TopoDS_Face;
@@ -25,9 +26,10 @@ struct ShapeContent {
 /** Fills mesh, faces, box, mass, solid_count and shape_hash of a part from its B-rep; name and
  material must be there already. Closed shells count as
  solids where there is no solid, other faces outside any solid where there is neither.
- Colours come from `color_of`. @returns false when nothing could be meshed. */
+ Colours come from `color_of`, Face::entity from `entity_of`. @returns false when nothing could be
+ meshed. */
 [[nodiscard]] bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
                                   const FaceColorFn& color_of, product::Part* part,
-                                  Diagnostics* diagnostics);
+                                  Diagnostics* diagnostics, const FaceEntityFn& entity_of = {});
 
 }  // namespace hvas::cad

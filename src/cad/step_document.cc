@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <map>
+#include <memory>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -16,9 +18,19 @@
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <STEPControl_Reader.hxx>
+#include <StepData_StepModel.hxx>
+#include <StepShape_FaceSurface.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_TShape.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
 #include <XCAFApp_Application.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
 
 namespace hvas::cad {
 namespace {
@@ -72,6 +84,36 @@ void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagno
   }
 }
 
+/** The entities of all faces that were transferred, by the shape under the face: its place and
+ sense change in assemblies and when solids are turned. */
+FaceEntityFn IndexFaces(const STEPCAFControl_Reader& reader) {
+  const auto entities = std::make_shared<std::map<const TopoDS_TShape*, std::uint64_t>>();
+  // Keeps the shapes, so that no other can have the address of one of them.
+  const auto shapes = std::make_shared<std::vector<TopoDS_Shape>>();
+  const Handle(StepData_StepModel) model = reader.Reader().StepModel();
+  const Handle(Transfer_TransientProcess) process =
+      reader.Reader().WS()->TransferReader()->TransientProcess();
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Standard_Transient) entity = model->Value(i);
+    const int id = model->IdentLabel(entity);
+    if (id <= 0 || !entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) {
+      continue;
+    }
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, entity);
+    if (shape.IsNull()) {
+      continue;
+    }
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      shapes->push_back(it.Current());
+      entities->emplace(it.Current().TShape().get(), static_cast<std::uint64_t>(id));
+    }
+  }
+  return [entities, shapes](const TopoDS_Face& face) -> std::uint64_t {
+    const auto found = entities->find(face.TShape().get());
+    return found != entities->end() ? found->second : 0;
+  };
+}
+
 }  // namespace
 
 Result<std::filesystem::path> CheckStepFile(const std::filesystem::path& file) {
@@ -102,7 +144,8 @@ Result<std::filesystem::path> CheckStepFile(const std::filesystem::path& file) {
 
 Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& file,
                                                   const ProgressFn& progress,
-                                                  Diagnostics* diagnostics) {
+                                                  Diagnostics* diagnostics,
+                                                  FaceEntityFn* entity_of) {
   InitialiseOnce();
   const std::string name = file.filename().string();
   STEPCAFControl_Reader reader;
@@ -129,6 +172,9 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
                 "export it again from the CAD system");
   }
   ReportMissingFiles(reader, diagnostics);
+  if (entity_of != nullptr) {
+    *entity_of = IndexFaces(reader);
+  }
   return document;
 }
 

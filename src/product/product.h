@@ -8,6 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "base/id.h"
+#include "product/tolerance.h"
 #include "spatial/box.h"
 #include "spatial/pose.h"
 #include "spatial/surface.h"
@@ -57,6 +58,7 @@ struct Face {
   std::uint32_t first_triangle{0};
   std::uint32_t triangle_count{0};
   std::optional<Color> color;
+  std::uint64_t entity{0};  ///< Number in the STEP file; 0 where that is not known.
 };
 
 /** Triangles of a part, outward orientation, grouped by face. Vertices are not shared by faces. */
@@ -102,6 +104,8 @@ struct Part {
   std::vector<Face> faces;
   std::vector<Feature> features;
   std::vector<InnerConstraint> inner_constraints;
+  std::vector<Dimension> dimensions;                     ///< Where the file states any.
+  std::vector<GeometricTolerance> geometric_tolerances;  ///< Where the file states any.
   std::string shape_hash;  ///< Of faces and mesh; equal for equal geometry.
 };
 

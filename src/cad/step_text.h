@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/** The exchange structure of ISO 10303-21, as far as single entities: no schema, no geometry. */
+namespace hvas::cad {
+
+struct StepValue {
+  enum class Kind { kNull, kNumber, kText, kEnum, kReference, kList, kTyped };
+  Kind kind{Kind::kNull};  ///< kNull is '$' or '*'.
+  double number{0};
+  std::uint64_t reference{0};
+  std::string text;              ///< The string, the enumeration without dots, or the type's name.
+  std::vector<StepValue> items;  ///< Of a list, or of a typed value.
+};
+
+struct StepRecord {
+  std::string name;  ///< In capitals, as in the file.
+  std::vector<StepValue> values;
+};
+
+/** One record, or those of a complex instance in the file's order; none when it cannot be read. */
+using StepEntity = std::vector<StepRecord>;
+
+[[nodiscard]] StepEntity ParseStepEntity(std::string_view body);
+
+/** The entities of a STEP text by number. Takes any bytes: what is no entity is left out, and of
+ two with one number the first counts. Parses an entity when it is asked for. */
+class StepText {
+ public:
+  struct Statement {
+    std::uint64_t id{0};
+    std::string_view body;  ///< Between '=' and ';'.
+  };
+
+  explicit StepText(std::string text);
+  StepText(const StepText&) = delete;
+  StepText& operator=(const StepText&) = delete;
+
+  [[nodiscard]] const std::vector<Statement>& statements() const { return statements_; }
+
+  /** Empty where there is no such entity, or where it cannot be read. */
+  [[nodiscard]] StepEntity Find(std::uint64_t id) const;
+
+ private:
+  std::string text_;
+  std::vector<Statement> statements_;  // By id.
+};
+
+}  // namespace hvas::cad
