@@ -3,6 +3,7 @@
 #include "cad/import.h"
 #include "mates/assignments.h"
 #include "mates/infer.h"
+#include "mates/stated_fits.h"
 
 namespace hvas::app {
 
@@ -14,6 +15,7 @@ Result<product::Product> LoadProduct(
     return product;
   }
   mates::Infer(&*product, diagnostics);
+  mates::AssignStatedFits(&*product);
   const std::filesystem::path side_file = mates::FindAssignmentFile(file);
   if (std::filesystem::exists(side_file)) {
     if (const auto applied = mates::ApplyAssignments(side_file, &*product); !applied) {

@@ -1,0 +1,102 @@
+#include "mates/stated_fits.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "fits/iso286.h"
+
+namespace hvas::mates {
+namespace {
+
+using product::Dimension;
+using product::Feature;
+using product::Fit;
+using product::FitKind;
+using product::Mate;
+using product::Part;
+using product::Product;
+
+enum class Coverage { kHole, kShaft, kBoth };
+
+Coverage CoverageOf(const std::string& code) {
+  if (code.find('/') != std::string::npos) {
+    return Coverage::kBoth;
+  }
+  const bool is_hole = !code.empty() && code.front() >= 'A' && code.front() <= 'Z';
+  return is_hole ? Coverage::kHole : Coverage::kShaft;
+}
+
+/** The first dimension on a connector's faces that states a fit of that coverage. */
+const Dimension* FindStated(const Product& product, const product::Connector& connector,
+                            Coverage coverage) {
+  const Part& part = product.part_of(connector.occurrence);
+  const Feature& feature = part.features[connector.feature.index()];
+  for (const Dimension& dimension : part.dimensions) {
+    const bool is_on_feature = std::any_of(
+        dimension.faces.begin(), dimension.faces.end(), [&feature](product::FaceId face) {
+          return std::find(feature.faces.begin(), feature.faces.end(), face) != feature.faces.end();
+        });
+    if (is_on_feature && dimension.fit && CoverageOf(*dimension.fit) == coverage) {
+      return &dimension;
+    }
+  }
+  return nullptr;
+}
+
+FitKind ToKind(fits::FitKind kind) {
+  switch (kind) {
+    case fits::FitKind::kClearance:
+      return FitKind::kClearance;
+    case fits::FitKind::kTransition:
+      return FitKind::kTransition;
+    case fits::FitKind::kInterference:
+      break;
+  }
+  return FitKind::kInterference;
+}
+
+std::optional<Fit> MakeFit(const std::string& code, const Dimension& dimension,
+                           const std::string& entities) {
+  const double times = dimension.kind == product::DimensionKind::kRadius ? 2 : 1;
+  const double nominal = times * dimension.nominal;
+  const auto parsed = fits::ParseFit(code);
+  const auto limits = parsed ? fits::CalcFitLimits(*parsed, nominal) : Unexpected(parsed.error());
+  if (!limits) {
+    return std::nullopt;
+  }
+  return Fit{ToKind(limits->kind), parsed->ToString(), nominal, false,
+             "stated in the file (" + entities + ")"};
+}
+
+std::optional<Fit> FindFit(const Product& product, const Mate& mate) {
+  for (const product::Connector& connector : {mate.a, mate.b}) {
+    if (const Dimension* both = FindStated(product, connector, Coverage::kBoth)) {
+      return MakeFit(*both->fit, *both, both->entity);
+    }
+  }
+  const Dimension* hole = FindStated(product, mate.a, Coverage::kHole);
+  const Dimension* shaft = FindStated(product, mate.b, Coverage::kShaft);
+  if (hole == nullptr || shaft == nullptr) {
+    return std::nullopt;
+  }
+  return MakeFit(*hole->fit + "/" + *shaft->fit, *hole, hole->entity + ", " + shaft->entity);
+}
+
+}  // namespace
+
+int AssignStatedFits(Product* product) {
+  int count = 0;
+  for (Mate& mate : product->mates) {
+    if (mate.kind != product::MateKind::kAxisHole) {
+      continue;
+    }
+    if (std::optional<Fit> fit = FindFit(*product, mate)) {
+      mate.fit = std::move(fit);
+      ++count;
+    }
+  }
+  return count;
+}
+
+}  // namespace hvas::mates
