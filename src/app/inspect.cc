@@ -1,6 +1,8 @@
 #include "app/inspect.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -98,6 +100,50 @@ void PrintMates(const Product& product) {
   }
 }
 
+/** " +0.1 -0.2", " +-0.1", or nothing. */
+std::string DescribeLimits(const product::Dimension& dimension, double scale) {
+  constexpr double kEqual = 1e-12;
+  const auto& [upper, lower] = std::pair(dimension.upper, dimension.lower);
+  if (upper && lower && std::abs(*upper + *lower) < kEqual) {
+    return fmt::format(" +-{:.6g}", scale * *upper);
+  }
+  return (upper ? fmt::format(" {:+.6g}", scale * *upper) : "") +
+         (lower ? fmt::format(" {:+.6g}", scale * *lower) : "");
+}
+
+std::string DescribeFaces(const std::vector<product::FaceId>& faces) {
+  std::vector<std::uint32_t> ids;
+  for (const product::FaceId face : faces) {
+    ids.push_back(face.value());
+  }
+  return ids.empty() ? "no face" : fmt::format("faces {}", fmt::join(ids, " "));
+}
+
+void PrintTolerances(const Product& product) {
+  const ToleranceCounts counts = CountTolerances(product);
+  if (counts.dimensions + counts.geometric == 0) {
+    return;
+  }
+  fmt::print("\nTolerances\n");
+  for (const product::Part& part : product.parts) {
+    for (const product::Dimension& dimension : part.dimensions) {
+      const bool is_angle = dimension.kind == product::DimensionKind::kAngular;
+      const double scale = is_angle ? units::ToDeg(1) : ToMm(1);
+      fmt::print("  {} {}: {} {:.6g}{} {}{} ({})\n", part.name, dimension.entity,
+                 dimension.name.empty() ? ToString(dimension.kind) : dimension.name,
+                 scale * dimension.nominal, DescribeLimits(dimension, scale),
+                 is_angle ? "deg" : "mm", dimension.fit ? " " + *dimension.fit : "",
+                 DescribeFaces(dimension.faces));
+    }
+    for (const product::GeometricTolerance& tolerance : part.geometric_tolerances) {
+      fmt::print("  {} {}: {} {:.6g} mm{}{} ({})\n", part.name, tolerance.entity,
+                 ToString(tolerance.kind), ToMm(tolerance.magnitude),
+                 tolerance.datums.empty() ? "" : " to ", fmt::join(tolerance.datums, " | "),
+                 DescribeFaces(tolerance.faces));
+    }
+  }
+}
+
 void PrintText(const Product& product, const Diagnostics& diagnostics) {
   const auto axis_hole =
       std::count_if(product.mates.begin(), product.mates.end(),
@@ -107,6 +153,7 @@ void PrintText(const Product& product, const Diagnostics& diagnostics) {
   PrintTree(product, product::SubassemblyId(0), 0);
   PrintParts(product);
   PrintMates(product);
+  PrintTolerances(product);
   if (!diagnostics.items().empty()) {
     fmt::print("\nOdd about the file\n");
   }

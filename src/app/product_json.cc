@@ -1,6 +1,9 @@
 #include "app/product_json.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -54,6 +57,39 @@ Json CountFeatures(const Part& part) {
           {"plane", count(FeatureKind::kPlane)}};
 }
 
+Json ToJson(const std::vector<product::FaceId>& faces) {
+  Json ids = Json::array();
+  for (const product::FaceId face : faces) {
+    ids.push_back(face.value());
+  }
+  return ids;
+}
+
+Json ToJson(const product::Dimension& dimension) {
+  const bool is_angle = dimension.kind == product::DimensionKind::kAngular;
+  const std::string unit = is_angle ? "_deg" : "_mm";
+  const auto number = [is_angle](const std::optional<double>& value) {
+    return value ? Json(is_angle ? units::ToDeg(*value) : ToMm(*value)) : Json();
+  };
+  return {{"entity", dimension.entity},
+          {"kind", ToString(dimension.kind)},
+          {"name", dimension.name},
+          {"nominal" + unit, number(dimension.nominal)},
+          {"upper" + unit, number(dimension.upper)},
+          {"lower" + unit, number(dimension.lower)},
+          {"fit", dimension.fit ? Json(*dimension.fit) : Json()},
+          {"faces", ToJson(dimension.faces)}};
+}
+
+Json ToJson(const product::GeometricTolerance& tolerance) {
+  return {{"entity", tolerance.entity}, {"kind", ToString(tolerance.kind)},
+          {"name", tolerance.name},     {"magnitude_mm", ToMm(tolerance.magnitude)},
+          {"datums", tolerance.datums}, {"faces", ToJson(tolerance.faces)}};
+}
+
+template <typename T>
+Json ToArray(const std::vector<T>& items);
+
 Json ToJson(const Part& part) {
   Json inertia = Json::array();
   for (int row = 0; row < 3; ++row) {
@@ -75,6 +111,8 @@ Json ToJson(const Part& part) {
           {"triangle_count", part.mesh.triangles.size()},
           {"faces", CountSurfaces(part)},
           {"features", CountFeatures(part)},
+          {"dimensions", ToArray(part.dimensions)},
+          {"geometric_tolerances", ToArray(part.geometric_tolerances)},
           {"shape_hash", part.shape_hash}};
 }
 
@@ -141,6 +179,7 @@ Json Summarise(const Product& product, const Diagnostics& diagnostics) {
                          [kind](const product::Mate& mate) { return mate.kind == kind; });
   };
   const mates::Linkage linkage = mates::CalcLinkage(product);
+  const ToleranceCounts tolerances = CountTolerances(product);
   return {{"name", product.name},
           {"source", product.source},
           {"occurrences", product.occurrences.size()},
@@ -154,6 +193,10 @@ Json Summarise(const Product& product, const Diagnostics& diagnostics) {
           {"mates",
            {{"axis_hole", count(product::MateKind::kAxisHole)},
             {"face_face", count(product::MateKind::kFaceFace)}}},
+          {"tolerances",
+           {{"dimensions", tolerances.dimensions},
+            {"geometric", tolerances.geometric},
+            {"fits", tolerances.fits}}},
           {"warnings", diagnostics.Count(Severity::kWarning)}};
 }
 
@@ -196,6 +239,43 @@ const char* ToString(product::FitKind kind) {
       break;
   }
   return "thread";
+}
+
+const char* ToString(product::DimensionKind kind) {
+  switch (kind) {
+    case product::DimensionKind::kDiameter:
+      return "diameter";
+    case product::DimensionKind::kRadius:
+      return "radius";
+    case product::DimensionKind::kLinear:
+      return "linear";
+    case product::DimensionKind::kAngular:
+      return "angular";
+    case product::DimensionKind::kOther:
+      break;
+  }
+  return "other";
+}
+
+const char* ToString(product::GeometricToleranceKind kind) {
+  constexpr std::array<const char*, 16> kNames{
+      "angularity",       "circular_runout", "coaxiality",   "concentricity",
+      "cylindricity",     "flatness",        "line_profile", "parallelism",
+      "perpendicularity", "position",        "roundness",    "straightness",
+      "surface_profile",  "symmetry",        "total_runout", "other"};
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+ToleranceCounts CountTolerances(const Product& product) {
+  ToleranceCounts counts;
+  for (const Part& part : product.parts) {
+    counts.dimensions += part.dimensions.size();
+    counts.geometric += part.geometric_tolerances.size();
+    counts.fits += static_cast<std::size_t>(
+        std::count_if(part.dimensions.begin(), part.dimensions.end(),
+                      [](const product::Dimension& d) { return d.fit.has_value(); }));
+  }
+  return counts;
 }
 
 Json ToJson(const Product& product, const Diagnostics& diagnostics) {
