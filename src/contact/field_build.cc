@@ -18,7 +18,9 @@ constexpr double kBlocksPerPatch =
     2.2;  // Blocks for each patch of surface as large as a block's side.
 constexpr double kSmallestVoxel = 20e-6;
 constexpr double kLargestVoxel = 2e-3;
-constexpr double kFilterSlack = 1 + 1e-9;
+constexpr double kSlack = 1 + 1e-9;
+constexpr double kRounding = 1e-13;  // [m]
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 const double kHalfDiagonal = std::sqrt(3.0) / 2;
 
 struct NearTriangle {
@@ -28,52 +30,75 @@ struct NearTriangle {
 
 using NearList = std::vector<NearTriangle>;
 
-// A sphere around each triangle, whose centre lies on the triangle.
-struct Spheres {
-  std::vector<Vec3> centre;
-  std::vector<double> radius;
+// A box around a triangle: tells most that are too far away at a tenth of the exact distance's
+// cost.
+struct TriangleBox {
+  double centre[3];
+  double half[3];
+  double radius;  // Of a sphere around it.
 
-  explicit Spheres(const Mesh& mesh) {
-    for (const auto& t : mesh.triangles) {
-      const Vec3& a = mesh.vertices[t[0]];
-      const Vec3& b = mesh.vertices[t[1]];
-      const Vec3& c = mesh.vertices[t[2]];
-      const Vec3 m = (a + b + c) / 3;
-      centre.push_back(m);
-      radius.push_back(std::max({(a - m).norm(), (b - m).norm(), (c - m).norm()}));
-    }
+  [[nodiscard]] double CalcSquaredDistance(const Vec3& p) const {
+    const double x = std::max(std::abs(p.x() - centre[0]) - half[0], 0.0);
+    const double y = std::max(std::abs(p.y() - centre[1]) - half[1], 0.0);
+    const double z = std::max(std::abs(p.z() - centre[2]) - half[2], 0.0);
+    return x * x + y * y + z * z;
   }
 };
 
-// Keeps, of the triangles given, those that may be closest to some point within `radius` of c.
-// First by their spheres; then by their distance where the sphere is large against `radius`, so
-// says little. The distances written are lower bounds, and exact where `is_exact` asks for it.
-void Filter(const Mesh& mesh, const Spheres& spheres, const NearList& list, const Vec3& c,
-            double radius, bool is_exact, NearList* out) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const NearTriangle& entry : list) {
-    least = std::min(least, (spheres.centre[entry.triangle] - c).squaredNorm());
+std::vector<TriangleBox> MakeBoxes(const Mesh& mesh) {
+  std::vector<TriangleBox> boxes;
+  boxes.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    spatial::Box box;
+    for (const std::uint32_t v : t) {
+      box.Add(mesh.vertices[v]);
+    }
+    const Vec3 c = box.centre();
+    const Vec3 half = 0.5 * box.size();
+    boxes.push_back({{c.x(), c.y(), c.z()}, {half.x(), half.y(), half.z()}, half.norm()});
   }
-  least = std::sqrt(least);
-  out->clear();
-  for (const NearTriangle& entry : list) {
-    const double limit = (least + 2 * radius) * kFilterSlack;
-    const double size = spheres.radius[entry.triangle];
-    const double squared = (spheres.centre[entry.triangle] - c).squaredNorm();
-    if (squared > (limit + size) * (limit + size)) {
+  return boxes;
+}
+
+// Keeps, of the triangles given, those that may be closest to some point within `radius` of c.
+// First by their boxes; then by their distance where the box is large against `radius`, so says
+// little. The distances written are lower bounds, and exact where `is_exact` asks for it.
+void Filter(const Mesh& mesh, const std::vector<TriangleBox>& boxes, const NearList& list,
+            const Vec3& c, double radius, bool is_exact, NearList* out) {
+  const auto calc_exact = [&](std::uint32_t triangle) {
+    return (mesh.ClosestOn(triangle, c).q - c).norm();
+  };
+  const auto limit_of = [&](double least) { return (least + 2 * radius) * kSlack + kRounding; };
+  out->resize(list.size());
+  NearTriangle lowest{kNoFace, std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::uint32_t triangle = list[i].triangle;
+    const NearTriangle entry{triangle, boxes[triangle].CalcSquaredDistance(c)};
+    (*out)[i] = entry;
+    if (entry.distance < lowest.distance) {
+      lowest = entry;
+    }
+  }
+  double least = calc_exact(lowest.triangle);
+  double limit = limit_of(least);
+  std::size_t kept = 0;
+  for (const NearTriangle& entry : *out) {
+    if (entry.distance > limit * limit) {
       continue;
     }
-    double distance = std::max(std::sqrt(squared) - size, 0.0);
-    if (is_exact || size > 0.5 * radius) {
-      distance = (mesh.ClosestOn(entry.triangle, c).q - c).norm();
-      if (distance > limit) {
-        continue;
+    double distance = std::sqrt(entry.distance);
+    if (is_exact || boxes[entry.triangle].radius > 0.5 * radius) {
+      distance = calc_exact(entry.triangle);
+      if (distance < least) {
+        least = distance;
+        limit = limit_of(least);
       }
-      least = std::min(least, distance);
     }
-    out->push_back({entry.triangle, distance});
+    if (distance <= limit) {
+      (*out)[kept++] = {entry.triangle, distance};
+    }
   }
-  const double limit = (least + 2 * radius) * kFilterSlack;
+  out->resize(kept);
   out->erase(std::remove_if(out->begin(), out->end(),
                             [&](const NearTriangle& entry) { return entry.distance > limit; }),
              out->end());
@@ -98,23 +123,28 @@ struct Nearest {
 
 // Signed distance at p from a list with lower bounds of the distances to a point that p is `offset`
 // away from. Begins with the triangle `hint`.
-Nearest CalcNearest(const Mesh& mesh, const NearList& list, const Vec3& p, double offset,
-                    std::uint32_t hint) {
-  double best = std::numeric_limits<double>::infinity();
+Nearest CalcNearest(const Mesh& mesh, const std::vector<TriangleBox>& boxes, const NearList& list,
+                    const Vec3& p, double offset, std::uint32_t hint) {
+  double squared = std::numeric_limits<double>::infinity();
+  double best = squared;
+  double limit = squared;
   Nearest nearest;
   TrianglePoint best_point;
   const auto look = [&](std::uint32_t triangle) {
     const TrianglePoint point = mesh.ClosestOn(triangle, p);
-    const double distance = (point.q - p).norm();
-    if (distance < best) {
-      best = distance;
+    const double found = (point.q - p).squaredNorm();
+    if (found < squared) {
+      squared = found;
+      best = std::sqrt(found);
+      limit = best * kSlack + kRounding;
       best_point = point;
       nearest.triangle = triangle;
     }
   };
   look(hint);
   for (const NearTriangle& entry : list) {
-    if (entry.distance - offset <= best * kFilterSlack && entry.triangle != hint) {
+    if (entry.distance - offset <= limit &&
+        boxes[entry.triangle].CalcSquaredDistance(p) <= limit * limit && entry.triangle != hint) {
       look(entry.triangle);
     }
   }
@@ -129,18 +159,21 @@ Nearest CalcNearest(const Mesh& mesh, const NearList& list, const Vec3& p, doubl
 
 using Index3 = std::array<int, 3>;
 
-// Walks a grid of cells as an octree and hands each cell's list to `leaf`; `skip` may settle a
-// whole region at once.
+// Walks a grid of cells as an octree and hands each cell's list to `leaf`: of what is closest
+// within the cell, or to its centre only. `skip` may settle a whole region at once.
+enum class LeafNeeds { kCell, kCentre };
+
 template <typename Leaf, typename Skip>
 class Descent {
  public:
-  Descent(const Mesh& mesh, const Spheres& spheres, const Vec3& origin, double side,
-          const Index3& count, Leaf leaf, Skip skip)
+  Descent(const Mesh& mesh, const std::vector<TriangleBox>& boxes, const Vec3& origin, double side,
+          const Index3& count, LeafNeeds needs, Leaf leaf, Skip skip)
       : mesh_(mesh),
-        spheres_(spheres),
+        boxes_(boxes),
         origin_(origin),
         side_(side),
         count_(count),
+        needs_(needs),
         leaf_(leaf),
         skip_(skip) {}
 
@@ -165,9 +198,10 @@ class Descent {
     }
     const Vec3 centre =
         origin_ + side_ * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5 * width));
-    const double radius = kHalfDiagonal * side_ * width;
+    const bool is_point = width == 1 && needs_ == LeafNeeds::kCentre;
+    const double radius = is_point ? 0 : kHalfDiagonal * side_ * width;
     NearList list;
-    Filter(mesh_, spheres_, parent, centre, radius, false, &list);
+    Filter(mesh_, boxes_, parent, centre, radius, false, &list);
     if (skip_(low, width, centre, radius, list)) {
       return;
     }
@@ -183,18 +217,19 @@ class Descent {
   }
 
   const Mesh& mesh_;
-  const Spheres& spheres_;
+  const std::vector<TriangleBox>& boxes_;
   Vec3 origin_;
   double side_;
   Index3 count_;
+  LeafNeeds needs_;
   Leaf leaf_;
   Skip skip_;
 };
 
 template <typename Leaf, typename Skip>
-void Descend(const Mesh& mesh, const Spheres& spheres, const Vec3& origin, double side,
-             const Index3& count, Leaf leaf, Skip skip) {
-  Descent<Leaf, Skip>(mesh, spheres, origin, side, count, leaf, skip).Run();
+void Descend(const Mesh& mesh, const std::vector<TriangleBox>& boxes, const Vec3& origin,
+             double side, const Index3& count, LeafNeeds needs, Leaf leaf, Skip skip) {
+  Descent<Leaf, Skip>(mesh, boxes, origin, side, count, needs, leaf, skip).Run();
 }
 
 // Runs work(i) for i < count on two threads; the results do not depend on who does what.
@@ -228,8 +263,8 @@ struct Block {
 
 class BlockBuilder {
  public:
-  BlockBuilder(const Shape::Data& data, const Spheres& spheres)
-      : data_(data), spheres_(spheres), h_(data.voxel) {}
+  BlockBuilder(const Shape::Data& data, const std::vector<TriangleBox>& boxes)
+      : data_(data), boxes_(boxes), h_(data.voxel) {}
 
   void Build(Block* block) {
     // By way of the eight octants, so that each zone's list is cut from a short one.
@@ -237,7 +272,7 @@ class BlockBuilder {
     for (int o = 0; o < 8; ++o) {
       const Index3 low{2 * (o & 1), 2 * ((o >> 1) & 1), 2 * (o >> 2)};
       const Vec3 centre = block->origin + 2 * h_ * (Vec3(low[0], low[1], low[2]) + Vec3::Ones());
-      Filter(data_.mesh, spheres_, block->list, centre, 4 * kHalfDiagonal * h_, false, &octant);
+      Filter(data_.mesh, boxes_, block->list, centre, 4 * kHalfDiagonal * h_, false, &octant);
       for (int z = 0; z < 8; ++z) {
         BuildZone({low[0] + (z & 1), low[1] + ((z >> 1) & 1), low[2] + (z >> 2)}, octant, block);
       }
@@ -249,9 +284,16 @@ class BlockBuilder {
   void BuildZone(const Index3& zone, const NearList& octant, Block* block) {
     const Vec3 centre = block->origin + h_ * (2.0 * Vec3(zone[0], zone[1], zone[2]) + Vec3::Ones());
     const double radius = 2 * kHalfDiagonal * h_;
-    Filter(data_.mesh, spheres_, octant, centre, radius, false, &list_);
-    hint_ = LeastOf(list_).triangle;
+    // Zones follow each other: what was closest to one is near the next.
+    hint_ = hint_ == kNoFace ? octant.front().triangle : hint_;
+    const Nearest nearest = CalcNearest(data_.mesh, boxes_, octant, centre, kAnywhere, hint_);
+    hint_ = nearest.triangle;
     face_ = data_.mesh.face[hint_];
+    if (std::abs(nearest.distance) > kBandVoxels * h_ * kSlack + radius) {
+      FillFarZone(zone, nearest.distance, block);
+      return;
+    }
+    Filter(data_.mesh, boxes_, octant, centre, radius, false, &list_);
     is_one_face_ = std::all_of(list_.begin(), list_.end(), [&](const NearTriangle& n) {
       return data_.mesh.face[n.triangle] == face_;
     });
@@ -261,12 +303,33 @@ class BlockBuilder {
     FillNodes(zone, centre, block);
   }
 
-  void FillNodes(const Index3& zone, const Vec3& centre, Block* block) {
-    const double quantum = kBandVoxels * h_ / 32767;
+  static Index3 EndOf(const Index3& zone) {
     Index3 end{};
     for (std::size_t k = 0; k < 3; ++k) {
       end[k] = 2 * zone[k] + (zone[k] == 3 ? 3 : 2);
     }
+    return end;
+  }
+
+  // All nodes are beyond the band, on one side of the surface.
+  void FillFarZone(const Index3& zone, double distance, Block* block) const {
+    block->zones[static_cast<std::size_t>(zone[2] * 16 + zone[1] * 4 + zone[0])].code =
+        zone::kFar | face_;
+    block->is_inside = distance < 0;
+    const Index3 end = EndOf(zone);
+    for (int k = 2 * zone[2]; k < end[2]; ++k) {
+      for (int j = 2 * zone[1]; j < end[1]; ++j) {
+        for (int i = 2 * zone[0]; i < end[0]; ++i) {
+          block->nodes[static_cast<std::size_t>(k * 81 + j * 9 + i)] =
+              distance < 0 ? -32767 : 32767;
+        }
+      }
+    }
+  }
+
+  void FillNodes(const Index3& zone, const Vec3& centre, Block* block) {
+    const double quantum = kBandVoxels * h_ / 32767;
+    const Index3 end = EndOf(zone);
     for (int k = 2 * zone[2]; k < end[2]; ++k) {
       for (int j = 2 * zone[1]; j < end[1]; ++j) {
         for (int i = 2 * zone[0]; i < end[0]; ++i) {
@@ -288,7 +351,7 @@ class BlockBuilder {
         return exact.distance;
       }
     }
-    const Nearest nearest = CalcNearest(data_.mesh, list_, p, (p - centre).norm(), hint_);
+    const Nearest nearest = CalcNearest(data_.mesh, boxes_, list_, p, (p - centre).norm(), hint_);
     hint_ = nearest.triangle;
     return nearest.distance;
   }
@@ -304,7 +367,7 @@ class BlockBuilder {
     } else {
       out->code = zone::kList;
       NearList listed;
-      Filter(data_.mesh, spheres_, list_, centre, radius, true, &listed);
+      Filter(data_.mesh, boxes_, list_, centre, radius, true, &listed);
       SortByDistance(&listed);
       for (const NearTriangle& entry : listed) {
         out->list.push_back({entry.triangle, static_cast<float>(entry.distance * (1 - 1e-6))});
@@ -335,7 +398,7 @@ class BlockBuilder {
         p += h_ * Vec3((i & 1) * 2.0 - 1, ((i >> 1) & 1) * 2.0 - 1, (i >> 2) * 2.0 - 1);
       }
       const auto exact = spatial::CalcDistance(data_.exact.faces[face_], p);
-      const Nearest nearest = CalcNearest(data_.mesh, list_, p, (p - centre).norm(), hint_);
+      const Nearest nearest = CalcNearest(data_.mesh, boxes_, list_, p, (p - centre).norm(), hint_);
       hint_ = nearest.triangle;
       if (!exact.is_valid || std::abs(exact.distance - nearest.distance) > tolerance) {
         return false;
@@ -345,17 +408,17 @@ class BlockBuilder {
   }
 
   const Shape::Data& data_;
-  const Spheres& spheres_;
+  const std::vector<TriangleBox>& boxes_;
   double h_;
   // Of the zone at hand.
   NearList list_;
-  std::uint32_t hint_{0};
+  std::uint32_t hint_{kNoFace};
   std::uint32_t face_{0};
   bool is_one_face_{false};
   bool is_exact_{false};
 };
 
-void BuildBlocks(const Spheres& spheres, Shape::Data* data) {
+void BuildBlocks(const std::vector<TriangleBox>& boxes, Shape::Data* data) {
   FieldView& view = data->field.view;
   const double side = kBlockCells * data->voxel;
   const Vec3 origin(static_cast<double>(view.origin[0]), static_cast<double>(view.origin[1]),
@@ -382,7 +445,7 @@ void BuildBlocks(const Spheres& spheres, Shape::Data* data) {
     if (least.distance <= kBandVoxels * data->voxel + radius) {
       return false;
     }
-    if (CalcNearest(data->mesh, list, centre, 0, least.triangle).distance < 0) {
+    if (CalcNearest(data->mesh, boxes, list, centre, 0, least.triangle).distance < 0) {
       for (int z = low[2]; z < std::min(low[2] + width, count[2]); ++z) {
         for (int y = low[1]; y < std::min(low[1] + width, count[1]); ++y) {
           for (int x = low[0]; x < std::min(low[0] + width, count[0]); ++x) {
@@ -393,8 +456,8 @@ void BuildBlocks(const Spheres& spheres, Shape::Data* data) {
     }
     return true;
   };
-  Descend(data->mesh, spheres, origin, side, count, leaf, skip);
-  ForEach(blocks.size(), [&](std::size_t i) { BlockBuilder(*data, spheres).Build(&blocks[i]); });
+  Descend(data->mesh, boxes, origin, side, count, LeafNeeds::kCell, leaf, skip);
+  ForEach(blocks.size(), [&](std::size_t i) { BlockBuilder(*data, boxes).Build(&blocks[i]); });
 
   ExactTable& exact = data->exact;
   exact.list_begin.push_back(0);
@@ -421,7 +484,7 @@ void BuildBlocks(const Spheres& spheres, Shape::Data* data) {
   data->field.nodes.shrink_to_fit();
 }
 
-void BuildCoarse(const Spheres& spheres, Shape::Data* data) {
+void BuildCoarse(const std::vector<TriangleBox>& boxes, Shape::Data* data) {
   FieldView& view = data->field.view;
   const Vec3 size = data->box_B.size();
   const double cell = std::max(4 * data->voxel, size.norm() / 56);
@@ -440,10 +503,10 @@ void BuildCoarse(const Spheres& spheres, Shape::Data* data) {
                                 static_cast<std::size_t>(count[2]),
                             0.0F);
   Descend(
-      data->mesh, spheres, origin - Vec3::Constant(0.5 * side), side, count,
+      data->mesh, boxes, origin - Vec3::Constant(0.5 * side), side, count, LeafNeeds::kCentre,
       [&](const Index3& low, const Vec3& centre, NearList& list) {
         const double phi =
-            CalcNearest(data->mesh, list, centre, 0, LeastOf(list).triangle).distance;
+            CalcNearest(data->mesh, boxes, list, centre, 0, LeastOf(list).triangle).distance;
         data->field
             .coarse[static_cast<std::size_t>((low[2] * count[1] + low[1]) * count[0] + low[0])] =
             static_cast<float>(phi);
@@ -572,9 +635,9 @@ void BuildField(Shape::Data* data) {
     view.blocks[k] = static_cast<int>(std::ceil(2 * reach / (kBlockCells * data->voxel)));
     view.origin[k] = static_cast<float>(-0.5 * view.blocks[k] * kBlockCells * data->voxel);
   }
-  const Spheres spheres(data->mesh);
-  BuildBlocks(spheres, data);
-  BuildCoarse(spheres, data);
+  const std::vector<TriangleBox> boxes = MakeBoxes(data->mesh);
+  BuildBlocks(boxes, data);
+  BuildCoarse(boxes, data);
   data->field.Bind();
   MeasureSlack(data);
   data->field.Bind();
