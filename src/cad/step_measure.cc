@@ -100,6 +100,7 @@ std::optional<Unit> ReadUnit(const StepText& text, std::uint64_t id, int depth) 
       if (base && std::isfinite(raw->number * base->scale)) {
         return Unit{raw->number * base->scale, base->quantity};
       }
+      return std::nullopt;  // Looks at no second one: many in each step would take for ever.
     }
   }
   return std::nullopt;

@@ -30,6 +30,7 @@ using EntityId = std::uint64_t;
 using Kind = StepValue::Kind;
 
 constexpr double kSameSize = 0.01;           // Of a diameter and its cylinder's, relative.
+constexpr int kMaxDatumSteps = 1000;         // Of one tolerance; circles of references end with it.
 constexpr int kMaxDatumDepth = 8;            // Of datum systems; files have three levels.
 constexpr std::size_t kMaxNamed = 5;         // Damaged entities that a diagnostic names.
 constexpr std::size_t kMaxAspects = 100000;  // That one dimension may be about.
@@ -116,7 +117,8 @@ class ToleranceReader {
   bool ReadSizes(EntityId representation, Dimension* dimension);
   void ReadLimits(EntityId range, Dimension* dimension);
   void ReadGeometric(EntityId id, const StepEntity& entity);
-  void ReadDatums(const StepValue& value, int depth, std::vector<std::string>* datums) const;
+  void ReadDatums(const StepValue& value, int depth, int* steps,
+                  std::vector<std::string>* datums) const;
   [[nodiscard]] std::vector<EntityId> ToAspects(EntityId id) const;
   [[nodiscard]] std::vector<EntityId> CollectFaces(const std::vector<EntityId>& aspects) const;
   [[nodiscard]] EntityId ShapeOf(const std::vector<EntityId>& aspects) const;
@@ -341,15 +343,15 @@ void ToleranceReader::ReadLimits(EntityId range, Dimension* dimension) {
   }
 }
 
-void ToleranceReader::ReadDatums(const StepValue& value, int depth,
+void ToleranceReader::ReadDatums(const StepValue& value, int depth, int* steps,
                                  std::vector<std::string>* datums) const {
-  if (depth > kMaxDatumDepth) {
+  if (depth > kMaxDatumDepth || ++*steps > kMaxDatumSteps) {
     return;
   }
   if (value.kind == Kind::kTyped || value.kind == Kind::kList) {
     std::vector<std::string> parts;
     for (const StepValue& item : value.items) {
-      ReadDatums(item, depth + 1, &parts);
+      ReadDatums(item, depth + 1, steps, &parts);
     }
     if (value.kind == Kind::kTyped && !parts.empty()) {  // COMMON_DATUM_LIST
       parts = {fmt::format("{}", fmt::join(parts, "-"))};
@@ -361,9 +363,9 @@ void ToleranceReader::ReadDatums(const StepValue& value, int depth,
     if (record.name == "DATUM") {
       datums->push_back(TextAt(record, record.values.empty() ? 0 : record.values.size() - 1));
     } else if (record.name == "DATUM_REFERENCE" && record.values.size() > 1) {
-      ReadDatums(record.values[1], depth + 1, datums);
+      ReadDatums(record.values[1], depth + 1, steps, datums);
     } else if (record.name.find("DATUM_") == 0 && record.values.size() > 4) {
-      ReadDatums(record.values[4], depth + 1, datums);  // System, compartment, or element.
+      ReadDatums(record.values[4], depth + 1, steps, datums);  // System, compartment, or element.
     }
   }
 }
@@ -372,6 +374,7 @@ void ToleranceReader::ReadGeometric(EntityId id, const StepEntity& entity) {
   Found<GeometricTolerance> found;
   found.item.entity = fmt::format("#{}", id);
   EntityId magnitude = 0;
+  int datum_steps = 0;
   for (const StepRecord& record : entity) {
     const auto kind =
         std::find_if(kToleranceKinds.begin(), kToleranceKinds.end(),
@@ -384,11 +387,11 @@ void ToleranceReader::ReadGeometric(EntityId id, const StepEntity& entity) {
       magnitude = RefAt(record, 2);
       found.aspects = ToAspects(RefAt(record, 3));
       if (record.values.size() > 4) {
-        ReadDatums(record.values[4], 0, &found.item.datums);
+        ReadDatums(record.values[4], 0, &datum_steps, &found.item.datums);
       }
     } else if (record.name == "GEOMETRIC_TOLERANCE_WITH_DATUM_REFERENCE" &&
                !record.values.empty()) {
-      ReadDatums(record.values[0], 0, &found.item.datums);
+      ReadDatums(record.values[0], 0, &datum_steps, &found.item.datums);
     }
   }
   const auto measure = ReadMeasure(text_, magnitude, 0);
@@ -419,12 +422,11 @@ std::vector<EntityId> ToleranceReader::CollectFaces(const std::vector<EntityId>&
   std::vector<EntityId> open = aspects;
   std::set<EntityId> seen(aspects.begin(), aspects.end());
   std::vector<EntityId> faces;
+  std::set<EntityId> seen_faces;
   for (std::size_t i = 0; i < open.size() && open.size() < kMaxAspects; ++i) {
     if (const auto items = items_of_.find(open[i]); items != items_of_.end()) {
       std::copy_if(items->second.begin(), items->second.end(), std::back_inserter(faces),
-                   [&faces](EntityId id) {
-                     return std::find(faces.begin(), faces.end(), id) == faces.end();
-                   });
+                   [&seen_faces](EntityId id) { return seen_faces.insert(id).second; });
     }
     if (const auto children = children_of_.find(open[i]); children != children_of_.end()) {
       std::copy_if(children->second.begin(), children->second.end(), std::back_inserter(open),

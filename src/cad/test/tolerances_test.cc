@@ -238,8 +238,9 @@ TEST(Tolerances, CirclesOfReferencesEnd) {
   std::string text =
       Replace(MakeText(), "#93=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(2.54E+01),#90)",
               "#93=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(2.54E+01),#91)");
-  text = Replace(text, "#56=DATUM('',$,#80,.F.,'B')",
-                 "#56=DATUM_SYSTEM('',$,#80,.F.,(#56,#52,#54,#56,#52))");
+  text =
+      Replace(text, "#56=DATUM('',$,#80,.F.,'B')",
+              "#56=DATUM_SYSTEM('',$,#80,.F.,(#56,#52,#54,#56,#52,#56,#56,#56,#56,#56,#56,#56))");
   Diagnostics diagnostics;
   EXPECT_EQ(ReadPart(text, &diagnostics).dimensions.size(), 3u);
 }
