@@ -476,30 +476,23 @@ void Planner::PlanLevel(Unit rest, Sequence* sequence) {
   }
   std::vector<SequenceStep> removed;
   while (rest.size() > 1) {
-    Unit blocked;
-    for (const OccurrenceId id : rest) {
-      std::optional<SequenceStep> step;
-      if (id != rest.back()) {
-        step = TryRemove({id}, &memories_[id.index()]);
-      }
-      if (step) {
-        removed.push_back(std::move(*step));
-        ++planned_;
-      } else {
-        blocked.push_back(id);
-      }
-      if (input_.progress) {
-        input_.progress(static_cast<double>(planned_) /
-                        static_cast<double>(product_.occurrences.size()));
-      }
+    // Always the smallest that can go: what lies on a part goes before the part.
+    std::optional<SequenceStep> step;
+    for (std::size_t i = 0; i + 1 < rest.size() && !step; ++i) {
+      step = TryRemove({rest[i]}, &memories_[rest[i].index()]);
     }
-    const bool is_stuck = blocked.size() == rest.size();
-    rest = std::move(blocked);
-    if (is_stuck && rest.size() > 1 && !TakeOutSubassembly(&rest, &removed, sequence)) {
+    if (step) {
+      rest.erase(std::find(rest.begin(), rest.end(), step->occurrence));
+      removed.push_back(std::move(*step));
+    } else if (!TakeOutSubassembly(&rest, &removed, sequence)) {
       const OccurrenceId id = rest.front();
       sequence->gaps.push_back({id, ExplainStuck(id)});
       SetPresent({id}, false);
       rest.erase(rest.begin());
+    }
+    if (input_.progress) {
+      input_.progress(static_cast<double>(++planned_) /
+                      static_cast<double>(product_.occurrences.size()));
     }
   }
   SequenceStep base;
