@@ -11,6 +11,11 @@ int main(int argc, char** argv) {
   int status = 0;
   hvas::app::AddInspect(&app, &status);
   hvas::app::AddAssemble(&app, &status);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // Wrong usage is an error like any other; a request for help is none.
+    return app.exit(error) == 0 ? 0 : 1;
+  }
   return status;
 }

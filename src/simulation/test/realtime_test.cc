@@ -9,10 +9,12 @@ namespace {
 using testing::PegInBlockModel;
 using testing::Session;
 
-TEST(RealtimeTest, ThreeLoopsShareASessionOfTwoSeconds) {  // X4; meant for the thread sanitizer
+constexpr int kLimit_s = 4;  // long enough to take the peg up and, in time, to put it in
+
+TEST(RealtimeTest, ThreeLoopsShareASession) {  // X4; meant for the thread sanitizer
   Session session(PegInBlockModel());
   int physics_steps = 0;
-  Execution execution = session.MakeExecution(2.0);
+  Execution execution = session.MakeExecution(kLimit_s);
   execution.advance = [&] {
     ++physics_steps;
     session.run.Advance();
@@ -24,7 +26,7 @@ TEST(RealtimeTest, ThreeLoopsShareASessionOfTwoSeconds) {  // X4; meant for the 
   EXPECT_EQ(report.wake_up.count(), report.ticks);
   EXPECT_LE(report.late_wake_ups, report.ticks);
   EXPECT_LE(report.overruns, report.ticks);
-  EXPECT_GE(report.session_ns, 2'000'000'000);
+  EXPECT_TRUE(session.run.is_done() || report.session_ns >= kLimit_s * 1'000'000'000L);
   EXPECT_EQ(report.session_ns, static_cast<std::int64_t>(report.ticks) * 1'000'000);
   // Deadlines are absolute: session time is never ahead of the clock.
   EXPECT_GE(report.wall_ns, report.session_ns - 1'000'000);

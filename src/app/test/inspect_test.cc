@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "app/test/run_hvas.h"
+
+namespace hvas::app {
+namespace {
+
+using nlohmann::json;
+using testing::ProductFile;
+using testing::Ran;
+using testing::RunHvas;
+using testing::RunHvasJson;
+
+/** What `hvas inspect --json` says about a product; asked once. */
+const json& Inspect(const std::string& name) {
+  static std::map<std::string, json> known;
+  if (!known.contains(name)) {
+    known[name] = RunHvasJson({"inspect", ProductFile(name)});
+  }
+  return known[name];
+}
+
+class InspectTest : public ::testing::TestWithParam<const char*> {
+ protected:
+  const json& inspected_{Inspect(GetParam())};
+  const json truth_ = json::parse(testing::ReadText(
+      std::filesystem::path(ProductFile(GetParam())).replace_extension("truth.json")));
+};
+
+TEST_P(InspectTest, SummaryIsAsDrawn) {  // X1, X2
+  const json& summary = inspected_["summary"];
+  for (const char* key : {"occurrences", "unique_parts", "depth"}) {
+    EXPECT_EQ(summary[key], truth_[key]) << key;
+  }
+  for (const char* key : {"volume_mm3", "mass_kg"}) {
+    const double drawn = truth_[key];
+    EXPECT_NEAR(summary[key].get<double>() / drawn, 1, 1e-5) << key;
+  }
+  EXPECT_EQ(summary["mates"]["axis_hole"], truth_["mate_counts"]["axis_hole"]);
+  EXPECT_EQ(summary["mates"]["face_face"], truth_["mate_counts"]["face_face"]);
+  EXPECT_EQ(summary["linked_parts"], truth_["occurrences"]);
+  EXPECT_EQ(summary["linked_groups"], 1);
+  EXPECT_EQ(summary["warnings"], 0) << inspected_["diagnostics"].dump(1);
+}
+
+TEST_P(InspectTest, PartsAreAsDrawn) {
+  std::map<std::string, json> found;
+  std::map<int, int> uses;
+  for (const json& occurrence : inspected_["occurrences"]) {
+    ++uses[occurrence["part"].get<int>()];
+  }
+  for (const json& part : inspected_["parts"]) {
+    found[part["name"].get<std::string>()] = part;
+  }
+  ASSERT_EQ(found.size(), truth_["parts"].size());
+  for (const json& drawn : truth_["parts"]) {
+    const std::string name = drawn["name"];
+    ASSERT_TRUE(found.contains(name)) << name;
+    const json& part = found[name];
+    EXPECT_EQ(uses[part["id"].get<int>()], drawn["count"]) << name;
+    // The flanks of gears are splines, over which volumes are integrated less exactly.
+    const double tolerance = name.find("gear") == std::string::npos ? 1e-5 : 5e-5;
+    EXPECT_NEAR(part["volume_mm3"].get<double>() / drawn["volume_mm3"].get<double>(), 1, tolerance)
+        << name;
+    EXPECT_EQ(part["density_kg_per_m3"], drawn["density_kg_m3"]) << name;
+    EXPECT_EQ(part["material"], drawn["material"]) << name;
+    EXPECT_FALSE(part["is_density_assumed"].get<bool>()) << name;
+    EXPECT_EQ(part["solid_count"], 1) << name;
+  }
+}
+
+TEST_P(InspectTest, EveryFitOfTheDrawingIsOnAMate) {  // W3
+  std::map<int, std::string> names;
+  for (const json& occurrence : inspected_["occurrences"]) {
+    names[occurrence["id"].get<int>()] = occurrence["path"];
+  }
+  // "tier 1/pin 1" in the drawing may be any occurrence whose path ends so, or repeat by tier.
+  const auto ends_with = [](const std::string& path, const std::string& name) {
+    return path == name || (path.size() > name.size() &&
+                            path.compare(path.size() - name.size(), name.size(), name) == 0 &&
+                            path[path.size() - name.size() - 1] == '/');
+  };
+  for (const json& drawn : truth_["fits"]) {
+    const bool is_found =
+        std::any_of(inspected_["mates"].begin(), inspected_["mates"].end(), [&](const json& mate) {
+          if (mate["kind"] != "axis_hole" || mate["fit"].is_null()) {
+            return false;
+          }
+          const json& fit = mate["fit"];
+          // Threads are known by the names of the screws; other fits are stated beside the file.
+          const bool is_same = drawn["fit"] == "thread"
+                                   ? fit["kind"] == "thread"
+                                   : fit["code"] == drawn["fit"] && fit["is_proposed"] == false;
+          return is_same &&
+                 std::abs(mate["hole_diameter_mm"].get<double>() /
+                              drawn["diameter_mm"].get<double>() -
+                          1) < 0.2 &&
+                 ends_with(names[mate["hole"]["occurrence"].get<int>()], drawn["hole"]) &&
+                 ends_with(names[mate["shaft"]["occurrence"].get<int>()], drawn["shaft"]);
+        });
+    EXPECT_TRUE(is_found) << drawn.dump();
+  }
+}
+
+TEST_P(InspectTest, IdsReferToWhatTheyShould) {
+  const auto size = [this](const char* key) { return inspected_[key].size(); };
+  for (const char* key : {"parts", "subassemblies", "occurrences", "mates"}) {
+    for (std::size_t i = 0; i < size(key); ++i) {
+      EXPECT_EQ(inspected_[key][i]["id"], i) << key;
+    }
+  }
+  std::set<std::string> paths;
+  for (const json& occurrence : inspected_["occurrences"]) {
+    EXPECT_LT(occurrence["part"].get<std::size_t>(), size("parts"));
+    EXPECT_LT(occurrence["subassembly"].get<std::size_t>(), size("subassemblies"));
+    EXPECT_TRUE(paths.insert(occurrence["path"]).second) << occurrence["path"];
+    double norm = 0;
+    for (const json& c : occurrence["rotation_wxyz"]) {
+      norm += c.get<double>() * c.get<double>();
+    }
+    EXPECT_NEAR(norm, 1, 1e-12);
+  }
+  for (const json& mate : inspected_["mates"]) {
+    const bool is_axis = mate["kind"] == "axis_hole";
+    for (const char* side : {is_axis ? "hole" : "a", is_axis ? "shaft" : "b"}) {
+      EXPECT_LT(mate[side]["occurrence"].get<std::size_t>(), size("occurrences"));
+    }
+    EXPECT_GT(mate[is_axis ? "engaged_mm" : "overlap_mm2"].get<double>(), 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OwnProducts, InspectTest,
+                         ::testing::Values("bushing", "gear_pump", "frame_500"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+TEST(InspectTextTest, TextNamesEveryPartAndEndsWithTheCounts) {
+  const Ran ran = RunHvas({"inspect", ProductFile("bushing")});
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.err, "");
+  for (const char* text : {"chuck", "bushing 40x80x50", "shaft 40", "H7/g6", "H7/h6",
+                           "3 parts (3 different) in 1 levels", "2 axis-hole and 2 face mates",
+                           "3 of 3 parts linked"}) {
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, text, ran.out);
+  }
+}
+
+TEST(InspectTextTest, EqualCallsGiveEqualBytes) {
+  const Ran first = RunHvas({"inspect", ProductFile("gear_pump"), "--json"});
+  const Ran second = RunHvas({"inspect", ProductFile("gear_pump"), "--json"});
+  EXPECT_TRUE(first.out == second.out);
+}
+
+}  // namespace
+}  // namespace hvas::app

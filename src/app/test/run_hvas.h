@@ -1,0 +1,51 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+/** Runs the program itself, as a person at a terminal would. */
+namespace hvas::app::testing {
+
+/** A folder of its own that goes with the object. */
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  /** Writes a text file there. */
+  [[nodiscard]] std::filesystem::path Write(const std::string& name, const std::string& text) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Ran {
+  int status{-1};  ///< Exit status; -1 when a signal ended it.
+  std::string out;
+  std::string err;
+};
+
+/** Runs `hvas` to its end. */
+[[nodiscard]] Ran RunHvas(const std::vector<std::string>& arguments);
+
+/** Runs `hvas ... --json`, expects an exit status, and reads what it printed. */
+[[nodiscard]] nlohmann::json RunHvasJson(std::vector<std::string> arguments, int status = 0);
+
+/** Starts `hvas` with its output thrown away. */
+[[nodiscard]] pid_t StartHvas(const std::vector<std::string>& arguments);
+
+/** The example product's STEP file. */
+[[nodiscard]] std::string ProductFile(const std::string& name);
+
+[[nodiscard]] std::string ReadText(const std::filesystem::path& file);
+
+}  // namespace hvas::app::testing
