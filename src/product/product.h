@@ -37,9 +37,15 @@ struct Color {
 };
 
 struct Material {
-  std::string name;
-  double density{7850};   ///< [kg/m^3]
-  bool is_assumed{true};  ///< True where the file gave none, or an absurd one.
+  std::string name;                ///< As the file calls it; empty where it names none.
+  double density{7850};            ///< [kg/m^3]
+  bool is_assumed{true};           ///< True where the file gave no density, or an absurd one.
+  std::string standard;            ///< Its row in fits::Materials(), which the rest is from.
+  bool is_standard_assumed{true};  ///< True where no name in the file led to `standard`.
+  double youngs_modulus{210e9};    ///< [Pa]
+  double poisson_ratio{0.3};
+  double yield_strength{235e6};     ///< Re, or Rp0.2 [Pa].
+  double thermal_expansion{12e-6};  ///< [1/K]
 };
 
 struct MassProperties {
@@ -59,6 +65,9 @@ struct Face {
   std::uint32_t triangle_count{0};
   std::optional<Color> color;
   std::uint64_t entity{0};  ///< Number in the STEP file; 0 where that is not known.
+  double residual{0};       ///< Of a surface fitted to triangles or splines: largest distance [m].
+  std::uint32_t first_display_triangle{0};  ///< In Part::display_mesh.
+  std::uint32_t display_triangle_count{0};
 };
 
 /** Triangles of a part, outward orientation, grouped by face. Vertices are not shared by faces. */
@@ -67,20 +76,77 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into vertices.
 };
 
-enum class FeatureKind { kHole, kShaft, kPlane };
+/** What a mate can hold on to. Inward and outward as seen from the material: a hole, a conical seat
+ (countersink) and a socket face inwards; a shaft, a taper and a ball outwards. */
+enum class FeatureKind { kHole, kShaft, kPlane, kConeSeat, kTaper, kSocket, kBall };
 
-/** Layer T: faces that act together. For holes and shafts the axis and the axial span; for planes
- the outward normal and a point. */
+[[nodiscard]] constexpr bool IsCylinder(FeatureKind kind) {
+  return kind == FeatureKind::kHole || kind == FeatureKind::kShaft;
+}
+
+[[nodiscard]] constexpr bool IsCone(FeatureKind kind) {
+  return kind == FeatureKind::kConeSeat || kind == FeatureKind::kTaper;
+}
+
+[[nodiscard]] constexpr bool IsSphere(FeatureKind kind) {
+  return kind == FeatureKind::kSocket || kind == FeatureKind::kBall;
+}
+
+enum class ThreadKind {
+  kNone,
+  kNominal,   ///< A plain cylinder that stands for a thread, by the part's name and shape.
+  kModelled,  ///< Helical faces are there.
+};
+
+/** Layer T: faces that act together. For holes, shafts and cones the axis and the axial span; for
+ planes the outward normal and a point; for spheres the centre. */
 struct Feature {
   FeatureKind kind{FeatureKind::kPlane};
   std::vector<FaceId> faces;
-  Vec3 origin_B{Vec3::Zero()};  ///< On the axis (any point), or on the plane (area centroid).
-  Vec3 axis_B{Vec3::UnitZ()};   ///< Axis direction, or outward normal.
-  double radius{0};             ///< [m]; 0 for planes.
-  double span_low{0};           ///< Extent along axis_B relative to origin_B [m]; 0 for planes.
+  Vec3 origin_B{Vec3::Zero()};  ///< On the axis (any point), on the plane (area centroid); cone:
+                                ///< its apex; sphere: its centre.
+  Vec3 axis_B{Vec3::UnitZ()};  ///< Axis direction; plane: outward normal; cone: from the apex into
+                               ///< the nappe in use.
+  double radius{0};            ///< Of cylinder or sphere; cone: the largest in use; plane: 0 [m].
+  double half_angle{0};        ///< Of a cone [rad].
+  double span_low{0};          ///< Extent along axis_B relative to origin_B [m]; 0 for planes.
   double span_high{0};
   double coverage{0};  ///< Angle of the full turn that the faces cover [rad].
   double area{0};      ///< [m^2]
+  ThreadKind thread{ThreadKind::kNone};
+  double thread_pitch{0};  ///< [m]; 0 where it is not known.
+};
+
+enum class FormKind {
+  kThroughHole,
+  kBlindHole,
+  kSteppedHole,       ///< Holes of several diameters on one axis that follow each other.
+  kCounterboredHole,  ///< A stepped hole whose wide end is a flat-bottomed seat for a head.
+  kCountersunkHole,   ///< A hole that opens in a cone wide enough to seat a head.
+  kBoss,              ///< A shaft that stands on a face of its part.
+  kShaft,             ///< Shafts on one axis that follow each other, where the part is turned.
+  kGroove,            ///< Around a shaft or in a bore, between two walls.
+  kSlot,              ///< Two half cylinders and the flats between them, or two facing flats, open.
+  kPocket,            ///< Walls around a floor.
+  kSeat,              ///< A plane that other parts can sit on.
+  kFillet,
+  kChamfer,      ///< Also the lead-in of a hole or shaft.
+  kHolePattern,  ///< Equal parallel holes, on a circle, in a row or in a grid.
+};
+
+/** What a machinist has a word for: features and faces of layer T that make a form together. */
+struct Form {
+  FormKind kind{FormKind::kSeat};
+  std::vector<FeatureId> features;  ///< Which it is made of; hole patterns: the holes.
+  std::vector<FaceId> faces;        ///< All of its faces.
+  Vec3 origin_B{Vec3::Zero()};      ///< On the axis at the entry; else the centre.
+  Vec3 axis_B{Vec3::UnitZ()};       ///< Into the material for holes, slots, pockets; outward for
+                                    ///< bosses and seats; patterns: along the holes.
+  double diameter{0};  ///< Of hole, boss or bolt circle; width of slot, fillet radius x 2 [m].
+  double depth{0};     ///< From the entry [m].
+  double angle{0};     ///< Included, of countersink or chamfer [rad].
+  int count{1};        ///< Steps of a stepped hole, holes of a pattern.
+  double lead_in{0};   ///< Radial width of the chamfer or fillet at the entry [m]; 0: sharp.
 };
 
 enum class InnerConstraintKind { kParallel, kPerpendicular, kCoaxial, kCoplanar };
@@ -99,10 +165,13 @@ struct Part {
   Material material;
   MassProperties mass;
   int solid_count{0};
+  bool has_brep{true};  ///< False where the file has triangles only.
   Box box_B;
   Mesh mesh;
   std::vector<Face> faces;
+  Mesh display_mesh;  ///< Lighter, for the eye; grouped by face like `mesh`.
   std::vector<Feature> features;
+  std::vector<Form> forms;
   std::vector<InnerConstraint> inner_constraints;
   std::vector<Dimension> dimensions;                     ///< Where the file states any.
   std::vector<GeometricTolerance> geometric_tolerances;  ///< Where the file states any.
@@ -127,7 +196,7 @@ struct Occurrence {
   Pose X_WB;         ///< The assembled pose, as drawn.
 };
 
-enum class MateKind { kAxisHole, kFaceFace };
+enum class MateKind { kAxisHole, kFaceFace, kConeSeat, kSphereSeat };
 
 /** How the faces of an axis-hole mate answer to each other. */
 enum class FitKind { kClearance, kTransition, kInterference, kThread };
@@ -141,6 +210,15 @@ struct Fit {
   std::string reason;          ///< Why this fit, in a few words.
 };
 
+/** What somebody measured or knows about one mate, over what the fit would have drawn or looked up.
+ */
+struct FitConditions {
+  std::optional<double> hole_diameter, shaft_diameter;        ///< Measured at 20 C [m].
+  std::optional<double> hole_roughness, shaft_roughness;      ///< Rz [m].
+  std::optional<double> friction;                             ///< Coulomb coefficient.
+  std::optional<double> hole_temperature, shaft_temperature;  ///< [deg C]
+};
+
 /** One side of a mate: the feature and its frame in the part. z is the axis direction (holes and
  shafts; both sides point the same way in the assembled pose) or the outward normal (planes; the two
  sides oppose each other). */
@@ -150,13 +228,26 @@ struct Connector {
   Pose X_BM;
 };
 
+enum class SurfaceConstraintKind { kCoaxial, kCoplanar, kSameCone, kConcentric };
+
+/** What a mate asks of two faces (X2, layer J). */
+struct SurfaceConstraint {
+  SurfaceConstraintKind kind{SurfaceConstraintKind::kCoplanar};
+  FaceId a;  ///< Of the part of Mate::a.
+  FaceId b;
+};
+
+enum class MateOrigin { kInferred, kUser };
+
 /** An external constraint between two parts (X2), found in the assembled pose or given by the user.
 
  Axis-hole: `a` is the hole, `b` the shaft; both frames have their origin at the same world point
  on the axis in the assembled pose, and spans along z from there. Face-face: both frames have
- their origin at the centre of the overlap. */
+ their origin at the centre of the overlap. Cone seat: `a` is the seat, `b` the taper; frames at the
+ middle of the contact, on the axis. Sphere seat: `a` is the socket; frames at the centre. */
 struct Mate {
-  MateId id;
+  MateId id;        ///< Its index in Product::mates.
+  std::string key;  ///< 10 hex digits of what it ties; the same however many other mates there are.
   MateKind kind{MateKind::kFaceFace};
   Connector a;
   Connector b;
@@ -165,6 +256,30 @@ struct Mate {
   double hole_radius{0}, shaft_radius{0};
   double overlap{0};       ///< Engaged length [m], or overlapping area [m^2].
   std::optional<Fit> fit;  ///< Axis-hole only.
+  FitConditions conditions;
+  std::vector<SurfaceConstraint> surfaces;
+  MateOrigin origin{MateOrigin::kInferred};
+  double confidence{1};  ///< 0..1; how sure it is that this pair is meant to be mated.
+  std::string evidence;  ///< What it was inferred from, in a few words.
+};
+
+/** All that ties two parts (X2, layer L): their mates, and what they leave free. */
+struct Joint {
+  OccurrenceId a;
+  OccurrenceId b;
+  std::vector<MateId> mates;
+  int free_translations{0};  ///< Directions in which b can still move on a: 0..3.
+  int free_rotations{0};     ///< 0..3
+  /** Equal parallel axis-hole mates in it (a bolt circle, dowels); 0 where there is no such
+   * pattern. */
+  int pattern_count{0};
+};
+
+/** Two holes on one axis with nothing through both: a bolt is missing or hidden. No mate, a hint.
+ */
+struct Alignment {
+  Connector a;
+  Connector b;
 };
 
 struct Product {
@@ -173,7 +288,9 @@ struct Product {
   std::vector<Part> parts;
   std::vector<Subassembly> subassemblies;  ///< [0] is the product.
   std::vector<Occurrence> occurrences;
-  std::vector<Mate> mates;  ///< External constraints; empty until inferred.
+  std::vector<Mate> mates;    ///< External constraints; empty until inferred.
+  std::vector<Joint> joints;  ///< The mates by pairs of parts.
+  std::vector<Alignment> alignments;
   Box box_W;
 
   [[nodiscard]] const Part& part_of(OccurrenceId id) const {
