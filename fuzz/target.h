@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdlib>
+#include <string_view>
+
+namespace hvas::fuzz {
+
+/** What each target does with any bytes: read them, and check what must hold of any answer. Linked
+ with replay.cc, which feeds it damaged copies of seeds, or with libfuzzer.cc. */
+void TestOne(std::string_view bytes);
+
+/** Ends the program when something that must hold does not. */
+inline void Check(bool holds) {
+  if (!holds) {
+    std::abort();
+  }
+}
+
+}  // namespace hvas::fuzz
