@@ -123,13 +123,13 @@ std::optional<TDF_Label> MaterialLabel(const TDF_Label& label) {
 class TreeBuilder {
  public:
   TreeBuilder(const Handle(TDocStd_Document) & document, const ImportOptions& options,
-              const ProgressFn& progress, Product* product, Diagnostics* diagnostics,
+              const ReadWatch& watch, Product* product, Diagnostics* diagnostics,
               const FaceEntityFn& entity_of)
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
         colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
         materials_(XCAFDoc_DocumentTool::MaterialTool(document->Main())),
         options_(options),
-        progress_(progress),
+        watch_(watch),
         product_(product),
         diagnostics_(diagnostics),
         entity_of_(entity_of) {}
@@ -169,7 +169,7 @@ class TreeBuilder {
   Handle(XCAFDoc_ColorTool) colors_;
   Handle(XCAFDoc_MaterialTool) materials_;
   const ImportOptions& options_;
-  const ProgressFn& progress_;
+  const ReadWatch& watch_;
   Product* product_;
   Diagnostics* diagnostics_;
   const FaceEntityFn& entity_of_;
@@ -398,8 +398,17 @@ bool TreeBuilder::BuildPart(const PartSource& source, Part* part) {
 void TreeBuilder::BuildParts() {
   std::vector<bool> is_built;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    if (progress_) {
-      progress_("parts", static_cast<double>(i) / static_cast<double>(sources_.size()));
+    if (watch_.progress) {
+      watch_.progress("parts", static_cast<double>(i) / static_cast<double>(sources_.size()));
+    }
+    const auto& skipped = options_.skipped_parts;
+    const auto number = static_cast<std::uint32_t>(i);
+    if (std::find(skipped.begin(), skipped.end(), number) != skipped.end()) {
+      is_built.push_back(false);
+      continue;
+    }
+    if (watch_.part) {
+      watch_.part(number, product_->parts[i].name);
     }
     is_built.push_back(BuildPart(sources_[i], &product_->parts[i]));
   }
@@ -472,9 +481,9 @@ Result<void> TreeBuilder::Build() {
 }  // namespace
 
 Result<void> BuildProduct(const Handle(TDocStd_Document) & document, const ImportOptions& options,
-                          const ProgressFn& progress, Product* product, Diagnostics* diagnostics,
+                          const ReadWatch& watch, Product* product, Diagnostics* diagnostics,
                           const FaceEntityFn& entity_of) {
-  return TreeBuilder(document, options, progress, product, diagnostics, entity_of).Build();
+  return TreeBuilder(document, options, watch, product, diagnostics, entity_of).Build();
 }
 
 }  // namespace hvas::cad

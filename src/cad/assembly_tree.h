@@ -2,7 +2,7 @@
 
 #include "base/diagnostics.h"
 #include "base/result.h"
-#include "cad/import.h"
+#include "cad/read_cad.h"
 #include "cad/step_document.h"
 #include "product/product.h"
 
@@ -22,7 +22,7 @@ namespace hvas::cad {
  than a million occurrences. May throw what OpenCASCADE throws.
  @pre product->name is the name to use where the document has none. */
 [[nodiscard]] Result<void> BuildProduct(const opencascade::handle<TDocStd_Document>& document,
-                                        const ImportOptions& options, const ProgressFn& progress,
+                                        const ImportOptions& options, const ReadWatch& watch,
                                         product::Product* product, Diagnostics* diagnostics,
                                         const FaceEntityFn& entity_of = {});
 

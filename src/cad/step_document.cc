@@ -1,12 +1,9 @@
 #include "cad/step_document.h"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <Interface_Static.hxx>
@@ -34,8 +31,6 @@
 
 namespace hvas::cad {
 namespace {
-
-constexpr const char* kStepRemedy = "choose a STEP file (.step or .stp; AP203, AP214 or AP242)";
 
 /** Hands OpenCASCADE's progress on. */
 class Indicator : public Message_ProgressIndicator {
@@ -84,6 +79,24 @@ void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagno
   }
 }
 
+/** Where the files that the read ones refer to are, or would have been looked for. */
+std::vector<std::filesystem::path> ListReferredFiles(const STEPCAFControl_Reader& reader,
+                                                     const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> paths;
+  using ExternFiles =
+      NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>;
+  for (ExternFiles::Iterator it(reader.ExternFiles()); it.More(); it.Next()) {
+    const Handle(STEPCAFControl_ExternFile)& extern_file = it.Value();
+    const bool is_loaded = !extern_file.IsNull() && !extern_file->GetWS().IsNull() &&
+                           extern_file->GetLoadStatus() == IFSelect_RetDone;
+    const std::filesystem::path name =
+        is_loaded ? extern_file->GetWS()->LoadedFile() : it.Key().ToCString();
+    paths.push_back((file.parent_path() / name).lexically_normal());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
 /** The entities of all faces that were transferred, by the shape under the face: its place and
  sense change in assemblies and when solids are turned. */
 FaceEntityFn IndexFaces(const STEPCAFControl_Reader& reader) {
@@ -116,35 +129,8 @@ FaceEntityFn IndexFaces(const STEPCAFControl_Reader& reader) {
 
 }  // namespace
 
-Result<std::filesystem::path> CheckStepFile(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::canonical(file, error);
-  if (error) {
-    return Fail(ErrorCode::kNotFound, "there is no such file", file.string(), "check the path");
-  }
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return Fail(ErrorCode::kUnreadable, "this is not a file", file.string(), kStepRemedy);
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    return Fail(ErrorCode::kUnreadable, "the file cannot be opened", file.string(),
-                "check its permissions");
-  }
-  std::array<char, 4096> head{};
-  stream.read(head.data(), head.size());
-  const std::string text(head.data(), static_cast<std::size_t>(stream.gcount()));
-  if (text.empty()) {
-    return Fail(ErrorCode::kUnreadable, "the file is empty", file.string(), kStepRemedy);
-  }
-  if (text.find("ISO-10303-21") == std::string::npos) {
-    return Fail(ErrorCode::kUnreadable, "this is not a STEP file", file.string(), kStepRemedy);
-  }
-  return path;
-}
-
 Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& file,
-                                                  const ProgressFn& progress,
-                                                  Diagnostics* diagnostics,
+                                                  const ReadWatch& watch, Diagnostics* diagnostics,
                                                   FaceEntityFn* entity_of) {
   InitialiseOnce();
   const std::string name = file.filename().string();
@@ -156,8 +142,8 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
   reader.SetMatMode(true);
   reader.SetGDTMode(false);
   reader.SetViewMode(false);
-  if (progress) {
-    progress("read", 0);
+  if (watch.progress) {
+    watch.progress("read", 0);
   }
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
     return Fail(ErrorCode::kUnreadable, "the STEP file is damaged", name,
@@ -165,13 +151,16 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
   }
   Handle(TDocStd_Document) document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
-  const opencascade::handle<Indicator> indicator = new Indicator(&progress);
+  const opencascade::handle<Indicator> indicator = new Indicator(&watch.progress);
   if (!reader.Transfer(document, indicator->Start())) {
     CloseDocument(document);
     return Fail(ErrorCode::kUnreadable, "the STEP file holds no product that can be read", name,
                 "export it again from the CAD system");
   }
   ReportMissingFiles(reader, diagnostics);
+  if (watch.referred_files != nullptr) {
+    *watch.referred_files = ListReferredFiles(reader, file);
+  }
   if (entity_of != nullptr) {
     *entity_of = IndexFaces(reader);
   }

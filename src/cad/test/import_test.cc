@@ -1,5 +1,3 @@
-#include "cad/import.h"
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -19,6 +17,7 @@
 #include <gtest/gtest.h>
 
 #include "cad/assembly_tree.h"
+#include "cad/read_cad.h"
 #include "cad/test/step_fixture.h"
 
 namespace hvas::cad {
@@ -58,7 +57,7 @@ void WriteAssembly(const std::filesystem::path& file, const std::string& unit) {
 }
 
 Product ImportOrDie(const std::filesystem::path& file, Diagnostics* diagnostics) {
-  Result<Product> product = ImportStep(file, {}, diagnostics);
+  Result<Product> product = ReadCad(file, {}, diagnostics);
   EXPECT_TRUE(product.has_value()) << product.error().ToString();
   return product.value_or(Product{});
 }
@@ -115,7 +114,7 @@ void ExpectConsistent(const Part& part) {
   EXPECT_LT(sum.norm(), 1e-12) << "the mesh is not closed";
 }
 
-TEST(ImportStep, KeepsTheTreeSharesPartsAndNamesThemInUtf8) {  // X1, X2.
+TEST(ReadCad, KeepsTheTreeSharesPartsAndNamesThemInUtf8) {  // X1, X2.
   const ScratchFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
@@ -139,7 +138,7 @@ TEST(ImportStep, KeepsTheTreeSharesPartsAndNamesThemInUtf8) {  // X1, X2.
   EXPECT_LT((product.box_W.high - Vec3(0.125, 0.040, 0.015)).norm(), 1e-6);
 }
 
-TEST(ImportStep, ReadsColoursOfPartsAndFaces) {
+TEST(ReadCad, ReadsColoursOfPartsAndFaces) {
   const ScratchFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
@@ -152,7 +151,7 @@ TEST(ImportStep, ReadsColoursOfPartsAndFaces) {
   EXPECT_EQ(red, 1);
 }
 
-TEST(ImportStep, GivesTheSameMassInEveryLengthUnit) {
+TEST(ReadCad, GivesTheSameMassInEveryLengthUnit) {
   const ScratchFolder folder;
   for (const std::string unit : {"MM", "INCH", "M"}) {
     SCOPED_TRACE(unit);
@@ -172,7 +171,7 @@ TEST(ImportStep, GivesTheSameMassInEveryLengthUnit) {
   }
 }
 
-TEST(ImportStep, GivesCentreAndInertiaOfACylinder) {
+TEST(ReadCad, GivesCentreAndInertiaOfACylinder) {
   const Part pin = ImportShape(BRepPrimAPI_MakeCylinder(5, 20).Shape());
   const double m = 7850 * kPi * 500e-9;
   const double along = 0.5 * m * 0.005 * 0.005;
@@ -182,7 +181,7 @@ TEST(ImportStep, GivesCentreAndInertiaOfACylinder) {
             1e-9 * across);
 }
 
-TEST(ImportStep, OrientsEveryAnalyticSurfaceOutOfTheMaterial) {  // N2.
+TEST(ReadCad, OrientsEveryAnalyticSurfaceOutOfTheMaterial) {  // N2.
   const Part plate = ImportShape(MakePlate());
   ExpectConsistent(plate);
   const auto hole = std::find_if(plate.faces.begin(), plate.faces.end(), [](const auto& face) {
@@ -208,7 +207,7 @@ TEST(ImportStep, OrientsEveryAnalyticSurfaceOutOfTheMaterial) {  // N2.
   }
 }
 
-TEST(ImportStep, RecognisesHolesAndPlanesDrawnAsBSplines) {  // N1.
+TEST(ReadCad, RecognisesHolesAndPlanesDrawnAsBSplines) {  // N1.
   const Part plate = ImportShape(BRepBuilderAPI_NurbsConvert(MakePlate()).Shape());
   ExpectConsistent(plate);
   EXPECT_TRUE(std::all_of(plate.faces.begin(), plate.faces.end(),
@@ -220,7 +219,7 @@ TEST(ImportStep, RecognisesHolesAndPlanesDrawnAsBSplines) {  // N1.
   EXPECT_NEAR(plate.mass.volume, kPlateVolume, 1e-7 * kPlateVolume);
 }
 
-TEST(ImportStep, FindsTheHoleWithItsSpan) {  // Layer T of X2.
+TEST(ReadCad, FindsTheHoleWithItsSpan) {  // Layer T of X2.
   const Part plate = ImportShape(MakePlate());
   ASSERT_EQ(plate.features.size(), 7u);
   const product::Feature& hole = plate.features.front();
@@ -230,7 +229,7 @@ TEST(ImportStep, FindsTheHoleWithItsSpan) {  // Layer T of X2.
   EXPECT_LT((hole.origin_B - Vec3(0.020, 0.020, 0.005)).norm(), 1e-9);
 }
 
-TEST(ImportStep, GivesTheSameBytesTwice) {
+TEST(ReadCad, GivesTheSameBytesTwice) {
   const ScratchFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
@@ -244,29 +243,32 @@ TEST(ImportStep, GivesTheSameBytesTwice) {
   EXPECT_NE(first.parts[0].shape_hash, first.parts[1].shape_hash);
 }
 
-TEST(ImportStep, ReportsProgressUpToTheEnd) {
+TEST(ReadCad, ReportsProgressUpToTheEnd) {
   const ScratchFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
   std::string last;
   double fraction = -1;
-  ASSERT_TRUE(
-      ImportStep(folder / "a.step", {}, &diagnostics, [&](std::string_view stage, double f) {
-        last = stage;
-        fraction = f;
-      }).has_value());
+  ASSERT_TRUE(ReadCad(folder / "a.step", {}, &diagnostics,
+                      {[&](std::string_view stage, double f) {
+                         last = stage;
+                         fraction = f;
+                       },
+                       {},
+                       nullptr})
+                  .has_value());
   EXPECT_EQ(last, "done");
   EXPECT_EQ(fraction, 1);
 }
 
 Error ErrorOf(const std::filesystem::path& file) {
   Diagnostics diagnostics;
-  const Result<Product> product = ImportStep(file, {}, &diagnostics);
+  const Result<Product> product = ReadCad(file, {}, &diagnostics);
   EXPECT_FALSE(product.has_value());
   return product ? Error{} : product.error();
 }
 
-TEST(ImportStepErrors, NameTheFileAndTheRemedy) {
+TEST(ReadCadErrors, NameTheFileAndTheRemedy) {
   const ScratchFolder folder;
   std::ofstream(folder / "empty.step").close();
   std::ofstream(folder / "photo.step") << "\x89PNG\r\n and so on";
@@ -284,7 +286,7 @@ TEST(ImportStepErrors, NameTheFileAndTheRemedy) {
   EXPECT_EQ(ErrorOf(folder / ".").code, ErrorCode::kUnreadable);
 }
 
-TEST(ImportStepErrors, AnAssemblyOfCurvesHasNoSolid) {
+TEST(ReadCadErrors, AnAssemblyOfCurvesHasNoSolid) {
   const ScratchFolder folder;
   DocumentBuilder builder;
   const TDF_Label curve =
@@ -297,7 +299,7 @@ TEST(ImportStepErrors, AnAssemblyOfCurvesHasNoSolid) {
   EXPECT_NE(error.message.find("no solid"), std::string::npos);
 }
 
-TEST(ImportStep, LeavesCurvesOutAndKeepsSurfacesWithoutMass) {
+TEST(ReadCad, LeavesCurvesOutAndKeepsSurfacesWithoutMass) {
   const ScratchFolder folder;
   DocumentBuilder builder;
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 20, 30).Shape();

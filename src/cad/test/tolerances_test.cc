@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "cad/import.h"
+#include "cad/read_cad.h"
 #include "cad/step_text.h"
 #include "cad/test/step_fixture.h"
 
@@ -310,7 +310,7 @@ TEST(Tolerances, ReachTheFacesOfAnImportedPart) {
   text.insert(text.rfind("ENDSEC;"), added);
   std::ofstream(file) << text;
   Diagnostics diagnostics;
-  const auto product = ImportStep(file, {}, &diagnostics);
+  const auto product = ReadCad(file, {}, &diagnostics);
   ASSERT_TRUE(product.has_value()) << product.error().ToString();
   const Part& part = product->parts.at(0);
   ASSERT_EQ(part.dimensions.size(), 3u);

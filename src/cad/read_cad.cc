@@ -1,8 +1,7 @@
-#include "cad/import.h"
+#include "cad/read_cad.h"
 
 #include <algorithm>
 #include <array>
-#include <csignal>
 #include <exception>
 #include <fstream>
 #include <mutex>
@@ -11,8 +10,6 @@
 #include <system_error>
 #include <utility>
 
-#include <OSD.hxx>
-#include <Standard_ErrorHandler.hxx>
 #include <Standard_Failure.hxx>
 #include <TDocStd_Document.hxx>
 #include <fmt/format.h>
@@ -27,39 +24,7 @@ namespace {
 
 using product::Product;
 
-/** While it lives a crash inside OpenCASCADE becomes a Standard_Failure; puts the handlers of the
- program back afterwards. */
-class SignalScope {
- public:
-  SignalScope() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      sigaction(kSignals[i], nullptr, &saved_[i]);
-    }
-    OSD::SetSignal(/*theFloatingSignal=*/false);
-    // These are none of OpenCASCADE's business.
-    for (const std::size_t i : {kInterrupt, kHangUp, kQuit, kTerminate}) {
-      sigaction(kSignals[i], &saved_[i], nullptr);
-    }
-  }
-
-  ~SignalScope() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      sigaction(kSignals[i], &saved_[i], nullptr);
-    }
-  }
-
-  SignalScope(const SignalScope&) = delete;
-  SignalScope& operator=(const SignalScope&) = delete;
-
- private:
-  static constexpr std::array<int, 9> kSignals{SIGINT, SIGHUP, SIGQUIT, SIGTERM, SIGSEGV,
-                                               SIGFPE, SIGBUS, SIGILL,  SIGSYS};
-  static constexpr std::size_t kInterrupt = 0;
-  static constexpr std::size_t kHangUp = 1;
-  static constexpr std::size_t kQuit = 2;
-  static constexpr std::size_t kTerminate = 3;
-  std::array<struct sigaction, kSignals.size()> saved_{};
-};
+constexpr const char* kFormats = "choose a STEP file (.step or .stp; AP203, AP214 or AP242)";
 
 void CheckSize(const Product& product, Diagnostics* diagnostics) {
   const double size = product.box_W.size().norm();
@@ -98,12 +63,12 @@ void AddTolerances(std::string text, Product* product, Diagnostics* diagnostics)
   }
 }
 
-Result<Product> ImportChecked(const std::filesystem::path& file, const ImportOptions& options,
-                              const ProgressFn& progress, Diagnostics* diagnostics) {
-  std::string tolerance_text = ReadToleranceText(file);
+Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions& options,
+                         const ReadWatch& watch, Diagnostics* diagnostics) {
+  std::string tolerance_text = options.with_tolerances ? ReadToleranceText(file) : std::string();
   FaceEntityFn entity_of;
   const auto document =
-      ReadStepDocument(file, progress, diagnostics, tolerance_text.empty() ? nullptr : &entity_of);
+      ReadStepDocument(file, watch, diagnostics, tolerance_text.empty() ? nullptr : &entity_of);
   if (!document) {
     return Unexpected(document.error());
   }
@@ -111,7 +76,7 @@ Result<Product> ImportChecked(const std::filesystem::path& file, const ImportOpt
   product.name = file.stem().string();
   product.source = file.filename().string();
   const Result<void> built =
-      BuildProduct(*document, options, progress, &product, diagnostics, entity_of);
+      BuildProduct(*document, options, watch, &product, diagnostics, entity_of);
   CloseDocument(*document);
   if (!built) {
     const auto missing =
@@ -125,22 +90,61 @@ Result<Product> ImportChecked(const std::filesystem::path& file, const ImportOpt
     }
     return Unexpected(built.error());
   }
+  if (watch.progress) {
+    watch.progress("tolerances", 0);
+  }
   AddTolerances(std::move(tolerance_text), &product, diagnostics);
   CheckSize(product, diagnostics);
-  if (progress) {
-    progress("done", 1);
-  }
   return product;
 }
 
-/** The only place where exceptions of OpenCASCADE, and its crashes, end. */
-Result<Product> ImportGuarded(const std::filesystem::path& file, const ImportOptions& options,
-                              const ProgressFn& progress, Diagnostics* diagnostics) {
+/** A file that is there, with its first bytes. */
+struct OpenedFile {
+  std::filesystem::path path;  ///< Absolute, without which OpenCASCADE finds no referred files.
+  std::string head;
+};
+
+Result<OpenedFile> OpenFile(const std::filesystem::path& file) {
+  std::error_code error;
+  OpenedFile opened;
+  opened.path = std::filesystem::canonical(file, error);
+  if (error) {
+    return Fail(ErrorCode::kNotFound, "there is no such file", file.string(), "check the path");
+  }
+  if (!std::filesystem::is_regular_file(opened.path, error)) {
+    return Fail(ErrorCode::kUnreadable, "this is not a file", file.string(), kFormats);
+  }
+  std::ifstream stream(opened.path, std::ios::binary);
+  if (!stream) {
+    return Fail(ErrorCode::kUnreadable, "the file cannot be opened", file.string(),
+                "check its permissions");
+  }
+  std::array<char, 4096> head{};
+  stream.read(head.data(), head.size());
+  opened.head.assign(head.data(), static_cast<std::size_t>(stream.gcount()));
+  if (opened.head.empty()) {
+    return Fail(ErrorCode::kUnreadable, "the file is empty", file.string(), kFormats);
+  }
+  return opened;
+}
+
+/** The one place where formats are told apart: by content, whatever the file is called. */
+Result<Product> ReadByContent(const OpenedFile& file, const ImportOptions& options,
+                              const ReadWatch& watch, Diagnostics* diagnostics) {
+  if (file.head.find("ISO-10303-21") != std::string::npos) {
+    return ReadStep(file.path, options, watch, diagnostics);
+  }
+  return Fail(ErrorCode::kUnreadable, "this is not a STEP file", file.path.filename().string(),
+              kFormats);
+}
+
+/** The only place where exceptions of other libraries end. */
+Result<Product> ReadGuarded(const OpenedFile& file, const ImportOptions& options,
+                            const ReadWatch& watch, Diagnostics* diagnostics) {
   constexpr const char* kRemedy = "export it again from the CAD system, if need be in parts";
-  const std::string name = file.filename().string();
+  const std::string name = file.path.filename().string();
   try {
-    OCC_CATCH_SIGNALS
-    return ImportChecked(file, options, progress, diagnostics);
+    return ReadByContent(file, options, watch, diagnostics);
   } catch (const Standard_Failure& failure) {
     return Fail(ErrorCode::kUnreadable,
                 fmt::format("OpenCASCADE could not read it: {} {}", failure.DynamicType()->Name(),
@@ -156,16 +160,19 @@ Result<Product> ImportGuarded(const std::filesystem::path& file, const ImportOpt
 
 }  // namespace
 
-Result<Product> ImportStep(const std::filesystem::path& file, const ImportOptions& options,
-                           Diagnostics* diagnostics, const ProgressFn& progress) {
-  const Result<std::filesystem::path> path = CheckStepFile(file);
-  if (!path) {
-    return Unexpected(path.error());
+Result<Product> ReadCad(const std::filesystem::path& file, const ImportOptions& options,
+                        Diagnostics* diagnostics, const ReadWatch& watch) {
+  const Result<OpenedFile> opened = OpenFile(file);
+  if (!opened) {
+    return Unexpected(opened.error());
   }
   static std::mutex mutex;  // OpenCASCADE keeps its settings and documents in globals.
   const std::scoped_lock lock(mutex);
-  const SignalScope signals;
-  return ImportGuarded(*path, options, progress, diagnostics);
+  Result<Product> product = ReadGuarded(*opened, options, watch, diagnostics);
+  if (product && watch.progress) {
+    watch.progress("done", 1);
+  }
+  return product;
 }
 
 }  // namespace hvas::cad
