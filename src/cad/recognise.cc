@@ -242,6 +242,36 @@ std::optional<Surface> RecogniseSurface(Samples samples, double tolerance) {
   return std::nullopt;
 }
 
+std::optional<Surface> FitSurface(SurfaceKind kind, Samples samples) {
+  if (samples.empty()) {
+    return std::nullopt;
+  }
+  Vec3 centroid = Vec3::Zero();
+  for (const SurfaceSample& sample : samples) {
+    centroid += sample.p;
+  }
+  centroid /= static_cast<double>(samples.size());
+  const double size = CalcSize(samples, centroid);
+  if (!(size > 0)) {
+    return std::nullopt;
+  }
+  switch (kind) {
+    case SurfaceKind::kPlane:
+      return FitPlane(samples, centroid);
+    case SurfaceKind::kCylinder:
+      return FitCylinder(samples, centroid);
+    case SurfaceKind::kCone:
+      return FitCone(samples, centroid);
+    case SurfaceKind::kSphere:
+      return FitSphere(samples, centroid);
+    case SurfaceKind::kTorus:
+      return FitTorus(samples, centroid, size);
+    case SurfaceKind::kFreeform:
+      break;
+  }
+  return std::nullopt;
+}
+
 double OrientSurface(std::span<const Vec3> vertices,
                      std::span<const std::array<std::uint32_t, 3>> triangles, Surface* surface) {
   Vec3 mean = Vec3::Zero();

@@ -25,6 +25,11 @@ struct SurfaceSample {
 [[nodiscard]] std::optional<spatial::Surface> RecogniseSurface(
     std::span<const SurfaceSample> samples, double tolerance);
 
+/** The surface of a kind that goes through samples, by the same methods but unchecked: a start for
+ RefineSurface. Empty where the samples do not determine one. Its `outward` is +1. */
+[[nodiscard]] std::optional<spatial::Surface> FitSurface(spatial::SurfaceKind kind,
+                                                         std::span<const SurfaceSample> samples);
+
 /** Sets the sense of a surface so that the gradients of CalcDistance agree with the outward normals
  of the triangles on it, and the axis of a cone so that it points into the nappe in use.
  @returns Area-weighted mean of gradient times normal: 1 for a perfect match, near 0 when the
