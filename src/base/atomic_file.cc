@@ -1,0 +1,96 @@
+#include "base/atomic_file.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+
+namespace hvas {
+namespace {
+
+Unexpected FailWith(int error, const std::filesystem::path& file) {
+  ErrorCode code = ErrorCode::kInvalid;
+  std::string remedy = "check the path and its permissions";
+  if (error == ENOENT) {
+    code = ErrorCode::kNotFound;
+    remedy = "make the folder first, or choose another";
+  } else if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
+    code = ErrorCode::kOutOfResource;
+    remedy = "make room on the disk, or choose another";
+  }
+  return Fail(code,
+              "cannot be written: " + std::error_code(error, std::generic_category()).message(),
+              file.string(), std::move(remedy));
+}
+
+/** @returns 0, or what went wrong. */
+int WriteAll(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written <= 0) {
+      return written < 0 ? errno : EIO;
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+/** Permissions of the file that is to be replaced, or those of a new one. */
+mode_t ModeFor(const std::filesystem::path& file) {
+  struct stat status {};
+
+  if (::stat(file.c_str(), &status) == 0) {
+    return status.st_mode & 07777U;
+  }
+  // There is no way to ask for the mask but to set it; a moment with a stricter one harms nobody.
+  const mode_t mask = ::umask(077);
+  ::umask(mask);
+  return 0666U & ~mask;
+}
+
+}  // namespace
+
+Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view bytes) {
+  std::error_code error;
+  std::filesystem::path target = file;
+  if (std::filesystem::is_symlink(file, error)) {
+    target = std::filesystem::canonical(file, error);
+    if (error) {
+      return FailWith(error.value(), file);
+    }
+  }
+  if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error)) {
+    return Fail(ErrorCode::kInvalid, "is there and not a file", file.string(),
+                "choose another name");
+  }
+  std::string name = target.string() + ".XXXXXX";
+  const int descriptor = ::mkstemp(name.data());
+  if (descriptor < 0) {
+    return FailWith(errno, file);
+  }
+  int failure = WriteAll(descriptor, bytes);
+  if (failure == 0 && (::fchmod(descriptor, ModeFor(target)) != 0 || ::fsync(descriptor) != 0)) {
+    failure = errno;
+  }
+  if (::close(descriptor) != 0 && failure == 0) {
+    failure = errno;
+  }
+  if (failure == 0 && ::rename(name.c_str(), target.c_str()) != 0) {
+    failure = errno;
+  }
+  if (failure != 0) {
+    ::unlink(name.c_str());
+    return FailWith(failure, file);
+  }
+  return {};
+}
+
+}  // namespace hvas

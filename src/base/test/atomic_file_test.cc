@@ -1,0 +1,94 @@
+#include "base/atomic_file.h"
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace hvas {
+namespace {
+
+std::string Read(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+class AtomicFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = ::testing::TempDir() + "hvas_atomic_XXXXXX";
+    folder_ = ::mkdtemp(name.data());
+  }
+
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::ptrdiff_t CountFiles() const {
+    return std::distance(std::filesystem::directory_iterator(folder_), {});
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(AtomicFile, WritesAndReplacesWholeFilesAndNothingElse) {
+  const std::filesystem::path file = folder_ / "a.json";
+  const std::string bytes("one\0two", 7);
+  ASSERT_TRUE(WriteAtomically(file, bytes).has_value());
+  EXPECT_EQ(Read(file), bytes);
+  ASSERT_TRUE(WriteAtomically(file, "").has_value());
+  EXPECT_EQ(Read(file), "");
+  EXPECT_EQ(CountFiles(), 1);
+}
+
+TEST_F(AtomicFile, KeepsPermissionsAndSymbolicLinks) {
+  const std::filesystem::path file = folder_ / "a.json";
+  std::ofstream(file) << "old";
+  std::filesystem::permissions(file, std::filesystem::perms(0640));
+  std::filesystem::create_symlink("a.json", folder_ / "link.json");
+  ASSERT_TRUE(WriteAtomically(folder_ / "link.json", "new").has_value());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.json"));
+  EXPECT_EQ(Read(file), "new");
+  EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0640));
+}
+
+TEST_F(AtomicFile, FullDiskIsAnErrorAndLeavesTheOldFile) {
+  const std::filesystem::path file = folder_ / "a.json";
+  std::ofstream(file) << "old";
+  // A limit on the size of files fails a write in the middle, like a full disk; in a process of its
+  // own, whose limit it stays.
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{4096, 4096};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    const Result<void> result = WriteAtomically(file, std::string(100000, 'x'));
+    ::_exit(!result && result.error().code == ErrorCode::kOutOfResource ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_EQ(Read(file), "old");
+  EXPECT_EQ(CountFiles(), 1);
+}
+
+TEST_F(AtomicFile, FoldersThatAreNotThereAndFoldersInTheWayAreErrors) {
+  EXPECT_EQ(WriteAtomically(folder_ / "none" / "a.json", "x").error().code, ErrorCode::kNotFound);
+  const Result<void> result = WriteAtomically(folder_, "x");
+  ASSERT_FALSE(result.has_value());
+  EXPECT_EQ(result.error().where, folder_.string());
+  EXPECT_FALSE(result.error().remedy.empty());
+  EXPECT_EQ(CountFiles(), 0);
+}
+
+}  // namespace
+}  // namespace hvas
