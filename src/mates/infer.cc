@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "mates/fasteners.h"
 #include "mates/plane_overlap.h"
 #include "mates/propose_fit.h"
 
@@ -183,46 +184,6 @@ std::vector<const PlacedFeature*> SelectWithin(const PlacedOccurrence& placed, c
 
 double CalcAxisDistance(const Vec3& axis, const Vec3& p_on_axis, const Vec3& q) {
   return axis.cross(q - p_on_axis).norm();
-}
-
-/** By the part's name, the occurrence's, or, where those say nothing ("SOLID"), that of the
- subassembly which holds it and no other solid part. */
-FastenerKind ClassifyOccurrence(const Product& product, const Occurrence& occurrence) {
-  const FastenerKind by_part = ClassifyName(product.part_of(occurrence.id).name);
-  if (by_part != FastenerKind::kNone) {
-    return by_part;
-  }
-  const FastenerKind by_name = ClassifyName(occurrence.name);
-  if (by_name != FastenerKind::kNone || !occurrence.parent.is_valid()) {
-    return by_name;
-  }
-  const product::Subassembly& parent = product.subassemblies[occurrence.parent.index()];
-  int solid_parts = 0;
-  for (const OccurrenceId id : parent.occurrences) {
-    solid_parts += product.part_of(id).solid_count > 0 ? 1 : 0;
-  }
-  const bool stands_for_it =
-      parent.parent.is_valid() && parent.subassemblies.empty() && solid_parts <= 1;
-  return stands_for_it ? ClassifyName(parent.name) : FastenerKind::kNone;
-}
-
-/** Those of `triangles` whose boxes meet the box of `other`. */
-std::vector<Triangle2> SelectNear(const std::vector<Triangle2>& triangles,
-                                  const std::vector<Triangle2>& other) {
-  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
-  Vec2 high = -low;
-  for (const Triangle2& t : other) {
-    low = low.cwiseMin(t[0]).cwiseMin(t[1]).cwiseMin(t[2]);
-    high = high.cwiseMax(t[0]).cwiseMax(t[1]).cwiseMax(t[2]);
-  }
-  std::vector<Triangle2> selected;
-  for (const Triangle2& t : triangles) {
-    if ((t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() <= high.array()).all() &&
-        (t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() >= low.array()).all()) {
-      selected.push_back(t);
-    }
-  }
-  return selected;
 }
 
 class Inference {

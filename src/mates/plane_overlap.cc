@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hvas::mates {
 namespace {
@@ -118,6 +119,24 @@ Overlap CalcOverlap(const std::vector<Triangle2>& a, const std::vector<Triangle2
     }
   }
   return {area, area > 0 ? Vec2(moment / area) : Vec2::Zero()};
+}
+
+std::vector<Triangle2> SelectNear(const std::vector<Triangle2>& triangles,
+                                  const std::vector<Triangle2>& others) {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = -low;
+  for (const Triangle2& t : others) {
+    low = low.cwiseMin(t[0]).cwiseMin(t[1]).cwiseMin(t[2]);
+    high = high.cwiseMax(t[0]).cwiseMax(t[1]).cwiseMax(t[2]);
+  }
+  std::vector<Triangle2> selected;
+  for (const Triangle2& t : triangles) {
+    if ((t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() <= high.array()).all() &&
+        (t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() >= low.array()).all()) {
+      selected.push_back(t);
+    }
+  }
+  return selected;
 }
 
 }  // namespace hvas::mates

@@ -20,4 +20,8 @@ struct Overlap {
  orientation. Sweeps over x, so its cost goes with the number of triangle pairs that meet. */
 [[nodiscard]] Overlap CalcOverlap(const std::vector<Triangle2>& a, const std::vector<Triangle2>& b);
 
+/** Those of `triangles` whose boxes meet the box of all of `others`. */
+[[nodiscard]] std::vector<Triangle2> SelectNear(const std::vector<Triangle2>& triangles,
+                                                const std::vector<Triangle2>& others);
+
 }  // namespace hvas::mates

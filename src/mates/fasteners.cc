@@ -1,0 +1,116 @@
+#include "mates/fasteners.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace hvas::mates {
+namespace {
+
+using product::Feature;
+using product::FeatureKind;
+using product::Occurrence;
+using product::OccurrenceId;
+using product::Part;
+using product::Product;
+
+constexpr double kSameAngle = 2e-3;     // [rad]
+constexpr double kSameDistance = 0.01;  // Part of the distance.
+
+/** A flat beside an axis. */
+struct Flat {
+  double distance{0};  // Of its plane from the axis [m].
+  double angle{0};     // Of its normal about the axis, modulo 60 degrees [rad].
+  bool is_outward{true};
+};
+
+/** True where the flats hold six of one hexagon around the axis. */
+bool HasHexagon(const Part& part, const Feature& axis) {
+  const Mat3 R = spatial::FrameFromZ(axis.axis_B).toRotationMatrix();
+  std::vector<Flat> flats;
+  for (const Feature& plane : part.features) {
+    if (plane.kind != FeatureKind::kPlane || std::abs(plane.axis_B.dot(axis.axis_B)) > kSameAngle) {
+      continue;
+    }
+    const double distance = plane.axis_B.dot(plane.origin_B - axis.origin_B);
+    const Vec3 n = R.transpose() * plane.axis_B;
+    flats.push_back({std::abs(distance), std::atan2(n.y(), n.x()), distance > 0});
+  }
+  constexpr double kSixth = std::numbers::pi / 3;
+  for (const Flat& first : flats) {
+    unsigned found = 0;
+    for (const Flat& flat : flats) {
+      const double turn = (flat.angle - first.angle) / kSixth;
+      const double nearest = std::round(turn);
+      if (flat.is_outward == first.is_outward && first.distance > 0 &&
+          std::abs(flat.distance - first.distance) < kSameDistance * first.distance &&
+          std::abs(turn - nearest) * kSixth < kSameAngle) {
+        found |= 1U << (static_cast<unsigned>(static_cast<int>(nearest) + 12) % 6U);
+      }
+    }
+    if (found == 0x3FU) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool IsOnAxis(const Feature& a, const Feature& b) {
+  return std::abs(a.axis_B.dot(b.axis_B)) > 1 - kSameAngle * kSameAngle &&
+         a.axis_B.cross(b.origin_B - a.origin_B).norm() < kSameDistance * a.radius;
+}
+
+}  // namespace
+
+FastenerKind ClassifyShape(const Part& part) {
+  // Fasteners have few features; plates with many holes would take long and are none.
+  constexpr std::size_t kMostFeatures = 64;
+  if (part.features.size() > kMostFeatures) {
+    return FastenerKind::kNone;
+  }
+  const Feature* hole = nullptr;
+  const Feature* shaft = nullptr;
+  for (const Feature& feature : part.features) {
+    const Feature*& best = feature.kind == FeatureKind::kShaft ? shaft : hole;
+    if (product::IsCylinder(feature.kind) && (best == nullptr || feature.area > best->area)) {
+      best = &feature;
+    }
+  }
+  if (shaft != nullptr && HasHexagon(part, *shaft)) {
+    // A shaft only, or beside a socket: in a nut with a flange the hole goes all the way through.
+    const bool is_through = hole != nullptr && IsOnAxis(*shaft, *hole) &&
+                            hole->span_high - hole->span_low > shaft->span_high - shaft->span_low;
+    return is_through ? FastenerKind::kNut : FastenerKind::kScrew;
+  }
+  return shaft == nullptr && hole != nullptr && HasHexagon(part, *hole) ? FastenerKind::kNut
+                                                                        : FastenerKind::kNone;
+}
+
+FastenerKind ClassifyOccurrence(const Product& product, const Occurrence& occurrence) {
+  const Part& part = product.part_of(occurrence.id);
+  const FastenerKind by_part = ClassifyName(part.name);
+  if (by_part != FastenerKind::kNone) {
+    return by_part;
+  }
+  const FastenerKind by_name = ClassifyName(occurrence.name);
+  if (by_name != FastenerKind::kNone) {
+    return by_name;
+  }
+  if (occurrence.parent.is_valid()) {
+    const product::Subassembly& parent = product.subassemblies[occurrence.parent.index()];
+    int solid_parts = 0;
+    for (const OccurrenceId id : parent.occurrences) {
+      solid_parts += product.part_of(id).solid_count > 0 ? 1 : 0;
+    }
+    const bool stands_for_it =
+        parent.parent.is_valid() && parent.subassemblies.empty() && solid_parts <= 1;
+    const FastenerKind by_parent = stands_for_it ? ClassifyName(parent.name) : FastenerKind::kNone;
+    if (by_parent != FastenerKind::kNone) {
+      return by_parent;
+    }
+  }
+  return ClassifyShape(part);
+}
+
+}  // namespace hvas::mates

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "mates/propose_fit.h"
+#include "product/product.h"
+
+namespace hvas::mates {
+
+/** By shape: six equal flats at 60 degrees around a cylinder. Around a hole: a nut, where no shaft
+ of the part is on that axis. Around a shaft, outside it (a hexagon head) or as a socket: a screw.
+ */
+[[nodiscard]] FastenerKind ClassifyShape(const product::Part& part);
+
+/** By the part's name, the occurrence's, or, where those say nothing ("SOLID"), that of the
+ subassembly which holds it and no other solid part; else by its shape. */
+[[nodiscard]] FastenerKind ClassifyOccurrence(const product::Product& product,
+                                              const product::Occurrence& occurrence);
+
+}  // namespace hvas::mates

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "mates/limits.h"
+#include "mates/propose_fit.h"
+#include "product/product.h"
+
+namespace hvas::mates {
+
+/** Fills `evidence` and `confidence` of an inferred mate by the rule of docs/algorithms/mates.md: a
+ product of how close the sizes are, how much of them is engaged, how exactly they are placed, and
+ whether the names agree. @param part_a, part_b  What the names and shapes of the parts say. */
+void Judge(const product::Product& product, const InferenceLimits& limits, FastenerKind part_a,
+           FastenerKind part_b, product::Mate* mate);
+
+/** Evidence alone, in a few words with numbers: "radii 3.000/2.990 mm, engaged 12.00 mm, axes 0.00
+ um apart". */
+[[nodiscard]] std::string DescribeEvidence(const product::Product& product,
+                                           const product::Mate& mate);
+
+}  // namespace hvas::mates
