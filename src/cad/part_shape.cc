@@ -1,24 +1,17 @@
 #include "cad/part_shape.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include <BRepBndLib.hxx>
-#include <BRepBuilderAPI_Copy.hxx>
 #include <BRepGProp.hxx>
-#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
-#include <Poly_Triangulation.hxx>
-#include <ShapeUpgrade_ShapeDivideAngle.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -100,143 +93,72 @@ Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre) {
   return body;
 }
 
-std::size_t CountTriangles(const TopoDS_Shape& shape) {
-  std::size_t count = 0;
-  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-    TopLoc_Location location;
-    const auto triangulation = BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
-    count += triangulation.IsNull() ? 0U : static_cast<std::size_t>(triangulation->NbTriangles());
-  }
-  return count;
-}
-
-bool IsMeshed(const TopoDS_Face& face) {
-  TopLoc_Location location;
-  return !BRep_Tool::Triangulation(face, location).IsNull();
-}
-
-std::size_t MeshOnce(const TopoDS_Shape& shape, double deflection, double angle,
-                     double interior_factor = 1) {
-  BRepTools::Clean(shape);  // Else a finer mesh keeps what it can of the coarser one.
-  IMeshTools_Parameters parameters;
-  parameters.Deflection = units::ToMm(deflection);
-  parameters.Angle = angle;
-  if (interior_factor > 1) {
-    parameters.DeflectionInterior = interior_factor * parameters.Deflection;
-    parameters.AngleInterior = 1;
-  }
-  const BRepMesh_IncrementalMesh mesher(shape, parameters);
-  return CountTriangles(shape);
-}
-
-/** Meshes the shape in place, coarse first: on B-splines the number of triangles goes with the
- inverse of the deflection, and a fine mesh of the wrong part takes minutes. @returns the deflection
- used [m]. */
-double MeshShape(const TopoDS_Shape& shape, double diagonal, const ImportOptions& options,
-                 const std::string& name, Diagnostics* diagnostics) {
-  constexpr double kFirst = 16;  // Of the wanted deflection.
-  constexpr int kRetries = 3;
-  const double wanted = std::max(options.min_deflection, options.relative_deflection * diagonal);
-  double deflection = kFirst * wanted;
-  double angle = options.max_angle;
-  std::size_t count = MeshOnce(shape, deflection, angle);
-  for (int i = 0; i < kRetries && count > options.max_triangles; ++i) {
-    deflection *= 4;
-    angle = std::min(1.6 * angle, 0.5);
-    count = MeshOnce(shape, deflection, angle);
-  }
-  for (const double factor : {16.0, 4.0}) {
-    if (deflection == kFirst * wanted &&
-        factor * static_cast<double>(count) <= static_cast<double>(options.max_triangles)) {
-      deflection /= factor;
-      count = MeshOnce(shape, deflection, angle);
-      break;
-    }
-  }
-  if (count > options.max_triangles) {
-    diagnostics->Warn("large-mesh", name, fmt::format("the mesh has {} triangles", count),
-                      "simplify the part; contact with it will be slow");
-  } else if (deflection > wanted) {
-    diagnostics->Note("coarse-mesh", name,
-                      fmt::format("meshed to {:.1f} um instead of {:.1f} um, with {} triangles",
-                                  units::ToUm(deflection), units::ToUm(wanted), count));
-  }
-  return deflection;
-}
-
-/** Cuts a face that BRepMesh gives up (cones with a seam are among them) into pieces that it can
- do; of several ways the one that leaves the least undone. */
-std::vector<TopoDS_Face> MeshInPieces(const TopoDS_Face& face, double deflection, double angle) {
-  std::vector<TopoDS_Face> best;
-  std::size_t least_undone = std::numeric_limits<std::size_t>::max();
-  constexpr std::array<std::pair<double, double>, 6> kWays{
-      {{90, 1}, {50, 1}, {35, 1}, {90, 2}, {90, 4}, {90, 16}}};  // Cut [deg], coarser by.
-  for (const auto& [cut_deg, coarser] : kWays) {
-    // A copy does not know how the neighbours divided their edges; the way out when that is the
-    // snag.
-    const TopoDS_Shape source = coarser > 1 ? BRepBuilderAPI_Copy(face).Shape() : face;
-    ShapeUpgrade_ShapeDivideAngle divide(units::FromDeg(cut_deg), source);
-    divide.Perform();
-    MeshOnce(divide.Result(), coarser * deflection, angle, coarser > 1 ? 100 : 1);
-    std::vector<TopoDS_Face> pieces;
-    std::size_t undone = 0;
-    for (TopExp_Explorer it(divide.Result(), TopAbs_FACE); it.More(); it.Next()) {
-      pieces.push_back(TopoDS::Face(it.Current()));
-      undone += IsMeshed(pieces.back()) ? 0U : 1U;
-    }
-    if (undone < least_undone) {
-      least_undone = undone;
-      best = std::move(pieces);
-    }
-    if (undone == 0) {
-      break;
-    }
-  }
-  return best;
-}
-
-/** Appends a face's triangles with outward orientation; slivers without an area are left out. */
-void AppendTriangles(const TopoDS_Face& face, Part* part, Face* out) {
-  TopLoc_Location location;
-  const Handle(Poly_Triangulation) source = BRep_Tool::Triangulation(face, location);
-  if (source.IsNull()) {
-    return;
-  }
-  const auto first = static_cast<std::uint32_t>(part->mesh.vertices.size());
-  const gp_Trsf& transform = location.Transformation();
-  for (int i = 1; i <= source->NbNodes(); ++i) {
-    const gp_Pnt p = source->Node(i).Transformed(transform);
-    const Vec3 vertex(units::FromMm(p.X()), units::FromMm(p.Y()), units::FromMm(p.Z()));
-    part->mesh.vertices.push_back(vertex);
-    out->box_B.Add(vertex);
-  }
-  const bool is_reversed = (face.Orientation() == TopAbs_REVERSED) != transform.IsNegative();
-  for (int i = 1; i <= source->NbTriangles(); ++i) {
-    int a = 0;
-    int b = 0;
-    int c = 0;
-    source->Triangle(i).Get(a, b, c);
-    if (is_reversed) {
-      std::swap(b, c);
-    }
-    const std::array<std::uint32_t, 3> triangle{first + static_cast<std::uint32_t>(a - 1),
-                                                first + static_cast<std::uint32_t>(b - 1),
-                                                first + static_cast<std::uint32_t>(c - 1)};
-    const auto& vertices = part->mesh.vertices;
-    const Vec3& p = vertices[triangle[0]];
-    if ((vertices[triangle[1]] - p).cross(vertices[triangle[2]] - p).norm() > 0) {
-      part->mesh.triangles.push_back(triangle);
-    }
-  }
-  out->triangle_count =
-      static_cast<std::uint32_t>(part->mesh.triangles.size()) - out->first_triangle;
-}
-
 double CalcArea(const TopoDS_Face& face) {
   GProp_GProps properties;
   BRepGProp::SurfaceProperties(face, properties);
   const double area_mm2 = std::abs(properties.Mass());
   return area_mm2 * units::kMetresPerMillimetre * units::kMetresPerMillimetre;
+}
+
+/** Makes the part's faces, with their display triangles. @pre The shape is meshed for display. */
+void AddDisplayMesh(const TopoDS_Shape& shape, Part* part) {
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    Face face;
+    face.first_display_triangle = static_cast<std::uint32_t>(part->display_mesh.triangles.size());
+    AppendTriangles(TopoDS::Face(it.Current()), &part->display_mesh);
+    face.display_triangle_count = static_cast<std::uint32_t>(part->display_mesh.triangles.size()) -
+                                  face.first_display_triangle;
+    part->faces.push_back(face);
+  }
+}
+
+/** Lends a face that could be meshed only in pieces its fine triangles for display. */
+void CopyToDisplay(Part* part, Face* face) {
+  product::Mesh& display = part->display_mesh;
+  face->first_display_triangle = static_cast<std::uint32_t>(display.triangles.size());
+  face->display_triangle_count = face->triangle_count;
+  for (std::uint32_t i = 0; i < face->triangle_count; ++i) {
+    const auto first = static_cast<std::uint32_t>(display.vertices.size());
+    for (const std::uint32_t vertex : part->mesh.triangles[face->first_triangle + i]) {
+      display.vertices.push_back(part->mesh.vertices[vertex]);
+    }
+    display.triangles.push_back({first, first + 1, first + 2});
+  }
+}
+
+/** Gives the part's faces area, box and triangles. @returns the number of faces without any.
+ @pre The shape is meshed for contact, and AddDisplayMesh was called. */
+int AddContactMesh(const TopoDS_Shape& shape, const MeshLevel& level, Part* part) {
+  int unmeshed = 0;
+  std::size_t index = 0;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
+    const TopoDS_Face& source = TopoDS::Face(it.Current());
+    Face& face = part->faces[index];
+    face.area = CalcArea(source);
+    face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
+    const std::size_t first_vertex = part->mesh.vertices.size();
+    const bool is_whole = IsMeshed(source);
+    if (is_whole) {
+      AppendTriangles(source, &part->mesh);
+    } else if (face.area > kLeastGap * level.deflection * level.deflection) {
+      for (const TopoDS_Face& piece : MeshInPieces(source, level)) {
+        AppendTriangles(piece, &part->mesh);
+      }
+    }
+    for (std::size_t i = first_vertex; i < part->mesh.vertices.size(); ++i) {
+      face.box_B.Add(part->mesh.vertices[i]);
+    }
+    part->box_B.Add(face.box_B);
+    face.triangle_count =
+        static_cast<std::uint32_t>(part->mesh.triangles.size()) - face.first_triangle;
+    if (face.display_triangle_count == 0) {
+      CopyToDisplay(part, &face);
+    }
+    const bool is_gap = !is_whole && face.triangle_count == 0 &&
+                        face.area > kLeastGap * level.deflection * level.deflection;
+    unmeshed += is_gap ? 1 : 0;
+  }
+  return unmeshed;
 }
 
 /** Gives a face its surface, or leaves it freeform when the triangles do not lie on it. */
@@ -335,43 +257,36 @@ ShapeContent CountContent(const TopoDS_Shape& shape) {
   return content;
 }
 
-bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
-                    const FaceColorFn& color_of, Part* part, Diagnostics* diagnostics,
-                    const FaceEntityFn& entity_of) {
+std::optional<MeshLevel> BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
+                                        const FaceColorFn& color_of, Part* part,
+                                        Diagnostics* diagnostics, const FaceEntityFn& entity_of) {
   Bnd_Box box_mm;
   BRepBndLib::AddClose(shape, box_mm);
   if (box_mm.IsVoid() || box_mm.IsOpen()) {
-    return false;
+    return std::nullopt;
   }
   const double diagonal = units::FromMm(std::sqrt(box_mm.SquareExtent()));
   const gp_Pnt low = box_mm.CornerMin();
   const gp_Pnt centre = low.Translated(gp_Vec(low, box_mm.CornerMax()) * 0.5);
   const Body body = CollectBody(shape, centre);
-  const double deflection = MeshShape(body.shape, diagonal, options, part->name, diagnostics);
+  const MeshLevel display = MeshForDisplay(body.shape, diagonal, options);
+  AddDisplayMesh(body.shape, part);
+  const MeshLevel level =
+      MeshForContact(body.shape, diagonal, display, options, part->name, diagnostics);
+  const int unmeshed = AddContactMesh(body.shape, level, part);
   const double tolerance =
       std::max(kRecognitionTolerance, kRelativeRecognitionTolerance * diagonal);
-  int unmeshed = 0;
-  for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next()) {
+  std::size_t index = 0;
+  for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
     const TopoDS_Face& source = TopoDS::Face(it.Current());
-    Face face;
-    face.area = CalcArea(source);
-    face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
-    if (IsMeshed(source)) {
-      AppendTriangles(source, part, &face);
-    } else if (face.area > kLeastGap * deflection * deflection) {
-      for (const TopoDS_Face& piece : MeshInPieces(source, deflection, options.max_angle)) {
-        AppendTriangles(piece, part, &face);
-      }
-      unmeshed += face.triangle_count == 0 ? 1 : 0;
-    }
-    SetSurface(source, deflection, tolerance, *part, &face, diagnostics);
+    Face& face = part->faces[index];
+    SetSurface(source, level.deflection, tolerance, *part, &face, diagnostics);
     face.color = color_of(source);
     face.entity = entity_of ? entity_of(source) : 0;
-    part->box_B.Add(face.box_B);
-    part->faces.push_back(face);
   }
+  BRepTools::Clean(body.shape);  // The triangles are ours now.
   if (part->mesh.triangles.empty()) {
-    return false;
+    return std::nullopt;
   }
   SetMass(body, part);
   if (body.is_closed_shell) {
@@ -383,7 +298,7 @@ bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
   }
   CheckPart(*part, unmeshed, diagnostics);
   part->shape_hash = CalcShapeHash(*part);
-  return true;
+  return level;
 }
 
 }  // namespace hvas::cad

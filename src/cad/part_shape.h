@@ -5,6 +5,7 @@
 
 #include "base/diagnostics.h"
 #include "cad/import.h"
+#include "cad/part_mesh.h"
 #include "cad/step_document.h"
 #include "product/product.h"
 
@@ -23,13 +24,15 @@ struct ShapeContent {
 
 [[nodiscard]] ShapeContent CountContent(const TopoDS_Shape& shape);
 
-/** Fills mesh, faces, box, mass, solid_count and shape_hash of a part from its B-rep; name and
- material must be there already. Closed shells count as
- solids where there is no solid, other faces outside any solid where there is neither.
- Colours come from `color_of`, Face::entity from `entity_of`. @returns false when nothing could be
- meshed. */
-[[nodiscard]] bool BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
-                                  const FaceColorFn& color_of, product::Part* part,
-                                  Diagnostics* diagnostics, const FaceEntityFn& entity_of = {});
+/** Fills meshes, faces, box, mass, solid_count and shape_hash of a part from its B-rep; name and
+ material must be there already. Closed shells count as solids where there is no solid, other faces
+ outside any solid where there is neither. Colours come from `color_of`, Face::entity from
+ `entity_of`. The shape loses any triangles it had. @returns how finely it was meshed, or nothing
+ when nothing could be meshed. Different threads may work on shapes without common subshapes. */
+[[nodiscard]] std::optional<MeshLevel> BuildPartShape(const TopoDS_Shape& shape,
+                                                      const ImportOptions& options,
+                                                      const FaceColorFn& color_of,
+                                                      product::Part* part, Diagnostics* diagnostics,
+                                                      const FaceEntityFn& entity_of = {});
 
 }  // namespace hvas::cad
