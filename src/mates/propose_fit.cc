@@ -1,7 +1,5 @@
 #include "mates/propose_fit.h"
 
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -13,116 +11,11 @@ namespace {
 
 using product::Fit;
 using product::FitKind;
+using product::ThreadKind;
 
 constexpr double kEqual = 1e-6;                // Radii closer than this are drawn equal [m].
 constexpr double kThreadInterference = 0.015;  // Part of d.
 constexpr double kLargestDrawnThread = 12e-3;  // [m]
-
-bool IsDigit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-bool IsLetter(char c) {
-  return (c >= 'a' && c <= 'z');
-}
-
-std::string ToLower(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return lower;
-}
-
-/** True where the word stands for itself: not inside another word ("nut" in "minute"). A plural s
- and digits may follow. */
-bool HasWord(std::string_view text, std::string_view word) {
-  for (std::size_t at = text.find(word); at != std::string_view::npos;
-       at = text.find(word, at + 1)) {
-    const bool starts = at == 0 || !IsLetter(text[at - 1]);
-    std::size_t end = at + word.size();
-    if (end < text.size() && text[end] == 's') {
-      ++end;
-    }
-    if (starts && (end >= text.size() || !IsLetter(text[end]))) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/** "m3", "m2.5x8": a thread size between M1 and M64 that is not part of a longer word. */
-bool HasThreadSize(std::string_view text) {
-  for (std::size_t at = text.find('m'); at != std::string_view::npos; at = text.find('m', at + 1)) {
-    if ((at > 0 && (IsLetter(text[at - 1]) || IsDigit(text[at - 1]))) || at + 1 >= text.size() ||
-        !IsDigit(text[at + 1])) {
-      continue;
-    }
-    int size = 0;
-    std::size_t end = at + 1;
-    for (; end < text.size() && IsDigit(text[end]) && size < 1000; ++end) {
-      size = 10 * size + (text[end] - '0');
-    }
-    const bool ends = end >= text.size() || !IsLetter(text[end]) || text[end] == 'x';
-    if (ends && size >= 1 && size <= 64) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/** "din 912", "iso_4762", "din-7991", "iso4762". */
-bool HasStandard(std::string_view text, std::string_view body, std::string_view number) {
-  for (std::size_t at = text.find(body); at != std::string_view::npos;
-       at = text.find(body, at + 1)) {
-    std::size_t begin = at + body.size();
-    while (begin < text.size() && !IsDigit(text[begin]) && !IsLetter(text[begin])) {
-      ++begin;
-    }
-    std::size_t end = begin;
-    while (end < text.size() && IsDigit(text[end])) {
-      ++end;
-    }
-    if (text.substr(begin, end - begin) == number) {
-      return true;
-    }
-  }
-  return false;
-}
-
-struct Standard {
-  std::string_view body;
-  std::string_view number;
-  FastenerKind kind;
-};
-
-// The screw and nut standards met most in drawings.
-constexpr std::array kStandards{
-    Standard{"din", "84", FastenerKind::kScrew},    Standard{"din", "912", FastenerKind::kScrew},
-    Standard{"din", "913", FastenerKind::kScrew},   Standard{"din", "914", FastenerKind::kScrew},
-    Standard{"din", "916", FastenerKind::kScrew},   Standard{"din", "931", FastenerKind::kScrew},
-    Standard{"din", "933", FastenerKind::kScrew},   Standard{"din", "963", FastenerKind::kScrew},
-    Standard{"din", "965", FastenerKind::kScrew},   Standard{"din", "6912", FastenerKind::kScrew},
-    Standard{"din", "7984", FastenerKind::kScrew},  Standard{"din", "7985", FastenerKind::kScrew},
-    Standard{"din", "7991", FastenerKind::kScrew},  Standard{"iso", "1207", FastenerKind::kScrew},
-    Standard{"iso", "2009", FastenerKind::kScrew},  Standard{"iso", "2010", FastenerKind::kScrew},
-    Standard{"iso", "4014", FastenerKind::kScrew},  Standard{"iso", "4017", FastenerKind::kScrew},
-    Standard{"iso", "4026", FastenerKind::kScrew},  Standard{"iso", "4027", FastenerKind::kScrew},
-    Standard{"iso", "4029", FastenerKind::kScrew},  Standard{"iso", "4762", FastenerKind::kScrew},
-    Standard{"iso", "7045", FastenerKind::kScrew},  Standard{"iso", "7046", FastenerKind::kScrew},
-    Standard{"iso", "7380", FastenerKind::kScrew},  Standard{"iso", "10642", FastenerKind::kScrew},
-    Standard{"iso", "14579", FastenerKind::kScrew}, Standard{"iso", "14583", FastenerKind::kScrew},
-    Standard{"din", "439", FastenerKind::kNut},     Standard{"din", "555", FastenerKind::kNut},
-    Standard{"din", "562", FastenerKind::kNut},     Standard{"din", "934", FastenerKind::kNut},
-    Standard{"din", "985", FastenerKind::kNut},     Standard{"din", "1587", FastenerKind::kNut},
-    Standard{"iso", "4032", FastenerKind::kNut},    Standard{"iso", "4033", FastenerKind::kNut},
-    Standard{"iso", "4035", FastenerKind::kNut},    Standard{"iso", "7040", FastenerKind::kNut},
-    Standard{"iso", "10511", FastenerKind::kNut},
-};
-
-constexpr std::array<std::string_view, 4> kNutWords{"nut", "insert", "heatset", "locknut"};
-constexpr std::array<std::string_view, 9> kScrewWords{
-    "screw", "bolt", "bhcs", "shcs", "fhcs", "stud", "grubscrew", "setscrew", "capscrew"};
 
 std::string Describe(double diameter) {
   // Micrometres are enough to say what a drawing has.
@@ -171,47 +64,48 @@ std::string ChoosePressCode(double nominal) {
   return {};
 }
 
-}  // namespace
-
-FastenerKind ClassifyName(std::string_view name) {
-  const std::string text = ToLower(name);
-  for (const std::string_view word : kNutWords) {
-    if (HasWord(text, word)) {
-      return FastenerKind::kNut;
-    }
+/** Why names, shapes or threads say that this is a thread; nothing where they do not. */
+std::optional<std::string> FindThreadReason(const FitEvidence& evidence, double clearance) {
+  const bool is_larger = clearance > 2 * kEqual;
+  const bool is_smaller = clearance < -2 * kEqual;
+  const bool is_nut = evidence.hole_part == FastenerKind::kNut;
+  const bool is_screw = evidence.shaft_part == FastenerKind::kScrew;
+  const bool is_threaded_hole = evidence.hole_thread != ThreadKind::kNone;
+  const bool is_threaded_shaft = evidence.shaft_thread != ThreadKind::kNone;
+  if (is_nut && is_screw) {
+    return "names or shapes say nut and screw";
   }
-  if (text.find("heat-set") != std::string::npos || text.find("heat set") != std::string::npos ||
-      text.find("heat_set") != std::string::npos) {
-    return FastenerKind::kNut;
+  if (is_threaded_hole && (is_screw || is_threaded_shaft)) {
+    return "a screw in a threaded hole";
   }
-  for (const std::string_view word : kScrewWords) {
-    if (HasWord(text, word)) {
-      return FastenerKind::kScrew;
-    }
+  if (!is_larger && is_nut) {
+    return "name or shape says nut";
   }
-  for (const Standard& standard : kStandards) {
-    if (HasStandard(text, standard.body, standard.number)) {
-      return standard.kind;
-    }
+  if (!is_larger && is_threaded_hole) {
+    return "the hole is threaded";
   }
-  return HasThreadSize(text) && !HasWord(text, "washer") ? FastenerKind::kScrew
-                                                         : FastenerKind::kNone;
+  if (!is_larger && is_screw && !evidence.nut_on_shaft) {
+    return "name or shape says screw";
+  }
+  if (!is_larger && is_threaded_shaft && !evidence.nut_on_shaft) {
+    return "the shaft is threaded";
+  }
+  if (is_smaller && is_screw) {
+    return "a screw is never pressed in";
+  }
+  if (is_smaller && evidence.shaft_part == FastenerKind::kNut) {
+    return "a nut or insert in its pocket, melted or pulled in";
+  }
+  return std::nullopt;
 }
+
+}  // namespace
 
 Fit ProposeFit(const FitEvidence& evidence) {
   const double d = 2 * evidence.shaft_radius;
   const double clearance = 2 * (evidence.hole_radius - evidence.shaft_radius);
-  const bool is_larger = clearance > 2 * kEqual;
-  const bool is_nut = evidence.hole_part == FastenerKind::kNut;
-  const bool is_screw = evidence.shaft_part == FastenerKind::kScrew;
-  if (is_nut && is_screw) {
-    return MakeThread(evidence.shaft_radius, "the names say nut and screw");
-  }
-  if (!is_larger && is_nut) {
-    return MakeThread(evidence.shaft_radius, "the name says nut");
-  }
-  if (!is_larger && is_screw && !evidence.nut_on_shaft) {
-    return MakeThread(evidence.shaft_radius, "the name says screw");
+  if (std::optional<std::string> reason = FindThreadReason(evidence, clearance)) {
+    return MakeThread(evidence.shaft_radius, std::move(*reason));
   }
   if (-clearance > kThreadInterference * d && d <= kLargestDrawnThread) {
     return MakeThread(evidence.shaft_radius, "drawn interference of " + Describe(-clearance) +
@@ -222,7 +116,7 @@ Fit ProposeFit(const FitEvidence& evidence) {
     return {FitKind::kInterference, ChoosePressCode(nominal), nominal, true,
             "drawn interference of " + Describe(-clearance)};
   }
-  if (!is_larger) {
+  if (clearance <= 2 * kEqual) {
     return {FitKind::kClearance, ChooseClearanceCode(nominal, 0), nominal, true, "drawn equal"};
   }
   return {FitKind::kClearance, ChooseClearanceCode(nominal, clearance), nominal, true,

@@ -149,7 +149,7 @@ struct Form {
   double lead_in{0};   ///< Radial width of the chamfer or fillet at the entry [m]; 0: sharp.
 };
 
-enum class InnerConstraintKind { kParallel, kPerpendicular, kCoaxial, kCoplanar };
+enum class InnerConstraintKind { kParallel, kPerpendicular, kCoaxial, kCoplanar, kConcentric };
 
 /** Constraint between two features of one part; holds the part's shape (X2). */
 struct InnerConstraint {

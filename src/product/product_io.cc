@@ -197,7 +197,7 @@ constexpr FormKind LastOf(FormKind /*kind*/) {
 }
 
 constexpr InnerConstraintKind LastOf(InnerConstraintKind /*kind*/) {
-  return InnerConstraintKind::kCoplanar;
+  return InnerConstraintKind::kConcentric;
 }
 
 constexpr DimensionKind LastOf(DimensionKind /*kind*/) {

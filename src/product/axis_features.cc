@@ -1,0 +1,279 @@
+#include "product/axis_features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "base/units.h"
+
+namespace hvas::product {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kLeastCoverage = units::FromDeg(200);
+constexpr double kLargestGap = units::FromDeg(160);  // What 200 deg in one piece leave.
+constexpr double kLeastSum = units::FromDeg(60);     // Of several arcs.
+constexpr double kAngle = 1e-3;                      // Same direction or half angle [rad].
+
+using Arc = std::pair<double, double>;  // Start and length [rad].
+
+/** A face with its extent along its axis and around it. */
+struct AxisFace {
+  std::uint32_t face{0};
+  double low{0}, high{0};  // Along the axis of its group [m].
+  std::vector<Arc> arcs;   // Covered.
+};
+
+/** Faces of one surface and sense; may still fall apart along the axis. */
+struct AxisGroup {
+  Surface surface;
+  double slack{0};  // How far its surface may be off [m].
+  std::vector<AxisFace> faces;
+};
+
+AxisFace MeasureFace(const Part& part, std::uint32_t index, const Surface& surface) {
+  const Face& face = part.faces[index];
+  const Mat3 R = spatial::FrameFromZ(surface.axis).toRotationMatrix();
+  AxisFace measured;
+  measured.face = index;
+  measured.low = std::numeric_limits<double>::infinity();
+  measured.high = -measured.low;
+  for (std::uint32_t i = 0; i < face.triangle_count; ++i) {
+    const auto& triangle = part.mesh.triangles[face.first_triangle + i];
+    std::array<double, 3> angle{};
+    std::size_t count = 0;
+    for (const std::uint32_t vertex : triangle) {
+      const Vec3 q = R.transpose() * (part.mesh.vertices[vertex] - surface.origin);
+      measured.low = std::min(measured.low, q.z());
+      measured.high = std::max(measured.high, q.z());
+      constexpr double kOnAxis = 1e-9;  // The apex of a cone has no angle [m].
+      if (std::hypot(q.x(), q.y()) > kOnAxis) {
+        angle[count++] = std::atan2(q.y(), q.x());
+      }
+    }
+    // A triangle spans less than half a turn: unwrap about its first corner.
+    double low = 0;
+    double high = 0;
+    for (std::size_t k = 1; k < count; ++k) {
+      const double turn = std::remainder(angle[k] - angle[0], kTwoPi);
+      low = std::min(low, turn);
+      high = std::max(high, turn);
+    }
+    measured.arcs.emplace_back(angle[0] + low, high - low);
+  }
+  return measured;
+}
+
+struct Coverage {
+  double sum{0};  ///< Length of the union of arcs [rad].
+  double largest_gap{kTwoPi};
+};
+
+Coverage CalcCoverage(const std::vector<const AxisFace*>& faces) {
+  constexpr double kTouching = 1e-6;  // Rounding between neighbouring triangles [rad].
+  std::vector<Arc> arcs;              // Start in [0, 2 pi), end; cut at 2 pi.
+  for (const AxisFace* face : faces) {
+    for (const auto& [start, length] : face->arcs) {
+      const double low = start - kTwoPi * std::floor(start / kTwoPi);
+      arcs.emplace_back(low, std::min(low + length, kTwoPi));
+      if (low + length > kTwoPi) {
+        arcs.emplace_back(0, low + length - kTwoPi);
+      }
+    }
+  }
+  std::sort(arcs.begin(), arcs.end());
+  Coverage coverage;
+  if (arcs.empty()) {
+    return coverage;
+  }
+  coverage.largest_gap = 0;
+  double end = 0;
+  for (const auto& [low, high] : arcs) {
+    coverage.sum += std::max(0.0, high - std::max(low, end));
+    if (end > 0 && low > end + kTouching) {
+      coverage.largest_gap = std::max(coverage.largest_gap, low - end);
+    }
+    end = std::max(end, high);
+  }
+  coverage.largest_gap = std::max(coverage.largest_gap, arcs.front().first + kTwoPi - end);
+  return coverage;
+}
+
+/** The smallest of the largest gaps at any station along the axis [rad]. */
+double CalcLeastGap(const std::vector<AxisFace>& faces) {
+  constexpr std::size_t kMostFaces = 64;  // Beyond that it is a pattern of some kind, no bore.
+  double least = kTwoPi;
+  if (faces.size() > kMostFaces) {
+    return least;
+  }
+  for (const AxisFace& at : faces) {
+    const double station = 0.5 * (at.low + at.high);
+    std::vector<const AxisFace*> there;
+    for (const AxisFace& face : faces) {
+      if (face.low <= station && station <= face.high) {
+        there.push_back(&face);
+      }
+    }
+    const Coverage coverage = CalcCoverage(there);
+    if (coverage.sum >= kLeastSum) {
+      least = std::min(least, coverage.largest_gap);
+    }
+  }
+  return least;
+}
+
+/** Whether two cylinders or cones are one, looked at near the face that the second is under. */
+bool IsSameSurface(const Surface& a, const Surface& b, const Box& box_b, double tolerance) {
+  if (a.kind != b.kind || a.outward != b.outward || !IsParallel(a.axis, b.axis)) {
+    return false;
+  }
+  const Vec3 near = b.origin + (box_b.centre() - b.origin).dot(b.axis) * b.axis;
+  if (DistanceToAxis(near, a.origin, a.axis) >= tolerance) {
+    return false;
+  }
+  if (a.kind == SurfaceKind::kCylinder) {
+    return std::abs(a.radius - b.radius) < tolerance;
+  }
+  const double radius = (near - b.origin).norm() * std::tan(b.second);
+  return std::abs(a.second - b.second) < kAngle && a.axis.dot(b.axis) > 0 &&
+         std::abs((near - a.origin).dot(a.axis) * std::tan(a.second) - radius) < tolerance;
+}
+
+/** Groups the faces of one kind of surface. The search looks only at groups whose key, the radius
+ or the half angle, is near. */
+std::vector<AxisGroup> GroupFaces(const Part& part, SurfaceKind kind, double tolerance) {
+  std::vector<AxisGroup> groups;
+  std::multimap<double, std::size_t> by_key;
+  for (std::uint32_t i = 0; i < part.faces.size(); ++i) {
+    const Face& face = part.faces[i];
+    if (face.surface.kind != kind || face.triangle_count == 0) {
+      continue;
+    }
+    Surface surface = face.surface;
+    if (kind == SurfaceKind::kCylinder) {
+      surface.axis = Canonical(surface.axis);
+    }
+    const double key = kind == SurfaceKind::kCylinder ? surface.radius : surface.second;
+    const double slack = tolerance + face.residual;
+    const double reach = kind == SurfaceKind::kCylinder ? 2 * slack : kAngle;
+    std::size_t found = groups.size();
+    for (auto it = by_key.lower_bound(key - reach); it != by_key.end() && it->first <= key + reach;
+         ++it) {
+      const AxisGroup& group = groups[it->second];
+      if (it->second < found &&
+          IsSameSurface(group.surface, surface, face.box_B, std::max(slack, group.slack))) {
+        found = it->second;
+      }
+    }
+    if (found == groups.size()) {
+      groups.push_back({surface, slack, {}});
+      by_key.emplace(key, found);
+    }
+    groups[found].faces.push_back(MeasureFace(part, i, groups[found].surface));
+  }
+  return groups;
+}
+
+FeatureKind KindOf(const Surface& surface) {
+  if (surface.kind == SurfaceKind::kCylinder) {
+    return surface.outward > 0 ? FeatureKind::kShaft : FeatureKind::kHole;
+  }
+  return surface.outward > 0 ? FeatureKind::kTaper : FeatureKind::kConeSeat;
+}
+
+/** From faces that touch along the axis; a cylinder's origin is the middle of its span. */
+Feature MakeFeature(const Part& part, const Surface& surface, std::vector<AxisFace> faces) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  Feature feature;
+  feature.kind = KindOf(surface);
+  std::sort(faces.begin(), faces.end(),
+            [](const AxisFace& a, const AxisFace& b) { return a.face < b.face; });
+  std::vector<const AxisFace*> pointers;
+  for (const AxisFace& face : faces) {
+    low = std::min(low, face.low);
+    high = std::max(high, face.high);
+    feature.area += part.faces[face.face].area;
+    feature.faces.emplace_back(face.face);
+    pointers.push_back(&face);
+  }
+  feature.coverage = CalcCoverage(pointers).sum;
+  feature.axis_B = surface.axis;
+  if (surface.kind == SurfaceKind::kCylinder) {
+    feature.origin_B = surface.origin + 0.5 * (low + high) * surface.axis;
+    feature.radius = surface.radius;
+    feature.span_low = -0.5 * (high - low);
+    feature.span_high = 0.5 * (high - low);
+  } else {
+    feature.origin_B = surface.origin;
+    feature.half_angle = surface.second;
+    feature.span_low = std::max(0.0, low);
+    feature.span_high = high;
+    feature.radius = high * std::tan(surface.second);
+  }
+  return feature;
+}
+
+std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double tolerance) {
+  std::vector<Feature> found;
+  for (AxisGroup& group : GroupFaces(part, kind, tolerance)) {
+    std::sort(group.faces.begin(), group.faces.end(), [](const AxisFace& a, const AxisFace& b) {
+      return std::pair(a.low, a.face) < std::pair(b.low, b.face);
+    });
+    std::vector<AxisFace> run;
+    double end = 0;
+    const auto flush = [&] {
+      if (run.empty()) {
+        return;
+      }
+      const double gap = run.size() > 1 ? CalcLeastGap(run) : kTwoPi;
+      Feature feature = MakeFeature(part, group.surface, std::move(run));
+      if (feature.coverage >= kLeastCoverage || gap <= kLargestGap) {
+        found.push_back(std::move(feature));
+      }
+      run = {};
+    };
+    for (AxisFace& face : group.faces) {
+      if (!run.empty() && face.low > end + tolerance) {
+        flush();
+      }
+      end = run.empty() ? face.high : std::max(end, face.high);
+      run.push_back(std::move(face));
+    }
+    flush();
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Feature& a, const Feature& b) {
+    return a.faces.front() < b.faces.front();
+  });
+  return found;
+}
+
+}  // namespace
+
+Vec3 Canonical(const Vec3& axis) {
+  Vec3::Index largest = 0;
+  axis.cwiseAbs().maxCoeff(&largest);
+  return axis[largest] < 0 ? Vec3(-axis) : axis;
+}
+
+bool IsParallel(const Vec3& a, const Vec3& b) {
+  return a.cross(b).norm() < kAngle;
+}
+
+double DistanceToAxis(const Vec3& p, const Vec3& origin, const Vec3& axis) {
+  return (p - origin).cross(axis).norm();
+}
+
+std::vector<Feature> FindCylinders(const Part& part, double tolerance) {
+  return FindAxisFeatures(part, SurfaceKind::kCylinder, tolerance);
+}
+
+std::vector<Feature> FindCones(const Part& part, double tolerance) {
+  return FindAxisFeatures(part, SurfaceKind::kCone, tolerance);
+}
+
+}  // namespace hvas::product

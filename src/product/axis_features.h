@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "product/product.h"
+
+namespace hvas::product {
+
+/** Of the two directions of a line the one whose largest component is positive. */
+[[nodiscard]] Vec3 Canonical(const Vec3& axis);
+
+/** Within 1 mrad, either way round. */
+[[nodiscard]] bool IsParallel(const Vec3& a, const Vec3& b);
+
+[[nodiscard]] double DistanceToAxis(const Vec3& p, const Vec3& origin, const Vec3& axis);
+
+/** Holes and shafts: cylindrical faces of one axis, radius and sense whose axial spans touch, where
+ they hold a pin of their size against leaving sideways: together they cover at least 200 deg of the
+ turn, or, at one station along the axis, no gap between them is above 160 deg. By their first face.
+ @param tolerance Of radii and positions [m]. */
+[[nodiscard]] std::vector<Feature> FindCylinders(const Part& part, double tolerance);
+
+/** Conical seats and tapers by the same rule: conical faces of one axis, apex, half angle and
+ sense. */
+[[nodiscard]] std::vector<Feature> FindCones(const Part& part, double tolerance);
+
+}  // namespace hvas::product

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace hvas::product {
+
+/** What the names of a part say about it. */
+enum class FastenerKind { kNone, kScrew, kNut };
+
+/** Reads names as "Screw", "bolt", "M3x16", "DIN 912", "ISO4762", "BHCS", "nut", "heat-set insert";
+ nuts and threaded inserts are kNut. ASCII case does not matter. */
+[[nodiscard]] FastenerKind ClassifyName(std::string_view name);
+
+/** A thread's size; `pitch` is 0 where it is not known. */
+struct ThreadSize {
+  double diameter{0};  ///< Nominal (major) [m].
+  double pitch{0};     ///< [m]
+};
+
+/** The thread that a name states: "M3", "M8x1", "M3x0.5", "M3x16" (M3 coarse, 16 long), "M2.5",
+ "1/4-20", "#10-32", "10-24 UNC". A number after the size is a pitch when it is at most 0.3 of the
+ diameter, else a length. A metric size without a pitch has the coarse one of ISO 261; an inch size
+ counts only with its threads per inch. */
+[[nodiscard]] std::optional<ThreadSize> ParseThreadSize(std::string_view name);
+
+/** Coarse pitch of ISO 261 for a nominal diameter of its first and second choice, M1 to M64, within
+ `tolerance` [m] of it; 0 where there is none. */
+[[nodiscard]] double FindCoarsePitch(double diameter, double tolerance = 1e-6);
+
+}  // namespace hvas::product
