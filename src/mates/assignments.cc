@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "base/units.h"
 #include "fits/iso286.h"
@@ -17,8 +15,8 @@
 namespace hvas::mates {
 namespace {
 
-using nlohmann::json;
 using product::Fit;
+using product::FitConditions;
 using product::FitKind;
 using product::Mate;
 using product::MateKind;
@@ -26,36 +24,28 @@ using product::Occurrence;
 using product::Product;
 
 constexpr double kSameDiameter = 0.01;  // As a part of the diameter.
+constexpr double kMostMeasured = 0.05;  // A measured size from the drawn or nominal one.
+constexpr const char* kSeeMates = "list the mates with hvas inspect, and use the names from there";
 
-/** By its name, its path, or the end of its path ("tier 1/post 1"). */
-bool IsCalled(const Product& product, product::OccurrenceId id, std::string_view name) {
-  const Occurrence& occurrence = product.occurrences[id.index()];
-  const std::string_view path = occurrence.path;
-  return occurrence.name == name || path == name ||
-         (path.size() > name.size() && path.ends_with(name) &&
-          path[path.size() - name.size() - 1] == '/' && !name.empty());
+std::string NearestOccurrence(const Product& product, std::string_view name) {
+  std::vector<std::string> names;
+  for (const Occurrence& occurrence : product.occurrences) {
+    names.push_back(occurrence.name);
+    names.push_back(occurrence.path);
+  }
+  return FindNearest(name, names);
 }
 
-/** The fit for one mate from what somebody wrote. */
-Result<Fit> MakeFit(std::string_view text, double nominal, std::string reason) {
-  if (text == "thread") {
-    return Fit{FitKind::kThread, "", nominal, false, std::move(reason)};
+FitKind ToKind(fits::FitKind kind) {
+  switch (kind) {
+    case fits::FitKind::kClearance:
+      return FitKind::kClearance;
+    case fits::FitKind::kTransition:
+      return FitKind::kTransition;
+    case fits::FitKind::kInterference:
+      break;
   }
-  const Result<fits::FitClass> parsed = fits::ParseFit(text);
-  if (!parsed) {
-    return Unexpected(parsed.error());
-  }
-  const Result<fits::FitLimits> limits = fits::CalcFitLimits(*parsed, nominal);
-  if (!limits) {
-    return Unexpected(limits.error());
-  }
-  Fit fit{FitKind::kClearance, parsed->ToString(), nominal, false, std::move(reason)};
-  if (limits->kind == fits::FitKind::kTransition) {
-    fit.kind = FitKind::kTransition;
-  } else if (limits->kind == fits::FitKind::kInterference) {
-    fit.kind = FitKind::kInterference;
-  }
-  return fit;
+  return FitKind::kInterference;
 }
 
 double NominalOf(const Mate& mate) {
@@ -63,52 +53,78 @@ double NominalOf(const Mate& mate) {
                                                     : 2 * mate.hole_radius;
 }
 
-/** The mates to change with their new fits; applied only when all of them are right. */
-struct Change {
-  std::size_t mate;
-  Fit fit;
-};
-
-void Apply(std::vector<Change> changes, Product* product) {
-  for (Change& change : changes) {
-    product->mates[change.mate].fit = std::move(change.fit);
+Result<Fit> MakeWholeFit(const fits::FitClass& fit, double nominal, std::string reason) {
+  const Result<fits::FitLimits> limits = fits::CalcFitLimits(fit, nominal);
+  if (!limits) {
+    return Unexpected(limits.error());
   }
+  return Fit{ToKind(limits->kind), fit.ToString(), nominal, false, std::move(reason)};
 }
 
-struct Entry {
-  std::string hole;
-  std::string shaft;
-  std::optional<double> diameter;  // [m]
-  std::string fit;
-};
-
-Result<Entry> ReadEntry(const json& item, const std::string& where) {
-  const auto fail = [&](const std::string& message) {
-    return Fail(ErrorCode::kInvalid, message, where,
-                R"(write {"hole": "...", "shaft": "...", "diameter_mm": 6, "fit": "H7/k6"})");
-  };
-  if (!item.is_object()) {
-    return fail("the entry is no object");
-  }
-  Entry entry;
-  for (const auto& [key, field] : {std::pair("hole", &entry.hole), std::pair("shaft", &entry.shaft),
-                                   std::pair("fit", &entry.fit)}) {
-    const auto found = item.find(key);
-    if (found == item.end() || !found->is_string()) {
-      return fail(fmt::format("\"{}\" is missing or no text", key));
+/** One side of a mate has a class, the other keeps its own or is as drawn. */
+Result<Fit> MakeSideFit(const fits::ToleranceClass& side, const Mate& mate,
+                        std::optional<double> nominal, const std::string& reason) {
+  const char* other = side.is_hole() ? "shaft" : "hole";
+  if (mate.fit && mate.fit->kind != FitKind::kThread) {
+    Result<fits::FitClass> whole = fits::ParseFit(mate.fit->code);
+    if (!whole) {  // The other side may have been stated alone before.
+      whole = fits::ParseFit(side.is_hole() ? side.ToString() + "/" + mate.fit->code
+                                            : mate.fit->code + "/" + side.ToString());
     }
-    *field = found->get<std::string>();
-  }
-  if (const auto found = item.find("diameter_mm"); found != item.end()) {
-    if (!found->is_number() || !(found->get<double>() > 0)) {
-      return fail("\"diameter_mm\" is no positive number");
+    if (whole) {
+      (side.is_hole() ? whole->hole : whole->shaft) = side;
+      return MakeWholeFit(*whole, nominal.value_or(NominalOf(mate)),
+                          fmt::format("{}; the {} {}", reason, other,
+                                      mate.fit->is_proposed ? "as proposed" : "as stated before"));
     }
-    entry.diameter = units::FromMm(found->get<double>());
   }
-  return entry;
+  const double diameter = 2 * (side.is_hole() ? mate.hole_radius : mate.shaft_radius);
+  const Result<fits::Limits> limits = fits::CalcLimits(side, nominal.value_or(diameter));
+  if (!limits) {
+    return Unexpected(limits.error());
+  }
+  const double least = nominal.value_or(diameter) + limits->lower;
+  const double most = nominal.value_or(diameter) + limits->upper;
+  const fits::FitKind kind =
+      side.is_hole()
+          ? fits::ClassifyFit(least - 2 * mate.shaft_radius, most - 2 * mate.shaft_radius)
+          : fits::ClassifyFit(2 * mate.hole_radius - most, 2 * mate.hole_radius - least);
+  return Fit{ToKind(kind), side.ToString(), nominal.value_or(diameter), false,
+             fmt::format("{}; the {} as drawn", reason, other)};
 }
 
-bool Matches(const Product& product, const Mate& mate, const Entry& entry) {
+/** The fit for one mate from what somebody wrote. @param nominal  Where it is stated [m]. */
+Result<Fit> MakeFit(std::string_view text, const Mate& mate, std::optional<double> nominal,
+                    std::string reason) {
+  if (text == "thread") {
+    return Fit{FitKind::kThread, "", nominal.value_or(NominalOf(mate)), false, std::move(reason)};
+  }
+  if (const Result<fits::ToleranceClass> side = fits::ParseToleranceClass(text)) {
+    return MakeSideFit(*side, mate, nominal, reason);
+  }
+  const Result<fits::FitClass> parsed = fits::ParseFit(text);
+  if (!parsed) {
+    return Unexpected(parsed.error());
+  }
+  return MakeWholeFit(*parsed, nominal.value_or(NominalOf(mate)), std::move(reason));
+}
+
+/** A mate by its number ("m12") or its key. */
+bool IsMate(const Mate& mate, std::string_view text) {
+  std::size_t index = 0;
+  if (text.size() > 1 && text.front() == 'm') {
+    const auto [end, code] = std::from_chars(text.data() + 1, text.data() + text.size(), index);
+    if (code == std::errc() && end == text.data() + text.size()) {
+      return mate.id.index() == index;
+    }
+  }
+  return !mate.key.empty() && mate.key == text;
+}
+
+bool Matches(const Product& product, const Mate& mate, const FitEntry& entry) {
+  if (!entry.mate.empty()) {
+    return IsMate(mate, entry.mate);
+  }
   const auto is_near = [&](double radius) {
     return std::abs(2 * radius - *entry.diameter) <= kSameDiameter * *entry.diameter;
   };
@@ -117,93 +133,149 @@ bool Matches(const Product& product, const Mate& mate, const Entry& entry) {
          (!entry.diameter || is_near(mate.hole_radius) || is_near(mate.shaft_radius));
 }
 
-Result<std::vector<Change>> FindChanges(const Product& product, const Entry& entry,
-                                        const std::string& file, const std::string& where) {
-  std::vector<Change> changes;
-  for (std::size_t i = 0; i < product.mates.size(); ++i) {
-    if (!Matches(product, product.mates[i], entry)) {
-      continue;
+Unexpected FailToFind(const Product& product, const FitEntry& entry) {
+  if (!entry.mate.empty()) {
+    return Fail(ErrorCode::kNotFound, fmt::format("there is no mate \"{}\"", entry.mate),
+                entry.where, "list the mates and their keys with hvas mate list");
+  }
+  std::string remedy = kSeeMates;
+  for (const std::string* name : {&entry.hole, &entry.shaft}) {
+    const bool is_there = std::any_of(
+        product.occurrences.begin(), product.occurrences.end(),
+        [&](const Occurrence& occurrence) { return IsCalled(product, occurrence.id, *name); });
+    const std::string nearest = is_there ? "" : NearestOccurrence(product, *name);
+    if (!nearest.empty()) {
+      remedy = fmt::format("\"{}\" may be \"{}\"; {}", *name, nearest, kSeeMates);
     }
-    const double nominal = entry.diameter.value_or(NominalOf(product.mates[i]));
-    Result<Fit> fit = MakeFit(entry.fit, nominal, "stated in " + file);
+  }
+  return Fail(
+      ErrorCode::kNotFound,
+      fmt::format("no axis-hole mate of hole \"{}\" and shaft \"{}\"{}", entry.hole, entry.shaft,
+                  entry.diameter ? fmt::format(" with {:g} mm", units::ToMm(*entry.diameter)) : ""),
+      entry.where, std::move(remedy));
+}
+
+Result<void> CheckMeasured(const char* name, std::optional<double> measured, double drawn,
+                           double nominal, const std::string& where) {
+  if (!measured || std::abs(*measured - drawn) <= kMostMeasured * drawn ||
+      std::abs(*measured - nominal) <= kMostMeasured * nominal) {
+    return {};
+  }
+  return Fail(ErrorCode::kInvalid,
+              fmt::format("the {}'s measured {:g} mm are far from the {:g} mm that are drawn", name,
+                          units::ToMm(*measured), units::ToMm(drawn)),
+              where, "give the diameter in mm, or name another mate");
+}
+
+template <typename T>
+void Override(const std::optional<T>& value, std::optional<T>* target) {
+  if (value) {
+    *target = value;
+  }
+}
+
+void Merge(const FitConditions& from, FitConditions* to) {
+  Override(from.hole_diameter, &to->hole_diameter);
+  Override(from.shaft_diameter, &to->shaft_diameter);
+  Override(from.hole_roughness, &to->hole_roughness);
+  Override(from.shaft_roughness, &to->shaft_roughness);
+  Override(from.friction, &to->friction);
+  Override(from.hole_temperature, &to->hole_temperature);
+  Override(from.shaft_temperature, &to->shaft_temperature);
+}
+
+Result<void> ApplyEntry(const FitEntry& entry, const std::string& reason, Mate* mate) {
+  if (mate->kind != MateKind::kAxisHole) {
+    return Fail(
+        ErrorCode::kInvalid,
+        fmt::format("mate \"{}\" is {}, which has no fit", entry.mate, ToString(mate->kind)),
+        entry.where, "name an axis-hole mate");
+  }
+  if (!entry.fit.empty()) {
+    Result<Fit> fit = MakeFit(entry.fit, *mate, entry.diameter, reason);
     if (!fit) {
       Error error = fit.error();
-      error.where = where;
+      error.where = entry.where;
       return Unexpected(std::move(error));
     }
-    changes.push_back({i, *std::move(fit)});
+    mate->fit = *std::move(fit);
   }
-  if (changes.empty()) {
-    return Fail(
-        ErrorCode::kNotFound,
-        fmt::format(
-            "no axis-hole mate of hole \"{}\" and shaft \"{}\"{}", entry.hole, entry.shaft,
-            entry.diameter ? fmt::format(" with {:g} mm", units::ToMm(*entry.diameter)) : ""),
-        where, "list the mates with hvas inspect, and use the occurrences' names from there");
+  const double nominal = NominalOf(*mate);
+  Result<void> checked = CheckMeasured("hole", entry.conditions.hole_diameter,
+                                       2 * mate->hole_radius, nominal, entry.where);
+  if (checked) {
+    checked = CheckMeasured("shaft", entry.conditions.shaft_diameter, 2 * mate->shaft_radius,
+                            nominal, entry.where);
   }
-  return changes;
-}
-
-Result<json> ReadJson(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) {
-    return Fail(ErrorCode::kNotFound, "the fits cannot be read", file.string(),
-                "check the path and its permissions");
-  }
-  json document = json::parse(stream, nullptr, /*allow_exceptions=*/false);
-  if (document.is_discarded()) {
-    return Fail(ErrorCode::kUnreadable, "the file is not JSON", file.string(),
-                "check it with a JSON validator");
-  }
-  const auto format = document.is_object() ? document.find("format") : document.end();
-  if (!document.is_object() || format == document.end() || *format != "hvas-assignments-1" ||
-      !document.contains("fits") || !document["fits"].is_array()) {
-    return Fail(ErrorCode::kUnsupported, "the file holds no assignments", file.string(),
-                R"(begin with {"format": "hvas-assignments-1", "fits": [...]})");
-  }
-  return document;
-}
-
-/** The index in "m12", if it is one. */
-std::optional<std::size_t> ReadMateId(std::string_view text) {
-  std::size_t index = 0;
-  if (text.size() < 2 || text.front() != 'm') {
-    return std::nullopt;
-  }
-  const auto [end, code] = std::from_chars(text.data() + 1, text.data() + text.size(), index);
-  return code == std::errc() && end == text.data() + text.size() ? std::optional(index)
-                                                                 : std::nullopt;
+  Merge(entry.conditions, &mate->conditions);
+  return checked;
 }
 
 }  // namespace
 
-std::filesystem::path FindAssignmentFile(const std::filesystem::path& product_file) {
-  std::filesystem::path file = product_file;
-  return file.replace_extension(".hvas.json");
+bool IsCalled(const Product& product, product::OccurrenceId id, std::string_view name) {
+  const Occurrence& occurrence = product.occurrences[id.index()];
+  const std::string_view path = occurrence.path;
+  return occurrence.name == name || path == name ||
+         (path.size() > name.size() && path.ends_with(name) &&
+          path[path.size() - name.size() - 1] == '/' && !name.empty());
+}
+
+Result<int> ApplyFits(const SideFile& file, const MateChanges& changes, Product* product) {
+  const std::string reason = "stated in " + file.path.filename().string();
+  std::vector<Mate> mates = product->mates;  // Changed whole, or not at all.
+  std::vector<bool> is_changed(mates.size(), false);
+  for (std::size_t i = 0; i < file.added.size(); ++i) {
+    const AddedMate& added = file.added[i];
+    if (added.fit.empty()) {
+      continue;
+    }
+    Mate& mate = mates[changes.added[i].index()];
+    FitEntry entry;
+    entry.mate = mate.key;
+    entry.fit = added.fit;
+    entry.where = added.where;
+    if (const auto applied = ApplyEntry(entry, reason, &mate); !applied) {
+      return Unexpected(applied.error());
+    }
+    is_changed[changes.added[i].index()] = true;
+  }
+  for (const FitEntry& entry : file.fits) {
+    bool is_found = std::any_of(changes.removed.begin(), changes.removed.end(),
+                                [&](const Mate& mate) { return Matches(*product, mate, entry); });
+    // A removed mate has no number any more: it is another's now.
+    is_found = is_found && !(entry.mate.size() > 1 && entry.mate.front() == 'm');
+    for (std::size_t i = 0; i < mates.size(); ++i) {
+      if (!Matches(*product, mates[i], entry)) {
+        continue;
+      }
+      if (const auto applied = ApplyEntry(entry, reason, &mates[i]); !applied) {
+        return Unexpected(applied.error());
+      }
+      is_found = is_changed[i] = true;
+    }
+    if (!is_found) {
+      return FailToFind(*product, entry);
+    }
+  }
+  product->mates = std::move(mates);
+  return static_cast<int>(std::count(is_changed.begin(), is_changed.end(), true));
 }
 
 Result<int> ApplyAssignments(const std::filesystem::path& file, Product* product) {
-  const Result<json> document = ReadJson(file);
-  if (!document) {
-    return Unexpected(document.error());
+  const Result<SideFile> side_file = ReadSideFile(file);
+  if (!side_file) {
+    return Unexpected(side_file.error());
   }
-  std::vector<Change> all;
-  int number = 0;
-  for (const json& item : (*document)["fits"]) {
-    const std::string where = fmt::format("{}, fit {}", file.string(), ++number);
-    const Result<Entry> entry = ReadEntry(item, where);
-    if (!entry) {
-      return Unexpected(entry.error());
-    }
-    Result<std::vector<Change>> changes =
-        FindChanges(*product, *entry, file.filename().string(), where);
-    if (!changes) {
-      return Unexpected(changes.error());
-    }
-    std::move(changes->begin(), changes->end(), std::back_inserter(all));
+  Product changed = *product;
+  const Result<MateChanges> changes = ApplyMates(*side_file, &changed);
+  if (!changes) {
+    return Unexpected(changes.error());
   }
-  const int count = static_cast<int>(all.size());
-  Apply(std::move(all), product);
+  const Result<int> count = ApplyFits(*side_file, *changes, &changed);
+  if (count) {
+    *product = std::move(changed);
+  }
   return count;
 }
 
@@ -214,32 +286,34 @@ Result<void> AssignFit(Product* product, std::string_view assignment) {
                 "write AXIS=H7/p6 with a mate (m12), an occurrence's name, or all");
   }
   const std::string_view axis = assignment.substr(0, split);
-  const std::optional<std::size_t> index = ReadMateId(axis);
-  std::vector<Change> changes;
+  std::vector<std::pair<std::size_t, Fit>> changes;
   for (std::size_t i = 0; i < product->mates.size(); ++i) {
     const Mate& mate = product->mates[i];
     const bool is_thread = mate.fit && mate.fit->kind == FitKind::kThread;
     const bool is_named =
-        index == i ||
+        IsMate(mate, axis) ||
         (!is_thread && (axis == "all" || IsCalled(*product, mate.a.occurrence, axis) ||
                         IsCalled(*product, mate.b.occurrence, axis)));
     if (mate.kind != MateKind::kAxisHole || !is_named) {
       continue;
     }
-    Result<Fit> fit = MakeFit(assignment.substr(split + 1), NominalOf(mate), "stated by the user");
+    Result<Fit> fit =
+        MakeFit(assignment.substr(split + 1), mate, std::nullopt, "stated by the user");
     if (!fit) {
       Error error = fit.error();
       error.where = fmt::format("--fit {}", assignment);
       return Unexpected(std::move(error));
     }
-    changes.push_back({i, *std::move(fit)});
+    changes.emplace_back(i, *std::move(fit));
   }
   if (changes.empty()) {
     return Fail(ErrorCode::kNotFound, fmt::format("\"{}\" names no axis-hole mate", axis),
                 fmt::format("--fit {}", assignment),
                 "list mates and occurrences with hvas inspect; threads go by their mate only");
   }
-  Apply(std::move(changes), product);
+  for (auto& [mate, fit] : changes) {
+    product->mates[mate].fit = std::move(fit);
+  }
   return {};
 }
 

@@ -1,34 +1,58 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 #include "base/result.h"
+#include "mates/side_file.h"
 #include "product/product.h"
 
-/** Fits that somebody states, over those that inference proposes: CAD files rarely carry them. */
+/** What people say about mates, over what inference proposes: CAD files rarely carry fits. */
 namespace hvas::mates {
 
-/** Where a STEP file's fits are looked for: "pump.step" has "pump.hvas.json" beside it. */
-[[nodiscard]] std::filesystem::path FindAssignmentFile(const std::filesystem::path& product_file);
+/** True for an occurrence's name, its path, and the end of its path ("tier 1/post 1"). */
+[[nodiscard]] bool IsCalled(const product::Product& product, product::OccurrenceId id,
+                            std::string_view name);
 
-/** Reads a side file and sets the fits of the axis-hole mates that it names:
+/** The one occurrence that is called so. Fails where there is none, or more than one. */
+[[nodiscard]] Result<product::OccurrenceId> FindOccurrence(const product::Product& product,
+                                                           std::string_view name);
 
-     {"format": "hvas-assignments-1",
-      "fits": [{"hole": "housing", "shaft": "dowel pin 1", "diameter_mm": 6, "fit": "H7/k6"}]}
+/** What ApplyMates did. */
+struct MateChanges {
+  std::vector<product::Mate> removed;  ///< As they were, with the ids they had.
+  std::vector<product::MateId> added;  ///< In the order of SideFile::added.
+};
 
- hole and shaft are names of occurrences, or their paths or ends of paths ("tier 1/post 1") where
- names repeat; an entry applies to all
+/** Takes out the mates that a side file removes and adds those that it adds; ids and joints follow.
+ A mate to be added that is there already becomes the user's. Errors name the file, the line, the
+ entry and a remedy; then nothing is changed. @pre product has its inferred mates. */
+[[nodiscard]] Result<MateChanges> ApplyMates(const SideFile& file, product::Product* product);
+
+/** Sets the fits and conditions that a side file states. An entry by names applies to all axis-hole
  mates between occurrences of these names whose hole or shaft has the diameter within 1 % (any, when
- diameter_mm is left out). "fit" is an ISO 286 code, or "thread".
- Errors name the file, the entry and a remedy; then no fit is changed. @returns how many mates got
- a fit. @pre product has its mates. */
+ it is left out); several entries may speak about one mate, later ones over earlier ones. Entries
+ about removed mates wait for these to be restored. Errors as those of ApplyMates; refused are also
+ conditions out of sense: sizes more than 5 % off both the drawn and the nominal diameter.
+
+ A fit of one class, "H7" or "g6", is about the hole or the shaft alone. The other keeps the class
+ that it has from the file or a proposal; where there is none (threads, sizes without a code) it is
+ as drawn, and the code is that one class.
+ @returns how many mates got a fit or conditions. */
+[[nodiscard]] Result<int> ApplyFits(const SideFile& file, const MateChanges& changes,
+                                    product::Product* product);
+
+/** Reads a side file and applies all of it. @returns as ApplyFits. */
 [[nodiscard]] Result<int> ApplyAssignments(const std::filesystem::path& file,
                                            product::Product* product);
 
-/** Sets fits from the command line: "AXIS=H7/p6", with AXIS a mate ("m12"), "all", or the name or
- path of an occurrence with the hole or the shaft. "all" and names leave threads as they are. The
- nominal diameter stays. Fails where AXIS names no axis-hole mate, or the size has no such fit. */
+/** Sets fits from the command line: "AXIS=H7/p6", with AXIS a mate ("m12" or its key), "all", or
+ the name or path of an occurrence with the hole or the shaft. "all" and names leave threads as they
+ are. The nominal diameter stays. Fails where AXIS names no axis-hole mate, or the size has no such
+ fit. */
 [[nodiscard]] Result<void> AssignFit(product::Product* product, std::string_view assignment);
 
 }  // namespace hvas::mates

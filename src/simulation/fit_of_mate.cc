@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -12,7 +15,8 @@
 namespace hvas::simulation {
 namespace {
 
-constexpr double kThickestWall = 0.95;  // largest c_0 = R / r_0 that is believed
+constexpr double kReferenceTemperature_c = 20;  // ISO 1
+constexpr double kThickestWall = 0.95;          // largest c_0 = R / r_0 that is believed
 
 /** Outer radius of the hub around a hole: the narrowest coaxial outside cylinder, or else half the
  least width of the part across the axis [m]. */
@@ -38,20 +42,65 @@ double FindHubRadius(const product::Part& part, const product::Feature& hole) {
   return half.minCoeff();
 }
 
+/** The zones of the code on a mate: of both sides, or of one where the other is as drawn. */
+struct Zones {
+  std::optional<fits::Limits> hole, shaft;
+};
+
+Result<Zones> FindZones(const std::string& code, double nominal) {
+  if (const auto side = fits::ParseToleranceClass(code)) {
+    const auto limits = fits::CalcLimits(*side, nominal);
+    if (!limits) {
+      return Unexpected(limits.error());
+    }
+    return side->is_hole() ? Zones{*limits, {}} : Zones{{}, *limits};
+  }
+  const auto fit = fits::ParseFit(code);
+  const auto limits = fit ? fits::CalcFitLimits(*fit, nominal) : Unexpected(fit.error());
+  if (!limits) {
+    return Unexpected(limits.error());
+  }
+  return Zones{limits->hole, limits->shaft};
+}
+
+/** Actual diameter of one side at 20 C: measured, or drawn by chance from its zone, or as drawn in
+ the file. Takes from `random` what the zone asks for even where a measured size makes it vain, so
+ that what comes after is the same. */
+double ChooseDiameter(const std::optional<double>& measured,
+                      const std::optional<fits::Limits>& zone, double nominal, double drawn,
+                      Random* random) {
+  const double by_chance = zone ? nominal + fits::DrawDeviation(*zone, random) : drawn;
+  return measured.value_or(by_chance);
+}
+
+/** The diameter at the temperature that is stated; expansion is free and uniform. */
+double Expand(double diameter, const std::optional<double>& temperature,
+              const product::Material& material) {
+  const double rise = temperature.value_or(kReferenceTemperature_c) - kReferenceTemperature_c;
+  return diameter * (1 + material.thermal_expansion * rise);
+}
+
+bool HasSizes(const product::FitConditions& conditions) {
+  return conditions.hole_diameter || conditions.shaft_diameter || conditions.hole_temperature ||
+         conditions.shaft_temperature;
+}
+
 }  // namespace
 
 std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& product,
                                                    const product::Mate& mate, std::uint64_t seed,
                                                    Diagnostics* diagnostics) {
-  if (!mate.fit || mate.fit->kind == product::FitKind::kThread || mate.fit->code.empty()) {
+  const product::FitConditions& conditions = mate.conditions;
+  if (!mate.fit || mate.fit->kind == product::FitKind::kThread ||
+      (mate.fit->code.empty() && !HasSizes(conditions))) {
     return nullptr;
   }
   const std::string entity = fmt::format("mate m{}", mate.id.value());
   const double nominal = mate.fit->nominal_diameter;
-  const auto fit = fits::ParseFit(mate.fit->code);
-  const auto limits = fit ? fits::CalcFitLimits(*fit, nominal) : Unexpected(fit.error());
-  if (!limits) {
-    diagnostics->Warn("fit-undefined", entity, limits.error().message,
+  const auto zones =
+      mate.fit->code.empty() ? Result<Zones>(Zones{}) : FindZones(mate.fit->code, nominal);
+  if (!zones) {
+    diagnostics->Warn("fit-undefined", entity, zones.error().message,
                       "the mate answers as a plain guide; assign another fit with --fit");
     return nullptr;
   }
@@ -59,8 +108,17 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
   Random random(seed * 0x9e3779b97f4a7c15u + mate.id.value());
   fits::FitForceParameters parameters;
   parameters.nominal_diameter = nominal;
-  parameters.hole_diameter = nominal + fits::DrawDeviation(limits->hole, &random);
-  parameters.shaft_diameter = nominal + fits::DrawDeviation(limits->shaft, &random);
+  parameters.hole_diameter = Expand(
+      ChooseDiameter(conditions.hole_diameter, zones->hole, nominal, 2 * mate.hole_radius, &random),
+      conditions.hole_temperature, product.part_of(mate.a.occurrence).material);
+  parameters.shaft_diameter =
+      Expand(ChooseDiameter(conditions.shaft_diameter, zones->shaft, nominal, 2 * mate.shaft_radius,
+                            &random),
+             conditions.shaft_temperature, product.part_of(mate.b.occurrence).material);
+  parameters.friction = conditions.friction.value_or(parameters.friction);
+  // The profile of the pair is the mean of the two: equal sides give their own.
+  parameters.roughness = 0.5 * (conditions.hole_roughness.value_or(parameters.roughness) +
+                                conditions.shaft_roughness.value_or(parameters.roughness));
   parameters.length = mate.overlap;
   const product::Part& hub = product.part_of(mate.a.occurrence);
   const double hub_radius = FindHubRadius(hub, hub.features[mate.a.feature.index()]);

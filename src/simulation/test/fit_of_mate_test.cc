@@ -131,6 +131,89 @@ TEST(MakeFitForceTest, WallOfTheHubComesFromItsOutsideOrFromItsBox) {  // W(7)
   EXPECT_NEAR(MeasureWallTerm(*Make(product, 3)), 1 - std::pow(kRadius / 30e-3, 2), 1e-9);
 }
 
+TEST(MakeFitForceTest, MeasuredSizesReplaceThoseDrawnByChance) {
+  Product product = Rig("H7/k6");
+  product.mates[0].conditions.hole_diameter = 40.012e-3;
+  product.mates[0].conditions.shaft_diameter = 40.031e-3;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_NEAR(Make(product, seed)->mean_clearance(), 0.5 * (40.012e-3 - 40.031e-3), 1e-15);
+  }
+  // One side alone leaves the other's chance as it is.
+  const Product free = Rig("H7/k6");
+  product.mates[0].conditions.shaft_diameter.reset();
+  Product shaft_only = Rig("H7/k6");
+  shaft_only.mates[0].conditions.shaft_diameter = 40.031e-3;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    // (D - d)/2 with both free is that with each free, without what is measured twice.
+    EXPECT_NEAR(Make(free, seed)->mean_clearance(),
+                Make(product, seed)->mean_clearance() + Make(shaft_only, seed)->mean_clearance() -
+                    0.5 * (40.012e-3 - 40.031e-3),
+                1e-15);
+  }
+  // They need no code.
+  product = Rig("");
+  product.mates[0].conditions.hole_diameter = 40.02e-3;
+  EXPECT_NEAR(Make(product, 1)->mean_clearance(), 0.01e-3, 1e-15);
+}
+
+TEST(MakeFitForceTest, ClassOfOneSideLeavesTheOtherAsDrawn) {  // W3
+  const double it7 = 25e-6;                                    // ISO 286-1, 30 to 50 mm
+  for (const bool is_hole : {true, false}) {
+    const Product product = Rig(is_hole ? "H7" : "h7");
+    double least = 1;
+    double most = -1;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+      const double clearance = 2 * Make(product, seed)->mean_clearance();
+      least = std::min(least, clearance);
+      most = std::max(most, clearance);
+    }
+    EXPECT_GE(least, -1e-12);
+    EXPECT_LE(most, it7 + 1e-12);
+    EXPECT_GT(most - least, 0.5 * it7);
+  }
+}
+
+TEST(MakeFitForceTest, TemperatureExpandsEachSideByItsMaterial) {
+  Product product = Rig("H7/p6");
+  product.parts[0].material.thermal_expansion = 23e-6;  // aluminium
+  product.parts[1].material.thermal_expansion = 12e-6;  // steel
+  product.mates[0].conditions.hole_diameter = 40e-3;
+  product.mates[0].conditions.shaft_diameter = 40e-3;
+  EXPECT_EQ(Make(product, 1)->mean_clearance(), 0);
+  product.mates[0].conditions.hole_temperature = 120;
+  EXPECT_NEAR(2 * Make(product, 1)->mean_clearance(), 40e-3 * 23e-6 * 100, 1e-12);
+  product.mates[0].conditions.shaft_temperature = -180;  // in liquid nitrogen
+  EXPECT_NEAR(2 * Make(product, 1)->mean_clearance(), 40e-3 * (23e-6 * 100 + 12e-6 * 200), 1e-12);
+  // A hole hot enough lets a pressed shaft slide in.
+  product = Rig("H7/p6");
+  EXPECT_GT(Make(product, 2)->max_resistance(), 1000);
+  product.mates[0].conditions.hole_temperature = 250;
+  EXPECT_EQ(Make(product, 2)->max_resistance(), 0);
+}
+
+TEST(MakeFitForceTest, FrictionScalesTheForceAndRoughnessTheClearance) {  // W(4), W(8)
+  Product product = Rig("H7/p6");
+  product.mates[0].conditions.hole_diameter = 40e-3;
+  product.mates[0].conditions.shaft_diameter = 40.04e-3;
+  const auto usual = Make(product, 4);
+  product.mates[0].conditions.friction = 0.3;  // twice the default
+  const auto rough = Make(product, 4);
+  EXPECT_NEAR(rough->max_resistance() / usual->max_resistance(), 2, 1e-12);
+  const auto amplitude = [](const fits::FitForce& fit) {
+    double most = 0;
+    for (double depth = 0; depth <= kLength; depth += 0.1e-3) {
+      most = std::max(most, std::abs(fit.CalcClearance(depth) - fit.mean_clearance()));
+    }
+    return most;
+  };
+  product.mates[0].conditions.hole_roughness = 2e-6;
+  product.mates[0].conditions.shaft_roughness = 4.3e-6;
+  // The mean of both, half of the default 6.3 um, on the same profile.
+  EXPECT_NEAR(amplitude(*Make(product, 4)) / amplitude(*usual), 0.5, 1e-9);
+  product.mates[0].conditions.hole_roughness = product.mates[0].conditions.shaft_roughness = 0;
+  EXPECT_NEAR(amplitude(*Make(product, 4)), 0, 1e-18);
+}
+
 TEST(MakeFitForceTest, PlanesThreadsAndMatesWithoutACodeHaveNoFitForce) {
   Diagnostics diagnostics;
   Product product = Rig("");
@@ -147,7 +230,7 @@ TEST(MakeFitForceTest, PlanesThreadsAndMatesWithoutACodeHaveNoFitForce) {
 TEST(MakeFitForceTest, UndefinedCodeOrSizeGivesADiagnosticWithARemedy) {
   Product too_large = Rig("H7/p6");
   too_large.mates[0].fit->nominal_diameter = 5;  // [m]; the standard ends at 3.15 m
-  for (const Product& product : {Rig("H7/zz9"), Rig("H7"), Rig("press"), too_large}) {
+  for (const Product& product : {Rig("H7/zz9"), Rig("H77"), Rig("press"), too_large}) {
     Diagnostics diagnostics;
     EXPECT_EQ(Make(product, 1, &diagnostics), nullptr);
     ASSERT_EQ(diagnostics.items().size(), 1u);

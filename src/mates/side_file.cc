@@ -1,0 +1,428 @@
+#include "mates/side_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/units.h"
+#include "mates/located_json.h"
+
+namespace hvas::mates {
+namespace {
+
+using nlohmann::ordered_json;
+using Type = SideFileType;
+
+constexpr std::uintmax_t kLargestFile = 16'000'000;  // [bytes]
+
+constexpr std::array<std::string_view, 2> kFormats{"hvas-assignments-1", kSideFileFormat};
+constexpr std::array<std::string_view, 4> kMateKinds{"axis_hole", "face_face", "cone_seat",
+                                                     "sphere_seat"};
+
+constexpr double kLargestDiameter_mm = 100'000;
+constexpr double kLargestRoughness_um = 1000;
+constexpr double kLargestFriction = 2;
+constexpr double kColdest_c = -273.15;
+constexpr double kHottest_c = 1500;
+constexpr double kMostFaces = 4294967294;
+
+constexpr SideFileKey Text(std::string_view name, bool is_required = false) {
+  return {name, Type::kText, is_required, 0, 0, false, false, {}};
+}
+
+constexpr SideFileKey Note() {
+  return {"note", Type::kText, false, 0, 0, false, true, {}};
+}
+
+constexpr SideFileKey Number(std::string_view name, double low, double high,
+                             bool is_low_excluded = false) {
+  return {name, Type::kNumber, false, low, high, is_low_excluded, false, {}};
+}
+
+constexpr SideFileKey Diameter(std::string_view name) {
+  return Number(name, 0, kLargestDiameter_mm, true);
+}
+
+constexpr SideFileKey Index(std::string_view name) {
+  return {name, Type::kIndex, false, 0, kMostFaces, false, false, {}};
+}
+
+constexpr SideFileKey Of(Type type, std::string_view name, bool is_required) {
+  return {name, type, is_required, 0, 0, false, false, {}};
+}
+
+constexpr SideFileKey Choice(std::string_view name, std::span<const std::string_view> choices,
+                             bool is_required) {
+  return {name, Type::kText, is_required, 0, 0, false, false, choices};
+}
+
+constexpr std::array kDocumentKeys{Choice("format", kFormats, true), Note(),
+                                   Of(Type::kList, "fits", false), Of(Type::kList, "mates", false),
+                                   Of(Type::kList, "removed", false)};
+
+constexpr std::array kFitKeys{Text("mate"),
+                              Text("hole"),
+                              Text("shaft"),
+                              Diameter("diameter_mm"),
+                              Text("fit"),
+                              Diameter("hole_diameter_mm"),
+                              Diameter("shaft_diameter_mm"),
+                              Number("hole_rz_um", 0, kLargestRoughness_um),
+                              Number("shaft_rz_um", 0, kLargestRoughness_um),
+                              Number("friction", 0, kLargestFriction),
+                              Number("hole_temperature_c", kColdest_c, kHottest_c),
+                              Number("shaft_temperature_c", kColdest_c, kHottest_c),
+                              Note()};
+
+constexpr std::array kMateKeys{Choice("kind", kMateKinds, false), Of(Type::kObject, "a", true),
+                               Of(Type::kObject, "b", true), Text("fit"), Note()};
+
+constexpr std::array kSideKeys{Text("occurrence", true), Index("face"), Index("feature")};
+
+constexpr std::array kRemovedKeys{Text("mate", true), Note()};
+
+/** One object of the file with its place in it. */
+struct Place {
+  const LocatedJson* document;
+  std::string file;
+  std::string pointer;
+  std::string entry;  // "fit 3"; empty for the document.
+
+  [[nodiscard]] std::string Where(std::string_view key = {}) const {
+    return fmt::format("{}:{}{}{}", file,
+                       document->LineOf(key.empty() ? pointer : pointer + "/" + std::string(key)),
+                       entry.empty() ? "" : ", ", entry);
+  }
+};
+
+std::string DescribeType(const SideFileKey& key) {
+  switch (key.type) {
+    case Type::kText:
+      return key.choices.empty() ? "a text that is not empty"
+                                 : fmt::format("one of \"{}\"", fmt::join(key.choices, "\", \""));
+    case Type::kNumber:
+      return fmt::format("a number {} {:g} and at most {:g}",
+                         key.is_low_excluded ? "above" : "of at least", key.low, key.high);
+    case Type::kIndex:
+      return "the number of a face or feature, as hvas inspect lists it";
+    case Type::kObject:
+      return R"(an object such as {"occurrence": "housing", "face": 3})";
+    case Type::kList:
+      break;
+  }
+  return "a list [...]";
+}
+
+bool IsOfType(const SideFileKey& key, const ordered_json& value) {
+  const auto is_in_range = [&key](double x) {
+    return std::isfinite(x) && x <= key.high && (key.is_low_excluded ? x > key.low : x >= key.low);
+  };
+  switch (key.type) {
+    case Type::kText:
+      return value.is_string() && (key.may_be_empty || value != "") &&
+             (key.choices.empty() || std::find(key.choices.begin(), key.choices.end(),
+                                               value.get<std::string>()) != key.choices.end());
+    case Type::kNumber:
+      return value.is_number() && is_in_range(value.get<double>());
+    case Type::kIndex:
+      return value.is_number_integer() && is_in_range(value.get<double>());
+    case Type::kObject:
+      return value.is_object();
+    case Type::kList:
+      break;
+  }
+  return value.is_array();
+}
+
+/** Keys known, of their types, in their ranges, and those there that have to be. */
+Result<void> CheckObject(const ordered_json& object, SideFileObject kind, const Place& place) {
+  const std::span<const SideFileKey> keys = KeysOf(kind);
+  std::vector<std::string> names;
+  std::transform(keys.begin(), keys.end(), std::back_inserter(names),
+                 [](const SideFileKey& key) { return std::string(key.name); });
+  const std::string all = fmt::format("the keys here are {}", fmt::join(names, ", "));
+  if (!object.is_object()) {
+    return Fail(ErrorCode::kInvalid, "there has to be an object {...}", place.Where(), all);
+  }
+  for (const auto& [name, value] : object.items()) {
+    const auto key = std::find_if(keys.begin(), keys.end(),
+                                  [&](const SideFileKey& known) { return known.name == name; });
+    if (key == keys.end()) {
+      const std::string nearest = FindNearest(name, names);
+      return Fail(ErrorCode::kInvalid, fmt::format("the key \"{}\" is not known", name),
+                  place.Where(name),
+                  nearest.empty() ? all : fmt::format("write \"{}\"; {}", nearest, all));
+    }
+    if (!IsOfType(*key, value)) {
+      return Fail(
+          ErrorCode::kInvalid,
+          fmt::format(
+              "\"{}\" is {}", name,
+              value.dump(-1, ' ', false, ordered_json::error_handler_t::replace).substr(0, 40)),
+          place.Where(name), "write " + DescribeType(*key));
+    }
+  }
+  for (const SideFileKey& key : keys) {
+    if (key.is_required && !object.contains(key.name)) {
+      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is missing", key.name), place.Where(),
+                  fmt::format("add \"{}\": {}", key.name, DescribeType(key)));
+    }
+  }
+  return {};
+}
+
+std::string TextAt(const ordered_json& object, const char* key) {
+  const auto found = object.find(key);
+  return found == object.end() ? std::string() : found->get<std::string>();
+}
+
+std::optional<double> NumberAt(const ordered_json& object, const char* key, double unit) {
+  const auto found = object.find(key);
+  return found == object.end() ? std::nullopt : std::optional(found->get<double>() * unit);
+}
+
+std::optional<std::uint32_t> IndexAt(const ordered_json& object, const char* key) {
+  const auto found = object.find(key);
+  return found == object.end() ? std::nullopt : std::optional(found->get<std::uint32_t>());
+}
+
+Result<FitEntry> ReadFit(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kFit, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  FitEntry entry;
+  entry.where = place.Where();
+  entry.mate = TextAt(item, "mate");
+  entry.hole = TextAt(item, "hole");
+  entry.shaft = TextAt(item, "shaft");
+  entry.fit = TextAt(item, "fit");
+  entry.diameter = NumberAt(item, "diameter_mm", units::kMetresPerMillimetre);
+  product::FitConditions& conditions = entry.conditions;
+  conditions.hole_diameter = NumberAt(item, "hole_diameter_mm", units::kMetresPerMillimetre);
+  conditions.shaft_diameter = NumberAt(item, "shaft_diameter_mm", units::kMetresPerMillimetre);
+  conditions.hole_roughness = NumberAt(item, "hole_rz_um", units::kMetresPerMicrometre);
+  conditions.shaft_roughness = NumberAt(item, "shaft_rz_um", units::kMetresPerMicrometre);
+  conditions.friction = NumberAt(item, "friction", 1);
+  conditions.hole_temperature = NumberAt(item, "hole_temperature_c", 1);
+  conditions.shaft_temperature = NumberAt(item, "shaft_temperature_c", 1);
+  const bool has_names = item.contains("hole") && item.contains("shaft");
+  const bool has_a_name = item.contains("hole") || item.contains("shaft");
+  if (item.contains("mate") ? has_a_name || entry.diameter.has_value() : !has_names) {
+    return Fail(ErrorCode::kInvalid, "the entry does not say which mate it is about", entry.where,
+                R"(write "mate": "KEY" alone, or "hole": "..." and "shaft": "...")");
+  }
+  const bool says_something = std::any_of(item.begin(), item.end(), [&item](const auto& value) {
+    constexpr std::array kWhich{"mate", "hole", "shaft", "diameter_mm", "note"};
+    return std::none_of(kWhich.begin(), kWhich.end(), [&](const char* key) {
+      return item.contains(key) && &item[key] == &value;
+    });
+  });
+  if (!says_something) {
+    return Fail(ErrorCode::kInvalid, "the entry says nothing about its mate", entry.where,
+                R"(add "fit": "H7/g6", or a measured size, or take the entry out)");
+  }
+  return entry;
+}
+
+Result<SideEntry> ReadSide(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kSide, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  SideEntry side{TextAt(item, "occurrence"), IndexAt(item, "face"), IndexAt(item, "feature")};
+  if (side.face.has_value() == side.feature.has_value()) {
+    return Fail(ErrorCode::kInvalid, "the side names neither a face nor a feature, or both",
+                place.Where(), R"(write "face": 3 or "feature": 1, as hvas inspect lists them)");
+  }
+  return side;
+}
+
+Result<AddedMate> ReadMate(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kMate, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  AddedMate mate;
+  mate.where = place.Where();
+  mate.fit = TextAt(item, "fit");
+  if (const auto kind =
+          std::find(kMateKinds.begin(), kMateKinds.end(), std::string_view(TextAt(item, "kind")));
+      kind != kMateKinds.end()) {
+    mate.kind = static_cast<product::MateKind>(kind - kMateKinds.begin());
+  }
+  for (const auto& [key, side] : {std::pair("a", &mate.a), std::pair("b", &mate.b)}) {
+    Place inner = place;
+    inner.pointer += std::string("/") + key;
+    Result<SideEntry> read = ReadSide(item[key], inner);
+    if (!read) {
+      return Unexpected(read.error());
+    }
+    *side = *std::move(read);
+  }
+  return mate;
+}
+
+Result<RemovedMate> ReadRemoved(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kRemoved, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  return RemovedMate{TextAt(item, "mate"), place.Where()};
+}
+
+/** Reads the list under `key`, if it is there; `name` is what its entries are called. */
+template <typename Entry, typename Read>
+Result<void> ReadList(const Place& top, const char* key, const char* name, Read read,
+                      std::vector<Entry>* entries) {
+  const auto list = top.document->root.find(key);
+  if (list == top.document->root.end()) {
+    return {};
+  }
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const Place place{top.document, top.file, fmt::format("/{}/{}", key, i),
+                      fmt::format("{} {}", name, i + 1)};
+    auto entry = read((*list)[i], place);
+    if (!entry) {
+      return Unexpected(entry.error());
+    }
+    entries->push_back(*std::move(entry));
+  }
+  return {};
+}
+
+/** "{"a": 1, "b": [1, 2]}" in one line, with spaces as people write them. */
+std::string FormatInline(const ordered_json& value) {
+  const auto dump = [](const auto& scalar) {
+    return ordered_json(scalar).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  };
+  if (!value.is_structured()) {
+    return dump(value);
+  }
+  std::vector<std::string> items;
+  for (const auto& [key, item] : value.items()) {
+    items.push_back((value.is_object() ? dump(key) + ": " : "") + FormatInline(item));
+  }
+  return fmt::format("{}{}{}", value.is_object() ? '{' : '[', fmt::join(items, ", "),
+                     value.is_object() ? '}' : ']');
+}
+
+}  // namespace
+
+std::span<const SideFileKey> KeysOf(SideFileObject object) {
+  switch (object) {
+    case SideFileObject::kDocument:
+      return kDocumentKeys;
+    case SideFileObject::kFit:
+      return kFitKeys;
+    case SideFileObject::kMate:
+      return kMateKeys;
+    case SideFileObject::kSide:
+      return kSideKeys;
+    case SideFileObject::kRemoved:
+      break;
+  }
+  return kRemovedKeys;
+}
+
+std::filesystem::path FindAssignmentFile(const std::filesystem::path& product_file) {
+  std::filesystem::path file = product_file;
+  return file.replace_extension(".hvas.json");
+}
+
+Result<SideFile> ReadSideFile(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) {
+    return Fail(ErrorCode::kNotFound, "the fits cannot be read", file.string(),
+                "check the path and its permissions");
+  }
+  if (size > kLargestFile) {
+    return Fail(ErrorCode::kUnsupported, "the file is larger than 16 MB", file.string(),
+                "keep only what is about this product's mates");
+  }
+  std::stringstream text;
+  text << stream.rdbuf();
+  return ParseSideFile(text.str(), file);
+}
+
+Result<SideFile> ParseSideFile(std::string_view text, const std::filesystem::path& file) {
+  const Result<LocatedJson> document = ParseLocatedJson(text, file.string());
+  if (!document) {
+    return Unexpected(document.error());
+  }
+  const Place top{&*document, file.string(), "", ""};
+  const ordered_json& root = document->root;
+  if (!root.is_object() || !root.contains("format")) {
+    return Fail(ErrorCode::kUnsupported, "the file holds no assignments", top.Where(),
+                fmt::format(R"(begin with {{"format": "{}", "fits": [...]}})", kSideFileFormat));
+  }
+  SideFile result;
+  result.path = file;
+  Result<void> read = CheckObject(root, SideFileObject::kDocument, top);
+  if (read) {
+    read = ReadList(top, "fits", "fit", ReadFit, &result.fits);
+  }
+  if (read) {
+    read = ReadList(top, "mates", "mate", ReadMate, &result.added);
+  }
+  if (read) {
+    read = ReadList(top, "removed", "removed", ReadRemoved, &result.removed);
+  }
+  if (!read) {
+    return Unexpected(read.error());
+  }
+  return result;
+}
+
+std::string FormatSideFile(const ordered_json& document) {
+  std::string text = "{";
+  const char* separator = "\n";
+  for (const auto& [key, value] : document.items()) {
+    text += fmt::format("{}  {}: ", separator, FormatInline(key));
+    separator = ",\n";
+    if (!value.is_array() || value.empty()) {
+      text += FormatInline(value);
+      continue;
+    }
+    const char* begin = "[\n    ";
+    for (const ordered_json& entry : value) {
+      text += begin + FormatInline(entry);
+      begin = ",\n    ";
+    }
+    text += "\n  ]";
+  }
+  return text + "\n}\n";
+}
+
+std::string FindNearest(std::string_view word, const std::vector<std::string>& candidates) {
+  std::size_t least = 1 + word.size() / 3;  // Edits that a slip may have made.
+  std::string nearest;
+  for (const std::string& candidate : candidates) {
+    // Levenshtein's distance, a row at a time.
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), 0U);
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = std::exchange(row[0], i + 1);
+      for (std::size_t j = 0; j < candidate.size(); ++j) {
+        const std::size_t changed = diagonal + (word[i] == candidate[j] ? 0U : 1U);
+        diagonal = std::exchange(row[j + 1], std::min({changed, row[j] + 1, row[j + 1] + 1}));
+      }
+    }
+    if (row.back() < least || (row.back() == least && nearest.empty())) {
+      least = row.back();
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+const char* ToString(product::MateKind kind) {
+  return kMateKinds.at(static_cast<std::size_t>(kind)).data();
+}
+
+}  // namespace hvas::mates

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "base/result.h"
+#include "product/product.h"
+
+/** The file NAME.hvas.json beside a CAD file: what people say about its mates (docs/side-file.md).
+ Here is its language; `mates/assignments.h` gives it its effect. */
+namespace hvas::mates {
+
+inline constexpr std::string_view kSideFileFormat = "hvas-assignments-2";
+
+/** The kinds of objects in the file. */
+enum class SideFileObject { kDocument, kFit, kMate, kSide, kRemoved };
+
+enum class SideFileType { kText, kNumber, kIndex, kObject, kList };
+
+/** A key that an object may have, as in data/schemas/assignments.schema.json. */
+struct SideFileKey {
+  std::string_view name;
+  SideFileType type{SideFileType::kText};
+  bool is_required{false};
+  double low{0};  ///< Of numbers.
+  double high{0};
+  bool is_low_excluded{false};
+  bool may_be_empty{false};                   ///< Of texts.
+  std::span<const std::string_view> choices;  ///< Of texts; any when empty.
+};
+
+[[nodiscard]] std::span<const SideFileKey> KeysOf(SideFileObject object);
+
+/** "fits": what is known of the fit of some axis-hole mates. */
+struct FitEntry {
+  std::string mate;                ///< A key or "m12"; empty: by hole and shaft.
+  std::string hole;                ///< An occurrence's name, path or end of path.
+  std::string shaft;               ///< The same.
+  std::optional<double> diameter;  ///< Of hole or shaft [m].
+  std::string fit;                 ///< "H7/g6", "H7", "g6", "thread", or empty.
+  product::FitConditions conditions;
+  std::string where;  ///< "FILE:LINE, fit 3".
+};
+
+/** A face or a feature of an occurrence. */
+struct SideEntry {
+  std::string occurrence;
+  std::optional<std::uint32_t> face, feature;  ///< One of the two.
+};
+
+/** "mates": one that the user adds. */
+struct AddedMate {
+  std::optional<product::MateKind> kind;  ///< Found from the surfaces where it is not said.
+  SideEntry a, b;
+  std::string fit;  ///< As in FitEntry.
+  std::string where;
+};
+
+/** "removed": one that inference finds and the user does not want. */
+struct RemovedMate {
+  std::string mate;  ///< Its key.
+  std::string where;
+};
+
+struct SideFile {
+  std::filesystem::path path;
+  std::vector<FitEntry> fits;
+  std::vector<AddedMate> added;
+  std::vector<RemovedMate> removed;
+};
+
+/** Where a CAD file's side file stands: "pump.step" has "pump.hvas.json" beside it. */
+[[nodiscard]] std::filesystem::path FindAssignmentFile(const std::filesystem::path& product_file);
+
+/** Reads a side file, of this format or of "hvas-assignments-1". Errors name the file, the line,
+ the entry and a remedy: a key that is not known, is there twice, has a value of another type or out
+ of its range, or is missing. */
+[[nodiscard]] Result<SideFile> ReadSideFile(const std::filesystem::path& file);
+
+/** The same of a text; `file` is for the messages. */
+[[nodiscard]] Result<SideFile> ParseSideFile(std::string_view text,
+                                             const std::filesystem::path& file);
+
+/** The text of a side file: an entry a line. What is in `document` keeps its order. */
+[[nodiscard]] std::string FormatSideFile(const nlohmann::ordered_json& document);
+
+/** The candidate that somebody may have meant by a word; empty where none is near. */
+[[nodiscard]] std::string FindNearest(std::string_view word,
+                                      const std::vector<std::string>& candidates);
+
+[[nodiscard]] const char* ToString(product::MateKind kind);  ///< "axis_hole", ...
+
+}  // namespace hvas::mates
