@@ -72,7 +72,7 @@ void HapticTick::Take(const HeldPart* part) noexcept {
 }
 
 spatial::Pose HapticTick::Drop() noexcept {
-  const spatial::Pose X_WB = state_ == HoldState::kSeated ? part_->X_WB_goal : X_WD_;
+  spatial::Pose X_WB = state_ == HoldState::kSeated ? part_->X_WB_goal : X_WD_;
   part_ = nullptr;
   state_ = HoldState::kEmpty;
   return X_WB;
