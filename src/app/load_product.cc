@@ -1,6 +1,6 @@
 #include "app/load_product.h"
 
-#include "cad/read_cad.h"
+#include "cad/import.h"
 #include "mates/assignments.h"
 #include "mates/infer.h"
 #include "mates/stated_fits.h"
@@ -10,7 +10,7 @@ namespace hvas::app {
 Result<product::Product> LoadProduct(
     const std::filesystem::path& file, const std::vector<std::string>& fits,
     Diagnostics* diagnostics, const std::function<void(std::string_view, double)>& progress) {
-  auto product = cad::ReadCad(file, {}, diagnostics, {progress, {}, nullptr});
+  auto product = cad::Import(file, {}, diagnostics, {{}, progress, {}, {}});
   if (!product) {
     return product;
   }

@@ -16,7 +16,7 @@ namespace hvas::app {
  NAME.hvas.json (if there is one) and then those of the command line assigned.
 
  @param fits  Texts "AXIS=FIT" as given to --fit.
- Errors: those of cad::ReadCad and of the assignments. */
+ Errors: those of cad::Import and of the assignments. */
 Result<product::Product> LoadProduct(const std::filesystem::path& file,
                                      const std::vector<std::string>& fits, Diagnostics* diagnostics,
                                      const std::function<void(std::string_view, double)>& progress);

@@ -14,6 +14,7 @@ enum class ErrorCode {
   kUnsupported,    ///< Understood, but outside what HVAS can do.
   kInvalid,        ///< A value is out of its documented range.
   kOutOfResource,  ///< Disk, memory or time ran out.
+  kCancelled,      ///< Somebody stopped it.
   kInternal,       ///< A bug in HVAS.
 };
 

@@ -460,7 +460,7 @@ Result<void> TreeBuilder::Build() {
     }
   }
   if (is_too_large_) {
-    return Fail(ErrorCode::kOutOfResource,
+    return Fail(ErrorCode::kUnsupported,
                 fmt::format("the product has more than {} parts", kMaxOccurrences),
                 product_->source, "open one of its subassemblies");
   }

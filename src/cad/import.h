@@ -2,9 +2,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <optional>
+#include <stop_token>
 #include <string_view>
 #include <vector>
+
+#include "base/diagnostics.h"
+#include "base/result.h"
+#include "product/product.h"
 
 namespace hvas::cad {
 
@@ -25,5 +32,35 @@ struct ImportOptions {
   bool with_tolerances{true};         ///< Reads dimensions, tolerances and fits.
   std::vector<std::uint32_t> skipped_parts;  ///< Left out, by their numbers as PartFn gets them.
 };
+
+/** What an import may take. */
+struct ImportLimits {
+  double time{600};         ///< All attempts together [s].
+  double part_time{0};      ///< One part, or the tolerances [s]; 0: a fifth of `time`.
+  std::uint64_t memory{0};  ///< Address space [bytes]; 0: three quarters of the machine's memory.
+};
+
+struct ImportControl {
+  ImportLimits limits;
+  ProgressFn progress;
+  std::stop_token stop;  ///< Ends the import at once when a stop is asked for.
+  std::optional<std::filesystem::path> cache_directory;  ///< None: nothing is kept.
+};
+
+/** Reads a CAD file in a process of its own (`hvas-cad`; what it makes of the file is with ReadCad
+ in cad/read_cad.h), so that neither a crash nor a hang nor a lack of memory of the libraries that
+ know the formats is one of this program. No OpenCASCADE in the program that calls it.
+
+ When that process dies, or takes longer than it may, another one does without what was at fault:
+ first without the tolerances, if it died over them; then without the part that it died over, up to
+ a few parts. Each such step becomes a warning. Files that were read before come from the cache when
+ neither they, nor the files that they refer to, nor the program have changed.
+
+ Errors: those of ReadCad; kOutOfResource (a limit), kUnreadable (the process died), kNotFound
+ (`hvas-cad` is not installed), kCancelled. @pre diagnostics != nullptr. */
+[[nodiscard]] Result<product::Product> Import(const std::filesystem::path& file,
+                                              const ImportOptions& options,
+                                              Diagnostics* diagnostics,
+                                              const ImportControl& control = {});
 
 }  // namespace hvas::cad

@@ -11,11 +11,13 @@
 #include <utility>
 
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <TDocStd_Document.hxx>
 #include <fmt/format.h>
 
 #include "base/units.h"
 #include "cad/assembly_tree.h"
+#include "cad/input_file.h"
 #include "cad/step_document.h"
 #include "cad/tolerances.h"
 
@@ -23,8 +25,6 @@ namespace hvas::cad {
 namespace {
 
 using product::Product;
-
-constexpr const char* kFormats = "choose a STEP file (.step or .stp; AP203, AP214 or AP242)";
 
 void CheckSize(const Product& product, Diagnostics* diagnostics) {
   const double size = product.box_W.size().norm();
@@ -98,53 +98,33 @@ Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions&
   return product;
 }
 
-/** A file that is there, with its first bytes. */
-struct OpenedFile {
-  std::filesystem::path path;  ///< Absolute, without which OpenCASCADE finds no referred files.
-  std::string head;
-};
-
-Result<OpenedFile> OpenFile(const std::filesystem::path& file) {
-  std::error_code error;
-  OpenedFile opened;
-  opened.path = std::filesystem::canonical(file, error);
-  if (error) {
-    return Fail(ErrorCode::kNotFound, "there is no such file", file.string(), "check the path");
-  }
-  if (!std::filesystem::is_regular_file(opened.path, error)) {
-    return Fail(ErrorCode::kUnreadable, "this is not a file", file.string(), kFormats);
-  }
-  std::ifstream stream(opened.path, std::ios::binary);
-  if (!stream) {
-    return Fail(ErrorCode::kUnreadable, "the file cannot be opened", file.string(),
-                "check its permissions");
-  }
+/** The first bytes of a file. */
+std::string ReadHead(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
   std::array<char, 4096> head{};
   stream.read(head.data(), head.size());
-  opened.head.assign(head.data(), static_cast<std::size_t>(stream.gcount()));
-  if (opened.head.empty()) {
-    return Fail(ErrorCode::kUnreadable, "the file is empty", file.string(), kFormats);
-  }
-  return opened;
+  return {head.data(), static_cast<std::size_t>(stream.gcount())};
 }
 
 /** The one place where formats are told apart: by content, whatever the file is called. */
-Result<Product> ReadByContent(const OpenedFile& file, const ImportOptions& options,
+Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOptions& options,
                               const ReadWatch& watch, Diagnostics* diagnostics) {
-  if (file.head.find("ISO-10303-21") != std::string::npos) {
-    return ReadStep(file.path, options, watch, diagnostics);
+  if (ReadHead(file).find("ISO-10303-21") != std::string::npos) {
+    return ReadStep(file, options, watch, diagnostics);
   }
-  return Fail(ErrorCode::kUnreadable, "this is not a STEP file", file.path.filename().string(),
+  return Fail(ErrorCode::kUnreadable, "this is not a STEP file", file.filename().string(),
               kFormats);
 }
 
 /** The only place where exceptions of other libraries end. */
-Result<Product> ReadGuarded(const OpenedFile& file, const ImportOptions& options,
+Result<Product> ReadGuarded(const std::filesystem::path& file, const ImportOptions& options,
                             const ReadWatch& watch, Diagnostics* diagnostics) {
   constexpr const char* kRemedy = "export it again from the CAD system, if need be in parts";
-  const std::string name = file.path.filename().string();
+  const std::string name = file.filename().string();
   try {
     return ReadByContent(file, options, watch, diagnostics);
+  } catch (const Standard_OutOfMemory&) {
+    return Fail(ErrorCode::kOutOfResource, "memory ran out while reading it", name, kRemedy);
   } catch (const Standard_Failure& failure) {
     return Fail(ErrorCode::kUnreadable,
                 fmt::format("OpenCASCADE could not read it: {} {}", failure.DynamicType()->Name(),
@@ -162,13 +142,13 @@ Result<Product> ReadGuarded(const OpenedFile& file, const ImportOptions& options
 
 Result<Product> ReadCad(const std::filesystem::path& file, const ImportOptions& options,
                         Diagnostics* diagnostics, const ReadWatch& watch) {
-  const Result<OpenedFile> opened = OpenFile(file);
-  if (!opened) {
-    return Unexpected(opened.error());
+  const Result<std::filesystem::path> path = CheckInputFile(file);
+  if (!path) {
+    return Unexpected(path.error());
   }
   static std::mutex mutex;  // OpenCASCADE keeps its settings and documents in globals.
   const std::scoped_lock lock(mutex);
-  Result<Product> product = ReadGuarded(*opened, options, watch, diagnostics);
+  Result<Product> product = ReadGuarded(*path, options, watch, diagnostics);
   if (product && watch.progress) {
     watch.progress("done", 1);
   }

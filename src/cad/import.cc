@@ -1,0 +1,228 @@
+#include "cad/import.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/clock.h"
+#include "cad/import_cache.h"
+#include "cad/import_result.h"
+#include "cad/input_file.h"
+#include "cad/worker.h"
+
+namespace hvas::cad {
+namespace {
+
+using product::Product;
+
+constexpr std::size_t kMaxSkippedParts = 8;
+constexpr double kPartShare = 0.2;  // Of the whole time.
+constexpr double kLongest = 1e6;    // [s]
+
+/** Attempts at one file until one succeeds or there is nothing left to do without. */
+class Attempts {
+ public:
+  Attempts(std::filesystem::path worker, std::filesystem::path file, const ImportOptions& options,
+           const ImportControl& control)
+      : file_(std::move(file)), name_(file_.filename().string()), options_(options) {
+    const ImportLimits& limits = control.limits;
+    const double time = std::clamp(limits.time, 0.0, kLongest);
+    const double part_time =
+        limits.part_time > 0 ? std::min(limits.part_time, kLongest) : kPartShare * time;
+    call_.program = std::move(worker);
+    call_.deadline_ns = MonotonicNs() + std::llround(1e9 * time);
+    call_.part_limit_ns = std::llround(1e9 * part_time);
+    call_.memory = limits.memory;
+    call_.stop = control.stop;
+    call_.progress = control.progress;
+  }
+
+  /** The result in bytes is of the last attempt, and has no warnings of this side. */
+  Result<ImportResult> Run();
+
+  /** Warnings about what had to be left out. */
+  [[nodiscard]] const Diagnostics& omissions() const { return omissions_; }
+
+  /** False where another run, with more time or memory, might leave less out. */
+  [[nodiscard]] bool is_repeatable() const { return is_repeatable_; }
+
+  [[nodiscard]] const MappedFile& output() const { return output_; }
+
+ private:
+  [[nodiscard]] std::vector<std::string> Arguments() const;
+  bool LeaveOut(const WorkerRun& run);
+  [[nodiscard]] Unexpected GiveUp(const WorkerRun& run) const;
+
+  std::filesystem::path file_;
+  std::string name_;
+  ImportOptions options_;
+  WorkerCall call_;
+  Diagnostics omissions_;
+  bool is_repeatable_{true};
+  MappedFile output_;
+};
+
+std::vector<std::string> Attempts::Arguments() const {
+  std::vector<std::string> arguments{"import",
+                                     file_.string(),
+                                     "--relative-deflection",
+                                     fmt::format("{}", options_.relative_deflection),
+                                     "--min-deflection",
+                                     fmt::format("{}", options_.min_deflection),
+                                     "--max-angle",
+                                     fmt::format("{}", options_.max_angle),
+                                     "--max-triangles",
+                                     fmt::format("{}", options_.max_triangles)};
+  if (!options_.with_tolerances) {
+    arguments.emplace_back("--no-tolerances");
+  }
+  for (const std::uint32_t part : options_.skipped_parts) {
+    arguments.insert(arguments.end(), {"--skip-part", std::to_string(part)});
+  }
+  return arguments;
+}
+
+/** Takes out of the next attempt what the last one died over. @returns false if that is not known,
+ or has been tried. */
+bool Attempts::LeaveOut(const WorkerRun& run) {
+  const bool is_limit = run.fate == WorkerFate::kPartTimeUp || run.fate == WorkerFate::kNoMemory;
+  if (!is_limit && run.fate != WorkerFate::kCrashed && run.fate != WorkerFate::kFailed) {
+    return false;
+  }
+  if (run.stage == "tolerances" && options_.with_tolerances) {
+    options_.with_tolerances = false;
+    omissions_.Warn("tolerances-skipped", name_,
+                    fmt::format("the reader {} while it read the tolerances; the product is "
+                                "without its dimensions, tolerances and stated fits",
+                                run.Describe()),
+                    "give the fits in a side file or with --fit, or export it without PMI");
+  } else if (run.part && options_.skipped_parts.size() < kMaxSkippedParts &&
+             std::find(options_.skipped_parts.begin(), options_.skipped_parts.end(), *run.part) ==
+                 options_.skipped_parts.end()) {
+    options_.skipped_parts.push_back(*run.part);
+    omissions_.Warn("part-skipped", run.part_name,
+                    fmt::format("the reader of {} {} while it worked at this part; left out", name_,
+                                run.Describe()),
+                    is_limit ? "allow more with --time-limit or --memory-limit, or export the part "
+                               "in a simpler form"
+                             : "heal the part in the CAD system and export it again");
+  } else {
+    return false;
+  }
+  is_repeatable_ = is_repeatable_ && !is_limit;
+  return true;
+}
+
+Unexpected Attempts::GiveUp(const WorkerRun& run) const {
+  std::string at;
+  if (run.part) {
+    at = fmt::format(" while it worked at the part \"{}\"", run.part_name);
+  } else if (!run.stage.empty()) {
+    at = fmt::format(" at the stage \"{}\"", run.stage);
+  }
+  const std::string message = fmt::format("the reader {}{}", run.Describe(), at);
+  switch (run.fate) {
+    case WorkerFate::kCancelled:
+      return Fail(ErrorCode::kCancelled, "opening it was stopped", name_);
+    case WorkerFate::kTimeUp:
+    case WorkerFate::kPartTimeUp:
+      return Fail(ErrorCode::kOutOfResource, message, name_,
+                  "allow more with --time-limit, or export it in parts");
+    case WorkerFate::kNoMemory:
+      return Fail(ErrorCode::kOutOfResource, message, name_,
+                  "allow more with --memory-limit, or export it in parts");
+    case WorkerFate::kNotStarted:
+      return Fail(ErrorCode::kNotFound, message, call_.program.string(),
+                  "install hvas-cad beside hvas again");
+    case WorkerFate::kFinished:
+      return Fail(ErrorCode::kInternal, "the reader handed over no product", name_,
+                  "check that hvas and hvas-cad are of the same version");
+    case WorkerFate::kCrashed:
+    case WorkerFate::kFailed:
+      break;
+  }
+  return Fail(ErrorCode::kUnreadable, message, name_,
+              "export it again from the CAD system, if need be in parts");
+}
+
+Result<ImportResult> Attempts::Run() {
+  while (true) {
+    call_.arguments = Arguments();
+    WorkerRun run = RunWorker(call_);
+    if (run.fate == WorkerFate::kFinished) {
+      if (auto result = DeserialiseImportResult(run.output.bytes())) {
+        output_ = std::move(run.output);
+        return std::move(*result);
+      }
+      return GiveUp(run);
+    }
+    if (!LeaveOut(run)) {
+      return GiveUp(run);
+    }
+  }
+}
+
+/** Hands a result over: first what this side has to say about it. */
+Result<Product> Finish(ImportResult result, const ImportControl& control,
+                       Diagnostics* diagnostics) {
+  for (const Diagnostic& item : result.diagnostics.items()) {
+    diagnostics->Add(item);
+  }
+  if (control.progress) {
+    control.progress("done", 1);
+  }
+  return std::move(result.product);
+}
+
+}  // namespace
+
+Result<Product> Import(const std::filesystem::path& file, const ImportOptions& options,
+                       Diagnostics* diagnostics, const ImportControl& control) {
+  auto path = CheckInputFile(file);
+  if (!path) {
+    return Unexpected(path.error());
+  }
+  auto worker = FindWorker();
+  if (!worker) {
+    return Unexpected(worker.error());
+  }
+  std::optional<ImportCache> cache;
+  if (control.cache_directory) {
+    cache.emplace(*control.cache_directory, *worker, *path, options);
+    if (auto result = cache->Load()) {
+      return Finish(std::move(*result), control, diagnostics);
+    }
+  }
+  Attempts attempts(*worker, *path, options, control);
+  auto result = attempts.Run();
+  if (!result) {
+    if (control.progress) {
+      control.progress("done", 1);
+    }
+    for (const Diagnostic& item : attempts.omissions().items()) {
+      diagnostics->Add(item);
+    }
+    return Unexpected(result.error());
+  }
+  const bool is_whole = attempts.omissions().items().empty();
+  for (const Diagnostic& item : attempts.omissions().items()) {
+    result->diagnostics.Add(item);
+  }
+  if (cache && result->product && attempts.is_repeatable()) {
+    const bool is_kept =
+        is_whole ? cache->Store(attempts.output().bytes()) : cache->Store(Serialise(*result));
+    if (!is_kept) {
+      result->diagnostics.Note(
+          "cache-unwritable", control.cache_directory->string(),
+          "the product cannot be kept on disk; it will be read again next time",
+          "make room there and make it writable, or set HVAS_CACHE=off");
+    }
+  }
+  return Finish(std::move(*result), control, diagnostics);
+}
+
+}  // namespace hvas::cad

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "base/result.h"
+
+namespace hvas::cad {
+
+/** The bytes of a file, as they lie there. Only for files that nobody makes shorter meanwhile. */
+class MappedFile {
+ public:
+  /** The bytes behind an open file, which may be closed afterwards.
+   Errors: kUnreadable, without saying which file. */
+  [[nodiscard]] static Result<MappedFile> Open(int descriptor);
+  [[nodiscard]] static Result<MappedFile> Open(const std::filesystem::path& path);
+
+  MappedFile() = default;
+  MappedFile(MappedFile&& other) noexcept;
+  MappedFile& operator=(MappedFile&& other) noexcept;
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+  ~MappedFile();
+
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+/** Checks that a file is there, can be read and holds something.
+ @returns its absolute path, without which OpenCASCADE does not find the files that it refers to.
+ Errors: kNotFound, kUnreadable. */
+[[nodiscard]] Result<std::filesystem::path> CheckInputFile(const std::filesystem::path& file);
+
+/** What to choose instead of a file that is none of these. */
+inline constexpr const char* kFormats = "choose a STEP file (.step or .stp; AP203, AP214 or AP242)";
+
+/** Digest of a file's bytes; empty where it cannot be read. */
+[[nodiscard]] std::string DigestOf(const std::filesystem::path& path);
+
+}  // namespace hvas::cad

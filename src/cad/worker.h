@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "cad/import.h"
+#include "cad/input_file.h"
+
+/** `hvas-cad`, the program that holds everything that needs OpenCASCADE, seen from outside.
+
+ It gets its arguments, an open file for what it makes (kOutputDescriptor), and a pipe for lines
+ about how it goes (kProgressDescriptor): "stage FRACTION NAME" and "part NUMBER NAME". It exits
+ with 0 when the output is complete. */
+namespace hvas::cad {
+
+inline constexpr int kProgressDescriptor = 3;
+inline constexpr int kOutputDescriptor = 4;
+
+/** Exit statuses of the worker, beside 0. */
+inline constexpr int kWorkerUsage = 64;
+inline constexpr int kWorkerNoMemory = 71;
+inline constexpr int kWorkerNoOutput = 74;
+
+/** $HVAS_CAD_WORKER, else `hvas-cad` beside the running program, else that of the build tree that
+ this program was built in. Errors: kNotFound. */
+[[nodiscard]] Result<std::filesystem::path> FindWorker();
+
+struct WorkerCall {
+  std::filesystem::path program;
+  std::vector<std::string> arguments;  ///< Without the program's name.
+  std::int64_t deadline_ns{0};         ///< On the monotonic clock.
+  std::int64_t part_limit_ns{0};       ///< For one part, and for the tolerances.
+  std::uint64_t memory{0};             ///< Address space [bytes]; 0: three quarters of the machine.
+  std::stop_token stop;
+  ProgressFn progress;
+};
+
+enum class WorkerFate {
+  kFinished,
+  kNotStarted,
+  kCancelled,
+  kTimeUp,
+  kPartTimeUp,  ///< The stage or part that is named took too long.
+  kNoMemory,
+  kCrashed,  ///< By a signal.
+  kFailed,   ///< With an exit status that says no more.
+};
+
+/** How a worker ended, and at what. */
+struct WorkerRun {
+  WorkerFate fate{WorkerFate::kNotStarted};
+  int signal{0};
+  int status{0};
+  std::string stage;  ///< The last one that it told of.
+  std::optional<std::uint32_t> part;
+  std::string part_name;
+  MappedFile output;  ///< Of one that finished.
+
+  /** What happened, for people: "crashed (segmentation fault)". */
+  [[nodiscard]] std::string Describe() const;
+};
+
+/** Starts the worker, passes on what it tells, and waits for its end; kills it, and whatever it has
+ started, when it may not go on. It dies with the thread that called. */
+[[nodiscard]] WorkerRun RunWorker(const WorkerCall& call);
+
+}  // namespace hvas::cad
