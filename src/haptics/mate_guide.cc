@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mates/mate_kind.h"
+
 namespace hvas::haptics {
 namespace {
 
@@ -47,7 +49,14 @@ double Bounded(double stiffness, double deviation, double max_pull) noexcept {
 
 /** A guiding mate holds the part across its way; a stop only squares it. */
 bool IsGuide(const HeldMate& mate) noexcept {
-  return mate.capture.kind == MateKind::kAxisHole || !mate.is_stop;
+  return mate.capture.kind != MateKind::kFaceFace || !mate.is_stop;
+}
+
+/** True where the mate takes the place of contact between its faces. Cones and spheres do not: they
+ seat the part, and only contact knows when it is there. */
+bool ReplacesContact(const HeldMate& mate) noexcept {
+  return mate.capture.kind == MateKind::kAxisHole ||
+         (mate.capture.kind == MateKind::kFaceFace && !mate.is_stop);
 }
 
 }  // namespace
@@ -63,7 +72,12 @@ MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) n
   g.angle = std::atan2(cross.norm(), held_axis.dot(g.axis_W));
   g.tilt_W = cross.norm() > 1e-12 ? Vec3(g.angle / cross.norm() * cross) : Vec3::Zero();
   const double along = d.dot(g.axis_W);
-  if (is_plane) {
+  if (mate.capture.kind == MateKind::kSphereSeat) {
+    g.p_WQ = X_WN.p();
+    g.offset_W = d;
+    g.angle = 0;
+    g.tilt_W = Vec3::Zero();
+  } else if (is_plane) {
     g.p_WQ = X_WN.p();
     g.offset_W = along * g.axis_W;
   } else {
@@ -151,10 +165,11 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const HeldMate& mate = part.mates[i];
     const MateGeometry& g = state.geometry;
     const Mat3 along = g.axis_W * g.axis_W.transpose();
-    const Mat3 across = Mat3::Identity() - along;
+    const Mat3 whole = Mat3::Identity();
+    const Mat3 across = whole - along;
     const double tilt_free = mate.capture.kind == MateKind::kAxisHole ? FreeTilt(mate, g) : 0;
     const double tilt = g.tilt_W.norm();
-    if (tilt > tilt_free || tilt_free == 0) {
+    if (mates::HoldsDirection(mate.capture.kind) && (tilt > tilt_free || tilt_free == 0)) {
       const double excess = tilt - tilt_free;
       const double k = Bounded(RampedStiffness(kFirstRotStiffness, options.k_rot, state.ramp),
                                excess, options.max_torque);
@@ -178,11 +193,12 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
                                r - free, options.max_force);
       const double ratio = r > 0 ? free / r : 0.0;
       const Vec3 e = r > 0 ? Vec3(g.offset_W / r) : Vec3::Zero();
-      if (g.engaged > 0) {
+      if (g.engaged > 0 && mate.capture.kind == MateKind::kAxisHole) {
         lateral_force_ += k * (r - free);
       }
+      const Mat3& held = mate.capture.kind == MateKind::kSphereSeat ? whole : across;
       solver->AddPointSpring(g.p_WQ, -k * (r - free) * e,
-                             k * ((1 - ratio) * across + ratio * e * e.transpose()));
+                             k * ((1 - ratio) * held + ratio * e * e.transpose()));
     }
   }
 }
@@ -193,7 +209,7 @@ std::size_t MateGuide::CollectIgnored(const HeldPart& part, std::span<contact::I
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count && written + 2 <= pairs.size(); ++i) {
     const HeldMate& mate = part.mates[i];
-    if (!mates_[i].is_aligned || !IsGuide(mate) || mate.member != member) {
+    if (!mates_[i].is_aligned || !ReplacesContact(mate) || mate.member != member) {
       continue;
     }
     pairs[written++] = {mate.body, mate.held_faces->mating, mate.placed_faces->with_neighbours};

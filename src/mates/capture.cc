@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mates/mate_kind.h"
+
 namespace hvas::mates {
 
 using product::MateKind;
@@ -26,12 +28,16 @@ CaptureMate MakeCaptureMate(const product::Mate& mate, product::OccurrenceId hel
 MateDeviation CalcDeviation(const CaptureMate& mate, const Pose& X_WM, const Pose& X_WN) noexcept {
   const Vec3 zhat_M_W = X_WM.q() * Vec3::UnitZ();
   const Vec3 zhat_N_W = X_WN.q() * Vec3::UnitZ();
-  const bool is_axis = mate.kind == MateKind::kAxisHole;
-  const double cosine = (is_axis ? 1.0 : -1.0) * zhat_M_W.dot(zhat_N_W);
+  const Vec3 p_MN_W = X_WN.p() - X_WM.p();
   MateDeviation deviation;
+  if (mate.kind == MateKind::kSphereSeat) {
+    deviation.distance = p_MN_W.norm();
+    return deviation;
+  }
+  const bool is_axis = IsAxial(mate.kind);
+  const double cosine = (is_axis ? 1.0 : -1.0) * zhat_M_W.dot(zhat_N_W);
   // atan2 is accurate for parallel and opposed directions, where acos is not.
   deviation.angle = std::atan2(zhat_M_W.cross(zhat_N_W).norm(), cosine);
-  const Vec3 p_MN_W = X_WN.p() - X_WM.p();
   const double along = zhat_M_W.dot(p_MN_W);
   if (!is_axis) {
     const Vec3 p_MNFlat_W = p_MN_W - along * zhat_M_W;
@@ -56,8 +62,9 @@ MateDeviation CalcDeviation(const CaptureMate& mate, const Pose& X_WM, const Pos
 
 double CalcCaptureRatio(MateKind kind, const MateDeviation& deviation,
                         const CaptureThresholds& thresholds) noexcept {
-  const bool is_axis = kind == MateKind::kAxisHole;
-  const double distance_limit = is_axis ? thresholds.axis_distance : thresholds.face_distance;
+  const bool is_axis = IsAxial(kind);
+  const double distance_limit =
+      kind != MateKind::kFaceFace ? thresholds.axis_distance : thresholds.face_distance;
   const double gap_limit = is_axis ? thresholds.axial_gap : thresholds.in_plane_gap;
   return std::max({deviation.angle / thresholds.angle, deviation.distance / distance_limit,
                    deviation.gap / gap_limit});

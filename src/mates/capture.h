@@ -29,8 +29,9 @@ struct MateDeviation {
                        ///< 0 while the face's centre is within the reach of the other's [m].
 };
 
-/** @param X_WM  Connector of the placed side. @param X_WN  Connector of the held side. Axis-hole:
- both z axes point the same way when assembled; face-face: they oppose each other.
+/** @param X_WM  Connector of the placed side. @param X_WN  Connector of the held side. Axis-hole
+ and cone seat: both z axes point the same way when assembled; face-face: they oppose each other. A
+ sphere seat has a distance only, that of the centres.
 
  The axes' distance is that of the held axis from the placed one, at the end of the held span that
  faces the placed span, or at the middle of what they share. */
@@ -40,7 +41,7 @@ struct MateDeviation {
 /** When a mate is captured. Defaults: W7. */
 struct CaptureThresholds {
   double angle{0.17453292519943295};  ///< 10 deg [rad].
-  double axis_distance{5e-3};         ///< [m]
+  double axis_distance{5e-3};         ///< Also of centres [m].
   double axial_gap{30e-3};            ///< Before the shaft's end; the papers set no limit [m].
   double face_distance{3e-3};         ///< [m]
   double in_plane_gap{5e-3};          ///< [m]

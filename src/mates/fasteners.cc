@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace hvas::mates {
@@ -61,6 +62,31 @@ bool IsOnAxis(const Feature& a, const Feature& b) {
          a.axis_B.cross(b.origin_B - a.origin_B).norm() < kSameDistance * a.radius;
 }
 
+FastenerKind ClassifyByNames(const Product& product, const Occurrence& occurrence) {
+  const Part& part = product.part_of(occurrence.id);
+  const FastenerKind by_part = ClassifyName(part.name);
+  if (by_part != FastenerKind::kNone) {
+    return by_part;
+  }
+  const FastenerKind by_name = ClassifyName(occurrence.name);
+  if (by_name != FastenerKind::kNone) {
+    return by_name;
+  }
+  if (occurrence.parent.is_valid()) {
+    const product::Subassembly& parent = product.subassemblies[occurrence.parent.index()];
+    int solid_parts = 0;
+    for (const OccurrenceId id : parent.occurrences) {
+      solid_parts += product.part_of(id).solid_count > 0 ? 1 : 0;
+    }
+    const bool stands_for_it =
+        parent.parent.is_valid() && parent.subassemblies.empty() && solid_parts <= 1;
+    if (stands_for_it) {
+      return ClassifyName(parent.name);
+    }
+  }
+  return FastenerKind::kNone;
+}
+
 }  // namespace
 
 FastenerKind ClassifyShape(const Part& part) {
@@ -87,30 +113,37 @@ FastenerKind ClassifyShape(const Part& part) {
                                                                         : FastenerKind::kNone;
 }
 
-FastenerKind ClassifyOccurrence(const Product& product, const Occurrence& occurrence) {
-  const Part& part = product.part_of(occurrence.id);
-  const FastenerKind by_part = ClassifyName(part.name);
-  if (by_part != FastenerKind::kNone) {
-    return by_part;
-  }
-  const FastenerKind by_name = ClassifyName(occurrence.name);
-  if (by_name != FastenerKind::kNone) {
-    return by_name;
-  }
-  if (occurrence.parent.is_valid()) {
-    const product::Subassembly& parent = product.subassemblies[occurrence.parent.index()];
-    int solid_parts = 0;
-    for (const OccurrenceId id : parent.occurrences) {
-      solid_parts += product.part_of(id).solid_count > 0 ? 1 : 0;
+std::vector<FastenerKind> ClassifyOccurrences(const Product& product) {
+  std::vector<std::optional<FastenerKind>> by_shape(product.parts.size());
+  std::vector<FastenerKind> kinds;
+  kinds.reserve(product.occurrences.size());
+  for (const Occurrence& occurrence : product.occurrences) {
+    FastenerKind kind = ClassifyByNames(product, occurrence);
+    if (kind == FastenerKind::kNone) {
+      std::optional<FastenerKind>& shape = by_shape[occurrence.part.index()];
+      if (!shape) {
+        shape = ClassifyShape(product.parts[occurrence.part.index()]);
+      }
+      kind = *shape;
     }
-    const bool stands_for_it =
-        parent.parent.is_valid() && parent.subassemblies.empty() && solid_parts <= 1;
-    const FastenerKind by_parent = stands_for_it ? ClassifyName(parent.name) : FastenerKind::kNone;
-    if (by_parent != FastenerKind::kNone) {
-      return by_parent;
-    }
+    kinds.push_back(kind);
   }
-  return ClassifyShape(part);
+  return kinds;
+}
+
+FitEvidence MakeFitEvidence(const Product& product, const product::Mate& mate,
+                            const std::vector<FastenerKind>& fasteners) {
+  const auto thread_of = [&product](const product::Connector& side) {
+    return product.part_of(side.occurrence).features[side.feature.index()].thread;
+  };
+  FitEvidence evidence;
+  evidence.hole_radius = mate.hole_radius;
+  evidence.shaft_radius = mate.shaft_radius;
+  evidence.hole_part = fasteners[mate.a.occurrence.index()];
+  evidence.shaft_part = fasteners[mate.b.occurrence.index()];
+  evidence.hole_thread = thread_of(mate.a);
+  evidence.shaft_thread = thread_of(mate.b);
+  return evidence;
 }
 
 }  // namespace hvas::mates

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "mates/propose_fit.h"
 #include "product/product.h"
 
@@ -10,9 +12,15 @@ namespace hvas::mates {
  */
 [[nodiscard]] FastenerKind ClassifyShape(const product::Part& part);
 
-/** By the part's name, the occurrence's, or, where those say nothing ("SOLID"), that of the
- subassembly which holds it and no other solid part; else by its shape. */
-[[nodiscard]] FastenerKind ClassifyOccurrence(const product::Product& product,
-                                              const product::Occurrence& occurrence);
+/** What each occurrence is, in their order: by the part's name, the occurrence's, or, where those
+ say nothing ("SOLID"), that of the subassembly which holds it and no other solid part; else by its
+ shape. */
+[[nodiscard]] std::vector<FastenerKind> ClassifyOccurrences(const product::Product& product);
+
+/** What a proposal for an axis-hole mate rests on, but for a nut elsewhere on the shaft.
+ `fasteners` as ClassifyOccurrences gives them. */
+[[nodiscard]] FitEvidence MakeFitEvidence(const product::Product& product,
+                                          const product::Mate& mate,
+                                          const std::vector<FastenerKind>& fasteners);
 
 }  // namespace hvas::mates

@@ -14,9 +14,9 @@ struct FitEvidence {
   double shaft_radius{0};  ///< As drawn [m].
   FastenerKind hole_part{FastenerKind::kNone};
   FastenerKind shaft_part{FastenerKind::kNone};
+  bool nut_on_shaft{false};  ///< A nut sits on the same shaft: other holes are through holes.
   product::ThreadKind hole_thread{product::ThreadKind::kNone};
   product::ThreadKind shaft_thread{product::ThreadKind::kNone};
-  bool nut_on_shaft{false};  ///< A nut sits on the same shaft: other holes are through holes.
 };
 
 /** Proposes a fit where the file does not give one:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mates/mate_kind.h"
+
 namespace hvas::mates {
 namespace {
 
@@ -24,11 +26,14 @@ Vec3 AxisOf(const Pose& X_WC) {
 /** Where z_N has to point. */
 Vec3 TargetOf(const MateConstraint& mate) {
   const Vec3 zhat_W = AxisOf(mate.X_WM);
-  return mate.kind == MateKind::kAxisHole ? zhat_W : Vec3(-zhat_W);
+  return mate.kind == MateKind::kFaceFace ? Vec3(-zhat_W) : zhat_W;
 }
 
 /** Rotation vector that takes the held axis to where it has to point. */
 Vec3 CalcTurn(const MateConstraint& mate, const Vec3& zhat_N_W) {
+  if (!HoldsDirection(mate.kind)) {
+    return Vec3::Zero();
+  }
   return spatial::RotationVector(spatial::RotationTaking(zhat_N_W, TargetOf(mate)));
 }
 
@@ -37,17 +42,19 @@ struct Scale {
   double length{kLoneLength};
 };
 
-/** Mean of the held connectors, of axes if there are any, and how far all of them (in B) spread
- from it. Independent of the pose. A turn that is left free is about an axis, so a reference point
- on it stays where it is and turning does not mix with sliding. */
+/** Mean of the held connectors, of axes if there are any, else of centres, and how far all of them
+ (in B) spread from it. Independent of the pose. A turn that is left free is about an axis or a
+ centre, so a reference point on it stays where it is and turning does not mix with sliding. */
 Scale CalcScale(std::span<const MateConstraint> mates, const Pose& X_WB) {
   Scale scale;
-  const auto is_axis = [](const MateConstraint& mate) { return mate.kind == MateKind::kAxisHole; };
+  const auto is_axis = [](const MateConstraint& mate) { return IsAxial(mate.kind); };
+  const auto is_centre = [](const MateConstraint& mate) { return !HoldsDirection(mate.kind); };
   const bool has_axis = std::any_of(mates.begin(), mates.end(), is_axis);
+  const bool has_centre = std::any_of(mates.begin(), mates.end(), is_centre);
   Vec3 mean_B = Vec3::Zero();
   double count = 0;
   for (const MateConstraint& mate : mates) {
-    if (!has_axis || is_axis(mate)) {
+    if (has_axis ? is_axis(mate) : !has_centre || is_centre(mate)) {
       mean_B += mate.X_BN.p();
       ++count;
     }
@@ -103,13 +110,13 @@ Equations Linearise(std::span<const MateConstraint> mates, const Pose& X_WB, con
     const Vec3 p_NM_W = mate.X_WM.p() - X_WN.p();
     const Vec3 arm_W = (X_WN.p() - scale.p_WR) / scale.length;
     // Tilts about the in-plane axes of M.
-    for (const Eigen::Index k : {0, 1}) {
+    for (Eigen::Index k = 0; HoldsDirection(mate.kind) && k < 2; ++k) {
       const Vec3 axis_W = R_WM.col(k);
       equations.Add(axis_W, Vec3::Zero(), scale.length * axis_W.dot(turn_W));
     }
-    // Shifts: across the axis, or out of the plane.
-    const bool is_axis = mate.kind == MateKind::kAxisHole;
-    for (Eigen::Index k = is_axis ? 0 : 2; k < (is_axis ? 2 : 3); ++k) {
+    // Shifts: across the axis, out of the plane, or both.
+    for (Eigen::Index k = HoldsAcross(mate.kind) ? 0 : 2; k < (HoldsAlong(mate.kind) ? 3 : 2);
+         ++k) {
       const Vec3 axis_W = R_WM.col(k);
       equations.Add(arm_W.cross(axis_W), axis_W, axis_W.dot(p_NM_W));
     }
@@ -194,8 +201,9 @@ double CalcResidual(std::span<const MateConstraint> mates, const Pose& X_WB, dou
     const Vec3 p_MN_W = X_WN.p() - mate.X_WM.p();
     const double along = zhat_W.dot(p_MN_W);
     const double turn = length * CalcTurn(mate, AxisOf(X_WN)).norm();
-    sum += turn * turn + (mate.kind == MateKind::kAxisHole ? (p_MN_W - along * zhat_W).squaredNorm()
-                                                           : along * along);
+    sum += turn * turn;
+    sum += HoldsAcross(mate.kind) ? (p_MN_W - along * zhat_W).squaredNorm() : 0.0;
+    sum += HoldsAlong(mate.kind) ? along * along : 0.0;
   }
   return std::sqrt(sum);
 }
@@ -233,7 +241,11 @@ Resolution Iterate(std::span<const MateConstraint> mates, const Pose& X_WBStart)
 /** A start near the solution, from anywhere: the first mate's axis aligned, then the turn about it
  that a second mate asks for. */
 Pose Prealign(std::span<const MateConstraint> mates, const Pose& X_WBStart) {
-  const MateConstraint& first = mates.front();
+  // One with a direction, if there is any.
+  const auto with_direction =
+      std::find_if(mates.begin(), mates.end(),
+                   [](const MateConstraint& mate) { return HoldsDirection(mate.kind); });
+  const MateConstraint& first = with_direction != mates.end() ? *with_direction : mates.front();
   Pose X_WB = AlignToAxis(first, X_WBStart);
   const Vec3 zhat_W = TargetOf(first);
   const Vec3 p_WO = (X_WB * first.X_BN).p();
@@ -242,12 +254,19 @@ Pose Prealign(std::span<const MateConstraint> mates, const Pose& X_WBStart) {
   Vec3 best_to = Vec3::Zero();
   double best = 1e-6;
   const double length = CalcScale(mates, X_WB).length;
-  for (const MateConstraint& mate : mates.subspan(1)) {
+  for (const MateConstraint& mate : mates) {
+    if (&mate == &first) {
+      continue;
+    }
     const Pose X_WN = X_WB * mate.X_BN;
     // A direction held at an angle to the axis, or, for parallel axes, the one between the two.
-    std::array<Vec3, 2> from{square(AxisOf(X_WN)), Vec3::Zero()};
-    std::array<Vec3, 2> to{square(TargetOf(mate)), Vec3::Zero()};
-    if (mate.kind == MateKind::kAxisHole && first.kind == MateKind::kAxisHole) {
+    std::array<Vec3, 2> from{Vec3::Zero(), Vec3::Zero()};
+    std::array<Vec3, 2> to{Vec3::Zero(), Vec3::Zero()};
+    if (HoldsDirection(mate.kind)) {
+      from[0] = square(AxisOf(X_WN));
+      to[0] = square(TargetOf(mate));
+    }
+    if (HoldsAcross(mate.kind) && HoldsAcross(first.kind)) {
       from[1] = square(X_WN.p() - p_WO) / length;
       to[1] = square(mate.X_WM.p() - first.X_WM.p()) / length;
     }
@@ -308,12 +327,18 @@ FreeTwists CalcFreeTwists(std::span<const MateConstraint> mates, const Pose& X_W
 
 Pose AlignToAxis(const MateConstraint& mate, const Pose& X_WBStart) noexcept {
   const Pose X_WN = X_WBStart * mate.X_BN;
-  const Quat turn = spatial::RotationTaking(AxisOf(X_WN), TargetOf(mate));
+  const Quat turn = HoldsDirection(mate.kind)
+                        ? spatial::RotationTaking(AxisOf(X_WN), TargetOf(mate))
+                        : Quat::Identity();
   const Vec3 zhat_W = AxisOf(mate.X_WM);
   const Vec3 p_NM_W = mate.X_WM.p() - X_WN.p();
-  const double along = zhat_W.dot(p_NM_W);
-  const Vec3 shift_W =
-      mate.kind == MateKind::kAxisHole ? Vec3(p_NM_W - along * zhat_W) : Vec3(along * zhat_W);
+  const Vec3 along_W = zhat_W.dot(p_NM_W) * zhat_W;
+  Vec3 shift_W = p_NM_W;
+  if (!HoldsAcross(mate.kind)) {
+    shift_W = along_W;
+  } else if (!HoldsAlong(mate.kind)) {
+    shift_W -= along_W;
+  }
   return {(turn * X_WBStart.q()).normalized(),
           X_WN.p() + turn * (X_WBStart.p() - X_WN.p()) + shift_W};
 }

@@ -236,16 +236,6 @@ std::optional<Error> CheckContradiction(const Product& product, const Mate& mate
                "remove those first, or pick other surfaces"};
 }
 
-void SetFit(const Product& product, Mate* mate) {
-  const auto& occurrences = product.occurrences;
-  FitEvidence evidence;
-  evidence.hole_radius = mate->hole_radius;
-  evidence.shaft_radius = mate->shaft_radius;
-  evidence.hole_part = ClassifyOccurrence(product, occurrences[mate->a.occurrence.index()]);
-  evidence.shaft_part = ClassifyOccurrence(product, occurrences[mate->b.occurrence.index()]);
-  mate->fit = ProposeFit(evidence);
-}
-
 }  // namespace
 
 Result<Mate> MakeMate(const Product& product, const Pick& pick_a, const Pick& pick_b) {
@@ -288,7 +278,7 @@ Result<Mate> MakeMate(const Product& product, const Pick& pick_a, const Pick& pi
   } else if (*kind == MateKind::kSphereSeat) {
     mate.overlap = CalcSphereOverlap(product, mate);
   } else if (*kind == MateKind::kAxisHole) {
-    SetFit(product, &mate);
+    mate.fit = ProposeFit(MakeFitEvidence(product, mate, ClassifyOccurrences(product)));
   }
   mate.key = CalcKey(product, mate);
   const auto same = std::find_if(product.mates.begin(), product.mates.end(),

@@ -28,6 +28,7 @@ struct MateView {
   OccurrenceId other;
   Vec3 axis_W;  // axis, or outward normal of this part's face
   bool is_a;
+  double cos_half_angle;  // of a conical seat
 };
 
 /** What stands in the way of a part along a direction. */
@@ -114,8 +115,14 @@ Planner::Planner(const SequenceInput& input)
     const product::Pose& X_WB = product_.occurrences[mate.b.occurrence.index()].X_WB;
     const Vec3 axis_a = (X_WA * mate.a.X_BM).q() * Vec3::UnitZ();
     const Vec3 axis_b = (X_WB * mate.b.X_BM).q() * Vec3::UnitZ();
-    mates_of_[mate.a.occurrence.index()].push_back({&mate, mate.b.occurrence, axis_a, true});
-    mates_of_[mate.b.occurrence.index()].push_back({&mate, mate.a.occurrence, axis_b, false});
+    const product::Part& part = product_.part_of(mate.a.occurrence);
+    const double cosine = mate.kind == MateKind::kConeSeat
+                              ? std::cos(part.features[mate.a.feature.index()].half_angle)
+                              : 1.0;
+    mates_of_[mate.a.occurrence.index()].push_back(
+        {&mate, mate.b.occurrence, axis_a, true, cosine});
+    mates_of_[mate.b.occurrence.index()].push_back(
+        {&mate, mate.a.occurrence, axis_b, false, cosine});
   }
   for (const product::Occurrence& occurrence : product_.occurrences) {
     boxes_.push_back(spatial::Transform(occurrence.X_WB, product_.part_of(occurrence.id).box_B));
@@ -146,11 +153,18 @@ std::vector<Vec3> Planner::CandidateDirections(const Unit& unit) const {
       if (!IsAround(view.other)) {
         continue;
       }
-      if (view.mate->kind == MateKind::kAxisHole) {
-        add(view.axis_W);
-        add(-view.axis_W);
-      } else {
-        add(-view.axis_W);  // away from the partner's face
+      switch (view.mate->kind) {
+        case MateKind::kAxisHole:
+          add(view.axis_W);
+          add(-view.axis_W);
+          break;
+        case MateKind::kFaceFace:
+          add(-view.axis_W);  // away from the partner's face
+          break;
+        case MateKind::kConeSeat:
+        case MateKind::kSphereSeat:
+          add(view.is_a ? Vec3(-view.axis_W) : view.axis_W);  // z points out of the seat
+          break;
       }
     }
   }
@@ -171,12 +185,25 @@ bool Planner::MatesAllow(const Unit& unit, const Vec3& direction) const {
         continue;
       }
       const double along = view.axis_W.dot(direction);
-      if (view.mate->kind == MateKind::kAxisHole) {
-        if (std::abs(along) < 1 - kParallel) {
-          return false;
-        }
-      } else if (along > kParallel) {
-        return false;  // the outward normal points into the partner
+      switch (view.mate->kind) {
+        case MateKind::kAxisHole:
+          if (std::abs(along) < 1 - kParallel) {
+            return false;
+          }
+          break;
+        case MateKind::kFaceFace:
+          if (along > kParallel) {
+            return false;  // the outward normal points into the partner
+          }
+          break;
+        case MateKind::kConeSeat:
+          // Up to the half angle from the axis; steeper ways run into the other side of the seat.
+          if ((view.is_a ? -along : along) < view.cos_half_angle - kParallel) {
+            return false;
+          }
+          break;
+        case MateKind::kSphereSeat:
+          break;  // how far the socket reaches around the ball is left to contact
       }
     }
   }

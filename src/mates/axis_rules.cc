@@ -1,0 +1,133 @@
+#include "mates/axis_rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hvas::mates {
+namespace {
+
+double CalcAxisDistance(const Vec3& axis, const Vec3& p_on_axis, const Vec3& q) {
+  return axis.cross(q - p_on_axis).norm();
+}
+
+/** The tightest of the long engagements: of those that are half as long as the longest or more, the
+ one with the smallest difference of radii, then the longest. */
+const PlacedAxisHit* ChooseTightest(const std::vector<const PlacedAxisHit*>& group) {
+  double longest = 0;
+  for (const PlacedAxisHit* hit : group) {
+    longest = std::max(longest, hit->length());
+  }
+  const PlacedAxisHit* best = nullptr;
+  for (const PlacedAxisHit* hit : group) {
+    if (hit->length() < 0.5 * longest) {
+      continue;
+    }
+    constexpr double kSame = 1e-7;  // [m]
+    const double gain = best == nullptr ? 1.0 : std::abs(best->play()) - std::abs(hit->play());
+    if (best == nullptr || gain > kSame ||
+        (gain > -kSame && hit->length() > best->length() + kSame)) {
+      best = hit;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+AxisRules::AxisRules(const InferenceLimits& limits, const std::vector<PlacedAxisHit>& hits)
+    : limits_(limits), hits_(hits), cos_angle_(std::cos(limits.angle)) {
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    hits_of_hole_[{hits[i].hole_occurrence, hits[i].hole}].push_back(i);
+    hits_of_shaft_[{hits[i].shaft_occurrence, hits[i].shaft}].push_back(i);
+    hits_of_part_[hits[i].shaft_occurrence].push_back(i);
+  }
+}
+
+bool AxisRules::IsSameAxis(const PlacedAxisHit& s, const PlacedAxisHit& t) const {
+  return std::abs(s.axis_W.dot(t.axis_W)) >= cos_angle_ &&
+         CalcAxisDistance(s.axis_W, s.origin_W, t.CalcPoint(0.5 * (t.low + t.high))) <
+             limits_.axis_distance * s.scale;
+}
+
+/** True where a third part (a bushing) fills part of the ring between hole and shaft. */
+bool AxisRules::HasPartBetween(const PlacedAxisHit& hit) const {
+  const double difference = hit.play();
+  if (difference <= 1e-6) {
+    return false;
+  }
+  double filled = 0;
+  for (const std::size_t i : hits_of_hole_.at({hit.hole_occurrence, hit.hole})) {
+    const PlacedAxisHit& outer = hits_[i];
+    if (outer.shaft_occurrence == hit.shaft_occurrence || std::abs(outer.play()) >= difference) {
+      continue;
+    }
+    for (const std::size_t j : hits_of_shaft_.at({hit.shaft_occurrence, hit.shaft})) {
+      const PlacedAxisHit& inner = hits_[j];
+      if (inner.hole_occurrence == outer.shaft_occurrence && std::abs(inner.play()) < difference &&
+          inner.hole_radius < outer.shaft_radius) {
+        const double first = hit.axis_W.dot(inner.CalcPoint(inner.low) - hit.origin_W);
+        const double last = hit.axis_W.dot(inner.CalcPoint(inner.high) - hit.origin_W);
+        const double low = std::max({hit.low, outer.low, std::min(first, last)});
+        const double high = std::min({hit.high, outer.high, std::max(first, last)});
+        filled += std::max(0.0, high - low);
+      }
+    }
+  }
+  return filled > 0.1 * hit.length();
+}
+
+/** True for a wide hole around a shaft which another part guides on the same axis. */
+bool AxisRules::IsLoosePassage(const PlacedAxisHit& hit) const {
+  const auto is_loose = [this](const PlacedAxisHit& h) {
+    return h.play() > limits_.radius_difference * h.scale;
+  };
+  if (!is_loose(hit)) {
+    return false;
+  }
+  const std::vector<std::size_t>& others = hits_of_part_.at(hit.shaft_occurrence);
+  return std::any_of(others.begin(), others.end(), [&](std::size_t i) {
+    const PlacedAxisHit& other = hits_[i];
+    return other.hole_occurrence != hit.hole_occurrence && !is_loose(other) &&
+           IsSameAxis(hit, other);
+  });
+}
+
+std::vector<const PlacedAxisHit*> AxisRules::ChooseWorking(std::size_t begin,
+                                                           std::size_t end) const {
+  std::vector<std::vector<const PlacedAxisHit*>> groups;
+  for (std::size_t i = begin; i < end; ++i) {
+    const PlacedAxisHit& hit = hits_[i];
+    if (HasPartBetween(hit) || IsLoosePassage(hit)) {
+      continue;
+    }
+    const auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+      return IsSameAxis(*group.front(), hit);
+    });
+    if (found != groups.end()) {
+      found->push_back(&hit);
+    } else {
+      groups.push_back({&hit});
+    }
+  }
+  std::vector<const PlacedAxisHit*> chosen;
+  chosen.reserve(groups.size());
+  for (const auto& group : groups) {
+    chosen.push_back(ChooseTightest(group));
+  }
+  return chosen;
+}
+
+bool AxisRules::IsUnbolted(const PlacedHoleHit& holes) const {
+  const auto in_a = hits_of_hole_.find({holes.a, holes.hole_a});
+  const auto in_b = hits_of_hole_.find({holes.b, holes.hole_b});
+  if (in_a == hits_of_hole_.end() || in_b == hits_of_hole_.end()) {
+    return true;
+  }
+  return std::none_of(in_a->second.begin(), in_a->second.end(), [&](std::size_t i) {
+    return std::any_of(in_b->second.begin(), in_b->second.end(), [&](std::size_t j) {
+      return hits_[i].shaft_occurrence == hits_[j].shaft_occurrence;
+    });
+  });
+}
+
+}  // namespace hvas::mates

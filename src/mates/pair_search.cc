@@ -1,0 +1,414 @@
+#include "mates/pair_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mates/build_mate.h"
+
+namespace hvas::mates {
+namespace {
+
+using product::Feature;
+using product::FeatureId;
+using product::FeatureKind;
+using product::MateKind;
+using product::Part;
+using product::PartId;
+using product::Pose;
+using product::Product;
+using spatial::Box;
+
+constexpr double kSamePose = 1e-9;     // [m], and as a part of the rotation.
+constexpr double kPoseGrid = 1e-6;     // [m]
+constexpr double kAlignedGap = 2e-3;   // Between the ends of holes in line [m].
+constexpr double kAlignedShare = 0.1;  // Of the shorter hole, that may lie in the other.
+
+/** The box of a hole, shaft or cone: that of a cylinder around its span. */
+Box CalcAxialBox(const Feature& feature) {
+  Box box;
+  box.Add(feature.origin_B + feature.span_low * feature.axis_B);
+  box.Add(feature.origin_B + feature.span_high * feature.axis_B);
+  // A disc of radius r across a unit axis reaches r sqrt(1 - n_i^2) along coordinate i.
+  const Vec3 reach =
+      feature.radius * (Vec3::Ones() - feature.axis_B.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+  return {box.low - reach, box.high + reach};
+}
+
+Box CalcFaceBox(const Part& part, const Feature& feature) {
+  Box box;
+  for (const product::FaceId face : feature.faces) {
+    box.Add(part.faces[face.index()].box_B);
+  }
+  return box;
+}
+
+Box CalcFeatureBox(const Part& part, const Feature& feature) {
+  if (feature.kind == FeatureKind::kPlane) {
+    return CalcFaceBox(part, feature);
+  }
+  if (product::IsSphere(feature.kind)) {
+    return Box{feature.origin_B, feature.origin_B}.Expanded(feature.radius);
+  }
+  return CalcAxialBox(feature);
+}
+
+std::size_t CountTriangles(const Part& part, const Feature& feature) {
+  std::size_t count = 0;
+  for (const product::FaceId face : feature.faces) {
+    count += part.faces[face.index()].triangle_count;
+  }
+  return count;
+}
+
+/** The triangles of a plane feature in a frame P of a plane. */
+std::vector<Triangle2> Flatten(const Part& part, const Feature& feature, const Pose& X_PB) {
+  const Mat3 R_PB = X_PB.R();
+  std::vector<Triangle2> triangles;
+  triangles.reserve(CountTriangles(part, feature));
+  for (const product::FaceId face_id : feature.faces) {
+    const product::Face& face = part.faces[face_id.index()];
+    for (std::uint32_t t = 0; t < face.triangle_count; ++t) {
+      Triangle2 flat;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& p_B = part.mesh.vertices[part.mesh.triangles[face.first_triangle + t][k]];
+        flat[k] = (R_PB * p_B + X_PB.p()).head<2>();
+      }
+      triangles.push_back(flat);
+    }
+  }
+  return triangles;
+}
+
+Pose PlaneFrame(const Feature& plane) {
+  return {spatial::FrameFromZ(plane.axis_B), plane.origin_B};
+}
+
+bool IsSamePose(const Pose& X, const Pose& Y) {
+  const double turn =
+      std::min((X.q().coeffs() - Y.q().coeffs()).norm(), (X.q().coeffs() + Y.q().coeffs()).norm());
+  return turn < kSamePose && (X.p() - Y.p()).norm() < kSamePose;
+}
+
+std::int64_t Cell(double value) {
+  const double steps = value / kPoseGrid;
+  return std::abs(steps) < 9e15 ? std::llround(steps) : 0;
+}
+
+}  // namespace
+
+/** What a search of one pair needs at hand. */
+struct PairSearch::Context {
+  PartId part_a, part_b;
+  const Part& a;
+  const Part& b;
+  Pose X_AB;
+  double scale{1};
+};
+
+std::size_t PairSearch::PairKeyHash::operator()(const PairKey& key) const noexcept {
+  std::uint64_t hash = (std::uint64_t{key.a} << 32U) | key.b;
+  for (const std::int64_t value : {key.x, key.y, key.z}) {
+    hash = (hash ^ static_cast<std::uint64_t>(value)) * 0x9e3779b97f4a7c15U;
+    hash ^= hash >> 29U;
+  }
+  return static_cast<std::size_t>(hash);
+}
+
+PairSearch::PairSearch(const Product& product, const InferenceLimits& limits)
+    : product_(product),
+      limits_(limits),
+      cos_angle_(std::cos(limits.angle)),
+      parts_(product.parts.size()) {}
+
+const PairSearch::SearchPart& PairSearch::Prepare(PartId id) {
+  SearchPart& search = parts_[id.index()];
+  if (search.is_ready) {
+    return search;
+  }
+  const Part& part = product_.parts[id.index()];
+  search.is_ready = true;
+  search.size = part.box_B.is_empty() ? 0.0 : part.box_B.size().norm();
+  for (std::size_t i = 0; i < part.features.size(); ++i) {
+    const Feature& feature = part.features[i];
+    const bool turns = product::IsCylinder(feature.kind) || product::IsCone(feature.kind);
+    if (turns && feature.coverage < limits_.coverage) {
+      continue;  // Fillets and slot ends.
+    }
+    const Box box = CalcFeatureBox(part, feature);
+    if (!box.is_empty()) {
+      search.features.push_back({FeatureId(i), feature.kind, &feature, box});
+    }
+  }
+  return search;
+}
+
+const PairHits& PairSearch::Find(product::OccurrenceId a, product::OccurrenceId b) {
+  const product::Occurrence& occurrence_a = product_.occurrences[a.index()];
+  const product::Occurrence& occurrence_b = product_.occurrences[b.index()];
+  const Pose X_AB = occurrence_a.X_WB.Inverse() * occurrence_b.X_WB;
+  if (!limits_.reuse_equal_pairs) {
+    last_ = {};
+    Search(occurrence_a.part, occurrence_b.part, X_AB, &last_);
+    return last_;
+  }
+  const PairKey key{occurrence_a.part.value(), occurrence_b.part.value(), Cell(X_AB.p().x()),
+                    Cell(X_AB.p().y()), Cell(X_AB.p().z())};
+  std::vector<Known>& known = known_[key];
+  for (const Known& entry : known) {
+    if (IsSamePose(entry.X_AB, X_AB)) {
+      return entry.hits;
+    }
+  }
+  known.push_back({X_AB, {}});
+  Search(occurrence_a.part, occurrence_b.part, X_AB, &known.back().hits);
+  return known.back().hits;
+}
+
+void PairSearch::Search(PartId id_a, PartId id_b, const Pose& X_AB, PairHits* hits) {
+  ++searched_;
+  Prepare(id_a);
+  Prepare(id_b);
+  const SearchPart& a = parts_[id_a.index()];
+  const SearchPart& b = parts_[id_b.index()];
+  const Context context{id_a,
+                        id_b,
+                        product_.parts[id_a.index()],
+                        product_.parts[id_b.index()],
+                        X_AB,
+                        CalcLengthScale(std::min(a.size, b.size))};
+  const double margin = limits_.near_gap * context.scale;
+  const double hole_margin = std::max(margin, kAlignedGap * context.scale);
+  const Box box_b = spatial::Transform(X_AB, context.b.box_B);
+  const Box common{context.a.box_B.low.cwiseMax(box_b.low),
+                   context.a.box_B.high.cwiseMin(box_b.high)};
+  const Box close = common.Expanded(margin);
+  const Box close_to_holes = common.Expanded(hole_margin);
+  std::vector<const SearchFeature*> features_a;
+  std::vector<const SearchFeature*> holes_a;
+  for (const SearchFeature& feature : a.features) {
+    if (feature.box.Overlaps(close)) {
+      features_a.push_back(&feature);
+    }
+    if (feature.kind == FeatureKind::kHole && feature.box.Overlaps(close_to_holes)) {
+      holes_a.push_back(&feature);
+    }
+  }
+  std::vector<MovedFeature> features_b;
+  std::vector<MovedFeature> holes_b;
+  const Mat3 R_AB = X_AB.R();
+  for (const SearchFeature& feature : b.features) {
+    const MovedFeature moved{&feature, spatial::Transform(X_AB, feature.box),
+                             R_AB * feature.feature->origin_B + X_AB.p(),
+                             R_AB * feature.feature->axis_B};
+    if (moved.box.Overlaps(close)) {
+      features_b.push_back(moved);
+    }
+    if (feature.kind == FeatureKind::kHole && moved.box.Overlaps(close_to_holes)) {
+      holes_b.push_back(moved);
+    }
+  }
+  for (const SearchFeature* feature_a : features_a) {
+    const Box box = feature_a->box.Expanded(margin);
+    for (const MovedFeature& feature_b : features_b) {
+      if (box.Overlaps(feature_b.box)) {
+        TestPair(context, *feature_a, feature_b, hits);
+      }
+    }
+  }
+  TestHoles(context, holes_a, holes_b, hits);
+}
+
+namespace {
+
+bool IsSameCone(const Feature& seat, const Feature& taper, const Pose& X_ST,
+                const InferenceLimits& limits, double scale) {
+  if (std::abs(seat.half_angle - taper.half_angle) >= limits.cone_angle) {
+    return false;
+  }
+  const AxialSpans spans = CalcAxialSpans(seat, taper, X_ST);
+  if (spans.sense < 0 || spans.length() <= limits.axial_overlap * scale ||
+      spans.axis_distance >= limits.axis_distance * scale) {
+    return false;
+  }
+  const double middle = 0.5 * (spans.low + spans.high);
+  const double gap =
+      (middle * std::tan(seat.half_angle) - (middle - spans.shift) * std::tan(taper.half_angle)) *
+      std::cos(seat.half_angle);
+  return std::abs(gap) < limits.cone_gap * scale;
+}
+
+bool Engage(const Feature& hole, const Feature& shaft, const Pose& X_HS,
+            const InferenceLimits& limits, double scale, AxisHit* hit) {
+  if (std::abs(hole.radius - shaft.radius) >=
+      CalcLargestPlay(limits, scale, std::min(hole.radius, shaft.radius))) {
+    return false;
+  }
+  const AxialSpans spans = CalcAxialSpans(hole, shaft, X_HS);
+  hit->low = spans.low;
+  hit->high = spans.high;
+  return spans.length() > limits.axial_overlap * scale &&
+         spans.axis_distance < limits.axis_distance * scale;
+}
+
+}  // namespace
+
+void PairSearch::TestPair(const Context& context, const SearchFeature& a, const MovedFeature& b,
+                          PairHits* hits) {
+  const FeatureKind kind_a = a.kind;
+  const FeatureKind kind_b = b.own->kind;
+  const double cosine = a.feature->axis_B.dot(b.axis);
+  if (kind_a == FeatureKind::kPlane || kind_b == FeatureKind::kPlane) {
+    if (kind_a == kind_b && cosine <= -cos_angle_) {
+      TestPlanes(context, a, b, hits);
+    }
+    return;
+  }
+  const bool is_first = kind_a == FeatureKind::kHole || kind_a == FeatureKind::kConeSeat ||
+                        kind_a == FeatureKind::kSocket;
+  const FeatureKind seat_kind = is_first ? kind_a : kind_b;
+  const FeatureKind body_kind = is_first ? kind_b : kind_a;
+  const Feature& seat = is_first ? *a.feature : *b.own->feature;
+  const Feature& body = is_first ? *b.own->feature : *a.feature;
+  const FeatureId seat_id = is_first ? a.id : b.own->id;
+  const FeatureId body_id = is_first ? b.own->id : a.id;
+  const Pose X_SB = is_first ? context.X_AB : context.X_AB.Inverse();
+  if (seat_kind == FeatureKind::kSocket && body_kind == FeatureKind::kBall) {
+    const double most = CalcLargestPlay(limits_, context.scale, std::min(seat.radius, body.radius));
+    if ((b.origin - a.feature->origin_B).norm() < limits_.axis_distance * context.scale &&
+        std::abs(seat.radius - body.radius) < most) {
+      hits->seats.push_back({MateKind::kSphereSeat, is_first, seat_id, body_id});
+    }
+    return;
+  }
+  if (std::abs(cosine) < cos_angle_) {
+    return;
+  }
+  if (seat_kind == FeatureKind::kHole && body_kind == FeatureKind::kShaft) {
+    AxisHit hit{is_first, seat_id, body_id};
+    if (Engage(seat, body, X_SB, limits_, context.scale, &hit)) {
+      hits->axes.push_back(hit);
+    }
+  } else if (seat_kind == FeatureKind::kConeSeat && body_kind == FeatureKind::kTaper &&
+             IsSameCone(seat, body, X_SB, limits_, context.scale)) {
+    hits->seats.push_back({MateKind::kConeSeat, is_first, seat_id, body_id});
+  }
+}
+
+void PairSearch::TestHoles(const Context& context, const std::vector<const SearchFeature*>& of_a,
+                           const std::vector<MovedFeature>& of_b, PairHits* hits) const {
+  for (const SearchFeature* a : of_a) {
+    const Box box = a->box.Expanded(kAlignedGap * context.scale);
+    for (const MovedFeature& b : of_b) {
+      const Feature& hole_a = *a->feature;
+      const Feature& hole_b = *b.own->feature;
+      const double smaller = std::min(hole_a.radius, hole_b.radius);
+      if (!box.Overlaps(b.box) || std::abs(hole_a.axis_B.dot(b.axis)) < cos_angle_ ||
+          std::abs(hole_a.radius - hole_b.radius) >=
+              CalcLargestPlay(limits_, context.scale, smaller)) {
+        continue;
+      }
+      const AxialSpans spans = CalcAxialSpans(hole_a, hole_b, context.X_AB);
+      const double shorter =
+          std::min(spans.first_high - spans.first_low, spans.second_high - spans.second_low);
+      if (spans.axis_distance < limits_.axis_distance * context.scale &&
+          spans.length() < kAlignedShare * shorter &&
+          -spans.length() < std::min(kAlignedGap * context.scale, 2 * smaller)) {
+        hits->holes.push_back({a->id, b.own->id});
+      }
+    }
+  }
+}
+
+/** The triangles in the plane's own frame, for features that are asked for again and again. */
+const std::vector<Triangle2>& PairSearch::FlattenOnce(PartId part, const SearchFeature& feature) {
+  const auto key = std::pair(part.value(), feature.id.value());
+  const auto found = triangles_.find(key);
+  if (found != triangles_.end()) {
+    return found->second;
+  }
+  return triangles_
+      .emplace(key, Flatten(product_.parts[part.index()], *feature.feature,
+                            PlaneFrame(*feature.feature).Inverse()))
+      .first->second;
+}
+
+void PairSearch::TestPlanes(const Context& context, const SearchFeature& a, const MovedFeature& b,
+                            PairHits* hits) {
+  const Feature& plane_a = *a.feature;
+  const Feature& plane_b = *b.own->feature;
+  const double touch = limits_.plane_gap * context.scale;
+  const double near = std::max(touch, limits_.near_gap * context.scale);
+  // A first look that allows for the tilt over the distance of the two reference points.
+  const Vec3 between = b.origin - plane_a.origin_B;
+  if (std::abs(plane_a.axis_B.dot(between)) >= near + limits_.angle * between.norm()) {
+    return;
+  }
+  // In the frame of the finer one (a base plate has many neighbours), near the other only.
+  const bool is_a_finer = CountTriangles(context.a, plane_a) >= CountTriangles(context.b, plane_b);
+  const Pose X_AP = is_a_finer ? PlaneFrame(plane_a) : context.X_AB * PlaneFrame(plane_b);
+  const Pose X_PA = X_AP.Inverse();
+  const std::vector<Triangle2> coarse = is_a_finer
+                                            ? Flatten(context.b, plane_b, X_PA * context.X_AB)
+                                            : Flatten(context.a, plane_a, X_PA);
+  const std::vector<Triangle2>& fine =
+      is_a_finer ? FlattenOnce(context.part_a, a) : FlattenOnce(context.part_b, *b.own);
+  const Overlap overlap = CalcOverlap(SelectNear(fine, coarse), coarse);
+  const double least = std::max(limits_.area_ratio * std::min(plane_a.area, plane_b.area),
+                                limits_.area * context.scale * context.scale);
+  if (overlap.area <= least) {
+    return;
+  }
+  const Vec3 centroid = X_AP * Vec3(overlap.centroid.x(), overlap.centroid.y(), 0);
+  // Along the outward normal of the finer plane to the other one.
+  const double gap = is_a_finer ? -b.axis.dot(b.origin - centroid)
+                                : -plane_a.axis_B.dot(plane_a.origin_B - centroid);
+  const PlaneHit hit{a.id, b.own->id, overlap.area, gap, centroid};
+  if (std::abs(gap) < touch) {
+    hits->planes.push_back(hit);
+  } else if (std::abs(gap) < near) {
+    std::optional<PlaneHit>& largest = gap > 0 ? hits->nearest : hits->overlapping;
+    if (!largest || hit.area > largest->area) {
+      largest = hit;
+    }
+  }
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(const std::vector<Box>& boxes,
+                                                              double margin) {
+  Box all;
+  Vec3 sum = Vec3::Zero();
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!boxes[i].is_empty()) {
+      all.Add(boxes[i]);
+      sum += boxes[i].size();
+      order.push_back(i);
+    }
+  }
+  if (order.empty()) {
+    return {};
+  }
+  Eigen::Index axis = 0;
+  constexpr double kTiny = 1e-9;  // [m]
+  (all.size().array() / (sum.array() + kTiny)).maxCoeff(&axis);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    return boxes[i].low[axis] < boxes[j].low[axis];
+  });
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Box box = boxes[order[i]].Expanded(margin);
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const Box& other = boxes[order[j]];
+      if (other.low[axis] > box.high[axis]) {
+        break;
+      }
+      if (box.Overlaps(other)) {
+        pairs.emplace_back(std::min(order[i], order[j]), std::max(order[i], order[j]));
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace hvas::mates
