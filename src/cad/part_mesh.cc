@@ -119,8 +119,11 @@ MeshLevel MeshForContact(const TopoDS_Shape& shape, double diagonal, const MeshL
   const Forecast forecast = MakeForecast(shape);
   const auto most = static_cast<double>(options.max_triangles);
   MeshLevel level{wanted, options.max_angle};
-  while (forecast.Calc(display, level) > most && kCoarser * level.deflection < display.deflection) {
+  while (forecast.Calc(display, level) > most && level.deflection < display.deflection) {
     level.deflection *= kCoarser;
+  }
+  if (forecast.Calc(display, level) > most) {
+    level.angle = Coarsen(level).angle;
   }
   std::size_t count = MeshOnce(shape, level);
   for (int i = 0; i < kRetries && count > options.max_triangles; ++i) {

@@ -6,12 +6,10 @@
 #include <utility>
 
 #include <BRepBndLib.hxx>
-#include <BRepGProp.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
-#include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -23,6 +21,7 @@
 #include "cad/brep_surface.h"
 #include "cad/recognise.h"
 #include "cad/shape_hash.h"
+#include "cad/solid_measure.h"
 
 namespace hvas::cad {
 namespace {
@@ -34,46 +33,39 @@ using spatial::SurfaceKind;
 constexpr double kRecognitionTolerance = 1e-6;          // [m]
 constexpr double kRelativeRecognitionTolerance = 1e-6;  // Of the part's diagonal, for huge parts.
 
-constexpr double kLeastGap = 100;            // Hole in a mesh, in deflections squared.
-constexpr double kIntegrationError = 1e-10;  // Relative.
-
-GProp_GProps CalcVolume(const TopoDS_Shape& solid, const gp_Pnt& about) {
-  GProp_GProps properties(about);
-  // The plain overload is off by up to 1e-4 of the volume on B-splines; the adaptive one costs no
-  // more.
-  BRepGProp::VolumeProperties(solid, properties, kIntegrationError);
-  return properties;
-}
+constexpr double kSquareMetres = units::kMetresPerMillimetre * units::kMetresPerMillimetre;
+constexpr double kLeastGap = 100;  // Hole in a mesh, in deflections squared.
 
 /** What a part is made of: its solids, turned right side out; without any the solids inside its
  closed shells; else its loose faces. */
 struct Body {
   TopoDS_Compound shape;
-  GProp_GProps volume;
+  gp_Pnt centre;         // What it is measured about.
+  SolidMeasure measure;  // Areas of all faces; the rest is zero where there is no solid.
   int solid_count{0};
   int reversed_count{0};
   bool is_closed_shell{false};
 };
 
-void AddSolid(TopoDS_Shape solid, const gp_Pnt& centre, Body* body) {
-  GProp_GProps volume = CalcVolume(solid, centre);
-  if (volume.Mass() < 0) {
+void AddSolid(TopoDS_Shape solid, Body* body) {
+  SolidMeasure measure = MeasureSolid(solid, body->centre);
+  if (measure.volume < 0) {
     solid.Reverse();
-    volume = CalcVolume(solid, centre);
+    measure.Negate();
     ++body->reversed_count;
   }
   BRep_Builder().Add(body->shape, solid);
-  body->volume.Add(volume);
+  body->measure.Add(measure);
   ++body->solid_count;
 }
 
 Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre) {
   Body body;
-  body.volume = GProp_GProps(centre);
+  body.centre = centre;
   const BRep_Builder builder;
   builder.MakeCompound(body.shape);
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
-    AddSolid(it.Current(), centre, &body);
+    AddSolid(it.Current(), &body);
   }
   if (body.solid_count > 0) {
     return body;
@@ -83,21 +75,17 @@ Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre) {
       TopoDS_Solid solid;
       builder.MakeSolid(solid);
       builder.Add(solid, it.Current());
-      AddSolid(solid, centre, &body);
+      AddSolid(solid, &body);
     }
   }
   body.is_closed_shell = body.solid_count > 0;
   if (body.solid_count == 0) {
     builder.Add(body.shape, shape);
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      body.measure.face_areas.push_back(MeasureArea(it.Current()));
+    }
   }
   return body;
-}
-
-double CalcArea(const TopoDS_Face& face) {
-  GProp_GProps properties;
-  BRepGProp::SurfaceProperties(face, properties);
-  const double area_mm2 = std::abs(properties.Mass());
-  return area_mm2 * units::kMetresPerMillimetre * units::kMetresPerMillimetre;
 }
 
 /** Makes the part's faces, with their display triangles. @pre The shape is meshed for display. */
@@ -128,13 +116,13 @@ void CopyToDisplay(Part* part, Face* face) {
 
 /** Gives the part's faces area, box and triangles. @returns the number of faces without any.
  @pre The shape is meshed for contact, and AddDisplayMesh was called. */
-int AddContactMesh(const TopoDS_Shape& shape, const MeshLevel& level, Part* part) {
+int AddContactMesh(const Body& body, const MeshLevel& level, Part* part) {
   int unmeshed = 0;
   std::size_t index = 0;
-  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
+  for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
     const TopoDS_Face& source = TopoDS::Face(it.Current());
     Face& face = part->faces[index];
-    face.area = CalcArea(source);
+    face.area = kSquareMetres * body.measure.face_areas[index];
     face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
     const std::size_t first_vertex = part->mesh.vertices.size();
     const bool is_whole = IsMeshed(source);
@@ -195,22 +183,19 @@ void SetSurface(const TopoDS_Face& source, double deflection, double tolerance, 
 
 void SetMass(const Body& body, Part* part) {
   constexpr double kMetres = units::kMetresPerMillimetre;
+  const SolidMeasure& measure = body.measure;
   part->solid_count = body.solid_count;
-  if (body.solid_count == 0) {
+  if (body.solid_count == 0 || !(measure.volume > 0)) {
     return;
   }
   const double density = part->material.density;
-  part->mass.volume = units::FromMm3(body.volume.Mass());
+  part->mass.volume = units::FromMm3(measure.volume);
   part->mass.mass = density * part->mass.volume;
-  const gp_Pnt centre = body.volume.CentreOfMass();
-  part->mass.p_BoBcm_B = kMetres * Vec3(centre.X(), centre.Y(), centre.Z());
-  const gp_Mat inertia = body.volume.MatrixOfInertia();  // About the centre of mass.
-  const double scale = density * units::FromMm3(1) * kMetres * kMetres;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      part->mass.I_BBcm_B(row, column) = scale * inertia(row + 1, column + 1);
-    }
-  }
+  const Vec3 r = measure.first / measure.volume;
+  const Vec3 centre(body.centre.X(), body.centre.Y(), body.centre.Z());
+  part->mass.p_BoBcm_B = kMetres * (centre + r);
+  const Mat3 shift = measure.volume * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  part->mass.I_BBcm_B = density * units::FromMm3(1) * kMetres * kMetres * (measure.inertia - shift);
 }
 
 double CalcMeshVolume(const product::Mesh& mesh, const Vec3& about) {
@@ -273,7 +258,7 @@ std::optional<MeshLevel> BuildPartShape(const TopoDS_Shape& shape, const ImportO
   AddDisplayMesh(body.shape, part);
   const MeshLevel level =
       MeshForContact(body.shape, diagonal, display, options, part->name, diagnostics);
-  const int unmeshed = AddContactMesh(body.shape, level, part);
+  const int unmeshed = AddContactMesh(body, level, part);
   const double tolerance =
       std::max(kRecognitionTolerance, kRelativeRecognitionTolerance * diagonal);
   std::size_t index = 0;
