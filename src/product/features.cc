@@ -10,6 +10,7 @@
 #include "product/face_adjacency.h"
 #include "product/forms.h"
 #include "product/sphere_features.h"
+#include "product/threads.h"
 
 namespace hvas::product {
 namespace {
@@ -229,6 +230,7 @@ void BuildFeatures(Part* part) {
     part->features.insert(part->features.end(), found.begin(), found.end());
   }
   AddInnerConstraints(part, tolerance);
+  MarkThreads(part, tolerance);
   part->forms = FindForms(*part, adjacency, tolerance);
 }
 
