@@ -326,7 +326,9 @@ std::optional<Blocker> Planner::FindBlocker(const Unit& unit, const Vec3& direct
     step = std::min(step, std::max(kShortestStep, 0.01 * shape.box_B().size().norm()));
   }
   const double exit = ExitDistance(unit, direction);
-  for (double s = 0; s <= exit; s += step) {
+  const int last = static_cast<int>(exit / step);
+  for (int i = 0; i <= last; ++i) {
+    const double s = i * step;
     for (const Member& member : members) {
       contact::QueryOptions query;
       query.margin = -kDepthTolerance;

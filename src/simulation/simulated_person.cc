@@ -8,19 +8,19 @@ namespace hvas::simulation {
 namespace {
 
 constexpr double kDt = 1e-3;  // [s]; a device sample
-constexpr double kGraspTime_s = 0.35;
-constexpr double kSettleTime_s = 0.25;
-constexpr double kReleaseTime_s = 0.2;
-constexpr double kShortestReach_s = 0.35;
+constexpr double kGraspTime = 0.35;
+constexpr double kSettleTime = 0.25;
+constexpr double kReleaseTime = 0.2;
+constexpr double kShortestReach = 0.35;
 constexpr double kStandOff = 6e-3;    // [m] before anything engages, where approach ends
 constexpr double kFirstPush = 4.0;    // [N]; what the hand tries first
 constexpr double kPushRate = 6.0;     // [N/s]; how it presses harder
 constexpr double kSlowShare = 0.4;    // of the speed of insertion; slower than that presses harder
 constexpr double kStillSpeed = 1e-3;  // [m/s] that counts as not moving
-constexpr double kStuckBeforeSearch_s = 1.2;
+constexpr double kStuckBeforeSearch = 1.2;
 constexpr double kBackOff = 8e-3;        // [m] before trying elsewhere
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
-constexpr double kLearnTime_s = 0.3;     // of a carried weight
+constexpr double kLearnTime = 0.3;       // of a carried weight
 
 double MinimumJerk(double s) {
   return s * s * s * (10 + s * (-15 + 6 * s));
@@ -76,7 +76,7 @@ void SimulatedPerson::AddReach(const Vec3& p_to, const Quat& q_to, double speed,
     const Vec3 b = p_to - reach.centre;
     length = std::atan2(a.cross(b).norm(), a.dot(b)) * std::max(a.norm(), b.norm());
   }
-  reach.duration_s = std::max(kShortestReach_s, length / speed);
+  reach.duration_s = std::max(kShortestReach, length / speed);
   ++reach_count_;
 }
 
@@ -166,7 +166,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     travel_ = std::max(travel_ - options_.insert_speed * kDt, hand_travel - lead);
     const bool is_stuck = speed < kStillSpeed && push_ > kFirstPush;
     stuck_time_s_ = is_stuck ? stuck_time_s_ + kDt : std::max(0.0, stuck_time_s_ - kDt);
-    if (stuck_time_s_ > kStuckBeforeSearch_s) {
+    if (stuck_time_s_ > kStuckBeforeSearch) {
       // Missed: back off and try beside, on a spiral of golden angles.
       ++search_count_;
       is_backing_off_ = true;
@@ -197,7 +197,7 @@ Vec3 SimulatedPerson::Tremor() noexcept {
 
 void SimulatedPerson::MoveHand(const spatial::Wrench& F_H_W) noexcept {
   if (phase_ == Phase::kCarry || phase_ == Phase::kGrasp) {
-    carried_force_ += (F_H_W.f - carried_force_) * (kDt / kLearnTime_s);
+    carried_force_ += (F_H_W.f - carried_force_) * (kDt / kLearnTime);
   } else if (!is_gripping_) {
     carried_force_ -= carried_force_ * (kDt / 0.05);
   }
@@ -231,7 +231,7 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
       }
       break;
     case Phase::kGrasp:
-      if (phase_time_s_ > kGraspTime_s) {
+      if (phase_time_s_ > kGraspTime) {
         PlanCarry();
       }
       break;
@@ -262,14 +262,14 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
       break;
     case Phase::kSettle:
       p_ref_ += (X_WH_.p() - p_ref_) * (kDt / 0.08);
-      if (phase_time_s_ > kSettleTime_s) {
+      if (phase_time_s_ > kSettleTime) {
         phase_ = Phase::kRelease;
         phase_time_s_ = 0;
         is_gripping_ = false;
       }
       break;
     case Phase::kRelease:
-      if (phase_time_s_ > kReleaseTime_s) {
+      if (phase_time_s_ > kReleaseTime) {
         phase_ = Phase::kDone;
         finished_count_.fetch_add(1, std::memory_order_release);
       }

@@ -71,7 +71,7 @@ haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) no
     events_.TryPush({device.t_ns, SimulationEvent::Kind::kDropped, part.occurrence,
                      haptics::HoldState::kEmpty, X_WB, was_seated, metrics_});
   }
-  const haptics::TickOutput out = haptic_.Tick(device);
+  haptics::TickOutput out = haptic_.Tick(device);
   Measure(out);
   if (out.state != last_state_) {
     last_state_ = out.state;
