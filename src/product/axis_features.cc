@@ -218,6 +218,34 @@ Feature MakeFeature(const Part& part, const Surface& surface, std::vector<AxisFa
   return feature;
 }
 
+/** Takes out the features of several arcs that another one of the same axis keeps everything away
+ from: the bottoms of splines and of grooves along a bore. */
+void RemoveShielded(double tolerance, std::vector<Feature>* features) {
+  const auto is_shielded = [&](const Feature& outer) {
+    if (outer.coverage >= kLeastCoverage || !IsCylinder(outer.kind)) {
+      return false;
+    }
+    return std::any_of(features->begin(), features->end(), [&](const Feature& inner) {
+      const double sense = outer.kind == FeatureKind::kHole ? 1 : -1;
+      const double offset = (inner.origin_B - outer.origin_B).dot(outer.axis_B);
+      const double common = std::min(outer.span_high, offset + inner.span_high) -
+                            std::max(outer.span_low, offset + inner.span_low);
+      return inner.kind == outer.kind && sense * (outer.radius - inner.radius) > tolerance &&
+             IsParallel(inner.axis_B, outer.axis_B) &&
+             DistanceToAxis(inner.origin_B, outer.origin_B, outer.axis_B) < tolerance &&
+             common > 0.5 * (outer.span_high - outer.span_low);
+    });
+  };
+  std::vector<bool> is_out;
+  for (const Feature& feature : *features) {
+    is_out.push_back(is_shielded(feature));
+  }
+  std::size_t i = 0;
+  features->erase(std::remove_if(features->begin(), features->end(),
+                                 [&](const Feature&) { return is_out[i++]; }),
+                  features->end());
+}
+
 std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double tolerance) {
   std::vector<Feature> found;
   for (AxisGroup& group : GroupFaces(part, kind, tolerance)) {
@@ -249,6 +277,7 @@ std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double
   std::stable_sort(found.begin(), found.end(), [](const Feature& a, const Feature& b) {
     return a.faces.front() < b.faces.front();
   });
+  RemoveShielded(tolerance, &found);
   return found;
 }
 

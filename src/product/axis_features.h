@@ -16,7 +16,9 @@ namespace hvas::product {
 
 /** Holes and shafts: cylindrical faces of one axis, radius and sense whose axial spans touch, where
  they hold a pin of their size against leaving sideways: together they cover at least 200 deg of the
- turn, or, at one station along the axis, no gap between them is above 160 deg. By their first face.
+ turn, or, at one station along the axis, no gap between them is above 160 deg. Of the latter those
+ are left out that a narrower bore, or a thicker shaft, of the same axis stands before (the bottoms
+ of splines). By their first face.
  @param tolerance Of radii and positions [m]. */
 [[nodiscard]] std::vector<Feature> FindCylinders(const Part& part, double tolerance);
 

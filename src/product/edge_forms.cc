@@ -29,13 +29,12 @@ struct Strip {
   bool is_outward{true};
 };
 
-/** Joins strips of one size that meet; each group by its first strip. */
+/** Joins strips of one size that meet, or are on one cone; each group by its first strip. */
 std::vector<std::vector<std::size_t>> GroupStrips(const std::vector<Strip>& strips,
-                                                  std::size_t face_count,
-                                                  const FaceAdjacency& adjacency,
+                                                  const Part& part, const FaceAdjacency& adjacency,
                                                   double same_size) {
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> strip_of_face(face_count, kNone);
+  std::vector<std::size_t> strip_of_face(part.faces.size(), kNone);
   for (std::size_t i = 0; i < strips.size(); ++i) {
     strip_of_face[strips[i].face.index()] = i;
   }
@@ -55,6 +54,19 @@ std::vector<std::vector<std::size_t>> GroupStrips(const std::vector<Strip>& stri
           is_seen[other] = true;
           group.push_back(other);
         }
+      }
+    }
+    // The corners of a hexagon that was turned over are faces of one cone and do not meet.
+    const Surface& surface = part.faces[strips[i].face.index()].surface;
+    for (std::size_t other = i + 1; surface.kind == SurfaceKind::kCone && other < strips.size();
+         ++other) {
+      const Surface& cone = part.faces[strips[other].face.index()].surface;
+      if (!is_seen[other] && cone.kind == SurfaceKind::kCone &&
+          (cone.origin - surface.origin).norm() < same_size * strips[i].size &&
+          (cone.axis - surface.axis).norm() < 1e-3 &&
+          std::abs(cone.second - surface.second) < 1e-3) {
+        is_seen[other] = true;
+        group.push_back(other);
       }
     }
     std::sort(group.begin(), group.end());
@@ -183,7 +195,7 @@ std::vector<Form> FindFillets(const Part& part, const FaceAdjacency& adjacency, 
   std::sort(strips.begin(), strips.end(),
             [](const Strip& a, const Strip& b) { return a.face < b.face; });
   std::vector<Form> forms;
-  for (const auto& group : GroupStrips(strips, part.faces.size(), adjacency, kSameRadius)) {
+  for (const auto& group : GroupStrips(strips, part, adjacency, kSameRadius)) {
     Form form = MakeForm(part, FormKind::kFillet, strips, group);
     form.diameter = 2 * strips[group.front()].size;
     forms.push_back(std::move(form));
@@ -205,7 +217,7 @@ std::vector<Form> FindEdgeChamfers(const Part& part, const FaceAdjacency& adjace
     }
   }
   std::vector<Form> forms;
-  for (const auto& group : GroupStrips(strips, part.faces.size(), adjacency, kSameWidth)) {
+  for (const auto& group : GroupStrips(strips, part, adjacency, kSameWidth)) {
     Form form = MakeForm(part, FormKind::kChamfer, strips, group);
     form.depth = strips[group.front()].size;
     form.angle = strips[group.front()].angle;

@@ -95,6 +95,9 @@ class PatternFinder {
     if (group_.spots.size() > kLeast) {
       TryGrid();
     }
+    if (group_.spots.size() > kLeast) {
+      TrySeparateCircles();
+    }
     while (group_.spots.size() >= kLeast && group_.spots.size() <= kMostForRows && TryRow()) {
     }
     return std::move(patterns_);
@@ -161,6 +164,92 @@ class PatternFinder {
       }
     }
     return true;
+  }
+
+  /** All spots in equal even circles beside each other: two bolt circles in one plate. */
+  void TrySeparateCircles() {
+    for (std::size_t k = 8; k >= kLeast; --k) {
+      const std::size_t n = group_.spots.size();
+      if (n % k != 0 || n <= k || n > kMostForRows) {
+        continue;
+      }
+      const auto circles = FindPartition(k);
+      if (circles.empty()) {
+        continue;
+      }
+      // By their places: indices change as circles are taken out.
+      std::vector<std::vector<Vec2>> members;
+      for (const auto& circle : circles) {
+        members.emplace_back();
+        for (const std::size_t i : circle) {
+          members.back().push_back(group_.spots[i].p);
+        }
+      }
+      for (const auto& points : members) {
+        std::vector<std::size_t> indices;
+        Vec2 centre = Vec2::Zero();
+        for (const Vec2& p : points) {
+          indices.push_back(*FindAt(p));
+          centre += p / static_cast<double>(points.size());
+        }
+        Add(indices, centre, 2 * (points.front() - centre).norm());
+      }
+      return;
+    }
+  }
+
+  /** Divides all spots into even circles of k and of one radius, the smallest; empty where that
+   cannot be. */
+  [[nodiscard]] std::vector<std::vector<std::size_t>> FindPartition(std::size_t k) const {
+    const auto& spots = group_.spots;
+    std::vector<std::vector<std::size_t>> circles;
+    std::vector<bool> is_used(spots.size(), false);
+    double side = 0;
+    for (std::size_t a = 0; a < spots.size(); ++a) {
+      if (is_used[a]) {
+        continue;
+      }
+      std::vector<std::size_t> best;
+      double best_side = 0;
+      for (std::size_t b = 0; b < spots.size(); ++b) {
+        const double length = (spots[b].p - spots[a].p).norm();
+        if (b == a || is_used[b] || (side > 0 && std::abs(length - side) > 2 * tolerance_) ||
+            (!best.empty() && length >= best_side)) {
+          continue;
+        }
+        const auto polygon = FindPolygon(a, b, k, is_used);
+        if (!polygon.empty()) {
+          best = polygon;
+          best_side = length;
+        }
+      }
+      if (best.empty()) {
+        return {};
+      }
+      side = best_side;
+      for (const std::size_t i : best) {
+        is_used[i] = true;
+      }
+      circles.push_back(std::move(best));
+    }
+    return circles;
+  }
+
+  /** The regular polygon of k unused spots with the side from a to b, turning left; or empty. */
+  [[nodiscard]] std::vector<std::size_t> FindPolygon(std::size_t a, std::size_t b, std::size_t k,
+                                                     const std::vector<bool>& is_used) const {
+    std::vector<std::size_t> polygon{a, b};
+    Vec2 side = group_.spots[b].p - group_.spots[a].p;
+    const Eigen::Rotation2Dd turn(kTwoPi / static_cast<double>(k));
+    while (polygon.size() < k) {
+      side = turn * side;
+      const auto next = FindAt(group_.spots[polygon.back()].p + side);
+      if (!next || is_used[*next]) {
+        return {};
+      }
+      polygon.push_back(*next);
+    }
+    return polygon;
   }
 
   /** All spots in one full grid, whose directions are those from a corner to its nearest spots. */

@@ -231,12 +231,34 @@ class Linker {
         return other_end ? std::optional(RingLink{other, *other_end, {}}) : std::nullopt;
       }
     }
+    if (2 * at.open > at.sectors) {
+      return FindTouching(ring, end);
+    }
     return 2 * across >= at.sectors && across > 0 ? FindAcross(ring, shoulder) : std::nullopt;
   }
 
  private:
   [[nodiscard]] bool IsNext(std::uint32_t a, std::uint32_t b) const {
     return a != b && IsCoaxial(set_.rings[a], set_.rings[b], tolerance_);
+  }
+
+  /** The ring whose open end has the same circle: faces that were not sewn, or that the mesher did
+   not bring together. */
+  [[nodiscard]] std::optional<RingLink> FindTouching(std::uint32_t ring, std::size_t end) const {
+    const Ring& from = set_.rings[ring];
+    for (std::uint32_t other = 0; other < set_.rings.size(); ++other) {
+      for (std::size_t e = 0; e < 2; ++e) {
+        const Ring& to = set_.rings[other];
+        const double slack = 10 * tolerance_;
+        if (IsNext(ring, other) && 2 * to.ends[e].open > to.ends[e].sectors &&
+            (from.point(end) - to.point(e)).dot(from.axis_B) < slack &&
+            (from.point(end) - to.point(e)).dot(from.axis_B) > -slack &&
+            std::abs(from.ends[end].radius - to.ends[e].radius) < slack) {
+          return RingLink{other, e, {}};
+        }
+      }
+    }
+    return std::nullopt;
   }
 
   /** The end of a ring that has one of `faces` beside it. */

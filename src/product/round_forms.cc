@@ -97,14 +97,15 @@ class Reader {
       return EndState::kClosed;  // The tip of a drill, or of a pointed shaft.
     }
     constexpr double kMost = 0.6;
-    if (seen.convex + seen.open > kMost * seen.sectors) {
+    if (seen.convex > kMost * seen.sectors) {
       return EndState::kOpen;
     }
     if (seen.concave > kMost * seen.sectors) {
       return EndState::kClosed;
     }
     if (!at.is_inward || seen.sectors == 0) {
-      return EndState::kUnknown;
+      // The rim of a surface without a solid is an end; what runs on tangentially is not.
+      return seen.open > kMost * seen.sectors ? EndState::kOpen : EndState::kUnknown;
     }
     const Vec3 out = (end == 1 ? 1.0 : -1.0) * at.axis_B;
     const Vec3 middle = 0.5 * (at.point(0) + at.point(1));

@@ -19,7 +19,7 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kLeastPitch = 0.04;    // Of the diameter (M64x3 has 0.047).
 constexpr double kLargestPitch = 0.4;   // Of the diameter (M1 has 0.25, wood screws up to 0.45).
 constexpr double kLeastTurns = 1.5;     // Of a helical face, or of all that have one pitch.
-constexpr double kHelixResidual = 0.1;  // RMS of normals, of their part along the helix.
+constexpr double kHelixResidual = 0.2;  // RMS, relative; run-outs and coarse meshes are in it.
 constexpr double kNearDiameter = 0.02;  // A drawn diameter that stands for a nominal one.
 
 /** All holes, shafts and cones on one line. */
