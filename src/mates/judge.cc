@@ -53,6 +53,11 @@ double CalcScale(const Product& product, const Mate& mate) {
   return CalcLengthScale(std::min(size(mate.a), size(mate.b)));
 }
 
+/** What is printed as zero has no sign. */
+double Unsigned(double value, double half_of_last_digit) {
+  return std::abs(value) < half_of_last_digit ? 0.0 : value;
+}
+
 /** From 1 at zero to `least` at the limit and beyond. */
 double Fall(double value, double limit, double least) {
   return 1 - (1 - least) * std::clamp(value / limit, 0.0, 1.0);
@@ -80,8 +85,11 @@ double CalcAxisConfidence(const Product& product, const Mate& mate, const Infere
   }
   const double length = Rise(mate.overlap, 2 * mate.shaft_radius, 0.5);
   const double place = Fall(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
+  const double turn =
+      Rise(std::min(FeatureOf(product, mate.a).coverage, FeatureOf(product, mate.b).coverage),
+           limits.coverage, 0.7);
   const double names = ContradictsNames(hole_part, shaft_part) ? 0.6 : 1.0;
-  return sizes * length * place * names;
+  return sizes * length * place * turn * names;
 }
 
 double CalcConfidence(const Product& product, const Mate& mate, const InferenceLimits& limits,
@@ -127,14 +135,15 @@ std::string DescribeEvidence(const Product& product, const Mate& mate) {
       const double smaller = CalcSmallerArea(product, mate);
       const double share = smaller > 0 ? std::min(1.0, mate.overlap / smaller) : 0.0;
       return fmt::format("touching {:.2f} mm2, {:.0f} % of the smaller face, {:.2f} um apart",
-                         1e6 * mate.overlap, 100 * share, ToUm(CalcGap(product, mate)));
+                         1e6 * mate.overlap, 100 * share,
+                         Unsigned(ToUm(CalcGap(product, mate)), 0.005));
     }
     case MateKind::kConeSeat:
       return fmt::format(
           "half angles {:.2f}/{:.2f} deg, facing over {:.2f} mm, {:.3f} mm apart, axes {:.2f} um "
           "apart",
           units::ToDeg(a.half_angle), units::ToDeg(b.half_angle), ToMm(mate.overlap),
-          ToMm(CalcConeGap(product, mate)), ToUm(CalcOffset(product, mate)));
+          Unsigned(ToMm(CalcConeGap(product, mate)), 0.0005), ToUm(CalcOffset(product, mate)));
     case MateKind::kSphereSeat: {
       const double whole = 4 * std::numbers::pi * mate.shaft_radius * mate.shaft_radius;
       return fmt::format(

@@ -14,7 +14,7 @@ struct InferenceLimits {
                                       ///< one, if more.
   double radius_ratio{0.3};           ///< The same as a part of the radius.
   double axial_overlap{50e-6};        ///< Least engaged length [m].
-  double coverage{3.4906585};         ///< Least turn that a hole or shaft covers (200 deg) [rad].
+  double coverage{3.4906585};         ///< Least turn that one face of a hole covers (200 deg) [rad].
   double plane_gap{10e-6};            ///< Between faces that touch, also as overlap [m].
   double area_ratio{0.01};            ///< Least overlap as a part of the smaller face.
   double area{0.05e-6};               ///< Least overlap [m^2].

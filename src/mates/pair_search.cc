@@ -18,10 +18,11 @@ using product::Pose;
 using product::Product;
 using spatial::Box;
 
-constexpr double kSamePose = 1e-9;     // [m], and as a part of the rotation.
-constexpr double kPoseGrid = 1e-6;     // [m]
-constexpr double kAlignedGap = 2e-3;   // Between the ends of holes in line [m].
-constexpr double kAlignedShare = 0.1;  // Of the shorter hole, that may lie in the other.
+constexpr double kSamePose = 1e-9;            // [m], and as a part of the rotation.
+constexpr double kPoseGrid = 1e-6;            // [m]
+constexpr double kAlignedGap = 2e-3;          // Between the ends of holes in line [m].
+constexpr double kSphereInterference = 0.01;  // Part of the radius.
+constexpr double kAlignedShare = 0.1;         // Of the shorter hole, that may lie in the other.
 
 /** The box of a hole, shaft or cone: that of a cylinder around its span. */
 Box CalcAxialBox(const Feature& feature) {
@@ -131,8 +132,8 @@ const PairSearch::SearchPart& PairSearch::Prepare(PartId id) {
   for (std::size_t i = 0; i < part.features.size(); ++i) {
     const Feature& feature = part.features[i];
     const bool turns = product::IsCylinder(feature.kind) || product::IsCone(feature.kind);
-    if (turns && feature.coverage < limits_.coverage) {
-      continue;  // Fillets and slot ends.
+    if (turns && feature.coverage < limits_.coverage && feature.faces.size() < 2) {
+      continue;  // Fillets and slot ends. Features of several arcs hold a shaft between them.
     }
     const Box box = CalcFeatureBox(part, feature);
     if (!box.is_empty()) {
@@ -237,6 +238,35 @@ bool IsSameCone(const Feature& seat, const Feature& taper, const Pose& X_ST,
   return std::abs(gap) < limits.cone_gap * scale;
 }
 
+/** True where a part has a cylinder of the given kind on the axis of `about`, within its span and
+ with a radius between two others. X_AB: pose of the part in that of the axis. */
+bool HasCylinderBetween(const Part& part, FeatureKind kind, const Feature& about, const Pose& X_AB,
+                        const AxisHit& hit, double low_radius, double high_radius, double limit) {
+  return std::any_of(part.features.begin(), part.features.end(), [&](const Feature& feature) {
+    if (feature.kind != kind || feature.radius < low_radius || feature.radius > high_radius ||
+        about.axis_B.cross(X_AB.q() * feature.axis_B).norm() > 1e-2) {
+      return false;
+    }
+    const AxialSpans spans = CalcAxialSpans(about, feature, X_AB);
+    return spans.axis_distance < limit &&
+           std::min(hit.high, spans.second_high) - std::max(hit.low, spans.second_low) >
+               0.5 * (hit.high - hit.low);
+  });
+}
+
+/** True where a shaft that is larger than the hole does not fill it but runs around the hole's
+ part: a tube in a wider tube. Then the shaft's part is hollow there, or the hole's part ends
+ before. */
+bool IsAround(const Part& hole_part, const Feature& hole, const Part& shaft_part,
+              const Feature& shaft, const Pose& X_HS, const AxisHit& hit, double limit) {
+  constexpr double kSame = 1e-6;  // [m]
+  return shaft.radius > hole.radius + kSame &&
+         (HasCylinderBetween(shaft_part, FeatureKind::kHole, hole, X_HS, hit, hole.radius + kSame,
+                             shaft.radius, limit) ||
+          HasCylinderBetween(hole_part, FeatureKind::kShaft, hole, Pose(), hit, hole.radius,
+                             shaft.radius - kSame, limit));
+}
+
 bool Engage(const Feature& hole, const Feature& shaft, const Pose& X_HS,
             const InferenceLimits& limits, double scale, AxisHit* hit) {
   if (std::abs(hole.radius - shaft.radius) >=
@@ -274,8 +304,10 @@ void PairSearch::TestPair(const Context& context, const SearchFeature& a, const 
   const Pose X_SB = is_first ? context.X_AB : context.X_AB.Inverse();
   if (seat_kind == FeatureKind::kSocket && body_kind == FeatureKind::kBall) {
     const double most = CalcLargestPlay(limits_, context.scale, std::min(seat.radius, body.radius));
+    // A ball does not go into a socket that is smaller, but for the roughness of drawing.
+    const double least = -kSphereInterference * body.radius;
     if ((b.origin - a.feature->origin_B).norm() < limits_.axis_distance * context.scale &&
-        std::abs(seat.radius - body.radius) < most) {
+        seat.radius - body.radius < most && seat.radius - body.radius > least) {
       hits->seats.push_back({MateKind::kSphereSeat, is_first, seat_id, body_id});
     }
     return;
@@ -285,7 +317,11 @@ void PairSearch::TestPair(const Context& context, const SearchFeature& a, const 
   }
   if (seat_kind == FeatureKind::kHole && body_kind == FeatureKind::kShaft) {
     AxisHit hit{is_first, seat_id, body_id};
-    if (Engage(seat, body, X_SB, limits_, context.scale, &hit)) {
+    const Part& hole_part = is_first ? context.a : context.b;
+    const Part& shaft_part = is_first ? context.b : context.a;
+    if (Engage(seat, body, X_SB, limits_, context.scale, &hit) &&
+        !IsAround(hole_part, seat, shaft_part, body, X_SB, hit,
+                  limits_.axis_distance * context.scale)) {
       hits->axes.push_back(hit);
     }
   } else if (seat_kind == FeatureKind::kConeSeat && body_kind == FeatureKind::kTaper &&

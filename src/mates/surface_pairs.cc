@@ -116,6 +116,18 @@ const std::array<Vec3, kDirections>& EvenDirections() {
   return directions;
 }
 
+/** The directions, which fall in z, that can lie in a cap around a direction of this z. */
+std::pair<std::size_t, std::size_t> FindBand(double z, double cosine) {
+  const double polar = std::acos(std::clamp(z, -1.0, 1.0));
+  const double reach = std::acos(std::clamp(cosine, -1.0, 1.0)) + 1e-9;
+  const double high = std::cos(std::max(0.0, polar - reach));
+  const double low = std::cos(std::min(std::numbers::pi, polar + reach));
+  const auto index = [](double at) { return 0.5 * ((1 - at) * kDirections - 1); };
+  const auto begin = static_cast<std::size_t>(std::max(0.0, std::floor(index(high))));
+  const auto end = static_cast<std::size_t>(std::max(0.0, std::ceil(index(low)) + 1));
+  return {begin, std::min(end, kDirections)};
+}
+
 /** The directions from the origin in which a face lies. Without triangles: all. */
 Directions CalcDirections(const Side& side, FaceId id) {
   Directions covered;
@@ -125,7 +137,13 @@ Directions CalcDirections(const Side& side, FaceId id) {
   VisitTriangles(side, id, [&](const std::array<Vec3, 3>& p) {
     const std::array<Vec3, 3> walls{p[0].cross(p[1]), p[1].cross(p[2]), p[2].cross(p[0])};
     const double sense = walls[0].dot(p[2]) < 0 ? -1.0 : 1.0;
-    for (std::size_t i = 0; i < kDirections; ++i) {
+    const Vec3 middle = (p[0] + p[1] + p[2]).normalized();
+    double least = 1;  // Cosine of the cap around the middle that holds the triangle.
+    for (const Vec3& corner : p) {
+      least = std::min(least, middle.dot(corner.normalized()));
+    }
+    const auto [begin, end] = FindBand(middle.z(), least);
+    for (std::size_t i = begin; i < end; ++i) {
       const Vec3& d = EvenDirections()[i];
       if (sense * walls[0].dot(d) >= 0 && sense * walls[1].dot(d) >= 0 &&
           sense * walls[2].dot(d) >= 0) {
