@@ -147,18 +147,13 @@ void PrintTable(const Model& model, const Outcome& outcome, bool is_realtime) {
 
 Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
                                                Diagnostics* diagnostics, bool is_watched) {
-  std::function<void(std::string_view, double)> progress;
-  if (is_watched) {
-    progress = ShowProgress;
-  }
-  auto product = LoadProduct(options.file, options.fits, diagnostics, progress);
+  auto product = LoadProduct(options.load, diagnostics);
   if (!product) {
     return Unexpected(product.error());
   }
   simulation::CompileOptions compile;
   compile.seed = options.seed;
-  if (const auto directory = contact::ShapeCache::DefaultDirectory();
-      directory && options.is_cache_used) {
+  if (const auto directory = CacheDirectory(options.load)) {
     compile.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
   }
   if (is_watched) {
@@ -168,7 +163,13 @@ Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
   }
   auto model = simulation::Compile(std::make_shared<product::Product>(std::move(*product)), compile,
                                    diagnostics);
-  if (!model || options.order.empty()) {
+  if (!model) {
+    return model;
+  }
+  if (const auto strict = CheckStrict(options.load, *diagnostics); !strict) {
+    return Unexpected(strict.error());
+  }
+  if (options.order.empty()) {
     return model;
   }
   auto sequence = simulation::Reorder(*(*model)->product, (*model)->sequence, options.order);
@@ -259,7 +260,7 @@ void AddMissing(const Model& model, Outcome* outcome) {
 }  // namespace
 
 int RunAssemble(const AssembleOptions& options) {
-  const bool is_watched = !options.is_quiet && IsWatched();
+  const bool is_watched = !options.load.is_quiet && IsWatched();
   const auto fail = [](const Error& error) {
     fmt::print(stderr, "hvas: {}\n", error.ToString());
     return 1;
@@ -270,7 +271,7 @@ int RunAssemble(const AssembleOptions& options) {
     return fail(model.error());
   }
   for (const Diagnostic& item : diagnostics.items()) {
-    if (item.code == "shape-cache") {
+    if (item.code == "shape-cache" || item.code == "cache-unwritable") {
       fmt::print(stderr, "hvas: {}: {} ({})\n", item.entity, item.message, item.remedy);
     }
   }
@@ -294,7 +295,7 @@ void AddAssemble(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
       "assemble", "Let a simulated person assemble a product, part by part, and keep the evidence");
   const auto options = std::make_shared<AssembleOptions>();
-  command->add_option("file", options->file, "STEP file (AP203, AP214, AP242)")->required();
+  command->add_option("file", options->load.file, "STEP file (AP203, AP214, AP242)")->required();
   command
       ->add_option("--order", options->order,
                    "Parts to begin with, by name, path or id (o12), separated by commas; the rest "
@@ -302,7 +303,7 @@ void AddAssemble(CLI::App* app, int* status) {
       ->delimiter(',');
   command->add_option("--seed", options->seed, "Seed of the person and of the parts' actual sizes")
       ->capture_default_str();
-  command->add_option("--fit", options->fits,
+  command->add_option("--fit", options->load.fits,
                       "AXIS=FIT, as in m12=H7/p6: a mate's id, a part's name, or 'all'");
   const std::map<std::string, haptics::Condition> conditions{
       {"collision", haptics::Condition::kCollision},
@@ -318,10 +319,7 @@ void AddAssemble(CLI::App* app, int* status) {
   command->add_option("--limit", options->limit_s, "Stop after this session time [s]")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", options->is_json, "Print one JSON document");
-  command->add_flag("--quiet,-q", options->is_quiet, "No progress");
-  command->add_flag("!--no-cache", options->is_cache_used,
-                    "Prepare all parts anew; else what contact needs is kept in "
-                    "$XDG_CACHE_HOME/hvas or ~/.cache/hvas (HVAS_CACHE=off: never)");
+  AddLoadOptions(command, &options->load);
   command->footer(
       "Exit status: 0 when every part is in its place, 2 when one is not, 1 on an error.\n"
       "Examples:\n"

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/load_product.h"
 #include "haptics/options.h"
 
 namespace CLI {
@@ -14,17 +15,14 @@ class App;
 namespace hvas::app {
 
 struct AssembleOptions {
-  std::filesystem::path file;
+  LoadOptions load;
   std::vector<std::string> order;  ///< Parts to begin with, by name, path or id.
   std::uint64_t seed{1};
-  std::vector<std::string> fits;  ///< "AXIS=FIT".
   haptics::Condition condition{haptics::Condition::kHybrid};
   bool is_realtime{false};
   std::filesystem::path record;  ///< Empty: no file; the digest is made all the same.
   double limit_s{0};             ///< Session time after which to stop; 0: none.
   bool is_json{false};
-  bool is_quiet{false};
-  bool is_cache_used{true};  ///< Keeps and takes contact shapes on disk.
 };
 
 /** Lays the parts of a product out on a table and lets a simulated person assemble them one by one.

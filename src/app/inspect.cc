@@ -4,10 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,7 +15,6 @@
 
 #include "app/load_product.h"
 #include "app/product_json.h"
-#include "app/progress.h"
 #include "base/units.h"
 #include "mates/infer.h"
 
@@ -174,12 +171,8 @@ void PrintText(const Product& product, const Diagnostics& diagnostics) {
 }  // namespace
 
 int RunInspect(const InspectOptions& options) {
-  std::function<void(std::string_view, double)> progress;
-  if (!options.is_quiet && IsWatched()) {
-    progress = ShowProgress;
-  }
   Diagnostics diagnostics;
-  const auto product = LoadProduct(options.file, {}, &diagnostics, progress);
+  const auto product = LoadProduct(options.load, &diagnostics);
   if (!product) {
     fmt::print(stderr, "hvas: {}\n", product.error().ToString());
     return 1;
@@ -198,9 +191,9 @@ void AddInspect(CLI::App* app, int* status) {
   CLI::App* command =
       app->add_subcommand("inspect", "Show what is in a STEP assembly: tree, parts, mates, fits");
   const auto options = std::make_shared<InspectOptions>();
-  command->add_option("file", options->file, "STEP file (AP203, AP214, AP242)")->required();
+  command->add_option("file", options->load.file, "STEP file (AP203, AP214, AP242)")->required();
   command->add_flag("--json", options->is_json, "Print one JSON document");
-  command->add_flag("--quiet,-q", options->is_quiet, "No progress");
+  AddLoadOptions(command, &options->load);
   command->footer(
       "Examples:\n"
       "  hvas inspect pump.step\n"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <filesystem>
+#include "app/load_product.h"
 
 namespace CLI {
 class App;
@@ -9,9 +9,8 @@ class App;
 namespace hvas::app {
 
 struct InspectOptions {
-  std::filesystem::path file;
+  LoadOptions load;
   bool is_json{false};
-  bool is_quiet{false};  ///< No progress on stderr.
 };
 
 /** Opens a CAD file and prints what HVAS makes of it: the product tree, the parts with their

@@ -1,33 +1,96 @@
 #include "app/load_product.h"
 
+#include <cstdio>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/progress.h"
 #include "cad/import.h"
+#include "contact/shape_cache.h"
 #include "mates/assignments.h"
 #include "mates/infer.h"
 #include "mates/stated_fits.h"
 
 namespace hvas::app {
 
-Result<product::Product> LoadProduct(
-    const std::filesystem::path& file, const std::vector<std::string>& fits,
-    Diagnostics* diagnostics, const std::function<void(std::string_view, double)>& progress) {
-  auto product = cad::Import(file, {}, diagnostics, {{}, progress, {}, {}});
+void AddLoadOptions(CLI::App* command, LoadOptions* options) {
+  command->add_flag("--strict", options->is_strict, "Take warnings for errors");
+  command->add_flag("--quiet,-q", options->is_quiet, "No progress");
+  command->add_flag("!--no-cache", options->is_cache_used,
+                    "Read and prepare everything anew, and keep nothing on disk");
+  command
+      ->add_option("--time-limit", options->time_limit,
+                   "Longest time for reading the file, in seconds")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--memory-limit", options->memory_limit,
+                   "Most memory for reading the file, as 4GB; three quarters of the machine's "
+                   "when not given")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
+}
+
+std::optional<std::filesystem::path> CacheDirectory(const LoadOptions& options) {
+  return options.is_cache_used ? contact::ShapeCache::DefaultDirectory() : std::nullopt;
+}
+
+Result<product::Product> LoadInferred(const LoadOptions& options, Diagnostics* diagnostics) {
+  cad::ImportControl control;
+  control.limits.time = options.time_limit;
+  control.limits.memory = options.memory_limit;
+  control.cache_directory = CacheDirectory(options);
+  if (!options.is_quiet && IsWatched()) {
+    control.progress = ShowProgress;
+  }
+  auto product = cad::Import(options.file, {}, diagnostics, control);
   if (!product) {
     return product;
   }
   mates::Infer(&*product, diagnostics);
-  mates::AssignStatedFits(&*product);
-  const std::filesystem::path side_file = mates::FindAssignmentFile(file);
+  return product;
+}
+
+Result<product::Product> LoadProduct(const LoadOptions& options, Diagnostics* diagnostics) {
+  auto product = LoadInferred(options, diagnostics);
+  if (!product) {
+    return product;
+  }
+  const std::filesystem::path side_file = mates::FindAssignmentFile(options.file);
   if (std::filesystem::exists(side_file)) {
     if (const auto applied = mates::ApplyAssignments(side_file, &*product); !applied) {
       return Unexpected(applied.error());
     }
+  } else {
+    mates::AssignStatedFits(&*product);
   }
-  for (const std::string& fit : fits) {
+  for (const std::string& fit : options.fits) {
     if (const auto assigned = mates::AssignFit(&*product, fit); !assigned) {
       return Unexpected(assigned.error());
     }
   }
+  if (const auto strict = CheckStrict(options, *diagnostics); !strict) {
+    return Unexpected(strict.error());
+  }
   return product;
+}
+
+Result<void> CheckStrict(const LoadOptions& options, const Diagnostics& diagnostics) {
+  const int warnings = diagnostics.Count(Severity::kWarning);
+  if (!options.is_strict || warnings == 0) {
+    return {};
+  }
+  for (const Diagnostic& item : diagnostics.items()) {
+    if (item.severity == Severity::kWarning) {
+      fmt::print(stderr, "hvas: warning {} [{}]: {}{}\n", item.code, item.entity, item.message,
+                 item.remedy.empty() ? "" : "; " + item.remedy);
+    }
+  }
+  return Fail(
+      ErrorCode::kInvalid,
+      fmt::format("{} warning{}, and --strict takes none", warnings, warnings == 1 ? "" : "s"),
+      options.file.filename().string(), "correct the file, or leave --strict out");
 }
 
 }  // namespace hvas::app

@@ -1,24 +1,51 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <functional>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/diagnostics.h"
 #include "base/result.h"
 #include "product/product.h"
 
+namespace CLI {
+class App;
+}
+
 namespace hvas::app {
 
-/** Opens a CAD file ready to assemble: imported, mates inferred, the fits of the side file
- NAME.hvas.json (if there is one) and then those of the command line assigned.
+/** What every command that opens a CAD file asks for. */
+struct LoadOptions {
+  std::filesystem::path file;
+  std::vector<std::string> fits;  ///< "AXIS=FIT", as given to --fit.
+  bool is_strict{false};          ///< Warnings are errors.
+  bool is_quiet{false};           ///< No progress on stderr.
+  bool is_cache_used{true};       ///< Keeps and takes what was read and prepared on disk.
+  double time_limit{600};         ///< For reading the file [s].
+  std::uint64_t memory_limit{0};  ///< For reading the file [bytes]; 0: three quarters of all.
+};
 
- @param fits  Texts "AXIS=FIT" as given to --fit.
- Errors: those of cad::Import and of the assignments. */
-Result<product::Product> LoadProduct(const std::filesystem::path& file,
-                                     const std::vector<std::string>& fits, Diagnostics* diagnostics,
-                                     const std::function<void(std::string_view, double)>& progress);
+/** Adds --strict, --quiet, --no-cache, --time-limit and --memory-limit to a command. */
+void AddLoadOptions(CLI::App* command, LoadOptions* options);
+
+/** The directory for what is kept between runs; none where the user wants none. */
+[[nodiscard]] std::optional<std::filesystem::path> CacheDirectory(const LoadOptions& options);
+
+/** Opens a CAD file: imported, mates inferred, and nothing of what its files state about mates. */
+[[nodiscard]] Result<product::Product> LoadInferred(const LoadOptions& options,
+                                                    Diagnostics* diagnostics);
+
+/** Opens a CAD file ready to assemble: imported, mates inferred, the mates and fits of the side file
+ NAME.hvas.json (if there is one) and then those of the command line assigned. Shows progress on a
+ terminal. With --strict it ends as CheckStrict says.
+ Errors: those of cad::Import, of the assignments and of CheckStrict. */
+[[nodiscard]] Result<product::Product> LoadProduct(const LoadOptions& options,
+                                                   Diagnostics* diagnostics);
+
+/** With --strict, and when there are warnings: prints them on stderr and fails (kInvalid), so that
+ the command can end with exit status 1. To be called again after steps that warn. */
+[[nodiscard]] Result<void> CheckStrict(const LoadOptions& options, const Diagnostics& diagnostics);
 
 }  // namespace hvas::app

@@ -53,10 +53,18 @@ void ExpectAllSeated(const json& run, std::size_t count) {
   }
 }
 
+LoadOptions BushingOptions(std::vector<std::string> fits) {
+  LoadOptions options;
+  options.file = ProductFile("bushing");
+  options.fits = std::move(fits);
+  options.is_quiet = true;
+  return options;
+}
+
 /** The fit that a run of the rig draws for the shaft in the bushing. */
 std::shared_ptr<const fits::FitForce> DrawnFit(const std::string& fit, int seed) {
   Diagnostics diagnostics;
-  const auto product = LoadProduct(ProductFile("bushing"), {"shaft=" + fit}, &diagnostics, {});
+  const auto product = LoadProduct(BushingOptions({"shaft=" + fit}), &diagnostics);
   for (const product::Mate& mate : product->mates) {
     if (mate.kind == product::MateKind::kAxisHole && mate.b.occurrence.value() == kShaft) {
       return simulation::MakeFitForce(*product, mate, static_cast<std::uint64_t>(seed),
@@ -86,7 +94,7 @@ Insertion ReadInsertion(const std::filesystem::path& file) {
   EXPECT_TRUE(reader.has_value());
   const auto product = [] {
     Diagnostics diagnostics;
-    return *LoadProduct(ProductFile("bushing"), {}, &diagnostics, {});
+    return *LoadProduct(BushingOptions({}), &diagnostics);
   }();
   const double weight = product.part_of(product::OccurrenceId(kShaft)).mass.mass * 9.81;
   Vec3 last_force = Vec3::Zero();
