@@ -113,6 +113,98 @@ TEST(BuildFeatures, DropsFilletsAndKeepsABoreOpenedByASlit) {
   EXPECT_NEAR(part.features[0].coverage, 1.8 * kPi, 1e-9);
 }
 
+TEST(BuildFeatures, KeepsArcsThatHoldAPinTogetherAndDropsThoseThatDoNot) {
+  const auto count = [](const std::vector<std::pair<double, double>>& arcs_deg, double gap = 0) {
+    Part part;
+    double low = 0;
+    for (const auto& [from_deg, sweep_deg] : arcs_deg) {
+      AddCylinder(&part, 0, 0.005, 1, from_deg * kPi / 180, sweep_deg * kPi / 180, low, low + 0.01);
+      low += gap;
+    }
+    BuildFeatures(&part);
+    return part.features.size();
+  };
+  EXPECT_EQ(count({{0, 90}, {180, 90}}), 1u);             // A spring pin.
+  EXPECT_EQ(count({{0, 30}, {120, 30}, {240, 30}}), 1u);  // Three lands.
+  EXPECT_EQ(count({{0, 20}, {180, 20}}), 0u);             // Hardly there.
+  EXPECT_EQ(count({{0, 60}, {90, 60}}), 0u);              // Leaves sideways.
+  EXPECT_EQ(count({{0, 190}}), 0u);
+  EXPECT_EQ(count({{0, 205}}), 1u);
+  // Never at one place along the axis: enough only where they are 200 deg together.
+  EXPECT_EQ(count({{0, 90}, {180, 90}}, 0.01), 0u);
+  EXPECT_EQ(count({{0, 180}, {180, 180}}, 0.01), 1u);
+}
+
+TEST(BuildFeatures, ABoreStandsBeforeTheBottomsOfItsSplines) {
+  Part part;
+  for (const double turn : {0.0, 0.5, 1.0, 1.5}) {
+    AddCylinder(&part, 0, 0.005, -1, turn * kPi, 0.25 * kPi, 0, 0.01);
+    AddCylinder(&part, 0, 0.006, -1, (turn + 0.25) * kPi, 0.25 * kPi, 0, 0.01);
+  }
+  BuildFeatures(&part);
+  ASSERT_EQ(part.features.size(), 1u);
+  EXPECT_NEAR(part.features[0].radius, 0.005, 1e-12);
+}
+
+/** A conical face about z with its apex at the origin, from z = low to high. */
+void AddCone(Part* part, double half_angle, double outward, double from, double sweep, double low,
+             double high) {
+  Surface surface;
+  surface.kind = SurfaceKind::kCone;
+  surface.axis = {0, 0, low < 0 ? -1.0 : 1.0};
+  surface.second = half_angle;
+  surface.outward = outward;
+  StartFace(part, surface);
+  constexpr int kSteps = 16;
+  const auto at = [&](double angle, double z) {
+    const double r = std::abs(z) * std::tan(half_angle);
+    return Vec3(r * std::cos(angle), r * std::sin(angle), z);
+  };
+  for (int i = 0; i < kSteps; ++i) {
+    const double a = from + sweep * i / kSteps;
+    const double b = from + sweep * (i + 1) / kSteps;
+    AddQuad(part, at(a, low), at(b, low), at(b, high), at(a, high));
+  }
+}
+
+TEST(BuildFeatures, MergesConesOfOneNappeAndSense) {
+  Part part;
+  AddCone(&part, 0.5, -1, 0, kPi, 0.002, 0.004);
+  AddCone(&part, 0.5, -1, kPi, kPi, 0.002, 0.004);
+  AddCone(&part, 0.5, 1, 0, 2 * kPi, 0.001, 0.002);
+  AddCone(&part, 0.5, -1, 0, 2 * kPi, -0.004, -0.002);  // The other nappe.
+  AddCone(&part, 0.6, -1, 0, 2 * kPi, 0.002, 0.004);
+  AddCone(&part, 0.4, -1, 0, 0.5 * kPi, 0.002, 0.004);  // A quarter is no seat.
+  BuildFeatures(&part);
+  ASSERT_EQ(part.features.size(), 4u);
+  const Feature& seat = part.features[0];
+  EXPECT_EQ(seat.kind, FeatureKind::kConeSeat);
+  EXPECT_EQ(seat.faces.size(), 2u);
+  EXPECT_NEAR(seat.coverage, 2 * kPi, 1e-9);
+  EXPECT_NEAR(seat.span_low, 0.002, 1e-12);
+  EXPECT_NEAR(seat.span_high, 0.004, 1e-12);
+  EXPECT_NEAR(seat.radius, 0.004 * std::tan(0.5), 1e-12);
+  EXPECT_LT((seat.axis_B - Vec3(0, 0, 1)).norm(), 1e-12);
+  EXPECT_EQ(part.features[1].kind, FeatureKind::kTaper);
+  // All on one axis.
+  EXPECT_EQ(std::count_if(
+                part.inner_constraints.begin(), part.inner_constraints.end(),
+                [](const InnerConstraint& c) { return c.kind == InnerConstraintKind::kCoaxial; }),
+            3);
+}
+
+TEST(BuildFeatures, OrdersHolesAndShaftsThenPlanesThenCones) {
+  Part part;
+  AddCone(&part, 0.5, -1, 0, 2 * kPi, 0.002, 0.004);
+  AddSquare(&part, 0, 0.02, 0.01, 1);
+  AddCylinder(&part, 0, 0.005, -1, 0, 2 * kPi, 0, 0.01);
+  BuildFeatures(&part);
+  ASSERT_EQ(part.features.size(), 3u);
+  EXPECT_EQ(part.features[0].kind, FeatureKind::kHole);
+  EXPECT_EQ(part.features[1].kind, FeatureKind::kPlane);
+  EXPECT_EQ(part.features[2].kind, FeatureKind::kConeSeat);
+}
+
 TEST(BuildFeatures, MergesPadsOfOnePlaneOnly) {
   Part part;
   AddSquare(&part, 0, 0.02, 0.01, 1);

@@ -1,0 +1,54 @@
+#include "product/fastener_name.h"
+
+#include <gtest/gtest.h>
+
+namespace hvas::product {
+namespace {
+
+TEST(ParseThreadSize, ReadsMetricSizesWithTheirPitch) {
+  struct Case {
+    const char* name;
+    double diameter_mm;
+    double pitch_mm;
+  };
+
+  for (const Case& c :
+       {Case{"M3x16", 3, 0.5}, Case{"ISO 4762 M8 x 40", 8, 1.25}, Case{"M8x1", 8, 1},
+        Case{"m10X1.25 nut", 10, 1.25}, Case{"SHCS_M2.5X6", 2.5, 0.45}, Case{"M3x0.5", 3, 0.5},
+        Case{"BHCS M1.6", 1.6, 0.35}, Case{"M64", 64, 6}}) {
+    SCOPED_TRACE(c.name);
+    const auto size = ParseThreadSize(c.name);
+    ASSERT_TRUE(size.has_value());
+    EXPECT_NEAR(size->diameter, 1e-3 * c.diameter_mm, 1e-12);
+    EXPECT_NEAR(size->pitch, 1e-3 * c.pitch_mm, 1e-12);
+  }
+}
+
+TEST(ParseThreadSize, ReadsInchSizesWithTheirThreadsPerInch) {
+  const auto quarter = ParseThreadSize("hex bolt 1/4-20 UNC x 1");
+  ASSERT_TRUE(quarter.has_value());
+  EXPECT_NEAR(quarter->diameter, 0.00635, 1e-9);
+  EXPECT_NEAR(quarter->pitch, 0.00127, 1e-9);
+  const auto ten = ParseThreadSize("screw #10-32");
+  ASSERT_TRUE(ten.has_value());
+  EXPECT_NEAR(ten->diameter, 0.19 * 0.0254, 1e-9);
+  EXPECT_NEAR(ten->pitch, 0.0254 / 32, 1e-9);
+}
+
+TEST(ParseThreadSize, FindsNoneInOtherNames) {
+  for (const char* name : {"plate", "arm3", "M5stack", "DIN 912", "1/4 drive", "part 110-320", "M",
+                           "x5", "M300", "14-20", "2023-11-10-24-40 export"}) {
+    // Dates and part numbers have dashes too.
+    EXPECT_FALSE(ParseThreadSize(name).has_value()) << name;
+  }
+}
+
+TEST(FindCoarsePitch, IsThatOfIso261) {
+  EXPECT_NEAR(FindCoarsePitch(3e-3), 0.5e-3, 1e-12);
+  EXPECT_NEAR(FindCoarsePitch(24e-3), 3e-3, 1e-12);
+  EXPECT_EQ(FindCoarsePitch(3.2e-3), 0);
+  EXPECT_NEAR(FindCoarsePitch(3.05e-3, 0.1e-3), 0.5e-3, 1e-12);
+}
+
+}  // namespace
+}  // namespace hvas::product
