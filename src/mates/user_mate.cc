@@ -259,6 +259,9 @@ Result<Mate> MakeMate(const Product& product, const Pick& pick_a, const Pick& pi
     }
     std::swap(*a, *b);
   }
+  if (*kind == MateKind::kFaceFace && b->occurrence < a->occurrence) {
+    std::swap(*a, *b);  // As inference has it.
+  }
   const Feature& feature_a = feature_of(*a);
   const Feature& feature_b = feature_of(*b);
   const double scale = CalcLengthScale(std::min(SizeOf(product, *a), SizeOf(product, *b)));

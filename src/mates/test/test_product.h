@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <numbers>
 #include <string>
 
@@ -63,6 +64,70 @@ inline void AddRectangle(product::Part* part, const Vec3& centre_B, const Vec3& 
   part->features.push_back(feature);
 }
 
+/** Triangles of a face whose points are at(u, v) for u, v in 0..1, `columns` by `rows` cells. */
+template <typename At>
+product::FaceId AddGridFace(product::Part* part, int columns, int rows, const At& at) {
+  const product::FaceId id = AddFace(part);
+  product::Face& face = part->faces[id.index()];
+  const auto first = static_cast<std::uint32_t>(part->mesh.vertices.size());
+  const auto width = static_cast<std::uint32_t>(columns + 1);
+  for (int j = 0; j <= rows; ++j) {
+    for (int i = 0; i <= columns; ++i) {
+      const Vec3 p_B = at(static_cast<double>(i) / columns, static_cast<double>(j) / rows);
+      part->mesh.vertices.push_back(p_B);
+      face.box_B.Add(p_B);
+    }
+  }
+  for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j) {
+    for (std::uint32_t i = 0; i + 1 < width; ++i) {
+      const std::uint32_t k = first + j * width + i;
+      part->mesh.triangles.push_back({k, k + 1, k + width});
+      part->mesh.triangles.push_back({k + 1, k + width + 1, k + width});
+    }
+  }
+  face.triangle_count = static_cast<std::uint32_t>(2 * columns * rows);
+  part->box_B.Add(face.box_B);
+  return id;
+}
+
+/** A face of a cylinder (equal radii) or cone about z, from `begin` over `sweep` [rad]. */
+inline product::FaceId AddRoundFace(product::Part* part, double radius_low, double radius_high,
+                                    double low, double high, double begin, double sweep) {
+  return AddGridFace(part, 24, 1, [=](double u, double v) {
+    const double r = radius_low + v * (radius_high - radius_low);
+    const double angle = begin + u * sweep;
+    return Vec3(r * std::cos(angle), r * std::sin(angle), low + v * (high - low));
+  });
+}
+
+/** A conical seat or taper with its apex at `apex_B`, from `low` to `high` along `axis_B`. */
+inline void AddCone(product::Part* part, product::FeatureKind kind, const Vec3& apex_B,
+                    const Vec3& axis_B, double half_angle, double low, double high) {
+  const double slope = std::tan(half_angle);
+  AddCylinder(part, kind, apex_B, axis_B, slope * high, low, high);
+  product::Feature& feature = part->features.back();
+  feature.half_angle = half_angle;
+  feature.area = std::numbers::pi * slope * (high * high - low * low) / std::cos(half_angle);
+}
+
+/** The cap of a sphere around `centre_B` up to the polar angle from z: a ball, or a socket. */
+inline void AddCap(product::Part* part, product::FeatureKind kind, const Vec3& centre_B,
+                   double radius, double polar_begin, double polar_end) {
+  product::Feature feature;
+  feature.kind = kind;
+  feature.faces = {AddGridFace(part, 48, 24, [&](double u, double v) {
+    const double polar = polar_begin + v * (polar_end - polar_begin);
+    const double angle = kFullTurn * u;
+    return Vec3(centre_B + radius * Vec3(std::sin(polar) * std::cos(angle),
+                                         std::sin(polar) * std::sin(angle), std::cos(polar)));
+  })};
+  feature.origin_B = centre_B;
+  feature.radius = radius;
+  feature.coverage = kFullTurn;
+  feature.area = kFullTurn * radius * radius * (std::cos(polar_begin) - std::cos(polar_end));
+  part->features.push_back(feature);
+}
+
 inline product::Part* AddPart(product::Product* product, const std::string& name) {
   product::Part part;
   part.id = product::PartId(product->parts.size());
@@ -71,20 +136,32 @@ inline product::Part* AddPart(product::Product* product, const std::string& name
   return &product->parts.back();
 }
 
-inline product::OccurrenceId AddOccurrence(product::Product* product, product::PartId part,
-                                           const spatial::Pose& X_WB) {
+inline product::SubassemblyId AddSubassembly(product::Product* product, const std::string& name) {
+  product::Subassembly node;
+  node.id = product::SubassemblyId(product->subassemblies.size());
+  node.name = name;
+  if (node.id.index() > 0) {
+    node.parent = product::SubassemblyId(0);
+    product->subassemblies[0].subassemblies.push_back(node.id);
+  }
+  product->subassemblies.push_back(node);
+  return node.id;
+}
+
+inline product::OccurrenceId AddOccurrence(
+    product::Product* product, product::PartId part, const spatial::Pose& X_WB,
+    product::SubassemblyId parent = product::SubassemblyId(0)) {
   if (product->subassemblies.empty()) {
-    product->subassemblies.emplace_back();
-    product->subassemblies.back().id = product::SubassemblyId(0);
+    AddSubassembly(product, "product");
   }
   product::Occurrence occurrence;
   occurrence.id = product::OccurrenceId(product->occurrences.size());
   occurrence.part = part;
-  occurrence.parent = product::SubassemblyId(0);
+  occurrence.parent = parent;
   occurrence.name = product->parts[part.index()].name;
   occurrence.path = occurrence.name + "#" + std::to_string(product->occurrences.size() + 1);
   occurrence.X_WB = X_WB;
-  product->subassemblies[0].occurrences.push_back(occurrence.id);
+  product->subassemblies[parent.index()].occurrences.push_back(occurrence.id);
   product->occurrences.push_back(occurrence);
   return occurrence.id;
 }
