@@ -76,9 +76,14 @@ std::vector<std::string> Attempts::Arguments() const {
                                      "--max-angle",
                                      fmt::format("{}", options_.max_angle),
                                      "--max-triangles",
-                                     fmt::format("{}", options_.max_triangles)};
+                                     fmt::format("{}", options_.max_triangles),
+                                     "--threads",
+                                     fmt::format("{}", options_.threads)};
   if (!options_.with_tolerances) {
     arguments.emplace_back("--no-tolerances");
+  }
+  if (options_.threads > 0) {
+    arguments.insert(arguments.end(), {"--threads", std::to_string(options_.threads)});
   }
   for (const std::uint32_t part : options_.skipped_parts) {
     arguments.insert(arguments.end(), {"--skip-part", std::to_string(part)});
@@ -86,12 +91,17 @@ std::vector<std::string> Attempts::Arguments() const {
   return arguments;
 }
 
-/** Takes out of the next attempt what the last one died over. @returns false if that is not known,
+/** Takes out of the next attempt what the last one died over; of several parts that were worked at
+ at a time, it first finds out which. @returns false if that is not known,
  or has been tried. */
 bool Attempts::LeaveOut(const WorkerRun& run) {
   const bool is_limit = run.fate == WorkerFate::kPartTimeUp || run.fate == WorkerFate::kNoMemory;
   if (!is_limit && run.fate != WorkerFate::kCrashed && run.fate != WorkerFate::kFailed) {
     return false;
+  }
+  if (run.part && options_.threads != 1) {
+    options_.threads = 1;  // To know which one it was; or nothing is wrong with them one by one.
+    return true;
   }
   if (run.stage == "tolerances" && options_.with_tolerances) {
     options_.with_tolerances = false;
@@ -100,6 +110,9 @@ bool Attempts::LeaveOut(const WorkerRun& run) {
                                 "without its dimensions, tolerances and stated fits",
                                 run.Describe()),
                     "give the fits in a side file or with --fit, or export it without PMI");
+  } else if (run.part && options_.threads != 1) {
+    options_.threads = 1;  // Several parts were worked at: find out which it is.
+    return true;
   } else if (run.part && options_.skipped_parts.size() < kMaxSkippedParts &&
              std::find(options_.skipped_parts.begin(), options_.skipped_parts.end(), *run.part) ==
                  options_.skipped_parts.end()) {

@@ -18,7 +18,8 @@ namespace hvas::cad {
 /** Called now and then with what is being done and the fraction of it that is done, 0..1. */
 using ProgressFn = std::function<void(std::string_view stage, double fraction)>;
 
-/** Called before a part is worked at, with its number in the order of the file and its name. */
+/** Called before a part is worked at, with its number in the order of the file and its name; by
+ several threads where parts are worked at at a time. */
 using PartFn = std::function<void(std::uint32_t number, std::string_view name)>;
 
 /** What is made of a file. */
@@ -31,6 +32,7 @@ struct ImportOptions {
   std::size_t max_triangles{200000};  ///< A part with more is meshed again, coarser.
   bool with_tolerances{true};         ///< Reads dimensions, tolerances and fits.
   std::vector<std::uint32_t> skipped_parts;  ///< Left out, by their numbers as PartFn gets them.
+  unsigned threads{0};  ///< That work at parts at a time; 0: one a core. No matter for the result.
 };
 
 /** What an import may take. */
@@ -52,9 +54,10 @@ struct ImportControl {
  know the formats is one of this program. No OpenCASCADE in the program that calls it.
 
  When that process dies, or takes longer than it may, another one does without what was at fault:
- first without the tolerances, if it died over them; then without the part that it died over, up to
- a few parts. Each such step becomes a warning. Files that were read before come from the cache when
- neither they, nor the files that they refer to, nor the program have changed.
+ first without the tolerances, if it died over them; then one part after the other, and without the
+ part that it died over, up to a few parts. Each such step becomes a warning. Files that were read
+ before come from the cache when neither they, nor the files that they refer to, nor the program
+ have changed.
 
  Errors: those of ReadCad; kOutOfResource (a limit), kUnreadable (the process died), kNotFound
  (`hvas-cad` is not installed), kCancelled. @pre diagnostics != nullptr. */
