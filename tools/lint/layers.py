@@ -112,6 +112,9 @@ def check_links(root, rooms, reach, libraries):
             for other in re.findall(r"\bhvas(?:::|_)([a-z]+)\b", code):
                 if other in rooms and other not in reach[room]:
                     yield f"{path.relative_to(root)}:{number}: {room} may not link {other}: {line.strip()}"
+            for other, library in re.findall(r"\bhvas(?:::|_)([a-z]+)_([a-z_]+)\b", code):
+                if other in rooms and other != room:
+                    yield f"{path.relative_to(root)}:{number}: {other}_{library} is for room {other} alone: {line.strip()}"
             for word in re.split(r"[\s()]+", code):
                 library = family(word, 1)
                 if library and library not in libraries[room]:

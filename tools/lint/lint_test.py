@@ -57,6 +57,12 @@ class Layers(unittest.TestCase):
         self.write("src/middle/CMakeLists.txt", "hvas_library(middle SOURCES a.cc DEPS CLI11::CLI11)")
         self.assertEqual(len(self.problems()), 2)
 
+    def test_second_library_of_a_room_is_for_that_room(self):
+        self.write("src/middle/CMakeLists.txt", "hvas_library(middle_reader SOURCES a.cc DEPS hvas::middle)")
+        self.assertEqual(self.problems(), [])
+        self.write("src/top/CMakeLists.txt", "hvas_library(top SOURCES a.cc DEPS hvas::middle_reader)")
+        self.assertEqual(len(self.problems()), 1)
+
     def test_unknown_library_is_caught(self):
         self.write("src/base/a.cc", "#include <boost/asio.hpp>\n")
         self.assertEqual(len(self.problems()), 1)
