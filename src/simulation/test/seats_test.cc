@@ -1,0 +1,123 @@
+// Products whose parts seat on cones and spheres assemble like others: X2, X9, N10.
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "simulation/test/session.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using contact::testing::CylinderZ;
+using contact::testing::PlaneAt;
+using product::MateKind;
+using product::Product;
+using spatial::Pose;
+using spatial::Surface;
+using spatial::SurfaceKind;
+using testing::Session;
+
+constexpr double kLimit_s = 120;
+constexpr int kSegments = 64;
+
+/** A round plate with a hole of 3.4 mm that opens in a countersink of 90 degrees, and a screw whose
+ head sits on it, 0.2 mm below the rim. */
+Product CountersunkScrew() {
+  Product product;
+  product.name = "rig";
+  static constexpr double kApex = 2.6e-3;  // Both cones are r = z - kApex.
+  const auto cone = [](double outward) {
+    return Surface{
+        SurfaceKind::kCone, Vec3(0, 0, kApex), Vec3::UnitZ(), 0, std::numbers::pi / 4, outward};
+  };
+  const auto plate = testing::AddPart(
+      &product, "plate",
+      contact::testing::Lathe({{{{1.7e-3, 0}, {12e-3, 0}}, PlaneAt(0, -1)},
+                               {{{12e-3, 0}, {12e-3, 6e-3}}, CylinderZ(12e-3, 1)},
+                               {{{12e-3, 6e-3}, {3.4e-3, 6e-3}}, PlaneAt(6e-3, 1)},
+                               {{{3.4e-3, 6e-3}, {1.7e-3, 4.3e-3}}, cone(-1)},
+                               {{{1.7e-3, 4.3e-3}, {1.7e-3, 0}}, CylinderZ(1.7e-3, -1)}},
+                              kSegments));
+  const auto screw = testing::AddPart(
+      &product, "countersunk screw",
+      contact::testing::Lathe({{{{0, -6e-3}, {1.5e-3, -6e-3}}, PlaneAt(-6e-3, -1)},
+                               {{{1.5e-3, -6e-3}, {1.5e-3, 4.1e-3}}, CylinderZ(1.5e-3, 1)},
+                               {{{1.5e-3, 4.1e-3}, {3.2e-3, 5.8e-3}}, cone(1)},
+                               {{{3.2e-3, 5.8e-3}, {0, 5.8e-3}}, PlaneAt(5.8e-3, 1)}},
+                              kSegments));
+  testing::Place(&product, plate, "plate");
+  testing::Place(&product, screw, "screw");
+  testing::Complete(&product);
+  return product;
+}
+
+/** A block with half a sphere for a socket, and a ball with 20 um of play in it. */
+Product BallInSocket() {
+  Product product;
+  product.name = "rig";
+  constexpr double kRadius = 8e-3;
+  constexpr double kCentre = 12e-3;
+  auto arc =
+      contact::testing::Arc(0, kCentre, kRadius, 0, -std::numbers::pi / 2, /*deviation=*/20e-6);
+  arc.back().x() = 0;
+  const Surface socket{SurfaceKind::kSphere, Vec3(0, 0, kCentre), Vec3::UnitZ(), kRadius, 0, -1};
+  const auto base = testing::AddPart(
+      &product, "base",
+      contact::testing::Lathe({{{{0, 0}, {12e-3, 0}}, PlaneAt(0, -1)},
+                               {{{12e-3, 0}, {12e-3, kCentre}}, CylinderZ(12e-3, 1)},
+                               {{{12e-3, kCentre}, {kRadius, kCentre}}, PlaneAt(kCentre, 1)},
+                               {arc, socket}},
+                              kSegments));
+  const auto ball =
+      testing::AddPart(&product, "ball", contact::testing::Ball(kRadius - 20e-6, 20e-6));
+  testing::Place(&product, base, "base");
+  testing::Place(&product, ball, "ball", Pose(Vec3(0, 0, kCentre)));
+  testing::Complete(&product);
+  return product;
+}
+
+std::vector<MateKind> KindsOf(const Product& product) {
+  std::vector<MateKind> kinds;
+  for (const product::Mate& mate : product.mates) {
+    kinds.push_back(mate.kind);
+  }
+  return kinds;
+}
+
+void ExpectAssembles(Product product) {
+  Diagnostics diagnostics;
+  const auto model = Compile(std::make_shared<const Product>(std::move(product)),
+                             testing::FastOptions(), &diagnostics);
+  ASSERT_TRUE(model.has_value());
+  for (const std::uint64_t seed : {1, 2}) {
+    Session session(*model, seed);
+    (void)RunLockstep(session.MakeExecution(kLimit_s));
+    ASSERT_TRUE(session.run.is_done());
+    ASSERT_EQ(session.run.results().size(), 2U);
+    for (const PartResult& part : session.run.results()) {
+      EXPECT_TRUE(part.is_seated) << "seed " << seed << ": " << part.reason;
+      EXPECT_LT(part.pose_error, 1e-6);
+    }
+    EXPECT_TRUE(session.watch.is_finite);
+    EXPECT_LE(session.watch.largest_jump, 0.5);
+    EXPECT_LE(session.watch.deepest, 60e-6);
+  }
+}
+
+TEST(SeatsTest, ACountersunkScrewGoesIntoItsHoleAndOntoItsSeat) {
+  Product product = CountersunkScrew();
+  ASSERT_EQ(KindsOf(product), (std::vector<MateKind>{MateKind::kAxisHole, MateKind::kConeSeat}));
+  ExpectAssembles(std::move(product));
+}
+
+TEST(SeatsTest, ABallGoesIntoItsSocket) {
+  Product product = BallInSocket();
+  ASSERT_EQ(KindsOf(product), (std::vector<MateKind>{MateKind::kSphereSeat}));
+  ExpectAssembles(std::move(product));
+}
+
+}  // namespace
+}  // namespace hvas::simulation
