@@ -75,6 +75,8 @@ std::vector<std::string> Attempts::Arguments() const {
                                      fmt::format("{}", options_.min_deflection),
                                      "--max-angle",
                                      fmt::format("{}", options_.max_angle),
+                                     "--length-unit",
+                                     fmt::format("{}", options_.length_unit),
                                      "--max-triangles",
                                      fmt::format("{}", options_.max_triangles),
                                      "--threads",

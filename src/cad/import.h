@@ -30,6 +30,7 @@ struct ImportOptions {
   double min_deflection{1e-6};        ///< No finer than this [m].
   double max_angle{0.1};              ///< Between the normals of neighbouring triangles [rad].
   std::size_t max_triangles{200000};  ///< A part with more is meshed again, coarser.
+  double length_unit{1e-3};           ///< Of files that state none (OBJ, STL) [m].
   bool with_tolerances{true};         ///< Reads dimensions, tolerances and fits.
   std::vector<std::uint32_t> skipped_parts;  ///< Left out, by their numbers as PartFn gets them.
   unsigned threads{0};  ///< That work at parts at a time; 0: one a core. No matter for the result.

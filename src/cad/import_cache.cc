@@ -51,6 +51,7 @@ std::string KeyOf(const fs::path& worker, const fs::path& file, const ImportOpti
   digest.AddDouble(options.relative_deflection);
   digest.AddDouble(options.min_deflection);
   digest.AddDouble(options.max_angle);
+  digest.AddDouble(options.length_unit);
   digest.AddInt(static_cast<std::int64_t>(options.max_triangles));
   digest.AddInt(options.with_tolerances ? 1 : 0);
   digest.AddInt(static_cast<std::int64_t>(options.skipped_parts.size()));

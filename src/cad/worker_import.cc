@@ -41,6 +41,8 @@ std::optional<ImportOptions> ParseOptions(const std::vector<std::string>& words)
       is_good = Parse(words[i], &options.min_deflection);
     } else if (name == "--max-angle") {
       is_good = Parse(words[i], &options.max_angle);
+    } else if (name == "--length-unit") {
+      is_good = Parse(words[i], &options.length_unit);
     } else if (name == "--max-triangles") {
       is_good = Parse(words[i], &options.max_triangles);
     } else if (name == "--threads") {
