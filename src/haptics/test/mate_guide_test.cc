@@ -94,7 +94,8 @@ TEST(CalcMateGeometry, AgreesWithRecognition) {
   double worst_angle = 0;
   double worst_distance = 0;
   for (int draw = 0; draw < 1000; ++draw) {
-    for (const MateKind kind : {MateKind::kAxisHole, MateKind::kFaceFace}) {
+    for (const MateKind kind :
+         {MateKind::kAxisHole, MateKind::kFaceFace, MateKind::kConeSeat, MateKind::kSphereSeat}) {
       HeldMate mate;
       mate.capture = {kind,
                       random.Uniform(-0.05, 0),
@@ -113,12 +114,17 @@ TEST(CalcMateGeometry, AgreesWithRecognition) {
       worst_angle = std::max(worst_angle, std::abs(g.angle - deviation.angle));
       worst_distance = std::max(worst_distance, std::abs(g.distance - deviation.distance));
 
+      if (kind == MateKind::kSphereSeat) {
+        EXPECT_EQ(g.tilt_W, Vec3::Zero());
+        EXPECT_NEAR((g.p_WQ - g.offset_W - mate.X_WM.p()).norm(), 0, 1e-13);
+        continue;
+      }
       // The tilt takes the held axis to the placed one.
       const double sense = kind == MateKind::kFaceFace ? -1 : 1;
       const Vec3 held = X_WB.q() * (mate.X_BN.q() * Vec3(0, 0, sense));
       EXPECT_NEAR((spatial::RotationFromVector(g.tilt_W) * held - g.axis_W).norm(), 0, 1e-13);
       // The offset is across the axis, or along the normal, and ends on the held axis.
-      if (kind == MateKind::kAxisHole) {
+      if (kind != MateKind::kFaceFace) {
         EXPECT_NEAR(g.offset_W.dot(g.axis_W), 0, 1e-15);
         EXPECT_NEAR((g.p_WQ - g.offset_W - mate.X_WM.p()).cross(g.axis_W).norm(), 0, 1e-13);
         EXPECT_NEAR((g.p_WQ - X_WB * mate.X_BN.p()).cross(held).norm(), 0, 1e-13);
@@ -326,6 +332,49 @@ TEST(MateGuide, TiltIsFreeWithinThePlayAndHeldBeyond) {
     EXPECT_NEAR(F[0], -full.options.k_rot * 1e-3, 0.01 * full.options.k_rot * 1e-3) << depth;
     EXPECT_NEAR(F.tail<5>().norm(), 0, 1e-6);
   }
+}
+
+// A ball is pulled to the centre of its socket from any side and turns freely; the stiffness is the
+// same in all directions, and what the socket's faces do is left to contact.
+TEST(MateGuide, SphereSeatIsAPointThatTurnsFreely) {
+  HeldMate mate = MakeAxisMate(nullptr, contact::BodyId(0));
+  mate.capture = {MateKind::kSphereSeat, 0, 0, 0, 0, 0};
+  FullGuide full(MakePart({mate}));
+  Random random(8);
+  for (int draw = 0; draw < 20; ++draw) {
+    const Vec3 p = DrawVector(&random, 1e-3);
+    const Pose X_WB(DrawRotation(&random), p);
+    const Vec6 F = full.Force(X_WB);
+    EXPECT_NEAR((F.tail<3>() + full.options.k_lin * p).norm(), 0, 1e-6 * full.options.k_lin * 1e-3);
+    EXPECT_NEAR(F.head<3>().norm(), 0, 1e-6);
+    const Mat6 K = full.Stiffness(X_WB);
+    const Mat3 held = K.bottomRightCorner<3, 3>() / full.options.k_lin;
+    EXPECT_NEAR((held - Mat3::Identity()).norm(), 0, 1e-6);
+    EXPECT_NEAR((K.topLeftCorner<3, 3>().norm()), 0, 1e-3);
+  }
+  EXPECT_EQ(full.guide.lateral_force(), 0);
+  std::array<contact::IgnoredPair, 2> pairs;
+  Hold(&full.guide, full.part, full.options, Pose(), 300);
+  EXPECT_TRUE(full.guide.is_aligned());
+  EXPECT_EQ(full.guide.CollectIgnored(full.part, pairs), 0U);
+}
+
+// A taper is guided as a shaft is, but contact stays on: it alone stops the way in.
+TEST(MateGuide, ConeSeatGuidesAcrossAndLeavesTheWayInToContact) {
+  const HeldMate shaft = MakeAxisMate(nullptr, contact::BodyId(0));
+  HeldMate taper = shaft;
+  taper.capture.kind = MateKind::kConeSeat;
+  FullGuide as_shaft(MakePart({shaft}));
+  FullGuide as_taper(MakePart({taper}));
+  for (const Pose& X_WB : {Above(5e-3, 1e-4, 2e-4), Above(-10e-3, 1e-5),
+                           Tilted(Vec3(1e-3, 0, 0), Vec3(0, 0, kLength + 5e-3))}) {
+    EXPECT_NEAR((as_taper.Force(X_WB) - as_shaft.Force(X_WB)).norm(), 0, 1e-9);
+  }
+  std::array<contact::IgnoredPair, 2> pairs;
+  Hold(&as_taper.guide, as_taper.part, as_taper.options, Above(-10e-3), 300);
+  EXPECT_TRUE(as_taper.guide.is_aligned());
+  EXPECT_EQ(as_taper.guide.CollectIgnored(as_taper.part, pairs), 0U);
+  EXPECT_EQ(as_taper.guide.insertion_depth(), 0);
 }
 
 // Guidance never pulls harder than it may, however far the part is.

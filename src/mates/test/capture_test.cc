@@ -139,5 +139,37 @@ TEST(MakeCaptureMate, GivesEachSideItsOwnSpan) {
   EXPECT_EQ(MakeCaptureMate(mate, product::OccurrenceId(0)).held_high, 2);
 }
 
+// A taper is recognised as a shaft is, a ball by its centre whatever way it is turned.
+TEST(Capture, ConeSeatsAreAxesAndSphereSeatsPoints) {
+  CaptureMate cone = kShaft;
+  cone.kind = MateKind::kConeSeat;
+  Random random(9);
+  const CaptureThresholds thresholds;
+  for (int draw = 0; draw < 100; ++draw) {
+    const Pose X_WM = DrawPose(&random);
+    const Pose X_WN = DrawPose(&random);
+    const MateDeviation as_shaft = CalcDeviation(kShaft, X_WM, X_WN);
+    const MateDeviation as_cone = CalcDeviation(cone, X_WM, X_WN);
+    EXPECT_EQ(as_shaft.angle, as_cone.angle);
+    EXPECT_EQ(as_shaft.distance, as_cone.distance);
+    EXPECT_EQ(as_shaft.gap, as_cone.gap);
+    EXPECT_EQ(CalcCaptureRatio(MateKind::kAxisHole, as_shaft, thresholds),
+              CalcCaptureRatio(MateKind::kConeSeat, as_cone, thresholds));
+    const MateDeviation ball = CalcDeviation({MateKind::kSphereSeat, 0, 0, 0, 0, 0}, X_WM, X_WN);
+    EXPECT_EQ(ball.angle, 0);
+    EXPECT_EQ(ball.gap, 0);
+    EXPECT_NEAR(ball.distance, (X_WM.p() - X_WN.p()).norm(), 1e-15);
+  }
+  const CaptureMate sphere{MateKind::kSphereSeat, 0, 0, 0, 0, 0};
+  const auto captured = [&](double distance, bool was) {
+    const Pose X_WN(Quat(0, 1, 0, 0), Vec3(0, distance, 0));
+    return IsCaptured(sphere.kind, CalcDeviation(sphere, Pose(), X_WN), was, thresholds);
+  };
+  EXPECT_TRUE(captured(4.9e-3, false));
+  EXPECT_FALSE(captured(5.1e-3, false));
+  EXPECT_TRUE(captured(7.4e-3, true));
+  EXPECT_FALSE(captured(7.6e-3, true));
+}
+
 }  // namespace
 }  // namespace hvas::mates

@@ -39,6 +39,8 @@ struct Case {
   std::vector<std::pair<Vec3, Vec3>> planes;  // Point and normal in B.
   int translations;
   int rotations;
+  std::vector<std::pair<Vec3, Vec3>> cones{};  // Point and axis in B.
+  std::vector<Vec3> centres{};                 // In B.
 };
 
 std::vector<Case> MakeCases() {
@@ -58,6 +60,15 @@ std::vector<Case> MakeCases() {
       {"two parallel planes", {}, {{o, z}, {{0.1, 0, 0.02}, -z}}, 2, 1},
       {"axis and a plane along it", {{o, z}}, {{{0.02, 0, 0}, x}}, 1, 0},
       {"two axes square to each other that meet", {{o, z}, {o, x}}, {}, 0, 0},
+      {"cone", {}, {}, 0, 1, {{{0.01, 0.02, 0.03}, z}}},
+      {"cone and axis on it", {{{0, 0, 0.02}, z}}, {}, 0, 1, {{o, z}}},
+      {"two parallel cones", {}, {}, 0, 0, {{o, z}, {{0.04, 0, 0.01}, z}}},
+      {"ball", {}, {}, 0, 3, {}, {{0.01, 0.02, 0.03}}},
+      {"two balls", {}, {}, 0, 1, {}, {o, {0.04, 0.01, 0.02}}},
+      {"three balls", {}, {}, 0, 0, {}, {o, {0.04, 0, 0}, {0, 0.04, 0}}},
+      {"ball and a plane through it", {}, {{o, z}}, 0, 1, {}, {o}},
+      {"ball on an axis", {{o, z}}, {}, 0, 1, {}, {{0, 0, 0.02}}},
+      {"ball beside an axis", {{o, z}}, {}, 0, 0, {}, {{0.03, 0, 0.02}}},
       {"22 axes and 16 planes, as of AS1's plate", {}, {}, 0, 0},
   };
   Case& many = cases.back();
@@ -77,6 +88,12 @@ std::vector<MateConstraint> MakeMates(const Case& c, const Pose& X_WB) {
   }
   for (const auto& [p_B, zhat_B] : c.planes) {
     mates.push_back(MakeMate(MateKind::kFaceFace, X_WB, p_B, zhat_B));
+  }
+  for (const auto& [p_B, zhat_B] : c.cones) {
+    mates.push_back(MakeMate(MateKind::kConeSeat, X_WB, p_B, zhat_B));
+  }
+  for (const Vec3& p_B : c.centres) {
+    mates.push_back(MakeMate(MateKind::kSphereSeat, X_WB, p_B, Vec3(0.6, 0, 0.8)));
   }
   return mates;
 }
