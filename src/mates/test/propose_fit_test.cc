@@ -57,5 +57,40 @@ TEST(ProposeFit, FollowsItsTable) {
   EXPECT_FALSE(propose(5, 5).reason.empty());
 }
 
+TEST(ProposeFit, ThreadsCountWhateverTheSizes) {
+  const auto propose = [](double hole_mm, double shaft_mm, product::ThreadKind hole,
+                          product::ThreadKind shaft, FastenerKind part = FastenerKind::kNone) {
+    FitEvidence evidence;
+    evidence.hole_radius = hole_mm / 2e3;
+    evidence.shaft_radius = shaft_mm / 2e3;
+    evidence.shaft_part = part;
+    evidence.hole_thread = hole;
+    evidence.shaft_thread = shaft;
+    return ProposeFit(evidence).kind;
+  };
+  constexpr auto kNone = product::ThreadKind::kNone;
+  constexpr auto kNominal = product::ThreadKind::kNominal;
+  EXPECT_EQ(propose(20.1, 20, kNominal, kNominal), FitKind::kThread);
+  EXPECT_EQ(propose(20.1, 20, kNominal, kNone, FastenerKind::kScrew), FitKind::kThread);
+  EXPECT_EQ(propose(19.9, 20, kNominal, kNone), FitKind::kThread);
+  EXPECT_EQ(propose(19.9, 20, kNone, kNominal), FitKind::kThread);
+  // A threaded rod through a clearance hole, and a plain pin in a wide threaded one.
+  EXPECT_EQ(propose(20.5, 20, kNone, kNominal), FitKind::kClearance);
+  EXPECT_EQ(propose(20.1, 20, kNominal, kNone), FitKind::kClearance);
+  EXPECT_EQ(propose(19.9, 20, kNone, kNone), FitKind::kInterference);
+}
+
+TEST(ProposeFit, AScrewIsNeverPressedInEvenWithANutBehindIt) {
+  FitEvidence evidence;
+  evidence.hole_radius = 9.99e-3;
+  evidence.shaft_radius = 10e-3;
+  evidence.shaft_part = FastenerKind::kScrew;
+  evidence.nut_on_shaft = true;
+  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kThread);
+  evidence.shaft_part = FastenerKind::kNut;  // An insert in its pocket.
+  evidence.nut_on_shaft = false;
+  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kThread);
+}
+
 }  // namespace
 }  // namespace hvas::mates
