@@ -132,6 +132,7 @@ int Spawn(const WorkerCall& call, int output, int progress, pid_t* child) {
   std::vector<std::string> words{call.program.string()};
   words.insert(words.end(), call.arguments.begin(), call.arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) {
     argv.push_back(word.data());
   }

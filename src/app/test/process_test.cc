@@ -1,0 +1,120 @@
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "app/test/run_hvas.h"
+
+namespace hvas::app {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ProductFile;
+using testing::Ran;
+using testing::RunHvas;
+using testing::TemporaryFolder;
+
+/** The process that another has started, once it has; 0 after ten seconds without one. */
+pid_t ChildOf(pid_t parent) {
+  const std::string pid = std::to_string(parent);
+  for (int i = 0; i < 1000; ++i) {
+    std::ifstream children("/proc/" + pid + "/task/" + pid + "/children");
+    pid_t child = 0;
+    if (children >> child) {
+      return child;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return 0;
+}
+
+/** Whether a process is gone within a second; one that waits to be reaped is. */
+bool EndsSoon(pid_t pid) {
+  for (int i = 0; i < 100; ++i) {
+    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+    std::string word;
+    std::string state;
+    if (!(stat >> word >> word >> state) || state == "Z" || state == "X") {
+      return true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+class EndTest : public ::testing::TestWithParam<int> {};
+
+TEST_P(EndTest, ProgramThatIsEndedWhileItReadsLeavesNoProcess) {
+  const pid_t hvas = testing::StartHvas({"inspect", ProductFile("frame_500"), "--no-cache"});
+  ASSERT_GT(hvas, 0);
+  const pid_t reader = ChildOf(hvas);
+  EXPECT_GT(reader, 0);
+  ::kill(hvas, GetParam());
+  int status = 0;
+  ::waitpid(hvas, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status)) << "it had ended before";
+  EXPECT_TRUE(EndsSoon(reader));
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, EndTest, ::testing::Values(SIGINT, SIGKILL),
+                         [](const auto& instance) {
+                           return instance.param == SIGINT ? "Interrupt" : "Kill";
+                         });
+
+TEST(ReaderTest, IsFoundBesideTheProgramWhereverThatIs) {
+  const TemporaryFolder folder;
+  const fs::path bin = folder.path() / "bin";
+  fs::create_directory(bin);
+  fs::copy_file(HVAS_BINARY, bin / "hvas");
+  const std::string command = (bin / "hvas").string() + " inspect --no-cache " +
+                              ProductFile("bushing") + " > " + (folder.path() / "out").string() +
+                              " 2>&1";
+  // A program that cannot be started instead of the reader shows where it is looked for.
+  std::ofstream(bin / "hvas-cad") << "no program";
+  fs::permissions(bin / "hvas-cad", fs::perms::owner_all);
+  EXPECT_NE(std::system(command.c_str()), 0);
+  EXPECT_NE(testing::ReadText(folder.path() / "out").find((bin / "hvas-cad").string()),
+            std::string::npos);
+  fs::remove(bin / "hvas-cad");
+  fs::create_symlink(fs::path(HVAS_READER), bin / "hvas-cad");
+  EXPECT_EQ(std::system(command.c_str()), 0) << testing::ReadText(folder.path() / "out");
+}
+
+TEST(StrictTest, WarningsAreShownAndEndWithStatusOne) {
+  // A product a thousand times too large.
+  std::string text = testing::ReadText(ProductFile("bushing"));
+  const std::string unit = "SI_UNIT(.MILLI.,.METRE.)";
+  ASSERT_NE(text.find(unit), std::string::npos);
+  for (std::size_t at = 0; (at = text.find(unit)) != std::string::npos;) {
+    text.replace(at, unit.size(), "SI_UNIT($,.METRE.)");
+  }
+  const TemporaryFolder folder;
+  const std::string file = folder.Write("huge.step", text).string();
+  EXPECT_EQ(RunHvas({"inspect", file}).status, 0);
+  for (const char* command : {"inspect", "assemble"}) {
+    const Ran ran = RunHvas({command, file, "--strict"});
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_EQ(ran.out, "");
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "warning implausible-size [huge.step]", ran.err);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--strict", ran.err);
+  }
+  EXPECT_EQ(RunHvas({"inspect", ProductFile("bushing"), "--strict"}).status, 0);
+}
+
+TEST(LimitTest, FileThatTakesTooLongIsNamedWithTheRemedy) {
+  const Ran ran =
+      RunHvas({"inspect", ProductFile("frame_500"), "--no-cache", "--time-limit", "0.05"});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "frame_500.step", ran.err);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--time-limit", ran.err);
+}
+
+}  // namespace
+}  // namespace hvas::app
