@@ -1,41 +1,44 @@
 #include "cad/assembly_tree.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
+#include <mutex>
+#include <new>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <BRepBuilderAPI_Transform.hxx>
 #include <NCollection_DataMap.hxx>
-#include <Quantity_Color.hxx>
+#include <Standard_ErrorHandler.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <TCollection_AsciiString.hxx>
-#include <TCollection_HAsciiString.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDF_Tool.hxx>
-#include <TDataStd_Name.hxx>
-#include <TDataStd_TreeNode.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
-#include <XCAFDoc.hxx>
-#include <XCAFDoc_ColorTool.hxx>
+#include <TopoDS_TShape.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
-#include <XCAFDoc_MaterialTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <fmt/format.h>
 #include <gp_Quaternion.hxx>
 #include <gp_Trsf.hxx>
 
 #include "base/units.h"
+#include "cad/equal_shapes.h"
 #include "cad/material.h"
+#include "cad/parallel.h"
 #include "cad/part_shape.h"
+#include "cad/xcaf_labels.h"
 #include "product/features.h"
 
 namespace hvas::cad {
@@ -53,71 +56,6 @@ constexpr std::size_t kMaxOccurrences = 1000000;
 constexpr double kScaleTolerance = 1e-6;
 
 using FaceEntities = NCollection_DataMap<TopoDS_Shape, std::uint64_t, TopTools_ShapeMapHasher>;
-using FaceColors = NCollection_DataMap<TopoDS_Shape, Color, TopTools_ShapeMapHasher>;
-
-std::string ToUtf8(const TCollection_ExtendedString& text) {
-  std::string bytes(static_cast<std::size_t>(text.LengthOfCString()) + 1, '\0');
-  char* data = bytes.data();
-  const int length = text.ToUTF8CString(data);
-  bytes.resize(static_cast<std::size_t>(std::max(length, 0)));
-  return bytes;
-}
-
-/** A label's name without surrounding blanks; may be empty. */
-std::string NameOf(const TDF_Label& label) {
-  Handle(TDataStd_Name) name;
-  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) {
-    return {};
-  }
-  const std::string text = ToUtf8(name->Get());
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  return first == std::string::npos
-             ? std::string()
-             : text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
-/** Whether an instance's name was made up by a program and the product's name says more. */
-bool IsGenerated(const std::string& name) {
-  return name.rfind("NAUO", 0) == 0 || name.rfind("=>", 0) == 0 ||
-         std::all_of(name.begin(), name.end(),
-                     [](unsigned char c) { return std::isdigit(c) != 0 || c == ':'; });
-}
-
-std::string InstanceName(const TDF_Label& component, const TDF_Label& definition) {
-  const std::string own = NameOf(component);
-  const std::string type = NameOf(definition);
-  if (!own.empty() && !IsGenerated(own)) {
-    return own;
-  }
-  return type.empty() ? "part" : type;
-}
-
-Color ToColor(const Quantity_Color& color) {
-  double r = 0;
-  double g = 0;
-  double b = 0;
-  color.Values(r, g, b, Quantity_TOC_sRGB);
-  return {static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
-}
-
-std::optional<Color> ColorOf(const Handle(XCAFDoc_ColorTool) & tool, const TDF_Label& label) {
-  Quantity_Color color;
-  for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen}) {
-    if (tool->GetColor(label, type, color)) {
-      return ToColor(color);
-    }
-  }
-  return std::nullopt;
-}
-
-/** The material that a label refers to, if any. */
-std::optional<TDF_Label> MaterialLabel(const TDF_Label& label) {
-  Handle(TDataStd_TreeNode) node;
-  if (label.FindAttribute(XCAFDoc::MaterialRefGUID(), node) && node->HasFather()) {
-    return node->Father()->Label();
-  }
-  return std::nullopt;
-}
 
 /** Walks an XCAF document and fills a product. */
 class TreeBuilder {
@@ -126,8 +64,6 @@ class TreeBuilder {
               const ReadWatch& watch, Product* product, Diagnostics* diagnostics,
               const FaceEntityFn& entity_of)
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
-        colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
-        materials_(XCAFDoc_DocumentTool::MaterialTool(document->Main())),
         options_(options),
         watch_(watch),
         product_(product),
@@ -140,8 +76,12 @@ class TreeBuilder {
   /** A part yet to be built: a definition, and the scale of its instance (-1: mirrored). */
   struct PartSource {
     TDF_Label definition;
+    TopoDS_Shape shape;
     double scale{1};
     std::optional<Color> instance_color;
+    FaceColors face_colors;
+    FaceEntities entities;  // Of scaled faces only: entity_of_ knows the others.
+    Diagnostics notes;
   };
 
   /** Names already used among the children of one subassembly. */
@@ -159,23 +99,28 @@ class TreeBuilder {
                const gp_Trsf& X_WB);
   std::optional<PartId> FindPart(const TDF_Label& definition, const TDF_Label& instance,
                                  double scale);
-  bool BuildPart(const PartSource& source, Part* part);
-  void SetMaterial(const TDF_Label& definition, Part* part);
-  FaceColors CollectColors(const TDF_Label& definition, Part* part, bool* has_color);
+  void Scale(PartSource* source);
+  void Prepare(PartSource* source, Part* part);
+  bool BuildPart(PartSource* source, Part* part) const;
+  [[nodiscard]] std::vector<std::vector<std::size_t>> GroupSources(
+      const std::vector<std::size_t>& wanted) const;
+  void CopyGeometry(const Part& base, const PartSource& source, Part* part) const;
+  [[nodiscard]] bool LookAlike(std::size_t a, std::size_t b) const;
+  std::vector<PartId> ShareParts(const std::vector<EqualShape>& equal,
+                                 const std::vector<bool>& is_built);
+  std::vector<bool> BuildSources(const std::vector<std::size_t>& wanted);
   void BuildParts();
-  void DropUnbuilt(const std::vector<bool>& is_built);
+  void AssignParts(const std::vector<PartId>& part_of, const std::vector<EqualShape>& equal);
 
   Handle(XCAFDoc_ShapeTool) shapes_;
-  Handle(XCAFDoc_ColorTool) colors_;
-  Handle(XCAFDoc_MaterialTool) materials_;
   const ImportOptions& options_;
   const ReadWatch& watch_;
   Product* product_;
   Diagnostics* diagnostics_;
   const FaceEntityFn& entity_of_;
-  std::vector<PartSource> sources_;  // One for each of product_->parts.
-  std::map<std::pair<std::string, long>, std::optional<PartId>> known_;  // By entry and scale.
-  std::vector<Siblings> siblings_;  // One for each subassembly.
+  std::vector<PartSource> sources_;                     // One for each of product_->parts.
+  std::map<std::string, std::optional<PartId>> known_;  // By entry, scale and colour.
+  std::vector<Siblings> siblings_;                      // One for each subassembly.
   bool is_too_large_{false};
 };
 
@@ -262,9 +207,14 @@ void TreeBuilder::AddLeaf(const TDF_Label& definition, const TDF_Label& instance
 
 std::optional<PartId> TreeBuilder::FindPart(const TDF_Label& definition, const TDF_Label& instance,
                                             double scale) {
+  std::optional<Color> color;
+  if (instance != definition) {
+    color = ColorOf(instance);
+  }
   TCollection_AsciiString entry;
   TDF_Tool::Entry(definition, entry);
-  const auto key = std::pair(std::string(entry.ToCString()), std::lround(scale / kScaleTolerance));
+  const auto key = fmt::format("{} {} {}", entry.ToCString(), std::lround(scale / kScaleTolerance),
+                               color ? fmt::format("{} {} {}", color->r, color->g, color->b) : "");
   const auto known = known_.find(key);
   if (known != known_.end()) {
     return known->second;
@@ -280,7 +230,7 @@ std::optional<PartId> TreeBuilder::FindPart(const TDF_Label& definition, const T
     part.id = *id;
     part.name = name;
     product_->parts.push_back(std::move(part));
-    sources_.push_back({definition, scale, ColorOf(colors_, instance)});
+    sources_.push_back({definition, shape, scale, color, {}, {}, {}});
     if (scale != 1) {
       diagnostics_->Note("baked-scale", name,
                          fmt::format("an instance is {} by {}; it became a part of its own",
@@ -291,141 +241,253 @@ std::optional<PartId> TreeBuilder::FindPart(const TDF_Label& definition, const T
   return id;
 }
 
-void TreeBuilder::SetMaterial(const TDF_Label& definition, Part* part) {
-  std::optional<TDF_Label> label = MaterialLabel(definition);
-  TDF_LabelSequence children;
-  XCAFDoc_ShapeTool::GetSubShapes(definition, children);
-  for (const TDF_Label& child : children) {
-    if (!label) {
-      label = MaterialLabel(child);
+/** Scales the shape of a source that is scaled or mirrored; what is known of its faces goes along.
+ */
+void TreeBuilder::Scale(PartSource* source) {
+  gp_Trsf scaling;
+  scaling.SetScale(gp_Pnt(), source->scale);
+  BRepBuilderAPI_Transform transform(source->shape, scaling, true);
+  FaceColors moved;
+  for (FaceColors::Iterator it(source->face_colors); it.More(); it.Next()) {
+    moved.Bind(transform.ModifiedShape(it.Key()), it.Value());
+  }
+  if (entity_of_) {
+    for (TopExp_Explorer it(source->shape, TopAbs_FACE); it.More(); it.Next()) {
+      source->entities.Bind(transform.ModifiedShape(it.Current()),
+                            entity_of_(TopoDS::Face(it.Current())));
     }
   }
-  std::optional<double> density;
-  double value = 0;
-  if (label) {
-    Handle(TCollection_HAsciiString) name;
-    Handle(TCollection_HAsciiString) description;
-    Handle(TCollection_HAsciiString) density_name;
-    Handle(TCollection_HAsciiString) density_type;
-    if (materials_->GetMaterial(*label, name, description, value, density_name, density_type)) {
-      part->material.name = name.IsNull() ? "" : name->ToCString();
-      density = NormaliseDensity(value);
-    }
-  }
-  if (density) {
-    part->material.density = *density;
-    part->material.is_assumed = false;
-    return;
-  }
-  diagnostics_->Note(
-      "assumed-density", part->name,
-      value == 0 ? fmt::format("no density given; {} kg/m3 assumed", part->material.density)
-                 : fmt::format("a density of {} makes no sense in any unit; {} kg/m3 assumed",
-                               value, part->material.density));
+  source->face_colors = moved;
+  source->shape = transform.Shape();
 }
 
-FaceColors TreeBuilder::CollectColors(const TDF_Label& definition, Part* part, bool* has_color) {
-  FaceColors face_colors;
-  if (const auto color = ColorOf(colors_, definition)) {
-    part->color = *color;
-    *has_color = true;
+/** Reads what the document says of a part besides its shape. The rest needs no document. */
+void TreeBuilder::Prepare(PartSource* source, Part* part) {
+  part->material = MakeMaterial(FindStatedMaterial(source->definition), part->name, &source->notes);
+  PartColors colors = CollectColors(source->definition);
+  // The colour of an instance is meant to override that of its definition, but not of its faces.
+  part->color = source->instance_color.value_or(colors.part.value_or(Color{}));
+  source->face_colors = colors.faces;
+  if (source->scale != 1) {
+    Scale(source);
   }
-  TDF_LabelSequence children;
-  XCAFDoc_ShapeTool::GetSubShapes(definition, children);
-  // Solids and shells first, so that a face's own colour wins.
-  for (const bool is_face_pass : {false, true}) {
-    for (const TDF_Label& child : children) {
-      const auto color = ColorOf(colors_, child);
-      const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(child);
-      if (!color || shape.IsNull() || (shape.ShapeType() == TopAbs_FACE) != is_face_pass) {
-        continue;
-      }
-      if (!*has_color && shape.ShapeType() == TopAbs_SOLID) {
-        part->color = *color;
-        *has_color = true;
-      }
-      for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-        face_colors.Bind(it.Current(), *color);
-      }
-    }
-  }
-  return face_colors;
 }
 
-bool TreeBuilder::BuildPart(const PartSource& source, Part* part) {
-  SetMaterial(source.definition, part);
-  bool has_color = false;
-  FaceColors face_colors = CollectColors(source.definition, part, &has_color);
-  if (!has_color && source.instance_color) {
-    part->color = *source.instance_color;
-  }
-  FaceEntities entities;  // Of the moved faces.
-  TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(source.definition);
-  if (source.scale != 1) {
-    gp_Trsf scaling;
-    scaling.SetScale(gp_Pnt(), source.scale);
-    BRepBuilderAPI_Transform transform(shape, scaling, true);
-    FaceColors moved;
-    for (FaceColors::Iterator it(face_colors); it.More(); it.Next()) {
-      moved.Bind(transform.ModifiedShape(it.Key()), it.Value());
-    }
-    if (entity_of_) {
-      for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-        entities.Bind(transform.ModifiedShape(it.Current()),
-                      entity_of_(TopoDS::Face(it.Current())));
-      }
-    }
-    face_colors = moved;
-    shape = transform.Shape();
-  }
-  const FaceColorFn color_of = [&face_colors](const TopoDS_Face& face) -> std::optional<Color> {
-    const Color* color = face_colors.Seek(face);
+bool TreeBuilder::BuildPart(PartSource* source, Part* part) const {
+  Diagnostics* diagnostics = &source->notes;
+  const FaceColorFn color_of = [source](const TopoDS_Face& face) -> std::optional<Color> {
+    const Color* color = source->face_colors.Seek(face);
     return color != nullptr ? std::optional(*color) : std::nullopt;
   };
-  const FaceEntityFn entity_of = [this, &entities](const TopoDS_Face& face) -> std::uint64_t {
-    const std::uint64_t* entity = entities.Seek(face);
+  const FaceEntityFn entity_of = [this, source](const TopoDS_Face& face) -> std::uint64_t {
+    const std::uint64_t* entity = source->entities.Seek(face);
     return entity != nullptr ? *entity : entity_of_ ? entity_of_(face) : 0;
   };
-  if (!BuildPartShape(shape, options_, color_of, part, diagnostics_, entity_of)) {
-    diagnostics_->Warn("no-mesh", part->name, "the part could not be meshed; left out",
-                       "heal the part in the CAD system and export it again");
+  try {
+    OCC_CATCH_SIGNALS
+    if (BuildPartShape(source->shape, options_, color_of, part, diagnostics, entity_of)) {
+      product::BuildFeatures(part);
+      return true;
+    }
+    diagnostics->Warn("no-mesh", part->name, "the part could not be meshed; left out",
+                      "heal the part in the CAD system and export it again");
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
+  } catch (const Standard_Failure& failure) {
+    diagnostics->Warn("part-failed", part->name,
+                      fmt::format("OpenCASCADE could not work with the part ({} {}); left out",
+                                  failure.DynamicType()->Name(), failure.GetMessageString()),
+                      "heal the part in the CAD system and export it again");
+  }
+  return false;
+}
+
+/** The sources to build, in groups: those that have a face or an edge in common cannot be meshed at
+ the same time. */
+std::vector<std::vector<std::size_t>> TreeBuilder::GroupSources(
+    const std::vector<std::size_t>& wanted) const {
+  std::vector<std::size_t> group_of(sources_.size());
+  std::iota(group_of.begin(), group_of.end(), 0);
+  const auto find = [&group_of](std::size_t i) {
+    while (group_of[i] != i) {
+      i = group_of[i] = group_of[group_of[i]];
+    }
+    return i;
+  };
+  std::unordered_map<const TopoDS_TShape*, std::size_t> owners;
+  for (const std::size_t i : wanted) {
+    for (const TopAbs_ShapeEnum type : {TopAbs_FACE, TopAbs_EDGE}) {
+      for (TopExp_Explorer it(sources_[i].shape, type); it.More(); it.Next()) {
+        const std::size_t owner = owners.emplace(it.Current().TShape().get(), i).first->second;
+        const std::size_t a = find(owner);
+        const std::size_t b = find(i);
+        group_of[std::max(a, b)] = std::min(a, b);
+      }
+    }
+  }
+  std::map<std::size_t, std::vector<std::size_t>> groups;
+  for (const std::size_t i : wanted) {
+    groups[find(i)].push_back(i);
+  }
+  std::vector<std::vector<std::size_t>> result;
+  for (auto& [first, members] : groups) {
+    result.push_back(std::move(members));
+  }
+  return result;
+}
+
+/** A part with the geometry of another, looks and material of its own. */
+void TreeBuilder::CopyGeometry(const Part& base, const PartSource& source, Part* part) const {
+  Part copy = base;
+  copy.id = part->id;
+  copy.name = part->name;
+  copy.color = part->color;
+  copy.material = part->material;
+  const double ratio = part->material.density / base.material.density;
+  copy.mass.mass *= ratio;
+  copy.mass.I_BBcm_B *= ratio;
+  std::size_t index = 0;
+  for (TopExp_Explorer it(source.shape, TopAbs_FACE); it.More() && index < copy.faces.size();
+       it.Next(), ++index) {
+    const Color* color = source.face_colors.Seek(it.Current());
+    copy.faces[index].color = color != nullptr ? std::optional(*color) : std::nullopt;
+    const std::uint64_t* entity = source.entities.Seek(it.Current());
+    copy.faces[index].entity = entity != nullptr ? *entity
+                               : entity_of_      ? entity_of_(TopoDS::Face(it.Current()))
+                                                 : 0;
+  }
+  copy.features.clear();
+  copy.forms.clear();
+  copy.inner_constraints.clear();
+  *part = std::move(copy);
+  product::BuildFeatures(part);
+}
+
+/** Whether two parts of one shape can be one: nothing about them tells them apart but the name. */
+bool TreeBuilder::LookAlike(std::size_t a, std::size_t b) const {
+  const Part& part_a = product_->parts[a];
+  const Part& part_b = product_->parts[b];
+  const auto same = [](const Color& x, const Color& y) {
+    return x.r == y.r && x.g == y.g && x.b == y.b;
+  };
+  if (entity_of_ || !same(part_a.color, part_b.color) ||
+      part_a.material.name != part_b.material.name ||
+      part_a.material.density != part_b.material.density ||
+      part_a.material.is_assumed != part_b.material.is_assumed) {
     return false;
   }
-  product::BuildFeatures(part);
+  if (sources_[a].face_colors.IsEmpty() && sources_[b].face_colors.IsEmpty()) {
+    return true;
+  }
+  TopExp_Explorer it_b(sources_[b].shape, TopAbs_FACE);
+  for (TopExp_Explorer it_a(sources_[a].shape, TopAbs_FACE); it_a.More() && it_b.More();
+       it_a.Next(), it_b.Next()) {
+    const Color* color_a = sources_[a].face_colors.Seek(it_a.Current());
+    const Color* color_b = sources_[b].face_colors.Seek(it_b.Current());
+    if ((color_a == nullptr) != (color_b == nullptr) ||
+        (color_a != nullptr && !same(*color_a, *color_b))) {
+      return false;
+    }
+  }
   return true;
 }
 
-void TreeBuilder::BuildParts() {
-  std::vector<bool> is_built;
+/** Lets parts of one shape be one part, or at least have one shape. @returns for each source the
+ part that it became. */
+std::vector<PartId> TreeBuilder::ShareParts(const std::vector<EqualShape>& equal,
+                                            const std::vector<bool>& is_built) {
+  std::vector<PartId> part_of(sources_.size());
+  std::vector<std::vector<std::size_t>> kinds(sources_.size());  // By base: one source a look.
+  std::size_t shared = 0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    if (watch_.progress) {
-      watch_.progress("parts", static_cast<double>(i) / static_cast<double>(sources_.size()));
-    }
-    const auto& skipped = options_.skipped_parts;
-    const auto number = static_cast<std::uint32_t>(i);
-    if (std::find(skipped.begin(), skipped.end(), number) != skipped.end()) {
-      is_built.push_back(false);
+    const std::size_t base = equal[i].base;
+    if (!is_built[base]) {
       continue;
     }
-    if (watch_.part) {
-      watch_.part(number, product_->parts[i].name);
+    std::vector<std::size_t>& looks = kinds[base];
+    const auto twin = std::find_if(looks.begin(), looks.end(),
+                                   [this, i](std::size_t other) { return LookAlike(other, i); });
+    if (twin != looks.end()) {
+      part_of[i] = PartId(*twin);
+    } else {
+      part_of[i] = PartId(i);
+      looks.push_back(i);
+      if (base != i) {
+        CopyGeometry(product_->parts[base], sources_[i], &product_->parts[i]);
+      }
     }
-    is_built.push_back(BuildPart(sources_[i], &product_->parts[i]));
+    shared += base != i && !sources_[i].shape.IsPartner(sources_[base].shape) ? 1U : 0U;
   }
-  if (std::find(is_built.begin(), is_built.end(), false) != is_built.end()) {
-    DropUnbuilt(is_built);
+  if (shared > 0) {
+    diagnostics_->Note(
+        "shared-parts", product_->source,
+        fmt::format("{} parts have the shape of another one, moved; they share it", shared));
   }
+  return part_of;
 }
 
-/** Removes parts without geometry with their occurrences and numbers the rest anew. */
-void TreeBuilder::DropUnbuilt(const std::vector<bool>& is_built) {
+/** Builds the wanted sources, on several threads. @returns for each source whether it was built. */
+std::vector<bool> TreeBuilder::BuildSources(const std::vector<std::size_t>& wanted) {
+  const auto groups = GroupSources(wanted);
+  std::vector<char> is_built(sources_.size(), 0);  // Not bool: threads write to neighbours.
+  std::mutex mutex;
+  ForEachIndex(
+      groups.size(), options_.threads,
+      [&](std::size_t g) {
+        for (const std::size_t i : groups[g]) {
+          if (watch_.part) {
+            const std::scoped_lock lock(mutex);
+            watch_.part(static_cast<std::uint32_t>(i), product_->parts[i].name);
+          }
+          is_built[i] = BuildPart(&sources_[i], &product_->parts[i]) ? 1 : 0;
+        }
+      },
+      [&](std::size_t done) {
+        if (watch_.progress) {
+          const std::scoped_lock lock(mutex);
+          watch_.progress("parts", static_cast<double>(done) / static_cast<double>(groups.size()));
+        }
+      });
+  return {is_built.begin(), is_built.end()};
+}
+
+void TreeBuilder::BuildParts() {
+  const std::set<std::uint32_t> skipped(options_.skipped_parts.begin(),
+                                        options_.skipped_parts.end());
+  std::vector<TopoDS_Shape> shapes;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    Prepare(&sources_[i], &product_->parts[i]);
+    shapes.push_back(sources_[i].shape);
+  }
+  const std::vector<EqualShape> equal = FindEqualShapes(shapes);
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    if (equal[i].base == i && skipped.count(static_cast<std::uint32_t>(i)) == 0) {
+      wanted.push_back(i);
+    }
+  }
+  const std::vector<PartId> part_of = ShareParts(equal, BuildSources(wanted));
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    if (part_of[i] == PartId(i) || equal[i].base == i) {  // Others have nothing to add.
+      for (const Diagnostic& item : sources_[i].notes.items()) {
+        diagnostics_->Add(item);
+      }
+    }
+  }
+  AssignParts(part_of, equal);
+}
+
+/** Gives occurrences the parts that their sources became, leaves out those without, and numbers
+ parts and occurrences anew. */
+void TreeBuilder::AssignParts(const std::vector<PartId>& part_of,
+                              const std::vector<EqualShape>& equal) {
   std::vector<Part> parts;
-  std::vector<PartId> new_part(is_built.size());
-  for (std::size_t i = 0; i < is_built.size(); ++i) {
-    if (is_built[i]) {
-      new_part[i] = PartId(parts.size());
+  std::vector<PartId> new_id(part_of.size());
+  for (std::size_t i = 0; i < part_of.size(); ++i) {
+    if (part_of[i] == PartId(i)) {
+      new_id[i] = PartId(parts.size());
       parts.push_back(std::move(product_->parts[i]));
-      parts.back().id = new_part[i];
+      parts.back().id = new_id[i];
     }
   }
   product_->parts = std::move(parts);
@@ -434,12 +496,17 @@ void TreeBuilder::DropUnbuilt(const std::vector<bool>& is_built) {
   }
   std::vector<product::Occurrence> occurrences;
   for (product::Occurrence& occurrence : product_->occurrences) {
-    occurrence.part = new_part[occurrence.part.index()];
-    if (occurrence.part.is_valid()) {
-      occurrence.id = OccurrenceId(occurrences.size());
-      product_->subassemblies[occurrence.parent.index()].occurrences.push_back(occurrence.id);
-      occurrences.push_back(std::move(occurrence));
+    const std::size_t source = occurrence.part.index();
+    if (!part_of[source].is_valid()) {
+      continue;
     }
+    occurrence.part = new_id[part_of[source].index()];
+    if (equal[source].base != source) {
+      occurrence.X_WB = occurrence.X_WB * equal[source].X_SB;
+    }
+    occurrence.id = OccurrenceId(occurrences.size());
+    product_->subassemblies[occurrence.parent.index()].occurrences.push_back(occurrence.id);
+    occurrences.push_back(std::move(occurrence));
   }
   product_->occurrences = std::move(occurrences);
 }

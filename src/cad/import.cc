@@ -84,9 +84,6 @@ std::vector<std::string> Attempts::Arguments() const {
   if (!options_.with_tolerances) {
     arguments.emplace_back("--no-tolerances");
   }
-  if (options_.threads > 0) {
-    arguments.insert(arguments.end(), {"--threads", std::to_string(options_.threads)});
-  }
   for (const std::uint32_t part : options_.skipped_parts) {
     arguments.insert(arguments.end(), {"--skip-part", std::to_string(part)});
   }
@@ -112,9 +109,6 @@ bool Attempts::LeaveOut(const WorkerRun& run) {
                                 "without its dimensions, tolerances and stated fits",
                                 run.Describe()),
                     "give the fits in a side file or with --fit, or export it without PMI");
-  } else if (run.part && options_.threads != 1) {
-    options_.threads = 1;  // Several parts were worked at: find out which it is.
-    return true;
   } else if (run.part && options_.skipped_parts.size() < kMaxSkippedParts &&
              std::find(options_.skipped_parts.begin(), options_.skipped_parts.end(), *run.part) ==
                  options_.skipped_parts.end()) {

@@ -47,8 +47,6 @@ std::optional<ImportOptions> ParseOptions(const std::vector<std::string>& words)
       is_good = Parse(words[i], &options.max_triangles);
     } else if (name == "--threads") {
       is_good = Parse(words[i], &options.threads);
-    } else if (name == "--threads") {
-      is_good = Parse(words[i], &options.threads);
     } else if (name == "--skip-part") {
       is_good = Parse(words[i], &options.skipped_parts.emplace_back());
     }
