@@ -20,10 +20,11 @@ class Welder {
   explicit Welder(double tolerance) : tolerance_(tolerance), cell_(16 * tolerance) {}
 
   std::uint32_t Weld(const Vec3& p) {
-    if (!p.allFinite()) {
+    const Vec3 scaled = p / cell_;
+    constexpr double kFarthest = 1e12;  // Cells that can be counted.
+    if (!(scaled.cwiseAbs().maxCoeff() < kFarthest) || !p.allFinite()) {
       return Append(p);
     }
-    const Vec3 scaled = p / cell_;
     const double margin = tolerance_ / cell_;
     // The cells that a ball about p reaches: nearly always one.
     for (double x = std::floor(scaled.x() - margin); x <= scaled.x() + margin; ++x) {

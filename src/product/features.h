@@ -4,13 +4,16 @@
 
 namespace hvas::product {
 
-/** Fills a part's features (layer T) and inner constraints from its faces and mesh.
+/** Fills a part's features (layer T), forms and inner constraints from its faces and mesh; the rules
+ are in docs/algorithms/features.md.
 
- Cylindrical faces of one axis, radius and sense whose axial spans touch become one hole or shaft,
- kept when they cover at least 200 degrees of the turn. Flat faces of one plane and normal become
- one plane. Order: holes and shafts, then planes, each by their first face. Inner constraints tie
- each feature to the part's references (its largest plane, its largest cylinder, and the first
- feature on the same axis), not all to all. Deterministic. @pre part != nullptr. */
+ Faces of one surface and sense that touch become one feature: holes and shafts, cone seats and
+ tapers where they go far enough around their axis to hold a counterpart (FindCylinders), planes,
+ sockets and balls. Order: holes and shafts, then planes, then cones, then spheres, each by their
+ first face. `coverage` of a sphere is 2 pi times its share of the whole one. Threads are marked by
+ helical faces, the part's name and hexagons. Inner constraints tie each feature to the part's
+ references (its largest plane, its largest cylinder or cone, and the first feature on the same axis
+ or centre), not all to all. Deterministic. @pre part != nullptr; its faces and mesh agree. */
 void BuildFeatures(Part* part);
 
 }  // namespace hvas::product

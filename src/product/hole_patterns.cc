@@ -82,7 +82,7 @@ class PatternFinder {
       if (is_round && group_.spots.size() >= kLeast && group_.spots.size() <= kMostForCircles &&
           IsParallel(form.axis_B, group_.R.col(2))) {
         const Vec3 q = group_.R.transpose() * (form.origin_B - group_.origin);
-        TryCircles(q.head<2>());
+        TryCircles(q.head<2>(), true);
       }
     }
     if (group_.spots.size() >= kLeast) {
@@ -90,7 +90,7 @@ class PatternFinder {
       for (const Spot& spot : group_.spots) {
         centre += spot.p;
       }
-      TryCircles(centre / static_cast<double>(group_.spots.size()));
+      TryCircles(centre / static_cast<double>(group_.spots.size()), false);
     }
     if (group_.spots.size() > kLeast) {
       TryGrid();
@@ -125,7 +125,7 @@ class PatternFinder {
   }
 
   /** Spots at one distance from a centre, evenly around it. */
-  void TryCircles(const Vec2& centre) {
+  void TryCircles(const Vec2& centre, bool is_axis) {
     std::vector<std::pair<double, std::size_t>> by_distance;
     for (std::size_t i = 0; i < group_.spots.size(); ++i) {
       by_distance.emplace_back((group_.spots[i].p - centre).norm(), i);
@@ -140,30 +140,37 @@ class PatternFinder {
         members.push_back(by_distance[end++].second);
       }
       if (members.size() >= kLeast && by_distance[begin].first > tolerance_ &&
-          IsEven(members, centre, by_distance[begin].first)) {
+          IsEven(members, centre, by_distance[begin].first, is_axis)) {
         Add(members, centre, 2 * by_distance[begin].first);
-        return TryCircles(centre);  // The indices have changed.
+        return TryCircles(centre, is_axis);  // The indices have changed.
       }
       begin = end;
     }
   }
 
+  /** Even steps all around; about the axis of something else a part of a circle will do, whose
+   steps go into the full turn. */
   [[nodiscard]] bool IsEven(const std::vector<std::size_t>& members, const Vec2& centre,
-                            double radius) const {
+                            double radius, bool is_axis) const {
     std::vector<double> angles;
     for (const std::size_t i : members) {
       const Vec2 q = group_.spots[i].p - centre;
       angles.push_back(std::atan2(q.y(), q.x()));
     }
     std::sort(angles.begin(), angles.end());
-    const double step = kTwoPi / static_cast<double>(angles.size());
+    std::vector<double> gaps;
     for (std::size_t i = 0; i < angles.size(); ++i) {
       const double next = i + 1 < angles.size() ? angles[i + 1] : angles[0] + kTwoPi;
-      if (std::abs(next - angles[i] - step) * radius > 4 * tolerance_) {
-        return false;
-      }
+      gaps.push_back(next - angles[i]);
     }
-    return true;
+    std::sort(gaps.begin(), gaps.end());
+    const double slack = 4 * tolerance_ / radius;
+    if (gaps.back() - gaps.front() < slack) {
+      return true;
+    }
+    const double turns = kTwoPi / gaps.front();
+    return is_axis && gaps[gaps.size() - 2] - gaps.front() < slack &&
+           std::abs(turns - std::round(turns)) < slack * turns;
   }
 
   /** All spots in equal even circles beside each other: two bolt circles in one plate. */

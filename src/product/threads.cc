@@ -401,6 +401,16 @@ void MarkNut(const std::vector<Line>& lines, const std::optional<ThreadSize>& si
   }
 }
 
+/** Whether a shank may belong to a hexagonal head (1.5 to 1.85 of its diameter across flats in ISO
+ 4014, up to 2.3 drawn with its minor diameter) or socket (0.5 in ISO 4026 to 0.85 in ISO 4762); a
+ trap for a nut in a knob is wider than the knob's stem. */
+bool FitsHexagon(double radius, const std::vector<Hexagon>& hexagons) {
+  return std::any_of(hexagons.begin(), hexagons.end(), [radius](const Hexagon& hexagon) {
+    const double ratio = hexagon.inner_radius / radius;
+    return hexagon.is_socket ? ratio > 0.4 && ratio < 1.1 : ratio > 1.3 && ratio < 2.5;
+  });
+}
+
 /** By shape alone: hexagonal heads, sockets and nuts. Dowels and shafts have none of them. */
 void MarkByShape(const std::vector<Line>& lines, double tolerance, Part* part) {
   constexpr std::size_t kMostFaces = 400;  // Of a fastener.
@@ -437,7 +447,7 @@ void MarkByShape(const std::vector<Line>& lines, double tolerance, Part* part) {
     }
     const auto head = FindHead(*part, line, hexagons);
     const auto shank = FindShank(*part, line, head);
-    if (shank && (has_socket || head)) {
+    if (shank && (has_socket || head) && FitsHexagon(part->features[*shank].radius, hexagons)) {
       MarkNominal(&part->features[*shank], std::nullopt);
       return;
     }

@@ -319,6 +319,26 @@ TEST(Forms, PatternsOfHoles) {
     flange = flange - Rod(25 * std::cos(angle), 25 * std::sin(angle), 0, 2.5, 8);
   }
   ExpectOne(Build(flange), FormKind::kHolePattern, 50, 0, 6);
+  // Two bolt circles of three, as in the plate of AS1, and a quarter of a circle about a bore.
+  TopoDS_Shape twin = Box(0, 0, 0, 120, 50, 5);
+  for (const double x : {30.0, 90.0}) {
+    for (int i = 0; i < 3; ++i) {
+      const double angle = i * 2 * std::numbers::pi / 3 + 0.3;
+      twin = twin - Rod(x + 15 * std::cos(angle), 25 + 15 * std::sin(angle), 0, 3, 5);
+    }
+  }
+  const std::vector<Form> circles = Select(Build(twin), FormKind::kHolePattern);
+  ASSERT_EQ(circles.size(), 2u);
+  for (const Form& circle : circles) {
+    EXPECT_EQ(circle.count, 3);
+    EXPECT_NEAR(circle.diameter, FromMm(30), kTolerance);
+  }
+  TopoDS_Shape quarter = Box(0, 0, 0, 50, 50, 5) - Rod(10, 10, 0, 5, 5);
+  for (int i = 0; i < 3; ++i) {
+    const double angle = i * std::numbers::pi / 4;
+    quarter = quarter - Rod(10 + 30 * std::cos(angle), 10 + 30 * std::sin(angle), 0, 2, 5);
+  }
+  ExpectOne(Build(quarter), FormKind::kHolePattern, 60, 0, 3);
   TopoDS_Shape plate = Box(0, 0, 0, 40, 30, 5);
   for (const double x : {8.0, 20.0, 32.0}) {
     for (const double y : {8.0, 22.0}) {
@@ -381,6 +401,9 @@ TEST(Threads, HexagonalFastenersHaveThemAndDowelsDoNot) {
   EXPECT_EQ(CountThreads(dowel), 0);
   EXPECT_EQ(Count(dowel, FormKind::kShaft), 1);
   EXPECT_EQ(Count(dowel, FormKind::kChamfer), 2);
+  // A knob with a trap for a nut.
+  EXPECT_EQ(CountThreads(Build(Rod(0, 0, 0, 15, 10) + Rod(0, 0, 10, 5, 15) - Hexagon(0, 13, 6))),
+            0);
   // A shaft on a plate with a hexagonal pocket beside it is no screw.
   EXPECT_EQ(
       CountThreads(Build(Box(-40, -40, -5, 80, 80, 5) + Rod(0, 0, 0, 4, 10) - Hexagon(-5, 5, 3))),
