@@ -83,7 +83,10 @@ double CalcAxisConfidence(const Product& product, const Mate& mate, const Infere
   if (shaft_part == FastenerKind::kScrew && !ContradictsNames(hole_part, shaft_part)) {
     sizes = std::max(sizes, 0.9);  // Screws have play in their holes, or threads drawn anyhow.
   }
-  const double length = Rise(mate.overlap, 2 * mate.shaft_radius, 0.5);
+  // A diameter is enough, or all of a short ring, but not of less than a quarter of a diameter.
+  const double shorter = std::min(mate.hole_high - mate.hole_low, mate.shaft_high - mate.shaft_low);
+  const double diameter = 2 * mate.shaft_radius;
+  const double length = Rise(mate.overlap, std::clamp(shorter, 0.25 * diameter, diameter), 0.5);
   const double place = Fall(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
   const double turn =
       Rise(std::min(FeatureOf(product, mate.a).coverage, FeatureOf(product, mate.b).coverage),

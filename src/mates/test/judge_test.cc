@@ -25,13 +25,14 @@ struct Drawn {
   double offset{0};  // Of the axes [m].
   const char* hole_part{"block"};
   const char* shaft_part{"pin"};
+  double hole_length{40e-3};
 };
 
 Mate MakePinned(const Drawn& drawn) {
   Product product;
   AddPart(&product, drawn.hole_part);
   AddCylinder(&product.parts[0], FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), drawn.hole,
-              -40e-3, 0);
+              -drawn.hole_length, 0);
   AddPart(&product, drawn.shaft_part);
   AddCylinder(&product.parts[1], FeatureKind::kShaft, Vec3::Zero(), Vec3::UnitZ(), drawn.shaft,
               -drawn.engaged, 30e-3);
@@ -58,6 +59,8 @@ TEST(Judge, PlayShortnessOffsetAndNamesLowerTheConfidenceByTheStatedFactors) {
   EXPECT_NEAR(MakePinned({5.175e-3, 4.5e-3}).confidence, 0.75, 1e-9);
   // A quarter of a diameter engaged.
   EXPECT_NEAR(MakePinned({5e-3, 5e-3, 2.5e-3}).confidence, 0.625, 1e-9);
+  // All of a ring a quarter of a diameter long.
+  EXPECT_NEAR(MakePinned({5e-3, 5e-3, 2.5e-3, 0, "block", "pin", 2.5e-3}).confidence, 1, 1e-9);
   // Half of the largest offset of 20 um.
   EXPECT_NEAR(MakePinned({5e-3, 5e-3, 10e-3, 10e-6}).confidence, 0.9, 1e-6);
   // A pin inside a screw.
