@@ -44,20 +44,25 @@ void AddWorker(const fs::path& worker, Digest* digest) {
 }
 
 std::string KeyOf(const fs::path& worker, const fs::path& file, const ImportOptions& options) {
+  // Whoever adds an option has to add it here, to the arguments of the process (import.cc), and to
+  // what the process makes of them (worker_import.cc).
+  const auto& [relative_deflection, min_deflection, max_angle, max_triangles, length_unit,
+               with_tolerances, skipped_parts, threads] = options;
+  static_cast<void>(threads);  // The result does not depend on it.
   Digest digest;
   digest.AddInt(kVersion);
   digest.AddInt(product::kProductFormat);
   AddWorker(worker, &digest);
-  digest.AddDouble(options.relative_deflection);
-  digest.AddDouble(options.min_deflection);
-  digest.AddDouble(options.max_angle);
-  digest.AddDouble(options.length_unit);
-  digest.AddInt(static_cast<std::int64_t>(options.max_triangles));
-  digest.AddInt(options.with_tolerances ? 1 : 0);
-  digest.AddInt(static_cast<std::int64_t>(options.skipped_parts.size()));
-  for (const std::uint32_t part : options.skipped_parts) {
+  digest.AddDouble(relative_deflection);
+  digest.AddDouble(min_deflection);
+  digest.AddDouble(max_angle);
+  digest.AddInt(static_cast<std::int64_t>(max_triangles));
+  digest.AddInt(with_tolerances ? 1 : 0);
+  digest.AddInt(static_cast<std::int64_t>(skipped_parts.size()));
+  for (const std::uint32_t part : skipped_parts) {
     digest.AddInt(part);
   }
+  digest.AddDouble(length_unit);
   digest.AddText(file.filename().string());  // It is in the product.
   digest.AddText(DigestOf(file));
   return digest.Hex();

@@ -139,6 +139,28 @@ TEST_F(ProcessTest, GivesTheSameBytesAsReadingInThisProcess) {
   }
 }
 
+TEST_F(ProcessTest, EveryOptionReachesTheReader) {
+  using Change = void (*)(ImportOptions*);
+  const Change changes[] = {[](ImportOptions* o) { o->relative_deflection = 1.0 / 300; },
+                            [](ImportOptions* o) { o->min_deflection = 1e-3 / 3; },
+                            [](ImportOptions* o) { o->max_angle = 0.02; },
+                            [](ImportOptions* o) { o->max_triangles = 20; },
+                            [](ImportOptions* o) { o->skipped_parts = {1}; }};
+  Diagnostics diagnostics;
+  const auto plain = ReadCad(file_, {}, &diagnostics);
+  for (std::size_t i = 0; i < std::size(changes); ++i) {
+    ImportOptions options;
+    options.relative_deflection = i == 0 || i == 1 ? 0 : options.relative_deflection;
+    options.max_angle = i < 2 ? 3 : options.max_angle;
+    changes[i](&options);
+    const auto here = ReadCad(file_, options, &diagnostics);
+    const auto there = Import(file_, options, &diagnostics);
+    ASSERT_TRUE(here && there) << i;
+    EXPECT_EQ(product::SerialiseProduct(*here), product::SerialiseProduct(*there)) << i;
+    EXPECT_NE(product::SerialiseProduct(*here), product::SerialiseProduct(*plain)) << i;
+  }
+}
+
 TEST_F(ProcessTest, FindsAFileByARelativePath) {
   const fs::path before = fs::current_path();
   fs::current_path(file_.parent_path());
