@@ -1,8 +1,10 @@
 #include "cad/step_document.h"
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,8 @@
 #include <XCAFApp_Application.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
+
+#include "cad/text_encoding.h"
 
 namespace hvas::cad {
 namespace {
@@ -59,6 +63,15 @@ void InitialiseOnce() {
     return true;
   }();
   static_cast<void>(kIsDone);
+}
+
+/** Tells OpenCASCADE what the bytes in strings are: it decodes anything as UTF-8, and spoils what
+ is not. As Latin-1 they come through as they are, for CleanName to see to. */
+void SetEncoding(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream text;
+  text << stream.rdbuf();
+  Interface_Static::SetCVal("read.step.codepage", IsUtf8(text.view()) ? "UTF8" : "iso8859-1");
 }
 
 void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagnostics) {
@@ -133,6 +146,7 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
                                                   const ReadWatch& watch, Diagnostics* diagnostics,
                                                   FaceEntityFn* entity_of) {
   InitialiseOnce();
+  SetEncoding(file);
   const std::string name = file.filename().string();
   STEPCAFControl_Reader reader;
   reader.SetColorMode(true);

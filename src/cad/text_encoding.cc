@@ -81,17 +81,6 @@ std::size_t SequenceLength(std::string_view bytes, std::size_t i) {
   return is_overlong || is_beyond ? 0 : length;
 }
 
-bool IsUtf8(std::string_view bytes) {
-  for (std::size_t i = 0; i < bytes.size();) {
-    const std::size_t length = SequenceLength(bytes, i);
-    if (length == 0) {
-      return false;
-    }
-    i += length;
-  }
-  return true;
-}
-
 /** Shift-JIS that no text in a Latin alphabet would be taken for. */
 bool IsShiftJis(std::string_view bytes) {
   bool is_japanese = false;
@@ -143,6 +132,17 @@ std::string Tidy(std::string text) {
 }
 
 }  // namespace
+
+bool IsUtf8(std::string_view bytes) {
+  for (std::size_t i = 0; i < bytes.size();) {
+    const std::size_t length = SequenceLength(bytes, i);
+    if (length == 0) {
+      return false;
+    }
+    i += length;
+  }
+  return true;
+}
 
 std::string CleanName(std::string_view name) {
   if (IsUtf8(name)) {

@@ -5,6 +5,9 @@
 
 namespace hvas::cad {
 
+/** Whether bytes are UTF-8 (RFC 3629). */
+[[nodiscard]] bool IsUtf8(std::string_view bytes);
+
 /** A name from a CAD file in valid UTF-8, without control characters and surrounding blanks.
  Lone surrogates become U+FFFD. Where no unit is beyond 0xFF and one is beyond 0x7F the text may be
  raw bytes that nobody decoded; then as the other overload, if they make sense as UTF-8 or

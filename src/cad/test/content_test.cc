@@ -1,0 +1,320 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
+#include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <GProp_GProps.hxx>
+#include <TopExp_Explorer.hxx>
+#include <gp_Ax2.hxx>
+#include <gtest/gtest.h>
+
+#include "cad/assembly_tree.h"
+#include "cad/equal_shapes.h"
+#include "cad/parallel.h"
+#include "cad/read_cad.h"
+#include "cad/solid_measure.h"
+#include "cad/test/step_fixture.h"
+#include "cad/text_encoding.h"
+
+namespace hvas::cad {
+namespace {
+
+using product::Part;
+using product::Product;
+using testing::DocumentBuilder;
+using testing::MakePlate;
+using testing::ScratchFolder;
+using testing::Translation;
+
+constexpr double kPi = std::numbers::pi;
+
+const Quantity_Color kRed(1, 0, 0, Quantity_TOC_sRGB);
+const Quantity_Color kTeal(0, 0.5, 0.5, Quantity_TOC_sRGB);
+
+/** A box with one corner cut out: no mirror image of it is a rotated copy. */
+TopoDS_Shape MakeNotchedBox() {
+  return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(60, 40, 20).Shape(),
+                         BRepPrimAPI_MakeBox(gp_Pnt(50, 33, 17), gp_Pnt(70, 50, 30)).Shape())
+      .Shape();
+}
+
+gp_Trsf MakeMotion(double angle, double x_mm) {
+  gp_Trsf turn;
+  turn.SetRotation(gp_Ax1(gp_Pnt(3, 2, 1), gp_Dir(1, 2, 3)), angle);
+  gp_Trsf shift;
+  shift.SetTranslation(gp_Vec(x_mm, -7, 11));
+  return shift * turn;
+}
+
+TopoDS_Shape Moved(const TopoDS_Shape& shape, const gp_Trsf& motion) {
+  return BRepBuilderAPI_Transform(shape, motion, /*copy=*/true).Shape();
+}
+
+Product Build(DocumentBuilder* builder, Diagnostics* diagnostics, unsigned threads = 0) {
+  Product product;
+  ImportOptions options;
+  options.threads = threads;
+  const Result<void> result = BuildProduct(builder->document(), options, {}, &product, diagnostics);
+  EXPECT_TRUE(result.has_value()) << result.error().ToString();
+  return product;
+}
+
+int CountCode(const Diagnostics& diagnostics, const std::string& code) {
+  return static_cast<int>(
+      std::count_if(diagnostics.items().begin(), diagnostics.items().end(),
+                    [&code](const Diagnostic& item) { return item.code == code; }));
+}
+
+TEST(EqualParts, WrittenInPlaceAreOnePartAtItsPoses) {
+  DocumentBuilder builder;
+  const TopoDS_Shape box = MakeNotchedBox();
+  const std::vector<gp_Trsf> motions{gp_Trsf(), MakeMotion(0.7, 100), MakeMotion(2.9, 200)};
+  for (const gp_Trsf& motion : motions) {
+    builder.AddPart(Moved(box, motion), "box");
+  }
+  gp_Trsf mirror;
+  mirror.SetMirror(gp_Ax2(gp_Pnt(), gp::DX()));
+  builder.AddPart(Moved(box, mirror), "mirrored box");
+  builder.AddPart(MakePlate(), "plate");
+  Diagnostics diagnostics;
+  const Product product = Build(&builder, &diagnostics);
+  ASSERT_EQ(product.occurrences.size(), 5u);
+  ASSERT_EQ(product.parts.size(), 3u);  // Box, mirrored box, plate.
+  EXPECT_EQ(CountCode(diagnostics, "shared-parts"), 1);
+  EXPECT_EQ(product.occurrences[3].part.index(), 1u);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    SCOPED_TRACE(i);
+    const product::Occurrence& occurrence = product.occurrences[i];
+    EXPECT_EQ(occurrence.part.index(), 0u);
+    for (const gp_Pnt& p : {gp_Pnt(0, 0, 0), gp_Pnt(60, 0, 20), gp_Pnt(50, 33, 17)}) {
+      const gp_Pnt moved = p.Transformed(motions[i]);
+      const Vec3 here = occurrence.X_WB * (1e-3 * Vec3(p.X(), p.Y(), p.Z()));
+      EXPECT_LT((here - 1e-3 * Vec3(moved.X(), moved.Y(), moved.Z())).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(EqualParts, OfOtherColoursAreOtherPartsOfTheSameShape) {
+  DocumentBuilder builder;
+  const TDF_Label red = builder.AddPart(MakePlate(), "red");
+  const TDF_Label teal = builder.AddPart(Moved(MakePlate(), MakeMotion(1, 90)), "teal");
+  builder.SetColor(red, kRed);
+  builder.SetColor(teal, kTeal);
+  Diagnostics diagnostics;
+  const Product product = Build(&builder, &diagnostics);
+  ASSERT_EQ(product.parts.size(), 2u);
+  EXPECT_EQ(product.parts[0].shape_hash, product.parts[1].shape_hash);
+  EXPECT_EQ(product.parts[0].mesh.vertices, product.parts[1].mesh.vertices);
+  EXPECT_EQ(product.parts[1].name, "teal");
+  EXPECT_NEAR(product.parts[1].color.g, 0.5, 1e-3);
+  EXPECT_EQ(product.parts[0].features.size(), product.parts[1].features.size());
+  const gp_Pnt corner = gp_Pnt(60, 40, 10).Transformed(MakeMotion(1, 90));
+  EXPECT_LT((product.occurrences[1].X_WB * Vec3(0.060, 0.040, 0.010) -
+             1e-3 * Vec3(corner.X(), corner.Y(), corner.Z()))
+                .norm(),
+            1e-9);
+}
+
+TEST(EqualParts, AreNotThoseThatDifferByTenMicrometres) {
+  const std::vector<TopoDS_Shape> shapes{
+      BRepPrimAPI_MakeCylinder(5, 20).Shape(), BRepPrimAPI_MakeCylinder(5.01, 20).Shape(),
+      Moved(BRepPrimAPI_MakeCylinder(5, 20).Shape(), MakeMotion(2, 5)),
+      BRepPrimAPI_MakeCylinder(5, 20.01).Shape(), TopoDS_Shape()};
+  const std::vector<EqualShape> equal = FindEqualShapes(shapes);
+  ASSERT_EQ(equal.size(), shapes.size());
+  EXPECT_EQ(equal[1].base, 1u);
+  EXPECT_EQ(equal[2].base, 0u);
+  EXPECT_EQ(equal[3].base, 3u);
+  EXPECT_EQ(equal[4].base, 4u);
+  // The turn about its own axis is free, but all of the cylinder has to be in place.
+  const gp_Pnt top = gp_Pnt(0, 0, 20).Transformed(MakeMotion(2, 5));
+  EXPECT_LT((equal[2].X_SB * Vec3(0, 0, 0.020) - 1e-3 * Vec3(top.X(), top.Y(), top.Z())).norm(),
+            1e-9);
+}
+
+TEST(EqualParts, AreFoundAmongRoundAndFreeShapes) {
+  for (const TopoDS_Shape& shape :
+       {BRepPrimAPI_MakeSphere(7).Shape(), BRepPrimAPI_MakeTorus(9, 2).Shape(),
+        BRepPrimAPI_MakeCone(2, 6, 9).Shape(), BRepBuilderAPI_NurbsConvert(MakePlate()).Shape()}) {
+    const auto equal = FindEqualShapes({shape, Moved(shape, MakeMotion(0.3, 40))});
+    EXPECT_EQ(equal[1].base, 0u);
+  }
+}
+
+TEST(BuildProduct, GivesTheSameOnOneThreadAndOnMany) {
+  DocumentBuilder builder;
+  for (int i = 0; i < 6; ++i) {
+    builder.AddPart(BRepPrimAPI_MakeCylinder(5 + i, 20).Shape(), "pin");
+  }
+  Diagnostics diagnostics;
+  const Product one = Build(&builder, &diagnostics, 1);
+  const Product many = Build(&builder, &diagnostics, 4);
+  ASSERT_EQ(one.parts.size(), 6u);
+  ASSERT_EQ(many.parts.size(), 6u);
+  for (std::size_t i = 0; i < one.parts.size(); ++i) {
+    EXPECT_EQ(one.parts[i].shape_hash, many.parts[i].shape_hash);
+    EXPECT_EQ(one.parts[i].mesh.vertices, many.parts[i].mesh.vertices);
+    EXPECT_EQ(one.parts[i].display_mesh.triangles, many.parts[i].display_mesh.triangles);
+  }
+}
+
+TEST(BuildProduct, MeshesPartsLighterForTheEye) {
+  DocumentBuilder builder;
+  builder.AddPart(MakePlate(), "plate");
+  builder.AddPart(BRepPrimAPI_MakeCone(2, 6, 9).Shape(), "cone");
+  Diagnostics diagnostics;
+  const Product product = Build(&builder, &diagnostics);
+  for (const Part& part : product.parts) {
+    SCOPED_TRACE(part.name);
+    EXPECT_LT(3 * part.display_mesh.triangles.size(), part.mesh.triangles.size());
+    const double diagonal = part.box_B.size().norm();
+    std::uint32_t next = 0;
+    for (const product::Face& face : part.faces) {
+      EXPECT_EQ(face.first_display_triangle, next);
+      ASSERT_GT(face.display_triangle_count, 0u);
+      next += face.display_triangle_count;
+      for (std::uint32_t i = face.first_display_triangle; i < next; ++i) {
+        const auto& t = part.display_mesh.triangles[i];
+        Vec3 centre = Vec3::Zero();
+        for (const auto vertex : t) {
+          const Vec3& p = part.display_mesh.vertices[vertex];
+          EXPECT_LT(std::abs(CalcDistance(face.surface, p).distance), 1e-9);
+          centre += p / 3;
+        }
+        EXPECT_LT(std::abs(CalcDistance(face.surface, centre).distance), 3e-3 * diagonal);
+      }
+    }
+    EXPECT_EQ(next, part.display_mesh.triangles.size());
+  }
+}
+
+void ExpectMeasure(const TopoDS_Shape& solid, double volume) {
+  const gp_Pnt about(3, -5, 8);
+  const SolidMeasure measure = MeasureSolid(solid, about);
+  EXPECT_NEAR(measure.volume, volume, 1e-6 * volume);
+  // Against the adaptive integration of OpenCASCADE over the whole solid.
+  GProp_GProps whole(about);
+  BRepGProp::VolumeProperties(solid, whole, 1e-9);
+  const gp_Pnt centre = whole.CentreOfMass();
+  const Vec3 r = Vec3(centre.X(), centre.Y(), centre.Z()) - Vec3(3, -5, 8);
+  EXPECT_LT((measure.first / measure.volume - r).norm(), 1e-6 * r.norm());
+  const Mat3 shift = measure.volume * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  const gp_Mat inertia = whole.MatrixOfInertia();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      EXPECT_NEAR(measure.inertia(i, j) - shift(i, j), inertia(i + 1, j + 1),
+                  1e-5 * measure.inertia.trace());
+    }
+  }
+}
+
+TEST(MeasureSolid, GivesVolumeCentreAndInertiaOfSolidsAnywhere) {
+  const std::vector<std::pair<TopoDS_Shape, double>> solids{
+      {MakePlate(), 60 * 40 * 10 - kPi * 25 * 10},
+      {MakeNotchedBox(), 60 * 40 * 20 - 10 * 7 * 3},
+      {BRepPrimAPI_MakeSphere(7).Shape(), 4 * kPi / 3 * 343},
+      {BRepPrimAPI_MakeTorus(9, 2).Shape(), 2 * kPi * kPi * 9 * 4},
+      {BRepPrimAPI_MakeCone(2, 6, 9).Shape(), kPi * 9 / 3 * (4 + 12 + 36)},
+      {BRepBuilderAPI_NurbsConvert(MakePlate()).Shape(), 60 * 40 * 10 - kPi * 25 * 10}};
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    SCOPED_TRACE(i);
+    ExpectMeasure(solids[i].first, solids[i].second);
+    ExpectMeasure(Moved(solids[i].first, MakeMotion(1.1, 30)), solids[i].second);
+    ExpectMeasure(solids[i].first.Moved(MakeMotion(1.1, 30)), solids[i].second);
+  }
+  EXPECT_NEAR(MeasureSolid(MakePlate().Reversed(), gp_Pnt(1, 2, 3)).volume,
+              -(60 * 40 * 10 - kPi * 25 * 10), 1e-6);
+}
+
+TEST(ForEachIndex, DoesAllOnceAndHandsOnTheFirstFailure) {
+  for (const unsigned threads : {1U, 3U}) {
+    std::vector<std::atomic<int>> done(50);
+    ForEachIndex(done.size(), threads, [&done](std::size_t i) { ++done[i]; });
+    EXPECT_TRUE(std::all_of(done.begin(), done.end(), [](const auto& n) { return n == 1; }));
+    const auto fail = [](std::size_t i) {
+      if (i >= 7) {
+        throw std::runtime_error(std::to_string(i));
+      }
+    };
+    try {
+      ForEachIndex(50, threads, fail);
+      FAIL() << "nothing thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "7");
+    }
+  }
+}
+
+/** Imports a plate whose name in the file is given in raw bytes. */
+std::string ReadNameBack(const std::string& bytes) {
+  const ScratchFolder folder;
+  DocumentBuilder builder;
+  builder.AddPart(MakePlate(), "PLACEHOLDER");
+  builder.Write(folder / "a.step");
+  std::stringstream text;
+  text << std::ifstream(folder / "a.step", std::ios::binary).rdbuf();
+  std::string content = text.str();
+  for (std::size_t at = 0; (at = content.find("PLACEHOLDER", at)) != std::string::npos;) {
+    content.replace(at, 11, bytes);
+  }
+  std::ofstream(folder / "a.step", std::ios::binary) << content;
+  Diagnostics diagnostics;
+  const auto product = ReadCad(folder / "a.step", {}, &diagnostics);
+  EXPECT_TRUE(product.has_value());
+  return product && !product->parts.empty() ? product->parts[0].name : "";
+}
+
+TEST(Names, AreReadInEveryEncodingThatFilesUse) {
+  EXPECT_EQ(ReadNameBack("Geh\\X\\E4use"), "Gehäuse");
+  EXPECT_EQ(ReadNameBack("\\X2\\041F04400438\\X0\\ 2"), "При 2");
+  EXPECT_EQ(ReadNameBack("Gehäuse"), "Gehäuse");                        // UTF-8.
+  EXPECT_EQ(ReadNameBack("Geh\xE4use"), "Gehäuse");                     // Latin-1.
+  EXPECT_EQ(ReadNameBack("\x83\x7B\x83\x8B\x83\x67 M3"), "ボルト M3");  // Shift-JIS.
+}
+
+TEST(CleanName, NeverGivesInvalidUtf8) {
+  EXPECT_EQ(CleanName(std::string_view("  a\tb\n ")), "a b");
+  EXPECT_EQ(CleanName(std::u16string_view(u"x\xD800y")), "x\xEF\xBF\xBDy");
+  EXPECT_EQ(CleanName(std::u16string_view(u"\xD83D\xDE00")), "\xF0\x9F\x98\x80");
+  EXPECT_EQ(CleanName(std::u16string_view(u"Geh\u00E4use")), "Gehäuse");
+  EXPECT_EQ(CleanName(std::string_view("5 \x80")), "5 €");
+  for (int lead = 0; lead < 256; ++lead) {
+    for (int trail = 0; trail < 256; ++trail) {
+      const std::string bytes{'q', static_cast<char>(lead), static_cast<char>(trail)};
+      const std::string once = CleanName(std::string_view(bytes));
+      EXPECT_EQ(CleanName(std::string_view(once)), once) << lead << " " << trail;
+    }
+  }
+}
+
+TEST(Units, OfEveryKindGiveTheSameCube) {
+  const ScratchFolder folder;
+  for (const std::string unit : {"MM", "CM", "M", "KM", "UM", "INCH", "FT", "MI", "MIL", "UIN"}) {
+    SCOPED_TRACE(unit);
+    DocumentBuilder builder;
+    builder.AddPart(BRepPrimAPI_MakeBox(20, 20, 20).Shape(), "cube");
+    builder.Write(folder / "cube.step", unit);
+    Diagnostics diagnostics;
+    const auto product = ReadCad(folder / "cube.step", {}, &diagnostics);
+    ASSERT_TRUE(product.has_value());
+    EXPECT_NEAR(product->volume(), 8e-6, 1e-9 * 8e-6);
+    EXPECT_EQ(product->parts[0].faces.size(), 6u);
+  }
+}
+
+}  // namespace
+}  // namespace hvas::cad
