@@ -36,7 +36,10 @@ class MappedFile {
 [[nodiscard]] Result<std::filesystem::path> CheckInputFile(const std::filesystem::path& file);
 
 /** What to choose instead of a file that is none of these. */
-inline constexpr const char* kFormats = "choose a STEP file (.step or .stp; AP203, AP214 or AP242)";
+inline constexpr const char* kFormats =
+    "choose a STEP file (.step or .stp; AP203, AP214 or AP242), or a mesh (.obj, .stl, .gltf, .glb "
+    "or "
+    ".3mf)";
 
 /** Digest of a file's bytes; empty where it cannot be read. */
 [[nodiscard]] std::string DigestOf(const std::filesystem::path& path);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -18,7 +19,10 @@
 #include "base/units.h"
 #include "cad/assembly_tree.h"
 #include "cad/input_file.h"
+#include "cad/mesh_document.h"
+#include "cad/mesh_format.h"
 #include "cad/step_document.h"
+#include "cad/tessellated.h"
 #include "cad/tolerances.h"
 
 namespace hvas::cad {
@@ -35,8 +39,8 @@ void CheckSize(const Product& product, Diagnostics* diagnostics) {
   }
 }
 
-/** The text of a file that states tolerances; empty where it states none, or cannot be had. */
-std::string ReadToleranceText(const std::filesystem::path& file) {
+/** The bytes of a file; empty where they cannot be had. */
+std::string ReadText(const std::filesystem::path& file) {
   std::error_code error;
   const auto size = std::filesystem::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
@@ -46,6 +50,12 @@ std::string ReadToleranceText(const std::filesystem::path& file) {
   std::string text(size, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(size));
   text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+/** The text of a file that states tolerances; empty where it states none, or cannot be had. */
+std::string ReadToleranceText(const std::filesystem::path& file) {
+  std::string text = ReadText(file);
   return MayHoldTolerances(text) ? text : std::string();
 }
 
@@ -63,8 +73,8 @@ void AddTolerances(std::string text, Product* product, Diagnostics* diagnostics)
   }
 }
 
-Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions& options,
-                         const ReadWatch& watch, Diagnostics* diagnostics) {
+Result<Product> ReadSolids(const std::filesystem::path& file, const ImportOptions& options,
+                           const ReadWatch& watch, Diagnostics* diagnostics) {
   std::string tolerance_text = options.with_tolerances ? ReadToleranceText(file) : std::string();
   FaceEntityFn entity_of;
   const auto document =
@@ -98,6 +108,35 @@ Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions&
   return product;
 }
 
+/** A file without solids may have triangles in their place. */
+Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions& options,
+                         const ReadWatch& watch, Diagnostics* diagnostics) {
+  Diagnostics of_solids;
+  Result<Product> solids = ReadSolids(file, options, watch, &of_solids);
+  std::string text = solids ? std::string() : ReadText(file);
+  if (solids || !MayHoldTessellation(text)) {
+    for (const Diagnostic& item : of_solids.items()) {
+      diagnostics->Add(item);
+    }
+    return solids;
+  }
+  Product product;
+  product.name = file.stem().string();
+  product.source = file.filename().string();
+  std::string tolerance_text =
+      options.with_tolerances && MayHoldTolerances(text) ? text : std::string();
+  if (const auto read = ReadTessellated(std::move(text), options, watch, &product, diagnostics);
+      !read) {
+    return Unexpected(read.error());
+  }
+  if (watch.progress) {
+    watch.progress("tolerances", 0);
+  }
+  AddTolerances(std::move(tolerance_text), &product, diagnostics);
+  CheckSize(product, diagnostics);
+  return product;
+}
+
 /** The first bytes of a file. */
 std::string ReadHead(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -109,11 +148,19 @@ std::string ReadHead(const std::filesystem::path& file) {
 /** The one place where formats are told apart: by content, whatever the file is called. */
 Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOptions& options,
                               const ReadWatch& watch, Diagnostics* diagnostics) {
-  if (ReadHead(file).find("ISO-10303-21") != std::string::npos) {
+  const std::string head = ReadHead(file);
+  if (head.find("ISO-10303-21") != std::string::npos) {
     return ReadStep(file, options, watch, diagnostics);
   }
-  return Fail(ErrorCode::kUnreadable, "this is not a STEP file", file.filename().string(),
-              kFormats);
+  if (const std::optional<MeshFormat> format = FindMeshFormat(file, head)) {
+    Result<Product> product = ReadMeshFile(file, *format, options, watch, diagnostics);
+    if (product) {
+      CheckSize(*product, diagnostics);
+    }
+    return product;
+  }
+  return Fail(ErrorCode::kUnreadable, "this is not a STEP file, and no mesh",
+              file.filename().string(), kFormats);
 }
 
 /** The only place where exceptions of other libraries end. */

@@ -131,6 +131,12 @@ std::optional<Unit> ReadContextUnit(const StepText& text, std::uint64_t represen
 
 }  // namespace
 
+double ReadUnitOf(const StepText& text, std::uint64_t representation, Quantity quantity) {
+  const std::optional<Unit> unit = ReadContextUnit(text, representation, quantity);
+  const double otherwise = quantity == Quantity::kLength ? units::kMetresPerMillimetre : 1;
+  return unit && unit->scale > 0 ? unit->scale : otherwise;
+}
+
 std::optional<Measure> ReadMeasure(const StepText& text, std::uint64_t id,
                                    std::uint64_t representation) {
   const auto raw = ReadRaw(text, id);

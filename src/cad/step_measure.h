@@ -23,4 +23,9 @@ struct Measure {
 [[nodiscard]] std::optional<Measure> ReadMeasure(const StepText& text, std::uint64_t id,
                                                  std::uint64_t representation);
 
+/** One unit of a quantity in the context of a representation [m or rad]; a millimetre or a radian
+ where it names none. */
+[[nodiscard]] double ReadUnitOf(const StepText& text, std::uint64_t representation,
+                                Quantity quantity);
+
 }  // namespace hvas::cad

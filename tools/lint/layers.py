@@ -18,6 +18,8 @@ OUTSIDE = {
     "xxhash": (r"xxhash\.h", r"\$\{HVAS_XXHASH"),
     "Eigen": (r"Eigen/", r"Eigen3::"),
     "OpenCASCADE": (r"[A-Za-z0-9]+(_[A-Za-z0-9]+)?\.hxx", r"hvas_occt|\$\{HVAS_OCCT|TK[A-Z]"),
+    "assimp": (r"assimp/", r"\$\{HVAS_ASSIMP"),
+    "zlib": (r"zlib\.h", r"ZLIB::"),
     "nlohmann": (r"nlohmann/", r"nlohmann_json"),
     "Bullet": (r"bt[A-Z]|LinearMath/|BulletDynamics/|BulletCollision/", r"hvas_bullet|\$\{HVAS_BULLET"),
     "sqlite3": (r"sqlite3\.h", r"SQLite::"),

@@ -1,0 +1,150 @@
+#include "cad/mesh_document.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <utility>
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "cad/confined_io.h"
+#include "cad/input_file.h"
+#include "cad/mesh_scene.h"
+#include "cad/model_3mf.h"
+#include "cad/zip_entry.h"
+
+namespace hvas::cad {
+namespace {
+
+using product::Product;
+
+/** Unit and names of a 3MF file, which assimp passes over. */
+void Read3mfModel(const std::filesystem::path& file, SceneConventions* conventions,
+                  Diagnostics* diagnostics) {
+  constexpr std::size_t kLargestModel = std::size_t{1} << 31;
+  const auto archive = MappedFile::Open(file);
+  const auto is_model = [](std::string_view name) {
+    std::string lower(name);
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return lower.rfind("3d/", 0) == 0 && lower.find('/', 3) == std::string::npos &&
+           lower.size() > 6 && lower.compare(lower.size() - 6, 6, ".model") == 0;
+  };
+  const auto xml = archive ? ReadZipEntry(archive->bytes(), is_model, kLargestModel)
+                           : std::optional<std::string>();
+  if (!xml) {
+    return;  // assimp says what is wrong.
+  }
+  const Model3mf model = ParseModel3mf(*xml);
+  conventions->length_unit = model.length_unit;
+  if (!model.is_unit_known) {
+    diagnostics->Warn("assumed-unit", file.filename().string(),
+                      "the file names a unit that 3MF does not have; millimetres are assumed",
+                      "export it again in millimetres");
+  }
+  for (const auto& [id, name] : model.names) {
+    conventions->names.emplace(fmt::format("Object_{}", id), name);
+  }
+}
+
+SceneConventions FindConventions(const std::filesystem::path& file, MeshFormat format,
+                                 const ImportOptions& options, Diagnostics* diagnostics) {
+  SceneConventions conventions;
+  conventions.format = format;
+  switch (format) {
+    case MeshFormat::kGltf:
+      conventions.is_y_up = true;
+      break;
+    case MeshFormat::k3mf:
+      Read3mfModel(file, &conventions, diagnostics);
+      break;
+    case MeshFormat::kStl:
+    case MeshFormat::kObj:
+      conventions.length_unit = options.length_unit;
+      diagnostics->Note("assumed-unit", file.filename().string(),
+                        fmt::format("{} files state no unit; one unit is taken for {:.6g} mm",
+                                    NameOf(format), units::ToMm(options.length_unit)));
+      break;
+  }
+  return conventions;
+}
+
+void TellFiles(const ConfinedIo::Log& log, const std::filesystem::path& file,
+               const ReadWatch& watch, Diagnostics* diagnostics) {
+  std::vector<std::filesystem::path> missing = log.missing;
+  std::sort(missing.begin(), missing.end());
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+  for (const std::filesystem::path& path : missing) {
+    diagnostics->Warn("missing-file", path.filename().string(),
+                      fmt::format("{} refers to it, and it is not there", file.filename().string()),
+                      "put it beside the file");
+  }
+  for (const std::string& name : log.refused) {
+    diagnostics->Warn("refused-file", name,
+                      fmt::format("{} refers to it outside its own folder; it was not read",
+                                  file.filename().string()),
+                      "put it beside the file and refer to it by its name");
+  }
+  if (watch.referred_files != nullptr) {
+    std::vector<std::filesystem::path>& referred = *watch.referred_files;
+    referred = log.read;
+    referred.insert(referred.end(), missing.begin(), missing.end());
+    std::sort(referred.begin(), referred.end());
+    referred.erase(std::unique(referred.begin(), referred.end()), referred.end());
+    std::erase(referred, file);
+  }
+}
+
+Unexpected NotRead(const std::string& name, MeshFormat format, const char* why,
+                   const ConfinedIo::Log& log) {
+  if (!log.refused.empty()) {
+    return Fail(ErrorCode::kUnreadable,
+                fmt::format("it needs {}, which is outside its folder", log.refused.front()), name,
+                "put the files beside each other");
+  }
+  if (!log.missing.empty()) {
+    return Fail(
+        ErrorCode::kNotFound,
+        fmt::format("it needs {}, which is not there", log.missing.front().filename().string()),
+        name, "put the files beside each other");
+  }
+  return Fail(ErrorCode::kUnreadable,
+              fmt::format("the {} file could not be read: {}", NameOf(format), why), name,
+              "export it again");
+}
+
+}  // namespace
+
+Result<Product> ReadMeshFile(const std::filesystem::path& file, MeshFormat format,
+                             const ImportOptions& options, const ReadWatch& watch,
+                             Diagnostics* diagnostics) {
+  if (watch.progress) {
+    watch.progress("read", 0);
+  }
+  const std::string name = file.filename().string();
+  ConfinedIo::Log log;
+  Assimp::Importer importer;
+  importer.SetIOHandler(new ConfinedIo(file, &log));  // The importer owns it.
+  const aiScene* scene =
+      importer.ReadFile(file.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    return NotRead(name, format, importer.GetErrorString(), log);
+  }
+  Product product;
+  product.name = file.stem().string();
+  product.source = name;
+  TellFiles(log, file, watch, diagnostics);
+  const SceneConventions conventions = FindConventions(file, format, options, diagnostics);
+  BuildSceneProduct(*scene, conventions, options, watch, &product, diagnostics);
+  if (product.occurrences.empty()) {
+    return Fail(ErrorCode::kUnreadable, "there is no triangle in it", name,
+                "export the surfaces of the parts as triangles");
+  }
+  return product;
+}
+
+}  // namespace hvas::cad

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace hvas::cad {
+
+/** What assimp leaves out of the model part of a 3MF file (3MF core specification 1.3). */
+struct Model3mf {
+  double length_unit{1e-3};          ///< [m]
+  bool is_unit_known{true};          ///< False where the file names one that does not exist.
+  std::map<int, std::string> names;  ///< Of objects, by their ids; those that have one.
+};
+
+[[nodiscard]] Model3mf ParseModel3mf(std::string_view xml);
+
+}  // namespace hvas::cad

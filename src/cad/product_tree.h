@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "product/product.h"
+
+namespace hvas::cad {
+
+/** Builds the tree of a product whose parts come from anywhere: keeps paths unique and both sides
+ of each membership in step. The root is there from the start, named as the product. */
+class ProductTree {
+ public:
+  explicit ProductTree(product::Product* product);
+
+  product::SubassemblyId AddSubassembly(product::SubassemblyId parent, const std::string& name);
+  void AddOccurrence(product::SubassemblyId parent, product::PartId part, const std::string& name,
+                     const spatial::Pose& X_WB);
+  /** Takes out parts without triangles with their occurrences, numbers the rest anew and measures
+   the product's box. */
+  void Finish();
+
+ private:
+  std::string ClaimPath(product::SubassemblyId parent, const std::string& name);
+  void DropEmptyParts();
+
+  product::Product* product_;
+  std::vector<std::string> paths_;                // Of each subassembly.
+  std::vector<std::map<std::string, int>> used_;  // Names among the children of each.
+};
+
+}  // namespace hvas::cad

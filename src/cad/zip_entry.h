@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace hvas::cad {
+
+/** The content of the first entry of a ZIP archive whose name pleases, stored or deflated. Takes
+ any bytes. Empty where there is none, where it is damaged, or when it is larger than `limit`. */
+[[nodiscard]] std::optional<std::string> ReadZipEntry(
+    std::span<const std::byte> archive, const std::function<bool(std::string_view name)>& pleases,
+    std::size_t limit);
+
+}  // namespace hvas::cad
