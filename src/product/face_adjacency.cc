@@ -1,6 +1,7 @@
 #include "product/face_adjacency.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
@@ -25,20 +26,20 @@ class Welder {
     if (!(scaled.cwiseAbs().maxCoeff() < kFarthest) || !p.allFinite()) {
       return Append(p);
     }
-    const double margin = tolerance_ / cell_;
+    const Cell low = CellOf(scaled.array() - tolerance_ / cell_);
+    const Cell high = CellOf(scaled.array() + tolerance_ / cell_);
     // The cells that a ball about p reaches: nearly always one.
-    for (double x = std::floor(scaled.x() - margin); x <= scaled.x() + margin; ++x) {
-      for (double y = std::floor(scaled.y() - margin); y <= scaled.y() + margin; ++y) {
-        for (double z = std::floor(scaled.z() - margin); z <= scaled.z() + margin; ++z) {
-          if (const std::uint32_t found = FindIn(Key(x, y, z), p); found != kNone) {
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          if (const std::uint32_t found = FindIn(Key({x, y, z}), p); found != kNone) {
             return found;
           }
         }
       }
     }
     const std::uint32_t number = Append(p);
-    const auto [head, is_new] = heads_.try_emplace(
-        Key(std::floor(scaled.x()), std::floor(scaled.y()), std::floor(scaled.z())), number);
+    const auto [head, is_new] = heads_.try_emplace(Key(CellOf(scaled)), number);
     next_.back() = is_new ? kNone : head->second;
     head->second = number;
     return number;
@@ -47,18 +48,24 @@ class Welder {
   [[nodiscard]] std::size_t size() const { return points_.size(); }
 
  private:
+  using Cell = std::array<std::int64_t, 3>;
+
   std::uint32_t Append(const Vec3& p) {
     points_.push_back(p);
     next_.push_back(kNone);
     return static_cast<std::uint32_t>(points_.size() - 1);
   }
 
-  static std::uint64_t Key(double x, double y, double z) {
-    const auto mix = [](double value) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(value));
-    };
-    return mix(x) * 0x9E3779B97F4A7C15ULL ^ mix(y) * 0xC2B2AE3D27D4EB4FULL ^
-           mix(z) * 0x165667B19E3779F9ULL;
+  static Cell CellOf(const Vec3& scaled) {
+    return {static_cast<std::int64_t>(std::floor(scaled.x())),
+            static_cast<std::int64_t>(std::floor(scaled.y())),
+            static_cast<std::int64_t>(std::floor(scaled.z()))};
+  }
+
+  static std::uint64_t Key(const Cell& cell) {
+    return static_cast<std::uint64_t>(cell[0]) * 0x9E3779B97F4A7C15ULL ^
+           static_cast<std::uint64_t>(cell[1]) * 0xC2B2AE3D27D4EB4FULL ^
+           static_cast<std::uint64_t>(cell[2]) * 0x165667B19E3779F9ULL;
   }
 
   [[nodiscard]] std::uint32_t FindIn(std::uint64_t key, const Vec3& p) const {

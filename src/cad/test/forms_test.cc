@@ -88,7 +88,7 @@ TopoDS_Shape operator+(const TopoDS_Shape& a, const TopoDS_Shape& b) {
 /** The edges along z whose ends are at (x, y). */
 TopoDS_Edge EdgeAlongZ(const TopoDS_Shape& shape, double x, double y) {
   for (TopExp_Explorer it(shape, TopAbs_EDGE); it.More(); it.Next()) {
-    const TopoDS_Edge edge = TopoDS::Edge(it.Current());
+    TopoDS_Edge edge = TopoDS::Edge(it.Current());
     double first = 0;
     double last = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
