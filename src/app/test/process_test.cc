@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -105,6 +106,34 @@ TEST(StrictTest, WarningsAreShownAndEndWithStatusOne) {
     EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--strict", ran.err);
   }
   EXPECT_EQ(RunHvas({"inspect", ProductFile("bushing"), "--strict"}).status, 0);
+}
+
+/** Products in the cache of this test program. */
+std::size_t CountKept() {
+  std::error_code absent;
+  std::size_t count = 0;
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(std::getenv("XDG_CACHE_HOME")) / "hvas", absent)) {
+    count += entry.path().extension() == ".hvasproduct" ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(CacheTest, KeepsWhatWasReadUnlessToldNotTo) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.Write("rig.step", testing::ReadText(ProductFile("bushing")) + "\n").string();
+  const Ran anew = RunHvas({"inspect", file, "--no-cache"});
+  EXPECT_EQ(anew.status, 0);
+  const std::size_t before = CountKept();
+  ::setenv("HVAS_CACHE", "off", 1);
+  EXPECT_EQ(RunHvas({"inspect", file}).out, anew.out);
+  ::unsetenv("HVAS_CACHE");
+  EXPECT_EQ(CountKept(), before);
+  EXPECT_EQ(RunHvas({"inspect", file}).out, anew.out);
+  EXPECT_EQ(CountKept(), before + 1);
+  EXPECT_EQ(RunHvas({"inspect", file}).out, anew.out);
+  EXPECT_EQ(CountKept(), before + 1);
 }
 
 TEST(LimitTest, FileThatTakesTooLongIsNamedWithTheRemedy) {
