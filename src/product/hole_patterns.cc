@@ -76,34 +76,35 @@ class PatternFinder {
     if (group_.spots.size() < kLeast) {
       return {};
     }
+    TryCircles(Centroid(), false, group_.spots.size());
+    TryGrid();
     for (const Form& form : forms_) {
       const bool is_round =
           IsHole(form.kind) || form.kind == FormKind::kBoss || form.kind == FormKind::kShaft;
-      if (is_round && group_.spots.size() >= kLeast && group_.spots.size() <= kMostForCircles &&
+      if (is_round && group_.spots.size() <= kMostForCircles &&
           IsParallel(form.axis_B, group_.R.col(2))) {
         const Vec3 q = group_.R.transpose() * (form.origin_B - group_.origin);
-        TryCircles(q.head<2>(), true);
+        // One of its own is a centre only for all of the others.
+        const std::size_t least = FindAt(q.head<2>()) ? group_.spots.size() - 1 : kLeast;
+        TryCircles(q.head<2>(), true, std::max(least, kLeast));
       }
     }
-    if (group_.spots.size() >= kLeast) {
-      Vec2 centre = Vec2::Zero();
-      for (const Spot& spot : group_.spots) {
-        centre += spot.p;
-      }
-      TryCircles(centre / static_cast<double>(group_.spots.size()), false);
-    }
-    if (group_.spots.size() > kLeast) {
-      TryGrid();
-    }
-    if (group_.spots.size() > kLeast) {
-      TrySeparateCircles();
-    }
+    TryCircles(Centroid(), false, kLeast);
+    TrySeparateCircles();
     while (group_.spots.size() >= kLeast && group_.spots.size() <= kMostForRows && TryRow()) {
     }
     return std::move(patterns_);
   }
 
  private:
+  [[nodiscard]] Vec2 Centroid() const {
+    Vec2 sum = Vec2::Zero();
+    for (const Spot& spot : group_.spots) {
+      sum += spot.p;
+    }
+    return sum / std::max(1.0, static_cast<double>(group_.spots.size()));
+  }
+
   void Add(const std::vector<std::size_t>& members, const Vec2& centre, double diameter) {
     Form form;
     form.kind = FormKind::kHolePattern;
@@ -124,14 +125,16 @@ class PatternFinder {
     patterns_.push_back(std::move(form));
   }
 
-  /** Spots at one distance from a centre, evenly around it. */
-  void TryCircles(const Vec2& centre, bool is_axis) {
+  /** `least` spots or more at one distance from a centre, evenly around it. */
+  void TryCircles(const Vec2& centre, bool is_axis, std::size_t least) {
+    if (group_.spots.size() < kLeast) {
+      return;
+    }
     std::vector<std::pair<double, std::size_t>> by_distance;
     for (std::size_t i = 0; i < group_.spots.size(); ++i) {
       by_distance.emplace_back((group_.spots[i].p - centre).norm(), i);
     }
     std::sort(by_distance.begin(), by_distance.end());
-    std::vector<std::vector<std::size_t>> circles;
     for (std::size_t begin = 0; begin < by_distance.size();) {
       std::size_t end = begin;
       std::vector<std::size_t> members;
@@ -139,10 +142,10 @@ class PatternFinder {
              by_distance[end].first < by_distance[begin].first + 2 * tolerance_) {
         members.push_back(by_distance[end++].second);
       }
-      if (members.size() >= kLeast && by_distance[begin].first > tolerance_ &&
+      if (members.size() >= least && by_distance[begin].first > tolerance_ &&
           IsEven(members, centre, by_distance[begin].first, is_axis)) {
         Add(members, centre, 2 * by_distance[begin].first);
-        return TryCircles(centre, is_axis);  // The indices have changed.
+        return TryCircles(centre, is_axis, least);  // The indices have changed.
       }
       begin = end;
     }
@@ -175,7 +178,8 @@ class PatternFinder {
 
   /** All spots in equal even circles beside each other: two bolt circles in one plate. */
   void TrySeparateCircles() {
-    for (std::size_t k = 8; k >= kLeast; --k) {
+    constexpr std::size_t kMostOnOne = 8;
+    for (std::size_t k = kMostOnOne; k >= kLeast; --k) {
       const std::size_t n = group_.spots.size();
       if (n % k != 0 || n <= k || n > kMostForRows) {
         continue;
@@ -262,12 +266,11 @@ class PatternFinder {
   /** All spots in one full grid, whose directions are those from a corner to its nearest spots. */
   void TryGrid() {
     const auto& spots = group_.spots;
-    // A corner: the spot farthest from the centre.
-    Vec2 centre = Vec2::Zero();
-    for (const Spot& spot : spots) {
-      centre += spot.p;
+    if (spots.size() <= kLeast) {
+      return;
     }
-    centre /= static_cast<double>(spots.size());
+    // A corner: the spot farthest from the centre.
+    const Vec2 centre = Centroid();
     std::size_t corner = 0;
     for (std::size_t i = 1; i < spots.size(); ++i) {
       if ((spots[i].p - centre).norm() > (spots[corner].p - centre).norm() + tolerance_) {

@@ -7,10 +7,10 @@
 namespace hvas::product {
 
 /** Patterns among the holes of `forms`: three or more of one kind, size and direction with their
- entries in one plane, evenly on a circle, in an evenly spaced row, or in a full grid. Circles about
- the axis of another hole, shaft or boss are looked for first (parts of an even circle too), then
- the circle about their centre, then grids, equal circles beside each other that leave no hole over,
- and rows. A square of four is a circle. A hole is in one pattern at most.
+ entries in one plane, evenly on a circle, in an evenly spaced row, or in a full grid. In this
+ order: all of them on one circle, or in one grid; circles about the axis of another hole, shaft or
+ boss (parts of an even circle too); circles about their own centre; equal circles beside each other
+ that leave no hole over; rows. A square of four is a circle. A hole is in one pattern at most.
  @param tolerance Of positions; [m]. */
 [[nodiscard]] std::vector<Form> FindHolePatterns(const std::vector<Form>& forms, double tolerance);
 

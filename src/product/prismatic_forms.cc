@@ -17,6 +17,8 @@ namespace {
 constexpr double kLeastHalfTurn = units::FromDeg(160);
 constexpr double kLargestHalfTurn = units::FromDeg(200);
 constexpr double kLeastSeat = 0.2;        // Of the largest plane's area.
+constexpr std::size_t kMostSeats = 48;    // The largest planes; the others are fins and pads.
+constexpr int kMostPockets = 500;         // Beyond that it is a mesh or a grille.
 constexpr double kLeastChannel = 2;       // Length of a channel, in its widths.
 constexpr double kShallowChannel = 0.25;  // Depth of a channel, in its widths.
 
@@ -265,6 +267,7 @@ std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, 
     }
   }
   std::vector<Form> pockets;
+  int tried = 0;
   for (std::uint32_t f = 0; f < part.faces.size(); ++f) {
     const FaceId floor(f);
     if (is_slot[f] || !IsPlane(part, floor) || part.faces[f].triangle_count == 0) {
@@ -272,7 +275,7 @@ std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, 
     }
     const auto walls = FindWalls(adjacency, set, is_inner_round, floor);
     const double reach = part.box_B.size().norm();
-    if (!walls || walls->size() < 2 || !IsClear(part, floor, reach)) {
+    if (!walls || walls->size() < 2 || ++tried > kMostPockets || !IsClear(part, floor, reach)) {
       continue;
     }
     const Vec3& up = NormalOf(part, floor);
@@ -301,14 +304,22 @@ std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, 
 }
 
 std::vector<Form> FindSeats(const Part& part) {
-  double largest = 0;
+  std::vector<double> areas;
   for (const Feature& feature : part.features) {
-    largest = std::max(largest, feature.kind == FeatureKind::kPlane ? feature.area : 0);
+    if (feature.kind == FeatureKind::kPlane) {
+      areas.push_back(feature.area);
+    }
   }
+  std::sort(areas.rbegin(), areas.rend());
+  if (areas.empty()) {
+    return {};
+  }
+  const double least =
+      std::max(kLeastSeat * areas.front(), areas.size() > kMostSeats ? areas[kMostSeats - 1] : 0.0);
   std::vector<Form> seats;
   for (std::size_t i = 0; i < part.features.size(); ++i) {
     const Feature& feature = part.features[i];
-    if (feature.kind != FeatureKind::kPlane || feature.area < kLeastSeat * largest) {
+    if (feature.kind != FeatureKind::kPlane || feature.area < least || seats.size() >= kMostSeats) {
       continue;
     }
     const FaceId face =

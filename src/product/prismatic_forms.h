@@ -19,7 +19,7 @@ namespace hvas::product {
                                             const std::vector<Form>& slots);
 
 /** Seats: planes of at least a fifth of the largest plane's area that have free space in front, as
- far as half their own size (the square root of their area). */
+ far as half their own size (the square root of their area); the 48 largest of them. */
 [[nodiscard]] std::vector<Form> FindSeats(const Part& part);
 
 }  // namespace hvas::product

@@ -88,7 +88,8 @@ struct HelixSums {
   }
 };
 
-HelixSums SumFace(const Part& part, const Face& face, const Line& line) {
+/** Stops early, with an outer radius beyond `reach`, at a face that goes farther out. */
+HelixSums SumFace(const Part& part, const Face& face, const Line& line, double reach) {
   HelixSums sums;
   for (std::uint32_t t = face.first_triangle; t < face.first_triangle + face.triangle_count; ++t) {
     const auto& triangle = part.mesh.triangles[t];
@@ -115,6 +116,9 @@ HelixSums SumFace(const Part& part, const Face& face, const Line& line) {
       sums.inner = std::min(sums.inner, radius);
       sums.outer = std::max(sums.outer, radius);
     }
+    if (sums.outer > reach) {
+      break;
+    }
   }
   return sums;
 }
@@ -131,7 +135,7 @@ std::optional<HelixSums> FindHelix(const Part& part, const Line& line) {
         DistanceToAxis(face.box_B.centre(), line.origin, line.axis) > reach) {
       continue;
     }
-    const HelixSums sums = SumFace(part, face, line);
+    const HelixSums sums = SumFace(part, face, line, reach);
     if (sums.outer <= reach && sums.IsHelical() && sums.pitch() >= kLeastPitch * 2 * sums.outer &&
         sums.pitch() <= kLargestPitch * 2 * sums.outer) {
       all.Add(sums);

@@ -346,6 +346,13 @@ TEST(Forms, PatternsOfHoles) {
     }
   }
   ExpectOne(Build(plate), FormKind::kHolePattern, 0, 0, 6);
+  TopoDS_Shape sieve = Box(0, 0, 0, 40, 40, 3);  // No circles about its own holes.
+  for (const double x : {5.0, 15.0, 25.0, 35.0}) {
+    for (const double y : {5.0, 15.0, 25.0, 35.0}) {
+      sieve = sieve - Rod(x, y, 0, 2, 3);
+    }
+  }
+  ExpectOne(Build(sieve), FormKind::kHolePattern, 0, 0, 16);
   TopoDS_Shape bar = Box(0, 0, 0, 40, 10, 5);
   for (const double x : {5.0, 12.0, 19.0, 26.0}) {
     bar = bar - Rod(x, 5, 0, 1.5, 5);
