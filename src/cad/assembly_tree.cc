@@ -532,10 +532,15 @@ Result<void> TreeBuilder::Build() {
                 product_->source, "open one of its subassemblies");
   }
   BuildParts();
+  if (product_->occurrences.empty()) {
+    return Fail(ErrorCode::kUnreadable, "the file holds no solid part", product_->source,
+                "export the assembly with its solids, not only curves, points or references");
+  }
   if (std::none_of(product_->parts.begin(), product_->parts.end(),
                    [](const Part& part) { return part.solid_count > 0; })) {
-    return Fail(ErrorCode::kUnreadable, "the file holds no solid part", product_->source,
-                "export the assembly with its solids, not only curves, surfaces or references");
+    diagnostics_->Warn("surfaces-only", product_->source,
+                       "the file holds surfaces but no solid; its parts have no mass",
+                       "export it with its solids");
   }
   for (const product::Occurrence& occurrence : product_->occurrences) {
     for (const Vec3& vertex : product_->part_of(occurrence.id).mesh.vertices) {

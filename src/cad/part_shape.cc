@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -185,7 +186,9 @@ void SetMass(const Body& body, Part* part) {
   constexpr double kMetres = units::kMetresPerMillimetre;
   const SolidMeasure& measure = body.measure;
   part->solid_count = body.solid_count;
-  if (body.solid_count == 0 || !(measure.volume > 0)) {
+  const double faces = std::accumulate(measure.face_areas.begin(), measure.face_areas.end(), 0.0);
+  // A solid of no thickness has what rounding leaves of its volume.
+  if (body.solid_count == 0 || !(measure.volume > 1e-9 * std::pow(faces, 1.5))) {
     return;
   }
   const double density = part->material.density;
@@ -207,11 +210,19 @@ double CalcMeshVolume(const product::Mesh& mesh, const Vec3& about) {
   return six_volumes / 6;
 }
 
-/** Tells of what later stages will feel: no solid, loose faces, holes in the mesh. */
+/** Tells of what later stages will feel: no solid or volume, several solids, holes in the mesh. */
 void CheckPart(const Part& part, int unmeshed, Diagnostics* diagnostics) {
   if (part.solid_count == 0) {
     diagnostics->Warn("no-solid", part.name, "the part has surfaces but no solid; it has no mass",
                       "export it as a solid body");
+  } else if (part.mass.volume <= 0) {
+    diagnostics->Warn("no-volume", part.name, "the solid encloses no volume; it has no mass",
+                      "heal the part in the CAD system and export it again");
+  }
+  if (part.solid_count > 1) {
+    diagnostics->Note("several-solids", part.name,
+                      fmt::format("{} solids; they move as one rigid part", part.solid_count),
+                      "export them as parts of a subassembly to move them apart");
   }
   if (unmeshed > 0) {
     diagnostics->Warn(
