@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include "app/assemble.h"
+#include "app/export.h"
 #include "app/inspect.h"
+#include "app/mate.h"
 
 int main(int argc, char** argv) {
   CLI::App app("hvas: assemble CAD products by hand, and feel it");
@@ -11,6 +13,8 @@ int main(int argc, char** argv) {
   int status = 0;
   hvas::app::AddInspect(&app, &status);
   hvas::app::AddAssemble(&app, &status);
+  hvas::app::AddMate(&app, &status);
+  hvas::app::AddExport(&app, &status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "cad/worker.h"
+#include "cad/worker_export.h"
 #include "cad/worker_import.h"
 
 namespace hvas::cad {
@@ -91,6 +92,9 @@ int Run(std::vector<std::string> arguments) {
   arguments.erase(arguments.begin());
   if (command == "import") {
     return WorkerImport(arguments);
+  }
+  if (command == "export-step") {
+    return WorkerExportStep(arguments);
   }
   return kWorkerUsage;
 }

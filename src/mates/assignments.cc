@@ -11,6 +11,7 @@
 
 #include "base/units.h"
 #include "fits/iso286.h"
+#include "mates/stated_fits.h"
 
 namespace hvas::mates {
 namespace {
@@ -262,21 +263,28 @@ Result<int> ApplyFits(const SideFile& file, const MateChanges& changes, Product*
   return static_cast<int>(std::count(is_changed.begin(), is_changed.end(), true));
 }
 
-Result<int> ApplyAssignments(const std::filesystem::path& file, Product* product) {
+Result<MateChanges> ApplySideFile(const SideFile& file, Product* product) {
+  Product changed = *product;
+  Result<MateChanges> changes = ApplyMates(file, &changed);
+  if (!changes) {
+    return changes;
+  }
+  AssignStatedFits(&changed);
+  const Result<int> count = ApplyFits(file, *changes, &changed);
+  if (!count) {
+    return Unexpected(count.error());
+  }
+  changes->fits = *count;
+  *product = std::move(changed);
+  return changes;
+}
+
+Result<MateChanges> ApplyAssignments(const std::filesystem::path& file, Product* product) {
   const Result<SideFile> side_file = ReadSideFile(file);
   if (!side_file) {
     return Unexpected(side_file.error());
   }
-  Product changed = *product;
-  const Result<MateChanges> changes = ApplyMates(*side_file, &changed);
-  if (!changes) {
-    return Unexpected(changes.error());
-  }
-  const Result<int> count = ApplyFits(*side_file, *changes, &changed);
-  if (count) {
-    *product = std::move(changed);
-  }
-  return count;
+  return ApplySideFile(*side_file, product);
 }
 
 Result<void> AssignFit(Product* product, std::string_view assignment) {

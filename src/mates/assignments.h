@@ -21,10 +21,11 @@ namespace hvas::mates {
 [[nodiscard]] Result<product::OccurrenceId> FindOccurrence(const product::Product& product,
                                                            std::string_view name);
 
-/** What ApplyMates did. */
+/** What a side file did. */
 struct MateChanges {
   std::vector<product::Mate> removed;  ///< As they were, with the ids they had.
   std::vector<product::MateId> added;  ///< In the order of SideFile::added.
+  int fits{0};                         ///< Mates that got a fit or conditions.
 };
 
 /** Takes out the mates that a side file removes and adds those that it adds; ids and joints follow.
@@ -45,9 +46,14 @@ struct MateChanges {
 [[nodiscard]] Result<int> ApplyFits(const SideFile& file, const MateChanges& changes,
                                     product::Product* product);
 
-/** Reads a side file and applies all of it. @returns as ApplyFits. */
-[[nodiscard]] Result<int> ApplyAssignments(const std::filesystem::path& file,
-                                           product::Product* product);
+/** All that a product gets from its files: mates removed and added, the fits that the CAD file
+ states (see AssignStatedFits), and over them those of the side file. All of it, or an error and
+ nothing. */
+[[nodiscard]] Result<MateChanges> ApplySideFile(const SideFile& file, product::Product* product);
+
+/** Reads a side file, and the same. */
+[[nodiscard]] Result<MateChanges> ApplyAssignments(const std::filesystem::path& file,
+                                                   product::Product* product);
 
 /** Sets fits from the command line: "AXIS=H7/p6", with AXIS a mate ("m12" or its key), "all", or
  the name or path of an occurrence with the hole or the shaft. "all" and names leave threads as they

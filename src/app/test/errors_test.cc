@@ -70,6 +70,16 @@ TEST(AssembleErrorTest, FitThatCannotBeAssignedIsNamed) {
   ExpectError({"assemble", file, "--fit", "m99=H7/p6"}, {"m99"});
 }
 
+TEST(InspectErrorTest, NamesThatAreNotThereAreAnsweredWithTheNearest) {
+  const std::string file = ProductFile("bushing");
+  ExpectError({"inspect", file, "--only", "tree,mats"}, {"\"mats\"", "--only", "diagnostics"});
+  ExpectError({"inspect", file, "--part", "chuk"},
+              {"\"chuk\"", "--part", "\"chuck\" may be meant"});
+  ExpectError({"inspect", file, "--occurrence", "shafts"}, {"\"shaft\" may be meant"});
+  ExpectError({"inspect", file, "--mate", "m99"}, {"m99"});
+  ExpectError({"inspect", file, "--kind", "weld"}, {"\"weld\"", "cone-seat"});
+}
+
 TEST(AssembleErrorTest, UnknownPartInTheOrderIsNamed) {
   ExpectError({"assemble", ProductFile("bushing"), "--order", "shaft,spindle"},
               {"bushing.step", "'spindle'", "hvas inspect"});

@@ -2,10 +2,12 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "app/test/run_hvas.h"
+#include "app/text_layout.h"
 
 namespace hvas::app {
 namespace {
@@ -67,9 +69,10 @@ TEST_P(InspectTest, PartsAreAsDrawn) {
     const double tolerance = name.find("gear") == std::string::npos ? 1e-5 : 5e-5;
     EXPECT_NEAR(part["volume_mm3"].get<double>() / drawn["volume_mm3"].get<double>(), 1, tolerance)
         << name;
-    EXPECT_EQ(part["density_kg_per_m3"], drawn["density_kg_m3"]) << name;
-    EXPECT_EQ(part["material"], drawn["material"]) << name;
-    EXPECT_FALSE(part["is_density_assumed"].get<bool>()) << name;
+    const json& material = part["material"];
+    EXPECT_EQ(material["density_kg_per_m3"], drawn["density_kg_m3"]) << name;
+    EXPECT_EQ(material["name"], drawn["material"]) << name;
+    EXPECT_FALSE(material["is_density_assumed"].get<bool>()) << name;
     EXPECT_EQ(part["solid_count"], 1) << name;
   }
 }
@@ -130,7 +133,8 @@ TEST_P(InspectTest, IdsReferToWhatTheyShould) {
     for (const char* side : {is_axis ? "hole" : "a", is_axis ? "shaft" : "b"}) {
       EXPECT_LT(mate[side]["occurrence"].get<std::size_t>(), size("occurrences"));
     }
-    EXPECT_GT(mate[is_axis ? "engaged_mm" : "overlap_mm2"].get<double>(), 0);
+    const bool is_length = is_axis || mate["kind"] == "cone_seat";
+    EXPECT_GT(mate[is_length ? "engaged_mm" : "overlap_mm2"].get<double>(), 0);
   }
 }
 
@@ -147,6 +151,58 @@ TEST(InspectTextTest, TextNamesEveryPartAndEndsWithTheCounts) {
                            "3 of 3 parts linked"}) {
     EXPECT_PRED_FORMAT2(::testing::IsSubstring, text, ran.out);
   }
+}
+
+TEST(InspectTextTest, LinesFitIntoAHundredColumnsAndLongListsSaySo) {
+  const Ran cut = RunHvas({"inspect", ProductFile("frame_500")});
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "more (--all shows them)", cut.out);
+  const Ran all = RunHvas({"inspect", ProductFile("frame_500"), "--all"});
+  EXPECT_EQ(all.out.find("--all"), std::string::npos);
+  EXPECT_GT(all.out.size(), 4 * cut.out.size());
+  for (const std::string* text : {&cut.out, &all.out}) {
+    std::istringstream lines(*text);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(CalcWidth(line), kColumns) << line;
+    }
+  }
+}
+
+TEST(InspectTextTest, NamesInAnyScriptKeepTheirColumns) {
+  EXPECT_EQ(CalcWidth("Wälzlager"), 9U);
+  EXPECT_EQ(CalcWidth("軸受"), 4U);
+  EXPECT_EQ(CalcWidth("Корпус"), 6U);
+  EXPECT_EQ(Shorten("Корпус насоса", 8), "..насоса");
+  EXPECT_EQ(Shorten("a\tb\x1b[0m", 20), "a?b?[0m");
+  EXPECT_EQ(CalcWidth(PadTo("軸受 7", 10)), 10U);
+  EXPECT_EQ(Wrap("eins zwei", 2), "  eins zwei\n");
+}
+
+TEST(InspectFilterTest, SectionsPartsOccurrencesMatesAndKinds) {
+  const std::string file = ProductFile("bushing");
+  json shown = RunHvasJson({"inspect", file, "--only", "mates,fits"});
+  EXPECT_TRUE(shown.contains("mates") && shown.contains("fits") && shown.contains("summary"));
+  EXPECT_FALSE(shown.contains("parts") || shown.contains("faces") || shown.contains("diagnostics"));
+  ASSERT_EQ(shown["mates"].size(), 4U);
+  const std::string key = shown["mates"][2]["key"];
+  shown = RunHvasJson({"inspect", file, "--mate", key});
+  ASSERT_EQ(shown["mates"].size(), 1U);
+  EXPECT_EQ(shown["mates"][0]["id"], 2);
+  EXPECT_EQ(shown["occurrences"].size(), 2U);
+  EXPECT_EQ(shown, RunHvasJson({"inspect", file, "--mate", "m2"}));
+  shown = RunHvasJson({"inspect", file, "--kind", "face-face"});
+  EXPECT_EQ(shown["mates"].size(), 2U);
+  EXPECT_EQ(shown["parts"].size(), 3U);
+  shown = RunHvasJson({"inspect", file, "--part", "chuck"});
+  EXPECT_EQ(shown["parts"].size(), 1U);
+  EXPECT_EQ(shown["occurrences"].size(), 1U);
+  EXPECT_EQ(shown["mates"].size(), 2U);
+  EXPECT_EQ(shown["joints"].size(), 1U);
+  for (const auto& face : shown["faces"]) {
+    EXPECT_EQ(face["part"], 0);
+  }
+  shown = RunHvasJson({"inspect", ProductFile("gear_pump"), "--occurrence", "cover fasteners"});
+  EXPECT_EQ(shown["occurrences"].size(), 16U);
+  EXPECT_EQ(shown["parts"].size(), 2U);
 }
 
 TEST(InspectTextTest, EqualCallsGiveEqualBytes) {

@@ -54,7 +54,9 @@ class Assignments : public ::testing::Test {
 
   Result<int> ApplyText(const std::string& text) {
     std::ofstream(file_) << text;
-    return ApplyAssignments(file_, &product_);
+    return ApplyAssignments(file_, &product_).map([](const MateChanges& changes) {
+      return changes.fits;
+    });
   }
 
   Result<int> ApplyEntries(const std::string& entries) {
@@ -244,7 +246,7 @@ TEST_F(Assignments, AddedMatesComeFromTwoSurfaces) {
                R"(, "b": {"occurrence": "plate", "feature": 1}})"}) {
     Product product = MakeProduct();
     std::ofstream(file_) << file(bad);
-    const Result<int> failed = ApplyAssignments(file_, &product);
+    const Result<MateChanges> failed = ApplyAssignments(file_, &product);
     ASSERT_FALSE(failed.has_value()) << bad;
     EXPECT_EQ(failed.error().where, file_.string() + ":1, mate 1") << bad;
     EXPECT_FALSE(failed.error().remedy.empty()) << bad;

@@ -1,0 +1,149 @@
+#include "app/export.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/glb.h"
+#include "app/load_product.h"
+#include "app/product_json.h"
+#include "app/progress.h"
+#include "app/selection.h"
+#include "base/atomic_file.h"
+#include "cad/export_step.h"
+
+namespace hvas::app {
+namespace {
+
+using product::Product;
+
+struct ExportOptions {
+  LoadOptions load;
+  std::filesystem::path output;
+  bool is_fine{false};
+  bool has_meshes{false};
+  bool is_forced{false};
+};
+
+/** In small letters, with the dot. */
+std::string FormatOf(const std::filesystem::path& file) {
+  std::string format = file.extension().string();
+  std::transform(format.begin(), format.end(), format.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return format;
+}
+
+/** What can be known to fail before the work. */
+Result<void> Check(const ExportOptions& options, const std::string& format) {
+  const std::string name = options.output.string();
+  if (format != ".glb" && format != ".json" && format != ".step" && format != ".stp") {
+    return Fail(ErrorCode::kInvalid, "the name has no ending of a format that can be written", name,
+                "end it with .glb, .json or .step");
+  }
+  std::error_code error;
+  if (std::filesystem::equivalent(options.load.file, options.output, error)) {
+    return Fail(ErrorCode::kInvalid, "this is the file that is exported", name,
+                "choose another name");
+  }
+  if (!options.is_forced &&
+      std::filesystem::exists(std::filesystem::symlink_status(options.output, error))) {
+    return Fail(ErrorCode::kInvalid, "the file is there already", name,
+                "choose another name, or replace it with --force");
+  }
+  return {};
+}
+
+Result<void> WriteStep(const ExportOptions& options, const Product& product) {
+  const auto without = std::count_if(product.parts.begin(), product.parts.end(),
+                                     [](const product::Part& part) { return !part.has_brep; });
+  if (without > 0) {
+    return Fail(ErrorCode::kUnsupported,
+                fmt::format("{} of {} parts are triangles only, which STEP of AP214 cannot hold",
+                            without, product.parts.size()),
+                product.source, "export it as .glb, or start from the CAD system's own STEP file");
+  }
+  cad::ImportControl control;
+  control.limits.time = options.load.time_limit;
+  control.limits.memory = options.load.memory_limit;
+  if (!options.load.is_quiet && IsWatched()) {
+    control.progress = ShowProgress;
+  }
+  const Result<cad::MappedFile> step = cad::ExportStep(options.load.file, control);
+  if (!step) {
+    return Unexpected(step.error());
+  }
+  const auto bytes = step->bytes();
+  return WriteAtomically(
+      options.output, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+Result<void> WriteJson(const ExportOptions& options, const Product& product,
+                       const Diagnostics& diagnostics) {
+  const Selection everything(product);
+  nlohmann::ordered_json json = ToJson(product, diagnostics, everything);
+  if (options.has_meshes) {
+    AddMeshes(product, everything, options.is_fine, &json);
+  }
+  return WriteAtomically(options.output,
+                         json.dump(options.has_meshes ? -1 : 2, ' ', false,
+                                   nlohmann::ordered_json::error_handler_t::replace) +
+                             "\n");
+}
+
+Result<void> Export(const ExportOptions& options) {
+  const std::string format = FormatOf(options.output);
+  if (const auto checked = Check(options, format); !checked) {
+    return checked;
+  }
+  Diagnostics diagnostics;
+  const Result<Product> product = LoadProduct(options.load, &diagnostics);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  if (format == ".glb") {
+    const Result<std::string> glb = MakeGlb(*product, options.is_fine);
+    return glb ? WriteAtomically(options.output, *glb) : Unexpected(glb.error());
+  }
+  return format == ".json" ? WriteJson(options, *product, diagnostics)
+                           : WriteStep(options, *product);
+}
+
+}  // namespace
+
+void AddExport(CLI::App* app, int* status) {
+  CLI::App* command =
+      app->add_subcommand("export", "Write a CAD file as .glb, .json or .step, by the ending of X");
+  const auto options = std::make_shared<ExportOptions>();
+  command->add_option("file", options->load.file, "CAD file")->required();
+  command->add_option("-o,--output", options->output, "File to write")->required();
+  command->add_flag("--fine", options->is_fine, "The meshes for contact, not those for the eye");
+  command->add_flag("--meshes", options->has_meshes, "Meshes in the .json, too");
+  command->add_flag("--force", options->is_forced, "Replace a file that is there");
+  AddLoadOptions(command, &options->load);
+  command->footer(
+      "  .glb   glTF 2.0 in metres, Y up: the tree as nodes, a mesh for each part, colours of\n"
+      "         faces, and with each vertex the index of its face (_FACE_ID)\n"
+      "  .json  what hvas inspect --json prints\n"
+      "  .step  AP214: structure, poses, names and colours, all in one file\n"
+      "Examples:\n"
+      "  hvas export pump.step -o pump.glb\n"
+      "  hvas export pump.step -o pump.json --meshes --fine\n"
+      "  hvas export pump.stp -o whole.step --force");
+  command->callback([options, status] {
+    const Result<void> done = Export(*options);
+    if (!done) {
+      fmt::print(stderr, "hvas: {}\n", done.error().ToString());
+    }
+    *status = done ? 0 : 1;
+  });
+}
+
+}  // namespace hvas::app

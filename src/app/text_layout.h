@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+/** Text in columns, of names in any script. */
+namespace hvas::app {
+
+inline constexpr std::size_t kColumns = 100;
+
+/** Columns that a UTF-8 text takes on a terminal: East Asian wide letters take two. */
+[[nodiscard]] std::size_t CalcWidth(std::string_view text);
+
+/** The end of a text, after "..", where it is wider than that; control characters become '?'. */
+[[nodiscard]] std::string Shorten(std::string_view text, std::size_t width);
+
+/** The same, filled up with spaces. */
+[[nodiscard]] std::string PadTo(std::string_view text, std::size_t width);
+
+/** Words in lines of kColumns, each begun with `indent` spaces; ends with a newline. */
+[[nodiscard]] std::string Wrap(std::string_view text, std::size_t indent);
+
+/** A long list that says when it does not show everything. */
+class ListLimit {
+ public:
+  explicit ListLimit(bool is_all) : is_all_(is_all) {}
+
+  /** Counts one more. @returns false where it is not to be shown. */
+  [[nodiscard]] bool Next() { return ++count_ <= kMost || is_all_; }
+
+  /** "  ... and 12 more (--all shows them)", where there are more. */
+  void PrintRest() const;
+
+ private:
+  static constexpr std::size_t kMost = 25;
+  bool is_all_;
+  std::size_t count_{0};
+};
+
+}  // namespace hvas::app

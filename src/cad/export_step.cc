@@ -1,0 +1,69 @@
+#include "cad/export_step.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/clock.h"
+#include "cad/worker.h"
+
+namespace hvas::cad {
+namespace {
+
+constexpr double kNsPerSecond = 1e9;
+
+Unexpected Explain(const WorkerRun& run, const std::string& name) {
+  const std::string message = fmt::format("the writer {}", run.Describe());
+  switch (run.fate) {
+    case WorkerFate::kCancelled:
+      return Fail(ErrorCode::kCancelled, "exporting it was stopped", name);
+    case WorkerFate::kTimeUp:
+    case WorkerFate::kPartTimeUp:
+      return Fail(ErrorCode::kOutOfResource, message, name, "allow more with --time-limit");
+    case WorkerFate::kNoMemory:
+      return Fail(ErrorCode::kOutOfResource, message, name, "allow more with --memory-limit");
+    default:
+      return Fail(ErrorCode::kUnreadable, message, name, "export it as .glb instead");
+  }
+}
+
+}  // namespace
+
+Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportControl& control) {
+  const Result<std::filesystem::path> path = CheckInputFile(file);
+  if (!path) {
+    return Unexpected(path.error());
+  }
+  const Result<std::filesystem::path> worker = FindWorker();
+  if (!worker) {
+    return Unexpected(worker.error());
+  }
+  WorkerCall call;
+  call.program = *worker;
+  call.arguments = {"export-step", path->string()};
+  const auto limit_ns = static_cast<std::int64_t>(control.limits.time * kNsPerSecond);
+  call.deadline_ns = MonotonicNs() + limit_ns;
+  call.part_limit_ns = limit_ns;
+  call.memory = control.limits.memory;
+  call.stop = control.stop;
+  call.progress = control.progress;
+  WorkerRun run = RunWorker(call);
+  if (control.progress) {
+    control.progress("done", 1);
+  }
+  const std::string name = file.filename().string();
+  if (run.fate != WorkerFate::kFinished) {
+    return Explain(run, name);
+  }
+  const auto bytes = run.output.bytes();
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!text.starts_with("ISO-10303-21")) {
+    return Fail(ErrorCode::kUnreadable, std::string(text.substr(0, text.find('\n'))), name,
+                "export it as .glb instead");
+  }
+  return std::move(run.output);
+}
+
+}  // namespace hvas::cad

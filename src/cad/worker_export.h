@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hvas::cad {
+
+/** `hvas-cad export-step FILE`: reads a STEP file and writes it to kOutputDescriptor as one STEP
+ file, or one line that says why not.
+ @returns The exit status. */
+[[nodiscard]] int WorkerExportStep(const std::vector<std::string>& arguments);
+
+}  // namespace hvas::cad
