@@ -292,13 +292,13 @@ class Writer {
 /** The bytes of the smallest value of a kind: its texts and lists empty. */
 template <typename T>
 std::size_t SmallestSize() {
-  static const std::size_t kSize = [] {
+  static const std::size_t size = [] {
     ByteWriter bytes;
     Writer writer(&bytes);
     writer(T());
     return bytes.bytes().size();
   }();
-  return kSize;
+  return size;
 }
 
 class Reader {
