@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -23,10 +24,25 @@ constexpr std::uint32_t kNone = kNoTriangle;
 // Tolerances, in resolutions. The last is for meshes that make no sense at the others.
 constexpr std::array<double, 4> kLevels{1, 10, 100, 400};
 constexpr std::size_t kUsualLevels = 3;
-constexpr std::size_t kFailuresAtFull =
-    3000;  // Seeds in vain before whole surroundings are skipped.
+// Seeds in vain before their smooth surroundings are skipped too, ever more of them.
+constexpr std::size_t kFailuresAtFull = 1000;
+constexpr std::size_t kMostSkipped = 2000;
 const double kSmoothCosine = std::cos(units::FromDeg(40));
-const double kSharpCosine = std::cos(units::FromDeg(12));
+
+/** Marks up to `count` facets that are reached from one over smooth edges. */
+void SkipAround(const Facets& facets, std::uint32_t seed, std::size_t count,
+                std::vector<bool>* is_tried) {
+  std::vector<std::uint32_t> queue(1, seed);
+  std::set<std::uint32_t> seen{seed};
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    (*is_tried)[queue[i]] = true;
+    for (const FacetLink& link : facets.links_of(queue[i])) {
+      if (queue.size() < count && link.cosine > kSmoothCosine && seen.insert(link.facet).second) {
+        queue.push_back(link.facet);
+      }
+    }
+  }
+}
 
 class Segmenter {
  public:
@@ -139,9 +155,7 @@ void Segmenter::TakeCurved(const Facets& facets, double tolerance, SurfaceGrower
         Label(facets, member, segment);
       }
     } else if (++failures > kFailuresAtFull) {
-      for (const std::uint32_t other : grower->surroundings()) {
-        is_tried[other] = true;
-      }
+      SkipAround(facets, f, std::min<std::size_t>(failures / 4, kMostSkipped), &is_tried);
     }
   }
 }
@@ -167,6 +181,7 @@ void Segmenter::RunLevel(double tolerance, bool is_last) {
 void Segmenter::TakePlanes(const Facets& facets, const SurfaceGrower& grower, double tolerance,
                            bool is_last) {
   const double total = std::accumulate(mesh_.area.begin(), mesh_.area.end(), 0.0);
+  const bool is_tight = tolerance <= 2 * mesh_.resolution;
   std::vector<std::uint32_t> planes;
   for (std::uint32_t f = 0; f < facets.size(); ++f) {
     if (grower.is_taken(f) || facets.normal[f].isZero()) {
@@ -183,8 +198,8 @@ void Segmenter::TakePlanes(const Facets& facets, const SurfaceGrower& grower, do
     const std::size_t corners = facets.corners[f].size();
     const std::size_t triangles = facets.triangles[f].size();
     const bool is_overdetermined = corners >= 6 || (corners >= 4 && facets.area[f] > 5e-3 * total);
-    const bool is_plane = !is_smooth || (triangles >= 2 && is_overdetermined) ||
-                          (is_last && facets.area[f] > 4 * largest);
+    const bool is_plane = !is_smooth || (is_tight && triangles >= 2 && is_overdetermined) ||
+                          ((is_last || !is_tight) && facets.area[f] > 4 * largest);
     if (is_plane) {
       planes.push_back(f);
     }

@@ -25,9 +25,10 @@ const double kStripCosine = std::cos(units::FromDeg(25));
 const double kPatchCosine = std::cos(units::FromDeg(35));
 constexpr std::size_t kMaxRing = 40;
 constexpr std::size_t kMaxFitPoints = 1500;
-constexpr double kGain = 1.05;    // By this much a less simple surface has to be larger.
-constexpr double kLeastBend = 6;  // Bend of a curved surface over its extent, in tolerances.
-constexpr double kApart = 2e-3;   // Directions that differ by more are two [rad].
+constexpr double kGain = 1.05;           // By this much a less simple surface has to be larger.
+constexpr double kLeastBend = 6;         // Bend of a curved surface over its extent, in tolerances.
+constexpr double kLeastLooseTurn = 0.3;  // Of a loosely fitted one, to each side of its mean [rad].
+constexpr double kApart = 2e-3;          // Directions that differ by more are two [rad].
 
 /** How many different values there are, of which neighbours differ by more than a gap. */
 std::size_t CountDistinct(std::vector<double> values, double gap) {
@@ -242,12 +243,25 @@ void SurfaceGrower::DropCaps(const Surface& surface, std::vector<std::uint32_t>*
   members->resize(kept);
 }
 
+/** Whether the normals of facets stray from their mean by more than an angle. */
+bool SurfaceGrower::TurnsMoreThan(double angle, std::span<const std::uint32_t> members) const {
+  Vec3 mean = Vec3::Zero();
+  for (const std::uint32_t f : members) {
+    mean += facets_.area[f] * facets_.normal[f];
+  }
+  const double least = std::cos(angle) * mean.norm();
+  return std::any_of(members.begin(), members.end(), [&](std::uint32_t f) {
+    return !facets_.normal[f].isZero() && facets_.normal[f].dot(mean) <= least;
+  });
+}
+
 /** Whether the corners say more than the surface has parameters: three flats around an axis, three
  circles of a sphere, four of a torus; and that it is no plane. */
 bool SurfaceGrower::IsSupported(const Surface& surface, std::span<const std::uint32_t> members) {
   CollectPoints(members);
   const double extent = CalcExtent(points_);
-  if (!IsPlausible(surface, extent) || CalcBend(points_) < kLeastBend * tolerance_) {
+  if (!IsPlausible(surface, extent) || CalcBend(points_) < kLeastBend * tolerance_ ||
+      (tolerance_ > 2 * mesh_.resolution && !TurnsMoreThan(kLeastLooseTurn, members))) {
     return false;
   }
   const Mat3 R = spatial::FrameFromZ(surface.axis).toRotationMatrix();

@@ -27,9 +27,6 @@ class SurfaceGrower {
    nothing has taken yet; the simplest when others gain little. */
   [[nodiscard]] std::optional<GrownSurface> Find(std::uint32_t seed);
 
-  /** The facets of the last seed, itself included. */
-  [[nodiscard]] const std::vector<std::uint32_t>& surroundings() const { return ring_; }
-
   void Take(const GrownSurface& grown);
 
   [[nodiscard]] bool is_taken(std::uint32_t facet) const { return is_taken_[facet]; }
@@ -47,6 +44,7 @@ class SurfaceGrower {
   void DropCaps(const spatial::Surface& surface, std::vector<std::uint32_t>* members) const;
   [[nodiscard]] bool IsSupported(const spatial::Surface& surface,
                                  std::span<const std::uint32_t> members);
+  [[nodiscard]] bool TurnsMoreThan(double angle, std::span<const std::uint32_t> members) const;
   [[nodiscard]] bool HasSmoothRim(std::span<const std::uint32_t> members);
   void CollectPoints(std::span<const std::uint32_t> members);
 

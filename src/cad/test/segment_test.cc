@@ -22,7 +22,9 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
+#include "cad/read_cad.h"
 #include "cad/test/mesh_fixture.h"
+#include "cad/test/step_fixture.h"
 #include "cad/triangle_part.h"
 
 namespace hvas::cad {
@@ -403,6 +405,37 @@ TEST(TrianglePart, TakesAnyTriangles) {
       EXPECT_EQ(triangles, chaos.mesh.triangles.size());
     }
   }
+}
+
+// The same solid read as B-rep and from its triangles: the same holes, shafts and cones, in the
+// same places.
+TEST(TrianglePart, HasTheFeaturesOfItsSolid) {
+  const testing::ScratchFolder folder;
+  testing::DocumentBuilder builder;
+  builder.AddPart(MakePlate(), "plate");
+  builder.Write(folder / "plate.step");
+  Diagnostics diagnostics;
+  const auto solid = ReadCad(folder / "plate.step", {}, &diagnostics);
+  ASSERT_TRUE(solid) << solid.error().ToString();
+  TriangleSoup soup = testing::MeshOf(MakePlate(), 0.02, 0.3);
+  testing::RoundToFloat(&soup);
+  const Part twin = Build(soup);
+  const std::vector<product::Feature>& expected = solid->parts.at(0).features;
+  ASSERT_EQ(twin.features.size(), expected.size());
+  EXPECT_GE(expected.size(), 10U);
+  for (const product::Feature& feature : expected) {
+    const bool is_found =
+        std::any_of(twin.features.begin(), twin.features.end(), [&](const product::Feature& other) {
+          return other.kind == feature.kind && std::abs(other.radius - feature.radius) < 1e-7 &&
+                 std::abs(other.half_angle - feature.half_angle) < 1e-5 &&
+                 other.axis_B.cross(feature.axis_B).norm() < 1e-5 &&
+                 (feature.kind == product::FeatureKind::kPlane
+                      ? std::abs((other.origin_B - feature.origin_B).dot(feature.axis_B)) < 1e-7
+                      : (other.origin_B - feature.origin_B).cross(feature.axis_B).norm() < 1e-6);
+        });
+    EXPECT_TRUE(is_found) << static_cast<int>(feature.kind) << " " << feature.radius;
+  }
+  EXPECT_NEAR(twin.mass.volume, solid->parts[0].mass.volume, 1e-3 * twin.mass.volume);
 }
 
 TEST(TrianglePart, IsTheSameWhenBuiltAgain) {
