@@ -151,6 +151,11 @@ Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
   if (!product) {
     return Unexpected(product.error());
   }
+  if (!(product->mass() > 0)) {
+    return Fail(ErrorCode::kUnsupported,
+                "no part of it has a mass, so there is nothing to assemble", product->source,
+                "export it with its solids, not as surfaces");
+  }
   simulation::CompileOptions compile;
   compile.seed = options.seed;
   if (const auto directory = CacheDirectory(options.load)) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <sstream>
@@ -17,8 +18,12 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
 #include <gp_Ax2.hxx>
 #include <gtest/gtest.h>
 
@@ -259,19 +264,25 @@ TEST(ForEachIndex, DoesAllOnceAndHandsOnTheFirstFailure) {
   }
 }
 
+/** Replaces every occurrence of a word in a file. */
+void Replace(const std::filesystem::path& file, const std::string& word, const std::string& by) {
+  std::stringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  std::string content = text.str();
+  ASSERT_NE(content.find(word), std::string::npos) << word;
+  for (std::size_t at = 0; (at = content.find(word, at)) != std::string::npos; at += by.size()) {
+    content.replace(at, word.size(), by);
+  }
+  std::ofstream(file, std::ios::binary) << content;
+}
+
 /** Imports a plate whose name in the file is given in raw bytes. */
 std::string ReadNameBack(const std::string& bytes) {
   const ScratchFolder folder;
   DocumentBuilder builder;
   builder.AddPart(MakePlate(), "PLACEHOLDER");
   builder.Write(folder / "a.step");
-  std::stringstream text;
-  text << std::ifstream(folder / "a.step", std::ios::binary).rdbuf();
-  std::string content = text.str();
-  for (std::size_t at = 0; (at = content.find("PLACEHOLDER", at)) != std::string::npos;) {
-    content.replace(at, 11, bytes);
-  }
-  std::ofstream(folder / "a.step", std::ios::binary) << content;
+  Replace(folder / "a.step", "PLACEHOLDER", bytes);
   Diagnostics diagnostics;
   const auto product = ReadCad(folder / "a.step", {}, &diagnostics);
   EXPECT_TRUE(product.has_value());
@@ -314,6 +325,84 @@ TEST(Units, OfEveryKindGiveTheSameCube) {
     EXPECT_NEAR(product->volume(), 8e-6, 1e-9 * 8e-6);
     EXPECT_EQ(product->parts[0].faces.size(), 6u);
   }
+}
+
+TEST(Units, MayBeOfTheFilesOwnMaking) {
+  const ScratchFolder folder;
+  DocumentBuilder builder;
+  builder.AddPart(BRepPrimAPI_MakeBox(25.4, 25.4, 25.4).Shape(), "cube");
+  builder.Write(folder / "cube.step", "INCH");
+  Replace(folder / "cube.step", "'INCH'", "'SPAN'");
+  Replace(folder / "cube.step", "WITH_UNIT(25.4,", "WITH_UNIT(228.6,");
+  Diagnostics diagnostics;
+  const auto product = ReadCad(folder / "cube.step", {}, &diagnostics);
+  ASSERT_TRUE(product.has_value());
+  EXPECT_NEAR(product->volume(), std::pow(0.2286, 3), 1e-9 * std::pow(0.2286, 3));
+}
+
+TEST(OddContent, SurfacesAloneAreAProductWithoutMass) {
+  DocumentBuilder builder;
+  const TopoDS_Shape face =
+      TopExp_Explorer(BRepPrimAPI_MakeCylinder(3, 9).Shape(), TopAbs_FACE).Current();
+  builder.AddPart(face, "sheet");
+  builder.AddPart(Moved(face, MakeMotion(1, 50)), "sheet");
+  Diagnostics diagnostics;
+  const Product product = Build(&builder, &diagnostics);
+  EXPECT_EQ(product.occurrences.size(), 2u);
+  ASSERT_EQ(product.parts.size(), 1u);
+  EXPECT_EQ(product.mass(), 0);
+  EXPECT_EQ(CountCode(diagnostics, "surfaces-only"), 1);
+  EXPECT_EQ(CountCode(diagnostics, "no-solid"), 1);
+}
+
+TEST(OddContent, SeveralSolidsOfOnePartMoveTogether) {
+  TopoDS_Compound compound;
+  const BRep_Builder make;
+  make.MakeCompound(compound);
+  make.Add(compound, BRepPrimAPI_MakeBox(10, 10, 10).Shape());
+  make.Add(compound, BRepPrimAPI_MakeBox(gp_Pnt(30, 0, 0), 10, 10, 20).Shape());
+  DocumentBuilder builder;
+  builder.AddPart(compound, "pair");
+  Diagnostics diagnostics;
+  const Product product = Build(&builder, &diagnostics);
+  ASSERT_EQ(product.parts.size(), 1u);
+  EXPECT_EQ(product.parts[0].solid_count, 2);
+  EXPECT_EQ(CountCode(diagnostics, "several-solids"), 1);
+  EXPECT_NEAR(product.volume(), 3e-6, 1e-15);
+  // (5 * 1000 + 35 * 2000) / 3000 along x.
+  EXPECT_NEAR(product.parts[0].mass.p_BoBcm_B.x(), 0.025, 1e-12);
+}
+
+TEST(OddContent, ASolidOfNoThicknessHasNoMass) {
+  TopoDS_Solid flat;
+  TopoDS_Shell shell;
+  const BRep_Builder make;
+  make.MakeShell(shell);
+  const TopoDS_Shape face =
+      TopExp_Explorer(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), TopAbs_FACE).Current();
+  make.Add(shell, face);
+  make.Add(shell, face.Reversed());
+  make.MakeSolid(flat);
+  make.Add(flat, shell);
+  DocumentBuilder builder;
+  builder.AddPart(flat, "flat");
+  Diagnostics diagnostics;
+  const Product product = Build(&builder, &diagnostics);
+  EXPECT_EQ(product.mass(), 0);
+  EXPECT_EQ(CountCode(diagnostics, "no-volume"), 1);
+}
+
+TEST(OddContent, AThousandTimesTooLargeIsMeshedAsFast) {
+  gp_Trsf enlarge;
+  enlarge.SetScale(gp_Pnt(), 1000);
+  DocumentBuilder builder;
+  builder.AddPart(MakePlate(), "plate");
+  builder.AddPart(Moved(MakePlate(), enlarge), "huge plate");
+  Diagnostics diagnostics;
+  const Product product = Build(&builder, &diagnostics);
+  ASSERT_EQ(product.parts.size(), 2u);
+  EXPECT_EQ(product.parts[0].mesh.triangles.size(), product.parts[1].mesh.triangles.size());
+  EXPECT_NEAR(product.parts[1].mass.volume, 1e9 * product.parts[0].mass.volume, 1);
 }
 
 }  // namespace
