@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -22,8 +23,9 @@ namespace {
 
 using product::Product;
 
-/** Unit and names of a 3MF file, which assimp passes over. */
-void Read3mfModel(const std::filesystem::path& file, SceneConventions* conventions,
+/** Unit and names of a 3MF file, which assimp passes over. @returns false where the archive holds
+ no model that can be read: assimp ends the process then. */
+bool Read3mfModel(const std::filesystem::path& file, SceneConventions* conventions,
                   Diagnostics* diagnostics) {
   constexpr std::size_t kLargestModel = std::size_t{1} << 31;
   const auto archive = MappedFile::Open(file);
@@ -37,7 +39,7 @@ void Read3mfModel(const std::filesystem::path& file, SceneConventions* conventio
   const auto xml = archive ? ReadZipEntry(archive->bytes(), is_model, kLargestModel)
                            : std::optional<std::string>();
   if (!xml) {
-    return;  // assimp says what is wrong.
+    return false;
   }
   const Model3mf model = ParseModel3mf(*xml);
   conventions->length_unit = model.length_unit;
@@ -49,10 +51,13 @@ void Read3mfModel(const std::filesystem::path& file, SceneConventions* conventio
   for (const auto& [id, name] : model.names) {
     conventions->names.emplace(fmt::format("Object_{}", id), name);
   }
+  return true;
 }
 
-SceneConventions FindConventions(const std::filesystem::path& file, MeshFormat format,
-                                 const ImportOptions& options, Diagnostics* diagnostics) {
+/** Empty for a file that is too damaged to be shown to assimp. */
+std::optional<SceneConventions> FindConventions(const std::filesystem::path& file,
+                                                MeshFormat format, const ImportOptions& options,
+                                                Diagnostics* diagnostics) {
   SceneConventions conventions;
   conventions.format = format;
   switch (format) {
@@ -60,7 +65,9 @@ SceneConventions FindConventions(const std::filesystem::path& file, MeshFormat f
       conventions.is_y_up = true;
       break;
     case MeshFormat::k3mf:
-      Read3mfModel(file, &conventions, diagnostics);
+      if (!Read3mfModel(file, &conventions, diagnostics)) {
+        return std::nullopt;
+      }
       break;
     case MeshFormat::kStl:
     case MeshFormat::kObj:
@@ -126,7 +133,12 @@ Result<Product> ReadMeshFile(const std::filesystem::path& file, MeshFormat forma
     watch.progress("read", 0);
   }
   const std::string name = file.filename().string();
+  const std::optional<SceneConventions> conventions =
+      FindConventions(file, format, options, diagnostics);
   ConfinedIo::Log log;
+  if (!conventions) {
+    return NotRead(name, format, "the archive is damaged, or holds no model", log);
+  }
   Assimp::Importer importer;
   importer.SetIOHandler(new ConfinedIo(file, &log));  // The importer owns it.
   const aiScene* scene =
@@ -138,8 +150,7 @@ Result<Product> ReadMeshFile(const std::filesystem::path& file, MeshFormat forma
   product.name = file.stem().string();
   product.source = name;
   TellFiles(log, file, watch, diagnostics);
-  const SceneConventions conventions = FindConventions(file, format, options, diagnostics);
-  BuildSceneProduct(*scene, conventions, options, watch, &product, diagnostics);
+  BuildSceneProduct(*scene, *conventions, options, watch, &product, diagnostics);
   if (product.occurrences.empty()) {
     return Fail(ErrorCode::kUnreadable, "there is no triangle in it", name,
                 "export the surfaces of the parts as triangles");
