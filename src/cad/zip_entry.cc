@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include <zlib.h>
 
@@ -82,10 +83,15 @@ std::optional<std::string> ReadEntry(const Bytes& bytes, std::size_t entry, std:
     return std::nullopt;
   }
   const std::string_view packed = bytes.Text(data, packed_size);
-  if (method == 0) {
-    return packed.size() <= limit ? std::optional(std::string(packed)) : std::nullopt;
+  std::optional<std::string> content;
+  if (method == 0 && packed.size() <= limit) {
+    content = std::string(packed);
+  } else if (method == Z_DEFLATED) {
+    content = Inflate(packed, limit);
   }
-  return method == Z_DEFLATED ? Inflate(packed, limit) : std::nullopt;
+  const bool is_whole = content && crc32_z(0, reinterpret_cast<const Bytef*>(content->data()),
+                                           content->size()) == bytes.Number(entry + 16, 4);
+  return is_whole ? std::move(content) : std::nullopt;
 }
 
 }  // namespace
