@@ -18,13 +18,12 @@
 namespace hvas::cad {
 namespace {
 
-constexpr double kIntegrationError = 1e-7;  // Relative.
+constexpr double kIntegrationError = 1e-10;  // Relative.
 
-/** Whether the fixed quadrature is exact on a curved face: an analytic surface between curves that
- are lines or conics in its parameters. */
+/** Whether the fixed quadrature is exact on a face: an analytic surface between curves that are
+ lines or conics in its parameters. */
 bool IsSimple(const TopoDS_Face& face, GeomAbs_SurfaceType type) {
-  if (type != GeomAbs_Cylinder && type != GeomAbs_Cone && type != GeomAbs_Sphere &&
-      type != GeomAbs_Torus) {
+  if (type > GeomAbs_Torus) {
     return false;
   }
   for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
@@ -87,19 +86,25 @@ BRepGProp_Vinert Integrate(const TopoDS_Face& face, const gp_Pnt& about, bool is
 /** Adds the cones from the point to the parts of a face. @returns the area of the face. */
 double AddFace(const TopoDS_Face& face, const gp_Pnt& about, SolidMeasure* sum) {
   GProp_GProps area(about);
-  BRepGProp::SurfaceProperties(face, area);
   TopLoc_Location location;
   if (BRep_Tool::Surface(face, location).IsNull()) {  // Triangles only.
+    BRepGProp::SurfaceProperties(face, area);
     return std::abs(area.Mass());
   }
   const BRepAdaptor_Surface surface(face, /*R=*/false);
+  const bool is_simple = IsSimple(face, surface.GetType());
+  if (surface.GetType() == GeomAbs_Plane && !is_simple) {
+    BRepGProp::SurfaceProperties(face, area, kIntegrationError);
+  } else {
+    BRepGProp::SurfaceProperties(face, area);
+  }
   if (surface.GetType() == GeomAbs_Plane) {
     // Cones of one height: integrals over the area, over 3, 4 and 5 by the degree.
     const double height = (area.Mass() < 0 ? -1 : 1) * CalcHeight(face, surface.Plane(), about);
     AddIntegrals(area, about, height * Vec3(1.0 / 3, 1.0 / 4, 1.0 / 5), sum);
     return std::abs(area.Mass());
   }
-  const BRepGProp_Vinert volume = Integrate(face, about, IsSimple(face, surface.GetType()));
+  const BRepGProp_Vinert volume = Integrate(face, about, is_simple);
   AddIntegrals(volume, about, Vec3::Ones(), sum);
   return std::abs(area.Mass());
 }

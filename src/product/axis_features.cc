@@ -17,6 +17,7 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kLeastCoverage = units::FromDeg(200);
 constexpr double kLargestGap = units::FromDeg(160);  // What 200 deg in one piece leave.
 constexpr double kLeastSum = units::FromDeg(60);     // Of several arcs.
+constexpr double kShortestArc = units::FromDeg(20);  // That guides; the tips of teeth do not.
 constexpr double kAngle = 1e-3;                      // Same direction or half angle [rad].
 
 using Arc = std::pair<double, double>;  // Start and length [rad].
@@ -73,33 +74,54 @@ struct Coverage {
   double largest_gap{kTwoPi};
 };
 
-Coverage CalcCoverage(const std::vector<const AxisFace*>& faces) {
+/** The union of arcs as arcs that do not touch, by their start in [0, 2 pi); the last may go on
+ beyond 2 pi. */
+std::vector<Arc> MergeArcs(const std::vector<const AxisFace*>& faces) {
   constexpr double kTouching = 1e-6;  // Rounding between neighbouring triangles [rad].
-  std::vector<Arc> arcs;              // Start in [0, 2 pi), end; cut at 2 pi.
+  std::vector<Arc> arcs;
   for (const AxisFace* face : faces) {
     for (const auto& [start, length] : face->arcs) {
-      const double low = start - kTwoPi * std::floor(start / kTwoPi);
-      arcs.emplace_back(low, std::min(low + length, kTwoPi));
-      if (low + length > kTwoPi) {
-        arcs.emplace_back(0, low + length - kTwoPi);
-      }
+      arcs.emplace_back(start - kTwoPi * std::floor(start / kTwoPi), length);
     }
   }
   std::sort(arcs.begin(), arcs.end());
+  std::vector<Arc> merged;
+  const auto end_of = [](const Arc& arc) { return arc.first + arc.second; };
+  for (const Arc& arc : arcs) {
+    if (merged.empty() || arc.first > end_of(merged.back()) + kTouching) {
+      merged.push_back(arc);
+    } else {
+      Arc& last = merged.back();
+      last.second = std::max(last.second, end_of(arc) - last.first);
+    }
+  }
+  // What reaches beyond a full turn covers the first ones.
+  while (merged.size() > 1 && end_of(merged.back()) - kTwoPi + kTouching >= merged.front().first) {
+    Arc& last = merged.back();
+    last.second = std::max(last.second, end_of(merged.front()) + kTwoPi - last.first);
+    merged.erase(merged.begin());
+  }
+  return merged;
+}
+
+/** Of the arcs that are `shortest` or longer. */
+Coverage CalcCoverage(const std::vector<const AxisFace*>& faces, double shortest = 0) {
+  std::vector<Arc> arcs = MergeArcs(faces);
+  arcs.erase(std::remove_if(arcs.begin(), arcs.end(),
+                            [shortest](const Arc& arc) { return arc.second < shortest; }),
+             arcs.end());
   Coverage coverage;
   if (arcs.empty()) {
     return coverage;
   }
   coverage.largest_gap = 0;
-  double end = 0;
-  for (const auto& [low, high] : arcs) {
-    coverage.sum += std::max(0.0, high - std::max(low, end));
-    if (end > 0 && low > end + kTouching) {
-      coverage.largest_gap = std::max(coverage.largest_gap, low - end);
-    }
-    end = std::max(end, high);
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    const Arc& next = arcs[(i + 1) % arcs.size()];
+    const double turn = i + 1 == arcs.size() ? kTwoPi : 0;
+    const double gap = next.first + turn - arcs[i].first - arcs[i].second;
+    coverage.largest_gap = std::max(coverage.largest_gap, gap);
+    coverage.sum += std::min(arcs[i].second, kTwoPi);
   }
-  coverage.largest_gap = std::max(coverage.largest_gap, arcs.front().first + kTwoPi - end);
   return coverage;
 }
 
@@ -118,7 +140,7 @@ double CalcLeastGap(const std::vector<AxisFace>& faces) {
         there.push_back(&face);
       }
     }
-    const Coverage coverage = CalcCoverage(there);
+    const Coverage coverage = CalcCoverage(there, kShortestArc);
     if (coverage.sum >= kLeastSum) {
       least = std::min(least, coverage.largest_gap);
     }
