@@ -300,7 +300,7 @@ void AddAssemble(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
       "assemble", "Let a simulated person assemble a product, part by part, and keep the evidence");
   const auto options = std::make_shared<AssembleOptions>();
-  command->add_option("file", options->load.file, "STEP file (AP203, AP214, AP242)")->required();
+  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file")->required();
   command
       ->add_option("--order", options->order,
                    "Parts to begin with, by name, path or id (o12), separated by commas; the rest "

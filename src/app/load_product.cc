@@ -1,12 +1,15 @@
 #include "app/load_product.h"
 
 #include <cstdio>
+#include <map>
+#include <string>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "app/progress.h"
+#include "base/units.h"
 #include "cad/import.h"
 #include "contact/shape_cache.h"
 #include "mates/assignments.h"
@@ -15,11 +18,37 @@
 
 namespace hvas::app {
 
+namespace {
+
+/** Metres in the units that --unit knows. */
+const std::map<std::string, double>& LengthUnits() {
+  static const std::map<std::string, double> metres{{"mm", units::kMetresPerMillimetre},
+                                                    {"cm", 1e-2},
+                                                    {"m", 1.0},
+                                                    {"in", units::kMetresPerInch},
+                                                    {"ft", 12 * units::kMetresPerInch}};
+  return metres;
+}
+
+void AddUnitOption(CLI::App* command, double* length_unit) {
+  command
+      ->add_option_function<std::string>(
+          "--unit",
+          [length_unit](const std::string& name) { *length_unit = LengthUnits().at(name); },
+          "Length unit of OBJ and STL files, which state none: mm (when not given), cm, m, in or "
+          "ft; all other formats state theirs, and it changes nothing for them")
+      ->check(CLI::IsMember(&LengthUnits()))
+      ->type_name("UNIT");
+}
+
+}  // namespace
+
 void AddLoadOptions(CLI::App* command, LoadOptions* options) {
   command->add_flag("--strict", options->is_strict, "Take warnings for errors");
   command->add_flag("--quiet,-q", options->is_quiet, "No progress");
   command->add_flag("!--no-cache", options->is_cache_used,
                     "Read and prepare everything anew, and keep nothing on disk");
+  AddUnitOption(command, &options->length_unit);
   command
       ->add_option("--time-limit", options->time_limit,
                    "Longest time for reading the file, in seconds")
@@ -44,7 +73,9 @@ Result<product::Product> LoadInferred(const LoadOptions& options, Diagnostics* d
   if (!options.is_quiet && IsWatched()) {
     control.progress = ShowProgress;
   }
-  auto product = cad::Import(options.file, {}, diagnostics, control);
+  cad::ImportOptions import;
+  import.length_unit = options.length_unit;
+  auto product = cad::Import(options.file, import, diagnostics, control);
   if (!product) {
     return product;
   }

@@ -23,11 +23,12 @@ struct LoadOptions {
   bool is_strict{false};          ///< Warnings are errors.
   bool is_quiet{false};           ///< No progress on stderr.
   bool is_cache_used{true};       ///< Keeps and takes what was read and prepared on disk.
+  double length_unit{1e-3};       ///< Of files that state none [m].
   double time_limit{600};         ///< For reading the file [s].
   std::uint64_t memory_limit{0};  ///< For reading the file [bytes]; 0: three quarters of all.
 };
 
-/** Adds --strict, --quiet, --no-cache, --time-limit and --memory-limit to a command. */
+/** Adds --strict, --quiet, --no-cache, --unit, --time-limit and --memory-limit to a command. */
 void AddLoadOptions(CLI::App* command, LoadOptions* options);
 
 /** The directory for what is kept between runs; none where the user wants none. */
@@ -37,10 +38,10 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options);
 [[nodiscard]] Result<product::Product> LoadInferred(const LoadOptions& options,
                                                     Diagnostics* diagnostics);
 
-/** Opens a CAD file ready to assemble: imported, mates inferred, the mates and fits of the side file
- NAME.hvas.json (if there is one) and then those of the command line assigned. Shows progress on a
- terminal. With --strict it ends as CheckStrict says.
- Errors: those of cad::Import, of the assignments and of CheckStrict. */
+/** Opens a CAD file ready to assemble: imported, mates inferred, the mates and fits of the side
+ file NAME.hvas.json (if there is one) and then those of the command line assigned. Shows progress
+ on a terminal. With --strict it ends as CheckStrict says. Errors: those of cad::Import, of the
+ assignments and of CheckStrict. */
 [[nodiscard]] Result<product::Product> LoadProduct(const LoadOptions& options,
                                                    Diagnostics* diagnostics);
 

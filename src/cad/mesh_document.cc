@@ -74,7 +74,8 @@ std::optional<SceneConventions> FindConventions(const std::filesystem::path& fil
       conventions.length_unit = options.length_unit;
       diagnostics->Note("assumed-unit", file.filename().string(),
                         fmt::format("{} files state no unit; one unit is taken for {:.6g} mm",
-                                    NameOf(format), units::ToMm(options.length_unit)));
+                                    NameOf(format), units::ToMm(options.length_unit)),
+                        "say which unit it is: --unit mm, cm, m, in or ft");
       break;
   }
   return conventions;
