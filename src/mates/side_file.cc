@@ -151,9 +151,11 @@ Result<void> CheckObject(const ordered_json& object, SideFileObject kind, const 
   if (!object.is_object()) {
     return Fail(ErrorCode::kInvalid, "there has to be an object {...}", place.Where(), all);
   }
-  for (const auto& [name, value] : object.items()) {
+  for (const auto& item : object.items()) {
+    const std::string& name = item.key();
+    const ordered_json& value = item.value();
     const auto key = std::find_if(keys.begin(), keys.end(),
-                                  [&](const SideFileKey& known) { return known.name == name; });
+                                  [&name](const SideFileKey& known) { return known.name == name; });
     if (key == keys.end()) {
       const std::string nearest = FindNearest(name, names);
       return Fail(ErrorCode::kInvalid, fmt::format("the key \"{}\" is not known", name),
