@@ -130,15 +130,27 @@ class CornerFinder {
         }
       }
     }
-    for (const std::uint32_t v : facets->vertices[facet]) {
-      if (visits_[v].count > 1 || (visits_[v].count == 1 && Bends(v))) {
-        facets->corners.items.push_back(v);
-      }
+    const std::size_t first = facets->corners.items.size();
+    Collect(
+        facet, [this](std::uint32_t v) { return visits_[v].count > 1 || Bends(v); }, facets);
+    if (facets->corners.items.size() < first + 3) {  // A disc with a fine rim bends nowhere.
+      facets->corners.items.resize(first);
+      Collect(
+          facet, [](std::uint32_t) { return true; }, facets);
     }
     facets->corners.Close();
   }
 
  private:
+  template <class Filter>
+  void Collect(std::uint32_t facet, const Filter& is_corner, Facets* facets) const {
+    for (const std::uint32_t v : facets->vertices[facet]) {
+      if (visits_[v].count > 0 && is_corner(v)) {
+        facets->corners.items.push_back(v);
+      }
+    }
+  }
+
   struct Visit {
     std::uint32_t previous{kNoTriangle};
     std::uint32_t next{kNoTriangle};

@@ -35,7 +35,8 @@ struct Facets {
   Lists triangles;  ///< Of each facet.
   Lists vertices;   ///< Of each facet, each once, rising.
   /** Of each facet, rising: the vertices at which its rim bends. Those along a straight line or
-   inside may be there only because a program divided the triangles. */
+   inside may be there only because a program divided the triangles. The whole rim where it bends
+   at fewer than three. */
   Lists corners;
   std::vector<std::uint32_t> facet;  ///< Of each triangle; kNoTriangle for one left out.
   std::vector<Vec3> normal;          ///< Unit; zero for a sliver.

@@ -272,11 +272,11 @@ std::size_t CountPieces(const std::vector<Segment>& segments) {
 std::vector<Segment> SegmentMesh(const WeldedMesh& mesh, const std::vector<std::uint32_t>& given,
                                  const std::vector<TriangleSoup::GivenFace>& faces) {
   std::vector<Segment> best = Segmenter(mesh, given, faces).Run(0);
-  // A mesh of noisy corners falls to pieces below its noise.
-  if (best.size() <= std::max<std::size_t>(8, mesh.triangles.size() / 8)) {
+  std::size_t least = CountPieces(best);
+  // A mesh of noisy or rounded corners falls to pieces below its noise, or is left freeform.
+  if (least <= std::max<std::size_t>(8, mesh.triangles.size() / 32)) {
     return best;
   }
-  std::size_t least = CountPieces(best);
   for (std::size_t first = 1; first < kLevels.size(); ++first) {
     std::vector<Segment> segments = Segmenter(mesh, given, faces).Run(first);
     const std::size_t pieces = CountPieces(segments);

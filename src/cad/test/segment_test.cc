@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <BRepAlgoAPI_Cut.hxx>
@@ -270,6 +271,32 @@ TEST(Segment, ToleratesNoiseFarAboveTheResolution) {
 
 // The fitted radius has no bias of the chords: with noise on the corners the error falls with the
 // root of their number, and stays below three deviations of the mean.
+class RoundedPin : public ::testing::TestWithParam<std::tuple<int, double>> {};
+
+TEST_P(RoundedPin, HasItsFacesThoughTheFileHasFewDecimals) {
+  const auto [segments, step] = GetParam();
+  const std::vector<ProfilePoint> profile{{0, 0},        {4.99e-3, 0},  {4.99e-3, 10e-3},
+                                          {8e-3, 10e-3}, {8e-3, 14e-3}, {0, 14e-3}};
+  TriangleSoup soup = testing::Revolve(profile, segments);
+  testing::Move({Quat(Eigen::AngleAxisd(0.01, Vec3::UnitZ())), Vec3::Zero()}, &soup);
+  for (Vec3& p : soup.vertices) {
+    p = step * (p / step).array().round();
+  }
+  const Part part = Build(soup);
+  EXPECT_EQ(CountKinds(part), (Kinds{3, 2, 0, 0, 0, 0}));
+  for (const Face& face : part.faces) {
+    if (face.surface.kind == SurfaceKind::kCylinder) {
+      const double drawn = face.surface.radius < 6e-3 ? 4.99e-3 : 8e-3;
+      EXPECT_NEAR(face.surface.radius, drawn, step);
+      EXPECT_LT(face.residual, step);  // Half of a step in each direction.
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Segments, RoundedPin,
+                         ::testing::Combine(::testing::Values(24, 48, 96, 200),
+                                            ::testing::Values(1e-5, 1e-6, 1e-7, 1e-9)));
+
 TEST(Segment, RadiusConvergesAsTheNumberOfCornersGrows) {
   Random random(11);
   const std::vector<ProfilePoint> profile{{0, 0}, {10e-3, 0}, {10e-3, 20e-3}, {0, 20e-3}};
