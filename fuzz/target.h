@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -9,9 +10,10 @@ namespace hvas::fuzz {
  with replay.cc, which feeds it damaged copies of seeds, or with libfuzzer.cc. */
 void TestOne(std::string_view bytes);
 
-/** Ends the program when something that must hold does not. */
-inline void Check(bool holds) {
+/** Ends the program, with the line, when something that must hold does not. */
+inline void Check(bool holds, int line = __builtin_LINE()) {
   if (!holds) {
+    std::fprintf(stderr, "line %d does not hold\n", line);
     std::abort();
   }
 }

@@ -152,7 +152,9 @@ std::optional<Measure> ReadMeasure(const StepText& text, std::uint64_t id,
     unit = Unit{is_length ? units::kMetresPerMillimetre : 1, raw->quantity};
   }
   const double value = raw->number * unit->scale + 0.0;  // Files have -0.
-  if (!std::isfinite(value)) {
+  constexpr double kAbsurd =
+      1e12;  // Larger than any product; sums and products of less are finite.
+  if (!(std::abs(value) < kAbsurd)) {
     return std::nullopt;
   }
   return Measure{value, unit->quantity, raw->name};
