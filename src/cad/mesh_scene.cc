@@ -20,6 +20,7 @@
 #include "cad/product_tree.h"
 #include "cad/text_encoding.h"
 #include "cad/triangle_part.h"
+#include "fits/materials.h"
 
 namespace hvas::cad {
 namespace {
@@ -112,6 +113,7 @@ class SceneBuilder {
   [[nodiscard]] PartId FindPart(const Meshes& meshes, const std::string& name, const Mat3& stretch);
   [[nodiscard]] TriangleSoup MakeSoup(const Source& source) const;
   [[nodiscard]] std::optional<Color> ColorOf(const aiMesh& mesh) const;
+  [[nodiscard]] std::optional<StatedMaterial> MaterialOf(const aiMesh& mesh) const;
   void BuildPart(const Source& source, Part* part);
   [[nodiscard]] bool HasGeometry(const aiNode& node, int depth);
   [[nodiscard]] Meshes MeshesOf(const aiNode& node) const;
@@ -296,6 +298,18 @@ std::optional<Color> SceneBuilder::ColorOf(const aiMesh& mesh) const {
   return Color{part(c.r), part(c.g), part(c.b)};
 }
 
+/** What these files call a material is a look; a name like "Steel" tells of what the part is made,
+ one like "Red" does not. */
+std::optional<StatedMaterial> SceneBuilder::MaterialOf(const aiMesh& mesh) const {
+  aiString name;
+  if (mesh.mMaterialIndex >= scene_.mNumMaterials ||
+      scene_.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, name) != AI_SUCCESS) {
+    return std::nullopt;
+  }
+  const std::string clean = CleanName(std::string_view(name.C_Str()));
+  return fits::FindMaterial(clean) ? std::optional(StatedMaterial{clean, 0}) : std::nullopt;
+}
+
 TriangleSoup SceneBuilder::MakeSoup(const Source& source) const {
   TriangleSoup soup;
   const bool is_mirrored = source.stretch.determinant() < 0;
@@ -331,16 +345,23 @@ TriangleSoup SceneBuilder::MakeSoup(const Source& source) const {
 }
 
 void SceneBuilder::BuildPart(const Source& source, Part* part) {
-  unsigned most = 0;
+  unsigned most_colored = 0;
+  unsigned most_stated = 0;
+  std::optional<StatedMaterial> stated;
   for (const std::uint32_t index : source.meshes) {
     const aiMesh& mesh = *scene_.mMeshes[index];
     const std::optional<Color> color = ColorOf(mesh);
-    if (color && mesh.mNumFaces > most) {
-      most = mesh.mNumFaces;
+    if (color && mesh.mNumFaces > most_colored) {
+      most_colored = mesh.mNumFaces;
       part->color = *color;
     }
+    const std::optional<StatedMaterial> material = MaterialOf(mesh);
+    if (material && mesh.mNumFaces > most_stated) {
+      most_stated = mesh.mNumFaces;
+      stated = material;
+    }
   }
-  part->material = MakeMaterial(std::nullopt, part->name, diagnostics_);
+  part->material = MakeMaterial(stated, part->name, diagnostics_);
   if (!BuildTrianglePart(MakeSoup(source), part, diagnostics_)) {
     diagnostics_->Warn("no-mesh", part->name, "no triangle of the part can be used; left out",
                        "export the part again");

@@ -320,6 +320,26 @@ TEST(MeshDocument, TurnsNodesIntoSubassembliesAndWorksMirrorsIntoParts) {
   EXPECT_EQ(product->parts[0].color.g, 0);
 }
 
+TEST(MeshDocument, TakesNamesOfLooksForMaterialsWhereTheyNameOne) {
+  const ScratchFolder folder;
+  const TriangleSoup bush = MakeBush();
+  WriteFile(folder / "looks.mtl",
+            "newmtl Aluminium\nKd 0.8 0.8 0.8\nnewmtl Red\nKd 1 0 0\nnewmtl PTFE.001\nKd 1 1 1\n");
+  const std::map<std::string, std::pair<std::string, double>> expected{
+      {"Aluminium", {"Aluminium", 2700}}, {"Red", {"", 7850}}, {"PTFE.001", {"PTFE.001", 2180}}};
+  for (const auto& [look, material] : expected) {
+    WriteFile(folder / "bush.obj", ToObj(bush, 1, "mtllib looks.mtl\nusemtl " + look + "\n"));
+    Diagnostics diagnostics;
+    const auto product = Read(folder / "bush.obj", &diagnostics);
+    ASSERT_TRUE(product) << product.error().ToString();
+    const Part& part = product->parts[0];
+    EXPECT_EQ(part.material.name, material.first);
+    EXPECT_NEAR(part.material.density, material.second, 30) << look;
+    EXPECT_NEAR(part.mass.mass, part.material.density * part.mass.volume, 1e-9);
+    EXPECT_EQ(part.material.is_standard_assumed, material.first.empty()) << look;
+  }
+}
+
 TEST(MeshDocument, TakesClosedObjObjectsForPartsAndOpenGroupsForFaces) {
   const ScratchFolder folder;
   const TriangleSoup bush = MakeBush();
