@@ -312,8 +312,9 @@ bool SurfaceGrower::HasSmoothRim(std::span<const std::uint32_t> members) {
   });
 }
 
-std::optional<GrownSurface> SurfaceGrower::Grow(SurfaceKind kind,
-                                                const std::vector<std::uint32_t>& seeds) {
+/** The surface that all of the seeds lie on, the way their normals look. */
+std::optional<Surface> SurfaceGrower::FitSeeds(SurfaceKind kind,
+                                               const std::vector<std::uint32_t>& seeds) {
   std::vector<SurfaceSample> samples;
   for (const std::uint32_t f : seeds) {
     if (!facets_.normal[f].isZero()) {
@@ -334,26 +335,39 @@ std::optional<GrownSurface> SurfaceGrower::Grow(SurfaceKind kind,
     sense += CalcDistance(*surface, sample.p).gradient.dot(sample.nhat);
   }
   surface->outward = sense < 0 ? -surface->outward : surface->outward;
-  if (std::any_of(seeds.begin(), seeds.end(),
-                  [&](std::uint32_t f) { return !Fits(*surface, f, tolerance_); })) {
-    return std::nullopt;
-  }
-  std::vector<std::uint32_t> members = seeds;
-  for (int round = 0; round < 24; ++round) {
-    const std::size_t before = members.size();
-    Spread(*surface, 3 * tolerance_, 3 * before, &members);
-    if (members.size() == before) {
+  const bool is_on_all = std::all_of(
+      seeds.begin(), seeds.end(), [&](std::uint32_t f) { return Fits(*surface, f, tolerance_); });
+  return is_on_all ? surface : std::nullopt;
+}
+
+/** Takes in the facets around that fit, and fits the surface to them, until there are no more. */
+void SurfaceGrower::Extend(Surface* surface, std::vector<std::uint32_t>* members) {
+  constexpr int kMaxRounds = 24;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const std::size_t before = members->size();
+    Spread(*surface, 3 * tolerance_, 3 * before, members);
+    if (members->size() == before) {
       break;
     }
     Surface refined = *surface;
-    if (Refit(members, &refined) <= 2 * tolerance_) {
-      surface = refined;
+    if (Refit(*members, &refined) <= 2 * tolerance_) {
+      *surface = refined;
     }
-    std::erase_if(members, [&](std::uint32_t f) { return !Fits(*surface, f, tolerance_); });
-    if (members.size() <= before) {
+    std::erase_if(*members, [&](std::uint32_t f) { return !Fits(*surface, f, tolerance_); });
+    if (members->size() <= before) {
       break;
     }
   }
+}
+
+std::optional<GrownSurface> SurfaceGrower::Grow(SurfaceKind kind,
+                                                const std::vector<std::uint32_t>& seeds) {
+  std::optional<Surface> surface = FitSeeds(kind, seeds);
+  if (!surface) {
+    return std::nullopt;
+  }
+  std::vector<std::uint32_t> members = seeds;
+  Extend(&*surface, &members);
   if (members.size() < 3) {
     return std::nullopt;
   }

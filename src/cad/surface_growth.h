@@ -34,6 +34,9 @@ class SurfaceGrower {
  private:
   void CollectRing(std::uint32_t seed);
   void CollectStrips(std::uint32_t seed);
+  [[nodiscard]] std::optional<spatial::Surface> FitSeeds(spatial::SurfaceKind kind,
+                                                         const std::vector<std::uint32_t>& seeds);
+  void Extend(spatial::Surface* surface, std::vector<std::uint32_t>* members);
   [[nodiscard]] std::optional<GrownSurface> Grow(spatial::SurfaceKind kind,
                                                  const std::vector<std::uint32_t>& seeds);
   void Spread(const spatial::Surface& surface, double tolerance, std::size_t limit,

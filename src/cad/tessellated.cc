@@ -63,6 +63,7 @@ class TessellationReader {
  private:
   void Index();
   void IndexRelation(const StepEntity& entity);
+  void IndexRecord(Id id, const StepRecord& record);
   [[nodiscard]] std::string NameOf(Id definition) const;
   void Visit(Id definition, const std::string& name, SubassemblyId parent, const Pose& X_WP,
              int depth, ProductTree* tree);
@@ -91,6 +92,7 @@ class TessellationReader {
   std::set<Id> used_;                           // Product definitions that are in another.
   std::map<Id, Id> transformed_;                // Usage to its relation with transformation.
   std::vector<std::pair<Id, Id>> definitions_;  // (PRODUCT_DEFINITION_SHAPE, representation).
+  std::vector<std::pair<Id, Id>> placed_;       // (relation, shape definition of the usage).
   std::vector<Id> products_;                    // Product definitions.
   std::map<Id, Id> styles_;                     // Item to its STYLED_ITEM.
   std::map<Id, std::vector<Vec3>> points_;      // In the file's unit.
@@ -111,9 +113,31 @@ void TessellationReader::IndexRelation(const StepEntity& entity) {
   }
 }
 
+void TessellationReader::IndexRecord(Id id, const StepRecord& record) {
+  const auto reference = [&record](std::size_t i) {
+    return i < record.values.size() ? record.values[i].reference : 0;
+  };
+  if (record.name == "TESSELLATED_SHAPE_REPRESENTATION") {
+    shapes_.insert(id);
+  } else if (record.name == "SHAPE_DEFINITION_REPRESENTATION") {
+    definitions_.emplace_back(reference(0), reference(1));
+  } else if (record.name == "PRODUCT_DEFINITION_SHAPE") {
+    shape_definitions_[id] = reference(2);
+  } else if (record.name == "PRODUCT_DEFINITION" ||
+             record.name == "PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS") {
+    products_.push_back(id);
+  } else if (record.name == "NEXT_ASSEMBLY_USAGE_OCCURRENCE" && record.values.size() > 4) {
+    uses_[reference(3)].push_back({id, reference(4), record.values[1].text});
+    used_.insert(reference(4));
+  } else if (record.name == "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION") {
+    placed_.emplace_back(reference(0), reference(1));
+  } else if (record.name == "STYLED_ITEM" || record.name == "OVER_RIDING_STYLED_ITEM") {
+    styles_.emplace(reference(2), id);
+  }
+}
+
 /** One pass over the entities for what ties shapes to products. */
 void TessellationReader::Index() {
-  std::vector<std::pair<Id, Id>> placed;  // (relation, shape definition of the usage).
   for (const StepText::Statement& statement : text_.statements()) {
     const std::string_view body = statement.body.substr(0, 400);
     const auto mentions = [body](std::string_view name) {
@@ -126,29 +150,10 @@ void TessellationReader::Index() {
     const StepEntity entity = ParseStepEntity(statement.body);
     IndexRelation(entity);
     for (const StepRecord& record : entity) {
-      const auto reference = [&record](std::size_t i) {
-        return i < record.values.size() ? record.values[i].reference : 0;
-      };
-      if (record.name == "TESSELLATED_SHAPE_REPRESENTATION") {
-        shapes_.insert(statement.id);
-      } else if (record.name == "SHAPE_DEFINITION_REPRESENTATION") {
-        definitions_.emplace_back(reference(0), reference(1));
-      } else if (record.name == "PRODUCT_DEFINITION_SHAPE") {
-        shape_definitions_[statement.id] = reference(2);
-      } else if (record.name == "PRODUCT_DEFINITION" ||
-                 record.name == "PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS") {
-        products_.push_back(statement.id);
-      } else if (record.name == "NEXT_ASSEMBLY_USAGE_OCCURRENCE" && record.values.size() > 4) {
-        uses_[reference(3)].push_back({statement.id, reference(4), record.values[1].text});
-        used_.insert(reference(4));
-      } else if (record.name == "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION") {
-        placed.emplace_back(reference(0), reference(1));
-      } else if (record.name == "STYLED_ITEM" || record.name == "OVER_RIDING_STYLED_ITEM") {
-        styles_.emplace(reference(2), statement.id);
-      }
+      IndexRecord(statement.id, record);
     }
   }
-  for (const auto& [relation, definition] : placed) {
+  for (const auto& [relation, definition] : placed_) {
     const auto usage = shape_definitions_.find(definition);
     if (usage != shape_definitions_.end()) {
       transformed_[usage->second] = relation;
