@@ -19,9 +19,9 @@ using testing::RunHvasJson;
 using testing::TemporaryFolder;
 
 /** Prism over a ten-cornered ring, radii 8 mm and 3 mm, 6 mm high. */
-const double kRing_mm3 = 5 * std::sin(2 * std::numbers::pi / 10) * (8.0 * 8.0 - 3.0 * 3.0) * 6;
-constexpr double kPlate_mm3 = 20 * 20 * 2;
-constexpr double kInch_mm = 25.4;
+const double kRingVolumeMm3 = 5 * std::sin(2 * std::numbers::pi / 10) * (8.0 * 8.0 - 3.0 * 3.0) * 6;
+constexpr double kPlateVolumeMm3 = 20 * 20 * 2;
+constexpr double kMmPerInch = 25.4;
 
 struct MeshFile {
   const char* name;
@@ -57,7 +57,7 @@ TEST_P(MeshFileTest, TakesTheStatedUnitOnlyWhereTheFileHasNone) {
   const MeshFile& drawn = GetParam();
   const json as_mm = RunHvasJson({"inspect", SeedFile(drawn.name)});
   const json as_inch = RunHvasJson({"inspect", SeedFile(drawn.name), "--unit", "in"});
-  const double scale = drawn.is_unit_stated ? 1 : kInch_mm;
+  const double scale = drawn.is_unit_stated ? 1 : kMmPerInch;
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(as_inch["summary"]["size_mm"][axis].get<double>() /
                     as_mm["summary"]["size_mm"][axis].get<double>(),
@@ -78,21 +78,21 @@ TEST_P(MeshFileTest, TakesTheStatedUnitOnlyWhereTheFileHasNone) {
   EXPECT_EQ(told, drawn.is_unit_stated ? 0 : 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, MeshFileTest,
-                         ::testing::Values(MeshFile{"ring_text.stl", 1, 1, kRing_mm3, 0, false},
-                                           MeshFile{"ring_binary.stl", 1, 1, kRing_mm3, 0, false},
-                                           MeshFile{"ring_plate.obj", 2, 2, kRing_mm3 + kPlate_mm3,
-                                                    1, false},
-                                           MeshFile{"rings.gltf", 2, 1, 2 * kRing_mm3, 1, true},
-                                           MeshFile{"rings.glb", 2, 1, 2 * kRing_mm3, 1, true},
-                                           MeshFile{"rings.3mf", 2, 1, 2 * kRing_mm3, 1, true}),
-                         [](const auto& instance) {
-                           std::string name = instance.param.name;
-                           for (char& c : name) {
-                             c = c == '.' ? '_' : c;
-                           }
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Formats, MeshFileTest,
+    ::testing::Values(MeshFile{"ring_text.stl", 1, 1, kRingVolumeMm3, 0, false},
+                      MeshFile{"ring_binary.stl", 1, 1, kRingVolumeMm3, 0, false},
+                      MeshFile{"ring_plate.obj", 2, 2, kRingVolumeMm3 + kPlateVolumeMm3, 1, false},
+                      MeshFile{"rings.gltf", 2, 1, 2 * kRingVolumeMm3, 1, true},
+                      MeshFile{"rings.glb", 2, 1, 2 * kRingVolumeMm3, 1, true},
+                      MeshFile{"rings.3mf", 2, 1, 2 * kRingVolumeMm3, 1, true}),
+    [](const auto& instance) {
+      std::string name = instance.param.name;
+      for (char& c : name) {
+        c = c == '.' ? '_' : c;
+      }
+      return name;
+    });
 
 /** Text of an OBJ file of turned bodies about z [mm]. */
 class ObjText {
