@@ -10,6 +10,7 @@
 namespace hvas::contact {
 namespace {
 
+constexpr double kOnSurface = 1e-7;     // [m]
 constexpr double kWeldRelative = 1e-9;  // Of the diagonal.
 const double kCosSharpBetweenFaces = std::cos(8.0 * std::numbers::pi / 180.0);
 const double kCosSharpInFreeform = std::cos(30.0 * std::numbers::pi / 180.0);
@@ -111,8 +112,9 @@ void FindNeighbours(Mesh* mesh) {
   }
 }
 
-EdgeKind ClassifyEdge(const Mesh& mesh, const std::vector<spatial::Surface>& faces, std::uint32_t t,
-                      std::size_t k) {
+/** `faces` are in B, the mesh in the centred frame C. */
+EdgeKind ClassifyEdge(const Mesh& mesh, const std::vector<spatial::Surface>& faces,
+                      const Vec3& p_BC, std::uint32_t t, std::size_t k) {
   const std::uint32_t n = mesh.neighbour[t][k];
   if (n == kNoFace) {
     return EdgeKind::kOpen;
@@ -128,10 +130,11 @@ EdgeKind ClassifyEdge(const Mesh& mesh, const std::vector<spatial::Surface>& fac
   const Vec3& a = mesh.vertices[mesh.triangles[t][k]];
   const Vec3& b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
   const auto normal_of = [&](std::uint32_t triangle) {
-    const auto exact = spatial::CalcDistance(faces[mesh.face[triangle]], a);
-    return exact.is_valid && exact.gradient.dot(mesh.normal[triangle]) > 0.5
-               ? exact.gradient
-               : mesh.normal[triangle];
+    const auto exact = spatial::CalcDistance(faces[mesh.face[triangle]], a + p_BC);
+    // A sliver's own normal may point anywhere; the surface's is right where it has the edge on it.
+    const bool is_right = exact.is_valid && (std::abs(exact.distance) < kOnSurface ||
+                                             exact.gradient.dot(mesh.normal[triangle]) > 0.5);
+    return is_right ? exact.gradient : mesh.normal[triangle];
   };
   const Vec3 n1 = f == g ? mesh.normal[t] : normal_of(t);
   const Vec3 n2 = f == g ? mesh.normal[n] : normal_of(n);
@@ -309,7 +312,7 @@ Mesh MakeMesh(const ShapeSource& source, const Vec3& p_BC) {
   mesh.edge_kind.resize(mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      mesh.edge_kind[t][k] = ClassifyEdge(mesh, source.faces, t, k);
+      mesh.edge_kind[t][k] = ClassifyEdge(mesh, source.faces, p_BC, t, k);
       mesh.is_closed = mesh.is_closed && mesh.edge_kind[t][k] != EdgeKind::kOpen;
     }
   }

@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "contact/kernel.h"
+#include "contact/mesh.h"
 #include "contact/refine.h"
 #include "contact/shape_data.h"
 #include "contact/test/parts.h"
@@ -268,6 +269,31 @@ TEST(ShapeBuild, RefusesWhatIsNoMesh) {
   source.triangles = {{0, 1, 1}};
   source.triangle_face = {0};
   EXPECT_TRUE(fails(source));
+}
+
+// All edges of a frustum are convex, wherever its frame is (N2).
+TEST(Shape, KindsOfEdgesDoNotDependOnWhereThePartsFrameIs) {
+  Random random(7);
+  for (int round = 0; round < 20; ++round) {
+    ShapeSource source = testing::Cone(5e-3, 3e-3, 2e-3);
+    const Vec3 d(random.Uniform(-0.02, 0.02), random.Uniform(-0.02, 0.02),
+                 random.Uniform(-0.02, 0.02));
+    for (Vec3& vertex : source.vertices) {
+      vertex += d;
+    }
+    for (spatial::Surface& face : source.faces) {
+      face.origin += d;
+    }
+    const Mesh mesh = MakeMesh(source, d + Vec3(0, 0, 1e-3));
+    int convex = 0;
+    for (const auto& kinds : mesh.edge_kind) {
+      for (const EdgeKind kind : kinds) {
+        EXPECT_NE(kind, EdgeKind::kConcave);
+        convex += kind == EdgeKind::kConvex ? 1 : 0;
+      }
+    }
+    EXPECT_GT(convex, 100);
+  }
 }
 
 }  // namespace
