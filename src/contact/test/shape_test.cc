@@ -275,7 +275,7 @@ TEST(ShapeBuild, RefusesWhatIsNoMesh) {
 TEST(Shape, KindsOfEdgesDoNotDependOnWhereThePartsFrameIs) {
   Random random(7);
   for (int round = 0; round < 20; ++round) {
-    ShapeSource source = testing::Cone(5e-3, 3e-3, 2e-3);
+    ShapeSource source = testing::Cone(5e-3, 3e-3, 1e-3);
     const Vec3 d(random.Uniform(-0.02, 0.02), random.Uniform(-0.02, 0.02),
                  random.Uniform(-0.02, 0.02));
     for (Vec3& vertex : source.vertices) {
@@ -284,7 +284,7 @@ TEST(Shape, KindsOfEdgesDoNotDependOnWhereThePartsFrameIs) {
     for (spatial::Surface& face : source.faces) {
       face.origin += d;
     }
-    const Mesh mesh = MakeMesh(source, d + Vec3(0, 0, 1e-3));
+    const Mesh mesh = MakeMesh(source, d + Vec3(0, 0, 0.5e-3));
     int convex = 0;
     for (const auto& kinds : mesh.edge_kind) {
       for (const EdgeKind kind : kinds) {
