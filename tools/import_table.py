@@ -22,7 +22,7 @@ import time
 EXTENSIONS = {".step", ".stp", ".obj", ".stl", ".gltf", ".glb", ".3mf"}
 BEGIN, END = "<!-- table: begin -->", "<!-- table: end -->"
 FACES = ["plane", "cylinder", "cone", "sphere", "torus", "freeform"]
-HEAD = ("file | parts (different) | faces: plane, cylinder, cone, sphere, torus, freeform (recognised) | features and forms"
+HEAD = ("file | parts (different) | faces: plane, cylinder, cone, sphere, torus, freeform (recognised) | forms"
         " | axis-hole, face, cone, sphere | linked | dimensions, tolerances, fits | warnings | cold, cached s | MB")
 
 
@@ -53,7 +53,6 @@ def describe(name, answer, cold, cached, memory):
     faces, forms = collections.Counter(), collections.Counter()
     for part in answer["parts"]:
         faces.update(part["face_counts"])
-        forms.update({kind: n for kind, n in part["feature_counts"].items() if kind in ("hole", "shaft")})
     forms.update(form["kind"] for form in answer["forms"])
     mates, tolerances = summary["mates"], summary["tolerances"]
     return (f"{name} | {summary['occurrences']} ({summary['unique_parts']}) | "

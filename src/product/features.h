@@ -4,8 +4,8 @@
 
 namespace hvas::product {
 
-/** Fills a part's features (layer T), forms and inner constraints from its faces and mesh; the rules
- are in docs/algorithms/features.md.
+/** Fills a part's features (layer T), forms and inner constraints from its faces and mesh; the
+ rules are in docs/algorithms/features.md.
 
  Faces of one surface and sense that touch become one feature: holes and shafts, cone seats and
  tapers where they go far enough around their axis to hold a counterpart (FindCylinders), planes,

@@ -105,11 +105,11 @@ struct Feature {
   std::vector<FaceId> faces;
   Vec3 origin_B{Vec3::Zero()};  ///< On the axis (any point), on the plane (area centroid); cone:
                                 ///< its apex; sphere: its centre.
-  Vec3 axis_B{Vec3::UnitZ()};  ///< Axis direction; plane: outward normal; cone: from the apex into
-                               ///< the nappe in use.
-  double radius{0};            ///< Of cylinder or sphere; cone: the largest in use; plane: 0 [m].
-  double half_angle{0};        ///< Of a cone [rad].
-  double span_low{0};          ///< Extent along axis_B relative to origin_B [m]; 0 for planes.
+  Vec3 axis_B{Vec3::UnitZ()};   ///< Axis direction; plane: outward normal; cone: from the apex into
+                                ///< the nappe in use.
+  double radius{0};             ///< Of cylinder or sphere; cone: the largest in use; plane: 0 [m].
+  double half_angle{0};         ///< Of a cone [rad].
+  double span_low{0};           ///< Extent along axis_B relative to origin_B [m]; 0 for planes.
   double span_high{0};
   double coverage{0};  ///< Angle of the full turn that the faces cover [rad].
   double area{0};      ///< [m^2]
