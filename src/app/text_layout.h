@@ -33,7 +33,7 @@ class ListLimit {
   void PrintRest() const;
 
  private:
-  static constexpr std::size_t kMost = 25;
+  static constexpr std::size_t kMost = 60;
   bool is_all_;
   std::size_t count_{0};
 };
