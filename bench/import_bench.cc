@@ -4,8 +4,6 @@
  Prints a table for the STEP files named on the command line.
 
    import_bench [-n REPEATS] FILE... */
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -25,6 +23,7 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <fmt/format.h>
 
+#include "base/test/temporary_folder.h"
 #include "base/units.h"
 #include "cad/import.h"
 #include "cad/part_shape.h"
@@ -122,15 +121,14 @@ void MeasureImport(const std::filesystem::path& file, Times* times, std::string*
 /** As the program opens a file: first by hvas-cad, then from the cache. */
 void MeasureProgram(const std::filesystem::path& file, Times* times) {
   hvas::cad::ImportControl control;
-  control.cache_directory =
-      std::filesystem::temp_directory_path() / fmt::format("hvas_import_bench_{}", getpid());
+  const hvas::testing::TemporaryFolder cache;
+  control.cache_directory = cache.path();
   for (double* best : {&times->process, &times->cached}) {
     hvas::Diagnostics diagnostics;
     const auto start = Clock::now();
     const auto product = hvas::cad::Import(file, {}, &diagnostics, control);
     *best = std::min(*best, SecondsSince(start));
   }
-  std::filesystem::remove_all(*control.cache_directory);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
+#include "base/test/temporary_folder.h"
 #include "cad/import.h"
 #include "cad/read_cad.h"
 #include "fuzz/mutate.h"
@@ -123,19 +124,17 @@ Tally Storm(const fs::path& seed, long count, const fs::path& folder) {
 }
 
 int Run(long count, const std::vector<fs::path>& seeds) {
-  const fs::path folder = fs::temp_directory_path() / fmt::format("hvas-storm-{}", getpid());
-  fs::create_directories(folder);
+  const hvas::testing::TemporaryFolder folder;
   bool is_good = true;
   fmt::print("{:<24} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9}\n", "file", "copies", "opened", "refused",
              "killed", "asked", "answered");
   for (const fs::path& seed : seeds) {
-    const Tally tally = Storm(seed, count, folder);
+    const Tally tally = Storm(seed, count, folder.path());
     fmt::print("{:<24} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9}\n", seed.filename().string(), count,
                tally.opened, tally.refused, tally.killed, tally.asked, tally.answered);
     std::fflush(stdout);
     is_good = is_good && tally.silent == 0 && tally.answered == tally.asked;
   }
-  fs::remove_all(folder);
   return is_good ? 0 : 1;
 }
 

@@ -12,6 +12,7 @@
 
 #include "app/load_product.h"
 #include "app/test/run_hvas.h"
+#include "base/test/temporary_folder.h"
 #include "fits/iso286.h"
 #include "haptics/haptic_tick.h"
 #include "record/reader.h"
@@ -20,11 +21,11 @@
 namespace hvas::app {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using nlohmann::json;
 using record::TickRecord;
 using testing::ProductFile;
 using testing::RunHvasJson;
-using testing::TemporaryFolder;
 
 constexpr std::uint32_t kShaft = 2;  // its occurrence in bushing.step
 constexpr auto kMating = static_cast<std::uint8_t>(haptics::HoldState::kMating);
@@ -142,7 +143,7 @@ class BushingTest : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(BushingTest, EveryPartGoesInExactlyWithoutAJumpOfForce) {  // W7, issue A
   const TemporaryFolder folder;
-  const std::string file = (folder.path() / "session.hvasrec").string();
+  const std::string file = (folder / "session.hvasrec").string();
   const json run = AssembleBushing(GetParam(), 1, file);
   ExpectAllSeated(run, 3);
   const Insertion insertion = ReadInsertion(file);
@@ -165,7 +166,7 @@ TEST_P(BushingTest, EqualSeedsGiveEqualDigestsAndOthersDoNot) {  // issue A
   const TemporaryFolder folder;
   const json first = AssembleBushing(GetParam(), 5);
   // With or without a file, the digest is that of the session.
-  const json second = AssembleBushing(GetParam(), 5, (folder.path() / "session").string());
+  const json second = AssembleBushing(GetParam(), 5, (folder / "session").string());
   const json other = AssembleBushing(GetParam(), 6);
   EXPECT_EQ(first["digest"], second["digest"]);
   EXPECT_EQ(first["parts"], second["parts"]);
@@ -179,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(Fits, BushingTest, ::testing::Values("H7/g6", "H7/k6", 
 
 TEST(FitForceTest, ClearanceFitIsSmallAndSteady) {  // W10: 0..0.3 N
   const TemporaryFolder folder;
-  const auto file = folder.path() / "session";
+  const auto file = folder / "session";
   (void)AssembleBushing("H7/g6", 1, file.string());
   const std::vector<double> profile = CalcProfile(ReadInsertion(file));
   // From a depth on where the hand's own speed has settled. True newtons.
@@ -190,7 +191,7 @@ TEST(FitForceTest, ClearanceFitIsSmallAndSteady) {  // W10: 0..0.3 N
 
 TEST(FitForceTest, InterferenceFitGrowsSmoothlyWithDepth) {  // W10, W(9)
   const TemporaryFolder folder;
-  const auto file = folder.path() / "session";
+  const auto file = folder / "session";
   const json run = AssembleBushing("H7/p6", 1, file.string());
   const Insertion insertion = ReadInsertion(file);
   const std::vector<double> profile = CalcProfile(insertion);
@@ -234,7 +235,7 @@ TEST(FitForceTest, TransitionFitRisesInStairs) {  // W10
   ASSERT_GT(fit->max_resistance(), 100);
   ASSERT_GT(fit->mean_clearance(), 0) << "no stairs to be expected";
   const TemporaryFolder folder;
-  const auto file = folder.path() / "session";
+  const auto file = folder / "session";
   (void)AssembleBushing("H7/k6", kSeed, file.string());
   const std::vector<double> profile = CalcProfile(ReadInsertion(file));
   const double total = profile.back() - profile.front();
@@ -313,7 +314,7 @@ TEST(AssembleTest, OrderBeginsWithThePartsThatAreAskedFor) {
 
 TEST(AssembleTest, RealtimeCountsWhatItMissed) {  // X4; no time is asserted: the host has the say
   const TemporaryFolder folder;
-  const std::string file = (folder.path() / "session").string();
+  const std::string file = (folder / "session").string();
   const json run = RunHvasJson(
       {"assemble", ProductFile("bushing"), "--realtime", "--limit", "2", "--record", file}, 2);
   EXPECT_GE(run["ticks"].get<int>(), 2000);
@@ -345,7 +346,7 @@ std::int64_t LastTick(const std::filesystem::path& file) {
 TEST(AssembleTest, KilledProcessLeavesARecordThatMissesLessThanASecond) {  // issue A
   using std::chrono::steady_clock;
   const TemporaryFolder folder;
-  const auto file = folder.path() / "session";
+  const auto file = folder / "session";
   const pid_t child = testing::StartHvas(
       {"assemble", ProductFile("bushing"), "--realtime", "--record", file.string()});
   ASSERT_GT(child, 0);

@@ -3,14 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "app/test/run_hvas.h"
+#include "base/test/temporary_folder.h"
 
 namespace hvas::app {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using testing::ProductFile;
 using testing::Ran;
 using testing::RunHvas;
-using testing::TemporaryFolder;
 
 /** Exit status 1, nothing on stdout, one line on stderr that has all these texts. */
 void ExpectError(const std::vector<std::string>& arguments, const std::vector<std::string>& texts) {
@@ -54,9 +55,9 @@ TEST_P(BadFileTest, ErrorNamesTheFileAndWhatToDo) {
 
 TEST_P(BadFileTest, BadSideFileIsNamed) {
   const TemporaryFolder folder;
-  std::filesystem::copy_file(ProductFile("bushing"), folder.path() / "rig.step");
+  std::filesystem::copy_file(ProductFile("bushing"), folder / "rig.step");
   (void)folder.Write("rig.hvas.json", "{\"format\": \"hvas-assignments-1\", \"fits\": 7}");
-  ExpectError({GetParam(), (folder.path() / "rig.step").string()}, {"rig.hvas.json"});
+  ExpectError({GetParam(), (folder / "rig.step").string()}, {"rig.hvas.json"});
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, BadFileTest, ::testing::Values("inspect", "assemble"),
@@ -87,7 +88,7 @@ TEST(AssembleErrorTest, UnknownPartInTheOrderIsNamed) {
 
 TEST(AssembleErrorTest, RecordThatCannotBeWrittenIsNamed) {
   const TemporaryFolder folder;
-  const std::string missing = (folder.path() / "missing" / "session.hvasrec").string();
+  const std::string missing = (folder / "missing" / "session.hvasrec").string();
   ExpectError({"assemble", ProductFile("bushing"), "--record", missing}, {missing, "folder"});
   ExpectError({"assemble", ProductFile("bushing"), "--record", folder.path().string()},
               {folder.path().string()});

@@ -9,11 +9,13 @@
 
 #include "app/test/json_schema.h"
 #include "app/test/run_hvas.h"
+#include "base/test/temporary_folder.h"
 #include "spatial/pose.h"
 
 namespace hvas::app {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using nlohmann::json;
 using spatial::Pose;
 using testing::ProductFile;
@@ -21,7 +23,6 @@ using testing::Ran;
 using testing::ReadText;
 using testing::RunHvas;
 using testing::RunHvasJson;
-using testing::TemporaryFolder;
 
 template <typename T>
 T Read(const std::string& bytes, std::size_t at) {
@@ -140,7 +141,7 @@ void CheckPrimitive(const Glb& glb, const json& primitive, double* volume, std::
 
 TEST(ExportGlb, IsValidAndHoldsEveryPartFacePoseAndId) {  // X3
   const TemporaryFolder folder;
-  const std::string file = (folder.path() / "pump.glb").string();
+  const std::string file = (folder / "pump.glb").string();
   const Ran ran = RunHvas({"export", ProductFile("gear_pump"), "-o", file});
   ASSERT_EQ(ran.status, 0) << ran.err;
   const Glb glb(file);
@@ -198,8 +199,8 @@ TEST(ExportGlb, IsValidAndHoldsEveryPartFacePoseAndId) {  // X3
   EXPECT_LT((turn * Vec3::UnitZ() - Vec3::UnitY()).norm(), 1e-12);
   EXPECT_LT((turn * Vec3::UnitX() - Vec3::UnitX()).norm(), 1e-12);
   // Finer meshes on request; the same bytes each time.
-  const std::string fine = (folder.path() / "fine.glb").string();
-  const std::string again = (folder.path() / "again.GLB").string();
+  const std::string fine = (folder / "fine.glb").string();
+  const std::string again = (folder / "again.GLB").string();
   ASSERT_EQ(RunHvas({"export", ProductFile("gear_pump"), "-o", fine, "--fine"}).status, 0);
   ASSERT_EQ(RunHvas({"export", ProductFile("gear_pump"), "-o", again}).status, 0);
   EXPECT_GT(ReadText(fine).size(), ReadText(file).size());
@@ -208,7 +209,7 @@ TEST(ExportGlb, IsValidAndHoldsEveryPartFacePoseAndId) {  // X3
 
 TEST(ExportJson, IsWhatInspectPrintsAndMeshesOnRequest) {
   const TemporaryFolder folder;
-  const std::string file = (folder.path() / "rig.json").string();
+  const std::string file = (folder / "rig.json").string();
   ASSERT_EQ(RunHvas({"export", ProductFile("bushing"), "-o", file}).status, 0);
   const json inspected = RunHvasJson({"inspect", ProductFile("bushing")});
   EXPECT_EQ(json::parse(ReadText(file)), inspected);
@@ -227,7 +228,7 @@ TEST(ExportJson, IsWhatInspectPrintsAndMeshesOnRequest) {
 
 TEST(ExportStep, ComesBackTheSame) {
   const TemporaryFolder folder;
-  const std::string file = (folder.path() / "pump.step").string();
+  const std::string file = (folder / "pump.step").string();
   const Ran ran = RunHvas({"export", ProductFile("gear_pump"), "-o", file});
   ASSERT_EQ(ran.status, 0) << ran.err;
   const json before = RunHvasJson({"inspect", ProductFile("gear_pump")});
@@ -267,11 +268,11 @@ TEST(ExportErrorTest, NothingIsWrittenOverOrHalf) {
   const std::string rig = ProductFile("bushing");
   expect(letter.string(), "--force", rig);
   EXPECT_EQ(ReadText(letter), "Dear all,\n");
-  expect((folder.path() / "rig.obj").string(), ".glb, .json or .step", rig);
-  expect((folder.path() / "rig").string(), ".glb, .json or .step", rig);
-  expect((folder.path() / "no" / "rig.glb").string(), "folder", rig);
+  expect((folder / "rig.obj").string(), ".glb, .json or .step", rig);
+  expect((folder / "rig").string(), ".glb, .json or .step", rig);
+  expect((folder / "no" / "rig.glb").string(), "folder", rig);
   expect(rig, "the file that is exported", rig);
-  expect((folder.path() / "x.glb").string(), "letter.glb", letter.string());
+  expect((folder / "x.glb").string(), "letter.glb", letter.string());
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 

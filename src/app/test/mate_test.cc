@@ -3,17 +3,18 @@
 #include <gtest/gtest.h>
 
 #include "app/test/run_hvas.h"
+#include "base/test/temporary_folder.h"
 
 namespace hvas::app {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using nlohmann::json;
 using testing::ProductFile;
 using testing::Ran;
 using testing::ReadText;
 using testing::RunHvas;
 using testing::RunHvasJson;
-using testing::TemporaryFolder;
 
 /** A bushing rig of one's own, with a side file or without. */
 class MateTest : public ::testing::Test {
@@ -50,8 +51,8 @@ class MateTest : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::string rig_{(folder_.path() / "rig.step").string()};
-  std::filesystem::path side_{folder_.path() / "rig.hvas.json"};
+  std::string rig_{(folder_ / "rig.step").string()};
+  std::filesystem::path side_{folder_ / "rig.hvas.json"};
   std::vector<std::string> keys_;
 };
 
@@ -159,10 +160,9 @@ TEST_F(MateTest, FirstSideFileChangesNothingAndIsNotWrittenOver) {
   Run({"mate", "remove", rig_, "m1"});
   Run({"inspect", rig_, "--write-assignments", "--force"});
   EXPECT_EQ(List()["removed"].size(), 1U);
-  Run({"inspect", rig_, "--write-assignments", (folder_.path() / "other.json").string()});
-  ExpectRefusal(
-      {"inspect", rig_, "--write-assignments", (folder_.path() / "no" / "x.json").string()},
-      "folder");
+  Run({"inspect", rig_, "--write-assignments", (folder_ / "other.json").string()});
+  ExpectRefusal({"inspect", rig_, "--write-assignments", (folder_ / "no" / "x.json").string()},
+                "folder");
 }
 
 }  // namespace

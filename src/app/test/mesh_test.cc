@@ -9,14 +9,15 @@
 #include <gtest/gtest.h>
 
 #include "app/test/run_hvas.h"
+#include "base/test/temporary_folder.h"
 
 namespace hvas::app {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using nlohmann::json;
 using testing::RunHvas;
 using testing::RunHvasJson;
-using testing::TemporaryFolder;
 
 /** Prism over a ten-cornered ring, radii 8 mm and 3 mm, 6 mm high. */
 const double kRingVolumeMm3 = 5 * std::sin(2 * std::numbers::pi / 10) * (8.0 * 8.0 - 3.0 * 3.0) * 6;

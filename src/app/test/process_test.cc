@@ -11,15 +11,16 @@
 #include <gtest/gtest.h>
 
 #include "app/test/run_hvas.h"
+#include "base/test/temporary_folder.h"
 
 namespace hvas::app {
 namespace {
 
 namespace fs = std::filesystem;
+using hvas::testing::TemporaryFolder;
 using testing::ProductFile;
 using testing::Ran;
 using testing::RunHvas;
-using testing::TemporaryFolder;
 
 /** The process that another has started, once it has; 0 after ten seconds without one. */
 pid_t ChildOf(pid_t parent) {
@@ -70,21 +71,19 @@ INSTANTIATE_TEST_SUITE_P(Signals, EndTest, ::testing::Values(SIGINT, SIGKILL),
 
 TEST(ReaderTest, IsFoundBesideTheProgramWhereverThatIs) {
   const TemporaryFolder folder;
-  const fs::path bin = folder.path() / "bin";
+  const fs::path bin = folder / "bin";
   fs::create_directory(bin);
   fs::copy_file(HVAS_BINARY, bin / "hvas");
   const std::string command = (bin / "hvas").string() + " inspect --no-cache " +
-                              ProductFile("bushing") + " > " + (folder.path() / "out").string() +
-                              " 2>&1";
+                              ProductFile("bushing") + " > " + (folder / "out").string() + " 2>&1";
   // A program that cannot be started instead of the reader shows where it is looked for.
   std::ofstream(bin / "hvas-cad") << "no program";
   fs::permissions(bin / "hvas-cad", fs::perms::owner_all);
   EXPECT_NE(std::system(command.c_str()), 0);
-  EXPECT_NE(testing::ReadText(folder.path() / "out").find((bin / "hvas-cad").string()),
-            std::string::npos);
+  EXPECT_NE(testing::ReadText(folder / "out").find((bin / "hvas-cad").string()), std::string::npos);
   fs::remove(bin / "hvas-cad");
   fs::create_symlink(fs::path(HVAS_READER), bin / "hvas-cad");
-  EXPECT_EQ(std::system(command.c_str()), 0) << testing::ReadText(folder.path() / "out");
+  EXPECT_EQ(std::system(command.c_str()), 0) << testing::ReadText(folder / "out");
 }
 
 TEST(StrictTest, WarningsAreShownAndEndWithStatusOne) {

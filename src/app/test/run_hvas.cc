@@ -11,10 +11,14 @@
 #include <spawn.h>
 #include <stdlib.h>
 
+#include "base/test/temporary_folder.h"
+
 extern char** environ;
 
 namespace hvas::app::testing {
 namespace {
+
+using hvas::testing::TemporaryFolder;
 
 /** Prepared parts are shared by the runs of one test program, and with nothing else. */
 void UseOwnCache() {
@@ -46,22 +50,6 @@ pid_t Start(const std::vector<std::string>& arguments, const std::string& out,
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "hvas_app_XXXXXX").string();
-  path_ = ::mkdtemp(name.data());
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::filesystem::path TemporaryFolder::Write(const std::string& name,
-                                             const std::string& text) const {
-  std::ofstream(path_ / name) << text;
-  return path_ / name;
-}
-
 std::string ReadText(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::stringstream text;
@@ -72,14 +60,13 @@ std::string ReadText(const std::filesystem::path& file) {
 Ran RunHvas(const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
   Ran ran;
-  const pid_t child =
-      Start(arguments, (folder.path() / "out").string(), (folder.path() / "err").string());
+  const pid_t child = Start(arguments, (folder / "out").string(), (folder / "err").string());
   int status = 0;
   if (child > 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status)) {
     ran.status = WEXITSTATUS(status);
   }
-  ran.out = ReadText(folder.path() / "out");
-  ran.err = ReadText(folder.path() / "err");
+  ran.out = ReadText(folder / "out");
+  ran.err = ReadText(folder / "err");
   return ran;
 }
 

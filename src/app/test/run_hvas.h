@@ -11,23 +11,6 @@
 /** Runs the program itself, as a person at a terminal would. */
 namespace hvas::app::testing {
 
-/** A folder of its own that goes with the object. */
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-  /** Writes a text file there. */
-  [[nodiscard]] std::filesystem::path Write(const std::string& name, const std::string& text) const;
-
- private:
-  std::filesystem::path path_;
-};
-
 struct Ran {
   int status{-1};  ///< Exit status; -1 when a signal ended it.
   std::string out;

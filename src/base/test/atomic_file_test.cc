@@ -13,6 +13,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/test/temporary_folder.h"
+
 namespace hvas {
 namespace {
 
@@ -25,18 +27,11 @@ std::string Read(const std::filesystem::path& file) {
 
 class AtomicFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = ::testing::TempDir() + "hvas_atomic_XXXXXX";
-    folder_ = ::mkdtemp(name.data());
-  }
-
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   [[nodiscard]] std::ptrdiff_t CountFiles() const {
-    return std::distance(std::filesystem::directory_iterator(folder_), {});
+    return std::distance(std::filesystem::directory_iterator(folder_.path()), {});
   }
 
-  std::filesystem::path folder_;
+  testing::TemporaryFolder folder_;
 };
 
 TEST_F(AtomicFile, WritesAndReplacesWholeFilesAndNothingElse) {
@@ -83,9 +78,9 @@ TEST_F(AtomicFile, FullDiskIsAnErrorAndLeavesTheOldFile) {
 
 TEST_F(AtomicFile, FoldersThatAreNotThereAndFoldersInTheWayAreErrors) {
   EXPECT_EQ(WriteAtomically(folder_ / "none" / "a.json", "x").error().code, ErrorCode::kNotFound);
-  const Result<void> result = WriteAtomically(folder_, "x");
+  const Result<void> result = WriteAtomically(folder_.path(), "x");
   ASSERT_FALSE(result.has_value());
-  EXPECT_EQ(result.error().where, folder_.string());
+  EXPECT_EQ(result.error().where, folder_.path().string());
   EXPECT_FALSE(result.error().remedy.empty());
   EXPECT_EQ(CountFiles(), 0);
 }

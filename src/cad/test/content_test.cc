@@ -27,6 +27,7 @@
 #include <gp_Ax2.hxx>
 #include <gtest/gtest.h>
 
+#include "base/test/temporary_folder.h"
 #include "cad/assembly_tree.h"
 #include "cad/equal_shapes.h"
 #include "cad/parallel.h"
@@ -38,11 +39,11 @@
 namespace hvas::cad {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using product::Part;
 using product::Product;
 using testing::DocumentBuilder;
 using testing::MakePlate;
-using testing::ScratchFolder;
 using testing::Translation;
 
 constexpr double kPi = std::numbers::pi;
@@ -278,7 +279,7 @@ void Replace(const std::filesystem::path& file, const std::string& word, const s
 
 /** Imports a plate whose name in the file is given in raw bytes. */
 std::string ReadNameBack(const std::string& bytes) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   DocumentBuilder builder;
   builder.AddPart(MakePlate(), "PLACEHOLDER");
   builder.Write(folder / "a.step");
@@ -313,7 +314,7 @@ TEST(CleanName, NeverGivesInvalidUtf8) {
 }
 
 TEST(Units, OfEveryKindGiveTheSameCube) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   for (const std::string unit : {"MM", "CM", "M", "KM", "UM", "INCH", "FT", "MI", "MIL", "UIN"}) {
     SCOPED_TRACE(unit);
     DocumentBuilder builder;
@@ -328,7 +329,7 @@ TEST(Units, OfEveryKindGiveTheSameCube) {
 }
 
 TEST(Units, MayBeOfTheFilesOwnMaking) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   DocumentBuilder builder;
   builder.AddPart(BRepPrimAPI_MakeBox(25.4, 25.4, 25.4).Shape(), "cube");
   builder.Write(folder / "cube.step", "INCH");

@@ -16,6 +16,7 @@
 #include <TopoDS_Compound.hxx>
 #include <gtest/gtest.h>
 
+#include "base/test/temporary_folder.h"
 #include "cad/assembly_tree.h"
 #include "cad/read_cad.h"
 #include "cad/test/step_fixture.h"
@@ -23,13 +24,13 @@
 namespace hvas::cad {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using product::FeatureKind;
 using product::Part;
 using product::Product;
 using spatial::SurfaceKind;
 using testing::DocumentBuilder;
 using testing::MakePlate;
-using testing::ScratchFolder;
 using testing::Translation;
 
 constexpr double kPi = std::numbers::pi;
@@ -64,7 +65,7 @@ Product ImportOrDie(const std::filesystem::path& file, Diagnostics* diagnostics)
 
 /** Imports one shape by way of a STEP file. */
 Part ImportShape(const TopoDS_Shape& shape) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   DocumentBuilder builder;
   builder.AddPart(shape, "part");
   builder.Write(folder / "part.step");
@@ -115,7 +116,7 @@ void ExpectConsistent(const Part& part) {
 }
 
 TEST(ReadCad, KeepsTheTreeSharesPartsAndNamesThemInUtf8) {  // X1, X2.
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
   const Product product = ImportOrDie(folder / "a.step", &diagnostics);
@@ -139,7 +140,7 @@ TEST(ReadCad, KeepsTheTreeSharesPartsAndNamesThemInUtf8) {  // X1, X2.
 }
 
 TEST(ReadCad, ReadsColoursOfPartsAndFaces) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
   const Product product = ImportOrDie(folder / "a.step", &diagnostics);
@@ -152,7 +153,7 @@ TEST(ReadCad, ReadsColoursOfPartsAndFaces) {
 }
 
 TEST(ReadCad, GivesTheSameMassInEveryLengthUnit) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   for (const std::string unit : {"MM", "INCH", "M"}) {
     SCOPED_TRACE(unit);
     WriteAssembly(folder / "a.step", unit);
@@ -230,7 +231,7 @@ TEST(ReadCad, FindsTheHoleWithItsSpan) {  // Layer T of X2.
 }
 
 TEST(ReadCad, GivesTheSameBytesTwice) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
   const Product first = ImportOrDie(folder / "a.step", &diagnostics);
@@ -244,7 +245,7 @@ TEST(ReadCad, GivesTheSameBytesTwice) {
 }
 
 TEST(ReadCad, ReportsProgressUpToTheEnd) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
   std::string last;
@@ -269,7 +270,7 @@ Error ErrorOf(const std::filesystem::path& file) {
 }
 
 TEST(ReadCadErrors, NameTheFileAndTheRemedy) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   std::ofstream(folder / "empty.step").close();
   std::ofstream(folder / "photo.step") << "\x89PNG\r\n and so on";
   std::ofstream(folder / "cut.step") << "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\n";
@@ -287,7 +288,7 @@ TEST(ReadCadErrors, NameTheFileAndTheRemedy) {
 }
 
 TEST(ReadCadErrors, AnAssemblyOfCurvesHasNoSolid) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   DocumentBuilder builder;
   const TDF_Label curve =
       builder.AddPart(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(9, 0, 0)).Shape(), "datum");
@@ -300,7 +301,7 @@ TEST(ReadCadErrors, AnAssemblyOfCurvesHasNoSolid) {
 }
 
 TEST(ReadCad, LeavesCurvesOutAndKeepsSurfacesWithoutMass) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   DocumentBuilder builder;
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 20, 30).Shape();
   const TDF_Label root = builder.AddAssembly("mixed");

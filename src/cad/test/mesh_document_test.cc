@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "base/test/temporary_folder.h"
 #include "base/units.h"
 #include "cad/model_3mf.h"
 #include "cad/test/mesh_fixture.h"
@@ -26,11 +27,11 @@
 namespace hvas::cad {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using product::FeatureKind;
 using product::Part;
 using product::Product;
 using testing::ProfilePoint;
-using testing::ScratchFolder;
 
 void WriteFile(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
@@ -237,7 +238,7 @@ void ExpectBush(const Part& part) {
 }
 
 TEST(MeshDocument, ReadsTheSameBushFromStlObjGltfAnd3mf) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const TriangleSoup bush = MakeBush();
   const std::string node = R"({"name":"bush","mesh":0})";
   WriteFile(folder / "ascii.stl", ToAsciiStl(bush, "bush"));
@@ -262,7 +263,7 @@ TEST(MeshDocument, ReadsTheSameBushFromStlObjGltfAnd3mf) {
 }
 
 TEST(MeshDocument, Reads3mfInItsOwnUnitWithItsNamesAndSharedParts) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   for (const auto& [unit, metres] : std::map<std::string, double>{
            {"millimeter", 1e-3}, {"inch", 0.0254}, {"micron", 1e-6}, {"meter", 1}}) {
     WriteFile(folder / "bush.3mf", To3mf(MakeBush(), unit, metres));
@@ -282,7 +283,7 @@ TEST(MeshDocument, Reads3mfInItsOwnUnitWithItsNamesAndSharedParts) {
 }
 
 TEST(MeshDocument, TakesTheUnitThatTheUserStates) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   WriteFile(folder / "bush.stl", ToBinaryStl(MakeBush()));
   ImportOptions options;
   options.length_unit = 0.0254;
@@ -293,7 +294,7 @@ TEST(MeshDocument, TakesTheUnitThatTheUserStates) {
 }
 
 TEST(MeshDocument, TurnsNodesIntoSubassembliesAndWorksMirrorsIntoParts) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const std::string nodes = R"({"name":"machine","children":[1,3]},)"
                             R"({"name":"left","children":[2],"translation":[0,0.1,0]},)"
                             R"({"name":"bush","mesh":0,"translation":[0.05,0,0]},)"
@@ -321,7 +322,7 @@ TEST(MeshDocument, TurnsNodesIntoSubassembliesAndWorksMirrorsIntoParts) {
 }
 
 TEST(MeshDocument, TakesNamesOfLooksForMaterialsWhereTheyNameOne) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const TriangleSoup bush = MakeBush();
   WriteFile(folder / "looks.mtl",
             "newmtl Aluminium\nKd 0.8 0.8 0.8\nnewmtl Red\nKd 1 0 0\nnewmtl PTFE.001\nKd 1 1 1\n");
@@ -341,7 +342,7 @@ TEST(MeshDocument, TakesNamesOfLooksForMaterialsWhereTheyNameOne) {
 }
 
 TEST(MeshDocument, TakesClosedObjObjectsForPartsAndOpenGroupsForFaces) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const TriangleSoup bush = MakeBush();
   TriangleSoup other = testing::MakeBox({0.02, 0.02, 0.005});
   testing::Move({Quat::Identity(), Vec3(0, 0, 0.012)}, &other);
@@ -377,7 +378,7 @@ TEST(MeshDocument, TakesClosedObjObjectsForPartsAndOpenGroupsForFaces) {
 }
 
 TEST(MeshDocument, ReadsSeveralSolidsOfAnStl) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   TriangleSoup other = MakeBush();
   testing::Move({Quat::Identity(), Vec3(0.05, 0, 0)}, &other);
   WriteFile(folder / "two.stl", ToAsciiStl(MakeBush(), "first") + ToAsciiStl(other, "second"));
@@ -391,7 +392,7 @@ TEST(MeshDocument, ReadsSeveralSolidsOfAnStl) {
 }
 
 TEST(MeshDocument, ReportsWhatIsMissingAndReadsNothingOutsideItsFolder) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const TriangleSoup bush = MakeBush();
   const std::string node = R"({"name":"bush","mesh":0})";
   Diagnostics diagnostics;
@@ -419,7 +420,7 @@ TEST(MeshDocument, ReportsWhatIsMissingAndReadsNothingOutsideItsFolder) {
 }
 
 TEST(MeshDocument, SaysWhatIsWrongWithAFile) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const std::map<std::string, std::string> files{
       {"empty.obj", "# nothing\n"},
       {"points.obj", "v 0 0 0\nv 1 0 0\np 1 2\n"},

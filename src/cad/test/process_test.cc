@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "base/clock.h"
+#include "base/test/temporary_folder.h"
 #include "cad/import.h"
 #include "cad/import_cache.h"
 #include "cad/read_cad.h"
@@ -25,10 +26,10 @@ namespace hvas::cad {
 namespace {
 
 namespace fs = std::filesystem;
+using hvas::testing::TemporaryFolder;
 using product::Product;
 using testing::DocumentBuilder;
 using testing::MakePlate;
-using testing::ScratchFolder;
 using testing::Translation;
 
 /** A plate and two of one pin, in a folder with a stand-in for the worker. */
@@ -120,7 +121,7 @@ class ProcessTest : public ::testing::Test {
     return control;
   }
 
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
   fs::path file_{folder_ / "rig.step"};
   fs::path log_{folder_ / "log"};
   Diagnostics diagnostics_;

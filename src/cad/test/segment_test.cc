@@ -22,6 +22,7 @@
 #include <gp_Ax2.hxx>
 #include <gtest/gtest.h>
 
+#include "base/test/temporary_folder.h"
 #include "base/units.h"
 #include "cad/read_cad.h"
 #include "cad/test/mesh_fixture.h"
@@ -437,7 +438,7 @@ TEST(TrianglePart, TakesAnyTriangles) {
 // The same solid read as B-rep and from its triangles: the same holes, shafts and cones, in the
 // same places.
 TEST(TrianglePart, HasTheFeaturesOfItsSolid) {
-  const testing::ScratchFolder folder;
+  const hvas::testing::TemporaryFolder folder;
   testing::DocumentBuilder builder;
   builder.AddPart(MakePlate(), "plate");
   builder.Write(folder / "plate.step");

@@ -1,8 +1,5 @@
 #include "cad/test/step_fixture.h"
 
-#include <unistd.h>
-
-#include <cstdlib>
 #include <stdexcept>
 
 #include <BRepAlgoAPI_Cut.hxx>
@@ -38,19 +35,6 @@ Handle(TCollection_HAsciiString) ToHandle(const std::string& text) {
 }
 
 }  // namespace
-
-ScratchFolder::ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "hvas-cad-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) {
-    throw std::runtime_error("no scratch folder");
-  }
-  path_ = pattern;
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code error;
-  std::filesystem::remove_all(path_, error);
-}
 
 DocumentBuilder::DocumentBuilder() {
   STEPCAFControl_Controller::Init();

@@ -13,22 +13,6 @@
 /** Makes small STEP files and XCAF documents for tests, in millimetres. */
 namespace hvas::cad::testing {
 
-/** A directory that goes when the object goes. */
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
 class DocumentBuilder {
  public:
   DocumentBuilder();

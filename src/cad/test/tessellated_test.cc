@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/test/temporary_folder.h"
 #include "cad/test/mesh_fixture.h"
 #include "cad/test/step_fixture.h"
 
@@ -120,7 +121,7 @@ TEST(Tessellated, FitsASurfaceWhereTheOneGivenIsNotThatOfTheTriangles) {
 }
 
 TEST(Tessellated, IsWhatAFileWithoutSolidsIsReadBy) {
-  const testing::ScratchFolder folder;
+  const hvas::testing::TemporaryFolder folder;
   std::ofstream(folder / "pair.stp", std::ios::binary) << MakeStep(10);
   Diagnostics diagnostics;
   const auto product = ReadCad(folder / "pair.stp", {}, &diagnostics);

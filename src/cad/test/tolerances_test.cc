@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "base/test/temporary_folder.h"
 #include "cad/read_cad.h"
 #include "cad/step_text.h"
 #include "cad/test/step_fixture.h"
@@ -283,7 +284,7 @@ TEST(Tolerances, NoDamageToATextCrashesOrHangs) {
 
 /** The entities from a file's ADVANCED_FACE number of a cylinder to the text above. */
 TEST(Tolerances, ReachTheFacesOfAnImportedPart) {
-  const testing::ScratchFolder folder;
+  const hvas::testing::TemporaryFolder folder;
   const std::filesystem::path file = folder / "plate.stp";
   testing::DocumentBuilder builder;
   builder.AddPart(testing::MakePlate(), "plate");

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
+#include "base/test/temporary_folder.h"
 #include "contact/scene.h"
 #include "contact/shape_io.h"
 #include "contact/test/parts.h"
@@ -24,13 +24,6 @@ namespace fs = std::filesystem;
 
 class ShapeCacheTest : public ::testing::Test {
  protected:
-  ShapeCacheTest() {
-    std::string pattern = (fs::temp_directory_path() / "hvas-shapes-XXXXXX").string();
-    directory_ = ::mkdtemp(pattern.data());
-  }
-
-  ~ShapeCacheTest() override { fs::remove_all(directory_); }
-
   // Fills a fresh cache's file for the bushing and hands it to `damage`; the next one must build.
   template <typename Damage>
   void ExpectRebuilt(Damage damage) const {
@@ -58,7 +51,8 @@ class ShapeCacheTest : public ::testing::Test {
     file.put(static_cast<char>(byte ^ 0x10));
   }
 
-  fs::path directory_;
+  hvas::testing::TemporaryFolder folder_;
+  const fs::path& directory_{folder_.path()};
   ShapeSource bushing_{testing::Bushing(5e-3, 9e-3, 12e-3, 50e-6)};
   std::vector<std::byte> built_bytes_{SerialiseShape(*testing::Build(bushing_))};
 };
@@ -202,22 +196,6 @@ TEST_F(ShapeCacheTest, AnErrorOfTheSourceIsNotHiddenNorKept) {
   ShapeCache cache(directory_);
   EXPECT_FALSE(cache.LoadOrBuild({}, {}));
   EXPECT_TRUE(fs::is_empty(directory_));
-}
-
-TEST(ShapeCacheDirectoryTest, FollowsTheEnvironment) {
-  const auto with = [](const char* cache, const char* xdg, const char* home) {
-    ::setenv("HVAS_CACHE", cache, 1);
-    ::setenv("XDG_CACHE_HOME", xdg, 1);
-    ::setenv("HOME", home, 1);
-    return ShapeCache::DefaultDirectory();
-  };
-  const std::string home = getenv("HOME") != nullptr ? getenv("HOME") : "";
-  EXPECT_EQ(with("", "/caches", "/home/kim"), fs::path("/caches/hvas"));
-  EXPECT_EQ(with("", "", "/home/kim"), fs::path("/home/kim/.cache/hvas"));
-  EXPECT_EQ(with("", "relative", "/home/kim"), fs::path("/home/kim/.cache/hvas"));
-  EXPECT_EQ(with("", "", ""), std::nullopt);
-  EXPECT_EQ(with("off", "/caches", "/home/kim"), std::nullopt);
-  (void)with("off", "", home.c_str());
 }
 
 }  // namespace

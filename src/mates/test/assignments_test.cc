@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/test/temporary_folder.h"
 #include "mates/infer.h"
 #include "mates/test/test_product.h"
 
@@ -44,13 +45,7 @@ class Assignments : public ::testing::Test {
     product_ = MakeProduct();
     ASSERT_EQ(product_.mates.size(), 3U);
     ASSERT_EQ(product_.mates[2].fit->kind, FitKind::kThread);
-    // One file for each test: they run in parallel.
-    file_ = std::filesystem::path(::testing::TempDir()) /
-            (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
-             ".hvas.json");
   }
-
-  void TearDown() override { std::filesystem::remove(file_); }
 
   Result<int> ApplyText(const std::string& text) {
     std::ofstream(file_) << text;
@@ -64,7 +59,8 @@ class Assignments : public ::testing::Test {
   }
 
   Product product_;
-  std::filesystem::path file_;
+  hvas::testing::TemporaryFolder folder_;
+  std::filesystem::path file_{folder_ / "product.hvas.json"};
 };
 
 TEST_F(Assignments, SideFileSetsKindCodeAndNominal) {

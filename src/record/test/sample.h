@@ -1,13 +1,10 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <string>
-#include <system_error>
-#include <utility>
 
 #include "base/random.h"
+#include "base/test/temporary_folder.h"
 #include "record/tick_record.h"
 
 namespace hvas::record {
@@ -56,30 +53,15 @@ inline Event MakeEvent(std::int64_t number) {
           "{\"depth_mm\": " + std::to_string(number) + ", \"name\": \"Büchse\"}"};
 }
 
-/** A file name of this process' own, removed with its side files at the end. */
+/** A file name in a folder of its own, removed with its side files at the end. */
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() /
-              ("hvas_" + std::to_string(::getpid()) + "_" + name)) {
-    Remove();
-  }
-
-  ~TemporaryFile() { Remove(); }
-
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  explicit TemporaryFile(const std::string& name) : path_(folder_ / name) {}
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  void Remove() const {
-    std::error_code ignored;
-    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
-      std::filesystem::remove(path_.string() + suffix, ignored);
-    }
-  }
-
+  testing::TemporaryFolder folder_;
   std::filesystem::path path_;
 };
 
