@@ -34,10 +34,12 @@ struct Scene::Data {
     std::shared_ptr<const Shape> shape;
     spatial::Pose X_WB;
     bool is_enabled{true};
+    std::shared_ptr<const FaceOffsets> offsets;
   };
 
   std::vector<Body> bodies;
   BodyTree tree;
+  double growth{0};  // Of all bodies' offsets, the most; the tree has their boxes as drawn.
   double ground_z_W{std::numeric_limits<double>::quiet_NaN()};
   TraverseFunction traverse{ChooseTraverse()};
 
@@ -45,8 +47,14 @@ struct Scene::Data {
     return spatial::Transform(body.X_WB, body.shape->box_B());
   }
 
+  // Where the held part as made may meet bodies as made.
+  [[nodiscard]] spatial::Box BoxOf(const Placed& held, const spatial::Pose& X_WH,
+                                   double margin) const noexcept {
+    return spatial::Transform(X_WH, held.shape->box_B).Expanded(margin + held.growth() + growth);
+  }
+
   [[nodiscard]] Placed Place(std::uint32_t item) const noexcept {
-    return {*bodies[item].shape, bodies[item].X_WB};
+    return {*bodies[item].shape, bodies[item].X_WB, bodies[item].offsets.get()};
   }
 
   void Run(const spatial::Box& box_W, const QueryOptions& options,
@@ -89,7 +97,7 @@ struct Scene::Data {
         plane.kind = spatial::SurfaceKind::kPlane;
         plane.axis = held.R_WC.row(2);
         plane.origin = held.R_WC.transpose() * (Vec3(0, 0, ground_z_W) - held.p_WC);
-        SlideOnPlane(*held.shape, held.shape->shell, plane, raw);
+        SlideOnPlane(held, held.shape->shell, plane, raw);
       }
       contact.p_WC = held.R_WC * raw->p + held.p_WC;
       contact.nhat_W = Vec3::UnitZ();
@@ -102,7 +110,7 @@ struct Scene::Data {
     const Placed& field = raw->is_reverse ? held : scene;
     if (is_lowest) {
       const Shell& shell = raw->is_reverse ? scene.shape->features : held.shape->shell;
-      Slide(*sampled.shape, shell, *field.shape, RelativePose(field, sampled), raw);
+      Slide(sampled, shell, field, raw);
     }
     contact.distance = raw->distance;
     contact.p_WC = sampled.R_WC * raw->p + sampled.p_WC;
@@ -121,7 +129,7 @@ Scene::~Scene() = default;
 
 BodyId Scene::Add(std::shared_ptr<const Shape> shape, const spatial::Pose& X_WB) {
   const BodyId id{data_->bodies.size()};
-  data_->bodies.push_back({std::move(shape), X_WB, true});
+  data_->bodies.push_back({std::move(shape), X_WB, true, nullptr});
   data_->tree.Reserve(data_->bodies.capacity());
   data_->tree.Insert(id.value(), Data::BoxOf(data_->bodies.back()));
   return id;
@@ -133,6 +141,18 @@ void Scene::SetPose(BodyId body, const spatial::Pose& X_WB) noexcept {
   if (b.is_enabled) {
     data_->tree.Move(body.value(), Data::BoxOf(b));
   }
+}
+
+void Scene::SetOffsets(BodyId body, std::shared_ptr<const FaceOffsets> offsets) {
+  data_->bodies[body.index()].offsets = std::move(offsets);
+  data_->growth = 0;
+  for (const Data::Body& b : data_->bodies) {
+    data_->growth = std::max(data_->growth, b.offsets != nullptr ? b.offsets->growth() : 0);
+  }
+}
+
+const FaceOffsets* Scene::offsets(BodyId body) const noexcept {
+  return data_->bodies[body.index()].offsets.get();
 }
 
 void Scene::SetEnabled(BodyId body, bool is_enabled) noexcept {
@@ -164,6 +184,10 @@ std::size_t Scene::size() const noexcept {
   return data_->bodies.size();
 }
 
+void Scene::UseScalarKernel() noexcept {
+  data_->traverse = &TraverseScalar;
+}
+
 void Scene::SetGround(double z_W) noexcept {
   data_->ground_z_W = z_W;
 }
@@ -172,10 +196,10 @@ void Scene::Query(const Shape& held, const spatial::Pose& X_WH, const QueryOptio
                   QueryWorkspace* workspace) const noexcept {
   QueryWorkspace::Data& work = workspace->data();
   work.Clear();
-  const Placed placed(held, X_WH);
+  const Placed placed(held, X_WH, options.held_offsets);
   BodyQuery query(placed, options, options.margin, -std::numeric_limits<double>::infinity(),
                   data_->traverse, &work);
-  data_->Run(spatial::Transform(X_WH, held.box_B()).Expanded(options.margin), options, &query);
+  data_->Run(data_->BoxOf(placed, X_WH, options.margin), options, &query);
   data_->Finish(placed, &work);
 }
 
@@ -183,9 +207,9 @@ bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double toleranc
                    const QueryOptions& options, QueryWorkspace* workspace) const noexcept {
   QueryWorkspace::Data& work = workspace->data();
   work.Clear();
-  const Placed placed(held, X_WH);
+  const Placed placed(held, X_WH, options.held_offsets);
   BodyQuery query(placed, options, -tolerance, -tolerance, data_->traverse, &work);
-  data_->Run(spatial::Transform(X_WH, held.box_B()), options, &query);
+  data_->Run(data_->BoxOf(placed, X_WH, 0), options, &query);
   data_->Finish(placed, &work);
   return !query.is_stopped();
 }

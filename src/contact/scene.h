@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "contact/face_offsets.h"
 #include "contact/shape.h"
 #include "spatial/box.h"
 #include "spatial/pose.h"
@@ -38,8 +39,9 @@ struct IgnoredPair {
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
   std::span<const IgnoredPair> ignored{};
-  std::span<const BodyId> left_out{};  ///< Bodies that are not asked at all.
-  BodyId self;                         ///< This body of the scene is the held one itself: skipped.
+  std::span<const BodyId> left_out{};        ///< Bodies that are not asked at all.
+  const FaceOffsets* held_offsets{nullptr};  ///< The held part's faces as made; null: as drawn.
+  BodyId self;  ///< This body of the scene is the held one itself: skipped.
 };
 
 struct QueryStats {
@@ -84,11 +86,19 @@ class Scene {
 
   BodyId Add(std::shared_ptr<const Shape> shape, const spatial::Pose& X_WB);
   void SetPose(BodyId body, const spatial::Pose& X_WB) noexcept;
+  /** Gives a body its faces as made; null: as drawn, as are offsets of another shape. Frees what it
+   had: not RT-safe. */
+  void SetOffsets(BodyId body, std::shared_ptr<const FaceOffsets> offsets);
+  [[nodiscard]] const FaceOffsets* offsets(BodyId body) const noexcept;
   void SetEnabled(BodyId body, bool is_enabled) noexcept;
   [[nodiscard]] bool is_enabled(BodyId body) const noexcept;
   [[nodiscard]] const spatial::Pose& pose(BodyId body) const noexcept;
   [[nodiscard]] const Shape& shape(BodyId body) const noexcept;
   [[nodiscard]] std::size_t size() const noexcept;
+
+  /** From now on answers without vector instructions, with the same results: to test and measure.
+   */
+  void UseScalarKernel() noexcept;
 
   /** A horizontal ground plane (a table) at height z, facing up; NaN for none. */
   void SetGround(double z_W) noexcept;
