@@ -8,11 +8,6 @@ namespace {
 constexpr std::size_t kMaxPairsPerBody = 8;  // Bits of a face mask; further pairs share the last.
 const std::uint32_t kGroundBody = BodyId{}.value();
 
-Vec3 PointOf(const Shell& shell, std::uint32_t i) {
-  return {static_cast<double>(shell.x[i]), static_cast<double>(shell.y[i]),
-          static_cast<double>(shell.z[i])};
-}
-
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
   std::uint8_t bits = 0;
   for (const std::uint32_t f : sample.faces) {
@@ -122,8 +117,8 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
   // Room for the rounding of single precision coordinates.
   const double rounding = 4e-7 * (X.p.norm() + sampled.half().norm() + field.half().norm());
-  traverse_(shell.view, field.shape->field.view, X.Single(), static_cast<float>(margin_ + rounding),
-            &hits);
+  const double reach = margin_ + rounding + sampled.growth() + field.growth();
+  traverse_(shell.view, field.shape->field.view, X.Single(), static_cast<float>(reach), &hits);
   work_->stats.points_tested += hits.points_tested;
   work_->stats.is_truncated = work_->stats.is_truncated || hits.is_truncated;
 
@@ -136,14 +131,14 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   contact.is_reverse = kIsReverse;
   for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
     const Hit& hit = hits.hits[i];
-    contact.p = PointOf(shell, hit.point);
+    contact.p = sampled.Sample(shell, hit.point);
     const SampleFaces& faces = shell.faces[hit.point];
     const Vec3 p_F = X * contact.p;
     FaceFilter filter;
     if (has_ignored) {
       filter = {other_mask.data(), BitsOf(faces, own_mask)};
     }
-    const Refined r = Refine(*field.shape, p_F, hit, filter);
+    const Refined r = RefineActual(*field.shape, field.offsets, p_F, hit, filter);
     if (!r.is_valid || r.distance >= margin_) {
       continue;
     }
@@ -180,7 +175,7 @@ void BodyQuery::Ground(double z_W) noexcept {
   std::size_t size = 0;
   stack[size++] = 0;
   const Vec3 up_H = held_.R_WC.row(2);
-  const double limit = z_W + margin_ - held_.p_WC.z();
+  const double limit = z_W + margin_ + held_.growth() - held_.p_WC.z();
   while (size > 0 && !is_stopped_) {
     const SphereNode& node = shell.nodes[static_cast<std::size_t>(stack[--size])];
     for (int k = 0; k < 8; ++k) {
@@ -210,7 +205,7 @@ void BodyQuery::GroundLeaf(double z_W, std::size_t leaf) noexcept {
   contact.gradient = Vec3::UnitZ();
   for (std::uint32_t i = 0; i < shell.leaf_count[leaf] && !is_stopped_; ++i) {
     contact.point = static_cast<std::uint32_t>(8 * leaf) + i;
-    contact.p = PointOf(shell, contact.point);
+    contact.p = held_.Sample(shell, contact.point);
     const Vec3 p_W = held_.R_WC * contact.p + held_.p_WC;
     contact.distance = p_W.z() - z_W;
     if (contact.distance < margin_) {

@@ -29,16 +29,30 @@ struct QueryWorkspace::Data {
   void Clear() noexcept;
 };
 
-/** Where a shape's centred frame is in the world. */
+/** Where a shape's centred frame is in the world, and its faces as made. */
 struct Placed {
   const Shape::Data* shape;
+  const FaceOffsets* offsets;  // Null: as drawn.
   Mat3 R_WC;
   Vec3 p_WC;
 
-  Placed(const Shape& s, const spatial::Pose& X_WB)
-      : shape(&s.data()), R_WC(X_WB.R()), p_WC(X_WB.p() + R_WC * s.data().p_BC) {}
+  Placed(const Shape& s, const spatial::Pose& X_WB, const FaceOffsets* o)
+      : shape(&s.data()),
+        offsets(o != nullptr && o->shape().get() == &s ? o : nullptr),
+        R_WC(X_WB.R()),
+        p_WC(X_WB.p() + R_WC * s.data().p_BC) {}
 
-  [[nodiscard]] Vec3 half() const { return 0.5 * shape->box_B.size(); }
+  /** Of the part as made. */
+  [[nodiscard]] Vec3 half() const { return 0.5 * shape->box_B.size() + Vec3::Constant(growth()); }
+
+  [[nodiscard]] double growth() const { return offsets != nullptr ? offsets->growth() : 0; }
+
+  /** Sample i of one of the shape's shells, where it is on the part as made. */
+  [[nodiscard]] Vec3 Sample(const Shell& shell, std::uint32_t i) const noexcept {
+    const Vec3 p(static_cast<double>(shell.x[i]), static_cast<double>(shell.y[i]),
+                 static_cast<double>(shell.z[i]));
+    return offsets != nullptr ? Vec3(p + offsets->ShiftOf(shell, i)) : p;
+  }
 };
 
 /** Takes coordinates of b's centred frame to a's. */
@@ -93,10 +107,10 @@ class BodyQuery {
 /** Moves a contact's sample over the face or edge it lies on to where the distance to the other
  shape is least, as far as the next samples. Without this the answer would depend on where samples
  happen to be. RT-safe. */
-void Slide(const Shape::Data& sampled, const Shell& shell, const Shape::Data& field,
-           const RelativePose& X_FS, RawContact* contact) noexcept;
+void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
+           RawContact* contact) noexcept;
 /** The same over the ground, a plane in the sampled shape's frame. */
-void SlideOnPlane(const Shape::Data& sampled, const Shell& shell, const spatial::Surface& plane,
+void SlideOnPlane(const Placed& sampled, const Shell& shell, const spatial::Surface& plane,
                   RawContact* contact) noexcept;
 
 }  // namespace hvas::contact

@@ -99,7 +99,7 @@ Refined FromEdge(const Shape::Data& shape, const Closest& closest, const SolidFe
         4 * (shape.exact.deviation[feature.face] + shape.exact.deviation[feature.other_face]) +
         kOnFeature;
     Vec3 on_curve = q;
-    if (ProjectOnEdge(shape.exact.faces[feature.face], shape.exact.faces[feature.other_face], p,
+    if (ProjectOnEdge({shape, nullptr, feature.face}, {shape, nullptr, feature.other_face}, p,
                       &on_curve) &&
         std::abs((p - on_curve).norm() - std::sqrt(closest.squared)) <= tolerance) {
       q = on_curve;
@@ -221,14 +221,13 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
 
 }  // namespace
 
-bool ProjectOnEdge(const spatial::Surface& a, const spatial::Surface& b, const Vec3& p,
-                   Vec3* q) noexcept {
+bool ProjectOnEdge(const FaceSurface& a, const FaceSurface& b, const Vec3& p, Vec3* q) noexcept {
   constexpr int kMaxSteps = 6;
   constexpr double kConverged = 1e-11;  // [m]
   Vec3 x = *q;
   for (int i = 0; i < kMaxSteps; ++i) {
-    const auto da = spatial::CalcDistance(a, x);
-    const auto db = spatial::CalcDistance(b, x);
+    const auto da = a.CalcDistance(x);
+    const auto db = b.CalcDistance(x);
     if (!da.is_valid || !db.is_valid) {
       return false;
     }
@@ -247,35 +246,45 @@ bool ProjectOnEdge(const spatial::Surface& a, const spatial::Surface& b, const V
     }
   }
   *q = x;
-  return std::abs(spatial::CalcDistance(a, x).distance) < kOnFeature &&
-         std::abs(spatial::CalcDistance(b, x).distance) < kOnFeature;
+  return std::abs(a.CalcDistance(x).distance) < kOnFeature &&
+         std::abs(b.CalcDistance(x).distance) < kOnFeature;
 }
 
-Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
-               const FaceFilter& filter) noexcept {
+ZoneAt FindZone(const Shape::Data& shape, const Vec3& p) noexcept {
   const FieldView& grid = shape.field.view;
   const double inverse = 1 / shape.voxel;
+  ZoneAt result;
   int cell[3];
-  Vec3 centre;
   for (int k = 0; k < 3; ++k) {
     const double u = (p[k] - static_cast<double>(grid.origin[k])) * inverse;
     if (!(u >= 0 && u < kBlockCells * grid.blocks[k])) {
-      return Trilinear(field, p);
+      return result;
     }
     cell[k] = static_cast<int>(u);
-    centre[k] = static_cast<double>(grid.origin[k]) + ((cell[k] & ~1) + 1) * shape.voxel;
+    result.centre[k] = static_cast<double>(grid.origin[k]) + ((cell[k] & ~1) + 1) * shape.voxel;
   }
   const int block = grid.top[((cell[2] >> 3) * grid.blocks[1] + (cell[1] >> 3)) * grid.blocks[0] +
                              (cell[0] >> 3)];
   if (block < 0) {
-    return Trilinear(field, p);
+    return result;
   }
   const int index = block * kZonesPerBlock + ((cell[2] & 7) >> 1) * 16 + ((cell[1] & 7) >> 1) * 4 +
                     ((cell[0] & 7) >> 1);
-  const std::uint32_t code = shape.exact.zones[static_cast<std::size_t>(index)];
+  result.code = shape.exact.zones[static_cast<std::size_t>(index)];
+  result.is_known = true;
+  return result;
+}
+
+Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
+               const FaceFilter& filter) noexcept {
+  const ZoneAt at = FindZone(shape, p);
+  if (!at.is_known) {
+    return Trilinear(field, p);
+  }
+  const std::uint32_t code = at.code;
   const std::uint32_t payload = code & zone::kPayload;
   if ((code & ~zone::kPayload) == zone::kList) {
-    const ZoneList list(shape, payload, p, (p - centre).norm());
+    const ZoneList list(shape, payload, p, (p - at.centre).norm());
     const Closest closest = list.Find({});
     const SolidFeature feature = FeatureOf(shape.mesh, closest);
     if (filter.Drops(feature.face) || filter.Drops(feature.other_face)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contact/face_offsets.h"
 #include "contact/shape_data.h"
 
 namespace hvas::contact {
@@ -29,9 +30,42 @@ struct FaceFilter {
 [[nodiscard]] Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
                              const FaceFilter& filter) noexcept;
 
+/** The same for the faces as made; without offsets as `Refine`. The nominal part's distance is
+ taken at p less the shift of the faces near it (`SolveShift`), which is exact for planes and to
+ |s|^2 / 2R for others. RT-safe. */
+[[nodiscard]] Refined RefineActual(const Shape::Data& shape, const FaceOffsets* offsets,
+                                   const Vec3& p, const Hit& field,
+                                   const FaceFilter& filter) noexcept;
+
+/** The zone of the field in which a point lies: its code, and the centre its list goes by. */
+struct ZoneAt {
+  std::uint32_t code{0};
+  Vec3 centre{Vec3::Zero()};
+  bool is_known{false};  ///< False outside the field and where it has no block.
+};
+
+[[nodiscard]] ZoneAt FindZone(const Shape::Data& shape, const Vec3& p) noexcept;
+
+/** A face's surface, as drawn or as made. */
+class FaceSurface {
+ public:
+  FaceSurface(const Shape::Data& shape, const FaceOffsets* offsets, std::uint32_t face)
+      : surface_(shape.exact.faces[face]), offsets_(offsets), face_(face) {}
+
+  [[nodiscard]] spatial::SurfaceDistance CalcDistance(const Vec3& p) const noexcept {
+    return offsets_ == nullptr ? spatial::CalcDistance(surface_, p)
+                               : offsets_->CalcDistance(face_, p);
+  }
+
+ private:
+  const spatial::Surface& surface_;
+  const FaceOffsets* offsets_;
+  std::uint32_t face_;
+};
+
 /** The closest point to p on the curve where two analytic surfaces meet, from a start near it: a
  few steps of Newton's method. False when they do not meet there. RT-safe. */
-[[nodiscard]] bool ProjectOnEdge(const spatial::Surface& a, const spatial::Surface& b,
-                                 const Vec3& p, Vec3* q) noexcept;
+[[nodiscard]] bool ProjectOnEdge(const FaceSurface& a, const FaceSurface& b, const Vec3& p,
+                                 Vec3* q) noexcept;
 
 }  // namespace hvas::contact

@@ -165,7 +165,7 @@ void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
       for (int i = 0; i <= 2 * pieces; i += pieces == 1 ? 1 : 2) {
         Vec3 p = a + (0.5 * i / pieces) * (b - a);
         Vec3 q = p;
-        if (f != g && ProjectOnEdge(data.exact.faces[f], data.exact.faces[g], p, &q) &&
+        if (f != g && ProjectOnEdge({data, nullptr, f}, {data, nullptr, g}, p, &q) &&
             (q - p).norm() <= tolerance) {
           p = q;
         }

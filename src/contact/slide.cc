@@ -13,9 +13,10 @@ constexpr double kOnSurface = 1e-7;   // [m]
 // The face, or the two faces at an edge, on which a sample may move.
 class Track {
  public:
-  Track(const Shape::Data& shape, const SampleFaces& sample) : shape_(shape), faces_(sample.faces) {
+  Track(const Placed& sampled, const SampleFaces& sample)
+      : shape_(*sampled.shape), offsets_(sampled.offsets), faces_(sample.faces) {
     const auto& faces = sample.faces;
-    reach_ = shape.spacing * (faces[1] == kNoFace ? 3.0 : 0.75);
+    reach_ = shape_.spacing * (faces[1] == kNoFace ? 3.0 : 0.75);
     is_usable_ =
         faces[2] == kNoFace && IsExact(faces[0]) && (faces[1] == kNoFace || IsExact(faces[1]));
   }
@@ -26,11 +27,11 @@ class Track {
 
   // The part of a direction that lies along the track at p.
   [[nodiscard]] Vec3 Along(const Vec3& p, const Vec3& direction) const {
-    const Vec3 n = spatial::CalcDistance(Surface(0), p).gradient;
+    const Vec3 n = Surface(0).CalcDistance(p).gradient;
     if (faces_[1] == kNoFace) {
       return direction - direction.dot(n) * n;
     }
-    const Vec3 tangent = n.cross(spatial::CalcDistance(Surface(1), p).gradient);
+    const Vec3 tangent = n.cross(Surface(1).CalcDistance(p).gradient);
     const double squared = tangent.squaredNorm();
     return squared > 0 ? Vec3(direction.dot(tangent) / squared * tangent) : Vec3::Zero();
   }
@@ -40,7 +41,7 @@ class Track {
       const Vec3 wanted = *p;
       return ProjectOnEdge(Surface(0), Surface(1), wanted, p);
     }
-    const auto exact = spatial::CalcDistance(Surface(0), *p);
+    const auto exact = Surface(0).CalcDistance(*p);
     *p -= exact.distance * exact.gradient;
     return exact.is_valid;
   }
@@ -48,20 +49,19 @@ class Track {
   // True where the trimmed part of the track goes as far as p.
   [[nodiscard]] bool Reaches(const Vec3& p) const {
     constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
-    const Refined r = Refine(shape_, p, kNowhere, {});
+    const Refined r = RefineActual(shape_, offsets_, p, kNowhere, {});
     return r.is_exact && std::abs(r.distance) < kOnSurface;
   }
 
  private:
-  [[nodiscard]] const spatial::Surface& Surface(std::size_t i) const {
-    return shape_.exact.faces[faces_[i]];
-  }
+  [[nodiscard]] FaceSurface Surface(std::size_t i) const { return {shape_, offsets_, faces_[i]}; }
 
   [[nodiscard]] bool IsExact(std::uint32_t f) const {
     return shape_.exact.faces[f].kind != spatial::SurfaceKind::kFreeform;
   }
 
   const Shape::Data& shape_;
+  const FaceOffsets* offsets_;
   const std::array<std::uint32_t, kMaxPointFaces>& faces_;
   double reach_{0};
   bool is_usable_{false};
@@ -116,16 +116,17 @@ State Descend(const Track& track, const State& start, Evaluate evaluate) {
 
 }  // namespace
 
-void Slide(const Shape::Data& sampled, const Shell& shell, const Shape::Data& field,
-           const RelativePose& X_FS, RawContact* contact) noexcept {
+void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
+           RawContact* contact) noexcept {
   const Track track(sampled, shell.faces[contact->point]);
   if (!track.is_usable() || !contact->is_exact) {
     return;
   }
+  const RelativePose X_FS(field, sampled);
   const std::uint32_t face = contact->is_reverse ? contact->held_face : contact->scene_face;
   const auto evaluate = [&](State* s) {
     constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
-    const Refined r = Refine(field, X_FS * s->p, kNowhere, {});
+    const Refined r = RefineActual(*field.shape, field.offsets, X_FS * s->p, kNowhere, {});
     s->distance = r.distance;
     s->gradient = X_FS.R.transpose() * r.gradient;
     return r.is_exact && r.face == face;
@@ -137,7 +138,7 @@ void Slide(const Shape::Data& sampled, const Shell& shell, const Shape::Data& fi
   contact->gradient = X_FS.R * end.gradient;
 }
 
-void SlideOnPlane(const Shape::Data& sampled, const Shell& shell, const spatial::Surface& plane,
+void SlideOnPlane(const Placed& sampled, const Shell& shell, const spatial::Surface& plane,
                   RawContact* contact) noexcept {
   const Track track(sampled, shell.faces[contact->point]);
   if (!track.is_usable()) {
