@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "contact/refine.h"
 #include "contact/shape_data.h"
 
 namespace hvas::contact {
@@ -112,6 +113,7 @@ Result<std::shared_ptr<const FaceOffsets>> FaceOffsets::Make(std::shared_ptr<con
 }
 
 void FaceOffsets::Place(const Shell& shell, std::vector<std::array<float, 3>>* shifts) {
+  const Shape::Data& shape = shape_->data();
   shifts->resize(shell.faces.size());
   for (std::size_t i = 0; i < shell.faces.size(); ++i) {
     const SampleFaces& sample = shell.faces[i];
@@ -124,7 +126,10 @@ void FaceOffsets::Place(const Shell& shell, std::vector<std::array<float, 3>>* s
       normals[count] = sample.normal(count);
       offsets[count] = At(sample.faces[count], p).offset;
     }
-    const Vec3 s = SolveShift({normals.data(), count}, {offsets.data(), count}).s;
+    const bool is_alone =
+        count == 1 && shape.exact.faces[sample.faces[0]].kind != spatial::SurfaceKind::kFreeform;
+    const Vec3 s = is_alone ? CalcShift(shape, *this, p)
+                            : SolveShift({normals.data(), count}, {offsets.data(), count}).s;
     (*shifts)[i] = {static_cast<float>(s.x()), static_cast<float>(s.y()),
                     static_cast<float>(s.z())};
     largest_ = std::max(largest_, s.norm());

@@ -37,6 +37,11 @@ struct FaceFilter {
                                    const Vec3& p, const Hit& field,
                                    const FaceFilter& filter) noexcept;
 
+/** How far a point of the nominal surface goes when all faces near it move: with the edge where it
+ lies near one, so that it stays on its trimmed face. RT-safe. */
+[[nodiscard]] Vec3 CalcShift(const Shape::Data& shape, const FaceOffsets& offsets,
+                             const Vec3& p) noexcept;
+
 /** The zone of the field in which a point lies: its code, and the centre its list goes by. */
 struct ZoneAt {
   std::uint32_t code{0};

@@ -125,6 +125,11 @@ Refined RefineShifted(const Shape::Data& shape, const FaceOffsets& offsets, cons
 
 }  // namespace
 
+Vec3 CalcShift(const Shape::Data& shape, const FaceOffsets& offsets, const Vec3& p) noexcept {
+  const NearFaces near(shape, offsets, p);
+  return near.is_exact() && near.is_moved() ? near.ShiftFor(0).s : Vec3::Zero();
+}
+
 Refined RefineActual(const Shape::Data& shape, const FaceOffsets* offsets, const Vec3& p,
                      const Hit& field, const FaceFilter& filter) noexcept {
   if (offsets == nullptr) {

@@ -14,7 +14,7 @@ namespace {
 std::atomic<int> allocations{0};
 }  // namespace
 
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* p = std::malloc(size)) {
     return p;
@@ -22,7 +22,7 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 
-void* operator new(std::size_t size, std::align_val_t align) {
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t align) {
   ++allocations;
   const auto a = static_cast<std::size_t>(align);
   if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) {
@@ -60,6 +60,14 @@ class RealtimeTest : public ::testing::Test {
       cups_.push_back(scene_.Add(cup, Pose(Vec3(0.05 * i, 0, 0))));
     }
     scene_.SetGround(-1e-3);
+    // One cup and the dowel as made: the bore wider, the floor lower, the dowel thicker and worn.
+    std::vector<FaceOffset> offsets(5);
+    offsets[3].uniform = -4e-6;
+    offsets[4].uniform = -2e-6;
+    scene_.SetOffsets(cups_[0], FaceOffsets::Make(cup, offsets).value());
+    offsets.resize(2);
+    offsets[1] = {1e-6, {0, -1e-6, 1e-6}, 0, 20e-3};
+    dowel_offsets_ = FaceOffsets::Make(dowel_, offsets).value();
   }
 
   Pose At(int i) const { return Pose(Vec3(8e-6, 5e-6 * (i % 5), 5e-3 - 1e-6 * (i % 40))); }
@@ -67,6 +75,7 @@ class RealtimeTest : public ::testing::Test {
   Scene scene_;
   std::vector<BodyId> cups_;
   std::shared_ptr<const Shape> dowel_ = testing::Build(testing::Shaft(2.995e-3, 20e-3));
+  std::shared_ptr<const FaceOffsets> dowel_offsets_;
   QueryWorkspace work_;
 };
 
@@ -79,6 +88,7 @@ TEST_F(RealtimeTest, QueryAndMovesDoNotAllocate) {
   for (int i = 0; i < 200; ++i) {
     options.ignored = i % 2 == 0 ? std::span<const IgnoredPair>() : std::span(&pair, 1);
     options.margin = i % 3 == 0 ? 2e-3 : 50e-6;
+    options.held_offsets = i % 4 < 2 ? dowel_offsets_.get() : nullptr;
     scene_.Query(*dowel_, At(i), options, &work_);
     candidates += work_.stats().candidates;
     (void)scene_.IsFree(*dowel_, At(i), 1e-6, options, &work_);
