@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "parts.h"
+#include "tracks.h"
+
+namespace hvas::bench {
+
+/** A contact as a method reports it. */
+struct FoundContact {
+  Vec3 p_W;
+  Vec3 nhat_W;   ///< Unit: moving the held part along it separates.
+  double depth;  ///< [m], positive for penetration.
+};
+
+/** A way to answer what a held part touches. Everything that can be prepared is prepared in Load.
+ */
+class Method {
+ public:
+  Method() = default;
+  Method(const Method&) = delete;
+  Method& operator=(const Method&) = delete;
+  virtual ~Method() = default;
+
+  virtual void Load(std::size_t held, const std::vector<PlacedPart>& scene) = 0;
+  /** Finds all that it can; returns how many contacts it found. */
+  virtual std::size_t Query(const spatial::Pose& X_WH) = 0;
+  /** Of the last query; empty where the method tells yes or no only. */
+  [[nodiscard]] virtual std::span<const FoundContact> contacts() = 0;
+};
+
+/** Contacts of contact::Scene. */
+[[nodiscard]] std::unique_ptr<Method> MakeOurs(const std::vector<BenchPart>* parts, bool is_scalar);
+
+}  // namespace hvas::bench
