@@ -33,7 +33,7 @@ struct ImportOptions {
   double length_unit{1e-3};           ///< Of files that state none (OBJ, STL) [m].
   bool with_tolerances{true};         ///< Reads dimensions, tolerances and fits.
   std::vector<std::uint32_t> skipped_parts;  ///< Left out, by their numbers as PartFn gets them.
-  unsigned threads{0};  ///< That work at parts at a time; 0: one a core. No matter for the result.
+  unsigned threads{0};  ///< That work at parts at a time; 0: one a core; 1: alone, also in a part.
 };
 
 /** What an import may take. */

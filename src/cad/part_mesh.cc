@@ -28,13 +28,15 @@ constexpr double kDisplayAngle = 0.35;       // [rad]
 constexpr double kCoarser = 4;               // From one try to the next.
 constexpr int kRetries = 3;
 
-/** Meshes anew. @returns the number of triangles. */
-std::size_t MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level,
+/** Meshes anew, several faces at a time unless there is to be one thread only; every face comes out
+ as it would alone. @returns the number of triangles. */
+std::size_t MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level, bool is_threaded,
                      double interior_factor = 1) {
   BRepTools::Clean(shape);  // Else a finer mesh keeps what it can of the coarser one.
   IMeshTools_Parameters parameters;
   parameters.Deflection = units::ToMm(level.deflection);
   parameters.Angle = level.angle;
+  parameters.InParallel = is_threaded;
   if (interior_factor > 1) {
     parameters.DeflectionInterior = interior_factor * parameters.Deflection;
     parameters.AngleInterior = 1;
@@ -104,10 +106,11 @@ bool IsMeshed(const TopoDS_Face& face) {
 
 MeshLevel MeshForDisplay(const TopoDS_Shape& shape, double diagonal, const ImportOptions& options) {
   MeshLevel level{std::max(options.min_deflection, kDisplayDeflection * diagonal), kDisplayAngle};
-  std::size_t count = MeshOnce(shape, level);
+  const bool is_threaded = options.threads != 1;
+  std::size_t count = MeshOnce(shape, level, is_threaded);
   for (int i = 0; i < kRetries && 2 * count > options.max_triangles; ++i) {
     level = Coarsen(level);
-    count = MeshOnce(shape, level);
+    count = MeshOnce(shape, level, is_threaded);
   }
   return level;
 }
@@ -125,10 +128,11 @@ MeshLevel MeshForContact(const TopoDS_Shape& shape, double diagonal, const MeshL
   if (forecast.Calc(display, level) > most) {
     level.angle = Coarsen(level).angle;
   }
-  std::size_t count = MeshOnce(shape, level);
+  const bool is_threaded = options.threads != 1;
+  std::size_t count = MeshOnce(shape, level, is_threaded);
   for (int i = 0; i < kRetries && count > options.max_triangles; ++i) {
     level = Coarsen(level);
-    count = MeshOnce(shape, level);
+    count = MeshOnce(shape, level, is_threaded);
   }
   if (count > options.max_triangles) {
     diagnostics->Warn("large-mesh", name, fmt::format("the mesh has {} triangles", count),
@@ -183,7 +187,8 @@ std::vector<TopoDS_Face> MeshInPieces(const TopoDS_Face& face, const MeshLevel& 
     const TopoDS_Shape source = coarser > 1 ? BRepBuilderAPI_Copy(face).Shape() : face;
     ShapeUpgrade_ShapeDivideAngle divide(units::FromDeg(cut_deg), source);
     divide.Perform();
-    MeshOnce(divide.Result(), {coarser * level.deflection, level.angle}, coarser > 1 ? 100 : 1);
+    MeshOnce(divide.Result(), {coarser * level.deflection, level.angle}, /*is_threaded=*/false,
+             coarser > 1 ? 100 : 1);
     std::vector<TopoDS_Face> pieces;
     std::size_t undone = 0;
     for (TopExp_Explorer it(divide.Result(), TopAbs_FACE); it.More(); it.Next()) {

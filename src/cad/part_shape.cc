@@ -48,8 +48,8 @@ struct Body {
   bool is_closed_shell{false};
 };
 
-void AddSolid(TopoDS_Shape solid, Body* body) {
-  SolidMeasure measure = MeasureSolid(solid, body->centre);
+void AddSolid(TopoDS_Shape solid, bool is_threaded, Body* body) {
+  SolidMeasure measure = MeasureSolid(solid, body->centre, is_threaded);
   if (measure.volume < 0) {
     solid.Reverse();
     measure.Negate();
@@ -60,13 +60,13 @@ void AddSolid(TopoDS_Shape solid, Body* body) {
   ++body->solid_count;
 }
 
-Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre) {
+Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre, bool is_threaded) {
   Body body;
   body.centre = centre;
   const BRep_Builder builder;
   builder.MakeCompound(body.shape);
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
-    AddSolid(it.Current(), &body);
+    AddSolid(it.Current(), is_threaded, &body);
   }
   if (body.solid_count > 0) {
     return body;
@@ -76,7 +76,7 @@ Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre) {
       TopoDS_Solid solid;
       builder.MakeSolid(solid);
       builder.Add(solid, it.Current());
-      AddSolid(solid, &body);
+      AddSolid(solid, is_threaded, &body);
     }
   }
   body.is_closed_shell = body.solid_count > 0;
@@ -264,7 +264,7 @@ std::optional<MeshLevel> BuildPartShape(const TopoDS_Shape& shape, const ImportO
   const double diagonal = units::FromMm(std::sqrt(box_mm.SquareExtent()));
   const gp_Pnt low = box_mm.CornerMin();
   const gp_Pnt centre = low.Translated(gp_Vec(low, box_mm.CornerMax()) * 0.5);
-  const Body body = CollectBody(shape, centre);
+  const Body body = CollectBody(shape, centre, options.threads != 1);
   const MeshLevel display = MeshForDisplay(body.shape, diagonal, options);
   AddDisplayMesh(body.shape, part);
   const MeshLevel level =

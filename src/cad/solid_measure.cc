@@ -10,6 +10,7 @@
 #include <BRepGProp_Vinert.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
+#include <OSD_Parallel.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
@@ -124,10 +125,22 @@ void SolidMeasure::Negate() {
   inertia = -inertia;
 }
 
-SolidMeasure MeasureSolid(const TopoDS_Shape& solid, const gp_Pnt& about) {
-  SolidMeasure measure;
+SolidMeasure MeasureSolid(const TopoDS_Shape& solid, const gp_Pnt& about, bool is_threaded) {
+  std::vector<TopoDS_Face> faces;
   for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
-    measure.face_areas.push_back(AddFace(TopoDS::Face(it.Current()), about, &measure));
+    faces.push_back(TopoDS::Face(it.Current()));
+  }
+  std::vector<SolidMeasure> cones(faces.size());
+  const auto measure_face = [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    const double area = AddFace(faces[index], about, &cones[index]);
+    cones[index].face_areas.push_back(area);
+  };
+  OSD_Parallel::For(0, static_cast<int>(faces.size()), measure_face,
+                    /*isForceSingleThreadExecution=*/!is_threaded);
+  SolidMeasure measure;
+  for (const SolidMeasure& cone : cones) {
+    measure.Add(cone);
   }
   return measure;
 }

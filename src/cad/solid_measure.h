@@ -22,8 +22,10 @@ struct SolidMeasure {
 
 /** Measures a solid (a shell, any shape with faces) about a point. Exact on planes and, to
  rounding, on other analytic faces between lines and conics; to 1e-7 on others, where the fixed
- quadrature of OpenCASCADE is off by as much as 1e-4. */
-[[nodiscard]] SolidMeasure MeasureSolid(const TopoDS_Shape& solid, const gp_Pnt& about);
+ quadrature of OpenCASCADE is off by as much as 1e-4. Several faces at a time where it is threaded;
+ they are added up in their order, so that it makes no difference. */
+[[nodiscard]] SolidMeasure MeasureSolid(const TopoDS_Shape& solid, const gp_Pnt& about,
+                                        bool is_threaded = false);
 
 /** The area of a face [mm^2]. */
 [[nodiscard]] double MeasureArea(const TopoDS_Shape& face);

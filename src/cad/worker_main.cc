@@ -103,5 +103,6 @@ int Run(std::vector<std::string> arguments) {
 }  // namespace hvas::cad
 
 int main(int argc, char** argv) {
-  return hvas::cad::Run({argv + 1, argv + argc});
+  // All is handed over; what libraries tidy up at their end is only waited for.
+  ::_exit(hvas::cad::Run({argv + 1, argv + argc}));
 }
