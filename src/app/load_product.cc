@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include "app/progress.h"
+#include "base/file_cache.h"
 #include "base/units.h"
 #include "cad/import.h"
-#include "contact/shape_cache.h"
 #include "mates/assignments.h"
 #include "mates/infer.h"
 #include "mates/stated_fits.h"
@@ -62,7 +62,7 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options) {
 }
 
 std::optional<std::filesystem::path> CacheDirectory(const LoadOptions& options) {
-  return options.is_cache_used ? contact::ShapeCache::DefaultDirectory() : std::nullopt;
+  return options.is_cache_used ? FileCache::DefaultDirectory() : std::nullopt;
 }
 
 Result<product::Product> LoadInferred(const LoadOptions& options, Diagnostics* diagnostics) {

@@ -5,10 +5,13 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <span>
 #include <string>
 #include <system_error>
 
 #include <fcntl.h>
+
+#include "base/write_all.h"
 
 namespace hvas {
 namespace {
@@ -26,21 +29,6 @@ Unexpected FailWith(int error, const std::filesystem::path& file) {
   return Fail(code,
               "cannot be written: " + std::error_code(error, std::generic_category()).message(),
               file.string(), std::move(remedy));
-}
-
-/** @returns 0, or what went wrong. */
-int WriteAll(int descriptor, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) {
-      continue;
-    }
-    if (written <= 0) {
-      return written < 0 ? errno : EIO;
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return 0;
 }
 
 /** Permissions of the file that is to be replaced, or those of a new one. */
@@ -76,7 +64,7 @@ Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view
   if (descriptor < 0) {
     return FailWith(errno, file);
   }
-  int failure = WriteAll(descriptor, bytes);
+  int failure = WriteAll(descriptor, std::as_bytes(std::span(bytes)));
   if (failure == 0 && (::fchmod(descriptor, ModeFor(target)) != 0 || ::fsync(descriptor) != 0)) {
     failure = errno;
   }

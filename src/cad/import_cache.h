@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "base/file_cache.h"
 #include "cad/import.h"
 #include "cad/import_result.h"
 
@@ -20,15 +21,13 @@ namespace hvas::cad {
  */
 class ImportCache {
  public:
-  static constexpr std::uintmax_t kDefaultCapacity = 2'000'000'000;  ///< [bytes]
-
   /** @param directory  Made when the first product is written.
    @param worker  The program that reads: what another build of it made is not taken.
    @param file  The CAD file, absolute.
    @param capacity  Of all products in the directory [bytes]; beyond it the oldest go. */
   ImportCache(std::filesystem::path directory, const std::filesystem::path& worker,
               std::filesystem::path file, const ImportOptions& options,
-              std::uintmax_t capacity = kDefaultCapacity);
+              std::uintmax_t capacity = FileCache::kDefaultCapacity);
 
   /** What was made of the file as it is now, to the last bit. */
   [[nodiscard]] std::optional<ImportResult> Load() const;
@@ -41,11 +40,9 @@ class ImportCache {
 
  private:
   [[nodiscard]] bool AreUnchanged(const std::vector<ReferredFile>& files) const;
-  void Trim() const;
 
-  std::filesystem::path directory_;
+  FileCache files_;
   std::filesystem::path file_;
-  std::uintmax_t capacity_;
   std::string key_;
   std::filesystem::path path_;
 };

@@ -1,31 +1,18 @@
 #include "cad/worker_io.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "base/clock.h"
+#include "base/write_all.h"
 #include "cad/worker.h"
 
 namespace hvas::cad {
 namespace {
 
 constexpr std::int64_t kOftenestNs = 50'000'000;
-
-bool WriteAll(int descriptor, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t size = ::write(descriptor, bytes.data(), bytes.size());
-    if (size <= 0 && errno != EINTR) {
-      return false;
-    }
-    bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-  }
-  return true;
-}
 
 void WriteLine(std::string line) {
   std::replace(line.begin(), line.end(), '\n', ' ');
@@ -52,7 +39,7 @@ void TellPart(std::uint32_t number, std::string_view name) {
 }
 
 int HandOver(std::span<const std::byte> output) {
-  return WriteAll(kOutputDescriptor, output) ? 0 : kWorkerNoOutput;
+  return WriteAll(kOutputDescriptor, output) == 0 ? 0 : kWorkerNoOutput;
 }
 
 }  // namespace hvas::cad

@@ -1,18 +1,12 @@
 #include "contact/shape_cache.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <span>
-#include <system_error>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "base/digest.h"
 #include "contact/shape_io.h"
@@ -26,7 +20,6 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kVersion = 3;
 constexpr std::array<char, 8> kMagic{'H', 'V', 'A', 'S', 'S', 'H', 'A', 'P'};
 constexpr const char* kExtension = ".hvasshape";
-constexpr const char* kUnfinished = ".tmp";
 constexpr std::size_t kKeyLength = 32;
 
 struct Header {
@@ -100,36 +93,10 @@ std::optional<std::vector<std::byte>> ReadFile(const fs::path& path) {
   return file ? std::optional(std::move(bytes)) : std::nullopt;
 }
 
-bool WriteFile(const fs::path& path, const Header& header, std::span<const std::byte> bytes) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(&header), sizeof(header));
-  file.write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  return !file.fail();
-}
-
-std::string Variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? std::string() : value;
-}
-
 }  // namespace
 
 ShapeCache::ShapeCache(fs::path directory, std::uintmax_t capacity)
-    : directory_(std::move(directory)), capacity_(capacity) {}
-
-std::optional<fs::path> ShapeCache::DefaultDirectory() {
-  if (Variable("HVAS_CACHE") == "off") {
-    return std::nullopt;
-  }
-  const fs::path caches = Variable("XDG_CACHE_HOME");
-  if (caches.is_absolute()) {  // Others are to be ignored; XDG Base Directory Specification.
-    return caches / "hvas";
-  }
-  const fs::path home = Variable("HOME");
-  return home.is_absolute() ? std::optional(home / ".cache" / "hvas") : std::nullopt;
-}
+    : files_(std::move(directory), kExtension, capacity) {}
 
 Result<std::shared_ptr<const Shape>> ShapeCache::LoadOrBuild(const ShapeSource& source,
                                                              const ShapeOptions& options) {
@@ -147,11 +114,7 @@ Result<std::shared_ptr<const Shape>> ShapeCache::LoadOrBuild(const ShapeSource& 
 }
 
 fs::path ShapeCache::PathOf(const ShapeSource& source, const ShapeOptions& options) const {
-  return PathOf(KeyOf(source, options));
-}
-
-fs::path ShapeCache::PathOf(const std::string& key) const {
-  return directory_ / (key + kExtension);
+  return files_.PathOf(KeyOf(source, options));
 }
 
 std::optional<Error> ShapeCache::TakeProblem() {
@@ -160,8 +123,7 @@ std::optional<Error> ShapeCache::TakeProblem() {
 }
 
 std::shared_ptr<const Shape> ShapeCache::Load(const std::string& key) const {
-  const fs::path path = PathOf(key);
-  const auto file = ReadFile(path);
+  const auto file = ReadFile(files_.PathOf(key));
   if (!file || file->size() < sizeof(Header)) {
     return nullptr;
   }
@@ -172,8 +134,7 @@ std::shared_ptr<const Shape> ShapeCache::Load(const std::string& key) const {
   }
   auto shape = DeserialiseShape(bytes);
   if (shape != nullptr) {
-    std::error_code ignored;  // Only the order in which shapes go depends on it.
-    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
+    files_.Touch(key);
   }
   return shape;
 }
@@ -182,63 +143,11 @@ void ShapeCache::Store(const std::string& key, const Shape& shape) {
   const std::vector<std::byte> bytes = SerialiseShape(shape);
   const Header header = HeaderOf(key, bytes);
   const std::lock_guard lock(mutex_);
-  std::error_code error;
-  fs::create_directories(directory_, error);
-  const fs::path path = PathOf(key);
-  // Under a name of this program's own first, so that nobody sees half a file.
-  static std::atomic<std::uint32_t> number{0};
-  const fs::path unfinished =
-      path.string() + fmt::format(".{}.{}{}", getpid(), number++, kUnfinished);
-  bool is_written = !error && WriteFile(unfinished, header, bytes);
-  if (is_written) {
-    fs::rename(unfinished, path, error);
-    is_written = !error;
-  }
-  if (is_written) {
-    Trim(path);
-    return;
-  }
-  std::error_code ignored;
-  fs::remove(unfinished, ignored);
-  if (!is_problem_known_) {
+  if (!files_.Store(key, {std::as_bytes(std::span(&header, 1)), bytes}) && !is_problem_known_) {
     is_problem_known_ = true;
-    problem_ =
-        Error{ErrorCode::kOutOfResource, "Contact shapes cannot be kept on disk",
-              directory_.string(), "make room there and make it writable, or set HVAS_CACHE=off"};
-  }
-}
-
-void ShapeCache::Trim(const fs::path& newest) const {
-  struct Entry {
-    fs::path path;
-    fs::file_time_type time;
-    std::uintmax_t size;
-  };
-
-  std::vector<Entry> entries;
-  std::uintmax_t total = 0;
-  std::error_code error;
-  for (fs::directory_iterator i(directory_, error), end; !error && i != end; i.increment(error)) {
-    std::error_code gone;  // Another program may trim as well.
-    const fs::path extension = i->path().extension();
-    const bool is_ours = extension == kExtension || extension == kUnfinished;
-    const std::uintmax_t size = is_ours ? i->file_size(gone) : 0;
-    const auto time = i->last_write_time(gone);
-    if (!gone && size > 0) {
-      entries.push_back({i->path(), time, size});
-      total += size;
-    }
-  }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.time != b.time ? a.time < b.time : a.path < b.path;
-  });
-  for (const Entry& entry : entries) {
-    if (total <= capacity_) {
-      return;
-    }
-    if (entry.path != newest && fs::remove(entry.path, error)) {
-      total -= entry.size;
-    }
+    problem_ = Error{ErrorCode::kOutOfResource, "Contact shapes cannot be kept on disk",
+                     files_.directory().string(),
+                     "make room there and make it writable, or set HVAS_CACHE=off"};
   }
 }
 

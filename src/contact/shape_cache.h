@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "base/file_cache.h"
 #include "contact/shape.h"
 
 namespace hvas::contact {
@@ -19,15 +20,14 @@ namespace hvas::contact {
  programs may use one directory at once. */
 class ShapeCache {
  public:
-  static constexpr std::uintmax_t kDefaultCapacity = 2'000'000'000;  ///< [bytes]
-
   /** @param directory  Made when the first shape is written.
    @param capacity  Of the directory [bytes]: beyond it, the shapes not used for longest go. */
-  explicit ShapeCache(std::filesystem::path directory, std::uintmax_t capacity = kDefaultCapacity);
+  explicit ShapeCache(std::filesystem::path directory,
+                      std::uintmax_t capacity = FileCache::kDefaultCapacity);
 
-  /** $XDG_CACHE_HOME/hvas, else ~/.cache/hvas; none when HVAS_CACHE is "off" or there is no home.
-   */
-  [[nodiscard]] static std::optional<std::filesystem::path> DefaultDirectory();
+  [[nodiscard]] static std::optional<std::filesystem::path> DefaultDirectory() {
+    return FileCache::DefaultDirectory();
+  }
 
   /** The shape from the disk, else built and written there: the same shape to the last bit.
    Errors: those of Shape::Build. */
@@ -46,13 +46,10 @@ class ShapeCache {
   [[nodiscard]] std::optional<Error> TakeProblem();
 
  private:
-  [[nodiscard]] std::filesystem::path PathOf(const std::string& key) const;
   [[nodiscard]] std::shared_ptr<const Shape> Load(const std::string& key) const;
   void Store(const std::string& key, const Shape& shape);
-  void Trim(const std::filesystem::path& newest) const;
 
-  std::filesystem::path directory_;
-  std::uintmax_t capacity_;
+  FileCache files_;
   std::atomic<std::uint32_t> loaded_{0};
   std::atomic<std::uint32_t> built_{0};
   std::mutex mutex_;  // Of what follows, and of writing.
