@@ -11,6 +11,7 @@
 
 #include "base/units.h"
 #include "fits/iso286.h"
+#include "mates/make_fit.h"
 #include "mates/stated_fits.h"
 
 namespace hvas::mates {
@@ -37,29 +38,9 @@ std::string NearestOccurrence(const Product& product, std::string_view name) {
   return FindNearest(name, names);
 }
 
-FitKind ToKind(fits::FitKind kind) {
-  switch (kind) {
-    case fits::FitKind::kClearance:
-      return FitKind::kClearance;
-    case fits::FitKind::kTransition:
-      return FitKind::kTransition;
-    case fits::FitKind::kInterference:
-      break;
-  }
-  return FitKind::kInterference;
-}
-
 double NominalOf(const Mate& mate) {
   return mate.fit && mate.fit->nominal_diameter > 0 ? mate.fit->nominal_diameter
                                                     : 2 * mate.hole_radius;
-}
-
-Result<Fit> MakeWholeFit(const fits::FitClass& fit, double nominal, std::string reason) {
-  const Result<fits::FitLimits> limits = fits::CalcFitLimits(fit, nominal);
-  if (!limits) {
-    return Unexpected(limits.error());
-  }
-  return Fit{ToKind(limits->kind), fit.ToString(), nominal, false, std::move(reason)};
 }
 
 /** One side of a mate has a class, the other keeps its own or is as drawn. */

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "fits/iso286.h"
+#include "mates/make_fit.h"
 
 namespace hvas::mates {
 namespace {
@@ -12,7 +12,6 @@ namespace {
 using product::Dimension;
 using product::Feature;
 using product::Fit;
-using product::FitKind;
 using product::Mate;
 using product::Part;
 using product::Product;
@@ -44,29 +43,14 @@ const Dimension* FindStated(const Product& product, const product::Connector& co
   return nullptr;
 }
 
-FitKind ToKind(fits::FitKind kind) {
-  switch (kind) {
-    case fits::FitKind::kClearance:
-      return FitKind::kClearance;
-    case fits::FitKind::kTransition:
-      return FitKind::kTransition;
-    case fits::FitKind::kInterference:
-      break;
-  }
-  return FitKind::kInterference;
-}
-
 std::optional<Fit> MakeFit(const std::string& code, const Dimension& dimension,
                            const std::string& entities) {
   const double times = dimension.kind == product::DimensionKind::kRadius ? 2 : 1;
   const double nominal = times * dimension.nominal;
   const auto parsed = fits::ParseFit(code);
-  const auto limits = parsed ? fits::CalcFitLimits(*parsed, nominal) : Unexpected(parsed.error());
-  if (!limits) {
-    return std::nullopt;
-  }
-  return Fit{ToKind(limits->kind), parsed->ToString(), nominal, false,
-             "stated in the file (" + entities + ")"};
+  const auto fit = parsed ? MakeWholeFit(*parsed, nominal, "stated in the file (" + entities + ")")
+                          : Unexpected(parsed.error());
+  return fit ? std::optional(*fit) : std::nullopt;
 }
 
 std::optional<Fit> FindFit(const Product& product, const Mate& mate) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "fits/iso286.h"
+#include "product/product.h"
+
+namespace hvas::mates {
+
+[[nodiscard]] product::FitKind ToKind(fits::FitKind kind);
+
+/** The fit that a class ("H7/p6") makes of a diameter. @param nominal  Diameter [m].
+ Errors: those of fits::CalcFitLimits. */
+[[nodiscard]] Result<product::Fit> MakeWholeFit(const fits::FitClass& fit, double nominal,
+                                                std::string reason);
+
+}  // namespace hvas::mates
