@@ -17,12 +17,21 @@ using Samples = std::span<const SurfaceSample>;
 // the fit is only noise.
 constexpr double kLargestRadius = 1e3;
 
-double CalcSize(Samples samples, const Vec3& centroid) {
-  double size = 0;
+struct Extent {
+  Vec3 centroid{Vec3::Zero()};
+  double size{0};  // Distance of the sample farthest from it.
+};
+
+Extent CalcExtent(Samples samples) {
+  Extent extent;
   for (const SurfaceSample& sample : samples) {
-    size = std::max(size, (sample.p - centroid).norm());
+    extent.centroid += sample.p;
   }
-  return size;
+  extent.centroid /= static_cast<double>(samples.size());
+  for (const SurfaceSample& sample : samples) {
+    extent.size = std::max(extent.size, (sample.p - extent.centroid).norm());
+  }
+  return extent;
 }
 
 struct Circle {
@@ -223,12 +232,7 @@ std::optional<Surface> RecogniseSurface(Samples samples, double tolerance) {
   if (samples.size() < 9) {
     return std::nullopt;
   }
-  Vec3 centroid = Vec3::Zero();
-  for (const SurfaceSample& sample : samples) {
-    centroid += sample.p;
-  }
-  centroid /= static_cast<double>(samples.size());
-  const double size = CalcSize(samples, centroid);
+  const auto [centroid, size] = CalcExtent(samples);
   if (!(size > 0)) {
     return std::nullopt;
   }
@@ -246,12 +250,7 @@ std::optional<Surface> FitSurface(SurfaceKind kind, Samples samples) {
   if (samples.empty()) {
     return std::nullopt;
   }
-  Vec3 centroid = Vec3::Zero();
-  for (const SurfaceSample& sample : samples) {
-    centroid += sample.p;
-  }
-  centroid /= static_cast<double>(samples.size());
-  const double size = CalcSize(samples, centroid);
+  const auto [centroid, size] = CalcExtent(samples);
   if (!(size > 0)) {
     return std::nullopt;
   }
