@@ -38,6 +38,7 @@
 #include "cad/material.h"
 #include "cad/parallel.h"
 #include "cad/part_shape.h"
+#include "cad/product_tree.h"
 #include "cad/xcaf_labels.h"
 #include "product/features.h"
 
@@ -477,38 +478,16 @@ void TreeBuilder::BuildParts() {
   AssignParts(part_of, equal);
 }
 
-/** Gives occurrences the parts that their sources became, leaves out those without, and numbers
- parts and occurrences anew. */
+/** Gives occurrences the parts that their sources became, and leaves out those without. */
 void TreeBuilder::AssignParts(const std::vector<PartId>& part_of,
                               const std::vector<EqualShape>& equal) {
-  std::vector<Part> parts;
-  std::vector<PartId> new_id(part_of.size());
-  for (std::size_t i = 0; i < part_of.size(); ++i) {
-    if (part_of[i] == PartId(i)) {
-      new_id[i] = PartId(parts.size());
-      parts.push_back(std::move(product_->parts[i]));
-      parts.back().id = new_id[i];
-    }
-  }
-  product_->parts = std::move(parts);
-  for (Subassembly& subassembly : product_->subassemblies) {
-    subassembly.occurrences.clear();
-  }
-  std::vector<product::Occurrence> occurrences;
   for (product::Occurrence& occurrence : product_->occurrences) {
     const std::size_t source = occurrence.part.index();
-    if (!part_of[source].is_valid()) {
-      continue;
-    }
-    occurrence.part = new_id[part_of[source].index()];
     if (equal[source].base != source) {
       occurrence.X_WB = occurrence.X_WB * equal[source].X_SB;
     }
-    occurrence.id = OccurrenceId(occurrences.size());
-    product_->subassemblies[occurrence.parent.index()].occurrences.push_back(occurrence.id);
-    occurrences.push_back(std::move(occurrence));
   }
-  product_->occurrences = std::move(occurrences);
+  ReplaceParts(part_of, product_);
 }
 
 Result<void> TreeBuilder::Build() {

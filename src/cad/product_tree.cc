@@ -1,6 +1,5 @@
 #include "cad/product_tree.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,10 +10,11 @@ using product::Occurrence;
 using product::OccurrenceId;
 using product::Part;
 using product::PartId;
+using product::Product;
 using product::Subassembly;
 using product::SubassemblyId;
 
-ProductTree::ProductTree(product::Product* product) : product_(product) {
+ProductTree::ProductTree(Product* product) : product_(product) {
   AddSubassembly({}, product->name);
 }
 
@@ -61,42 +61,44 @@ void ProductTree::AddOccurrence(SubassemblyId parent, PartId part, const std::st
   product_->occurrences.push_back(std::move(occurrence));
 }
 
-void ProductTree::DropEmptyParts() {
-  std::vector<Part> parts;
-  std::vector<PartId> renumbered(product_->parts.size());
-  for (std::size_t i = 0; i < renumbered.size(); ++i) {
-    if (!product_->parts[i].mesh.triangles.empty()) {
-      renumbered[i] = PartId(parts.size());
-      parts.push_back(std::move(product_->parts[i]));
-      parts.back().id = renumbered[i];
-    }
-  }
-  product_->parts = std::move(parts);
-  for (Subassembly& subassembly : product_->subassemblies) {
-    subassembly.occurrences.clear();
-  }
-  std::vector<Occurrence> occurrences;
-  for (Occurrence& occurrence : product_->occurrences) {
-    occurrence.part = renumbered[occurrence.part.index()];
-    if (occurrence.part.is_valid()) {
-      occurrence.id = OccurrenceId(occurrences.size());
-      product_->subassemblies[occurrence.parent.index()].occurrences.push_back(occurrence.id);
-      occurrences.push_back(std::move(occurrence));
-    }
-  }
-  product_->occurrences = std::move(occurrences);
-}
-
 void ProductTree::Finish() {
-  if (std::any_of(product_->parts.begin(), product_->parts.end(),
-                  [](const Part& part) { return part.mesh.triangles.empty(); })) {
-    DropEmptyParts();
+  std::vector<PartId> part_of;
+  for (const Part& part : product_->parts) {
+    part_of.push_back(part.mesh.triangles.empty() ? PartId() : PartId(part_of.size()));
   }
+  ReplaceParts(part_of, product_);
   for (const Occurrence& occurrence : product_->occurrences) {
     for (const Vec3& vertex : product_->part_of(occurrence.id).mesh.vertices) {
       product_->box_W.Add(occurrence.X_WB * vertex);
     }
   }
+}
+
+void ReplaceParts(const std::vector<PartId>& part_of, Product* product) {
+  std::vector<Part> parts;
+  std::vector<PartId> renumbered(part_of.size());
+  for (std::size_t i = 0; i < part_of.size(); ++i) {
+    if (part_of[i] == PartId(i)) {
+      renumbered[i] = PartId(parts.size());
+      parts.push_back(std::move(product->parts[i]));
+      parts.back().id = renumbered[i];
+    }
+  }
+  product->parts = std::move(parts);
+  for (Subassembly& subassembly : product->subassemblies) {
+    subassembly.occurrences.clear();
+  }
+  std::vector<Occurrence> occurrences;
+  for (Occurrence& occurrence : product->occurrences) {
+    const PartId part = part_of[occurrence.part.index()];
+    if (part.is_valid()) {
+      occurrence.part = renumbered[part.index()];
+      occurrence.id = OccurrenceId(occurrences.size());
+      product->subassemblies[occurrence.parent.index()].occurrences.push_back(occurrence.id);
+      occurrences.push_back(std::move(occurrence));
+    }
+  }
+  product->occurrences = std::move(occurrences);
 }
 
 }  // namespace hvas::cad

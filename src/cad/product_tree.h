@@ -23,11 +23,15 @@ class ProductTree {
 
  private:
   std::string ClaimPath(product::SubassemblyId parent, const std::string& name);
-  void DropEmptyParts();
 
   product::Product* product_;
   std::vector<std::string> paths_;                // Of each subassembly.
   std::vector<std::map<std::string, int>> used_;  // Names among the children of each.
 };
+
+/** Takes parts out, and numbers the other parts and the occurrences anew.
+ @param part_of  For each part: itself where it stays, a part that stays where that takes its place,
+ or none, which takes out its occurrences too. */
+void ReplaceParts(const std::vector<product::PartId>& part_of, product::Product* product);
 
 }  // namespace hvas::cad
