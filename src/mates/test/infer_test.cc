@@ -22,14 +22,7 @@ using testing::AddCylinder;
 using testing::AddOccurrence;
 using testing::AddPart;
 using testing::AddRectangle;
-
-int Count(const Product& product, MateKind kind) {
-  int count = 0;
-  for (const Mate& mate : product.mates) {
-    count += mate.kind == kind ? 1 : 0;
-  }
-  return count;
-}
+using testing::CountMates;
 
 Pose X_WM(const Product& product, const product::Connector& connector) {
   return product.occurrences[connector.occurrence.index()].X_WB * connector.X_BM;
@@ -113,8 +106,8 @@ TEST(Infer, DrawnPlayStillGivesConnectorsThatCoincideInTheDrawnPose) {
                 Pose(spatial::RotationFromVector(Vec3(3.5e-4, 0, 0)), Vec3(15e-6, 0, -7.996e-3)));
   Diagnostics diagnostics;
   Infer(&product, &diagnostics);
-  EXPECT_EQ(Count(product, MateKind::kAxisHole), 1);
-  EXPECT_EQ(Count(product, MateKind::kFaceFace), 1);
+  EXPECT_EQ(CountMates(product, MateKind::kAxisHole), 1);
+  EXPECT_EQ(CountMates(product, MateKind::kFaceFace), 1);
   ExpectConnectorsCoincide(product);
 }
 
@@ -252,8 +245,8 @@ TEST(Infer, SameGeometryAThousandTimesLargerOrSmallerHasTheSameMates) {
     AddOccurrence(&product, product::PartId(1), Pose());
     Diagnostics diagnostics;
     Infer(&product, &diagnostics);
-    EXPECT_EQ(Count(product, MateKind::kAxisHole), 1) << scale;
-    EXPECT_EQ(Count(product, MateKind::kFaceFace), 1) << scale;
+    EXPECT_EQ(CountMates(product, MateKind::kAxisHole), 1) << scale;
+    EXPECT_EQ(CountMates(product, MateKind::kFaceFace), 1) << scale;
   }
 }
 
@@ -271,7 +264,7 @@ TEST(Infer, BoltThroughAPlateIntoItsNutIsAThreadOnlyInTheNut) {
   AddOccurrence(&product, product::PartId(2), Pose(Vec3(0, 0, -10e-3)));
   Diagnostics diagnostics;
   Infer(&product, &diagnostics);
-  ASSERT_EQ(Count(product, MateKind::kAxisHole), 2);
+  ASSERT_EQ(CountMates(product, MateKind::kAxisHole), 2);
   for (const Mate& mate : product.mates) {
     if (mate.kind == MateKind::kAxisHole) {
       const bool in_nut = mate.a.occurrence.index() == 2;
@@ -297,8 +290,8 @@ TEST(Infer, GridOfAThousandPlatesAndPinsIsCompleteAndFast) {
   Infer(&product, &diagnostics);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  EXPECT_EQ(Count(product, MateKind::kAxisHole), kSide * kSide);
-  EXPECT_EQ(Count(product, MateKind::kFaceFace), kSide * kSide);
+  EXPECT_EQ(CountMates(product, MateKind::kAxisHole), kSide * kSide);
+  EXPECT_EQ(CountMates(product, MateKind::kFaceFace), kSide * kSide);
   const Linkage linkage = CalcLinkage(product);
   EXPECT_EQ(linkage.linked_parts, 2 * kSide * kSide);
   EXPECT_EQ(linkage.components, kSide * kSide);

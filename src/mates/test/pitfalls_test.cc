@@ -25,13 +25,9 @@ using testing::AddOccurrence;
 using testing::AddPart;
 using testing::AddRectangle;
 using testing::AddRoundFace;
+using testing::CountMates;
 
 constexpr double kPi = std::numbers::pi;
-
-int Count(const Product& product, MateKind kind) {
-  return static_cast<int>(std::count_if(product.mates.begin(), product.mates.end(),
-                                        [kind](const Mate& mate) { return mate.kind == kind; }));
-}
 
 Diagnostics InferInto(Product* product) {
   Diagnostics diagnostics;
@@ -99,7 +95,7 @@ TEST(PitfallB, AFilletAndTheEndsOfASlotAreNoHolesButASplitClampIs) {
   AddArcs(&product, "shaft", 5e-3, {{0, 2 * kPi, 1}}, 0, 20e-3);
   AddInPlace(&product);
   InferInto(&product);
-  ASSERT_EQ(Count(product, MateKind::kAxisHole), 2);
+  ASSERT_EQ(CountMates(product, MateKind::kAxisHole), 2);
   EXPECT_EQ(product.mates[0].a.occurrence.index(), 2U);
   EXPECT_EQ(product.mates[1].a.occurrence.index(), 3U);
 }
@@ -112,7 +108,7 @@ TEST(PitfallD, HolesInLineAreAnAlignmentUntilABoltPassesBoth) {
   AddRectangle(&product.parts[1], Vec3::Zero(), Vec3::UnitZ(), 20e-3, 20e-3);
   AddInPlace(&product);
   InferInto(&product);
-  EXPECT_EQ(Count(product, MateKind::kAxisHole), 0);
+  EXPECT_EQ(CountMates(product, MateKind::kAxisHole), 0);
   ASSERT_EQ(product.alignments.size(), 1U);
   EXPECT_EQ(product.alignments[0].a.occurrence.index(), 0U);
   EXPECT_EQ(product.alignments[0].b.occurrence.index(), 1U);
@@ -120,7 +116,7 @@ TEST(PitfallD, HolesInLineAreAnAlignmentUntilABoltPassesBoth) {
   AddRound(&product, "bolt M5", FeatureKind::kShaft, 2.5e-3, -5e-3, 8e-3);
   AddOccurrence(&product, product::PartId(2), Pose());
   InferInto(&product);
-  EXPECT_EQ(Count(product, MateKind::kAxisHole), 2);
+  EXPECT_EQ(CountMates(product, MateKind::kAxisHole), 2);
   EXPECT_TRUE(product.alignments.empty());
 }
 
@@ -193,7 +189,7 @@ TEST(PitfallF, AHexagonMakesAScrewOfANamelessPart) {
     AddHexagon(screw, sense > 0 ? 30e-3 : 14e-3, sense, 60e-3, 70e-3);
     AddInPlace(&product);
     InferInto(&product);
-    ASSERT_EQ(Count(product, MateKind::kAxisHole), 1);
+    ASSERT_EQ(CountMates(product, MateKind::kAxisHole), 1);
     EXPECT_EQ(product.mates[0].fit->kind, FitKind::kThread);
   }
   // Without one the same drawing is a press fit.
@@ -308,8 +304,8 @@ TEST(PitfallK, AMotorDrawnAThousandTimesTooLargeHasTheMatesOfTheRealOne) {
     AddOccurrence(&product, product::PartId(0), Pose());
     AddOccurrence(&product, product::PartId(1), Pose(Vec3(scale * 1e-6, 0, 0)));
     InferInto(&product);
-    EXPECT_EQ(Count(product, MateKind::kAxisHole), 1) << scale;
-    EXPECT_EQ(Count(product, MateKind::kFaceFace), 1) << scale;
+    EXPECT_EQ(CountMates(product, MateKind::kAxisHole), 1) << scale;
+    EXPECT_EQ(CountMates(product, MateKind::kFaceFace), 1) << scale;
   }
 }
 

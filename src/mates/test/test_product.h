@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -164,6 +165,12 @@ inline product::OccurrenceId AddOccurrence(
   product->subassemblies[parent.index()].occurrences.push_back(occurrence.id);
   product->occurrences.push_back(occurrence);
   return occurrence.id;
+}
+
+[[nodiscard]] inline int CountMates(const product::Product& product, product::MateKind kind) {
+  return static_cast<int>(
+      std::count_if(product.mates.begin(), product.mates.end(),
+                    [kind](const product::Mate& mate) { return mate.kind == kind; }));
 }
 
 }  // namespace hvas::mates::testing
