@@ -196,22 +196,24 @@ class ScriptedHand {
   spatial::Pose X_WH_;
 };
 
-/** The rig with a shaft in the hand, its tip a little above the bushing. */
-struct Rig {
-  explicit Rig(std::shared_ptr<const fits::FitForce> fit, const spatial::Pose& X_WB_start,
-               TickOptions the_options = {})
-      : options(std::move(the_options)) {
-    const contact::BodyId bushing = scene.Add(BushingShape(), spatial::Pose());
+/** A part in a scene, the tick that holds it, and the hand that leads it. */
+struct HeldRig {
+  explicit HeldRig(TickOptions the_options) : options(std::move(the_options)) {}
+
+  /** Places the part, as the second of the product. */
+  void Place(std::shared_ptr<const contact::Shape> shape, const spatial::Pose& X_WB_start) {
     part.occurrence = product::OccurrenceId(1);
-    part.body = scene.Add(ShaftShape(), X_WB_start);
-    part.shape = ShaftShape();
-    SetMass({{kShaftRadius, 0, kLength}, {kShoulderRadius, kLength, kLength + kShoulderLength}},
-            &part);
+    part.body = scene.Add(shape, X_WB_start);
+    part.shape = std::move(shape);
     part.X_WB_start = X_WB_start;
-    part.mates = {MakeAxisMate(std::move(fit), bushing), MakeStopMate(bushing)};
+  }
+
+  /** Takes it at its centre of mass. */
+  void Take() {
+    const spatial::Pose& X_WB = part.X_WB_start;
     tick = std::make_unique<HapticTick>(options, &scene);
-    hand = std::make_unique<ScriptedHand>(
-        tick.get(), spatial::Pose(X_WB_start.q(), X_WB_start * part.p_BoBcm_B));
+    hand =
+        std::make_unique<ScriptedHand>(tick.get(), spatial::Pose(X_WB.q(), X_WB * part.p_BoBcm_B));
     tick->Take(&part);
   }
 
@@ -222,31 +224,34 @@ struct Rig {
   std::unique_ptr<ScriptedHand> hand;
 };
 
+/** The rig with a shaft in the hand, its tip a little above the bushing. */
+struct Rig : HeldRig {
+  explicit Rig(std::shared_ptr<const fits::FitForce> fit, const spatial::Pose& X_WB_start,
+               TickOptions the_options = {})
+      : HeldRig(std::move(the_options)) {
+    const contact::BodyId bushing = scene.Add(BushingShape(), spatial::Pose());
+    Place(ShaftShape(), X_WB_start);
+    SetMass({{kShaftRadius, 0, kLength}, {kShoulderRadius, kLength, kLength + kShoulderLength}},
+            &part);
+    part.mates = {MakeAxisMate(std::move(fit), bushing), MakeStopMate(bushing)};
+    Take();
+  }
+};
+
 /** A part without mates over a block with its top at z = 0, for contact alone. */
-struct BlockRig {
+struct BlockRig : HeldRig {
   BlockRig(std::shared_ptr<const contact::Shape> shape, double mass,
            const spatial::Pose& X_WB_start, TickOptions the_options = {})
-      : options(std::move(the_options)) {
+      : HeldRig(std::move(the_options)) {
     static const auto block =
         contact::testing::Build(contact::testing::Block(Vec3(0.1, 0.1, 0.02)));
     scene.Add(block, spatial::Pose(Vec3(0, 0, -0.02)));
-    part.occurrence = product::OccurrenceId(1);
-    part.body = scene.Add(shape, X_WB_start);
-    part.shape = std::move(shape);
+    Place(std::move(shape), X_WB_start);
     part.mass = mass;
     part.I_BBcm_B = 0.4 * mass * 4e-4 * Mat3::Identity();
-    part.X_WB_start = X_WB_start;
     part.X_WB_goal = spatial::Pose(Vec3(1, 1, 1));
-    tick = std::make_unique<HapticTick>(options, &scene);
-    hand = std::make_unique<ScriptedHand>(tick.get(), X_WB_start);
-    tick->Take(&part);
+    Take();
   }
-
-  TickOptions options;
-  contact::Scene scene;
-  HeldPart part;
-  std::unique_ptr<HapticTick> tick;
-  std::unique_ptr<ScriptedHand> hand;
 };
 
 /** Largest change of the felt force from one tick to the next, before the gate [N]. */
