@@ -1,7 +1,9 @@
 #include "simulation/fit_of_mate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +55,18 @@ std::shared_ptr<const fits::FitForce> Make(const Product& product, std::uint64_t
   return MakeFitForce(product, product.mates[0], seed, diagnostics == nullptr ? &own : diagnostics);
 }
 
+/** The least and the most clearance, in diameter, of 300 seeds [m]. */
+std::pair<double, double> CalcClearances(const Product& product) {
+  double least = 1;
+  double most = -1;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    const double clearance = 2 * Make(product, seed)->mean_clearance();
+    least = std::min(least, clearance);
+    most = std::max(most, clearance);
+  }
+  return {least, most};
+}
+
 TEST(MakeFitForceTest, EqualSeedsDrawEqualSizesAndOthersOthers) {  // W2
   const Product product = Rig("H7/k6");
   std::set<double> clearances;
@@ -72,16 +86,9 @@ TEST(MakeFitForceTest, EqualSeedsDrawEqualSizesAndOthersOthers) {  // W2
 
 TEST(MakeFitForceTest, SizesStayWithinTheZonesOfTheStandard) {  // W2, W3
   for (const char* code : {"H7/g6", "H7/k6", "H7/p6"}) {
-    const Product product = Rig(code);
     const auto limits = fits::CalcFitLimits(*fits::ParseFit(code), 2 * kRadius);
     ASSERT_TRUE(limits.has_value());
-    double least = 1;
-    double most = -1;
-    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
-      const double clearance = 2 * Make(product, seed)->mean_clearance();
-      least = std::min(least, clearance);
-      most = std::max(most, clearance);
-    }
+    const auto [least, most] = CalcClearances(Rig(code));
     EXPECT_GE(least, limits->min_clearance - 1e-9) << code;
     EXPECT_LE(most, limits->max_clearance + 1e-9) << code;
     // And they fill them: normal with a sixth of each zone.
@@ -159,14 +166,7 @@ TEST(MakeFitForceTest, MeasuredSizesReplaceThoseDrawnByChance) {
 TEST(MakeFitForceTest, ClassOfOneSideLeavesTheOtherAsDrawn) {  // W3
   const double it7 = 25e-6;                                    // ISO 286-1, 30 to 50 mm
   for (const bool is_hole : {true, false}) {
-    const Product product = Rig(is_hole ? "H7" : "h7");
-    double least = 1;
-    double most = -1;
-    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
-      const double clearance = 2 * Make(product, seed)->mean_clearance();
-      least = std::min(least, clearance);
-      most = std::max(most, clearance);
-    }
+    const auto [least, most] = CalcClearances(Rig(is_hole ? "H7" : "h7"));
     EXPECT_GE(least, -1e-12);
     EXPECT_LE(most, it7 + 1e-12);
     EXPECT_GT(most - least, 0.5 * it7);
