@@ -98,15 +98,19 @@ std::size_t Shape::point_count() const noexcept {
   return data_->shell.point_count;
 }
 
-std::size_t Shape::memory_bytes() const noexcept {
+ShapeMemory Shape::CalcMemory() const noexcept {
   const Data& d = *data_;
   const Mesh& m = d.mesh;
-  return sizeof(Data) + Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normal) +
-         Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) + Bytes(m.vertex_normal) +
-         Bytes(m.vertex_faces) + Bytes(m.is_vertex_open) + Bytes(d.field.top) +
-         Bytes(d.field.nodes) + Bytes(d.field.slack) + Bytes(d.field.coarse) +
-         Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
-         Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.shell) + Bytes(d.features);
+  ShapeMemory memory;
+  memory.field =
+      Bytes(d.field.top) + Bytes(d.field.nodes) + Bytes(d.field.slack) + Bytes(d.field.coarse);
+  memory.tables = Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
+                  Bytes(d.exact.list_begin) + Bytes(d.exact.listed);
+  memory.mesh = Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normal) +
+                Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) +
+                Bytes(m.vertex_normal) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open);
+  memory.shell = sizeof(Data) + Bytes(d.shell) + Bytes(d.features);
+  return memory;
 }
 
 }  // namespace hvas::contact

@@ -29,6 +29,24 @@ struct ShapeOptions {
   double point_spacing{0};  ///< Of the point shell on faces [m]; 0: chosen. Edges get half of it.
 };
 
+/** What a shape takes in memory [bytes]. */
+struct ShapeMemory {
+  std::size_t field{0};   ///< Blocks of the distance field, their directory, the coarse grid.
+  std::size_t tables{0};  ///< Which faces or triangles decide where.
+  std::size_t mesh{0};
+  std::size_t shell{0};  ///< Points, their faces and the sphere trees.
+
+  [[nodiscard]] std::size_t total() const noexcept { return field + tables + mesh + shell; }
+
+  ShapeMemory& operator+=(const ShapeMemory& other) noexcept {
+    field += other.field;
+    tables += other.tables;
+    mesh += other.mesh;
+    shell += other.shell;
+    return *this;
+  }
+};
+
 /** Immutable contact shape: block distance field, point shell in a sphere tree, exact faces. */
 class Shape {
  public:
@@ -44,7 +62,9 @@ class Shape {
   [[nodiscard]] const spatial::Box& box_B() const noexcept;
   [[nodiscard]] double voxel() const noexcept;
   [[nodiscard]] std::size_t point_count() const noexcept;
-  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+  [[nodiscard]] ShapeMemory CalcMemory() const noexcept;
+
+  [[nodiscard]] std::size_t memory_bytes() const noexcept { return CalcMemory().total(); }
 
   [[nodiscard]] const Data& data() const noexcept { return *data_; }
 

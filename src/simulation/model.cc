@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <set>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "base/units.h"
 #include "dynamics/world.h"
+#include "simulation/actual_faces.h"
 #include "simulation/fit_of_mate.h"
+#include "simulation/shapes.h"
 
 namespace hvas::simulation {
 namespace {
@@ -23,59 +23,6 @@ using product::Product;
 constexpr double kTableGap = 10e-3;     // [m] between parts on the table
 constexpr double kTransferGap = 30e-3;  // [m] between a carried part and the product
 constexpr double kSettleTime = 3.0;     // [s]
-
-contact::ShapeSource MakeShapeSource(const product::Part& part) {
-  contact::ShapeSource source;
-  source.vertices = part.mesh.vertices;
-  source.triangles = part.mesh.triangles;
-  source.triangle_face.resize(part.mesh.triangles.size());
-  for (std::size_t f = 0; f < part.faces.size(); ++f) {
-    const product::Face& face = part.faces[f];
-    source.faces.push_back(face.surface);
-    std::fill_n(source.triangle_face.begin() + face.first_triangle, face.triangle_count,
-                static_cast<std::uint32_t>(f));
-  }
-  return source;
-}
-
-/** Shapes of all parts that occur, built on several threads; one error stops all. */
-Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
-    const Product& product, const CompileOptions& options) {
-  std::vector<std::shared_ptr<const contact::Shape>> shapes(product.parts.size());
-  std::vector<Error> errors(product.parts.size());
-  std::atomic<std::size_t> next{0};
-  std::atomic<std::size_t> done{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < shapes.size(); i = next++) {
-      const contact::ShapeSource source = MakeShapeSource(product.parts[i]);
-      auto shape = options.shape_cache != nullptr
-                       ? options.shape_cache->LoadOrBuild(source, options.shape)
-                       : contact::Shape::Build(source, options.shape);
-      if (shape) {
-        shapes[i] = *shape;
-      } else {
-        errors[i] = shape.error();
-      }
-      ++done;
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int i = 1; i < options.threads; ++i) {
-    threads.emplace_back(work);
-  }
-  work();
-  for (std::thread& thread : threads) {
-    thread.join();
-  }
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (shapes[i] == nullptr) {
-      Error error = errors[i];
-      error.where = fmt::format("{}, part '{}'", product.source, product.parts[i].name);
-      return Unexpected(error);
-    }
-  }
-  return shapes;
-}
 
 /** A surface without a solid weighs nothing in the file; in the hand it needs some inertia. */
 dynamics::MassProperties MakeMass(const product::Part& part) {
@@ -124,6 +71,23 @@ double PlaceOnShelf(Model* model) {
     }
   }
   return reach;
+}
+
+/** Contact has the clearance that the fits say, where they leave any. */
+void GiveActualFaces(Model* model, Diagnostics* diagnostics) {
+  ActualFacesInput input;
+  input.product = model->product.get();
+  input.sequence = &model->sequence;
+  for (const Body& body : model->bodies) {
+    input.shapes.push_back(body.shape);
+  }
+  for (const ModelMate& mate : model->mates) {
+    input.fits.push_back(mate.fit);
+  }
+  const auto faces = MakeActualFaces(input, diagnostics);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    model->bodies[i].faces = faces[i];
+  }
 }
 
 /** Lays the loose parts out in rows on the table, as drawn, and lets them come to rest. */
@@ -268,7 +232,8 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   model->product = product;
   model->seed = options.seed;
   report("contact shapes", 0);
-  const auto shapes = BuildShapes(*product, options);
+  const auto shapes =
+      BuildShapes(*product, {options.shape, options.shape_cache.get(), options.threads});
   if (!shapes) {
     return Unexpected(shapes.error());
   }
@@ -320,6 +285,7 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   input.scene = &scene;
   input.progress = [&report](double fraction) { report("order of assembly", fraction); };
   model->sequence = PlanSequence(input);
+  GiveActualFaces(model.get(), diagnostics);
   report("layout", 0);
   if (const auto laid_out = LayOut(model.get()); !laid_out) {
     return Unexpected(laid_out.error());
