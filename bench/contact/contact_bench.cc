@@ -39,25 +39,57 @@ std::vector<Entrant> MakeEntrants(const std::vector<BenchPart>& parts) {
            [&] { return MakeOurs(&parts, true); }}};
 }
 
+void PrintHead() {
+  fmt::print(
+      "{:3s} {:>5s} {:13s}{:>5s} {:>2s} {:>9s} {:>9s} {:>9s} {:>8s} {:>8s} {:>5s} {:>9s} {:>9s} "
+      "{:>8s} {:>8s}\n",
+      "", "parts", "method", "poses", "n", "median_us", "p99_us", "max_us", "ratio", "contacts",
+      "% hit", "depth_um", "max_um", "points", "found");
+}
+
 void PrintRow(const SpeedRow& row) {
-  fmt::print("{:3s} {:5d} {:12s} {:5d} {:2d} {:9.1f} {:9.1f} {:9.1f} {:8.2f} {:9.1f} {:5.0f}\n",
-             row.track, row.scene, row.method, row.poses, row.passes, 1e6 * row.time.median,
-             1e6 * row.time.p99, 1e6 * row.time.max, row.ratio, row.contacts, 100 * row.touching);
+  fmt::print(
+      "{:3s} {:5d} {:13s}{:5d} {:2d} {:9.1f} {:9.1f} {:9.1f} {:8.2f} {:8.1f} {:5.0f} {:9.1f} "
+      "{:9.1f} "
+      "{:8.0f} {:8.0f}\n",
+      row.track, row.scene, row.method, row.poses, row.passes, 1e6 * row.time.median,
+      1e6 * row.time.p99, 1e6 * row.time.max, row.ratio, row.contacts, 100 * row.touching,
+      1e6 * row.depth.median, 1e6 * row.depth.max, row.points.median, row.candidates.median);
   std::cout.flush();
 }
 
+nlohmann::json ToJson(const Spread& spread, double scale = 1) {
+  return {
+      {"median", scale * spread.median}, {"p99", scale * spread.p99}, {"max", scale * spread.max}};
+}
+
 nlohmann::json ToJson(const SpeedRow& row) {
-  return {{"track", row.track},           {"parts", row.scene},
-          {"method", row.method},         {"poses", row.poses},
-          {"passes", row.passes},         {"median_us", 1e6 * row.time.median},
-          {"p99_us", 1e6 * row.time.p99}, {"max_us", 1e6 * row.time.max},
-          {"ratio", row.ratio},           {"contacts_mean", row.contacts},
-          {"touching", row.touching}};
+  return {{"track", row.track},
+          {"parts", row.scene},
+          {"method", row.method},
+          {"poses", row.poses},
+          {"passes", row.passes},
+          {"time_us", ToJson(row.time, 1e6)},
+          {"ratio", row.ratio},
+          {"contacts_mean", row.contacts},
+          {"touching", row.touching},
+          {"depth_um", ToJson(row.depth, 1e6)},
+          {"points_tested", ToJson(row.points)},
+          {"candidates", ToJson(row.candidates)},
+          {"bodies_tested", ToJson(row.bodies)}};
 }
 
 int Run(const Options& options) {
   std::cerr << "drawing, meshing and building the parts\n";
-  const auto parts = MakeParts();
+  std::vector<Track> tracks;
+  std::set<std::size_t> needed;
+  for (Track& track : MakeTracks()) {
+    if (IsWanted(options.tracks, track.name)) {
+      needed.merge(ListParts(track));
+      tracks.push_back(std::move(track));
+    }
+  }
+  const auto parts = MakeParts(needed);
   if (!parts) {
     std::cerr << parts.error().ToString() << '\n';
     return 1;
@@ -70,13 +102,8 @@ int Run(const Options& options) {
     }
   }
   nlohmann::json out = nlohmann::json::array();
-  fmt::print("{:3s} {:>5s} {:12s} {:>5s} {:>2s} {:>9s} {:>9s} {:>9s} {:>8s} {:>9s} {:>5s}\n", "",
-             "parts", "method", "poses", "n", "median_us", "p99_us", "max_us", "ratio", "contacts",
-             "% hit");
-  for (const Track& track : MakeTracks()) {
-    if (!IsWanted(options.tracks, track.name)) {
-      continue;
-    }
+  PrintHead();
+  for (const Track& track : tracks) {
     for (const std::size_t count : options.scenes) {
       std::cerr << fmt::format("{} {} ({} parts)\n", track.name, track.description, count);
       for (const SpeedRow& row : RunTrack(track, MakeScene(track, *parts, count), entrants)) {

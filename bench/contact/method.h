@@ -17,6 +17,11 @@ struct FoundContact {
   double depth;  ///< [m], positive for penetration.
 };
 
+/** What a query had to look at, where a method counts it. */
+struct Effort {
+  std::size_t bodies{0}, points{0}, candidates{0};
+};
+
 /** A way to answer what a held part touches. Everything that can be prepared is prepared in Load.
  */
 class Method {
@@ -31,6 +36,8 @@ class Method {
   virtual std::size_t Query(const spatial::Pose& X_WH) = 0;
   /** Of the last query; empty where the method tells yes or no only. */
   [[nodiscard]] virtual std::span<const FoundContact> contacts() = 0;
+
+  [[nodiscard]] virtual Effort effort() const { return {}; }
 };
 
 /** Contacts of contact::Scene. */

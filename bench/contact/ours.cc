@@ -33,6 +33,11 @@ class Ours : public Method {
     return found_;
   }
 
+  [[nodiscard]] Effort effort() const override {
+    const contact::QueryStats& stats = work_.stats();
+    return {stats.bodies_tested, stats.points_tested, stats.candidates};
+  }
+
  private:
   const std::vector<BenchPart>* parts_;
   bool is_scalar_;

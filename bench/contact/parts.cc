@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
+
+#include <fmt/format.h>
 
 #include "base/diagnostics.h"
 #include "cad/part_shape.h"
@@ -105,13 +108,13 @@ std::vector<BenchPart> DrawParts() {
 
 }  // namespace
 
-Result<contact::ShapeSource> MeshSolid(const products::Solid& solid, double deflection,
-                                       bool is_fine) {
-  cad::ImportOptions options;
-  options.relative_deflection = 0;
-  options.min_deflection = deflection;
-  options.max_angle = is_fine ? 0.1 : 0.5;
-  options.max_triangles = 2'000'000;
+Result<contact::ShapeSource> MeshSolid(const products::Solid& solid, double deflection) {
+  cad::ImportOptions options;  // As the program itself meshes.
+  if (deflection > 0) {
+    options.relative_deflection = 0;
+    options.min_deflection = deflection;
+    options.max_angle = 0.5;
+  }
   product::Part part;
   Diagnostics diagnostics;
   const auto level = cad::BuildPartShape(
@@ -131,11 +134,12 @@ Result<contact::ShapeSource> MeshSolid(const products::Solid& solid, double defl
   return source;
 }
 
-Result<std::vector<BenchPart>> MakeParts() {
+Result<std::vector<BenchPart>> MakeParts(const std::set<std::size_t>& wanted) {
   std::vector<BenchPart> parts = DrawParts();
   const auto directory = contact::ShapeCache::DefaultDirectory();
-  for (BenchPart& part : parts) {
-    auto source = MeshSolid(part.solid, 1e-6, true);
+  for (const std::size_t number : wanted) {
+    BenchPart& part = parts[number];
+    auto source = MeshSolid(part.solid, 0);
     if (!source) {
       return Unexpected(source.error());
     }
@@ -146,6 +150,11 @@ Result<std::vector<BenchPart>> MakeParts() {
       return Unexpected(shape.error());
     }
     part.shape = *shape;
+    std::cerr << fmt::format(
+        "  {:13s} {:6d} triangles {:3d} faces, voxel {:.2f} mm, {:6d} points, {:5.1f} MB\n",
+        part.name, part.source.triangles.size(), part.source.faces.size(),
+        1e3 * part.shape->voxel(), part.shape->point_count(),
+        1e-6 * static_cast<double>(part.shape->memory_bytes()));
   }
   return parts;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@
 /** What the benchmark of contact queries is measured on. SI but for what `products` draws. */
 namespace hvas::bench {
 
-/** A concave part with its contact shape, built from a mesh of 1 um deflection. */
+/** A concave part with its contact shape, built as the program builds it. */
 struct BenchPart {
   std::string name;
   products::Solid solid;
@@ -35,12 +36,11 @@ enum PartNumber : std::size_t {
   kPartCount
 };
 
-/** Draws, meshes and builds all parts. Shapes come from the cache of shapes where it is on. */
-Result<std::vector<BenchPart>> MakeParts();
+/** Draws all parts; meshes and builds those that are wanted, by number. Shapes come from the cache
+ of shapes where it is on. */
+Result<std::vector<BenchPart>> MakeParts(const std::set<std::size_t>& wanted);
 
-/** Triangles of a solid at a chord deflection [m]. Normals of neighbours differ by at most 0.1 rad
- when `is_fine`, else by 0.5 rad. */
-Result<contact::ShapeSource> MeshSolid(const products::Solid& solid, double deflection,
-                                       bool is_fine);
+/** Triangles of a solid at a chord deflection [m]; 0: as the program imports a part. */
+Result<contact::ShapeSource> MeshSolid(const products::Solid& solid, double deflection);
 
 }  // namespace hvas::bench

@@ -23,6 +23,8 @@ PoseTimes Measure(Method* method, const Track& track, int poses, int passes) {
   PoseTimes times;
   times.least.assign(static_cast<std::size_t>(poses), std::numeric_limits<double>::infinity());
   times.contacts.assign(static_cast<std::size_t>(poses), 0);
+  times.deepest.assign(static_cast<std::size_t>(poses), 0);
+  times.effort.assign(static_cast<std::size_t>(poses), {});
   for (int pass = 0; pass < passes; ++pass) {
     for (int i = 0; i < poses; ++i) {
       const double start = ThreadSeconds();
@@ -30,7 +32,13 @@ PoseTimes Measure(Method* method, const Track& track, int poses, int passes) {
       const double taken = ThreadSeconds() - start;
       const auto k = static_cast<std::size_t>(i);
       times.least[k] = std::min(times.least[k], taken);
-      times.contacts[k] = found;
+      if (pass == 0) {
+        times.contacts[k] = found;
+        times.effort[k] = method->effort();
+        for (const FoundContact& c : method->contacts()) {
+          times.deepest[k] = std::max(times.deepest[k], c.depth);
+        }
+      }
     }
   }
   return times;
@@ -69,6 +77,17 @@ std::vector<SpeedRow> RunTrack(const Track& track, const std::vector<PlacedPart>
     row.touching =
         static_cast<double>(poses - std::count(times.contacts.begin(), times.contacts.end(), 0U)) /
         n;
+    row.depth = CalcSpread(times.deepest);
+    const auto spread = [&](std::size_t Effort::*count) {
+      std::vector<double> values;
+      for (const Effort& e : times.effort) {
+        values.push_back(static_cast<double>(e.*count));
+      }
+      return CalcSpread(values);
+    };
+    row.bodies = spread(&Effort::bodies);
+    row.points = spread(&Effort::points);
+    row.candidates = spread(&Effort::candidates);
     rows.push_back(row);
   }
   return rows;

@@ -26,12 +26,18 @@ struct SpeedRow {
   double ratio{0};     ///< Of the median to that of the first entrant on the same poses.
   double contacts{0};  ///< Mean over the poses.
   double touching{0};  ///< Part of the poses with a contact.
+  Spread depth;        ///< Of the deepest contact of each pose [m].
+  Spread points;       ///< Tested.
+  Spread candidates;
+  Spread bodies;
 };
 
 /** The least time of each pose, over passes over all of the track's poses `stride` apart [s]. */
 struct PoseTimes {
   std::vector<double> least;
   std::vector<std::size_t> contacts;
+  std::vector<double> deepest;  ///< [m]
+  std::vector<Effort> effort;
 };
 
 [[nodiscard]] PoseTimes Measure(Method* method, const Track& track, int poses, int passes);

@@ -128,6 +128,15 @@ std::vector<Track> MakeTracks() {
   return {ShaftIntoBushing(), GearIntoHousing(), CoverOntoHousing()};
 }
 
+std::set<std::size_t> ListParts(const Track& track) {
+  std::set<std::size_t> list(kFillers.begin(), kFillers.end());
+  list.insert(track.held);
+  for (const PlacedPart& other : track.others) {
+    list.insert(other.part);
+  }
+  return list;
+}
+
 std::vector<PlacedPart> MakeScene(const Track& track, const std::vector<BenchPart>& parts,
                                   std::size_t count) {
   std::vector<PlacedPart> scene(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "parts.h"
@@ -28,6 +29,9 @@ struct Track {
 /** T1: shaft into bushing; T2: drive gear into the pump's housing, meshing with the driven gear;
  T3: cover over the shafts, dowels and studs, at last pressed 1.8 mm into what it sits on. */
 [[nodiscard]] std::vector<Track> MakeTracks();
+
+/** The parts of a track and those that fill its scenes. */
+[[nodiscard]] std::set<std::size_t> ListParts(const Track& track);
 
 /** The track's own parts first (as many as there is room for), then concave filler cells around
  what the held part sweeps, nearest first, up to `count` in all. */
