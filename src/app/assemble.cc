@@ -1,6 +1,7 @@
 #include "app/assemble.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -11,10 +12,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/assemble_report.h"
 #include "app/load_product.h"
 #include "app/progress.h"
 #include "app/session_recorder.h"
-#include "base/units.h"
+#include "app/text_layout.h"
+#include "base/clock.h"
 #include "contact/shape_cache.h"
 #include "record/recorder.h"
 #include "simulation/assembly_run.h"
@@ -24,126 +27,11 @@
 namespace hvas::app {
 namespace {
 
-using simulation::ExecutionReport;
 using simulation::Model;
 using simulation::PartResult;
 
 constexpr int kNotAllSeated = 2;
 constexpr double kSecondsPerPart = 120;  // of session time, before a run is stopped as a whole
-
-struct Outcome {
-  std::vector<PartResult> parts;
-  ExecutionReport execution;
-  std::string digest;
-  std::uint64_t dropped_ticks{0};
-};
-
-/** Percentiles of a histogram in microseconds. */
-nlohmann::ordered_json ToJsonUs(const LatencyHistogram& histogram) {
-  const auto us = [](std::int64_t time_ns) { return 1e-3 * static_cast<double>(time_ns); };
-  return {{"median", us(histogram.Quantile(0.5))},
-          {"p99", us(histogram.Quantile(0.99))},
-          {"p999", us(histogram.Quantile(0.999))},
-          {"max", us(histogram.max_ns())}};
-}
-
-double RealTimeFactor(const ExecutionReport& report) {
-  return report.wall_ns > 0
-             ? static_cast<double>(report.session_ns) / static_cast<double>(report.wall_ns)
-             : 0.0;
-}
-
-nlohmann::ordered_json ToJson(const Model& model, const Outcome& outcome,
-                              const AssembleOptions& options) {
-  nlohmann::ordered_json json;
-  const ExecutionReport& run = outcome.execution;
-  json["product"] = model.product->name;
-  json["source"] = model.product->source;
-  json["seed"] = options.seed;
-  json["digest"] = outcome.digest;
-  json["session_s"] = 1e-9 * static_cast<double>(run.session_ns);
-  json["wall_s"] = 1e-9 * static_cast<double>(run.wall_ns);
-  json["real_time_factor"] = RealTimeFactor(run);
-  json["ticks"] = run.ticks;
-  json["tick_us"] = ToJsonUs(run.compute);
-  json["scheduling"] = run.scheduling;
-  if (options.is_realtime) {
-    json["ticks_per_s"] = 1e9 * static_cast<double>(run.ticks) / static_cast<double>(run.wall_ns);
-    json["wake_up_us"] = ToJsonUs(run.wake_up);
-    json["late_wake_ups"] = run.late_wake_ups;
-    json["overruns"] = run.overruns;
-    json["dropped_ticks"] = outcome.dropped_ticks;
-  }
-  json["seated"] = std::count_if(outcome.parts.begin(), outcome.parts.end(),
-                                 [](const PartResult& part) { return part.is_seated; });
-  json["parts"] = nlohmann::ordered_json::array();
-  for (const PartResult& part : outcome.parts) {
-    json["parts"].push_back({{"id", part.occurrence.value()},
-                             {"name", model.product->occurrences[part.occurrence.index()].path},
-                             {"seated", part.is_seated},
-                             {"reason", part.reason},
-                             {"note", part.note},
-                             {"time_s", part.time},
-                             {"path_m", part.path},
-                             {"peak_true_n", part.peak_true},
-                             {"peak_felt_n", part.peak_felt},
-                             {"deepest_um", units::ToUm(part.deepest)},
-                             {"mates", part.mates},
-                             {"pose_error_um", units::ToUm(part.pose_error)},
-                             {"pose_error_urad", 1e6 * part.pose_error_angle}});
-  }
-  return json;
-}
-
-/** Shortened in front, where paths repeat; on a code point's border. */
-std::string Shorten(const std::string& text, std::size_t width) {
-  if (text.size() <= width) {
-    return text;
-  }
-  std::size_t start = text.size() - width + 2;
-  while (start < text.size() && (static_cast<unsigned char>(text[start]) & 0xC0U) == 0x80U) {
-    ++start;
-  }
-  return ".." + text.substr(start);
-}
-
-void PrintTable(const Model& model, const Outcome& outcome, bool is_realtime) {
-  fmt::print("{:>3}  {:<44} {:>7} {:>7} {:>11} {:>7} {:>5} {:>8} {:>9}  {}\n", "#", "part",
-             "time_s", "path_m", "peak_true_n", "felt_n", "mates", "error_um", "error_urad", "");
-  std::size_t seated = 0;
-  for (std::size_t i = 0; i < outcome.parts.size(); ++i) {
-    const PartResult& part = outcome.parts[i];
-    seated += part.is_seated ? 1 : 0;
-    const std::string name = Shorten(model.product->occurrences[part.occurrence.index()].path, 44);
-    if (!part.is_seated) {
-      fmt::print("{:>3}  {:<44} NOT IN PLACE: {}\n", i + 1, name, part.reason);
-      continue;
-    }
-    fmt::print("{:>3}  {:<44} {:>7.2f} {:>7.3f} {:>11.2f} {:>7.2f} {:>5} {:>8.1e} {:>9.1e}  {}\n",
-               i + 1, name, part.time, part.path, part.peak_true, part.peak_felt, part.mates,
-               units::ToUm(part.pose_error), 1e6 * part.pose_error_angle,
-               part.time == 0 ? "in the fixture" : part.note);
-  }
-  const ExecutionReport& run = outcome.execution;
-  const auto us = [](std::int64_t time_ns) { return 1e-3 * static_cast<double>(time_ns); };
-  fmt::print(
-      "\n{}: {} of {} parts in place after {:.1f} s of work, computed in {:.1f} s ({:.1f} x real "
-      "time)\ntick compute: median {:.1f}, p99 {:.1f}, p99.9 {:.1f}, max {:.1f} us ({} ticks, "
-      "{})\n",
-      model.product->source, seated, outcome.parts.size(),
-      1e-9 * static_cast<double>(run.session_ns), 1e-9 * static_cast<double>(run.wall_ns),
-      RealTimeFactor(run), us(run.compute.Quantile(0.5)), us(run.compute.Quantile(0.99)),
-      us(run.compute.Quantile(0.999)), us(run.compute.max_ns()), run.ticks, run.scheduling);
-  if (is_realtime) {
-    fmt::print(
-        "realtime: {:.1f} ticks per second; wake-up median {:.1f}, p99 {:.1f}, max {:.1f} us; {} "
-        "late wake-ups, {} overruns, {} ticks not recorded\n",
-        1e9 * static_cast<double>(run.ticks) / static_cast<double>(run.wall_ns),
-        us(run.wake_up.Quantile(0.5)), us(run.wake_up.Quantile(0.99)), us(run.wake_up.max_ns()),
-        run.late_wake_ups, run.overruns, outcome.dropped_ticks);
-  }
-  fmt::print("digest {}\n", outcome.digest);
-}
 
 Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
                                                Diagnostics* diagnostics, bool is_watched) {
@@ -201,8 +89,8 @@ record::Meta MakeMeta(const Model& model, const AssembleOptions& options) {
           {"model_json", parts.dump()}};
 }
 
-Result<Outcome> Assemble(const std::shared_ptr<const Model>& model, const AssembleOptions& options,
-                         bool is_watched) {
+Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
+                                 const AssembleOptions& options, bool is_watched) {
   record::RecorderOptions record_options;
   record_options.path = options.record;
   record_options.is_threaded = options.is_realtime;
@@ -218,11 +106,15 @@ Result<Outcome> Assemble(const std::shared_ptr<const Model>& model, const Assemb
   SessionRecorder sink(recorder->get());
   simulation::AssemblyRun run(&simulation, &person, &sink);
   if (is_watched) {
-    run.on_part = [&model](std::size_t done, std::size_t total, const PartResult& part) {
+    run.on_part = [&model, start_ns = MonotonicNs()](const simulation::AssemblyProgress& progress,
+                                                     const PartResult& part) {
+      const auto wall_ns = static_cast<double>(std::max<std::int64_t>(1, MonotonicNs() - start_ns));
       ShowProgress(
-          fmt::format("part {} of {} {}: {}", done, total, part.is_seated ? "in place" : "FAILED",
+          fmt::format("part {} of {}, {} in place, {:.1f} x real time; {}{},", progress.tried,
+                      progress.total, progress.seated, static_cast<double>(progress.t_ns) / wall_ns,
+                      part.is_seated ? "" : "NOT IN PLACE: ",
                       Shorten(model->product->occurrences[part.occurrence.index()].path, 40)),
-          done == total ? 1.0 : static_cast<double>(done) / static_cast<double>(total));
+          static_cast<double>(progress.tried) / static_cast<double>(progress.total));
     };
   }
   simulation::Execution execution;
@@ -235,7 +127,7 @@ Result<Outcome> Assemble(const std::shared_ptr<const Model>& model, const Assemb
                              ? options.limit_s
                              : kSecondsPerPart * static_cast<double>(model->bodies.size());
   execution.limit_ns = std::llround(1e9 * limit_s);
-  Outcome outcome;
+  AssemblyOutcome outcome;
   outcome.execution =
       options.is_realtime ? simulation::RunRealtime(execution) : simulation::RunLockstep(execution);
   outcome.parts = run.results();
@@ -248,7 +140,7 @@ Result<Outcome> Assemble(const std::shared_ptr<const Model>& model, const Assemb
 }
 
 /** Parts that a stopped run did not come to. */
-void AddMissing(const Model& model, Outcome* outcome) {
+void AddMissing(const Model& model, AssemblyOutcome* outcome) {
   for (const product::Occurrence& occurrence : model.product->occurrences) {
     const bool is_listed =
         std::any_of(outcome->parts.begin(), outcome->parts.end(),
@@ -271,10 +163,12 @@ int RunAssemble(const AssembleOptions& options) {
     return 1;
   };
   Diagnostics diagnostics;
+  const std::int64_t start_ns = MonotonicNs();
   const auto model = MakeModel(options, &diagnostics, is_watched);
   if (!model) {
     return fail(model.error());
   }
+  const std::int64_t ready_ns = MonotonicNs();
   for (const Diagnostic& item : diagnostics.items()) {
     if (item.code == "shape-cache" || item.code == "cache-unwritable") {
       fmt::print(stderr, "hvas: {}: {} ({})\n", item.entity, item.message, item.remedy);
@@ -285,11 +179,13 @@ int RunAssemble(const AssembleOptions& options) {
     return fail(outcome.error());
   }
   AddMissing(**model, &*outcome);
+  outcome->preparation_ns = ready_ns - start_ns;
+  outcome->seed = options.seed;
+  outcome->is_realtime = options.is_realtime;
   if (options.is_json) {
-    fmt::print("{}\n", ToJson(**model, *outcome, options)
-                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    PrintAssemblyJson(**model, *outcome);
   } else {
-    PrintTable(**model, *outcome, options.is_realtime);
+    PrintAssemblyTable(**model, *outcome);
   }
   const bool is_complete = std::all_of(outcome->parts.begin(), outcome->parts.end(),
                                        [](const PartResult& part) { return part.is_seated; });
@@ -321,8 +217,16 @@ void AddAssemble(CLI::App* app, int* status) {
   command->add_flag("--realtime", options->is_realtime,
                     "Three threads at 1000, 100 and 30 Hz instead of virtual time");
   command->add_option("--record", options->record, "Write the session to this file");
-  command->add_option("--limit", options->limit_s, "Stop after this session time [s]")
-      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--limit", options->limit_s,
+                   "Stop after this session time [s]; 0, when not given: 120 s a part")
+      ->check([](const std::string& text) {
+        double limit_s = 0;
+        const char* end = text.data() + text.size();
+        const auto [rest, code] = std::from_chars(text.data(), end, limit_s);
+        const bool is_time = code == std::errc() && rest == end && limit_s >= 0 && limit_s <= 1e9;
+        return is_time ? std::string() : "must be a time in seconds, 0 or more";
+      });
   command->add_flag("--json", options->is_json, "Print one JSON document");
   AddLoadOptions(command, &options->load);
   command->footer(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace hvas::haptics {
 namespace {
@@ -110,6 +111,7 @@ TickOutput HapticTick::Tick(const device::DeviceState& state) noexcept {
     out.X_WD = X_WD_;
   }
   out.state = state_;
+  out.points_tested = std::exchange(points_tested_, 0);
   out.F_H_W = gate_.Pass(out.F_H_W, options_.dt);
   out.F_H_D = MapToDevice(options_.workspace, out.F_H_W);
   out.gate_actions = gate_.actions();
@@ -260,6 +262,7 @@ void HapticTick::AddContacts(TickOutput* out) noexcept {
     const HeldShape held = MakeHeldShape(member, X_WD_, margin);
     scene_->Query(*held.shape, held.X_WS, held.query, &workspace_);
     out->deepest = std::min(out->deepest, workspace_.deepest());
+    points_tested_ += workspace_.stats().points_tested;
     out->is_truncated = out->is_truncated || workspace_.stats().is_truncated;
     for (const contact::Contact& c : workspace_.contacts()) {
       const auto index = static_cast<std::size_t>(solver_.contact_count());
@@ -281,7 +284,10 @@ void HapticTick::AddContacts(TickOutput* out) noexcept {
 bool HapticTick::IsFreeAt(const spatial::Pose& X_WB) noexcept {
   for (std::size_t member = 0; member < shape_count(); ++member) {
     const HeldShape held = MakeHeldShape(member, X_WB, 0);
-    if (!scene_->IsFree(*held.shape, held.X_WS, kSeatTolerance, held.query, &workspace_)) {
+    const bool is_free =
+        scene_->IsFree(*held.shape, held.X_WS, kSeatTolerance, held.query, &workspace_);
+    points_tested_ += workspace_.stats().points_tested;
+    if (!is_free) {
       return false;
     }
   }
@@ -292,6 +298,7 @@ void HapticTick::MeasureDepth(TickOutput* out) noexcept {
   for (std::size_t member = 0; member < shape_count(); ++member) {
     const HeldShape held = MakeHeldShape(member, X_WD_, 0);
     scene_->Query(*held.shape, held.X_WS, held.query, &workspace_);
+    points_tested_ += workspace_.stats().points_tested;
     out->deepest = std::min(out->deepest, workspace_.deepest());
   }
 }

@@ -47,7 +47,8 @@ struct TickOutput {
   Vec3 f_C_W{Vec3::Zero()};
   contact::BodyId contact_body;  ///< And the body it is with; invalid for the ground or none.
   std::uint32_t gate_actions{0};
-  bool is_truncated{false};  ///< A contact query met its budget.
+  bool is_truncated{false};        ///< A contact query met its budget.
+  std::uint32_t points_tested{0};  ///< By all contact queries of the tick: what it cost.
 };
 
 /** The haptic tick of one hand: X(1), X(2) coupling, contact on the displayed part (X7), guidance
@@ -137,6 +138,7 @@ class HapticTick {
   int axial_row_{-1};
   double weight_true_{0};
   double weight_felt_{0};
+  std::uint32_t points_tested_{0};  ///< Of the present tick.
 };
 
 }  // namespace hvas::haptics

@@ -128,7 +128,8 @@ void AssemblyRun::FinishStep(const SequenceStep& step) {
   if (on_part) {
     const auto seated = std::count_if(results_.begin(), results_.end(),
                                       [](const PartResult& part) { return part.is_seated; });
-    on_part(static_cast<std::size_t>(seated), total_, ResultOf(step.occurrence));
+    on_part({results_.size(), static_cast<std::size_t>(seated), total_, dropped_.t_ns},
+            ResultOf(step.occurrence));
   }
 }
 

@@ -26,6 +26,14 @@ struct PartResult {
   double pose_error_angle{0};  ///< [rad]
 };
 
+/** How far an assembly has come. */
+struct AssemblyProgress {
+  std::size_t tried{0};   ///< Parts that have had their turn.
+  std::size_t seated{0};  ///< Of these.
+  std::size_t total{0};
+  std::int64_t t_ns{0};  ///< Session time.
+};
+
 /** Lets the simulated person assemble a model, one part after the other, and keeps the account.
  As a Sink it stands between the loops and the record. */
 class AssemblyRun final : public Sink {
@@ -43,8 +51,8 @@ class AssemblyRun final : public Sink {
 
   [[nodiscard]] const std::vector<PartResult>& results() const { return results_; }
 
-  /** Called after every step with the number of parts in place, of all, and the last result. */
-  std::function<void(std::size_t, std::size_t, const PartResult&)> on_part;
+  /** Called after every step with the result of the part that moved. */
+  std::function<void(const AssemblyProgress&, const PartResult&)> on_part;
 
  private:
   [[nodiscard]] PartResult& ResultOf(product::OccurrenceId id);

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <time.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -38,6 +39,8 @@ class HapticLoop {
     last_ = execution_.simulation->HapticTick(device);
     const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
     report_->compute.Add(compute_ns);
+    report_->slowest.Add({t_ns_, compute_ns, last_.occurrence, last_.state, last_.points_tested,
+                          last_.contact_count});
     report_->overruns += compute_ns > kTickNs ? 1 : 0;
     if (execution_.sink != nullptr) {
       execution_.sink->OnTick(device, last_);
@@ -100,10 +103,23 @@ std::string RaisePriority() {
 
 }  // namespace
 
+void SlowTicks::Add(const SlowTick& tick) noexcept {
+  if (count_ == ticks_.size() && tick.compute_ns <= ticks_.back().compute_ns) {
+    return;
+  }
+  count_ = std::min(count_ + 1, ticks_.size());
+  std::size_t i = count_ - 1;
+  for (; i > 0 && ticks_[i - 1].compute_ns < tick.compute_ns; --i) {
+    ticks_[i] = ticks_[i - 1];
+  }
+  ticks_[i] = tick;
+}
+
 ExecutionReport RunLockstep(const Execution& execution) {
   ExecutionReport report;
   HapticLoop loop(execution, &report);
   const std::int64_t start_ns = MonotonicNs();
+  const std::int64_t start_cpu_ns = ThreadCpuNs();
   StepPhysics(execution);
   while (!execution.is_done() && loop.t_ns() < execution.limit_ns) {
     for (int i = 0; i < Simulation::kTicksPerPhysics; ++i) {
@@ -112,6 +128,7 @@ ExecutionReport RunLockstep(const Execution& execution) {
     StepPhysics(execution);
   }
   report.wall_ns = MonotonicNs() - start_ns;
+  report.cpu_ns = ThreadCpuNs() - start_cpu_ns;
   report.session_ns = loop.t_ns();
   report.scheduling = "virtual time";
   return report;

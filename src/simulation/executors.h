@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -10,13 +11,39 @@
 
 namespace hvas::simulation {
 
+/** A tick that took long, and what it had to do. */
+struct SlowTick {
+  std::int64_t t_ns{0};
+  std::int64_t compute_ns{0};
+  product::OccurrenceId occurrence;
+  haptics::HoldState state{haptics::HoldState::kEmpty};
+  std::uint32_t points_tested{0};  ///< By its contact queries.
+  int contact_count{0};            ///< Contacts that pressed.
+};
+
+/** The slowest ticks of a run, the slowest first. RT-safe. */
+class SlowTicks {
+ public:
+  void Add(const SlowTick& tick) noexcept;
+
+  [[nodiscard]] const SlowTick* begin() const noexcept { return ticks_.data(); }
+
+  [[nodiscard]] const SlowTick* end() const noexcept { return ticks_.data() + count_; }
+
+ private:
+  std::array<SlowTick, 8> ticks_;
+  std::size_t count_{0};
+};
+
 /** What an executor measured. Times of compute are thread CPU times; wake-up is apart, because the
  host may steal either. */
 struct ExecutionReport {
   std::int64_t session_ns{0};  ///< Session time that was run.
   std::int64_t wall_ns{0};
+  std::int64_t cpu_ns{0};  ///< Lockstep only: processor time of the whole run.
   std::uint64_t ticks{0};
   LatencyHistogram compute;        ///< Of a haptic tick, its operator excluded.
+  SlowTicks slowest;               ///< By compute.
   LatencyHistogram wake_up;        ///< Realtime only: from deadline to start.
   std::uint64_t late_wake_ups{0};  ///< Started more than a period after the deadline.
   std::uint64_t overruns{0};       ///< Compute alone took longer than a period.

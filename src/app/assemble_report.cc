@@ -1,0 +1,170 @@
+#include "app/assemble_report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/text_layout.h"
+#include "base/units.h"
+
+namespace hvas::app {
+namespace {
+
+using simulation::ExecutionReport;
+using simulation::Model;
+using simulation::PartResult;
+
+double ToUs(std::int64_t time_ns) {
+  return 1e-3 * static_cast<double>(time_ns);
+}
+
+double ToS(std::int64_t time_ns) {
+  return 1e-9 * static_cast<double>(time_ns);
+}
+
+/** Session time over the time that was taken for it. */
+double Ratio(const ExecutionReport& report, std::int64_t taken_ns) {
+  return taken_ns > 0 ? ToS(report.session_ns) / ToS(taken_ns) : 0.0;
+}
+
+std::size_t CountSeated(const AssemblyOutcome& outcome) {
+  return static_cast<std::size_t>(
+      std::count_if(outcome.parts.begin(), outcome.parts.end(),
+                    [](const PartResult& part) { return part.is_seated; }));
+}
+
+const std::string& PathOf(const Model& model, product::OccurrenceId id) {
+  static const std::string kNone = "empty hand";
+  return id.is_valid() ? model.product->occurrences[id.index()].path : kNone;
+}
+
+nlohmann::ordered_json ToJsonUs(const LatencyHistogram& histogram) {
+  return {{"median", ToUs(histogram.Quantile(0.5))},
+          {"p99", ToUs(histogram.Quantile(0.99))},
+          {"p999", ToUs(histogram.Quantile(0.999))},
+          {"max", ToUs(histogram.max_ns())}};
+}
+
+nlohmann::ordered_json ToJson(const Model& model, const simulation::SlowTicks& slowest) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const simulation::SlowTick& tick : slowest) {
+    json.push_back({{"time_s", ToS(tick.t_ns)},
+                    {"compute_us", ToUs(tick.compute_ns)},
+                    {"part", PathOf(model, tick.occurrence)},
+                    {"state", haptics::ToString(tick.state)},
+                    {"points_tested", tick.points_tested},
+                    {"contacts", tick.contact_count}});
+  }
+  return json;
+}
+
+nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
+  return {{"id", part.occurrence.value()},
+          {"name", PathOf(model, part.occurrence)},
+          {"seated", part.is_seated},
+          {"reason", part.reason},
+          {"note", part.note},
+          {"time_s", part.time},
+          {"path_m", part.path},
+          {"peak_true_n", part.peak_true},
+          {"peak_felt_n", part.peak_felt},
+          {"deepest_um", units::ToUm(part.deepest)},
+          {"mates", part.mates},
+          {"pose_error_um", units::ToUm(part.pose_error)},
+          {"pose_error_urad", 1e6 * part.pose_error_angle}};
+}
+
+void PrintParts(const Model& model, const AssemblyOutcome& outcome) {
+  constexpr const char* kHead = "{:>4}  {} {:>7} {:>7} {:>10} {:>7} {:>5} {:>8} {:>10}\n";
+  constexpr std::size_t kNameWidth = 44;
+  fmt::print(kHead, "#", PadTo("part", kNameWidth), "time", "path", "true force", "felt", "mates",
+             "error", "turn error");
+  fmt::print(kHead, "", PadTo("", kNameWidth), "s", "m", "N", "N", "", "um", "urad");
+  for (std::size_t i = 0; i < outcome.parts.size(); ++i) {
+    const PartResult& part = outcome.parts[i];
+    const std::string name = PadTo(PathOf(model, part.occurrence), kNameWidth);
+    if (!part.is_seated) {
+      fmt::print("{:>4}  {} NOT IN PLACE: {}\n", i + 1, name, part.reason);
+      continue;
+    }
+    fmt::print("{:>4}  {} {:>7.2f} {:>7.3f} {:>10.2f} {:>7.2f} {:>5} {:>8.1e} {:>10.1e}  {}\n",
+               i + 1, name, part.time, part.path, part.peak_true, part.peak_felt, part.mates,
+               units::ToUm(part.pose_error), 1e6 * part.pose_error_angle,
+               part.time == 0 ? "in the fixture" : part.note);
+  }
+}
+
+void PrintTicks(const Model& model, const ExecutionReport& run) {
+  fmt::print(
+      "tick compute: median {:.1f}, p99 {:.1f}, p99.9 {:.1f}, max {:.1f} us ({} ticks, {})\n",
+      ToUs(run.compute.Quantile(0.5)), ToUs(run.compute.Quantile(0.99)),
+      ToUs(run.compute.Quantile(0.999)), ToUs(run.compute.max_ns()), run.ticks, run.scheduling);
+  if (run.slowest.begin() != run.slowest.end()) {
+    const simulation::SlowTick& slowest = *run.slowest.begin();
+    fmt::print("slowest tick: at {:.3f} s, {} with {}; {} points tested, {} contacts\n",
+               ToS(slowest.t_ns), haptics::ToString(slowest.state),
+               PathOf(model, slowest.occurrence), slowest.points_tested, slowest.contact_count);
+  }
+}
+
+}  // namespace
+
+void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
+  nlohmann::ordered_json json;
+  const ExecutionReport& run = outcome.execution;
+  json["product"] = model.product->name;
+  json["source"] = model.product->source;
+  json["seed"] = outcome.seed;
+  json["digest"] = outcome.digest;
+  json["preparation_s"] = ToS(outcome.preparation_ns);
+  json["session_s"] = ToS(run.session_ns);
+  json["wall_s"] = ToS(run.wall_ns);
+  json["real_time_factor"] = Ratio(run, run.wall_ns);
+  json["ticks"] = run.ticks;
+  json["tick_us"] = ToJsonUs(run.compute);
+  json["slowest_ticks"] = ToJson(model, run.slowest);
+  json["scheduling"] = run.scheduling;
+  if (outcome.is_realtime) {
+    json["ticks_per_s"] = static_cast<double>(run.ticks) / ToS(run.wall_ns);
+    json["wake_up_us"] = ToJsonUs(run.wake_up);
+    json["late_wake_ups"] = run.late_wake_ups;
+    json["overruns"] = run.overruns;
+    json["dropped_ticks"] = outcome.dropped_ticks;
+  } else {
+    json["cpu_s"] = ToS(run.cpu_ns);
+    json["cpu_real_time_factor"] = Ratio(run, run.cpu_ns);
+  }
+  json["seated"] = CountSeated(outcome);
+  json["parts"] = nlohmann::ordered_json::array();
+  for (const PartResult& part : outcome.parts) {
+    json["parts"].push_back(ToJson(model, part));
+  }
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
+  PrintParts(model, outcome);
+  const ExecutionReport& run = outcome.execution;
+  fmt::print(
+      "\n{}: {} of {} parts in place after {:.1f} s of work; prepared in {:.1f} s, computed in "
+      "{:.1f} s ({:.1f} x real time",
+      model.product->source, CountSeated(outcome), outcome.parts.size(), ToS(run.session_ns),
+      ToS(outcome.preparation_ns), ToS(run.wall_ns), Ratio(run, run.wall_ns));
+  if (!outcome.is_realtime) {
+    fmt::print("; {:.1f} s of processor time, {:.1f} x", ToS(run.cpu_ns), Ratio(run, run.cpu_ns));
+  }
+  fmt::print(")\n");
+  PrintTicks(model, run);
+  if (outcome.is_realtime) {
+    fmt::print(
+        "realtime: {:.1f} ticks per second; wake-up median {:.1f}, p99 {:.1f}, max {:.1f} us; {} "
+        "late wake-ups, {} overruns, {} ticks not recorded\n",
+        static_cast<double>(run.ticks) / ToS(run.wall_ns), ToUs(run.wake_up.Quantile(0.5)),
+        ToUs(run.wake_up.Quantile(0.99)), ToUs(run.wake_up.max_ns()), run.late_wake_ups,
+        run.overruns, outcome.dropped_ticks);
+  }
+  fmt::print("digest {}\n", outcome.digest);
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "simulation/assembly_run.h"
+#include "simulation/executors.h"
+#include "simulation/model.h"
+
+namespace hvas::app {
+
+/** Everything that `hvas assemble` has to tell about a run. */
+struct AssemblyOutcome {
+  std::vector<simulation::PartResult> parts;
+  simulation::ExecutionReport execution;
+  std::int64_t preparation_ns{0};  ///< Reading, shapes, mates, order and layout.
+  std::uint64_t seed{1};
+  bool is_realtime{false};
+  std::string digest;
+  std::uint64_t dropped_ticks{0};
+};
+
+/** One JSON document on stdout; every number's name ends in its unit. */
+void PrintAssemblyJson(const simulation::Model& model, const AssemblyOutcome& outcome);
+
+/** One line a part, what was left out and why, and how long everything took. */
+void PrintAssemblyTable(const simulation::Model& model, const AssemblyOutcome& outcome);
+
+}  // namespace hvas::app
