@@ -48,7 +48,7 @@ Result<void> WriteAssignments(const InspectOptions& options, const Product& prod
                 "choose another name, or replace it with --force");
   }
   nlohmann::ordered_json document = MakeFirstAssignments(product);
-  if (const auto kept = KeepLists(file, &document); !kept) {
+  if (auto kept = KeepLists(file, &document); !kept) {
     return kept;
   }
   if (const auto written = WriteAtomically(file, mates::FormatSideFile(document)); !written) {

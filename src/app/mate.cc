@@ -151,7 +151,7 @@ Result<void> Add(const MateOptions& options) {
     entry["fit"] = options.fit;
   }
   opened->document.Append("mates", entry);
-  if (const auto written = Commit(&*opened); !written) {
+  if (auto written = Commit(&*opened); !written) {
     return written;
   }
   const Mate& mate = opened->product.mates[opened->changes.added.back().index()];
@@ -231,7 +231,7 @@ Result<void> Remove(const MateOptions& options) {
     }
     told += *removed;
   }
-  const auto written = Commit(&*opened);
+  auto written = Commit(&*opened);
   if (written) {
     fmt::print("{}", told);
   }
@@ -263,7 +263,7 @@ Result<void> Restore(const MateOptions& options) {
     told += fmt::format("restored {}\n  undo: hvas mate remove {} {}\n", key,
                         Quote(options.load.file.string()), key);
   }
-  const auto written = document->Write();
+  auto written = document->Write();
   if (written) {
     fmt::print("{}", told);
   }

@@ -41,6 +41,7 @@ std::string Plain(Kind kind) {
 template <typename Tag>
 std::string List(const std::vector<Id<Tag>>& ids, std::string_view prefix = "") {
   std::vector<std::string> words;
+  words.reserve(ids.size());
   for (const Id<Tag> id : ids) {
     words.push_back(fmt::format("{}{}", prefix, id.value()));
   }

@@ -55,14 +55,14 @@ class Indicator : public Message_ProgressIndicator {
 };
 
 void InitialiseOnce() {
-  static const bool kIsDone = [] {
+  static const bool is_done = [] {
     STEPCAFControl_Controller::Init();
     // Its messages go to std::cout; what matters in them comes back as a status.
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     return true;
   }();
-  static_cast<void>(kIsDone);
+  static_cast<void>(is_done);
 }
 
 /** Tells OpenCASCADE what the bytes in strings are: it decodes anything as UTF-8, and spoils what

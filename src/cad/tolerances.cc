@@ -631,7 +631,7 @@ std::optional<std::string> NormaliseFitCode(std::string_view text) {
   std::copy_if(text.begin(), text.end(), std::back_inserter(packed),
                [](unsigned char c) { return std::isspace(c) == 0; });
   std::string_view rest = packed;
-  const auto first = TakeClass(&rest);
+  auto first = TakeClass(&rest);
   if (!first || rest.empty()) {
     return first;
   }
@@ -650,8 +650,8 @@ std::optional<std::string> NormaliseFitCode(std::string_view text) {
 }
 
 bool MayHoldTolerances(std::string_view step_text) {
-  static const std::array<std::string_view, 3> kNames{"DIMENSIONAL_SIZE", "DIMENSIONAL_LOCATION",
-                                                      "_TOLERANCE"};
+  static constexpr std::array<std::string_view, 3> kNames{"DIMENSIONAL_SIZE",
+                                                          "DIMENSIONAL_LOCATION", "_TOLERANCE"};
   return std::any_of(kNames.begin(), kNames.end(), [step_text](std::string_view name) {
     return std::search(step_text.begin(), step_text.end(),
                        std::boyer_moore_horspool_searcher(name.begin(), name.end())) !=

@@ -65,7 +65,7 @@ std::string NameOf(const TDF_Label& label) {
 }
 
 std::string InstanceName(const TDF_Label& component, const TDF_Label& definition) {
-  const std::string own = NameOf(component);
+  std::string own = NameOf(component);
   const std::string type = NameOf(definition);
   if (!own.empty() && !IsGenerated(own)) {
     return own;
