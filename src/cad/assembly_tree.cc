@@ -331,6 +331,7 @@ std::vector<std::vector<std::size_t>> TreeBuilder::GroupSources(
     groups[find(i)].push_back(i);
   }
   std::vector<std::vector<std::size_t>> result;
+  result.reserve(groups.size());
   for (auto& [first, members] : groups) {
     result.push_back(std::move(members));
   }

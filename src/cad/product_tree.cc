@@ -1,5 +1,6 @@
 #include "cad/product_tree.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
