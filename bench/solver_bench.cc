@@ -24,10 +24,13 @@ void BM_SolverStep(benchmark::State& state) {
                           options.coupling.k_lin * Mat3::Identity());
     solver.AddPointDamper(Vec3::Zero(), Vec3::Zero(), options.coupling.b_lin);
     solver.AddAngularSpring(Vec3::Zero(), options.coupling.k_rot * Mat3::Identity());
+    const int patch =
+        solver.AddPatch({0, ConstraintSolver::kWorld, options.contact.friction.kinetic_coefficient,
+                         options.contact.friction.stiffness});
     for (int i = 0; i < contacts; ++i) {
       const double angle = 2 * 3.14159265358979 * i / contacts;
-      solver.AddContact(0.02 * Vec3(std::cos(angle), std::sin(angle), -0.5), Vec3::UnitZ(), 0,
-                        options.contact.friction, options.contact.compliance);
+      solver.AddContact({patch, 0.02 * Vec3(std::cos(angle), std::sin(angle), -0.5), Vec3::UnitZ(),
+                         0, options.contact.compliance});
     }
     sum += solver.Solve(options.contact.iterations).v.x();
   }

@@ -7,16 +7,39 @@ namespace hvas::haptics {
 
 void ConstraintSolver::Begin(double mass, const Mat3& I_W, const Vec3& p_WCm,
                              const spatial::Twist& V_0, double dt) noexcept {
-  dt_ = dt;
-  p_WCm_ = p_WCm;
-  contact_count_ = 0;
-  bounded_count_ = 0;
-  is_factored_ = false;
+  BeginFree(dt);
+  p_WCm_[0] = p_WCm;
   A_.setZero();
   A_.topLeftCorner<3, 3>() = I_W;
   A_.bottomRightCorner<3, 3>() = mass * Mat3::Identity();
   rhs_.head<3>() = I_W * V_0.w;
   rhs_.tail<3>() = mass * V_0.v;
+}
+
+void ConstraintSolver::BeginFree(double dt) noexcept {
+  dt_ = dt;
+  body_count_ = 1;
+  contact_count_ = 0;
+  patch_count_ = 0;
+  bounded_count_ = 0;
+  is_factored_ = false;
+  A_.setIdentity();
+  rhs_.setZero();
+}
+
+int ConstraintSolver::AddBody(const Body& body) noexcept {
+  if (body_count_ == static_cast<std::size_t>(kMaxBodies)) {
+    return -1;
+  }
+  const std::size_t i = body_count_++;
+  const Mat3 turn = body.I_W.inverse();
+  inverse_[i].setZero();
+  inverse_[i].topLeftCorner<3, 3>() = turn;
+  inverse_[i].bottomRightCorner<3, 3>() = Mat3::Identity() / body.mass;
+  p_WCm_[i] = body.p_WCm;
+  V_[i].head<3>() = body.V_0.w + dt_ * (turn * body.F_Cm_W.t);
+  V_[i].tail<3>() = body.V_0.v + dt_ / body.mass * body.F_Cm_W.f;
+  return static_cast<int>(i);
 }
 
 void ConstraintSolver::AddWrench(const spatial::Wrench& F_Cm_W) noexcept {
@@ -26,7 +49,7 @@ void ConstraintSolver::AddWrench(const spatial::Wrench& F_Cm_W) noexcept {
 
 void ConstraintSolver::AddPointSpring(const Vec3& p_WQ, const Vec3& f0, const Mat3& K) noexcept {
   // Velocity of Q: v - [r] w, with r from the centre of mass to Q.
-  const Vec3 r = p_WQ - p_WCm_;
+  const Vec3 r = p_WQ - p_WCm_[0];
   const Mat3 S = spatial::Skew(r);
   const Mat3 KS = K * S;
   const double dt2 = dt_ * dt_;
@@ -44,7 +67,7 @@ void ConstraintSolver::AddAngularSpring(const Vec3& t0, const Mat3& K) noexcept 
 }
 
 void ConstraintSolver::AddPointDamper(const Vec3& p_WQ, const Vec3& v_target, double b) noexcept {
-  const Vec3 r = p_WQ - p_WCm_;
+  const Vec3 r = p_WQ - p_WCm_[0];
   const Mat3 S = spatial::Skew(r);
   A_.topLeftCorner<3, 3>() += dt_ * b * (S.transpose() * S);
   A_.topRightCorner<3, 3>() -= dt_ * b * S.transpose();
@@ -59,26 +82,48 @@ void ConstraintSolver::AddAngularDamper(const Vec3& w_target, double b) noexcept
   rhs_.head<3>() += dt_ * b * w_target;
 }
 
-void ConstraintSolver::AddContact(const Vec3& p_WC, const Vec3& nhat_W, double velocity_bias,
-                                  double friction, double compliance,
-                                  double recovery_speed) noexcept {
+int ConstraintSolver::AddPatch(const Patch& patch) noexcept {
+  if (patch_count_ == kMaxPatches) {
+    return -1;
+  }
+  PatchRows& rows = patches_[static_cast<std::size_t>(patch_count_)];
+  rows.of = patch;
+  rows.load = 0;
+  rows.stick_softness = 1 / (dt_ * dt_ * patch.stiffness);
+  rows.lambda.setZero();
+  return patch_count_++;
+}
+
+int ConstraintSolver::AddContact(const Contact& contact) noexcept {
   if (contact_count_ == kMaxContacts) {
-    return;
+    return -1;
   }
-  const Vec3 r = p_WC - p_WCm_;
-  const Quat q_WC = spatial::FrameFromZ(nhat_W);
-  ContactRows& rows = contacts_[static_cast<std::size_t>(contact_count_++)];
-  rows.friction = friction;
-  rows.recovery_speed = recovery_speed;
-  rows.normal = {};
-  rows.normal.J << r.cross(nhat_W), nhat_W;
-  rows.normal.bias = velocity_bias;
-  rows.normal.softness = compliance / (dt_ * dt_);
-  const Vec3 tangents[2] = {q_WC * Vec3::UnitX(), q_WC * Vec3::UnitY()};
+  const PatchRows& patch = patches_[static_cast<std::size_t>(contact.patch)];
+  const Pair pair = PairOf(patch);
+  ContactRows& rows = contacts_[static_cast<std::size_t>(contact_count_)];
+  rows.patch = contact.patch;
+  rows.recovery_speed = contact.recovery_speed;
+  rows.is_prepared = false;
+  const Vec3 r = contact.p_WC - p_WCm_[pair.body];
+  const auto set = [&](const Vec3& direction, Row* row) {
+    row->J << r.cross(direction), direction;
+    if (pair.other != kWorld) {
+      const Vec3 r_other = contact.p_WC - p_WCm_[static_cast<std::size_t>(pair.other)];
+      row->J_other << -r_other.cross(direction), -direction;
+    }
+    row->lambda = 0;
+    row->softness = 0;
+  };
+  set(contact.nhat_W, &rows.normal);
+  rows.normal.bias = contact.velocity_bias;
+  rows.normal.softness = contact.compliance / (dt_ * dt_);
+  rows.normal.lambda = dt_ * contact.normal_guess;
+  const Mat3 R_WC = spatial::FrameFromZ(contact.nhat_W).toRotationMatrix();
   for (int k = 0; k < 2; ++k) {
-    rows.tangent[k] = {};
-    rows.tangent[k].J << r.cross(tangents[k]), tangents[k];
+    set(R_WC.col(k), &rows.tangent[k]);
+    rows.tangent[k].bias = -R_WC.col(k).dot(contact.stick_W) / dt_;
   }
+  return contact_count_++;
 }
 
 int ConstraintSolver::AddBoundedRow(const Vec6& J, double bound) noexcept {
@@ -95,6 +140,7 @@ int ConstraintSolver::AddBoundedRow(const Vec6& J, double bound) noexcept {
 void ConstraintSolver::Factor() noexcept {
   if (!is_factored_) {
     factor_.compute(A_);
+    inverse_[0] = factor_.solve(Mat6::Identity());
     is_factored_ = true;
   }
 }
@@ -105,98 +151,201 @@ spatial::Twist ConstraintSolver::SolveUnconstrained() noexcept {
   return {V.head<3>(), V.tail<3>()};
 }
 
-void ConstraintSolver::Prepare(Row* row) noexcept {
-  row->W = factor_.solve(row->J);
-  row->inverse = 1.0 / (row->J.dot(row->W) + row->softness);
-  row->lambda = 0;
+void ConstraintSolver::PrepareRow(const Pair& pair, Row* row) noexcept {
+  row->W.noalias() = inverse_[pair.body] * row->J;
+  row->slack = row->J.dot(row->W);
+  if (pair.other != kWorld) {
+    row->W_other.noalias() = inverse_[static_cast<std::size_t>(pair.other)] * row->J_other;
+    row->slack += row->J_other.dot(row->W_other);
+  }
 }
 
 void ConstraintSolver::PrepareFriction(ContactRows* rows) noexcept {
+  const Pair pair = PairOf(*rows);
   Row& x = rows->tangent[0];
   Row& y = rows->tangent[1];
-  Prepare(&x);
-  Prepare(&y);
-  const double a = x.J.dot(x.W);
-  const double c = y.J.dot(y.W);
+  PrepareRow(pair, &x);
+  PrepareRow(pair, &y);
   rows->coupling = x.J.dot(y.W);
-  rows->gradient_step = 1 / (0.5 * (a + c) + std::hypot(0.5 * (a - c), rows->coupling));
+  if (pair.other != kWorld) {
+    rows->coupling += x.J_other.dot(y.W_other);
+  }
+  rows->larger = 0.5 * (x.slack + y.slack) + std::hypot(0.5 * (x.slack - y.slack), rows->coupling);
+  rows->is_prepared = true;
 }
 
-void ConstraintSolver::Relax(Row* row, double low, double high) noexcept {
-  const double residual = row->J.dot(V_) - row->bias + row->softness * row->lambda;
-  const double lambda = std::clamp(row->lambda - residual * row->inverse, low, high);
-  V_ += (lambda - row->lambda) * row->W;
-  row->lambda = lambda;
+void ConstraintSolver::PrepareRolling(PatchRows* patch) noexcept {
+  if (patch->of.rolling_arm <= 0) {
+    return;
+  }
+  const auto add = [&](std::size_t body, int side) {
+    patch->W_top[side] = inverse_[body].topLeftCorner<3, 3>();
+    patch->W_bottom[side] = inverse_[body].bottomLeftCorner<3, 3>();
+  };
+  add(static_cast<std::size_t>(patch->of.body), 0);
+  Mat3 slack = patch->W_top[0];
+  if (patch->of.other != kWorld) {
+    add(static_cast<std::size_t>(patch->of.other), 1);
+    slack += patch->W_top[1];
+  }
+  patch->rolling_inverse = slack.inverse();
+}
+
+double ConstraintSolver::Velocity(const Pair& pair, const Row& row) const noexcept {
+  double v = row.J.dot(V_[pair.body]);
+  if (pair.other != kWorld) {
+    v += row.J_other.dot(V_[static_cast<std::size_t>(pair.other)]);
+  }
+  return v;
+}
+
+void ConstraintSolver::Push(const Pair& pair, const Row& row, double change) noexcept {
+  V_[pair.body] += change * row.W;
+  if (pair.other != kWorld) {
+    V_[static_cast<std::size_t>(pair.other)] += change * row.W_other;
+  }
+}
+
+void ConstraintSolver::RelaxBounded() noexcept {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(bounded_count_); ++i) {
+    Row& row = bounded_[i];
+    const double lambda =
+        std::clamp(row.lambda - row.J.dot(V_[0]) / row.slack, -bounds_[i], bounds_[i]);
+    V_[0] += (lambda - row.lambda) * row.W;
+    row.lambda = lambda;
+  }
 }
 
 void ConstraintSolver::RelaxNormal(ContactRows* rows) noexcept {
   // Up to the recovery speed the force is what the depth asks for, whatever the load; beyond it the
   // contact lets go. A bound on the bias alone would let a hard press sink in for ever.
+  const Pair pair = PairOf(*rows);
   Row& row = rows->normal;
-  const double slack = row.J.dot(row.W);
-  const double at_recovery = row.lambda + (rows->recovery_speed - row.J.dot(V_)) / slack;
-  Relax(&row, 0, std::max(0.0, at_recovery));
+  const double v = Velocity(pair, row);
+  const double at_recovery = row.lambda + (rows->recovery_speed - v) / row.slack;
+  const double residual = v - row.bias + row.softness * row.lambda;
+  const double wanted = row.lambda - residual / (row.slack + row.softness);
+  const double lambda = std::clamp(wanted, 0.0, std::max(0.0, at_recovery));
+  const double change = lambda - row.lambda;
+  if (change != 0) {
+    Push(pair, row, change);
+    row.lambda = lambda;
+    patches_[static_cast<std::size_t>(rows->patch)].load += change;
+  }
 }
 
 void ConstraintSolver::RelaxFriction(ContactRows* rows) noexcept {
   // Coulomb's disc, no square about two chosen axes: the world has no preferred direction. If
   // sticking needs no more than the disc has it is solved exactly, else a projected gradient step
   // turns the force against the sliding.
+  const PatchRows& patch = patches_[static_cast<std::size_t>(rows->patch)];
   Row& x = rows->tangent[0];
   Row& y = rows->tangent[1];
-  const double limit = rows->friction * rows->normal.lambda;
-  const Eigen::Vector2d slip(x.J.dot(V_), y.J.dot(V_));
-  const Eigen::Vector2d before(x.lambda, y.lambda);
-  const double a = 1 / x.inverse;
-  const double c = 1 / y.inverse;
-  const double determinant = a * c - rows->coupling * rows->coupling;
-  Eigen::Vector2d lambda = before - Eigen::Vector2d(c * slip.x() - rows->coupling * slip.y(),
-                                                    a * slip.y() - rows->coupling * slip.x()) /
-                                        determinant;
-  if (lambda.norm() > limit) {
-    lambda = before - rows->gradient_step * slip;
-    const double size = lambda.norm();
-    lambda *= size > limit ? limit / size : 1.0;
+  const double limit = patch.of.coefficient * rows->normal.lambda;
+  if (limit <= 0 && x.lambda == 0 && y.lambda == 0) {
+    return;
   }
-  V_ += (lambda.x() - x.lambda) * x.W + (lambda.y() - y.lambda) * y.W;
+  if (!rows->is_prepared) {
+    PrepareFriction(rows);
+  }
+  const Pair pair = PairOf(patch);
+  Eigen::Vector2d lambda(0, 0);
+  if (limit > 0) {
+    const double softness = patch.stick_softness * patch.load / rows->normal.lambda;
+    const Eigen::Vector2d before(x.lambda, y.lambda);
+    const Eigen::Vector2d residual(Velocity(pair, x) - x.bias + softness * x.lambda,
+                                   Velocity(pair, y) - y.bias + softness * y.lambda);
+    const double a = x.slack + softness;
+    const double c = y.slack + softness;
+    const double b = rows->coupling;
+    lambda = before - Eigen::Vector2d(c * residual.x() - b * residual.y(),
+                                      a * residual.y() - b * residual.x()) /
+                          (a * c - b * b);
+    if (lambda.norm() > limit) {
+      lambda = before - residual / (rows->larger + softness);
+      const double size = lambda.norm();
+      lambda *= size > limit ? limit / size : 1.0;
+    }
+  }
+  Push(pair, x, lambda.x() - x.lambda);
+  Push(pair, y, lambda.y() - y.lambda);
   x.lambda = lambda.x();
   y.lambda = lambda.y();
 }
 
+void ConstraintSolver::RelaxRolling(PatchRows* patch) noexcept {
+  const double limit = patch->of.rolling_arm * patch->load;
+  if (limit <= 0 && patch->lambda.isZero(0)) {
+    return;
+  }
+  const auto body = static_cast<std::size_t>(patch->of.body);
+  const bool has_other = patch->of.other != kWorld;
+  const auto other = static_cast<std::size_t>(std::max(0, patch->of.other));
+  Vec3 w = V_[body].head<3>();
+  if (has_other) {
+    w -= V_[other].head<3>();
+  }
+  Vec3 lambda = patch->lambda - patch->rolling_inverse * w;
+  const double size = lambda.norm();
+  lambda *= size > limit ? limit / size : 1.0;
+  const Vec3 change = lambda - patch->lambda;
+  patch->lambda = lambda;
+  V_[body].head<3>() += patch->W_top[0] * change;
+  V_[body].tail<3>() += patch->W_bottom[0] * change;
+  if (has_other) {
+    V_[other].head<3>() -= patch->W_top[1] * change;
+    V_[other].tail<3>() -= patch->W_bottom[1] * change;
+  }
+}
+
+void ConstraintSolver::StartFromGuesses() noexcept {
+  for (ContactRows& rows : std::span(contacts_.data(), static_cast<std::size_t>(contact_count_))) {
+    if (rows.normal.lambda > 0) {
+      Push(PairOf(rows), rows.normal, rows.normal.lambda);
+      patches_[static_cast<std::size_t>(rows.patch)].load += rows.normal.lambda;
+    }
+  }
+}
+
 spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
   Factor();
-  V_ = factor_.solve(rhs_);
+  V_[0] = factor_.solve(rhs_);
   const std::span<ContactRows> contacts(contacts_.data(), static_cast<std::size_t>(contact_count_));
-  const auto bounded_count = static_cast<std::size_t>(bounded_count_);
+  const std::span<PatchRows> patches(patches_.data(), static_cast<std::size_t>(patch_count_));
   for (ContactRows& rows : contacts) {
-    Prepare(&rows.normal);
-    if (rows.friction > 0) {
-      PrepareFriction(&rows);
-    }
+    PrepareRow(PairOf(rows), &rows.normal);
   }
-  for (std::size_t i = 0; i < bounded_count; ++i) {
-    Prepare(&bounded_[i]);
+  for (PatchRows& patch : patches) {
+    PrepareRolling(&patch);
   }
+  for (Row& row : std::span(bounded_.data(), static_cast<std::size_t>(bounded_count_))) {
+    PrepareRow({0, kWorld}, &row);
+  }
+  StartFromGuesses();
   constexpr double kConverged = 1e-9;  // [m/s or rad/s]
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    const Vec6 V_before = V_;
-    for (std::size_t i = 0; i < bounded_count; ++i) {
-      Relax(&bounded_[i], -bounds_[i], bounds_[i]);
-    }
+  for (sweep_count_ = 0; sweep_count_ < iterations;) {
+    ++sweep_count_;
+    const std::array<Vec6, kMaxBodies> before = V_;
+    RelaxBounded();
     for (ContactRows& rows : contacts) {
-      if (rows.friction > 0) {
-        RelaxFriction(&rows);
-      }
+      RelaxFriction(&rows);
+    }
+    for (PatchRows& patch : patches) {
+      RelaxRolling(&patch);
     }
     // Normals last: what remains of the error is in friction, not in penetration.
     for (ContactRows& rows : contacts) {
       RelaxNormal(&rows);
     }
-    if ((V_ - V_before).squaredNorm() < kConverged * kConverged) {
+    double change = 0;
+    for (std::size_t i = 0; i < body_count_; ++i) {
+      change = std::max(change, (V_[i] - before[i]).squaredNorm());
+    }
+    if (change < kConverged * kConverged) {
       break;
     }
   }
-  return {V_.head<3>(), V_.tail<3>()};
+  return velocity(0);
 }
 
 Vec3 ConstraintSolver::contact_force(int i) const noexcept {
@@ -205,6 +354,16 @@ Vec3 ConstraintSolver::contact_force(int i) const noexcept {
           rows.tangent[0].lambda * rows.tangent[0].J.tail<3>() +
           rows.tangent[1].lambda * rows.tangent[1].J.tail<3>()) /
          dt_;
+}
+
+Vec3 ConstraintSolver::contact_velocity(int i) const noexcept {
+  const ContactRows& rows = contacts_[static_cast<std::size_t>(i)];
+  const Pair pair = PairOf(rows);
+  Vec3 v = Vec3::Zero();
+  for (const Row* row : {&rows.normal, &rows.tangent[0], &rows.tangent[1]}) {
+    v += Velocity(pair, *row) * row->J.tail<3>();
+  }
+  return v;
 }
 
 double ConstraintSolver::normal_force(int i) const noexcept {

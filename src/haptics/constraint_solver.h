@@ -8,26 +8,71 @@
 
 namespace hvas::haptics {
 
-/** One implicit Euler step of a rigid body under stiff springs, dampers and inequality constraints.
+/** One implicit Euler step of a rigid body under stiff springs, dampers and inequality constraints,
+ together with free bodies that it touches.
 
- The unknown is the body's velocity V = [w; v] at its centre of mass, in W. Springs enter linearised
- at the end of the step, which is stable for any stiffness:
+ The unknowns are the bodies' velocities V = [w; v] at their centres of mass, in W. Springs enter
+ linearised at the end of the step, which is stable for any stiffness:
 
    (M + dt B + dt^2 K) V = M V_0 + dt (F + B V_target) + sum J^T lambda,
 
  with unilateral contacts (signed distance phi, compliance c):   phi/dt + J V + c/dt^2 lambda >= 0,
- lambda >= 0, complementary; Coulomb friction on each, and box-bounded rows for the resistance of a
- fit. Stewart and Trinkle, IJNME 39 (1996), made compliant; solved by projected Gauss-Seidel.
+ lambda >= 0, complementary; dry friction on each (Coulomb's disc, before it elastic bristles), and
+ box-bounded rows for the resistance of a fit. Stewart and Trinkle, IJNME 39 (1996), made compliant;
+ solved by projected Gauss-Seidel.
 
  No allocation after construction; RT-safe throughout. */
 class ConstraintSolver {
  public:
+  static constexpr int kMaxBodies = 9;
   static constexpr int kMaxContacts = 128;
+  static constexpr int kMaxPatches = 32;
   static constexpr int kMaxBoundedRows = 4;
+  static constexpr int kWorld = -1;  ///< In the place of a body: what does not move.
 
-  /** Starts a step. Inertia about the centre of mass, in W. */
+  /** A body as it is before the step. */
+  struct Body {
+    double mass{1};
+    Mat3 I_W{Mat3::Identity()};  ///< About the centre of mass.
+    Vec3 p_WCm{Vec3::Zero()};
+    spatial::Twist V_0;
+    spatial::Wrench F_Cm_W;  ///< On it, besides what the solver adds.
+  };
+
+  /** Contacts of two bodies that share their friction. */
+  struct Patch {
+    int body{0};
+    int other{kWorld};
+    double coefficient{0};
+    /** Of the bristles, all contacts together [N/m]; they share it as they share the load. */
+    double stiffness{std::numeric_limits<double>::infinity()};
+    /** Of the normal force, against rolling and turning on the spot [m]. */
+    double rolling_arm{0};
+  };
+
+  struct Contact {
+    int patch{0};
+    Vec3 p_WC{Vec3::Zero()};
+    Vec3 nhat_W{Vec3::UnitZ()};  ///< Unit; the contact pushes the patch's `body` along it.
+    /** What the normal velocity must at least be, -phi/dt, less what the compliance takes [m/s]. */
+    double velocity_bias{0};
+    double compliance{0};  ///< [m/N]
+    /** The contact pushes no harder than needed to separate at this speed [m/s]. */
+    double recovery_speed{std::numeric_limits<double>::infinity()};
+    Vec3 stick_W{Vec3::Zero()};  ///< By how much the bristles are bent before the step [m].
+    double normal_guess{0};      ///< Of its normal force, to start from [N].
+  };
+
+  /** Starts a step with body 0, the one that springs, dampers and bounded rows act on. Inertia
+   about the centre of mass, in W. */
   void Begin(double mass, const Mat3& I_W, const Vec3& p_WCm, const spatial::Twist& V_0,
              double dt) noexcept;
+
+  /** Starts a step without a body that is held; index 0 stands for nothing. */
+  void BeginFree(double dt) noexcept;
+
+  /** Adds a free body; its index, or -1 when there are too many. */
+  int AddBody(const Body& body) noexcept;
 
   /** A constant force f at the centre of mass and torque t. */
   void AddWrench(const spatial::Wrench& F_Cm_W) noexcept;
@@ -43,36 +88,62 @@ class ConstraintSolver {
   void AddPointDamper(const Vec3& p_WQ, const Vec3& v_target, double b) noexcept;
   void AddAngularDamper(const Vec3& w_target, double b) noexcept;
 
-  /** A unilateral contact at p_WC with unit normal away from the obstacle. `velocity_bias` is what
-   the normal velocity must at least be, -phi/dt, less what the compliance takes; the contact pushes
-   no harder than needed to separate at `recovery_speed`. */
-  void AddContact(const Vec3& p_WC, const Vec3& nhat_W, double velocity_bias, double friction,
-                  double compliance,
-                  double recovery_speed = std::numeric_limits<double>::infinity()) noexcept;
+  /** The patch's index, or -1 when there are too many. */
+  int AddPatch(const Patch& patch) noexcept;
 
-  /** Resists motion J V with a force of at most `bound` (dry friction). Returns the row's index. */
+  /** The contact's index, or -1 when there are too many. */
+  int AddContact(const Contact& contact) noexcept;
+
+  /** Resists motion J V of body 0 with a force of at most `bound` (dry friction). Returns the row's
+   index. */
   int AddBoundedRow(const Vec6& J, double bound) noexcept;
 
-  /** Solves; returns the velocity at the centre of mass. */
+  /** Solves; returns the velocity of body 0 at its centre of mass. */
   [[nodiscard]] spatial::Twist Solve(int iterations) noexcept;
 
-  /** Velocity without any constraint row, for choosing the contact margin. Valid after the springs
-   were added. */
+  /** Velocity of body 0 without any constraint row, for choosing the contact margin. Valid after
+   the springs were added. */
   [[nodiscard]] spatial::Twist SolveUnconstrained() noexcept;
+
+  /** Of a body at its centre of mass. Valid after Solve. */
+  [[nodiscard]] spatial::Twist velocity(int body) const noexcept {
+    const Vec6& V = V_[static_cast<std::size_t>(body)];
+    return {V.head<3>(), V.tail<3>()};
+  }
 
   [[nodiscard]] int contact_count() const noexcept { return contact_count_; }
 
-  /** Force of contact i on the body [N], in W. Valid after Solve. */
+  [[nodiscard]] int patch_count() const noexcept { return patch_count_; }
+
+  /** Sweeps that the last Solve took. */
+  [[nodiscard]] int sweep_count() const noexcept { return sweep_count_; }
+
+  [[nodiscard]] int patch_of(int i) const noexcept {
+    return contacts_[static_cast<std::size_t>(i)].patch;
+  }
+
+  /** Force of contact i on its patch's body [N], in W. Valid after Solve. */
   [[nodiscard]] Vec3 contact_force(int i) const noexcept;
   [[nodiscard]] double normal_force(int i) const noexcept;
+  /** Speed of the body's point of contact i over the other body, in W, with its normal part [m/s].
+   Valid after Solve. */
+  [[nodiscard]] Vec3 contact_velocity(int i) const noexcept;
+
+  /** Sum of a patch's normal forces [N]. */
+  [[nodiscard]] double patch_force(int patch) const noexcept {
+    return patches_[static_cast<std::size_t>(patch)].load / dt_;
+  }
+
   /** Generalised force of a bounded row (N or N m), positive along +J. Valid after Solve. */
   [[nodiscard]] double bounded_force(int row) const noexcept;
 
  private:
   struct Row {
-    Vec6 J{Vec6::Zero()};
-    Vec6 W{Vec6::Zero()};  // A^-1 J^T
-    double inverse{0};
+    Vec6 J{Vec6::Zero()};  // Of the one body, and of the other.
+    Vec6 J_other{Vec6::Zero()};
+    Vec6 W{Vec6::Zero()};  // A^-1 J^T of either.
+    Vec6 W_other{Vec6::Zero()};
+    double slack{0};  // J A^-1 J^T
     double bias{0};
     double softness{0};
     double lambda{0};  // [N s]
@@ -81,31 +152,64 @@ class ConstraintSolver {
   struct ContactRows {
     Row normal;
     Row tangent[2];
-    double friction{0};
+    int patch{0};
     double recovery_speed{0};
-    double coupling{0};       // Of the two tangents: J_0 A^-1 J_1^T
-    double gradient_step{0};  // One over the larger eigenvalue of the tangents' block
+    double coupling{0};  // Of the two tangents: J_0 A^-1 J_1^T
+    double larger{0};    // Larger eigenvalue of the tangents' block.
+    bool is_prepared{false};
+  };
+
+  struct PatchRows {
+    Patch of;
+    double load{0};             // Sum of the normal lambdas [N s].
+    double stick_softness{0};   // 1 / (dt^2 k)
+    Vec3 lambda{Vec3::Zero()};  // Against rolling [N m s].
+    Mat3 rolling_inverse{Mat3::Zero()};
+    Mat3 W_top[2], W_bottom[2];  // A^-1 [1; 0] of body and other.
+  };
+
+  struct Pair {
+    std::size_t body;
+    int other;
   };
 
   void Factor() noexcept;
-  void Prepare(Row* row) noexcept;
+  void PrepareRow(const Pair& pair, Row* row) noexcept;
   void PrepareFriction(ContactRows* rows) noexcept;
-  void Relax(Row* row, double low, double high) noexcept;
+  void PrepareRolling(PatchRows* patch) noexcept;
+  [[nodiscard]] double Velocity(const Pair& pair, const Row& row) const noexcept;
+  void Push(const Pair& pair, const Row& row, double change) noexcept;
+  void RelaxBounded() noexcept;
   void RelaxNormal(ContactRows* rows) noexcept;
   void RelaxFriction(ContactRows* rows) noexcept;
+  void RelaxRolling(PatchRows* patch) noexcept;
+  void StartFromGuesses() noexcept;
+
+  [[nodiscard]] Pair PairOf(const PatchRows& patch) const noexcept {
+    return {static_cast<std::size_t>(patch.of.body), patch.of.other};
+  }
+
+  [[nodiscard]] Pair PairOf(const ContactRows& rows) const noexcept {
+    return PairOf(patches_[static_cast<std::size_t>(rows.patch)]);
+  }
 
   Mat6 A_{Mat6::Identity()};
   Vec6 rhs_{Vec6::Zero()};
-  Vec6 V_{Vec6::Zero()};
   Eigen::LLT<Mat6> factor_;
   bool is_factored_{false};
-  Vec3 p_WCm_{Vec3::Zero()};
   double dt_{1e-3};
+  std::array<Vec6, kMaxBodies> V_;
+  std::array<Mat6, kMaxBodies> inverse_;
+  std::array<Vec3, kMaxBodies> p_WCm_;
+  std::size_t body_count_{1};
   std::array<ContactRows, kMaxContacts> contacts_;
   int contact_count_{0};
+  std::array<PatchRows, kMaxPatches> patches_;
+  int patch_count_{0};
   std::array<Row, kMaxBoundedRows> bounded_;
   std::array<double, kMaxBoundedRows> bounds_{};
   int bounded_count_{0};
+  int sweep_count_{0};
 };
 
 }  // namespace hvas::haptics

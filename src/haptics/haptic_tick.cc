@@ -46,7 +46,7 @@ const char* ToString(HoldState state) noexcept {
   return "unknown";
 }
 
-HapticTick::HapticTick(const TickOptions& options, const contact::Scene* scene)
+HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene)
     : options_(options),
       scene_(scene),
       force_map_(options.largest_true_force, kMaxCouplingShare * options.device.max_force),
@@ -57,6 +57,7 @@ void HapticTick::Take(const HeldPart* part) noexcept {
   part_ = part;
   state_ = HoldState::kFree;
   is_first_tick_ = true;
+  is_solved_ = false;
   X_WD_ = part->X_WB_start;
   V_D_ = {};
   soft_start_ = 0;
@@ -69,11 +70,24 @@ void HapticTick::Take(const HeldPart* part) noexcept {
     const spatial::Box& box = held.shape->box_B();
     reach_ = std::max(
         reach_, (held.X_WS * box.centre() - part->p_BoBcm_B).norm() + 0.5 * box.size().norm());
+    // What it lay on or beside is free to move.
+    bodies_.SetLoose(held.query.self, false);
+    scene_->SetEnabled(held.query.self, false);
   }
 }
 
 spatial::Pose HapticTick::Drop() noexcept {
-  spatial::Pose X_WB = state_ == HoldState::kSeated ? part_->X_WB_goal : X_WD_;
+  const bool is_seated = state_ == HoldState::kSeated;
+  const spatial::Pose X_WB = is_seated ? part_->X_WB_goal : X_WD_;
+  for (std::size_t member = 0; member < shape_count(); ++member) {
+    const HeldShape held = MakeHeldShape(member, X_WB, 0);
+    scene_->SetPose(held.query.self, held.X_WS);
+    scene_->SetEnabled(held.query.self, true);
+  }
+  if (part_->falls_when_dropped && !is_seated) {
+    bodies_.SetLoose(part_->body, true);
+    (void)bodies_.Wake(part_->body, X_WB, V_D_);
+  }
   part_ = nullptr;
   state_ = HoldState::kEmpty;
   return X_WB;
@@ -110,6 +124,10 @@ TickOutput HapticTick::Tick(const device::DeviceState& state) noexcept {
     }
     out.X_WD = X_WD_;
   }
+  if (!is_solved_) {
+    StepFreeBodies(&out);
+  }
+  is_solved_ = false;
   out.state = state_;
   out.points_tested = std::exchange(points_tested_, 0);
   out.F_H_W = gate_.Pass(out.F_H_W, options_.dt);
@@ -132,6 +150,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   const Vec3 p_WCm = X_WD_ * part_->p_BoBcm_B;
   const double virtual_mass = std::clamp(part_->mass, kMinVirtualMass, kMaxVirtualMass);
   const Mat3 R_WB = X_WD_.R();
+  friction_.BeginTick();
   solver_.Begin(virtual_mass, R_WB * VirtualInertia(*part_, virtual_mass) * R_WB.transpose(), p_WCm,
                 V_D_, options_.dt);
   AddCoupling(tracked, p_WCm);
@@ -139,9 +158,15 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   weight_felt_ = soft_start_ * force_map_.Felt(weight_true_);
   solver_.AddWrench({Vec3::Zero(), weight_felt_ * options_.gravity_W.normalized()});
   AddGuidance(p_WCm);
+  AddFreeBodies();
   AddContacts(out);
-  MoveDisplayed(solver_.Solve(options_.contact.iterations), p_WCm);
+  AddFreeContacts(out);
+  const spatial::Twist V = solver_.Solve(options_.contact.iterations);
   RecordContacts(out);
+  friction_.EndTick(solver_, options_.dt);
+  MoveFreeBodies();
+  MoveDisplayed(V);
+  is_solved_ = true;
 
   out->F_felt_W = CalcCouplingWrench(tracked);
   out->F_true_W = out->F_felt_W;
@@ -216,7 +241,7 @@ void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
   // W5, W8, W9: the fit resists motion along and about the axis up to what physics says at this
   // depth, felt through the map; at rest it holds, and never pushes.
   if (guide_.is_aligned()) {
-    const double friction = options_.contact.friction * guide_.lateral_force();
+    const double friction = options_.contact.friction.kinetic_coefficient * guide_.lateral_force();
     const double felt = force_map_.Felt(guide_.CalcAxialResistance(*part_) + friction);
     const HeldMate& mate = part_->mates[guide_.axis_index()];
     const Vec3 r = axis->p_WQ - p_WCm;
@@ -248,89 +273,12 @@ HapticTick::HeldShape HapticTick::MakeHeldShape(std::size_t member, const spatia
   return held;
 }
 
-void HapticTick::AddContacts(TickOutput* out) noexcept {
-  if (options_.condition == Condition::kConstraint) {
-    return;
-  }
-  const ContactOptions& contact = options_.contact;
-  const spatial::Twist V = solver_.SolveUnconstrained();
-  const double speed = std::min(contact.max_speed, V.v.norm()) +
-                       std::min(contact.max_turn_rate, V.w.norm()) * reach_;
-  const double margin = contact.min_margin + 1.5 * speed * options_.dt;
-  const double settling = options_.dt + contact.settling_time;
-  for (std::size_t member = 0; member < shape_count(); ++member) {
-    const HeldShape held = MakeHeldShape(member, X_WD_, margin);
-    scene_->Query(*held.shape, held.X_WS, held.query, &workspace_);
-    out->deepest = std::min(out->deepest, workspace_.deepest());
-    points_tested_ += workspace_.stats().points_tested;
-    out->is_truncated = out->is_truncated || workspace_.stats().is_truncated;
-    for (const contact::Contact& c : workspace_.contacts()) {
-      const auto index = static_cast<std::size_t>(solver_.contact_count());
-      if (index == contacts_.size()) {
-        out->is_truncated = true;
-        break;
-      }
-      contacts_[index] = c;
-      // A spring with a dashpot: F = (-phi - settling_time phi') / c. A blow sinks in no deeper
-      // than a lasting load.
-      const double time = c.distance > 0 ? options_.dt : settling;
-      const double bias = -std::max(c.distance, -contact.max_depth) / time;
-      solver_.AddContact(c.p_WC, c.nhat_W, bias, contact.friction,
-                         contact.compliance * options_.dt / settling, contact.recovery_speed);
-    }
-  }
-}
-
-bool HapticTick::IsFreeAt(const spatial::Pose& X_WB) noexcept {
-  for (std::size_t member = 0; member < shape_count(); ++member) {
-    const HeldShape held = MakeHeldShape(member, X_WB, 0);
-    const bool is_free =
-        scene_->IsFree(*held.shape, held.X_WS, kSeatTolerance, held.query, &workspace_);
-    points_tested_ += workspace_.stats().points_tested;
-    if (!is_free) {
-      return false;
-    }
-  }
-  return true;
-}
-
 void HapticTick::MeasureDepth(TickOutput* out) noexcept {
   for (std::size_t member = 0; member < shape_count(); ++member) {
     const HeldShape held = MakeHeldShape(member, X_WD_, 0);
     scene_->Query(*held.shape, held.X_WS, held.query, &workspace_);
     points_tested_ += workspace_.stats().points_tested;
     out->deepest = std::min(out->deepest, workspace_.deepest());
-  }
-}
-
-void HapticTick::MoveDisplayed(const spatial::Twist& V_Cm, const Vec3& p_WCm) noexcept {
-  V_D_ = V_Cm;
-  const double speed = V_D_.v.norm();
-  const double turn = V_D_.w.norm();
-  const double scale = std::min({1.0, speed > 0 ? options_.contact.max_speed / speed : 1.0,
-                                 turn > 0 ? options_.contact.max_turn_rate / turn : 1.0});
-  V_D_.v *= scale;
-  V_D_.w *= scale;
-  const Quat q = (spatial::RotationFromVector(V_D_.w * options_.dt) * X_WD_.q()).normalized();
-  const Vec3 p_Cm = p_WCm + V_D_.v * options_.dt;
-  X_WD_ = {q, p_Cm - q * part_->p_BoBcm_B};
-}
-
-void HapticTick::RecordContacts(TickOutput* out) const noexcept {
-  double hardest = 0;
-  for (int i = 0; i < solver_.contact_count(); ++i) {
-    const double force = solver_.normal_force(i);
-    if (force <= 1e-6) {
-      continue;
-    }
-    ++out->contact_count;
-    if (force > hardest) {
-      hardest = force;
-      const contact::Contact& c = contacts_[static_cast<std::size_t>(i)];
-      out->p_WC = c.p_WC;
-      out->f_C_W = solver_.contact_force(i);
-      out->contact_body = c.body;
-    }
   }
 }
 
@@ -358,7 +306,7 @@ bool HapticTick::HasArrived() noexcept {
   }
   constexpr double kSamples[] = {0.25, 0.5, 0.75};
   for (const double s : kSamples) {
-    if (!IsFreeAt(CalcSeatPose(s))) {
+    if (!IsFreeAt(CalcSeatPose(s), kSeatTolerance)) {
       return false;
     }
   }

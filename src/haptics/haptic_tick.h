@@ -7,6 +7,8 @@
 #include "device/device.h"
 #include "haptics/constraint_solver.h"
 #include "haptics/force_map.h"
+#include "haptics/free_bodies.h"
+#include "haptics/friction_memory.h"
 #include "haptics/held_part.h"
 #include "haptics/mate_guide.h"
 #include "haptics/options.h"
@@ -57,15 +59,29 @@ struct TickOutput {
  Owned by one thread. Take and Drop allocate nothing but must not run during Tick. */
 class HapticTick {
  public:
-  /** @param scene  Bodies in the world; outlives this object. The held part's own body is skipped
-   by its id. */
-  HapticTick(const TickOptions& options, const contact::Scene* scene);
+  /** @param scene  Bodies in the world; outlives this object. What is held is disabled in it, and
+   free bodies are moved. */
+  HapticTick(const TickOptions& options, contact::Scene* scene);
+
+  /** What is known of a body of the scene: without it, it is of unknown material and never moves.
+   Allocates: before the first tick. */
+  void SetProperties(contact::BodyId id, const BodyProperties& properties) {
+    bodies_.SetProperties(id, properties);
+  }
+
+  /** A loose body moves when something touches it; the part that is taken up, and what is put in
+   its place, is not loose. RT-safe. */
+  void SetLoose(contact::BodyId id, bool is_loose) noexcept { bodies_.SetLoose(id, is_loose); }
+
+  /** Those that move by themselves now; their poses are those of the scene. */
+  [[nodiscard]] std::span<const FreeBody> awake() const noexcept { return bodies_.awake(); }
 
   /** Takes up a part where it lies; the hand's present pose becomes its grip. `part` outlives the
    hold. RT-safe. */
   void Take(const HeldPart* part) noexcept;
 
-  /** Lets go. Returns the part's pose: its exact place when it was seated. RT-safe. */
+  /** Lets go. Returns the part's pose: its exact place when it was seated. There it is in the scene
+   again. RT-safe. */
   spatial::Pose Drop() noexcept;
 
   /** One tick. Always returns a safe wrench. RT-safe. */
@@ -100,9 +116,17 @@ class HapticTick {
 
   [[nodiscard]] HeldShape MakeHeldShape(std::size_t member, const spatial::Pose& X_WB,
                                         double margin) noexcept;
-  [[nodiscard]] bool IsFreeAt(const spatial::Pose& X_WB) noexcept;
+  [[nodiscard]] bool IsFreeAt(const spatial::Pose& X_WB, double tolerance) noexcept;
   void MeasureDepth(TickOutput* out) noexcept;
-  void MoveDisplayed(const spatial::Twist& V_Cm, const Vec3& p_WCm) noexcept;
+  void MoveDisplayed(const spatial::Twist& V_Cm) noexcept;
+
+  void AddQueried(const TouchingBody& body, fits::FrictionSurface surface, double rolling_arm,
+                  TickOutput* out) noexcept;
+  [[nodiscard]] TouchingBody Touch(const contact::Contact& c) noexcept;
+  void StepFreeBodies(TickOutput* out) noexcept;
+  void AddFreeBodies() noexcept;
+  void AddFreeContacts(TickOutput* out) noexcept;
+  void MoveFreeBodies() noexcept;
   void UpdateState() noexcept;
   [[nodiscard]] bool HasArrived() noexcept;
   [[nodiscard]] spatial::Pose CalcSeatPose(double progress) const noexcept;
@@ -111,12 +135,14 @@ class HapticTick {
   void RecordContacts(TickOutput* out) const noexcept;
 
   TickOptions options_;
-  const contact::Scene* scene_;
+  contact::Scene* scene_;
   contact::QueryWorkspace workspace_;
   ForceMap force_map_;
   ForceMap torque_map_;
   SafetyGate gate_;
   ConstraintSolver solver_;
+  FrictionMemory friction_;
+  FreeBodies bodies_;
   MateGuide guide_;
   std::array<contact::IgnoredPair, 2 * MateGuide::kMaxMates> ignored_;
   std::array<contact::Contact, ConstraintSolver::kMaxContacts>
@@ -124,9 +150,12 @@ class HapticTick {
 
   const HeldPart* part_{nullptr};
   HoldState state_{HoldState::kEmpty};
-  double reach_{0};  ///< Largest distance of a held point from the centre of mass [m].
+  int held_contacts_{0};  ///< Of those in the solver; the first ones.
+  double clearance_{0};   ///< Least distance of the held part before the step, or the margin [m].
+  double reach_{0};       ///< Largest distance of a held point from the centre of mass [m].
   bool is_first_tick_{true};
-  spatial::Pose X_HB_;  ///< Grip: the tracked part in the hand.
+  bool is_solved_{false};  ///< In this tick, together with the held part.
+  spatial::Pose X_HB_;     ///< Grip: the tracked part in the hand.
   spatial::Pose X_WD_;
   spatial::Twist V_D_;        ///< Displayed, at the centre of mass, in W.
   double soft_start_{0};      ///< 0..1 over the first moments of a hold.

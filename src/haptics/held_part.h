@@ -7,6 +7,7 @@
 #include "contact/scene.h"
 #include "contact/shape.h"
 #include "fits/fit_force.h"
+#include "fits/friction.h"
 #include "mates/capture.h"
 #include "product/product.h"
 #include "spatial/pose.h"
@@ -60,6 +61,8 @@ struct HeldPart {
   std::vector<HeldMate> mates;
   std::vector<contact::BodyId> left_out;  ///< Lie in it as drawn, or move with it: no contact.
   std::vector<HeldMember> members;        ///< Of a subassembly, besides this part.
+  fits::FrictionSurface surface{fits::FrictionSurface::kUnknown};
+  bool falls_when_dropped{false};  ///< Let go anywhere but in its place, it is a free body.
 };
 
 }  // namespace hvas::haptics

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "device/device.h"
+#include "fits/friction.h"
 #include "haptics/workspace_mapping.h"
 #include "mates/capture.h"
 #include "spatial/pose.h"
@@ -41,12 +42,16 @@ struct GuidanceOptions {
 struct ContactOptions {
   double compliance{2e-6};      ///< [m/N]; 20 um at 10 N.
   double settling_time{2e-3};   ///< Of a contact under a new load [s].
-  double friction{0.15};        ///< Coulomb, steel on steel.
+  fits::FrictionLaw friction;   ///< Of pairs that the table of materials does not have.
+  double rolling_arm{5e-4};     ///< Of free bodies, against rolling and turning on the spot [m].
   double recovery_speed{0.02};  ///< Penetration is undone no faster [m/s].
   double max_depth{100e-6};     ///< A contact pushes no harder than at this depth [m].
   double min_margin{60e-6};     ///< Contacts are looked for at least this far away [m].
   double max_speed{1.0};        ///< The displayed part moves no faster [m/s].
   double max_turn_rate{10.0};   ///< [rad/s]
+  double max_free_speed{3.0};   ///< Free bodies move no faster [m/s].
+  double rest_time{0.3};        ///< A free body at rest for so long sleeps [s].
+  double stop_depth{50e-6};  ///< No motion within a tick goes deeper than this, or than before [m].
   int iterations{30};
 };
 

@@ -217,8 +217,9 @@ struct BoxOnPlane {
   void Step(int iterations = 30) {
     solver.Begin(kMass, R * Inertia() * R.transpose(), Vec3::Zero(), V, kDt);
     solver.AddWrench(load);
+    const int patch = solver.AddPatch({0, ConstraintSolver::kWorld, friction});
     for (int i = 0; i < 4; ++i) {
-      solver.AddContact(Corner(i), R.col(2), -gap[i] / kDt, friction, compliance);
+      solver.AddContact({patch, Corner(i), R.col(2), -gap[i] / kDt, compliance});
     }
     V = solver.Solve(iterations);
     for (int i = 0; i < 4; ++i) {
@@ -394,8 +395,9 @@ Twist SolveTurned(const RandomScene& s, const Mat3& R, Vec3* total) {
   ConstraintSolver solver;
   solver.Begin(kMass, R * s.I * R.transpose(), R * s.p_WCm, {R * s.V_0.w, R * s.V_0.v}, kDt);
   solver.AddPointSpring(R * s.p_WQ, R * s.f0, R * s.K * R.transpose());
+  const int patch = solver.AddPatch({0, ConstraintSolver::kWorld, 0.3});
   for (int i = 0; i < 6; ++i) {
-    solver.AddContact(R * s.points[i], R * s.normals[i], 0.01 * i, 0.3, 2e-6);
+    solver.AddContact({patch, R * s.points[i], R * s.normals[i], 0.01 * i, 2e-6});
   }
   Vec6 J;
   J << R * s.J.head<3>(), R * s.J.tail<3>();
@@ -445,11 +447,12 @@ TEST(ConstraintSolver, DoesNotDependOnTheFrame) {
 TEST(ConstraintSolver, CapacityIsKept) {
   const auto solve = [](int contacts, ConstraintSolver* solver) {
     solver->Begin(kMass, Inertia(), Vec3::Zero(), {Vec3::Zero(), Vec3(0, 0, -0.2)}, kDt);
+    const int patch = solver->AddPatch({0, ConstraintSolver::kWorld, 0.1});
     for (int i = 0; i < contacts; ++i) {
       const double a = 0.1 * i;
       // Those beyond the capacity would push upwards hard.
-      solver->AddContact(0.03 * Vec3(std::cos(a), std::sin(a), -0.2), Vec3::UnitZ(),
-                         i < ConstraintSolver::kMaxContacts ? 0 : 1, 0.1, 2e-6);
+      solver->AddContact({patch, 0.03 * Vec3(std::cos(a), std::sin(a), -0.2), Vec3::UnitZ(),
+                          i < ConstraintSolver::kMaxContacts ? 0.0 : 1.0, 2e-6});
     }
     return solver->Solve(30);
   };
@@ -482,7 +485,8 @@ TEST(ConstraintSolver, IsReusable) {
   J << Vec3::Zero(), Vec3::UnitX();
   const auto step = [&J](ConstraintSolver* solver) {
     solver->Begin(kMass, Inertia(), Vec3::Zero(), {Vec3(1, 0, 0), Vec3(0, 1, -1)}, kDt);
-    solver->AddContact(Vec3(0.01, 0, 0), Vec3::UnitZ(), 0, 0.3, 2e-6);
+    const int patch = solver->AddPatch({0, ConstraintSolver::kWorld, 0.3});
+    solver->AddContact({patch, Vec3(0.01, 0, 0), Vec3::UnitZ(), 0, 2e-6});
     (void)solver->AddBoundedRow(J, 1);
     return solver->Solve(30);
   };

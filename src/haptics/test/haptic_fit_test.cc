@@ -143,7 +143,7 @@ TEST(Insertion, ClearanceFitIsLight) {
       ASSERT_EQ(out.axial_true, out.axial_felt);
       // mu times what holds the shaft's side back, W(5).
       const double lateral = out.F_felt_W.f.head<2>().norm();
-      ASSERT_NEAR(out.axial_felt, rig.options.contact.friction * lateral, 0.03);
+      ASSERT_NEAR(out.axial_felt, rig.options.contact.friction.kinetic_coefficient * lateral, 0.03);
     }
     EXPECT_GT(sliding, 1500);
     EXPECT_EQ(rig.hand->last().state, HoldState::kSeated);

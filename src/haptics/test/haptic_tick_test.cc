@@ -48,7 +48,7 @@ TickOptions Strong() {
 }
 
 TEST(HapticTick, EmptyHandFeelsNothing) {
-  const contact::Scene scene;
+  contact::Scene scene;
   HapticTick tick({}, &scene);
   ScriptedHand hand(&tick, Pose(Vec3(0.1, 0.2, 0.3)));
   hand.MoveSoftly(Vec3(0.2, 0, 0), 0.2, Vec3(0, 1, 0));
@@ -239,7 +239,8 @@ TEST(HapticTick, SlidingAlongAFaceIsResistedByFriction) {
     const ForceMap map(rig.options.largest_true_force, 0.9 * rig.options.device.max_force);
     const double normal = out.F_felt_W.f.z() + map.Felt(9.81 * 0.26);
     const Vec3 along = out.F_felt_W.f - out.F_felt_W.f.z() * Vec3::UnitZ();
-    EXPECT_NEAR(along.norm(), rig.options.contact.friction * normal, 0.05 * along.norm());
+    EXPECT_NEAR(along.norm(), rig.options.contact.friction.kinetic_coefficient * normal,
+                0.05 * along.norm());
     EXPECT_LT(along.normalized().dot(direction), -0.99);
     EXPECT_LT(CalcDeepest(rig.hand->samples), 50e-6);
   }

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace hvas::fits {
+
+/** Dry friction of a pair of surfaces that slide on each other: the coefficient falls from its
+ static to its kinetic value with the speed v (Stribeck), rises with viscosity, and before anything
+ slides the surfaces give elastically (bristles, Canudas de Wit et al., IEEE TAC 40(3), 1995). */
+struct FrictionLaw {
+  double static_coefficient{0.15};
+  double kinetic_coefficient{0.15};
+  double stribeck_speed{1e-3};  ///< v_s [m/s]
+  double viscous{0};            ///< [s/m]
+  double stiffness{1e6};        ///< Of the bristles of one contact [N/m].
+
+  /** mu(v) = mu_k + (mu_s - mu_k) exp(-(v / v_s)^2) + viscous v, v >= 0 [m/s]. RT-safe. */
+  [[nodiscard]] double CalcCoefficient(double v) const noexcept;
+};
+
+/** What a surface is made of, as far as friction is concerned. */
+enum class FrictionSurface : std::uint8_t {
+  kUnknown,
+  kSteel,
+  kCastIron,
+  kLightMetal,  ///< Aluminium and magnesium.
+  kCopperAlloy,
+  kPolymer,
+};
+
+/** One row of the table. */
+struct FrictionEntry {
+  FrictionSurface a;
+  FrictionSurface b;
+  double static_coefficient;
+  double kinetic_coefficient;
+  std::string_view source;
+  std::string_view status;
+};
+
+[[nodiscard]] std::span<const FrictionEntry> FrictionTable() noexcept;
+
+/** The law of a pair, in either order; of a pair that the table has not, `otherwise`. RT-safe. */
+[[nodiscard]] FrictionLaw FindFriction(FrictionSurface a, FrictionSurface b,
+                                       const FrictionLaw& otherwise) noexcept;
+
+/** The surface of a material's group in Materials(). */
+[[nodiscard]] FrictionSurface SurfaceOf(std::string_view group) noexcept;
+
+}  // namespace hvas::fits

@@ -1,0 +1,61 @@
+// Friction of pairs of materials: X11, W5.
+
+#include "fits/friction.h"
+
+#include <gtest/gtest.h>
+
+#include "fits/materials.h"
+
+namespace hvas::fits {
+namespace {
+
+// Canudas de Wit et al. 1995, Table I, for 1 N: F_s 1.5, F_c 1, v_s 1 mm/s, sigma_2 0.4 N s/m.
+TEST(FrictionLaw, IsStribecksCurve) {
+  const FrictionLaw law{1.5, 1.0, 1e-3, 0.4, 1e5};
+  EXPECT_EQ(law.CalcCoefficient(0), 1.5);
+  EXPECT_NEAR(law.CalcCoefficient(1e-3), 1.0 + 0.5 * 0.36787944117144233 + 0.4e-3, 1e-15);
+  EXPECT_NEAR(law.CalcCoefficient(0.1), 1.04, 1e-15);
+}
+
+TEST(FindFriction, KnowsAPairInEitherOrder) {
+  const FrictionLaw otherwise{0.3, 0.2};
+  for (const FrictionEntry& entry : FrictionTable()) {
+    const FrictionLaw one = FindFriction(entry.a, entry.b, otherwise);
+    const FrictionLaw other = FindFriction(entry.b, entry.a, otherwise);
+    EXPECT_EQ(one.static_coefficient, entry.static_coefficient);
+    EXPECT_EQ(one.kinetic_coefficient, entry.kinetic_coefficient);
+    EXPECT_EQ(other.static_coefficient, one.static_coefficient);
+    EXPECT_EQ(other.kinetic_coefficient, one.kinetic_coefficient);
+  }
+  const FrictionLaw none =
+      FindFriction(FrictionSurface::kUnknown, FrictionSurface::kSteel, otherwise);
+  EXPECT_EQ(none.static_coefficient, 0.3);
+  EXPECT_EQ(none.kinetic_coefficient, 0.2);
+}
+
+// Sticking is never weaker than sliding, and every row says where it is from.
+TEST(FrictionTable, IsSoundAndSourced) {
+  for (const FrictionEntry& entry : FrictionTable()) {
+    EXPECT_GE(entry.static_coefficient, entry.kinetic_coefficient);
+    EXPECT_GT(entry.kinetic_coefficient, 0);
+    EXPECT_LT(entry.static_coefficient, 1);
+    EXPECT_FALSE(entry.source.empty());
+    EXPECT_FALSE(entry.status.empty());
+  }
+}
+
+TEST(SurfaceOf, PutsTheMaterialsWhereTheyBelong) {
+  const auto surface = [](const char* name) {
+    return SurfaceOf(FindMaterial(name)->material->group);
+  };
+  EXPECT_EQ(surface("S235JR"), FrictionSurface::kSteel);
+  EXPECT_EQ(surface("AISI 304"), FrictionSurface::kSteel);
+  EXPECT_EQ(surface("EN-GJL-250"), FrictionSurface::kCastIron);
+  EXPECT_EQ(surface("EN AW-6061-T6"), FrictionSurface::kLightMetal);
+  EXPECT_EQ(surface("CuSn8"), FrictionSurface::kCopperAlloy);
+  EXPECT_EQ(surface("POM-C"), FrictionSurface::kPolymer);
+  EXPECT_EQ(SurfaceOf("titanium"), FrictionSurface::kUnknown);
+}
+
+}  // namespace
+}  // namespace hvas::fits

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact/scene.h"
+#include "fits/friction.h"
+#include "haptics/constraint_solver.h"
+
+namespace hvas::haptics {
+
+/** What the tick knows of a body of the scene besides its shape. */
+struct BodyProperties {
+  double mass{0};                ///< [kg]; 0: it never moves by itself.
+  Vec3 p_BoBcm_B{Vec3::Zero()};  ///< [m]
+  Mat3 I_BBcm_B{Mat3::Zero()};   ///< About Bcm [kg m2], positive definite.
+  fits::FrictionSurface surface{fits::FrictionSurface::kUnknown};
+};
+
+/** A body that moves by itself. */
+struct FreeBody {
+  contact::BodyId id;
+  spatial::Pose X_WB;
+  spatial::Twist V;        ///< At the centre of mass, in W.
+  double time_at_rest{0};  ///< [s]
+  int index{-1};           ///< In this tick's solver.
+  double clearance{0};     ///< Least distance before the step, or the margin of its query [m].
+};
+
+/** Loose parts that move: pushed by the held part or by each other, or let go. They are solved in
+ the tick together with the held part, with the exact contact shapes; all others stand still. At
+ most kMaxAwake move at once; further ones stand as if they were fixed.
+
+ Everything but SetProperties is RT-safe. */
+class FreeBodies {
+ public:
+  static constexpr std::size_t kMaxAwake = ConstraintSolver::kMaxBodies - 1;
+
+  /** A body that may move, once Release has made it loose. Not RT-safe: allocates. */
+  void SetProperties(contact::BodyId id, const BodyProperties& properties);
+
+  /** Null for a body nothing is known of. */
+  [[nodiscard]] const BodyProperties* properties(contact::BodyId id) const noexcept {
+    return id.is_valid() && id.index() < entries_.size() ? &entries_[id.index()].properties
+                                                         : nullptr;
+  }
+
+  /** Loose: it moves when something touches it. */
+  void SetLoose(contact::BodyId id, bool is_loose) noexcept;
+
+  /** Wakes a loose body where it is, at a velocity. False when it is not loose, or too many are
+   awake. */
+  bool Wake(contact::BodyId id, const spatial::Pose& X_WB, const spatial::Twist& V) noexcept;
+
+  [[nodiscard]] bool is_loose(contact::BodyId id) const noexcept {
+    return id.is_valid() && id.index() < entries_.size() && entries_[id.index()].is_loose;
+  }
+
+  /** Null for one that does not move. */
+  [[nodiscard]] FreeBody* FindAwake(contact::BodyId id) noexcept;
+
+  [[nodiscard]] std::span<FreeBody> awake() noexcept { return {awake_.data(), count_}; }
+
+  [[nodiscard]] std::span<const FreeBody> awake() const noexcept { return {awake_.data(), count_}; }
+
+  /** Puts to sleep those that have been at rest for so long [s]. */
+  void Sleep(double rest_time) noexcept;
+
+  /** As the solver takes it: in W, under gravity, turning as it would by itself. */
+  [[nodiscard]] ConstraintSolver::Body MakeSolverBody(const FreeBody& body, const Vec3& gravity_W,
+                                                      double dt) const noexcept;
+
+  /** Goes on by a share of dt with the velocity V at its centre of mass. */
+  [[nodiscard]] spatial::Pose Move(const FreeBody& body, const spatial::Twist& V,
+                                   double time) const noexcept;
+
+ private:
+  struct Entry {
+    BodyProperties properties;
+    bool is_loose{false};
+  };
+
+  std::vector<Entry> entries_;
+  std::array<FreeBody, kMaxAwake> awake_;
+  std::size_t count_{0};
+};
+
+/** A pose after a time at a velocity of a body's point Q, in W. */
+[[nodiscard]] spatial::Pose MoveAbout(const spatial::Pose& X_WB, const Vec3& p_BQ,
+                                      const spatial::Twist& V_Q, double time) noexcept;
+
+}  // namespace hvas::haptics

@@ -1,0 +1,162 @@
+// Parts that move by themselves near the hand: X3, X7, X11.
+
+#include "haptics/free_bodies.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "haptics/test/rig.h"
+
+namespace hvas::haptics {
+namespace {
+
+using contact::testing::Block;
+using contact::testing::Build;
+using contact::testing::Bushing;
+using contact::testing::Shaft;
+using spatial::Pose;
+using testing::kDt;
+using testing::ScriptedHand;
+
+/** A table at z = 0 with parts on it that are fixed, loose or in the hand. */
+struct Table {
+  explicit Table(double friction = 0.3, double rest_time = TickOptions().contact.rest_time) {
+    options.contact.rest_time = rest_time;
+    options.contact.friction.static_coefficient = friction;
+    options.contact.friction.kinetic_coefficient = friction;
+    scene.SetGround(0);
+    tick = std::make_unique<HapticTick>(options, &scene);
+  }
+
+  contact::BodyId AddFixed(std::shared_ptr<const contact::Shape> shape, const Pose& X_WB) {
+    return scene.Add(std::move(shape), X_WB);
+  }
+
+  contact::BodyId AddLoose(std::shared_ptr<const contact::Shape> shape, const Pose& X_WB,
+                           double mass, const Mat3& inertia) {
+    const contact::BodyId id = scene.Add(std::move(shape), X_WB);
+    BodyProperties properties;
+    properties.mass = mass;
+    properties.I_BBcm_B = inertia;
+    tick->SetProperties(id, properties);
+    tick->SetLoose(id, true);
+    return id;
+  }
+
+  /** Takes a part up and lets go of it where it is, so that it falls. */
+  void Drop(contact::BodyId id, std::shared_ptr<const contact::Shape> shape, double mass,
+            const Mat3& inertia) {
+    part.body = id;
+    part.shape = std::move(shape);
+    part.mass = mass;
+    part.I_BBcm_B = inertia;
+    part.X_WB_start = scene.pose(id);
+    part.X_WB_goal = Pose(Vec3(1, 1, 1));
+    part.falls_when_dropped = true;
+    tick->Take(&part);
+    (void)tick->Drop();
+  }
+
+  /** Ticks with nothing in the hand. */
+  void Wait(double time) {
+    ScriptedHand hand(tick.get(), Pose(Vec3(1, 0, 1)));
+    hand.Wait(time);
+  }
+
+  TickOptions options;
+  contact::Scene scene;
+  std::unique_ptr<HapticTick> tick;
+  HeldPart part;
+};
+
+Mat3 BoxInertia(double mass, const Vec3& half) {
+  const Vec3 s = half.cwiseProduct(half);
+  return (mass / 3 * Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y())).asDiagonal();
+}
+
+/** How far any corner of a box of these half sizes is from where it was [m]. */
+double CalcShift(const Pose& X, const Pose& Y, const Vec3& half) {
+  double most = 0;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 p((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
+                 (i & 4) != 0 ? half.z() : -half.z());
+    most = std::max(most, (X * p - Y * p).norm());
+  }
+  return most;
+}
+
+// N2: a block dropped on its corner lies flat half a second later, within the compliance of its
+// contacts, and in ten seconds of being solved not one of its corners moves by 1 um.
+TEST(FreeBodies, DroppedBlockComesToRestAndStays) {
+  const Vec3 half(0.03, 0.02, 0.01);
+  Table table(0.3, 100);  // It does not fall asleep.
+  const auto shape = Build(Block(half));
+  const Pose X_start(Quat(Eigen::AngleAxisd(0.4, Vec3(1, 2, 0.5).normalized())),
+                     Vec3(0.01, 0.02, 0.06));
+  const auto id = table.AddLoose(shape, X_start, 0.2, BoxInertia(0.2, half));
+  table.Drop(id, shape, 0.2, BoxInertia(0.2, half));
+  table.Wait(0.5);
+  const Pose X_rest = table.scene.pose(id);
+  EXPECT_NEAR(X_rest.p().z(), 0.01, 5e-6);
+  EXPECT_NEAR((X_rest.q() * Vec3::UnitZ()).z(), 1, 1e-7);
+  double most = 0;
+  for (int i = 0; i < 100; ++i) {
+    table.Wait(0.1);
+    most = std::max(most, CalcShift(table.scene.pose(id), X_rest, half));
+  }
+  EXPECT_LT(most, 1e-6);
+  EXPECT_EQ(table.tick->awake().size(), 1);
+}
+
+// A hull would come to lie on top of the pin.
+TEST(FreeBodies, BushingDroppedOverAPinGoesDown) {
+  Table table;
+  const auto pin = Build(Shaft(5e-3, 40e-3));
+  const auto bush = Build(Bushing(5.1e-3, 12e-3, 20e-3));
+  (void)table.AddFixed(pin, Pose());
+  const double m = 0.05;
+  const Mat3 inertia = Vec3(4e-6, 4e-6, 5e-6).asDiagonal();
+  const auto id = table.AddLoose(bush, Pose(Vec3(0.05e-3, 0, 41e-3)), m, inertia);
+  table.Drop(id, bush, m, inertia);
+  table.Wait(0.05);
+  EXPECT_LT(table.scene.pose(id).p().z(), 39e-3);  // It falls, and is not put there.
+  EXPECT_GT(table.scene.pose(id).p().z(), 20e-3);
+  table.Wait(0.6);
+  const Pose& X = table.scene.pose(id);
+  EXPECT_NEAR(X.p().z(), 0, 5e-6);
+  EXPECT_LT(X.p().head<2>().norm(), 0.1e-3 + 5e-6);  // Within the clearance.
+  EXPECT_TRUE(table.tick->awake().empty());
+}
+
+// X11: the hand feels mu m g, within 5 %, of a part of 1 kg that it pushes over the table, and
+// nothing of it before they touch.
+TEST(FreeBodies, PushedPartPushesBack) {
+  Table table(0.3);
+  const Vec3 half(0.03, 0.02, 0.02);
+  const auto id =
+      table.AddLoose(Build(Block(half)), Pose(Vec3(0, 0, 0.02)), 1, BoxInertia(1, half));
+  const Vec3 finger_half(0.005, 0.01, 0.01);
+  table.part.shape = Build(Block(finger_half));
+  table.part.X_WB_start = Pose(Vec3(-0.040, 0, 0.02));
+  table.part.body = table.scene.Add(table.part.shape, table.part.X_WB_start);
+  table.part.mass = 0.05;
+  table.part.I_BBcm_B = BoxInertia(0.05, finger_half);
+  table.part.X_WB_goal = Pose(Vec3(1, 1, 1));
+  ScriptedHand hand(table.tick.get(), table.part.X_WB_start);
+  table.tick->Take(&table.part);
+  hand.MoveEvenly(Vec3(0.1, 0, 0), 4);
+  for (std::size_t i = 0; i < hand.samples.size(); ++i) {
+    const Vec3 f = hand.samples[i].out.F_felt_W.f;
+    if (hand.samples[i].out.X_WD.p().x() < -0.0351) {
+      EXPECT_LT(std::abs(f.x()), 0.25);  // The coupling's damper while it sets off.
+    } else if (i > 1000) {
+      EXPECT_NEAR(-f.x(), 0.3 * 1 * 9.81, 0.05 * 0.3 * 9.81);
+    }
+  }
+  EXPECT_NEAR(table.scene.pose(id).p().x(), hand.last().X_WD.p().x() + 0.035, 20e-6);
+}
+
+}  // namespace
+}  // namespace hvas::haptics
