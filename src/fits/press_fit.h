@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "base/result.h"
+#include "fits/materials.h"
+
+/** Interference fits of two elastic cylinders: DIN 7190-1 in its notation, derived from Lame's
+ thick ring in plane stress with uniform pressure over the joint (N4, W6, W7). Lengths in metres,
+ stresses in pascals, forces in newtons. */
+namespace hvas::fits {
+
+/** How much of the interference the roughness takes: G = k (Rz_A + Rz_I). */
+enum class Smoothing {
+  kNone,     ///< As paper W: none.
+  kDin2001,  ///< k = 0.8, DIN 7190:2001.
+  kDin2017,  ///< k = 0.4, DIN 7190-1:2017.
+};
+
+[[nodiscard]] double SmoothingFactor(Smoothing edition) noexcept;
+
+/** Elastic constants and strength of one side. */
+struct PressMaterial {
+  double youngs_modulus{210e9};     ///< E [Pa], > 0.
+  double poisson_ratio{0.3};        ///< nu, 0 to 0.5.
+  double yield_strength{0};         ///< Re [Pa]; 0: unknown, or none (brittle).
+  double tensile_strength{0};       ///< Rm [Pa]; limits a brittle hub. 0: unknown.
+  double thermal_expansion{11e-6};  ///< alpha [1/K].
+};
+
+[[nodiscard]] PressMaterial ToPressMaterial(const Material& material) noexcept;
+
+/** A hub A outside, a shaft I inside, joined at the diameter D_F. */
+struct PressFitParameters {
+  double joint_diameter{0};   ///< D_F [m], > 0.
+  double hub_diameter{0};     ///< D_aA, outside [m], > D_F.
+  double shaft_bore{0};       ///< D_iI [m], 0 for a solid shaft, < D_F.
+  double length{0};           ///< l_F, of the joint [m], > 0.
+  double interference{0};     ///< U, diametral, before smoothing [m]; <= 0: none.
+  double hub_roughness{0};    ///< Rz_A [m], >= 0.
+  double shaft_roughness{0};  ///< Rz_I [m], >= 0.
+  Smoothing smoothing{Smoothing::kNone};
+  PressMaterial hub;
+  PressMaterial shaft;
+  double friction_in{0.15};       ///< mu_e, pressing in.
+  double friction_release{0.15};  ///< nu_ll, when it begins to slip along the axis.
+  double friction_torque{0.15};   ///< nu_ru, when it begins to slip about it.
+};
+
+/** Principal stresses at a free or loaded surface in plane stress (the axial one is zero) [Pa]. */
+struct RingStress {
+  double hoop{0};
+  double radial{0};
+
+  [[nodiscard]] double von_mises() const noexcept;
+  [[nodiscard]] double tresca() const noexcept;
+};
+
+/** The pressure at which a side begins to yield [Pa]; infinite where its strength is unknown. */
+struct ElasticLimit {
+  double von_mises{0};
+  double tresca{0};
+};
+
+/** What a press fit amounts to. Without interference all but the geometry is zero. */
+struct PressFit {
+  double smoothing_loss{0};             ///< G [m].
+  double effective_interference{0};     ///< U_w = max(0, U - G), diametral [m].
+  double pressure{0};                   ///< p [Pa].
+  double pressure_per_interference{0};  ///< p / U_w [Pa/m], of the geometry alone.
+  double hub_expansion{0};              ///< Diametral, of the hub's bore [m].
+  double shaft_contraction{0};  ///< Diametral, of the shaft's outside [m]; the two make U_w.
+  RingStress hub_bore;
+  RingStress shaft_surface;    ///< Equals the inside of a solid shaft.
+  RingStress shaft_governing;  ///< At the bore of a hollow shaft, anywhere in a solid one.
+  ElasticLimit hub_limit;
+  ElasticLimit shaft_limit;
+  double press_in_force{0};  ///< F_e, at full depth [N].
+  double push_out_force{0};  ///< F_ll, to start it back [N].
+  double torque{0};          ///< T, to start it turning [N m].
+
+  /** Least ratio of a limit to the pressure; below 1 the fit yields, and the elastic figures above
+   are no longer true. Infinite without pressure or strength. */
+  [[nodiscard]] double margin_von_mises() const noexcept;
+  [[nodiscard]] double margin_tresca() const noexcept;
+};
+
+/** Lame's ring:
+     Q_A = D_F / D_aA, Q_I = D_iI / D_F,
+     K_A = (1 + Q_A^2) / (1 - Q_A^2) + nu_A,  K_I = (1 + Q_I^2) / (1 - Q_I^2) - nu_I,
+     p = (U_w / D_F) / (K_A / E_A + K_I / E_I),  F = mu pi D_F l_F p,  T = nu pi D_F^2 l_F p / 2.
+ Errors: kInvalid, naming the parameter out of its range. */
+[[nodiscard]] Result<PressFit> CalcPressFit(const PressFitParameters& parameters);
+
+/** The interference that gives a pressure, before smoothing: the way back from p to U [m]. */
+[[nodiscard]] Result<double> CalcInterferenceFor(double pressure,
+                                                 const PressFitParameters& parameters);
+
+/** The pressure that a joint needs for loads along (F [N]) and about (T [N m]) its axis at once,
+ with a safety against slip [Pa]:  p = S sqrt(F^2 + (2 T / D_F)^2) / (pi D_F l_F nu). */
+[[nodiscard]] double CalcRequiredPressure(const PressFitParameters& parameters, double axial_load,
+                                          double torque_load, double safety) noexcept;
+
+}  // namespace hvas::fits

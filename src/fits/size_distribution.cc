@@ -1,0 +1,136 @@
+#include "fits/size_distribution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "fits/actual_size.h"
+
+namespace hvas::fits {
+namespace {
+
+constexpr double kNormalReach = 6.5;  // Of a 32-bit uniform number, 6.24.
+constexpr std::size_t kGuideSize = 256;
+
+}  // namespace
+
+SizeDistribution SizeDistribution::FromZone(const Limits& limits) {
+  // As DrawDeviation: the finest grades lose a part of a micrometre.
+  const int zone_um = static_cast<int>(std::floor(units::ToUm(limits.upper - limits.lower) + 1e-6));
+  const std::vector<double> probabilities = CalcSizeProbabilities(zone_um);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    values.push_back(limits.lower + units::FromUm(static_cast<double>(k)));
+  }
+  return FromValues(std::move(values), probabilities);
+}
+
+Result<SizeDistribution> SizeDistribution::FromCapability(const Limits& limits, double cp,
+                                                          double cpk, bool is_shifted_up) {
+  const double width = limits.upper - limits.lower;
+  if (!(width > 0) || !(cpk > 0) || !(cpk <= cp) || !std::isfinite(cp)) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("C_p {:g} and C_pk {:g} are no capabilities of a zone of {:g} um", cp,
+                            cpk, units::ToUm(width)),
+                "process capability", "give 0 < C_pk <= C_p, for example 1.33 and 1.0");
+  }
+  SizeDistribution d;
+  d.kind_ = Kind::kNormal;
+  d.sigma_ = width / (6 * cp);
+  const double shift = 0.5 * width - 3 * d.sigma_ * cpk;
+  d.mean_ = 0.5 * (limits.lower + limits.upper) + (is_shifted_up ? shift : -shift);
+  d.variance_ = d.sigma_ * d.sigma_;
+  d.bounds_ = {d.mean_ - kNormalReach * d.sigma_, d.mean_ + kNormalReach * d.sigma_};
+  return d;
+}
+
+SizeDistribution SizeDistribution::Uniform(const Limits& limits) {
+  SizeDistribution d;
+  const double width = limits.upper - limits.lower;
+  d.mean_ = 0.5 * (limits.lower + limits.upper);
+  d.variance_ = width * width / 12;
+  d.bounds_ = limits;
+  return d;
+}
+
+Result<SizeDistribution> SizeDistribution::FromMeasured(std::span<const double> deviations) {
+  if (deviations.empty() || !std::all_of(deviations.begin(), deviations.end(),
+                                         [](double d) { return std::isfinite(d); })) {
+    return Fail(ErrorCode::kInvalid, "measured sizes are missing or not finite", "measured sizes",
+                "give at least one size");
+  }
+  std::vector<double> values(deviations.begin(), deviations.end());
+  std::sort(values.begin(), values.end());
+  const std::vector<double> probabilities(values.size(), 1.0 / static_cast<double>(values.size()));
+  return FromValues(std::move(values), probabilities);
+}
+
+SizeDistribution SizeDistribution::FromValues(std::vector<double> values,
+                                              std::span<const double> probabilities) {
+  SizeDistribution d;
+  d.kind_ = Kind::kValues;
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sum += probabilities[i];
+    d.cumulative_.push_back(sum);
+    d.mean_ += probabilities[i] * values[i];
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    d.variance_ += probabilities[i] * (values[i] - d.mean_) * (values[i] - d.mean_);
+  }
+  d.cumulative_.back() = 1;
+  d.bounds_ = {values.front(), values.back()};
+  for (std::size_t g = 0; g < kGuideSize; ++g) {
+    const double u = static_cast<double>(g) / kGuideSize;
+    d.guide_.push_back(static_cast<std::uint32_t>(
+        std::upper_bound(d.cumulative_.begin(), d.cumulative_.end() - 1, u) -
+        d.cumulative_.begin()));
+  }
+  d.values_ = std::move(values);
+  return d;
+}
+
+double SizeDistribution::Quantile(double u) const noexcept {
+  switch (kind_) {
+    case Kind::kNormal:
+      return mean_ + sigma_ * NormalQuantile(u);
+    case Kind::kUniform:
+      return bounds_.lower + u * (bounds_.upper - bounds_.lower);
+    case Kind::kValues:
+      break;
+  }
+  std::size_t i = guide_[static_cast<std::size_t>(u * kGuideSize)];
+  while (cumulative_[i] <= u && i + 1 < values_.size()) {
+    ++i;
+  }
+  return values_[i];
+}
+
+double NormalQuantile(double u) noexcept {
+  constexpr double a[] = {-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
+                          1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
+  constexpr double b[] = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02,
+                          6.680131188771972e+01, -1.328068155288572e+01};
+  constexpr double c[] = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
+                          -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
+  constexpr double d[] = {7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00,
+                          3.754408661907416e+00};
+  constexpr double kTail = 0.02425;
+  if (u > 1 - kTail) {
+    return -NormalQuantile(1 - u);
+  }
+  if (u < kTail) {
+    const double q = std::sqrt(-2 * std::log(u));
+    return (((((c[0] * q + c[1]) * q + c[2]) * q + c[3]) * q + c[4]) * q + c[5]) /
+           ((((d[0] * q + d[1]) * q + d[2]) * q + d[3]) * q + 1);
+  }
+  const double q = u - 0.5;
+  const double r = q * q;
+  return (((((a[0] * r + a[1]) * r + a[2]) * r + a[3]) * r + a[4]) * r + a[5]) * q /
+         (((((b[0] * r + b[1]) * r + b[2]) * r + b[3]) * r + b[4]) * r + 1);
+}
+
+}  // namespace hvas::fits

@@ -1,0 +1,244 @@
+#include "fits/population.h"
+
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+#include "base/units.h"
+#include "fits/fit_force.h"
+#include "fits/population_kernel.h"
+
+namespace hvas::fits {
+namespace {
+
+SizeDistribution Exactly(double deviation_um) {
+  return *SizeDistribution::FromMeasured(std::vector{units::FromUm(deviation_um)});
+}
+
+/** Paper W's rig: 40 mm, hub 80 mm, 50 mm long, steel, mu 0.15, N = 20. */
+PopulationLand MakeLand(SizeDistribution hole, SizeDistribution shaft, double rz_um) {
+  PopulationLand land{std::move(hole), std::move(shaft), 0, 20, {}};
+  land.press.joint_diameter = 0.04;
+  land.press.hub_diameter = 0.08;
+  land.press.length = 0.05;
+  land.press.hub_roughness = land.press.shaft_roughness = units::FromUm(rz_um);
+  return land;
+}
+
+PopulationLand MakeLand(const char* fit, double rz_um) {
+  const FitLimits limits = *CalcFitLimits(*ParseFit(fit), 0.04);
+  return MakeLand(SizeDistribution::FromZone(limits.hole), SizeDistribution::FromZone(limits.shaft),
+                  rz_um);
+}
+
+PopulationParameters MakeBatch(std::vector<PopulationLand> lands, std::int64_t count = 200'000) {
+  PopulationParameters p;
+  p.lands = std::move(lands);
+  p.count = count;
+  p.seed = 17;
+  return p;
+}
+
+// W(8): without spread every assembly has the force of the closed form at every depth.
+TEST(Population, WithoutSpreadIsThePressFit) {
+  const Population batch = *CalcPopulation(MakeBatch({MakeLand(Exactly(0), Exactly(42), 0)}, 5000));
+  ASSERT_EQ(batch.bands.size(), 21U);
+  for (const ForceBand& band : batch.bands) {
+    const double expected = 77931.133 * band.depth / 0.05;
+    EXPECT_NEAR(band.mean, expected, 1e-5 * 77931);  // Single precision, summed.
+    for (const double q : band.quantiles) {
+      EXPECT_NEAR(q, expected, 77931.0 / 2048 + 1);
+    }
+  }
+  EXPECT_EQ(batch.any_interference_share, 1);
+  EXPECT_NEAR(batch.lands[0].mean_clearance, -42e-6, 1e-15);
+  EXPECT_NEAR(batch.lands[0].sigma_clearance, 0, 1e-15);
+}
+
+// W2: the moments of the clearance are those of the two sizes, within five sampling errors.
+TEST(Population, MomentsOfTheClearanceAgreeWithTheSizes) {
+  const Limits hole{0, 25e-6};
+  const Limits shaft{2e-6, 18e-6};
+  const SizeDistribution holes[] = {SizeDistribution::FromZone(hole),
+                                    *SizeDistribution::FromCapability(hole, 1.33, 1, true),
+                                    SizeDistribution::Uniform(hole),
+                                    *SizeDistribution::FromMeasured(std::vector{1e-6, 4e-6, 9e-6})};
+  const SizeDistribution shafts = SizeDistribution::FromZone(shaft);
+  for (const SizeDistribution& h : holes) {
+    const Population batch = *CalcPopulation(MakeBatch({MakeLand(h, shafts, 6.3)}));
+    const double sigma = std::sqrt(h.variance() + shafts.variance());
+    const double n = static_cast<double>(batch.count);
+    EXPECT_NEAR(batch.lands[0].mean_clearance, h.mean() - shafts.mean(), 5 * sigma / std::sqrt(n));
+    EXPECT_NEAR(batch.lands[0].sigma_clearance, sigma, 5 * sigma / std::sqrt(2 * n));
+  }
+}
+
+// N4: P(S < 0) of paper W's fits with normal sizes, sigma a sixth of the zone.
+TEST(Population, SharesOfInterferenceAreThoseOfTheNormalDistribution) {
+  struct Case {
+    const char* fit;
+    double share;
+  };
+
+  for (const Case& c : {Case{"H7/p6", 1.000}, Case{"H7/k6", 0.307}, Case{"H7/g6", 0}}) {
+    const FitLimits limits = *CalcFitLimits(*ParseFit(c.fit), 0.04);
+    const Population batch = *CalcPopulation(
+        MakeBatch({MakeLand(*SizeDistribution::FromCapability(limits.hole, 1, 1, true),
+                            *SizeDistribution::FromCapability(limits.shaft, 1, 1, true), 6.3)}));
+    EXPECT_NEAR(batch.any_interference_share, c.share, 0.0055) << c.fit;
+  }
+}
+
+// Fits-and-insertion 2.4: S_0 = 0, -1, -3.15 um with Rz 6.3 um, N = 20, by another Monte Carlo.
+TEST(Population, MeanForcesOfRoughTransitionFitsAgreeWithAnotherMonteCarlo) {
+  struct Case {
+    double interference_um, mean, low, high;
+  };
+
+  for (const Case& c : {Case{0, 2329, 1095, 3748}, Case{2, 4590, 0, 0}, Case{6.3, 11696, 0, 0}}) {
+    const Population batch =
+        *CalcPopulation(MakeBatch({MakeLand(Exactly(0), Exactly(c.interference_um), 6.3)}));
+    const ForceBand& end = batch.bands.back();
+    EXPECT_NEAR(end.mean, c.mean, 0.01 * c.mean);
+    if (c.low > 0) {
+      EXPECT_NEAR(end.quantiles[1], c.low, 0.02 * c.high);
+      EXPECT_NEAR(end.quantiles[3], c.high, 0.02 * c.high);
+    }
+  }
+}
+
+// The same forces as single assemblies by FitForce, one by one, with a generator of its own.
+TEST(Population, BandsAgreeWithSingleAssemblies) {
+  const Population batch = *CalcPopulation(MakeBatch({MakeLand("H7/k6", 6.3)}));
+  const FitLimits limits = *CalcFitLimits(*ParseFit("H7/k6"), 0.04);
+  const SizeDistribution hole = SizeDistribution::FromZone(limits.hole);
+  const SizeDistribution shaft = SizeDistribution::FromZone(limits.shaft);
+  Random random(99);
+  constexpr int kCount = 20000;
+  double sum = 0;
+  double squares = 0;
+  for (int i = 0; i < kCount; ++i) {
+    FitForceParameters p;
+    p.nominal_diameter = 0.04;
+    p.hole_diameter = 0.04 + hole.Quantile(random.Uniform());
+    p.shaft_diameter = 0.04 + shaft.Quantile(random.Uniform());
+    p.length = 0.05;
+    p.seed = random.NextBits();
+    const double force = FitForce::Make(p)->CalcAxialResistance(0.025);
+    sum += force;
+    squares += force * force;
+  }
+  const double mean = sum / kCount;
+  const double error = std::sqrt((squares / kCount - mean * mean) / kCount);
+  EXPECT_NEAR(batch.bands[10].mean, mean, 5 * error);
+}
+
+TEST(Population, FiguresDoNotDependOnTheNumberOfThreads) {
+  PopulationParameters p = MakeBatch({MakeLand("H7/k6", 6.3), MakeLand("H7/p6", 3.2)}, 50'001);
+  p.press_force = 40e3;
+  const Population one = *CalcPopulation(p);
+  for (const int threads : {2, 3, 7}) {
+    p.threads = threads;
+    const Population many = *CalcPopulation(p);
+    EXPECT_EQ(one.over_press_share, many.over_press_share);
+    for (std::size_t d = 0; d < one.bands.size(); ++d) {
+      EXPECT_EQ(one.bands[d].mean, many.bands[d].mean);
+      EXPECT_EQ(one.bands[d].quantiles, many.bands[d].quantiles);
+    }
+    for (std::size_t k = 0; k < one.lands.size(); ++k) {
+      EXPECT_EQ(one.lands[k].mean_clearance, many.lands[k].mean_clearance);
+      EXPECT_EQ(one.lands[k].sigma_clearance, many.lands[k].sigma_clearance);
+      EXPECT_EQ(one.lands[k].clearance_quantiles, many.lands[k].clearance_quantiles);
+    }
+  }
+}
+
+// Two lands one behind the other: their forces add up at each depth.
+TEST(Population, SeveralLandsAddUpAlongTheDepth) {
+  PopulationLand first = MakeLand(Exactly(0), Exactly(20), 0);
+  first.press.length = 0.02;
+  PopulationLand second = MakeLand(Exactly(0), Exactly(10), 0);
+  second.press.length = 0.02;
+  second.start = 0.03;
+  PopulationParameters p = MakeBatch({first, second}, 4096);
+  p.depths = 25;
+  const Population batch = *CalcPopulation(p);
+  const double per_metre = 3711.01e6 / 0.05;  // Of radial interference, N/m per m.
+  for (const ForceBand& band : batch.bands) {
+    const double expected =
+        per_metre * (10e-6 * std::min(band.depth, 0.02) + 5e-6 * std::max(0.0, band.depth - 0.03));
+    EXPECT_NEAR(band.mean, expected, 1e-5 * 22266);
+  }
+}
+
+TEST(Population, CountsWhatExceedsThePressAndWhatYields) {
+  PopulationParameters p = MakeBatch(
+      {MakeLand(Exactly(0), *SizeDistribution::FromMeasured(std::vector{10e-6, 42e-6}), 0)},
+      40'000);
+  p.press_force = 50e3;
+  p.lands[0].press.hub.yield_strength = 150e6;
+  const Population batch = *CalcPopulation(p);
+  const double error = 5 * std::sqrt(0.25 / 40'000);
+  EXPECT_NEAR(batch.over_press_share, 0.5, error);
+  EXPECT_EQ(batch.over_press_share, batch.any_yield_share);
+}
+
+TEST(Population, BothKernelsGiveTheSameBits) {
+#ifdef HVAS_HAS_AVX2_POPULATION
+  if (!__builtin_cpu_supports("avx2")) {
+    return;  // Nothing to compare on this machine.
+  }
+  Random random(4);
+  constexpr int kCount = 64;
+  std::vector<float> clearance_um(kCount);
+  for (float& c : clearance_um) {
+    c = static_cast<float>(random.Uniform(-20, 20));
+  }
+  const std::vector<LandDepth> depths{{-1, 0}, {0, 1}, {3, 0.37F}, {6, 1}};
+  const LandView land{7, 3.15F, 12.5F, clearance_um.data(), depths.data()};
+  std::vector<float> scalar(depths.size() * kCount);
+  std::vector<float> vector(depths.size() * kCount);
+  CalcForcesScalar({&land, 1, 4, kCount, 123, scalar.data()});
+  CalcForcesAvx2({&land, 1, 4, kCount, 123, vector.data()});
+  EXPECT_EQ(std::memcmp(scalar.data(), vector.data(), scalar.size() * sizeof(float)), 0);
+  EXPECT_GT(scalar.back(), -1.0F);
+#endif
+}
+
+TEST(Population, RefusesWhatIsNoBatch) {
+  EXPECT_FALSE(CalcPopulation(MakeBatch({})));
+  EXPECT_FALSE(CalcPopulation(MakeBatch({MakeLand("H7/k6", 6.3)}, 0)));
+  PopulationLand land = MakeLand("H7/k6", 6.3);
+  land.stations = 1000;
+  EXPECT_FALSE(CalcPopulation(MakeBatch({land})));
+  land = MakeLand("H7/k6", 6.3);
+  land.press.hub_diameter = 0.01;
+  EXPECT_FALSE(CalcPopulation(MakeBatch({land})));
+}
+
+TEST(SizeDistribution, NormalQuantileInvertsTheErrorFunction) {
+  for (const double u : {1e-9, 1e-4, 0.01, 0.0243, 0.2, 0.5, 0.8, 0.99, 1 - 1e-6}) {
+    const double x = NormalQuantile(u);
+    EXPECT_NEAR(0.5 * std::erfc(-x / std::sqrt(2.0)), u, 1e-8 * u + 1e-12);
+  }
+}
+
+TEST(SizeDistribution, CapabilityPutsTheShareOutsideThatCpkSays) {
+  const Limits zone{0, 25e-6};
+  // C_p = C_pk = 1: 3 sigma to either limit; C_pk 2/3: 2 sigma to the nearer one.
+  const SizeDistribution centred = *SizeDistribution::FromCapability(zone, 1, 1, true);
+  EXPECT_NEAR(centred.Quantile(0.00134990), zone.lower, 1e-11);
+  EXPECT_NEAR(centred.mean(), 12.5e-6, 1e-18);
+  const SizeDistribution shifted = *SizeDistribution::FromCapability(zone, 1, 2.0 / 3, true);
+  EXPECT_NEAR(shifted.Quantile(1 - 0.02275013), zone.upper, 1e-11);
+  const SizeDistribution down = *SizeDistribution::FromCapability(zone, 1, 2.0 / 3, false);
+  EXPECT_NEAR(down.Quantile(0.02275013), zone.lower, 1e-11);
+  EXPECT_FALSE(SizeDistribution::FromCapability(zone, 1, 1.2, true));
+  EXPECT_FALSE(SizeDistribution::FromMeasured({}));
+}
+
+}  // namespace
+}  // namespace hvas::fits

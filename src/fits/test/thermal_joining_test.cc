@@ -1,0 +1,73 @@
+#include "fits/thermal_joining.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace hvas::fits {
+namespace {
+
+// N4: 60 mm, U 60 um, alpha 11.5e-6, S_f = D / 1000: 173.9 K above room temperature.
+TEST(ThermalJoining, HubTemperatureEqualsAPublishedExample) {
+  const ThermalJoint joint{0.06, 60e-6, 11.5e-6, 8.5e-6, 20};
+  EXPECT_NEAR(CalcHubTemperature(joint, CalcJoiningClearance(0.06), 20) - 20, 173.9, 0.05);
+}
+
+TEST(ThermalJoining, TemperaturesGiveTheClearanceTheyWereAskedFor) {
+  const ThermalJoint joint{0.04, 42e-6, 23e-6, 8.5e-6, 20};
+  for (const double shaft_c : {20.0, -78.0, -196.0}) {
+    const double hub_c = CalcHubTemperature(joint, 40e-6, shaft_c);
+    EXPECT_NEAR(CalcHotClearance(joint, hub_c, shaft_c), 40e-6, 1e-15);
+    EXPECT_NEAR(CalcShaftTemperature(joint, 40e-6, hub_c), shaft_c, 1e-9);
+  }
+  // Cooling the shaft spares the hub some of its heat.
+  EXPECT_LT(CalcHubTemperature(joint, 40e-6, -196), CalcHubTemperature(joint, 40e-6, 20));
+  EXPECT_NEAR(CalcHotClearance(joint, 20, 20), -42e-6, 1e-18);
+}
+
+/** The same by small steps of time, with both temperatures as unknowns. */
+double IntegrateStickingDepth(const ThermalJoint& joint, double hub_c, double shaft_c,
+                              const HeatExchange& exchange, double dt) {
+  for (double depth = 0; depth < 10; depth += exchange.speed * dt) {
+    if (CalcHotClearance(joint, hub_c, shaft_c) <= 0) {
+      return depth;
+    }
+    const double area = std::numbers::pi * joint.joint_diameter * depth;
+    const double heat = exchange.conductance * area * (hub_c - shaft_c) * dt;
+    hub_c -= heat / exchange.hub_capacity;
+    shaft_c += heat / exchange.shaft_capacity;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+TEST(ThermalJoining, StickingDepthIsTheLimitOfAnIntegrationInTime) {
+  const ThermalJoint joint{0.04, 42e-6, 11e-6, 11e-6, 20};
+  const HeatExchange exchange{800, 230, 3000, 0.02};
+  const double exact = CalcStickingDepth(joint, 220, 20, exchange);
+  const double coarse = IntegrateStickingDepth(joint, 220, 20, exchange, 1e-3);
+  const double fine = IntegrateStickingDepth(joint, 220, 20, exchange, 1e-5);
+  EXPECT_NEAR(fine, exact, 1e-4 * exact);
+  EXPECT_LT(std::abs(fine - exact), std::abs(coarse - exact));
+  EXPECT_GT(exact, 0.01);
+  EXPECT_LT(exact, 1);
+}
+
+TEST(ThermalJoining, SticksAtOnceWithoutClearanceAndNeverWhereItLasts) {
+  const HeatExchange exchange{800, 230, 3000, 0.02};
+  const ThermalJoint steel{0.04, 42e-6, 11e-6, 11e-6, 20};
+  EXPECT_EQ(CalcStickingDepth(steel, 60, 20, exchange), 0);
+  // An aluminium hub on steel is still wide when both have the mean temperature.
+  const ThermalJoint aluminium{0.04, 42e-6, 23e-6, 11e-6, 20};
+  EXPECT_EQ(CalcStickingDepth(aluminium, 300, 20, exchange),
+            std::numeric_limits<double>::infinity());
+  // Faster goes deeper.
+  HeatExchange fast = exchange;
+  fast.speed *= 4;
+  EXPECT_NEAR(CalcStickingDepth(steel, 220, 20, fast),
+              2 * CalcStickingDepth(steel, 220, 20, exchange), 1e-12);
+}
+
+}  // namespace
+}  // namespace hvas::fits

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "base/result.h"
+#include "fits/press_fit.h"
+
+/** Joining by heating the hub, cooling the shaft, or both (N4). Temperatures in degrees Celsius as
+ people state them, with the suffix _c; differences in kelvin. */
+namespace hvas::fits {
+
+struct ThermalJoint {
+  double joint_diameter{0};        ///< D_F [m], > 0.
+  double interference{0};          ///< U at room temperature, the largest, never smoothed [m].
+  double hub_expansion{11e-6};     ///< alpha_A, heating [1/K], > 0.
+  double shaft_expansion{8.5e-6};  ///< alpha_I, cooling [1/K], > 0.
+  double room_c{20};
+};
+
+/** The clearance that DIN 7190-1 asks for while joining: S_f = D_F / 1000 [m]. */
+[[nodiscard]] double CalcJoiningClearance(double joint_diameter) noexcept;
+
+/** Diametral clearance with hub and shaft at their temperatures [m]:
+   D_F (alpha_A (theta_A - theta_R) - alpha_I (theta_I - theta_R)) - U. */
+[[nodiscard]] double CalcHotClearance(const ThermalJoint& joint, double hub_c,
+                                      double shaft_c) noexcept;
+
+/** Temperature of the hub for a clearance, with the shaft at its own:
+   theta_A = theta_R + (U + S) / (alpha_A D_F) + (alpha_I / alpha_A) (theta_I - theta_R). */
+[[nodiscard]] double CalcHubTemperature(const ThermalJoint& joint, double clearance,
+                                        double shaft_c) noexcept;
+
+/** Temperature of the shaft for a clearance, with the hub at its own. */
+[[nodiscard]] double CalcShaftTemperature(const ThermalJoint& joint, double clearance,
+                                          double hub_c) noexcept;
+
+/** How heat goes from hub to shaft while they slide together. */
+struct HeatExchange {
+  double hub_capacity{0};    ///< Mass times specific heat [J/K], > 0.
+  double shaft_capacity{0};  ///< [J/K], > 0.
+  double conductance{0};     ///< Of the joint, for each square metre engaged [W/(m2 K)], > 0.
+  double speed{0};           ///< Of insertion [m/s], > 0.
+};
+
+/** The depth at which the shaft sticks [m], +inf if it never does.
+
+ Both parts are lumps; heat flows through the area pi D_F l that is engaged at the depth l = v t, so
+ their difference falls as
+   Delta(t) = Delta_0 exp(-k v t^2 / 2),  k = h pi D_F (1 / C_A + 1 / C_I),
+ about a mean that stays. It sticks where the clearance is gone. What the surroundings take is
+ neglected: seconds against minutes. */
+[[nodiscard]] double CalcStickingDepth(const ThermalJoint& joint, double hub_c, double shaft_c,
+                                       const HeatExchange& exchange) noexcept;
+
+}  // namespace hvas::fits
