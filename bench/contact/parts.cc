@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
+#include "base/file_cache.h"
 #include "cad/part_shape.h"
 #include "contact/shape_cache.h"
 #include "gear_pump_parts.h"
@@ -136,7 +137,7 @@ Result<contact::ShapeSource> MeshSolid(const products::Solid& solid, double defl
 
 Result<std::vector<BenchPart>> MakeParts(const std::set<std::size_t>& wanted) {
   std::vector<BenchPart> parts = DrawParts();
-  const auto directory = contact::ShapeCache::DefaultDirectory();
+  const auto directory = FileCache::DefaultDirectory();
   for (const std::size_t number : wanted) {
     BenchPart& part = parts[number];
     auto source = MeshSolid(part.solid, 0);

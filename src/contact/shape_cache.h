@@ -25,10 +25,6 @@ class ShapeCache {
   explicit ShapeCache(std::filesystem::path directory,
                       std::uintmax_t capacity = FileCache::kDefaultCapacity);
 
-  [[nodiscard]] static std::optional<std::filesystem::path> DefaultDirectory() {
-    return FileCache::DefaultDirectory();
-  }
-
   /** The shape from the disk, else built and written there: the same shape to the last bit.
    Errors: those of Shape::Build. */
   Result<std::shared_ptr<const Shape>> LoadOrBuild(const ShapeSource& source,
