@@ -47,6 +47,13 @@ struct Scene::Data {
     return spatial::Transform(body.X_WB, body.shape->box_B());
   }
 
+  [[nodiscard]] const FaceOffsets* OffsetsOfHeld(const QueryOptions& options) const noexcept {
+    const bool is_in_scene = options.self.is_valid() && options.self.index() < bodies.size();
+    return options.held_offsets != nullptr || !is_in_scene
+               ? options.held_offsets
+               : bodies[options.self.index()].offsets.get();
+  }
+
   // Where the held part as made may meet bodies as made.
   [[nodiscard]] spatial::Box BoxOf(const Placed& held, const spatial::Pose& X_WH,
                                    double margin) const noexcept {
@@ -196,7 +203,7 @@ void Scene::Query(const Shape& held, const spatial::Pose& X_WH, const QueryOptio
                   QueryWorkspace* workspace) const noexcept {
   QueryWorkspace::Data& work = workspace->data();
   work.Clear();
-  const Placed placed(held, X_WH, options.held_offsets);
+  const Placed placed(held, X_WH, data_->OffsetsOfHeld(options));
   BodyQuery query(placed, options, options.margin, -std::numeric_limits<double>::infinity(),
                   data_->traverse, &work);
   data_->Run(data_->BoxOf(placed, X_WH, options.margin), options, &query);
@@ -207,7 +214,7 @@ bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double toleranc
                    const QueryOptions& options, QueryWorkspace* workspace) const noexcept {
   QueryWorkspace::Data& work = workspace->data();
   work.Clear();
-  const Placed placed(held, X_WH, options.held_offsets);
+  const Placed placed(held, X_WH, data_->OffsetsOfHeld(options));
   BodyQuery query(placed, options, -tolerance, -tolerance, data_->traverse, &work);
   data_->Run(data_->BoxOf(placed, X_WH, 0), options, &query);
   data_->Finish(placed, &work);

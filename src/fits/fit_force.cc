@@ -82,6 +82,7 @@ Result<FitForce> FitForce::Make(const FitForceParameters& parameters) {
   fit.step_ = p.length / p.stations;
   fit.friction_ = p.friction;
   fit.mean_clearance_ = 0.5 * (p.hole_diameter - p.shaft_diameter);
+  fit.shaft_diameter_ = p.shaft_diameter;
   fit.force_scale_ = p.friction * std::numbers::pi * stiffness;
   fit.pressure_scale_ = stiffness / p.nominal_diameter;
   Random random(p.seed);

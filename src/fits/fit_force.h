@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/result.h"
@@ -60,6 +61,12 @@ class FitForce {
 
   [[nodiscard]] double friction() const noexcept { return friction_; }
 
+  /** S at the N + 1 stations from the mouth to L [m]. */
+  [[nodiscard]] std::span<const double> clearances() const noexcept { return clearance_; }
+
+  /** d_s, actual [m]. */
+  [[nodiscard]] double shaft_diameter() const noexcept { return shaft_diameter_; }
+
   /** (D_h - d_s) / 2, the clearance without roughness [m]; negative: interference. */
   [[nodiscard]] double mean_clearance() const noexcept { return mean_clearance_; }
 
@@ -76,6 +83,7 @@ class FitForce {
   double step_{0};
   double friction_{0};
   double mean_clearance_{0};
+  double shaft_diameter_{0};
   double force_scale_{0};           // mu pi E (1 - c_0^2) [N/m^2].
   double pressure_scale_{0};        // E (1 - c_0^2) / (2 R) [Pa/m].
   std::vector<double> clearance_;   // S at the stations [m].

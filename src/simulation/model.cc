@@ -245,7 +245,7 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   for (const product::Occurrence& occurrence : product->occurrences) {
     model->bodies.push_back({occurrence.id, (*shapes)[occurrence.part.index()],
                              MakeMass(product->part_of(occurrence.id)), occurrence.X_WB,
-                             occurrence.X_WB});
+                             occurrence.X_WB, nullptr});
   }
 
   report("mates", 0);

@@ -26,6 +26,7 @@ struct Body {
   dynamics::MassProperties mass;  ///< Never without mass: what has none gets a little.
   spatial::Pose X_WB_goal;        ///< As drawn.
   spatial::Pose X_WB_start;       ///< Lying on the table.
+  std::shared_ptr<const contact::FaceOffsets> faces;  ///< As made; null: as drawn.
 };
 
 /** A mate with what the loops need besides its geometry. */

@@ -37,6 +37,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
       parts_(model_->bodies.size()) {
   for (const Body& body : model_->bodies) {
     const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
+    scene_.SetOffsets(id, body.faces);
     Part& part = parts_[id.index()];
     part.X_WB = body.X_WB_start;
     const product::Part& shape = model_->product->part_of(body.occurrence);

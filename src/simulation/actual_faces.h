@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "contact/face_offsets.h"
+#include "fits/fit_force.h"
+#include "product/product.h"
+#include "simulation/sequence.h"
+
+namespace hvas::simulation {
+
+/** What the faces as made are found from; by OccurrenceId and by MateId. */
+struct ActualFacesInput {
+  const product::Product* product{nullptr};
+  std::vector<std::shared_ptr<const contact::Shape>> shapes;
+  std::vector<std::shared_ptr<const fits::FitForce>> fits;  ///< Null where there is none.
+  const Sequence* sequence{nullptr};  ///< Says which end of a hole is its mouth.
+};
+
+/** The faces of the parts as made, so that contact has the clearance that the fits say. A fit that
+ leaves room along its whole length, S(l) > 0, moves its two faces: the shaft's to its actual size,
+ the hole's by what is left to S(l), with its profile from the mouth inwards. A face takes the first
+ mate (by id) that gives it a size; a further mate on it moves the other face, or, where both have
+ their size, neither. A fit with interference leaves its faces as drawn: they answer by the fit. So
+ do offsets beyond FaceOffsets::kLargest, with a diagnostic.
+ Returned by OccurrenceId; null: as drawn. */
+[[nodiscard]] std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
+    const ActualFacesInput& input, Diagnostics* diagnostics);
+
+}  // namespace hvas::simulation
