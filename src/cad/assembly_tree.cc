@@ -141,17 +141,7 @@ SubassemblyId TreeBuilder::AddSubassembly(SubassemblyId parent, const std::strin
 
 std::string TreeBuilder::ClaimPath(SubassemblyId parent, const std::string& name) {
   Siblings& siblings = siblings_[parent.index()];
-  std::string step = name;
-  std::replace(step.begin(), step.end(), '/', '_');
-  const std::string base = step;
-  for (int& count = siblings.used[base]; ++count > 1;) {
-    step = fmt::format("{}#{}", base, count);
-    if (siblings.used.count(step) == 0) {  // Someone may be called "nut#2" by birth.
-      siblings.used[step] = 1;
-      break;
-    }
-  }
-  return siblings.path + "/" + step;
+  return siblings.path + "/" + ClaimName(name, &siblings.used);
 }
 
 void TreeBuilder::Visit(const TDF_Label& definition, const TDF_Label& instance,

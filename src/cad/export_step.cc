@@ -1,5 +1,9 @@
 #include "cad/export_step.h"
 
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +17,33 @@ namespace hvas::cad {
 namespace {
 
 constexpr double kNsPerSecond = 1e9;
+
+/** Motions in memory, under a name by which a process started from here can read them. */
+class MotionFile {
+ public:
+  explicit MotionFile(const PartMotions& motions)
+      : descriptor_(::memfd_create("hvas-motions", MFD_CLOEXEC)) {
+    std::ofstream stream(name());
+    for (const auto& [path, X_W] : motions) {
+      const Quat& q = X_W.q();
+      const Vec3& p = X_W.p();
+      stream << fmt::format("{} {} {} {} {} {} {} {}\n", q.w(), q.x(), q.y(), q.z(), p.x(), p.y(),
+                            p.z(), path);
+    }
+  }
+
+  ~MotionFile() { ::close(descriptor_); }
+
+  MotionFile(const MotionFile&) = delete;
+  MotionFile& operator=(const MotionFile&) = delete;
+
+  [[nodiscard]] std::string name() const {
+    return fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_);
+  }
+
+ private:
+  int descriptor_;
+};
 
 Unexpected Explain(const WorkerRun& run, const std::string& name) {
   const std::string message = fmt::format("the writer {}", run.Describe());
@@ -31,7 +62,8 @@ Unexpected Explain(const WorkerRun& run, const std::string& name) {
 
 }  // namespace
 
-Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportControl& control) {
+Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportControl& control,
+                              const PartMotions& motions) {
   const Result<std::filesystem::path> path = CheckInputFile(file);
   if (!path) {
     return Unexpected(path.error());
@@ -43,6 +75,10 @@ Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportCon
   WorkerCall call;
   call.program = *worker;
   call.arguments = {"export-step", path->string()};
+  const MotionFile motion_file(motions);
+  if (!motions.empty()) {
+    call.arguments.insert(call.arguments.end(), {"--motions", motion_file.name()});
+  }
   const auto limit_ns = static_cast<std::int64_t>(control.limits.time * kNsPerSecond);
   call.deadline_ns = MonotonicNs() + limit_ns;
   call.part_limit_ns = limit_ns;

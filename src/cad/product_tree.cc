@@ -15,6 +15,20 @@ using product::Product;
 using product::Subassembly;
 using product::SubassemblyId;
 
+std::string ClaimName(const std::string& name, std::map<std::string, int>* used) {
+  std::string step = name;
+  std::replace(step.begin(), step.end(), '/', '_');
+  const std::string base = step;
+  for (int& count = (*used)[base]; ++count > 1;) {
+    step = fmt::format("{}#{}", base, count);
+    if (used->count(step) == 0) {  // Someone may be called "nut#2" by birth.
+      (*used)[step] = 1;
+      break;
+    }
+  }
+  return step;
+}
+
 ProductTree::ProductTree(Product* product) : product_(product) {
   AddSubassembly({}, product->name);
 }
@@ -35,18 +49,7 @@ SubassemblyId ProductTree::AddSubassembly(SubassemblyId parent, const std::strin
 }
 
 std::string ProductTree::ClaimPath(SubassemblyId parent, const std::string& name) {
-  std::map<std::string, int>& used = used_[parent.index()];
-  std::string step = name;
-  std::replace(step.begin(), step.end(), '/', '_');
-  const std::string base = step;
-  for (int& count = used[base]; ++count > 1;) {
-    step = fmt::format("{}#{}", base, count);
-    if (used.count(step) == 0) {  // Someone may be called "nut#2" by birth.
-      used[step] = 1;
-      break;
-    }
-  }
-  return paths_[parent.index()] + "/" + step;
+  return paths_[parent.index()] + "/" + ClaimName(name, &used_[parent.index()]);
 }
 
 void ProductTree::AddOccurrence(SubassemblyId parent, PartId part, const std::string& name,

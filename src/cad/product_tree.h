@@ -8,6 +8,10 @@
 
 namespace hvas::cad {
 
+/** The step of a path that a name becomes: with a number where a sibling has it already.
+ @param used  The names among the siblings so far. */
+[[nodiscard]] std::string ClaimName(const std::string& name, std::map<std::string, int>* used);
+
 /** Builds the tree of a product whose parts come from anywhere: keeps paths unique and both sides
  of each membership in step. The root is there from the start, named as the product. */
 class ProductTree {

@@ -1,6 +1,7 @@
 #include "cad/worker_export.h"
 
 #include <exception>
+#include <fstream>
 #include <span>
 
 #include <APIHeaderSection_MakeHeader.hxx>
@@ -13,6 +14,7 @@
 #include <TDocStd_Document.hxx>
 #include <fmt/format.h>
 
+#include "cad/move_components.h"
 #include "cad/step_document.h"
 #include "cad/worker.h"
 #include "cad/worker_io.h"
@@ -50,10 +52,31 @@ std::string Write(const opencascade::handle<TDocStd_Document>& document, const s
   return "";
 }
 
+/** Moves parts as a file says: a line each, with a motion and a path.
+ @returns what went wrong; empty when all are where they should be. */
+std::string Move(const opencascade::handle<TDocStd_Document>& document, const std::string& name,
+                 const std::string& file) {
+  std::ifstream stream(file);
+  Motions motions;
+  std::string path;
+  for (double w = 0, x = 0, y = 0, z = 0, p_x = 0, p_y = 0, p_z = 0;
+       stream >> w >> x >> y >> z >> p_x >> p_y >> p_z && stream.get() == ' ' &&
+       std::getline(stream, path);) {
+    motions[path] = {Quat(w, x, y, z), Vec3(p_x, p_y, p_z)};
+  }
+  if (!stream.eof() || motions.empty()) {
+    return "its poses cannot be handed over";
+  }
+  const std::size_t found = MoveComponents(document, name, motions);
+  return found == motions.size() ? ""
+                                 : fmt::format("{} of {} parts to be moved are not in it",
+                                               motions.size() - found, motions.size());
+}
+
 }  // namespace
 
 int WorkerExportStep(const std::vector<std::string>& arguments) {
-  if (arguments.size() != 1) {
+  if (arguments.size() != 1 && (arguments.size() != 3 || arguments[1] != "--motions")) {
     return kWorkerUsage;
   }
   const std::filesystem::path file = arguments.front();
@@ -61,7 +84,12 @@ int WorkerExportStep(const std::vector<std::string>& arguments) {
   try {
     Diagnostics ignored;  // Reading it for the product has told them.
     const auto document = ReadStepDocument(file, {TellStage, {}, nullptr}, &ignored);
-    problem = document ? Write(*document, file.filename().string()) : document.error().message;
+    problem = !document               ? document.error().message
+              : arguments.size() == 3 ? Move(*document, file.stem().string(), arguments[2])
+                                      : "";
+    if (problem.empty()) {
+      problem = Write(*document, file.filename().string());
+    }
   } catch (const Standard_Failure& failure) {
     problem = fmt::format("OpenCASCADE gave up: {}", failure.GetMessageString());
   } catch (const std::exception& exception) {

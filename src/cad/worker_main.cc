@@ -2,6 +2,7 @@
  */
 
 #include <signal.h>
+#include <sys/personality.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 #include <fstream>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fcntl.h>
@@ -62,6 +64,21 @@ void LimitMemory(std::uint64_t bytes) {
   ::_exit(kWorkerNoMemory);
 }
 
+/** Starts the program again at addresses that are the same every time, where the kernel permits it:
+ OpenCASCADE writes what it keeps in tables by address in the order of these. */
+void FixAddresses(char** argv) {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // They know where they are.
+  constexpr unsigned long kAsk = 0xffffffff;
+  const int before = ::personality(kAsk);
+  if (before >= 0 && (before & ADDR_NO_RANDOMIZE) == 0 &&
+      ::personality(static_cast<unsigned long>(before) | ADDR_NO_RANDOMIZE) >= 0) {
+    ::execv("/proc/self/exe", argv);  // Goes on as it is where that fails.
+  }
+#else
+  static_cast<void>(argv);
+#endif
+}
+
 /** @returns false when the process that is to be served has ended already. */
 bool FollowParent(std::uint64_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -103,6 +120,9 @@ int Run(std::vector<std::string> arguments) {
 }  // namespace hvas::cad
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "export-step") {
+    hvas::cad::FixAddresses(argv);
+  }
   // All is handed over; what libraries tidy up at their end is only waited for.
   ::_exit(hvas::cad::Run({argv + 1, argv + argc}));
 }
