@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 
 #include "app/glb.h"
 #include "app/load_product.h"
+#include "app/poses.h"
 #include "app/product_json.h"
 #include "app/progress.h"
 #include "app/selection.h"
@@ -27,6 +29,7 @@ using product::Product;
 struct ExportOptions {
   LoadOptions load;
   std::filesystem::path output;
+  std::filesystem::path poses;  ///< Empty: as drawn.
   bool is_fine{false};
   bool has_meshes{false};
   bool is_forced{false};
@@ -61,7 +64,8 @@ Result<void> Check(const ExportOptions& options, const std::string& format) {
   return {};
 }
 
-Result<void> WriteStep(const ExportOptions& options, const Product& product) {
+Result<void> WriteStep(const ExportOptions& options, const Product& product,
+                       const cad::PartMotions& motions) {
   const auto without = std::count_if(product.parts.begin(), product.parts.end(),
                                      [](const product::Part& part) { return !part.has_brep; });
   if (without > 0) {
@@ -76,7 +80,7 @@ Result<void> WriteStep(const ExportOptions& options, const Product& product) {
   if (!options.load.is_quiet && IsWatched()) {
     control.progress = ShowProgress;
   }
-  const Result<cad::MappedFile> step = cad::ExportStep(options.load.file, control);
+  const Result<cad::MappedFile> step = cad::ExportStep(options.load.file, control, motions);
   if (!step) {
     return Unexpected(step.error());
   }
@@ -104,16 +108,24 @@ Result<void> Export(const ExportOptions& options) {
     return checked;
   }
   Diagnostics diagnostics;
-  const Result<Product> product = LoadProduct(options.load, &diagnostics);
+  Result<Product> product = LoadProduct(options.load, &diagnostics);
   if (!product) {
     return Unexpected(product.error());
+  }
+  cad::PartMotions motions;
+  if (!options.poses.empty()) {
+    auto moved = ApplyPoses(options.poses, &*product);
+    if (!moved) {
+      return Unexpected(moved.error());
+    }
+    motions = std::move(*moved);
   }
   if (format == ".glb") {
     const Result<std::string> glb = MakeGlb(*product, options.is_fine);
     return glb ? WriteAtomically(options.output, *glb) : Unexpected(glb.error());
   }
   return format == ".json" ? WriteJson(options, *product, diagnostics)
-                           : WriteStep(options, *product);
+                           : WriteStep(options, *product, motions);
 }
 
 }  // namespace
@@ -124,6 +136,8 @@ void AddExport(CLI::App* app, int* status) {
   const auto options = std::make_shared<ExportOptions>();
   command->add_option("file", options->load.file, "CAD file")->required();
   command->add_option("-o,--output", options->output, "File to write")->required();
+  command->add_option("--poses", options->poses,
+                      "Poses in place of those drawn: a pose file or a record of hvas assemble");
   command->add_flag("--fine", options->is_fine, "The meshes for contact, not those for the eye");
   command->add_flag("--meshes", options->has_meshes, "Meshes in the .json, too");
   command->add_flag("--force", options->is_forced, "Replace a file that is there");
@@ -133,10 +147,16 @@ void AddExport(CLI::App* app, int* status) {
       "         faces, and with each vertex the index of its face (_FACE_ID)\n"
       "  .json  what hvas inspect --json prints\n"
       "  .step  AP214: structure, poses, names and colours, all in one file\n"
+      "A pose file is {\"format\": \"hvas-poses-1\", \"poses\": [{\"occurrence\": \"pump/shaft\",\n"
+      "\"position_mm\": [0, 0, 50], \"rotation_wxyz\": [1, 0, 0, 0]}]}; of a record, each part is\n"
+      "where it was let go last. What is not spoken of stays as drawn.\n"
       "Examples:\n"
       "  hvas export pump.step -o pump.glb\n"
       "  hvas export pump.step -o pump.json --meshes --fine\n"
-      "  hvas export pump.stp -o whole.step --force");
+      "  hvas export pump.stp -o whole.step --force\n"
+      "  hvas export pump.step -o exploded.step --poses exploded.json\n"
+      "  hvas assemble pump.step --record run.hvasrec && "
+      "hvas export pump.step -o run.glb --poses run.hvasrec");
   command->callback([options, status] {
     const Result<void> done = Export(*options);
     if (!done) {

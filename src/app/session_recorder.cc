@@ -56,6 +56,10 @@ void SessionRecorder::OnEvent(const simulation::SimulationEvent& event) {
   details["state"] = haptics::ToString(event.state);
   if (event.kind == simulation::SimulationEvent::Kind::kDropped) {
     details["seated"] = event.was_seated;
+    const Vec3& p = event.X_WB.p();
+    const Quat& q = event.X_WB.q();
+    details["position_m"] = {p.x(), p.y(), p.z()};
+    details["rotation_wxyz"] = {q.w(), q.x(), q.y(), q.z()};
     details["path_m"] = event.metrics.path;
     details["peak_true_n"] = event.metrics.peak_true;
     details["peak_felt_n"] = event.metrics.peak_felt;

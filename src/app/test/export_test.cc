@@ -255,6 +255,107 @@ TEST(ExportStep, ComesBackTheSame) {
   }
 }
 
+TEST(ExportStep, GivesTheSameBytesTwice) {
+  const TemporaryFolder folder;
+  const std::string pump = ProductFile("gear_pump");
+  for (const char* name : {"a.step", "b.step"}) {
+    ASSERT_EQ(RunHvas({"export", pump, "-o", (folder / name).string()}).status, 0);
+  }
+  const std::string text = ReadText(folder / "a.step");
+  EXPECT_NE(text.find("COLOUR_RGB"), std::string::npos);
+  EXPECT_TRUE(text == ReadText(folder / "b.step"));
+}
+
+/** Each occurrence turned and pushed its own way, as a pose file. */
+json MakePoses(const json& occurrences) {
+  json poses{{"format", "hvas-poses-1"}, {"poses", json::array()}};
+  for (std::size_t i = 0; i < occurrences.size(); ++i) {
+    const auto n = static_cast<double>(i + 1);
+    const Quat q(Eigen::AngleAxisd(0.3 * n, Vec3(1, n, -2).normalized()));
+    poses["poses"].push_back({{"occurrence", occurrences[i]["path"]},
+                              {"position_mm", {7.3 * n, -1.0 / n, 100 + n}},
+                              {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}}});
+  }
+  return poses;
+}
+
+void ExpectPoses(const json& expected, const json& occurrences) {
+  ASSERT_EQ(occurrences.size(), expected["poses"].size());
+  for (std::size_t i = 0; i < occurrences.size(); ++i) {
+    const json& want = expected["poses"][i];
+    EXPECT_EQ(occurrences[i]["path"], want["occurrence"]);
+    const auto q = occurrences[i]["rotation_wxyz"].get<std::array<double, 4>>();
+    const auto r = want["rotation_wxyz"].get<std::array<double, 4>>();
+    const Quat is(q[0], q[1], q[2], q[3]);
+    EXPECT_LT(spatial::RotationBetween(Quat(r[0], r[1], r[2], r[3]), is).norm(), 1e-9);
+    for (std::size_t c = 0; c < 3; ++c) {  // 1e-9 m.
+      EXPECT_NEAR(occurrences[i]["position_mm"][c].get<double>(),
+                  want["position_mm"][c].get<double>(), 1e-6);
+    }
+  }
+}
+
+TEST(ExportPoses, ComeBackFromStepAndJson) {
+  for (const char* name : {"gear_pump", "frame_500"}) {  // With subassemblies used many times.
+    SCOPED_TRACE(name);
+    const TemporaryFolder folder;
+    const std::string file = ProductFile(name);
+    const json poses = MakePoses(RunHvasJson({"inspect", file})["occurrences"]);
+    const std::string given = folder.Write("poses.json", poses.dump(1)).string();
+    const std::string step = (folder / "moved.step").string();
+    const std::string text = (folder / "moved.json").string();
+    for (const std::string& output : {step, text}) {
+      const Ran ran = RunHvas({"export", file, "-o", output, "--poses", given});
+      ASSERT_EQ(ran.status, 0) << ran.err;
+    }
+    ExpectPoses(poses, RunHvasJson({"inspect", step})["occurrences"]);
+    ExpectPoses(poses, json::parse(ReadText(text))["occurrences"]);
+  }
+}
+
+TEST(ExportPoses, OfARecordAreWherePartsWereLetGo) {
+  const TemporaryFolder folder;
+  const std::string file = ProductFile("bushing");
+  const std::string record = (folder / "run.hvasrec").string();
+  ASSERT_EQ(RunHvas({"assemble", file, "--record", record}).status, 0);
+  const std::string moved = (folder / "moved.json").string();
+  const Ran ran = RunHvas({"export", file, "-o", moved, "--poses", record});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json after = json::parse(ReadText(moved))["occurrences"];
+  const json drawn = RunHvasJson({"inspect", file})["occurrences"];
+  ASSERT_EQ(after.size(), drawn.size());
+  for (std::size_t i = 0; i < after.size(); ++i) {  // Every part is in its place.
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(after[i]["position_mm"][c].get<double>(),
+                  drawn[i]["position_mm"][c].get<double>(), 1e-3);
+    }
+  }
+  const Ran other = RunHvas(
+      {"export", ProductFile("gear_pump"), "-o", (folder / "x.json").string(), "--poses", record});
+  EXPECT_EQ(other.status, 1);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "another product", other.err);
+}
+
+TEST(ExportPoses, ErrorsNameTheLine) {
+  const TemporaryFolder folder;
+  const auto expect = [&folder](const std::string& entry, const std::string& error) {
+    const auto file =
+        folder.Write("p.json", "{\"format\": \"hvas-poses-1\",\n\"poses\": [\n" + entry + "]}\n");
+    const std::string output = (folder / "x.json").string();
+    const Ran ran =
+        RunHvas({"export", ProductFile("bushing"), "-o", output, "--poses", file.string()});
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, error, ran.err);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "p.json:3", ran.err);
+    EXPECT_FALSE(std::filesystem::exists(output));
+  };
+  expect(R"({"occurrence": "no such part"})", "no such part");
+  expect(R"({"occurrence": "o0", "position_mm": [1, 2]})", "position_mm");
+  expect(R"({"occurrence": "o0", "rotation_wxyz": [1, 1, 0, 0]})", "quaternion");
+  expect(R"({"occurrence": "o0", "angle": 3})", "\"angle\"");
+  expect(R"({"occurrence": "o0"}, {"occurrence": "o0"})", "twice");
+}
+
 TEST(ExportErrorTest, NothingIsWrittenOverOrHalf) {
   const TemporaryFolder folder;
   const auto letter = folder.Write("letter.glb", "Dear all,\n");
