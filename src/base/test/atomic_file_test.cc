@@ -1,18 +1,13 @@
 #include "base/atomic_file.h"
 
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <csignal>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "base/test/small_files.h"
 #include "base/test/temporary_folder.h"
 
 namespace hvas {
@@ -58,20 +53,10 @@ TEST_F(AtomicFile, KeepsPermissionsAndSymbolicLinks) {
 TEST_F(AtomicFile, FullDiskIsAnErrorAndLeavesTheOldFile) {
   const std::filesystem::path file = folder_ / "a.json";
   std::ofstream(file) << "old";
-  // A limit on the size of files fails a write in the middle, like a full disk; in a process of its
-  // own, whose limit it stays.
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    ::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{4096, 4096};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
+  EXPECT_TRUE(testing::RunWithSmallFiles([&file] {
     const Result<void> result = WriteAtomically(file, std::string(100000, 'x'));
-    ::_exit(!result && result.error().code == ErrorCode::kOutOfResource ? 0 : 1);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    return !result && result.error().code == ErrorCode::kOutOfResource;
+  }));
   EXPECT_EQ(Read(file), "old");
   EXPECT_EQ(CountFiles(), 1);
 }

@@ -1,12 +1,6 @@
 #include "base/file_cache.h"
 
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
-#include <csignal>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -16,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include "base/test/small_files.h"
 #include "base/test/temporary_folder.h"
 
 namespace hvas {
@@ -123,19 +118,8 @@ TEST_F(FileCacheTest, WhatCannotBeKeptIsToldAndLeavesNothing) {
 
 TEST_F(FileCacheTest, AFullDiskLeavesTheOldFile) {
   ASSERT_TRUE(Cache().Store("a", {BytesOf("old")}));
-  // A limit on the size of files fails a write in the middle, like a full disk; in a process of its
-  // own, whose limit it stays.
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    ::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{4096, 4096};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    ::_exit(Cache().Store("a", {BytesOf(std::string(100000, 'x'))}) ? 1 : 0);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_TRUE(testing::RunWithSmallFiles(
+      [this] { return !Cache().Store("a", {BytesOf(std::string(100000, 'x'))}); }));
   EXPECT_EQ(Read(Cache().PathOf("a")), "old");
   EXPECT_EQ(CountFiles(), 1);
 }
