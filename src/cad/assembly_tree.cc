@@ -33,10 +33,10 @@
 #include <gp_Quaternion.hxx>
 #include <gp_Trsf.hxx>
 
+#include "base/parallel.h"
 #include "base/units.h"
 #include "cad/equal_shapes.h"
 #include "cad/material.h"
-#include "cad/parallel.h"
 #include "cad/part_shape.h"
 #include "cad/product_tree.h"
 #include "cad/xcaf_labels.h"

@@ -20,7 +20,8 @@ struct FieldView {
   float origin[3]{0, 0, 0};
   float voxel{0};
   float quantum{0};
-  float band{0};
+  float band{0};    ///< Distances are clamped to this.
+  float beyond{0};  ///< Least distance from the surface of what lies in no block.
   const float* coarse{nullptr};  ///< Signed distance on a coarse grid around the part.
   int coarse_count[3]{0, 0, 0};
   float coarse_origin[3]{0, 0, 0};

@@ -133,8 +133,8 @@ class ZoneList {
     Closest best;
     double best_distance = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = begin_; i < end_; ++i) {
-      const ListedTriangle& entry = shape_.exact.listed[i];
-      if (static_cast<double>(entry.distance) - from_centre_ > best_distance) {
+      const ListedTriangle entry = shape_.exact.Listed(i);
+      if (entry.distance - from_centre_ > best_distance) {
         break;
       }
       if (filter.Drops(shape_.mesh.face[entry.triangle])) {

@@ -63,8 +63,8 @@ class NearFaces {
     const ExactTable& exact = shape.exact;
     double limit = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = exact.list_begin[list]; i < exact.list_begin[list + 1]; ++i) {
-      const ListedTriangle& entry = exact.listed[i];
-      if (static_cast<double>(entry.distance) - from_centre > limit) {
+      const ListedTriangle entry = exact.Listed(i);
+      if (entry.distance - from_centre > limit) {
         break;
       }
       const double distance = (shape.mesh.ClosestOn(entry.triangle, p_).q - p_).norm();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "base/id.h"
@@ -27,6 +28,8 @@ struct ShapeSource {
 struct ShapeOptions {
   double voxel{0};          ///< Edge of a cell of the distance field [m]; 0: chosen from the part.
   double point_spacing{0};  ///< Of the point shell on faces [m]; 0: chosen. Edges get half of it.
+  unsigned threads{0};      ///< That build one shape; 0: one a core. No matter for the shape.
+  std::stop_token stop;     ///< Ends the building when a stop is asked for.
 };
 
 /** What a shape takes in memory [bytes]. */
@@ -52,7 +55,8 @@ class Shape {
  public:
   struct Data;
 
-  /** Builds a shape. Errors: kInvalid for an empty or non-finite mesh. Takes up to seconds. */
+  /** Builds a shape. Errors: kInvalid for an empty or non-finite mesh; kCancelled. Takes up to
+   seconds. */
   static Result<std::shared_ptr<const Shape>> Build(const ShapeSource& source,
                                                     const ShapeOptions& options);
 

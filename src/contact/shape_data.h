@@ -10,6 +10,7 @@
 
 namespace hvas::contact {
 
+/** Equal blocks, as along a straight edge or a shaft, are one block. */
 struct Field {
   FieldView view;  ///< Points into the vectors below.
   std::vector<std::int32_t> top;
@@ -38,18 +39,28 @@ inline constexpr std::uint32_t kFar =
 
 inline constexpr int kZonesPerBlock = 64;
 
-/** A triangle that may be the closest one in a zone, with its distance from the zone's centre. */
+/** A triangle that may be the closest one in a zone, with a lower bound of its distance from the
+ zone's centre. */
 struct ListedTriangle {
   std::uint32_t triangle;
-  float distance;
+  double distance;
 };
 
 struct ExactTable {
   std::vector<spatial::Surface> faces;    ///< Centred frame.
   std::vector<double> deviation;          ///< Largest distance of a face's mesh from its surface.
-  std::vector<std::uint32_t> zones;       ///< kZonesPerBlock a block.
+  std::vector<std::uint32_t> zones;       ///< kZonesPerBlock a block; equal lists are one list.
   std::vector<std::uint32_t> list_begin;  ///< Into listed; one more than there are lists.
-  std::vector<ListedTriangle> listed;     ///< Each list by increasing distance.
+  /** Each list by increasing distance: the triangle above `distance_bits` bits that count
+   `distance_unit` [m]. */
+  std::vector<std::uint32_t> listed;
+  std::uint32_t distance_bits{0};
+  double distance_unit{0};
+
+  [[nodiscard]] ListedTriangle Listed(std::size_t i) const noexcept {
+    const std::uint32_t entry = listed[i];
+    return {entry >> distance_bits, (entry & ((1U << distance_bits) - 1U)) * distance_unit};
+  }
 };
 
 inline constexpr std::size_t kMaxPointFaces = 4;

@@ -13,8 +13,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "shapes are written as they lie in memory");
 // No padding, whose bytes nobody sets.
-static_assert(sizeof(SphereNode) == 160 && sizeof(SampleFaces) == 64 &&
-              sizeof(ListedTriangle) == 8);
+static_assert(sizeof(SphereNode) == 160 && sizeof(SampleFaces) == 64);
 
 class Writer {
  public:
@@ -143,6 +142,7 @@ class Members {
     One(&v->voxel);
     One(&v->quantum);
     One(&v->band);
+    One(&v->beyond);
     archive_.Plain(v->coarse_count, 3);
     archive_.Plain(v->coarse_origin, 3);
     One(&v->coarse_cell);
@@ -170,6 +170,8 @@ class Members {
     All(&e->zones);
     All(&e->list_begin);
     All(&e->listed);
+    One(&e->distance_bits);
+    One(&e->distance_unit);
   }
 
   template <typename AnyShell>

@@ -159,9 +159,11 @@ class Traversal {
         PushInBand(hits, s, position, first);
       }
     }
-    const unsigned rest = used & ~has_bits;
+    const unsigned solid = P::Bits(P::And(inside, P::LessInt(top, P::SetInt(kTopOutside))));
+    // Outside the part and in no block is further away than `beyond`.
+    const unsigned rest = used & ~has_bits & (margin_ > field_.beyond ? ~0U : solid);
     if (rest != 0) {
-      PushCoarse(rest, position, first);
+      PushCoarse(rest, solid, position, first);
     }
   }
 
@@ -194,13 +196,15 @@ class Traversal {
     }
   }
 
-  // Beyond the narrow band, inside or outside.
-  void PushCoarse(unsigned lanes, const float (*position)[8], std::int32_t first) {
+  // In no block, inside or outside: which, the directory knows better than the coarse grid.
+  void PushCoarse(unsigned lanes, unsigned solid, const float (*position)[8], std::int32_t first) {
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = __builtin_ctz(lanes);
       const float at[3] = {position[0][lane], position[1][lane], position[2][lane]};
       Hit hit{static_cast<std::uint32_t>(first + lane), 0.0F, {}};
-      hit.distance = CalcCoarse(field_, at, hit.gradient);
+      const float coarse = CalcCoarse(field_, at, hit.gradient);
+      const float side = (solid >> static_cast<unsigned>(lane) & 1U) != 0 ? -1.0F : 1.0F;
+      hit.distance = side * coarse > field_.beyond ? coarse : side * field_.beyond;
       if (hit.distance < margin_) {
         Push(hit);
       }

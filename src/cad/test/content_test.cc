@@ -27,10 +27,10 @@
 #include <gp_Ax2.hxx>
 #include <gtest/gtest.h>
 
+#include "base/parallel.h"
 #include "base/test/temporary_folder.h"
 #include "cad/assembly_tree.h"
 #include "cad/equal_shapes.h"
-#include "cad/parallel.h"
 #include "cad/read_cad.h"
 #include "cad/solid_measure.h"
 #include "cad/test/step_fixture.h"

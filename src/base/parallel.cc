@@ -1,4 +1,4 @@
-#include "cad/parallel.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace hvas::cad {
+namespace hvas {
 namespace {
 
 void RunAlone(std::size_t count, const std::function<void(std::size_t)>& work,
@@ -102,4 +102,4 @@ void ForEachIndex(std::size_t count, unsigned threads, const std::function<void(
   }
 }
 
-}  // namespace hvas::cad
+}  // namespace hvas

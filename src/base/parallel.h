@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace hvas::cad {
+namespace hvas {
 
 /** Calls `work` for every index below `count`, on as many threads as the machine has cores, or on
  `threads` of them if that is not 0; on the calling thread alone if it is 1. Indices start in
@@ -13,4 +13,4 @@ namespace hvas::cad {
 void ForEachIndex(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work,
                   const std::function<void(std::size_t)>& progress = {});
 
-}  // namespace hvas::cad
+}  // namespace hvas

@@ -1,0 +1,303 @@
+#include "contact/block_build.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hvas::contact {
+namespace {
+
+constexpr double kSlack = 1 + 1e-9;
+const double kHalfDiagonal = std::sqrt(3.0) / 2;
+
+// A face stays listed where it is this much further away than the closest one, so that it is found
+// when that one is ignored or when the part as made differs from the drawing.
+constexpr double kFaceMarginVoxels = 0.25;
+constexpr double kLeastFaceMargin = 100e-6;  // [m]
+
+Vec3 Corner(int i) {
+  return {(i & 1) * 2.0 - 1, ((i >> 1) & 1) * 2.0 - 1, (i >> 2) * 2.0 - 1};
+}
+
+// The distinct faces of a list, none when there are more than `most`.
+template <std::size_t most>
+struct FewFaces {
+  std::array<std::uint32_t, most> faces{};
+  std::size_t count{0};
+
+  FewFaces(const Mesh& mesh, const NearList& list) {
+    for (const NearTriangle& entry : list) {
+      const std::uint32_t face = mesh.face[entry.triangle];
+      if (IndexOf(face) < count) {
+        continue;
+      }
+      if (count == most) {
+        count = 0;
+        return;
+      }
+      faces[count++] = face;
+    }
+  }
+
+  [[nodiscard]] std::size_t IndexOf(std::uint32_t face) const {
+    return static_cast<std::size_t>(
+        std::find(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(count), face) -
+        faces.begin());
+  }
+};
+
+constexpr std::size_t kMostFaces = 12;
+
+bool IsOneFace(const Mesh& mesh, const NearList& list) {
+  const std::uint32_t face = mesh.face[list.front().triangle];
+  return std::all_of(list.begin(), list.end(),
+                     [&](const NearTriangle& n) { return mesh.face[n.triangle] == face; });
+}
+
+}  // namespace
+
+BlockBuilder::BlockBuilder(const Shape::Data& data, const NearSearch& search)
+    : data_(data),
+      search_(search),
+      h_(data.voxel),
+      face_margin_(std::max(kFaceMarginVoxels * data.voxel, kLeastFaceMargin)) {}
+
+Vec3 BlockBuilder::CentreOf(const Index3& zone) const {
+  return block_->origin + h_ * (2.0 * Vec3(zone[0], zone[1], zone[2]) + Vec3::Ones());
+}
+
+Zone* BlockBuilder::ZoneOf(const Index3& zone) const {
+  return &block_->zones[static_cast<std::size_t>(zone[2] * 16 + zone[1] * 4 + zone[0])];
+}
+
+void BlockBuilder::Build(Block* block) {
+  block_ = block;
+  hint_ = block->list.front().triangle;
+  const Vec3 middle = block->origin + Vec3::Constant(4 * h_);
+  if (!TryExact(block->list, middle, 4 * h_, {0, 0, 0}, 4)) {
+    for (int o = 0; o < 8; ++o) {
+      const Vec3 centre = middle + 2 * h_ * Corner(o);
+      search_.Filter(block->list, centre, 4 * kHalfDiagonal * h_, false, &octant_);
+      BuildOctant({2 * (o & 1), 2 * ((o >> 1) & 1), 2 * (o >> 2)}, &octant_);
+    }
+  }
+  block->list = {};
+}
+
+void BlockBuilder::BuildOctant(const Index3& low, NearList* octant) {
+  const Vec3 centre = CentreOf(low) + Vec3::Constant(h_);
+  DropFarFaces(centre, 2 * h_, octant);
+  if (TryExact(*octant, centre, 2 * h_, low, 2)) {
+    return;
+  }
+  for (int z = 0; z < 8; ++z) {
+    BuildZone({low[0] + (z & 1), low[1] + ((z >> 1) & 1), low[2] + (z >> 2)}, *octant);
+  }
+}
+
+void BlockBuilder::BuildZone(const Index3& zone, const NearList& octant) {
+  const Vec3 centre = CentreOf(zone);
+  const double radius = 2 * kHalfDiagonal * h_;
+  // Zones follow each other: what was closest to one is near the next.
+  const Nearest nearest = search_.FindSigned(octant, centre, NearSearch::kAnywhere, hint_);
+  hint_ = nearest.triangle;
+  if (std::abs(nearest.distance) > kBandVoxels * h_ * kSlack + radius) {
+    FillFarZone(zone, nearest.distance);
+    return;
+  }
+  search_.Filter(octant, centre, radius, false, &list_);
+  if (std::abs(nearest.distance) <= kExactVoxels * h_ + radius) {
+    DropFarFaces(centre, h_, &list_);
+    if (TryExact(list_, centre, h_, zone, 1)) {
+      return;
+    }
+    DecideZone(centre, IsOneFace(data_.mesh, list_), ZoneOf(zone));
+  } else {
+    ZoneOf(zone)->code = zone::kFar | data_.mesh.face[hint_];
+  }
+  FillNodes(zone, centre);
+}
+
+// Where one analytic face alone can be closest in a cube of zones, its surface gives all distances:
+// the closest point lies inside the face, as at its rim another face would be as close.
+bool BlockBuilder::TryExact(const NearList& list, const Vec3& centre, double half,
+                            const Index3& low, int zones) {
+  const std::uint32_t face = data_.mesh.face[list.front().triangle];
+  const spatial::Surface& surface = data_.exact.faces[face];
+  if (surface.kind == spatial::SurfaceKind::kFreeform || !IsOneFace(data_.mesh, list) ||
+      !AgreesWithFace(list, centre, half)) {
+    return false;
+  }
+  const double reach = kExactVoxels * h_ + 2 * kHalfDiagonal * h_;
+  for (int z = 0; z < zones * zones * zones; ++z) {
+    const Index3 zone{low[0] + z % zones, low[1] + z / zones % zones, low[2] + z / zones / zones};
+    const double distance = spatial::CalcDistance(surface, CentreOf(zone)).distance;
+    ZoneOf(zone)->code = (std::abs(distance) > reach ? zone::kFar : zone::kExact) | face;
+  }
+  for (int k = 2 * low[2]; k <= 2 * (low[2] + zones); ++k) {
+    for (int j = 2 * low[1]; j <= 2 * (low[1] + zones); ++j) {
+      for (int i = 2 * low[0]; i <= 2 * (low[0] + zones); ++i) {
+        const Vec3 p = block_->origin + h_ * Vec3(i, j, k);
+        const auto exact = spatial::CalcDistance(surface, p);
+        SetNode(i, j, k,
+                exact.is_valid
+                    ? exact.distance
+                    : search_.FindSigned(list, p, NearSearch::kAnywhere, hint_).distance);
+      }
+    }
+  }
+  return true;
+}
+
+// The unbounded surface may come closer than the face does, on the far side of an axis.
+bool BlockBuilder::AgreesWithFace(const NearList& list, const Vec3& centre, double half) {
+  const std::uint32_t face = data_.mesh.face[list.front().triangle];
+  const double tolerance = 2 * data_.exact.deviation[face] + 1e-9;
+  for (int i = 0; i < 9; ++i) {
+    const Vec3 p = i < 8 ? Vec3(centre + half * Corner(i)) : centre;
+    const auto exact = spatial::CalcDistance(data_.exact.faces[face], p);
+    if (!exact.is_valid) {
+      return false;
+    }
+    const Nearest nearest = search_.FindSigned(list, p, (p - centre).norm(), hint_);
+    hint_ = nearest.triangle;
+    if (std::abs(exact.distance - nearest.distance) > tolerance) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Takes out the faces that nowhere in the cube are the closest, nor nearly so. A ball around the
+// whole cube says little; in each of its octants a face's unbounded surface tells how near the face
+// can be.
+void BlockBuilder::DropFarFaces(const Vec3& centre, double half, NearList* list) {
+  const FewFaces<kMostFaces> few(data_.mesh, *list);
+  if (few.count < 2) {
+    return;
+  }
+  const double radius = kHalfDiagonal * half;
+  std::array<bool, kMostFaces> is_near{};
+  for (int o = 0; o < 8 && std::count(is_near.begin(), is_near.end(), true) <
+                               static_cast<std::ptrdiff_t>(few.count);
+       ++o) {
+    const Vec3 c = centre + 0.5 * half * Corner(o);
+    const Nearest nearest = search_.Find(*list, c, (c - centre).norm(), hint_);
+    hint_ = nearest.triangle;
+    const double limit = (nearest.distance + 2 * radius) * kSlack + face_margin_;
+    for (std::size_t f = 0; f < few.count; ++f) {
+      const std::uint32_t face = few.faces[f];
+      const auto exact = spatial::CalcDistance(data_.exact.faces[face], c);
+      is_near[f] = is_near[f] || !exact.is_valid ||
+                   std::abs(exact.distance) - data_.exact.deviation[face] <= limit;
+    }
+  }
+  const auto is_far = [&](const NearTriangle& entry) {
+    return !is_near[few.IndexOf(data_.mesh.face[entry.triangle])];
+  };
+  list->erase(std::remove_if(list->begin(), list->end(), is_far), list->end());
+}
+
+// Of each face, keeps the triangles that may be its closest somewhere in the zone; sorts them by
+// their distance from its centre.
+void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) const {
+  const Mesh& mesh = data_.mesh;
+  for (NearTriangle& entry : *list) {
+    entry.distance = (mesh.ClosestOn(entry.triangle, centre).q - centre).norm();
+  }
+  const FewFaces<kMostFaces> few(mesh, *list);
+  if (few.count > 0 && list->size() > few.count) {
+    const double radius = kHalfDiagonal * h_;
+    std::vector<std::uint8_t> is_kept(list->size(), 0);
+    std::vector<double> distance(list->size());
+    for (int o = 0; o < 8; ++o) {
+      const Vec3 c = centre + 0.5 * h_ * Corner(o);
+      std::array<double, kMostFaces> least{};
+      least.fill(std::numeric_limits<double>::infinity());
+      for (std::size_t i = 0; i < list->size(); ++i) {
+        const NearTriangle& entry = (*list)[i];
+        distance[i] = (mesh.ClosestOn(entry.triangle, c).q - c).norm();
+        double& entry_least = least[few.IndexOf(mesh.face[entry.triangle])];
+        entry_least = std::min(entry_least, distance[i]);
+      }
+      for (std::size_t i = 0; i < list->size(); ++i) {
+        const double limit = least[few.IndexOf(mesh.face[(*list)[i].triangle])] + 2 * radius;
+        if (distance[i] <= limit * kSlack) {
+          is_kept[i] = 1;
+        }
+      }
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      if (is_kept[i] != 0) {
+        (*list)[kept++] = (*list)[i];
+      }
+    }
+    list->resize(kept);
+  }
+  std::sort(list->begin(), list->end(), [](const NearTriangle& a, const NearTriangle& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
+  });
+}
+
+void BlockBuilder::DecideZone(const Vec3& centre, bool is_one_face, Zone* out) {
+  const std::uint32_t face = data_.mesh.face[hint_];
+  if (is_one_face && !HasSharpEdge() &&
+      data_.exact.faces[face].kind == spatial::SurfaceKind::kFreeform) {
+    out->code = zone::kSmooth | face;
+    return;
+  }
+  out->code = zone::kList;
+  out->list = list_;
+  KeepClosest(centre, &out->list);
+}
+
+bool BlockBuilder::HasSharpEdge() const {
+  for (const NearTriangle& entry : list_) {
+    for (const EdgeKind kind : data_.mesh.edge_kind[entry.triangle]) {
+      if (kind == EdgeKind::kConvex || kind == EdgeKind::kConcave) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// All nodes are beyond the band, on one side of the surface.
+void BlockBuilder::FillFarZone(const Index3& zone, double distance) {
+  ZoneOf(zone)->code = zone::kFar | data_.mesh.face[hint_];
+  for (int k = 2 * zone[2]; k <= 2 * zone[2] + 2; ++k) {
+    for (int j = 2 * zone[1]; j <= 2 * zone[1] + 2; ++j) {
+      for (int i = 2 * zone[0]; i <= 2 * zone[0] + 2; ++i) {
+        SetNode(i, j, k, distance);
+      }
+    }
+  }
+}
+
+// Nodes on a zone's upper sides are filled by the next zone in the block.
+void BlockBuilder::FillNodes(const Index3& zone, const Vec3& centre) {
+  Index3 end{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    end[k] = 2 * zone[k] + (zone[k] == 3 ? 3 : 2);
+  }
+  for (int k = 2 * zone[2]; k < end[2]; ++k) {
+    for (int j = 2 * zone[1]; j < end[1]; ++j) {
+      for (int i = 2 * zone[0]; i < end[0]; ++i) {
+        const Vec3 p = block_->origin + h_ * Vec3(i, j, k);
+        const Nearest nearest = search_.FindSigned(list_, p, (p - centre).norm(), hint_);
+        hint_ = nearest.triangle;
+        SetNode(i, j, k, nearest.distance);
+      }
+    }
+  }
+}
+
+void BlockBuilder::SetNode(int i, int j, int k, double phi) {
+  const double quantum = kBandVoxels * h_ / 32767;
+  block_->is_near = block_->is_near || std::abs(phi) < kBlockVoxels * h_;
+  block_->is_inside = phi < 0;
+  block_->nodes[static_cast<std::size_t>(k * 81 + j * 9 + i)] =
+      static_cast<std::int16_t>(std::lrint(std::clamp(phi / quantum, -32767.0, 32767.0)));
+}
+
+}  // namespace hvas::contact

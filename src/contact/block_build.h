@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "contact/near_list.h"
+#include "contact/shape_data.h"
+
+namespace hvas::contact {
+
+inline constexpr double kBandVoxels = 4.0;   ///< The distance that nodes hold, at most.
+inline constexpr double kBlockVoxels = 2.0;  ///< Blocks are kept that come this near the surface.
+inline constexpr double kExactVoxels = 2.0;  ///< Depth of the layer that is answered exactly.
+
+struct Zone {
+  std::uint32_t code{zone::kFar};
+  NearList list;  ///< For zone::kList: by increasing distance from the zone's centre.
+};
+
+/** A block of the field before it is laid down. */
+struct Block {
+  std::int32_t top{0};  ///< Its place in the field's directory.
+  Vec3 origin{Vec3::Zero()};
+  NearList list;  ///< What may be closest within it.
+  std::array<std::int16_t, kBlockNodes> nodes{};
+  std::array<Zone, kZonesPerBlock> zones;
+  bool is_near{false};    ///< Some node is near the surface; else the block is not needed.
+  bool is_inside{false};  ///< Where it is not near: on which side.
+};
+
+/** Fills blocks: distances at the nodes, and what decides in each zone. One for each thread. */
+class BlockBuilder {
+ public:
+  BlockBuilder(const Shape::Data& data, const NearSearch& search);
+
+  /** From block->origin and block->list, which is cleared. */
+  void Build(Block* block);
+
+ private:
+  using Index3 = std::array<int, 3>;
+
+  void BuildOctant(const Index3& low, NearList* octant);
+  void BuildZone(const Index3& zone, const NearList& octant);
+  bool TryExact(const NearList& list, const Vec3& centre, double half, const Index3& low,
+                int zones);
+  bool AgreesWithFace(const NearList& list, const Vec3& centre, double half);
+  void DropFarFaces(const Vec3& centre, double half, NearList* list);
+  void KeepClosest(const Vec3& centre, NearList* list) const;
+  void FillFarZone(const Index3& zone, double distance);
+  void FillNodes(const Index3& zone, const Vec3& centre);
+  void SetNode(int i, int j, int k, double phi);
+  void DecideZone(const Vec3& centre, bool is_one_face, Zone* out);
+  [[nodiscard]] bool HasSharpEdge() const;
+  [[nodiscard]] Vec3 CentreOf(const Index3& zone) const;
+  [[nodiscard]] Zone* ZoneOf(const Index3& zone) const;
+
+  const Shape::Data& data_;
+  const NearSearch& search_;
+  double h_;
+  double face_margin_;
+  Block* block_{nullptr};
+  NearList octant_;
+  NearList list_;  // Of the zone at hand.
+  std::uint32_t hint_{kNoFace};
+};
+
+}  // namespace hvas::contact

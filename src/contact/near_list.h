@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "contact/mesh.h"
+
+namespace hvas::contact {
+
+/** A triangle and a lower bound of its distance from some point. */
+struct NearTriangle {
+  std::uint32_t triangle;
+  double distance;
+};
+
+using NearList = std::vector<NearTriangle>;
+
+struct Nearest {
+  double distance{0};  ///< Signed where so said.
+  std::uint32_t triangle{kNoFace};
+  TrianglePoint point;
+};
+
+/** Looks for the closest triangles of a mesh, which outlives it, in lists that are cut down from
+ larger regions to smaller ones. Several threads may use one. */
+class NearSearch {
+ public:
+  static constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
+  explicit NearSearch(const Mesh& mesh);
+
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+
+  [[nodiscard]] NearList MakeFullList() const;
+
+  /** Keeps, of the triangles given, those that may be closest to some point within `radius` of c.
+   The distances written are lower bounds of those from c, and exact where `is_exact` asks for it.
+ */
+  void Filter(const NearList& list, const Vec3& c, double radius, bool is_exact,
+              NearList* out) const;
+
+  /** The closest triangle to p, from a list with lower bounds of the distances to a point that p is
+   `offset` away from (kAnywhere: unknown). Begins with the triangle `hint`. Not signed. */
+  [[nodiscard]] Nearest Find(const NearList& list, const Vec3& p, double offset,
+                             std::uint32_t hint) const;
+
+  /** The same with the sign of the distance: negative inside. */
+  [[nodiscard]] Nearest FindSigned(const NearList& list, const Vec3& p, double offset,
+                                   std::uint32_t hint) const;
+
+ private:
+  // A box around a triangle: tells most that are too far away at a tenth of the exact distance's
+  // cost.
+  struct TriangleBox {
+    double centre[3];
+    double half[3];
+    double radius;  // Of a sphere around it.
+
+    [[nodiscard]] double CalcSquaredDistance(const Vec3& p) const;
+  };
+
+  const Mesh& mesh_;
+  std::vector<TriangleBox> boxes_;
+};
+
+/** The entry with the lowest bound. @pre the list is not empty. */
+[[nodiscard]] NearTriangle LeastOf(const NearList& list);
+
+}  // namespace hvas::contact
