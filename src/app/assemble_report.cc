@@ -70,6 +70,7 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
           {"peak_true_n", part.peak_true},
           {"peak_felt_n", part.peak_felt},
           {"deepest_um", units::ToUm(part.deepest)},
+          {"insertion_mm", units::ToMm(part.insertion)},
           {"mates", part.mates},
           {"pose_error_um", units::ToUm(part.pose_error)},
           {"pose_error_urad", 1e6 * part.pose_error_angle}};

@@ -89,11 +89,15 @@ std::string AssemblyRun::ExplainFailure() const {
     return "could not be taken up";
   }
   const HoldMetrics& metrics = dropped_.metrics;
+  const std::string depth =
+      metrics.insertion > 0
+          ? fmt::format(", {:.2f} mm into its hole at most", units::ToMm(metrics.insertion))
+          : std::string();
   if (!metrics.hardest.is_valid()) {
-    return fmt::format("gave up after {} searches; nothing was met", person_->searches());
+    return fmt::format("gave up after {} searches{}; nothing was met", person_->searches(), depth);
   }
-  return fmt::format("gave up after {} searches; {} stood in the way with up to {:.1f} N",
-                     person_->searches(),
+  return fmt::format("gave up after {} searches{}; {} stood in the way with up to {:.1f} N",
+                     person_->searches(), depth,
                      simulation_->model().product->occurrences[metrics.hardest.index()].path,
                      metrics.hardest_force);
 }
@@ -109,6 +113,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step) {
     result.peak_true = std::max(result.peak_true, metrics.peak_true);
     result.peak_felt = std::max(result.peak_felt, metrics.peak_felt);
     result.deepest = std::max(result.deepest, metrics.deepest);
+    result.insertion = std::max(result.insertion, metrics.insertion);
   }
   const std::string reason = was_seated ? std::string() : ExplainFailure();
   result.reason = reason;

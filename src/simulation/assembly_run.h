@@ -21,6 +21,7 @@ struct PartResult {
   double peak_true{0};         ///< [N]
   double peak_felt{0};         ///< [N]
   double deepest{0};           ///< Deepest penetration met [m].
+  double insertion{0};         ///< Longest that a mate's shaft was in its hole [m].
   int mates{0};                ///< With parts that were in place.
   double pose_error{0};        ///< Of the origin, from the file's pose [m].
   double pose_error_angle{0};  ///< [rad]

@@ -93,6 +93,7 @@ void Simulation::Measure(const haptics::TickOutput& out) noexcept {
   metrics_.peak_true = std::max(metrics_.peak_true, out.F_true_W.f.norm());
   metrics_.peak_felt = std::max(metrics_.peak_felt, out.F_H_W.f.norm());
   metrics_.deepest = std::max(metrics_.deepest, -out.deepest);
+  metrics_.insertion = std::max(metrics_.insertion, out.insertion_depth);
   const double force = out.f_C_W.norm();
   if (out.contact_count > 0 && out.contact_body.is_valid() && force > metrics_.hardest_force) {
     metrics_.hardest_force = force;

@@ -24,6 +24,7 @@ struct HoldMetrics {
   double peak_true{0};      ///< Largest true force [N].
   double peak_felt{0};      ///< Largest force given to the device [N].
   double deepest{0};        ///< Deepest penetration, >= 0 [m].
+  double insertion{0};      ///< Longest engagement of a captured axis [m].
   contact::BodyId hardest;  ///< Body pressed hardest while the hand was inserting; may be invalid.
   double hardest_force{0};  ///< [N]
 };

@@ -132,6 +132,34 @@ Product CoinUnderLid() {
   return product;
 }
 
+Product CollarUnderClamp() {
+  using contact::testing::CylinderZ;
+  using contact::testing::PlaneAt;
+  constexpr double kCollar = 10e-3;  // radius
+  constexpr double kEnd = kCollarHeight + 4e-3;
+  Product product;
+  product.name = "trap";
+  const PartId block =
+      AddPart(&product, "block", contact::testing::Cup(kBoreRadius, 15e-3, kFloor, kBlockHeight));
+  const PartId peg = AddPart(
+      &product, "collared peg",
+      contact::testing::Lathe(
+          {{{{0, 0}, {kBoreRadius, 0}}, PlaneAt(0, -1)},
+           {{{kBoreRadius, 0}, {kBoreRadius, kCollarHeight}}, CylinderZ(kBoreRadius, 1)},
+           {{{kBoreRadius, kCollarHeight}, {kCollar, kCollarHeight}}, PlaneAt(kCollarHeight, -1)},
+           {{{kCollar, kCollarHeight}, {kCollar, kEnd}}, CylinderZ(kCollar, 1)},
+           {{{kCollar, kEnd}, {0, kEnd}}, PlaneAt(kEnd, 1)}},
+          contact::testing::Segments(kCollar, kDeviation)));
+  constexpr double kGap = 0.5e-3;  // Between collar and clamp.
+  const Vec3 half(4e-3, 3e-3, 0.5 * (kClampHeight - kFloor - kEnd - kGap));
+  const PartId clamp = AddPart(&product, "clamp", contact::testing::Block(half));
+  Place(&product, block, "block");
+  Place(&product, peg, "peg", Pose(Vec3(0, 0, kFloor)));
+  Place(&product, clamp, "clamp", Pose(Vec3(11e-3, 0, kClampHeight - half.z())));
+  Complete(&product);
+  return product;
+}
+
 Product CaptiveRing() {
   using contact::testing::CylinderZ;
   using contact::testing::PlaneAt;

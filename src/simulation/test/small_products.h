@@ -40,6 +40,14 @@ Product CoinUnderLid();
 /** A ring between two flanges that turn it into a captive, with 1 mm of play to either side. */
 Product CaptiveRing();
 
+inline constexpr double kCollarHeight = 20e-3;  // Of the collar's lower side above the peg's end.
+inline constexpr double kClampHeight = 35e-3;   // Of the clamp's top.
+
+/** A trap. The block of PegInBlock, a peg with a collar that comes to rest on the block's top, and
+ a clamp over the edge of the collar. Who puts the clamp there first meets it with the collar when
+ the peg is a part of the way in its bore. */
+Product CollarUnderClamp();
+
 /** The model of PegInBlock, compiled once in a program. */
 const std::shared_ptr<const Model>& PegInBlockModel();
 

@@ -1,0 +1,130 @@
+// With a mate active, what the guided part meets besides its partner still stops it (N3). Both
+// papers switch collision off once a mate is captured; what they would do is shown beside it.
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "simulation/test/session.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using haptics::HoldState;
+using testing::Session;
+
+const product::OccurrenceId kPeg(1);
+const product::OccurrenceId kClamp(2);
+constexpr double kLimit_s = 90;
+// How far the peg is in its bore when the collar meets the clamp.
+constexpr double kDepthAtClamp =
+    testing::kBlockHeight - (testing::kClampHeight - testing::kCollarHeight);
+
+/** The model of the trap with the clamp in its place before the peg. */
+const std::shared_ptr<const Model>& TrapModel() {
+  static const std::shared_ptr<const Model> model = [] {
+    Diagnostics diagnostics;
+    auto made = std::make_shared<Model>(
+        **Compile(std::make_shared<product::Product>(testing::CollarUnderClamp()),
+                  testing::FastOptions(), &diagnostics));
+    made->sequence = *Reorder(*made->product, made->sequence, {"clamp", "peg"});
+    return std::shared_ptr<const Model>(std::move(made));
+  }();
+  return model;
+}
+
+/** Stands between the run and its record: what a guided part did. */
+class Guided final : public Sink {
+ public:
+  void OnTick(const device::DeviceState&, const haptics::TickOutput& out) noexcept override {
+    const bool is_guided = out.state == HoldState::kCaptured || out.state == HoldState::kMating;
+    if (out.occurrence != kPeg || !is_guided) {
+      return;
+    }
+    insertion = std::max(insertion, out.insertion_depth);
+    deepest = std::max(deepest, -out.deepest);
+    // On the clamp with the mate aligned: its faces answer by their fit, all others by contact.
+    if (out.state == HoldState::kMating && out.contact_body.index() == kClamp.index()) {
+      ++ticks_on_clamp;
+      force_on_clamp = std::max(force_on_clamp, out.F_H_W.f.z());
+      lowest_on_clamp = std::min(lowest_on_clamp, out.X_WD.p().z());
+    }
+  }
+
+  void OnEvent(const SimulationEvent&) override {}
+
+  double insertion{0};
+  double deepest{0};
+  int ticks_on_clamp{0};
+  double force_on_clamp{0};
+  double lowest_on_clamp{1};
+};
+
+struct Trial {
+  Guided guided;
+  std::vector<PartResult> results;
+};
+
+void Try(haptics::Condition condition, std::uint64_t seed, Trial* trial) {
+  haptics::TickOptions options;
+  options.condition = condition;
+  PersonOptions habits;
+  habits.patience_s = 6;  // Long enough to press as hard as it will, and to search once.
+  Session session(TrapModel(), seed, options, habits);
+  AssemblyRun run(&session.simulation, &session.person, &trial->guided);
+  Execution execution = session.MakeExecution(kLimit_s);
+  execution.sink = &run;
+  execution.advance = [&run] { run.Advance(); };
+  execution.is_done = [&run] { return run.is_done(); };
+  (void)RunLockstep(execution);
+  EXPECT_TRUE(run.is_done());
+  trial->results = run.results();
+}
+
+TEST(TrapTest, GoesTogetherWhenTheClampComesLast) {  // The trap is in the order, not in the parts.
+  Diagnostics diagnostics;
+  const auto model = Compile(std::make_shared<product::Product>(testing::CollarUnderClamp()),
+                             testing::FastOptions(), &diagnostics);
+  ASSERT_TRUE(model.has_value());
+  EXPECT_EQ((*model)->sequence.steps.back().occurrence, kClamp);
+  Session session(*model);
+  (void)RunLockstep(session.MakeExecution(kLimit_s));
+  for (const PartResult& part : session.run.results()) {
+    EXPECT_TRUE(part.is_seated) << part.reason;
+  }
+}
+
+TEST(TrapTest, GuidedPegStopsAtAThirdPartAndTheHandFeelsIt) {  // N3
+  for (const std::uint64_t seed : {1, 2}) {
+    SCOPED_TRACE(seed);
+    Trial trial;
+    Try(haptics::Condition::kHybrid, seed, &trial);
+    ASSERT_EQ(trial.results.size(), 3U);
+    EXPECT_TRUE(trial.results[1].is_seated) << "the clamp: " << trial.results[1].reason;
+    const PartResult& peg = trial.results[2];
+    ASSERT_EQ(peg.occurrence, kPeg);
+    EXPECT_FALSE(peg.is_seated);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "trap/clamp stood in the way", peg.reason);
+    // Guided, and in its bore to the depth at which the collar meets the clamp: to the compliance
+    // of contact under the push of a hand (2 um/N), and to the tilt that the fit's play leaves.
+    EXPECT_GT(trial.guided.ticks_on_clamp, 1000);
+    EXPECT_NEAR(trial.guided.insertion, kDepthAtClamp, 20e-6);
+    EXPECT_LT(trial.guided.deepest, 25e-6);
+    EXPECT_GT(trial.guided.lowest_on_clamp, testing::kBlockHeight - kDepthAtClamp - 20e-6);
+    EXPECT_GT(trial.guided.force_on_clamp, 4.0);  // [N]; what a hand tries first
+  }
+}
+
+TEST(TrapTest, WithoutCollisionTheGuidedPegGoesThroughTheThirdPart) {  // as both papers have it
+  Trial trial;
+  Try(haptics::Condition::kConstraint, 1, &trial);
+  ASSERT_EQ(trial.results.size(), 3U);
+  EXPECT_TRUE(trial.results[2].is_seated) << trial.results[2].reason;
+  EXPECT_EQ(trial.guided.ticks_on_clamp, 0);
+  EXPECT_GT(trial.guided.insertion, testing::kBlockHeight - testing::kFloor - 0.5e-3);
+}
+
+}  // namespace
+}  // namespace hvas::simulation
