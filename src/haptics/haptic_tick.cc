@@ -58,7 +58,8 @@ void HapticTick::Take(const HeldPart* part) noexcept {
   state_ = HoldState::kFree;
   is_first_tick_ = true;
   is_solved_ = false;
-  X_WD_ = part->X_WB_start;
+  const FreeBody* falling = bodies_.FindAwake(part->body);
+  X_WD_ = falling != nullptr ? falling->X_WB : part->X_WB_start;
   V_D_ = {};
   soft_start_ = 0;
   has_start_ = false;
@@ -86,7 +87,7 @@ spatial::Pose HapticTick::Drop() noexcept {
   }
   if (part_->falls_when_dropped && !is_seated) {
     bodies_.SetLoose(part_->body, true);
-    (void)bodies_.Wake(part_->body, X_WB, V_D_);
+    bodies_.WakeFirst(part_->body, X_WB, V_D_);
   }
   part_ = nullptr;
   state_ = HoldState::kEmpty;
@@ -285,7 +286,8 @@ void HapticTick::MeasureDepth(TickOutput* out) noexcept {
 bool HapticTick::HasArrived() noexcept {
   const GuidanceOptions& guidance = options_.guidance;
   const bool is_guided = guide_.captured_count() > 0;
-  if (!is_guided && !part_->mates.empty() && options_.condition != Condition::kCollision) {
+  const bool needs_guide = !part_->mates.empty() && options_.condition != Condition::kCollision;
+  if (part_->lacks_partners || (needs_guide && !is_guided)) {
     return false;
   }
   const Vec3 d = X_WD_ * part_->p_BoBcm_B - part_->X_WB_goal * part_->p_BoBcm_B;

@@ -55,10 +55,11 @@ struct HeldPart {
   double mass{0};  ///< [kg]
   Vec3 p_BoBcm_B{Vec3::Zero()};
   Mat3 I_BBcm_B{Mat3::Zero()};
-  spatial::Pose X_WB_start;          ///< Where it lies when it is taken up.
+  spatial::Pose X_WB_start;          ///< Where it is taken up, unless it moves.
   spatial::Pose X_WB_goal;           ///< Its place in the product.
   Vec3 insertion_W{-Vec3::UnitZ()};  ///< Unit, the way in.
   std::vector<HeldMate> mates;
+  bool lacks_partners{false};  ///< What it should have been put to is not there: it never seats.
   std::vector<contact::BodyId> left_out;  ///< Lie in it as drawn, or move with it: no contact.
   std::vector<HeldMember> members;        ///< Of a subassembly, besides this part.
   fits::FrictionSurface surface{fits::FrictionSurface::kUnknown};

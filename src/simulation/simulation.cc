@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fits/materials.h"
 #include "mates/resolve.h"
 
 namespace hvas::simulation {
@@ -14,7 +15,11 @@ using product::OccurrenceId;
 constexpr double kReach = 0.03;      // [m] from a part's centre of mass, to take it up
 constexpr double kApproach = 0.01;   // [m] before its place, where a part's mates are resolved from
 constexpr double kStopCosine = 0.5;  // a plane facing the way in ends it; one along it guides
-constexpr double kPhysicsStep = Simulation::kHapticStep * Simulation::kTicksPerPhysics;
+
+fits::FrictionSurface SurfaceOf(const Model& model, OccurrenceId id) {
+  const auto match = fits::FindMaterial(model.product->part_of(id).material.standard);
+  return match ? fits::SurfaceOf(match->material->group) : fits::FrictionSurface::kUnknown;
+}
 
 Frame MakeFirstFrame(const Model& model) {
   Frame frame;
@@ -33,16 +38,15 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
       commands_(4 * model_->bodies.size() + 64),
       events_(256),
       frames_(MakeFirstFrame(*model_)),
-      world_(TableOptions(*model_)),
       parts_(model_->bodies.size()) {
   for (const Body& body : model_->bodies) {
     const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
     scene_.SetOffsets(id, body.faces);
     Part& part = parts_[id.index()];
     part.X_WB = body.X_WB_start;
-    const product::Part& shape = model_->product->part_of(body.occurrence);
-    // Compile has added the same bodies to a world of its own: this cannot fail.
-    part.body = *world_.AddBody(shape.mesh.vertices, body.mass, body.X_WB_start);
+    haptic_.SetProperties(id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
+                               SurfaceOf(*model_, body.occurrence)});
+    haptic_.SetLoose(id, true);
   }
   scene_.SetGround(model_->table_z);
 }
@@ -58,6 +62,7 @@ haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) no
       events_.TryPush({device.t_ns, SimulationEvent::Kind::kTaken, command.part->occurrence,
                        haptics::HoldState::kFree, command.X_WB, false, metrics_});
     } else {
+      haptic_.SetLoose(command.body, false);
       scene_.SetPose(command.body, command.X_WB);
     }
   }
@@ -65,10 +70,6 @@ haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) no
     const haptics::HeldPart& part = *haptic_.held();
     const bool was_seated = haptic_.state() == haptics::HoldState::kSeated;
     const spatial::Pose X_WB = haptic_.Drop();
-    scene_.SetPose(part.body, X_WB);
-    for (const haptics::HeldMember& member : part.members) {
-      scene_.SetPose(member.body, X_WB * member.X_BS);
-    }
     events_.TryPush({device.t_ns, SimulationEvent::Kind::kDropped, part.occurrence,
                      haptics::HoldState::kEmpty, X_WB, was_seated, metrics_});
   }
@@ -79,7 +80,11 @@ haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) no
     events_.TryPush({device.t_ns, SimulationEvent::Kind::kState, out.occurrence, out.state,
                      out.X_WD, false, metrics_});
   }
-  reports_.Write({device.t_ns, device.is_gripping && device.is_valid, out});
+  Report report{device.t_ns, device.is_gripping && device.is_valid, out, {}, 0};
+  for (const haptics::FreeBody& body : haptic_.awake()) {
+    report.moving[report.moving_count++] = {body.id, body.X_WB};
+  }
+  reports_.Write(report);
   return out;
 }
 
@@ -116,17 +121,11 @@ void Simulation::PhysicsStep(Sink* sink) {
     } else if (held_ == nullptr && !is_waiting_for_grip_to_open_) {
       TakeNearest(report.out.X_WH.p());
     }
-    PushBodies(report);
-  }
-  world_.Step(kPhysicsStep);
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    Part& part = parts_[i];
-    if (part.placement == Placement::kLoose && !world_.is_asleep(part.body)) {
-      part.X_WB = world_.pose(part.body);
-      Command command;
-      command.body = contact::BodyId(i);
-      command.X_WB = part.X_WB;
-      commands_.TryPush(command);
+    for (std::size_t i = 0; i < report.moving_count; ++i) {
+      Part& part = parts_[report.moving[i].body.index()];
+      if (part.placement == Placement::kLoose) {
+        part.X_WB = report.moving[i].X_WB;
+      }
     }
   }
   Frame& frame = frames_.back();
@@ -163,13 +162,6 @@ void Simulation::HandleEvent(const SimulationEvent& event) {
       part.placement = Placement::kParked;  // a subassembly does not fall apart
     } else {
       part.placement = Placement::kLoose;
-      world_.SetPose(part.body, X_WB);
-      world_.SetKinematic(part.body, false);
-      return;
-    }
-    if (part.is_in_world) {
-      part.is_in_world = false;
-      world_.Remove(part.body);
     }
   };
   settle(event.occurrence, event.X_WB);
@@ -183,8 +175,6 @@ void Simulation::PlaceInFixture(OccurrenceId id) {
   Part& part = parts_[id.index()];
   part.placement = Placement::kPlaced;
   part.X_WB = model_->bodies[id.index()].X_WB_goal;
-  world_.Remove(part.body);
-  part.is_in_world = false;
   // Behind what is still on its way to the haptic thread, which alone writes to its scene.
   Command command;
   command.body = contact::BodyId(id.index());
@@ -244,13 +234,7 @@ void Simulation::TakeNearest(const Vec3& p_WH) {
 void Simulation::Take(const SequenceStep& step) {
   held_step_ = step;
   held_ = MakeHeldPart(step);
-  const auto hold = [this](OccurrenceId id) {
-    Part& part = parts_[id.index()];
-    part.placement = Placement::kHeld;
-    if (part.is_in_world) {
-      world_.SetKinematic(part.body, true);
-    }
-  };
+  const auto hold = [this](OccurrenceId id) { parts_[id.index()].placement = Placement::kHeld; };
   hold(step.occurrence);
   for (const OccurrenceId id : step.members) {
     hold(id);
@@ -325,6 +309,35 @@ void Simulation::AddMates(const SequenceStep& step, std::size_t member,
   }
 }
 
+bool Simulation::HasPartnersBefore(const SequenceStep& step) const {
+  const auto& steps = model_->sequence.steps;
+  const auto is_before = [&](OccurrenceId id) {
+    for (const SequenceStep& other : steps) {
+      if (other.occurrence == step.occurrence && other.kind == SequenceStep::Kind::kInsert) {
+        return false;
+      }
+      if (other.occurrence == id && other.kind != SequenceStep::Kind::kPark) {
+        return true;
+      }
+    }
+    return false;
+  };
+  const auto has_before = [&](OccurrenceId id) {
+    return std::any_of(model_->mates_of[id.index()].begin(), model_->mates_of[id.index()].end(),
+                       [&](product::MateId mate_id) {
+                         const product::Mate& mate = model_->product->mates[mate_id.index()];
+                         const OccurrenceId other =
+                             mate.a.occurrence == id ? mate.b.occurrence : mate.a.occurrence;
+                         return other != step.occurrence &&
+                                std::find(step.members.begin(), step.members.end(), other) ==
+                                    step.members.end() &&
+                                is_before(other);
+                       });
+  };
+  return has_before(step.occurrence) ||
+         std::any_of(step.members.begin(), step.members.end(), has_before);
+}
+
 std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& step) const {
   const OccurrenceId id = step.occurrence;
   const Body& body = model_->bodies[id.index()];
@@ -336,6 +349,8 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& 
   held->mass = mass.mass;
   held->p_BoBcm_B = mass.p_BoBcm_B;
   held->I_BBcm_B = mass.I_BBcm_B;
+  held->surface = SurfaceOf(*model_, id);
+  held->falls_when_dropped = step.members.empty() && step.kind != SequenceStep::Kind::kPark;
   held->X_WB_start = step.members.empty() ? ClearOfTable(id) : parts_[id.index()].X_WB;
   held->insertion_W = -step.extraction_W;
   held->left_out = LeftOut(id, step);
@@ -347,6 +362,7 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& 
   for (std::size_t member = 0; member <= step.members.size(); ++member) {
     AddMates(step, member, held.get());
   }
+  held->lacks_partners = held->mates.empty() && HasPartnersBefore(step);
   // The place is where the mates say; what they leave free is taken from the drawing (X9).
   std::vector<mates::MateConstraint> constraints;
   for (const haptics::HeldMate& mate : held->mates) {
@@ -370,16 +386,6 @@ spatial::Pose Simulation::ClearOfTable(OccurrenceId id) const {
   }
   const double lift = std::max(0.0, model_->table_z + kGap - lowest);
   return {X_WB.q(), X_WB.p() + Vec3(0, 0, lift)};
-}
-
-void Simulation::PushBodies(const Report& report) {
-  if (!report.out.contact_body.is_valid()) {
-    return;
-  }
-  const Part& part = parts_[report.out.contact_body.index()];
-  if (part.placement == Placement::kLoose) {
-    world_.ApplyImpulse(part.body, -kPhysicsStep * report.out.f_C_W, report.out.p_WC);
-  }
 }
 
 }  // namespace hvas::simulation

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <deque>
@@ -11,7 +12,6 @@
 #include "base/ring.h"
 #include "base/triple_buffer.h"
 #include "contact/scene.h"
-#include "dynamics/world.h"
 #include "haptics/haptic_tick.h"
 #include "simulation/model.h"
 
@@ -82,7 +82,8 @@ class Simulation {
   /** Haptic thread. RT-safe. */
   haptics::TickOutput HapticTick(const device::DeviceState& device) noexcept;
 
-  /** Physics thread: free bodies, taking up and letting go. `sink` may be null. */
+  /** Physics thread: taking up and letting go, where loose parts have come to. `sink` may be null.
+   */
   void PhysicsStep(Sink* sink);
 
   /** Publish thread: the newest state of everything. */
@@ -113,14 +114,18 @@ class Simulation {
   struct Part {
     Placement placement{Placement::kLoose};
     spatial::Pose X_WB;
-    dynamics::BodyId body;
-    bool is_in_world{true};  ///< Of dynamics: until it is part of the product.
   };
 
   /** From physics to haptics. */
   struct Command {
-    enum class Kind : std::uint8_t { kTake, kSetPose } kind{Kind::kSetPose};
+    enum class Kind : std::uint8_t { kTake, kPlace } kind{Kind::kPlace};
     const haptics::HeldPart* part{nullptr};
+    contact::BodyId body;
+    spatial::Pose X_WB;
+  };
+
+  /** A loose part that falls or is pushed, and where it is. */
+  struct Moving {
     contact::BodyId body;
     spatial::Pose X_WB;
   };
@@ -130,6 +135,8 @@ class Simulation {
     std::int64_t t_ns{0};
     bool is_gripping{false};
     haptics::TickOutput out;
+    std::array<Moving, haptics::FreeBodies::kMaxAwake> moving;
+    std::size_t moving_count{0};
   };
 
   void Measure(const haptics::TickOutput& out) noexcept;
@@ -141,10 +148,11 @@ class Simulation {
   [[nodiscard]] std::unique_ptr<haptics::HeldPart> MakeHeldPart(const SequenceStep& step) const;
   void AddMembers(const SequenceStep& step, haptics::HeldPart* held) const;
   void AddMates(const SequenceStep& step, std::size_t member, haptics::HeldPart* held) const;
+  /** True where the order puts a part there first that this one has a mate with. */
+  [[nodiscard]] bool HasPartnersBefore(const SequenceStep& step) const;
   [[nodiscard]] std::vector<contact::BodyId> LeftOut(product::OccurrenceId id,
                                                      const SequenceStep& step) const;
   [[nodiscard]] spatial::Pose ClearOfTable(product::OccurrenceId id) const;
-  void PushBodies(const Report& report);
 
   std::shared_ptr<const Model> model_;
   haptics::TickOptions options_;
@@ -159,7 +167,6 @@ class Simulation {
   TripleBuffer<Report> reports_;
   TripleBuffer<Frame> frames_;
 
-  dynamics::World world_;
   std::vector<Part> parts_;
   std::unique_ptr<haptics::HeldPart> held_;  // Kept until haptics has let go of it.
   SequenceStep held_step_;
