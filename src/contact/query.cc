@@ -42,6 +42,7 @@ bool Faces(const SampleFaces& sample, float limit, const Vec3& direction, std::u
 
 void QueryWorkspace::Data::Clear() noexcept {
   reducer.Clear();
+  layer = {};
   contact_count = 0;
   stats = {};
   deepest = std::numeric_limits<double>::infinity();
@@ -66,6 +67,8 @@ void BodyQuery::Body(BodyId id, const Placed& scene) noexcept {
   const bool has_ignored = SetMasks(id, 0xff);
   Samples<false>(held_, held_.shape->shell, scene, has_ignored, id.value());
   Samples<true>(scene, scene.shape->features, held_, has_ignored, id.value());
+  work_->layer.Add(layer_, scene.R_WC, scene.p_WC);
+  layer_ = {};
   if (has_ignored) {
     SetMasks(id, 0);
   }
@@ -159,9 +162,9 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     contact.held_face = kIsReverse ? r.face : own_face;
     contact.scene_face = kIsReverse ? own_face : r.face;
     if constexpr (kIsReverse) {
-      Add(contact, towards, contact.p);
+      Add(contact, faces, towards, contact.p);
     } else {
-      Add(contact, r.gradient, p_F);
+      Add(contact, faces, r.gradient, p_F);
     }
   }
 }
@@ -193,6 +196,8 @@ void BodyQuery::Ground(double z_W) noexcept {
       }
     }
   }
+  work_->layer.Add(layer_, Mat3::Identity(), Vec3::Zero());
+  layer_ = {};
 }
 
 void BodyQuery::GroundLeaf(double z_W, std::size_t leaf) noexcept {
@@ -210,13 +215,19 @@ void BodyQuery::GroundLeaf(double z_W, std::size_t leaf) noexcept {
     contact.distance = p_W.z() - z_W;
     if (contact.distance < margin_) {
       Faces(shell.faces[contact.point], -1.0F, -held_.R_WC.row(2).transpose(), &contact.held_face);
-      Add(contact, Vec3::UnitZ(), p_W);
+      Add(contact, shell.faces[contact.point], Vec3::UnitZ(), p_W);
     }
   }
 }
 
-void BodyQuery::Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept {
+void BodyQuery::Add(const RawContact& contact, const SampleFaces& faces, const Vec3& nhat_S,
+                    const Vec3& p_S) noexcept {
   work_->reducer.Add(contact, nhat_S, p_S);
+  if (contact.distance < 0) {
+    const bool is_inside_face = faces.faces[1] == kNoFace;
+    const double area = is_inside_face ? ContactLayer::kFaceArea : ContactLayer::kEdgeArea;
+    layer_.Add(area, -contact.distance, nhat_S, p_S);
+  }
   is_stopped_ = contact.distance < stop_distance_;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "contact/pool.h"
 #include "contact/reduce.h"
 #include "contact/refine.h"
 #include "contact/scene.h"
@@ -17,6 +18,7 @@ inline constexpr std::size_t kMaxQueryFaces = 65536;
 struct QueryWorkspace::Data {
   std::vector<Hit> hits = std::vector<Hit>(kMaxQueryHits);
   ContactReducer reducer;
+  ContactLayer layer;  // In W.
   std::array<RawContact, kMaxContacts> raw;
   std::array<Contact, kMaxContacts> contacts;
   std::size_t contact_count{0};
@@ -93,7 +95,8 @@ class BodyQuery {
   void Samples(const Placed& sampled, const Shell& shell, const Placed& field, bool has_ignored,
                std::uint32_t body) noexcept;
   void GroundLeaf(double z_W, std::size_t leaf) noexcept;
-  void Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept;
+  void Add(const RawContact& contact, const SampleFaces& faces, const Vec3& nhat_S,
+           const Vec3& p_S) noexcept;
 
   const Placed& held_;
   const QueryOptions& options_;
@@ -101,6 +104,7 @@ class BodyQuery {
   double stop_distance_;
   TraverseFunction traverse_;
   QueryWorkspace::Data* work_;
+  ContactLayer layer_;  // Of the body at hand, in its centred frame.
   bool is_stopped_{false};
 };
 

@@ -29,6 +29,10 @@ double QueryWorkspace::deepest() const noexcept {
   return data_->deepest;
 }
 
+const ContactLayer& QueryWorkspace::layer() const noexcept {
+  return data_->layer;
+}
+
 struct Scene::Data {
   struct Body {
     std::shared_ptr<const Shape> shape;

@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "contact/face_offsets.h"
+#include "contact/pool.h"
 #include "contact/shape.h"
 #include "spatial/box.h"
 #include "spatial/pose.h"
@@ -66,6 +67,9 @@ class QueryWorkspace {
   [[nodiscard]] const QueryStats& stats() const noexcept;
   /** The deepest distance met, over all points and not only the reported ones [m]; +inf if none. */
   [[nodiscard]] double deepest() const noexcept;
+
+  /** The force of all points in contact, and not only the reported ones. */
+  [[nodiscard]] const ContactLayer& layer() const noexcept;
 
   struct Data;
 

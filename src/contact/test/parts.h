@@ -159,6 +159,122 @@ inline ShapeSource Block(const Vec3& half) {
   return source;
 }
 
+/** A shaft with a lead-in and a ring groove. Faces: 0 bottom, 2 side to the groove, 4 its floor, 6
+ side, 7 top; on z from 0 to `length`. */
+inline ShapeSource GroovedShaft(double radius, double length) {
+  constexpr double kChamfer = 1e-3, kDepth = 1e-3, kFrom = 20e-3, kTo = 24e-3;
+  const double floor = radius - kDepth;
+  const Vec3 apex(0, 0, kChamfer - radius);
+  const spatial::Surface lead_in{spatial::SurfaceKind::kCone, apex, Vec3::UnitZ(), 0,
+                                 std::numbers::pi / 4,        1};
+  return Lathe({{{{0, 0}, {radius - kChamfer, 0}}, PlaneAt(0, -1)},
+                {{{radius - kChamfer, 0}, {radius, kChamfer}}, lead_in},
+                {{{radius, kChamfer}, {radius, kFrom}}, CylinderZ(radius, 1)},
+                {{{radius, kFrom}, {floor, kFrom}}, PlaneAt(kFrom, 1)},
+                {{{floor, kFrom}, {floor, kTo}}, CylinderZ(floor, 1)},
+                {{{floor, kTo}, {radius, kTo}}, PlaneAt(kTo, -1)},
+                {{{radius, kTo}, {radius, length}}, CylinderZ(radius, 1)},
+                {{{radius, length}, {0, length}}, PlaneAt(length, 1)}},
+               Segments(radius));
+}
+
+/** A bushing with an oil groove, from z = 0 to `length`. Faces: 0 bottom, 1 outside, 2 top, 3 and 7
+ bore, 5 floor of the groove. */
+inline ShapeSource GroovedBore(double bore, double outside, double length) {
+  constexpr double kDepth = 1e-3;
+  const double from = 0.5 * length, to = from - 4e-3;
+  const double floor = bore + kDepth;
+  return Lathe({{{{bore, 0}, {outside, 0}}, PlaneAt(0, -1)},
+                {{{outside, 0}, {outside, length}}, CylinderZ(outside, 1)},
+                {{{outside, length}, {bore, length}}, PlaneAt(length, 1)},
+                {{{bore, length}, {bore, from}}, CylinderZ(bore, -1)},
+                {{{bore, from}, {floor, from}}, PlaneAt(from, -1)},
+                {{{floor, from}, {floor, to}}, CylinderZ(floor, -1)},
+                {{{floor, to}, {bore, to}}, PlaneAt(to, 1)},
+                {{{bore, to}, {bore, 0}}, CylinderZ(bore, -1)}},
+               Segments(bore));
+}
+
+/** A tapered hole through a round body from z = 0 to `length`. Faces: 0 bottom, 1 outside, 2 top, 3
+ seat. */
+inline ShapeSource ConeSeat(double bottom, double top, double length, double outside) {
+  const double half_angle = std::atan2(top - bottom, length);
+  const Vec3 apex(0, 0, -bottom / std::tan(half_angle));
+  const spatial::Surface seat{spatial::SurfaceKind::kCone, apex, Vec3::UnitZ(), 0, half_angle, -1};
+  return Lathe({{{{bottom, 0}, {outside, 0}}, PlaneAt(0, -1)},
+                {{{outside, 0}, {outside, length}}, CylinderZ(outside, 1)},
+                {{{outside, length}, {top, length}}, PlaneAt(length, 1)},
+                {{{top, length}, {bottom, 0}}, seat}},
+               Segments(top));
+}
+
+/** The lower half of a spherical socket about the origin. Faces: 0 bottom, 1 outside, 2 top, 3
+ * seat.
+ */
+inline ShapeSource Socket(double radius, double outside, double deviation = 1e-6) {
+  auto arc = Arc(0, 0, radius, 0, -std::numbers::pi / 2, deviation);
+  arc.back().x() = 0;
+  const spatial::Surface seat{
+      spatial::SurfaceKind::kSphere, Vec3::Zero(), Vec3::UnitZ(), radius, 0, -1};
+  return Lathe({{{{0, -outside}, {outside, -outside}}, PlaneAt(-outside, -1)},
+                {{{outside, -outside}, {outside, 0}}, CylinderZ(outside, 1)},
+                {{{outside, 0}, {radius, 0}}, PlaneAt(0, 1)},
+                {arc, seat}},
+               Segments(radius, deviation));
+}
+
+/** A plate about the z axis with a half-round ring groove in its top at z = 0. Faces: 0 bottom, 1
+ outside, 2 top outside the groove, 3 groove, 4 top inside. */
+inline ShapeSource RingGroove(double major, double minor, double deviation = 1e-6) {
+  const double outside = major + 3 * minor, bottom = -3 * minor;
+  const spatial::Surface groove{
+      spatial::SurfaceKind::kTorus, Vec3::Zero(), Vec3::UnitZ(), major, minor, -1};
+  return Lathe({{{{0, bottom}, {outside, bottom}}, PlaneAt(bottom, -1)},
+                {{{outside, bottom}, {outside, 0}}, CylinderZ(outside, 1)},
+                {{{outside, 0}, {major + minor, 0}}, PlaneAt(0, 1)},
+                {Arc(major, 0, minor, 0, -std::numbers::pi, deviation), groove},
+                {{{major - minor, 0}, {0, 0}}, PlaneAt(0, 1)}},
+               Segments(major + minor, deviation));
+}
+
+/** A box from -half to half with a rectangular window through it along z, the half sizes of which
+ are given. Faces: 0..3 outside, 4..7 window, 8 bottom, 9 top. */
+inline ShapeSource Frame(const Vec3& half, const Eigen::Vector2d& window) {
+  ShapeSource source;
+  const auto corner = [&](double x, double y, int k, double z) {
+    const double sx[4] = {1, -1, -1, 1};
+    const double sy[4] = {1, 1, -1, -1};
+    source.vertices.emplace_back(sx[k % 4] * x, sy[k % 4] * y, z);
+    return static_cast<std::uint32_t>(source.vertices.size() - 1);
+  };
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d,
+                        std::uint32_t face) {
+    source.triangles.push_back({a, b, c});
+    source.triangles.push_back({a, c, d});
+    source.triangle_face.insert(source.triangle_face.end(), 2, face);
+  };
+  source.faces.resize(10);
+  const auto plane = [&](std::uint32_t face, const Vec3& p, const Vec3& n) {
+    source.faces[face] = {spatial::SurfaceKind::kPlane, p, n, 0, 0, 1};
+  };
+  const double h = half.z();
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const int i = static_cast<int>(k);
+    const auto outer = [&](int j, double z) { return corner(half.x(), half.y(), j, z); };
+    const auto inner = [&](int j, double z) { return corner(window.x(), window.y(), j, z); };
+    const Vec3 n = k % 2 == 0 ? Vec3(0, k == 0 ? 1 : -1, 0) : Vec3(k == 1 ? -1 : 1, 0, 0);
+    plane(k, n.cwiseProduct(half), n);
+    plane(k + 4, n.cwiseProduct(Vec3(window.x(), window.y(), 0)), -n);
+    quad(outer(i, -h), outer(i + 1, -h), outer(i + 1, h), outer(i, h), k);
+    quad(inner(i + 1, -h), inner(i, -h), inner(i, h), inner(i + 1, h), k + 4);
+    quad(outer(i + 1, -h), outer(i, -h), inner(i, -h), inner(i + 1, -h), 8);
+    quad(outer(i, h), outer(i + 1, h), inner(i + 1, h), inner(i, h), 9);
+  }
+  plane(8, Vec3(0, 0, -h), -Vec3::UnitZ());
+  plane(9, Vec3(0, 0, h), Vec3::UnitZ());
+  return source;
+}
+
 inline std::shared_ptr<const Shape> Build(const ShapeSource& source,
                                           const ShapeOptions& options = {}) {
   return Shape::Build(source, options).value();
