@@ -26,7 +26,7 @@ FORBIDDEN = re.compile(
 
 # Hold nothing but real-time code: room/file.
 TICK_ONLY = """
-    contact/kernel_avx2 contact/kernel_scalar contact/query contact/reduce contact/refine contact/slide
+    contact/kernel_avx2 contact/kernel_scalar contact/pool contact/query contact/reduce contact/refine contact/slide
     haptics/constraint_solver haptics/force_map haptics/mate_guide haptics/safety_gate
     mates/capture mates/resolve spatial/pose spatial/surface
 """.split()

@@ -84,6 +84,7 @@ TEST_F(RealtimeTest, QueryAndMovesDoNotAllocate) {
   const IgnoredPair pair{cups_[0], faces, faces};
   QueryOptions options;
   std::uint64_t candidates = 0;
+  double pooled = 0;
   const int before = allocations;
   for (int i = 0; i < 200; ++i) {
     options.ignored = i % 2 == 0 ? std::span<const IgnoredPair>() : std::span(&pair, 1);
@@ -91,12 +92,16 @@ TEST_F(RealtimeTest, QueryAndMovesDoNotAllocate) {
     options.held_offsets = i % 4 < 2 ? dowel_offsets_.get() : nullptr;
     scene_.Query(*dowel_, At(i), options, &work_);
     candidates += work_.stats().candidates;
+    const Vec3 p_WH = At(i).p();
+    pooled += work_.layer().CalcWrench(1e3, p_WH).f.norm();
+    pooled += CalcPooledWrench(work_.contacts(), p_WH, 1e3).K.trace();
     (void)scene_.IsFree(*dowel_, At(i), 1e-6, options, &work_);
     scene_.SetPose(cups_[static_cast<std::size_t>(1 + i % 19)], Pose(Vec3(0.05 * i, 0.1, 0)));
     scene_.SetEnabled(cups_[1], i % 2 == 0);
   }
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(candidates, 1000U);
+  EXPECT_GT(pooled, 0);
 }
 
 TEST_F(RealtimeTest, TheSameQueryGivesTheSameBits) {
