@@ -1,6 +1,7 @@
 #include "fits/population.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -15,8 +16,7 @@
 namespace hvas::fits {
 namespace {
 
-constexpr int kBlock = 4096;  // Assemblies; its forces stay in the second-level cache.
-constexpr std::size_t kBins = 2048;
+constexpr int kBlock = 4096;  // Assemblies; what is counted of them stays in the cache.
 
 Result<void> Check(const PopulationParameters& p) {
   const auto fail = [](std::string what, std::string remedy) {
@@ -43,50 +43,79 @@ Result<void> Check(const PopulationParameters& p) {
   return {};
 }
 
-/** Counts of values between two bounds in equal steps; those at the lower bound apart, for of many
- a fit has no force at all. */
+constexpr std::size_t kBins = kForceBins;
+
+/** Counts of values between two bounds in equal steps; those at the lower bound apart, for many
+ fits have no force at all. */
 class Histogram {
  public:
-  Histogram() : counts_(kBins + 1, 0) {}
-
   void SetRange(double low, double high) {
-    low_ = static_cast<float>(low);
+    low_ = low;
     width_ = high > low ? (high - low) / kBins : 0;
-    per_width_ = static_cast<float>(width_ > 0 ? 1 / width_ : 0);
+    per_width_ = width_ > 0 ? 1 / width_ : 0;
   }
 
-  void Add(float value) {
-    const float step = std::min((value - low_) * per_width_, static_cast<float>(kBins - 1));
-    const auto above = static_cast<std::int32_t>(value > low_);
-    ++counts_[static_cast<std::size_t>(static_cast<std::int32_t>(std::max(step, 0.0F)) + above)];
+  [[nodiscard]] std::uint16_t BinOf(double value) const {
+    const double step = std::clamp((value - low_) * per_width_, 0.0, kBins - 1.0);
+    return static_cast<std::uint16_t>(static_cast<int>(step) + (value > low_ ? 1 : 0));
+  }
+
+  /** Several of a row at once. Neighbours go to tables of their own: counting equal ones in one
+   would wait for its memory every time. */
+  void AddBins(const std::uint16_t* bins, int count) {
+    int i = 0;
+    for (; i + static_cast<int>(kTables) <= count; i += kTables) {
+      for (std::size_t t = 0; t < kTables; ++t) {
+        ++counts_[t][bins[i + static_cast<int>(t)]];
+      }
+    }
+    for (; i < count; ++i) {
+      ++counts_[0][bins[i]];
+    }
   }
 
   void Merge(const Histogram& other) {
-    for (std::size_t i = 0; i < counts_.size(); ++i) {
-      counts_[i] += other.counts_[i];
+    for (std::size_t t = 0; t < kTables; ++t) {
+      for (std::size_t i = 0; i <= kBins; ++i) {
+        counts_[t][i] += other.counts_[t][i];
+      }
     }
   }
 
   /** Linear within a step. */
   [[nodiscard]] double Quantile(double share) const {
-    double left = share * static_cast<double>(
-                              std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0}));
-    left -= counts_.front();
-    for (std::size_t i = 1; i < counts_.size() && left > 0; ++i) {
-      if (left <= counts_[i]) {
-        return static_cast<double>(low_) +
-               (static_cast<double>(i - 1) + left / counts_[i]) * width_;
-      }
-      left -= counts_[i];
+    std::int64_t total = 0;
+    for (std::size_t i = 0; i <= kBins; ++i) {
+      total += CountIn(i);
     }
-    return static_cast<double>(low_);
+    double left = share * static_cast<double>(total) - static_cast<double>(CountIn(0));
+    for (std::size_t i = 1; i <= kBins && left > 0; ++i) {
+      const auto here = static_cast<double>(CountIn(i));
+      if (left <= here) {
+        return low_ + (static_cast<double>(i - 1) + left / here) * width_;
+      }
+      left -= here;
+    }
+    return low_;
   }
 
+  [[nodiscard]] double bins_per_unit() const { return per_width_; }
+
  private:
-  std::vector<std::uint32_t> counts_;  // The first: at the lower bound or below.
-  float low_{0};
-  float per_width_{0};
+  static constexpr std::size_t kTables = 4;
+
+  [[nodiscard]] std::int64_t CountIn(std::size_t bin) const {
+    std::int64_t count = 0;
+    for (const auto& table : counts_) {
+      count += table[bin];
+    }
+    return count;
+  }
+
+  std::array<std::array<std::uint32_t, kBins + 1>, kTables> counts_{};  // 0: the lower bound.
+  double low_{0};
   double width_{0};
+  double per_width_{0};
 };
 
 /** A land with everything that does not change from pair to pair. */
@@ -149,7 +178,7 @@ struct Counts {
 /** Sums of a block, added up in the blocks' order so that rounding is the same for any threads. */
 struct BlockSums {
   std::vector<double> clearance, clearance_squared;  // By land, from the middle of its range.
-  std::vector<double> force;                         // By depth.
+  std::vector<float> force;                          // By depth and lane.
 };
 
 class Batch {
@@ -158,7 +187,7 @@ class Batch {
       : parameters_(parameters),
         lands_(std::move(lands)),
         depth_count_(parameters.depths + 1),
-        calc_forces_(ChooseCalcForces()) {
+        count_forces_(ChooseCountForces()) {
     block_count_ = (parameters.count + kBlock - 1) / kBlock;
     sums_.resize(static_cast<std::size_t>(block_count_));
     for (std::size_t d = 0; d < static_cast<std::size_t>(depth_count_); ++d) {
@@ -182,7 +211,6 @@ class Batch {
   void RunBlocks(std::int64_t first, Counts* counts);
   void DrawClearances(std::int64_t block, std::vector<std::vector<float>>* clearances_um,
                       Counts* counts);
-  void CountForces(std::int64_t block, const std::vector<float>& forces, Counts* counts);
 
   [[nodiscard]] int CountIn(std::int64_t block) const {
     return static_cast<int>(std::min<std::int64_t>(kBlock, parameters_.count - block * kBlock));
@@ -196,7 +224,7 @@ class Batch {
   const PopulationParameters& parameters_;
   std::vector<PreparedLand> lands_;
   int depth_count_;
-  ForcesFunction calc_forces_;
+  CountForcesFunction count_forces_;
   std::int64_t block_count_{0};
   std::vector<double> highest_;  // By depth [N].
   std::vector<BlockSums> sums_;
@@ -222,80 +250,81 @@ void Batch::DrawClearances(std::int64_t block, std::vector<std::vector<float>>* 
   sums.clearance.assign(lands_.size(), 0);
   sums.clearance_squared.assign(lands_.size(), 0);
   Random random(SeedOf(block));
-  const int count = CountIn(block);
-  for (int i = 0; i < count; ++i) {
-    bool has_interference = false;
-    bool yields = false;
-    for (std::size_t k = 0; k < lands_.size(); ++k) {
-      const PreparedLand& land = lands_[k];
+  const auto count = static_cast<std::size_t>(CountIn(block));
+  std::array<double, kBlock> hole;
+  std::array<double, kBlock> shaft;
+  std::array<std::uint8_t, kBlock> has_interference{};
+  std::array<std::uint8_t, kBlock> yields{};
+  for (std::size_t k = 0; k < lands_.size(); ++k) {
+    const PreparedLand& land = lands_[k];
+    for (std::size_t i = 0; i < count; ++i) {
       // Two numbers of 32 bits, never 0 or 1.
       const std::uint64_t bits = random.NextBits();
-      const double u = (static_cast<double>(bits >> 32U) + 0.5) * 0x1p-32;
-      const double v = (static_cast<double>(bits & 0xffffffffU) + 0.5) * 0x1p-32;
-      const double clearance = land.source->hole.Quantile(u) - land.source->shaft.Quantile(v);
-      const double from_middle = clearance - 0.5 * (land.clearance.lower + land.clearance.upper);
+      hole[i] = (static_cast<double>(bits >> 32U) + 0.5) * 0x1p-32;
+      shaft[i] = (static_cast<double>(bits & 0xffffffffU) + 0.5) * 0x1p-32;
+    }
+    land.source->hole.ToQuantiles({hole.data(), count});
+    land.source->shaft.ToQuantiles({shaft.data(), count});
+    const double middle = 0.5 * (land.clearance.lower + land.clearance.upper);
+    std::array<std::uint16_t, kBlock> bins;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double clearance = hole[i] - shaft[i];
+      const double from_middle = clearance - middle;
       sums.clearance[k] += from_middle;
       sums.clearance_squared[k] += from_middle * from_middle;
-      counts->clearances[k].Add(static_cast<float>(from_middle));
+      bins[i] = counts->clearances[k].BinOf(from_middle);
       const double smoothed = clearance + land.smoothing_loss;
       const bool interferes = clearance < 0;
       const bool yields_here = -smoothed > land.yield_interference;
       counts->interference[k] += interferes ? 1 : 0;
       counts->yield[k] += yields_here ? 1 : 0;
-      has_interference = has_interference || interferes;
-      yields = yields || yields_here;
-      (*clearances_um)[k][static_cast<std::size_t>(i)] =
-          static_cast<float>(units::ToUm(0.5 * smoothed));
+      has_interference[i] |= static_cast<std::uint8_t>(interferes);
+      yields[i] |= static_cast<std::uint8_t>(yields_here);
+      (*clearances_um)[k][i] = static_cast<float>(units::ToUm(0.5 * smoothed));
     }
-    counts->any_interference += has_interference ? 1 : 0;
-    counts->any_yield += yields ? 1 : 0;
+    counts->clearances[k].AddBins(bins.data(), static_cast<int>(count));
   }
-}
-
-void Batch::CountForces(std::int64_t block, const std::vector<float>& forces, Counts* counts) {
-  const int count = CountIn(block);
-  BlockSums& sums = sums_[static_cast<std::size_t>(block)];
-  sums.force.assign(static_cast<std::size_t>(depth_count_), 0);
-  for (std::size_t d = 0; d < sums.force.size(); ++d) {
-    const float* row = forces.data() + d * kBlock;
-    for (int i = 0; i < count; ++i) {
-      counts->forces[d].Add(row[i]);
-    }
-    // Eight sums at a time, which compilers make one of vectors.
-    float partial[kLanes] = {};
-    for (int i = 0; i + kLanes <= count; i += kLanes) {
-      for (int lane = 0; lane < kLanes; ++lane) {
-        partial[lane] += row[i + lane];
-      }
-    }
-    for (const float p : partial) {
-      sums.force[d] += static_cast<double>(p);
-    }
-    for (int i = count - count % kLanes; i < count; ++i) {
-      sums.force[d] += static_cast<double>(row[i]);
-    }
-  }
-  // Forces never fall with depth: the last one is the largest.
-  const float* last = forces.data() + (sums.force.size() - 1) * kBlock;
-  for (int i = 0; i < count; ++i) {
-    counts->over_press += static_cast<double>(last[i]) > parameters_.press_force ? 1 : 0;
-  }
+  counts->any_interference += std::accumulate(has_interference.begin(), has_interference.end(), 0);
+  counts->any_yield += std::accumulate(yields.begin(), yields.end(), 0);
 }
 
 void Batch::RunBlocks(std::int64_t first, Counts* counts) {
   std::vector<std::vector<float>> clearances_um(lands_.size(), std::vector<float>(kBlock));
-  std::vector<float> forces(static_cast<std::size_t>(depth_count_) * kBlock);
+  const auto depths = static_cast<std::size_t>(depth_count_);
+  std::vector<std::uint16_t> bins(depths * kBlock);
+  std::vector<float> bins_per_newton;
+  for (const Histogram& histogram : counts->forces) {
+    bins_per_newton.push_back(static_cast<float>(histogram.bins_per_unit()));
+  }
   std::vector<LandView> views;
   for (std::size_t k = 0; k < lands_.size(); ++k) {
     const PreparedLand& land = lands_[k];
     views.push_back({land.source->stations, land.half_roughness_um, land.force_per_interval,
                      clearances_um[k].data(), land.depths.data()});
   }
+  const auto press_force = static_cast<float>(
+      std::min(parameters_.press_force, static_cast<double>(std::numeric_limits<float>::max())));
   for (std::int64_t block = first; block < block_count_; block += parameters_.threads) {
     DrawClearances(block, &clearances_um, counts);
-    calc_forces_({views.data(), static_cast<std::int32_t>(views.size()), depth_count_, kBlock,
-                  ~SeedOf(block), forces.data()});
-    CountForces(block, forces, counts);
+    std::vector<float>& sums = sums_[static_cast<std::size_t>(block)].force;
+    sums.resize(depths * kLanes);
+    PopulationBlock work{views.data(),
+                         static_cast<std::int32_t>(views.size()),
+                         depth_count_,
+                         CountIn(block),
+                         ~SeedOf(block),
+                         press_force,
+                         bins_per_newton.data(),
+                         bins.data(),
+                         kBlock,
+                         sums.data(),
+                         0};
+    count_forces_(&work);
+    for (std::size_t d = 0; d < depths; ++d) {
+      counts->forces[d].AddBins(bins.data() + d * kBlock, CountIn(block));
+    }
+    // Forces never fall with depth: the last one is the largest.
+    counts->over_press += work.over_press;
   }
 }
 
@@ -358,7 +387,9 @@ Population Batch::Run() {
     ForceBand band;
     band.depth = end * static_cast<double>(d) / parameters_.depths;
     for (const BlockSums& block : sums_) {
-      band.mean += block.force[d];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        band.mean += static_cast<double>(block.force[d * kLanes + static_cast<std::size_t>(lane)]);
+      }
     }
     band.mean /= n;
     for (std::size_t q = 0; q < kBandShares.size(); ++q) {

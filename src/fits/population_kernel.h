@@ -23,23 +23,31 @@ struct LandView {
   const LandDepth* depths;         ///< As many as the grid has.
 };
 
+inline constexpr int kForceBins = 2048;
+
 struct PopulationBlock {
   const LandView* lands;
   std::int32_t land_count;
   std::int32_t depth_count;
-  std::int32_t assembly_count;  ///< A multiple of kLanes.
-  std::uint64_t seed;           ///< Of this block.
-  float* forces;                ///< depth_count rows of assembly_count.
+  std::int32_t assembly_count;   ///< Room for a multiple of kLanes is everywhere.
+  std::uint64_t seed;            ///< Of this block.
+  float press_force;             ///< [N]
+  const float* bins_per_newton;  ///< Of each depth; 0 where no force is possible.
+  // Results.
+  std::uint16_t* bins;  ///< Rows of `stride`, by depth: 0 without force, else 1 to kForceBins.
+  std::int32_t stride;
+  float* sums;              ///< Forces of each depth, in kLanes partial sums [N].
+  std::int32_t over_press;  ///< Assemblies whose force at the last depth exceeds the press.
 };
 
-/** Draws B of every assembly and writes the forces at the depths of the grid. Both give the same
- bits. */
-void CalcForcesScalar(const PopulationBlock& block) noexcept;
-void CalcForcesAvx2(const PopulationBlock& block) noexcept;
+/** Draws B of every assembly and sorts the forces at the depths of the grid into bins. Both give
+ the same bits. */
+void CountForcesScalar(PopulationBlock* block) noexcept;
+void CountForcesAvx2(PopulationBlock* block) noexcept;
 
-using ForcesFunction = void (*)(const PopulationBlock&);
+using CountForcesFunction = void (*)(PopulationBlock*);
 
 /** The fastest that this machine runs. */
-[[nodiscard]] ForcesFunction ChooseCalcForces() noexcept;
+[[nodiscard]] CountForcesFunction ChooseCountForces() noexcept;
 
 }  // namespace hvas::fits

@@ -92,22 +92,53 @@ inline void AddLand(const hvas::fits::LandView& land, int first, int depth_count
   }
 }
 
-inline void CalcForces(const hvas::fits::PopulationBlock& block) {
+/** Adds the forces of eight assemblies, `valid` of them real, to what a block counts. */
+inline void Count(const Floats& force, const Floats& valid, int depth, int first,
+                  hvas::fits::PopulationBlock* block, Floats* sum) {
+  *sum += force * valid;
+  const Floats zero = {};
+  const Floats highest = zero + static_cast<float>(hvas::fits::kForceBins - 1);
+  Floats at = force * block->bins_per_newton[depth];
+  at = at < highest ? at : highest;
+  // Comparisons give -1 where true.
+  const Signed bins = __builtin_convertvector(at, Signed) - (force > zero);
+  std::uint16_t* row = block->bins + static_cast<std::int64_t>(depth) * block->stride + first;
+  for (int lane = 0; lane < hvas::fits::kLanes; ++lane) {
+    row[lane] = static_cast<std::uint16_t>(bins[lane]);
+  }
+}
+
+inline void CountForces(hvas::fits::PopulationBlock* block) {
   LaneRandom random;
-  Seed(block.seed, &random);
+  Seed(block->seed, &random);
   Floats totals[hvas::fits::kMaxStations + 1];
-  for (int first = 0; first < block.assembly_count; first += hvas::fits::kLanes) {
-    for (int d = 0; d < block.depth_count; ++d) {
+  Floats sums[hvas::fits::kMaxStations + 1];
+  for (int d = 0; d < block->depth_count; ++d) {
+    sums[d] = Floats{};
+  }
+  block->over_press = 0;
+  for (int first = 0; first < block->assembly_count; first += hvas::fits::kLanes) {
+    Floats valid;
+    for (int lane = 0; lane < hvas::fits::kLanes; ++lane) {
+      valid[lane] = first + lane < block->assembly_count ? 1.0F : 0.0F;
+    }
+    for (int d = 0; d < block->depth_count; ++d) {
       totals[d] = Floats{};
     }
-    for (int i = 0; i < block.land_count; ++i) {
-      AddLand(block.lands[i], first, block.depth_count, &random, totals);
+    for (int i = 0; i < block->land_count; ++i) {
+      AddLand(block->lands[i], first, block->depth_count, &random, totals);
     }
-    for (int d = 0; d < block.depth_count; ++d) {
-      float* row = block.forces + static_cast<std::int64_t>(d) * block.assembly_count + first;
-      for (int lane = 0; lane < hvas::fits::kLanes; ++lane) {
-        row[lane] = totals[d][lane];
-      }
+    for (int d = 0; d < block->depth_count; ++d) {
+      Count(totals[d], valid, d, first, block, &sums[d]);
+    }
+    const Floats& last = totals[block->depth_count - 1];
+    for (int lane = 0; lane < hvas::fits::kLanes; ++lane) {
+      block->over_press += last[lane] * valid[lane] > block->press_force ? 1 : 0;
+    }
+  }
+  for (int d = 0; d < block->depth_count; ++d) {
+    for (int lane = 0; lane < hvas::fits::kLanes; ++lane) {
+      block->sums[d * hvas::fits::kLanes + lane] = sums[d][lane];
     }
   }
 }

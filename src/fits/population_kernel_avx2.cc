@@ -3,8 +3,8 @@
 
 namespace hvas::fits {
 
-void CalcForcesAvx2(const PopulationBlock& block) noexcept {
-  CalcForces(block);
+void CountForcesAvx2(PopulationBlock* block) noexcept {
+  CountForces(block);
 }
 
 }  // namespace hvas::fits

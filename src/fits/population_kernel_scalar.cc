@@ -2,17 +2,17 @@
 
 namespace hvas::fits {
 
-void CalcForcesScalar(const PopulationBlock& block) noexcept {
-  CalcForces(block);
+void CountForcesScalar(PopulationBlock* block) noexcept {
+  CountForces(block);
 }
 
-ForcesFunction ChooseCalcForces() noexcept {
+CountForcesFunction ChooseCountForces() noexcept {
 #ifdef HVAS_HAS_AVX2_POPULATION
   if (__builtin_cpu_supports("avx2")) {
-    return CalcForcesAvx2;
+    return CountForcesAvx2;
   }
 #endif
-  return CalcForcesScalar;
+  return CountForcesScalar;
 }
 
 }  // namespace hvas::fits

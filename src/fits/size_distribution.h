@@ -32,6 +32,9 @@ class SizeDistribution {
   /** The deviation below which a share u in (0, 1) of the batch lies. */
   [[nodiscard]] double Quantile(double u) const noexcept;
 
+  /** Puts in place of every share u its deviation; of a normal distribution within 2e-4 sigma. */
+  void ToQuantiles(std::span<double> values) const noexcept;
+
   [[nodiscard]] double mean() const noexcept { return mean_; }
 
   [[nodiscard]] double variance() const noexcept { return variance_; }

@@ -198,13 +198,30 @@ TEST(Population, BothKernelsGiveTheSameBits) {
     c = static_cast<float>(random.Uniform(-20, 20));
   }
   const std::vector<LandDepth> depths{{-1, 0}, {0, 1}, {3, 0.37F}, {6, 1}};
+  const std::vector<float> bins_per_newton{0, 2, 1.5F, 1};
   const LandView land{7, 3.15F, 12.5F, clearance_um.data(), depths.data()};
-  std::vector<float> scalar(depths.size() * kCount);
-  std::vector<float> vector(depths.size() * kCount);
-  CalcForcesScalar({&land, 1, 4, kCount, 123, scalar.data()});
-  CalcForcesAvx2({&land, 1, 4, kCount, 123, vector.data()});
-  EXPECT_EQ(std::memcmp(scalar.data(), vector.data(), scalar.size() * sizeof(float)), 0);
-  EXPECT_GT(scalar.back(), -1.0F);
+
+  struct Counted {
+    std::vector<std::uint16_t> bins = std::vector<std::uint16_t>(4 * kCount);
+    std::vector<float> sums = std::vector<float>(4 * kLanes);
+    std::int32_t over{0};
+  };
+
+  const auto count = [&](CountForcesFunction function) {
+    Counted c;
+    PopulationBlock block{
+        &land,         1, 4, kCount - 3, 123, 300, bins_per_newton.data(), c.bins.data(), kCount,
+        c.sums.data(), 0};
+    function(&block);
+    c.over = block.over_press;
+    return c;
+  };
+  const Counted scalar = count(CountForcesScalar);
+  const Counted vector = count(CountForcesAvx2);
+  EXPECT_EQ(scalar.bins, vector.bins);
+  EXPECT_EQ(std::memcmp(scalar.sums.data(), vector.sums.data(), 4 * kLanes * sizeof(float)), 0);
+  EXPECT_EQ(scalar.over, vector.over);
+  EXPECT_GT(scalar.over, 5);
 #endif
 }
 
