@@ -81,6 +81,10 @@ class Planner {
   [[nodiscard]] std::optional<SequenceStep> TryRemove(const Unit& unit, Memory* memory);
   void SetPresent(const Unit& unit, bool is_present);
   [[nodiscard]] std::string ExplainStuck(OccurrenceId id) const;
+  /** Where a shaft of one part would have to pass a smaller hole of the other: says so, with both
+   diameters. Else empty. */
+  [[nodiscard]] std::string ExplainTooWide(OccurrenceId id, OccurrenceId other,
+                                           const Vec3& direction) const;
 
   /** Takes apart the parts given, with nothing else there; appends the steps that put them
    together, those of subassemblies first. */
@@ -406,17 +410,61 @@ std::optional<SequenceStep> Planner::TryRemove(const Unit& unit, Memory* memory)
   return step;
 }
 
+std::string Planner::ExplainTooWide(OccurrenceId id, OccurrenceId other,
+                                    const Vec3& direction) const {
+  constexpr double kCollinear = 20e-6;  // [m] between axes that count as one
+  if (!other.is_valid()) {
+    return {};
+  }
+  const product::Pose& X_WB = product_.occurrences[id.index()].X_WB;
+  const product::Pose& X_WO = product_.occurrences[other.index()].X_WB;
+  std::string text;
+  double least = 0;  // The narrowest place tells it best.
+  for (const product::Feature& own : product_.part_of(id).features) {
+    const Vec3 axis_W = X_WB.q() * own.axis_B;
+    if (std::abs(axis_W.dot(direction)) < 1 - kParallel) {
+      continue;
+    }
+    for (const product::Feature& its : product_.part_of(other).features) {
+      const bool is_pair =
+          (own.kind == product::FeatureKind::kShaft && its.kind == product::FeatureKind::kHole) ||
+          (own.kind == product::FeatureKind::kHole && its.kind == product::FeatureKind::kShaft);
+      const Vec3 between = X_WO * its.origin_B - X_WB * own.origin_B;
+      const bool is_own_shaft = own.kind == product::FeatureKind::kShaft;
+      const double excess = is_own_shaft ? own.radius - its.radius : its.radius - own.radius;
+      if (!is_pair || excess < kDepthTolerance - 1e-9 ||
+          between.cross(axis_W).norm() > kCollinear ||
+          std::abs((X_WO.q() * its.axis_B).dot(axis_W)) < 1 - kParallel ||
+          (least > 0 && excess > least)) {
+        continue;
+      }
+      least = excess;
+      const double own_mm = units::ToMm(2 * own.radius);
+      const double its_mm = units::ToMm(2 * its.radius);
+      text = is_own_shaft
+                 ? fmt::format("its diameter of {:.3f} mm does not pass the hole of {:.3f} mm",
+                               own_mm, its_mm)
+                 : fmt::format("its hole of {:.3f} mm does not pass the diameter of {:.3f} mm",
+                               own_mm, its_mm);
+    }
+  }
+  return text;
+}
+
 std::string Planner::ExplainStuck(OccurrenceId id) const {
-  const Blocker* farthest = nullptr;
+  const Attempt* farthest = nullptr;
   for (const Attempt& attempt : memories_[id.index()].attempts) {
     if (attempt.blocker &&
-        (farthest == nullptr || attempt.blocker->travelled > farthest->travelled)) {
-      farthest = &*attempt.blocker;
+        (farthest == nullptr || attempt.blocker->travelled > farthest->blocker->travelled)) {
+      farthest = &attempt;
     }
   }
   if (farthest != nullptr) {
-    return fmt::format("no free path: meets {} after {:.1f} mm along its best way out",
-                       Describe(farthest->occurrence), units::ToMm(farthest->travelled));
+    const Blocker& blocker = *farthest->blocker;
+    const std::string why = ExplainTooWide(id, blocker.occurrence, farthest->direction);
+    return fmt::format("no free path: meets {} after {:.1f} mm along its best way out{}{}",
+                       Describe(blocker.occurrence), units::ToMm(blocker.travelled),
+                       why.empty() ? "" : ", as drawn: ", why);
   }
   std::set<OccurrenceId> partners;
   for (const MateView& view : mates_of_[id.index()]) {

@@ -312,6 +312,30 @@ TEST(AssembleTest, OrderBeginsWithThePartsThatAreAskedFor) {
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "/driven gear shaft", names[1]);
 }
 
+TEST(AssembleTest, GuidedBushingStopsAtTheCoverThatWasPutOnTooSoon) {  // N3
+  // The bushing slides on the shaft, a mate that guides it, until it meets the bottom of the pocket
+  // for the seal, 85 mm up in the cover: 9.5 mm of its bore, which begins after a chamfer of 0.5
+  // mm, are then on the journal, which ends at 95 mm.
+  const std::vector<std::string> wrong_order{"assemble", ProductFile("gear_pump"), "--order",
+                                             "bushing 1,drive gear shaft,cover,bushing 3"};
+  const auto run_with = [&](const std::string& condition, const std::string& limit) {
+    std::vector<std::string> arguments = wrong_order;
+    arguments.insert(arguments.end(), {"--condition", condition, "--limit", limit});
+    const json run = RunHvasJson(arguments, 2);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "/bushing 3",
+                        run["parts"][4]["name"].get<std::string>());
+    return run["parts"][4];
+  };
+  const json stopped = run_with("hybrid", "62");
+  EXPECT_FALSE(stopped["seated"].get<bool>());
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "cover assembly/cover stood in the way",
+                      stopped["reason"].get<std::string>());
+  EXPECT_NEAR(stopped["insertion_mm"].get<double>(), 9.5, 0.02);
+  EXPECT_LE(stopped["deepest_um"].get<double>(), 25);
+  // As in the papers, without collision once a mate is captured: through the cover.
+  EXPECT_TRUE(run_with("constraint", "34")["seated"].get<bool>());
+}
+
 TEST(AssembleTest, RealtimeCountsWhatItMissed) {  // X4; no time is asserted: the host has the say
   const TemporaryFolder folder;
   const std::string file = (folder / "session").string();

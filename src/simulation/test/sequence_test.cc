@@ -122,6 +122,36 @@ TEST(SequenceTest, CaptivePartIsReportedWithWhatHoldsIt) {  // N10
       << planned.sequence.gaps[0].reason;
   EXPECT_GE(travelled_mm, 1.0);
   EXPECT_LE(travelled_mm, 1.5);
+  EXPECT_PRED_FORMAT2(IsSubstring, "its hole of 10.000 mm does not pass the diameter of 20.000 mm",
+                      planned.sequence.gaps[0].reason);
+}
+
+TEST(SequenceTest, ScrewWiderThanItsHoleIsReportedWithBothDiameters) {  // N10
+  // Drawn where it ends: its thread beyond the plate, its neck in the hole, its head on top.
+  using contact::testing::CylinderZ;
+  using contact::testing::PlaneAt;
+  Product product;
+  product.name = "tight";
+  const auto plate =
+      testing::AddPart(&product, "plate", contact::testing::Bushing(3e-3, 20e-3, 10e-3, 20e-6));
+  const auto screw = testing::AddPart(
+      &product, "screw",
+      contact::testing::Lathe({{{{0, -8e-3}, {3.2e-3, -8e-3}}, PlaneAt(-8e-3, -1)},
+                               {{{3.2e-3, -8e-3}, {3.2e-3, -1e-3}}, CylinderZ(3.2e-3, 1)},
+                               {{{3.2e-3, -1e-3}, {2.8e-3, -1e-3}}, PlaneAt(-1e-3, 1)},
+                               {{{2.8e-3, -1e-3}, {2.8e-3, 10e-3}}, CylinderZ(2.8e-3, 1)},
+                               {{{2.8e-3, 10e-3}, {5e-3, 10e-3}}, PlaneAt(10e-3, -1)},
+                               {{{5e-3, 10e-3}, {5e-3, 13e-3}}, CylinderZ(5e-3, 1)},
+                               {{{5e-3, 13e-3}, {0, 13e-3}}, PlaneAt(13e-3, 1)}},
+                              64));
+  testing::Place(&product, plate, "plate");
+  testing::Place(&product, screw, "screw");
+  testing::Complete(&product);
+  const Planned planned(product);
+  ASSERT_EQ(planned.sequence.gaps.size(), 1U);
+  EXPECT_PRED_FORMAT2(IsSubstring, "meets tight/plate", planned.sequence.gaps[0].reason);
+  EXPECT_PRED_FORMAT2(IsSubstring, "its diameter of 6.400 mm does not pass the hole of 6.000 mm",
+                      planned.sequence.gaps[0].reason);
 }
 
 /** An axis-hole mate between two occurrences along a direction of the world, by hand. */
