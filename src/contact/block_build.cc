@@ -14,6 +14,8 @@ const double kHalfDiagonal = std::sqrt(3.0) / 2;
 constexpr double kFaceMarginVoxels = 0.25;
 constexpr double kLeastFaceMargin = 100e-6;  // [m]
 
+constexpr double kDeepestContact = 200e-6;  // [m]
+
 Vec3 Corner(int i) {
   return {(i & 1) * 2.0 - 1, ((i >> 1) & 1) * 2.0 - 1, (i >> 2) * 2.0 - 1};
 }
@@ -55,10 +57,20 @@ bool IsOneFace(const Mesh& mesh, const NearList& list) {
 
 }  // namespace
 
+double CalcExactDepth(double voxel) {
+  return std::clamp(kDeepestContact, voxel, 2 * voxel);
+}
+
+double CalcBlockReach(double voxel) {
+  return std::max(CalcExactDepth(voxel), 1.5 * voxel);
+}
+
 BlockBuilder::BlockBuilder(const Shape::Data& data, const NearSearch& search)
     : data_(data),
       search_(search),
       h_(data.voxel),
+      exact_depth_(CalcExactDepth(data.voxel)),
+      block_reach_(CalcBlockReach(data.voxel)),
       face_margin_(std::max(kFaceMarginVoxels * data.voxel, kLeastFaceMargin)) {}
 
 Vec3 BlockBuilder::CentreOf(const Index3& zone) const {
@@ -105,12 +117,12 @@ void BlockBuilder::BuildZone(const Index3& zone, const NearList& octant) {
     return;
   }
   search_.Filter(octant, centre, radius, false, &list_);
-  if (std::abs(nearest.distance) <= kExactVoxels * h_ + radius) {
+  if (std::abs(nearest.distance) <= exact_depth_ + radius) {
     DropFarFaces(centre, h_, &list_);
     if (TryExact(list_, centre, h_, zone, 1)) {
       return;
     }
-    DecideZone(centre, IsOneFace(data_.mesh, list_), ZoneOf(zone));
+    DecideZone(centre, ZoneOf(zone));
   } else {
     ZoneOf(zone)->code = zone::kFar | data_.mesh.face[hint_];
   }
@@ -127,7 +139,7 @@ bool BlockBuilder::TryExact(const NearList& list, const Vec3& centre, double hal
       !AgreesWithFace(list, centre, half)) {
     return false;
   }
-  const double reach = kExactVoxels * h_ + 2 * kHalfDiagonal * h_;
+  const double reach = exact_depth_ + 2 * kHalfDiagonal * h_;
   for (int z = 0; z < zones * zones * zones; ++z) {
     const Index3 zone{low[0] + z % zones, low[1] + z / zones % zones, low[2] + z / zones / zones};
     const double distance = spatial::CalcDistance(surface, CentreOf(zone)).distance;
@@ -239,11 +251,9 @@ void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) const {
   });
 }
 
-void BlockBuilder::DecideZone(const Vec3& centre, bool is_one_face, Zone* out) {
-  const std::uint32_t face = data_.mesh.face[hint_];
-  if (is_one_face && !HasSharpEdge() &&
-      data_.exact.faces[face].kind == spatial::SurfaceKind::kFreeform) {
-    out->code = zone::kSmooth | face;
+void BlockBuilder::DecideZone(const Vec3& centre, Zone* out) {
+  if (IsSmooth()) {
+    out->code = zone::kSmooth | data_.mesh.face[hint_];
     return;
   }
   out->code = zone::kList;
@@ -251,15 +261,16 @@ void BlockBuilder::DecideZone(const Vec3& centre, bool is_one_face, Zone* out) {
   KeepClosest(centre, &out->list);
 }
 
-bool BlockBuilder::HasSharpEdge() const {
-  for (const NearTriangle& entry : list_) {
-    for (const EdgeKind kind : data_.mesh.edge_kind[entry.triangle]) {
-      if (kind == EdgeKind::kConvex || kind == EdgeKind::kConcave) {
-        return true;
-      }
-    }
-  }
-  return false;
+// Freeform faces that go over into each other without an edge have no distance but the field's.
+bool BlockBuilder::IsSmooth() const {
+  return std::all_of(list_.begin(), list_.end(), [&](const NearTriangle& entry) {
+    const auto& kinds = data_.mesh.edge_kind[entry.triangle];
+    return data_.exact.faces[data_.mesh.face[entry.triangle]].kind ==
+               spatial::SurfaceKind::kFreeform &&
+           std::all_of(kinds.begin(), kinds.end(), [](EdgeKind kind) {
+             return kind == EdgeKind::kSmooth || kind == EdgeKind::kOpen;
+           });
+  });
 }
 
 // All nodes are beyond the band, on one side of the surface.
@@ -294,7 +305,7 @@ void BlockBuilder::FillNodes(const Index3& zone, const Vec3& centre) {
 
 void BlockBuilder::SetNode(int i, int j, int k, double phi) {
   const double quantum = kBandVoxels * h_ / 32767;
-  block_->is_near = block_->is_near || std::abs(phi) < kBlockVoxels * h_;
+  block_->is_near = block_->is_near || std::abs(phi) < block_reach_;
   block_->is_inside = phi < 0;
   block_->nodes[static_cast<std::size_t>(k * 81 + j * 9 + i)] =
       static_cast<std::int16_t>(std::lrint(std::clamp(phi / quantum, -32767.0, 32767.0)));

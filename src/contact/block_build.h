@@ -9,9 +9,14 @@
 
 namespace hvas::contact {
 
-inline constexpr double kBandVoxels = 4.0;   ///< The distance that nodes hold, at most.
-inline constexpr double kBlockVoxels = 2.0;  ///< Blocks are kept that come this near the surface.
-inline constexpr double kExactVoxels = 2.0;  ///< Depth of the layer that is answered exactly.
+inline constexpr double kBandVoxels = 4.0;  ///< The distance that nodes hold, at most.
+
+/** Depth of the layer on both sides of the surface that is answered exactly [m]: a voxel, but
+ deeper than parts are pressed into each other as far as two voxels reach. */
+[[nodiscard]] double CalcExactDepth(double voxel);
+
+/** Blocks are kept that come this near the surface [m]. */
+[[nodiscard]] double CalcBlockReach(double voxel);
 
 struct Zone {
   std::uint32_t code{zone::kFar};
@@ -50,14 +55,16 @@ class BlockBuilder {
   void FillFarZone(const Index3& zone, double distance);
   void FillNodes(const Index3& zone, const Vec3& centre);
   void SetNode(int i, int j, int k, double phi);
-  void DecideZone(const Vec3& centre, bool is_one_face, Zone* out);
-  [[nodiscard]] bool HasSharpEdge() const;
+  void DecideZone(const Vec3& centre, Zone* out);
+  [[nodiscard]] bool IsSmooth() const;
   [[nodiscard]] Vec3 CentreOf(const Index3& zone) const;
   [[nodiscard]] Zone* ZoneOf(const Index3& zone) const;
 
   const Shape::Data& data_;
   const NearSearch& search_;
   double h_;
+  double exact_depth_;
+  double block_reach_;
   double face_margin_;
   Block* block_{nullptr};
   NearList octant_;

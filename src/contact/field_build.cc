@@ -234,7 +234,7 @@ std::vector<Block> FindBlocks(const NearSearch& search, Shape::Data* data) {
   const auto skip = [&](const Index3& low, int width, const Vec3& centre, double radius,
                         const NearList& list) {
     const NearTriangle least = LeastOf(list);
-    if (least.distance <= kBlockVoxels * data->voxel + radius) {
+    if (least.distance <= CalcBlockReach(data->voxel) + radius) {
       return false;
     }
     if (search.FindSigned(list, centre, 0, least.triangle).distance < 0) {
@@ -409,15 +409,16 @@ void BuildField(const ShapeOptions& options, Shape::Data* data) {
   view.voxel = static_cast<float>(data->voxel);
   data->voxel = static_cast<double>(view.voxel);
   view.band = static_cast<float>(kBandVoxels * data->voxel);
-  // All nodes of a block that is left out are further away than kBlockVoxels, and every point in it
-  // is half a diagonal of a cell from one of them.
-  view.beyond = static_cast<float>((kBlockVoxels - 0.5 * std::sqrt(3.0)) * data->voxel);
+  // All nodes of a block that is left out are further away than this, and every point in it is no
+  // more than half a diagonal of a cell from one of them.
+  const double block_reach = CalcBlockReach(data->voxel);
+  view.beyond = static_cast<float>(block_reach - kHalfDiagonal * data->voxel);
   view.quantum = static_cast<float>(kBandVoxels * data->voxel / 32767);
   const Vec3 half = 0.5 * data->box_B.size();
   for (int k = 0; k < 3; ++k) {
     view.low[k] = static_cast<float>(-half[k]);
     view.high[k] = static_cast<float>(half[k]);
-    const double reach = half[k] + (kBlockVoxels + 0.5) * data->voxel;
+    const double reach = half[k] + block_reach + 0.5 * data->voxel;
     view.blocks[k] = static_cast<int>(std::ceil(2 * reach / (kBlockCells * data->voxel)));
     view.origin[k] = static_cast<float>(-0.5 * view.blocks[k] * kBlockCells * data->voxel);
   }

@@ -65,14 +65,16 @@ struct ExactTable {
 
 inline constexpr std::size_t kMaxPointFaces = 4;
 
-/** The faces that meet at a sample and their normals. Unused: kNoFace and zero. */
+/** The faces that meet at a sample and their normals (unit to 1e-4). Unused: kNoFace and zero. */
 struct SampleFaces {
   std::array<std::uint32_t, kMaxPointFaces> faces;
-  std::array<std::array<float, 3>, kMaxPointFaces> normals;  ///< Out of the material.
+  /** Out of the material, in units of kNormalUnit. */
+  std::array<std::array<std::int16_t, 3>, kMaxPointFaces> normals;
+
+  static constexpr double kNormalUnit = 1.0 / 32767;
 
   [[nodiscard]] Vec3 normal(std::size_t i) const noexcept {
-    return {static_cast<double>(normals[i][0]), static_cast<double>(normals[i][1]),
-            static_cast<double>(normals[i][2])};
+    return kNormalUnit * Vec3(normals[i][0], normals[i][1], normals[i][2]);
   }
 };
 

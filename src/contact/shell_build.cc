@@ -394,7 +394,8 @@ class TreeBuilder {
       SampleFaces faces{s.faces, {}};
       for (std::size_t f = 0; f < kMaxPointFaces; ++f) {
         for (std::size_t k = 0; k < 3; ++k) {
-          faces.normals[f][k] = static_cast<float>(s.normals[f][static_cast<Eigen::Index>(k)]);
+          faces.normals[f][k] = static_cast<std::int16_t>(
+              std::lrint(s.normals[f][static_cast<Eigen::Index>(k)] / SampleFaces::kNormalUnit));
         }
       }
       shell_->faces.push_back(faces);
