@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "parts.h"
+#include "peer_mesh.h"
 #include "tracks.h"
 
 namespace hvas::bench {
@@ -37,10 +38,20 @@ class Method {
   /** Of the last query; empty where the method tells yes or no only. */
   [[nodiscard]] virtual std::span<const FoundContact> contacts() = 0;
 
+  /** Of the last query: K sum(d^2 n) / sum(d), for K of 1 N/mm [N]. */
+  [[nodiscard]] virtual Vec3 PooledForce();
+
   [[nodiscard]] virtual Effort effort() const { return {}; }
 };
 
 /** Contacts of contact::Scene. */
 [[nodiscard]] std::unique_ptr<Method> MakeOurs(const std::vector<BenchPart>* parts, bool is_scalar);
+/** FCL with OBBRSS trees under its dynamic AABB tree. @param max_contacts  Of a pair of parts; 0:
+ yes or no only. */
+[[nodiscard]] std::unique_ptr<Method> MakeFcl(MeshOf mesh_of, std::size_t max_contacts);
+/** Bullet's GImpact under its dbvt; all contacts. */
+[[nodiscard]] std::unique_ptr<Method> MakeGImpact(MeshOf mesh_of);
+/** Boxes of parts, of 3 x 3 x 3 cells and of surfaces, then polygons: requirement X6. */
+[[nodiscard]] std::unique_ptr<Method> MakeCellScheme(MeshOf mesh_of);
 
 }  // namespace hvas::bench

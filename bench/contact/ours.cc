@@ -33,6 +33,10 @@ class Ours : public Method {
     return found_;
   }
 
+  [[nodiscard]] Vec3 PooledForce() override {
+    return work_.layer().CalcWrench(1e3, Vec3::Zero()).f;
+  }
+
   [[nodiscard]] Effort effort() const override {
     const contact::QueryStats& stats = work_.stats();
     return {stats.bodies_tested, stats.points_tested, stats.candidates};

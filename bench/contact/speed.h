@@ -11,8 +11,7 @@ namespace hvas::bench {
 
 /** A method as the table of speed names it. */
 struct Entrant {
-  std::string name;  ///< For --methods.
-  std::string what;
+  std::string name;        ///< For --methods.
   int poses{kTrackPoses};  ///< Of each track, evenly spread: the slow ones are asked fewer.
   int passes{5};
   std::function<std::unique_ptr<Method>()> make;

@@ -161,7 +161,7 @@ inline ShapeSource Block(const Vec3& half) {
 
 /** A shaft with a lead-in and a ring groove. Faces: 0 bottom, 2 side to the groove, 4 its floor, 6
  side, 7 top; on z from 0 to `length`. */
-inline ShapeSource GroovedShaft(double radius, double length) {
+inline ShapeSource GroovedShaft(double radius, double length, double deviation = 1e-6) {
   constexpr double kChamfer = 1e-3, kDepth = 1e-3, kFrom = 20e-3, kTo = 24e-3;
   const double floor = radius - kDepth;
   const Vec3 apex(0, 0, kChamfer - radius);
@@ -175,12 +175,13 @@ inline ShapeSource GroovedShaft(double radius, double length) {
                 {{{floor, kTo}, {radius, kTo}}, PlaneAt(kTo, -1)},
                 {{{radius, kTo}, {radius, length}}, CylinderZ(radius, 1)},
                 {{{radius, length}, {0, length}}, PlaneAt(length, 1)}},
-               Segments(radius));
+               Segments(radius, deviation));
 }
 
 /** A bushing with an oil groove, from z = 0 to `length`. Faces: 0 bottom, 1 outside, 2 top, 3 and 7
  bore, 5 floor of the groove. */
-inline ShapeSource GroovedBore(double bore, double outside, double length) {
+inline ShapeSource GroovedBore(double bore, double outside, double length,
+                               double deviation = 1e-6) {
   constexpr double kDepth = 1e-3;
   const double from = 0.5 * length, to = from - 4e-3;
   const double floor = bore + kDepth;
@@ -192,12 +193,13 @@ inline ShapeSource GroovedBore(double bore, double outside, double length) {
                 {{{floor, from}, {floor, to}}, CylinderZ(floor, -1)},
                 {{{floor, to}, {bore, to}}, PlaneAt(to, 1)},
                 {{{bore, to}, {bore, 0}}, CylinderZ(bore, -1)}},
-               Segments(bore));
+               Segments(bore, deviation));
 }
 
 /** A tapered hole through a round body from z = 0 to `length`. Faces: 0 bottom, 1 outside, 2 top, 3
  seat. */
-inline ShapeSource ConeSeat(double bottom, double top, double length, double outside) {
+inline ShapeSource ConeSeat(double bottom, double top, double length, double outside,
+                            double deviation = 1e-6) {
   const double half_angle = std::atan2(top - bottom, length);
   const Vec3 apex(0, 0, -bottom / std::tan(half_angle));
   const spatial::Surface seat{spatial::SurfaceKind::kCone, apex, Vec3::UnitZ(), 0, half_angle, -1};
@@ -205,7 +207,7 @@ inline ShapeSource ConeSeat(double bottom, double top, double length, double out
                 {{{outside, 0}, {outside, length}}, CylinderZ(outside, 1)},
                 {{{outside, length}, {top, length}}, PlaneAt(length, 1)},
                 {{{top, length}, {bottom, 0}}, seat}},
-               Segments(top));
+               Segments(top, deviation));
 }
 
 /** The lower half of a spherical socket about the origin. Faces: 0 bottom, 1 outside, 2 top, 3
