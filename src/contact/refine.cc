@@ -1,5 +1,7 @@
 #include "contact/refine.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -120,6 +122,7 @@ Refined FromEdge(const Shape::Data& shape, const Closest& closest, const SolidFe
   return result;
 }
 
+// The list of a zone as seen from a point of it.
 class ZoneList {
  public:
   ZoneList(const Shape::Data& shape, std::uint32_t list, const Vec3& p, double from_centre)
@@ -127,35 +130,121 @@ class ZoneList {
         begin_(shape.exact.list_begin[list]),
         end_(shape.exact.list_begin[list + 1]),
         p_(p),
-        from_centre_(from_centre) {}
+        from_centre_(from_centre) {
+    if (list < shape.exact.list_faces.size()) {
+      faces_ = &shape.exact.list_faces[list];
+      Measure();
+    }
+  }
 
-  Closest Find(const FaceFilter& filter) const noexcept {
-    Closest best;
-    double best_distance = std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = begin_; i < end_; ++i) {
-      const ListedTriangle entry = shape_.exact.Listed(i);
-      if (entry.distance - from_centre_ > best_distance) {
-        break;
+  /** Where the solid is what its faces have in common, the way out of it is the way out of the face
+   that is left soonest; from outside, the way to a face is the way to the solid if it ends inside
+   the other faces. The same with inside and outside exchanged where any face will do. True when
+   that decides; what lies no nearer than the filter's limit may be told by a lower bound. */
+  [[nodiscard]] bool FromSurfaces(const FaceFilter& filter, Refined* out) const noexcept {
+    if (faces_ == nullptr || faces_->kind == ListFaces::Kind::kMixed) {
+      return false;
+    }
+    const double side = faces_->kind == ListFaces::Kind::kIntersection ? 1 : -1;
+    std::size_t last = 0;
+    double others = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < faces_->count; ++i) {
+      if (filter.Drops(faces_->faces[i]) || !surface_[i].is_valid) {
+        return false;
       }
-      if (filter.Drops(shape_.mesh.face[entry.triangle])) {
-        continue;
-      }
-      const TrianglePoint point = shape_.mesh.ClosestOn(entry.triangle, p_);
-      const double squared = (point.q - p_).squaredNorm();
-      if (squared < best.squared) {
-        best = {squared, point.q, entry.triangle, point.feature};
-        best_distance = std::sqrt(squared) + 1e-6 * from_centre_;
+      if (i > 0 && side * surface_[i].distance > side * surface_[last].distance) {
+        others = std::max(others, side * surface_[last].distance);
+        last = i;
+      } else if (i > 0) {
+        others = std::max(others, side * surface_[i].distance);
       }
     }
+    const double way = side * surface_[last].distance;
+    const bool is_far = side > 0 && way >= filter.limit;
+    if (way > 0 && others + way > 0 && !is_far) {
+      return false;
+    }
+    *out = {
+        surface_[last].distance, surface_[last].gradient, faces_->faces[last], kNoFace, true, true};
+    return true;
+  }
+
+  [[nodiscard]] Closest Find(const FaceFilter& filter) const noexcept {
+    Closest best;
+    double best_distance = std::numeric_limits<double>::infinity();
+    // First what is on the face that may come nearest, so that the others need not be looked at.
+    const std::uint32_t first_face = Nearest(filter);
+    if (first_face != kNoFace) {
+      Search([&](std::uint32_t face) { return face == first_face; }, &best, &best_distance);
+    }
+    Search(
+        [&](std::uint32_t face) {
+          return face != first_face && !filter.Drops(face) && LeastOf(face) <= best_distance;
+        },
+        &best, &best_distance);
     return best;
   }
 
  private:
+  void Measure() noexcept {
+    for (std::size_t i = 0; i < faces_->count; ++i) {
+      const std::uint32_t face = faces_->faces[i];
+      surface_[i] = spatial::CalcDistance(shape_.exact.faces[face], p_);
+      least_[i] = surface_[i].is_valid ? std::abs(surface_[i].distance) -
+                                             1.001 * shape_.exact.deviation[face] - kOnFeature
+                                       : 0;
+    }
+  }
+
+  // No triangle of the face is nearer than this.
+  [[nodiscard]] double LeastOf(std::uint32_t face) const noexcept {
+    for (std::size_t i = 0; faces_ != nullptr && i < faces_->count; ++i) {
+      if (faces_->faces[i] == face) {
+        return least_[i];
+      }
+    }
+    return 0;
+  }
+
+  [[nodiscard]] std::uint32_t Nearest(const FaceFilter& filter) const noexcept {
+    std::uint32_t nearest = kNoFace;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; faces_ != nullptr && i < faces_->count; ++i) {
+      if (least_[i] < least && !filter.Drops(faces_->faces[i])) {
+        least = least_[i];
+        nearest = faces_->faces[i];
+      }
+    }
+    return nearest;
+  }
+
+  template <typename Wants>
+  void Search(Wants wants, Closest* best, double* best_distance) const noexcept {
+    for (std::uint32_t i = begin_; i < end_; ++i) {
+      const ListedTriangle entry = shape_.exact.Listed(i);
+      if (entry.distance - from_centre_ > *best_distance) {
+        break;
+      }
+      if (!wants(shape_.mesh.face[entry.triangle])) {
+        continue;
+      }
+      const TrianglePoint point = shape_.mesh.ClosestOn(entry.triangle, p_);
+      const double squared = (point.q - p_).squaredNorm();
+      if (squared < best->squared) {
+        *best = {squared, point.q, entry.triangle, point.feature};
+        *best_distance = std::sqrt(squared) + 1e-6 * from_centre_;
+      }
+    }
+  }
+
   const Shape::Data& shape_;
   std::uint32_t begin_;
   std::uint32_t end_;
   const Vec3& p_;
   double from_centre_;
+  const ListFaces* faces_{nullptr};
+  std::array<spatial::SurfaceDistance, ListFaces::kMost> surface_;
+  std::array<double, ListFaces::kMost> least_{};
 };
 
 Refined FromFeature(const Shape::Data& shape, const Closest& closest, const SolidFeature& feature,
@@ -285,6 +374,10 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
   const std::uint32_t payload = code & zone::kPayload;
   if ((code & ~zone::kPayload) == zone::kList) {
     const ZoneList list(shape, payload, p, (p - at.centre).norm());
+    Refined from_surfaces;
+    if (list.FromSurfaces(filter, &from_surfaces)) {
+      return from_surfaces;
+    }
     const Closest closest = list.Find({});
     const SolidFeature feature = FeatureOf(shape.mesh, closest);
     if (filter.Drops(feature.face) || filter.Drops(feature.other_face)) {

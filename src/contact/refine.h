@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "contact/face_offsets.h"
 #include "contact/shape_data.h"
 
@@ -15,10 +17,12 @@ struct Refined {
   bool is_valid{true};  ///< False when everything near is ignored.
 };
 
-/** Says which faces to leave out: those with mask[face] & bits. Null: none. */
+/** Says which faces to leave out: those with mask[face] & bits. Null: none. What lies no nearer than
+ `limit` need not be told exactly, only that it does not. */
 struct FaceFilter {
   const std::uint8_t* mask{nullptr};
   std::uint8_t bits{0};
+  double limit{std::numeric_limits<double>::infinity()};
 
   [[nodiscard]] bool Drops(std::uint32_t face) const noexcept {
     return mask != nullptr && face != kNoFace && (mask[face] & bits) != 0;

@@ -82,7 +82,12 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
   if (options.stop.stop_requested()) {
     return Fail(ErrorCode::kCancelled, "Preparing a part was stopped.", "contact shape");
   }
+  data->Complete();
   return std::make_shared<const Shape>(std::move(data));
+}
+
+void Shape::Data::Complete() {
+  exact.list_faces = MakeListFaces(mesh, exact);
 }
 
 Shape::Shape(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
@@ -108,7 +113,7 @@ ShapeMemory Shape::CalcMemory() const noexcept {
   memory.field =
       Bytes(d.field.top) + Bytes(d.field.nodes) + Bytes(d.field.slack) + Bytes(d.field.coarse);
   memory.tables = Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
-                  Bytes(d.exact.list_begin) + Bytes(d.exact.listed);
+                  Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.exact.list_faces);
   memory.mesh = Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normal) +
                 Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) +
                 Bytes(m.vertex_normal) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open);

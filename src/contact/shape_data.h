@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/kernel.h"
+#include "contact/list_faces.h"
 #include "contact/mesh.h"
 #include "contact/shape.h"
 
@@ -56,6 +57,7 @@ struct ExactTable {
   std::vector<std::uint32_t> listed;
   std::uint32_t distance_bits{0};
   double distance_unit{0};
+  std::vector<ListFaces> list_faces;  ///< Of each list; made from the above by Complete.
 
   [[nodiscard]] ListedTriangle Listed(std::size_t i) const noexcept {
     const std::uint32_t entry = listed[i];
@@ -106,6 +108,9 @@ struct Shape::Data {
   Shell shell;  ///< All samples.
   Shell
       features;  ///< Those that can touch a flat face first: on convex edges, corners, round faces.
+
+  /** Makes what follows from the rest and is not kept on disk. */
+  void Complete();
 };
 
 }  // namespace hvas::contact

@@ -208,6 +208,7 @@ std::shared_ptr<const Shape> DeserialiseShape(std::span<const std::byte> bytes) 
   data->field.Bind();
   data->shell.Bind();
   data->features.Bind();
+  data->Complete();
   return std::make_shared<const Shape>(std::move(data));
 }
 

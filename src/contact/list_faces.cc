@@ -1,0 +1,139 @@
+#include "contact/list_faces.h"
+
+#include <algorithm>
+
+#include "contact/shape_data.h"
+
+namespace hvas::contact {
+namespace {
+
+class ListReader {
+ public:
+  ListReader(const Mesh& mesh, const ExactTable& exact)
+      : mesh_(mesh), exact_(exact), seen_(mesh.triangles.size(), 0) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      bool is_at_edge = false;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t other = mesh.neighbour[t][k];
+        is_at_edge = is_at_edge || mesh.edge_kind[t][k] != EdgeKind::kSmooth || other == kNoFace ||
+                     mesh.face[other] != mesh.face[t];
+      }
+      is_at_edge_.push_back(is_at_edge ? 1 : 0);
+    }
+  }
+
+  ListFaces Read(std::uint32_t list) {
+    begin_ = exact_.list_begin[list];
+    end_ = exact_.list_begin[list + 1];
+    out_ = {};
+    meets_ = {};
+    if (!CollectFaces(list + 1)) {
+      out_.count = 0;
+      return out_;
+    }
+    if (out_.count > 1 && ReadEdges(list + 1)) {
+      DecideKind();
+    }
+    return out_;
+  }
+
+ private:
+  [[nodiscard]] std::size_t IndexOf(std::uint32_t face) const {
+    return static_cast<std::size_t>(
+        std::find(out_.faces.begin(), out_.faces.begin() + out_.count, face) - out_.faces.begin());
+  }
+
+  bool CollectFaces(std::uint32_t mark) {
+    at_edge_.clear();
+    std::uint32_t last = kNoFace;
+    for (std::size_t i = begin_; i < end_; ++i) {
+      const std::uint32_t t = exact_.Listed(i).triangle;
+      if (is_at_edge_[t] != 0) {
+        seen_[t] = mark;
+        at_edge_.push_back(t);
+      }
+      const std::uint32_t face = mesh_.face[t];
+      if (face == last || IndexOf(face) < out_.count) {
+        continue;
+      }
+      last = face;
+      if (out_.count == ListFaces::kMost) {
+        return false;
+      }
+      out_.faces[out_.count++] = face;
+    }
+    return true;
+  }
+
+  // What edge is closest to a point of the zone has the triangles on both sides in the list; the
+  // others are somewhere else.
+  bool ReadEdges(std::uint32_t mark) {
+    for (const std::uint32_t t : at_edge_) {
+      const std::size_t a = IndexOf(mesh_.face[t]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t other = mesh_.neighbour[t][k];
+        const EdgeKind kind = mesh_.edge_kind[t][k];
+        if (kind == EdgeKind::kOpen) {
+          return false;
+        }
+        if (other == kNoFace || seen_[other] != mark) {
+          continue;
+        }
+        const std::size_t b = IndexOf(mesh_.face[other]);
+        if (kind == EdgeKind::kSmooth && a == b) {
+          continue;
+        }
+        if (kind == EdgeKind::kSmooth || a == b) {
+          return false;
+        }
+        const auto bit = static_cast<std::uint8_t>(kind == EdgeKind::kConvex ? 1U : 2U);
+        meets_[a][b] = static_cast<std::uint8_t>(meets_[a][b] | bit);
+      }
+    }
+    return true;
+  }
+
+  void DecideKind() {
+    std::uint8_t all = 0;
+    for (std::size_t a = 0; a < out_.count; ++a) {
+      if (exact_.faces[out_.faces[a]].kind == spatial::SurfaceKind::kFreeform) {
+        return;
+      }
+      for (std::size_t b = 0; b < a; ++b) {
+        const auto bits = static_cast<std::uint8_t>(meets_[a][b] | meets_[b][a]);
+        if (bits == 0) {
+          return;
+        }
+        all = static_cast<std::uint8_t>(all | bits);
+      }
+    }
+    if (all == 1) {
+      out_.kind = ListFaces::Kind::kIntersection;
+    } else if (all == 2) {
+      out_.kind = ListFaces::Kind::kUnion;
+    }
+  }
+
+  const Mesh& mesh_;
+  const ExactTable& exact_;
+  std::vector<std::uint8_t> is_at_edge_;  // Of each triangle.
+  std::vector<std::uint32_t> at_edge_;    // Of this list.
+  std::vector<std::uint32_t> seen_;  // Of each triangle, the last list that it was in, and one.
+  std::size_t begin_{0};
+  std::size_t end_{0};
+  ListFaces out_;
+  std::array<std::array<std::uint8_t, ListFaces::kMost>, ListFaces::kMost> meets_{};
+};
+
+}  // namespace
+
+std::vector<ListFaces> MakeListFaces(const Mesh& mesh, const ExactTable& exact) {
+  std::vector<ListFaces> out;
+  ListReader reader(mesh, exact);
+  for (std::uint32_t list = 0; list + 1 < exact.list_begin.size(); ++list) {
+    out.push_back(reader.Read(list));
+  }
+  return out;
+}
+
+}  // namespace hvas::contact
