@@ -106,7 +106,7 @@ std::vector<AccuracyEntrant> MakeAccuracyEntrants() {
     return MakeCellScheme(std::move(mesh_of));
   };
   constexpr double kCoarse = 50e-6, kFine = 1e-6;
-  return {{"ours", kFine, 0, 500, ours},
+  return {{"ours", kFine, 0, 1000, ours},
           {"fcl-5k", kCoarse, 5000, 20, fcl},
           {"fcl-50k", kFine, 50000, 10, fcl},
           {"gimpact-5k", kCoarse, 5000, 50, gimpact},

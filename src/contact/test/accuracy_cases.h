@@ -1,0 +1,145 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "contact/test/parts.h"
+#include "spatial/pose.h"
+
+/** Tests C, A, P and D of the study of contact and seats on a cone, a sphere and a torus: a part
+ about 0.1 mm deep in another, the contact moving at 50 mm/s. Truth is their analytic geometry. */
+namespace hvas::contact::testing {
+
+inline constexpr double kMillisecondStep = 50e-6;  ///< [m] at 50 mm/s.
+
+struct AccuracyCase {
+  const char* name;
+  std::function<ShapeSource(double deviation)> held, other;
+  double depth;                            ///< Everywhere along the way [m].
+  int steps;                               ///< Of a millisecond.
+  std::function<spatial::Pose(int)> pose;  ///< X_WH; the other part is where the world is.
+  double force_limit;  ///< Of the pooled force's change in a step at 1 N/mm [N]; 0: none is stated.
+};
+
+inline Vec3 Radial(double length, double angle) {
+  return {length * std::cos(angle), length * std::sin(angle), 0};
+}
+
+/** C: a shaft pressed into a bore, around which it goes. Ideally 0.17 mN. */
+inline AccuracyCase CaseC() {
+  return {
+      "C",
+      [](double d) { return GroovedShaft(19.99e-3, 80e-3, d); },
+      [](double d) { return GroovedBore(20e-3, 28e-3, 50e-3, d); },
+      100e-6,
+      500,
+      [](int i) {
+        return spatial::Pose(Radial(110e-6, kMillisecondStep / 20e-3 * i) + Vec3(0, 0, -15.3e-3));
+      },
+      0.25e-3};
+}
+
+/** A: the same, sliding along over the shaft's groove and the bore's. Ideally no change. */
+inline AccuracyCase CaseA() {
+  AccuracyCase out = CaseC();
+  out.name = "A";
+  out.steps = 700;
+  out.pose = [](int i) {
+    return spatial::Pose(Radial(110e-6, 0.3) + Vec3(0, 0, 8e-3 - kMillisecondStep * i));
+  };
+  out.force_limit = 2e-3;
+  return out;
+}
+
+/** P: a plate with a window sliding on another. Ideally no change. */
+inline AccuracyCase CaseP() {
+  return {"P",
+          [](double) {
+            return Frame({40e-3, 30e-3, 5e-3}, {25e-3, 15e-3});
+          },
+          [](double) {
+            return Frame({45e-3, 38e-3, 10e-3}, {22e-3, 12e-3});
+          },
+          100e-6,
+          400,
+          [](int i) {
+            const double way = kMillisecondStep * i;
+            return spatial::Pose(Vec3(-6e-3 + 0.8 * way, 4e-3 - 0.6 * way, 15e-3 - 100e-6));
+          },
+          0.05e-3};
+}
+
+/** D: a dowel in its hole, around which it goes. Ideally 1.11 mN. */
+inline AccuracyCase CaseD() {
+  return {"D",
+          [](double d) { return Shaft(2.99e-3, 20e-3, d); },
+          [](double d) { return Bushing(3e-3, 20e-3, 15e-3, d); },
+          100e-6,
+          400,
+          [](int i) {
+            return spatial::Pose(Radial(110e-6, kMillisecondStep / 3e-3 * i) + Vec3(0, 0, 2e-3));
+          },
+          0};
+}
+
+inline constexpr double kConeSlope = 0.125;   ///< Of taper and seat: tan of the half angle.
+inline constexpr double kConeSeated = 48e-3;  ///< Height of the taper that just fits its seat.
+
+inline Quat TurnedOver() {
+  return spatial::RotationFromVector({std::numbers::pi, 0, 0});
+}
+
+/** A taper in its seat: lowered by z it is in by z sin(angle), and by e cos(angle) more on the side
+ that it is off the axis by e. The taper stands on its wide end, so it is turned over. */
+inline AccuracyCase CaseCone() {
+  constexpr double kDown = 200e-6, kOff = 60e-6;
+  const double angle = std::atan(kConeSlope);
+  return {"cone",
+          [](double d) { return Cone(15e-3, 10e-3, 40e-3, d); },
+          [](double d) { return ConeSeat(9e-3, 16e-3, 56e-3, 25e-3, d); },
+          kDown * std::sin(angle) + kOff * std::cos(angle),
+          200,
+          [](int i) {
+            return spatial::Pose(TurnedOver(), Radial(kOff, kMillisecondStep / 12e-3 * i) +
+                                                   Vec3(0, 0, kConeSeated - kDown));
+          },
+          0};
+}
+
+// Meshes that curve both ways are kept coarse: what counts is the surface beneath.
+inline constexpr double kCoarse = 10e-6;  ///< [m]
+
+/** A ball in a socket 0.05 mm larger: in by how far it is off centre, less that. */
+inline AccuracyCase CaseSphere() {
+  return {"sphere",
+          [](double d) { return Ball(9.95e-3, std::max(d, kCoarse)); },
+          [](double d) { return Socket(10e-3, 14e-3, std::max(d, kCoarse)); },
+          100e-6,
+          200,
+          [](int i) {
+            return spatial::Pose(Radial(75e-6, kMillisecondStep / 10e-3 * i) -
+                                 Vec3(0, 0, 150e-6 * std::sqrt(0.75)));
+          },
+          0};
+}
+
+/** A ring lowered into a round groove 0.02 mm larger, turning. Ideally no change. */
+inline AccuracyCase CaseTorus() {
+  return {"torus",
+          [](double d) { return Ring(20e-3, 3e-3, std::max(d, kCoarse)); },
+          [](double d) { return RingGroove(20e-3, 3.02e-3, std::max(d, kCoarse)); },
+          100e-6,
+          200,
+          [](int i) {
+            const Vec3 turn(0, 0, kMillisecondStep / 20e-3 * i);
+            return spatial::Pose(spatial::RotationFromVector(turn), Vec3(0, 0, -120e-6));
+          },
+          0.05e-3};
+}
+
+inline std::vector<AccuracyCase> AllAccuracyCases() {
+  return {CaseC(), CaseA(), CaseP(), CaseD(), CaseCone(), CaseSphere(), CaseTorus()};
+}
+
+}  // namespace hvas::contact::testing
