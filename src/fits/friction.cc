@@ -10,12 +10,12 @@ constexpr std::string_view kDin =
     "DIN 7190-1, 5.3, as quoted in FVA's help on interference fits: transverse fits";
 constexpr std::string_view kTwoEnds = "quoted twice; the two ends of the range for dry joints";
 
-// The standards state what holds a joint, and not how it starts to slide: static is the higher and
-// kinetic the lower of the values for joints without oil.
+// The standards state what holds a joint, and not how it starts to slide. Parts that are put
+// together by hand are neither degreased nor oiled on purpose: static is the value for dry joints,
+// kinetic the one with mineral oil where there is one; else the two ends of the range.
 constexpr std::array<FrictionEntry, 4> kTable{{
-    {FrictionSurface::kSteel, FrictionSurface::kSteel, 0.18, 0.15, kDin,
-     "quoted twice; degreased and as joined by shrinking; an older edition has 0.14 for the "
-     "latter"},
+    {FrictionSurface::kSteel, FrictionSurface::kSteel, 0.15, 0.12, kDin,
+     "quoted twice; shrunk, and with mineral oil; an older edition has 0.14 for the former"},
     {FrictionSurface::kSteel, FrictionSurface::kCastIron, 0.16, 0.10, kDin,
      "quoted twice; degreased, and with mineral oil"},
     {FrictionSurface::kSteel, FrictionSurface::kLightMetal, 0.15, 0.10, kDin, kTwoEnds},

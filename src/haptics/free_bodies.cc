@@ -38,6 +38,17 @@ bool FreeBodies::Wake(contact::BodyId id, const spatial::Pose& X_WB,
   return true;
 }
 
+void FreeBodies::WakeFirst(contact::BodyId id, const spatial::Pose& X_WB,
+                           const spatial::Twist& V) noexcept {
+  if (count_ == awake_.size()) {
+    const auto calmest = std::max_element(
+        awake_.begin(), awake_.end(),
+        [](const FreeBody& a, const FreeBody& b) { return a.time_at_rest < b.time_at_rest; });
+    *calmest = awake_[--count_];
+  }
+  (void)Wake(id, X_WB, V);
+}
+
 FreeBody* FreeBodies::FindAwake(contact::BodyId id) noexcept {
   const std::span<FreeBody> all = awake();
   const auto found =

@@ -54,6 +54,9 @@ class FreeBodies {
    awake. */
   bool Wake(contact::BodyId id, const spatial::Pose& X_WB, const spatial::Twist& V) noexcept;
 
+  /** The same, and where too many are awake the one that has been at rest for longest sleeps. */
+  void WakeFirst(contact::BodyId id, const spatial::Pose& X_WB, const spatial::Twist& V) noexcept;
+
   [[nodiscard]] bool is_loose(contact::BodyId id) const noexcept {
     return id.is_valid() && id.index() < entries_.size() && entries_[id.index()].is_loose;
   }
