@@ -31,7 +31,10 @@ using simulation::Model;
 using simulation::PartResult;
 
 constexpr int kNotAllSeated = 2;
-constexpr double kSecondsPerPart = 120;  // of session time, before a run is stopped as a whole
+// Of session time, before a run is stopped as a whole: for a part, where it is carried around a
+// product of ordinary size; in proportion for larger ones.
+constexpr double kSecondsPerPart = 120;
+constexpr double kOrdinaryRadius = 0.5;  // [m]
 
 Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
                                                Diagnostics* diagnostics, bool is_watched) {
@@ -123,9 +126,10 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
   execution.sink = &run;
   execution.advance = [&run] { run.Advance(); };
   execution.is_done = [&run] { return run.is_done(); };
+  const double size = std::max(1.0, model->transfer_radius / kOrdinaryRadius);
   const double limit_s = options.limit_s > 0
                              ? options.limit_s
-                             : kSecondsPerPart * static_cast<double>(model->bodies.size());
+                             : kSecondsPerPart * size * static_cast<double>(model->bodies.size());
   execution.limit_ns = std::llround(1e9 * limit_s);
   AssemblyOutcome outcome;
   outcome.execution =

@@ -146,7 +146,10 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     phase_time_s_ = 0;
     return;
   }
-  if (phase_time_s_ > options_.patience_s) {
+  // A long way in takes its time.
+  const double patience_s =
+      std::max(options_.patience_s, 3 * task_.engage_distance / options_.insert_speed);
+  if (phase_time_s_ > patience_s) {
     PlanReturn();
     return;
   }
