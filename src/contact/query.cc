@@ -18,6 +18,22 @@ std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& 
   return bits;
 }
 
+// Whether `direction` leads along a sample's edge, or at a corner where none of its faces looks: what
+// lies there is met by the edge's end or by other samples, while this one slides past it.
+bool IsAlongEdge(const SampleFaces& sample, const Vec3& direction, double best) {
+  constexpr double kAlong = 0.8;
+  constexpr double kAway = 0.05;
+  if (sample.faces[1] == kNoFace) {
+    return false;
+  }
+  if (sample.faces[2] != kNoFace) {
+    return best < kAway;
+  }
+  const Vec3 tangent = sample.normal(0).cross(sample.normal(1));
+  const double along = tangent.dot(direction);
+  return along * along > kAlong * kAlong * tangent.squaredNorm();
+}
+
 // Whether a sample can be where its part touches something in `direction`, seen from the part, and
 // which of its faces does. A side wall that happens to be near another part's top face cannot:
 // moving along the wall it would never meet it.
@@ -35,7 +51,7 @@ bool Faces(const SampleFaces& sample, float limit, const Vec3& direction, std::u
       return false;
     }
   }
-  return best > static_cast<double>(limit);
+  return best > static_cast<double>(limit) && !IsAlongEdge(sample, direction, best);
 }
 
 }  // namespace
