@@ -13,6 +13,7 @@
 #include "simulation/actual_faces.h"
 #include "simulation/fit_of_mate.h"
 #include "simulation/shapes.h"
+#include "simulation/thread_faces.h"
 
 namespace hvas::simulation {
 namespace {
@@ -269,6 +270,10 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
     compiled.id = mate.id;
     compiled.faces_a = faces(mate.a);
     compiled.faces_b = faces(mate.b);
+    if (IsDrawnThread(mate)) {
+      compiled.faces_a = WidenForThread(*product, mate, mate.a, *compiled.faces_a);
+      compiled.faces_b = WidenForThread(*product, mate, mate.b, *compiled.faces_b);
+    }
     compiled.fit = MakeFitForce(*product, mate, options.seed, diagnostics);
     input.faces_a.push_back(compiled.faces_a);
     input.faces_b.push_back(compiled.faces_b);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "haptics/held_part.h"
+#include "product/product.h"
+
+namespace hvas::simulation {
+
+/** True where a mate is a thread whose screw is drawn wider than its hole: at the outer diameter in
+ a hole of the core's. */
+[[nodiscard]] bool IsDrawnThread(const product::Mate& mate);
+
+/** What a thread takes out of contact on one side of its mate: its faces and all next to them,
+ tips, chamfers and mouths, as these overlap when they pass one another. Not what the two parts rest
+ on each other with: a head still stops on the face that its thread goes into.
+ @param side  The mate's a or b. @param faces  That side's, as for any mate. */
+[[nodiscard]] std::shared_ptr<const haptics::MateFaces> WidenForThread(
+    const product::Product& product, const product::Mate& mate, const product::Connector& side,
+    const haptics::MateFaces& faces);
+
+}  // namespace hvas::simulation
