@@ -7,6 +7,7 @@
 
 #include "app/text_layout.h"
 #include "base/units.h"
+#include "simulation/shapes.h"
 
 namespace hvas::app {
 namespace {
@@ -119,6 +120,7 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
   json["seed"] = outcome.seed;
   json["digest"] = outcome.digest;
   json["preparation_s"] = ToS(outcome.preparation_ns);
+  json["contact_shapes_bytes"] = simulation::CalcShapeMemory(model).total();
   json["session_s"] = ToS(run.session_ns);
   json["wall_s"] = ToS(run.wall_ns);
   json["real_time_factor"] = Ratio(run, run.wall_ns);
@@ -148,10 +150,12 @@ void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
   PrintParts(model, outcome);
   const ExecutionReport& run = outcome.execution;
   fmt::print(
-      "\n{}: {} of {} parts in place after {:.1f} s of work; prepared in {:.1f} s, computed in "
-      "{:.1f} s ({:.1f} x real time",
+      "\n{}: {} of {} parts in place after {:.1f} s of work; prepared in {:.1f} s (contact shapes: "
+      "{:.1f} MB), computed in {:.1f} s ({:.1f} x real time",
       model.product->source, CountSeated(outcome), outcome.parts.size(), ToS(run.session_ns),
-      ToS(outcome.preparation_ns), ToS(run.wall_ns), Ratio(run, run.wall_ns));
+      ToS(outcome.preparation_ns),
+      1e-6 * static_cast<double>(simulation::CalcShapeMemory(model).total()), ToS(run.wall_ns),
+      Ratio(run, run.wall_ns));
   if (!outcome.is_realtime) {
     fmt::print("; {:.1f} s of processor time, {:.1f} x", ToS(run.cpu_ns), Ratio(run, run.cpu_ns));
   }

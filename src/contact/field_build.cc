@@ -424,6 +424,9 @@ void BuildField(const ShapeOptions& options, Shape::Data* data) {
   }
   const NearSearch search(data->mesh);
   BuildBlocks(search, options, data);
+  if (options.stop.stop_requested()) {
+    return;
+  }
   BuildCoarse(search, data);
   data->field.Bind();
   MeasureSlack(options, data);

@@ -76,12 +76,18 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
   }
   CheckFaces(data->mesh, &data->exact);
   data->voxel = options.voxel > 0 ? options.voxel : ChooseVoxel(data->mesh, data->exact.faces);
+  const auto cancelled = [] {
+    return Fail(ErrorCode::kCancelled, "Preparing a part was stopped.", "contact shape");
+  };
+  if (options.stop.stop_requested()) {
+    return cancelled();
+  }
   BuildField(options, data.get());
+  if (options.stop.stop_requested()) {
+    return cancelled();
+  }
   data->spacing = options.point_spacing > 0 ? options.point_spacing : ChooseSpacing(data->mesh);
   BuildShells(data.get());
-  if (options.stop.stop_requested()) {
-    return Fail(ErrorCode::kCancelled, "Preparing a part was stopped.", "contact shape");
-  }
   data->Complete();
   return std::make_shared<const Shape>(std::move(data));
 }

@@ -234,7 +234,8 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   model->seed = options.seed;
   report("contact shapes", 0);
   const auto shapes =
-      BuildShapes(*product, {options.shape, options.shape_cache.get(), options.threads});
+      BuildShapes(*product, {options.shape, options.shape_cache.get(), options.threads,
+                             [&report](double fraction) { report("contact shapes", fraction); }});
   if (!shapes) {
     return Unexpected(shapes.error());
   }

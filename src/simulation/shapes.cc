@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <thread>
+#include <set>
 
 #include <fmt/format.h>
+
+#include "base/parallel.h"
+#include "simulation/model.h"
 
 namespace hvas::simulation {
 
@@ -26,27 +29,22 @@ Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
     const product::Product& product, const ShapesControl& control) {
   std::vector<std::shared_ptr<const contact::Shape>> shapes(product.parts.size());
   std::vector<Error> errors(product.parts.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < shapes.size(); i = next++) {
-      const contact::ShapeSource source = MakeShapeSource(product.parts[i]);
-      auto shape = control.cache != nullptr ? control.cache->LoadOrBuild(source, control.shape)
-                                            : contact::Shape::Build(source, control.shape);
-      if (shape) {
-        shapes[i] = *shape;
-      } else {
-        errors[i] = shape.error();
-      }
+  const auto build = [&](std::size_t i) {
+    const contact::ShapeSource source = MakeShapeSource(product.parts[i]);
+    auto shape = control.cache != nullptr ? control.cache->LoadOrBuild(source, control.shape)
+                                          : contact::Shape::Build(source, control.shape);
+    if (shape) {
+      shapes[i] = *shape;
+    } else {
+      errors[i] = shape.error();
     }
   };
-  std::vector<std::thread> threads;
-  for (int i = 1; i < control.threads; ++i) {
-    threads.emplace_back(work);
-  }
-  work();
-  for (std::thread& thread : threads) {
-    thread.join();
-  }
+  ForEachIndex(shapes.size(), static_cast<unsigned>(std::max(1, control.threads)), build,
+               [&](std::size_t done) {
+                 if (control.progress) {
+                   control.progress(static_cast<double>(done) / static_cast<double>(shapes.size()));
+                 }
+               });
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (shapes[i] == nullptr) {
       Error error = errors[i];
@@ -55,6 +53,17 @@ Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
     }
   }
   return shapes;
+}
+
+contact::ShapeMemory CalcShapeMemory(const Model& model) {
+  std::set<const contact::Shape*> seen;
+  contact::ShapeMemory sum;
+  for (const Body& body : model.bodies) {
+    if (seen.insert(body.shape.get()).second) {
+      sum += body.shape->CalcMemory();
+    }
+  }
+  return sum;
 }
 
 }  // namespace hvas::simulation

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -16,14 +15,20 @@ namespace hvas::simulation {
 [[nodiscard]] contact::ShapeSource MakeShapeSource(const product::Part& part);
 
 struct ShapesControl {
-  contact::ShapeOptions shape;
-  contact::ShapeCache* cache{nullptr};  ///< Null: shapes are always built.
-  int threads{2};
+  contact::ShapeOptions shape;                    ///< Its `stop` ends the building of all.
+  contact::ShapeCache* cache{nullptr};            ///< Null: shapes are always built.
+  int threads{2};                                 ///< Parts that are built at a time.
+  std::function<void(double fraction)> progress;  ///< On the calling thread; may be null.
 };
 
-/** The shape of each part of a product, by PartId: parts side by side on several threads. One error
- stops all. */
+/** The shape of each part of a product, by PartId: parts side by side, and blocks of a part side by
+ side where one is left. Errors: those of contact::Shape::Build, with the part; one fails all. */
 Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
     const product::Product& product, const ShapesControl& control);
+
+struct Model;
+
+/** What the shapes of a model take, each once however often its part occurs. */
+[[nodiscard]] contact::ShapeMemory CalcShapeMemory(const Model& model);
 
 }  // namespace hvas::simulation
