@@ -63,7 +63,9 @@ struct CellPart {
     }
     const Vec3 step = box.size() / kCells;
     for (int i = 0; i < kCells * kCells * kCells; ++i) {
-      const Vec3 at(i % kCells, i / kCells % kCells, i / (kCells * kCells));
+      const int row = i / kCells % kCells;
+      const int layer = i / (kCells * kCells);
+      const Vec3 at(i % kCells, row, layer);
       Cell cell;
       cell.box.low = box.low + at.cwiseProduct(step);
       cell.box.high = cell.box.low + step;

@@ -14,9 +14,8 @@
 #include "accuracy.h"
 #include "speed.h"
 
+namespace hvas::bench {
 namespace {
-
-using namespace hvas::bench;  // NOLINT: a program of its own.
 
 struct Options {
   int poses{kTrackPoses};
@@ -235,9 +234,7 @@ int Run(const Options& options) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int Main(int argc, char** argv) {
   CLI::App app("Times of contact queries on three tracks: ours, and others on the same poses");
   app.footer(kExamples);
   Options options;
@@ -252,4 +249,11 @@ int main(int argc, char** argv) {
   app.add_option("--json", options.json, "file for the rows");
   CLI11_PARSE(app, argc, argv);
   return Run(options);
+}
+
+}  // namespace
+}  // namespace hvas::bench
+
+int main(int argc, char** argv) {
+  return hvas::bench::Main(argc, argv);
 }
