@@ -22,6 +22,7 @@ struct ListFaces {
   std::array<std::uint32_t, kMost> faces{};
   std::uint8_t count{0};  ///< 0: more than kMost.
   Kind kind{Kind::kMixed};
+  std::uint16_t unused{0};  ///< For the bytes on disk.
 };
 
 /** Of every list of the table. */

@@ -93,7 +93,9 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
 }
 
 void Shape::Data::Complete() {
-  exact.list_faces = MakeListFaces(mesh, exact);
+  if (exact.list_faces.empty()) {  // A shape from disk has them.
+    exact.list_faces = MakeListFaces(mesh, exact);
+  }
 }
 
 Shape::Shape(std::unique_ptr<const Data> data) : data_(std::move(data)) {}

@@ -13,7 +13,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "shapes are written as they lie in memory");
 // No padding, whose bytes nobody sets.
-static_assert(sizeof(SphereNode) == 160 && sizeof(SampleFaces) == 40);
+static_assert(sizeof(SphereNode) == 160 && sizeof(SampleFaces) == 40 && sizeof(ListFaces) == 24);
 
 class Writer {
  public:
@@ -172,6 +172,7 @@ class Members {
     All(&e->listed);
     One(&e->distance_bits);
     One(&e->distance_unit);
+    All(&e->list_faces);
   }
 
   template <typename AnyShell>
