@@ -140,7 +140,11 @@ int ConstraintSolver::AddBoundedRow(const Vec6& J, double bound) noexcept {
 void ConstraintSolver::Factor() noexcept {
   if (!is_factored_) {
     factor_.compute(A_);
-    inverse_[0] = factor_.solve(Mat6::Identity());
+    // Column by column: a matrix at once would go through Eigen's blocked kernels, which allocate.
+    for (int i = 0; i < 6; ++i) {
+      const Vec6 unit = Vec6::Unit(i);
+      inverse_[0].col(i) = factor_.solve(unit);
+    }
     is_factored_ = true;
   }
 }
