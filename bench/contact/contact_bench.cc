@@ -241,9 +241,15 @@ int Main(int argc, char** argv) {
   app.add_option("--poses", options.poses, "at most so many poses of each track")
       ->check(CLI::Range(1, kTrackPoses));
   app.add_option("--scenes", options.scenes, "numbers of parts")->delimiter(',');
-  app.add_option("--methods", options.methods, "the first is what others are compared with")
-      ->delimiter(',');
-  app.add_option("--tracks", options.tracks, "of T1, T2, T3")->delimiter(',');
+  const std::vector<std::string> methods{"ours",       "ours-scalar", "fcl-bool-5k",
+                                         "fcl-20-5k",  "fcl-5k",      "fcl-50k",
+                                         "gimpact-5k", "gimpact-50k", "cells-5k"};
+  app.add_option("--methods", options.methods, "the first asked is what others are compared with")
+      ->delimiter(',')
+      ->check(CLI::IsMember(methods));
+  app.add_option("--tracks", options.tracks, "of T1, T2, T3")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"T1", "T2", "T3"}));
   app.add_flag("!--no-speed", options.is_speed_wanted, "leave the times out");
   app.add_flag("!--no-accuracy", options.is_accuracy_wanted, "leave the tests of accuracy out");
   app.add_option("--json", options.json, "file for the rows");
