@@ -20,8 +20,8 @@ struct FieldView {
   float origin[3]{0, 0, 0};
   float voxel{0};
   float quantum{0};
-  float band{0};    ///< Distances are clamped to this.
-  float beyond{0};  ///< Least distance from the surface of what lies in no block.
+  float band{0};                 ///< Distances are clamped to this.
+  float beyond{0};               ///< Least distance from the surface of what lies in no block.
   const float* coarse{nullptr};  ///< Signed distance on a coarse grid around the part.
   int coarse_count[3]{0, 0, 0};
   float coarse_origin[3]{0, 0, 0};
@@ -48,7 +48,30 @@ struct ShellView {
   const float* y{nullptr};
   const float* z{nullptr};
   const std::uint8_t* leaf_count{nullptr};
+  const std::uint8_t* order{nullptr};  ///< Of each leaf, its eight lanes, most telling ones first.
   std::uint32_t node_count{0};
+};
+
+/** An analytic surface in single precision: with height h along the axis, distance r from it and
+ u = r - radius, the distance is outward (across u + along h), or, of round ones,
+ outward (sqrt(u^2 + h^2) - minor). */
+struct FaceForm {
+  enum class Kind : std::uint32_t { kNone, kStraight, kRound };
+
+  float origin[3]{0, 0, 0};
+  float axis[3]{0, 0, 1};
+  float radius{0};
+  float across{0};
+  float along{0};
+  float minor{0};
+  float outward{1};
+  Kind kind{Kind::kNone};  ///< None: single precision is not good enough, or no such surface.
+};
+
+/** Which face decides where. */
+struct FaceView {
+  const std::uint32_t* zones{nullptr};  ///< Codes as in `zone`, by block.
+  const FaceForm* forms{nullptr};       ///< Of each face.
 };
 
 /** Takes the shell's coordinates to the field's. */
@@ -57,11 +80,14 @@ struct FloatPose {
   float p[3];
 };
 
+inline constexpr std::uint32_t kUnscreened = 0xffffffffU;
+
 /** A point that may be nearer than the margin. */
 struct Hit {
   std::uint32_t point;
-  float distance;
-  float gradient[3];  ///< Not unit.
+  float distance;                   ///< Of the face, else interpolated.
+  float gradient[3];                ///< Of the face, else interpolated and not unit.
+  std::uint32_t face{kUnscreened};  ///< The one analytic face that decides, where there is one.
 };
 
 struct HitBuffer {
@@ -72,17 +98,38 @@ struct HitBuffer {
   bool is_truncated{false};
 };
 
-using TraverseFunction = void (*)(const ShellView&, const FieldView&, const FloatPose&,
-                                  float margin, HitBuffer*);
+struct LeafBuffer {
+  std::uint32_t* leaves{nullptr};
+  std::uint32_t capacity{0};
+  std::uint32_t count{0};
+  bool is_truncated{false};
+};
 
-/** Appends all points of the shell whose field distance is below margin + slack. RT-safe. Both
- give the same bits. */
-void TraverseScalar(const ShellView& shell, const FieldView& field, const FloatPose& X_FS,
-                    float margin, HitBuffer* out) noexcept;
-void TraverseAvx2(const ShellView& shell, const FieldView& field, const FloatPose& X_FS,
-                  float margin, HitBuffer* out) noexcept;
+/** Of every `stride`-th leaf, the `points` first ones in the leaf's order. */
+struct LeafChoice {
+  const std::uint32_t* leaves{nullptr};
+  std::uint32_t count{0};
+  std::uint32_t points{8};
+  std::uint32_t stride{1};
+};
+
+/** The inner loops for one set of instructions. All give the same bits. RT-safe. */
+struct Kernel {
+  /** Appends the leaves of the shell that may have points nearer to the field's surface than the
+   margin. */
+  void (*collect)(const ShellView&, const FieldView&, const FloatPose& X_FS, float margin,
+                  LeafBuffer*);
+  /** Appends those points of the leaves whose distance may be below the margin: those on one
+   analytic face by their distance from it, the others by the interpolated one less its slack. */
+  void (*test)(const ShellView&, const FieldView&, const FaceView&, const FloatPose& X_FS,
+               float margin, const LeafChoice&, HitBuffer*);
+};
+
+[[nodiscard]] Kernel ScalarKernel() noexcept;
+/** @pre The machine has AVX2. */
+[[nodiscard]] Kernel Avx2Kernel() noexcept;
 /** The fastest that this machine runs. */
-[[nodiscard]] TraverseFunction ChooseTraverse() noexcept;
+[[nodiscard]] Kernel ChooseKernel() noexcept;
 
 /** Coarse distance and gradient, outside the coarse grid continued by the way to it. RT-safe. */
 float CalcCoarse(const FieldView& field, const float p[3], float gradient[3]) noexcept;

@@ -17,6 +17,10 @@ struct Avx2Pack {
 
   static void Store(Float a, float* p) { _mm256_storeu_ps(p, a); }
 
+  static void StoreInt(Int a, std::int32_t* p) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a);
+  }
+
   static Float Set(float a) { return _mm256_set1_ps(a); }
 
   static Int SetInt(std::int32_t a) { return _mm256_set1_epi32(a); }
@@ -26,6 +30,8 @@ struct Avx2Pack {
   static Float Sub(Float a, Float b) { return _mm256_sub_ps(a, b); }
 
   static Float Mul(Float a, Float b) { return _mm256_mul_ps(a, b); }
+
+  static Float Div(Float a, Float b) { return _mm256_div_ps(a, b); }
 
   static Float Min(Float a, Float b) { return _mm256_min_ps(a, b); }
 
@@ -70,9 +76,8 @@ struct Avx2Pack {
 
 }  // namespace
 
-void TraverseAvx2(const ShellView& shell, const FieldView& field, const FloatPose& X_FS,
-                  float margin, HitBuffer* out) noexcept {
-  Traversal<Avx2Pack>(shell, field, X_FS, margin, out).Run();
+Kernel Avx2Kernel() noexcept {
+  return {&Traversal<Avx2Pack>::Collect, &Traversal<Avx2Pack>::Test};
 }
 
 }  // namespace hvas::contact

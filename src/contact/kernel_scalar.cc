@@ -4,18 +4,17 @@
 
 namespace hvas::contact {
 
-void TraverseScalar(const ShellView& shell, const FieldView& field, const FloatPose& X_FS,
-                    float margin, HitBuffer* out) noexcept {
-  Traversal<ScalarPack>(shell, field, X_FS, margin, out).Run();
+Kernel ScalarKernel() noexcept {
+  return {&Traversal<ScalarPack>::Collect, &Traversal<ScalarPack>::Test};
 }
 
-TraverseFunction ChooseTraverse() noexcept {
+Kernel ChooseKernel() noexcept {
 #if defined(HVAS_HAS_AVX2_KERNEL)
   if (__builtin_cpu_supports("avx2")) {
-    return &TraverseAvx2;
+    return Avx2Kernel();
   }
 #endif
-  return &TraverseScalar;
+  return ScalarKernel();
 }
 
 float CalcCoarse(const FieldView& field, const float p[3], float gradient[3]) noexcept {

@@ -93,6 +93,22 @@ class ListReader {
     return true;
   }
 
+  // 1 where all of the list's triangles of face b lie inside face a, 2 where outside, else 3.
+  [[nodiscard]] std::uint8_t SideOf(std::size_t a, std::size_t b) const {
+    unsigned bits = 0;
+    for (std::size_t i = begin_; i < end_; ++i) {
+      const std::uint32_t t = exact_.Listed(i).triangle;
+      if (mesh_.face[t] != out_.faces[b]) {
+        continue;
+      }
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        const auto at = spatial::CalcDistance(exact_.faces[out_.faces[a]], mesh_.vertices[v]);
+        bits |= at.is_valid && at.distance < 0 ? 1U : at.is_valid ? 2U : 3U;
+      }
+    }
+    return static_cast<std::uint8_t>(bits);
+  }
+
   void DecideKind() {
     std::uint8_t all = 0;
     for (std::size_t a = 0; a < out_.count; ++a) {
@@ -100,8 +116,11 @@ class ListReader {
         return;
       }
       for (std::size_t b = 0; b < a; ++b) {
-        const auto bits = static_cast<std::uint8_t>(meets_[a][b] | meets_[b][a]);
-        if (bits == 0) {
+        auto bits = static_cast<std::uint8_t>(meets_[a][b] | meets_[b][a]);
+        if (bits == 0) {  // Two sides of a wall, or of a gap.
+          bits = static_cast<std::uint8_t>(SideOf(a, b) | SideOf(b, a));
+        }
+        if (bits != 1 && bits != 2) {
           return;
         }
         all = static_cast<std::uint8_t>(all | bits);

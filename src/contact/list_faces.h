@@ -15,8 +15,8 @@ struct ListFaces {
 
   enum class Kind : std::uint8_t {
     kMixed,         ///< The triangles decide.
-    kIntersection,  ///< Inside all faces: each two of them meet in a convex edge.
-    kUnion          ///< Inside any: each two of them meet in a concave edge.
+    kIntersection,  ///< Inside all faces: each two meet in a convex edge, or are sides of a wall.
+    kUnion          ///< Inside any: each two meet in a concave edge, or are sides of a gap.
   };
 
   std::array<std::uint32_t, kMost> faces{};

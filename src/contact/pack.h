@@ -36,6 +36,8 @@ struct ScalarPack {
 
   static void Store(const Float& a, float* p) { std::memcpy(p, a.v, sizeof(a.v)); }
 
+  static void StoreInt(const Int& a, std::int32_t* p) { std::memcpy(p, a.v, sizeof(a.v)); }
+
   static Float Set(float a) {
     return Map<Float>([&](int) { return a; });
   }
@@ -54,6 +56,10 @@ struct ScalarPack {
 
   static Float Mul(const Float& a, const Float& b) {
     return Map<Float>([&](int i) { return a.v[i] * b.v[i]; });
+  }
+
+  static Float Div(const Float& a, const Float& b) {
+    return Map<Float>([&](int i) { return a.v[i] / b.v[i]; });
   }
 
   static Float Min(const Float& a, const Float& b) {

@@ -1,12 +1,15 @@
 #include "contact/query.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace hvas::contact {
 namespace {
 
 constexpr std::size_t kMaxPairsPerBody = 8;  // Bits of a face mask; further pairs share the last.
 const std::uint32_t kGroundBody = BodyId{}.value();
+constexpr double kScreened = 0.2e-6;  // [m]; what single precision may be wrong by.
 
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
   std::uint8_t bits = 0;
@@ -54,10 +57,38 @@ bool Faces(const SampleFaces& sample, float limit, const Vec3& direction, std::u
   return best > static_cast<double>(limit) && !IsAlongEdge(sample, direction, best);
 }
 
+// A step through n hits that comes to all of them and to neighbours far apart: what is found first
+// then spans the contact, and few of the rest go beyond it.
+std::uint32_t Stride(std::uint32_t n) {
+  if (n < 3) {
+    return 1;
+  }
+  auto step = static_cast<std::uint32_t>(0.6180339887 * n);
+  while (step > 1 && std::gcd(step, n) != 1) {
+    --step;
+  }
+  return std::max(step, 1U);
+}
+
+// What single precision says of a hit on one face, with both faces as made; to kScreened.
+double ScreenedDistance(const Placed& sampled, const Shell& shell, const Placed& field,
+                        const Hit& hit, const Vec3& p_F, const Vec3& towards) {
+  auto distance = static_cast<double>(hit.distance);
+  if (sampled.offsets != nullptr) {
+    distance -= towards.dot(sampled.offsets->ShiftOf(shell, hit.point));
+  }
+  if (field.offsets != nullptr) {
+    distance -= field.offsets->At(hit.face, p_F).offset;
+  }
+  return distance;
+}
+
 }  // namespace
 
 void QueryWorkspace::Data::Clear() noexcept {
   reducer.Clear();
+  leaf_count = 0;
+  body_count = 0;
   layer = {};
   contact_count = 0;
   stats = {};
@@ -75,18 +106,86 @@ FloatPose RelativePose::Single() const {
   return out;
 }
 
-void BodyQuery::Body(BodyId id, const Placed& scene) noexcept {
-  if (is_stopped_ || !BoxesTouch(RelativePose(scene, held_), scene)) {
+void BodyQuery::Collect(BodyId id, const Placed& scene) noexcept {
+  if (!BoxesTouch(RelativePose(scene, held_), scene)) {
     return;
   }
+  if (work_->body_count == kMaxQueryBodies) {
+    work_->stats.is_truncated = true;
+    return;
+  }
+  NearBody& near = work_->bodies[work_->body_count++];
+  near.body = id;
+  CollectLeaves(held_, held_.shape->shell, scene, &near.first[0], &near.count[0]);
+  CollectLeaves(scene, scene.shape->features, held_, &near.first[1], &near.count[1]);
+}
+
+double BodyQuery::Reach(const Placed& sampled, const Placed& field,
+                        const RelativePose& X_FS) const noexcept {
+  const double rounding = 4e-7 * (X_FS.p.norm() + sampled.half().norm() + field.half().norm());
+  return margin_ + rounding + sampled.growth() + field.growth();
+}
+
+void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
+                              std::uint32_t* first, std::uint32_t* count) noexcept {
+  const RelativePose X(field, sampled);
+  LeafBuffer out;
+  out.leaves = work_->leaves.data() + work_->leaf_count;
+  out.capacity = static_cast<std::uint32_t>(work_->leaves.size() - work_->leaf_count);
+  kernel_.collect(shell.view, field.shape->field.view, X.Single(),
+                  static_cast<float>(Reach(sampled, field, X)), &out);
+  work_->stats.is_truncated = work_->stats.is_truncated || out.is_truncated;
+  *first = static_cast<std::uint32_t>(work_->leaf_count);
+  *count = out.count;
+  work_->leaf_count += out.count;
+}
+
+void BodyQuery::Share() noexcept {
+  // Whoever needs less than an equal share leaves the rest to the others.
+  std::array<std::uint32_t, 2 * kMaxQueryBodies> wanted;
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < work_->body_count; ++i) {
+    for (const std::uint32_t count : work_->bodies[i].count) {
+      wanted[size++] = 8 * count;
+    }
+  }
+  std::sort(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(size));
+  double left = options_.point_budget;
+  share_ = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < size; ++i) {
+    const double share = left / static_cast<double>(size - i);
+    if (wanted[i] > share) {
+      share_ = std::max(share, 1.0);
+      return;
+    }
+    left -= wanted[i];
+  }
+}
+
+LeafChoice BodyQuery::Choose(std::uint32_t first, std::uint32_t count) const noexcept {
+  LeafChoice choice;
+  choice.leaves = work_->leaves.data() + first;
+  choice.count = count;
+  if (8.0 * count > share_) {
+    choice.points = static_cast<std::uint32_t>(std::max(1.0, share_ / count));
+    choice.stride = static_cast<std::uint32_t>(std::max(1.0, std::ceil(count / share_)));
+  }
+  return choice;
+}
+
+void BodyQuery::Body(std::size_t i, const Placed& scene) noexcept {
+  if (is_stopped_) {
+    return;
+  }
+  const NearBody& near = work_->bodies[i];
   ++work_->stats.bodies_tested;
-  const bool has_ignored = SetMasks(id, 0xff);
-  Samples<false>(held_, held_.shape->shell, scene, has_ignored, id.value());
-  Samples<true>(scene, scene.shape->features, held_, has_ignored, id.value());
+  const bool has_ignored = SetMasks(near.body, 0xff);
+  Samples<false>(held_, held_.shape->shell, scene, has_ignored, near);
+  Samples<true>(scene, scene.shape->features, held_, has_ignored, near);
   work_->layer.Add(layer_, scene.R_WC, scene.p_WC);
   layer_ = {};
   if (has_ignored) {
-    SetMasks(id, 0);
+    SetMasks(near.body, 0);
   }
 }
 
@@ -125,8 +224,9 @@ bool BodyQuery::SetMasks(BodyId id, std::uint8_t keep) noexcept {
 
 template <bool kIsReverse>
 void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed& field,
-                        bool has_ignored, std::uint32_t body) noexcept {
-  if (is_stopped_) {
+                        bool has_ignored, const NearBody& body) noexcept {
+  const std::uint32_t leaf_count = body.count[kIsReverse ? 1 : 0];
+  if (is_stopped_ || leaf_count == 0) {
     return;
   }
   const RelativePose X(field, sampled);
@@ -134,35 +234,68 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   HitBuffer hits;
   hits.hits = work_->hits.data();
   hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
-  // Room for the rounding of single precision coordinates.
-  const double rounding = 4e-7 * (X.p.norm() + sampled.half().norm() + field.half().norm());
-  const double reach = margin_ + rounding + sampled.growth() + field.growth();
-  traverse_(shell.view, field.shape->field.view, X.Single(), static_cast<float>(reach), &hits);
+  const LeafChoice choice = Choose(body.first[kIsReverse ? 1 : 0], leaf_count);
+  const ExactTable& exact = field.shape->exact;
+  kernel_.test(shell.view, field.shape->field.view, {exact.zones.data(), exact.forms.data()},
+               X.Single(), static_cast<float>(Reach(sampled, field, X)), choice, &hits);
+  const bool is_thinned = choice.points < 8 || choice.stride > 1;
   work_->stats.points_tested += hits.points_tested;
-  work_->stats.is_truncated = work_->stats.is_truncated || hits.is_truncated;
+  work_->stats.points_dropped += is_thinned ? 8 * leaf_count - hits.points_tested : 0;
+  work_->stats.is_truncated = work_->stats.is_truncated || is_thinned || hits.is_truncated;
 
   const std::vector<std::uint8_t>& own_mask = kIsReverse ? work_->scene_mask : work_->held_mask;
   const std::vector<std::uint8_t>& other_mask = kIsReverse ? work_->held_mask : work_->scene_mask;
   // So deep that something is wrong whatever way the sample looks.
   const double deep = -0.5 * sampled.shape->spacing;
   RawContact contact;
-  contact.body = body;
+  contact.body = body.body.value();
   contact.is_reverse = kIsReverse;
+  contact.sparsity = 8.0F * static_cast<float>(choice.stride) / static_cast<float>(choice.points);
+  FaceFilter filter;
+  filter.limit = margin_;
+  const std::uint32_t step = Stride(hits.count);
+  std::uint32_t at = 0;
   for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
-    const Hit& hit = hits.hits[i];
+    const Hit& hit = hits.hits[at];
+    at += step;
+    at -= at >= hits.count ? hits.count : 0;
     contact.p = sampled.Sample(shell, hit.point);
     const SampleFaces& faces = shell.faces[hit.point];
     const Vec3 p_F = X * contact.p;
-    FaceFilter filter;
     if (has_ignored) {
-      filter = {other_mask.data(), BitsOf(faces, own_mask)};
+      filter.mask = other_mask.data();
+      filter.bits = BitsOf(faces, own_mask);
+    }
+    std::uint32_t own_face = kNoFace;
+    if (hit.face != kUnscreened) {
+      if (filter.Drops(hit.face)) {
+        continue;
+      }
+      const Vec3 gradient(static_cast<double>(hit.gradient[0]),
+                          static_cast<double>(hit.gradient[1]),
+                          static_cast<double>(hit.gradient[2]));
+      const Vec3 towards = R_back * gradient;
+      const double distance = ScreenedDistance(sampled, shell, field, hit, p_F, towards);
+      if (distance >= margin_ + kScreened ||
+          (!Faces(faces, shell.facing[hit.point], towards, &own_face) &&
+           distance > deep + kScreened)) {
+        continue;
+      }
+      const Vec3& nhat_S = kIsReverse ? towards : gradient;
+      const Vec3& p_S = kIsReverse ? contact.p : p_F;
+      if (distance < margin_ - kScreened && distance > stop_distance_ + kScreened &&
+          !work_->reducer.WouldChange(contact.body, kIsReverse ? own_face : hit.face, distance,
+                                      nhat_S, p_S)) {
+        work_->reducer.Pass();
+        AddToLayer(distance, faces, nhat_S, p_S);
+        continue;
+      }
     }
     const Refined r = RefineActual(*field.shape, field.offsets, p_F, hit, filter);
     if (!r.is_valid || r.distance >= margin_) {
       continue;
     }
     const Vec3 towards = R_back * r.gradient;  // In the sampled shape's frame.
-    std::uint32_t own_face = kNoFace;
     // An edge is met by its own samples: they know its direction, a face's samples would guess it.
     const bool is_face_at_edge = faces.faces[1] == kNoFace && r.other_face != kNoFace;
     if (is_face_at_edge && r.distance > deep) {
@@ -236,14 +369,19 @@ void BodyQuery::GroundLeaf(double z_W, std::size_t leaf) noexcept {
   }
 }
 
+void BodyQuery::AddToLayer(double distance, const SampleFaces& faces, const Vec3& nhat_S,
+                           const Vec3& p_S) noexcept {
+  if (distance < 0) {
+    const bool is_inside_face = faces.faces[1] == kNoFace;
+    const double area = is_inside_face ? ContactLayer::kFaceArea : ContactLayer::kEdgeArea;
+    layer_.Add(area, -distance, nhat_S, p_S);
+  }
+}
+
 void BodyQuery::Add(const RawContact& contact, const SampleFaces& faces, const Vec3& nhat_S,
                     const Vec3& p_S) noexcept {
   work_->reducer.Add(contact, nhat_S, p_S);
-  if (contact.distance < 0) {
-    const bool is_inside_face = faces.faces[1] == kNoFace;
-    const double area = is_inside_face ? ContactLayer::kFaceArea : ContactLayer::kEdgeArea;
-    layer_.Add(area, -contact.distance, nhat_S, p_S);
-  }
+  AddToLayer(contact.distance, faces, nhat_S, p_S);
   is_stopped_ = contact.distance < stop_distance_;
 }
 

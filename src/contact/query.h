@@ -14,9 +14,22 @@ namespace hvas::contact {
 
 inline constexpr std::size_t kMaxQueryHits = 32768;
 inline constexpr std::size_t kMaxQueryFaces = 65536;
+inline constexpr std::size_t kMaxQueryLeaves = 65536;
+inline constexpr std::size_t kMaxQueryBodies = 512;
+
+/** A body near the held part, and the leaves of either shell that are near the other's surface. */
+struct NearBody {
+  BodyId body;
+  std::array<std::uint32_t, 2> first{};  ///< Into the leaves: of the held shell, of the body's.
+  std::array<std::uint32_t, 2> count{};
+};
 
 struct QueryWorkspace::Data {
   std::vector<Hit> hits = std::vector<Hit>(kMaxQueryHits);
+  std::vector<std::uint32_t> leaves = std::vector<std::uint32_t>(kMaxQueryLeaves);
+  std::size_t leaf_count{0};
+  std::array<NearBody, kMaxQueryBodies> bodies;
+  std::size_t body_count{0};
   ContactReducer reducer;
   ContactLayer layer;  // In W.
   std::array<RawContact, kMaxContacts> raw;
@@ -75,15 +88,20 @@ struct RelativePose {
 class BodyQuery {
  public:
   BodyQuery(const Placed& held, const QueryOptions& options, double margin, double stop_distance,
-            TraverseFunction traverse, QueryWorkspace::Data* work)
+            const Kernel& kernel, QueryWorkspace::Data* work)
       : held_(held),
         options_(options),
         margin_(margin),
         stop_distance_(stop_distance),
-        traverse_(traverse),
+        kernel_(kernel),
         work_(work) {}
 
-  void Body(BodyId id, const Placed& scene) noexcept;
+  /** Notes what is near of a body. */
+  void Collect(BodyId id, const Placed& scene) noexcept;
+  /** Shares the budget out among what was collected. */
+  void Share() noexcept;
+  /** Finds the contacts with the i-th body collected. */
+  void Body(std::size_t i, const Placed& scene) noexcept;
   void Ground(double z_W) noexcept;
 
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
@@ -91,10 +109,18 @@ class BodyQuery {
  private:
   [[nodiscard]] bool BoxesTouch(const RelativePose& X_SH, const Placed& scene) const noexcept;
   bool SetMasks(BodyId id, std::uint8_t keep) noexcept;
+  void CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
+                     std::uint32_t* first, std::uint32_t* count) noexcept;
+  /** The margin for the field of the part as drawn in single precision. */
+  [[nodiscard]] double Reach(const Placed& sampled, const Placed& field,
+                             const RelativePose& X_FS) const noexcept;
+  [[nodiscard]] LeafChoice Choose(std::uint32_t first, std::uint32_t count) const noexcept;
   template <bool kIsReverse>
   void Samples(const Placed& sampled, const Shell& shell, const Placed& field, bool has_ignored,
-               std::uint32_t body) noexcept;
+               const NearBody& body) noexcept;
   void GroundLeaf(double z_W, std::size_t leaf) noexcept;
+  void AddToLayer(double distance, const SampleFaces& faces, const Vec3& nhat_S,
+                  const Vec3& p_S) noexcept;
   void Add(const RawContact& contact, const SampleFaces& faces, const Vec3& nhat_S,
            const Vec3& p_S) noexcept;
 
@@ -102,9 +128,10 @@ class BodyQuery {
   const QueryOptions& options_;
   double margin_;
   double stop_distance_;
-  TraverseFunction traverse_;
+  Kernel kernel_;
   QueryWorkspace::Data* work_;
   ContactLayer layer_;  // Of the body at hand, in its centred frame.
+  double share_{0};     // Points for each shell of each body.
   bool is_stopped_{false};
 };
 

@@ -25,6 +25,21 @@ std::uint64_t DirectionCell(const Vec3& n) {
   return static_cast<std::uint64_t>((side * 5 + a) * 5 + b);
 }
 
+std::uint64_t KeyOf(std::uint32_t body, std::uint32_t scene_face, const Vec3& nhat_S) {
+  return (static_cast<std::uint64_t>(body) << 40U) |
+         (static_cast<std::uint64_t>(scene_face) << 8U) | DirectionCell(nhat_S);
+}
+
+using Reaches = std::array<double, 8>;
+
+Reaches ReachesOf(const Vec3& u, const Vec3& v, const Vec3& p) {
+  const double a = u.dot(p);
+  const double b = v.dot(p);
+  const double c = kDiagonal * (a + b);
+  const double d = kDiagonal * (a - b);
+  return {a, -a, b, -b, c, -c, d, -d};
+}
+
 }  // namespace
 
 void ContactReducer::Clear() noexcept {
@@ -35,15 +50,19 @@ void ContactReducer::Clear() noexcept {
   is_full_ = false;
 }
 
-ContactReducer::Group* ContactReducer::Find(std::uint64_t key, const Vec3& nhat_S) noexcept {
+std::size_t ContactReducer::SlotOf(std::uint64_t key) const noexcept {
   std::size_t slot = (key * 0x9e3779b97f4a7c15ULL) >> 55U;
   static_assert(kSlots == 512);
-  while (slots_[slot] != 0) {
-    Group& group = groups_[slots_[slot] - 1U];
-    if (group.key == key) {
-      return &group;
-    }
+  while (slots_[slot] != 0 && groups_[slots_[slot] - 1U].key != key) {
     slot = (slot + 1) % kSlots;
+  }
+  return slot;
+}
+
+ContactReducer::Group* ContactReducer::Find(std::uint64_t key, const Vec3& nhat_S) noexcept {
+  const std::size_t slot = SlotOf(key);
+  if (slots_[slot] != 0) {
+    return &groups_[slots_[slot] - 1U];
   }
   if (group_count_ == kMaxGroups) {
     return nullptr;
@@ -59,13 +78,25 @@ ContactReducer::Group* ContactReducer::Find(std::uint64_t key, const Vec3& nhat_
   return &group;
 }
 
+bool ContactReducer::WouldChange(std::uint32_t body, std::uint32_t scene_face, double distance,
+                                 const Vec3& nhat_S, const Vec3& p_S) const noexcept {
+  const std::size_t slot = SlotOf(KeyOf(body, scene_face, nhat_S));
+  if (slots_[slot] == 0) {
+    return true;
+  }
+  const Group& group = groups_[slots_[slot] - 1U];
+  bool would = distance < group.least - kDeeper;
+  const Reaches reach = ReachesOf(group.u, group.v, p_S);
+  for (std::size_t k = 0; k < kTangents; ++k) {
+    would = would || reach[k] > group.reach[k] + kFurther;
+  }
+  return would;
+}
+
 void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept {
   const std::uint32_t number = count_++;
   deepest_ = std::min(deepest_, contact.distance);
-  const std::uint64_t key = (static_cast<std::uint64_t>(contact.body) << 40U) |
-                            (static_cast<std::uint64_t>(contact.scene_face) << 8U) |
-                            DirectionCell(nhat_S);
-  Group* group = Find(key, nhat_S);
+  Group* group = Find(KeyOf(contact.body, contact.scene_face, nhat_S), nhat_S);
   if (group == nullptr) {
     is_full_ = true;
     return;
@@ -74,11 +105,7 @@ void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Ve
     group->least = contact.distance;
     group->deepest = {contact, number};
   }
-  const double a = group->u.dot(p_S);
-  const double b = group->v.dot(p_S);
-  const double c = kDiagonal * (a + b);
-  const double d = kDiagonal * (a - b);
-  const double reach[kTangents] = {a, -a, b, -b, c, -c, d, -d};
+  const Reaches reach = ReachesOf(group->u, group->v, p_S);
   unsigned further = 0;
   for (std::size_t k = 0; k < kTangents; ++k) {
     further |= (reach[k] > group->reach[k] ? 1U : 0U) << k;

@@ -20,6 +20,7 @@ struct RawContact {
   std::uint32_t scene_face{0};
   bool is_reverse{false};  ///< The sample is the scene body's, the field the held shape's.
   bool is_exact{false};
+  float sparsity{1};  ///< Samples of the shell for each one that was tested here.
 };
 
 /** Reduces a stream of contacts to a few that span it. Contacts are grouped by body, scene face and
@@ -32,6 +33,14 @@ class ContactReducer {
   /** @param nhat_S  The contact's normal in the scene body, which the groups go by.
    @param p_S  Its position there. */
   void Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept;
+
+  /** Whether a contact could matter: by more than kDeeper deeper than its group's deepest, or by
+   more than kFurther beyond an extreme. */
+  [[nodiscard]] bool WouldChange(std::uint32_t body, std::uint32_t scene_face, double distance,
+                                 const Vec3& nhat_S, const Vec3& p_S) const noexcept;
+
+  /** Counts a contact that would not. */
+  void Pass() noexcept { ++count_; }
 
   /** Writes the deepest of every group, deepest group first, then extremes, until `out` is full.
    Returns how many were written. */
@@ -47,6 +56,8 @@ class ContactReducer {
   [[nodiscard]] bool is_full() const noexcept { return is_full_; }
 
  private:
+  static constexpr double kDeeper = 20e-9;   // [m]
+  static constexpr double kFurther = 10e-6;  // [m]
   static constexpr std::size_t kMaxGroups = 256;
   static constexpr std::size_t kSlots = 512;
   static constexpr std::size_t kTangents = 8;
@@ -66,6 +77,8 @@ class ContactReducer {
     std::array<Kept, kTangents> extremes;
   };
 
+  /** Slot of the key: of its group, or where it would go. */
+  [[nodiscard]] std::size_t SlotOf(std::uint64_t key) const noexcept;
   Group* Find(std::uint64_t key, const Vec3& nhat_S) noexcept;
 
   std::array<Group, kMaxGroups> groups_;

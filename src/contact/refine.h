@@ -17,8 +17,8 @@ struct Refined {
   bool is_valid{true};  ///< False when everything near is ignored.
 };
 
-/** Says which faces to leave out: those with mask[face] & bits. Null: none. What lies no nearer than
- `limit` need not be told exactly, only that it does not. */
+/** Says which faces to leave out: those with mask[face] & bits. Null: none. What lies no nearer
+ than `limit` need not be told exactly, only that it does not. */
 struct FaceFilter {
   const std::uint8_t* mask{nullptr};
   std::uint8_t bits{0};

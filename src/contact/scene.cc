@@ -33,6 +33,12 @@ const ContactLayer& QueryWorkspace::layer() const noexcept {
   return data_->layer;
 }
 
+namespace {
+
+constexpr std::size_t kMostSlides = 24;  // Of the deepest groups; the others stay at their samples.
+
+}  // namespace
+
 struct Scene::Data {
   struct Body {
     std::shared_ptr<const Shape> shape;
@@ -45,7 +51,7 @@ struct Scene::Data {
   BodyTree tree;
   double growth{0};  // Of all bodies' offsets, the most; the tree has their boxes as drawn.
   double ground_z_W{std::numeric_limits<double>::quiet_NaN()};
-  TraverseFunction traverse{ChooseTraverse()};
+  Kernel kernel{ChooseKernel()};
 
   static spatial::Box BoxOf(const Body& body) {
     return spatial::Transform(body.X_WB, body.shape->box_B());
@@ -68,16 +74,20 @@ struct Scene::Data {
     return {*bodies[item].shape, bodies[item].X_WB, bodies[item].offsets.get()};
   }
 
-  void Run(const spatial::Box& box_W, const QueryOptions& options,
+  void Run(const spatial::Box& box_W, const QueryOptions& options, const QueryWorkspace::Data& work,
            BodyQuery* query) const noexcept {
     tree.Query(box_W, [&](std::uint32_t item) {
       if (BodyId{item} != options.self &&
           std::find(options.left_out.begin(), options.left_out.end(), BodyId{item}) ==
               options.left_out.end()) {
-        query->Body(BodyId{item}, Place(item));
+        query->Collect(BodyId{item}, Place(item));
       }
-      return !query->is_stopped();
+      return true;
     });
+    query->Share();
+    for (std::size_t i = 0; i < work.body_count && !query->is_stopped(); ++i) {
+      query->Body(i, Place(work.bodies[i].body.value()));
+    }
     if (!std::isnan(ground_z_W) && box_W.low.z() < ground_z_W) {
       query->Ground(ground_z_W);
     }
@@ -89,7 +99,8 @@ struct Scene::Data {
     work->deepest = work->reducer.deepest();
     work->stats.candidates = work->reducer.count();
     work->stats.is_truncated = work->stats.is_truncated || work->reducer.is_full();
-    const std::size_t lowest = std::min(work->reducer.group_count(), work->contact_count);
+    const std::size_t lowest =
+        std::min({work->reducer.group_count(), work->contact_count, kMostSlides});
     for (std::size_t i = 0; i < work->contact_count; ++i) {
       work->contacts[i] = MakeContact(held, i < lowest, &work->raw[i]);
       work->deepest = std::min(work->deepest, work->contacts[i].distance);
@@ -196,7 +207,7 @@ std::size_t Scene::size() const noexcept {
 }
 
 void Scene::UseScalarKernel() noexcept {
-  data_->traverse = &TraverseScalar;
+  data_->kernel = ScalarKernel();
 }
 
 void Scene::SetGround(double z_W) noexcept {
@@ -209,8 +220,8 @@ void Scene::Query(const Shape& held, const spatial::Pose& X_WH, const QueryOptio
   work.Clear();
   const Placed placed(held, X_WH, data_->OffsetsOfHeld(options));
   BodyQuery query(placed, options, options.margin, -std::numeric_limits<double>::infinity(),
-                  data_->traverse, &work);
-  data_->Run(data_->BoxOf(placed, X_WH, options.margin), options, &query);
+                  data_->kernel, &work);
+  data_->Run(data_->BoxOf(placed, X_WH, options.margin), options, work, &query);
   data_->Finish(placed, &work);
 }
 
@@ -219,8 +230,8 @@ bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double toleranc
   QueryWorkspace::Data& work = workspace->data();
   work.Clear();
   const Placed placed(held, X_WH, data_->OffsetsOfHeld(options));
-  BodyQuery query(placed, options, -tolerance, -tolerance, data_->traverse, &work);
-  data_->Run(data_->BoxOf(placed, X_WH, 0), options, &query);
+  BodyQuery query(placed, options, -tolerance, -tolerance, data_->kernel, &work);
+  data_->Run(data_->BoxOf(placed, X_WH, 0), options, work, &query);
   data_->Finish(placed, &work);
   return !query.is_stopped();
 }

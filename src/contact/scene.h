@@ -44,13 +44,19 @@ struct QueryOptions {
   /** The held part's faces as made; null: those of `self`, and if there is none, as drawn. */
   const FaceOffsets* held_offsets{nullptr};
   BodyId self;  ///< This body of the scene is the held one itself: skipped.
+  /** At most about so many points are tested. Where more are near, each pair of parts has its
+   share, and what it has more of is thinned out evenly: fewer points then stand for a contact. */
+  std::uint32_t point_budget{kDefaultPointBudget};
+
+  static constexpr std::uint32_t kDefaultPointBudget = 8192;
 };
 
 struct QueryStats {
   std::uint32_t bodies_tested{0};
   std::uint32_t points_tested{0};
-  std::uint32_t candidates{0};  ///< Points within the margin, before reduction.
-  bool is_truncated{false};     ///< The point budget or a capacity was reached.
+  std::uint32_t points_dropped{0};  ///< Near, but beyond the budget; whole leaves of eight.
+  std::uint32_t candidates{0};      ///< Points within the margin, before reduction.
+  bool is_truncated{false};         ///< The point budget or a capacity was reached.
 };
 
 /** Everything a query writes to: sized once, so that a query allocates nothing. One per thread. */

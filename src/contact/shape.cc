@@ -49,7 +49,7 @@ std::size_t Bytes(const std::vector<T>& v) {
 
 std::size_t Bytes(const Shell& s) {
   return Bytes(s.nodes) + Bytes(s.x) + Bytes(s.y) + Bytes(s.z) + Bytes(s.leaf_count) +
-         Bytes(s.faces) + Bytes(s.facing);
+         Bytes(s.faces) + Bytes(s.facing) + Bytes(s.order);
 }
 
 }  // namespace
@@ -92,12 +92,6 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
   return std::make_shared<const Shape>(std::move(data));
 }
 
-void Shape::Data::Complete() {
-  if (exact.list_faces.empty()) {  // A shape from disk has them.
-    exact.list_faces = MakeListFaces(mesh, exact);
-  }
-}
-
 Shape::Shape(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
 
 Shape::~Shape() = default;
@@ -121,7 +115,8 @@ ShapeMemory Shape::CalcMemory() const noexcept {
   memory.field =
       Bytes(d.field.top) + Bytes(d.field.nodes) + Bytes(d.field.slack) + Bytes(d.field.coarse);
   memory.tables = Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
-                  Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.exact.list_faces);
+                  Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.exact.list_faces) +
+                  Bytes(d.exact.forms);
   memory.mesh = Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normal) +
                 Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) +
                 Bytes(m.vertex_normal) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open);

@@ -57,7 +57,8 @@ struct ExactTable {
   std::vector<std::uint32_t> listed;
   std::uint32_t distance_bits{0};
   double distance_unit{0};
-  std::vector<ListFaces> list_faces;  ///< Of each list; made from the above by Complete.
+  std::vector<ListFaces> list_faces;  ///< Of each list; by Complete, as the next.
+  std::vector<FaceForm> forms;        ///< Of each face.
 
   [[nodiscard]] ListedTriangle Listed(std::size_t i) const noexcept {
     const std::uint32_t entry = listed[i];
@@ -88,11 +89,17 @@ struct Shell {
   std::vector<std::uint8_t> leaf_count;
   std::vector<SampleFaces> faces;
   std::vector<float> facing;  ///< Of each point: least cosine of its normal against a contact's.
+  std::vector<std::uint8_t> order;  ///< Of each leaf, its lanes, most telling first; by Complete.
   std::size_t point_count{0};
 
   void Bind() {
-    view = {nodes.data(), x.data(),          y.data(),
-            z.data(),     leaf_count.data(), static_cast<std::uint32_t>(nodes.size())};
+    view = {nodes.data(),
+            x.data(),
+            y.data(),
+            z.data(),
+            leaf_count.data(),
+            order.data(),
+            static_cast<std::uint32_t>(nodes.size())};
   }
 };
 

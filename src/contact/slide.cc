@@ -10,13 +10,22 @@ constexpr int kMaxSteps = 3;
 constexpr double kWorthwhile = 2e-8;  // [m]; a slide that can gain less is left out.
 constexpr double kOnSurface = 1e-7;   // [m]
 
+constexpr double kFaceReach = 3.0;  // In spacings; edges are sampled at half.
+constexpr double kEdgeReach = 0.75;
+constexpr double kMostSparse = 8.0;  // A slide may not lead anywhere.
+
+double SparsityOf(const RawContact& contact) {
+  return std::min(static_cast<double>(contact.sparsity), kMostSparse);
+}
+
 // The face, or the two faces at an edge, on which a sample may move.
 class Track {
  public:
-  Track(const Placed& sampled, const SampleFaces& sample)
+  Track(const Placed& sampled, const SampleFaces& sample, double sparsity)
       : shape_(*sampled.shape), offsets_(sampled.offsets), faces_(sample.faces) {
     const auto& faces = sample.faces;
-    reach_ = shape_.spacing * (faces[1] == kNoFace ? 3.0 : 0.75);
+    reach_ = shape_.spacing *
+             (faces[1] == kNoFace ? kFaceReach * std::sqrt(sparsity) : kEdgeReach * sparsity);
     is_usable_ =
         faces[2] == kNoFace && IsExact(faces[0]) && (faces[1] == kNoFace || IsExact(faces[1]));
   }
@@ -49,7 +58,9 @@ class Track {
   // True where the trimmed part of the track goes as far as p.
   [[nodiscard]] bool Reaches(const Vec3& p) const {
     constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
-    const Refined r = RefineActual(shape_, offsets_, p, kNowhere, {});
+    FaceFilter near;
+    near.limit = 10 * kOnSurface;
+    const Refined r = RefineActual(shape_, offsets_, p, kNowhere, near);
     return r.is_exact && std::abs(r.distance) < kOnSurface;
   }
 
@@ -118,7 +129,7 @@ State Descend(const Track& track, const State& start, Evaluate evaluate) {
 
 void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
            RawContact* contact) noexcept {
-  const Track track(sampled, shell.faces[contact->point]);
+  const Track track(sampled, shell.faces[contact->point], SparsityOf(*contact));
   if (!track.is_usable() || !contact->is_exact) {
     return;
   }
@@ -140,7 +151,7 @@ void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
 
 void SlideOnPlane(const Placed& sampled, const Shell& shell, const spatial::Surface& plane,
                   RawContact* contact) noexcept {
-  const Track track(sampled, shell.faces[contact->point]);
+  const Track track(sampled, shell.faces[contact->point], SparsityOf(*contact));
   if (!track.is_usable()) {
     return;
   }

@@ -12,11 +12,22 @@ class Traversal {
   using Mask = typename P::Mask;
 
  public:
-  Traversal(const ShellView& shell, const FieldView& field, const FloatPose& X_FS, float margin,
-            HitBuffer* out)
-      : shell_(shell), field_(field), X_(X_FS), margin_(margin), out_(out) {}
+  static void Collect(const ShellView& shell, const FieldView& field, const FloatPose& X_FS,
+                      float margin, LeafBuffer* out) {
+    Traversal(shell, field, {}, X_FS, margin, nullptr).CollectLeaves(out);
+  }
 
-  void Run() {
+  static void Test(const ShellView& shell, const FieldView& field, const FaceView& faces,
+                   const FloatPose& X_FS, float margin, const LeafChoice& choice, HitBuffer* out) {
+    Traversal(shell, field, faces, X_FS, margin, out).TestLeaves(choice);
+  }
+
+ private:
+  Traversal(const ShellView& shell, const FieldView& field, const FaceView& faces,
+            const FloatPose& X_FS, float margin, HitBuffer* out)
+      : shell_(shell), field_(field), faces_(faces), X_(X_FS), margin_(margin), out_(out) {}
+
+  void CollectLeaves(LeafBuffer* out) const {
     if (shell_.node_count == 0) {
       return;
     }
@@ -31,18 +42,57 @@ class Traversal {
         const int lane = __builtin_ctz(near);
         near &= near - 1;
         const std::int32_t child = node.child[lane];
-        if (child < -1) {
-          Leaf(-2 - child);
+        if (child < -1 && out->count < out->capacity) {
+          out->leaves[out->count++] = static_cast<std::uint32_t>(-2 - child);
         } else if (child >= 0 && size < kStack) {
           stack[size++] = child;
-        } else if (child >= 0) {
-          out_->is_truncated = true;
+        } else if (child != -1) {
+          out->is_truncated = true;
         }
       }
     }
   }
 
- private:
+  void TestLeaves(const LeafChoice& choice) {
+    if (choice.points >= 8) {
+      for (std::uint32_t i = 0; i < choice.count; i += choice.stride) {
+        const std::uint32_t leaf = choice.leaves[i];
+        const float* x = shell_.x + 8 * leaf;
+        const float* y = shell_.y + 8 * leaf;
+        const float* z = shell_.z + 8 * leaf;
+        std::uint32_t number[8];
+        for (std::uint32_t lane = 0; lane < 8; ++lane) {
+          number[lane] = 8 * leaf + lane;
+        }
+        TestPoints(P::Load(x), P::Load(y), P::Load(z), number, shell_.leaf_count[leaf]);
+      }
+      return;
+    }
+    alignas(32) float x[8] = {};
+    alignas(32) float y[8] = {};
+    alignas(32) float z[8] = {};
+    std::uint32_t number[8] = {};
+    unsigned size = 0;
+    for (std::uint32_t i = 0; i < choice.count; i += choice.stride) {
+      const std::uint32_t leaf = choice.leaves[i];
+      const std::uint32_t count = shell_.leaf_count[leaf];
+      for (std::uint32_t k = 0; k < choice.points && k < count; ++k) {
+        const std::uint32_t point = 8 * leaf + shell_.order[8 * leaf + k];
+        x[size] = shell_.x[point];
+        y[size] = shell_.y[point];
+        z[size] = shell_.z[point];
+        number[size] = point;
+        if (++size == 8) {
+          TestPoints(P::Load(x), P::Load(y), P::Load(z), number, size);
+          size = 0;
+        }
+      }
+    }
+    if (size > 0) {
+      TestPoints(P::Load(x), P::Load(y), P::Load(z), number, size);
+    }
+  }
+
   void Transform(const Float& x, const Float& y, const Float& z, Float* out) const {
     for (int k = 0; k < 3; ++k) {
       const Float a = P::Mul(P::Set(X_.R[3 * k]), x);
@@ -120,17 +170,17 @@ class Traversal {
     return s;
   }
 
-  void Leaf(std::int32_t leaf) {
-    const std::int32_t first = 8 * leaf;
-    const unsigned count = shell_.leaf_count[leaf];
+  void TestPoints(const Float& x, const Float& y, const Float& z, const std::uint32_t* number,
+                  unsigned count) {
     const unsigned used = (1U << count) - 1U;
     out_->points_tested += count;
     Float p[3];
-    Transform(P::Load(shell_.x + first), P::Load(shell_.y + first), P::Load(shell_.z + first), p);
+    Transform(x, y, z, p);
     const Float zero = P::Set(0.0F);
     const float inverse = 1.0F / field_.voxel;
     Int block = P::SetInt(0);
     Int cell = P::SetInt(0);
+    Int zone = P::SetInt(0);  // Twice its number in the block.
     Float w[3];
     Mask inside = P::Less(P::Set(-1.0F), zero);
     for (int k = 2; k >= 0; --k) {
@@ -142,6 +192,7 @@ class Traversal {
       w[k] = P::Sub(clamped, P::ToFloat(i));
       block = P::AddInt(P::MulInt(block, P::SetInt(field_.blocks[k])), P::ShiftRight3(i));
       cell = P::AddInt(P::MulInt(cell, P::SetInt(9)), P::AndInt(i, 7));
+      zone = P::AddInt(P::MulInt(zone, P::SetInt(4)), P::AndInt(i, 6));
     }
     const Int top = P::GatherInt(field_.top, block);
     const Mask has = P::And(inside, P::LessInt(P::SetInt(-1), top));
@@ -156,18 +207,101 @@ class Traversal {
       const Float limit = P::Add(P::Set(margin_), P::Gather(field_.slack, b));
       unsigned hits = P::Bits(P::Less(s.distance, limit)) & has_bits;
       if (hits != 0) {
-        PushInBand(hits, s, position, first);
+        std::int32_t code[8];
+        P::StoreInt(P::AddInt(P::MulInt(b, P::SetInt(128)), zone), code);
+        PushInBand(Screen(hits, p, code, number), s, position, number);
       }
     }
     const unsigned solid = P::Bits(P::And(inside, P::LessInt(top, P::SetInt(kTopOutside))));
     // Outside the part and in no block is further away than `beyond`.
     const unsigned rest = used & ~has_bits & (margin_ > field_.beyond ? ~0U : solid);
     if (rest != 0) {
-      PushCoarse(rest, solid, position, first);
+      PushCoarse(rest, solid, position, number);
     }
   }
 
-  void PushInBand(unsigned hits, const Sample& s, const float (*position)[8], std::int32_t first) {
+  // Pushes the hits that one analytic face decides, by their distance from it; returns the others.
+  unsigned Screen(unsigned hits, const Float* p, const std::int32_t* twice_zone,
+                  const std::uint32_t* number) {
+    std::uint32_t face[8];
+    unsigned todo = 0;
+    for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      face[lane] = faces_.zones[twice_zone[lane] >> 1];
+      constexpr std::uint32_t kSeveralOrNone = 0xc0000000U;
+      const bool is_one = (face[lane] & kSeveralOrNone) == 0 &&
+                          faces_.forms[face[lane]].kind != FaceForm::Kind::kNone;
+      todo |= (is_one ? 1U : 0U) << lane;
+    }
+    unsigned others = hits & ~todo;
+    while (todo != 0) {
+      const std::uint32_t f = face[__builtin_ctz(todo)];
+      alignas(32) float distance[8];
+      alignas(32) float gradient[3][8];
+      const unsigned good = Evaluate(faces_.forms[f], p, distance, gradient);
+      for (unsigned rest = todo; rest != 0; rest &= rest - 1) {
+        const int lane = __builtin_ctz(rest);
+        if (face[lane] != f) {
+          continue;
+        }
+        todo &= ~(1U << lane);
+        if ((good >> lane & 1U) == 0) {
+          others |= 1U << lane;
+        } else if (distance[lane] < margin_) {
+          Push({number[lane],
+                distance[lane],
+                {gradient[0][lane], gradient[1][lane], gradient[2][lane]},
+                f});
+        }
+      }
+    }
+    return others;
+  }
+
+  // Distance and unit gradient; the lanes that are not on the axis, where there is none.
+  static unsigned Evaluate(const FaceForm& form, const Float* p, float* distance,
+                           float (*gradient)[8]) {
+    Float q[3];
+    Float radial[3];
+    for (int k = 0; k < 3; ++k) {
+      q[k] = P::Sub(p[k], P::Set(form.origin[k]));
+    }
+    const auto dot = [](const Float* a, const Float* b) {
+      return P::Add(P::Add(P::Mul(a[0], b[0]), P::Mul(a[1], b[1])), P::Mul(a[2], b[2]));
+    };
+    const Float axis[3] = {P::Set(form.axis[0]), P::Set(form.axis[1]), P::Set(form.axis[2])};
+    const Float h = dot(q, axis);
+    for (int k = 0; k < 3; ++k) {
+      radial[k] = P::Sub(q[k], P::Mul(h, axis[k]));
+    }
+    const Float r = P::Sqrt(dot(radial, radial));
+    const Float u = P::Sub(r, P::Set(form.radius));
+    Float across = P::Set(form.across);
+    Float along = P::Set(form.along);
+    Float d;
+    if (form.kind == FaceForm::Kind::kRound) {
+      const Float reach = P::Sqrt(P::Add(P::Mul(u, u), P::Mul(h, h)));
+      const Float least = P::Max(reach, P::Set(1e-12F));
+      across = P::Div(u, least);
+      along = P::Div(h, least);
+      d = P::Sub(reach, P::Set(form.minor));
+    } else {
+      d = P::Add(P::Mul(across, u), P::Mul(along, h));
+    }
+    const Float outward = P::Set(form.outward);
+    P::Store(P::Mul(outward, d), distance);
+    const Float per_radial = P::Div(P::Mul(outward, across), P::Max(r, P::Set(1e-12F)));
+    const Float per_axis = P::Mul(outward, along);
+    for (int k = 0; k < 3; ++k) {
+      P::Store(P::Add(P::Mul(per_radial, radial[k]), P::Mul(per_axis, axis[k])), gradient[k]);
+    }
+    constexpr float kOnAxis = 1e-5F;  // [m]
+    const bool has_axis = form.kind == FaceForm::Kind::kRound || form.across != 0.0F;
+    return has_axis ? P::Bits(P::Less(P::Set(kOnAxis), r)) : 0xffU;
+  }
+
+  void PushInBand(unsigned hits, const Sample& s, const float (*position)[8],
+                  const std::uint32_t* number) {
     alignas(32) float distance[8];
     alignas(32) float gradient[3][8];
     P::Store(s.distance, distance);
@@ -178,9 +312,8 @@ class Traversal {
     const float reliable = 0.5F * field_.band;
     for (; hits != 0; hits &= hits - 1) {
       const int lane = __builtin_ctz(hits);
-      Hit hit{static_cast<std::uint32_t>(first + lane),
-              distance[lane],
-              {gradient[0][lane], gradient[1][lane], gradient[2][lane]}};
+      Hit hit{
+          number[lane], distance[lane], {gradient[0][lane], gradient[1][lane], gradient[2][lane]}};
       if (distance[lane] < -reliable || distance[lane] > reliable) {
         const float at[3] = {position[0][lane], position[1][lane], position[2][lane]};
         float slope[3];
@@ -197,11 +330,12 @@ class Traversal {
   }
 
   // In no block, inside or outside: which, the directory knows better than the coarse grid.
-  void PushCoarse(unsigned lanes, unsigned solid, const float (*position)[8], std::int32_t first) {
+  void PushCoarse(unsigned lanes, unsigned solid, const float (*position)[8],
+                  const std::uint32_t* number) {
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = __builtin_ctz(lanes);
       const float at[3] = {position[0][lane], position[1][lane], position[2][lane]};
-      Hit hit{static_cast<std::uint32_t>(first + lane), 0.0F, {}};
+      Hit hit{number[lane], 0.0F, {}};
       const float coarse = CalcCoarse(field_, at, hit.gradient);
       const float side = (solid >> static_cast<unsigned>(lane) & 1U) != 0 ? -1.0F : 1.0F;
       hit.distance = side * coarse > field_.beyond ? coarse : side * field_.beyond;
@@ -221,6 +355,7 @@ class Traversal {
 
   const ShellView& shell_;
   const FieldView& field_;
+  FaceView faces_;
   const FloatPose& X_;
   float margin_;
   HitBuffer* out_;

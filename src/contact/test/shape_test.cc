@@ -106,11 +106,20 @@ struct Hits {
   std::vector<Hit> list = std::vector<Hit>(20000);
   HitBuffer buffer;
 
-  explicit Hits(TraverseFunction traverse, const Shape& shell, const Shape& field,
-                const FloatPose& X, float margin) {
+  Hits(const Kernel& kernel, const Shape& shell, const Shape& field, const FloatPose& X,
+       float margin, std::uint32_t points = 8) {
+    const Shell& samples = shell.data().shell;
+    std::vector<std::uint32_t> leaves(samples.leaf_count.size());
+    LeafBuffer near;
+    near.leaves = leaves.data();
+    near.capacity = static_cast<std::uint32_t>(leaves.size());
+    const FieldView& view = field.data().field.view;
+    kernel.collect(samples.view, view, X, margin, &near);
     buffer.hits = list.data();
     buffer.capacity = static_cast<std::uint32_t>(list.size());
-    traverse(shell.data().shell.view, field.data().field.view, X, margin, &buffer);
+    const ExactTable& exact = field.data().exact;
+    kernel.test(samples.view, view, {exact.zones.data(), exact.forms.data()}, X, margin,
+                {near.leaves, near.count, points, points < 4 ? 2U : 1U}, &buffer);
     list.resize(buffer.count);
   }
 };
@@ -118,10 +127,10 @@ struct Hits {
 TEST(Kernel, VectorAndScalarGiveTheSameBits) {
 #if defined(HVAS_HAS_AVX2_KERNEL)
   if (!__builtin_cpu_supports("avx2")) {
-    EXPECT_EQ(ChooseTraverse(), &TraverseScalar);
+    EXPECT_EQ(ChooseKernel().test, ScalarKernel().test);
     return;
   }
-  EXPECT_EQ(ChooseTraverse(), &TraverseAvx2);
+  EXPECT_EQ(ChooseKernel().test, Avx2Kernel().test);
   const auto plate = Build(testing::Bushing(3e-3, 30e-3, 15e-3, 5e-6));
   const auto block = Build(testing::Block({12e-3, 9e-3, 5e-3}));
   Random random(3);
@@ -129,8 +138,9 @@ TEST(Kernel, VectorAndScalarGiveTheSameBits) {
   for (int i = 0; i < 300; ++i) {
     const FloatPose X = RandomPose(&random, 0.02);
     const float margin = i % 2 == 0 ? 50e-6F : 3e-3F;
-    const Hits scalar(&TraverseScalar, *block, *plate, X, margin);
-    const Hits vector(&TraverseAvx2, *block, *plate, X, margin);
+    const auto points = static_cast<std::uint32_t>(1 + i % 8);
+    const Hits scalar(ScalarKernel(), *block, *plate, X, margin, points);
+    const Hits vector(Avx2Kernel(), *block, *plate, X, margin, points);
     ASSERT_EQ(scalar.list.size(), vector.list.size()) << "draw " << i;
     EXPECT_EQ(scalar.buffer.points_tested, vector.buffer.points_tested);
     EXPECT_EQ(std::memcmp(scalar.list.data(), vector.list.data(), scalar.list.size() * sizeof(Hit)),
@@ -139,7 +149,7 @@ TEST(Kernel, VectorAndScalarGiveTheSameBits) {
   }
   EXPECT_GT(total, 10000U);
 #else
-  EXPECT_EQ(ChooseTraverse(), &TraverseScalar);
+  EXPECT_EQ(ChooseKernel().test, ScalarKernel().test);
 #endif
 }
 
@@ -155,7 +165,7 @@ TEST(Kernel, MissesNoPointThatIsNearerThanTheMargin) {
   int near = 0;
   for (int i = 0; i < 200; ++i) {
     const FloatPose X = RandomPose(&random, 0.02);
-    const Hits hits(ChooseTraverse(), *block, *plate, X, static_cast<float>(kMargin));
+    const Hits hits(ChooseKernel(), *block, *plate, X, static_cast<float>(kMargin));
     std::vector<std::uint8_t> is_hit(shell.x.size(), 0);
     for (const Hit& hit : hits.list) {
       is_hit[hit.point] = 1;

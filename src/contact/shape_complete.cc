@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "contact/shape_data.h"
+
+namespace hvas::contact {
+namespace {
+
+constexpr double kReach = 0.5;  // [m]; beyond it single precision is worse than 0.1 um.
+
+// The origin on the axis, or on the plane, that is closest to the part.
+Vec3 NearestOrigin(const spatial::Surface& surface) {
+  const double height = surface.origin.dot(surface.axis);
+  switch (surface.kind) {
+    case spatial::SurfaceKind::kPlane:
+      return height * surface.axis;
+    case spatial::SurfaceKind::kCylinder:
+      return surface.origin - height * surface.axis;
+    default:
+      return surface.origin;
+  }
+}
+
+FaceForm FormOf(const spatial::Surface& surface) {
+  FaceForm form;
+  const Vec3 origin = NearestOrigin(surface);
+  if (surface.kind == spatial::SurfaceKind::kFreeform || origin.norm() + surface.radius > kReach) {
+    return form;
+  }
+  for (int k = 0; k < 3; ++k) {
+    form.origin[k] = static_cast<float>(origin[k]);
+    form.axis[k] = static_cast<float>(surface.axis[k]);
+  }
+  form.outward = static_cast<float>(surface.outward);
+  form.kind = FaceForm::Kind::kStraight;
+  switch (surface.kind) {
+    case spatial::SurfaceKind::kPlane:
+      form.along = 1;
+      break;
+    case spatial::SurfaceKind::kCylinder:
+      form.across = 1;
+      form.radius = static_cast<float>(surface.radius);
+      break;
+    case spatial::SurfaceKind::kCone:
+      form.across = static_cast<float>(std::cos(surface.second));
+      form.along = static_cast<float>(-std::sin(surface.second));
+      break;
+    case spatial::SurfaceKind::kSphere:
+      form.kind = FaceForm::Kind::kRound;
+      form.minor = static_cast<float>(surface.radius);
+      break;
+    default:
+      form.kind = FaceForm::Kind::kRound;
+      form.radius = static_cast<float>(surface.radius);
+      form.minor = static_cast<float>(surface.second);
+      break;
+  }
+  return form;
+}
+
+// First the sample where most faces meet, of those the one in the middle; then always the one that
+// is furthest from those before it, so that as few as one likes are spread over the leaf.
+std::array<std::uint8_t, 8> OrderOf(const Shell& shell, std::size_t leaf) {
+  const std::size_t count = shell.leaf_count[leaf];
+  std::array<Vec3, 8> p;
+  std::array<std::size_t, 8> rank{};
+  Vec3 mean = Vec3::Zero();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t k = 8 * leaf + i;
+    p[i] = {static_cast<double>(shell.x[k]), static_cast<double>(shell.y[k]),
+            static_cast<double>(shell.z[k])};
+    mean += p[i] / static_cast<double>(count);
+    const auto& faces = shell.faces[k].faces;
+    rank[i] = static_cast<std::size_t>(
+        std::count_if(faces.begin(), faces.end(), [](std::uint32_t f) { return f != kNoFace; }));
+  }
+  std::array<double, 8> score{};
+  for (std::size_t i = 0; i < count; ++i) {
+    score[i] = static_cast<double>(rank[i]) - (p[i] - mean).norm();  // Leaves are far below 1 m.
+  }
+  std::array<std::uint8_t, 8> order{};
+  std::array<double, 8> way;
+  way.fill(std::numeric_limits<double>::infinity());
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto& by = n == 0 ? score : way;
+    const auto best = static_cast<std::size_t>(
+        std::max_element(by.begin(), by.begin() + static_cast<std::ptrdiff_t>(count)) - by.begin());
+    order[n] = static_cast<std::uint8_t>(best);
+    for (std::size_t i = 0; i < count; ++i) {
+      way[i] = std::min(way[i], (p[i] - p[best]).norm());
+    }
+    way[best] = -1;
+  }
+  return order;
+}
+
+void OrderLeaves(Shell* shell) {
+  shell->order.clear();
+  for (std::size_t leaf = 0; leaf < shell->leaf_count.size(); ++leaf) {
+    const std::array<std::uint8_t, 8> order = OrderOf(*shell, leaf);
+    shell->order.insert(shell->order.end(), order.begin(), order.end());
+  }
+  shell->Bind();
+}
+
+}  // namespace
+
+void Shape::Data::Complete() {
+  if (exact.list_faces.empty()) {  // A shape from disk has them.
+    exact.list_faces = MakeListFaces(mesh, exact);
+  }
+  exact.forms.clear();
+  for (const spatial::Surface& surface : exact.faces) {
+    exact.forms.push_back(FormOf(surface));
+  }
+  OrderLeaves(&shell);
+  OrderLeaves(&features);
+}
+
+}  // namespace hvas::contact
