@@ -4,6 +4,7 @@
 
 #include "app/assemble.h"
 #include "app/export.h"
+#include "app/fit.h"
 #include "app/inspect.h"
 #include "app/mate.h"
 
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
   hvas::app::AddAssemble(&app, &status);
   hvas::app::AddMate(&app, &status);
   hvas::app::AddExport(&app, &status);
+  hvas::app::AddFit(&app, &status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

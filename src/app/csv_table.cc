@@ -1,0 +1,169 @@
+#include "app/csv_table.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include <csv.h>
+#include <fmt/format.h>
+
+namespace hvas::app {
+namespace {
+
+/** What the parser hands over, cell by cell. */
+struct Parsed {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> row;
+};
+
+void TakeCell(void* text, std::size_t size, void* data) {
+  static_cast<Parsed*>(data)->row.emplace_back(static_cast<const char*>(text), size);
+}
+
+void TakeRow(int /*last_character*/, void* data) {
+  auto* parsed = static_cast<Parsed*>(data);
+  parsed->rows.push_back(std::move(parsed->row));
+  parsed->row.clear();
+}
+
+struct CloseFile {
+  void operator()(std::FILE* file) const {
+    if (file != stdin) {
+      std::fclose(file);
+    }
+  }
+};
+
+std::string Quoted(const std::string& cell) {
+  std::string out(2 * cell.size() + 2, '\0');
+  out.resize(csv_write(out.data(), out.size(), cell.data(), cell.size()));
+  return out;
+}
+
+bool NeedsQuotes(const std::string& cell) {
+  return cell.find_first_of(",\"\r\n") != std::string::npos ||
+         (!cell.empty() && (cell.front() == ' ' || cell.back() == ' '));
+}
+
+}  // namespace
+
+Result<CsvTable> CsvTable::Read(const std::filesystem::path& path) {
+  const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin
+                                                               : std::fopen(path.c_str(), "rb"));
+  if (file == nullptr) {
+    return Fail(ErrorCode::kNotFound, "cannot be read", path.string(), "check the path");
+  }
+  csv_parser parser{};
+  csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
+  Parsed parsed;
+  std::array<char, 1 << 16> buffer;
+  bool is_good = true;
+  std::size_t size = 0;
+  while (is_good && (size = std::fread(buffer.data(), 1, buffer.size(), file.get())) > 0) {
+    is_good = csv_parse(&parser, buffer.data(), size, TakeCell, TakeRow, &parsed) == size;
+  }
+  is_good = is_good && csv_fini(&parser, TakeCell, TakeRow, &parsed) == 0;
+  const int error = csv_error(&parser);
+  csv_free(&parser);
+  if (!is_good) {
+    return Fail(ErrorCode::kInvalid, csv_strerror(error),
+                fmt::format("{}:{}", path.string(), parsed.rows.size() + 1),
+                "write quotes within a cell twice, and close each");
+  }
+  if (parsed.rows.empty()) {
+    return Fail(ErrorCode::kInvalid, "is empty", path.string(),
+                "begin it with the names of columns");
+  }
+  CsvTable table;
+  table.columns_ = std::move(parsed.rows.front());
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (table.columns_.front().starts_with(kByteOrderMark)) {
+    table.columns_.front().erase(0, kByteOrderMark.size());
+  }
+  for (std::size_t i = 1; i < parsed.rows.size(); ++i) {
+    if (parsed.rows[i].size() > table.columns_.size()) {
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("has {} cells, but there are {} columns", parsed.rows[i].size(),
+                              table.columns_.size()),
+                  fmt::format("{}:{}", path.string(), i + 1), "put cells with commas in quotes");
+    }
+    parsed.rows[i].resize(table.columns_.size());
+    table.rows_.push_back(std::move(parsed.rows[i]));
+  }
+  return table;
+}
+
+std::size_t CsvTable::Find(std::string_view column) const {
+  return static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), column) -
+                                  columns_.begin());
+}
+
+Result<void> CsvTable::Require(const std::vector<std::string>& columns) const {
+  std::string missing;
+  for (const std::string& column : columns) {
+    if (Find(column) == columns_.size()) {
+      missing += (missing.empty() ? "" : ", ") + column;
+    }
+  }
+  if (missing.empty()) {
+    return {};
+  }
+  return Fail(ErrorCode::kInvalid, "lacks the columns " + missing, "the first line",
+              "name the columns as hvas fit --help does");
+}
+
+std::string_view CsvTable::Get(std::size_t row, std::string_view column) const {
+  const std::size_t index = Find(column);
+  std::string_view cell = index < columns_.size() ? std::string_view(rows_[row][index]) : "";
+  while (!cell.empty() && cell.front() == ' ') {
+    cell.remove_prefix(1);
+  }
+  while (!cell.empty() && cell.back() == ' ') {
+    cell.remove_suffix(1);
+  }
+  return cell;
+}
+
+std::optional<double> CsvTable::GetNumber(std::size_t row, std::string_view column) const {
+  const std::string_view cell = Get(row, column);
+  if (cell.empty()) {
+    return std::nullopt;
+  }
+  double value = 0;
+  const char* begin = cell.data() + (cell.front() == '+' ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), value);
+  const bool is_number = error == std::errc() && end == cell.data() + cell.size();
+  return is_number ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+void CsvTable::Set(std::size_t row, std::string_view column, std::string value) {
+  const std::size_t index = Find(column);
+  if (index == columns_.size()) {
+    columns_.emplace_back(column);
+    for (std::vector<std::string>& cells : rows_) {
+      cells.emplace_back();
+    }
+  }
+  rows_[row][index] = std::move(value);
+}
+
+std::string CsvTable::ToText() const {
+  std::string text;
+  const auto add = [&text](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      text += i > 0 ? "," : "";
+      text += NeedsQuotes(cells[i]) ? Quoted(cells[i]) : cells[i];
+    }
+    text += "\n";
+  };
+  add(columns_);
+  for (const std::vector<std::string>& row : rows_) {
+    add(row);
+  }
+  return text;
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+
+namespace hvas::app {
+
+/** A table of text with named columns, as spreadsheets exchange it (RFC 4180). */
+class CsvTable {
+ public:
+  CsvTable() = default;
+
+  /** An empty one with these columns. */
+  explicit CsvTable(std::vector<std::string> columns) : columns_(std::move(columns)) {}
+
+  /** Reads a file; "-" is the standard input. Rows that end early are filled up with nothing.
+   Errors: kNotFound (no such file), kInvalid (no header, quotes that do not close, a row with more
+   cells than there are columns), with the line. */
+  [[nodiscard]] static Result<CsvTable> Read(const std::filesystem::path& file);
+
+  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
+
+  [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
+
+  /** Errors: kInvalid, naming the columns that a table has to have and has not. */
+  [[nodiscard]] Result<void> Require(const std::vector<std::string>& columns) const;
+
+  /** The cell, without blanks around it; nothing where the column or the text is missing. */
+  [[nodiscard]] std::string_view Get(std::size_t row, std::string_view column) const;
+
+  /** A number. None where the cell is empty; NaN where it is no number. */
+  [[nodiscard]] std::optional<double> GetNumber(std::size_t row, std::string_view column) const;
+
+  /** Sets a cell, adding the column if it is new. */
+  void Set(std::size_t row, std::string_view column, std::string value);
+
+  void AddRow() { rows_.emplace_back(columns_.size()); }
+
+  /** With quotes where they are needed. */
+  [[nodiscard]] std::string ToText() const;
+
+ private:
+  [[nodiscard]] std::size_t Find(std::string_view column) const;
+
+  std::vector<std::string> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace hvas::app
