@@ -42,6 +42,7 @@ PersonTask AssemblyRun::MakeTask(const SequenceStep& step) const {
   const spatial::Pose X_BG(CombineMass(model, step).p_BoBcm_B);
   PersonTask task;
   task.occurrence = step.occurrence;
+  task.p_BG = X_BG.p();
   task.X_WG_start = simulation_->pose(step.occurrence) * X_BG;
   task.X_WG_goal = body.X_WB_goal * X_BG;
   task.X_WG_goal = {task.X_WG_goal.q(), task.X_WG_goal.p() + step.offset_W};

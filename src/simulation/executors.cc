@@ -33,6 +33,8 @@ class HapticLoop {
     input.hears_seated = last_.state == haptics::HoldState::kSeated;
     input.hears_capture = last_.state == haptics::HoldState::kCaptured &&
                           state_before_ != haptics::HoldState::kCaptured;
+    input.sees_part = last_.occurrence.is_valid();
+    input.X_WD = last_.X_WD;
     state_before_ = last_.state;
     const device::DeviceState device = execution_.hand->Step(input);
     const std::int64_t start_ns = ThreadCpuNs();

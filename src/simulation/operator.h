@@ -5,13 +5,16 @@
 
 namespace hvas::simulation {
 
-/** What reaches a person's hand and ear in a millisecond: the wrench of the device, and the sounds
- of capture and of seating (W7). Nothing else of the simulation's state. */
+/** What reaches a person's hand, ear and eye in a millisecond: the wrench of the device, the sounds
+ of capture and of seating (W7), and the part on the screen. Nothing else of the simulation's state.
+ */
 struct OperatorInput {
   std::int64_t t_ns{0};
   spatial::Wrench F_H_D;  ///< On the hand, in the device's base frame.
   bool hears_capture{false};
   bool hears_seated{false};
+  bool sees_part{false};  ///< Something is in the hand.
+  spatial::Pose X_WD;     ///< The held part as displayed.
 };
 
 /** What moves the hand: a device driver, a recording, or a simulated person. The rest of the

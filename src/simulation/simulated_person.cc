@@ -19,8 +19,27 @@ constexpr double kSlowShare = 0.4;    // of the speed of insertion; slower than 
 constexpr double kStillSpeed = 1e-3;  // [m/s] that counts as not moving
 constexpr double kStuckBeforeSearch = 1.2;
 constexpr double kBackOff = 8e-3;        // [m] before trying elsewhere
+constexpr double kLoosen = 1.5e-3;       // [m] back when it sticks in its hole
+constexpr double kLeadIn = 1e-3;         // [m] of travel until it is inside
+constexpr double kLightPush = 0.8;       // [N]; tips nothing over
+constexpr double kLookTime = 0.4;        // [s]
+constexpr double kCarefulSpeed = 0.012;  // [m/s]; what hits the hole tilted, wedges in it
+constexpr double kCarefulPush = 2.0;     // [N]
+constexpr double kRockingRate = 3;       // [Hz]
+constexpr double kRocking = 0.02;        // [rad]; harder the longer it sticks
+constexpr double kMostRocking = 0.12;    // [rad]
+constexpr double kRockingTime = 6;       // [s]
+constexpr double kRockingTurn = 0.12;    // of a turn about the way in, for each of rocking
+constexpr double kRockingLag = 0.02;     // [s]
+constexpr double kYieldTime = 0.3;       // [s]; the wrist gives way to what it feels
+constexpr double kYieldReach = 2e-3;     // [m], no further than this
+constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime = 0.3;       // of a carried weight
+
+void LimitLength(double most, Vec3* v) {
+  *v *= std::min(1.0, most / std::max(v->norm(), most));
+}
 
 double MinimumJerk(double s) {
   return s * s * s * (10 + s * (-15 + 6 * s));
@@ -40,6 +59,7 @@ void SimulatedPerson::Begin(const PersonTask& task) noexcept {
   task_ = task;
   gave_up_ = false;
   search_count_ = 0;
+  is_guided_ = false;
   is_gripping_ = false;
   for (int k = 0; k < 3; ++k) {
     aim_offset_[k] = options_.aim_error * random_.Normal();
@@ -153,39 +173,107 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     PlanReturn();
     return;
   }
+  // Where no mate guides it and it has missed once, it looks, lays the part on with a light touch,
+  // and gives way inside.
+  const bool is_by_eye = input.sees_part && !is_guided_;
+  const bool is_careful = is_by_eye && search_count_ > 0;
+  const double seen_travel = (input.X_WD * task_.p_BG - task_.X_WG_goal.p()).dot(d);
+  const double travel = is_by_eye ? seen_travel : hand_travel;
+  const bool is_inside = is_by_eye && travel < task_.engage_distance - kLeadIn;
   if (is_backing_off_) {
     travel_ += options_.insert_speed * kDt;
-    is_backing_off_ = hand_travel < back_off_from_ + kBackOff;
+    is_backing_off_ = travel < back_off_to_ && hand_travel < back_off_to_ + 3 * kBackOff;
+    look_time_s_ = kLookTime;
     stuck_time_s_ = 0;
     push_ = kFirstPush;
+  } else if (is_careful && look_time_s_ > 0) {
+    look_time_s_ -= kDt;
+    if (look_time_s_ <= 0) {
+      LookClosely(input);
+    }
   } else {
     // Presses harder while little moves, but not beyond what the device pushes back with: the arm's
     // spring turns the lead into a force.
     const double speed = -V_H_.v.dot(d);
-    const bool is_slow = speed < kSlowShare * options_.insert_speed;
+    const double wanted_speed = is_careful ? kCarefulSpeed : options_.insert_speed;
+    const bool is_slow = speed < kSlowShare * wanted_speed;
     const bool is_at_limit = input.F_H_D.f.norm() >= options_.push_limit;
-    push_ = std::max(kFirstPush, push_ + (is_slow && !is_at_limit ? kPushRate : -kPushRate) * kDt);
+    const bool is_light = is_careful && !is_inside;
+    const double change = is_slow && !is_at_limit && !is_light ? kPushRate : -kPushRate;
+    push_ = std::max(is_light ? kLightPush : kFirstPush, push_ + change * kDt);
+    push_ = is_careful ? std::min(push_, kCarefulPush) : push_;
     const double lead = push_ / options_.stiffness;
-    travel_ = std::max(travel_ - options_.insert_speed * kDt, hand_travel - lead);
-    const bool is_stuck = speed < kStillSpeed && push_ > kFirstPush;
+    travel_ = std::max(travel_ - wanted_speed * kDt, hand_travel - lead);
+    const bool is_stuck = speed < kStillSpeed && (is_careful || push_ > kFirstPush);
     stuck_time_s_ = is_stuck ? stuck_time_s_ + kDt : std::max(0.0, stuck_time_s_ - kDt);
-    if (stuck_time_s_ > kStuckBeforeSearch) {
-      // Missed: back off and try beside, on a spiral of golden angles.
-      ++search_count_;
-      is_backing_off_ = true;
-      back_off_from_ = hand_travel;
-      const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
-      const double radius = kSearchPitch * std::sqrt(static_cast<double>(search_count_));
-      const Quat q = spatial::FrameFromZ(d);
-      const double angle = golden * search_count_ + random_.Uniform(0, 0.5);
-      search_offset_ = q * Vec3(radius * std::cos(angle), radius * std::sin(angle), 0);
-      for (int k = 0; k < 3; ++k) {
-        aim_turn_[k] = options_.aim_error_angle * random_.Normal();
-      }
+    if (stuck_time_s_ > (is_careful && is_inside ? kRockingTime : kStuckBeforeSearch)) {
+      StartSearch(d, travel, is_by_eye);
+    } else if (is_careful && is_inside) {
+      YieldToTouch(d);
+      Rock(d, is_slow);
     }
   }
-  p_ref_ = task_.X_WG_goal.p() + travel_ * d + aim_offset_ + search_offset_;
-  q_ref_ = spatial::RotationFromVector(aim_turn_) * task_.X_WG_goal.q();
+  p_ref_ = task_.X_WG_goal.p() + travel_ * d + aim_offset_ + search_offset_ + yield_offset_;
+  q_ref_ = spatial::RotationFromVector(aim_turn_ + yield_turn_ + rocking_) * task_.X_WG_goal.q();
+}
+
+void SimulatedPerson::YieldToTouch(const Vec3& d) noexcept {
+  // As with a compliant support of the part: the walls of the hole, not the hand's belief, say
+  // where the axis is.
+  const Vec3 held_back = X_WH_.p() - p_ref_;
+  yield_offset_ += kDt / kYieldTime * (held_back - held_back.dot(d) * d);
+  yield_turn_ += kDt / kYieldTime * spatial::RotationBetween(q_ref_, X_WH_.q());
+  LimitLength(kYieldReach, &yield_offset_);
+  LimitLength(kYieldTurn, &yield_turn_);
+}
+
+void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
+  // A part that wedges, tilted, comes free where it stands upright: to and fro, and slowly round.
+  rocking_angle_ += is_slow ? kDt * 2 * std::numbers::pi * kRockingRate : 0;
+  const double strength = std::min(kMostRocking, kRocking * (1 + 2 * stuck_time_s_));
+  const double tilt = is_slow ? strength * std::sin(rocking_angle_) : 0;
+  const double round = kRockingTurn * rocking_angle_;
+  const Vec3 wanted = tilt * (spatial::FrameFromZ(d) * Vec3(std::cos(round), std::sin(round), 0));
+  rocking_ += kDt / kRockingLag * (wanted - rocking_);
+}
+
+void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
+  const Vec3& d = task_.extraction_W;
+  Vec3 aside = input.X_WD * task_.p_BG - task_.X_WG_goal.p() - search_offset_;
+  aside -= aside.dot(d) * d;
+  const Vec3 turned = spatial::RotationBetween(task_.X_WG_goal.q(), input.X_WD.q());
+  for (int k = 0; k < 3; ++k) {
+    aim_offset_[k] -= aside[k] + options_.eye_error * random_.Normal();
+    aim_turn_[k] -= turned[k] + options_.eye_error_angle * random_.Normal();
+  }
+}
+
+void SimulatedPerson::StartSearch(const Vec3& d, double travel, bool is_by_eye) noexcept {
+  const bool is_first = ++search_count_ == 1;
+  is_backing_off_ = true;
+  rocking_.setZero();
+  // What touch has taught becomes belief.
+  aim_offset_ += yield_offset_;
+  aim_turn_ += yield_turn_;
+  yield_offset_.setZero();
+  yield_turn_.setZero();
+  if (is_by_eye && !is_first && travel < task_.engage_distance - kBackOff) {
+    back_off_to_ = travel + kLoosen;  // It sticks in the hole: a little back, and straighter.
+    return;
+  }
+  // Missed: back off and try beside, on a spiral of golden angles.
+  back_off_to_ = travel + kBackOff;
+  if (is_by_eye) {
+    back_off_to_ = std::max(back_off_to_, task_.engage_distance + kStandOff);
+  }
+  for (int k = 0; k < 3; ++k) {
+    aim_turn_[k] = options_.aim_error_angle * random_.Normal();
+  }
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  const double radius = kSearchPitch * std::sqrt(static_cast<double>(search_count_));
+  const double angle = golden * search_count_ + random_.Uniform(0, 0.5);
+  search_offset_ =
+      spatial::FrameFromZ(d) * Vec3(radius * std::cos(angle), radius * std::sin(angle), 0);
 }
 
 Vec3 SimulatedPerson::Tremor() noexcept {
@@ -217,6 +305,7 @@ void SimulatedPerson::MoveHand(const spatial::Wrench& F_H_W) noexcept {
 device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
   t_s_ += kDt;
   phase_time_s_ += kDt;
+  is_guided_ = is_guided_ || input.hears_capture;
   const Vec3 p_ref_before = p_ref_;
   switch (phase_) {
     case Phase::kDone: {
@@ -257,6 +346,10 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
         push_ = kFirstPush;
         stuck_time_s_ = 0;
         search_offset_.setZero();
+        yield_offset_.setZero();
+        yield_turn_.setZero();
+        rocking_.setZero();
+        look_time_s_ = 0;
         is_backing_off_ = false;
       }
       break;

@@ -16,6 +16,7 @@ struct PersonTask {
   spatial::Pose
       X_WG_start;  ///< Grip frame, lying on the table: at the centre of mass, turned as the part.
   spatial::Pose X_WG_goal;
+  Vec3 p_BG{Vec3::Zero()};  ///< The grip in the part.
   Vec3 extraction_W{Vec3::UnitZ()};
   double engage_distance{0};    ///< [m] from the goal, where insertion begins.
   Vec3 centre_W{Vec3::Zero()};  ///< The product's.
@@ -38,6 +39,8 @@ struct PersonOptions {
   double insert_speed{0.04};      ///< [m/s]
   double aim_error{0.7e-3};       ///< Standard deviation of where the hand believes to be [m].
   double aim_error_angle{0.015};  ///< The same of how it is turned [rad].
+  double eye_error{0.2e-3};       ///< The same when it looks closely at the part on the screen [m].
+  double eye_error_angle{4e-3};   ///< [rad]
   double tremor{0.05e-3};         ///< Physiological tremor, 8..12 Hz, amplitude [m].
   double push_limit{6.8};         ///< Felt force beyond which it does not press harder [N].
   double patience_s{25};          ///< On one part, from the beginning of insertion [s].
@@ -96,6 +99,14 @@ class SimulatedPerson final : public Operator {
   void PlanCarry() noexcept;
   void PlanReturn() noexcept;
   void StepInsert(const OperatorInput& input) noexcept;
+  /** To and fro, harder the longer it sticks. */
+  void Rock(const Vec3& d, bool is_slow) noexcept;
+  /** Gives way across the way in, and in how it is turned, to what holds the hand back. */
+  void YieldToTouch(const Vec3& d) noexcept;
+  /** Corrects where it believes the part to be by what it sees. */
+  void LookClosely(const OperatorInput& input) noexcept;
+  /** Backs off from so far before its place, to try again. */
+  void StartSearch(const Vec3& d, double travel, bool is_by_eye) noexcept;
   void MoveHand(const spatial::Wrench& F_H_W) noexcept;
   [[nodiscard]] Vec3 Tremor() noexcept;
 
@@ -125,12 +136,18 @@ class SimulatedPerson final : public Operator {
   double reach_time_s_{0};
   double phase_time_s_{0};
 
-  double travel_{0};         ///< Reference distance still to go along the way in [m].
-  double push_{0};           ///< Force that the hand is ready to press with [N].
-  double back_off_from_{0};  ///< Hand's distance to go when it stopped pressing [m].
+  double travel_{0};       ///< Reference distance still to go along the way in [m].
+  double push_{0};         ///< Force that the hand is ready to press with [N].
+  double back_off_to_{0};  ///< Distance to go at which it tries again [m].
   double stuck_time_s_{0};
   Vec3 search_offset_{Vec3::Zero()};
+  Vec3 yield_offset_{Vec3::Zero()};  ///< What touch has corrected, of place [m] and turn [rad].
+  Vec3 yield_turn_{Vec3::Zero()};
+  Vec3 rocking_{Vec3::Zero()};  ///< [rad]
+  double rocking_angle_{0};
+  bool is_guided_{false};  ///< Has heard a mate being captured.
   bool is_backing_off_{false};
+  double look_time_s_{0};  ///< Still to look, after backing off.
   double tremor_phase_[3]{};
   double t_s_{0};
 };
