@@ -1,0 +1,69 @@
+// Faces as made have the clearance of their fit, W(4), and are left alone where it has none.
+
+#include "simulation/actual_faces.h"
+
+#include <gtest/gtest.h>
+
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+constexpr std::uint32_t kSide = 1;  // Faces of the peg and of the block.
+constexpr std::uint32_t kBore = 3;
+
+std::shared_ptr<const Model> CompilePeg(const std::string& code, std::uint64_t seed) {
+  product::Product product = testing::PegInBlock();
+  for (product::Mate& mate : product.mates) {
+    if (mate.kind == product::MateKind::kAxisHole) {
+      mate.fit = product::Fit{};
+      mate.fit->code = code;
+      mate.fit->nominal_diameter = 2 * testing::kBoreRadius;
+    }
+  }
+  CompileOptions options = testing::FastOptions();
+  options.seed = seed;
+  Diagnostics diagnostics;
+  return *Compile(std::make_shared<product::Product>(std::move(product)), options, &diagnostics);
+}
+
+std::shared_ptr<const fits::FitForce> FitOf(const Model& model) {
+  for (const ModelMate& mate : model.mates) {
+    if (mate.fit != nullptr) {
+      return mate.fit;
+    }
+  }
+  return nullptr;
+}
+
+TEST(ActualFaces, HaveTheClearanceOfTheFitFromTheMouthInwards) {
+  for (const std::uint64_t seed : {1U, 2U}) {
+    const auto model = CompilePeg("H7/g6", seed);
+    const auto fit = FitOf(*model);
+    ASSERT_NE(fit, nullptr);
+    const auto& hole = model->bodies[0].faces;
+    const auto& shaft = model->bodies[1].faces;
+    ASSERT_NE(hole, nullptr);
+    ASSERT_NE(shaft, nullptr);
+    const double shaft_offset = shaft->At(kSide, Vec3::Zero()).offset;
+    EXPECT_NEAR(shaft_offset, 0.5 * fit->shaft_diameter() - testing::kBoreRadius, 1e-12);
+    for (int i = 0; i <= 40; ++i) {
+      const double depth = fit->length() * i / 40;
+      // In the block's centred frame: its box is 25 mm high, the mouth on top.
+      const Vec3 p(testing::kBoreRadius, 0, 0.5 * testing::kBlockHeight - depth);
+      EXPECT_NEAR(-hole->At(kBore, p).offset - shaft_offset, fit->CalcClearance(depth), 1e-9)
+          << "depth " << depth;
+    }
+  }
+}
+
+TEST(ActualFaces, StayAsDrawnWhereTheFitHasInterference) {
+  const auto model = CompilePeg("H7/s6", 1);
+  ASSERT_NE(FitOf(*model), nullptr);
+  for (const Body& body : model->bodies) {
+    EXPECT_EQ(body.faces, nullptr);
+  }
+}
+
+}  // namespace
+}  // namespace hvas::simulation
