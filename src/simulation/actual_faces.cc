@@ -117,6 +117,17 @@ class Collector {
     }
   }
 
+  /** The faces of a mate that contact does not answer for by its sizes: a thread, an interference,
+   a mate without a fit. Another mate must not make them larger than they are drawn. */
+  void KeepAsDrawn(const Mate& mate) {
+    for (const product::Connector* connector : {&mate.a, &mate.b}) {
+      const product::Part& part = input_.product->part_of(connector->occurrence);
+      for (const product::FaceId id : part.features[connector->feature.index()].faces) {
+        faces_[connector->occurrence.index()].is_given[id.index()] = true;
+      }
+    }
+  }
+
   void Add(const Mate& mate, const fits::FitForce& fit, Diagnostics* diagnostics) {
     const product::Part& hub = input_.product->part_of(mate.a.occurrence);
     const product::Part& shaft = input_.product->part_of(mate.b.occurrence);
@@ -125,7 +136,7 @@ class Collector {
     const product::Feature& bore = hub.features[mate.a.feature.index()];
     const product::Feature& side = shaft.features[mate.b.feature.index()];
     const Overlap overlap = FindOverlap(*input_.product, mate);
-    if (!LeavesRoom(fit) || !(overlap.high > overlap.low) || !hole_faces.IsFree(bore)) {
+    if (!(overlap.high > overlap.low) || !hole_faces.IsFree(bore)) {
       return;
     }
     const bool is_new = shaft_faces.IsFree(side);
@@ -148,11 +159,13 @@ class Collector {
       Diagnostics* diagnostics) const {
     std::vector<std::shared_ptr<const contact::FaceOffsets>> made(faces_.size());
     for (std::size_t i = 0; i < faces_.size(); ++i) {
-      const std::vector<bool>& given = faces_[i].is_given;
-      if (std::find(given.begin(), given.end(), true) == given.end()) {
+      const std::vector<contact::FaceOffset>& wanted = faces_[i].offsets;
+      if (std::all_of(wanted.begin(), wanted.end(), [](const contact::FaceOffset& offset) {
+            return offset.uniform == 0 && offset.stations.empty();
+          })) {
         continue;
       }
-      const auto offsets = contact::FaceOffsets::Make(input_.shapes[i], faces_[i].offsets);
+      const auto offsets = contact::FaceOffsets::Make(input_.shapes[i], wanted);
       if (offsets) {
         made[i] = *offsets;
       } else {
@@ -173,11 +186,20 @@ class Collector {
 std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
     const ActualFacesInput& input, Diagnostics* diagnostics) {
   Collector collector(input);
+  std::vector<const Mate*> sized;
   for (const Mate& mate : input.product->mates) {
     const auto& fit = input.fits[mate.id.index()];
-    if (fit != nullptr && mate.kind == product::MateKind::kAxisHole) {
-      collector.Add(mate, *fit, diagnostics);
+    if (mate.kind != product::MateKind::kAxisHole) {
+      continue;
     }
+    if (fit != nullptr && LeavesRoom(*fit)) {
+      sized.push_back(&mate);
+    } else {
+      collector.KeepAsDrawn(mate);
+    }
+  }
+  for (const Mate* mate : sized) {
+    collector.Add(*mate, *input.fits[mate->id.index()], diagnostics);
   }
   return collector.Make(diagnostics);
 }
