@@ -58,6 +58,11 @@ class FaceOffsets {
 
   [[nodiscard]] Value At(std::uint32_t face, const Vec3& p) const noexcept;
 
+  /** False for a face as drawn. RT-safe. */
+  [[nodiscard]] bool Moves(std::uint32_t face) const noexcept {
+    return faces_[face].uniform != 0 || faces_[face].count > 0;
+  }
+
   /** Distance and gradient of a face as made; of a profile the gradient leans with its slope and is
    longer than one by half its square. RT-safe. */
   [[nodiscard]] spatial::SurfaceDistance CalcDistance(std::uint32_t face,

@@ -190,9 +190,7 @@ class ZoneList {
     for (std::size_t i = 0; i < faces_->count; ++i) {
       const std::uint32_t face = faces_->faces[i];
       surface_[i] = spatial::CalcDistance(shape_.exact.faces[face], p_);
-      least_[i] = surface_[i].is_valid ? std::abs(surface_[i].distance) -
-                                             1.001 * shape_.exact.deviation[face] - kOnFeature
-                                       : 0;
+      least_[i] = LeastDistance(shape_, face, surface_[i]);
     }
   }
 
@@ -280,22 +278,20 @@ bool IsConcaveWithIgnored(const Mesh& mesh, const Closest& closest, const FaceFi
 // concave edge, the kept one goes on beyond the edge, as for a pin at the bottom of its hole.
 Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec3& p,
                        const FaceFilter& filter, const Hit& field) {
-  Refined none;
-  none.is_valid = false;
   const Closest closest = list.Find(filter);
   if (closest.triangle == kNoFace) {
-    return none;
+    return Nothing();
   }
   const SolidFeature feature = FeatureOf(shape.mesh, closest);
   const bool touches_ignored = feature.other_face != kNoFace && filter.Drops(feature.other_face);
   if (touches_ignored && !IsConcaveWithIgnored(shape.mesh, closest, filter)) {
-    return none;
+    return Nothing();
   }
   const double reach = std::sqrt(closest.squared);
   if (touches_ignored) {
     const auto exact = spatial::CalcDistance(shape.exact.faces[feature.face], p);
     if (!exact.is_valid || std::abs(exact.distance) > reach + kOnFeature) {
-      return none;
+      return Nothing();
     }
     Refined result;
     result.distance = exact.distance;
@@ -305,7 +301,7 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
     return result;
   }
   const Refined result = FromFeature(shape, closest, feature, p, field);
-  return result.distance >= 0 ? result : none;
+  return result.distance >= 0 ? result : Nothing();
 }
 
 }  // namespace
@@ -373,6 +369,9 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
   const std::uint32_t code = at.code;
   const std::uint32_t payload = code & zone::kPayload;
   if ((code & ~zone::kPayload) == zone::kList) {
+    if (DropsAll(filter, FacesOfList(shape, payload))) {
+      return Nothing();
+    }
     const ZoneList list(shape, payload, p, (p - at.centre).norm());
     Refined from_surfaces;
     if (list.FromSurfaces(filter, &from_surfaces)) {

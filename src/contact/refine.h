@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "contact/face_offsets.h"
@@ -54,6 +56,37 @@ struct ZoneAt {
 };
 
 [[nodiscard]] ZoneAt FindZone(const Shape::Data& shape, const Vec3& p) noexcept;
+
+/** The faces of a zone's list; null where there are too many to be named. RT-safe. */
+[[nodiscard]] inline const ListFaces* FacesOfList(const Shape::Data& shape,
+                                                  std::uint32_t list) noexcept {
+  const auto& faces = shape.exact.list_faces;
+  return list < faces.size() && faces[list].count > 0 ? &faces[list] : nullptr;
+}
+
+/** The answer where everything near is left out. */
+[[nodiscard]] inline Refined Nothing() noexcept {
+  Refined nothing;
+  nothing.is_valid = false;
+  return nothing;
+}
+
+/** True where every face of a zone's list is left out: then nothing is near. RT-safe. */
+[[nodiscard]] inline bool DropsAll(const FaceFilter& filter, const ListFaces* list) noexcept {
+  return filter.bits != 0 && list != nullptr &&
+         std::all_of(list->faces.begin(), list->faces.begin() + list->count,
+                     [&filter](std::uint32_t face) { return filter.Drops(face); });
+}
+
+/** No point of a face's mesh is nearer than this to a point at that distance from its unbounded
+ surface [m]. RT-safe. */
+[[nodiscard]] inline double LeastDistance(const Shape::Data& shape, std::uint32_t face,
+                                          const spatial::SurfaceDistance& surface) noexcept {
+  constexpr double kRounding = 1e-9;  // [m]
+  return surface.is_valid
+             ? std::abs(surface.distance) - 1.001 * shape.exact.deviation[face] - kRounding
+             : 0;
+}
 
 /** A face's surface, as drawn or as made. */
 class FaceSurface {

@@ -9,16 +9,16 @@ namespace {
 // The faces that may be the closest once all are where they were made, nearest first.
 class NearFaces {
  public:
-  NearFaces(const Shape::Data& shape, const FaceOffsets& offsets, const Vec3& p) : p_(p) {
-    const ZoneAt at = FindZone(shape, p);
+  NearFaces(const Shape::Data& shape, const FaceOffsets& offsets, const ZoneAt& at, const Vec3& p)
+      : p_(p) {
     if (!at.is_known) {
       return;
     }
     const std::uint32_t payload = at.code & zone::kPayload;
     if ((at.code & ~zone::kPayload) != zone::kList) {
       Add(payload, 0);
-    } else {
-      Gather(shape, payload, (p - at.centre).norm(), kReach * offsets.largest());
+    } else if (!Gather(shape, offsets, payload, (p - at.centre).norm())) {
+      return;
     }
     for (std::size_t i = 0; i < count_; ++i) {
       const auto exact = spatial::CalcDistance(shape.exact.faces[face_[i]], p);
@@ -59,23 +59,50 @@ class NearFaces {
   static constexpr std::size_t kMost = 4;
   static constexpr double kReach = 3;  // In offsets: both faces move, and edges further than faces.
 
-  void Gather(const Shape::Data& shape, std::uint32_t list, double from_centre, double reach) {
+  // False where no face of the list moves.
+  bool Gather(const Shape::Data& shape, const FaceOffsets& offsets, std::uint32_t list,
+              double from_centre) {
+    const ListFaces* faces = FacesOfList(shape, list);
+    std::array<double, ListFaces::kMost> least{};
+    bool has_moved = faces == nullptr;
+    for (std::size_t i = 0; faces != nullptr && i < faces->count; ++i) {
+      const std::uint32_t face = faces->faces[i];
+      has_moved = has_moved || offsets.Moves(face);
+      least[i] = LeastDistance(shape, face, spatial::CalcDistance(shape.exact.faces[face], p_));
+    }
+    if (!has_moved) {
+      return false;
+    }
+    const auto least_of = [&](std::uint32_t face) {
+      for (std::size_t i = 0; faces != nullptr && i < faces->count; ++i) {
+        if (faces->faces[i] == face) {
+          return least[i];
+        }
+      }
+      return 0.0;
+    };
     const ExactTable& exact = shape.exact;
+    const double reach = kReach * offsets.largest();
     double limit = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = exact.list_begin[list]; i < exact.list_begin[list + 1]; ++i) {
       const ListedTriangle entry = exact.Listed(i);
       if (entry.distance - from_centre > limit) {
         break;
       }
+      const std::uint32_t face = shape.mesh.face[entry.triangle];
+      if (least_of(face) > limit) {
+        continue;
+      }
       const double distance = (shape.mesh.ClosestOn(entry.triangle, p_).q - p_).norm();
       if (distance <= limit) {
-        Add(shape.mesh.face[entry.triangle], distance);
+        Add(face, distance);
         limit = distance_[0] + reach + 1e-6 * from_centre;
       }
     }
     while (count_ > 0 && distance_[count_ - 1] > limit) {
       --count_;
     }
+    return true;
   }
 
   void Add(std::uint32_t face, double distance) {
@@ -126,7 +153,7 @@ Refined RefineShifted(const Shape::Data& shape, const FaceOffsets& offsets, cons
 }  // namespace
 
 Vec3 CalcShift(const Shape::Data& shape, const FaceOffsets& offsets, const Vec3& p) noexcept {
-  const NearFaces near(shape, offsets, p);
+  const NearFaces near(shape, offsets, FindZone(shape, p), p);
   return near.is_exact() && near.is_moved() ? near.ShiftFor(0).s : Vec3::Zero();
 }
 
@@ -135,7 +162,12 @@ Refined RefineActual(const Shape::Data& shape, const FaceOffsets* offsets, const
   if (offsets == nullptr) {
     return Refine(shape, p, field, filter);
   }
-  const NearFaces near(shape, *offsets, p);
+  const ZoneAt at = FindZone(shape, p);
+  if (at.is_known && (at.code & ~zone::kPayload) == zone::kList &&
+      DropsAll(filter, FacesOfList(shape, at.code & zone::kPayload))) {
+    return Nothing();
+  }
+  const NearFaces near(shape, *offsets, at, p);
   if (!near.is_moved()) {
     return Refine(shape, p, field, filter);
   }
