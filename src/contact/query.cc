@@ -21,8 +21,8 @@ std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& 
   return bits;
 }
 
-// Whether `direction` leads along a sample's edge, or at a corner where none of its faces looks: what
-// lies there is met by the edge's end or by other samples, while this one slides past it.
+// Whether `direction` leads along a sample's edge, or at a corner where none of its faces looks:
+// what lies there is met by the edge's end or by other samples, while this one slides past it.
 bool IsAlongEdge(const SampleFaces& sample, const Vec3& direction, double best) {
   constexpr double kAlong = 0.8;
   constexpr double kAway = 0.05;

@@ -90,10 +90,9 @@ std::string AssemblyRun::ExplainFailure() const {
     return "could not be taken up";
   }
   const HoldMetrics& metrics = dropped_.metrics;
-  const std::string depth =
-      metrics.insertion > 0
-          ? fmt::format(", {:.2f} mm into its hole at most", units::ToMm(metrics.insertion))
-          : std::string();
+  const std::string depth = metrics.insertion > 0 ? fmt::format(", {:.2f} mm into its hole at most",
+                                                                units::ToMm(metrics.insertion))
+                                                  : std::string();
   if (!metrics.hardest.is_valid()) {
     return fmt::format("gave up after {} searches{}; nothing was met", person_->searches(), depth);
   }
