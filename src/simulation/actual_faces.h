@@ -24,9 +24,9 @@ struct ActualFacesInput {
  leaves room along its whole length, S(l) > 0, moves its two faces: the shaft's to its actual size,
  the hole's by what is left to S(l), with its profile from the mouth inwards. A face takes the first
  mate (by id) that gives it a size; a further mate on it moves the other face, or, where both have
- their size, neither. A fit with interference leaves its faces as drawn: they answer by the fit. So
- do offsets beyond FaceOffsets::kLargest, with a diagnostic.
- Returned by OccurrenceId; null: as drawn. */
+ their size, neither. Faces that also have a mate with interference, a thread or no fit stay as
+ drawn whatever other mates say: what answers for them there takes them so. So do offsets beyond
+ FaceOffsets::kLargest, with a diagnostic. Returned by OccurrenceId; null: as drawn. */
 [[nodiscard]] std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
     const ActualFacesInput& input, Diagnostics* diagnostics);
 

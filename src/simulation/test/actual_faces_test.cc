@@ -2,6 +2,8 @@
 
 #include "simulation/actual_faces.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "simulation/test/small_products.h"
@@ -12,7 +14,7 @@ namespace {
 constexpr std::uint32_t kSide = 1;  // Faces of the peg and of the block.
 constexpr std::uint32_t kBore = 3;
 
-std::shared_ptr<const Model> CompilePeg(const std::string& code, std::uint64_t seed) {
+product::Product MakePeg(const std::string& code) {
   product::Product product = testing::PegInBlock();
   for (product::Mate& mate : product.mates) {
     if (mate.kind == product::MateKind::kAxisHole) {
@@ -21,6 +23,10 @@ std::shared_ptr<const Model> CompilePeg(const std::string& code, std::uint64_t s
       mate.fit->nominal_diameter = 2 * testing::kBoreRadius;
     }
   }
+  return product;
+}
+
+std::shared_ptr<const Model> CompilePeg(product::Product product, std::uint64_t seed) {
   CompileOptions options = testing::FastOptions();
   options.seed = seed;
   Diagnostics diagnostics;
@@ -38,7 +44,7 @@ std::shared_ptr<const fits::FitForce> FitOf(const Model& model) {
 
 TEST(ActualFaces, HaveTheClearanceOfTheFitFromTheMouthInwards) {
   for (const std::uint64_t seed : {1U, 2U}) {
-    const auto model = CompilePeg("H7/g6", seed);
+    const auto model = CompilePeg(MakePeg("H7/g6"), seed);
     const auto fit = FitOf(*model);
     ASSERT_NE(fit, nullptr);
     const auto& hole = model->bodies[0].faces;
@@ -58,9 +64,26 @@ TEST(ActualFaces, HaveTheClearanceOfTheFitFromTheMouthInwards) {
 }
 
 TEST(ActualFaces, StayAsDrawnWhereTheFitHasInterference) {
-  const auto model = CompilePeg("H7/s6", 1);
+  const auto model = CompilePeg(MakePeg("H7/s6"), 1);
   ASSERT_NE(FitOf(*model), nullptr);
   for (const Body& body : model->bodies) {
+    EXPECT_EQ(body.faces, nullptr);
+  }
+}
+
+// A screw through a washer: the loose fit of the washer must not make the thread larger than drawn.
+TEST(ActualFaces, StayAsDrawnWhereTheyAreAlsoAThread) {
+  product::Product product = MakePeg("H11/c11");
+  const auto axis = std::find_if(
+      product.mates.begin(), product.mates.end(),
+      [](const product::Mate& mate) { return mate.kind == product::MateKind::kAxisHole; });
+  ASSERT_NE(axis, product.mates.end());
+  product::Mate thread = *axis;
+  thread.id = product::MateId{product.mates.size()};
+  thread.fit->kind = product::FitKind::kThread;
+  thread.fit->code.clear();
+  product.mates.push_back(std::move(thread));
+  for (const Body& body : CompilePeg(std::move(product), 1)->bodies) {
     EXPECT_EQ(body.faces, nullptr);
   }
 }
