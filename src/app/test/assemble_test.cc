@@ -326,7 +326,7 @@ TEST(AssembleTest, GuidedBushingStopsAtTheCoverThatWasPutOnTooSoon) {  // N3
                         run["parts"][4]["name"].get<std::string>());
     return run["parts"][4];
   };
-  const json stopped = run_with("hybrid", "62");
+  const json stopped = run_with("hybrid", "100");
   EXPECT_FALSE(stopped["seated"].get<bool>());
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "cover assembly/cover stood in the way",
                       stopped["reason"].get<std::string>());
