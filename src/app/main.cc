@@ -1,3 +1,5 @@
+#include <cstdio>
+#include <exception>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -8,7 +10,9 @@
 #include "app/inspect.h"
 #include "app/mate.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+int Run(int argc, char** argv) {
   CLI::App app("hvas: assemble CAD products by hand, and feel it");
   app.require_subcommand(1);
   int status = 0;
@@ -24,4 +28,15 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 1;
   }
   return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run(argc, argv);
+  } catch (const std::exception& exception) {
+    std::fprintf(stderr, "hvas: %s\n", exception.what());  // Of memory, as a rule.
+    return 1;
+  }
 }
