@@ -13,17 +13,10 @@ namespace hvas::app {
 /** A table of text with named columns, as spreadsheets exchange it (RFC 4180). */
 class CsvTable {
  public:
-  CsvTable() = default;
-
-  /** An empty one with these columns. */
-  explicit CsvTable(std::vector<std::string> columns) : columns_(std::move(columns)) {}
-
   /** Reads a file; "-" is the standard input. Rows that end early are filled up with nothing.
    Errors: kNotFound (no such file), kInvalid (no header, quotes that do not close, a row with more
    cells than there are columns), with the line. */
   [[nodiscard]] static Result<CsvTable> Read(const std::filesystem::path& file);
-
-  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
 
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
 
@@ -38,8 +31,6 @@ class CsvTable {
 
   /** Sets a cell, adding the column if it is new. */
   void Set(std::size_t row, std::string_view column, std::string value);
-
-  void AddRow() { rows_.emplace_back(columns_.size()); }
 
   /** With quotes where they are needed. */
   [[nodiscard]] std::string ToText() const;

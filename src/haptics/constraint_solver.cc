@@ -117,7 +117,6 @@ int ConstraintSolver::AddContact(const Contact& contact) noexcept {
   set(contact.nhat_W, &rows.normal);
   rows.normal.bias = contact.velocity_bias;
   rows.normal.softness = contact.compliance / (dt_ * dt_);
-  rows.normal.lambda = dt_ * contact.normal_guess;
   const Mat3 R_WC = spatial::FrameFromZ(contact.nhat_W).toRotationMatrix();
   for (int k = 0; k < 2; ++k) {
     set(R_WC.col(k), &rows.tangent[k]);
@@ -302,15 +301,6 @@ void ConstraintSolver::RelaxRolling(PatchRows* patch) noexcept {
   }
 }
 
-void ConstraintSolver::StartFromGuesses() noexcept {
-  for (ContactRows& rows : std::span(contacts_.data(), static_cast<std::size_t>(contact_count_))) {
-    if (rows.normal.lambda > 0) {
-      Push(PairOf(rows), rows.normal, rows.normal.lambda);
-      patches_[static_cast<std::size_t>(rows.patch)].load += rows.normal.lambda;
-    }
-  }
-}
-
 spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
   Factor();
   V_[0] = factor_.solve(rhs_);
@@ -325,10 +315,8 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
   for (Row& row : std::span(bounded_.data(), static_cast<std::size_t>(bounded_count_))) {
     PrepareRow({0, kWorld}, &row);
   }
-  StartFromGuesses();
   constexpr double kConverged = 1e-9;  // [m/s or rad/s]
-  for (sweep_count_ = 0; sweep_count_ < iterations;) {
-    ++sweep_count_;
+  for (int sweep = 0; sweep < iterations; ++sweep) {
     const std::array<Vec6, kMaxBodies> before = V_;
     RelaxBounded();
     for (ContactRows& rows : contacts) {

@@ -60,7 +60,6 @@ class ConstraintSolver {
     /** The contact pushes no harder than needed to separate at this speed [m/s]. */
     double recovery_speed{std::numeric_limits<double>::infinity()};
     Vec3 stick_W{Vec3::Zero()};  ///< By how much the bristles are bent before the step [m].
-    double normal_guess{0};      ///< Of its normal force, to start from [N].
   };
 
   /** Starts a step with body 0, the one that springs, dampers and bounded rows act on. Inertia
@@ -115,9 +114,6 @@ class ConstraintSolver {
 
   [[nodiscard]] int patch_count() const noexcept { return patch_count_; }
 
-  /** Sweeps that the last Solve took. */
-  [[nodiscard]] int sweep_count() const noexcept { return sweep_count_; }
-
   [[nodiscard]] int patch_of(int i) const noexcept {
     return contacts_[static_cast<std::size_t>(i)].patch;
   }
@@ -128,11 +124,6 @@ class ConstraintSolver {
   /** Speed of the body's point of contact i over the other body, in W, with its normal part [m/s].
    Valid after Solve. */
   [[nodiscard]] Vec3 contact_velocity(int i) const noexcept;
-
-  /** Sum of a patch's normal forces [N]. */
-  [[nodiscard]] double patch_force(int patch) const noexcept {
-    return patches_[static_cast<std::size_t>(patch)].load / dt_;
-  }
 
   /** Generalised force of a bounded row (N or N m), positive along +J. Valid after Solve. */
   [[nodiscard]] double bounded_force(int row) const noexcept;
@@ -183,7 +174,6 @@ class ConstraintSolver {
   void RelaxNormal(ContactRows* rows) noexcept;
   void RelaxFriction(ContactRows* rows) noexcept;
   void RelaxRolling(PatchRows* patch) noexcept;
-  void StartFromGuesses() noexcept;
 
   [[nodiscard]] Pair PairOf(const PatchRows& patch) const noexcept {
     return {static_cast<std::size_t>(patch.of.body), patch.of.other};
@@ -209,7 +199,6 @@ class ConstraintSolver {
   std::array<Row, kMaxBoundedRows> bounded_;
   std::array<double, kMaxBoundedRows> bounds_{};
   int bounded_count_{0};
-  int sweep_count_{0};
 };
 
 }  // namespace hvas::haptics

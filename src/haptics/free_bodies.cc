@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace hvas::haptics {
+
 spatial::Pose MoveAbout(const spatial::Pose& X_WB, const Vec3& p_BQ, const spatial::Twist& V_Q,
                         double time) noexcept {
   const Quat q = (spatial::RotationFromVector(V_Q.w * time) * X_WB.q()).normalized();

@@ -38,7 +38,7 @@ class FreeBodies {
  public:
   static constexpr std::size_t kMaxAwake = ConstraintSolver::kMaxBodies - 1;
 
-  /** A body that may move, once Release has made it loose. Not RT-safe: allocates. */
+  /** A body that may move, once it is made loose. Not RT-safe: allocates. */
   void SetProperties(contact::BodyId id, const BodyProperties& properties);
 
   /** Null for a body nothing is known of. */

@@ -50,7 +50,6 @@ HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene)
     : options_(options),
       scene_(scene),
       force_map_(options.largest_true_force, kMaxCouplingShare * options.device.max_force),
-      torque_map_(options.largest_true_force * 0.05, kMaxCouplingShare * options.device.max_torque),
       gate_({options.device.max_force, options.device.max_torque, 400, 40}) {}
 
 void HapticTick::Take(const HeldPart* part) noexcept {

@@ -138,7 +138,6 @@ class HapticTick {
   contact::Scene* scene_;
   contact::QueryWorkspace workspace_;
   ForceMap force_map_;
-  ForceMap torque_map_;
   SafetyGate gate_;
   ConstraintSolver solver_;
   FrictionMemory friction_;
