@@ -15,6 +15,7 @@
 #include "app/assemble_report.h"
 #include "app/load_product.h"
 #include "app/progress.h"
+#include "app/report_failure.h"
 #include "app/session_recorder.h"
 #include "app/text_layout.h"
 #include "base/clock.h"
@@ -162,15 +163,11 @@ void AddMissing(const Model& model, AssemblyOutcome* outcome) {
 
 int RunAssemble(const AssembleOptions& options) {
   const bool is_watched = !options.load.is_quiet && IsWatched();
-  const auto fail = [](const Error& error) {
-    fmt::print(stderr, "hvas: {}\n", error.ToString());
-    return 1;
-  };
   Diagnostics diagnostics;
   const std::int64_t start_ns = MonotonicNs();
   const auto model = MakeModel(options, &diagnostics, is_watched);
   if (!model) {
-    return fail(model.error());
+    return ReportFailure(model.error());
   }
   const std::int64_t ready_ns = MonotonicNs();
   for (const Diagnostic& item : diagnostics.items()) {
@@ -180,7 +177,7 @@ int RunAssemble(const AssembleOptions& options) {
   }
   auto outcome = Assemble(*model, options, is_watched);
   if (!outcome) {
-    return fail(outcome.error());
+    return ReportFailure(outcome.error());
   }
   AddMissing(**model, &*outcome);
   outcome->preparation_ns = ready_ns - start_ns;

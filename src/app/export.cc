@@ -17,6 +17,7 @@
 #include "app/poses.h"
 #include "app/product_json.h"
 #include "app/progress.h"
+#include "app/report_failure.h"
 #include "app/selection.h"
 #include "base/atomic_file.h"
 #include "cad/export_step.h"
@@ -159,10 +160,7 @@ void AddExport(CLI::App* app, int* status) {
       "hvas export pump.step -o run.glb --poses run.hvasrec");
   command->callback([options, status] {
     const Result<void> done = Export(*options);
-    if (!done) {
-      fmt::print(stderr, "hvas: {}\n", done.error().ToString());
-    }
-    *status = done ? 0 : 1;
+    *status = done ? 0 : ReportFailure(done.error());
   });
 }
 

@@ -11,6 +11,7 @@
 
 #include "app/fit_batch.h"
 #include "app/fit_card.h"
+#include "app/report_failure.h"
 #include "base/atomic_file.h"
 #include "base/units.h"
 #include "fits/fit_search.h"
@@ -45,11 +46,6 @@ struct SearchArguments {
   std::string basis{"hole"};
   bool is_json{false};
 };
-
-int Report(const Error& error) {
-  fmt::print(stderr, "hvas: {}\n", error.ToString());
-  return 1;
-}
 
 Result<fits::PressMaterial> FindPressMaterial(const std::string& name, std::string* found) {
   const auto match = fits::FindMaterial(name);
@@ -98,11 +94,11 @@ Result<FitCardOptions> MakeOptions(const CardArguments& a) {
 int PrintCard(const CardArguments& arguments) {
   const Result<FitCardOptions> options = MakeOptions(arguments);
   if (!options) {
-    return Report(options.error());
+    return ReportFailure(options.error());
   }
   const Result<FitCard> card = MakeFitCard(*options);
   if (!card) {
-    return Report(card.error());
+    return ReportFailure(card.error());
   }
   fmt::print("{}", arguments.is_json ? ToJson(*card).dump(2) + "\n" : ToText(*card));
   return 0;
@@ -111,19 +107,19 @@ int PrintCard(const CardArguments& arguments) {
 int RunBatch(const BatchArguments& arguments, Result<void> (*add)(CsvTable*)) {
   Result<CsvTable> table = CsvTable::Read(arguments.in);
   if (!table) {
-    return Report(table.error());
+    return ReportFailure(table.error());
   }
   if (Result<void> done = add(&*table); !done) {
     Error error = done.error();
     error.where = arguments.in + ", " + error.where;
-    return Report(error);
+    return ReportFailure(error);
   }
   if (arguments.out.empty()) {
     fmt::print("{}", table->ToText());
     return 0;
   }
   const Result<void> written = WriteAtomically(arguments.out, table->ToText());
-  return written ? 0 : Report(written.error());
+  return written ? 0 : ReportFailure(written.error());
 }
 
 int Search(const SearchArguments& a) {
@@ -131,7 +127,7 @@ int Search(const SearchArguments& a) {
       fits::FindFits(units::FromMm(a.nominal_mm), units::FromUm(a.min_um), units::FromUm(a.max_um),
                      a.basis == "shaft" ? fits::FitBasis::kShaft : fits::FitBasis::kHole);
   if (!found) {
-    return Report(found.error());
+    return ReportFailure(found.error());
   }
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const fits::FoundFit& f : *found) {

@@ -9,9 +9,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/names.h"
 #include "base/units.h"
 #include "fits/insertion.h"
 #include "fits/thermal_joining.h"
+#include "mates/make_fit.h"
 
 namespace hvas::app {
 namespace {
@@ -24,18 +26,6 @@ Unexpected NoFit(std::string_view text) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no size with a fit", text), {},
               "write the nominal diameter in mm and the classes, as in \"40 H7/p6\", \"40 H7\" or "
               "\"1.5in H7/g6\"");
-}
-
-const char* KindOf(fits::FitKind kind) {
-  switch (kind) {
-    case fits::FitKind::kClearance:
-      return "clearance";
-    case fits::FitKind::kTransition:
-      return "transition";
-    case fits::FitKind::kInterference:
-      break;
-  }
-  return "interference";
 }
 
 /** Micrometres to three digits; zero has no sign. */
@@ -198,7 +188,7 @@ std::string LimitsText(const FitCard& card) {
   if (card.limits) {
     text += fmt::format("  clearance of the diameters {} to {} um: {} fit\n",
                         SignedUm(card.limits->min_clearance), SignedUm(card.limits->max_clearance),
-                        KindOf(card.limits->kind));
+                        ToString(mates::ToKind(card.limits->kind)));
   }
   return text;
 }
@@ -342,7 +332,7 @@ ordered_json ToJson(const FitCard& card) {
   side("hole", fit.hole, card.hole);
   side("shaft", fit.shaft, card.shaft);
   if (card.limits) {
-    json["kind"] = KindOf(card.limits->kind);
+    json["kind"] = ToString(mates::ToKind(card.limits->kind));
     json["min_clearance_um"] = units::ToUm(card.limits->min_clearance);
     json["max_clearance_um"] = units::ToUm(card.limits->max_clearance);
   }

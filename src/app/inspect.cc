@@ -13,6 +13,7 @@
 #include "app/first_assignments.h"
 #include "app/product_json.h"
 #include "app/product_text.h"
+#include "app/report_failure.h"
 #include "base/atomic_file.h"
 #include "mates/side_file.h"
 
@@ -86,11 +87,7 @@ Result<void> Inspect(const InspectOptions& options) {
 
 int RunInspect(const InspectOptions& options) {
   const Result<void> inspected = Inspect(options);
-  if (!inspected) {
-    fmt::print(stderr, "hvas: {}\n", inspected.error().ToString());
-    return 1;
-  }
-  return 0;
+  return inspected ? 0 : ReportFailure(inspected.error());
 }
 
 void AddInspect(CLI::App* app, int* status) {

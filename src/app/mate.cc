@@ -18,6 +18,7 @@
 #include "app/load_product.h"
 #include "app/product_json.h"
 #include "app/product_text.h"
+#include "app/report_failure.h"
 #include "app/side_document.h"
 #include "mates/assignments.h"
 #include "mates/user_mate.h"
@@ -303,10 +304,7 @@ CLI::App* AddCommand(CLI::App* parent, const char* name, const char* help,
       ->required();
   command->callback([options, status, run] {
     const Result<void> done = run(*options);
-    if (!done) {
-      fmt::print(stderr, "hvas: {}\n", done.error().ToString());
-    }
-    *status = done ? 0 : 1;
+    *status = done ? 0 : ReportFailure(done.error());
   });
   return command;
 }
