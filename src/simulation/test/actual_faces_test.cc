@@ -83,7 +83,8 @@ TEST(ActualFaces, StayAsDrawnWhereTheyAreAlsoAThread) {
   thread.fit->kind = product::FitKind::kThread;
   thread.fit->code.clear();
   product.mates.push_back(std::move(thread));
-  for (const Body& body : CompilePeg(std::move(product), 1)->bodies) {
+  const auto model = CompilePeg(std::move(product), 1);
+  for (const Body& body : model->bodies) {
     EXPECT_EQ(body.faces, nullptr);
   }
 }
