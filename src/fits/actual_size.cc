@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/units.h"
+#include "fits/size_distribution.h"
 
 namespace hvas::fits {
 
@@ -28,16 +28,7 @@ std::vector<double> CalcSizeProbabilities(int zone_um) {
 }
 
 double DrawDeviation(const Limits& limits, Random* random) {
-  // Zones are whole micrometres but for the finest grades, which lose a part of one here.
-  const double zone_um = units::ToUm(limits.upper - limits.lower);
-  const std::vector<double> probabilities =
-      CalcSizeProbabilities(static_cast<int>(std::floor(zone_um + 1e-6)));
-  double left = random->Uniform();
-  std::size_t k = 0;
-  while (k + 1 < probabilities.size() && left >= probabilities[k]) {
-    left -= probabilities[k++];
-  }
-  return limits.lower + units::FromUm(static_cast<double>(k));
+  return SizeDistribution::FromZone(limits).Quantile(random->Uniform());
 }
 
 }  // namespace hvas::fits

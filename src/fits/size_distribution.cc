@@ -42,7 +42,7 @@ class NormalTable {
 }  // namespace
 
 SizeDistribution SizeDistribution::FromZone(const Limits& limits) {
-  // As DrawDeviation: the finest grades lose a part of a micrometre.
+  // Zones are whole micrometres but for the finest grades, which lose a part of one here.
   const int zone_um = static_cast<int>(std::floor(units::ToUm(limits.upper - limits.lower) + 1e-6));
   const std::vector<double> probabilities = CalcSizeProbabilities(zone_um);
   std::vector<double> values;
