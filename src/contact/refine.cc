@@ -130,42 +130,44 @@ class ZoneList {
         begin_(shape.exact.list_begin[list]),
         end_(shape.exact.list_begin[list + 1]),
         p_(p),
-        from_centre_(from_centre) {
-    if (list < shape.exact.list_faces.size()) {
-      faces_ = &shape.exact.list_faces[list];
-      Measure();
-    }
-  }
+        from_centre_(from_centre),
+        kind_(FacesOfList(shape, list) != nullptr ? FacesOfList(shape, list)->kind
+                                                  : ListFaces::Kind::kMixed),
+        faces_(shape, FacesOfList(shape, list), p) {}
 
   /** Where the solid is what its faces have in common, the way out of it is the way out of the face
    that is left soonest; from outside, the way to a face is the way to the solid if it ends inside
    the other faces. The same with inside and outside exchanged where any face will do. True when
    that decides; what lies no nearer than the filter's limit may be told by a lower bound. */
   [[nodiscard]] bool FromSurfaces(const FaceFilter& filter, Refined* out) const noexcept {
-    if (faces_ == nullptr || faces_->kind == ListFaces::Kind::kMixed) {
+    if (kind_ == ListFaces::Kind::kMixed) {
       return false;
     }
-    const double side = faces_->kind == ListFaces::Kind::kIntersection ? 1 : -1;
+    const double side = kind_ == ListFaces::Kind::kIntersection ? 1 : -1;
     std::size_t last = 0;
     double others = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < faces_->count; ++i) {
-      if (filter.Drops(faces_->faces[i]) || !surface_[i].is_valid) {
+    for (std::size_t i = 0; i < faces_.count(); ++i) {
+      if (filter.Drops(faces_.face(i)) || !faces_.surface(i).is_valid) {
         return false;
       }
-      if (i > 0 && side * surface_[i].distance > side * surface_[last].distance) {
-        others = std::max(others, side * surface_[last].distance);
+      if (i > 0 && side * faces_.surface(i).distance > side * faces_.surface(last).distance) {
+        others = std::max(others, side * faces_.surface(last).distance);
         last = i;
       } else if (i > 0) {
-        others = std::max(others, side * surface_[i].distance);
+        others = std::max(others, side * faces_.surface(i).distance);
       }
     }
-    const double way = side * surface_[last].distance;
+    const double way = side * faces_.surface(last).distance;
     const bool is_far = side > 0 && way >= filter.limit;
     if (way > 0 && others + way > 0 && !is_far) {
       return false;
     }
-    *out = {
-        surface_[last].distance, surface_[last].gradient, faces_->faces[last], kNoFace, true, true};
+    *out = {faces_.surface(last).distance,
+            faces_.surface(last).gradient,
+            faces_.face(last),
+            kNoFace,
+            true,
+            true};
     return true;
   }
 
@@ -179,38 +181,20 @@ class ZoneList {
     }
     Search(
         [&](std::uint32_t face) {
-          return face != first_face && !filter.Drops(face) && LeastOf(face) <= best_distance;
+          return face != first_face && !filter.Drops(face) && faces_.LeastOf(face) <= best_distance;
         },
         &best, &best_distance);
     return best;
   }
 
  private:
-  void Measure() noexcept {
-    for (std::size_t i = 0; i < faces_->count; ++i) {
-      const std::uint32_t face = faces_->faces[i];
-      surface_[i] = spatial::CalcDistance(shape_.exact.faces[face], p_);
-      least_[i] = LeastDistance(shape_, face, surface_[i]);
-    }
-  }
-
-  // No triangle of the face is nearer than this.
-  [[nodiscard]] double LeastOf(std::uint32_t face) const noexcept {
-    for (std::size_t i = 0; faces_ != nullptr && i < faces_->count; ++i) {
-      if (faces_->faces[i] == face) {
-        return least_[i];
-      }
-    }
-    return 0;
-  }
-
   [[nodiscard]] std::uint32_t Nearest(const FaceFilter& filter) const noexcept {
     std::uint32_t nearest = kNoFace;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; faces_ != nullptr && i < faces_->count; ++i) {
-      if (least_[i] < least && !filter.Drops(faces_->faces[i])) {
-        least = least_[i];
-        nearest = faces_->faces[i];
+    for (std::size_t i = 0; i < faces_.count(); ++i) {
+      if (faces_.least(i) < least && !filter.Drops(faces_.face(i))) {
+        least = faces_.least(i);
+        nearest = faces_.face(i);
       }
     }
     return nearest;
@@ -240,9 +224,8 @@ class ZoneList {
   std::uint32_t end_;
   const Vec3& p_;
   double from_centre_;
-  const ListFaces* faces_{nullptr};
-  std::array<spatial::SurfaceDistance, ListFaces::kMost> surface_;
-  std::array<double, ListFaces::kMost> least_{};
+  ListFaces::Kind kind_;
+  ListDistances faces_;
 };
 
 Refined FromFeature(const Shape::Data& shape, const Closest& closest, const SolidFeature& feature,
@@ -366,9 +349,8 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
   if (!at.is_known) {
     return Trilinear(field, p);
   }
-  const std::uint32_t code = at.code;
-  const std::uint32_t payload = code & zone::kPayload;
-  if ((code & ~zone::kPayload) == zone::kList) {
+  const std::uint32_t payload = at.payload();
+  if (at.is_list()) {
     if (DropsAll(filter, FacesOfList(shape, payload))) {
       return Nothing();
     }
@@ -385,11 +367,9 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
     return FromFeature(shape, closest, feature, p, field);
   }
   if (filter.Drops(payload)) {
-    Refined none;
-    none.is_valid = false;
-    return none;
+    return Nothing();
   }
-  if ((code & ~zone::kPayload) == zone::kExact) {
+  if ((at.code & ~zone::kPayload) == zone::kExact) {
     const auto exact = spatial::CalcDistance(shape.exact.faces[payload], p);
     if (exact.is_valid) {
       return {exact.distance, exact.gradient, payload, kNoFace, true, true};

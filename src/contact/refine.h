@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +54,12 @@ struct ZoneAt {
   std::uint32_t code{0};
   Vec3 centre{Vec3::Zero()};
   bool is_known{false};  ///< False outside the field and where it has no block.
+
+  [[nodiscard]] bool is_list() const noexcept {
+    return is_known && (code & ~zone::kPayload) == zone::kList;
+  }
+
+  [[nodiscard]] std::uint32_t payload() const noexcept { return code & zone::kPayload; }
 };
 
 [[nodiscard]] ZoneAt FindZone(const Shape::Data& shape, const Vec3& p) noexcept;
@@ -78,15 +85,49 @@ struct ZoneAt {
                      [&filter](std::uint32_t face) { return filter.Drops(face); });
 }
 
-/** No point of a face's mesh is nearer than this to a point at that distance from its unbounded
- surface [m]. RT-safe. */
-[[nodiscard]] inline double LeastDistance(const Shape::Data& shape, std::uint32_t face,
-                                          const spatial::SurfaceDistance& surface) noexcept {
-  constexpr double kRounding = 1e-9;  // [m]
-  return surface.is_valid
-             ? std::abs(surface.distance) - 1.001 * shape.exact.deviation[face] - kRounding
-             : 0;
-}
+/** The unbounded surfaces of a list's faces as seen from a point, and with them how near the
+ triangles of each can be. RT-safe. */
+class ListDistances {
+ public:
+  /** @param faces  Null: nothing is known, and everything may be near. */
+  ListDistances(const Shape::Data& shape, const ListFaces* faces, const Vec3& p) noexcept
+      : faces_(faces) {
+    constexpr double kRounding = 1e-9;  // [m]
+    for (std::size_t i = 0; i < count(); ++i) {
+      const std::uint32_t face = faces->faces[i];
+      surface_[i] = spatial::CalcDistance(shape.exact.faces[face], p);
+      least_[i] = surface_[i].is_valid ? std::abs(surface_[i].distance) -
+                                             1.001 * shape.exact.deviation[face] - kRounding
+                                       : 0;
+    }
+  }
+
+  [[nodiscard]] std::size_t count() const noexcept { return faces_ == nullptr ? 0 : faces_->count; }
+
+  [[nodiscard]] std::uint32_t face(std::size_t i) const noexcept { return faces_->faces[i]; }
+
+  [[nodiscard]] const spatial::SurfaceDistance& surface(std::size_t i) const noexcept {
+    return surface_[i];
+  }
+
+  /** No triangle of the i-th face is nearer than this [m]. */
+  [[nodiscard]] double least(std::size_t i) const noexcept { return least_[i]; }
+
+  /** The same by the face's number. */
+  [[nodiscard]] double LeastOf(std::uint32_t face) const noexcept {
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (faces_->faces[i] == face) {
+        return least_[i];
+      }
+    }
+    return 0;
+  }
+
+ private:
+  const ListFaces* faces_;
+  std::array<spatial::SurfaceDistance, ListFaces::kMost> surface_;
+  std::array<double, ListFaces::kMost> least_{};
+};
 
 /** A face's surface, as drawn or as made. */
 class FaceSurface {

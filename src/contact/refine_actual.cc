@@ -14,10 +14,9 @@ class NearFaces {
     if (!at.is_known) {
       return;
     }
-    const std::uint32_t payload = at.code & zone::kPayload;
-    if ((at.code & ~zone::kPayload) != zone::kList) {
-      Add(payload, 0);
-    } else if (!Gather(shape, offsets, payload, (p - at.centre).norm())) {
+    if (!at.is_list()) {
+      Add(at.payload(), 0);
+    } else if (!Gather(shape, offsets, at.payload(), (p - at.centre).norm())) {
       return;
     }
     for (std::size_t i = 0; i < count_; ++i) {
@@ -62,25 +61,13 @@ class NearFaces {
   // False where no face of the list moves.
   bool Gather(const Shape::Data& shape, const FaceOffsets& offsets, std::uint32_t list,
               double from_centre) {
-    const ListFaces* faces = FacesOfList(shape, list);
-    std::array<double, ListFaces::kMost> least{};
-    bool has_moved = faces == nullptr;
-    for (std::size_t i = 0; faces != nullptr && i < faces->count; ++i) {
-      const std::uint32_t face = faces->faces[i];
-      has_moved = has_moved || offsets.Moves(face);
-      least[i] = LeastDistance(shape, face, spatial::CalcDistance(shape.exact.faces[face], p_));
-    }
-    if (!has_moved) {
+    const ListFaces* named = FacesOfList(shape, list);
+    if (named != nullptr &&
+        std::none_of(named->faces.begin(), named->faces.begin() + named->count,
+                     [&offsets](std::uint32_t face) { return offsets.Moves(face); })) {
       return false;
     }
-    const auto least_of = [&](std::uint32_t face) {
-      for (std::size_t i = 0; faces != nullptr && i < faces->count; ++i) {
-        if (faces->faces[i] == face) {
-          return least[i];
-        }
-      }
-      return 0.0;
-    };
+    const ListDistances faces(shape, named, p_);
     const ExactTable& exact = shape.exact;
     const double reach = kReach * offsets.largest();
     double limit = std::numeric_limits<double>::infinity();
@@ -90,7 +77,7 @@ class NearFaces {
         break;
       }
       const std::uint32_t face = shape.mesh.face[entry.triangle];
-      if (least_of(face) > limit) {
+      if (faces.LeastOf(face) > limit) {
         continue;
       }
       const double distance = (shape.mesh.ClosestOn(entry.triangle, p_).q - p_).norm();
@@ -163,8 +150,7 @@ Refined RefineActual(const Shape::Data& shape, const FaceOffsets* offsets, const
     return Refine(shape, p, field, filter);
   }
   const ZoneAt at = FindZone(shape, p);
-  if (at.is_known && (at.code & ~zone::kPayload) == zone::kList &&
-      DropsAll(filter, FacesOfList(shape, at.code & zone::kPayload))) {
+  if (at.is_list() && DropsAll(filter, FacesOfList(shape, at.payload()))) {
     return Nothing();
   }
   const NearFaces near(shape, *offsets, at, p);
