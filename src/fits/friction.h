@@ -42,6 +42,20 @@ struct FrictionEntry {
 
 [[nodiscard]] std::span<const FrictionEntry> FrictionTable() noexcept;
 
+/** What is known of the friction of joints that are pressed, shrunk or oiled together:
+ FrictionTable() takes its values from here. Ranges where sources give ranges. */
+struct JointFriction {
+  std::string_view pair;
+  std::string_view condition;
+  std::string_view symbol;  ///< nu_ll to start along, nu_rl sliding along, nu_ru about the axis.
+  double low;
+  double high;
+  std::string_view source;
+  std::string_view status;  ///< How far it was checked.
+};
+
+[[nodiscard]] std::span<const JointFriction> JointFrictionTable() noexcept;
+
 /** The law of a pair, in either order; of a pair that the table has not, `otherwise`. RT-safe. */
 [[nodiscard]] FrictionLaw FindFriction(FrictionSurface a, FrictionSurface b,
                                        const FrictionLaw& otherwise) noexcept;

@@ -2,6 +2,8 @@
 
 #include "fits/friction.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "fits/materials.h"
@@ -41,6 +43,25 @@ TEST(FrictionTable, IsSoundAndSourced) {
     EXPECT_LT(entry.static_coefficient, 1);
     EXPECT_FALSE(entry.source.empty());
     EXPECT_FALSE(entry.status.empty());
+  }
+}
+
+// N4: every row of the long table has a source and a status; what laws use is in it.
+TEST(JointFrictionTable, IsSourcedAndHasWhatTheLawsUse) {
+  EXPECT_GE(JointFrictionTable().size(), 40U);
+  for (const JointFriction& row : JointFrictionTable()) {
+    EXPECT_LE(row.low, row.high) << row.pair;
+    EXPECT_GT(row.low, 0);
+    EXPECT_FALSE(row.source.empty());
+    EXPECT_FALSE(row.status.empty());
+  }
+  for (const FrictionEntry& entry : FrictionTable()) {
+    for (const double value : {entry.static_coefficient, entry.kinetic_coefficient}) {
+      EXPECT_TRUE(std::any_of(
+          JointFrictionTable().begin(), JointFrictionTable().end(),
+          [value](const JointFriction& row) { return row.low == value || row.high == value; }))
+          << value;
+    }
   }
 }
 
