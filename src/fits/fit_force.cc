@@ -7,24 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "base/random.h"
+#include "fits/friction.h"
 
 namespace hvas::fits {
 namespace {
-
-/** Integral of max(0, -s) over [0, x] for s linear from a at 0 with slope k. */
-double IntegrateInterference(double a, double k, double x) noexcept {
-  const double b = a + k * x;
-  if (a >= 0 && b >= 0) {
-    return 0;
-  }
-  if (a < 0 && b < 0) {
-    return -0.5 * (a + b) * x;
-  }
-  // A triangle on the side where s is negative; s crosses zero at -a / k.
-  const double crossing = -a / k;
-  return a < 0 ? -0.5 * a * crossing : -0.5 * b * (x - crossing);
-}
 
 Result<void> Check(bool is_valid, const char* name, double value, const char* range) {
   if (is_valid) {
@@ -34,9 +20,9 @@ Result<void> Check(bool is_valid, const char* name, double value, const char* ra
               "fit", "check the fit and the sizes of its parts");
 }
 
+/** What press_stroke.h does not see: it knows S and no diameters of single parts. */
 Result<void> Check(const FitForceParameters& p) {
   const auto is_positive = [](double x) { return x > 0 && std::isfinite(x); };
-  const auto is_not_negative = [](double x) { return x >= 0 && std::isfinite(x); };
   Result<void> result =
       Check(is_positive(p.hole_diameter), "the hole's diameter", p.hole_diameter, "> 0");
   if (result) {
@@ -44,23 +30,12 @@ Result<void> Check(const FitForceParameters& p) {
   }
   if (result) {
     result =
-        Check(is_positive(p.nominal_diameter), "the nominal diameter", p.nominal_diameter, "> 0");
+        Check(p.roughness >= 0 && std::isfinite(p.roughness), "the roughness", p.roughness, ">= 0");
   }
   if (result) {
-    result = Check(is_positive(p.length), "the mating length", p.length, "> 0");
-  }
-  if (result) {
-    result = Check(p.radius_ratio >= 0 && p.radius_ratio < 1, "the ratio of the radii",
-                   p.radius_ratio, "at least 0 and below 1");
-  }
-  if (result) {
-    result = Check(is_positive(p.youngs_modulus), "Young's modulus", p.youngs_modulus, "> 0");
-  }
-  if (result) {
-    result = Check(is_not_negative(p.friction), "the friction coefficient", p.friction, ">= 0");
-  }
-  if (result) {
-    result = Check(is_not_negative(p.roughness), "the roughness", p.roughness, ">= 0");
+    result =
+        Check(p.friction.slip >= 0 && p.friction.slip <= p.friction.release, "the friction of slip",
+              p.friction.slip, "at least 0 and no more than that at release");
   }
   if (result) {
     result = Check(p.stations >= 1 && p.stations <= 1'000'000, "the number of stations", p.stations,
@@ -69,36 +44,64 @@ Result<void> Check(const FitForceParameters& p) {
   return result;
 }
 
+PressFitParameters ToPressFit(const FitForceParameters& p) {
+  PressFitParameters press;
+  press.joint_diameter = p.nominal_diameter;
+  press.hub_diameter = p.hub_diameter == 0 ? 2 * p.nominal_diameter : p.hub_diameter;
+  press.shaft_bore = p.shaft_bore;
+  press.length = p.length;
+  press.interference = p.shaft_diameter - p.hole_diameter;
+  press.hub_roughness = press.shaft_roughness = p.roughness;
+  press.smoothing = p.smoothing;
+  press.hub = p.hub;
+  press.shaft = p.shaft;
+  press.friction_in = p.friction.in;
+  press.friction_release = p.friction.release;
+  press.friction_torque = p.friction.turning;
+  return press;
+}
+
 }  // namespace
 
 Result<FitForce> FitForce::Make(const FitForceParameters& parameters) {
-  if (Result<void> check = Check(parameters); !check) {
+  const FitForceParameters& p = parameters;
+  if (Result<void> check = Check(p); !check) {
     return Unexpected(check.error());
   }
-  const FitForceParameters& p = parameters;
-  const double stiffness = p.youngs_modulus * (1 - p.radius_ratio * p.radius_ratio);
-  FitForce fit;
+  StrokeLand land;
+  land.press = ToPressFit(p);
+  land.lead_in_angle = p.lead_in_angle;
+  land.clearances =
+      DrawClearances(p.hole_diameter - p.shaft_diameter, p.roughness, p.stations, p.seed);
+  const Result<PressFit> press = CalcPressFit(land.press);
+  if (!press) {
+    return Unexpected(press.error());
+  }
+  Result<PressStroke> forces = PressStroke::Make({land});
+  if (!forces) {
+    return Unexpected(forces.error());
+  }
+  StrokeLand plain = land;
+  plain.press.friction_in = 1;
+  plain.lead_in_angle = 0;
+  Result<PressStroke> normal = PressStroke::Make({plain});
+  if (!normal) {
+    return Unexpected(normal.error());
+  }
+  FitForce fit(std::move(*forces), std::move(*normal));
+  fit.friction_ = p.friction;
   fit.length_ = p.length;
   fit.step_ = p.length / p.stations;
-  fit.friction_ = p.friction;
+  fit.diameter_ = p.nominal_diameter;
   fit.mean_clearance_ = 0.5 * (p.hole_diameter - p.shaft_diameter);
   fit.shaft_diameter_ = p.shaft_diameter;
-  fit.force_scale_ = p.friction * std::numbers::pi * stiffness;
-  fit.pressure_scale_ = stiffness / p.nominal_diameter;
-  Random random(p.seed);
+  fit.pressure_per_interference_ = press->pressure_per_interference;
+  fit.smoothing_ = 0.5 * press->smoothing_loss;
+  fit.clearance_ = std::move(land.clearances);
   double play = std::numeric_limits<double>::infinity();
-  double resistance = 0;
-  for (int j = 0; j <= p.stations; ++j) {
-    const double s = fit.mean_clearance_ + 0.5 * p.roughness * random.Uniform(-1, 1);
-    if (j > 0) {
-      const double before = fit.clearance_.back();
-      resistance +=
-          fit.force_scale_ * IntegrateInterference(before, (s - before) / fit.step_, fit.step_);
-    }
+  for (const double s : fit.clearance_) {
     play = std::min(play, std::max(0.0, s));
-    fit.clearance_.push_back(s);
     fit.play_.push_back(play);
-    fit.resistance_.push_back(resistance);
   }
   return fit;
 }
@@ -122,15 +125,42 @@ double FitForce::CalcRadialPlay(double depth) const noexcept {
   return std::min(play_[Locate(depth).interval], std::max(0.0, CalcClearance(depth)));
 }
 
-double FitForce::CalcAxialResistance(double depth) const noexcept {
-  const Place place = Locate(depth);
-  const double s = clearance_[place.interval];
-  const double slope = (clearance_[place.interval + 1] - s) / step_;
-  return resistance_[place.interval] + force_scale_ * IntegrateInterference(s, slope, place.offset);
+double FitForce::CalcPressure(double depth) const noexcept {
+  return 2 * pressure_per_interference_ * std::max(0.0, -CalcClearance(depth) - smoothing_);
 }
 
-double FitForce::CalcPressure(double depth) const noexcept {
-  return pressure_scale_ * std::max(0.0, -CalcClearance(depth));
+double FitForce::CalcNormalForce(double depth) const noexcept {
+  return normal_.CalcForce(std::isnan(depth) ? 0 : depth).in;
+}
+
+double FitForce::CalcAxialResistance(double depth) const noexcept {
+  // Past L, a chamfer that comes out of the far end is no longer felt, but the joint is as long.
+  return std::isnan(depth) ? 0 : forces_.CalcForce(std::min(depth, length_)).in;
+}
+
+double FitForce::CalcReleaseForce(double depth, double speed) const noexcept {
+  if (std::isnan(depth)) {
+    return 0;
+  }
+  const FrictionLaw law{friction_.release, friction_.slip};
+  const double less = friction_.release - law.CalcCoefficient(std::abs(speed));
+  // The chamfer's slope helps outwards; it does not push the shaft out.
+  return std::max(
+      0.0, forces_.CalcForce(std::min(depth, length_)).release - less * CalcNormalForce(depth));
+}
+
+double FitForce::CalcTorque(double depth) const noexcept {
+  return friction_.turning * CalcNormalForce(depth) * 0.5 * diameter_;
+}
+
+double FitForce::CalcRadialStiffness(double depth) const noexcept {
+  const double l = depth > 0 ? std::min(depth, length_) : 0.0;
+  return std::numbers::pi * diameter_ * pressure_per_interference_ * l;
+}
+
+double FitForce::CalcTiltStiffness(double depth) const noexcept {
+  const double l = depth > 0 ? std::min(depth, length_) : 0.0;
+  return CalcRadialStiffness(depth) * l * l / 12;
 }
 
 }  // namespace hvas::fits

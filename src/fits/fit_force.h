@@ -5,61 +5,92 @@
 #include <vector>
 
 #include "base/result.h"
+#include "fits/press_stroke.h"
 
-/** The assembly clearance space and the axial force of a fit as functions of the insertion depth:
- paper W's equations (1) to (4) and (6) to (9), mended (a depth's force, not a sum over time). */
+/** The assembly clearance space and the forces of a fit as functions of the insertion depth: paper
+ W's equations (1) to (4) and (6) to (9), mended (a depth's force, not a sum over time). What the
+ forces are is known to press_stroke.h alone; here they are put together for one pair of parts, so
+ that the hand feels what `hvas fit` prints. */
 namespace hvas::fits {
 
-/** A shaft and a hole as made, of one material. Defaults: steel, roughness Rz 6.3 um; W7's rig. */
-struct FitForceParameters {
-  double hole_diameter{0};       ///< D_h, actual [m], > 0.
-  double shaft_diameter{0};      ///< d_s, actual [m], > 0.
-  double nominal_diameter{0};    ///< 2 R [m], > 0.
-  double length{0};              ///< L, mating length [m], > 0.
-  double radius_ratio{0.5};      ///< c_0 = R / r_0, r_0 the hub's outer radius; 0 <= c_0 < 1.
-  double youngs_modulus{210e9};  ///< E [Pa], > 0.
-  double friction{0.15};         ///< mu, >= 0.
-  double roughness{6.3e-6};      ///< Rz [m], >= 0; B lies within half of it either way.
-  int stations{20};              ///< N, the intervals of B along L, >= 1.
-  std::uint64_t seed{0};         ///< Of B's random values.
+/** Coefficients of a joint that is pressed in, drawn out and turned; DIN 7190-1's letters. */
+struct FitFriction {
+  double in{0.15};       ///< mu_e, pressing in.
+  double release{0.15};  ///< nu_ll, when it begins to slip outwards.
+  double slip{0.15};     ///< nu_rl, while it slips outwards; no larger than `release`.
+  double turning{0.15};  ///< nu_ru, about the axis.
 };
 
-/** Clearance and axial resistance of one pair of parts, tabulated over its depth.
+/** A shaft and a hole as made. Defaults: steel, roughness Rz 6.3 um; W7's rig. */
+struct FitForceParameters {
+  double hole_diameter{0};     ///< D_h, actual [m], > 0.
+  double shaft_diameter{0};    ///< d_s, actual [m], > 0.
+  double nominal_diameter{0};  ///< D_F [m], > 0.
+  double length{0};            ///< L, mating length [m], > 0.
+  double hub_diameter{0};      ///< D_aA, outside [m], > D_F; 0: twice the nominal, as in W7's rig.
+  double shaft_bore{0};        ///< D_iI [m], < D_F.
+  PressMaterial hub;
+  PressMaterial shaft;
+  double roughness{6.3e-6};  ///< Rz, mean of both surfaces [m], >= 0; B is within half of it.
+  Smoothing smoothing{Smoothing::kNone};
+  FitFriction friction;
+  double lead_in_angle{0};  ///< Of the chamfer that leads in, from the axis [rad]; 0: none.
+  int stations{20};         ///< N, the intervals of B along L, >= 1.
+  std::uint64_t seed{0};    ///< Of B's random values.
+};
 
- With l_j = j L / N, j = 0 .. N and B(l_j) = (Rz / 2) random(-1, 1), linear between (W1):
-     W(4)  S(l) = (D_h - d_s) / 2 + B(l)                             radial; negative: interference
-     W(7)  p(l) = E max(0, -S(l)) (1 - c_0^2) / (2 R)                Lame, solid shaft
-     W(8), W(9)  F(l) = mu pi E (1 - c_0^2) integral_0^l max(0, -S)  as W(6) with W(7)
- S is linear between stations, so the integral is exact: quadratic pieces, cut where S changes sign.
- F is in true newtons; it is what has to be overcome to keep moving either way at depth l, and the
- limit of what holds the shaft at rest. Where S >= 0 it does not grow: the steps of a transition
- fit.
+/** Clearance, forces and stiffness of one pair of parts over its depth.
 
- The functions of depth are RT-safe; depths are clamped to [0, L]. */
+ With l_j = j L / N, j = 0 .. N and B(l_j) = (Rz / 2) random(-1, 1), linear between (W1); c_p is the
+ pressure for each metre of diametral interference, G the smoothing loss (press_fit.h):
+     W(4)  S(l) = (D_h - d_s) / 2 + B(l)               radial; negative: interference
+     W(7)  p(l) = 2 c_p max(0, -S - G / 2)
+     W(6)  N(l) = pi D_F integral_0^l p                normal force
+     W(8), W(9)  F_in(l) = mu_e N(l), and the run-in over a chamfer
+                 F_out(l) = nu_ll N(l), then nu_rl N(l);  T(l) = nu_ru N(l) D_F / 2
+ In true newtons; they are what has to be overcome to move, and the limits of what holds the shaft
+ at rest. Where S >= 0, N does not grow: the stairs of a transition fit.
+
+ Depths count from where the shaft's edge is at the mouth; a chamfer touches a little before that,
+ at negative depths. The functions of depth are RT-safe. */
 class FitForce {
  public:
   /** Builds the tables. Fails on parameters out of their range. */
   [[nodiscard]] static Result<FitForce> Make(const FitForceParameters& parameters);
 
-  /** S(l), the radius of the clearance space at a depth [m]. */
+  /** S(l), the radius of the clearance space at a depth within [0, L] [m]. */
   [[nodiscard]] double CalcClearance(double depth) const noexcept;
 
   /** How far the shaft's axis may lie beside the hole's when inserted to a depth: the least of
    max(0, S) up to there [m]. Never grows with depth. */
   [[nodiscard]] double CalcRadialPlay(double depth) const noexcept;
 
-  /** F(l), the axial resistance [N]. Never falls with depth. */
-  [[nodiscard]] double CalcAxialResistance(double depth) const noexcept;
-
   /** p(l), the pressure between the parts at a depth [Pa]. */
   [[nodiscard]] double CalcPressure(double depth) const noexcept;
 
-  /** F(L) [N]. */
-  [[nodiscard]] double max_resistance() const noexcept { return resistance_.back(); }
+  /** N(l), the pressure over the engaged surface [N]. Never falls with depth. */
+  [[nodiscard]] double CalcNormalForce(double depth) const noexcept;
+
+  /** F_in(l) [N]. Without a chamfer it never falls with depth. */
+  [[nodiscard]] double CalcAxialResistance(double depth) const noexcept;
+
+  /** F_out(l) at a speed of slip [m/s]: what it takes to break loose at rest, falling to what it
+   takes to keep it moving (Stribeck) [N]. */
+  [[nodiscard]] double CalcReleaseForce(double depth, double speed = 0) const noexcept;
+
+  /** T(l), to turn it [N m]. */
+  [[nodiscard]] double CalcTorque(double depth) const noexcept;
+
+  /** Stiffness of the engaged length beyond its play, across the axis [N/m] and against tilt
+   [N m/rad]. Every ring is a bed of springs with the stiffness of its uniform pressure, 2 c_p for
+   each metre of radius: k = pi D_F c_p l, k_t = k l^2 / 12. An estimate, of the right order. */
+  [[nodiscard]] double CalcRadialStiffness(double depth) const noexcept;
+  [[nodiscard]] double CalcTiltStiffness(double depth) const noexcept;
+
+  /** F_in(L) [N]. */
+  [[nodiscard]] double max_resistance() const noexcept { return CalcAxialResistance(length_); }
 
   [[nodiscard]] double length() const noexcept { return length_; }
-
-  [[nodiscard]] double friction() const noexcept { return friction_; }
 
   /** S at the N + 1 stations from the mouth to L [m]. */
   [[nodiscard]] std::span<const double> clearances() const noexcept { return clearance_; }
@@ -76,19 +107,23 @@ class FitForce {
     double offset;         // From the first of them [m].
   };
 
-  FitForce() = default;
+  FitForce(PressStroke forces, PressStroke normal)
+      : forces_(std::move(forces)), normal_(std::move(normal)) {}
+
   [[nodiscard]] Place Locate(double depth) const noexcept;
 
+  PressStroke forces_;
+  PressStroke normal_;  // With coefficients of one and no chamfer: N(l).
+  FitFriction friction_;
   double length_{0};
   double step_{0};
-  double friction_{0};
+  double diameter_{0};
   double mean_clearance_{0};
   double shaft_diameter_{0};
-  double force_scale_{0};           // mu pi E (1 - c_0^2) [N/m^2].
-  double pressure_scale_{0};        // E (1 - c_0^2) / (2 R) [Pa/m].
-  std::vector<double> clearance_;   // S at the stations [m].
-  std::vector<double> play_;        // Least of max(0, S) up to each station [m].
-  std::vector<double> resistance_;  // F at the stations [N].
+  double pressure_per_interference_{0};  // c_p [Pa/m].
+  double smoothing_{0};                  // G / 2 [m].
+  std::vector<double> clearance_;        // S at the stations [m].
+  std::vector<double> play_;             // Least of max(0, S) up to each station [m].
 };
 
 }  // namespace hvas::fits

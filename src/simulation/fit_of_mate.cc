@@ -10,25 +10,32 @@
 
 #include "base/random.h"
 #include "fits/actual_size.h"
+#include "fits/friction.h"
 #include "fits/iso286.h"
+#include "fits/materials.h"
 
 namespace hvas::simulation {
 namespace {
 
 constexpr double kReferenceTemperature_c = 20;  // ISO 1
-constexpr double kThickestWall = 0.95;          // largest c_0 = R / r_0 that is believed
+constexpr double kThickestRatio = 0.95;         // of inner to outer radius that is believed
+constexpr double kThinnestRatio = 1e-3;
+constexpr double kSteepestLeadIn = 0.8;  // of the angle that friction would lock
+
+/** True where an axis of the same part runs along the feature's. */
+bool IsCoaxial(const product::Feature& feature, const Vec3& origin_B, const Vec3& axis_B) {
+  const Vec3 d = origin_B - feature.origin_B;
+  const double away = (d - d.dot(feature.axis_B) * feature.axis_B).norm();
+  return std::abs(axis_B.dot(feature.axis_B)) > 0.999 && away < 0.05 * feature.radius;
+}
 
 /** Outer radius of the hub around a hole: the narrowest coaxial outside cylinder, or else half the
  least width of the part across the axis [m]. */
 double FindHubRadius(const product::Part& part, const product::Feature& hole) {
   double outer = std::numeric_limits<double>::infinity();
   for (const product::Feature& feature : part.features) {
-    if (feature.kind != product::FeatureKind::kShaft || feature.radius <= hole.radius) {
-      continue;
-    }
-    const Vec3 d = feature.origin_B - hole.origin_B;
-    const double away = (d - d.dot(hole.axis_B) * hole.axis_B).norm();
-    if (std::abs(feature.axis_B.dot(hole.axis_B)) > 0.999 && away < 0.05 * hole.radius) {
+    if (feature.kind == product::FeatureKind::kShaft && feature.radius > hole.radius &&
+        IsCoaxial(hole, feature.origin_B, feature.axis_B)) {
       outer = std::min(outer, feature.radius);
     }
   }
@@ -40,6 +47,59 @@ double FindHubRadius(const product::Part& part, const product::Feature& hole) {
   hole.axis_B.cwiseAbs().maxCoeff(&along);
   half[along] = std::numeric_limits<double>::infinity();
   return half.minCoeff();
+}
+
+/** Radius of the bore that makes a shaft hollow: the widest coaxial hole that goes through most of
+ it; 0 where it is solid [m]. */
+double FindBoreRadius(const product::Part& part, const product::Feature& shaft) {
+  const double length = shaft.span_high - shaft.span_low;
+  double bore = 0;
+  for (const product::Feature& feature : part.features) {
+    if (feature.kind != product::FeatureKind::kHole || feature.radius >= shaft.radius ||
+        !IsCoaxial(shaft, feature.origin_B, feature.axis_B)) {
+      continue;
+    }
+    const double sense = shaft.axis_B.dot(feature.axis_B);
+    const double origin = (feature.origin_B - shaft.origin_B).dot(shaft.axis_B);
+    const double a = origin + sense * feature.span_low;
+    const double b = origin + sense * feature.span_high;
+    const double shared =
+        std::min(std::max(a, b), shaft.span_high) - std::max(std::min(a, b), shaft.span_low);
+    bore = shared > 0.5 * length ? std::max(bore, feature.radius) : bore;
+  }
+  return bore;
+}
+
+/** Angle to the axis of a chamfer at an end of a hole or shaft [rad]; 0 where it has none. */
+double FindChamferAngle(const product::Part& part, const product::Feature& feature) {
+  for (const product::Form& form : part.forms) {
+    const double at = (form.origin_B - feature.origin_B).dot(feature.axis_B);
+    const double outside = std::max(feature.span_low - at, at - feature.span_high);
+    if (form.kind == product::FormKind::kChamfer && form.angle > 0 &&
+        IsCoaxial(feature, form.origin_B, form.axis_B) && std::abs(outside) <= form.depth) {
+      return 0.5 * form.angle;
+    }
+  }
+  return 0;
+}
+
+fits::PressMaterial ToPressMaterial(const product::Material& material) {
+  fits::PressMaterial press;
+  press.youngs_modulus = material.youngs_modulus;
+  press.poisson_ratio = material.poisson_ratio;
+  press.yield_strength = material.yield_strength;
+  press.thermal_expansion = material.thermal_expansion;
+  return press;
+}
+
+/** One coefficient where somebody states one; else those of the pair of materials. */
+fits::FitFriction ChooseFriction(const std::optional<double>& stated, const product::Material& hub,
+                                 const product::Material& shaft) {
+  const fits::FrictionLaw law =
+      stated ? fits::FrictionLaw{*stated, *stated}
+             : fits::FindFriction(SurfaceOf(hub), SurfaceOf(shaft), fits::FrictionLaw{});
+  return {law.static_coefficient, law.static_coefficient, law.kinetic_coefficient,
+          law.static_coefficient};
 }
 
 /** The zones of the code on a mate: of both sides, or of one where the other is as drawn. */
@@ -87,6 +147,11 @@ bool HasSizes(const product::FitConditions& conditions) {
 
 }  // namespace
 
+fits::FrictionSurface SurfaceOf(const product::Material& material) {
+  const auto match = fits::FindMaterial(material.standard);
+  return match ? fits::SurfaceOf(match->material->group) : fits::FrictionSurface::kUnknown;
+}
+
 std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& product,
                                                    const product::Mate& mate, std::uint64_t seed,
                                                    Diagnostics* diagnostics) {
@@ -108,21 +173,32 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
   Random random(seed * 0x9e3779b97f4a7c15u + mate.id.value());
   fits::FitForceParameters parameters;
   parameters.nominal_diameter = nominal;
+  const product::Part& hub = product.part_of(mate.a.occurrence);
+  const product::Part& shaft = product.part_of(mate.b.occurrence);
+  const product::Feature& hole_feature = hub.features[mate.a.feature.index()];
+  const product::Feature& shaft_feature = shaft.features[mate.b.feature.index()];
   parameters.hole_diameter = Expand(
       ChooseDiameter(conditions.hole_diameter, zones->hole, nominal, 2 * mate.hole_radius, &random),
-      conditions.hole_temperature, product.part_of(mate.a.occurrence).material);
-  parameters.shaft_diameter =
-      Expand(ChooseDiameter(conditions.shaft_diameter, zones->shaft, nominal, 2 * mate.shaft_radius,
-                            &random),
-             conditions.shaft_temperature, product.part_of(mate.b.occurrence).material);
-  parameters.friction = conditions.friction.value_or(parameters.friction);
+      conditions.hole_temperature, hub.material);
+  parameters.shaft_diameter = Expand(ChooseDiameter(conditions.shaft_diameter, zones->shaft,
+                                                    nominal, 2 * mate.shaft_radius, &random),
+                                     conditions.shaft_temperature, shaft.material);
+  parameters.friction = ChooseFriction(conditions.friction, hub.material, shaft.material);
   // The profile of the pair is the mean of the two: equal sides give their own.
   parameters.roughness = 0.5 * (conditions.hole_roughness.value_or(parameters.roughness) +
                                 conditions.shaft_roughness.value_or(parameters.roughness));
   parameters.length = mate.overlap;
-  const product::Part& hub = product.part_of(mate.a.occurrence);
-  const double hub_radius = FindHubRadius(hub, hub.features[mate.a.feature.index()]);
-  parameters.radius_ratio = std::clamp(mate.hole_radius / hub_radius, 0.0, kThickestWall);
+  parameters.hub = ToPressMaterial(hub.material);
+  parameters.shaft = ToPressMaterial(shaft.material);
+  parameters.hub_diameter =
+      nominal / std::clamp(mate.hole_radius / FindHubRadius(hub, hole_feature), kThinnestRatio,
+                           kThickestRatio);
+  parameters.shaft_bore =
+      nominal * std::min(FindBoreRadius(shaft, shaft_feature) / mate.shaft_radius, kThickestRatio);
+  const double lead_in = FindChamferAngle(shaft, shaft_feature);
+  parameters.lead_in_angle =
+      std::min(lead_in > 0 ? lead_in : FindChamferAngle(hub, hole_feature),
+               kSteepestLeadIn * std::atan(1 / std::max(parameters.friction.in, 1e-12)));
   parameters.seed = random.NextBits();
   const auto force = fits::FitForce::Make(parameters);
   if (!force) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fits/materials.h"
 #include "mates/resolve.h"
+#include "simulation/fit_of_mate.h"
 
 namespace hvas::simulation {
 namespace {
@@ -15,11 +15,6 @@ using product::OccurrenceId;
 constexpr double kReach = 0.03;      // [m] from a part's centre of mass, to take it up
 constexpr double kApproach = 0.01;   // [m] before its place, where a part's mates are resolved from
 constexpr double kStopCosine = 0.5;  // a plane facing the way in ends it; one along it guides
-
-fits::FrictionSurface SurfaceOf(const Model& model, OccurrenceId id) {
-  const auto match = fits::FindMaterial(model.product->part_of(id).material.standard);
-  return match ? fits::SurfaceOf(match->material->group) : fits::FrictionSurface::kUnknown;
-}
 
 Frame MakeFirstFrame(const Model& model) {
   Frame frame;
@@ -45,7 +40,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
     Part& part = parts_[id.index()];
     part.X_WB = body.X_WB_start;
     haptic_.SetProperties(id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
-                               SurfaceOf(*model_, body.occurrence)});
+                               SurfaceOf(model_->product->part_of(body.occurrence).material)});
     haptic_.SetLoose(id, true);
   }
   scene_.SetGround(model_->table_z);
@@ -349,7 +344,7 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& 
   held->mass = mass.mass;
   held->p_BoBcm_B = mass.p_BoBcm_B;
   held->I_BBcm_B = mass.I_BBcm_B;
-  held->surface = SurfaceOf(*model_, id);
+  held->surface = SurfaceOf(model_->product->part_of(id).material);
   held->falls_when_dropped = step.members.empty() && step.kind != SequenceStep::Kind::kPark;
   held->X_WB_start = step.members.empty() ? ClearOfTable(id) : parts_[id.index()].X_WB;
   held->insertion_W = -step.extraction_W;

@@ -63,7 +63,7 @@ inline std::shared_ptr<const fits::FitForce> MakeFit(std::string_view name,
   p.hole_diameter = p.nominal_diameter + 0.5 * (hole.lower + hole.upper);
   p.shaft_diameter = p.nominal_diameter + 0.5 * (shaft.lower + shaft.upper);
   p.length = kLength;
-  p.radius_ratio = kShaftRadius / kHubRadius;
+  p.hub_diameter = 2 * kHubRadius;
   p.roughness = roughness;
   p.seed = seed;
   return std::make_shared<const fits::FitForce>(*fits::FitForce::Make(p));
