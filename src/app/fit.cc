@@ -1,38 +1,31 @@
 #include "app/fit.h"
 
 #include <cstdio>
-#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/fit_arguments.h"
 #include "app/fit_batch.h"
 #include "app/fit_card.h"
+#include "app/fit_curve.h"
+#include "app/fit_jamming.h"
+#include "app/fit_paper.h"
+#include "app/fit_population.h"
 #include "app/report_failure.h"
 #include "base/atomic_file.h"
 #include "base/units.h"
 #include "fits/fit_search.h"
-#include "fits/materials.h"
+#include "fits/friction.h"
 
 namespace hvas::app {
 namespace {
-
-/** As they are typed: lengths in mm and um. */
-struct CardArguments {
-  std::string fit;
-  double length_mm{0};
-  double hub_mm{0};
-  double bore_mm{0};
-  std::string material, hub_material, shaft_material;
-  double friction{0.15};
-  double rz_um{0};
-  std::string smoothing{"din2017"};
-  FitCardOptions card;
-  bool is_json{false};
-};
 
 struct BatchArguments {
   std::string in;
@@ -47,60 +40,155 @@ struct SearchArguments {
   bool is_json{false};
 };
 
-Result<fits::PressMaterial> FindPressMaterial(const std::string& name, std::string* found) {
-  const auto match = fits::FindMaterial(name);
-  if (!match) {
-    return Fail(ErrorCode::kNotFound, fmt::format("there is no material \"{}\"", name), {},
-                "name it as EN, DIN or AISI do: S355, 42CrMo4, 304, EN-GJL-250, CuSn8");
-  }
-  *found = std::string(match->material->name);
-  return fits::ToPressMaterial(*match->material);
+bool EndsWith(const std::string& file, std::string_view ending) {
+  return file.size() > ending.size() && file.ends_with(ending);
 }
 
-Result<FitCardOptions> MakeOptions(const CardArguments& a) {
-  FitCardOptions options = a.card;
-  Result<SizedFit> fit = ParseSizedFit(a.fit);
-  if (!fit) {
-    return Unexpected(fit.error());
+/** Writes a plot as the file's name says. */
+template <bool kHasCsv, typename Plot>
+Result<void> WritePlot(const std::string& file, const Plot& plot) {
+  if constexpr (kHasCsv) {
+    if (EndsWith(file, ".csv")) {
+      return WriteAtomically(file, ToCsv(plot));
+    }
   }
-  options.fit = *fit;
-  if (options.population > 0 && (!(a.length_mm > 0) || !fit->hole || !fit->shaft)) {
-    return Fail(ErrorCode::kInvalid, "a population needs a hole, a shaft and a length", {},
-                "give both classes and --length");
+  if (!EndsWith(file, ".svg")) {
+    return Fail(
+        ErrorCode::kInvalid, fmt::format("\"{}\" is no kind of plot", file), {},
+        kHasCsv ? "name a file that ends in .svg or .csv" : "name a file that ends in .svg");
   }
-  fits::PressFitParameters& p = options.press;
-  p.joint_diameter = fit->nominal;
-  p.length = units::FromMm(a.length_mm);
-  p.hub_diameter = a.hub_mm > 0 ? units::FromMm(a.hub_mm) : 2 * fit->nominal;
-  p.shaft_bore = units::FromMm(a.bore_mm);
-  p.friction_in = p.friction_release = p.friction_torque = a.friction;
-  p.hub_roughness = p.shaft_roughness = units::FromUm(a.rz_um);
-  p.smoothing = a.smoothing == "none"      ? fits::Smoothing::kNone
-                : a.smoothing == "din2001" ? fits::Smoothing::kDin2001
-                                           : fits::Smoothing::kDin2017;
-  const std::string both = a.material.empty() ? "S355" : a.material;
-  const Result<fits::PressMaterial> hub =
-      FindPressMaterial(a.hub_material.empty() ? both : a.hub_material, &options.hub_material);
-  const Result<fits::PressMaterial> shaft = FindPressMaterial(
-      a.shaft_material.empty() ? both : a.shaft_material, &options.shaft_material);
-  if (!hub || !shaft) {
-    return Unexpected((hub ? shaft : hub).error());
-  }
-  p.hub = *hub;
-  p.shaft = *shaft;
-  return options;
+  return WriteAtomically(file, ToSvg(plot));
 }
 
-int PrintCard(const CardArguments& arguments) {
-  const Result<FitCardOptions> options = MakeOptions(arguments);
+/** What the arguments ask for, all of it before anything is printed. */
+struct Answer {
+  std::vector<FitCard> cards;
+  FitPopulationOptions options;
+  std::optional<fits::Population> population;
+  std::optional<FitJamming> jamming;
+};
+
+Result<Answer> MakeAnswer(const FitArguments& a) {
+  Answer answer;
+  Result<std::vector<FitCard>> cards = MakeCards(a);
+  if (!cards) {
+    return Unexpected(cards.error());
+  }
+  answer.cards = *std::move(cards);
+  const Result<FitPopulationOptions> options = MakePopulationOptions(a);
   if (!options) {
-    return ReportFailure(options.error());
+    return Unexpected(options.error());
   }
-  const Result<FitCard> card = MakeFitCard(*options);
-  if (!card) {
-    return ReportFailure(card.error());
+  answer.options = *options;
+  if (a.has_population) {
+    Result<fits::Population> population = DrawPopulation(answer.cards, *options);
+    if (!population) {
+      return Unexpected(population.error());
+    }
+    answer.population = *std::move(population);
   }
-  fmt::print("{}", arguments.is_json ? ToJson(*card).dump(2) + "\n" : ToText(*card));
+  if (!a.curve.empty()) {
+    const Result<FitCurve> curve = MakeFitCurve(answer.cards, *options, units::FromMm(a.step_mm));
+    if (!curve) {
+      return Unexpected(curve.error());
+    }
+    if (Result<void> written = WritePlot<true>(a.curve, *curve); !written) {
+      return Unexpected(written.error());
+    }
+  }
+  if (!a.jamming.empty()) {
+    Result<FitJamming> jamming =
+        MakeFitJamming(answer.cards.front(), units::FromMm(a.at_mm), MakeLoad(a));
+    if (!jamming) {
+      return Unexpected(jamming.error());
+    }
+    if (Result<void> written = WritePlot<false>(a.jamming, *jamming); !written) {
+      return Unexpected(written.error());
+    }
+    answer.jamming = *std::move(jamming);
+  }
+  return answer;
+}
+
+nlohmann::ordered_json ToJson(const Answer& answer) {
+  nlohmann::ordered_json json{{"schema", "hvas-fit-1"}};
+  if (answer.cards.size() == 1) {
+    json.update(ToJson(answer.cards.front()));
+  } else {
+    for (const FitCard& card : answer.cards) {
+      json["fits"].push_back(ToJson(card));
+    }
+  }
+  if (answer.population) {
+    json["population"] = ToJson(*answer.population, answer.cards, answer.options);
+  }
+  if (answer.jamming) {
+    json["jamming"] = ToJson(*answer.jamming);
+  }
+  return json;
+}
+
+int PrintCard(const FitArguments& arguments) {
+  const Result<Answer> answer = MakeAnswer(arguments);
+  if (!answer) {
+    return ReportFailure(answer.error());
+  }
+  if (arguments.is_json) {
+    fmt::print("{}\n", ToJson(*answer).dump(2));
+    return 0;
+  }
+  for (const FitCard& card : answer->cards) {
+    fmt::print("{}", ToText(card));
+  }
+  if (answer->population) {
+    fmt::print("{}", ToText(*answer->population, answer->cards, answer->options));
+  }
+  if (answer->jamming) {
+    fmt::print("{}", ToText(*answer->jamming));
+  }
+  return 0;
+}
+
+struct PaperArguments {
+  std::string curve;
+  std::uint64_t seed{0};
+};
+
+int ShowPaper(const PaperArguments& arguments) {
+  const Result<std::vector<PaperCurve>> curves = MakePaperCurves(arguments.seed);
+  if (!curves) {
+    return ReportFailure(curves.error());
+  }
+  if (!arguments.curve.empty()) {
+    if (Result<void> written = WritePlot<true>(arguments.curve, *curves); !written) {
+      return ReportFailure(written.error());
+    }
+  }
+  fmt::print("{}", ToText(*curves));
+  return 0;
+}
+
+int ShowFriction(bool is_json) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const fits::JointFriction& row : fits::JointFrictionTable()) {
+    if (is_json) {
+      json.push_back({{"pair", row.pair},
+                      {"condition", row.condition},
+                      {"symbol", row.symbol},
+                      {"low", row.low},
+                      {"high", row.high},
+                      {"source", row.source},
+                      {"status", row.status}});
+      continue;
+    }
+    const std::string range = row.low == row.high ? fmt::format("{:.2f}", row.low)
+                                                  : fmt::format("{:.2f}-{:.2f}", row.low, row.high);
+    fmt::print("{:<28} {:<12} {:<9} {}\n{:29}{}; {}\n", row.pair, row.symbol, range, row.condition,
+               "", row.source, row.status);
+  }
+  if (is_json) {
+    fmt::print("{}\n", json.dump(2));
+  }
   return 0;
 }
 
@@ -178,43 +266,40 @@ void AddSearch(CLI::App* fit, int* status) {
   search->callback([arguments, status] { *status = Search(*arguments); });
 }
 
+void AddPaper(CLI::App* fit, int* status) {
+  auto arguments = std::make_shared<PaperArguments>();
+  CLI::App* paper =
+      fit->add_subcommand("paper", "Paper W's three force curves, as shown and in true newtons");
+  paper->add_option("--curve", arguments->curve, "Write them: .svg or .csv");
+  paper->add_option("--seed", arguments->seed, "Of roughness and hand")->capture_default_str();
+  paper->footer("Example:\n  hvas fit paper --curve figure8.svg");
+  paper->callback([arguments, status] { *status = ShowPaper(*arguments); });
+}
+
+void AddFriction(CLI::App* fit, int* status) {
+  auto is_json = std::make_shared<bool>(false);
+  CLI::App* friction =
+      fit->add_subcommand("friction", "Coefficients of friction with their sources");
+  friction->add_flag("--json", *is_json, "Print one JSON document");
+  friction->callback([is_json, status] { *status = ShowFriction(*is_json); });
+}
+
 }  // namespace
 
 void AddFit(CLI::App* app, int* status) {
   CLI::App* fit = app->add_subcommand("fit", "Limits, press fits and insertion of ISO 286 fits");
-  auto a = std::make_shared<CardArguments>();
-  fit->add_option("fit", a->fit, "Diameter and classes: \"40 H7/p6\", \"40 H7\", \"1.5in H7/g6\"");
-  fit->add_option("--length", a->length_mm,
-                  "Of the joint [mm]; with it the press fit is calculated")
-      ->check(CLI::PositiveNumber);
-  fit->add_option("--hub", a->hub_mm, "Outer diameter of the hub [mm]; twice the nominal without")
-      ->check(CLI::PositiveNumber);
-  fit->add_option("--bore", a->bore_mm, "Bore of a hollow shaft [mm]")
-      ->check(CLI::NonNegativeNumber);
-  fit->add_option("--material", a->material, "Of both parts [S355]");
-  fit->add_option("--hub-material", a->hub_material, "Of the hub");
-  fit->add_option("--shaft-material", a->shaft_material, "Of the shaft");
-  fit->add_option("--mu", a->friction, "Coefficient of friction")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  fit->add_option("--rz", a->rz_um, "Roughness Rz of both surfaces [um]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  fit->add_option("--smoothing", a->smoothing,
-                  "Interference lost to roughness: none, din2001 (0.8), din2017 (0.4 of the sum)")
-      ->check(CLI::IsMember({"none", "din2001", "din2017"}))
-      ->capture_default_str();
-  fit->add_option("--population", a->card.population, "Draw so many assemblies")
-      ->check(CLI::PositiveNumber);
-  fit->add_option("--seed", a->card.seed, "Of the population")->capture_default_str();
-  fit->add_option("--press", a->card.press_force, "What the press can do [N]")
-      ->check(CLI::PositiveNumber);
-  fit->add_flag("--json", a->is_json, "Print one JSON document");
+  auto a = std::make_shared<FitArguments>();
+  AddFitArguments(fit, a.get());
   fit->footer(
       "Examples:\n"
       "  hvas fit \"40 H7/g6\"\n"
-      "  hvas fit \"40 H7/p6\" --length 50 --hub 80 --material S355\n"
-      "  hvas fit \"40 H7/k6\" --length 50 --rz 6.3 --population 1000000 --press 20000 --json\n"
+      "  hvas fit \"40 H7/p6\" --length 50 --hub 80 --material S355 --curve force.svg\n"
+      "  hvas fit \"40 H7/k6\" --length 50 --rz 6.3 --population 1000000 --press-limit 20000 "
+      "--json\n"
+      "  hvas fit \"40 H7/p6\" \"35 H7/k6\" --length 20,30 --start 0,40 --hub 80 --cp 1.33 "
+      "--population 1000000\n"
+      "  hvas fit \"40 H7/g6\" --length 50 --jamming jam.svg --at 20 --load 5,20,100\n"
+      "  hvas fit paper --curve figure8.svg\n"
       "  hvas fit limits --batch classes.csv -o limits.csv\n"
       "  hvas fit search --nominal 40 --min 5 --max 60");
   AddBatch(fit, "limits", "Limits of a table of classes",
@@ -232,13 +317,16 @@ void AddFit(CLI::App* app, int* status) {
       "inputs (as in \"D=40 d=39.9 l=10\"), output, unit. Out: value.",
       AddInsertions, status);
   AddSearch(fit, status);
+  AddPaper(fit, status);
+  AddFriction(fit, status);
   fit->callback([a, fit, status] {
     if (!fit->get_subcommands().empty()) {
       return;
     }
-    if (a->fit.empty()) {
-      throw CLI::RequiredError("a fit, or one of limits, press, peg, search,");
+    if (a->fits.empty()) {
+      throw CLI::RequiredError("a fit, or one of limits, press, peg, search, paper, friction,");
     }
+    a->has_population = fit->count("--population") > 0;
     *status = PrintCard(*a);
   });
 }

@@ -1,10 +1,7 @@
 #include "app/fit_card.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,22 +18,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kMeltLimitC = 350;  // Hubs of steel are seldom heated further.
-
-Unexpected NoFit(std::string_view text) {
-  return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no size with a fit", text), {},
-              "write the nominal diameter in mm and the classes, as in \"40 H7/p6\", \"40 H7\" or "
-              "\"1.5in H7/g6\"");
-}
-
-/** Micrometres to three digits; zero has no sign. */
-std::string Um(double length) {
-  return fmt::format("{:g}", std::round(units::ToUm(length) * 1e3) / 1e3 + 0.0);
-}
-
-std::string SignedUm(double length) {
-  const std::string text = Um(length);
-  return length > 0 && text != "0" ? "+" + text : text;
-}
 
 ordered_json FiniteOrNull(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
@@ -60,22 +41,6 @@ JoiningTemperatures CalcJoining(const FitCard& card) {
           fits::CalcShaftTemperature(joint, clearance, joint.room_c)};
 }
 
-Result<fits::Population> DrawPopulation(const FitCard& card) {
-  const FitCardOptions& options = card.options;
-  fits::PopulationParameters p;
-  p.lands.push_back({fits::SizeDistribution::FromZone(*card.hole),
-                     fits::SizeDistribution::FromZone(*card.shaft), 0, options.stations,
-                     options.press});
-  p.count = options.population;
-  p.seed = options.seed;
-  p.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  if (options.press_force > 0) {
-    p.press_force = options.press_force;
-  }
-  p.depths = options.stations;
-  return fits::CalcPopulation(p);
-}
-
 Result<fits::PressFit> PressAt(const FitCard& card, double clearance) {
   fits::PressFitParameters p = card.options.press;
   p.interference = -clearance;
@@ -84,48 +49,36 @@ Result<fits::PressFit> PressAt(const FitCard& card, double clearance) {
 
 }  // namespace
 
-Result<SizedFit> ParseSizedFit(std::string_view text) {
-  SizedFit sized;
-  const char* begin = text.data();
-  const char* const end = begin + text.size();
-  while (begin != end && *begin == ' ') {
-    ++begin;
+std::string Um(double length) {
+  return fmt::format("{:g}", std::round(units::ToUm(length) * 1e3) / 1e3 + 0.0);
+}
+
+std::string SignedUm(double length) {
+  const std::string text = Um(length);
+  return length > 0 && text != "0" ? "+" + text : text;
+}
+
+std::string FitCard::Title() const {
+  return fmt::format("{:g} mm {}", units::ToMm(options.fit.nominal), options.fit.ClassText());
+}
+
+std::string FitCard::JointText() const {
+  const fits::PressFitParameters& p = options.press;
+  std::string text =
+      fmt::format("joint {:g} mm long, hub {:g} mm {}, shaft {}", units::ToMm(p.length),
+                  units::ToMm(p.hub_diameter), options.hub_material, options.shaft_material);
+  if (p.shaft_bore > 0) {
+    text += fmt::format(" with a bore of {:g} mm", units::ToMm(p.shaft_bore));
   }
-  double size = 0;
-  const auto [after, error] = std::from_chars(begin, end, size);
-  if (error != std::errc() || !std::isfinite(size)) {
-    return NoFit(text);
+  text += fmt::format(", mu {:g} ({}), Rz {:g} and {:g} um", p.friction_in, options.friction_source,
+                      units::ToUm(p.hub_roughness), units::ToUm(p.shaft_roughness));
+  if (options.start > 0) {
+    text += fmt::format(", from a depth of {:g} mm on", units::ToMm(options.start));
   }
-  std::string_view rest(after, static_cast<std::size_t>(end - after));
-  const auto skip = [&rest](std::string_view word) {
-    while (rest.starts_with(' ')) {
-      rest.remove_prefix(1);
-    }
-    const bool is_there = rest.starts_with(word);
-    rest.remove_prefix(is_there ? word.size() : 0);
-    return is_there;
-  };
-  const bool is_inch = skip("in") || skip("\"");
-  if (!is_inch) {
-    skip("mm");
+  if (options.lead_in_angle > 0) {
+    text += fmt::format(", chamfer {:g} deg from the axis", units::ToDeg(options.lead_in_angle));
   }
-  skip("");
-  sized.nominal = is_inch ? size * units::kMetresPerInch : units::FromMm(size);
-  if (rest.find_first_of("/- ") != std::string_view::npos) {
-    const Result<fits::FitClass> fit = fits::ParseFit(rest);
-    if (!fit) {
-      return Unexpected(fit.error());
-    }
-    sized.hole = fit->hole;
-    sized.shaft = fit->shaft;
-    return sized;
-  }
-  const Result<fits::ToleranceClass> one = fits::ParseToleranceClass(rest);
-  if (!one) {
-    return NoFit(text);
-  }
-  (one->is_hole() ? sized.hole : sized.shaft) = *one;
-  return sized;
+  return text;
 }
 
 Result<FitCard> MakeFitCard(const FitCardOptions& options) {
@@ -160,13 +113,6 @@ Result<FitCard> MakeFitCard(const FitCardOptions& options) {
     }
     *press = *at;
   }
-  if (options.population > 0) {
-    Result<fits::Population> population = DrawPopulation(card);
-    if (!population) {
-      return Unexpected(population.error());
-    }
-    card.population = *std::move(population);
-  }
   return card;
 }
 
@@ -195,12 +141,7 @@ std::string LimitsText(const FitCard& card) {
 
 std::string PressText(const FitCard& card) {
   const fits::PressFitParameters& p = card.options.press;
-  std::string text = fmt::format(
-      "joint {:g} mm long, hub {:g} mm {}, shaft {}{}, mu {:g}, Rz {:g} and {:g} um\n",
-      units::ToMm(p.length), units::ToMm(p.hub_diameter), card.options.hub_material,
-      card.options.shaft_material,
-      p.shaft_bore > 0 ? fmt::format(" with a bore of {:g} mm", units::ToMm(p.shaft_bore)) : "",
-      p.friction_in, units::ToUm(p.hub_roughness), units::ToUm(p.shaft_roughness));
+  std::string text = card.JointText() + "\n";
   text += fmt::format("  {:<30} {:>12} {:>12} {:>12}\n", "interference", "least", "mean", "most");
   const auto row = [&](const char* name, auto value) {
     text += fmt::format("  {:<30} {:>12} {:>12} {:>12}\n", name, value(*card.least),
@@ -246,29 +187,6 @@ std::string PressText(const FitCard& card) {
   return text;
 }
 
-std::string PopulationText(const FitCard& card) {
-  const fits::Population& batch = *card.population;
-  const fits::LandStatistics& land = batch.lands.front();
-  std::string text = fmt::format(
-      "{} assemblies: clearance {} +- {} um (one sigma), with interference {:.3f} %, yielding "
-      "{:.3f} %",
-      batch.count, SignedUm(land.mean_clearance), Um(land.sigma_clearance),
-      100 * land.interference_share, 100 * land.yield_share);
-  if (card.options.press_force > 0) {
-    text += fmt::format(", beyond the press {:.3f} %", 100 * batch.over_press_share);
-  }
-  text += fmt::format("\n  {:>9} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "depth, mm",
-                      "mean, N", "0.1 %", "5 %", "50 %", "95 %", "99.9 %");
-  for (const fits::ForceBand& band : batch.bands) {
-    text += fmt::format("  {:>9.3f} {:>11.1f}", units::ToMm(band.depth), band.mean);
-    for (const double quantile : band.quantiles) {
-      text += fmt::format(" {:>11.1f}", quantile);
-    }
-    text += "\n";
-  }
-  return text;
-}
-
 ordered_json ToJson(const fits::PressFit& f) {
   return {{"effective_interference_um", units::ToUm(f.effective_interference)},
           {"pressure_mpa", units::ToMpa(f.pressure)},
@@ -285,43 +203,20 @@ ordered_json ToJson(const fits::PressFit& f) {
           {"margin_tresca", FiniteOrNull(f.margin_tresca())}};
 }
 
-ordered_json ToJson(const fits::Population& batch) {
-  const fits::LandStatistics& land = batch.lands.front();
-  ordered_json json{{"count", batch.count},
-                    {"mean_clearance_um", units::ToUm(land.mean_clearance)},
-                    {"sigma_clearance_um", units::ToUm(land.sigma_clearance)},
-                    {"interference_share", land.interference_share},
-                    {"yield_share", land.yield_share},
-                    {"over_press_share", batch.over_press_share},
-                    {"quantile_shares", fits::kBandShares}};
-  for (const fits::ForceBand& band : batch.bands) {
-    json["force"].push_back({{"depth_mm", units::ToMm(band.depth)},
-                             {"mean_n", band.mean},
-                             {"quantiles_n", band.quantiles}});
-  }
-  return json;
-}
-
 }  // namespace
 
 std::string ToText(const FitCard& card) {
-  const SizedFit& fit = card.options.fit;
-  const std::string code = fit.hole && fit.shaft ? fits::FitClass{*fit.hole, *fit.shaft}.ToString()
-                                                 : (fit.hole ? fit.hole : fit.shaft)->ToString();
-  std::string text = fmt::format("{:g} mm {}\n", units::ToMm(fit.nominal), code);
+  std::string text = card.Title() + "\n";
   text += LimitsText(card);
   if (card.most) {
     text += PressText(card);
-  }
-  if (card.population) {
-    text += PopulationText(card);
   }
   return text;
 }
 
 ordered_json ToJson(const FitCard& card) {
   const SizedFit& fit = card.options.fit;
-  ordered_json json{{"schema", "hvas-fit-1"}, {"nominal_mm", units::ToMm(fit.nominal)}};
+  ordered_json json{{"nominal_mm", units::ToMm(fit.nominal)}};
   const auto side = [&](const char* name, const auto& tolerance, const auto& limits) {
     if (limits) {
       json[name] = {{"class", tolerance->ToString()},
@@ -343,9 +238,6 @@ ordered_json ToJson(const FitCard& card) {
       const JoiningTemperatures joining = CalcJoining(card);
       json["joining"] = {{"heat_hub_to_c", joining.hub_c}, {"cool_shaft_to_c", joining.shaft_c}};
     }
-  }
-  if (card.population) {
-    json["population"] = ToJson(*card.population);
   }
   return json;
 }

@@ -2,36 +2,24 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "app/sized_fit.h"
 #include "base/result.h"
 #include "fits/iso286.h"
-#include "fits/population.h"
 #include "fits/press_fit.h"
 
 namespace hvas::app {
-
-/** "40 H7/p6", "1.5in H7/g6", or one class alone, "40 H7". */
-struct SizedFit {
-  double nominal{0};  ///< [m]
-  std::optional<fits::ToleranceClass> hole;
-  std::optional<fits::ToleranceClass> shaft;
-};
-
-/** Errors: kInvalid, with what a fit looks like. */
-[[nodiscard]] Result<SizedFit> ParseSizedFit(std::string_view text);
 
 /** What a card is about. */
 struct FitCardOptions {
   SizedFit fit;
   fits::PressFitParameters press;  ///< Without interference, which comes from the limits.
   std::string hub_material, shaft_material;
-  int stations{20};
-  std::int64_t population{0};  ///< Assemblies to draw; 0: none.
-  std::uint64_t seed{0};
-  double press_force{0};  ///< [N]; 0: any.
+  std::string friction_source;  ///< Where the coefficient is from.
+  double start{0};              ///< Depth at which this fit begins to engage [m].
+  double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
   double room_c{20};
 };
 
@@ -42,13 +30,24 @@ struct FitCard {
   std::optional<fits::FitLimits> limits;
   /** Press fits at the least, the mean and the largest interference; with a length only. */
   std::optional<fits::PressFit> least, mean, most;
-  std::optional<fits::Population> population;
+
+  /** "40 mm H7/p6". */
+  [[nodiscard]] std::string Title() const;
+
+  /** "joint 50 mm long, hub 80 mm S355JR, ...", with a length only. */
+  [[nodiscard]] std::string JointText() const;
 };
 
-/** Errors: those of ISO 286, of the press fit, and of the population. */
+/** Errors: those of ISO 286 and of the press fit. */
 [[nodiscard]] Result<FitCard> MakeFitCard(const FitCardOptions& options);
 
 [[nodiscard]] std::string ToText(const FitCard& card);
 [[nodiscard]] nlohmann::ordered_json ToJson(const FitCard& card);
+
+/** Micrometres to three digits; zero has no sign. */
+[[nodiscard]] std::string Um(double length);
+
+/** The same, with a plus sign where it is positive. */
+[[nodiscard]] std::string SignedUm(double length);
 
 }  // namespace hvas::app

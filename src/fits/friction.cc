@@ -107,15 +107,21 @@ std::span<const JointFriction> JointFrictionTable() noexcept {
   return kJoints;
 }
 
+const FrictionEntry* FindFrictionEntry(FrictionSurface a, FrictionSurface b) noexcept {
+  for (const FrictionEntry& entry : kTable) {
+    if ((entry.a == a && entry.b == b) || (entry.a == b && entry.b == a)) {
+      return &entry;
+    }
+  }
+  return nullptr;
+}
+
 FrictionLaw FindFriction(FrictionSurface a, FrictionSurface b,
                          const FrictionLaw& otherwise) noexcept {
   FrictionLaw law = otherwise;
-  for (const FrictionEntry& entry : kTable) {
-    if ((entry.a == a && entry.b == b) || (entry.a == b && entry.b == a)) {
-      law.static_coefficient = entry.static_coefficient;
-      law.kinetic_coefficient = entry.kinetic_coefficient;
-      break;
-    }
+  if (const FrictionEntry* entry = FindFrictionEntry(a, b)) {
+    law.static_coefficient = entry->static_coefficient;
+    law.kinetic_coefficient = entry->kinetic_coefficient;
   }
   return law;
 }

@@ -56,6 +56,9 @@ struct JointFriction {
 
 [[nodiscard]] std::span<const JointFriction> JointFrictionTable() noexcept;
 
+/** The row of a pair, in either order; null where the table has none. RT-safe. */
+[[nodiscard]] const FrictionEntry* FindFrictionEntry(FrictionSurface a, FrictionSurface b) noexcept;
+
 /** The law of a pair, in either order; of a pair that the table has not, `otherwise`. RT-safe. */
 [[nodiscard]] FrictionLaw FindFriction(FrictionSurface a, FrictionSurface b,
                                        const FrictionLaw& otherwise) noexcept;

@@ -16,6 +16,7 @@
 namespace hvas::fits {
 namespace {
 
+constexpr int kCurveSteps = 200;
 constexpr int kBlock = 4096;  // Assemblies; what is counted of them stays in the cache.
 
 Result<void> Check(const PopulationParameters& p) {
@@ -374,6 +375,12 @@ Population Batch::Run() {
     for (std::size_t q = 0; q < kBandShares.size(); ++q) {
       land.clearance_quantiles[q] =
           0.5 * (range.lower + range.upper) + all.clearances[k].Quantile(kBandShares[q]);
+    }
+    for (int i = 0; i <= kCurveSteps; ++i) {
+      // What bounds a distribution that has no end says nothing of the batch.
+      const double share = std::clamp(static_cast<double>(i), 0.5, kCurveSteps - 0.5) / kCurveSteps;
+      land.clearance_curve.push_back(0.5 * (range.lower + range.upper) +
+                                     all.clearances[k].Quantile(share));
     }
     land.interference_share = static_cast<double>(all.interference[k]) / n;
     land.yield_share = static_cast<double>(all.yield[k]) / n;

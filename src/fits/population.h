@@ -47,8 +47,9 @@ struct LandStatistics {
   double mean_clearance{0};  ///< [m]
   double sigma_clearance{0};
   std::array<double, kBandShares.size()> clearance_quantiles{};
-  double interference_share{0};  ///< Of assemblies with interference.
-  double yield_share{0};         ///< Whose pressure exceeds the least elastic limit (von Mises).
+  std::vector<double> clearance_curve;  ///< At the shares 0, 1/200, .. 1; the ends by 1/400.
+  double interference_share{0};         ///< Of assemblies with interference.
+  double yield_share{0};  ///< Whose pressure exceeds the least elastic limit (von Mises).
 };
 
 struct Population {

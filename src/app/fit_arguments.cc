@@ -1,0 +1,242 @@
+#include "app/fit_arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "fits/friction.h"
+#include "fits/materials.h"
+
+namespace hvas::app {
+namespace {
+
+constexpr double kPaperFriction = 0.15;
+
+/** The value of the k-th fit in a list with one for each, or one for all. */
+double Pick(const std::vector<double>& list, std::size_t k, double otherwise) {
+  return list.empty() ? otherwise : list[std::min(k, list.size() - 1)];
+}
+
+Result<const fits::Material*> FindNamed(const std::string& name) {
+  const auto match = fits::FindMaterial(name);
+  if (!match) {
+    return Fail(ErrorCode::kNotFound, fmt::format("there is no material \"{}\"", name), {},
+                "name it as EN, DIN or AISI do: S355, 42CrMo4, 304, EN-GJL-250, CuSn8");
+  }
+  return match->material;
+}
+
+void SetFriction(const FitArguments& a, const fits::Material& hub, const fits::Material& shaft,
+                 FitCardOptions* options) {
+  fits::PressFitParameters& p = options->press;
+  double friction = a.friction;
+  options->friction_source = "given";
+  if (friction < 0) {
+    const fits::FrictionEntry* entry =
+        fits::FindFrictionEntry(fits::SurfaceOf(hub.group), fits::SurfaceOf(shaft.group));
+    if (entry == nullptr) {
+      friction = kPaperFriction;
+      options->friction_source = "assumed: this pair of materials is not in the table";
+    } else {
+      friction = a.is_oiled ? entry->kinetic_coefficient : entry->static_coefficient;
+      options->friction_source =
+          fmt::format("{}, DIN 7190-1", a.is_oiled ? "the pair's lower value" : "dry pair");
+    }
+  }
+  p.friction_in = p.friction_release = p.friction_torque = friction;
+}
+
+Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
+  FitCardOptions options;
+  Result<SizedFit> fit = ParseSizedFit(a.fits[k]);
+  if (!fit) {
+    return Unexpected(fit.error());
+  }
+  options.fit = *fit;
+  options.start = units::FromMm(Pick(a.start_mm, k, 0));
+  options.lead_in_angle = units::FromDeg(a.chamfer_deg);
+  fits::PressFitParameters& p = options.press;
+  p.joint_diameter = fit->nominal;
+  p.length = units::FromMm(Pick(a.length_mm, k, 0));
+  p.hub_diameter = a.hub_mm.empty() ? 2 * fit->nominal : units::FromMm(Pick(a.hub_mm, k, 0));
+  p.shaft_bore = units::FromMm(Pick(a.bore_mm, k, 0));
+  p.hub_roughness = units::FromUm(a.hub_rz_um >= 0 ? a.hub_rz_um : a.rz_um);
+  p.shaft_roughness = units::FromUm(a.shaft_rz_um >= 0 ? a.shaft_rz_um : a.rz_um);
+  p.smoothing = a.smoothing == "none"      ? fits::Smoothing::kNone
+                : a.smoothing == "din2001" ? fits::Smoothing::kDin2001
+                                           : fits::Smoothing::kDin2017;
+  const std::string both = a.material.empty() ? "S355" : a.material;
+  const Result<const fits::Material*> hub =
+      FindNamed(a.hub_material.empty() ? both : a.hub_material);
+  const Result<const fits::Material*> shaft =
+      FindNamed(a.shaft_material.empty() ? both : a.shaft_material);
+  if (!hub || !shaft) {
+    return Unexpected((hub ? shaft : hub).error());
+  }
+  p.hub = fits::ToPressMaterial(**hub);
+  p.shaft = fits::ToPressMaterial(**shaft);
+  options.hub_material = std::string((*hub)->name);
+  options.shaft_material = std::string((*shaft)->name);
+  SetFriction(a, **hub, **shaft, &options);
+  return options;
+}
+
+Result<void> CheckLists(const FitArguments& a) {
+  for (const auto& [name, size] :
+       {std::pair("--length", a.length_mm.size()), std::pair("--hub", a.hub_mm.size()),
+        std::pair("--bore", a.bore_mm.size()), std::pair("--start", a.start_mm.size())}) {
+    if (size > 1 && size != a.fits.size()) {
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("{} has {} values for {} fits", name, size, a.fits.size()), {},
+                  "give one for all fits, or one for each, with commas between");
+    }
+  }
+  return {};
+}
+
+void AddBatchArguments(CLI::App* fit, FitArguments* a) {
+  const char* const group = "Populations";
+  fit->add_option("--population", a->population.count, "Draw so many assemblies")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  fit->add_option("--seed", a->population.seed, "Of everything that is drawn")
+      ->capture_default_str()
+      ->group(group);
+  fit->add_option("--press-limit,--press", a->population.press_force, "What the press can do [N]")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  fit->add_option("--sizes-spread", a->spread,
+                  "How sizes spread: paper (normal over whole um, sigma a sixth of the zone) or "
+                  "uniform; --cp and --sizes are others")
+      ->check(CLI::IsMember({"paper", "uniform"}))
+      ->capture_default_str()
+      ->group(group);
+  fit->add_option("--cp", a->cp, "Process capability C_p of both sizes: normal, not cut off")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  fit->add_option("--cpk", a->cpk, "C_pk, towards interference; as C_p without")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  fit->add_option("--sizes", a->sizes, "Measured diameters: a table with hole_mm, shaft_mm (CSV)")
+      ->group(group);
+  fit->add_option("--stations", a->population.stations, "N, the intervals of the roughness")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str()
+      ->group(group);
+  fit->add_option("--threads", a->population.threads,
+                  "To draw with; the figures are the same with any [all]")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+}
+
+void AddPlotArguments(CLI::App* fit, FitArguments* a) {
+  const char* const group = "Plots";
+  fit->add_option("--curve", a->curve, "Write force over depth, in and out: .svg or .csv")
+      ->group(group);
+  fit->add_option("--step", a->step_mm, "Of the curve's depth [mm]; a two hundredth without")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  fit->add_option("--jamming", a->jamming, "Write the diagrams of jamming and wedging: .svg")
+      ->group(group);
+  fit->add_option(
+         "--at", a->at_mm,
+         "l of the diagram, from the tip's corner to the rim [mm]; half the length without")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  fit->add_option("--load", a->load,
+                  "On the shaft, at the middle of its tip: across, along [N] and moment [N mm]")
+      ->delimiter(',')
+      ->expected(3)
+      ->group(group);
+}
+
+}  // namespace
+
+void AddFitArguments(CLI::App* fit, FitArguments* a) {
+  fit->add_option(
+      "fit", a->fits,
+      "Diameter and classes: \"40 H7/p6\", \"40 H7\", \"1.5in H7/g6\"; several are fits "
+      "of one pair of parts");
+  const auto add_list = [fit](const char* name, std::vector<double>* list, const char* text) {
+    return fit->add_option(name, *list, text)->delimiter(',')->allow_extra_args(false);
+  };
+  add_list(
+      "--length", &a->length_mm,
+      "Of the joint [mm]; with it the press fit is calculated. With several fits one for each, "
+      "with commas, or one for all; so --hub, --bore, --start")
+      ->check(CLI::PositiveNumber);
+  add_list("--hub", &a->hub_mm, "Outer diameter of the hub [mm]; twice the nominal without")
+      ->check(CLI::PositiveNumber);
+  add_list("--bore", &a->bore_mm, "Bore of a hollow shaft [mm]")->check(CLI::NonNegativeNumber);
+  add_list("--start", &a->start_mm, "Depth of the shaft at which the fit begins to engage [mm]")
+      ->check(CLI::NonNegativeNumber);
+  fit->add_option("--chamfer", a->chamfer_deg,
+                  "Of the chamfer that leads in, from the axis [deg]; a sharp edge without")
+      ->check(CLI::PositiveNumber);
+  fit->add_option("--material", a->material, "Of both parts [S355]");
+  fit->add_option("--hub-material", a->hub_material, "Of the hub");
+  fit->add_option("--shaft-material", a->shaft_material, "Of the shaft");
+  fit->add_option("--mu", a->friction,
+                  "Coefficient of friction; by the pair of materials without (hvas fit friction)")
+      ->check(CLI::NonNegativeNumber);
+  fit->add_flag("--oiled", a->is_oiled, "The pair's lower coefficient: with mineral oil");
+  fit->add_option("--rz", a->rz_um, "Roughness Rz of both surfaces [um]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  fit->add_option("--hub-rz", a->hub_rz_um, "Of the hub alone [um]")->check(CLI::NonNegativeNumber);
+  fit->add_option("--shaft-rz", a->shaft_rz_um, "Of the shaft alone [um]")
+      ->check(CLI::NonNegativeNumber);
+  fit->add_option("--smoothing", a->smoothing,
+                  "Interference lost to roughness: none, din2001 (0.8), din2017 (0.4 of the sum)")
+      ->check(CLI::IsMember({"none", "din2001", "din2017"}))
+      ->capture_default_str();
+  fit->add_flag("--json", a->is_json, "Print one JSON document");
+  AddBatchArguments(fit, a);
+  AddPlotArguments(fit, a);
+}
+
+Result<std::vector<FitCard>> MakeCards(const FitArguments& arguments) {
+  if (Result<void> check = CheckLists(arguments); !check) {
+    return Unexpected(check.error());
+  }
+  std::vector<FitCard> cards;
+  for (std::size_t k = 0; k < arguments.fits.size(); ++k) {
+    const Result<FitCardOptions> options = MakeOptions(arguments, k);
+    if (!options) {
+      return Unexpected(options.error());
+    }
+    Result<FitCard> card = MakeFitCard(*options);
+    if (!card) {
+      return Unexpected(card.error());
+    }
+    cards.push_back(*std::move(card));
+  }
+  return cards;
+}
+
+Result<FitPopulationOptions> MakePopulationOptions(const FitArguments& arguments) {
+  FitPopulationOptions options = arguments.population;
+  if (!arguments.sizes.empty() && (arguments.cp > 0 || arguments.cpk > 0)) {
+    return Fail(ErrorCode::kInvalid, "sizes are either measured or of a capability", {},
+                "leave out --sizes, or --cp and --cpk");
+  }
+  if (!arguments.sizes.empty()) {
+    if (Result<void> read = ReadSizes(arguments.sizes, &options); !read) {
+      return Unexpected(read.error());
+    }
+  } else if (arguments.cp > 0 || arguments.cpk > 0) {
+    options.spread = SizeSpread::kCapability;
+    options.cp = arguments.cp > 0 ? arguments.cp : arguments.cpk;
+    options.cpk = arguments.cpk > 0 ? arguments.cpk : arguments.cp;
+  } else if (arguments.spread == "uniform") {
+    options.spread = SizeSpread::kUniform;
+  }
+  options.depths = options.stations;
+  return options;
+}
+
+fits::PegLoad MakeLoad(const FitArguments& arguments) {
+  return {arguments.load[0], arguments.load[1], 1e-3 * arguments.load[2]};
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/fit_card.h"
+#include "app/fit_population.h"
+#include "base/result.h"
+#include "fits/insertion.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hvas::app {
+
+/** The arguments of `hvas fit` as they are typed: mm, um, degrees. Lists have one value for each
+ fit, or one for all. */
+struct FitArguments {
+  std::vector<std::string> fits;
+  std::vector<double> length_mm, hub_mm, bore_mm, start_mm;
+  double chamfer_deg{0};
+  std::string material, hub_material, shaft_material;
+  double friction{-1};  // Below 0: by the pair of materials.
+  bool is_oiled{false};
+  double rz_um{0};
+  double hub_rz_um{-1}, shaft_rz_um{-1};
+  std::string smoothing{"din2017"};
+  FitPopulationOptions population;
+  bool has_population{false};
+  std::string spread{"paper"};
+  double cp{0}, cpk{0};
+  std::string sizes;
+  std::string curve, jamming;
+  double step_mm{0};
+  double at_mm{0};
+  std::vector<double> load{0, 1, 0};  // N, N, N mm.
+  bool is_json{false};
+};
+
+/** Adds them to the command. */
+void AddFitArguments(CLI::App* fit, FitArguments* arguments);
+
+/** The cards that they ask for, one for each fit. */
+[[nodiscard]] Result<std::vector<FitCard>> MakeCards(const FitArguments& arguments);
+
+/** With the sizes of a file, if they name one. */
+[[nodiscard]] Result<FitPopulationOptions> MakePopulationOptions(const FitArguments& arguments);
+
+[[nodiscard]] fits::PegLoad MakeLoad(const FitArguments& arguments);
+
+}  // namespace hvas::app
