@@ -125,14 +125,17 @@ int ConstraintSolver::AddContact(const Contact& contact) noexcept {
   return contact_count_++;
 }
 
-int ConstraintSolver::AddBoundedRow(const Vec6& J, double bound) noexcept {
+int ConstraintSolver::AddBoundedRow(const Vec6& J, const BoundedRow& bounds) noexcept {
   if (bounded_count_ == kMaxBoundedRows) {
     return -1;
   }
   const int index = bounded_count_++;
-  bounded_[static_cast<std::size_t>(index)] = {};
-  bounded_[static_cast<std::size_t>(index)].J = J;
-  bounds_[static_cast<std::size_t>(index)] = bound * dt_;
+  Row& row = bounded_[static_cast<std::size_t>(index)];
+  row = {};
+  row.J = J;
+  row.bias = -bounds.stretch / dt_;
+  row.softness = 1 / (dt_ * dt_ * bounds.stiffness);
+  bounds_[static_cast<std::size_t>(index)] = {bounds.low * dt_, bounds.high * dt_};
   return index;
 }
 
@@ -212,8 +215,9 @@ void ConstraintSolver::Push(const Pair& pair, const Row& row, double change) noe
 void ConstraintSolver::RelaxBounded() noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(bounded_count_); ++i) {
     Row& row = bounded_[i];
-    const double lambda =
-        std::clamp(row.lambda - row.J.dot(V_[0]) / row.slack, -bounds_[i], bounds_[i]);
+    const double residual = row.J.dot(V_[0]) - row.bias + row.softness * row.lambda;
+    const double lambda = std::clamp(row.lambda - residual / (row.slack + row.softness),
+                                     bounds_[i][0], bounds_[i][1]);
     V_[0] += (lambda - row.lambda) * row.W;
     row.lambda = lambda;
   }

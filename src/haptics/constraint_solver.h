@@ -93,9 +93,22 @@ class ConstraintSolver {
   /** The contact's index, or -1 when there are too many. */
   int AddContact(const Contact& contact) noexcept;
 
-  /** Resists motion J V of body 0 with a force of at most `bound` (dry friction). Returns the row's
-   index. */
-  int AddBoundedRow(const Vec6& J, double bound) noexcept;
+  /** A resistance to motion J V of body 0: a bristle that is stretched before the step, and pulls
+   along J with a force between two bounds. */
+  struct BoundedRow {
+    double low{0};   ///< <= 0 [N or N m]
+    double high{0};  ///< >= 0
+    double stretch{0};
+    double stiffness{std::numeric_limits<double>::infinity()};  ///< [N/m or N m/rad]
+  };
+
+  /** Returns the row's index, or -1 when there are too many. */
+  int AddBoundedRow(const Vec6& J, const BoundedRow& bounds) noexcept;
+
+  /** The same without a bristle, with a force of at most `bound` either way (dry friction). */
+  int AddBoundedRow(const Vec6& J, double bound) noexcept {
+    return AddBoundedRow(J, BoundedRow{-bound, bound, 0, std::numeric_limits<double>::infinity()});
+  }
 
   /** Solves; returns the velocity of body 0 at its centre of mass. */
   [[nodiscard]] spatial::Twist Solve(int iterations) noexcept;
@@ -197,7 +210,7 @@ class ConstraintSolver {
   std::array<PatchRows, kMaxPatches> patches_;
   int patch_count_{0};
   std::array<Row, kMaxBoundedRows> bounded_;
-  std::array<double, kMaxBoundedRows> bounds_{};
+  std::array<std::array<double, 2>, kMaxBoundedRows> bounds_{};  // [N s]
   int bounded_count_{0};
 };
 

@@ -13,7 +13,8 @@ constexpr double kMinVirtualMass = 0.05;  // [kg]; lighter parts are felt as thi
 constexpr double kMaxVirtualMass =
     1.0;  // [kg]; heavier ones too: weight is mapped, inertia bounded
 constexpr double kSeatTolerance = 50e-6;   // [m]; no deeper on the last bit into place
-constexpr double kMaxCouplingShare = 0.9;  // of the device's force
+constexpr double kMaxCouplingShare = 0.9;  // of the device's force; more than fits are felt with
+constexpr double kFitTakesOver = 2e-3;     // [m] of depth over which attraction gives way
 
 double MinimumJerk(double s) noexcept {
   return s * s * s * (10 + s * (-15 + 6 * s));
@@ -49,7 +50,8 @@ const char* ToString(HoldState state) noexcept {
 HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene)
     : options_(options),
       scene_(scene),
-      force_map_(options.largest_true_force, kMaxCouplingShare * options.device.max_force),
+      force_map_(MakeForceMap(options.device)),
+      fit_rows_(options.force_map, options.device),
       gate_({options.device.max_force, options.device.max_torque, 400, 40}) {}
 
 void HapticTick::Take(const HeldPart* part) noexcept {
@@ -64,6 +66,7 @@ void HapticTick::Take(const HeldPart* part) noexcept {
   has_start_ = false;
   seat_progress_ = 0;
   guide_.Reset();
+  fit_rows_.Reset();
   reach_ = 0;
   for (std::size_t member = 0; member < shape_count(); ++member) {
     const HeldShape held = MakeHeldShape(member, spatial::Pose(), 0);
@@ -171,12 +174,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   out->F_felt_W = CalcCouplingWrench(tracked);
   out->F_true_W = out->F_felt_W;
   out->F_true_W.f += (weight_true_ * soft_start_ - weight_felt_) * options_.gravity_W.normalized();
-  out->insertion_depth = guide_.insertion_depth();
-  if (axial_row_ >= 0 && guide_.axis() != nullptr) {
-    out->axial_felt = solver_.bounded_force(axial_row_);
-    out->axial_true = std::copysign(force_map_.True(std::abs(out->axial_felt)), out->axial_felt);
-    out->F_true_W.f += (out->axial_true - out->axial_felt) * guide_.axis()->axis_W;
-  }
+  RecordFits(out);
   UpdateState();
 }
 
@@ -211,18 +209,20 @@ spatial::Wrench HapticTick::CalcCouplingWrench(const Tracked& tracked) const noe
 }
 
 void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
-  axial_row_ = -1;
   if (options_.condition == Condition::kCollision || guide_.captured_count() == 0) {
     has_start_ = false;
+    fit_rows_.Reset();
     guide_.AddSprings(*part_, options_.guidance, &solver_);
     return;
   }
   guide_.AddSprings(*part_, options_.guidance, &solver_);
   const MateGeometry* axis = guide_.axis();
   if (axis == nullptr) {
+    fit_rows_.Reset();
     return;
   }
-  // X(9): attraction along the axis towards the final pose, and about it.
+  // X(9): attraction along the axis towards the final pose, and about it. Along it a fit takes over
+  // as it engages: what pulls the part in would hold it back on the way out.
   const Vec3& a = axis->axis_W;
   const double to_go = a.dot(part_->X_WB_goal * part_->p_BoBcm_B - p_WCm);
   const double to_turn = a.dot(spatial::RotationBetween(X_WD_.q(), part_->X_WB_goal.q()));
@@ -235,22 +235,45 @@ void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
     const double share = start > 0 ? std::min(1.0, std::abs(rest) / start) : 0.0;
     return std::copysign(soft_start_ * share * strongest, rest);
   };
+  const double left = part_->mates[guide_.axis_index()].fit != nullptr
+                          ? std::clamp(1 - axis->depth / kFitTakesOver, 0.0, 1.0)
+                          : 1.0;
   solver_.AddWrench({pull(to_turn, start_angle_, options_.guidance.attraction_torque) * a,
-                     pull(to_go, start_distance_, options_.guidance.attraction_force) * a});
+                     left * pull(to_go, start_distance_, options_.guidance.attraction_force) * a});
+  if (guide_.is_aligned()) {
+    AddFits(*axis, p_WCm);
+  } else {
+    fit_rows_.Reset();
+  }
+}
 
+void HapticTick::AddFits(const MateGeometry& axis, const Vec3& p_WCm) noexcept {
   // W5, W8, W9: the fit resists motion along and about the axis up to what physics says at this
   // depth, felt through the map; at rest it holds, and never pushes.
-  if (guide_.is_aligned()) {
-    const double friction = options_.contact.friction.kinetic_coefficient * guide_.lateral_force();
-    const double felt = force_map_.Felt(guide_.CalcAxialResistance(*part_) + friction);
-    const HeldMate& mate = part_->mates[guide_.axis_index()];
-    const Vec3 r = axis->p_WQ - p_WCm;
-    Vec6 J;
-    J << r.cross(a), a;
-    axial_row_ = solver_.AddBoundedRow(J, felt);
-    J << a, Vec3::Zero();
-    solver_.AddBoundedRow(J, felt * mate.radius);
+  const bool is_out = axis.axis_W.dot(part_->insertion_W) <= 0;
+  fit_axis_.out_W = is_out ? axis.axis_W : Vec3(-axis.axis_W);
+  fit_axis_.p_CmQ_W = axis.p_WQ - p_WCm;
+  fit_axis_.radius = part_->mates[guide_.axis_index()].radius;
+  fit_axis_.weight_out = weight_true_ * options_.gravity_W.normalized().dot(fit_axis_.out_W);
+  const double speed = fit_axis_.out_W.dot(V_D_.v + V_D_.w.cross(fit_axis_.p_CmQ_W));
+  FitLoad load = guide_.CalcFitLoad(*part_, speed);
+  const double friction = options_.contact.friction.kinetic_coefficient * guide_.lateral_force();
+  for (double* sum : {&load.in, &load.out, &load.shown_in, &load.shown_out}) {
+    *sum += friction;
   }
+  load.torque += friction * fit_axis_.radius;
+  fit_rows_.Add(load, fit_axis_, &solver_);
+}
+
+void HapticTick::RecordFits(TickOutput* out) noexcept {
+  const FitForces forces = fit_rows_.Finish(solver_);
+  out->axial_felt = forces.axial_felt;
+  out->axial_true = forces.axial_true;
+  const Vec3 f = (forces.axial_true - forces.axial_felt) * fit_axis_.out_W;
+  out->F_true_W.f += f;
+  out->F_true_W.t +=
+      fit_axis_.p_CmQ_W.cross(f) + (forces.torque_true - forces.torque_felt) * fit_axis_.out_W;
+  out->insertion_depth = guide_.insertion_depth();
 }
 
 HapticTick::HeldShape HapticTick::MakeHeldShape(std::size_t member, const spatial::Pose& X_WB,

@@ -6,6 +6,7 @@
 #include "contact/scene.h"
 #include "device/device.h"
 #include "haptics/constraint_solver.h"
+#include "haptics/fit_rows.h"
 #include "haptics/force_map.h"
 #include "haptics/free_bodies.h"
 #include "haptics/friction_memory.h"
@@ -41,7 +42,7 @@ struct TickOutput {
   HoldState state{HoldState::kEmpty};
   product::OccurrenceId occurrence;
   double insertion_depth{0};  ///< l [m].
-  double axial_true{0};       ///< Along the captured axis, against the motion in [N].
+  double axial_true{0};       ///< Of the fits, along their axis; positive against going in [N].
   double axial_felt{0};
   double deepest{0};        ///< Deepest contact [m], negative inside; +inf where none is near.
   int contact_count{0};     ///< Contacts that press.
@@ -103,6 +104,8 @@ class HapticTick {
   void Hold(const Tracked& tracked, TickOutput* out) noexcept;
   void AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept;
   void AddGuidance(const Vec3& p_WCm) noexcept;
+  void AddFits(const MateGeometry& axis, const Vec3& p_WCm) noexcept;
+  void RecordFits(TickOutput* out) noexcept;
   void AddContacts(TickOutput* out) noexcept;
 
   /** A part that is in the hand: the one itself, or a member of its subassembly. */
@@ -138,6 +141,7 @@ class HapticTick {
   contact::Scene* scene_;
   contact::QueryWorkspace workspace_;
   ForceMap force_map_;
+  FitRows fit_rows_;
   SafetyGate gate_;
   ConstraintSolver solver_;
   FrictionMemory friction_;
@@ -163,7 +167,7 @@ class HapticTick {
   bool has_start_{false};
   double seat_progress_{0};
   spatial::Pose X_WD_seat_start_;
-  int axial_row_{-1};
+  FitAxis fit_axis_;
   double weight_true_{0};
   double weight_felt_{0};
   std::uint32_t points_tested_{0};  ///< Of the present tick.

@@ -31,6 +31,7 @@ struct HeldMate {
   double radius{0};            ///< Nominal, of the hole [m]; 0 for planes.
   bool is_stop{false};         ///< A plane that ends the insertion, not one that guides it.
   std::shared_ptr<const fits::FitForce> fit;  ///< Null for planes and threads.
+  double paper_factor{1};                     ///< k_r or k_s of paper W, by the kind of the fit.
   contact::BodyId body;                       ///< The placed part in the scene.
   std::shared_ptr<const MateFaces> held_faces;
   std::shared_ptr<const MateFaces> placed_faces;

@@ -89,6 +89,8 @@ MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) n
     const double low = std::clamp(mate.capture.placed_low, held_low, held_high);
     const double high = std::clamp(mate.capture.placed_high, held_low, held_high);
     g.engaged = high - low;
+    g.depth =
+        std::min(mate.capture.placed_high, held_high) - std::max(mate.capture.placed_low, held_low);
     g.p_WQ = X_WN.p() + (0.5 * (low + high) - along) / cosine * held_axis;
     g.offset_W = g.p_WQ - mate.X_WM.p();
     g.offset_W -= g.offset_W.dot(g.axis_W) * g.axis_W;
@@ -218,13 +220,22 @@ std::size_t MateGuide::CollectIgnored(const HeldPart& part, std::span<contact::I
   return written;
 }
 
-double MateGuide::CalcAxialResistance(const HeldPart& part) const noexcept {
-  double sum = 0;
+FitLoad MateGuide::CalcFitLoad(const HeldPart& part, double slip) const noexcept {
+  FitLoad sum;
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count; ++i) {
-    if (mates_[i].is_aligned && part.mates[i].fit != nullptr) {
-      sum += part.mates[i].fit->CalcAxialResistance(mates_[i].geometry.engaged);
+    const HeldMate& mate = part.mates[i];
+    if (!mates_[i].is_aligned || mate.fit == nullptr) {
+      continue;
     }
+    const double depth = mates_[i].geometry.depth;
+    const double in = mate.fit->CalcAxialResistance(depth);
+    const double out = mate.fit->CalcReleaseForce(depth, slip);
+    sum.in += in;
+    sum.out += out;
+    sum.torque += mate.fit->CalcTorque(depth);
+    sum.shown_in += mate.paper_factor * in;
+    sum.shown_out += mate.paper_factor * out;
   }
   return sum;
 }

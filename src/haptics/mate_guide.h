@@ -4,6 +4,7 @@
 #include <span>
 
 #include "haptics/constraint_solver.h"
+#include "haptics/fit_rows.h"
 #include "haptics/held_part.h"
 #include "haptics/options.h"
 
@@ -19,6 +20,7 @@ struct MateGeometry {
   double angle{0};            ///< |tilt| (X(7)) [rad].
   double distance{0};         ///< |offset| [m].
   double engaged{0};          ///< Length of the overlap: the insertion depth l [m].
+  double depth{0};            ///< The same, negative by how far the spans are apart [m].
 };
 
 /** Geometry of a mate at a pose of the held part. RT-safe. */
@@ -61,10 +63,11 @@ class MateGuide {
   std::size_t CollectIgnored(const HeldPart& part, std::span<contact::IgnoredPair> pairs,
                              std::size_t member = 0) const noexcept;
 
-  /** Sum over captured fits at the present depth: true axial resistance [N], and the lateral force
-   with which the bores hold the shaft back (for W5's Coulomb friction). */
-  [[nodiscard]] double CalcAxialResistance(const HeldPart& part) const noexcept;
+  /** Sum over aligned fits at their present depths, for a part that slips outwards at a speed
+   [m/s]. */
+  [[nodiscard]] FitLoad CalcFitLoad(const HeldPart& part, double slip) const noexcept;
 
+  /** With which the bores hold the shaft back, for W5's Coulomb friction [N]. */
   [[nodiscard]] double lateral_force() const noexcept { return lateral_force_; }
 
   /** Deepest engagement of a captured axis mate [m]. */

@@ -15,6 +15,12 @@ enum class Condition {
   kHybrid,      ///< Both, and the force of the fit.
 };
 
+/** How the true forces of fits become felt ones. */
+enum class ForceMapKind {
+  kPublished,  ///< One map for all (force_map.h).
+  kPaper,      ///< Paper W's: each kind of fit by a factor of its own (fits/paper_scales.h).
+};
+
 /** Spring and damper between the tracked and the displayed part, X(1) and X(2). */
 struct CouplingGains {
   double k_lin{1000};  ///< [N/m]
@@ -31,7 +37,7 @@ struct GuidanceOptions {
   double k_rot{1e4};                 ///< Full stiffness against tilt [N m/rad].
   double max_force{20};              ///< Guidance never pulls harder [N].
   double max_torque{2};              ///< [N m]
-  double attraction_force{1.0};      ///< K1 F_max of X(9) [N].
+  double attraction_force{1.0};      ///< K1 F_max of X(9) [N]; until a fit answers.
   double attraction_torque{0.15};    ///< The same about a free axis [N m].
   double seat_distance{0.15e-3};     ///< From the goal, to count as arrived [m].
   double seat_angle{0.06};           ///< [rad]
@@ -61,8 +67,8 @@ struct TickOptions {
   CouplingGains coupling;
   GuidanceOptions guidance;
   ContactOptions contact;
-  Vec3 gravity_W{0, 0, -9.81};       ///< [m/s^2]
-  double largest_true_force{100e3};  ///< Felt at the device's full force [N].
+  Vec3 gravity_W{0, 0, -9.81};  ///< [m/s^2]
+  ForceMapKind force_map{ForceMapKind::kPublished};
   device::DeviceProfile device;
   double dt{1e-3};  ///< [s]
 };

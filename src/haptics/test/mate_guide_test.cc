@@ -440,12 +440,12 @@ TEST(MateGuide, AxialResistanceIsTheFitsAtTheDepth) {
                 MakeAxisMate(nullptr, contact::BodyId(0))});
   MateGuide guide;
   Hold(&guide, part, options, Above(5e-3), 300);
-  EXPECT_EQ(guide.CalcAxialResistance(part), 0);
+  EXPECT_EQ(guide.CalcFitLoad(part, 0).in, 0);
   for (const double depth : {1e-3, 12.3e-3, 49e-3}) {
     Hold(&guide, part, options, Above(-depth));
     EXPECT_NEAR(guide.insertion_depth(), depth, 1e-15);
-    EXPECT_NEAR(guide.CalcAxialResistance(part), fit->CalcAxialResistance(depth), 1e-6);
-    EXPECT_GT(guide.CalcAxialResistance(part), 100);
+    EXPECT_NEAR(guide.CalcFitLoad(part, 0).in, fit->CalcAxialResistance(depth), 1e-6);
+    EXPECT_GT(guide.CalcFitLoad(part, 0).in, 100);
   }
 }
 
