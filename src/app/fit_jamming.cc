@@ -45,7 +45,7 @@ PlotPanel MakeJammingPanel(const FitJamming& j) {
     wide = std::max(wide, std::abs(p.f_x_over_f_z));
     high = std::max(high, std::abs(p.m_over_r_f_z));
   }
-  PlotSeries border{"border", PlotStyle::kLine, 2, inside.points};
+  PlotSeries border{"", PlotStyle::kLine, 2, inside.points};
   border.points.push_back(border.points.front());
   const fits::DiagramPoint at = PlaceOf(j);
   panel.x = PlotRange{-1.15 * std::max(wide, std::abs(at.f_x_over_f_z)),
@@ -54,7 +54,7 @@ PlotPanel MakeJammingPanel(const FitJamming& j) {
                       1.15 * std::max(high, std::abs(at.m_over_r_f_z))};
   panel.series = {std::move(inside),
                   std::move(border),
-                  {"axes", PlotStyle::kThin, 4, {{panel.x->low, 0}, {panel.x->high, 0}}},
+                  {"", PlotStyle::kThin, 4, {{panel.x->low, 0}, {panel.x->high, 0}}},
                   {"", PlotStyle::kThin, 4, {{0, panel.y->low}, {0, panel.y->high}}},
                   {fmt::format("load: {}", j.is_sliding ? "slides on" : "jams"),
                    PlotStyle::kMarks,

@@ -17,7 +17,7 @@ constexpr double kRight = 24;
 constexpr double kRightWithScale = 96;
 constexpr double kMargin = 20;
 constexpr double kPlotHeight = 300;
-constexpr double kLetter = 6.7;  // Mean width of a letter of 13 px; wide enough for any sans serif.
+constexpr double kLetter = 7.4;  // Mean width of a letter of 13 px; enough for wide sans serifs.
 constexpr double kLineHeight = 18;
 
 // Plain classes, no variables: they are read by what draws SVG outside of browsers, too.

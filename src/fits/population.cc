@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
+#include <span>
 #include <thread>
 
 #include <fmt/format.h>
@@ -46,6 +46,14 @@ Result<void> Check(const PopulationParameters& p) {
 
 constexpr std::size_t kBins = kForceBins;
 
+double Middle(const Limits& limits) {
+  return 0.5 * (limits.lower + limits.upper);
+}
+
+double Width(const Limits& limits) {
+  return limits.upper - limits.lower;
+}
+
 /** Counts of values between two bounds in equal steps; those at the lower bound apart, for many
  fits have no force at all. */
 class Histogram {
@@ -53,12 +61,9 @@ class Histogram {
   void SetRange(double low, double high) {
     low_ = low;
     width_ = high > low ? (high - low) / kBins : 0;
-    per_width_ = width_ > 0 ? 1 / width_ : 0;
-  }
-
-  [[nodiscard]] std::uint16_t BinOf(double value) const {
-    const double step = std::clamp((value - low_) * per_width_, 0.0, kBins - 1.0);
-    return static_cast<std::uint16_t>(static_cast<int>(step) + (value > low_ ? 1 : 0));
+    // A little less, so that rounding in single precision reaches no bin beyond the last.
+    per_width_ = width_ > 0 ? (1 - kSlack) / width_ : 0;
+    width_ /= 1 - kSlack;
   }
 
   /** Several of a row at once. Neighbours go to tables of their own: counting equal ones in one
@@ -75,6 +80,8 @@ class Histogram {
     }
   }
 
+  void AddAtLowest(int count) { counts_[0][0] += static_cast<std::uint32_t>(count); }
+
   void Merge(const Histogram& other) {
     for (std::size_t t = 0; t < kTables; ++t) {
       for (std::size_t i = 0; i <= kBins; ++i) {
@@ -83,35 +90,36 @@ class Histogram {
     }
   }
 
-  /** Linear within a step. */
-  [[nodiscard]] double Quantile(double share) const {
-    std::int64_t total = 0;
+  /** The values below which the shares lie, linear within a step. */
+  [[nodiscard]] std::vector<double> Quantiles(std::span<const double> shares) const {
+    std::vector<double> counts(kBins + 1);
+    double total = 0;
     for (std::size_t i = 0; i <= kBins; ++i) {
-      total += CountIn(i);
-    }
-    double left = share * static_cast<double>(total) - static_cast<double>(CountIn(0));
-    for (std::size_t i = 1; i <= kBins && left > 0; ++i) {
-      const auto here = static_cast<double>(CountIn(i));
-      if (left <= here) {
-        return low_ + (static_cast<double>(i - 1) + left / here) * width_;
+      for (const auto& table : counts_) {
+        counts[i] += static_cast<double>(table[i]);
       }
-      left -= here;
+      total += counts[i];
     }
-    return low_;
+    std::vector<double> quantiles;
+    for (const double share : shares) {
+      double left = share * total - counts[0];
+      double value = low_;
+      for (std::size_t i = 1; i <= kBins && left > 0; ++i) {
+        if (left <= counts[i]) {
+          value = low_ + (static_cast<double>(i - 1) + left / counts[i]) * width_;
+        }
+        left -= counts[i];
+      }
+      quantiles.push_back(value);
+    }
+    return quantiles;
   }
 
   [[nodiscard]] double bins_per_unit() const { return per_width_; }
 
  private:
   static constexpr std::size_t kTables = 4;
-
-  [[nodiscard]] std::int64_t CountIn(std::size_t bin) const {
-    std::int64_t count = 0;
-    for (const auto& table : counts_) {
-      count += table[bin];
-    }
-    return count;
-  }
+  static constexpr double kSlack = 1e-4;  // Of 256 sums, each rounded by 2^-24, 1.5e-5.
 
   std::array<std::array<std::uint32_t, kBins + 1>, kTables> counts_{};  // 0: the lower bound.
   double low_{0};
@@ -188,7 +196,7 @@ class Batch {
       : parameters_(parameters),
         lands_(std::move(lands)),
         depth_count_(parameters.depths + 1),
-        count_forces_(ChooseCountForces()) {
+        kernel_(ChoosePopulationKernel()) {
     block_count_ = (parameters.count + kBlock - 1) / kBlock;
     sums_.resize(static_cast<std::size_t>(block_count_));
     for (std::size_t d = 0; d < static_cast<std::size_t>(depth_count_); ++d) {
@@ -225,7 +233,7 @@ class Batch {
   const PopulationParameters& parameters_;
   std::vector<PreparedLand> lands_;
   int depth_count_;
-  CountForcesFunction count_forces_;
+  PopulationKernel kernel_;
   std::int64_t block_count_{0};
   std::vector<double> highest_;  // By depth [N].
   std::vector<BlockSums> sums_;
@@ -234,7 +242,7 @@ class Batch {
 Counts Batch::MakeCounts() const {
   Counts counts;
   for (const PreparedLand& land : lands_) {
-    const double half = 0.5 * (land.clearance.upper - land.clearance.lower);
+    const double half = 0.5 * Width(land.clearance);
     counts.clearances.emplace_back().SetRange(-half, half);
   }
   for (const double highest : highest_) {
@@ -248,45 +256,52 @@ Counts Batch::MakeCounts() const {
 void Batch::DrawClearances(std::int64_t block, std::vector<std::vector<float>>* clearances_um,
                            Counts* counts) {
   BlockSums& sums = sums_[static_cast<std::size_t>(block)];
-  sums.clearance.assign(lands_.size(), 0);
-  sums.clearance_squared.assign(lands_.size(), 0);
   Random random(SeedOf(block));
   const auto count = static_cast<std::size_t>(CountIn(block));
-  std::array<double, kBlock> hole;
-  std::array<double, kBlock> shaft;
-  std::array<std::uint8_t, kBlock> has_interference{};
-  std::array<std::uint8_t, kBlock> yields{};
+  std::array<std::uint32_t, kBlock> hole_bits;
+  std::array<std::uint32_t, kBlock> shaft_bits;
+  std::array<float, kBlock> hole_um{};
+  std::array<float, kBlock> shaft_um{};
+  std::array<std::uint16_t, kBlock> bins;
+  std::array<std::uint8_t, kBlock> marks{};
   for (std::size_t k = 0; k < lands_.size(); ++k) {
     const PreparedLand& land = lands_[k];
     for (std::size_t i = 0; i < count; ++i) {
-      // Two numbers of 32 bits, never 0 or 1.
       const std::uint64_t bits = random.NextBits();
-      hole[i] = (static_cast<double>(bits >> 32U) + 0.5) * 0x1p-32;
-      shaft[i] = (static_cast<double>(bits & 0xffffffffU) + 0.5) * 0x1p-32;
+      hole_bits[i] = static_cast<std::uint32_t>(bits >> 32U);
+      shaft_bits[i] = static_cast<std::uint32_t>(bits);
     }
-    land.source->hole.ToQuantiles({hole.data(), count});
-    land.source->shaft.ToQuantiles({shaft.data(), count});
-    const double middle = 0.5 * (land.clearance.lower + land.clearance.upper);
-    std::array<std::uint16_t, kBlock> bins;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double clearance = hole[i] - shaft[i];
-      const double from_middle = clearance - middle;
-      sums.clearance[k] += from_middle;
-      sums.clearance_squared[k] += from_middle * from_middle;
-      bins[i] = counts->clearances[k].BinOf(from_middle);
-      const double smoothed = clearance + land.smoothing_loss;
-      const bool interferes = clearance < 0;
-      const bool yields_here = -smoothed > land.yield_interference;
-      counts->interference[k] += interferes ? 1 : 0;
-      counts->yield[k] += yields_here ? 1 : 0;
-      has_interference[i] |= static_cast<std::uint8_t>(interferes);
-      yields[i] |= static_cast<std::uint8_t>(yields_here);
-      (*clearances_um)[k][i] = static_cast<float>(units::ToUm(0.5 * smoothed));
-    }
+    const PopulationLand& source = *land.source;
+    const double hole_middle = Middle(source.hole.bounds());
+    const double shaft_middle = Middle(source.shaft.bounds());
+    source.hole.ToDeviations({hole_bits.data(), count}, hole_middle, {hole_um.data(), count});
+    source.shaft.ToDeviations({shaft_bits.data(), count}, shaft_middle, {shaft_um.data(), count});
+    SizeBlock work{hole_um.data(),
+                   shaft_um.data(),
+                   static_cast<std::int32_t>(count),
+                   static_cast<float>(units::ToUm(hole_middle - shaft_middle)),
+                   static_cast<float>(units::ToUm(land.smoothing_loss)),
+                   static_cast<float>(units::ToUm(land.yield_interference)),
+                   static_cast<float>(units::ToUm(-0.5 * Width(land.clearance))),
+                   static_cast<float>(units::FromUm(counts->clearances[k].bins_per_unit())),
+                   (*clearances_um)[k].data(),
+                   bins.data(),
+                   marks.data(),
+                   0,
+                   0,
+                   0,
+                   0};
+    kernel_.take_sizes(&work);
+    sums.clearance.push_back(units::FromUm(work.sum_um));
+    sums.clearance_squared.push_back(units::FromUm(units::FromUm(work.sum_um2)));
+    counts->interference[k] += work.interferences;
+    counts->yield[k] += work.yields;
     counts->clearances[k].AddBins(bins.data(), static_cast<int>(count));
   }
-  counts->any_interference += std::accumulate(has_interference.begin(), has_interference.end(), 0);
-  counts->any_yield += std::accumulate(yields.begin(), yields.end(), 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    counts->any_interference += marks[i] & kInterferes;
+    counts->any_yield += (marks[i] & kYields) / kYields;
+  }
 }
 
 void Batch::RunBlocks(std::int64_t first, Counts* counts) {
@@ -320,9 +335,13 @@ void Batch::RunBlocks(std::int64_t first, Counts* counts) {
                          kBlock,
                          sums.data(),
                          0};
-    count_forces_(&work);
+    kernel_.count_forces(&work);
     for (std::size_t d = 0; d < depths; ++d) {
-      counts->forces[d].AddBins(bins.data() + d * kBlock, CountIn(block));
+      if (bins_per_newton[d] > 0) {
+        counts->forces[d].AddBins(bins.data() + d * kBlock, CountIn(block));
+      } else {
+        counts->forces[d].AddAtLowest(CountIn(block));
+      }
     }
     // Forces never fall with depth: the last one is the largest.
     counts->over_press += work.over_press;
@@ -370,18 +389,19 @@ Population Batch::Run() {
     }
     LandStatistics land;
     const Limits& range = lands_[k].clearance;
-    land.mean_clearance = 0.5 * (range.lower + range.upper) + sum / n;
+    land.mean_clearance = Middle(range) + sum / n;
     land.sigma_clearance = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
-    for (std::size_t q = 0; q < kBandShares.size(); ++q) {
-      land.clearance_quantiles[q] =
-          0.5 * (range.lower + range.upper) + all.clearances[k].Quantile(kBandShares[q]);
-    }
+    // What bounds a distribution that has no end says nothing of the batch: half a step in.
+    std::vector<double> shares(kBandShares.begin(), kBandShares.end());
     for (int i = 0; i <= kCurveSteps; ++i) {
-      // What bounds a distribution that has no end says nothing of the batch.
-      const double share = std::clamp(static_cast<double>(i), 0.5, kCurveSteps - 0.5) / kCurveSteps;
-      land.clearance_curve.push_back(0.5 * (range.lower + range.upper) +
-                                     all.clearances[k].Quantile(share));
+      shares.push_back(std::clamp(static_cast<double>(i), 0.5, kCurveSteps - 0.5) / kCurveSteps);
     }
+    std::vector<double> quantiles = all.clearances[k].Quantiles(shares);
+    for (double& quantile : quantiles) {
+      quantile += Middle(range);
+    }
+    std::copy_n(quantiles.begin(), kBandShares.size(), land.clearance_quantiles.begin());
+    land.clearance_curve.assign(quantiles.begin() + kBandShares.size(), quantiles.end());
     land.interference_share = static_cast<double>(all.interference[k]) / n;
     land.yield_share = static_cast<double>(all.yield[k]) / n;
     result.lands.push_back(land);
@@ -399,9 +419,8 @@ Population Batch::Run() {
       }
     }
     band.mean /= n;
-    for (std::size_t q = 0; q < kBandShares.size(); ++q) {
-      band.quantiles[q] = all.forces[d].Quantile(kBandShares[q]);
-    }
+    const std::vector<double> quantiles = all.forces[d].Quantiles(kBandShares);
+    std::copy(quantiles.begin(), quantiles.end(), band.quantiles.begin());
     result.bands.push_back(band);
   }
   return result;

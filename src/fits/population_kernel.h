@@ -16,23 +16,51 @@ struct LandDepth {
 };
 
 struct LandView {
-  std::int32_t stations;           ///< Intervals of B, 1 to kMaxStations.
-  float half_roughness_um;         ///< Rz / 2.
-  float force_per_interval;        ///< Of a micrometre of radial interference over an interval [N].
-  const float* mean_clearance_um;  ///< Radial, of each assembly; negative is interference.
-  const LandDepth* depths;         ///< As many as the grid has.
+  std::int32_t stations;     ///< Intervals of B, 1 to kMaxStations.
+  float half_roughness_um;   ///< Rz / 2.
+  float force_per_interval;  ///< Of a micrometre of radial interference over an interval [N].
+  /** Radial, of each assembly; negative is interference. Beyond the last assembly of a block, up to
+   a multiple of kLanes, kFarApart. */
+  const float* mean_clearance_um;
+  const LandDepth* depths;  ///< As many as the grid has.
 };
 
 inline constexpr int kForceBins = 2048;
+inline constexpr float kFarApart = 1e6F;
+
+/** The sizes of a land's parts in a block. */
+struct SizeBlock {
+  const float* hole_um;   ///< Deviations from the middle of what is possible.
+  const float* shaft_um;  ///< The same.
+  std::int32_t assembly_count;
+  float middle_um;    ///< Of the clearances of the diameters that are possible.
+  float loss_um;      ///< What smoothing adds to each.
+  float yield_um;     ///< Interference after smoothing beyond which a part yields.
+  float lowest_um;    ///< Of the clearances, from the middle.
+  float bins_per_um;  ///< No clearance makes kForceBins or more; 0 where only one is possible.
+  // Results.
+  float* mean_clearance_um;  ///< As LandView has it.
+  std::uint16_t* bins;       ///< 0 at the lowest clearance, else 1 to kForceBins.
+  std::uint8_t* marks;       ///< kInterferes and kYields are added.
+  double sum_um;             ///< Of clearances, from the middle.
+  double sum_um2;            ///< Of their squares.
+  std::int32_t interferences;
+  std::int32_t yields;
+};
+
+inline constexpr std::uint8_t kInterferes = 1;
+inline constexpr std::uint8_t kYields = 2;
 
 struct PopulationBlock {
   const LandView* lands;
   std::int32_t land_count;
   std::int32_t depth_count;
-  std::int32_t assembly_count;   ///< Room for a multiple of kLanes is everywhere.
-  std::uint64_t seed;            ///< Of this block.
-  float press_force;             ///< [N]
-  const float* bins_per_newton;  ///< Of each depth; 0 where no force is possible.
+  std::int32_t assembly_count;  ///< Room for a multiple of kLanes is everywhere.
+  std::uint64_t seed;           ///< Of this block.
+  float press_force;            ///< [N]
+  /** Of each depth: no force makes kForceBins or more, rounding included. 0 where none is possible.
+   */
+  const float* bins_per_newton;
   // Results.
   std::uint16_t* bins;  ///< Rows of `stride`, by depth: 0 without force, else 1 to kForceBins.
   std::int32_t stride;
@@ -40,14 +68,21 @@ struct PopulationBlock {
   std::int32_t over_press;  ///< Assemblies whose force at the last depth exceeds the press.
 };
 
-/** Draws B of every assembly and sorts the forces at the depths of the grid into bins. Both give
- the same bits. */
+/** Puts holes and shafts together. */
+void TakeSizesScalar(SizeBlock* block) noexcept;
+void TakeSizesAvx2(SizeBlock* block) noexcept;
+
+/** Draws B of every assembly and sorts the forces at the depths of the grid into bins. */
 void CountForcesScalar(PopulationBlock* block) noexcept;
 void CountForcesAvx2(PopulationBlock* block) noexcept;
 
-using CountForcesFunction = void (*)(PopulationBlock*);
+/** Both kinds give the same bits. */
+struct PopulationKernel {
+  void (*take_sizes)(SizeBlock*);
+  void (*count_forces)(PopulationBlock*);
+};
 
 /** The fastest that this machine runs. */
-[[nodiscard]] CountForcesFunction ChooseCountForces() noexcept;
+[[nodiscard]] PopulationKernel ChoosePopulationKernel() noexcept;
 
 }  // namespace hvas::fits

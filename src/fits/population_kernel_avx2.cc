@@ -3,6 +3,10 @@
 
 namespace hvas::fits {
 
+void TakeSizesAvx2(SizeBlock* block) noexcept {
+  TakeSizes(block);
+}
+
 void CountForcesAvx2(PopulationBlock* block) noexcept {
   CountForces(block);
 }

@@ -2,17 +2,21 @@
 
 namespace hvas::fits {
 
+void TakeSizesScalar(SizeBlock* block) noexcept {
+  TakeSizes(block);
+}
+
 void CountForcesScalar(PopulationBlock* block) noexcept {
   CountForces(block);
 }
 
-CountForcesFunction ChooseCountForces() noexcept {
+PopulationKernel ChoosePopulationKernel() noexcept {
 #ifdef HVAS_HAS_AVX2_POPULATION
   if (__builtin_cpu_supports("avx2")) {
-    return CountForcesAvx2;
+    return {TakeSizesAvx2, CountForcesAvx2};
   }
 #endif
-  return CountForcesScalar;
+  return {TakeSizesScalar, CountForcesScalar};
 }
 
 }  // namespace hvas::fits

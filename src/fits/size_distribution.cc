@@ -16,27 +16,41 @@ namespace {
 constexpr double kNormalReach = 6.5;  // Of a 32-bit uniform number, 6.24.
 constexpr std::size_t kGuideSize = 256;
 
-/** Standard normal quantiles at equal steps, for the middle of the distribution: linear between
- them they are right to 2e-4 sigma where they are used. */
+/** A share in (0, 1) of 32 random bits. */
+double ToShare(std::uint32_t bits) noexcept {
+  return (static_cast<double>(bits) + 0.5) * 0x1p-32;
+}
+
+/** Standard normal quantiles at equal steps of the share, for the middle of the distribution:
+ linear between them they are right to 2e-4 sigma where they are used. */
 class NormalTable {
  public:
-  static constexpr double kFrom = 1.0 / 256;
-
   NormalTable() {
-    for (std::size_t i = 1; i < kSteps; ++i) {
-      values_[i] = NormalQuantile(static_cast<double>(i) / kSteps);
+    for (std::uint32_t i = kTail; i < kSteps - kTail; ++i) {
+      const double from = NormalQuantile(static_cast<double>(i) / kSteps);
+      const double to = NormalQuantile(static_cast<double>(i + 1) / kSteps);
+      steps_[i] = {static_cast<float>(from), static_cast<float>((to - from) / kPerStep)};
     }
   }
 
-  [[nodiscard]] double operator()(double u) const noexcept {
-    const double at = u * kSteps;
-    const auto i = static_cast<std::size_t>(at);
-    return values_[i] + (at - static_cast<double>(i)) * (values_[i + 1] - values_[i]);
+  [[nodiscard]] float operator()(std::uint32_t bits) const noexcept {
+    const std::uint32_t i = bits / kPerStep;
+    if (i < kTail || i >= kSteps - kTail) {
+      return static_cast<float>(NormalQuantile(ToShare(bits)));
+    }
+    return steps_[i].from + static_cast<float>(bits % kPerStep) * steps_[i].slope;
   }
 
  private:
-  static constexpr std::size_t kSteps = 4096;
-  std::array<double, kSteps> values_{};
+  struct Step {
+    float from;
+    float slope;  // For each of the lower bits.
+  };
+
+  static constexpr std::uint32_t kSteps = 4096;
+  static constexpr std::uint32_t kTail = 16;
+  static constexpr std::uint32_t kPerStep = 1U << 20U;
+  std::array<Step, kSteps> steps_{};
 };
 
 }  // namespace
@@ -133,17 +147,19 @@ double SizeDistribution::Quantile(double u) const noexcept {
   return values_[i];
 }
 
-void SizeDistribution::ToQuantiles(std::span<double> values) const noexcept {
+void SizeDistribution::ToDeviations(std::span<const std::uint32_t> bits, double origin,
+                                    std::span<float> deviations_um) const noexcept {
   if (kind_ != Kind::kNormal) {
-    for (double& value : values) {
-      value = Quantile(value);
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      deviations_um[i] = static_cast<float>(units::ToUm(Quantile(ToShare(bits[i])) - origin));
     }
     return;
   }
   static const NormalTable table;
-  for (double& value : values) {
-    const bool is_in_middle = value >= NormalTable::kFrom && value < 1 - NormalTable::kFrom;
-    value = mean_ + sigma_ * (is_in_middle ? table(value) : NormalQuantile(value));
+  const auto mean_um = static_cast<float>(units::ToUm(mean_ - origin));
+  const auto sigma_um = static_cast<float>(units::ToUm(sigma_));
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    deviations_um[i] = mean_um + sigma_um * table(bits[i]);
   }
 }
 

@@ -32,8 +32,10 @@ class SizeDistribution {
   /** The deviation below which a share u in (0, 1) of the batch lies. */
   [[nodiscard]] double Quantile(double u) const noexcept;
 
-  /** Puts in place of every share u its deviation; of a normal distribution within 2e-4 sigma. */
-  void ToQuantiles(std::span<double> values) const noexcept;
+  /** The deviation that each 32 random bits stand for, less `origin` [m], in micrometres; of a
+   normal distribution within 2e-4 sigma. @pre as many of both. */
+  void ToDeviations(std::span<const std::uint32_t> bits, double origin,
+                    std::span<float> deviations_um) const noexcept;
 
   [[nodiscard]] double mean() const noexcept { return mean_; }
 

@@ -1,5 +1,6 @@
 #include "fits/population.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -186,43 +187,134 @@ TEST(Population, CountsWhatExceedsThePressAndWhatYields) {
   EXPECT_EQ(batch.over_press_share, batch.any_yield_share);
 }
 
-TEST(Population, BothKernelsGiveTheSameBits) {
 #ifdef HVAS_HAS_AVX2_POPULATION
+/** Clearances of assemblies, room up to a multiple of kLanes filled as blocks have to. */
+std::vector<float> DrawClearances(int count) {
+  Random random(4);
+  std::vector<float> clearance_um(static_cast<std::size_t>(count + kLanes), kFarApart);
+  for (int i = 0; i < count; ++i) {
+    clearance_um[static_cast<std::size_t>(i)] = static_cast<float>(random.Uniform(-20, 20));
+  }
+  return clearance_um;
+}
+
+/** What a kernel makes of a block of lands. */
+struct Counted {
+  std::vector<std::uint16_t> bins;
+  std::vector<float> sums;
+  std::int32_t over{0};
+
+  Counted(void (*function)(PopulationBlock*), const std::vector<LandView>& lands, int depths,
+          int count) {
+    const int stride = count + kLanes;
+    const std::vector<float> bins_per_newton(static_cast<std::size_t>(depths), 0.3F);
+    bins.resize(static_cast<std::size_t>(depths * stride));
+    sums.resize(static_cast<std::size_t>(depths * kLanes));
+    PopulationBlock block{lands.data(),
+                          static_cast<std::int32_t>(lands.size()),
+                          depths,
+                          count,
+                          123,
+                          300,
+                          bins_per_newton.data(),
+                          bins.data(),
+                          stride,
+                          sums.data(),
+                          0};
+    function(&block);
+    over = block.over_press;
+  }
+};
+
+void ExpectSame(const Counted& a, const Counted& b) {
+  EXPECT_EQ(a.bins, b.bins);
+  EXPECT_EQ(std::memcmp(a.sums.data(), b.sums.data(), a.sums.size() * sizeof(float)), 0);
+  EXPECT_EQ(a.over, b.over);
+  EXPECT_GT(a.over, 5);
+}
+
+// Depths between the stations and several lands; and depths at the stations of one.
+TEST(Population, BothKernelsGiveTheSameBits) {
   if (!__builtin_cpu_supports("avx2")) {
     return;  // Nothing to compare on this machine.
   }
-  Random random(4);
-  constexpr int kCount = 64;
-  std::vector<float> clearance_um(kCount);
-  for (float& c : clearance_um) {
-    c = static_cast<float>(random.Uniform(-20, 20));
+  constexpr int kCount = 61;
+  const std::vector<float> clearance_um = DrawClearances(kCount);
+  const std::vector<LandDepth> between{{-1, 0}, {0, 1}, {3, 0.37F}, {6, 1}};
+  const LandView land{7, 3.15F, 12.5F, clearance_um.data(), between.data()};
+  const std::vector<LandView> lands{land, {5, 1.6F, 7.5F, clearance_um.data(), between.data()}};
+  ExpectSame(Counted(CountForcesScalar, lands, 4, kCount),
+             Counted(CountForcesAvx2, lands, 4, kCount));
+  const std::vector<LandDepth> at{{-1, 0}, {0, 1}, {1, 1}, {2, 1}, {3, 1}};
+  const std::vector<LandView> one{{4, 3.15F, 12.5F, clearance_um.data(), at.data()}};
+  ExpectSame(Counted(CountForcesScalar, one, 5, kCount), Counted(CountForcesAvx2, one, 5, kCount));
+}
+
+TEST(Population, BothKernelsTakeTheSameSizes) {
+  if (!__builtin_cpu_supports("avx2")) {
+    return;  // Nothing to compare on this machine.
   }
-  const std::vector<LandDepth> depths{{-1, 0}, {0, 1}, {3, 0.37F}, {6, 1}};
-  const std::vector<float> bins_per_newton{0, 2, 1.5F, 1};
-  const LandView land{7, 3.15F, 12.5F, clearance_um.data(), depths.data()};
+  constexpr int kCount = 61;
+  const std::vector<float> hole_um = DrawClearances(kCount);
+  std::vector<float> shaft_um = hole_um;
+  std::reverse(shaft_um.begin(), shaft_um.begin() + kCount);
 
-  struct Counted {
-    std::vector<std::uint16_t> bins = std::vector<std::uint16_t>(4 * kCount);
-    std::vector<float> sums = std::vector<float>(4 * kLanes);
-    std::int32_t over{0};
+  struct Taken {
+    std::vector<float> clearance_um = std::vector<float>(kCount + kLanes);
+    std::vector<std::uint16_t> bins = std::vector<std::uint16_t>(kCount + kLanes);
+    std::vector<std::uint8_t> marks = std::vector<std::uint8_t>(kCount + kLanes);
+    SizeBlock block;
   };
 
-  const auto count = [&](CountForcesFunction function) {
-    Counted c;
-    PopulationBlock block{
-        &land,         1, 4, kCount - 3, 123, 300, bins_per_newton.data(), c.bins.data(), kCount,
-        c.sums.data(), 0};
-    function(&block);
-    c.over = block.over_press;
-    return c;
+  const auto take = [&](void (*function)(SizeBlock*)) {
+    Taken taken;
+    taken.block = {hole_um.data(), shaft_um.data(), kCount,  2.5F, 3, 10, -40.5F, 25,
+                   nullptr,        nullptr,         nullptr, 0,    0, 0,  0};
+    taken.block.mean_clearance_um = taken.clearance_um.data();
+    taken.block.bins = taken.bins.data();
+    taken.block.marks = taken.marks.data();
+    function(&taken.block);
+    return taken;
   };
-  const Counted scalar = count(CountForcesScalar);
-  const Counted vector = count(CountForcesAvx2);
-  EXPECT_EQ(scalar.bins, vector.bins);
-  EXPECT_EQ(std::memcmp(scalar.sums.data(), vector.sums.data(), 4 * kLanes * sizeof(float)), 0);
-  EXPECT_EQ(scalar.over, vector.over);
-  EXPECT_GT(scalar.over, 5);
+  const Taken a = take(TakeSizesScalar);
+  const Taken b = take(TakeSizesAvx2);
+  EXPECT_EQ(a.clearance_um, b.clearance_um);
+  EXPECT_EQ(a.bins, b.bins);
+  EXPECT_EQ(a.marks, b.marks);
+  EXPECT_EQ(a.block.sum_um, b.block.sum_um);
+  EXPECT_EQ(a.block.sum_um2, b.block.sum_um2);
+  int interferences = 0;
+  int yields = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double clearance_um = static_cast<double>(hole_um[k] - shaft_um[k]) + 2.5;
+    interferences += clearance_um < 0 ? 1 : 0;
+    yields += clearance_um + 3 < -10 ? 1 : 0;
+    EXPECT_NEAR(static_cast<double>(a.clearance_um[k]), 0.5 * (clearance_um + 3), 1e-5);
+    EXPECT_EQ(a.bins[k], static_cast<int>((clearance_um - 2.5 + 40.5) * 25 + 1));
+  }
+  EXPECT_EQ(a.clearance_um[kCount], kFarApart);
+  EXPECT_EQ(a.block.interferences, interferences);
+  EXPECT_EQ(b.block.yields, yields);
+  EXPECT_GT(yields, 5);
+}
 #endif
+
+// The way for depths at the stations of one land, and the way for any depths, have the same forces.
+TEST(Population, DepthsBetweenStationsAgreeWithDepthsAtThem) {
+  PopulationParameters p = MakeBatch({MakeLand("H7/k6", 6.3)}, 50'000);
+  p.depths = 20;
+  const Population at = *CalcPopulation(p);
+  p.depths = 40;
+  const Population between = *CalcPopulation(p);
+  for (std::size_t d = 0; d < at.bands.size(); ++d) {
+    const ForceBand& a = at.bands[d];
+    const ForceBand& b = between.bands[2 * d];
+    EXPECT_NEAR(a.mean, b.mean, 1e-5 * at.bands.back().mean);
+    for (std::size_t q = 0; q < a.quantiles.size(); ++q) {
+      EXPECT_NEAR(a.quantiles[q], b.quantiles[q], 1e-3 * a.quantiles.back() + 1e-9);
+    }
+  }
 }
 
 TEST(Population, RefusesWhatIsNoBatch) {
@@ -240,6 +332,23 @@ TEST(SizeDistribution, NormalQuantileInvertsTheErrorFunction) {
   for (const double u : {1e-9, 1e-4, 0.01, 0.0243, 0.2, 0.5, 0.8, 0.99, 1 - 1e-6}) {
     const double x = NormalQuantile(u);
     EXPECT_NEAR(0.5 * std::erfc(-x / std::sqrt(2.0)), u, 1e-8 * u + 1e-12);
+  }
+}
+
+// Tables in single precision: within 2e-4 sigma of the inverse everywhere.
+TEST(SizeDistribution, DeviationsOfBitsAreQuantilesOfTheirShare) {
+  const SizeDistribution d = *SizeDistribution::FromCapability({0, 60e-6}, 1, 1, true);
+  std::vector<std::uint32_t> bits{0, 1, 0x01000000, 0x00ffffff, 0x7fffffff, 0x80000000, 0xffffffff};
+  Random random(8);
+  for (int i = 0; i < 20'000; ++i) {
+    bits.push_back(static_cast<std::uint32_t>(random.NextBits()));
+  }
+  std::vector<float> deviations_um(bits.size());
+  d.ToDeviations(bits, 20e-6, deviations_um);
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    const double share = (bits[i] + 0.5) / 4294967296.0;
+    EXPECT_NEAR(static_cast<double>(deviations_um[i]), units::ToUm(d.Quantile(share)) - 20,
+                10 * 2e-4);
   }
 }
 
