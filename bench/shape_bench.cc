@@ -2,7 +2,8 @@
  the command line, built at the voxel that is chosen for it and at 0.5 mm, on one thread and on two,
  and loaded from the cache. CPU is that of the whole process, so other programs do not count.
 
-   shape_bench [--json] [--parts] [--voxel MM] FILE...   Table of files; with --parts, of parts too.
+   shape_bench [--json] [--parts] [--voxel MM] [--given] FILE...   Table of files; with --parts, of
+                                                                   parts too.
  */
 #include <algorithm>
 #include <chrono>
@@ -126,14 +127,16 @@ struct Arguments {
   std::vector<std::string> files;
   bool is_json{false};
   bool with_parts{false};
+  bool is_given_only{false};
   double voxel{0.5e-3};
 };
 
 constexpr const char* kUsage =
-    "shape_bench [--json] [--parts] [--voxel MM] FILE...\n"
+    "shape_bench [--json] [--parts] [--voxel MM] [--given] FILE...\n"
     "Prepares each part of the files at the chosen voxel and at MM (0.5).\n"
     "--json   One object a line instead of a table.\n"
-    "--parts  Each part as well as each file.\n";
+    "--parts  Each part as well as each file.\n"
+    "--given  Only at MM.\n";
 
 Arguments Parse(int argc, char** argv) {
   Arguments arguments;
@@ -143,6 +146,8 @@ Arguments Parse(int argc, char** argv) {
       arguments.is_json = true;
     } else if (argument == "--parts") {
       arguments.with_parts = true;
+    } else if (argument == "--given") {
+      arguments.is_given_only = true;
     } else if (argument == "--voxel" && i + 1 < argc) {
       arguments.voxel = hvas::units::FromMm(std::atof(argv[++i]));
     } else if (argument == "--help") {
@@ -175,7 +180,10 @@ int main(int argc, char** argv) {
         "file", "voxel", "parts", "tri", "area_mm2", "cpu_ms", "wall_ms", "s/part", "load_ms",
         "load_%", "kB/mm2", "MB", "field", "tables", "mesh", "shell", "points");
   }
-  const std::vector<double> voxels{0.0, arguments.voxel};
+  std::vector<double> voxels{arguments.voxel};
+  if (!arguments.is_given_only) {
+    voxels.insert(voxels.begin(), 0.0);
+  }
   std::vector<Row> sums(voxels.size());
   for (const std::string& file : arguments.files) {
     hvas::Diagnostics diagnostics;

@@ -8,12 +8,16 @@
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepBuilderAPI_Copy.hxx>
+#include <BRepMesh_Context.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
+#include <IMeshData_Face.hxx>
+#include <IMeshData_Model.hxx>
 #include <Poly_Triangulation.hxx>
 #include <ShapeUpgrade_ShapeDivideAngle.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_MapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
 #include <fmt/format.h>
@@ -28,12 +32,44 @@ constexpr double kDisplayAngle = 0.35;       // [rad]
 constexpr double kCoarser = 4;               // From one try to the next.
 constexpr int kRetries = 3;
 
+// Largest deflection inside faces over that of edges. Contact does not take distances from the mesh
+// of an analytic face, so that angles limit it alone.
+constexpr double kFreeformInterior = 4;
+constexpr double kAnalyticInterior = 50;
+
+/** Lets faces have deflections of their own inside, whereas edges are divided the same for all. */
+class FaceLevels : public BRepMesh_Context {
+ public:
+  FaceLevels(const TopTools_MapOfShape& analytic, double deflection_mm)
+      : analytic_(analytic), deflection_mm_(deflection_mm) {}
+
+  Standard_Boolean PreProcessModel() override {
+    if (!BRepMesh_Context::PreProcessModel()) {
+      return Standard_False;
+    }
+    for (int i = 0; i < GetModel()->FacesNb(); ++i) {
+      const auto& face = GetModel()->GetFace(i);
+      const double factor =
+          analytic_.Contains(face->GetFace()) ? kAnalyticInterior : kFreeformInterior;
+      face->SetDeflection(std::max(face->GetDeflection(), factor * deflection_mm_));
+    }
+    return Standard_True;
+  }
+
+ private:
+  const TopTools_MapOfShape& analytic_;
+  double deflection_mm_;
+};
+
 /** Meshes anew, several faces at a time unless there is to be one thread only; every face comes out
- as it would alone. @returns the number of triangles. */
+ as it would alone. @param analytic  Null: no face is coarser inside than at its edges.
+ @returns the number of triangles. */
 std::size_t MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level, bool is_threaded,
-                     double interior_factor = 1) {
+                     const TopTools_MapOfShape* analytic, double interior_factor = 1) {
   BRepTools::Clean(shape);  // Else a finer mesh keeps what it can of the coarser one.
-  IMeshTools_Parameters parameters;
+  BRepMesh_IncrementalMesh mesher;
+  mesher.SetShape(shape);
+  IMeshTools_Parameters& parameters = mesher.ChangeParameters();
   parameters.Deflection = units::ToMm(level.deflection);
   parameters.Angle = level.angle;
   parameters.InParallel = is_threaded;
@@ -41,7 +77,11 @@ std::size_t MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level, bool is_
     parameters.DeflectionInterior = interior_factor * parameters.Deflection;
     parameters.AngleInterior = 1;
   }
-  const BRepMesh_IncrementalMesh mesher(shape, parameters);
+  Handle(IMeshTools_Context) context = new BRepMesh_Context;
+  if (analytic != nullptr) {
+    context = new FaceLevels(*analytic, parameters.Deflection);
+  }
+  mesher.Perform(context);
   std::size_t count = 0;
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
     TopLoc_Location location;
@@ -54,13 +94,16 @@ std::size_t MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level, bool is_
 /** The triangles that the present mesh of a shape would become at a finer level: on a surface that
  bends one way or not at all their number goes with the segments of a curve. */
 struct Forecast {
-  double flat{0};  // Triangles on planes, cylinders, cones and extrusions.
-  double bent{0};  // All others.
+  double flat{0};      // Triangles on planes, cylinders, cones and extrusions.
+  double round{0};     // On other analytic surfaces.
+  double freeform{0};  // All others.
 
   [[nodiscard]] double Calc(const MeshLevel& from, const MeshLevel& to) const {
     const double chords = std::max(1.0, from.deflection / to.deflection);
     const double turns = std::max(1.0, from.angle / to.angle);
-    return flat * std::max(std::sqrt(chords), turns) + bent * std::max(chords, turns * turns);
+    const double segments = std::max(std::sqrt(chords), turns);
+    return flat * segments + round * std::max(segments, turns * turns) +
+           freeform * std::max({segments, chords / kFreeformInterior, turns * turns});
   }
 };
 
@@ -80,14 +123,17 @@ bool IsFlat(const TopoDS_Face& face) {
   }
 }
 
-Forecast MakeForecast(const TopoDS_Shape& shape) {
+Forecast MakeForecast(const TopoDS_Shape& shape, const TopTools_MapOfShape& analytic) {
   Forecast forecast;
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
     const TopoDS_Face& face = TopoDS::Face(it.Current());
     TopLoc_Location location;
     const auto triangulation = BRep_Tool::Triangulation(face, location);
     if (!triangulation.IsNull()) {
-      (IsFlat(face) ? forecast.flat : forecast.bent) += triangulation->NbTriangles();
+      double& kind = IsFlat(face)              ? forecast.flat
+                     : analytic.Contains(face) ? forecast.round
+                                               : forecast.freeform;
+      kind += triangulation->NbTriangles();
     }
   }
   return forecast;
@@ -107,19 +153,26 @@ bool IsMeshed(const TopoDS_Face& face) {
 MeshLevel MeshForDisplay(const TopoDS_Shape& shape, double diagonal, const ImportOptions& options) {
   MeshLevel level{std::max(options.min_deflection, kDisplayDeflection * diagonal), kDisplayAngle};
   const bool is_threaded = options.threads != 1;
-  std::size_t count = MeshOnce(shape, level, is_threaded);
+  std::size_t count = MeshOnce(shape, level, is_threaded, nullptr);
   for (int i = 0; i < kRetries && 2 * count > options.max_triangles; ++i) {
     level = Coarsen(level);
-    count = MeshOnce(shape, level, is_threaded);
+    count = MeshOnce(shape, level, is_threaded, nullptr);
   }
   return level;
 }
 
 MeshLevel MeshForContact(const TopoDS_Shape& shape, double diagonal, const MeshLevel& display,
-                         const ImportOptions& options, const std::string& name,
-                         Diagnostics* diagnostics) {
+                         const std::vector<bool>& is_analytic, const ImportOptions& options,
+                         const std::string& name, Diagnostics* diagnostics) {
   const double wanted = std::max(options.min_deflection, options.relative_deflection * diagonal);
-  const Forecast forecast = MakeForecast(shape);
+  TopTools_MapOfShape analytic;
+  std::size_t index = 0;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    if (is_analytic[index++]) {
+      analytic.Add(it.Current());
+    }
+  }
+  const Forecast forecast = MakeForecast(shape, analytic);
   const auto most = static_cast<double>(options.max_triangles);
   MeshLevel level{wanted, options.max_angle};
   while (forecast.Calc(display, level) > most && level.deflection < display.deflection) {
@@ -129,10 +182,10 @@ MeshLevel MeshForContact(const TopoDS_Shape& shape, double diagonal, const MeshL
     level.angle = Coarsen(level).angle;
   }
   const bool is_threaded = options.threads != 1;
-  std::size_t count = MeshOnce(shape, level, is_threaded);
+  std::size_t count = MeshOnce(shape, level, is_threaded, &analytic);
   for (int i = 0; i < kRetries && count > options.max_triangles; ++i) {
     level = Coarsen(level);
-    count = MeshOnce(shape, level, is_threaded);
+    count = MeshOnce(shape, level, is_threaded, &analytic);
   }
   if (count > options.max_triangles) {
     diagnostics->Warn("large-mesh", name, fmt::format("the mesh has {} triangles", count),
@@ -188,7 +241,7 @@ std::vector<TopoDS_Face> MeshInPieces(const TopoDS_Face& face, const MeshLevel& 
     ShapeUpgrade_ShapeDivideAngle divide(units::FromDeg(cut_deg), source);
     divide.Perform();
     MeshOnce(divide.Result(), {coarser * level.deflection, level.angle}, /*is_threaded=*/false,
-             coarser > 1 ? 100 : 1);
+             nullptr, coarser > 1 ? 100 : 1);
     std::vector<TopoDS_Face> pieces;
     std::size_t undone = 0;
     for (TopExp_Explorer it(divide.Result(), TopAbs_FACE); it.More(); it.Next()) {

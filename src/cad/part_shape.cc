@@ -5,6 +5,7 @@
 #include <numeric>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
@@ -151,13 +152,10 @@ int AddContactMesh(const Body& body, const MeshLevel& level, Part* part) {
 }
 
 /** Gives a face its surface, or leaves it freeform when the triangles do not lie on it. */
-void SetSurface(const TopoDS_Face& source, double deflection, double tolerance, const Part& part,
+void SetSurface(const TopoDS_Face& source, FaceSurface found, double deflection, const Part& part,
                 Face* face, Diagnostics* diagnostics) {
-  if (face->triangle_count == 0) {
-    return;  // Nothing to tell the outer side by.
-  }
-  FaceSurface found = CalcFaceSurface(source, tolerance);
-  if (found.surface.kind == SurfaceKind::kFreeform) {
+  // Without triangles there is nothing to tell the outer side by.
+  if (face->triangle_count == 0 || found.surface.kind == SurfaceKind::kFreeform) {
     return;
   }
   const auto triangles =
@@ -267,16 +265,22 @@ std::optional<MeshLevel> BuildPartShape(const TopoDS_Shape& shape, const ImportO
   const Body body = CollectBody(shape, centre, options.threads != 1);
   const MeshLevel display = MeshForDisplay(body.shape, diagonal, options);
   AddDisplayMesh(body.shape, part);
-  const MeshLevel level =
-      MeshForContact(body.shape, diagonal, display, options, part->name, diagnostics);
-  const int unmeshed = AddContactMesh(body, level, part);
   const double tolerance =
       std::max(kRecognitionTolerance, kRelativeRecognitionTolerance * diagonal);
+  std::vector<FaceSurface> surfaces;
+  std::vector<bool> is_analytic;
+  for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next()) {
+    surfaces.push_back(CalcFaceSurface(TopoDS::Face(it.Current()), tolerance));
+    is_analytic.push_back(surfaces.back().surface.kind != SurfaceKind::kFreeform);
+  }
+  const MeshLevel level =
+      MeshForContact(body.shape, diagonal, display, is_analytic, options, part->name, diagnostics);
+  const int unmeshed = AddContactMesh(body, level, part);
   std::size_t index = 0;
   for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
     const TopoDS_Face& source = TopoDS::Face(it.Current());
     Face& face = part->faces[index];
-    SetSurface(source, level.deflection, tolerance, *part, &face, diagnostics);
+    SetSurface(source, surfaces[index], level.deflection, *part, &face, diagnostics);
     face.color = color_of(source);
     face.entity = entity_of ? entity_of(source) : 0;
   }

@@ -213,27 +213,25 @@ void BlockBuilder::DropFarFaces(const Vec3& centre, double half, NearList* list)
 // their distance from its centre.
 void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) const {
   const Mesh& mesh = data_.mesh;
-  for (NearTriangle& entry : *list) {
-    entry.distance = (mesh.ClosestOn(entry.triangle, centre).q - centre).norm();
-  }
   const FewFaces<kMostFaces> few(mesh, *list);
   if (few.count > 0 && list->size() > few.count) {
     const double radius = kHalfDiagonal * h_;
     std::vector<std::uint8_t> is_kept(list->size(), 0);
-    std::vector<double> distance(list->size());
+    std::vector<TrianglePoint> points(list->size());
     for (int o = 0; o < 8; ++o) {
       const Vec3 c = centre + 0.5 * h_ * Corner(o);
       std::array<double, kMostFaces> least{};
       least.fill(std::numeric_limits<double>::infinity());
       for (std::size_t i = 0; i < list->size(); ++i) {
         const NearTriangle& entry = (*list)[i];
-        distance[i] = (mesh.ClosestOn(entry.triangle, c).q - c).norm();
+        points[i] = mesh.ClosestOn(entry.triangle, c);
         double& entry_least = least[few.IndexOf(mesh.face[entry.triangle])];
-        entry_least = std::min(entry_least, distance[i]);
+        entry_least = std::min(entry_least, (points[i].q - c).norm());
       }
       for (std::size_t i = 0; i < list->size(); ++i) {
-        const double limit = least[few.IndexOf(mesh.face[(*list)[i].triangle])] + 2 * radius;
-        if (distance[i] <= limit * kSlack) {
+        const std::uint32_t triangle = (*list)[i].triangle;
+        const double limit = (least[few.IndexOf(mesh.face[triangle])] + 2 * radius) * kSlack;
+        if (is_kept[i] == 0 && search_.CanBeClosest(triangle, points[i], c, radius, limit)) {
           is_kept[i] = 1;
         }
       }
@@ -245,6 +243,9 @@ void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) const {
       }
     }
     list->resize(kept);
+  }
+  for (NearTriangle& entry : *list) {
+    entry.distance = (mesh.ClosestOn(entry.triangle, centre).q - centre).norm();
   }
   std::sort(list->begin(), list->end(), [](const NearTriangle& a, const NearTriangle& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;

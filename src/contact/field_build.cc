@@ -174,9 +174,6 @@ class Layer {
   void Finish() {
     data_.field.nodes.resize(data_.field.nodes.size() + 2);  // Pairs are read as one word.
     data_.field.nodes.shrink_to_fit();
-    data_.exact.zones.shrink_to_fit();
-    data_.exact.list_begin.shrink_to_fit();
-    data_.exact.listed.shrink_to_fit();
   }
 
  private:

@@ -283,6 +283,50 @@ double Mesh::CalcWindingNumber(const Vec3& p) const {
   return sum / (2 * std::numbers::pi);
 }
 
+Mesh KeepTriangles(const Mesh& mesh, const std::vector<bool>& is_wanted,
+                   std::vector<std::uint32_t>* number) {
+  std::vector<bool> is_kept = is_wanted;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t n : mesh.neighbour[t]) {
+      if (is_wanted[t] && n != kNoFace) {
+        is_kept[n] = true;
+      }
+    }
+  }
+  Mesh kept;
+  kept.is_closed = mesh.is_closed;
+  number->assign(mesh.triangles.size(), kNoFace);
+  std::vector<std::uint32_t> vertex(mesh.vertices.size(), kNoFace);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!is_kept[t]) {
+      continue;
+    }
+    (*number)[t] = static_cast<std::uint32_t>(kept.triangles.size());
+    kept.triangles.push_back(mesh.triangles[t]);
+    kept.face.push_back(mesh.face[t]);
+    kept.normal.push_back(mesh.normal[t]);
+    kept.neighbour.push_back(mesh.neighbour[t]);
+    kept.edge_kind.push_back(mesh.edge_kind[t]);
+    for (std::uint32_t& v : kept.triangles.back()) {
+      if (vertex[v] == kNoFace) {
+        vertex[v] = static_cast<std::uint32_t>(kept.vertices.size());
+        kept.vertices.push_back(mesh.vertices[v]);
+        kept.vertex_kind.push_back(mesh.vertex_kind[v]);
+        kept.vertex_normal.push_back(mesh.vertex_normal[v]);
+        kept.vertex_faces.push_back(mesh.vertex_faces[v]);
+        kept.is_vertex_open.push_back(mesh.is_vertex_open[v]);
+      }
+      v = vertex[v];
+    }
+  }
+  for (auto& neighbours : kept.neighbour) {
+    for (std::uint32_t& n : neighbours) {
+      n = n == kNoFace ? kNoFace : (*number)[n];
+    }
+  }
+  return kept;
+}
+
 Mesh MakeMesh(const ShapeSource& source, const Vec3& p_BC) {
   spatial::Box box;
   for (const Vec3& v : source.vertices) {

@@ -64,6 +64,12 @@ struct Mesh {
   [[nodiscard]] double CalcWindingNumber(const Vec3& p) const;
 };
 
+/** The triangles that are wanted, and those across their edges, which the pseudonormals and the
+ faces beyond need; in their order. What is as seen from the wanted ones only stays right.
+ @param number  Of each old triangle, its new number; kNoFace where there is none. */
+[[nodiscard]] Mesh KeepTriangles(const Mesh& mesh, const std::vector<bool>& is_wanted,
+                                 std::vector<std::uint32_t>* number);
+
 /** Welds the vertices, drops triangles without area, finds neighbours and classifies edges.
  @param p_BC  Subtracted from all vertices, so that coordinates are small. */
 [[nodiscard]] Mesh MakeMesh(const ShapeSource& source, const Vec3& p_BC);

@@ -1,6 +1,7 @@
 #include "contact/near_list.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "spatial/box.h"
@@ -31,6 +32,126 @@ NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
     const Vec3 half = 0.5 * box.size();
     boxes_.push_back({{c.x(), c.y(), c.z()}, {half.x(), half.y(), half.z()}, half.norm()});
   }
+  std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      around[v].push_back(t);
+    }
+  }
+  FindRimBends();
+  surroundings_.reserve(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    surroundings_.push_back(SurroundingsOf(t, around));
+  }
+}
+
+bool NearSearch::IsRim(std::uint32_t triangle, std::size_t k) const {
+  const std::uint32_t other = mesh_.neighbour[triangle][k];
+  return other == kNoFace || mesh_.face[other] != mesh_.face[triangle] ||
+         mesh_.edge_kind[triangle][k] != EdgeKind::kSmooth;
+}
+
+// A vertex with two rim edges, each seen from both sides or once where the mesh is open, is one
+// that a rim passes through.
+void NearSearch::FindRimBends() {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  std::vector<std::array<std::uint32_t, 2>> ends(mesh_.vertices.size(), {kNoFace, kNoFace});
+  rim_bend_.assign(mesh_.vertices.size(), 0);
+  const auto add = [&](std::uint32_t v, std::uint32_t other) {
+    auto& pair = ends[v];
+    if (pair[0] == kNoFace || pair[0] == other) {
+      pair[0] = other;
+    } else if (pair[1] == kNoFace || pair[1] == other) {
+      pair[1] = other;
+    } else {
+      rim_bend_[v] = kUnknown;
+    }
+  };
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (IsRim(t, k)) {
+        add(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]);
+        add(mesh_.triangles[t][(k + 1) % 3], mesh_.triangles[t][k]);
+      }
+    }
+  }
+  for (std::size_t v = 0; v < ends.size(); ++v) {
+    if (ends[v][1] == kNoFace) {
+      rim_bend_[v] = kUnknown;
+      continue;
+    }
+    const Vec3 before = mesh_.vertices[v] - mesh_.vertices[ends[v][0]];
+    const Vec3 after = mesh_.vertices[ends[v][1]] - mesh_.vertices[v];
+    const double along = before.dot(after);
+    const double bend = before.cross(after).norm() / std::max(along, 1e-300);
+    rim_bend_[v] = std::max(rim_bend_[v], along > 0 && bend < 1 ? bend : kUnknown);
+  }
+}
+
+NearSearch::Surroundings NearSearch::SurroundingsOf(
+    std::uint32_t triangle, const std::vector<std::vector<std::uint32_t>>& around) const {
+  Surroundings result{0, 0};
+  double cosine = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.rims = static_cast<std::uint8_t>(result.rims | (IsRim(triangle, k) ? 1U << k : 0U));
+    for (const std::uint32_t t : around[mesh_.triangles[triangle][k]]) {
+      if (mesh_.face[t] == mesh_.face[triangle] && !mesh_.normal[t].isZero()) {
+        cosine = std::min(cosine, mesh_.normal[triangle].dot(mesh_.normal[t]));
+      }
+    }
+  }
+  constexpr double kLeastCosine = 0.7;
+  result.bend = cosine < kLeastCosine ? std::numeric_limits<double>::infinity()
+                                      : std::sqrt(std::max(0.0, 1 - cosine * cosine)) / cosine;
+  return result;
+}
+
+// The closest point of a rim lies between the ends of the edge as the point itself does, but for
+// what the rim turns there.
+bool NearSearch::CanRimBeClosest(std::uint32_t triangle, std::size_t k, const Vec3& c,
+                                 double radius, double limit) const {
+  const std::uint32_t start = mesh_.triangles[triangle][k];
+  const std::uint32_t end = mesh_.triangles[triangle][(k + 1) % 3];
+  const Vec3 from_start = c - mesh_.vertices[start];
+  const Vec3 edge = mesh_.vertices[end] - mesh_.vertices[start];
+  const double length = edge.norm();
+  const double along = from_start.dot(edge) / length;
+  const double beyond = std::max({0.0, -along, along - length});
+  const double distance = (from_start - std::clamp(along, 0.0, length) / length * edge).norm();
+  if (distance > limit) {
+    return false;
+  }
+  const double bend = rim_bend_[along < 0 ? start : end];
+  return beyond <= (radius + bend * (distance + radius)) * kSlack + kRounding;
+}
+
+// A point's closest one on a face is the foot of the normal in a triangle, or on an edge or corner
+// between triangles whose normals it lies between, or on the face's rim. In the first two cases the
+// point is not far beside the triangle.
+bool NearSearch::CanBeClosest(std::uint32_t triangle, const TrianglePoint& point, const Vec3& c,
+                              double radius, double limit) const {
+  constexpr double kCornerBend = 2;  // At a corner the way may lean more than at an edge.
+  const Vec3 way = c - point.q;
+  const double distance = way.norm();
+  if (distance > limit) {
+    return false;
+  }
+  const Surroundings& around = surroundings_[triangle];
+  if (point.feature == TriangleFeature::kInside ||
+      around.bend == std::numeric_limits<double>::infinity()) {
+    return true;
+  }
+  const double height = std::abs(way.dot(mesh_.normal[triangle]));
+  const double beside = std::sqrt(std::max(0.0, distance * distance - height * height));
+  if (beside <= (radius + kCornerBend * around.bend * (height + radius)) * kSlack + kRounding) {
+    return true;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    if ((around.rims >> k & 1U) != 0 && CanRimBeClosest(triangle, k, c, radius, limit)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 NearList NearSearch::MakeFullList() const {

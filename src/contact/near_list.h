@@ -45,6 +45,12 @@ class NearSearch {
   [[nodiscard]] Nearest Find(const NearList& list, const Vec3& p, double offset,
                              std::uint32_t hint) const;
 
+  /** False where no point within `radius` of c has, of the triangle's face, its closest point in
+   the triangle. @param point  The triangle's closest point to c.
+   @param limit  No point of the face that is further from c than this can be the closest. */
+  [[nodiscard]] bool CanBeClosest(std::uint32_t triangle, const TrianglePoint& point, const Vec3& c,
+                                  double radius, double limit) const;
+
   /** The same with the sign of the distance: negative inside. */
   [[nodiscard]] Nearest FindSigned(const NearList& list, const Vec3& p, double offset,
                                    std::uint32_t hint) const;
@@ -60,8 +66,24 @@ class NearSearch {
     [[nodiscard]] double CalcSquaredDistance(const Vec3& p) const;
   };
 
+  // How a triangle goes on in its face.
+  struct Surroundings {
+    double bend;  // Tangent of the largest angle to those it touches there; infinite: unknown.
+    std::uint8_t rims;  // Bit k: edge k is on the face's rim.
+  };
+
+  [[nodiscard]] Surroundings SurroundingsOf(
+      std::uint32_t triangle, const std::vector<std::vector<std::uint32_t>>& around) const;
+
+  [[nodiscard]] bool IsRim(std::uint32_t triangle, std::size_t k) const;
+  void FindRimBends();
+  [[nodiscard]] bool CanRimBeClosest(std::uint32_t triangle, std::size_t k, const Vec3& c,
+                                     double radius, double limit) const;
+
   const Mesh& mesh_;
   std::vector<TriangleBox> boxes_;
+  std::vector<Surroundings> surroundings_;
+  std::vector<double> rim_bend_;  // Of each vertex: tangent of a rim's turn; infinite: unknown.
 };
 
 /** The entry with the lowest bound. @pre the list is not empty. */

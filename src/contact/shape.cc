@@ -42,6 +42,21 @@ Result<void> Check(const ShapeSource& source) {
   return {};
 }
 
+// Queries look at triangles in the zones' lists only.
+void DropUnlistedTriangles(Shape::Data* data) {
+  ExactTable& exact = data->exact;
+  std::vector<bool> is_listed(data->mesh.triangles.size(), false);
+  for (std::size_t i = 0; i < exact.listed.size(); ++i) {
+    is_listed[exact.Listed(i).triangle] = true;
+  }
+  std::vector<std::uint32_t> number;
+  data->mesh = KeepTriangles(data->mesh, is_listed, &number);
+  const std::uint32_t distance = (1U << exact.distance_bits) - 1U;
+  for (std::uint32_t& entry : exact.listed) {
+    entry = number[entry >> exact.distance_bits] << exact.distance_bits | (entry & distance);
+  }
+}
+
 template <typename T>
 std::size_t Bytes(const std::vector<T>& v) {
   return v.capacity() * sizeof(T);
@@ -88,6 +103,7 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
   }
   data->spacing = options.point_spacing > 0 ? options.point_spacing : ChooseSpacing(data->mesh);
   BuildShells(data.get());
+  DropUnlistedTriangles(data.get());
   data->Complete();
   return std::make_shared<const Shape>(std::move(data));
 }

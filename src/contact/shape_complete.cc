@@ -105,6 +105,24 @@ void OrderLeaves(Shell* shell) {
   shell->Bind();
 }
 
+template <typename... T>
+void Shrink(std::vector<T>&... vectors) {
+  (vectors.shrink_to_fit(), ...);
+}
+
+// What was appended to one by one has room for more.
+void Shrink(Shell* shell) {
+  Shrink(shell->nodes, shell->x, shell->y, shell->z, shell->leaf_count, shell->faces, shell->facing,
+         shell->order);
+  shell->Bind();
+}
+
+void Shrink(Mesh* mesh) {
+  Shrink(mesh->vertices, mesh->triangles, mesh->face, mesh->normal, mesh->neighbour,
+         mesh->edge_kind, mesh->vertex_kind, mesh->vertex_normal, mesh->vertex_faces,
+         mesh->is_vertex_open);
+}
+
 }  // namespace
 
 void Shape::Data::Complete() {
@@ -117,6 +135,11 @@ void Shape::Data::Complete() {
   }
   OrderLeaves(&shell);
   OrderLeaves(&features);
+  Shrink(&mesh);
+  Shrink(exact.zones, exact.list_begin, exact.listed, exact.list_faces, exact.forms,
+         exact.deviation, exact.faces);
+  Shrink(&shell);
+  Shrink(&features);
 }
 
 }  // namespace hvas::contact

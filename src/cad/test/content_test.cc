@@ -186,7 +186,7 @@ TEST(BuildProduct, MeshesPartsLighterForTheEye) {
   const Product product = Build(&builder, &diagnostics);
   for (const Part& part : product.parts) {
     SCOPED_TRACE(part.name);
-    EXPECT_LT(3 * part.display_mesh.triangles.size(), part.mesh.triangles.size());
+    EXPECT_LT(2 * part.display_mesh.triangles.size(), part.mesh.triangles.size());
     const double diagonal = part.box_B.size().norm();
     std::uint32_t next = 0;
     for (const product::Face& face : part.faces) {
