@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/assemble_report.h"
+#include "app/force_map_option.h"
 #include "app/load_product.h"
 #include "app/progress.h"
 #include "app/report_failure.h"
@@ -90,6 +91,7 @@ record::Meta MakeMeta(const Model& model, const AssembleOptions& options) {
           {"source", model.product->source},
           {"seed", std::to_string(options.seed)},
           {"condition", kConditions[static_cast<std::size_t>(options.condition)]},
+          {"force_map", haptics::ToString(options.force_map)},
           {"model_json", parts.dump()}};
 }
 
@@ -104,6 +106,7 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
   }
   haptics::TickOptions tick;
   tick.condition = options.condition;
+  tick.force_map = options.force_map;
   tick.device.name = "simulated 6-DoF device";
   simulation::Simulation simulation(model, tick);
   simulation::SimulatedPerson person({}, options.seed, simulation::StartOfHand(*model));
@@ -183,6 +186,7 @@ int RunAssemble(const AssembleOptions& options) {
   outcome->preparation_ns = ready_ns - start_ns;
   outcome->seed = options.seed;
   outcome->is_realtime = options.is_realtime;
+  outcome->force_map = options.force_map;
   if (options.is_json) {
     PrintAssemblyJson(**model, *outcome);
   } else {
@@ -215,6 +219,7 @@ void AddAssemble(CLI::App* app, int* status) {
       ->add_option("--condition", options->condition,
                    "collision, constraint, or hybrid (both, and the force of the fit)")
       ->transform(CLI::CheckedTransformer(conditions, CLI::ignore_case));
+  AddForceMapOption(command, &options->force_map);
   command->add_flag("--realtime", options->is_realtime,
                     "Three threads at 1000, 100 and 30 Hz instead of virtual time");
   command->add_option("--record", options->record, "Write the session to this file");

@@ -19,6 +19,7 @@ struct AssembleOptions {
   std::vector<std::string> order;  ///< Parts to begin with, by name, path or id.
   std::uint64_t seed{1};
   haptics::Condition condition{haptics::Condition::kHybrid};
+  haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   bool is_realtime{false};
   std::filesystem::path record;  ///< Empty: no file; the digest is made all the same.
   double limit_s{0};             ///< Session time after which to stop; 0: none.

@@ -70,6 +70,8 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
           {"path_m", part.path},
           {"peak_true_n", part.peak_true},
           {"peak_felt_n", part.peak_felt},
+          {"fit_true_n", part.fit_true},
+          {"fit_felt_n", part.fit_felt},
           {"deepest_um", units::ToUm(part.deepest)},
           {"insertion_mm", units::ToMm(part.insertion)},
           {"mates", part.mates},
@@ -119,6 +121,7 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
   json["source"] = model.product->source;
   json["seed"] = outcome.seed;
   json["digest"] = outcome.digest;
+  json["force_map"] = haptics::ToString(outcome.force_map);
   json["preparation_s"] = ToS(outcome.preparation_ns);
   json["contact_shapes_bytes"] = simulation::CalcShapeMemory(model).total();
   json["session_s"] = ToS(run.session_ns);

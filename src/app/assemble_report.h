@@ -17,6 +17,7 @@ struct AssemblyOutcome {
   std::int64_t preparation_ns{0};  ///< Reading, shapes, mates, order and layout.
   std::uint64_t seed{1};
   bool is_realtime{false};
+  haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   std::string digest;
   std::uint64_t dropped_ticks{0};
 };

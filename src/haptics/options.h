@@ -21,6 +21,10 @@ enum class ForceMapKind {
   kPaper,      ///< Paper W's: each kind of fit by a factor of its own (fits/paper_scales.h).
 };
 
+[[nodiscard]] constexpr const char* ToString(ForceMapKind kind) noexcept {
+  return kind == ForceMapKind::kPaper ? "paper" : "published";
+}
+
 /** Spring and damper between the tracked and the displayed part, X(1) and X(2). */
 struct CouplingGains {
   double k_lin{1000};  ///< [N/m]

@@ -112,6 +112,8 @@ void AssemblyRun::FinishStep(const SequenceStep& step) {
     result.path += metrics.path;
     result.peak_true = std::max(result.peak_true, metrics.peak_true);
     result.peak_felt = std::max(result.peak_felt, metrics.peak_felt);
+    result.fit_true = std::max(result.fit_true, metrics.fit_true);
+    result.fit_felt = std::max(result.fit_felt, metrics.fit_felt);
     result.deepest = std::max(result.deepest, metrics.deepest);
     result.insertion = std::max(result.insertion, metrics.insertion);
   }

@@ -20,6 +20,8 @@ struct PartResult {
   double path{0};              ///< [m]
   double peak_true{0};         ///< [N]
   double peak_felt{0};         ///< [N]
+  double fit_true{0};          ///< Largest axial force of its fits, true [N].
+  double fit_felt{0};          ///< The same as felt [N].
   double deepest{0};           ///< Deepest penetration met [m].
   double insertion{0};         ///< Longest that a mate's shaft was in its hole [m].
   int mates{0};                ///< With parts that were in place.

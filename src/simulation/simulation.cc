@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fits/paper_scales.h"
 #include "mates/resolve.h"
 #include "simulation/fit_of_mate.h"
 
@@ -15,6 +16,20 @@ using product::OccurrenceId;
 constexpr double kReach = 0.03;      // [m] from a part's centre of mass, to take it up
 constexpr double kApproach = 0.01;   // [m] before its place, where a part's mates are resolved from
 constexpr double kStopCosine = 0.5;  // a plane facing the way in ends it; one along it guides
+
+double PaperFactorOf(const product::Mate& mate) {
+  if (!mate.fit || mate.fit->kind == product::FitKind::kThread) {
+    return 1;
+  }
+  switch (mate.fit->kind) {
+    case product::FitKind::kInterference:
+      return fits::FindPaperScale(fits::FitKind::kInterference).factor;
+    case product::FitKind::kTransition:
+      return fits::FindPaperScale(fits::FitKind::kTransition).factor;
+    default:
+      return fits::FindPaperScale(fits::FitKind::kClearance).factor;
+  }
+}
 
 Frame MakeFirstFrame(const Model& model) {
   Frame frame;
@@ -92,6 +107,8 @@ void Simulation::Measure(const haptics::TickOutput& out) noexcept {
   p_last_Cm_ = p_Cm;
   metrics_.peak_true = std::max(metrics_.peak_true, out.F_true_W.f.norm());
   metrics_.peak_felt = std::max(metrics_.peak_felt, out.F_H_W.f.norm());
+  metrics_.fit_true = std::max(metrics_.fit_true, std::abs(out.axial_true));
+  metrics_.fit_felt = std::max(metrics_.fit_felt, std::abs(out.axial_felt));
   metrics_.deepest = std::max(metrics_.deepest, -out.deepest);
   metrics_.insertion = std::max(metrics_.insertion, out.insertion_depth);
   const double force = out.f_C_W.norm();
@@ -297,6 +314,7 @@ void Simulation::AddMates(const SequenceStep& step, std::size_t member,
     const double facing = std::abs((constraint.X_WM.q() * Vec3::UnitZ()).dot(held->insertion_W));
     entry.is_stop = mate.kind == MateKind::kFaceFace && facing > kStopCosine;
     entry.fit = compiled.fit;
+    entry.paper_factor = PaperFactorOf(mate);
     entry.body = contact::BodyId(other.index());
     entry.held_faces = is_a ? compiled.faces_a : compiled.faces_b;
     entry.placed_faces = is_a ? compiled.faces_b : compiled.faces_a;

@@ -23,6 +23,8 @@ struct HoldMetrics {
   double path{0};           ///< Of the displayed centre of mass [m].
   double peak_true{0};      ///< Largest true force [N].
   double peak_felt{0};      ///< Largest force given to the device [N].
+  double fit_true{0};       ///< Largest axial force of fits, true [N].
+  double fit_felt{0};       ///< The same as felt [N].
   double deepest{0};        ///< Deepest penetration, >= 0 [m].
   double insertion{0};      ///< Longest engagement of a captured axis [m].
   contact::BodyId hardest;  ///< Body pressed hardest while the hand was inserting; may be invalid.
