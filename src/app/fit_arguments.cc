@@ -6,6 +6,7 @@
 #include "base/units.h"
 #include "fits/friction.h"
 #include "fits/materials.h"
+#include "fits/thermal_joining.h"
 
 namespace hvas::app {
 namespace {
@@ -77,6 +78,11 @@ Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
   p.shaft = fits::ToPressMaterial(**shaft);
   options.hub_material = std::string((*hub)->name);
   options.shaft_material = std::string((*shaft)->name);
+  options.hub_c = a.hub_c;
+  options.shaft_c = a.shaft_c;
+  options.join_speed = units::FromMm(a.join_speed_mm_s);
+  options.hub_heat = (*hub)->density * fits::SpecificHeatOf((*hub)->group);
+  options.shaft_heat = (*shaft)->density * fits::SpecificHeatOf((*shaft)->group);
   SetFriction(a, **hub, **shaft, &options);
   return options;
 }
@@ -189,6 +195,13 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--smoothing", a->smoothing,
                   "Interference lost to roughness: none, din2001 (0.8), din2017 (0.4 of the sum)")
       ->check(CLI::IsMember({"none", "din2001", "din2017"}))
+      ->capture_default_str();
+  fit->add_option("--hub-temp", a->hub_c,
+                  "To join at [C]; says what play there is, and if it sticks")
+      ->check(CLI::Range(-273, 2000));
+  fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(CLI::Range(-273, 2000));
+  fit->add_option("--join-speed", a->join_speed_mm_s, "Of joining by heat or cold [mm/s]")
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
   fit->add_flag("--json", a->is_json, "Print one JSON document");
   AddBatchArguments(fit, a);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct FitArguments {
   std::string spread{"paper"};
   double cp{0}, cpk{0};
   std::string sizes;
+  std::optional<double> hub_c, shaft_c;
+  double join_speed_mm_s{20};
   std::string curve, jamming;
   double step_mm{0};
   double at_mm{0};

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/sized_fit.h"
 #include "base/units.h"
 #include "fits/insertion.h"
 #include "fits/iso286.h"
@@ -57,10 +58,13 @@ void SetLimits(std::size_t i, CsvTable* table) {
   for (const char* column : {"kind", "upper_um", "lower_um", "reason"}) {
     table->Set(i, column, "");
   }
-  Row row(*table, i);
-  const double nominal = units::FromMm(row("nominal_mm"));
-  if (!row.reason().empty()) {
-    table->Set(i, "reason", row.reason());
+  std::string_view text = table->Get(i, "nominal_mm");
+  const bool has_text = !text.empty();
+  const std::optional<double> nominal = TakeLength(&text);  // "1.5 in" converts.
+  if (!nominal || !text.empty()) {
+    table->Set(i, "reason",
+               has_text ? "nominal_mm is no number; write millimetres, or inches as in 1.5 in"
+                        : "nominal_mm is missing");
     return;
   }
   const auto parsed = fits::ParseToleranceClass(table->Get(i, "class"));
@@ -69,7 +73,7 @@ void SetLimits(std::size_t i, CsvTable* table) {
     return;
   }
   table->Set(i, "kind", parsed->is_hole() ? "hole" : "shaft");
-  const auto limits = fits::CalcLimits(*parsed, nominal);
+  const auto limits = fits::CalcLimits(*parsed, *nominal);
   if (!limits) {
     table->Set(i, "reason", Explain(limits.error()));
     return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,16 +30,64 @@ fits::ThermalJoint MakeThermalJoint(const FitCard& card) {
           p.shaft.thermal_expansion, card.options.room_c};
 }
 
+constexpr double kDryIceC = -78;
+constexpr double kNitrogenC = -196;
+
 struct JoiningTemperatures {
-  double hub_c;    // Heating the hub alone.
-  double shaft_c;  // Cooling the shaft alone.
+  double hub_c;       // Heating the hub alone.
+  double shaft_c;     // Cooling the shaft alone.
+  double both_hub_c;  // Heating the hub with the shaft at kDryIceC.
 };
 
 JoiningTemperatures CalcJoining(const FitCard& card) {
   const fits::ThermalJoint joint = MakeThermalJoint(card);
   const double clearance = fits::CalcJoiningClearance(joint.joint_diameter);
   return {fits::CalcHubTemperature(joint, clearance, joint.room_c),
-          fits::CalcShaftTemperature(joint, clearance, joint.room_c)};
+          fits::CalcShaftTemperature(joint, clearance, joint.room_c),
+          fits::CalcHubTemperature(joint, clearance, kDryIceC)};
+}
+
+bool HasJoining(const FitCard& card) {
+  return card.options.hub_c || card.options.shaft_c;
+}
+
+/** Joining at the temperatures that were asked for. */
+struct HotJoint {
+  double hub_c, shaft_c;
+  double clearance;  // Of the largest interference [m].
+  double sticking;   // Depth, infinite where it does not stick [m].
+};
+
+HotJoint CalcHotJoint(const FitCard& card) {
+  const FitCardOptions& o = card.options;
+  const fits::PressFitParameters& p = o.press;
+  const fits::ThermalJoint joint = MakeThermalJoint(card);
+  HotJoint hot{o.hub_c.value_or(o.room_c), o.shaft_c.value_or(o.room_c), 0, 0};
+  hot.clearance = fits::CalcHotClearance(joint, hot.hub_c, hot.shaft_c);
+  if (hot.clearance > 0) {
+    const auto ring = [&p](double outer, double inner) {
+      return 0.25 * std::numbers::pi * (outer * outer - inner * inner) * p.length;
+    };
+    hot.sticking = fits::CalcStickingDepth(joint, hot.hub_c, hot.shaft_c,
+                                           {o.hub_heat * ring(p.hub_diameter, p.joint_diameter),
+                                            o.shaft_heat * ring(p.joint_diameter, p.shaft_bore),
+                                            fits::CalcGapConductance(hot.clearance), o.join_speed});
+  }
+  return hot;
+}
+
+std::string HotJointText(const FitCard& card) {
+  const HotJoint hot = CalcHotJoint(card);
+  std::string text = fmt::format("hub at {:g} C, shaft at {:g} C: {} um of play", hot.hub_c,
+                                 hot.shaft_c, Um(hot.clearance));
+  if (!(hot.clearance > 0)) {
+    return text + ", which does not go together\n";
+  }
+  return text + (hot.sticking < card.options.press.length
+                     ? fmt::format("; at {:g} mm/s it sticks at a depth of {:.1f} mm\n",
+                                   units::ToMm(card.options.join_speed), units::ToMm(hot.sticking))
+                     : fmt::format("; at {:g} mm/s it is in before it sticks\n",
+                                   units::ToMm(card.options.join_speed)));
 }
 
 Result<fits::PressFit> PressAt(const FitCard& card, double clearance) {
@@ -172,11 +221,15 @@ std::string PressText(const FitCard& card) {
   if (card.limits->min_clearance < 0) {
     const JoiningTemperatures joining = CalcJoining(card);
     text += fmt::format(
-        "to join with {} um of play: heat the hub to {:.0f} C{}, or cool the shaft to "
-        "{:.0f} C{}\n",
+        "to join with {} um of play: heat the hub to {:.0f} C{}, or cool the shaft to {:.0f} C{},\n"
+        "  or cool the shaft to {:g} C (dry ice) and heat the hub to {:.0f} C\n",
         Um(fits::CalcJoiningClearance(p.joint_diameter)), joining.hub_c,
         joining.hub_c > kMeltLimitC ? " (more than steel should have)" : "", joining.shaft_c,
-        joining.shaft_c < -196 ? " (colder than liquid nitrogen)" : "");
+        joining.shaft_c < kNitrogenC ? " (colder than liquid nitrogen)" : "", kDryIceC,
+        joining.both_hub_c);
+    if (HasJoining(card)) {
+      text += HotJointText(card);
+    }
   }
   if (card.limits->max_clearance > 0) {
     const fits::PegInHole pair{p.joint_diameter + card.limits->max_clearance, p.joint_diameter};
@@ -236,7 +289,16 @@ ordered_json ToJson(const FitCard& card) {
         {"least", ToJson(*card.least)}, {"mean", ToJson(*card.mean)}, {"most", ToJson(*card.most)}};
     if (card.limits->min_clearance < 0) {
       const JoiningTemperatures joining = CalcJoining(card);
-      json["joining"] = {{"heat_hub_to_c", joining.hub_c}, {"cool_shaft_to_c", joining.shaft_c}};
+      json["joining"] = {{"heat_hub_to_c", joining.hub_c},
+                         {"cool_shaft_to_c", joining.shaft_c},
+                         {"heat_hub_with_shaft_at_minus_78_c_to_c", joining.both_hub_c}};
+      if (HasJoining(card)) {
+        const HotJoint hot = CalcHotJoint(card);
+        json["joining"]["asked"] = {{"hub_c", hot.hub_c},
+                                    {"shaft_c", hot.shaft_c},
+                                    {"clearance_um", units::ToUm(hot.clearance)},
+                                    {"sticking_depth_mm", FiniteOrNull(units::ToMm(hot.sticking))}};
+      }
     }
   }
   return json;

@@ -21,6 +21,10 @@ struct FitCardOptions {
   double start{0};              ///< Depth at which this fit begins to engage [m].
   double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
   double room_c{20};
+  std::optional<double> hub_c,
+      shaft_c;                        ///< Temperatures to join at; room_c where only one is given.
+  double join_speed{0.02};            ///< Of the shaft then [m/s].
+  double hub_heat{0}, shaft_heat{0};  ///< Of a volume [J/(m3 K)].
 };
 
 /** A fit's limits, and with a length what it takes to press it together. */

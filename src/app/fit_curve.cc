@@ -39,19 +39,19 @@ Result<fits::PressStroke> MakeStrokeAt(const std::vector<FitCard>& cards, double
 }
 
 /** One pair of parts of the batch's kind: its sizes and B from the seed. */
-Result<fits::PressStroke> MakeDrawnStroke(const FitCurve& curve) {
-  Random random(curve.options.seed);
-  return MakeStroke(curve.cards, [&](std::size_t k, fits::StrokeLand* land) {
-    const fits::LandStatistics& statistics = curve.batch.lands[k];
-    const auto& quantiles = statistics.clearance_curve;
+Result<fits::PressStroke> MakeDrawnStroke(FitCurve* curve) {
+  Random random(curve->options.seed);
+  return MakeStroke(curve->cards, [&](std::size_t k, fits::StrokeLand* land) {
+    const auto& quantiles = curve->batch.lands[k].clearance_curve;
     // Any pair will do: its place in the batch is drawn.
     const double at = random.Uniform() * static_cast<double>(quantiles.size() - 1);
     const auto i = static_cast<std::size_t>(at);
     const double part = at - static_cast<double>(i);
-    const double clearance = (1 - part) * quantiles[i] + part * quantiles[i + 1];
-    land->clearances = fits::DrawClearances(
-        clearance, 0.5 * (land->press.hub_roughness + land->press.shaft_roughness),
-        curve.options.stations, random.NextBits());
+    curve->pair_clearances.push_back((1 - part) * quantiles[i] + part * quantiles[i + 1]);
+    land->clearances =
+        fits::DrawClearances(curve->pair_clearances.back(),
+                             0.5 * (land->press.hub_roughness + land->press.shaft_roughness),
+                             curve->options.stations, random.NextBits());
   });
 }
 
@@ -137,6 +137,26 @@ PlotPanel MakeForcePanel(const FitCurve& curve) {
   return panel;
 }
 
+/** On its own scale, for the steps of a rough transition fit. */
+PlotPanel MakePairPanel(const FitCurve& curve) {
+  PlotPanel panel;
+  panel.title = "One pair of the batch, by itself: clearance of the diameters";
+  for (std::size_t k = 0; k < curve.pair_clearances.size(); ++k) {
+    panel.title +=
+        fmt::format("{} {:+.1f} um", k > 0 ? "," : "", units::ToUm(curve.pair_clearances[k]));
+  }
+  panel.x_label = "depth of the shaft, mm";
+  panel.y_label = "axial force, N";
+  PlotSeries in{"pressing in", PlotStyle::kLine, 1, {}};
+  PlotSeries out{"pulling out", PlotStyle::kDashed, 3, {}};
+  for (const FitCurve::Point& p : curve.points) {
+    in.points.push_back({units::ToMm(p.depth), p.pair.in});
+    out.points.push_back({units::ToMm(p.depth), -p.pair.out});
+  }
+  panel.series = {std::move(in), std::move(out)};
+  return panel;
+}
+
 PlotPanel MakeClearancePanel(const FitCurve& curve) {
   PlotPanel panel;
   panel.title = "Clearance of the batch";
@@ -178,7 +198,7 @@ Result<FitCurve> MakeFitCurve(const std::vector<FitCard>& cards,
   const Result<fits::PressStroke> least = MakeStrokeAt(cards, 1);
   const Result<fits::PressStroke> mean = MakeStrokeAt(cards, 0.5);
   const Result<fits::PressStroke> most = MakeStrokeAt(cards, 0);
-  const Result<fits::PressStroke> pair = MakeDrawnStroke(curve);
+  const Result<fits::PressStroke> pair = MakeDrawnStroke(&curve);
   for (const auto* stroke : {&least, &mean, &most, &pair}) {
     if (!*stroke) {
       return Unexpected(stroke->error());
@@ -238,7 +258,7 @@ std::string ToSvg(const FitCurve& curve) {
   figure.notes.push_back(
       fmt::format("Largest interference of the limits: {:.0f} N at the end, {:.1f} J to press in.",
                   curve.points.back().most.in, curve.work_most));
-  figure.panels = {MakeForcePanel(curve), MakeClearancePanel(curve)};
+  figure.panels = {MakeForcePanel(curve), MakePairPanel(curve), MakeClearancePanel(curve)};
   return ToSvg(figure);
 }
 

@@ -28,6 +28,33 @@ double CalcShaftTemperature(const ThermalJoint& joint, double clearance, double 
          joint.hub_expansion / joint.shaft_expansion * (hub_c - joint.room_c);
 }
 
+double SpecificHeatOf(std::string_view group) noexcept {
+  const auto has = [group](std::string_view word) {
+    return group.find(word) != std::string_view::npos;
+  };
+  if (has("bronze") || has("brass") || has("copper") || has("zinc")) {
+    return 390;  // Before aluminium, for there is aluminium bronze.
+  }
+  if (has("iron")) {
+    return 500;
+  }
+  if (has("aluminium")) {
+    return 900;
+  }
+  if (has("magnesium")) {
+    return 1020;
+  }
+  if (has("titanium")) {
+    return 530;
+  }
+  return has("polymer") ? 1500 : 480;
+}
+
+double CalcGapConductance(double clearance) noexcept {
+  constexpr double kAir = 0.03;
+  return 2 * kAir / clearance;
+}
+
 double CalcStickingDepth(const ThermalJoint& joint, double hub_c, double shaft_c,
                          const HeatExchange& exchange) noexcept {
   if (CalcHotClearance(joint, hub_c, shaft_c) <= 0) {

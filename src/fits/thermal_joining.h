@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include "base/result.h"
 #include "fits/press_fit.h"
 
@@ -39,6 +41,16 @@ struct HeatExchange {
   double conductance{0};     ///< Of the joint, for each square metre engaged [W/(m2 K)], > 0.
   double speed{0};           ///< Of insertion [m/s], > 0.
 };
+
+/** Specific heat of a material's group in Materials(), handbook values near 100 C [J/(kg K)]: steel
+ 480, cast iron 500, aluminium 900, magnesium 1020, copper alloys
+ and zinc 390, titanium 530, polymers 1500.
+ */
+[[nodiscard]] double SpecificHeatOf(std::string_view group) noexcept;
+
+/** What still air in a gap of parts beside each other carries, 0.03 W/(m K) at about 100 C, over
+ the gap [W/(m2 K)]. @param clearance  Of the diameters [m], > 0: the gap is half of it. */
+[[nodiscard]] double CalcGapConductance(double clearance) noexcept;
 
 /** The depth at which the shaft sticks [m], +inf if it never does.
 

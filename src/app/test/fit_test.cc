@@ -96,6 +96,22 @@ TEST(FitCommand, RefusalsSayWhatAFitLooksLike) {
   ExpectRefusal({"fit"}, "a fit");
 }
 
+// N4: heat, cold and both; the play at temperatures is that of the closed form.
+TEST(FitCommand, JoiningByHeatAndColdSaysThePlayAndWhetherItSticks) {
+  const json slow = RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "150",
+                                 "--shaft-temp", "-78", "--join-speed", "0.1"})["joining"]["asked"];
+  // 40 mm (12e-6 130 + 12e-6 98) - 42 um.
+  EXPECT_NEAR(slow["clearance_um"].get<double>(), 40e3 * 12e-6 * (130 + 98) - 42, 1e-6);
+  EXPECT_LT(slow["sticking_depth_mm"].get<double>(), 50);
+  const json fast = RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "150",
+                                 "--shaft-temp", "-78", "--join-speed", "100"})["joining"]["asked"];
+  // The depth grows with the root of the speed.
+  EXPECT_NEAR(fast["sticking_depth_mm"].get<double>() / slow["sticking_depth_mm"].get<double>(),
+              std::sqrt(1000), 1e-6);
+  const Ran cold = RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "30"});
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "does not go together", cold.out);
+}
+
 // W3: what people write for a diameter, and E8, which is a class and no power of ten.
 TEST(FitCommand, ReadsDiametersAsPeopleWriteThem) {
   const auto nominal_mm = [](const char* text) {
@@ -229,8 +245,8 @@ TEST(FitCommand, PlotsHaveAxesUnitsAndLegend) {
             0);
   ASSERT_EQ(RunHvas({"fit", "paper", "--curve", folder / "paper.svg"}).status, 0);
   ExpectPlot(ReadText(folder / "curve.svg"),
-             {"axial force, N", "depth of the shaft, mm", "5 to 95 %", "what the press can do",
-              "clearance of the diameters, um"});
+             {"axial force, N", "depth of the shaft, mm", "5 to 95 %", "One pair of the batch",
+              "what the press can do", "clearance of the diameters, um"});
   ExpectPlot(ReadText(folder / "jam.svg"),
              {"F_x / F_z", "M / (r F_z)", "tilt, deg", "may wedge", "slides on"});
   ExpectPlot(ReadText(folder / "paper.svg"),
@@ -291,7 +307,8 @@ class FitTable : public ::testing::Test {
 TEST_F(FitTable, LimitsOfClassesOrTheReasonWhyThereAreNone) {
   EXPECT_EQ(
       Run("limits",
-          "nominal_mm,class\n40,H7\n40,g6\n280,M6\n3,js7\n30.001,H7\n40,N01\n40,Q7\nten,H7\n"),
+          "nominal_mm,class\n40,H7\n40,g6\n280,M6\n3,js7\n30.001,H7\n40,N01\n40,Q7\nten,H7\n1.5 "
+          "in,H7\n,H7\n-5,H7\n0,H7\n4000,H7\n"),
       "nominal_mm,class,kind,upper_um,lower_um,reason\n"
       "40,H7,hole,25,0,\n"
       "40,g6,shaft,-9,-25,\n"
@@ -300,7 +317,13 @@ TEST_F(FitTable, LimitsOfClassesOrTheReasonWhyThereAreNone) {
       "30.001,H7,hole,25,0,\n"
       "40,N01,hole,,,ISO 286 defines no class N01 at 40 mm; choose another class\n"
       "40,Q7,,,,\"\"\"Q7\"\" is no tolerance class; write letters and grade as in H7 or js6\"\n"
-      "ten,H7,,,,nominal_mm is no number\n");
+      "ten,H7,,,,\"nominal_mm is no number; write millimetres, or inches as in 1.5 in\"\n"
+      "1.5 in,H7,hole,25,0,\n"
+      ",H7,,,,nominal_mm is missing\n"
+      "-5,H7,,,,\"nominal_mm is no number; write millimetres, or inches as in 1.5 in\"\n"
+      "0,H7,hole,,,0 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 mm\n"
+      "4000,H7,hole,,,4000 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 "
+      "mm\n");
 }
 
 TEST_F(FitTable, PressFitsOfJoints) {

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fits/materials.h"
+
 namespace hvas::fits {
 namespace {
 
@@ -67,6 +69,17 @@ TEST(ThermalJoining, SticksAtOnceWithoutClearanceAndNeverWhereItLasts) {
   fast.speed *= 4;
   EXPECT_NEAR(CalcStickingDepth(steel, 220, 20, fast),
               2 * CalcStickingDepth(steel, 220, 20, exchange), 1e-12);
+}
+
+TEST(ThermalJoining, HeatOfEveryMaterialIsThatOfItsKind) {
+  for (const Material& material : Materials()) {
+    const double heat = SpecificHeatOf(material.group);
+    EXPECT_GE(heat, 390) << material.name;
+    EXPECT_LE(heat, 1500);
+    // Dulong and Petit: of metals about 25 J/(mol K), so rho c is 2 to 4 MJ/(m3 K).
+    EXPECT_NEAR(heat * material.density, 2.9e6, 1.2e6) << material.name;
+  }
+  EXPECT_NEAR(CalcGapConductance(40e-6), 1500, 1e-9);
 }
 
 }  // namespace
