@@ -10,6 +10,8 @@ namespace {
 constexpr double kDt = 1e-3;  // [s]; a device sample
 constexpr double kGraspTime = 0.35;
 constexpr double kSettleTime = 0.25;
+constexpr double kRestTime = 1.0;
+constexpr double kSlackTime = 0.08;  // in which the arm goes slack
 constexpr double kReleaseTime = 0.2;
 constexpr double kShortestReach = 0.35;
 constexpr double kStandOff = 6e-3;    // [m] before anything engages, where approach ends
@@ -166,6 +168,12 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     phase_time_s_ = 0;
     return;
   }
+  const double seen_travel = (input.X_WD * task_.p_BG - task_.X_WG_goal.p()).dot(d);
+  if (input.sees_part && seen_travel <= task_.turn_back) {
+    phase_ = Phase::kRest;
+    phase_time_s_ = 0;
+    return;
+  }
   // A long way in takes its time.
   const double patience_s =
       std::max(options_.patience_s, 3 * task_.engage_distance / options_.insert_speed);
@@ -177,7 +185,6 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   // and gives way inside.
   const bool is_by_eye = input.sees_part && !is_guided_;
   const bool is_careful = is_by_eye && search_count_ > 0;
-  const double seen_travel = (input.X_WD * task_.p_BG - task_.X_WG_goal.p()).dot(d);
   const double travel = is_by_eye ? seen_travel : hand_travel;
   const bool is_inside = is_by_eye && travel < task_.engage_distance - kLeadIn;
   if (is_backing_off_) {
@@ -192,15 +199,11 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
       LookClosely(input);
     }
   } else {
-    // Presses harder while little moves, but not beyond what the device pushes back with: the arm's
-    // spring turns the lead into a force.
+    // The arm's spring turns the lead into a force.
     const double speed = -V_H_.v.dot(d);
     const double wanted_speed = is_careful ? kCarefulSpeed : options_.insert_speed;
     const bool is_slow = speed < kSlowShare * wanted_speed;
-    const bool is_at_limit = input.F_H_D.f.norm() >= options_.push_limit;
-    const bool is_light = is_careful && !is_inside;
-    const double change = is_slow && !is_at_limit && !is_light ? kPushRate : -kPushRate;
-    push_ = std::max(is_light ? kLightPush : kFirstPush, push_ + change * kDt);
+    AdjustPush(input, speed, wanted_speed, is_careful && !is_inside);
     push_ = is_careful ? std::min(push_, kCarefulPush) : push_;
     const double lead = push_ / options_.stiffness;
     travel_ = std::max(travel_ - wanted_speed * kDt, hand_travel - lead);
@@ -215,6 +218,28 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   }
   p_ref_ = task_.X_WG_goal.p() + travel_ * d + aim_offset_ + search_offset_ + yield_offset_;
   q_ref_ = spatial::RotationFromVector(aim_turn_ + yield_turn_ + rocking_) * task_.X_WG_goal.q();
+}
+
+void SimulatedPerson::AdjustPush(const OperatorInput& input, double speed, double wanted_speed,
+                                 bool is_light) noexcept {
+  const bool is_slow = speed < kSlowShare * wanted_speed;
+  const bool is_at_limit = input.F_H_D.f.norm() >= options_.push_limit;
+  const double change = is_slow && !is_at_limit && !is_light ? kPushRate : -kPushRate;
+  push_ = std::max(is_light ? kLightPush : kFirstPush, push_ + change * kDt);
+}
+
+void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
+  const Vec3& d = task_.extraction_W;
+  const double hand_travel = (X_WH_.p() - task_.X_WG_goal.p()).dot(d);
+  if (hand_travel > task_.engage_distance + 2 * kStandOff || phase_time_s_ > options_.patience_s) {
+    PlanReturn();
+    return;
+  }
+  AdjustPush(input, V_H_.v.dot(d), options_.insert_speed, false);
+  travel_ =
+      std::min(travel_ + options_.insert_speed * kDt, hand_travel + push_ / options_.stiffness);
+  const Vec3 along = p_ref_ - task_.X_WG_goal.p();
+  p_ref_ += (travel_ - along.dot(d)) * d;
 }
 
 void SimulatedPerson::YieldToTouch(const Vec3& d) noexcept {
@@ -356,8 +381,20 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
     case Phase::kInsert:
       StepInsert(input);
       break;
+    case Phase::kRest:
+      p_ref_ += (X_WH_.p() - p_ref_) * (kDt / kSlackTime);
+      if (phase_time_s_ > kRestTime) {
+        phase_ = Phase::kWithdraw;
+        phase_time_s_ = 0;
+        push_ = 0;
+        travel_ = (p_ref_ - task_.X_WG_goal.p()).dot(task_.extraction_W);
+      }
+      break;
+    case Phase::kWithdraw:
+      StepWithdraw(input);
+      break;
     case Phase::kSettle:
-      p_ref_ += (X_WH_.p() - p_ref_) * (kDt / 0.08);
+      p_ref_ += (X_WH_.p() - p_ref_) * (kDt / kSlackTime);
       if (phase_time_s_ > kSettleTime) {
         phase_ = Phase::kRelease;
         phase_time_s_ = 0;

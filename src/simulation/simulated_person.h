@@ -18,7 +18,10 @@ struct PersonTask {
   spatial::Pose X_WG_goal;
   Vec3 p_BG{Vec3::Zero()};  ///< The grip in the part.
   Vec3 extraction_W{Vec3::UnitZ()};
-  double engage_distance{0};    ///< [m] from the goal, where insertion begins.
+  double engage_distance{0};  ///< [m] from the goal, where insertion begins.
+  /** [m] from the goal, where it stops, rests, draws the part out again and brings it back;
+   negative: it goes all the way in. */
+  double turn_back{-1};
   Vec3 centre_W{Vec3::Zero()};  ///< The product's.
   double transfer_radius{0};    ///< [m] at which it may be carried around the product.
   double lift_height{0.05};     ///< [m] that clears the other parts on the table.
@@ -77,6 +80,8 @@ class SimulatedPerson final : public Operator {
     kCarry,     ///< Around the product to the way in.
     kApproach,  ///< Along the way in, until just before it engages.
     kInsert,    ///< Slowly, feeling; searches and presses.
+    kRest,      ///< Part of the way in: lets its arm go slack.
+    kWithdraw,  ///< Draws it out again, feeling.
     kSettle,    ///< Heard it seat: waits a moment.
     kRelease,
     kGiveUp,  ///< Brings the part back to the table.
@@ -99,6 +104,11 @@ class SimulatedPerson final : public Operator {
   void PlanCarry() noexcept;
   void PlanReturn() noexcept;
   void StepInsert(const OperatorInput& input) noexcept;
+  void StepWithdraw(const OperatorInput& input) noexcept;
+  /** Presses or pulls harder while little moves, but not beyond what the device pushes back with.
+   @param speed  The way it wants to go [m/s]. */
+  void AdjustPush(const OperatorInput& input, double speed, double wanted_speed,
+                  bool is_light) noexcept;
   /** To and fro, harder the longer it sticks. */
   void Rock(const Vec3& d, bool is_slow) noexcept;
   /** Gives way across the way in, and in how it is turned, to what holds the hand back. */
