@@ -13,6 +13,29 @@ namespace {
 
 constexpr double kPaperFriction = 0.15;
 
+/** In words; the ones of CLI11 name the largest number there is. */
+const CLI::Validator& Positive() {
+  static const CLI::Validator validator(
+      [](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value > 0 ? std::string()
+                                                                   : text + " is not over 0";
+      },
+      "OVER 0");
+  return validator;
+}
+
+const CLI::Validator& NotNegative() {
+  static const CLI::Validator validator(
+      [](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value >= 0 ? std::string()
+                                                                    : text + " is not 0 or more";
+      },
+      "0 OR MORE");
+  return validator;
+}
+
 /** The value of the k-th fit in a list with one for each, or one for all. */
 double Pick(const std::vector<double>& list, std::size_t k, double otherwise) {
   return list.empty() ? otherwise : list[std::min(k, list.size() - 1)];
@@ -103,13 +126,13 @@ Result<void> CheckLists(const FitArguments& a) {
 void AddBatchArguments(CLI::App* fit, FitArguments* a) {
   const char* const group = "Populations";
   fit->add_option("--population", a->population.count, "Draw so many assemblies")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->group(group);
   fit->add_option("--seed", a->population.seed, "Of everything that is drawn")
       ->capture_default_str()
       ->group(group);
   fit->add_option("--press-limit,--press", a->population.press_force, "What the press can do [N]")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->group(group);
   fit->add_option("--sizes-spread", a->spread,
                   "How sizes spread: paper (normal over whole um, sigma a sixth of the zone) or "
@@ -118,10 +141,10 @@ void AddBatchArguments(CLI::App* fit, FitArguments* a) {
       ->capture_default_str()
       ->group(group);
   fit->add_option("--cp", a->cp, "Process capability C_p of both sizes: normal, not cut off")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->group(group);
   fit->add_option("--cpk", a->cpk, "C_pk, towards interference; as C_p without")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->group(group);
   fit->add_option("--sizes", a->sizes, "Measured diameters: a table with hole_mm, shaft_mm (CSV)")
       ->group(group);
@@ -131,7 +154,7 @@ void AddBatchArguments(CLI::App* fit, FitArguments* a) {
       ->group(group);
   fit->add_option("--threads", a->population.threads,
                   "To draw with; the figures are the same with any [all]")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->group(group);
 }
 
@@ -140,14 +163,14 @@ void AddPlotArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--curve", a->curve, "Write force over depth, in and out: .svg or .csv")
       ->group(group);
   fit->add_option("--step", a->step_mm, "Of the curve's depth [mm]; a two hundredth without")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->group(group);
   fit->add_option("--jamming", a->jamming, "Write the diagrams of jamming and wedging: .svg")
       ->group(group);
   fit->add_option(
          "--at", a->at_mm,
          "l of the diagram, from the tip's corner to the rim [mm]; half the length without")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->group(group);
   fit->add_option("--load", a->load,
                   "On the shaft, at the middle of its tip: across, along [N] and moment [N mm]")
@@ -170,38 +193,37 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
       "--length", &a->length_mm,
       "Of the joint [mm]; with it the press fit is calculated. With several fits one for each, "
       "with commas, or one for all; so --hub, --bore, --start")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   add_list("--hub", &a->hub_mm, "Outer diameter of the hub [mm]; twice the nominal without")
-      ->check(CLI::PositiveNumber);
-  add_list("--bore", &a->bore_mm, "Bore of a hollow shaft [mm]")->check(CLI::NonNegativeNumber);
+      ->check(Positive());
+  add_list("--bore", &a->bore_mm, "Bore of a hollow shaft [mm]")->check(NotNegative());
   add_list("--start", &a->start_mm, "Depth of the shaft at which the fit begins to engage [mm]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(NotNegative());
   fit->add_option("--chamfer", a->chamfer_deg,
                   "Of the chamfer that leads in, from the axis [deg]; a sharp edge without")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   fit->add_option("--material", a->material, "Of both parts [S355]");
   fit->add_option("--hub-material", a->hub_material, "Of the hub");
   fit->add_option("--shaft-material", a->shaft_material, "Of the shaft");
   fit->add_option("--mu", a->friction,
                   "Coefficient of friction; by the pair of materials without (hvas fit friction)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(NotNegative());
   fit->add_flag("--oiled", a->is_oiled, "The pair's lower coefficient: with mineral oil");
   fit->add_option("--rz", a->rz_um, "Roughness Rz of both surfaces [um]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(NotNegative())
       ->capture_default_str();
-  fit->add_option("--hub-rz", a->hub_rz_um, "Of the hub alone [um]")->check(CLI::NonNegativeNumber);
-  fit->add_option("--shaft-rz", a->shaft_rz_um, "Of the shaft alone [um]")
-      ->check(CLI::NonNegativeNumber);
+  fit->add_option("--hub-rz", a->hub_rz_um, "Of the hub alone [um]")->check(NotNegative());
+  fit->add_option("--shaft-rz", a->shaft_rz_um, "Of the shaft alone [um]")->check(NotNegative());
   fit->add_option("--smoothing", a->smoothing,
                   "Interference lost to roughness: none, din2001 (0.8), din2017 (0.4 of the sum)")
       ->check(CLI::IsMember({"none", "din2001", "din2017"}))
       ->capture_default_str();
   fit->add_option("--hub-temp", a->hub_c,
                   "To join at [C]; says what play there is, and if it sticks")
-      ->check(CLI::Range(-273, 2000));
-  fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(CLI::Range(-273, 2000));
+      ->check(CLI::Range(-273.0, 2000.0));
+  fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(CLI::Range(-273.0, 2000.0));
   fit->add_option("--join-speed", a->join_speed_mm_s, "Of joining by heat or cold [mm/s]")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->capture_default_str();
   fit->add_flag("--json", a->is_json, "Print one JSON document");
   AddBatchArguments(fit, a);

@@ -38,16 +38,13 @@ Result<fits::PressStroke> MakeStrokeAt(const std::vector<FitCard>& cards, double
   });
 }
 
-/** One pair of parts of the batch's kind: its sizes and B from the seed. */
-Result<fits::PressStroke> MakeDrawnStroke(FitCurve* curve) {
+/** A tight pair of the batch: at its first quartile, with B from the seed. In transition fits it is
+ one that has steps to show. */
+Result<fits::PressStroke> MakeTightStroke(FitCurve* curve) {
   Random random(curve->options.seed);
   return MakeStroke(curve->cards, [&](std::size_t k, fits::StrokeLand* land) {
     const auto& quantiles = curve->batch.lands[k].clearance_curve;
-    // Any pair will do: its place in the batch is drawn.
-    const double at = random.Uniform() * static_cast<double>(quantiles.size() - 1);
-    const auto i = static_cast<std::size_t>(at);
-    const double part = at - static_cast<double>(i);
-    curve->pair_clearances.push_back((1 - part) * quantiles[i] + part * quantiles[i + 1]);
+    curve->pair_clearances.push_back(quantiles[quantiles.size() / 4]);
     land->clearances =
         fits::DrawClearances(curve->pair_clearances.back(),
                              0.5 * (land->press.hub_roughness + land->press.shaft_roughness),
@@ -121,7 +118,7 @@ PlotPanel MakeForcePanel(const FitCurve& curve) {
       },
       &panel);
   AddLines(
-      curve, "one pair, with its roughness", PlotStyle::kLine, 1,
+      curve, "a tight pair, with its roughness", PlotStyle::kLine, 1,
       [](const FitCurve::Point& p) { return p.pair; }, &panel);
   AddLines(
       curve, "largest interference of the limits, smooth", PlotStyle::kDashed, 2,
@@ -140,7 +137,7 @@ PlotPanel MakeForcePanel(const FitCurve& curve) {
 /** On its own scale, for the steps of a rough transition fit. */
 PlotPanel MakePairPanel(const FitCurve& curve) {
   PlotPanel panel;
-  panel.title = "One pair of the batch, by itself: clearance of the diameters";
+  panel.title = "The tight pair by itself (first quartile): clearance of the diameters";
   for (std::size_t k = 0; k < curve.pair_clearances.size(); ++k) {
     panel.title +=
         fmt::format("{} {:+.1f} um", k > 0 ? "," : "", units::ToUm(curve.pair_clearances[k]));
@@ -198,7 +195,7 @@ Result<FitCurve> MakeFitCurve(const std::vector<FitCard>& cards,
   const Result<fits::PressStroke> least = MakeStrokeAt(cards, 1);
   const Result<fits::PressStroke> mean = MakeStrokeAt(cards, 0.5);
   const Result<fits::PressStroke> most = MakeStrokeAt(cards, 0);
-  const Result<fits::PressStroke> pair = MakeDrawnStroke(&curve);
+  const Result<fits::PressStroke> pair = MakeTightStroke(&curve);
   for (const auto* stroke : {&least, &mean, &most, &pair}) {
     if (!*stroke) {
       return Unexpected(stroke->error());
@@ -217,7 +214,7 @@ Result<FitCurve> MakeFitCurve(const std::vector<FitCard>& cards,
   for (double i = 0; i <= steps; ++i) {
     // From the end backwards, so that the last point is the full depth.
     const double back = step > 0 ? step * (steps - i) : way * (steps - i) / steps;
-    const double depth = std::max(most->begin(), most->end() - back);
+    const double depth = i > 0 ? most->end() - back : most->begin();
     curve.points.push_back({depth, ForcesAt(*least, depth), ForcesAt(*mean, depth),
                             ForcesAt(*most, depth), ForcesAt(*pair, depth),
                             InterpolateBand(curve.batch, depth)});

@@ -19,7 +19,7 @@ struct FitCurve {
   struct Point {
     double depth{0};           // Of the shaft [m].
     Forces least, mean, most;  // By the limits, without roughness [N].
-    Forces pair;               // One pair of the batch, with its roughness [N].
+    Forces pair;               // A tight pair of the batch, with its roughness [N].
     fits::ForceBand band;      // Of the batch, pressing in; pulling out by the ratio of friction.
   };
 

@@ -37,9 +37,15 @@ std::string GradeName(int grade) {
   return grade < 0 ? "01" : std::to_string(grade);
 }
 
-Unexpected NotDefined(const std::string& what, double size_mm, const std::string& remedy) {
+Unexpected NotDefined(const std::string& what, double size_mm, const std::string& rule,
+                      const std::string& remedy) {
   return Fail(ErrorCode::kUnsupported,
-              fmt::format("ISO 286 defines no {} at {:g} mm", what, size_mm), {}, remedy);
+              fmt::format("ISO 286 defines no {} at {:g} mm: {}", what, size_mm, rule), {}, remedy);
+}
+
+/** Why there is no standard tolerance of a grade at a size. */
+std::string RuleOfGrade(int grade) {
+  return grade <= 0 ? "IT01 and IT0 end at 500 mm" : "IT14 to IT18 are not for sizes up to 1 mm";
 }
 
 std::optional<Error> CheckSize(double size_mm) {
@@ -145,6 +151,44 @@ Fundamental FindHole(const std::string& letters, int grade, double size_mm) {
   return {true, FindUpperOfHole(small, grade, size_mm)};
 }
 
+/** Why there is no class at a size at which its grade has a tolerance. */
+std::string RuleOfClass(const ToleranceClass& c, double size_mm) {
+  std::string small = c.letters;
+  for (char& letter : small) {
+    letter = c.is_hole() ? static_cast<char>(letter - 'A' + 'a') : letter;
+  }
+  if (small == "js") {
+    return "js and JS go with IT1 to IT18";
+  }
+  if (small == "j") {
+    return c.is_hole() ? "J is defined as J6, J7 and J8 up to 500 mm"
+                       : "j is defined as j5, j6 and j7 up to 500 mm, and as j8 up to 3 mm";
+  }
+  const auto begins = [&](const char* letters, double from_mm) {
+    return small == letters && size_mm <= from_mm;
+  };
+  if (begins("a", 1) || begins("b", 1)) {
+    return "a, b, A and B are not for sizes up to 1 mm";
+  }
+  if (size_mm > 500 && FindDeviation(kUpperDeviations, small, size_mm) == kNo &&
+      FindDeviation(kLowerDeviations, small, size_mm) == kNo) {
+    return "above 500 mm there are only d to h, js, k, m, n, p, r, s, t, u and their holes";
+  }
+  if (small == "cd" || small == "ef" || small == "fg") {
+    return "cd, ef, fg and their holes end at 50 mm";
+  }
+  if (begins("t", 24) || begins("v", 14) || begins("y", 18)) {
+    return "t begins over 24 mm, v over 14 mm and y over 18 mm, and so their holes";
+  }
+  if (c.is_hole() && small == "k" && c.grade > 8) {
+    return "K above IT8 is for sizes up to 3 mm only";
+  }
+  if (c.is_hole() && small == "n" && c.grade > 8) {
+    return "N9 and coarser are not for sizes up to 1 mm";
+  }
+  return "delta, which holes K to ZC need between 3 and 500 mm, begins with IT3";
+}
+
 bool IsLetter(const std::string& letters) {
   std::string small = letters;
   const bool is_capital = letters.front() >= 'A' && letters.front() <= 'Z';
@@ -246,7 +290,7 @@ Result<double> CalcStandardTolerance(int grade, double nominal) {
   }
   const double it_um = FindIt(grade, size_mm);
   if (it_um == kNo) {
-    return NotDefined("IT" + GradeName(grade), size_mm, "choose another grade");
+    return NotDefined("IT" + GradeName(grade), size_mm, RuleOfGrade(grade), "choose another grade");
   }
   return units::FromUm(it_um);
 }
@@ -265,7 +309,8 @@ Result<Limits> CalcLimits(const ToleranceClass& tolerance_class, double nominal)
                                     ? FindHole(letters, tolerance_class.grade, size_mm)
                                     : FindShaft(letters, tolerance_class.grade, size_mm);
   if (deviation.value_um == kNo) {
-    return NotDefined("class " + tolerance_class.ToString(), size_mm, "choose another class");
+    return NotDefined("class " + tolerance_class.ToString(), size_mm,
+                      RuleOfClass(tolerance_class, size_mm), "choose another class");
   }
   // In micrometres until the end, so that limits are what a table prints.
   const double it_um = FindIt(tolerance_class.grade, size_mm);

@@ -43,9 +43,8 @@ struct HeatExchange {
 };
 
 /** Specific heat of a material's group in Materials(), handbook values near 100 C [J/(kg K)]: steel
- 480, cast iron 500, aluminium 900, magnesium 1020, copper alloys
- and zinc 390, titanium 530, polymers 1500.
- */
+ 480, cast iron 500, aluminium 900, magnesium 1020, copper alloys and zinc 390, titanium 530,
+ polymers 1500. */
 [[nodiscard]] double SpecificHeatOf(std::string_view group) noexcept;
 
 /** What still air in a gap of parts beside each other carries, 0.03 W/(m K) at about 100 C, over

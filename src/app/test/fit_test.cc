@@ -82,6 +82,9 @@ TEST(FitCommand, RefusalsSayWhatAFitLooksLike) {
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--hub", "30"}, "outer diameter");
   ExpectRefusal({"fit", "40 H7/p6", "--population", "10"}, "length");
   ExpectRefusal({"fit", "40 h7/G6"}, "come first");
+  ExpectRefusal({"fit", "0.8 N9"}, "N9 and coarser are not for sizes up to 1 mm");
+  ExpectRefusal({"fit", "1000 ZC7"}, "above 500 mm");
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "-3"}, "--length: -3 is not over 0");
   ExpectRefusal({"fit", "1 40 H7/p6"}, "40 H7/p6");
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--curve", "force.png"}, ".svg or .csv");
   ExpectRefusal({"fit", "40 H7/p6", "--curve", "force.svg"}, "--length");
@@ -245,7 +248,7 @@ TEST(FitCommand, PlotsHaveAxesUnitsAndLegend) {
             0);
   ASSERT_EQ(RunHvas({"fit", "paper", "--curve", folder / "paper.svg"}).status, 0);
   ExpectPlot(ReadText(folder / "curve.svg"),
-             {"axial force, N", "depth of the shaft, mm", "5 to 95 %", "One pair of the batch",
+             {"axial force, N", "depth of the shaft, mm", "5 to 95 %", "The tight pair by itself",
               "what the press can do", "clearance of the diameters, um"});
   ExpectPlot(ReadText(folder / "jam.svg"),
              {"F_x / F_z", "M / (r F_z)", "tilt, deg", "may wedge", "slides on"});
@@ -315,7 +318,9 @@ TEST_F(FitTable, LimitsOfClassesOrTheReasonWhyThereAreNone) {
       "280,M6,hole,-9,-41,\n"
       "3,js7,shaft,5,-5,\n"
       "30.001,H7,hole,25,0,\n"
-      "40,N01,hole,,,ISO 286 defines no class N01 at 40 mm; choose another class\n"
+      "40,N01,hole,,,\"ISO 286 defines no class N01 at 40 mm: delta, which holes K to ZC need "
+      "between 3 "
+      "and 500 mm, begins with IT3; choose another class\"\n"
       "40,Q7,,,,\"\"\"Q7\"\" is no tolerance class; write letters and grade as in H7 or js6\"\n"
       "ten,H7,,,,\"nominal_mm is no number; write millimetres, or inches as in 1.5 in\"\n"
       "1.5 in,H7,hole,25,0,\n"

@@ -252,13 +252,43 @@ TEST(CalcLimits, HoleBasedAndShaftBasedFitsAreEquivalent) {
   }
 }
 
-TEST(CalcLimits, RefusesWhatTheStandardLeavesOut) {
-  for (const auto& [text, size_mm] : std::vector<std::pair<const char*, double>>{
-           {"h01", 501}, {"h0", 600}, {"h14", 1},  {"a11", 1},  {"B11", 0.8}, {"N9", 1},
-           {"t6", 24},   {"v6", 14},  {"y6", 18},  {"v6", 501}, {"za6", 600}, {"j6", 501},
-           {"j8", 4},    {"j4", 10},  {"J9", 10},  {"K9", 10},  {"K2", 10},   {"M1", 10},
-           {"cd6", 51},  {"EF7", 51}, {"js0", 10}, {"J6", 600}}) {
-    EXPECT_FALSE(IsDefined(text, size_mm)) << text << ' ' << size_mm;
+// W3: refused with the rule that says so.
+TEST(CalcLimits, RefusesWhatTheStandardLeavesOutAndSaysWhy) {
+  struct Case {
+    const char* text;
+    double size_mm;
+    const char* rule;
+  };
+
+  for (const Case& c : {Case{"h01", 501, "IT01"},
+                        {"h0", 600, "IT01"},
+                        {"h14", 1, "IT14"},
+                        {"a11", 1, "up to 1 mm"},
+                        {"B11", 0.8, "up to 1 mm"},
+                        {"N9", 1, "N9"},
+                        {"t6", 24, "24 mm"},
+                        {"T7", 20, "24 mm"},
+                        {"v6", 14, "14 mm"},
+                        {"y6", 18, "18 mm"},
+                        {"v6", 501, "above 500 mm"},
+                        {"ZA6", 600, "above 500 mm"},
+                        {"c9", 600, "above 500 mm"},
+                        {"j6", 501, "j5"},
+                        {"j8", 4, "j8"},
+                        {"j4", 10, "j5"},
+                        {"J9", 10, "J6"},
+                        {"J6", 600, "J6"},
+                        {"K9", 10, "K above IT8"},
+                        {"K2", 10, "delta"},
+                        {"M1", 10, "delta"},
+                        {"cd6", 51, "50 mm"},
+                        {"EF7", 51, "50 mm"},
+                        {"js0", 10, "IT1 to IT18"}}) {
+    const Result<Limits> limits =
+        CalcLimits(*ParseToleranceClass(c.text), units::FromMm(c.size_mm));
+    ASSERT_FALSE(limits.has_value()) << c.text << ' ' << c.size_mm;
+    EXPECT_EQ(limits.error().code, ErrorCode::kUnsupported);
+    EXPECT_NE(limits.error().message.find(c.rule), std::string::npos) << limits.error().message;
   }
   for (const auto& [text, size_mm] : std::vector<std::pair<const char*, double>>{{"t6", 24.1},
                                                                                  {"v6", 14.1},
