@@ -26,8 +26,8 @@ using PartFn = std::function<void(std::uint32_t number, std::string_view name)>;
 struct ImportOptions {
   /** How finely parts are meshed. A part's chord deflection is relative to its own size, because
    files come a thousand times too large or too small. */
-  double relative_deflection{2e-5};   ///< Of the diagonal of the part's box.
-  double min_deflection{1e-6};        ///< No finer than this [m].
+  double relative_deflection{4e-5};   ///< Of the diagonal of the part's box.
+  double min_deflection{2e-6};        ///< No finer than this [m].
   double max_angle{0.1};              ///< Between the normals of neighbouring triangles [rad].
   std::size_t max_triangles{200000};  ///< A part with more is meshed again, coarser.
   double length_unit{1e-3};           ///< Of files that state none (OBJ, STL) [m].

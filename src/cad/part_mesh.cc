@@ -34,8 +34,8 @@ constexpr int kRetries = 3;
 
 // Largest deflection inside faces over that of edges. Contact does not take distances from the mesh
 // of an analytic face, so that angles limit it alone.
-constexpr double kFreeformInterior = 4;
-constexpr double kAnalyticInterior = 50;
+constexpr double kFreeformInterior = 2;
+constexpr double kAnalyticInterior = 25;
 
 /** Lets faces have deflections of their own inside, whereas edges are divided the same for all. */
 class FaceLevels : public BRepMesh_Context {

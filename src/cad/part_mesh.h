@@ -25,7 +25,7 @@ MeshLevel MeshForDisplay(const TopoDS_Shape& shape, double diagonal, const Impor
 /** Meshes a shape in place for contact, after MeshForDisplay, whose triangles tell how many there
  will be: on B-splines their number goes with the inverse of the deflection, and a fine mesh of the
  wrong part takes minutes. Notes a mesh coarser than wanted, and warns of one that is too large.
- Edges have the level's deflection, the inside of freeform faces four times that, and that of
+ Edges have the level's deflection, the inside of freeform faces twice that, and that of
  analytic ones only its angle: contact has their distances from their surfaces.
  @param is_analytic  Of each face, in the order of TopExp_Explorer.
  @pre `shape` holds the mesh of MeshForDisplay at `display`. */

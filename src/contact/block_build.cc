@@ -49,6 +49,17 @@ struct FewFaces {
 
 constexpr std::size_t kMostFaces = 12;
 
+// The distance from a surface in single precision has a gradient everywhere but on an axis.
+bool HasFormWithin(const spatial::Surface& surface, const Vec3& centre, double radius) {
+  constexpr double kOffAxis = 100e-6;  // [m]
+  if (MakeFaceForm(surface).kind == FaceForm::Kind::kNone) {
+    return false;
+  }
+  const Vec3 r = centre - surface.origin;
+  return surface.kind == spatial::SurfaceKind::kPlane ||
+         r.cross(surface.axis).norm() > radius + kOffAxis;
+}
+
 bool IsOneFace(const Mesh& mesh, const NearList& list) {
   const std::uint32_t face = mesh.face[list.front().triangle];
   return std::all_of(list.begin(), list.end(),
@@ -85,7 +96,11 @@ void BlockBuilder::Build(Block* block) {
   block_ = block;
   hint_ = block->list.front().triangle;
   const Vec3 middle = block->origin + Vec3::Constant(4 * h_);
-  if (!TryExact(block->list, middle, 4 * h_, {0, 0, 0}, 4)) {
+  if (TryExact(block->list, middle, 4 * h_, {0, 0, 0}, 4)) {
+    const std::uint32_t face = data_.mesh.face[block->list.front().triangle];
+    const double radius = 8 * kHalfDiagonal * h_;
+    block->face = HasFormWithin(data_.exact.faces[face], middle, radius) ? face : kNoFace;
+  } else {
     for (int o = 0; o < 8; ++o) {
       const Vec3 centre = middle + 2 * h_ * Corner(o);
       search_.Filter(block->list, centre, 4 * kHalfDiagonal * h_, false, &octant_);

@@ -30,8 +30,9 @@ struct Block {
   NearList list;  ///< What may be closest within it.
   std::array<std::int16_t, kBlockNodes> nodes{};
   std::array<Zone, kZonesPerBlock> zones;
-  bool is_near{false};    ///< Some node is near the surface; else the block is not needed.
-  bool is_inside{false};  ///< Where it is not near: on which side.
+  bool is_near{false};          ///< Some node is near the surface; else the block is not needed.
+  bool is_inside{false};        ///< Where it is not near: on which side.
+  std::uint32_t face{kNoFace};  ///< That gives all distances in the block by its FaceForm.
 };
 
 /** Fills blocks: distances at the nodes, and what decides in each zone. One for each thread. */

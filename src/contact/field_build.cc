@@ -153,6 +153,10 @@ class Layer {
       entry = block.is_inside ? kTopInside : kTopOutside;
       return;
     }
+    if (block.face != kNoFace) {
+      entry = kTopFace - static_cast<std::int32_t>(block.face);
+      return;
+    }
     std::array<std::uint32_t, kZonesPerBlock> codes{};
     for (std::size_t z = 0; z < kZonesPerBlock; ++z) {
       const Zone& zone = block.zones[z];

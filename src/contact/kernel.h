@@ -10,10 +10,13 @@ inline constexpr int kBlockCells = 8;
 inline constexpr int kBlockNodes = 729;  ///< 9^3.
 inline constexpr std::int32_t kTopOutside = -1;
 inline constexpr std::int32_t kTopInside = -2;
+inline constexpr std::int32_t kTopFace = -3;  ///< Less the number of the face that has the block.
 
 /** A block distance field. Node (i, j, k) of the grid lies at origin + voxel (i, j, k). */
 struct FieldView {
-  const std::int32_t* top{nullptr};    ///< Block number, or kTopOutside, or kTopInside.
+  /** Block number; kTopOutside or kTopInside; or where one analytic face has all distances of a
+   block, kTopFace less its number. */
+  const std::int32_t* top{nullptr};
   const std::int16_t* nodes{nullptr};  ///< 9^3 a block, in units of quantum.
   const float* slack{nullptr};         ///< Of each block: bound of the interpolation's error.
   int blocks[3]{0, 0, 0};

@@ -138,7 +138,8 @@ class ZoneList {
   /** Where the solid is what its faces have in common, the way out of it is the way out of the face
    that is left soonest; from outside, the way to a face is the way to the solid if it ends inside
    the other faces. The same with inside and outside exchanged where any face will do. True when
-   that decides; what lies no nearer than the filter's limit may be told by a lower bound. */
+   that decides; what lies no nearer than the filter's limit may be told by a lower bound. False
+   with a valid answer when that is a bound only: the way is at least as long. */
   [[nodiscard]] bool FromSurfaces(const FaceFilter& filter, Refined* out) const noexcept {
     if (kind_ == ListFaces::Kind::kMixed) {
       return false;
@@ -159,16 +160,13 @@ class ZoneList {
     }
     const double way = side * faces_.surface(last).distance;
     const bool is_far = side > 0 && way >= filter.limit;
-    if (way > 0 && others + way > 0 && !is_far) {
-      return false;
-    }
     *out = {faces_.surface(last).distance,
             faces_.surface(last).gradient,
             faces_.face(last),
             kNoFace,
             true,
             true};
-    return true;
+    return way <= 0 || others + way <= 0 || is_far;
   }
 
   [[nodiscard]] Closest Find(const FaceFilter& filter) const noexcept {
@@ -333,6 +331,11 @@ ZoneAt FindZone(const Shape::Data& shape, const Vec3& p) noexcept {
   }
   const int block = grid.top[((cell[2] >> 3) * grid.blocks[1] + (cell[1] >> 3)) * grid.blocks[0] +
                              (cell[0] >> 3)];
+  if (block <= kTopFace) {
+    result.code = zone::kExact | static_cast<std::uint32_t>(kTopFace - block);
+    result.is_known = true;
+    return result;
+  }
   if (block < 0) {
     return result;
   }
@@ -355,7 +358,7 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
       return Nothing();
     }
     const ZoneList list(shape, payload, p, (p - at.centre).norm());
-    Refined from_surfaces;
+    Refined from_surfaces = Nothing();
     if (list.FromSurfaces(filter, &from_surfaces)) {
       return from_surfaces;
     }
@@ -364,7 +367,13 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
     if (filter.Drops(feature.face) || filter.Drops(feature.other_face)) {
       return WithoutIgnored(shape, list, p, filter, field);
     }
-    return FromFeature(shape, closest, feature, p, field);
+    const Refined from_mesh = FromFeature(shape, closest, feature, p, field);
+    // Beside a round edge the chords of the mesh go a little too far.
+    const bool is_too_far =
+        from_surfaces.is_valid &&
+        (from_surfaces.distance > 0 ? from_mesh.distance < from_surfaces.distance - kOnFeature
+                                    : from_mesh.distance > from_surfaces.distance + kOnFeature);
+    return is_too_far ? from_surfaces : from_mesh;
   }
   if (filter.Drops(payload)) {
     return Nothing();

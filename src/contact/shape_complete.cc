@@ -23,43 +23,6 @@ Vec3 NearestOrigin(const spatial::Surface& surface) {
   }
 }
 
-FaceForm FormOf(const spatial::Surface& surface) {
-  FaceForm form;
-  const Vec3 origin = NearestOrigin(surface);
-  if (surface.kind == spatial::SurfaceKind::kFreeform || origin.norm() + surface.radius > kReach) {
-    return form;
-  }
-  for (int k = 0; k < 3; ++k) {
-    form.origin[k] = static_cast<float>(origin[k]);
-    form.axis[k] = static_cast<float>(surface.axis[k]);
-  }
-  form.outward = static_cast<float>(surface.outward);
-  form.kind = FaceForm::Kind::kStraight;
-  switch (surface.kind) {
-    case spatial::SurfaceKind::kPlane:
-      form.along = 1;
-      break;
-    case spatial::SurfaceKind::kCylinder:
-      form.across = 1;
-      form.radius = static_cast<float>(surface.radius);
-      break;
-    case spatial::SurfaceKind::kCone:
-      form.across = static_cast<float>(std::cos(surface.second));
-      form.along = static_cast<float>(-std::sin(surface.second));
-      break;
-    case spatial::SurfaceKind::kSphere:
-      form.kind = FaceForm::Kind::kRound;
-      form.minor = static_cast<float>(surface.radius);
-      break;
-    default:
-      form.kind = FaceForm::Kind::kRound;
-      form.radius = static_cast<float>(surface.radius);
-      form.minor = static_cast<float>(surface.second);
-      break;
-  }
-  return form;
-}
-
 // First the sample where most faces meet, of those the one in the middle; then always the one that
 // is furthest from those before it, so that as few as one likes are spread over the leaf.
 std::array<std::uint8_t, 8> OrderOf(const Shell& shell, std::size_t leaf) {
@@ -125,13 +88,50 @@ void Shrink(Mesh* mesh) {
 
 }  // namespace
 
+FaceForm MakeFaceForm(const spatial::Surface& surface) {
+  FaceForm form;
+  const Vec3 origin = NearestOrigin(surface);
+  if (surface.kind == spatial::SurfaceKind::kFreeform || origin.norm() + surface.radius > kReach) {
+    return form;
+  }
+  for (int k = 0; k < 3; ++k) {
+    form.origin[k] = static_cast<float>(origin[k]);
+    form.axis[k] = static_cast<float>(surface.axis[k]);
+  }
+  form.outward = static_cast<float>(surface.outward);
+  form.kind = FaceForm::Kind::kStraight;
+  switch (surface.kind) {
+    case spatial::SurfaceKind::kPlane:
+      form.along = 1;
+      break;
+    case spatial::SurfaceKind::kCylinder:
+      form.across = 1;
+      form.radius = static_cast<float>(surface.radius);
+      break;
+    case spatial::SurfaceKind::kCone:
+      form.across = static_cast<float>(std::cos(surface.second));
+      form.along = static_cast<float>(-std::sin(surface.second));
+      break;
+    case spatial::SurfaceKind::kSphere:
+      form.kind = FaceForm::Kind::kRound;
+      form.minor = static_cast<float>(surface.radius);
+      break;
+    default:
+      form.kind = FaceForm::Kind::kRound;
+      form.radius = static_cast<float>(surface.radius);
+      form.minor = static_cast<float>(surface.second);
+      break;
+  }
+  return form;
+}
+
 void Shape::Data::Complete() {
   if (exact.list_faces.empty()) {  // A shape from disk has them.
     exact.list_faces = MakeListFaces(mesh, exact);
   }
   exact.forms.clear();
   for (const spatial::Surface& surface : exact.faces) {
-    exact.forms.push_back(FormOf(surface));
+    exact.forms.push_back(MakeFaceForm(surface));
   }
   OrderLeaves(&shell);
   OrderLeaves(&features);

@@ -66,6 +66,9 @@ struct ExactTable {
   }
 };
 
+/** kNone where single precision would not be good enough. */
+[[nodiscard]] FaceForm MakeFaceForm(const spatial::Surface& surface);
+
 inline constexpr std::size_t kMaxPointFaces = 4;
 
 /** The faces that meet at a sample and their normals (unit to 1e-4). Unused: kNoFace and zero. */

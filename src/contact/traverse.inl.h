@@ -212,9 +212,20 @@ class Traversal {
         PushInBand(Screen(hits, p, code, number), s, position, number);
       }
     }
+    const unsigned on_face = P::Bits(P::And(inside, P::LessInt(top, P::SetInt(kTopInside)))) & used;
+    if (on_face != 0) {
+      std::int32_t code[8];
+      P::StoreInt(top, code);
+      std::uint32_t face[8];
+      for (unsigned rest = on_face; rest != 0; rest &= rest - 1) {
+        const int lane = __builtin_ctz(rest);
+        face[lane] = static_cast<std::uint32_t>(kTopFace - code[lane]);
+      }
+      ScreenFaces(on_face, face, p, number);
+    }
     const unsigned solid = P::Bits(P::And(inside, P::LessInt(top, P::SetInt(kTopOutside))));
     // Outside the part and in no block is further away than `beyond`.
-    const unsigned rest = used & ~has_bits & (margin_ > field_.beyond ? ~0U : solid);
+    const unsigned rest = used & ~has_bits & ~on_face & (margin_ > field_.beyond ? ~0U : solid);
     if (rest != 0) {
       PushCoarse(rest, solid, position, number);
     }
@@ -233,7 +244,13 @@ class Traversal {
                           faces_.forms[face[lane]].kind != FaceForm::Kind::kNone;
       todo |= (is_one ? 1U : 0U) << lane;
     }
-    unsigned others = hits & ~todo;
+    return (hits & ~todo) | ScreenFaces(todo, face, p, number);
+  }
+
+  // The same where the face of each lane is known; returns those on the axis of theirs.
+  unsigned ScreenFaces(unsigned todo, const std::uint32_t* face, const Float* p,
+                       const std::uint32_t* number) {
+    unsigned others = 0;
     while (todo != 0) {
       const std::uint32_t f = face[__builtin_ctz(todo)];
       alignas(32) float distance[8];

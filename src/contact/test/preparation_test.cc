@@ -28,8 +28,9 @@ ShapeOptions WithVoxel(double voxel_mm) {
 
 std::size_t CountPlaces(const Shape& shape) {
   const auto& top = shape.data().field.top;
-  return static_cast<std::size_t>(
-      std::count_if(top.begin(), top.end(), [](std::int32_t block) { return block >= 0; }));
+  return static_cast<std::size_t>(std::count_if(top.begin(), top.end(), [](std::int32_t block) {
+    return block >= 0 || block <= kTopFace;
+  }));
 }
 
 std::size_t CountBlocks(const Shape& shape) {
