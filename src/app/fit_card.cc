@@ -202,6 +202,8 @@ std::string PressText(const FitCard& card) {
   };
   row("effective, um", [](const PressFit& f) { return Um(f.effective_interference); });
   row("pressure, MPa", [&](const PressFit& f) { return fixed(units::ToMpa(f.pressure), 2); });
+  row("hub widens by, um", [](const PressFit& f) { return Um(f.hub_expansion); });
+  row("shaft narrows by, um", [](const PressFit& f) { return Um(f.shaft_contraction); });
   row("force to press in, N", [&](const PressFit& f) { return fixed(f.press_in_force, 1); });
   row("force to push out, N", [&](const PressFit& f) { return fixed(f.push_out_force, 1); });
   row("torque, N m", [&](const PressFit& f) { return fixed(f.torque, 2); });
@@ -285,13 +287,26 @@ ordered_json ToJson(const FitCard& card) {
     json["max_clearance_um"] = units::ToUm(card.limits->max_clearance);
   }
   if (card.most) {
+    const fits::PressFitParameters& p = card.options.press;
+    json["joint"] = {{"length_mm", units::ToMm(p.length)},
+                     {"start_mm", units::ToMm(card.options.start)},
+                     {"hub_mm", units::ToMm(p.hub_diameter)},
+                     {"bore_mm", units::ToMm(p.shaft_bore)},
+                     {"chamfer_deg", units::ToDeg(card.options.lead_in_angle)},
+                     {"hub_material", card.options.hub_material},
+                     {"shaft_material", card.options.shaft_material},
+                     {"mu", p.friction_in},
+                     {"mu_source", card.options.friction_source},
+                     {"hub_rz_um", units::ToUm(p.hub_roughness)},
+                     {"shaft_rz_um", units::ToUm(p.shaft_roughness)},
+                     {"smoothing_loss_um", units::ToUm(card.most->smoothing_loss)}};
     json["press"] = {
         {"least", ToJson(*card.least)}, {"mean", ToJson(*card.mean)}, {"most", ToJson(*card.most)}};
     if (card.limits->min_clearance < 0) {
       const JoiningTemperatures joining = CalcJoining(card);
       json["joining"] = {{"heat_hub_to_c", joining.hub_c},
                          {"cool_shaft_to_c", joining.shaft_c},
-                         {"heat_hub_with_shaft_at_minus_78_c_to_c", joining.both_hub_c}};
+                         {"with_dry_ice_heat_hub_to_c", joining.both_hub_c}};
       if (HasJoining(card)) {
         const HotJoint hot = CalcHotJoint(card);
         json["joining"]["asked"] = {{"hub_c", hot.hub_c},

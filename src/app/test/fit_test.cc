@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -8,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/test/json_schema.h"
 #include "app/test/run_hvas.h"
 #include "base/test/temporary_folder.h"
 
@@ -292,6 +294,25 @@ TEST(FitCommand, FrictionSaysWhereEachCoefficientIsFrom) {
   EXPECT_FALSE(rows[0]["source"].get<std::string>().empty());
   const Ran card = RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub-material", "EN-GJL-250"});
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "mu 0.16 (dry pair, DIN 7190-1)", card.out);
+}
+
+// The card as JSON is what its schema says, whatever was asked for.
+TEST(FitCommand, JsonIsOfItsSchema) {
+  const TemporaryFolder folder;
+  const json schema = json::parse(
+      ReadText(std::filesystem::path(HVAS_SOURCE_DIR) / "data" / "schemas" / "fit.schema.json"));
+  const std::vector<std::vector<std::string>> commands{
+      {"40 H7"},
+      {"40 H7/g6"},
+      {"40 H7/p6", "--length", "50", "--hub-temp", "200", "--population", "1000"},
+      {"40 H7/k6", "35 H7/p6", "--length", "20", "--start", "0,30", "--population", "1000",
+       "--press-limit", "9000"},
+      {"40 H7/g6", "--length", "50", "--jamming", folder / "jam.svg"}};
+  for (std::vector<std::string> command : commands) {
+    command.insert(command.begin(), "fit");
+    const std::vector<std::string> errors = testing::Validate(schema, RunHvasJson(command));
+    EXPECT_TRUE(errors.empty()) << command[1] << ": " << errors.front();
+  }
 }
 
 class FitTable : public ::testing::Test {

@@ -137,6 +137,26 @@ TEST(Population, BandsAgreeWithSingleAssemblies) {
   EXPECT_NEAR(batch.bands[10].mean, mean, 5 * error);
 }
 
+// W(8): where every pair interferes all along, the force is linear in the sizes and in B: its mean
+// and its spread are sums of theirs. Trapezoids give the N + 1 values of B weights of 1/2 at the
+// ends.
+TEST(Population, MomentsOfTheForceOfATightFitAreAnalytic) {
+  const FitLimits limits = *CalcFitLimits(*ParseFit("H7/s6"), 0.04);
+  const SizeDistribution hole = SizeDistribution::Uniform({limits.hole.lower, 17e-6});
+  const SizeDistribution shaft = SizeDistribution::FromZone(limits.shaft);
+  const Population batch = *CalcPopulation(MakeBatch({MakeLand(hole, shaft, 6.3)}, 400'000));
+  const double per_metre = 3711.01e6;  // Of radial interference at full depth [N/m].
+  const double mean = per_metre * 0.5 * (shaft.mean() - hole.mean());
+  const double of_b = 6.3e-6 * 6.3e-6 / 12 * (19 + 2 * 0.25) / (20 * 20);
+  const double sigma = per_metre * std::sqrt(0.25 * (shaft.variance() + hole.variance()) + of_b);
+  const ForceBand& end = batch.bands.back();
+  EXPECT_NEAR(end.mean, mean, 5 * sigma / std::sqrt(400'000.0) + 1e-5 * mean);
+  // By its 5 and 95 % quantiles: a uniform and a normal size make nearly a normal distribution.
+  const double spread = (end.quantiles[3] - end.quantiles[1]) / (2 * 1.645);
+  EXPECT_NEAR(spread, sigma, 0.03 * sigma);
+  EXPECT_EQ(batch.any_interference_share, 1);
+}
+
 TEST(Population, FiguresDoNotDependOnTheNumberOfThreads) {
   PopulationParameters p = MakeBatch({MakeLand("H7/k6", 6.3), MakeLand("H7/p6", 3.2)}, 50'001);
   p.press_force = 40e3;
