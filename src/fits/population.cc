@@ -17,7 +17,7 @@ namespace hvas::fits {
 namespace {
 
 constexpr int kCurveSteps = 200;
-constexpr int kBlock = 4096;  // Assemblies; what is counted of them stays in the cache.
+constexpr int kBlock = 2048;  // Assemblies; what is counted of them stays in the cache.
 
 Result<void> Check(const PopulationParameters& p) {
   const auto fail = [](std::string what, std::string remedy) {
@@ -256,26 +256,22 @@ Counts Batch::MakeCounts() const {
 void Batch::DrawClearances(std::int64_t block, std::vector<std::vector<float>>* clearances_um,
                            Counts* counts) {
   BlockSums& sums = sums_[static_cast<std::size_t>(block)];
-  Random random(SeedOf(block));
   const auto count = static_cast<std::size_t>(CountIn(block));
-  std::array<std::uint32_t, kBlock> hole_bits;
-  std::array<std::uint32_t, kBlock> shaft_bits;
+  std::array<std::uint32_t, 2 * kBlock> bits;
+  const std::span<const std::uint32_t> hole_bits(bits.data(), count);
+  const std::span<const std::uint32_t> shaft_bits(bits.data() + kBlock, count);
   std::array<float, kBlock> hole_um{};
   std::array<float, kBlock> shaft_um{};
   std::array<std::uint16_t, kBlock> bins;
   std::array<std::uint8_t, kBlock> marks{};
   for (std::size_t k = 0; k < lands_.size(); ++k) {
     const PreparedLand& land = lands_[k];
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint64_t bits = random.NextBits();
-      hole_bits[i] = static_cast<std::uint32_t>(bits >> 32U);
-      shaft_bits[i] = static_cast<std::uint32_t>(bits);
-    }
+    kernel_.draw_bits(SeedOf(block) + k, 2 * kBlock, bits.data());
     const PopulationLand& source = *land.source;
     const double hole_middle = Middle(source.hole.bounds());
     const double shaft_middle = Middle(source.shaft.bounds());
-    source.hole.ToDeviations({hole_bits.data(), count}, hole_middle, {hole_um.data(), count});
-    source.shaft.ToDeviations({shaft_bits.data(), count}, shaft_middle, {shaft_um.data(), count});
+    source.hole.ToDeviations(hole_bits, hole_middle, {hole_um.data(), count});
+    source.shaft.ToDeviations(shaft_bits, shaft_middle, {shaft_um.data(), count});
     SizeBlock work{hole_um.data(),
                    shaft_um.data(),
                    static_cast<std::int32_t>(count),

@@ -68,6 +68,10 @@ struct PopulationBlock {
   std::int32_t over_press;  ///< Assemblies whose force at the last depth exceeds the press.
 };
 
+/** Random bits for a multiple of kLanes, from a stream of their own. */
+void DrawBitsScalar(std::uint64_t seed, std::int32_t count, std::uint32_t* bits) noexcept;
+void DrawBitsAvx2(std::uint64_t seed, std::int32_t count, std::uint32_t* bits) noexcept;
+
 /** Puts holes and shafts together. */
 void TakeSizesScalar(SizeBlock* block) noexcept;
 void TakeSizesAvx2(SizeBlock* block) noexcept;
@@ -78,6 +82,7 @@ void CountForcesAvx2(PopulationBlock* block) noexcept;
 
 /** Both kinds give the same bits. */
 struct PopulationKernel {
+  void (*draw_bits)(std::uint64_t, std::int32_t, std::uint32_t*);
   void (*take_sizes)(SizeBlock*);
   void (*count_forces)(PopulationBlock*);
 };

@@ -29,12 +29,10 @@ inline void Seed(std::uint64_t seed, LaneRandom* random) {
   }
 }
 
-/** Two uniform whole numbers from -32768 to 32767. Roughness in 65536 steps is as good as even: its
- variance is off by 2^-32. */
-inline void DrawTwo(LaneRandom* random, Floats* first, Floats* second) {
+inline void NextBits(LaneRandom* random, Words* out) {
   Words* s = random->s;
   const Words sum = s[0] + s[3];
-  const Words bits = ((sum << 7) | (sum >> 25)) + s[0];
+  *out = ((sum << 7) | (sum >> 25)) + s[0];
   const Words t = s[1] << 9;
   s[2] ^= s[0];
   s[3] ^= s[1];
@@ -42,16 +40,32 @@ inline void DrawTwo(LaneRandom* random, Floats* first, Floats* second) {
   s[0] ^= s[3];
   s[2] ^= t;
   s[3] = (s[3] << 11) | (s[3] >> 21);
+}
+
+inline void DrawBits(std::uint64_t seed, std::int32_t count, std::uint32_t* bits) {
+  LaneRandom random;
+  Seed(seed, &random);
+  for (std::int32_t i = 0; i < count; i += hvas::fits::kLanes) {
+    Words next;
+    NextBits(&random, &next);
+    __builtin_memcpy(bits + i, &next, sizeof(next));
+  }
+}
+
+/** Two uniform whole numbers from -32768 to 32767. Roughness in 65536 steps is as good as even: its
+ variance is off by 2^-32. */
+inline void DrawTwo(LaneRandom* random, Floats* first, Floats* second) {
+  Words bits;
+  NextBits(random, &bits);
   *first = __builtin_convertvector(reinterpret_cast<Signed>(bits) >> 16, Floats);
   const Words low = bits << 16;
   *second = __builtin_convertvector(reinterpret_cast<Signed>(low) >> 16, Floats);
 }
 
-/** Steps above the lowest value, less than kForceBins, as bins: 0 at or below it, else from 1. */
+/** Steps above the lowest value, less than kForceBins, as bins: 0 at it, else from 1. */
 inline void ToBins(const Floats& steps, std::uint16_t* row) {
-  const Floats zero = {};
-  // Comparisons give -1 where true.
-  const Signed bins = __builtin_convertvector(steps, Signed) - (steps > zero);
+  // Up to the next whole number, but for what is less than a 16-millionth of a step.
+  const Signed bins = __builtin_convertvector(steps + 0.99999994F, Signed);
   const Shorts shorts = __builtin_convertvector(bins, Shorts);
   __builtin_memcpy(row, &shorts, sizeof(shorts));
 }

@@ -3,6 +3,10 @@
 
 namespace hvas::fits {
 
+void DrawBitsAvx2(std::uint64_t seed, std::int32_t count, std::uint32_t* bits) noexcept {
+  DrawBits(seed, count, bits);
+}
+
 void TakeSizesAvx2(SizeBlock* block) noexcept {
   TakeSizes(block);
 }

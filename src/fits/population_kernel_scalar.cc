@@ -2,6 +2,10 @@
 
 namespace hvas::fits {
 
+void DrawBitsScalar(std::uint64_t seed, std::int32_t count, std::uint32_t* bits) noexcept {
+  DrawBits(seed, count, bits);
+}
+
 void TakeSizesScalar(SizeBlock* block) noexcept {
   TakeSizes(block);
 }
@@ -13,10 +17,10 @@ void CountForcesScalar(PopulationBlock* block) noexcept {
 PopulationKernel ChoosePopulationKernel() noexcept {
 #ifdef HVAS_HAS_AVX2_POPULATION
   if (__builtin_cpu_supports("avx2")) {
-    return {TakeSizesAvx2, CountForcesAvx2};
+    return {DrawBitsAvx2, TakeSizesAvx2, CountForcesAvx2};
   }
 #endif
-  return {TakeSizesScalar, CountForcesScalar};
+  return {DrawBitsScalar, TakeSizesScalar, CountForcesScalar};
 }
 
 }  // namespace hvas::fits

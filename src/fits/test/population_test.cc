@@ -298,6 +298,11 @@ TEST(Population, BothKernelsTakeTheSameSizes) {
   };
   const Taken a = take(TakeSizesScalar);
   const Taken b = take(TakeSizesAvx2);
+  std::vector<std::uint32_t> bits(64);
+  std::vector<std::uint32_t> same(64);
+  DrawBitsScalar(5, 64, bits.data());
+  DrawBitsAvx2(5, 64, same.data());
+  EXPECT_EQ(bits, same);
   EXPECT_EQ(a.clearance_um, b.clearance_um);
   EXPECT_EQ(a.bins, b.bins);
   EXPECT_EQ(a.marks, b.marks);
