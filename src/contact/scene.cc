@@ -37,6 +37,18 @@ namespace {
 
 constexpr std::size_t kMostSlides = 24;  // Of the deepest groups; the others stay at their samples.
 
+// Whether the two faces of the i-th contact touch where no edge of theirs is near, too.
+bool TouchesElsewhere(std::span<const RawContact> all, std::span<const bool> is_at_edge,
+                      std::size_t i) {
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!is_at_edge[k] && all[k].body == all[i].body && all[k].held_face == all[i].held_face &&
+        all[k].scene_face == all[i].scene_face) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 struct Scene::Data {
@@ -94,51 +106,147 @@ struct Scene::Data {
   }
 
   // Turns the reducer's choice into contacts, the deepest of each group at its very lowest point.
-  void Finish(const Placed& held, QueryWorkspace::Data* work) const noexcept {
-    work->contact_count = work->reducer.Select(work->raw);
+  void Finish(const Placed& held, const std::optional<BrokenEdges>& edges,
+              QueryWorkspace::Data* work) const noexcept {
+    const std::size_t selected = work->reducer.Select(work->raw);
     work->deepest = work->reducer.deepest();
     work->stats.candidates = work->reducer.count();
     work->stats.is_truncated = work->stats.is_truncated || work->reducer.is_full();
-    const std::size_t lowest =
-        std::min({work->reducer.group_count(), work->contact_count, kMostSlides});
+    const std::size_t lowest = std::min({work->reducer.group_count(), selected, kMostSlides});
+    const std::span<RawContact> raw(work->raw.data(), selected);
+    for (std::size_t i = 0; i < selected; ++i) {
+      if (i < lowest) {
+        MoveToLowest(held, &raw[i]);
+      }
+      work->deepest = std::min(work->deepest, raw[i].distance);
+    }
+    const double deepest = std::max(0.0, -work->deepest);
+    work->contact_count = edges.has_value() ? BreakEdges(held, *edges, deepest, raw) : selected;
     for (std::size_t i = 0; i < work->contact_count; ++i) {
-      work->contacts[i] = MakeContact(held, i < lowest, &work->raw[i]);
-      work->deepest = std::min(work->deepest, work->contacts[i].distance);
+      work->contacts[i] = MakeContact(held, raw[i]);
     }
   }
 
-  [[nodiscard]] Contact MakeContact(const Placed& held, bool is_lowest,
-                                    RawContact* raw) const noexcept {
-    Contact contact;
-    contact.held_face = raw->held_face;
-    contact.scene_face = raw->scene_face;
-    contact.is_exact = raw->is_exact;
+  void MoveToLowest(const Placed& held, RawContact* raw) const noexcept {
     if (raw->body == BodyId{}.value()) {
-      if (is_lowest) {
-        spatial::Surface plane;
-        plane.kind = spatial::SurfaceKind::kPlane;
-        plane.axis = held.R_WC.row(2);
-        plane.origin = held.R_WC.transpose() * (Vec3(0, 0, ground_z_W) - held.p_WC);
-        SlideOnPlane(held, held.shape->shell, plane, raw);
-      }
-      contact.p_WC = held.R_WC * raw->p + held.p_WC;
-      contact.nhat_W = Vec3::UnitZ();
-      contact.distance = raw->distance;
-      return contact;
+      spatial::Surface plane;
+      plane.kind = spatial::SurfaceKind::kPlane;
+      plane.axis = held.R_WC.row(2);
+      plane.origin = held.R_WC.transpose() * (Vec3(0, 0, ground_z_W) - held.p_WC);
+      SlideOnPlane(held, held.shape->shell, plane, raw);
+      return;
     }
-    contact.body = BodyId{raw->body};
     const Placed scene = Place(raw->body);
     const Placed& sampled = raw->is_reverse ? scene : held;
     const Placed& field = raw->is_reverse ? held : scene;
-    if (is_lowest) {
-      const Shell& shell = raw->is_reverse ? scene.shape->features : held.shape->shell;
-      Slide(sampled, shell, field, raw);
+    const Shell& shell = raw->is_reverse ? scene.shape->features : held.shape->shell;
+    Slide(sampled, shell, field, raw);
+  }
+
+  // A sample and the shape in whose field it is.
+  struct Met {
+    Placed field;
+    Vec3 p;  // In the field's frame.
+  };
+
+  [[nodiscard]] Met Meet(const Placed& held, const RawContact& raw) const noexcept {
+    const Placed scene = Place(raw.body);
+    const Placed& sampled = raw.is_reverse ? scene : held;
+    const Placed& field = raw.is_reverse ? held : scene;
+    return {field, RelativePose(field, sampled) * raw.p};
+  }
+
+  static Refined DistanceAt(const Placed& field, const Vec3& p) noexcept {
+    constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
+    return RefineActual(*field.shape, field.offsets, p, kNowhere, {});
+  }
+
+  // Whether the contact is with the side of a ledge that may be lower than `height`: just inside of
+  // where the side is met another face is nearer, its top.
+  bool FindTop(const Placed& held, double height, const RawContact& raw,
+               Refined* top) const noexcept {
+    constexpr double kSquare = 0.3;  // Cosine; blunter edges do not catch.
+    constexpr double kLower = 0.99;
+    if (raw.distance < -height) {
+      return false;
     }
-    contact.distance = raw->distance;
-    contact.p_WC = sampled.R_WC * raw->p + sampled.p_WC;
-    contact.nhat_W = field.R_WC * raw->gradient;
-    if (raw->is_reverse) {
-      contact.p_WC -= raw->distance * contact.nhat_W;  // From the scene's edge to the held surface.
+    const Met met = Meet(held, raw);
+    const Vec3 inside = met.p - (raw.distance + height) * raw.gradient;
+    *top = DistanceAt(met.field, inside);
+    const bool is_low = top->is_exact && top->distance < 0 && top->distance > -kLower * height &&
+                        top->gradient.dot(raw.gradient) < kSquare;
+    top->distance += top->gradient.dot(met.p - inside);
+    return is_low;
+  }
+
+  // Whether what seems to be in the way is not met on it: beside an edge the nearest point's plane
+  // reaches further than the part. No deeper than `depth` is not met either.
+  [[nodiscard]] bool IsPassedBy(const Placed& held, const Placed& held_ahead, double depth,
+                                const RawContact& raw) const noexcept {
+    constexpr double kLongest = 0.2e-3;  // [m] of a step; there may be a wall in a longer one.
+    if (raw.distance <= 0) {
+      return false;
+    }
+    const Met ahead = Meet(held_ahead, raw);
+    const Vec3 step = ahead.p - Meet(held, raw).p;
+    return raw.distance + raw.gradient.dot(step) < 0 && step.squaredNorm() < kLongest * kLongest &&
+           DistanceAt(ahead.field, ahead.p).distance > -depth;
+  }
+
+  // Leaves out what is passed by, and contacts with the sides of low ledges; those that are past
+  // the side already become contacts with the top. Of two faces that meet within `height` the side
+  // is the one that touches nowhere else. Returns how many are left, in their order.
+  std::size_t BreakEdges(const Placed& held, const BrokenEdges& edges, double deepest,
+                         std::span<RawContact> raw) const noexcept {
+    Placed ahead = held;
+    ahead.R_WC = edges.X_WH_ahead.R();
+    ahead.p_WC = edges.X_WH_ahead.p() + ahead.R_WC * held.shape->p_BC;
+    std::array<Refined, QueryWorkspace::kMaxContacts> top;
+    std::array<bool, QueryWorkspace::kMaxContacts> is_low{};
+    std::array<bool, QueryWorkspace::kMaxContacts> is_passed{};
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      if (raw[i].is_exact && raw[i].body != BodyId{}.value()) {
+        is_low[i] = FindTop(held, edges.height, raw[i], &top[i]);
+        is_passed[i] = IsPassedBy(held, ahead, edges.height + deepest, raw[i]);
+      }
+    }
+    std::size_t kept = 0;
+    const std::span<const RawContact> all = raw;
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      RawContact contact = raw[i];
+      const bool is_side = is_low[i] && !TouchesElsewhere(all, is_low, i);
+      if (is_passed[i] || (is_side && contact.distance > 0)) {
+        continue;
+      }
+      if (is_side) {
+        contact.distance = top[i].distance;
+        contact.gradient = top[i].gradient;
+        (contact.is_reverse ? contact.held_face : contact.scene_face) = top[i].face;
+      }
+      raw[kept++] = contact;
+    }
+    return kept;
+  }
+
+  [[nodiscard]] Contact MakeContact(const Placed& held, const RawContact& raw) const noexcept {
+    Contact contact;
+    contact.held_face = raw.held_face;
+    contact.scene_face = raw.scene_face;
+    contact.is_exact = raw.is_exact;
+    contact.distance = raw.distance;
+    if (raw.body == BodyId{}.value()) {
+      contact.p_WC = held.R_WC * raw.p + held.p_WC;
+      contact.nhat_W = Vec3::UnitZ();
+      return contact;
+    }
+    contact.body = BodyId{raw.body};
+    const Placed scene = Place(raw.body);
+    const Placed& sampled = raw.is_reverse ? scene : held;
+    const Placed& field = raw.is_reverse ? held : scene;
+    contact.p_WC = sampled.R_WC * raw.p + sampled.p_WC;
+    contact.nhat_W = field.R_WC * raw.gradient;
+    if (raw.is_reverse) {
+      contact.p_WC -= raw.distance * contact.nhat_W;  // From the scene's edge to the held surface.
       contact.nhat_W = -contact.nhat_W;
     }
     return contact;
@@ -222,7 +330,7 @@ void Scene::Query(const Shape& held, const spatial::Pose& X_WH, const QueryOptio
   BodyQuery query(placed, options, options.margin, -std::numeric_limits<double>::infinity(),
                   data_->kernel, &work);
   data_->Run(data_->BoxOf(placed, X_WH, options.margin), options, work, &query);
-  data_->Finish(placed, &work);
+  data_->Finish(placed, options.broken_edges, &work);
 }
 
 bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double tolerance,
@@ -232,7 +340,7 @@ bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double toleranc
   const Placed placed(held, X_WH, data_->OffsetsOfHeld(options));
   BodyQuery query(placed, options, -tolerance, -tolerance, data_->kernel, &work);
   data_->Run(data_->BoxOf(placed, X_WH, 0), options, work, &query);
-  data_->Finish(placed, &work);
+  data_->Finish(placed, {}, &work);
   return !query.is_stopped();
 }
 

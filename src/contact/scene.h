@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,13 @@ struct IgnoredPair {
   std::span<const std::uint32_t> scene_faces;  ///< Sorted.
 };
 
+/** Edges as real parts have them: not sharp. Drawn ones catch on one another by what contacts give
+ way under load, and where they pass each other closely, seem to be met. */
+struct BrokenEdges {
+  double height{0};          ///< Ledges lower than this are not met from their side [m].
+  spatial::Pose X_WH_ahead;  ///< Where the held part will be next, as far as is known.
+};
+
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
   std::span<const IgnoredPair> ignored{};
@@ -44,6 +52,7 @@ struct QueryOptions {
   /** The held part's faces as made; null: those of `self`, and if there is none, as drawn. */
   const FaceOffsets* held_offsets{nullptr};
   BodyId self;  ///< This body of the scene is the held one itself: skipped.
+  std::optional<BrokenEdges> broken_edges{};  ///< Without: edges are as drawn.
   /** At most about so many points are tested. Where more are near, each pair of parts has its
    share, and what it has more of is thinned out evenly: fewer points then stand for a contact. */
   std::uint32_t point_budget{kDefaultPointBudget};

@@ -50,12 +50,13 @@ struct GuidanceOptions {
 };
 
 struct ContactOptions {
-  double compliance{2e-6};      ///< [m/N]; 20 um at 10 N.
+  double compliance{5e-7};      ///< [m/N]; 5 um at 10 N.
   double settling_time{2e-3};   ///< Of a contact under a new load [s].
   fits::FrictionLaw friction;   ///< Of pairs that the table of materials does not have.
   double rolling_arm{5e-4};     ///< Of free bodies, against rolling and turning on the spot [m].
   double recovery_speed{0.02};  ///< Penetration is undone no faster [m/s].
   double max_depth{100e-6};     ///< A contact pushes no harder than at this depth [m].
+  double edge_break{1e-6};      ///< Lower ledges do not catch [m].
   double min_margin{60e-6};     ///< Contacts are looked for at least this far away [m].
   double max_speed{1.0};        ///< The displayed part moves no faster [m/s].
   double max_turn_rate{10.0};   ///< [rad/s]

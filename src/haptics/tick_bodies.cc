@@ -93,8 +93,10 @@ void HapticTick::AddContacts(TickOutput* out) noexcept {
                        std::min(contact.max_turn_rate, V.w.norm()) * reach_;
   const double margin = contact.min_margin + 1.5 * speed * options_.dt;
   clearance_ = margin;
+  const spatial::Pose X_WD_ahead = MoveAbout(X_WD_, part_->p_BoBcm_B, V_D_, options_.dt);
   for (std::size_t member = 0; member < shape_count(); ++member) {
-    const HeldShape held = MakeHeldShape(member, X_WD_, margin);
+    HeldShape held = MakeHeldShape(member, X_WD_, margin);
+    held.query.broken_edges = {contact.edge_break, X_WD_ahead * (X_WD_.Inverse() * held.X_WS)};
     scene_->Query(*held.shape, held.X_WS, held.query, &workspace_);
     out->deepest = std::min(out->deepest, workspace_.deepest());
     AddQueried({0, part_->body.value(), X_WD_}, part_->surface, 0, out);
@@ -120,6 +122,7 @@ void HapticTick::AddFreeContacts(TickOutput* out) noexcept {
     contact::QueryOptions query;
     query.self = body.id;
     query.left_out = {done.data(), i};
+    query.broken_edges = {options.edge_break, bodies_.Move(body, body.V, options_.dt)};
     const double speed = body.V.v.norm() + body.V.w.norm() * CalcReach(shape, properties.p_BoBcm_B);
     query.margin =
         options.min_margin + 1.5 * options_.dt * (speed + options_.dt * options_.gravity_W.norm());

@@ -16,9 +16,9 @@ inline constexpr double kMillisecondStep = 50e-6;  ///< [m] at 50 mm/s.
 struct AccuracyCase {
   const char* name;
   std::function<ShapeSource(double deviation)> held, other;
-  double depth;                            ///< Everywhere along the way [m].
-  int steps;                               ///< Of a millisecond.
-  std::function<spatial::Pose(int)> pose;  ///< X_WH; the other part is where the world is.
+  double depth;                               ///< Everywhere along the way [m].
+  int steps;                                  ///< Of a millisecond.
+  std::function<spatial::Pose(double)> pose;  ///< X_WH at a step; the other part is where W is.
   double force_limit;  ///< Of the pooled force's change in a step at 1 N/mm [N]; 0: none is stated.
 };
 
@@ -34,7 +34,7 @@ inline AccuracyCase CaseC() {
       [](double d) { return GroovedBore(20e-3, 28e-3, 50e-3, d); },
       100e-6,
       500,
-      [](int i) {
+      [](double i) {
         return spatial::Pose(Radial(110e-6, kMillisecondStep / 20e-3 * i) + Vec3(0, 0, -15.3e-3));
       },
       0.25e-3};
@@ -45,7 +45,7 @@ inline AccuracyCase CaseA() {
   AccuracyCase out = CaseC();
   out.name = "A";
   out.steps = 700;
-  out.pose = [](int i) {
+  out.pose = [](double i) {
     return spatial::Pose(Radial(110e-6, 0.3) + Vec3(0, 0, 8e-3 - kMillisecondStep * i));
   };
   out.force_limit = 2e-3;
@@ -63,7 +63,7 @@ inline AccuracyCase CaseP() {
           },
           100e-6,
           400,
-          [](int i) {
+          [](double i) {
             const double way = kMillisecondStep * i;
             return spatial::Pose(Vec3(-6e-3 + 0.8 * way, 4e-3 - 0.6 * way, 15e-3 - 100e-6));
           },
@@ -77,7 +77,7 @@ inline AccuracyCase CaseD() {
           [](double d) { return Bushing(3e-3, 20e-3, 15e-3, d); },
           100e-6,
           400,
-          [](int i) {
+          [](double i) {
             return spatial::Pose(Radial(110e-6, kMillisecondStep / 3e-3 * i) + Vec3(0, 0, 2e-3));
           },
           0};
@@ -100,7 +100,7 @@ inline AccuracyCase CaseCone() {
           [](double d) { return ConeSeat(9e-3, 16e-3, 56e-3, 25e-3, d); },
           kDown * std::sin(angle) + kOff * std::cos(angle),
           200,
-          [](int i) {
+          [](double i) {
             return spatial::Pose(TurnedOver(), Radial(kOff, kMillisecondStep / 12e-3 * i) +
                                                    Vec3(0, 0, kConeSeated - kDown));
           },
@@ -117,7 +117,7 @@ inline AccuracyCase CaseSphere() {
           [](double d) { return Socket(10e-3, 14e-3, std::max(d, kCoarse)); },
           100e-6,
           200,
-          [](int i) {
+          [](double i) {
             return spatial::Pose(Radial(75e-6, kMillisecondStep / 10e-3 * i) -
                                  Vec3(0, 0, 150e-6 * std::sqrt(0.75)));
           },
@@ -131,7 +131,7 @@ inline AccuracyCase CaseTorus() {
           [](double d) { return RingGroove(20e-3, 3.02e-3, std::max(d, kCoarse)); },
           100e-6,
           200,
-          [](int i) {
+          [](double i) {
             const Vec3 turn(0, 0, kMillisecondStep / 20e-3 * i);
             return spatial::Pose(spatial::RotationFromVector(turn), Vec3(0, 0, -120e-6));
           },

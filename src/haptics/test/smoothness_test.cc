@@ -55,53 +55,70 @@ class SlidingRig : public testing::HeldRig {
   std::int64_t count_{0};
 };
 
-/** Largest change of the coupling's force from one tick to the next along the case's path [N],
- after it has been pressed softly and has settled. Not along the way that the hand slides, where the
- part swings in its coupling after the hand has started: what presses. */
-double CalcLargestChange(const AccuracyCase& test, const Pose& X_WB_free, const Vec3& way) {
-  SlidingRig rig(test, X_WB_free);
-  const Pose first = test.pose(0);
-  constexpr int kPress = 300, kSettle = 400, kRunIn = 150;
+double MinimumJerk(double s) {
+  return s * s * s * (10 + s * (-15 + 6 * s));
+}
+
+/** The case's pose at a step, where it is pressed less deeply into the other part. */
+Pose PressedBy(const AccuracyCase& test, double step, const Vec3& lift) {
+  const Pose X_WB = test.pose(step);
+  const bool is_round = lift.z() == 0;  // Lifted towards the axis.
+  const Vec3 across(X_WB.p().x(), X_WB.p().y(), 0);
+  return {X_WB.q(), X_WB.p() + (is_round ? Vec3(-lift.x() * across.normalized()) : lift)};
+}
+
+/** Largest change of the coupling's force from one tick to the next all along the case's path [N].
+ The part is pressed on softly and comes with the case's speed, from rest and by minimum jerk.
+ @param lift  Off the case's poses: z, or x towards the axis. @param free  The same, clear of it. */
+double CalcLargestChange(const AccuracyCase& test, const Vec3& lift, const Vec3& free) {
+  constexpr int kPress = 600, kSettle = 300, kSetOff = 600, kRunIn = 150;
+  double at = -0.5 * kSetOff - kRunIn;
+  SlidingRig rig(test, PressedBy(test, at, free));
   for (int i = 0; i < kPress + kSettle; ++i) {
-    const double s = std::min(1.0, static_cast<double>(i) / kPress);
-    rig.MoveTo(Pose(first.q(), (1 - s) * X_WB_free.p() + s * first.p()));
+    const double s = MinimumJerk(std::min(1.0, static_cast<double>(i) / kPress));
+    rig.MoveTo(PressedBy(test, at, (1 - s) * free + s * lift));
   }
-  double largest = 0;
+  for (int i = 0; i < kSetOff; ++i) {
+    at += MinimumJerk((i + 0.5) / kSetOff);
+    rig.MoveTo(PressedBy(test, at, lift));
+  }
   Vec3 last = Vec3::Zero();
+  for (int i = 0; i < kRunIn; ++i) {
+    last = rig.MoveTo(PressedBy(test, ++at, lift)).F_true_W.f;
+  }
+  EXPECT_NEAR(at, 0, 1e-6);
+  double largest = 0;
   for (int i = 0; i < test.steps; ++i) {
-    const Vec3 force = rig.MoveTo(test.pose(i)).F_true_W.f;
-    const Vec3 change = force - last;
-    largest = i > kRunIn ? std::max(largest, (change - change.dot(way) * way).norm()) : 0;
+    const Vec3 force = rig.MoveTo(PressedBy(test, i + 1, lift)).F_true_W.f;
+    largest = std::max(largest, (force - last).norm());
     last = force;
   }
   if (std::getenv("HVAS_TOL_SCALE") != nullptr) {
-    std::printf("  %s: %.3f N, largest change %.4f mN per ms\n", test.name, last.norm(),
+    std::printf("  %s: %.4f N, largest change %.4f mN per ms\n", test.name, last.norm(),
                 1e3 * largest);
   }
   return largest;
 }
 
-// 0.1 N that turns by 2.5 mrad in a millisecond changes by 0.25 mN.
+// N2's limit goes with the study's pooled force, two thirds of K d on a line of contact, which
+// ideally changes by 0.17 mN in a millisecond. With all of K d, 0.1 N that turns by 2.5 mrad, 0.25
+// is ideal.
 TEST(Smoothness, OfAShaftTurningInABore) {
   const AccuracyCase test = contact::testing::CaseC();
-  const Pose centred(Vec3(0, 0, test.pose(0).p().z()));
-  EXPECT_LE(CalcLargestChange(test, centred, Vec3::Zero()), 0.35e-3);
+  const Vec3 free(110e-6, 0, 0);
+  EXPECT_LE(CalcLargestChange(test, Vec3(test.depth / 3, 0, 0), free), test.force_limit);
+  EXPECT_LE(CalcLargestChange(test, Vec3::Zero(), free), 0.25e-3 + 0.06e-3);
 }
 
-// As far as where the shaft's rim meets the bore's, 219 steps on: sharp rims catch on one another
-// by the 0.06 um that contact gives way under 0.1 N.
+// All the way, rims past rims: sharp ones would catch on one another.
 TEST(Smoothness, OfAShaftSlidingOverAGroove) {
-  AccuracyCase test = contact::testing::CaseA();
-  test.steps = 215;
-  const Pose centred(Vec3(0, 0, test.pose(0).p().z()));
-  EXPECT_LE(CalcLargestChange(test, centred, Vec3::UnitZ()), 2e-3);
+  const AccuracyCase test = contact::testing::CaseA();
+  EXPECT_LE(CalcLargestChange(test, Vec3::Zero(), Vec3(110e-6, 0, 0)), test.force_limit);
 }
 
 TEST(Smoothness, OfAPlateSlidingOnAnother) {
   const AccuracyCase test = contact::testing::CaseP();
-  const Pose lifted(test.pose(0).p() + Vec3(0, 0, 0.2e-3));
-  const Vec3 way = (test.pose(1).p() - test.pose(0).p()).normalized();
-  EXPECT_LE(CalcLargestChange(test, lifted, way), 0.1e-3);
+  EXPECT_LE(CalcLargestChange(test, Vec3::Zero(), Vec3(0, 0, 0.2e-3)), test.force_limit);
 }
 
 }  // namespace

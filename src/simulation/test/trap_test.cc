@@ -108,7 +108,7 @@ TEST(TrapTest, GuidedPegStopsAtAThirdPartAndTheHandFeelsIt) {  // N3
     EXPECT_FALSE(peg.is_seated);
     EXPECT_PRED_FORMAT2(::testing::IsSubstring, "trap/clamp stood in the way", peg.reason);
     // Guided, and in its bore to the depth at which the collar meets the clamp: to the compliance
-    // of contact under the push of a hand (2 um/N), and to the tilt that the fit's play leaves.
+    // of contact under the push of a hand (0.5 um/N), and to the tilt that the fit's play leaves.
     EXPECT_GT(trial.guided.ticks_on_clamp, 1000);
     EXPECT_NEAR(trial.guided.insertion, kDepthAtClamp, 20e-6);
     EXPECT_LT(trial.guided.deepest, 25e-6);
