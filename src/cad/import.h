@@ -28,7 +28,7 @@ struct ImportOptions {
    files come a thousand times too large or too small. */
   double relative_deflection{4e-5};   ///< Of the diagonal of the part's box.
   double min_deflection{2e-6};        ///< No finer than this [m].
-  double max_angle{0.1};              ///< Between the normals of neighbouring triangles [rad].
+  double max_angle{0.2};              ///< Between the normals of neighbouring triangles [rad].
   std::size_t max_triangles{200000};  ///< A part with more is meshed again, coarser.
   double length_unit{1e-3};           ///< Of files that state none (OBJ, STL) [m].
   bool with_tolerances{true};         ///< Reads dimensions, tolerances and fits.

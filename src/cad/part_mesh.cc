@@ -36,6 +36,7 @@ constexpr int kRetries = 3;
 // of an analytic face, so that angles limit it alone.
 constexpr double kFreeformInterior = 2;
 constexpr double kAnalyticInterior = 25;
+constexpr double kAnalyticAngle = 0.3;  // [rad], inside spheres and tori.
 
 /** Lets faces have deflections of their own inside, whereas edges are divided the same for all. */
 class FaceLevels : public BRepMesh_Context {
@@ -47,6 +48,8 @@ class FaceLevels : public BRepMesh_Context {
     if (!BRepMesh_Context::PreProcessModel()) {
       return Standard_False;
     }
+    // The edges have their points by now. Freeform faces go by the angle inside.
+    ChangeParameters().Angle = std::max(GetParameters().Angle, kAnalyticAngle);
     for (int i = 0; i < GetModel()->FacesNb(); ++i) {
       const auto& face = GetModel()->GetFace(i);
       const double factor =
@@ -79,6 +82,7 @@ std::size_t MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level, bool is_
   }
   Handle(IMeshTools_Context) context = new BRepMesh_Context;
   if (analytic != nullptr) {
+    parameters.AngleInterior = parameters.Angle;
     context = new FaceLevels(*analytic, parameters.Deflection);
   }
   mesher.Perform(context);

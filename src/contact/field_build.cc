@@ -389,7 +389,7 @@ void CheckFaces(const Mesh& mesh, ExactTable* exact) {
       const auto exact_point = spatial::CalcDistance(exact->faces[f], p);
       if (exact_point.is_valid) {
         exact->deviation[f] = std::max(exact->deviation[f], std::abs(exact_point.distance));
-        agreement[f] += exact_point.gradient.dot(mesh.normal[t]) * (b - a).cross(c - a).norm();
+        agreement[f] += exact_point.gradient.dot(mesh.NormalOf(t)) * (b - a).cross(c - a).norm();
       }
     }
   }

@@ -60,7 +60,7 @@ class ListReader {
       if (out_.count == ListFaces::kMost) {
         return false;
       }
-      out_.faces[out_.count++] = face;
+      out_.faces[out_.count++] = static_cast<std::uint16_t>(face);
     }
     return true;
   }

@@ -19,10 +19,9 @@ struct ListFaces {
     kUnion          ///< Inside any: each two meet in a concave edge, or are sides of a gap.
   };
 
-  std::array<std::uint32_t, kMost> faces{};
+  std::array<std::uint16_t, kMost> faces{};
   std::uint8_t count{0};  ///< 0: more than kMost.
   Kind kind{Kind::kMixed};
-  std::uint16_t unused{0};  ///< For the bytes on disk.
 };
 
 /** Of every list of the table. */

@@ -133,11 +133,11 @@ EdgeKind ClassifyEdge(const Mesh& mesh, const std::vector<spatial::Surface>& fac
     const auto exact = spatial::CalcDistance(faces[mesh.face[triangle]], a + p_BC);
     // A sliver's own normal may point anywhere; the surface's is right where it has the edge on it.
     const bool is_right = exact.is_valid && (std::abs(exact.distance) < kOnSurface ||
-                                             exact.gradient.dot(mesh.normal[triangle]) > 0.5);
-    return is_right ? exact.gradient : mesh.normal[triangle];
+                                             exact.gradient.dot(mesh.NormalOf(triangle)) > 0.5);
+    return is_right ? exact.gradient : mesh.NormalOf(triangle);
   };
-  const Vec3 n1 = f == g ? mesh.normal[t] : normal_of(t);
-  const Vec3 n2 = f == g ? mesh.normal[n] : normal_of(n);
+  const Vec3 n1 = f == g ? mesh.NormalOf(t) : normal_of(t);
+  const Vec3 n2 = f == g ? mesh.NormalOf(n) : normal_of(n);
   if (n1.isZero() || n2.isZero() ||
       n1.dot(n2) > (f == g ? kCosSharpInFreeform : kCosSharpBetweenFaces)) {
     return EdgeKind::kSmooth;
@@ -150,7 +150,7 @@ void ClassifyVertices(Mesh* mesh) {
   const std::size_t count = mesh->vertices.size();
   mesh->vertex_kind.assign(count, VertexKind::kSmooth);
   mesh->vertex_faces.assign(count, {kNoFace, kNoFace});
-  mesh->vertex_normal.assign(count, Vec3::Zero());
+  std::vector<Vec3> normals(count, Vec3::Zero());
   mesh->is_vertex_open.assign(count, 0);
   std::vector<std::uint16_t> sharp_ends(count, 0);
   for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
@@ -158,7 +158,7 @@ void ClassifyVertices(Mesh* mesh) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 e1 = (mesh->vertices[v[(k + 1) % 3]] - mesh->vertices[v[k]]).normalized();
       const Vec3 e2 = (mesh->vertices[v[(k + 2) % 3]] - mesh->vertices[v[k]]).normalized();
-      mesh->vertex_normal[v[k]] += std::acos(std::clamp(e1.dot(e2), -1.0, 1.0)) * mesh->normal[t];
+      normals[v[k]] += std::acos(std::clamp(e1.dot(e2), -1.0, 1.0)) * mesh->NormalOf(t);
       const EdgeKind kind = mesh->edge_kind[t][k];
       if (kind == EdgeKind::kSmooth) {
         continue;
@@ -182,6 +182,7 @@ void ClassifyVertices(Mesh* mesh) {
     }
   }
   for (std::size_t v = 0; v < count; ++v) {
+    mesh->vertex_normals.emplace_back(normals[v]);
     // An edge is seen from both its triangles: an edge passing through leaves four ends.
     if (mesh->vertex_kind[v] == VertexKind::kOnEdge && sharp_ends[v] != 4) {
       mesh->vertex_kind[v] = VertexKind::kCorner;
@@ -249,13 +250,13 @@ TrianglePoint CalcClosestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b,
 
 Vec3 Mesh::Pseudonormal(std::uint32_t triangle, TriangleFeature feature) const noexcept {
   if (feature == TriangleFeature::kInside) {
-    return normal[triangle];
+    return NormalOf(triangle);
   }
   if (feature <= TriangleFeature::kEdge2) {
     const std::uint32_t n = neighbour[triangle][static_cast<std::size_t>(feature) - 1];
-    return n == kNoFace ? normal[triangle] : Vec3(normal[triangle] + normal[n]);
+    return n == kNoFace ? NormalOf(triangle) : Vec3(NormalOf(triangle) + NormalOf(n));
   }
-  return vertex_normal[triangles[triangle][static_cast<std::size_t>(feature) - 4]];
+  return vertex_normals[triangles[triangle][static_cast<std::size_t>(feature) - 4]].full();
 }
 
 bool Mesh::IsOpenAt(std::uint32_t triangle, TriangleFeature feature) const noexcept {
@@ -304,7 +305,7 @@ Mesh KeepTriangles(const Mesh& mesh, const std::vector<bool>& is_wanted,
     (*number)[t] = static_cast<std::uint32_t>(kept.triangles.size());
     kept.triangles.push_back(mesh.triangles[t]);
     kept.face.push_back(mesh.face[t]);
-    kept.normal.push_back(mesh.normal[t]);
+    kept.normals.push_back(mesh.normals[t]);
     kept.neighbour.push_back(mesh.neighbour[t]);
     kept.edge_kind.push_back(mesh.edge_kind[t]);
     for (std::uint32_t& v : kept.triangles.back()) {
@@ -312,7 +313,7 @@ Mesh KeepTriangles(const Mesh& mesh, const std::vector<bool>& is_wanted,
         vertex[v] = static_cast<std::uint32_t>(kept.vertices.size());
         kept.vertices.push_back(mesh.vertices[v]);
         kept.vertex_kind.push_back(mesh.vertex_kind[v]);
-        kept.vertex_normal.push_back(mesh.vertex_normal[v]);
+        kept.vertex_normals.push_back(mesh.vertex_normals[v]);
         kept.vertex_faces.push_back(mesh.vertex_faces[v]);
         kept.is_vertex_open.push_back(mesh.is_vertex_open[v]);
       }
@@ -350,7 +351,7 @@ Mesh MakeMesh(const ShapeSource& source, const Vec3& p_BC) {
     mesh.face.push_back(source.triangle_face[i]);
     // A sliver without area keeps the mesh closed; its neighbours carry the sign.
     const double length = cross.norm();
-    mesh.normal.push_back(length > 0 ? Vec3(cross / length) : Vec3::Zero());
+    mesh.normals.emplace_back(length > 0 ? Vec3(cross / length) : Vec3::Zero());
   }
   FindNeighbours(&mesh);
   mesh.edge_kind.resize(mesh.triangles.size());

@@ -35,20 +35,38 @@ enum class EdgeKind : std::uint8_t { kSmooth, kConvex, kConcave, kOpen };
 /** What a vertex is to the faces around it. */
 enum class VertexKind : std::uint8_t { kSmooth, kOnEdge, kCorner };
 
+/** A vector that need not be told to more than single precision. */
+struct ShortVec3 {
+  std::array<float, 3> v{};
+
+  ShortVec3() = default;
+
+  explicit ShortVec3(const Vec3& full)
+      : v{static_cast<float>(full[0]), static_cast<float>(full[1]), static_cast<float>(full[2])} {}
+
+  [[nodiscard]] Vec3 full() const noexcept {
+    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+  }
+};
+
 /** The welded triangles of a shape with what sign and face decisions need. */
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> face;  ///< Of each triangle.
-  std::vector<Vec3> normal;         ///< Unit, of each triangle.
+  std::vector<ShortVec3> normals;   ///< Unit, of each triangle; zero where it has no area.
   std::vector<std::array<std::uint32_t, 3>>
       neighbour;  ///< Triangle across edge k; kNoFace if none.
   std::vector<std::array<EdgeKind, 3>> edge_kind;
   std::vector<VertexKind> vertex_kind;
-  std::vector<Vec3> vertex_normal;  ///< Angle-weighted pseudonormal, not unit.
+  std::vector<ShortVec3> vertex_normals;  ///< Angle-weighted pseudonormals, not unit.
   std::vector<std::array<std::uint32_t, 2>> vertex_faces;  ///< For kOnEdge: the two faces.
   std::vector<std::uint8_t> is_vertex_open;
   bool is_closed{true};
+
+  [[nodiscard]] Vec3 NormalOf(std::uint32_t triangle) const noexcept {
+    return normals[triangle].full();
+  }
 
   [[nodiscard]] TrianglePoint ClosestOn(std::uint32_t triangle, const Vec3& p) const noexcept {
     const auto& t = triangles[triangle];

@@ -95,8 +95,8 @@ NearSearch::Surroundings NearSearch::SurroundingsOf(
   for (std::size_t k = 0; k < 3; ++k) {
     result.rims = static_cast<std::uint8_t>(result.rims | (IsRim(triangle, k) ? 1U << k : 0U));
     for (const std::uint32_t t : around[mesh_.triangles[triangle][k]]) {
-      if (mesh_.face[t] == mesh_.face[triangle] && !mesh_.normal[t].isZero()) {
-        cosine = std::min(cosine, mesh_.normal[triangle].dot(mesh_.normal[t]));
+      if (mesh_.face[t] == mesh_.face[triangle] && !mesh_.NormalOf(t).isZero()) {
+        cosine = std::min(cosine, mesh_.NormalOf(triangle).dot(mesh_.NormalOf(t)));
       }
     }
   }
@@ -141,7 +141,7 @@ bool NearSearch::CanBeClosest(std::uint32_t triangle, const TrianglePoint& point
       around.bend == std::numeric_limits<double>::infinity()) {
     return true;
   }
-  const double height = std::abs(way.dot(mesh_.normal[triangle]));
+  const double height = std::abs(way.dot(mesh_.NormalOf(triangle)));
   const double beside = std::sqrt(std::max(0.0, distance * distance - height * height));
   if (beside <= (radius + kCornerBend * around.bend * (height + radius)) * kSlack + kRounding) {
     return true;

@@ -82,7 +82,7 @@ Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t
   result.distance = sign * mesh_distance;
   const bool is_off = mesh_distance > 1e3 * kOnFeature;
   result.gradient =
-      is_off ? Vec3(sign / mesh_distance * (p - closest.q)) : shape.mesh.normal[closest.triangle];
+      is_off ? Vec3(sign / mesh_distance * (p - closest.q)) : shape.mesh.NormalOf(closest.triangle);
   if (result.gradient.isZero()) {
     result.gradient = DirectionOf(field, p);
   }

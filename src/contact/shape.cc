@@ -133,9 +133,9 @@ ShapeMemory Shape::CalcMemory() const noexcept {
   memory.tables = Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
                   Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.exact.list_faces) +
                   Bytes(d.exact.forms);
-  memory.mesh = Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normal) +
+  memory.mesh = Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normals) +
                 Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) +
-                Bytes(m.vertex_normal) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open);
+                Bytes(m.vertex_normals) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open);
   memory.shell = sizeof(Data) + Bytes(d.shell) + Bytes(d.features);
   return memory;
 }

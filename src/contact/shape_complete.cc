@@ -81,8 +81,8 @@ void Shrink(Shell* shell) {
 }
 
 void Shrink(Mesh* mesh) {
-  Shrink(mesh->vertices, mesh->triangles, mesh->face, mesh->normal, mesh->neighbour,
-         mesh->edge_kind, mesh->vertex_kind, mesh->vertex_normal, mesh->vertex_faces,
+  Shrink(mesh->vertices, mesh->triangles, mesh->face, mesh->normals, mesh->neighbour,
+         mesh->edge_kind, mesh->vertex_kind, mesh->vertex_normals, mesh->vertex_faces,
          mesh->is_vertex_open);
 }
 

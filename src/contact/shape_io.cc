@@ -13,7 +13,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "shapes are written as they lie in memory");
 // No padding, whose bytes nobody sets.
-static_assert(sizeof(SphereNode) == 160 && sizeof(SampleFaces) == 40 && sizeof(ListFaces) == 24);
+static_assert(sizeof(SphereNode) == 160 && sizeof(SampleFaces) == 40 && sizeof(ListFaces) == 12);
 
 class Writer {
  public:
@@ -124,11 +124,11 @@ class Members {
     All(&m->vertices);
     All(&m->triangles);
     All(&m->face);
-    All(&m->normal);
+    All(&m->normals);
     All(&m->neighbour);
     All(&m->edge_kind);
     All(&m->vertex_kind);
-    All(&m->vertex_normal);
+    All(&m->vertex_normals);
     All(&m->vertex_faces);
     All(&m->is_vertex_open);
     One(&m->is_closed);

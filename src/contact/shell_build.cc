@@ -103,7 +103,7 @@ class Sampler {
 // The normal of a triangle's face at p.
 Vec3 NormalAt(const Shape::Data& data, std::uint32_t t, const Vec3& p) {
   const auto exact = spatial::CalcDistance(data.exact.faces[data.mesh.face[t]], p);
-  return exact.is_valid ? exact.gradient : data.mesh.normal[t];
+  return exact.is_valid ? exact.gradient : data.mesh.NormalOf(t);
 }
 
 void AddCorners(const Shape::Data& data, Sampler* sampler) {
@@ -172,7 +172,7 @@ void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
         Sample sample{p, f == g ? FacesOf({f}) : FacesOf({f, g}), true, true};
         sample.normals[0] = NormalAt(data, t, p);
         if (f == g) {
-          sample.normals[0] = (mesh.normal[t] + mesh.normal[n]).normalized();
+          sample.normals[0] = (mesh.NormalOf(t) + mesh.NormalOf(n)).normalized();
         } else {
           sample.normals[1] = NormalAt(data, n, p);
         }
@@ -241,7 +241,7 @@ void AddFace(const Shape::Data& data, std::uint32_t f, const std::vector<std::ui
       p -= exact.distance * exact.gradient;
     }
     Sample sample{plan.stretch * p, FacesOf({f}), false, plan.is_feature};
-    sample.normals[0] = exact.is_valid ? exact.gradient : mesh.normal[t];
+    sample.normals[0] = exact.is_valid ? exact.gradient : mesh.NormalOf(t);
     if (stretched.TryAdd(sample, kDensity * spacing)) {
       out->push_back(sample);
       out->back().p = p;

@@ -109,7 +109,7 @@ void ExpectConsistent(const Part& part) {
       }
       const Vec3 normal = AreaNormal(part, triangle);
       sum += normal;
-      EXPECT_GT(CalcDistance(face.surface, centre).gradient.dot(normal), 0.98 * normal.norm());
+      EXPECT_GT(CalcDistance(face.surface, centre).gradient.dot(normal), 0.9 * normal.norm());
     }
   }
   EXPECT_LT(sum.norm(), 1e-12) << "the mesh is not closed";
