@@ -211,9 +211,10 @@ Result<FitCurve> MakeFitCurve(const std::vector<FitCard>& cards,
                 fmt::format("steps of {:g} mm make {:.0f} points", units::ToMm(step), steps), {},
                 "give --step so that there are a million points at most");
   }
-  for (double i = 0; i <= steps; ++i) {
+  const int count = static_cast<int>(steps);
+  for (int i = 0; i <= count; ++i) {
     // From the end backwards, so that the last point is the full depth.
-    const double back = step > 0 ? step * (steps - i) : way * (steps - i) / steps;
+    const double back = (step > 0 ? step : way / count) * (count - i);
     const double depth = i > 0 ? most->end() - back : most->begin();
     curve.points.push_back({depth, ForcesAt(*least, depth), ForcesAt(*mean, depth),
                             ForcesAt(*most, depth), ForcesAt(*pair, depth),

@@ -210,8 +210,10 @@ class Axes {
     std::vector<double> ticks;
     const double step = FindStep(range, 6);
     const double slack = 1e-9 * (range.high - range.low);
-    for (double n = std::ceil((range.low - slack) / step); n * step <= range.high + slack; ++n) {
-      ticks.push_back(n * step);
+    const double first = std::ceil((range.low - slack) / step);
+    const int count = static_cast<int>(std::floor((range.high + slack) / step) - first) + 1;
+    for (int i = 0; i < count; ++i) {
+      ticks.push_back((first + i) * step);
     }
     return ticks;
   }

@@ -127,15 +127,14 @@ inline Station MakeStation(const Floats& s) {
   return {size, size - s};
 }
 
-// Of two stations without clearance or interference, so that nothing is divided by zero [um]. Far
-// below what the sum with any other size keeps.
-constexpr float kTiny = 1e-12F;
-
 /** Eight times the integral of max(0, -s) over a unit interval along which s goes evenly from a to
  b: with the interferences na, nb at its ends 8 (na + nb)^2 / (2 (|a| + |b|)) = (2 na + 2 nb)^2 /
  (|a| + |b|) holds whether s changes sign or not. Two intervals, with one division. */
 inline void IntegrateTwo(const Station& a, const Station& b, const Station& c, Floats* first,
                          Floats* second) {
+  // So that nothing is divided by zero between two stations that just touch [um]. Far below what
+  // the sum with any other size keeps.
+  constexpr float kTiny = 1e-12F;
   const Floats ab = a.twice + b.twice;
   const Floats bc = b.twice + c.twice;
   const Floats size_ab = a.size + b.size + kTiny;
@@ -249,8 +248,8 @@ inline void CountAtStations(const float* scales, int first, LaneRandom* random,
     roughness.Next(&s, &next);
     const Station middle = MakeStation(s);
     const Station after = MakeStation(next);
-    Floats one;
-    Floats two;
+    Floats one = {};
+    Floats two = {};
     IntegrateTwo(before, middle, after, &one, &two);
     force += one;
     Count(force, scales[j + 1], j + 1, first, block, &sums[j + 1]);
@@ -275,7 +274,7 @@ inline void CountForces(hvas::fits::PopulationBlock* block) {
   }
   Signed over = {};
   for (int first = 0; first < block->assembly_count; first += hvas::fits::kLanes) {
-    Floats last;
+    Floats last = {};
     if (is_simple) {
       CountAtStations(scales, first, &random, block, sums, &last);
     } else {
