@@ -15,6 +15,7 @@
 #include "app/fit_batch.h"
 #include "app/fit_card.h"
 #include "app/fit_curve.h"
+#include "app/fit_identify.h"
 #include "app/fit_jamming.h"
 #include "app/fit_paper.h"
 #include "app/fit_population.h"
@@ -317,6 +318,7 @@ void AddFit(CLI::App* app, int* status) {
       "inputs (as in \"D=40 d=39.9 l=10\"), output, unit. Out: value.",
       AddInsertions, status);
   AddSearch(fit, status);
+  AddFitIdentify(fit, status);
   AddPaper(fit, status);
   AddFriction(fit, status);
   fit->callback([a, fit, status] {

@@ -19,9 +19,10 @@ FitRows::Bound FitRows::MakeBound(double truth, double shown, double weight) con
   Bound bound;
   bound.truth = truth;
   bound.weight = std::max(0.0, weight);
+  const double of_weight = force_map_.Felt(bound.weight);
   bound.felt = kind_ == ForceMapKind::kPaper
-                   ? std::min(shown, largest_felt_)
-                   : force_map_.Felt(truth + bound.weight) - force_map_.Felt(bound.weight);
+                   ? std::min(shown, std::max(0.0, largest_felt_ - of_weight))
+                   : force_map_.Felt(truth + bound.weight) - of_weight;
   return bound;
 }
 

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/result.h"
+#include "fits/fit_force.h"
+#include "fits/iso286.h"
+#include "haptics/options.h"
+
+/** Blind identification of fits (W12) by a simulated observer, to compare ways of showing forces
+ before people do. It stands for nobody: a study with people is what paper W did. */
+namespace hvas::simulation {
+
+/** Experiments B1, B2 and B3 of paper W: 40 mm, hub 80 mm, 50 mm long, steel. */
+inline constexpr int kShownFits = 3;
+inline constexpr std::array<const char*, kShownFits> kShownFitNames{"H7/g6", "H7/p6", "H7/k6"};
+
+/** Right answers of paper W's fifteen participants, of 225 for each fit (its table 2). */
+inline constexpr std::array<int, kShownFits> kPaperRight{205, 181, 174};
+inline constexpr int kPaperTrials = 225;
+
+/** What limits the observer. Noise of one look at a force f has the standard deviation
+ sqrt((weber f)^2 + threshold^2); the whole of a trial is off by another factor of 1 + weber N(0,
+ 1), for people do not average a bias away.
+
+ Pang, Tan and Durlach, Perception & Psychophysics 49(6), 1991: a just noticeable difference of 7 %
+ from 2.5 to 10 N; with d' = 1 that is the deviation of one look. Jones, in Human and Machine
+ Haptics, 2000: 7 to 10 %, more below 0.5 N. Here the upper end, and 0.1 N for what is weak. */
+struct Observer {
+  double weber{0.10};
+  double threshold{0.1};  ///< [N]
+  int looks{10};          ///< At the force of one insertion, evenly over the depth, 1 to 1000.
+};
+
+/** Which pairs of parts are shown. Their surfaces are drawn anew every time. */
+enum class ShownSizes {
+  kOnePair,  ///< As in paper W, one of each fit: in mid zone; H7/k6: hole and shaft of one size.
+  kOfKind,   ///< Drawn from the zones until they are what their class is called: S > 0 throughout,
+             ///< S < 0 throughout, or both, as paper W, 3.3, assumes of transition fits.
+  kAny,      ///< Drawn from the zones: many an H7/k6 has clearance or interference throughout.
+};
+
+struct IdentificationOptions {
+  int trials{1000};   ///< Of each fit, 1 to 1,000,000.
+  int training{500};  ///< Insertions of each fit, told which, from which the templates are.
+  std::uint64_t seed{1};
+  haptics::ForceMapKind map{haptics::ForceMapKind::kPublished};
+  device::DeviceProfile device;
+  Observer observer;
+  ShownSizes sizes{ShownSizes::kOnePair};
+  double aim_error{0.7e-3};         ///< Of the hand beside the axis, each way [m].
+  double coupling_stiffness{1000};  ///< [N/m]; presses the shaft aside, W(5).
+  double friction{0.15};            ///< Of its side on the hole.
+};
+
+struct Identification {
+  /** [shown][answered], in the order of kShownFitNames. */
+  std::array<std::array<int, kShownFits>, kShownFits> counts{};
+  /** Felt force at full depth, mean and standard deviation of the trials [N]. */
+  std::array<double, kShownFits> mean_felt{};
+  std::array<double, kShownFits> sigma_felt{};
+
+  [[nodiscard]] double CalcShare(int fit) const noexcept;
+};
+
+/** Lower and upper end of the 95 % interval of a share (Wilson, J. Am. Stat. Assoc. 22, 1927). */
+struct ShareInterval {
+  double low{0};
+  double high{1};
+};
+
+[[nodiscard]] ShareInterval CalcShareInterval(int right, int trials) noexcept;
+
+/** What the hand feels of a fit that is pressed in: the map of its force and the friction of its
+ side [N]. The same as in the tick while it slides (HapticTick). */
+[[nodiscard]] double CalcFeltForce(const fits::FitForce& fit, fits::FitKind kind, double depth,
+                                   double side_friction, haptics::ForceMapKind map,
+                                   const device::DeviceProfile& device);
+
+/** Shows every fit `trials` times; the observer answers with the nearest of three templates of felt
+ force over depth. A template is the mean of the curves of a training, and at every look how far
+ they strayed; nearest is the likeliest, were the looks independent and normal. Repeats exactly.
+ Errors: kInvalid for options out of their ranges. */
+[[nodiscard]] Result<Identification> Identify(const IdentificationOptions& options);
+
+}  // namespace hvas::simulation
