@@ -212,6 +212,7 @@ class Axes {
     const double slack = 1e-9 * (range.high - range.low);
     const double first = std::ceil((range.low - slack) / step);
     const int count = static_cast<int>(std::floor((range.high + slack) / step) - first) + 1;
+    ticks.reserve(static_cast<std::size_t>(std::max(0, count)));
     for (int i = 0; i < count; ++i) {
       ticks.push_back((first + i) * step);
     }

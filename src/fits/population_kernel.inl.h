@@ -263,13 +263,12 @@ inline void CountAtStations(const float* scales, int first, LaneRandom* random,
 inline void CountForces(hvas::fits::PopulationBlock* block) {
   LaneRandom random;
   Seed(block->seed, &random);
-  Floats totals[hvas::fits::kMaxStations + 1];
-  Floats sums[hvas::fits::kMaxStations + 1];
-  float scales[hvas::fits::kMaxStations + 1];
+  Floats totals[hvas::fits::kMaxStations + 1] = {};
+  Floats sums[hvas::fits::kMaxStations + 1] = {};
+  float scales[hvas::fits::kMaxStations + 1] = {};
   const bool is_simple = HasDepthsAtStations(*block);
   const float unit = is_simple ? block->lands[0].force_per_interval / 8 : 1;
   for (int d = 0; d < block->depth_count; ++d) {
-    sums[d] = Floats{};
     scales[d] = block->bins_per_newton[d] * unit;
   }
   Signed over = {};
