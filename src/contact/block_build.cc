@@ -96,11 +96,7 @@ void BlockBuilder::Build(Block* block) {
   block_ = block;
   hint_ = block->list.front().triangle;
   const Vec3 middle = block->origin + Vec3::Constant(4 * h_);
-  if (TryExact(block->list, middle, 4 * h_, {0, 0, 0}, 4)) {
-    const std::uint32_t face = data_.mesh.face[block->list.front().triangle];
-    const double radius = 8 * kHalfDiagonal * h_;
-    block->face = HasFormWithin(data_.exact.faces[face], middle, radius) ? face : kNoFace;
-  } else {
+  if (!TryExact(block->list, middle, 4 * h_, {0, 0, 0}, 4)) {
     for (int o = 0; o < 8; ++o) {
       const Vec3 centre = middle + 2 * h_ * Corner(o);
       search_.Filter(block->list, centre, 4 * kHalfDiagonal * h_, false, &octant_);
@@ -108,6 +104,36 @@ void BlockBuilder::Build(Block* block) {
     }
   }
   block->list = {};
+  block->face = block->is_near ? FindOnlyFace() : kNoFace;
+}
+
+// The face that gives all distances of the block as they are, where there is one.
+std::uint32_t BlockBuilder::FindOnlyFace() const {
+  const std::uint32_t face = block_->zones[0].code & zone::kPayload;
+  for (const Zone& zone : block_->zones) {
+    const std::uint32_t kind = zone.code & ~zone::kPayload;
+    if ((kind != zone::kExact && kind != zone::kFar) || (zone.code & zone::kPayload) != face) {
+      return kNoFace;
+    }
+  }
+  const spatial::Surface& surface = data_.exact.faces[face];
+  if (!HasFormWithin(surface, block_->origin + Vec3::Constant(4 * h_), 8 * kHalfDiagonal * h_)) {
+    return kNoFace;
+  }
+  for (int n = 0; n < kBlockNodes; ++n) {
+    const Vec3 p = block_->origin + h_ * Vec3(n % 9, n / 9 % 9, n / 81);
+    const auto exact = spatial::CalcDistance(surface, p);
+    const int stored = block_->nodes[static_cast<std::size_t>(n)];
+    if (!exact.is_valid || std::abs(stored - ToUnits(exact.distance)) > 1) {
+      return kNoFace;
+    }
+  }
+  return face;
+}
+
+std::int16_t BlockBuilder::ToUnits(double phi) const {
+  const double quantum = kBandVoxels * h_ / 32767;
+  return static_cast<std::int16_t>(std::lrint(std::clamp(phi / quantum, -32767.0, 32767.0)));
 }
 
 void BlockBuilder::BuildOctant(const Index3& low, NearList* octant) {
@@ -224,47 +250,64 @@ void BlockBuilder::DropFarFaces(const Vec3& centre, double half, NearList* list)
   list->erase(std::remove_if(list->begin(), list->end(), is_far), list->end());
 }
 
-// Of each face, keeps the triangles that may be its closest somewhere in the zone; sorts them by
-// their distance from its centre.
+// Of each face, keeps the triangles that may be its closest somewhere in the zone, with their
+// distances from its centre. Cubes of a third of the zone are looked at one by one.
 void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) const {
+  constexpr int kCubes = 3;  // In each direction.
   const Mesh& mesh = data_.mesh;
-  const FewFaces<kMostFaces> few(mesh, *list);
-  if (few.count > 0 && list->size() > few.count) {
-    const double radius = kHalfDiagonal * h_;
-    std::vector<std::uint8_t> is_kept(list->size(), 0);
-    std::vector<TrianglePoint> points(list->size());
-    for (int o = 0; o < 8; ++o) {
-      const Vec3 c = centre + 0.5 * h_ * Corner(o);
-      std::array<double, kMostFaces> least{};
-      least.fill(std::numeric_limits<double>::infinity());
-      for (std::size_t i = 0; i < list->size(); ++i) {
-        const NearTriangle& entry = (*list)[i];
-        points[i] = mesh.ClosestOn(entry.triangle, c);
-        double& entry_least = least[few.IndexOf(mesh.face[entry.triangle])];
-        entry_least = std::min(entry_least, (points[i].q - c).norm());
-      }
-      for (std::size_t i = 0; i < list->size(); ++i) {
-        const std::uint32_t triangle = (*list)[i].triangle;
-        const double limit = (least[few.IndexOf(mesh.face[triangle])] + 2 * radius) * kSlack;
-        if (is_kept[i] == 0 && search_.CanBeClosest(triangle, points[i], c, radius, limit)) {
-          is_kept[i] = 1;
-        }
-      }
-    }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < list->size(); ++i) {
-      if (is_kept[i] != 0) {
-        (*list)[kept++] = (*list)[i];
-      }
-    }
-    list->resize(kept);
-  }
   for (NearTriangle& entry : *list) {
     entry.distance = (mesh.ClosestOn(entry.triangle, centre).q - centre).norm();
+  }
+  const FewFaces<kMostFaces> few(mesh, *list);
+  if (few.count == 0 || list->size() <= few.count) {
+    return;
   }
   std::sort(list->begin(), list->end(), [](const NearTriangle& a, const NearTriangle& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });
+
+  struct Candidate {
+    std::size_t face;
+    bool is_kept{false};
+    bool is_near{false};
+    TrianglePoint point;
+  };
+
+  std::vector<Candidate> candidates(list->size());
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    candidates[i].face = few.IndexOf(mesh.face[(*list)[i].triangle]);
+  }
+  const double radius = 2 * kHalfDiagonal * h_ / kCubes;
+  for (int o = 0; o < kCubes * kCubes * kCubes; ++o) {
+    const Vec3 step(o % kCubes, o / kCubes % kCubes, o / kCubes / kCubes);
+    const Vec3 c = centre + 2 * h_ / kCubes * (step - Vec3::Constant(0.5 * (kCubes - 1)));
+    const double offset = (c - centre).norm();
+    std::array<double, kMostFaces> limit{};
+    limit.fill(std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      Candidate& candidate = candidates[i];
+      candidate.is_near = (*list)[i].distance - offset <= limit[candidate.face];
+      if (candidate.is_near) {
+        candidate.point = mesh.ClosestOn((*list)[i].triangle, c);
+        limit[candidate.face] =
+            std::min(limit[candidate.face], ((candidate.point.q - c).norm() + 2 * radius) * kSlack);
+      }
+    }
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      Candidate& candidate = candidates[i];
+      candidate.is_kept =
+          candidate.is_kept ||
+          (candidate.is_near && search_.CanBeClosest((*list)[i].triangle, candidate.point, c,
+                                                     radius, limit[candidate.face]));
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    if (candidates[i].is_kept) {
+      (*list)[kept++] = (*list)[i];
+    }
+  }
+  list->resize(kept);
 }
 
 void BlockBuilder::DecideZone(const Vec3& centre, Zone* out) {
@@ -320,11 +363,9 @@ void BlockBuilder::FillNodes(const Index3& zone, const Vec3& centre) {
 }
 
 void BlockBuilder::SetNode(int i, int j, int k, double phi) {
-  const double quantum = kBandVoxels * h_ / 32767;
   block_->is_near = block_->is_near || std::abs(phi) < block_reach_;
   block_->is_inside = phi < 0;
-  block_->nodes[static_cast<std::size_t>(k * 81 + j * 9 + i)] =
-      static_cast<std::int16_t>(std::lrint(std::clamp(phi / quantum, -32767.0, 32767.0)));
+  block_->nodes[static_cast<std::size_t>(k * 81 + j * 9 + i)] = ToUnits(phi);
 }
 
 }  // namespace hvas::contact

@@ -20,7 +20,7 @@ inline constexpr double kBandVoxels = 4.0;  ///< The distance that nodes hold, a
 
 struct Zone {
   std::uint32_t code{zone::kFar};
-  NearList list;  ///< For zone::kList: by increasing distance from the zone's centre.
+  NearList list;  ///< For zone::kList, with the distances from the zone's centre.
 };
 
 /** A block of the field before it is laid down. */
@@ -56,6 +56,8 @@ class BlockBuilder {
   void FillFarZone(const Index3& zone, double distance);
   void FillNodes(const Index3& zone, const Vec3& centre);
   void SetNode(int i, int j, int k, double phi);
+  [[nodiscard]] std::int16_t ToUnits(double phi) const;
+  [[nodiscard]] std::uint32_t FindOnlyFace() const;
   void DecideZone(const Vec3& centre, Zone* out);
   [[nodiscard]] bool IsSmooth() const;
   [[nodiscard]] Vec3 CentreOf(const Index3& zone) const;

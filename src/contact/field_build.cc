@@ -176,6 +176,9 @@ class Layer {
   }
 
   void Finish() {
+    for (NearList& list : lists_) {
+      PackList(std::move(list));
+    }
     data_.field.nodes.resize(data_.field.nodes.size() + 2);  // Pairs are read as one word.
     data_.field.nodes.shrink_to_fit();
   }
@@ -183,30 +186,48 @@ class Layer {
  private:
   static constexpr double kListReach = 8;  // Largest distance that is told apart, in voxels.
 
-  std::uint32_t AddList(const NearList& list) {
-    ExactTable& exact = data_.exact;
-    const double most = static_cast<double>((1U << exact.distance_bits) - 1U);
-    std::vector<std::uint32_t> packed;
+  // Zones with the same triangles share a list: its distances are the least in any of them.
+  std::uint32_t AddList(NearList list) {
+    std::sort(list.begin(), list.end(),
+              [](const NearTriangle& a, const NearTriangle& b) { return a.triangle < b.triangle; });
+    std::vector<std::uint32_t> triangles;
     for (const NearTriangle& entry : list) {
-      const double units = std::floor(entry.distance * (1 - 1e-9) / exact.distance_unit);
-      packed.push_back(entry.triangle << exact.distance_bits |
-                       static_cast<std::uint32_t>(std::min(units, most)));
+      triangles.push_back(entry.triangle);
     }
     std::vector<std::byte> bytes;
-    Append(std::span<const std::uint32_t>(packed), &bytes);
-    const auto next = static_cast<std::uint32_t>(exact.list_begin.size() - 1);
-    const std::uint32_t number = lists_.FindOrAdd(std::move(bytes), next);
-    if (number == next) {
-      exact.listed.insert(exact.listed.end(), packed.begin(), packed.end());
-      exact.list_begin.push_back(static_cast<std::uint32_t>(exact.listed.size()));
+    Append(std::span<const std::uint32_t>(triangles), &bytes);
+    const std::uint32_t number =
+        pool_.FindOrAdd(std::move(bytes), static_cast<std::uint32_t>(lists_.size()));
+    if (number == lists_.size()) {
+      lists_.push_back(std::move(list));
+    } else {
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        double& least = lists_[number][i].distance;
+        least = std::min(least, list[i].distance);
+      }
     }
     return number;
+  }
+
+  void PackList(NearList list) {
+    ExactTable& exact = data_.exact;
+    std::sort(list.begin(), list.end(), [](const NearTriangle& a, const NearTriangle& b) {
+      return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
+    });
+    const double most = static_cast<double>((1U << exact.distance_bits) - 1U);
+    for (const NearTriangle& entry : list) {
+      const double units = std::floor(entry.distance * (1 - 1e-9) / exact.distance_unit);
+      exact.listed.push_back(entry.triangle << exact.distance_bits |
+                             static_cast<std::uint32_t>(std::min(units, most)));
+    }
+    exact.list_begin.push_back(static_cast<std::uint32_t>(exact.listed.size()));
   }
 
   Shape::Data& data_;
   std::uint32_t count_{0};
   Pool blocks_;
-  Pool lists_;
+  Pool pool_;  // Of lists, by their triangles.
+  std::vector<NearList> lists_;
 };
 
 // The blocks that may come near the surface, with what is near them; the directory says already
