@@ -67,7 +67,8 @@ void SetFriction(const FitArguments& a, const fits::Material& hub, const fits::M
           fmt::format("{}, DIN 7190-1", a.is_oiled ? "the pair's lower value" : "dry pair");
     }
   }
-  p.friction_in = p.friction_release = p.friction_torque = friction;
+  p.friction_in = friction;
+  p.friction_release = p.friction_torque = a.friction_out >= 0 ? a.friction_out : friction;
 }
 
 Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
@@ -79,6 +80,7 @@ Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
   options.fit = *fit;
   options.start = units::FromMm(Pick(a.start_mm, k, 0));
   options.lead_in_angle = units::FromDeg(a.chamfer_deg);
+  options.chamfer_width = units::FromMm(a.chamfer_width_mm);
   fits::PressFitParameters& p = options.press;
   p.joint_diameter = fit->nominal;
   p.length = units::FromMm(Pick(a.length_mm, k, 0));
@@ -202,11 +204,16 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--chamfer", a->chamfer_deg,
                   "Of the chamfer that leads in, from the axis [deg]; a sharp edge without")
       ->check(Positive());
+  fit->add_option("--chamfer-width", a->chamfer_width_mm,
+                  "Of the chamfers of hole and shaft together, radially [mm]: widens the entry")
+      ->check(NotNegative());
   fit->add_option("--material", a->material, "Of both parts [S355]");
   fit->add_option("--hub-material", a->hub_material, "Of the hub");
   fit->add_option("--shaft-material", a->shaft_material, "Of the shaft");
   fit->add_option("--mu", a->friction,
                   "Coefficient of friction; by the pair of materials without (hvas fit friction)")
+      ->check(NotNegative());
+  fit->add_option("--mu-out", a->friction_out, "To start it back or turning; as --mu without")
       ->check(NotNegative());
   fit->add_flag("--oiled", a->is_oiled, "The pair's lower coefficient: with mineral oil");
   fit->add_option("--rz", a->rz_um, "Roughness Rz of both surfaces [um]")

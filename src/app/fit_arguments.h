@@ -22,7 +22,9 @@ struct FitArguments {
   std::vector<double> length_mm, hub_mm, bore_mm, start_mm;
   double chamfer_deg{0};
   std::string material, hub_material, shaft_material;
-  double friction{-1};  // Below 0: by the pair of materials.
+  double chamfer_width_mm{0};
+  double friction{-1};      // Below 0: by the pair of materials.
+  double friction_out{-1};  // Below 0: as friction.
   bool is_oiled{false};
   double rz_um{0};
   double hub_rz_um{-1}, shaft_rz_um{-1};

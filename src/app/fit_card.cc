@@ -90,6 +90,19 @@ std::string HotJointText(const FitCard& card) {
                                    units::ToMm(card.options.join_speed)));
 }
 
+/** How a shaft with the largest clearance gets in. */
+struct Entry {
+  double window;  // Beside the axis, upright, radial [m].
+  double largest_tilt, wedging_tilt;
+};
+
+Entry CalcEntry(const FitCard& card) {
+  const fits::PressFitParameters& p = card.options.press;
+  const fits::PegInHole pair{p.joint_diameter + card.limits->max_clearance, p.joint_diameter};
+  return {fits::CalcEntryWindow(pair, card.options.chamfer_width, 0), fits::CalcLargestTilt(pair),
+          fits::CalcWedgingTilt(pair, p.friction_in)};
+}
+
 Result<fits::PressFit> PressAt(const FitCard& card, double clearance) {
   fits::PressFitParameters p = card.options.press;
   p.interference = -clearance;
@@ -234,10 +247,11 @@ std::string PressText(const FitCard& card) {
     }
   }
   if (card.limits->max_clearance > 0) {
-    const fits::PegInHole pair{p.joint_diameter + card.limits->max_clearance, p.joint_diameter};
-    text += fmt::format("largest tilt that enters: {:.2f} deg; below {:.3f} deg nothing wedges\n",
-                        units::ToDeg(fits::CalcLargestTilt(pair)),
-                        units::ToDeg(fits::CalcWedgingTilt(pair, p.friction_in)));
+    const Entry entry = CalcEntry(card);
+    text += fmt::format(
+        "with the largest clearance: upright it enters within {} um beside the axis, tilted below "
+        "{:.2f} deg;\n  below {:.3f} deg nothing wedges\n",
+        Um(entry.window), units::ToDeg(entry.largest_tilt), units::ToDeg(entry.wedging_tilt));
   }
   return text;
 }
@@ -296,10 +310,17 @@ ordered_json ToJson(const FitCard& card) {
                      {"hub_material", card.options.hub_material},
                      {"shaft_material", card.options.shaft_material},
                      {"mu", p.friction_in},
+                     {"mu_out", p.friction_release},
                      {"mu_source", card.options.friction_source},
                      {"hub_rz_um", units::ToUm(p.hub_roughness)},
                      {"shaft_rz_um", units::ToUm(p.shaft_roughness)},
                      {"smoothing_loss_um", units::ToUm(card.most->smoothing_loss)}};
+    if (card.limits->max_clearance > 0) {
+      const Entry entry = CalcEntry(card);
+      json["entry"] = {{"window_um", units::ToUm(entry.window)},
+                       {"largest_tilt_deg", units::ToDeg(entry.largest_tilt)},
+                       {"wedging_tilt_deg", FiniteOrNull(units::ToDeg(entry.wedging_tilt))}};
+    }
     json["press"] = {
         {"least", ToJson(*card.least)}, {"mean", ToJson(*card.mean)}, {"most", ToJson(*card.most)}};
     if (card.limits->min_clearance < 0) {

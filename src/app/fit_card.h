@@ -20,6 +20,7 @@ struct FitCardOptions {
   std::string friction_source;  ///< Where the coefficient is from.
   double start{0};              ///< Depth at which this fit begins to engage [m].
   double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
+  double chamfer_width{0};      ///< Of both parts together, radially [m].
   double room_c{20};
   std::optional<double> hub_c,
       shaft_c;                        ///< Temperatures to join at; room_c where only one is given.

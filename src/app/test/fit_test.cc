@@ -296,6 +296,23 @@ TEST(FitCommand, FrictionSaysWhereEachCoefficientIsFrom) {
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "mu 0.16 (dry pair, DIN 7190-1)", card.out);
 }
 
+// N5: how it gets in: the clearance and the chamfers beside the axis, and the tilts of the closed
+// forms.
+TEST(FitCommand, CardSaysHowTheShaftGetsIn) {
+  const json entry = RunHvasJson(
+      {"fit", "40 H7/g6", "--length", "50", "--chamfer-width", "0.5", "--mu", "0.15"})["entry"];
+  EXPECT_NEAR(entry["window_um"].get<double>(), 25 + 500, 1e-6);
+  constexpr double kDegree = 0.017453292519943295;
+  EXPECT_NEAR(entry["largest_tilt_deg"].get<double>(), std::acos(40 / 40.05) / kDegree, 1e-9);
+  // The tilt t with 40.05 = 40 cos t + 6 sin t: two points touch at l = mu d.
+  const double t = entry["wedging_tilt_deg"].get<double>() * kDegree;
+  EXPECT_NEAR(40 * std::cos(t) + 6 * std::sin(t), 40.05, 1e-9);
+  const json out =
+      RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--mu", "0.1", "--mu-out", "0.2"});
+  EXPECT_NEAR(out["press"]["most"]["push_out_force_n"].get<double>(),
+              2 * out["press"]["most"]["press_in_force_n"].get<double>(), 1e-6);
+}
+
 // The card as JSON is what its schema says, whatever was asked for.
 TEST(FitCommand, JsonIsOfItsSchema) {
   const TemporaryFolder folder;
