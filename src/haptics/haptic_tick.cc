@@ -57,6 +57,7 @@ HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene)
 void HapticTick::Take(const HeldPart* part) noexcept {
   part_ = part;
   state_ = HoldState::kFree;
+  is_stuck_ = false;
   is_first_tick_ = true;
   is_solved_ = false;
   const FreeBody* falling = bodies_.FindAwake(part->body);
@@ -87,7 +88,7 @@ spatial::Pose HapticTick::Drop() noexcept {
     scene_->SetPose(held.query.self, held.X_WS);
     scene_->SetEnabled(held.query.self, true);
   }
-  if (part_->falls_when_dropped && !is_seated) {
+  if (part_->falls_when_dropped && !is_seated && !is_stuck_) {
     bodies_.SetLoose(part_->body, true);
     bodies_.WakeFirst(part_->body, X_WB, V_D_);
   }
@@ -209,6 +210,7 @@ spatial::Wrench HapticTick::CalcCouplingWrench(const Tracked& tracked) const noe
 }
 
 void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
+  is_stuck_ = false;
   if (options_.condition == Condition::kCollision || guide_.captured_count() == 0) {
     has_start_ = false;
     fit_rows_.Reset();
@@ -257,6 +259,7 @@ void HapticTick::AddFits(const MateGeometry& axis, const Vec3& p_WCm) noexcept {
   fit_axis_.weight_out = weight_true_ * options_.gravity_W.normalized().dot(fit_axis_.out_W);
   const double speed = fit_axis_.out_W.dot(V_D_.v + V_D_.w.cross(fit_axis_.p_CmQ_W));
   FitLoad load = guide_.CalcFitLoad(*part_, speed);
+  is_stuck_ = std::min(load.in, load.out) > weight_true_;
   const double friction = options_.contact.friction.kinetic_coefficient * guide_.lateral_force();
   for (double* sum : {&load.in, &load.out, &load.shown_in, &load.shown_out}) {
     *sum += friction;

@@ -82,7 +82,7 @@ class HapticTick {
   void Take(const HeldPart* part) noexcept;
 
   /** Lets go. Returns the part's pose: its exact place when it was seated. There it is in the scene
-   again. RT-safe. */
+   again; it falls, unless it is in its place or its fits hold it. RT-safe. */
   spatial::Pose Drop() noexcept;
 
   /** One tick. Always returns a safe wrench. RT-safe. */
@@ -168,6 +168,7 @@ class HapticTick {
   double seat_progress_{0};
   spatial::Pose X_WD_seat_start_;
   FitAxis fit_axis_;
+  bool is_stuck_{false};  ///< Its fits hold more than its weight.
   double weight_true_{0};
   double weight_felt_{0};
   std::uint32_t points_tested_{0};  ///< Of the present tick.

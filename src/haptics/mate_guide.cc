@@ -11,6 +11,7 @@ namespace {
 constexpr double kAlignedDistance = 20e-6;     // [m] beyond the clearance
 constexpr double kAlignedAngle = 1e-3;         // [rad]
 constexpr double kLeaveFactor = 10;            // of these, before an aligned mate counts as left
+constexpr double kOpening = 0.5e-3;            // [m] of depth over which the play opens
 constexpr double kNearRatio = 3;               // of the capture thresholds
 constexpr double kHandRatio = 3;               // the hand may stray this far before a mate lets go
 constexpr double kFirstStiffness = 1.0;        // [N/m] where the ramp starts
@@ -24,7 +25,6 @@ double FreeRadius(const HeldMate& mate, const MateGeometry& geometry) noexcept {
   if (mate.fit == nullptr || geometry.engaged <= 0) {
     return 0;
   }
-  constexpr double kOpening = 0.5e-3;
   const double clearance = mate.fit->CalcRadialPlay(geometry.engaged);
   return clearance * std::min(1.0, geometry.engaged / kOpening);
 }
@@ -35,6 +35,20 @@ double FreeTilt(const HeldMate& mate, const MateGeometry& geometry) noexcept {
   return geometry.engaged > 0
              ? 2 * FreeRadius(mate, geometry) / std::max(geometry.engaged, 2 * mate.radius)
              : 0;
+}
+
+/** How stiffly a mate holds at the end of its ramp: as its fit does on the engaged length, which is
+ taken no shorter than where the fit's own play begins to count; at most what the options allow. */
+double FullStiffness(const HeldMate& mate, const MateGeometry& g, double most) noexcept {
+  return mate.fit == nullptr || g.engaged <= 0
+             ? most
+             : std::min(most, mate.fit->CalcRadialStiffness(std::max(g.engaged, kOpening)));
+}
+
+double FullRotStiffness(const HeldMate& mate, const MateGeometry& g, double most) noexcept {
+  return mate.fit == nullptr || g.engaged <= 0
+             ? most
+             : std::min(most, mate.fit->CalcTiltStiffness(std::max(g.engaged, 2 * mate.radius)));
 }
 
 /** Geometric ramp: most of the way is made where the mate is as stiff as the hand. */
@@ -173,8 +187,9 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const double tilt = g.tilt_W.norm();
     if (mates::HoldsDirection(mate.capture.kind) && (tilt > tilt_free || tilt_free == 0)) {
       const double excess = tilt - tilt_free;
-      const double k = Bounded(RampedStiffness(kFirstRotStiffness, options.k_rot, state.ramp),
-                               excess, options.max_torque);
+      const double k = Bounded(
+          RampedStiffness(kFirstRotStiffness, FullRotStiffness(mate, g, options.k_rot), state.ramp),
+          excess, options.max_torque);
       const double part_of = tilt > 0 ? excess / tilt : 1.0;
       solver->AddAngularSpring(k * part_of * g.tilt_W, k * across);
     }
@@ -191,8 +206,9 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const double free = FreeRadius(mate, g);
     const double r = g.distance;
     if (r > free || free == 0) {
-      const double k = Bounded(RampedStiffness(kFirstStiffness, options.k_lin, state.ramp),
-                               r - free, options.max_force);
+      const double k = Bounded(
+          RampedStiffness(kFirstStiffness, FullStiffness(mate, g, options.k_lin), state.ramp),
+          r - free, options.max_force);
       const double ratio = r > 0 ? free / r : 0.0;
       const Vec3 e = r > 0 ? Vec3(g.offset_W / r) : Vec3::Zero();
       if (g.engaged > 0 && mate.capture.kind == MateKind::kAxisHole) {

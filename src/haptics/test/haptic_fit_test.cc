@@ -242,6 +242,21 @@ TEST(Insertion, PressedShaftStaysWhereItIsLeft) {
   }
 }
 
+// N5: let go of in its hole, a shaft that the fit holds stays; one that it does not hold falls.
+TEST(Insertion, ReleasedShaftStaysWhereItsFitHoldsIt) {
+  for (const char* name : {"H7/g6", "H7/p6"}) {
+    Rig rig(MakeFit(name), Above(10e-3));
+    rig.part.falls_when_dropped = true;
+    rig.tick->SetProperties(rig.part.body, {rig.part.mass, rig.part.p_BoBcm_B, rig.part.I_BBcm_B,
+                                            fits::FrictionSurface::kSteel});
+    InsertHalfWay(&rig);
+    ASSERT_GT(rig.hand->last().insertion_depth, 20e-3);
+    (void)rig.tick->Drop();
+    rig.hand->Wait(0.2);
+    EXPECT_EQ(rig.tick->awake().empty(), std::string_view(name) == "H7/p6") << name;
+  }
+}
+
 // Drawing the shaft out again is resisted by the same force the other way round, down to none.
 TEST(Insertion, ExtractionIsOpposed) {
   const auto fit = MakeFit("H7/k6");
