@@ -60,20 +60,23 @@ void SetLimits(std::size_t i, CsvTable* table) {
   }
   std::string_view text = table->Get(i, "nominal_mm");
   const bool has_text = !text.empty();
-  const std::optional<double> nominal = TakeLength(&text);  // "1.5 in" converts.
-  if (!nominal || !text.empty()) {
+  const std::optional<double> number = table->GetNumber(i, "nominal_mm");
+  const bool is_number = number && std::isfinite(*number);
+  const std::optional<double> length = TakeLength(&text);  // "1.5 in" converts.
+  if (!is_number && (!length || !text.empty())) {
     table->Set(i, "reason",
                has_text ? "nominal_mm is no number; write millimetres, or inches as in 1.5 in"
                         : "nominal_mm is missing");
     return;
   }
+  const double nominal = is_number ? units::FromMm(*number) : *length;
   const auto parsed = fits::ParseToleranceClass(table->Get(i, "class"));
   if (!parsed) {
     table->Set(i, "reason", Explain(parsed.error()));
     return;
   }
   table->Set(i, "kind", parsed->is_hole() ? "hole" : "shaft");
-  const auto limits = fits::CalcLimits(*parsed, *nominal);
+  const auto limits = fits::CalcLimits(*parsed, nominal);
   if (!limits) {
     table->Set(i, "reason", Explain(limits.error()));
     return;

@@ -362,8 +362,10 @@ TEST_F(FitTable, LimitsOfClassesOrTheReasonWhyThereAreNone) {
       "40,Q7,,,,\"\"\"Q7\"\" is no tolerance class; write letters and grade as in H7 or js6\"\n"
       "ten,H7,,,,\"nominal_mm is no number; write millimetres, or inches as in 1.5 in\"\n"
       "1.5 in,H7,hole,25,0,\n"
+      "4E+1,H7,hole,25,0,\n"
+      "4E+1,H7,hole,25,0,\n"
       ",H7,,,,nominal_mm is missing\n"
-      "-5,H7,,,,\"nominal_mm is no number; write millimetres, or inches as in 1.5 in\"\n"
+      "-5,H7,hole,,,-5 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 mm\n"
       "0,H7,hole,,,0 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 mm\n"
       "4000,H7,hole,,,4000 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 "
       "mm\n");
