@@ -349,7 +349,7 @@ TEST_F(FitTable, LimitsOfClassesOrTheReasonWhyThereAreNone) {
   EXPECT_EQ(
       Run("limits",
           "nominal_mm,class\n40,H7\n40,g6\n280,M6\n3,js7\n30.001,H7\n40,N01\n40,Q7\nten,H7\n1.5 "
-          "in,H7\n,H7\n-5,H7\n0,H7\n4000,H7\n"),
+          "in,H7\n4E+1,H7\n,H7\n-5,H7\n0,H7\n4000,H7\n"),
       "nominal_mm,class,kind,upper_um,lower_um,reason\n"
       "40,H7,hole,25,0,\n"
       "40,g6,shaft,-9,-25,\n"
@@ -362,7 +362,6 @@ TEST_F(FitTable, LimitsOfClassesOrTheReasonWhyThereAreNone) {
       "40,Q7,,,,\"\"\"Q7\"\" is no tolerance class; write letters and grade as in H7 or js6\"\n"
       "ten,H7,,,,\"nominal_mm is no number; write millimetres, or inches as in 1.5 in\"\n"
       "1.5 in,H7,hole,25,0,\n"
-      "4E+1,H7,hole,25,0,\n"
       "4E+1,H7,hole,25,0,\n"
       ",H7,,,,nominal_mm is missing\n"
       "-5,H7,hole,,,-5 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 mm\n"
