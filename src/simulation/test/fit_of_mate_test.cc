@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "fits/iso286.h"
+#include "fits/press_fit.h"
 
 namespace hvas::simulation {
 namespace {
@@ -212,6 +213,84 @@ TEST(MakeFitForceTest, FrictionScalesTheForceAndRoughnessTheClearance) {  // W(4
   EXPECT_NEAR(amplitude(*Make(product, 4)) / amplitude(*usual), 0.5, 1e-9);
   product.mates[0].conditions.hole_roughness = product.mates[0].conditions.shaft_roughness = 0;
   EXPECT_NEAR(amplitude(*Make(product, 4)), 0, 1e-18);
+}
+
+// N5: two materials and a hollow shaft: the force is that of the press fit, to nine digits.
+TEST(MakeFitForceTest, MaterialsAndABoreMakeThePressFitOfThePair) {
+  Product product = Rig("H7/p6");
+  product.mates[0].conditions.hole_diameter = 40e-3;
+  product.mates[0].conditions.shaft_diameter = 40.04e-3;
+  product.mates[0].conditions.hole_roughness = product.mates[0].conditions.shaft_roughness = 0;
+  product.mates[0].conditions.friction = 0.12;
+  product.parts[0].material.youngs_modulus = 110e9;
+  product.parts[0].material.poisson_ratio = 0.28;
+  product::Feature& shaft = product.parts[1].features[0];
+  shaft.kind = product::FeatureKind::kShaft;
+  shaft.radius = kRadius;
+  shaft.span_high = kLength;
+  fits::PressFitParameters press;
+  press.joint_diameter = 2 * kRadius;
+  press.hub_diameter = 2 * kHub;
+  press.length = kLength;
+  press.interference = 0.04e-3;
+  press.hub.youngs_modulus = 110e9;
+  press.hub.poisson_ratio = 0.28;
+  press.friction_in = press.friction_release = 0.12;
+  for (const double bore : {0.0, 6e-3}) {
+    if (bore > 0) {
+      product::Feature hole = shaft;
+      hole.kind = product::FeatureKind::kHole;
+      hole.radius = bore;
+      hole.axis_B = -Vec3::UnitZ();
+      hole.span_low = -1.2 * kLength;
+      hole.span_high = 0;
+      product.parts[1].features.push_back(hole);
+      hole.radius = 10e-3;  // A short one at its end does not make it hollow.
+      hole.span_low = -0.2 * kLength;
+      product.parts[1].features.push_back(hole);
+    }
+    press.shaft_bore = 2 * bore;
+    const fits::PressFit closed = *fits::CalcPressFit(press);
+    const auto fit = Make(product, 1);
+    ASSERT_NE(fit, nullptr);
+    EXPECT_NEAR(fit->CalcAxialResistance(kLength) / closed.press_in_force, 1, 1e-9) << bore;
+    EXPECT_NEAR(fit->CalcReleaseForce(kLength) / closed.push_out_force, 1, 1e-9) << bore;
+  }
+}
+
+// Nobody states a friction: that of steel on bronze breaks loose harder than it slides.
+TEST(MakeFitForceTest, FrictionOfAPairOfMaterialsComesFromTheTable) {
+  Product product = Rig("H7/p6");
+  product.parts[0].material.standard = "CuSn8";
+  product.parts[1].material.standard = "S235JR";
+  const fits::FrictionLaw law =
+      fits::FindFriction(fits::FrictionSurface::kCopperAlloy, fits::FrictionSurface::kSteel, {});
+  ASSERT_GT(law.static_coefficient, law.kinetic_coefficient);
+  const auto fit = Make(product, 3);
+  const double normal = fit->CalcNormalForce(kLength);
+  ASSERT_GT(normal, 1000);
+  EXPECT_NEAR(fit->CalcAxialResistance(kLength), law.static_coefficient * normal, 1e-9 * normal);
+  EXPECT_NEAR(fit->CalcReleaseForce(kLength), law.static_coefficient * normal, 1e-9 * normal);
+  EXPECT_NEAR(fit->CalcReleaseForce(kLength, 1), law.kinetic_coefficient * normal, 1e-9 * normal);
+}
+
+// A chamfer at the end of the shaft is felt before the edge is in, one in its middle is not.
+TEST(MakeFitForceTest, ChamferOfTheShaftLeadsIn) {
+  Product product = Rig("H7/p6");
+  product::Feature& shaft = product.parts[1].features[0];
+  shaft.kind = product::FeatureKind::kShaft;
+  shaft.radius = kRadius;
+  shaft.span_high = kLength;
+  EXPECT_EQ(Make(product, 3)->CalcAxialResistance(-1e-6), 0);
+  product::Form chamfer;
+  chamfer.kind = product::FormKind::kChamfer;
+  chamfer.angle = 0.6;  // Included.
+  chamfer.depth = 1e-3;
+  chamfer.origin_B = Vec3(0, 0, 0.5 * kLength);
+  product.parts[1].forms = {chamfer};
+  EXPECT_EQ(Make(product, 3)->CalcAxialResistance(-1e-6), 0);
+  product.parts[1].forms[0].origin_B = Vec3(0, 0, -0.5e-3);
+  EXPECT_GT(Make(product, 3)->CalcAxialResistance(-1e-6), 1);
 }
 
 TEST(MakeFitForceTest, PlanesThreadsAndMatesWithoutACodeHaveNoFitForce) {
