@@ -250,18 +250,45 @@ void BlockBuilder::DropFarFaces(const Vec3& centre, double half, NearList* list)
   list->erase(std::remove_if(list->begin(), list->end(), is_far), list->end());
 }
 
+// Takes out the triangles that a look from the zone's centre tells not to be the closest of their
+// face to any point of it, and gives the others their distances from there.
+void BlockBuilder::DropHidden(const Vec3& centre, NearList* list) const {
+  const FewFaces<kMostFaces> few(data_.mesh, *list);
+  const double radius = 2 * kHalfDiagonal * h_;
+  std::vector<TrianglePoint> points;
+  std::array<double, kMostFaces> least{};
+  least.fill(std::numeric_limits<double>::infinity());
+  for (NearTriangle& entry : *list) {
+    points.push_back(data_.mesh.ClosestOn(entry.triangle, centre));
+    entry.distance = (points.back().q - centre).norm();
+    double& face_least = least[few.IndexOf(data_.mesh.face[entry.triangle])];
+    face_least = std::min(face_least, entry.distance);
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const NearTriangle entry = (*list)[i];
+    const double limit =
+        (least[few.IndexOf(data_.mesh.face[entry.triangle])] + 2 * radius) * kSlack;
+    if (search_.CanBeClosest(entry.triangle, points[i], centre, radius, limit)) {
+      (*list)[kept++] = entry;
+    }
+  }
+  list->resize(kept);
+}
+
 // Of each face, keeps the triangles that may be its closest somewhere in the zone, with their
 // distances from its centre. Cubes of a third of the zone are looked at one by one.
 void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) const {
   constexpr int kCubes = 3;  // In each direction.
   const Mesh& mesh = data_.mesh;
-  for (NearTriangle& entry : *list) {
-    entry.distance = (mesh.ClosestOn(entry.triangle, centre).q - centre).norm();
-  }
   const FewFaces<kMostFaces> few(mesh, *list);
   if (few.count == 0 || list->size() <= few.count) {
+    for (NearTriangle& entry : *list) {
+      entry.distance = (mesh.ClosestOn(entry.triangle, centre).q - centre).norm();
+    }
     return;
   }
+  DropHidden(centre, list);
   std::sort(list->begin(), list->end(), [](const NearTriangle& a, const NearTriangle& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });

@@ -52,6 +52,7 @@ class BlockBuilder {
                 int zones);
   bool AgreesWithFace(const NearList& list, const Vec3& centre, double half);
   void DropFarFaces(const Vec3& centre, double half, NearList* list);
+  void DropHidden(const Vec3& centre, NearList* list) const;
   void KeepClosest(const Vec3& centre, NearList* list) const;
   void FillFarZone(const Index3& zone, double distance);
   void FillNodes(const Index3& zone, const Vec3& centre);
