@@ -85,9 +85,13 @@ PartResult& AssemblyRun::ResultOf(OccurrenceId id) {
   return results_.back();
 }
 
-std::string AssemblyRun::ExplainFailure() const {
+std::string AssemblyRun::ExplainFailure(const SequenceStep& step) const {
   if (!has_dropped_) {
     return "could not be taken up";
+  }
+  if (const OccurrenceId missing = simulation_->FindMissingPartner(step); missing.is_valid()) {
+    return fmt::format("{}, which it goes to, is not in its place",
+                       simulation_->model().product->occurrences[missing.index()].path);
   }
   const HoldMetrics& metrics = dropped_.metrics;
   const std::string depth = metrics.insertion > 0 ? fmt::format(", {:.2f} mm into its hole at most",
@@ -117,7 +121,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step) {
     result.deepest = std::max(result.deepest, metrics.deepest);
     result.insertion = std::max(result.insertion, metrics.insertion);
   }
-  const std::string reason = was_seated ? std::string() : ExplainFailure();
+  const std::string reason = was_seated ? std::string() : ExplainFailure(step);
   result.reason = reason;
   result.note = DescribeOverlaps(step.occurrence);
   for (const product::MateId id : model.mates_of[step.occurrence.index()]) {

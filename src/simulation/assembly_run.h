@@ -59,7 +59,7 @@ class AssemblyRun final : public Sink {
 
  private:
   [[nodiscard]] PartResult& ResultOf(product::OccurrenceId id);
-  [[nodiscard]] std::string ExplainFailure() const;
+  [[nodiscard]] std::string ExplainFailure(const SequenceStep& step) const;
   void FinishStep(const SequenceStep& step);
   void Update(product::OccurrenceId id);
   [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id) const;

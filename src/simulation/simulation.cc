@@ -322,7 +322,7 @@ void Simulation::AddMates(const SequenceStep& step, std::size_t member,
   }
 }
 
-bool Simulation::HasPartnersBefore(const SequenceStep& step) const {
+OccurrenceId Simulation::FindMissingPartner(const SequenceStep& step) const {
   const auto& steps = model_->sequence.steps;
   const auto is_before = [&](OccurrenceId id) {
     for (const SequenceStep& other : steps) {
@@ -335,20 +335,26 @@ bool Simulation::HasPartnersBefore(const SequenceStep& step) const {
     }
     return false;
   };
-  const auto has_before = [&](OccurrenceId id) {
-    return std::any_of(model_->mates_of[id.index()].begin(), model_->mates_of[id.index()].end(),
-                       [&](product::MateId mate_id) {
-                         const product::Mate& mate = model_->product->mates[mate_id.index()];
-                         const OccurrenceId other =
-                             mate.a.occurrence == id ? mate.b.occurrence : mate.a.occurrence;
-                         return other != step.occurrence &&
-                                std::find(step.members.begin(), step.members.end(), other) ==
-                                    step.members.end() &&
-                                is_before(other);
-                       });
+  const auto is_own = [&step](OccurrenceId id) {
+    return id == step.occurrence ||
+           std::find(step.members.begin(), step.members.end(), id) != step.members.end();
   };
-  return has_before(step.occurrence) ||
-         std::any_of(step.members.begin(), step.members.end(), has_before);
+  OccurrenceId missing;
+  for (std::size_t i = 0; i <= step.members.size(); ++i) {
+    const OccurrenceId id = i == 0 ? step.occurrence : step.members[i - 1];
+    for (const product::MateId mate_id : model_->mates_of[id.index()]) {
+      const product::Mate& mate = model_->product->mates[mate_id.index()];
+      const OccurrenceId other = mate.a.occurrence == id ? mate.b.occurrence : mate.a.occurrence;
+      if (is_own(other) || !is_before(other)) {
+        continue;
+      }
+      if (placement(other) == Placement::kPlaced) {
+        return {};
+      }
+      missing = missing.is_valid() ? missing : other;
+    }
+  }
+  return missing;
 }
 
 std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& step) const {
@@ -375,7 +381,7 @@ std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& 
   for (std::size_t member = 0; member <= step.members.size(); ++member) {
     AddMates(step, member, held.get());
   }
-  held->lacks_partners = held->mates.empty() && HasPartnersBefore(step);
+  held->lacks_partners = held->mates.empty() && FindMissingPartner(step).is_valid();
   // The place is where the mates say; what they leave free is taken from the drawing (X9).
   std::vector<mates::MateConstraint> constraints;
   for (const haptics::HeldMate& mate : held->mates) {

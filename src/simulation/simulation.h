@@ -108,6 +108,11 @@ class Simulation {
  */
   void Prepare(const SequenceStep& step) { prepared_ = step; }
 
+  /** A part that has a mate with this one and comes before it in the order, but is not in its
+   place; invalid where there is none, or where another such part is in its place. Physics thread.
+ */
+  [[nodiscard]] product::OccurrenceId FindMissingPartner(const SequenceStep& step) const;
+
   [[nodiscard]] const Model& model() const { return *model_; }
 
   [[nodiscard]] const haptics::TickOptions& options() const { return options_; }
@@ -150,8 +155,6 @@ class Simulation {
   [[nodiscard]] std::unique_ptr<haptics::HeldPart> MakeHeldPart(const SequenceStep& step) const;
   void AddMembers(const SequenceStep& step, haptics::HeldPart* held) const;
   void AddMates(const SequenceStep& step, std::size_t member, haptics::HeldPart* held) const;
-  /** True where the order puts a part there first that this one has a mate with. */
-  [[nodiscard]] bool HasPartnersBefore(const SequenceStep& step) const;
   [[nodiscard]] std::vector<contact::BodyId> LeftOut(product::OccurrenceId id,
                                                      const SequenceStep& step) const;
   [[nodiscard]] spatial::Pose ClearOfTable(product::OccurrenceId id) const;

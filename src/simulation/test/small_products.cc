@@ -132,7 +132,9 @@ Product CoinUnderLid() {
   return product;
 }
 
-Product CollarUnderClamp() {
+namespace {
+
+Product MakeTrap(bool has_cap) {
   using contact::testing::CylinderZ;
   using contact::testing::PlaneAt;
   constexpr double kCollar = 10e-3;  // radius
@@ -156,8 +158,22 @@ Product CollarUnderClamp() {
   Place(&product, block, "block");
   Place(&product, peg, "peg", Pose(Vec3(0, 0, kFloor)));
   Place(&product, clamp, "clamp", Pose(Vec3(11e-3, 0, kClampHeight - half.z())));
+  if (has_cap) {
+    const PartId cap = AddPart(&product, "cap", contact::testing::Shaft(4e-3, 3e-3, kDeviation));
+    Place(&product, cap, "cap", Pose(Vec3(-4e-3, 0, kFloor + kEnd)));
+  }
   Complete(&product);
   return product;
+}
+
+}  // namespace
+
+Product CollarUnderClamp() {
+  return MakeTrap(false);
+}
+
+Product CappedCollarUnderClamp() {
+  return MakeTrap(true);
 }
 
 Product CaptiveRing() {

@@ -22,16 +22,18 @@ constexpr double kLimit_s = 90;
 constexpr double kDepthAtClamp =
     testing::kBlockHeight - (testing::kClampHeight - testing::kCollarHeight);
 
-/** The model of the trap with the clamp in its place before the peg. */
+/** A product with the clamp in its place before the peg. */
+std::shared_ptr<const Model> ClampFirst(product::Product product) {
+  Diagnostics diagnostics;
+  auto made =
+      std::make_shared<Model>(**Compile(std::make_shared<product::Product>(std::move(product)),
+                                        testing::FastOptions(), &diagnostics));
+  made->sequence = *Reorder(*made->product, made->sequence, {"clamp", "peg"});
+  return made;
+}
+
 const std::shared_ptr<const Model>& TrapModel() {
-  static const std::shared_ptr<const Model> model = [] {
-    Diagnostics diagnostics;
-    auto made = std::make_shared<Model>(
-        **Compile(std::make_shared<product::Product>(testing::CollarUnderClamp()),
-                  testing::FastOptions(), &diagnostics));
-    made->sequence = *Reorder(*made->product, made->sequence, {"clamp", "peg"});
-    return std::shared_ptr<const Model>(std::move(made));
-  }();
+  static const std::shared_ptr<const Model> model = ClampFirst(testing::CollarUnderClamp());
   return model;
 }
 
@@ -67,12 +69,13 @@ struct Trial {
   std::vector<PartResult> results;
 };
 
-void Try(haptics::Condition condition, std::uint64_t seed, Trial* trial) {
+void Try(haptics::Condition condition, std::uint64_t seed, Trial* trial,
+         const std::shared_ptr<const Model>& model = TrapModel()) {
   haptics::TickOptions options;
   options.condition = condition;
   PersonOptions habits;
   habits.patience_s = 6;  // Long enough to press as hard as it will, and to search once.
-  Session session(TrapModel(), seed, options, habits);
+  Session session(model, seed, options, habits);
   AssemblyRun run(&session.simulation, &session.person, &trial->guided);
   Execution execution = session.MakeExecution(kLimit_s);
   execution.sink = &run;
@@ -115,6 +118,15 @@ TEST(TrapTest, GuidedPegStopsAtAThirdPartAndTheHandFeelsIt) {  // N3
     EXPECT_GT(trial.guided.lowest_on_clamp, testing::kBlockHeight - kDepthAtClamp - 20e-6);
     EXPECT_GT(trial.guided.force_on_clamp, 4.0);  // [N]; what a hand tries first
   }
+}
+
+TEST(TrapTest, WhatGoesToAPartThatFailedSaysSo) {
+  Trial trial;
+  Try(haptics::Condition::kHybrid, 1, &trial, ClampFirst(testing::CappedCollarUnderClamp()));
+  ASSERT_EQ(trial.results.size(), 4U);
+  EXPECT_FALSE(trial.results[2].is_seated);
+  EXPECT_FALSE(trial.results[3].is_seated);
+  EXPECT_EQ(trial.results[3].reason, "trap/peg, which it goes to, is not in its place");
 }
 
 TEST(TrapTest, WithoutCollisionTheGuidedPegGoesThroughTheThirdPart) {  // as both papers have it
