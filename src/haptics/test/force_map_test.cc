@@ -116,5 +116,22 @@ TEST(ForceMap, PressForcesStayWithinTheDeviceAndApart) {
   }
 }
 
+// N4: the device alone sets the map; a transition fit and an interference fit are two or more just
+// noticeable differences of 10 % apart at the end of their way, wherever they end.
+TEST(ForceMap, DeviceAloneSetsTheMapAndFitsStayApart) {
+  for (const double max_force : {3.3, 7.9, 22.0}) {
+    device::DeviceProfile device;
+    device.max_force = max_force;
+    const ForceMap map = MakeForceMap(device);
+    EXPECT_NEAR(map.Felt(kLargestTrueForce), kLargestFeltShare * max_force, 1e-12 * max_force);
+    // H7/k6 of equal sizes and H7/p6 in mid zone, fits-and-insertion 2.4.
+    EXPECT_GT(map.Felt(39893.3) / map.Felt(2329), 1.25);
+    EXPECT_GT(map.Felt(2329) / map.Felt(0.3), 5);
+  }
+  device::DeviceProfile three_axes;
+  three_axes.max_torque = 0;
+  EXPECT_EQ(MakeTorqueMap(three_axes).Felt(1000), 0);
+}
+
 }  // namespace
 }  // namespace hvas::haptics

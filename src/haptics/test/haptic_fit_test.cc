@@ -242,6 +242,41 @@ TEST(Insertion, PressedShaftStaysWhereItIsLeft) {
   }
 }
 
+// W4, N5: the engaged length holds nothing across and against tilt within its clearance, and all
+// the coupling can show beyond it; a press fit has no such band.
+TEST(Insertion, EngagedLengthHoldsBeyondItsClearance) {
+  for (const char* name : {"H7/g6", "H7/p6"}) {
+    const auto fit = MakeFit(name);
+    Rig rig(fit, Above(10e-3));
+    InsertHalfWay(&rig);
+    const double depth = rig.hand->last().insertion_depth;
+    const double play = fit->CalcRadialPlay(depth);
+    const double tilt = 2 * play / std::max(depth, 2 * testing::kShaftRadius);
+    EXPECT_EQ(play > 0, std::string_view(name) == "H7/g6");
+    const CouplingGains& gains = rig.options.coupling;
+    const auto check = [&](double across, double turned) {
+      const TickOutput& out = rig.hand->last();
+      const double f = gains.k_lin * std::max(0.0, across - play);
+      const double t = gains.k_rot * std::max(0.0, turned - tilt);
+      EXPECT_NEAR(out.F_felt_W.f.head<2>().norm(), f, 0.03 * f + 4e-3) << name << " " << across;
+      // Pressed aside, above the middle of what is engaged, it tilts as far as it may.
+      const double swing = across > 0 ? gains.k_rot * tilt : 0.0;
+      EXPECT_NEAR(out.F_felt_W.t.head<2>().norm(), t, 0.03 * t + 4e-4 + swing)
+          << name << " " << turned;
+    };
+    check(0, 0);
+    rig.hand->MoveSoftly(Vec3(0.5 * play, 0, 0), 0.3);
+    rig.hand->Wait(0.5);
+    check(0.5 * play, 0);
+    rig.hand->MoveSoftly(Vec3(-0.5 * play, 1e-3, 0), 0.3);
+    rig.hand->Wait(0.5);
+    check(1e-3, 0);
+    rig.hand->MoveSoftly(Vec3(0, -1e-3, 0), 0.3, Vec3(0.03, 0, 0));
+    rig.hand->Wait(0.5);
+    check(0, 0.03);
+  }
+}
+
 // N5: let go of in its hole, a shaft that the fit holds stays; one that it does not hold falls.
 TEST(Insertion, ReleasedShaftStaysWhereItsFitHoldsIt) {
   for (const char* name : {"H7/g6", "H7/p6"}) {
