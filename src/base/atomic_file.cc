@@ -59,7 +59,7 @@ Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view
     return Fail(ErrorCode::kInvalid, "is there and not a file", file.string(),
                 "choose another name");
   }
-  std::string name = target.string() + ".XXXXXX";
+  std::string name = target.string() + ".XXXXXX";  // mkstemp puts letters of its own for the six X.
   const int descriptor = ::mkstemp(name.data());
   if (descriptor < 0) {
     return FailWith(errno, file);

@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 constexpr const char* kUnfinished = "-tmp";  // Behind the extension.
 constexpr auto kForgottenAfter = std::chrono::hours(1);
 
-/** While it lives, no Ctrl-C ends the program: an unfinished file would stay behind. */
+/** While it lives, no Ctrl-C that comes to this thread ends the program: an unfinished file would
+ stay behind. One that another thread gets finds the file without a name where that can be had. */
 class SignalShield {
  public:
   SignalShield() {
@@ -47,14 +48,22 @@ class SignalShield {
 };
 
 bool WriteNew(const fs::path& path, std::initializer_list<std::span<const std::byte>> pieces) {
-  const int descriptor =
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  constexpr mode_t kMode = S_IRUSR | S_IWUSR;
+  int descriptor = ::open(path.parent_path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
+  const bool is_nameless = descriptor >= 0;
+  if (!is_nameless) {  // Not every file system knows files without a name.
+    descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  }
   if (descriptor < 0) {
     return false;
   }
-  const bool is_written = std::all_of(pieces.begin(), pieces.end(), [descriptor](const auto piece) {
+  bool is_written = std::all_of(pieces.begin(), pieces.end(), [descriptor](const auto piece) {
     return WriteAll(descriptor, piece) == 0;
   });
+  if (is_written && is_nameless) {
+    is_written = ::linkat(AT_FDCWD, fmt::format("/proc/self/fd/{}", descriptor).c_str(), AT_FDCWD,
+                          path.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  }
   return ::close(descriptor) == 0 && is_written;
 }
 

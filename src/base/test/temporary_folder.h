@@ -14,6 +14,7 @@ namespace hvas::testing {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
+    // mkdtemp puts letters of its own for the six X.
     std::string name = (std::filesystem::temp_directory_path() / "hvas-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) {
       throw std::runtime_error("no temporary folder can be made: " + name);
