@@ -14,7 +14,10 @@ namespace hvas::contact {
 namespace {
 
 constexpr double kMaxFaceSamples = 15000;
-constexpr double kEdgeRatio = 0.5;  // Spacing of edge samples over that of face samples.
+// Spacing of edge samples over that of face samples. Between two exact faces contacts slide along
+// the edge to where they belong, else the samples are all there is.
+constexpr double kEdgeRatio = 0.5;
+constexpr double kExactEdgeRatio = 1.5;
 constexpr int kTriesPerSample = 6;  // Random tries for each sample that would fill the area.
 constexpr double kDensity = 0.75;   // Smallest distance of samples over the spacing.
 constexpr std::uint64_t kSeed = 20260721;
@@ -136,6 +139,10 @@ void AddCorners(const Shape::Data& data, Sampler* sampler) {
   }
 }
 
+bool IsExact(const Shape::Data& data, std::uint32_t f) {
+  return data.exact.faces[f].kind != spatial::SurfaceKind::kFreeform;
+}
+
 // Where a flat face goes over into a fillet there is no edge, but flat contact ends there.
 bool IsFlatBoundary(const Shape::Data& data, std::uint32_t f, std::uint32_t g) {
   const bool is_flat_f = data.exact.faces[f].kind == spatial::SurfaceKind::kPlane;
@@ -143,7 +150,7 @@ bool IsFlatBoundary(const Shape::Data& data, std::uint32_t f, std::uint32_t g) {
   return f != g && is_flat_f != is_flat_g;
 }
 
-void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
+void AddEdges(const Shape::Data& data, Sampler* sampler) {
   const Mesh& mesh = data.mesh;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -159,6 +166,8 @@ void AddEdges(const Shape::Data& data, double spacing, Sampler* sampler) {
       const Vec3& b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
       const std::uint32_t f = mesh.face[t];
       const std::uint32_t g = mesh.face[n];
+      const bool is_exact = IsExact(data, f) && IsExact(data, g);
+      const double spacing = (is_exact ? kExactEdgeRatio : kEdgeRatio) * data.spacing;
       const double tolerance = 4 * (data.exact.deviation[f] + data.exact.deviation[g]) + 1e-9;
       const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
       // The middle of a short edge too, so that an edge between two near corners gets its point.
@@ -192,6 +201,7 @@ struct FacePlan {
 
 FacePlan PlanOf(const spatial::Surface& face) {
   constexpr double kSparse = 1.0 / 3;
+  constexpr double kCurved = 1.0 / 2;
   FacePlan plan;
   if (face.kind == spatial::SurfaceKind::kFreeform || face.kind == spatial::SurfaceKind::kTorus) {
     return plan;
@@ -202,7 +212,8 @@ FacePlan PlanOf(const spatial::Surface& face) {
     plan.is_feature = false;
   } else if (face.kind != spatial::SurfaceKind::kSphere) {
     plan.stretch -= (1 - kSparse) * face.axis * face.axis.transpose();
-    plan.area_scale = kSparse;
+    plan.stretch *= kCurved;
+    plan.area_scale = kSparse * kCurved * kCurved;
   }
   return plan;
 }
@@ -250,9 +261,9 @@ void AddFace(const Shape::Data& data, std::uint32_t f, const std::vector<std::ui
 }
 
 std::vector<Sample> SampleAll(const Shape::Data& data) {
-  Sampler edges(data.spacing);
+  Sampler edges(kExactEdgeRatio * data.spacing);
   AddCorners(data, &edges);
-  AddEdges(data, kEdgeRatio * data.spacing, &edges);
+  AddEdges(data, &edges);
   std::vector<Sample> samples = edges.samples();
   std::vector<std::vector<std::uint32_t>> triangles(data.exact.faces.size());
   for (std::uint32_t t = 0; t < data.mesh.triangles.size(); ++t) {
@@ -276,6 +287,7 @@ double FacingLimit(const Shape::Data& data, const Sample& sample) {
     return kEdge;
   }
   const spatial::Surface& face = data.exact.faces[sample.faces[0]];
+  const double way = 2 * data.spacing;
   double radius = std::numeric_limits<double>::infinity();
   switch (face.kind) {
     case spatial::SurfaceKind::kPlane:
@@ -287,12 +299,12 @@ double FacingLimit(const Shape::Data& data, const Sample& sample) {
       radius = (sample.p - face.origin).norm() * std::tan(face.second);
       break;
     case spatial::SurfaceKind::kFreeform:
-      radius = data.spacing / kUnknownTurn;
+      radius = way / kUnknownTurn;
       break;
     default:
       radius = face.radius;
   }
-  return std::cos(std::min(kAllowed + data.spacing / radius, 0.75 * std::numbers::pi));
+  return std::cos(std::min(kAllowed + way / radius, 0.75 * std::numbers::pi));
 }
 
 class TreeBuilder {

@@ -10,8 +10,8 @@ constexpr int kMaxSteps = 3;
 constexpr double kWorthwhile = 2e-8;  // [m]; a slide that can gain less is left out.
 constexpr double kOnSurface = 1e-7;   // [m]
 
-constexpr double kFaceReach = 3.0;  // In spacings; edges are sampled at half.
-constexpr double kEdgeReach = 0.75;
+constexpr double kFaceReach = 3.0;  // In spacings.
+constexpr double kEdgeReach = 1.5;
 constexpr double kMostSparse = 8.0;  // A slide may not lead anywhere.
 
 double SparsityOf(const RawContact& contact) {
