@@ -71,10 +71,38 @@ struct FaceForm {
   Kind kind{Kind::kNone};  ///< None: single precision is not good enough, or no such surface.
 };
 
-/** Which face decides where. */
+/** What decides the distance in a cube of 2^3 cells. The upper two bits say how, the rest is a face
+ or a list. */
+namespace zone {
+inline constexpr std::uint32_t kPayload = 0x3fffffffU;
+inline constexpr std::uint32_t kExact = 0x00000000U;   ///< One analytic face.
+inline constexpr std::uint32_t kSmooth = 0x40000000U;  ///< One face without an exact distance.
+inline constexpr std::uint32_t kList = 0x80000000U;    ///< Several: the triangles decide.
+inline constexpr std::uint32_t kFar =
+    0xc0000000U;  ///< Far from the surface; payload: nearest face.
+}  // namespace zone
+
+/** The faces of a zone's list, and how the solid comes of them there. */
+struct ListFaces {
+  static constexpr unsigned kMost = 5;
+
+  enum class Kind : std::uint8_t {
+    kMixed,         ///< The triangles decide.
+    kIntersection,  ///< Inside all faces: each two meet in a convex edge, or are sides of a wall.
+    kUnion          ///< Inside any: each two meet in a concave edge, or are sides of a gap.
+  };
+
+  std::uint16_t faces[kMost]{};
+  std::uint8_t count{0};  ///< 0: more than kMost.
+  Kind kind{Kind::kMixed};
+  std::uint16_t unused{0};  ///< For the bytes on disk.
+};
+
+/** Which faces decide where. */
 struct FaceView {
   const std::uint32_t* zones{nullptr};  ///< Codes as in `zone`, by block.
   const FaceForm* forms{nullptr};       ///< Of each face.
+  const ListFaces* lists{nullptr};      ///< Null: what several faces decide is left unscreened.
 };
 
 /** Takes the shell's coordinates to the field's. */
@@ -84,6 +112,7 @@ struct FloatPose {
 };
 
 inline constexpr std::uint32_t kUnscreened = 0xffffffffU;
+inline constexpr std::uint32_t kNoList = 0xffffffffU;
 
 /** A point that may be nearer than the margin. */
 struct Hit {
@@ -91,6 +120,7 @@ struct Hit {
   float distance;                   ///< Of the face, else interpolated.
   float gradient[3];                ///< Of the face, else interpolated and not unit.
   std::uint32_t face{kUnscreened};  ///< The one analytic face that decides, where there is one.
+  std::uint32_t list{kNoList};      ///< It does so among these.
 };
 
 struct HitBuffer {
@@ -122,8 +152,9 @@ struct Kernel {
    margin. */
   void (*collect)(const ShellView&, const FieldView&, const FloatPose& X_FS, float margin,
                   LeafBuffer*);
-  /** Appends those points of the leaves whose distance may be below the margin: those on one
-   analytic face by their distance from it, the others by the interpolated one less its slack. */
+  /** Appends those points of the leaves whose distance may be below the margin: those where
+   one analytic face decides by their distance from it, the others by the interpolated one less its
+   slack. */
   void (*test)(const ShellView&, const FieldView&, const FaceView&, const FloatPose& X_FS,
                float margin, const LeafChoice&, HitBuffer*);
 };

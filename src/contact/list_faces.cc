@@ -39,8 +39,8 @@ class ListReader {
 
  private:
   [[nodiscard]] std::size_t IndexOf(std::uint32_t face) const {
-    return static_cast<std::size_t>(
-        std::find(out_.faces.begin(), out_.faces.begin() + out_.count, face) - out_.faces.begin());
+    return static_cast<std::size_t>(std::find(out_.faces, out_.faces + out_.count, face) -
+                                    out_.faces);
   }
 
   bool CollectFaces(std::uint32_t mark) {

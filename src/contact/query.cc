@@ -70,6 +70,22 @@ std::uint32_t Stride(std::uint32_t n) {
   return std::max(step, 1U);
 }
 
+// What the kernel decided of a hit among several faces as drawn, it may not have decided of them as
+// made, or when some of them are left out.
+bool IsScreened(const Placed& sampled, const Placed& field, const Hit& hit,
+                const FaceFilter& filter) {
+  if (hit.list == kNoList) {
+    return hit.face != kUnscreened;
+  }
+  if (sampled.offsets != nullptr) {
+    return false;
+  }
+  const ListFaces& list = field.shape->exact.list_faces[hit.list];
+  return std::none_of(list.faces, list.faces + list.count, [&](std::uint32_t face) {
+    return filter.Drops(face) || (field.offsets != nullptr && field.offsets->Moves(face));
+  });
+}
+
 // What single precision says of a hit on one face, with both faces as made; to kScreened.
 double ScreenedDistance(const Placed& sampled, const Shell& shell, const Placed& field,
                         const Hit& hit, const Vec3& p_F, const Vec3& towards) {
@@ -236,8 +252,9 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
   const LeafChoice choice = Choose(body.first[kIsReverse ? 1 : 0], leaf_count);
   const ExactTable& exact = field.shape->exact;
-  kernel_.test(shell.view, field.shape->field.view, {exact.zones.data(), exact.forms.data()},
-               X.Single(), static_cast<float>(Reach(sampled, field, X)), choice, &hits);
+  kernel_.test(shell.view, field.shape->field.view,
+               {exact.zones.data(), exact.forms.data(), exact.list_faces.data()}, X.Single(),
+               static_cast<float>(Reach(sampled, field, X)), choice, &hits);
   const bool is_thinned = choice.points < 8 || choice.stride > 1;
   work_->stats.points_tested += hits.points_tested;
   work_->stats.points_dropped += is_thinned ? 8 * leaf_count - hits.points_tested : 0;
@@ -267,7 +284,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       filter.bits = BitsOf(faces, own_mask);
     }
     std::uint32_t own_face = kNoFace;
-    if (hit.face != kUnscreened) {
+    if (IsScreened(sampled, field, hit, filter)) {
       if (filter.Drops(hit.face)) {
         continue;
       }

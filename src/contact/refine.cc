@@ -169,12 +169,35 @@ class ZoneList {
     return way <= 0 || others + way <= 0 || is_far;
   }
 
-  [[nodiscard]] Closest Find(const FaceFilter& filter) const noexcept {
+  /** How near a triangle has to be for the solid to be nearer than a limit. */
+  [[nodiscard]] double ReachFor(double limit) const noexcept {
+    double reach = limit;
+    for (std::size_t i = 0; i < faces_.count(); ++i) {
+      constexpr double kMost =
+          9;  // Deviations that an edge of two faces may be away from its mesh.
+      reach = std::max(reach, limit + kMost * shape_.exact.deviation[faces_.face(i)] + kOnFeature);
+    }
+    return faces_.count() > 0 ? reach : std::numeric_limits<double>::infinity();
+  }
+
+  /** The closest of the triangles nearer than `reach`; may be none. */
+  [[nodiscard]] Closest Find(const FaceFilter& filter, double reach) const noexcept {
     Closest best;
-    double best_distance = std::numeric_limits<double>::infinity();
-    // First what is on the face that may come nearest, so that the others need not be looked at.
-    const std::uint32_t first_face = Nearest(filter);
-    if (first_face != kNoFace) {
+    best.squared = reach * reach;
+    double best_distance = reach;
+    std::uint32_t first_face = kNoFace;
+    if (faces_.count() > 0) {
+      // First what is on the face that may come nearest, so that the others need not be looked at.
+      double least = reach;
+      for (std::size_t i = 0; i < faces_.count(); ++i) {
+        if (faces_.least(i) <= least && !filter.Drops(faces_.face(i))) {
+          least = faces_.least(i);
+          first_face = faces_.face(i);
+        }
+      }
+      if (first_face == kNoFace) {
+        return best;
+      }
       Search([&](std::uint32_t face) { return face == first_face; }, &best, &best_distance);
     }
     Search(
@@ -186,18 +209,6 @@ class ZoneList {
   }
 
  private:
-  [[nodiscard]] std::uint32_t Nearest(const FaceFilter& filter) const noexcept {
-    std::uint32_t nearest = kNoFace;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < faces_.count(); ++i) {
-      if (faces_.least(i) < least && !filter.Drops(faces_.face(i))) {
-        least = faces_.least(i);
-        nearest = faces_.face(i);
-      }
-    }
-    return nearest;
-  }
-
   template <typename Wants>
   void Search(Wants wants, Closest* best, double* best_distance) const noexcept {
     for (std::uint32_t i = begin_; i < end_; ++i) {
@@ -258,8 +269,8 @@ bool IsConcaveWithIgnored(const Mesh& mesh, const Closest& closest, const FaceFi
 // lies beyond them counts only where it faces p. Where a kept face meets an ignored one in a
 // concave edge, the kept one goes on beyond the edge, as for a pin at the bottom of its hole.
 Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec3& p,
-                       const FaceFilter& filter, const Hit& field) {
-  const Closest closest = list.Find(filter);
+                       const FaceFilter& filter, double reach, const Hit& field) {
+  const Closest closest = list.Find(filter, reach);
   if (closest.triangle == kNoFace) {
     return Nothing();
   }
@@ -268,10 +279,9 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
   if (touches_ignored && !IsConcaveWithIgnored(shape.mesh, closest, filter)) {
     return Nothing();
   }
-  const double reach = std::sqrt(closest.squared);
   if (touches_ignored) {
     const auto exact = spatial::CalcDistance(shape.exact.faces[feature.face], p);
-    if (!exact.is_valid || std::abs(exact.distance) > reach + kOnFeature) {
+    if (!exact.is_valid || std::abs(exact.distance) > std::sqrt(closest.squared) + kOnFeature) {
       return Nothing();
     }
     Refined result;
@@ -342,6 +352,7 @@ ZoneAt FindZone(const Shape::Data& shape, const Vec3& p) noexcept {
   const int index = block * kZonesPerBlock + ((cell[2] & 7) >> 1) * 16 + ((cell[1] & 7) >> 1) * 4 +
                     ((cell[0] & 7) >> 1);
   result.code = shape.exact.zones[static_cast<std::size_t>(index)];
+  result.slack = static_cast<double>(shape.field.slack[static_cast<std::size_t>(block)]);
   result.is_known = true;
   return result;
 }
@@ -362,10 +373,17 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
     if (list.FromSurfaces(filter, &from_surfaces)) {
       return from_surfaces;
     }
-    const Closest closest = list.Find({});
+    // Outside, what is no nearer than the limit need not be found.
+    const bool is_outside = static_cast<double>(field.distance) > at.slack - filter.limit;
+    const double reach =
+        is_outside ? list.ReachFor(filter.limit) : std::numeric_limits<double>::infinity();
+    const Closest closest = list.Find({}, reach);
+    if (closest.triangle == kNoFace) {
+      return Nothing();
+    }
     const SolidFeature feature = FeatureOf(shape.mesh, closest);
     if (filter.Drops(feature.face) || filter.Drops(feature.other_face)) {
-      return WithoutIgnored(shape, list, p, filter, field);
+      return WithoutIgnored(shape, list, p, filter, reach, field);
     }
     const Refined from_mesh = FromFeature(shape, closest, feature, p, field);
     // Beside a round edge the chords of the mesh go a little too far.

@@ -53,6 +53,7 @@ struct FaceFilter {
 struct ZoneAt {
   std::uint32_t code{0};
   Vec3 centre{Vec3::Zero()};
+  double slack{0};       ///< Bound of the interpolation's error there [m].
   bool is_known{false};  ///< False outside the field and where it has no block.
 
   [[nodiscard]] bool is_list() const noexcept {
@@ -81,7 +82,7 @@ struct ZoneAt {
 /** True where every face of a zone's list is left out: then nothing is near. RT-safe. */
 [[nodiscard]] inline bool DropsAll(const FaceFilter& filter, const ListFaces* list) noexcept {
   return filter.bits != 0 && list != nullptr &&
-         std::all_of(list->faces.begin(), list->faces.begin() + list->count,
+         std::all_of(list->faces, list->faces + list->count,
                      [&filter](std::uint32_t face) { return filter.Drops(face); });
 }
 

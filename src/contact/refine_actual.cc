@@ -63,7 +63,7 @@ class NearFaces {
               double from_centre) {
     const ListFaces* named = FacesOfList(shape, list);
     if (named != nullptr &&
-        std::none_of(named->faces.begin(), named->faces.begin() + named->count,
+        std::none_of(named->faces, named->faces + named->count,
                      [&offsets](std::uint32_t face) { return offsets.Moves(face); })) {
       return false;
     }

@@ -27,17 +27,6 @@ struct Field {
   }
 };
 
-/** What decides the distance in a cube of 2^3 cells. The upper two bits say how, the rest is a face
- or a list. */
-namespace zone {
-inline constexpr std::uint32_t kPayload = 0x3fffffffU;
-inline constexpr std::uint32_t kExact = 0x00000000U;   ///< One analytic face.
-inline constexpr std::uint32_t kSmooth = 0x40000000U;  ///< One face without an exact distance.
-inline constexpr std::uint32_t kList = 0x80000000U;    ///< Several: the triangles decide.
-inline constexpr std::uint32_t kFar =
-    0xc0000000U;  ///< Far from the surface; payload: nearest face.
-}  // namespace zone
-
 inline constexpr int kZonesPerBlock = 64;
 
 /** A triangle that may be the closest one in a zone, with a lower bound of its distance from the

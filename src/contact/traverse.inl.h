@@ -231,53 +231,133 @@ class Traversal {
     }
   }
 
+  static constexpr float kUnsure = 0.4e-6F;  // [m]; twice what single precision may be wrong by.
+
   // Pushes the hits that one analytic face decides, by their distance from it; returns the others.
   unsigned Screen(unsigned hits, const Float* p, const std::int32_t* twice_zone,
                   const std::uint32_t* number) {
-    std::uint32_t face[8];
-    unsigned todo = 0;
+    std::uint32_t code[8];
+    unsigned one = 0;
+    unsigned several = 0;
     for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
       const int lane = __builtin_ctz(rest);
-      face[lane] = faces_.zones[twice_zone[lane] >> 1];
-      constexpr std::uint32_t kSeveralOrNone = 0xc0000000U;
-      const bool is_one = (face[lane] & kSeveralOrNone) == 0 &&
-                          faces_.forms[face[lane]].kind != FaceForm::Kind::kNone;
-      todo |= (is_one ? 1U : 0U) << lane;
+      code[lane] = faces_.zones[twice_zone[lane] >> 1];
+      const std::uint32_t how = code[lane] & ~zone::kPayload;
+      one |= (how == zone::kExact ? 1U : 0U) << lane;
+      several |= (how == zone::kList && faces_.lists != nullptr ? 1U : 0U) << lane;
     }
-    return (hits & ~todo) | ScreenFaces(todo, face, p, number);
+    const unsigned others = hits & ~(one | several);
+    return others | ScreenFaces(one, code, p, number) | ScreenLists(several, code, p, number);
   }
 
-  // The same where the face of each lane is known; returns those on the axis of theirs.
-  unsigned ScreenFaces(unsigned todo, const std::uint32_t* face, const Float* p,
+  // The lanes of `todo` whose code is that of the first of them.
+  static unsigned SameAsFirst(unsigned todo, const std::uint32_t* code) {
+    const std::uint32_t first = code[__builtin_ctz(todo)];
+    unsigned same = 0;
+    for (unsigned rest = todo; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      same |= (code[lane] == first ? 1U : 0U) << lane;
+    }
+    return same;
+  }
+
+  // Of lanes whose code is a face's number; returns those on the axis of theirs.
+  unsigned ScreenFaces(unsigned todo, const std::uint32_t* code, const Float* p,
                        const std::uint32_t* number) {
     unsigned others = 0;
     while (todo != 0) {
-      const std::uint32_t f = face[__builtin_ctz(todo)];
-      alignas(32) float distance[8];
-      alignas(32) float gradient[3][8];
-      const unsigned good = Evaluate(faces_.forms[f], p, distance, gradient);
-      for (unsigned rest = todo; rest != 0; rest &= rest - 1) {
-        const int lane = __builtin_ctz(rest);
-        if (face[lane] != f) {
-          continue;
-        }
-        todo &= ~(1U << lane);
-        if ((good >> lane & 1U) == 0) {
-          others |= 1U << lane;
-        } else if (distance[lane] < margin_) {
+      const std::uint32_t face = code[__builtin_ctz(todo)];
+      unsigned same = SameAsFirst(todo, code);
+      todo &= ~same;
+      if (faces_.forms[face].kind == FaceForm::Kind::kNone) {
+        others |= same;
+        continue;
+      }
+      const Evaluated e = Evaluate(faces_.forms[face], p);
+      others |= same & ~e.good;
+      for (same &= e.good; same != 0; same &= same - 1) {
+        const int lane = __builtin_ctz(same);
+        if (e.distance[lane] < margin_) {
           Push({number[lane],
-                distance[lane],
-                {gradient[0][lane], gradient[1][lane], gradient[2][lane]},
-                f});
+                e.distance[lane],
+                {e.gradient[0][lane], e.gradient[1][lane], e.gradient[2][lane]},
+                face});
         }
       }
     }
     return others;
   }
 
-  // Distance and unit gradient; the lanes that are not on the axis, where there is none.
-  static unsigned Evaluate(const FaceForm& form, const Float* p, float* distance,
-                           float (*gradient)[8]) {
+  // What `ZoneList::FromSurfaces` decides, where single precision is enough to tell that it does.
+  unsigned ScreenLists(unsigned todo, const std::uint32_t* code, const Float* p,
+                       const std::uint32_t* number) {
+    unsigned others = 0;
+    while (todo != 0) {
+      const std::uint32_t number_of_list = code[__builtin_ctz(todo)] & zone::kPayload;
+      const ListFaces& list = faces_.lists[number_of_list];
+      unsigned same = SameAsFirst(todo, code);
+      todo &= ~same;
+      Evaluated faces[ListFaces::kMost];
+      unsigned good = list.kind == ListFaces::Kind::kMixed ? 0U : same;
+      for (unsigned i = 0; good != 0 && i < list.count; ++i) {
+        const FaceForm& form = faces_.forms[list.faces[i]];
+        if (form.kind == FaceForm::Kind::kNone) {
+          good = 0;
+        } else {
+          faces[i] = Evaluate(form, p);
+          good &= faces[i].good;
+        }
+      }
+      others |= same & ~good;
+      for (; good != 0; good &= good - 1) {
+        const int lane = __builtin_ctz(good);
+        if (!ScreenList(list, number_of_list, faces, lane, number[lane])) {
+          others |= 1U << lane;
+        }
+      }
+    }
+    return others;
+  }
+
+  struct Evaluated {
+    alignas(32) float distance[8];
+    alignas(32) float gradient[3][8];
+    unsigned good;  // The lanes that are not on the axis, where there is no gradient.
+  };
+
+  // False where the surfaces do not decide, or nearly do not.
+  bool ScreenList(const ListFaces& list, std::uint32_t number_of_list, const Evaluated* faces,
+                  int lane, std::uint32_t number) {
+    const float side = list.kind == ListFaces::Kind::kIntersection ? 1.0F : -1.0F;
+    float way = side * faces[0].distance[lane];
+    float others = -3e38F;
+    unsigned last = 0;
+    for (unsigned i = 1; i < list.count; ++i) {
+      const float to = side * faces[i].distance[lane];
+      others = to > way ? way : (to > others ? to : others);
+      last = to > way ? i : last;
+      way = to > way ? to : way;
+    }
+    if (side > 0 && way >= margin_) {
+      return true;
+    }
+    if (way - others < kUnsure || !(way < -kUnsure || others + way < -kUnsure)) {
+      return false;
+    }
+    const Evaluated& e = faces[last];
+    if (e.distance[lane] < margin_) {
+      Push({number,
+            e.distance[lane],
+            {e.gradient[0][lane], e.gradient[1][lane], e.gradient[2][lane]},
+            list.faces[last],
+            number_of_list});
+    }
+    return true;
+  }
+
+  // Distance and unit gradient.
+  static Evaluated Evaluate(const FaceForm& form, const Float* p) {
+    Evaluated out;
     Float q[3];
     Float radial[3];
     for (int k = 0; k < 3; ++k) {
@@ -306,15 +386,16 @@ class Traversal {
       d = P::Add(P::Mul(across, u), P::Mul(along, h));
     }
     const Float outward = P::Set(form.outward);
-    P::Store(P::Mul(outward, d), distance);
+    P::Store(P::Mul(outward, d), out.distance);
     const Float per_radial = P::Div(P::Mul(outward, across), P::Max(r, P::Set(1e-12F)));
     const Float per_axis = P::Mul(outward, along);
     for (int k = 0; k < 3; ++k) {
-      P::Store(P::Add(P::Mul(per_radial, radial[k]), P::Mul(per_axis, axis[k])), gradient[k]);
+      P::Store(P::Add(P::Mul(per_radial, radial[k]), P::Mul(per_axis, axis[k])), out.gradient[k]);
     }
     constexpr float kOnAxis = 1e-5F;  // [m]
     const bool has_axis = form.kind == FaceForm::Kind::kRound || form.across != 0.0F;
-    return has_axis ? P::Bits(P::Less(P::Set(kOnAxis), r)) : 0xffU;
+    out.good = has_axis ? P::Bits(P::Less(P::Set(kOnAxis), r)) : 0xffU;
+    return out;
   }
 
   void PushInBand(unsigned hits, const Sample& s, const float (*position)[8],
