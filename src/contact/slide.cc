@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contact/query.h"
 
@@ -108,15 +109,22 @@ State Descend(const Track& track, const State& start, Evaluate evaluate) {
     if (look(first, &probe)) {
       const double change = track.Along(probe.p, probe.gradient).dot(direction) + slope;
       length = change > 0 ? std::min(first * slope / change, left) : left;
-      if (probe.distance < best.distance && track.Reaches(probe.p)) {
-        best = probe;
-      }
     } else {
+      probe.distance = std::numeric_limits<double>::infinity();
       length = 0.1 * first;
     }
     State bottom;
-    if (look(length, &bottom) && bottom.distance < best.distance && track.Reaches(bottom.p)) {
-      best = bottom;
+    if (!look(length, &bottom)) {
+      bottom.distance = std::numeric_limits<double>::infinity();
+    }
+    // The lower one where the track goes there, else the other.
+    const State* const lower = bottom.distance < probe.distance ? &bottom : &probe;
+    const State* const other = lower == &bottom ? &probe : &bottom;
+    for (const State* s : {lower, other}) {
+      if (s->distance < best.distance && track.Reaches(s->p)) {
+        best = *s;
+        break;
+      }
     }
     if (best.distance > from.distance - 1e-10) {
       break;
