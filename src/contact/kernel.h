@@ -93,9 +93,9 @@ struct ListFaces {
   };
 
   std::uint16_t faces[kMost]{};
-  std::uint8_t count{0};  ///< 0: more than kMost.
+  std::uint16_t begin[kMost]{};  ///< Of each face's entries in the list.
+  std::uint8_t count{0};         ///< 0: too many to name; the list is one.
   Kind kind{Kind::kMixed};
-  std::uint16_t unused{0};  ///< For the bytes on disk.
 };
 
 /** Which faces decide where. */

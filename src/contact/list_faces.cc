@@ -1,6 +1,7 @@
 #include "contact/list_faces.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "contact/shape_data.h"
 
@@ -144,15 +145,36 @@ class ListReader {
   std::array<std::array<std::uint8_t, ListFaces::kMost>, ListFaces::kMost> meets_{};
 };
 
+// Sorts a list's entries by the order of its faces.
+void Group(const Mesh& mesh, std::uint32_t list, ExactTable* exact) {
+  ListFaces& faces = exact->list_faces[list];
+  const std::size_t begin = exact->list_begin[list];
+  const std::size_t end = exact->list_begin[list + 1];
+  if (end - begin > std::numeric_limits<std::uint16_t>::max()) {
+    faces = {};
+  }
+  std::vector<std::uint32_t> sorted;
+  for (std::size_t k = 0; k < faces.count; ++k) {
+    faces.begin[k] = static_cast<std::uint16_t>(sorted.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      if (mesh.face[exact->Listed(i).triangle] == faces.faces[k]) {
+        sorted.push_back(exact->listed[i]);
+      }
+    }
+  }
+  std::copy(sorted.begin(), sorted.end(),
+            exact->listed.begin() + static_cast<std::ptrdiff_t>(begin));
+}
+
 }  // namespace
 
-std::vector<ListFaces> MakeListFaces(const Mesh& mesh, const ExactTable& exact) {
-  std::vector<ListFaces> out;
-  ListReader reader(mesh, exact);
-  for (std::uint32_t list = 0; list + 1 < exact.list_begin.size(); ++list) {
-    out.push_back(reader.Read(list));
+void GroupLists(const Mesh& mesh, ExactTable* exact) {
+  exact->list_faces.clear();
+  ListReader reader(mesh, *exact);
+  for (std::uint32_t list = 0; list + 1 < exact->list_begin.size(); ++list) {
+    exact->list_faces.push_back(reader.Read(list));
+    Group(mesh, list, exact);
   }
-  return out;
 }
 
 }  // namespace hvas::contact

@@ -9,7 +9,8 @@ namespace hvas::contact {
 struct Mesh;
 struct ExactTable;
 
-/** Of every list of the table. */
-[[nodiscard]] std::vector<ListFaces> MakeListFaces(const Mesh& mesh, const ExactTable& exact);
+/** Finds the faces of every list of the table, and puts the entries of each face together, by
+ increasing distance as before. */
+void GroupLists(const Mesh& mesh, ExactTable* exact);
 
 }  // namespace hvas::contact

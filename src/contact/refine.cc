@@ -126,14 +126,7 @@ Refined FromEdge(const Shape::Data& shape, const Closest& closest, const SolidFe
 class ZoneList {
  public:
   ZoneList(const Shape::Data& shape, std::uint32_t list, const Vec3& p, double from_centre)
-      : shape_(shape),
-        begin_(shape.exact.list_begin[list]),
-        end_(shape.exact.list_begin[list + 1]),
-        p_(p),
-        from_centre_(from_centre),
-        kind_(FacesOfList(shape, list) != nullptr ? FacesOfList(shape, list)->kind
-                                                  : ListFaces::Kind::kMixed),
-        faces_(shape, FacesOfList(shape, list), p) {}
+      : shape_(shape), p_(p), from_centre_(from_centre), faces_(shape, list, p) {}
 
   /** Where the solid is what its faces have in common, the way out of it is the way out of the face
    that is left soonest; from outside, the way to a face is the way to the solid if it ends inside
@@ -141,10 +134,10 @@ class ZoneList {
    that decides; what lies no nearer than the filter's limit may be told by a lower bound. False
    with a valid answer when that is a bound only: the way is at least as long. */
   [[nodiscard]] bool FromSurfaces(const FaceFilter& filter, Refined* out) const noexcept {
-    if (kind_ == ListFaces::Kind::kMixed) {
+    if (faces_.kind() == ListFaces::Kind::kMixed) {
       return false;
     }
-    const double side = kind_ == ListFaces::Kind::kIntersection ? 1 : -1;
+    const double side = faces_.kind() == ListFaces::Kind::kIntersection ? 1 : -1;
     std::size_t last = 0;
     double others = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < faces_.count(); ++i) {
@@ -185,38 +178,27 @@ class ZoneList {
     Closest best;
     best.squared = reach * reach;
     double best_distance = reach;
-    std::uint32_t first_face = kNoFace;
-    if (faces_.count() > 0) {
-      // First what is on the face that may come nearest, so that the others need not be looked at.
-      double least = reach;
-      for (std::size_t i = 0; i < faces_.count(); ++i) {
-        if (faces_.least(i) <= least && !filter.Drops(faces_.face(i))) {
-          least = faces_.least(i);
-          first_face = faces_.face(i);
-        }
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const ListDistances::Entries entries = faces_[i];
+      if (entries.least > best_distance) {
+        break;
       }
-      if (first_face == kNoFace) {
-        return best;
+      if (!filter.Drops(entries.face)) {
+        Search(entries, filter, &best, &best_distance);
       }
-      Search([&](std::uint32_t face) { return face == first_face; }, &best, &best_distance);
     }
-    Search(
-        [&](std::uint32_t face) {
-          return face != first_face && !filter.Drops(face) && faces_.LeastOf(face) <= best_distance;
-        },
-        &best, &best_distance);
     return best;
   }
 
  private:
-  template <typename Wants>
-  void Search(Wants wants, Closest* best, double* best_distance) const noexcept {
-    for (std::uint32_t i = begin_; i < end_; ++i) {
+  void Search(const ListDistances::Entries& entries, const FaceFilter& filter, Closest* best,
+              double* best_distance) const noexcept {
+    for (std::uint32_t i = entries.begin; i < entries.end; ++i) {
       const ListedTriangle entry = shape_.exact.Listed(i);
       if (entry.distance - from_centre_ > *best_distance) {
         break;
       }
-      if (!wants(shape_.mesh.face[entry.triangle])) {
+      if (entries.face == kNoFace && filter.Drops(shape_.mesh.face[entry.triangle])) {
         continue;
       }
       const TrianglePoint point = shape_.mesh.ClosestOn(entry.triangle, p_);
@@ -229,11 +211,8 @@ class ZoneList {
   }
 
   const Shape::Data& shape_;
-  std::uint32_t begin_;
-  std::uint32_t end_;
   const Vec3& p_;
   double from_centre_;
-  ListFaces::Kind kind_;
   ListDistances faces_;
 };
 

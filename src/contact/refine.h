@@ -86,23 +86,38 @@ struct ZoneAt {
                      [&filter](std::uint32_t face) { return filter.Drops(face); });
 }
 
-/** The unbounded surfaces of a list's faces as seen from a point, and with them how near the
- triangles of each can be. RT-safe. */
+/** The faces of a zone's list as seen from a point: the unbounded surface of each, and how near its
+ triangles can be. RT-safe. */
 class ListDistances {
  public:
-  /** @param faces  Null: nothing is known, and everything may be near. */
-  ListDistances(const Shape::Data& shape, const ListFaces* faces, const Vec3& p) noexcept
-      : faces_(faces) {
+  /** The entries of one face of the list, or of all. */
+  struct Entries {
+    std::uint32_t begin;
+    std::uint32_t end;
+    double least;        ///< No triangle among them is nearer than this [m].
+    std::uint32_t face;  ///< kNoFace: of several.
+  };
+
+  ListDistances(const Shape::Data& shape, std::uint32_t list, const Vec3& p) noexcept
+      : faces_(FacesOfList(shape, list)),
+        begin_(shape.exact.list_begin[list]),
+        end_(shape.exact.list_begin[list + 1]) {
     constexpr double kRounding = 1e-9;  // [m]
     for (std::size_t i = 0; i < count(); ++i) {
-      const std::uint32_t face = faces->faces[i];
-      surface_[i] = spatial::CalcDistance(shape.exact.faces[face], p);
+      const std::uint32_t f = face(i);
+      surface_[i] = spatial::CalcDistance(shape.exact.faces[f], p);
       least_[i] = surface_[i].is_valid ? std::abs(surface_[i].distance) -
-                                             1.001 * shape.exact.deviation[face] - kRounding
+                                             1.001 * shape.exact.deviation[f] - kRounding
                                        : 0;
+      std::size_t k = i;
+      for (; k > 0 && least_[order_[k - 1]] > least_[i]; --k) {
+        order_[k] = order_[k - 1];
+      }
+      order_[k] = static_cast<std::uint8_t>(i);
     }
   }
 
+  /** How many faces are named. */
   [[nodiscard]] std::size_t count() const noexcept { return faces_ == nullptr ? 0 : faces_->count; }
 
   [[nodiscard]] std::uint32_t face(std::size_t i) const noexcept { return faces_->faces[i]; }
@@ -111,23 +126,31 @@ class ListDistances {
     return surface_[i];
   }
 
-  /** No triangle of the i-th face is nearer than this [m]. */
-  [[nodiscard]] double least(std::size_t i) const noexcept { return least_[i]; }
+  [[nodiscard]] ListFaces::Kind kind() const noexcept {
+    return faces_ == nullptr ? ListFaces::Kind::kMixed : faces_->kind;
+  }
 
-  /** The same by the face's number. */
-  [[nodiscard]] double LeastOf(std::uint32_t face) const noexcept {
-    for (std::size_t i = 0; i < count(); ++i) {
-      if (faces_->faces[i] == face) {
-        return least_[i];
-      }
+  /** How many groups of entries there are. */
+  [[nodiscard]] std::size_t size() const noexcept { return faces_ == nullptr ? 1 : faces_->count; }
+
+  /** The i-th of them, those that can come nearest first. */
+  [[nodiscard]] Entries operator[](std::size_t i) const noexcept {
+    if (faces_ == nullptr) {
+      return {begin_, end_, 0, kNoFace};
     }
-    return 0;
+    const std::size_t k = order_[i];
+    const bool is_last = k + 1 == count();
+    return {begin_ + faces_->begin[k], is_last ? end_ : begin_ + faces_->begin[k + 1], least_[k],
+            face(k)};
   }
 
  private:
   const ListFaces* faces_;
+  std::uint32_t begin_;
+  std::uint32_t end_;
   std::array<spatial::SurfaceDistance, ListFaces::kMost> surface_;
   std::array<double, ListFaces::kMost> least_{};
+  std::array<std::uint8_t, ListFaces::kMost> order_{};
 };
 
 /** A face's surface, as drawn or as made. */

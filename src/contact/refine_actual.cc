@@ -67,23 +67,20 @@ class NearFaces {
                      [&offsets](std::uint32_t face) { return offsets.Moves(face); })) {
       return false;
     }
-    const ListDistances faces(shape, named, p_);
-    const ExactTable& exact = shape.exact;
-    const double reach = kReach * offsets.largest();
+    const ListDistances faces(shape, list, p_);
     double limit = std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = exact.list_begin[list]; i < exact.list_begin[list + 1]; ++i) {
-      const ListedTriangle entry = exact.Listed(i);
-      if (entry.distance - from_centre > limit) {
-        break;
-      }
-      const std::uint32_t face = shape.mesh.face[entry.triangle];
-      if (faces.LeastOf(face) > limit) {
-        continue;
-      }
-      const double distance = (shape.mesh.ClosestOn(entry.triangle, p_).q - p_).norm();
-      if (distance <= limit) {
-        Add(face, distance);
-        limit = distance_[0] + reach + 1e-6 * from_centre;
+    for (std::size_t k = 0; k < faces.size() && faces[k].least <= limit; ++k) {
+      const ListDistances::Entries entries = faces[k];
+      for (std::uint32_t i = entries.begin; i < entries.end; ++i) {
+        const ListedTriangle entry = shape.exact.Listed(i);
+        if (entry.distance - from_centre > limit) {
+          break;
+        }
+        const double distance = (shape.mesh.ClosestOn(entry.triangle, p_).q - p_).norm();
+        if (distance <= limit) {
+          Add(shape.mesh.face[entry.triangle], distance);
+          limit = distance_[0] + kReach * offsets.largest() + 1e-6 * from_centre;
+        }
       }
     }
     while (count_ > 0 && distance_[count_ - 1] > limit) {

@@ -127,7 +127,7 @@ FaceForm MakeFaceForm(const spatial::Surface& surface) {
 
 void Shape::Data::Complete() {
   if (exact.list_faces.empty()) {  // A shape from disk has them.
-    exact.list_faces = MakeListFaces(mesh, exact);
+    GroupLists(mesh, &exact);
   }
   exact.forms.clear();
   for (const spatial::Surface& surface : exact.faces) {

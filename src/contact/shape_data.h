@@ -41,8 +41,8 @@ struct ExactTable {
   std::vector<double> deviation;          ///< Largest distance of a face's mesh from its surface.
   std::vector<std::uint32_t> zones;       ///< kZonesPerBlock a block; equal lists are one list.
   std::vector<std::uint32_t> list_begin;  ///< Into listed; one more than there are lists.
-  /** Each list by increasing distance: the triangle above `distance_bits` bits that count
-   `distance_unit` [m]. */
+  /** Each list by faces, those of a face by increasing distance: the triangle above `distance_bits`
+   bits that count `distance_unit` [m]. */
   std::vector<std::uint32_t> listed;
   std::uint32_t distance_bits{0};
   double distance_unit{0};

@@ -13,7 +13,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "shapes are written as they lie in memory");
 // No padding, whose bytes nobody sets.
-static_assert(sizeof(SphereNode) == 160 && sizeof(SampleFaces) == 40 && sizeof(ListFaces) == 12);
+static_assert(sizeof(SphereNode) == 160 && sizeof(SampleFaces) == 40 && sizeof(ListFaces) == 22);
 
 class Writer {
  public:

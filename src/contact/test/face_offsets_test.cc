@@ -312,7 +312,9 @@ TEST(FaceOffsets, OffsetsGiveThePartThatIsBuiltAtTheOtherSize) {
                        static_cast<double>(nominal.shell.y[i]),
                        static_cast<double>(nominal.shell.z[i]));
       const Vec3 p = drawn + offsets->ShiftOf(nominal.shell, i);
-      ASSERT_NEAR(Refine(actual, p + to_actual, kNowhere, {}).distance, 0, 0.1e-6);
+      // Not always zero: on a flat face, between a round rim and its chord, the part has ended.
+      const double drawn_at = Refine(nominal, drawn, kNowhere, {}).distance;
+      ASSERT_NEAR(Refine(actual, p + to_actual, kNowhere, {}).distance, drawn_at, 0.1e-6);
       // And anywhere near.
       const Vec3 q = p + Vec3(random.Uniform(-0.1e-3, 0.1e-3), random.Uniform(-0.1e-3, 0.1e-3),
                               random.Uniform(-0.1e-3, 0.1e-3));
