@@ -160,11 +160,11 @@ FaceOffsets::Value FaceOffsets::At(std::uint32_t face, const Vec3& p) const noex
 
 spatial::SurfaceDistance FaceOffsets::CalcDistance(std::uint32_t face,
                                                    const Vec3& p) const noexcept {
-  const spatial::Surface& surface = shape_->data().exact.faces[face];
-  auto result = spatial::CalcDistance(surface, p);
+  const ExactTable& exact = shape_->data().exact;
+  auto result = CalcFaceDistance(exact, face, p);
   const Value value = At(face, p);
   result.distance -= value.offset;
-  result.gradient -= value.slope * surface.axis;
+  result.gradient -= value.slope * exact.faces[face].axis;
   return result;
 }
 

@@ -68,6 +68,8 @@ struct FaceForm {
   float along{0};
   float minor{0};
   float outward{1};
+  double cosine{1};  ///< Of a cone's half angle, as the next.
+  double sine{0};
   Kind kind{Kind::kNone};  ///< None: single precision is not good enough, or no such surface.
 };
 

@@ -71,7 +71,7 @@ Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t
   Refined result;
   result.face = face;
   const double mesh_distance = std::sqrt(closest.squared);
-  const auto exact = spatial::CalcDistance(shape.exact.faces[face], p);
+  const auto exact = CalcFaceDistance(shape.exact, face, p);
   const double tolerance = 2 * shape.exact.deviation[face] + kOnFeature;
   if (exact.is_valid && std::abs(std::abs(exact.distance) - mesh_distance) <= tolerance) {
     result.distance = exact.distance;
@@ -259,7 +259,7 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
     return Nothing();
   }
   if (touches_ignored) {
-    const auto exact = spatial::CalcDistance(shape.exact.faces[feature.face], p);
+    const auto exact = CalcFaceDistance(shape.exact, feature.face, p);
     if (!exact.is_valid || std::abs(exact.distance) > std::sqrt(closest.squared) + kOnFeature) {
       return Nothing();
     }
@@ -376,7 +376,7 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
     return Nothing();
   }
   if ((at.code & ~zone::kPayload) == zone::kExact) {
-    const auto exact = spatial::CalcDistance(shape.exact.faces[payload], p);
+    const auto exact = CalcFaceDistance(shape.exact, payload, p);
     if (exact.is_valid) {
       return {exact.distance, exact.gradient, payload, kNoFace, true, true};
     }

@@ -105,7 +105,7 @@ class ListDistances {
     constexpr double kRounding = 1e-9;  // [m]
     for (std::size_t i = 0; i < count(); ++i) {
       const std::uint32_t f = face(i);
-      surface_[i] = spatial::CalcDistance(shape.exact.faces[f], p);
+      surface_[i] = CalcFaceDistance(shape.exact, f, p);
       least_[i] = surface_[i].is_valid ? std::abs(surface_[i].distance) -
                                              1.001 * shape.exact.deviation[f] - kRounding
                                        : 0;
@@ -157,15 +157,15 @@ class ListDistances {
 class FaceSurface {
  public:
   FaceSurface(const Shape::Data& shape, const FaceOffsets* offsets, std::uint32_t face)
-      : surface_(shape.exact.faces[face]), offsets_(offsets), face_(face) {}
+      : exact_(shape.exact), offsets_(offsets), face_(face) {}
 
   [[nodiscard]] spatial::SurfaceDistance CalcDistance(const Vec3& p) const noexcept {
-    return offsets_ == nullptr ? spatial::CalcDistance(surface_, p)
+    return offsets_ == nullptr ? CalcFaceDistance(exact_, face_, p)
                                : offsets_->CalcDistance(face_, p);
   }
 
  private:
-  const spatial::Surface& surface_;
+  const ExactTable& exact_;
   const FaceOffsets* offsets_;
   std::uint32_t face_;
 };

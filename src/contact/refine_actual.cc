@@ -20,13 +20,13 @@ class NearFaces {
       return;
     }
     for (std::size_t i = 0; i < count_; ++i) {
-      const auto exact = spatial::CalcDistance(shape.exact.faces[face_[i]], p);
+      const auto exact = CalcFaceDistance(shape.exact, face_[i], p);
       is_exact_ = is_exact_ && exact.is_valid;
       normals_[i] = exact.gradient;
       offsets_[i] = offsets.At(face_[i], p).offset;
       is_moved_ = is_moved_ || offsets_[i] != 0;
     }
-    is_outside_ = count_ > 0 && spatial::CalcDistance(shape.exact.faces[face_[0]], p).distance >= 0;
+    is_outside_ = count_ > 0 && CalcFaceDistance(shape.exact, face_[0], p).distance >= 0;
   }
 
   [[nodiscard]] std::size_t count() const { return count_; }

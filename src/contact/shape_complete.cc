@@ -90,6 +90,10 @@ void Shrink(Mesh* mesh) {
 
 FaceForm MakeFaceForm(const spatial::Surface& surface) {
   FaceForm form;
+  if (surface.kind == spatial::SurfaceKind::kCone) {
+    form.cosine = std::cos(surface.second);
+    form.sine = std::sin(surface.second);
+  }
   const Vec3 origin = NearestOrigin(surface);
   if (surface.kind == spatial::SurfaceKind::kFreeform || origin.norm() + surface.radius > kReach) {
     return form;
@@ -109,8 +113,8 @@ FaceForm MakeFaceForm(const spatial::Surface& surface) {
       form.radius = static_cast<float>(surface.radius);
       break;
     case spatial::SurfaceKind::kCone:
-      form.across = static_cast<float>(std::cos(surface.second));
-      form.along = static_cast<float>(-std::sin(surface.second));
+      form.across = static_cast<float>(form.cosine);
+      form.along = static_cast<float>(-form.sine);
       break;
     case spatial::SurfaceKind::kSphere:
       form.kind = FaceForm::Kind::kRound;

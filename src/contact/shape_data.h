@@ -55,6 +55,18 @@ struct ExactTable {
   }
 };
 
+/** Distance from a face's unbounded surface, as drawn. RT-safe. */
+[[nodiscard]] inline spatial::SurfaceDistance CalcFaceDistance(const ExactTable& exact,
+                                                               std::uint32_t face,
+                                                               const Vec3& p) noexcept {
+  const spatial::Surface& surface = exact.faces[face];
+  const bool is_prepared = face < exact.forms.size();
+  return surface.kind == spatial::SurfaceKind::kCone && is_prepared
+             ? spatial::CalcConeDistance(surface, exact.forms[face].cosine, exact.forms[face].sine,
+                                         p)
+             : spatial::CalcDistance(surface, p);
+}
+
 /** kNone where single precision would not be good enough. */
 [[nodiscard]] FaceForm MakeFaceForm(const spatial::Surface& surface);
 

@@ -28,16 +28,8 @@ SurfaceDistance CalcDistance(const Surface& surface, const Vec3& p) noexcept {
       return RadialDistance(radial, surface.radius, surface.outward);
     case SurfaceKind::kSphere:
       return RadialDistance(q, surface.radius, surface.outward);
-    case SurfaceKind::kCone: {
-      const double r = radial.norm();
-      if (r < kOnAxis) {
-        return {};
-      }
-      const double c = std::cos(surface.second);
-      const double s = std::sin(surface.second);
-      return {surface.outward * (r * c - height * s),
-              surface.outward * (c / r * radial - s * surface.axis), true};
-    }
+    case SurfaceKind::kCone:
+      return CalcConeDistance(surface, std::cos(surface.second), std::sin(surface.second), p);
     case SurfaceKind::kTorus: {
       const double r = radial.norm();
       if (r < kOnAxis) {
@@ -49,6 +41,19 @@ SurfaceDistance CalcDistance(const Surface& surface, const Vec3& p) noexcept {
       break;
   }
   return {};
+}
+
+SurfaceDistance CalcConeDistance(const Surface& cone, double cosine, double sine,
+                                 const Vec3& p) noexcept {
+  const Vec3 q = p - cone.origin;
+  const double height = q.dot(cone.axis);
+  const Vec3 radial = q - height * cone.axis;
+  const double r = radial.norm();
+  if (r < kOnAxis) {
+    return {};
+  }
+  return {cone.outward * (r * cosine - height * sine),
+          cone.outward * (cosine / r * radial - sine * cone.axis), true};
 }
 
 Surface Transform(const Pose& X_AB, const Surface& surface_B) {
