@@ -1,12 +1,15 @@
 #include "contact/list_faces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "contact/shape_data.h"
 
 namespace hvas::contact {
 namespace {
+
+constexpr double kOnFace = 1e-6;  // [m]; where two faces meet, CAD kernels are no better.
 
 class ListReader {
  public:
@@ -94,7 +97,8 @@ class ListReader {
     return true;
   }
 
-  // 1 where all of the list's triangles of face b lie inside face a, 2 where outside, else 3.
+  // 1 where all of the list's triangles of face b lie inside face a or on it, 2 where outside, 0
+  // where on it, else 3.
   [[nodiscard]] std::uint8_t SideOf(std::size_t a, std::size_t b) const {
     unsigned bits = 0;
     for (std::size_t i = begin_; i < end_; ++i) {
@@ -104,7 +108,8 @@ class ListReader {
       }
       for (const std::uint32_t v : mesh_.triangles[t]) {
         const auto at = spatial::CalcDistance(exact_.faces[out_.faces[a]], mesh_.vertices[v]);
-        bits |= at.is_valid && at.distance < 0 ? 1U : at.is_valid ? 2U : 3U;
+        const bool is_on = at.is_valid && std::abs(at.distance) < kOnFace;
+        bits |= is_on ? 0U : at.is_valid && at.distance < 0 ? 1U : at.is_valid ? 2U : 3U;
       }
     }
     return static_cast<std::uint8_t>(bits);
