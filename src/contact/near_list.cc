@@ -14,13 +14,6 @@ constexpr double kRounding = 1e-13;  // [m]
 
 }  // namespace
 
-double NearSearch::TriangleBox::CalcSquaredDistance(const Vec3& p) const {
-  const double x = std::max(std::abs(p.x() - centre[0]) - half[0], 0.0);
-  const double y = std::max(std::abs(p.y() - centre[1]) - half[1], 0.0);
-  const double z = std::max(std::abs(p.z() - centre[2]) - half[2], 0.0);
-  return x * x + y * y + z * z;
-}
-
 NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
   boxes_.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {

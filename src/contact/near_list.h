@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -63,7 +65,12 @@ class NearSearch {
     double half[3];
     double radius;  // Of a sphere around it.
 
-    [[nodiscard]] double CalcSquaredDistance(const Vec3& p) const;
+    [[nodiscard, gnu::always_inline]] double CalcSquaredDistance(const Vec3& p) const {
+      const double x = std::max(std::abs(p.x() - centre[0]) - half[0], 0.0);
+      const double y = std::max(std::abs(p.y() - centre[1]) - half[1], 0.0);
+      const double z = std::max(std::abs(p.z() - centre[2]) - half[2], 0.0);
+      return x * x + y * y + z * z;
+    }
   };
 
   // How a triangle goes on in its face.
