@@ -57,7 +57,7 @@ struct QueryOptions {
    share, and what it has more of is thinned out evenly: fewer points then stand for a contact. */
   std::uint32_t point_budget{kDefaultPointBudget};
 
-  static constexpr std::uint32_t kDefaultPointBudget = 8192;
+  static constexpr std::uint32_t kDefaultPointBudget = 4096;
 };
 
 struct QueryStats {
