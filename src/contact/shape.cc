@@ -1,6 +1,9 @@
 #include "contact/shape.h"
 
 #include <cmath>
+#include <new>
+
+#include <fmt/format.h>
 
 #include "contact/field_build.h"
 #include "contact/shape_data.h"
@@ -67,14 +70,12 @@ std::size_t Bytes(const Shell& s) {
          Bytes(s.faces) + Bytes(s.facing) + Bytes(s.order);
 }
 
-}  // namespace
+// How many blocks a part's box has at its voxel.
+double CountBlocks(const Shape::Data& data) {
+  return (data.box_B.size() / (kBlockCells * data.voxel) + Vec3::Constant(2)).prod();
+}
 
-Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
-                                                  const ShapeOptions& options) {
-  if (auto check = Check(source); !check) {
-    return Unexpected(check.error());
-  }
-  auto data = std::make_unique<Data>();
+Result<void> Prepare(const ShapeSource& source, const ShapeOptions& options, Shape::Data* data) {
   for (const auto& triangle : source.triangles) {
     for (const std::uint32_t v : triangle) {
       data->box_B.Add(source.vertices[v]);
@@ -91,20 +92,46 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
   }
   CheckFaces(data->mesh, &data->exact);
   data->voxel = options.voxel > 0 ? options.voxel : ChooseVoxel(data->mesh, data->exact.faces);
+  constexpr double kMostBlocks = 1U << 27U;  // Half a gigabyte of directory.
+  if (!(CountBlocks(*data) <= kMostBlocks)) {
+    return Fail(
+        ErrorCode::kOutOfResource,
+        fmt::format("A voxel of {:.3g} mm is too small for a part this large.", 1e3 * data->voxel),
+        "contact shape", "Choose a larger voxel, or none.");
+  }
   const auto cancelled = [] {
     return Fail(ErrorCode::kCancelled, "Preparing a part was stopped.", "contact shape");
   };
   if (options.stop.stop_requested()) {
     return cancelled();
   }
-  BuildField(options, data.get());
+  BuildField(options, data);
   if (options.stop.stop_requested()) {
     return cancelled();
   }
   data->spacing = options.point_spacing > 0 ? options.point_spacing : ChooseSpacing(data->mesh);
-  BuildShells(data.get());
-  DropUnlistedTriangles(data.get());
+  BuildShells(data);
+  DropUnlistedTriangles(data);
   data->Complete();
+  return {};
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
+                                                  const ShapeOptions& options) {
+  if (auto check = Check(source); !check) {
+    return Unexpected(check.error());
+  }
+  auto data = std::make_unique<Data>();
+  try {
+    if (auto prepared = Prepare(source, options, data.get()); !prepared) {
+      return Unexpected(prepared.error());
+    }
+  } catch (const std::bad_alloc&) {
+    return Fail(ErrorCode::kOutOfResource, "There is not enough memory to prepare a part.",
+                "contact shape", "Close other programs, or choose a larger voxel.");
+  }
   return std::make_shared<const Shape>(std::move(data));
 }
 

@@ -28,9 +28,8 @@ ShapeOptions WithVoxel(double voxel_mm) {
 
 std::size_t CountPlaces(const Shape& shape) {
   const auto& top = shape.data().field.top;
-  return static_cast<std::size_t>(std::count_if(top.begin(), top.end(), [](std::int32_t block) {
-    return block >= 0 || block <= kTopFace;
-  }));
+  return static_cast<std::size_t>(std::count_if(
+      top.begin(), top.end(), [](std::int32_t block) { return block >= 0 || block <= kTopFace; }));
 }
 
 std::size_t CountBlocks(const Shape& shape) {
@@ -49,6 +48,13 @@ TEST(Preparation, GivesTheSameBytesOnAnyNumberOfThreads) {
   }
   EXPECT_EQ(bytes[0], bytes[1]);
   EXPECT_EQ(bytes[0], bytes[2]);
+}
+
+TEST(Preparation, RefusesAVoxelForWhichNoMemoryWouldDo) {
+  const auto shape = Shape::Build(testing::Block({1, 1, 1}), WithVoxel(0.01));
+  ASSERT_FALSE(shape.has_value());
+  EXPECT_EQ(shape.error().code, ErrorCode::kOutOfResource);
+  EXPECT_NE(shape.error().message.find("0.01 mm"), std::string::npos);
 }
 
 // 0.15 kB per square millimetre at 0.5 mm, all told.
