@@ -50,6 +50,21 @@ void ContactReducer::Clear() noexcept {
   is_full_ = false;
 }
 
+void ContactReducer::Group::Clear() noexcept {
+  least = std::numeric_limits<double>::infinity();
+  reach.fill(-std::numeric_limits<double>::infinity());
+  uses.fill(0);
+  deepest = kCells - 1;
+  extremes.fill(kCells - 1);
+  uses[kCells - 1] = 1 + kTangents;
+}
+
+void ContactReducer::Group::Put(std::uint8_t cell, std::uint8_t* place) noexcept {
+  --uses[*place];
+  ++uses[cell];
+  *place = cell;
+}
+
 std::size_t ContactReducer::SlotOf(std::uint64_t key) const noexcept {
   std::size_t slot = (key * 0x9e3779b97f4a7c15ULL) >> 55U;
   static_assert(kSlots == 512);
@@ -73,8 +88,7 @@ ContactReducer::Group* ContactReducer::Find(std::uint64_t key, const Vec3& nhat_
   const Mat3 frame = spatial::FrameFromZ(nhat_S).toRotationMatrix();
   group.u = frame.col(0);
   group.v = frame.col(1);
-  group.least = std::numeric_limits<double>::infinity();
-  group.reach.fill(-std::numeric_limits<double>::infinity());
+  group.Clear();
   return &group;
 }
 
@@ -94,26 +108,33 @@ bool ContactReducer::WouldChange(std::uint32_t body, std::uint32_t scene_face, d
 }
 
 void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept {
-  const std::uint32_t number = count_++;
+  ++count_;
   deepest_ = std::min(deepest_, contact.distance);
   Group* group = Find(KeyOf(contact.body, contact.scene_face, nhat_S), nhat_S);
   if (group == nullptr) {
     is_full_ = true;
     return;
   }
-  if (contact.distance < group->least) {
-    group->least = contact.distance;
-    group->deepest = {contact, number};
-  }
   const Reaches reach = ReachesOf(group->u, group->v, p_S);
   unsigned further = 0;
   for (std::size_t k = 0; k < kTangents; ++k) {
     further |= (reach[k] > group->reach[k] ? 1U : 0U) << k;
   }
+  const bool is_deeper = contact.distance < group->least;
+  if (further == 0 && !is_deeper) {
+    return;
+  }
+  const auto cell = static_cast<std::uint8_t>(std::find(group->uses.begin(), group->uses.end(), 0) -
+                                              group->uses.begin());
+  group->cells[cell] = contact;
+  if (is_deeper) {
+    group->least = contact.distance;
+    group->Put(cell, &group->deepest);
+  }
   for (; further != 0; further &= further - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(further));
     group->reach[k] = reach[k];
-    group->extremes[k] = {contact, number};
+    group->Put(cell, &group->extremes[k]);
   }
 }
 
@@ -130,18 +151,16 @@ std::size_t ContactReducer::Select(std::span<RawContact> out) noexcept {
             });
   std::size_t written = 0;
   for (std::size_t i = 0; i < group_count_ && written < out.size(); ++i) {
-    out[written++] = groups_[order[i]].deepest.contact;
+    const Group& group = groups_[order[i]];
+    out[written++] = group.cells[group.deepest];
   }
   for (std::size_t k = 0; k < kTangents; ++k) {
     for (std::size_t i = 0; i < group_count_ && written < out.size(); ++i) {
       const Group& group = groups_[order[i]];
-      const std::uint32_t number = group.extremes[k].number;
-      bool is_new = number != group.deepest.number;
-      for (std::size_t j = 0; j < k; ++j) {
-        is_new = is_new && number != group.extremes[j].number;
-      }
-      if (is_new) {
-        out[written++] = group.extremes[k].contact;
+      const std::uint8_t cell = group.extremes[k];
+      const auto* const before = group.extremes.begin() + k;
+      if (cell != group.deepest && std::find(group.extremes.begin(), before, cell) == before) {
+        out[written++] = group.cells[cell];
       }
     }
   }

@@ -62,19 +62,24 @@ class ContactReducer {
   static constexpr std::size_t kSlots = 512;
   static constexpr std::size_t kTangents = 8;
 
-  struct Kept {
-    RawContact contact;
-    std::uint32_t number{0};  // In the order of arrival.
-  };
-
+  // Each contact that a group keeps lies in a cell of its own, however many of its extremes it is.
   struct Group {
+    // One more than it can keep: there is always a free one for the next.
+    static constexpr std::uint8_t kCells = kTangents + 2;
+
     std::uint64_t key{0};
     Vec3 u{Vec3::Zero()};
     Vec3 v{Vec3::Zero()};
     double least{0};
     std::array<double, kTangents> reach{};
-    Kept deepest;
-    std::array<Kept, kTangents> extremes;
+    std::uint8_t deepest{0};  // Cell.
+    std::array<std::uint8_t, kTangents> extremes{};
+    std::array<std::uint8_t, kCells> uses{};
+    std::array<RawContact, kCells> cells;
+
+    void Clear() noexcept;
+    /** Lets `*place` name the cell `cell`. */
+    void Put(std::uint8_t cell, std::uint8_t* place) noexcept;
   };
 
   /** Slot of the key: of its group, or where it would go. */

@@ -27,7 +27,7 @@ struct ShapeSource {
 
 struct ShapeOptions {
   double voxel{0};          ///< Edge of a cell of the distance field [m]; 0: chosen from the part.
-  double point_spacing{0};  ///< Of the point shell on faces [m]; 0: chosen. Edges get half of it.
+  double point_spacing{0};  ///< Of samples on freeform faces [m]; 0: chosen.
   unsigned threads{0};      ///< That build one shape; 0: one a core. No matter for the shape.
   std::stop_token stop;     ///< Ends the building when a stop is asked for.
 };
