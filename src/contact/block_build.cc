@@ -6,6 +6,14 @@
 namespace hvas::contact {
 namespace {
 
+// The n-th point of a grid with so many points a side, x first.
+Vec3 GridPoint(int n, int side) {
+  const int x = n % side;
+  const int y = n / side % side;
+  const int z = n / (side * side);
+  return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+}
+
 constexpr double kSlack = 1 + 1e-9;
 const double kHalfDiagonal = std::sqrt(3.0) / 2;
 
@@ -121,7 +129,7 @@ std::uint32_t BlockBuilder::FindOnlyFace() const {
     return kNoFace;
   }
   for (int n = 0; n < kBlockNodes; ++n) {
-    const Vec3 p = block_->origin + h_ * Vec3(n % 9, n / 9 % 9, n / 81);
+    const Vec3 p = block_->origin + h_ * GridPoint(n, 9);
     const auto exact = spatial::CalcDistance(surface, p);
     const int stored = block_->nodes[static_cast<std::size_t>(n)];
     if (!exact.is_valid || std::abs(stored - ToUnits(exact.distance)) > 1) {
@@ -306,8 +314,8 @@ void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) const {
   }
   const double radius = 2 * kHalfDiagonal * h_ / kCubes;
   for (int o = 0; o < kCubes * kCubes * kCubes; ++o) {
-    const Vec3 step(o % kCubes, o / kCubes % kCubes, o / kCubes / kCubes);
-    const Vec3 c = centre + 2 * h_ / kCubes * (step - Vec3::Constant(0.5 * (kCubes - 1)));
+    const Vec3 c =
+        centre + 2 * h_ / kCubes * (GridPoint(o, kCubes) - Vec3::Constant(0.5 * (kCubes - 1)));
     const double offset = (c - centre).norm();
     std::array<double, kMostFaces> limit{};
     limit.fill(std::numeric_limits<double>::infinity());

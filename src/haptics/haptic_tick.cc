@@ -82,7 +82,7 @@ void HapticTick::Take(const HeldPart* part) noexcept {
 
 spatial::Pose HapticTick::Drop() noexcept {
   const bool is_seated = state_ == HoldState::kSeated;
-  const spatial::Pose X_WB = is_seated ? part_->X_WB_goal : X_WD_;
+  spatial::Pose X_WB = is_seated ? part_->X_WB_goal : X_WD_;
   for (std::size_t member = 0; member < shape_count(); ++member) {
     const HeldShape held = MakeHeldShape(member, X_WB, 0);
     scene_->SetPose(held.query.self, held.X_WS);
