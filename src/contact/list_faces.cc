@@ -15,13 +15,8 @@ class ListReader {
  public:
   ListReader(const Mesh& mesh, const ExactTable& exact)
       : mesh_(mesh), exact_(exact), seen_(mesh.triangles.size(), 0) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      bool is_at_edge = false;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t other = mesh.neighbour[t][k];
-        is_at_edge = is_at_edge || mesh.edge_kind[t][k] != EdgeKind::kSmooth || other == kNoFace ||
-                     mesh.face[other] != mesh.face[t];
-      }
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const bool is_at_edge = mesh.IsRim(t, 0) || mesh.IsRim(t, 1) || mesh.IsRim(t, 2);
       is_at_edge_.push_back(is_at_edge ? 1 : 0);
     }
   }

@@ -73,6 +73,13 @@ struct Mesh {
     return CalcClosestOnTriangle(p, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
   }
 
+  /** True where a face ends at edge k of a triangle, or bends sharply. */
+  [[nodiscard]] bool IsRim(std::uint32_t triangle, std::size_t k) const noexcept {
+    const std::uint32_t other = neighbour[triangle][k];
+    return other == kNoFace || face[other] != face[triangle] ||
+           edge_kind[triangle][k] != EdgeKind::kSmooth;
+  }
+
   /** The pseudonormal of a feature (not unit): (p - q) . n > 0 exactly when p is outside, for the
    closest feature of a closed mesh; Baerentzen and Aanaes, IEEE TVCG 11(3), 2005. */
   [[nodiscard]] Vec3 Pseudonormal(std::uint32_t triangle, TriangleFeature feature) const noexcept;

@@ -38,12 +38,6 @@ NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
   }
 }
 
-bool NearSearch::IsRim(std::uint32_t triangle, std::size_t k) const {
-  const std::uint32_t other = mesh_.neighbour[triangle][k];
-  return other == kNoFace || mesh_.face[other] != mesh_.face[triangle] ||
-         mesh_.edge_kind[triangle][k] != EdgeKind::kSmooth;
-}
-
 // A vertex with two rim edges, each seen from both sides or once where the mesh is open, is one
 // that a rim passes through.
 void NearSearch::FindRimBends() {
@@ -62,7 +56,7 @@ void NearSearch::FindRimBends() {
   };
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (IsRim(t, k)) {
+      if (mesh_.IsRim(t, k)) {
         add(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]);
         add(mesh_.triangles[t][(k + 1) % 3], mesh_.triangles[t][k]);
       }
@@ -86,7 +80,8 @@ NearSearch::Surroundings NearSearch::SurroundingsOf(
   Surroundings result{0, 0};
   double cosine = 1;
   for (std::size_t k = 0; k < 3; ++k) {
-    result.rims = static_cast<std::uint8_t>(result.rims | (IsRim(triangle, k) ? 1U << k : 0U));
+    result.rims =
+        static_cast<std::uint8_t>(result.rims | (mesh_.IsRim(triangle, k) ? 1U << k : 0U));
     for (const std::uint32_t t : around[mesh_.triangles[triangle][k]]) {
       if (mesh_.face[t] == mesh_.face[triangle] && !mesh_.NormalOf(t).isZero()) {
         cosine = std::min(cosine, mesh_.NormalOf(triangle).dot(mesh_.NormalOf(t)));

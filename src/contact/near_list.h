@@ -82,7 +82,6 @@ class NearSearch {
   [[nodiscard]] Surroundings SurroundingsOf(
       std::uint32_t triangle, const std::vector<std::vector<std::uint32_t>>& around) const;
 
-  [[nodiscard]] bool IsRim(std::uint32_t triangle, std::size_t k) const;
   void FindRimBends();
   [[nodiscard]] bool CanRimBeClosest(std::uint32_t triangle, std::size_t k, const Vec3& c,
                                      double radius, double limit) const;

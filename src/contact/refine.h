@@ -33,7 +33,8 @@ struct FaceFilter {
 };
 
 /** The distance at p on the analytic surfaces, with faces trimmed by their triangles; `field` is
- the interpolated value there, which stays where nothing better is known. RT-safe. */
+ the interpolated value there, which stays where nothing better is known. Where it puts p outside
+ beyond doubt, what is no nearer than the filter's limit is not looked for. RT-safe. */
 [[nodiscard]] Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
                              const FaceFilter& filter) noexcept;
 
@@ -43,6 +44,14 @@ struct FaceFilter {
 [[nodiscard]] Refined RefineActual(const Shape::Data& shape, const FaceOffsets* offsets,
                                    const Vec3& p, const Hit& field,
                                    const FaceFilter& filter) noexcept;
+
+/** The same where no interpolated value is at hand: outside, where nothing better is known.
+ RT-safe. */
+[[nodiscard]] inline Refined RefineAlone(const Shape::Data& shape, const FaceOffsets* offsets,
+                                         const Vec3& p, const FaceFilter& filter) noexcept {
+  constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
+  return RefineActual(shape, offsets, p, kNowhere, filter);
+}
 
 /** How far a point of the nominal surface goes when all faces near it move: with the edge where it
  lies near one, so that it stays on its trimmed face. RT-safe. */

@@ -156,11 +156,6 @@ struct Scene::Data {
     return {field, RelativePose(field, sampled) * raw.p};
   }
 
-  static Refined DistanceAt(const Placed& field, const Vec3& p) noexcept {
-    constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
-    return RefineActual(*field.shape, field.offsets, p, kNowhere, {});
-  }
-
   // Whether the contact is with the side of a ledge that may be lower than `height`: just inside of
   // where the side is met another face is nearer, its top.
   bool FindTop(const Placed& held, double height, const RawContact& raw,
@@ -172,7 +167,7 @@ struct Scene::Data {
     }
     const Met met = Meet(held, raw);
     const Vec3 inside = met.p - (raw.distance + height) * raw.gradient;
-    *top = DistanceAt(met.field, inside);
+    *top = RefineAlone(*met.field.shape, met.field.offsets, inside, {});
     const bool is_low = top->is_exact && top->distance < 0 && top->distance > -kLower * height &&
                         top->gradient.dot(raw.gradient) < kSquare;
     top->distance += top->gradient.dot(met.p - inside);
@@ -190,7 +185,7 @@ struct Scene::Data {
     const Met ahead = Meet(held_ahead, raw);
     const Vec3 step = ahead.p - Meet(held, raw).p;
     return raw.distance + raw.gradient.dot(step) < 0 && step.squaredNorm() < kLongest * kLongest &&
-           DistanceAt(ahead.field, ahead.p).distance > -depth;
+           RefineAlone(*ahead.field.shape, ahead.field.offsets, ahead.p, {}).distance > -depth;
   }
 
   // Leaves out what is passed by, and contacts with the sides of low ledges; those that are past

@@ -58,10 +58,9 @@ class Track {
 
   // True where the trimmed part of the track goes as far as p.
   [[nodiscard]] bool Reaches(const Vec3& p) const {
-    constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
     FaceFilter near;
     near.limit = 10 * kOnSurface;
-    const Refined r = RefineActual(shape_, offsets_, p, kNowhere, near);
+    const Refined r = RefineAlone(shape_, offsets_, p, near);
     return r.is_exact && std::abs(r.distance) < kOnSurface;
   }
 
@@ -144,8 +143,7 @@ void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
   const RelativePose X_FS(field, sampled);
   const std::uint32_t face = contact->is_reverse ? contact->held_face : contact->scene_face;
   const auto evaluate = [&](State* s) {
-    constexpr Hit kNowhere{0, 1.0F, {0.0F, 0.0F, 1.0F}};
-    const Refined r = RefineActual(*field.shape, field.offsets, X_FS * s->p, kNowhere, {});
+    const Refined r = RefineAlone(*field.shape, field.offsets, X_FS * s->p, {});
     s->distance = r.distance;
     s->gradient = X_FS.R.transpose() * r.gradient;
     return r.is_exact && r.face == face;
