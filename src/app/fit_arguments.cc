@@ -6,12 +6,11 @@
 #include "base/units.h"
 #include "fits/friction.h"
 #include "fits/materials.h"
+#include "fits/paper_scales.h"
 #include "fits/thermal_joining.h"
 
 namespace hvas::app {
 namespace {
-
-constexpr double kPaperFriction = 0.15;
 
 /** In words; the ones of CLI11 name the largest number there is. */
 const CLI::Validator& Positive() {
@@ -59,7 +58,7 @@ void SetFriction(const FitArguments& a, const fits::Material& hub, const fits::M
     const fits::FrictionEntry* entry =
         fits::FindFrictionEntry(fits::SurfaceOf(hub.group), fits::SurfaceOf(shaft.group));
     if (entry == nullptr) {
-      friction = kPaperFriction;
+      friction = fits::kPaperRig.friction;
       options->friction_source = "assumed: this pair of materials is not in the table";
     } else {
       friction = a.is_oiled ? entry->kinetic_coefficient : entry->static_coefficient;

@@ -18,14 +18,6 @@
 namespace hvas::app {
 namespace {
 
-// The rig of paper W, 4.2.3.
-constexpr double kDiameter = 0.04;
-constexpr double kHubDiameter = 0.08;
-constexpr double kLength = 0.05;
-constexpr double kFriction = 0.15;
-constexpr double kRz = 6.3e-6;
-constexpr int kStations = 20;
-
 constexpr double kSpeed = 0.01;  // Of the hand; the paper does not say [m/s].
 constexpr int kSteps = 500;
 
@@ -64,30 +56,34 @@ double StandIn(const fits::FitLimits& limits) {
 
 Result<PaperCurve> MakeCurve(const char* experiment, fits::FitKind kind, std::uint64_t seed) {
   const fits::PaperScale& scale = fits::FindPaperScale(kind);
-  const fits::FitLimits limits = *fits::CalcFitLimits(*fits::ParseFit(scale.fit), kDiameter);
+  const fits::FitLimits limits =
+      *fits::CalcFitLimits(*fits::ParseFit(scale.fit), fits::kPaperRig.diameter);
   fits::StrokeLand land;
-  land.press.joint_diameter = kDiameter;
-  land.press.hub_diameter = kHubDiameter;
-  land.press.length = kLength;
-  land.press.friction_in = land.press.friction_release = kFriction;
+  land.press.joint_diameter = fits::kPaperRig.diameter;
+  land.press.hub_diameter = fits::kPaperRig.hub_diameter;
+  land.press.length = fits::kPaperRig.length;
+  land.press.friction_in = land.press.friction_release = fits::kPaperRig.friction;
   const double clearance = StandIn(limits);
-  land.clearances = fits::DrawClearances(clearance, kRz, kStations, seed);
+  land.clearances =
+      fits::DrawClearances(clearance, fits::kPaperRig.roughness, fits::kPaperRig.stations, seed);
   const Result<fits::PressStroke> stroke = fits::PressStroke::Make({land});
   if (!stroke) {
     return Unexpected(stroke.error());
   }
   const WanderingHand hand(seed);
-  PaperCurve curve{
-      experiment, kind, fits::CalcPaperFactor(kind, stroke->CalcForce(kLength).in), {}};
+  PaperCurve curve{experiment,
+                   kind,
+                   fits::CalcPaperFactor(kind, stroke->CalcForce(fits::kPaperRig.length).in),
+                   {}};
   for (int i = 0; i <= kSteps; ++i) {
     const double share = static_cast<double>(i) / kSteps;
-    const double depth = kLength * share;
+    const double depth = fits::kPaperRig.length * share;
     // W(5): what presses sideways is the hand beyond the clearance.
     const double across =
         kind == fits::FitKind::kClearance
             ? fits::kPaperContactStiffness * std::max(0.0, hand.At(share) - 0.5 * clearance)
             : 0;
-    const double force = stroke->CalcForce(depth).in + kFriction * across;
+    const double force = stroke->CalcForce(depth).in + fits::kPaperRig.friction * across;
     curve.points.push_back({depth, depth / kSpeed, force, curve.factor * force});
   }
   return curve;

@@ -81,14 +81,7 @@ Result<FitForce> FitForce::Make(const FitForceParameters& parameters) {
   if (!forces) {
     return Unexpected(forces.error());
   }
-  StrokeLand plain = land;
-  plain.press.friction_in = 1;
-  plain.lead_in_angle = 0;
-  Result<PressStroke> normal = PressStroke::Make({plain});
-  if (!normal) {
-    return Unexpected(normal.error());
-  }
-  FitForce fit(std::move(*forces), std::move(*normal));
+  FitForce fit(std::move(*forces));
   fit.friction_ = p.friction;
   fit.length_ = p.length;
   fit.step_ = p.length / p.stations;
@@ -130,7 +123,7 @@ double FitForce::CalcPressure(double depth) const noexcept {
 }
 
 double FitForce::CalcNormalForce(double depth) const noexcept {
-  return normal_.CalcForce(std::isnan(depth) ? 0 : depth).in;
+  return forces_.CalcForce(std::isnan(depth) ? 0 : depth).normal;
 }
 
 double FitForce::CalcAxialResistance(double depth) const noexcept {
@@ -144,9 +137,9 @@ double FitForce::CalcReleaseForce(double depth, double speed) const noexcept {
   }
   const FrictionLaw law{friction_.release, friction_.slip};
   const double less = friction_.release - law.CalcCoefficient(std::abs(speed));
+  const StrokeForce force = forces_.CalcForce(std::min(depth, length_));
   // The chamfer's slope helps outwards; it does not push the shaft out.
-  return std::max(
-      0.0, forces_.CalcForce(std::min(depth, length_)).release - less * CalcNormalForce(depth));
+  return std::max(0.0, force.release - less * force.normal);
 }
 
 double FitForce::CalcTorque(double depth) const noexcept {

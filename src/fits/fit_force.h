@@ -107,13 +107,11 @@ class FitForce {
     double offset;         // From the first of them [m].
   };
 
-  FitForce(PressStroke forces, PressStroke normal)
-      : forces_(std::move(forces)), normal_(std::move(normal)) {}
+  explicit FitForce(PressStroke forces) : forces_(std::move(forces)) {}
 
   [[nodiscard]] Place Locate(double depth) const noexcept;
 
   PressStroke forces_;
-  PressStroke normal_;  // With coefficients of one and no chamfer: N(l).
   FitFriction friction_;
   double length_{0};
   double step_{0};

@@ -28,6 +28,18 @@ struct PaperScale {
  of the rig where there is no force. RT-safe. */
 [[nodiscard]] double CalcPaperFactor(FitKind kind, double true_force) noexcept;
 
+/** The shaft and bushing of its experiments, both of steel (4.2.3). */
+struct PaperRig {
+  double diameter{40e-3};      ///< [m]
+  double hub_diameter{80e-3};  ///< [m]
+  double length{50e-3};        ///< [m]
+  double friction{0.15};
+  double roughness{6.3e-6};  ///< Rz [m].
+  int stations{20};          ///< Intervals of the roughness along the length.
+};
+
+inline constexpr PaperRig kPaperRig{};
+
 /** Stiffness of contact k_p and of the constraint to the axis k_q in the paper [N/m]. */
 inline constexpr double kPaperContactStiffness = 700;
 inline constexpr double kPaperAxisStiffness = 500;

@@ -139,6 +139,7 @@ StrokeForce PressStroke::CalcForce(double depth) const noexcept {
     const double body = 2 * land.force_per_area * IntegrateTo(land, z);
     const double ramp = 2 * land.force_per_area * IntegrateRamp(land, z);
     const double t = land.tan_lead_in;
+    force.normal += body;
     force.in +=
         land.friction_in * body + (land.friction_in + t) / (1 - land.friction_in * t) * ramp;
     force.release += land.friction_release * body +

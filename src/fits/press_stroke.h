@@ -27,8 +27,9 @@ struct StrokeLand {
 [[nodiscard]] std::vector<double> DrawClearances(double diametral_clearance, double rz,
                                                  int stations, std::uint64_t seed);
 
-/** Axial forces at a depth, both >= 0 as a rule [N]. */
+/** Forces at a depth, >= 0 as a rule [N]. */
 struct StrokeForce {
+  double normal{0};   ///< The pressure over the engaged surface, without the chamfers'.
   double in{0};       ///< To keep pressing in.
   double release{0};  ///< To start pulling out.
 };

@@ -14,9 +14,6 @@
 namespace hvas::simulation {
 namespace {
 
-constexpr double kDiameter = 40e-3;
-constexpr double kLength = 50e-3;
-
 using Curve = std::vector<double>;  // Felt force at the looks [N].
 
 /** What training taught of a fit: the mean of its curves, and how far they stray from it. */
@@ -46,7 +43,7 @@ class Experiment {
       : options_(options), random_(options.seed) {
     for (const char* name : kShownFitNames) {
       // Both are constants of this file's.
-      limits_.push_back(*fits::CalcFitLimits(*fits::ParseFit(name), kDiameter));
+      limits_.push_back(*fits::CalcFitLimits(*fits::ParseFit(name), fits::kPaperRig.diameter));
       kinds_.push_back(limits_.back().kind);
     }
   }
@@ -64,10 +61,10 @@ class Experiment {
     };
     Curve curve;
     for (int i = 0; i < options_.observer.looks; ++i) {
-      const double f = felt(kLength * (i + 0.5) / options_.observer.looks);
+      const double f = felt(fits::kPaperRig.length * (i + 0.5) / options_.observer.looks);
       curve.push_back(bias * f + std::sqrt(CalcVariance(f * f)) * random_.Normal());
     }
-    *felt_end = felt(kLength);
+    *felt_end = felt(fits::kPaperRig.length);
     return curve;
   }
 
@@ -118,9 +115,9 @@ class Experiment {
     const fits::FitLimits& limits = limits_[shown];
     for (;;) {
       fits::FitForceParameters p;
-      p.nominal_diameter = kDiameter;
-      p.length = kLength;
-      p.hole_diameter = p.shaft_diameter = kDiameter;
+      p.nominal_diameter = fits::kPaperRig.diameter;
+      p.length = fits::kPaperRig.length;
+      p.hole_diameter = p.shaft_diameter = fits::kPaperRig.diameter;
       if (options_.sizes != ShownSizes::kOnePair) {
         p.hole_diameter += fits::DrawDeviation(limits.hole, &random_);
         p.shaft_diameter += fits::DrawDeviation(limits.shaft, &random_);
