@@ -94,7 +94,7 @@ class ConstraintSolver {
   int AddContact(const Contact& contact) noexcept;
 
   /** A resistance to motion J V of body 0: a bristle that is stretched before the step, and pulls
-   along J with a force between two bounds. */
+   along J with a force between two bounds. Rigid unless it is given a stiffness: dry friction. */
   struct BoundedRow {
     double low{0};   ///< <= 0 [N or N m]
     double high{0};  ///< >= 0
@@ -104,11 +104,6 @@ class ConstraintSolver {
 
   /** Returns the row's index, or -1 when there are too many. */
   int AddBoundedRow(const Vec6& J, const BoundedRow& bounds) noexcept;
-
-  /** The same without a bristle, with a force of at most `bound` either way (dry friction). */
-  int AddBoundedRow(const Vec6& J, double bound) noexcept {
-    return AddBoundedRow(J, BoundedRow{-bound, bound, 0, std::numeric_limits<double>::infinity()});
-  }
 
   /** Solves; returns the velocity of body 0 at its centre of mass. */
   [[nodiscard]] spatial::Twist Solve(int iterations) noexcept;

@@ -347,7 +347,7 @@ TEST(ConstraintSolver, BoundedRowSticksBelowItsBoundAndSlidesAbove) {
     ConstraintSolver solver;
     solver.Begin(kMass, Inertia(), Vec3::Zero(), {}, kDt);
     solver.AddWrench({Vec3::Zero(), Vec3(0, 0, push)});
-    const int row = solver.AddBoundedRow(J, bound);
+    const int row = solver.AddBoundedRow(J, {-bound, bound});
     EXPECT_NEAR(solver.Solve(30).v.z(), 0, 1e-18) << push;
     EXPECT_NEAR(solver.bounded_force(row), -push, 1e-12);
   }
@@ -355,7 +355,7 @@ TEST(ConstraintSolver, BoundedRowSticksBelowItsBoundAndSlidesAbove) {
     ConstraintSolver solver;
     solver.Begin(kMass, Inertia(), Vec3::Zero(), {}, kDt);
     solver.AddWrench({Vec3::Zero(), Vec3(0, 0, push)});
-    const int row = solver.AddBoundedRow(J, bound);
+    const int row = solver.AddBoundedRow(J, {-bound, bound});
     const double rest = push - std::copysign(bound, push);
     EXPECT_NEAR(solver.Solve(30).v.z(), kDt * rest / kMass, 1e-15);
     EXPECT_EQ(solver.bounded_force(row), -std::copysign(bound, push));
@@ -371,7 +371,7 @@ TEST(ConstraintSolver, BoundedRowNeverReversesTheMotion) {
   for (int i = 0; i < 10; ++i) {
     ConstraintSolver solver;
     solver.Begin(kMass, Inertia(), Vec3::Zero(), V, kDt);
-    (void)solver.AddBoundedRow(J, 2);
+    (void)solver.AddBoundedRow(J, {-2, 2});
     V = solver.Solve(30);
     EXPECT_GE(V.v.x(), 0);
     EXPECT_NEAR(V.v.x(), std::max(0.0, before - kDt * 2 / kMass), 1e-15);
@@ -401,7 +401,7 @@ Twist SolveTurned(const RandomScene& s, const Mat3& R, Vec3* total) {
   }
   Vec6 J;
   J << R * s.J.head<3>(), R * s.J.tail<3>();
-  (void)solver.AddBoundedRow(J, 1);
+  (void)solver.AddBoundedRow(J, {-1, 1});
   const Twist V = solver.Solve(20'000);
   *total = Vec3::Zero();
   for (int i = 0; i < 6; ++i) {
@@ -468,9 +468,9 @@ TEST(ConstraintSolver, CapacityIsKept) {
   ConstraintSolver solver;
   solver.Begin(kMass, Inertia(), Vec3::Zero(), {}, kDt);
   for (int i = 0; i < ConstraintSolver::kMaxBoundedRows; ++i) {
-    EXPECT_EQ(solver.AddBoundedRow(Vec6::Unit(i), 1), i);
+    EXPECT_EQ(solver.AddBoundedRow(Vec6::Unit(i), {-1, 1}), i);
   }
-  EXPECT_EQ(solver.AddBoundedRow(Vec6::Unit(5), 1), -1);
+  EXPECT_EQ(solver.AddBoundedRow(Vec6::Unit(5), {-1, 1}), -1);
   (void)solver.Solve(30);
   EXPECT_EQ(solver.bounded_force(-1), 0);
 }
@@ -487,7 +487,7 @@ TEST(ConstraintSolver, IsReusable) {
     solver->Begin(kMass, Inertia(), Vec3::Zero(), {Vec3(1, 0, 0), Vec3(0, 1, -1)}, kDt);
     const int patch = solver->AddPatch({0, ConstraintSolver::kWorld, 0.3});
     solver->AddContact({patch, Vec3(0.01, 0, 0), Vec3::UnitZ(), 0, 2e-6});
-    (void)solver->AddBoundedRow(J, 1);
+    (void)solver->AddBoundedRow(J, {-1, 1});
     return solver->Solve(30);
   };
   ConstraintSolver fresh;
