@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <ctime>
 
@@ -18,6 +19,36 @@ inline constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 [[nodiscard]] inline std::int64_t MonotonicNs() noexcept {
   return ReadClock(CLOCK_MONOTONIC);
 }
+
+/** A clock that can be another one in tests and emulators. */
+class Clock {
+ public:
+  Clock() = default;
+  Clock(const Clock&) = delete;
+  Clock& operator=(const Clock&) = delete;
+  virtual ~Clock() = default;
+
+  /** Monotonic time [ns]. RT-safe, from any thread. */
+  [[nodiscard]] virtual std::int64_t NowNs() const noexcept = 0;
+};
+
+/** The machine's own: MonotonicNs(). */
+[[nodiscard]] const Clock& SystemClock() noexcept;
+
+/** Time that stands still until somebody moves it on. */
+class VirtualClock final : public Clock {
+ public:
+  [[nodiscard]] std::int64_t NowNs() const noexcept override {
+    return now_ns_.load(std::memory_order_acquire);
+  }
+
+  void Advance(std::int64_t step_ns) noexcept {
+    now_ns_.fetch_add(step_ns, std::memory_order_acq_rel);
+  }
+
+ private:
+  std::atomic<std::int64_t> now_ns_{0};
+};
 
 /** Processor time that the calling thread has used [ns]. RT-safe. */
 [[nodiscard]] inline std::int64_t ThreadCpuNs() noexcept {

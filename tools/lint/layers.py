@@ -24,11 +24,13 @@ OUTSIDE = {
     "Bullet": (r"bt[A-Z]|LinearMath/|BulletDynamics/|BulletCollision/", r"hvas_bullet|\$\{HVAS_BULLET"),
     "sqlite3": (r"sqlite3\.h", r"SQLite::"),
     "CLI": (r"CLI/", r"CLI11::"),
+    "Boost": (r"boost/", r"Boost::"),
+    "OpenSSL": (r"openssl/", r"OpenSSL::"),
 }
 TEST_ONLY = (r"(gtest|gmock|benchmark)/",)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Headers of the standard library and of POSIX; all others have to be in OUTSIDE.
-STANDARD = re.compile(r"[a-z_]+|(sys/)?[a-z]+\.h|[a-z0-9]*intrin\.h")
+STANDARD = re.compile(r"[a-z_]+|((sys|linux|netinet|arpa)/)?[a-z]+\.h|[a-z0-9]*intrin\.h")
 
 
 def read_table(architecture):

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/result.h"
+#include "device/device.h"
+
+namespace hvas::device {
+
+/** Where drivers look, and the clock that they judge ages by. The defaults are the machine's own;
+ tests put emulators and virtual time in their place. */
+struct Surroundings {
+  /** Folders that are searched for vendors' libraries before all others. */
+  std::vector<std::filesystem::path> library_folders;
+  std::filesystem::path root{"/"};  ///< Under which dev, sys, run, etc and var are.
+  const Clock* clock{&SystemClock()};
+};
+
+/** One thing that a driver looked for. */
+struct Finding {
+  std::string what;   ///< "libHD.so.3.4", "USB device 1451:0402".
+  std::string where;  ///< Path, address or search path.
+  bool is_found{false};
+  std::string note;  ///< Version, permission; may be empty.
+};
+
+/** What became of looking for the devices of one driver. */
+struct ProbeReport {
+  std::string driver;
+  std::string title;
+  std::vector<Finding> looked_for;
+  std::vector<DeviceInfo> devices;  ///< That could be started.
+  std::vector<Error> problems;      ///< For each that could not: exact reason, where, and remedy.
+};
+
+/** How devices of one kind are found and opened. Stateless. */
+class Driver {
+ public:
+  Driver() = default;
+  Driver(const Driver&) = delete;
+  Driver& operator=(const Driver&) = delete;
+  virtual ~Driver() = default;
+
+  [[nodiscard]] virtual std::string_view name() const = 0;   ///< "openhaptics"
+  [[nodiscard]] virtual std::string_view title() const = 0;  ///< "3D Systems (OpenHaptics HDAPI)"
+  /** How an address of it is written, with an example. */
+  [[nodiscard]] virtual std::string_view address_help() const = 0;
+
+  /** Looks for devices; `opens_devices`: starts each that it finds, without force, and lets go. */
+  [[nodiscard]] virtual ProbeReport Probe(const Surroundings& surroundings,
+                                          bool opens_devices) const = 0;
+
+  /** Opens a device.
+   @param address  What follows the driver's name and a colon; empty: the first one found.
+   Errors: kNotFound, kUnsupported, kOutOfResource..., each with the remedy. */
+  [[nodiscard]] virtual Result<std::unique_ptr<Device>> Open(
+      const std::string& address, const Surroundings& surroundings) const = 0;
+};
+
+/** All drivers, in the order in which they are tried. */
+[[nodiscard]] const std::vector<const Driver*>& Drivers();
+
+/** Opens a device by "DRIVER" or "DRIVER:ADDRESS".
+ Errors: kInvalid for a driver that does not exist (the message lists them), or the driver's. */
+Result<std::unique_ptr<Device>> OpenDevice(const std::string& address,
+                                           const Surroundings& surroundings);
+
+}  // namespace hvas::device
