@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/flight_json.h"
+
 namespace hvas::app {
 namespace {
 
@@ -19,6 +21,12 @@ const char* ToString(simulation::SimulationEvent::Kind kind) {
       return "state";
     case simulation::SimulationEvent::Kind::kDropped:
       return "dropped";
+    case simulation::SimulationEvent::Kind::kSafety:
+      return "safety";
+    case simulation::SimulationEvent::Kind::kDevice:
+      return "device";
+    case simulation::SimulationEvent::Kind::kEffort:
+      return "effort";
   }
   return "unknown";
 }
@@ -63,8 +71,20 @@ void SessionRecorder::OnEvent(const simulation::SimulationEvent& event) {
     details["path_m"] = event.metrics.path;
     details["peak_true_n"] = event.metrics.peak_true;
     details["peak_felt_n"] = event.metrics.peak_felt;
+  } else if (event.kind == simulation::SimulationEvent::Kind::kSafety) {
+    details["actions"] = event.gate_actions;
+  } else if (event.kind == simulation::SimulationEvent::Kind::kDevice) {
+    details["condition"] = device::ToString(event.condition);
+    details["vendor_code"] = event.vendor_code;
+  } else if (event.kind == simulation::SimulationEvent::Kind::kEffort) {
+    details["level"] = event.effort_level;
   }
   recorder_->AddEvent({event.t_ns, ToString(event.kind), event.occurrence.value(), details.dump()});
+}
+
+void SessionRecorder::OnFlight(const std::vector<simulation::FlightTick>& ticks) {
+  recorder_->AddEvent({ticks.back().device.t_ns, "flight", ticks.back().out.occurrence.value(),
+                       MakeFlightJson(ticks)});
 }
 
 }  // namespace hvas::app

@@ -14,6 +14,7 @@ class SessionRecorder final : public simulation::Sink {
 
   void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override;
   void OnEvent(const simulation::SimulationEvent& event) override;
+  void OnFlight(const std::vector<simulation::FlightTick>& ticks) override;
 
  private:
   record::Recorder* recorder_;

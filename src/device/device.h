@@ -25,6 +25,11 @@ enum class Condition : std::uint8_t {
 
 [[nodiscard]] const char* ToString(Condition condition) noexcept;
 
+/** Something is wrong with it, and not just idle. */
+[[nodiscard]] constexpr bool IsFault(Condition condition) noexcept {
+  return condition != Condition::kReady && condition != Condition::kNotHeld;
+}
+
 /** One sample from a device: the hand H in the device's base frame. */
 struct DeviceState {
   std::int64_t t_ns{0};

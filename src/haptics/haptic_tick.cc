@@ -49,6 +49,7 @@ const char* ToString(HoldState state) noexcept {
 
 HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene)
     : options_(options),
+      handle_space_(options.workspace),
       scene_(scene),
       force_map_(MakeForceMap(options.device)),
       fit_rows_(options.force_map, options.device),
@@ -103,12 +104,18 @@ HapticTick::Tracked HapticTick::CalcTracked(const Hand& hand) const noexcept {
   return {X_WT, {hand.V_WH.w, hand.V_WH.v + hand.V_WH.w.cross(r)}};
 }
 
-TickOutput HapticTick::Tick(const device::DeviceState& state) noexcept {
+TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext& context) noexcept {
+  (void)context;
   TickOutput out;
   out.deepest = std::numeric_limits<double>::infinity();
   const bool is_usable = state.is_valid && spatial::IsFinite(state.X_DH) &&
                          state.V_DH.v.allFinite() && state.V_DH.w.allFinite();
-  const Hand hand = is_usable ? MapToScene(options_.workspace, state) : Hand{};
+  if (is_usable) {
+    hand_ = handle_space_.Update(state, options_.dt);
+  } else {
+    handle_space_.Lose();
+  }
+  const Hand& hand = hand_;
   out.X_WH = hand.X_WH;
   out.X_WT = hand.X_WH;
   out.X_WD = out.X_WT;
@@ -135,7 +142,8 @@ TickOutput HapticTick::Tick(const device::DeviceState& state) noexcept {
   out.state = state_;
   out.points_tested = std::exchange(points_tested_, 0);
   out.F_H_W = gate_.Pass(out.F_H_W, options_.dt);
-  out.F_H_D = MapToDevice(options_.workspace, out.F_H_W);
+  out.F_H_D = MapToDevice(handle_space_.mapping(), out.F_H_W);
+  out.workspace = handle_space_.mapping();
   out.gate_actions = gate_.actions();
   return out;
 }
@@ -165,7 +173,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   AddFreeBodies();
   AddContacts(out);
   AddFreeContacts(out);
-  const spatial::Twist V = solver_.Solve(options_.contact.iterations);
+  const spatial::Twist V = solver_.Solve(effort_.iterations);
   RecordContacts(out);
   friction_.EndTick(solver_, options_.dt);
   MoveFreeBodies();
@@ -283,6 +291,7 @@ HapticTick::HeldShape HapticTick::MakeHeldShape(std::size_t member, const spatia
                                                 double margin) noexcept {
   HeldShape held;
   held.query.margin = margin;
+  held.query.point_budget = effort_.point_budget;
   held.query.ignored = {ignored_.data(), guide_.CollectIgnored(*part_, ignored_, member)};
   if (member == 0) {
     held.shape = part_->shape.get();

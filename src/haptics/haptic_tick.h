@@ -52,6 +52,13 @@ struct TickOutput {
   std::uint32_t gate_actions{0};
   bool is_truncated{false};        ///< A contact query met its budget.
   std::uint32_t points_tested{0};  ///< By all contact queries of the tick: what it cost.
+  WorkspaceMapping workspace;      ///< How the handle moved the hand.
+};
+
+/** What else the loop knows at a tick. */
+struct TickContext {
+  std::int64_t model_age_ns{0};  ///< Since the physics loop last answered.
+  bool is_stopped{false};        ///< Somebody has switched all forces off.
 };
 
 /** The haptic tick of one hand: X(1), X(2) coupling, contact on the displayed part (X7), guidance
@@ -85,8 +92,11 @@ class HapticTick {
    again; it falls, unless it is in its place or its fits hold it. RT-safe. */
   spatial::Pose Drop() noexcept;
 
+  /** From the next tick on. RT-safe. */
+  void SetEffort(const Effort& effort) noexcept { effort_ = effort; }
+
   /** One tick. Always returns a safe wrench. RT-safe. */
-  TickOutput Tick(const device::DeviceState& state) noexcept;
+  TickOutput Tick(const device::DeviceState& state, const TickContext& context = {}) noexcept;
 
   [[nodiscard]] const HeldPart* held() const noexcept { return part_; }
 
@@ -138,6 +148,8 @@ class HapticTick {
   void RecordContacts(TickOutput* out) const noexcept;
 
   TickOptions options_;
+  Effort effort_;
+  Workspace handle_space_;
   contact::Scene* scene_;
   contact::QueryWorkspace workspace_;
   ForceMap force_map_;
@@ -156,6 +168,7 @@ class HapticTick {
   int held_contacts_{0};  ///< Of those in the solver; the first ones.
   double clearance_{0};   ///< Least distance of the held part before the step, or the margin [m].
   double reach_{0};       ///< Largest distance of a held point from the centre of mass [m].
+  Hand hand_;             ///< Of the last valid sample.
   bool is_first_tick_{true};
   bool is_solved_{false};  ///< In this tick, together with the held part.
   spatial::Pose X_HB_;     ///< Grip: the tracked part in the hand.

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
+
+#include "contact/scene.h"
 #include "device/device.h"
 #include "fits/friction.h"
-#include "haptics/workspace_mapping.h"
+#include "haptics/workspace.h"
 #include "mates/capture.h"
 #include "spatial/pose.h"
 
@@ -63,18 +66,27 @@ struct ContactOptions {
   double max_free_speed{3.0};   ///< Free bodies move no faster [m/s].
   double rest_time{0.3};        ///< A free body at rest for so long sleeps [s].
   double stop_depth{50e-6};  ///< No motion within a tick goes deeper than this, or than before [m].
-  int iterations{30};
+};
+
+/** How much a tick may do. Less of it where the time does not suffice, in this order. */
+struct Effort {
+  std::uint32_t point_budget{contact::QueryOptions::kDefaultPointBudget};  ///< Of each query.
+  int iterations{30};                                                      ///< Of the solver.
+  bool wakes_bodies{true};  ///< Loose parts begin to move when they are touched.
 };
 
 struct TickOptions {
   Condition condition{Condition::kHybrid};
-  WorkspaceMapping workspace;
+  WorkspaceOptions workspace;
   CouplingGains coupling;
   GuidanceOptions guidance;
   ContactOptions contact;
   Vec3 gravity_W{0, 0, -9.81};  ///< [m/s^2]
   ForceMapKind force_map{ForceMapKind::kPublished};
   device::DeviceProfile device;
+  /** For a device that shows forces but no torques: from its point to where the hand holds it, in H
+   [m]; a torque becomes the force at that lever. Zero: torques are not shown then. */
+  Vec3 p_HG{Vec3::Zero()};
   double dt{1e-3};  ///< [s]
 };
 

@@ -43,7 +43,8 @@ TouchingBody HapticTick::Touch(const contact::Contact& c) noexcept {
     return other;
   }
   FreeBody* body = bodies_.FindAwake(c.body);
-  if (body == nullptr && c.distance < kWakeGap && bodies_.Wake(c.body, scene_->pose(c.body), {})) {
+  if (body == nullptr && effort_.wakes_bodies && c.distance < kWakeGap &&
+      bodies_.Wake(c.body, scene_->pose(c.body), {})) {
     body = bodies_.FindAwake(c.body);
     body->index = solver_.AddBody(bodies_.MakeSolverBody(*body, options_.gravity_W, options_.dt));
   }
@@ -122,6 +123,7 @@ void HapticTick::AddFreeContacts(TickOutput* out) noexcept {
     contact::QueryOptions query;
     query.self = body.id;
     query.left_out = {done.data(), i};
+    query.point_budget = effort_.point_budget;
     query.broken_edges = {options.edge_break, bodies_.Move(body, body.V, options_.dt)};
     const double speed = body.V.v.norm() + body.V.w.norm() * CalcReach(shape, properties.p_BoBcm_B);
     query.margin =
@@ -165,7 +167,7 @@ void HapticTick::StepFreeBodies(TickOutput* out) noexcept {
   solver_.BeginFree(options_.dt);
   AddFreeBodies();
   AddFreeContacts(out);
-  (void)solver_.Solve(options_.contact.iterations);
+  (void)solver_.Solve(effort_.iterations);
   MoveFreeBodies();
   friction_.EndTick(solver_, options_.dt);
 }

@@ -9,7 +9,8 @@ namespace hvas::haptics {
  are multiplied by `scale`; angles are not, so the hand turns as the part does. */
 struct WorkspaceMapping {
   spatial::Pose X_WD;
-  double scale{1};  ///< Scene length per device length, > 0.
+  double scale{1};                 ///< Scene length per device length, > 0.
+  Quat q_index{Quat::Identity()};  ///< Between the handle and the hand, changed by clutching.
 };
 
 /** The hand H in the scene. */
@@ -22,9 +23,17 @@ struct Hand {
 [[nodiscard]] inline Hand MapToScene(const WorkspaceMapping& mapping,
                                      const device::DeviceState& state) noexcept {
   const Quat& q_WD = mapping.X_WD.q();
-  return {
-      {(q_WD * state.X_DH.q()).normalized(), mapping.X_WD * Vec3(mapping.scale * state.X_DH.p())},
-      {q_WD * state.V_DH.w, mapping.scale * (q_WD * state.V_DH.v)}};
+  return {{(q_WD * state.X_DH.q() * mapping.q_index).normalized(),
+           mapping.X_WD * Vec3(mapping.scale * state.X_DH.p())},
+          {q_WD * state.V_DH.w, mapping.scale * (q_WD * state.V_DH.v)}};
+}
+
+/** Where the handle has to be for the hand to be at X_WH: the inverse of MapToScene. RT-safe. */
+[[nodiscard]] inline spatial::Pose MapPoseToDevice(const WorkspaceMapping& mapping,
+                                                   const spatial::Pose& X_WH) noexcept {
+  const Quat q_DW = mapping.X_WD.q().conjugate();
+  return {(q_DW * X_WH.q() * mapping.q_index.conjugate()).normalized(),
+          q_DW * (X_WH.p() - mapping.X_WD.p()) / mapping.scale};
 }
 
 /** The wrench on the hand in the device's base frame. Forces are not scaled: what the scene's

@@ -26,6 +26,12 @@ void AssemblyRun::OnTick(const device::DeviceState& device,
   }
 }
 
+void AssemblyRun::OnFlight(const std::vector<FlightTick>& ticks) {
+  if (downstream_ != nullptr) {
+    downstream_->OnFlight(ticks);
+  }
+}
+
 void AssemblyRun::OnEvent(const SimulationEvent& event) {
   if (event.kind == SimulationEvent::Kind::kDropped) {
     has_dropped_ = true;

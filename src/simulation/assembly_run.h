@@ -46,6 +46,7 @@ class AssemblyRun final : public Sink {
 
   void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override;
   void OnEvent(const SimulationEvent& event) override;
+  void OnFlight(const std::vector<FlightTick>& ticks) override;
 
   /** After every physics step, on its thread: gives the person the next part. */
   void Advance();

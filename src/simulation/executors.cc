@@ -1,62 +1,105 @@
 #include "simulation/executors.h"
 
-#include <pthread.h>
-#include <sched.h>
-#include <sys/mman.h>
-#include <time.h>
-
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
-#include <cstring>
+#include <cmath>
 #include <thread>
-
-#include <fmt/format.h>
+#include <vector>
 
 #include "base/clock.h"
 
 namespace hvas::simulation {
 namespace {
 
-constexpr std::int64_t kTickNs = 1'000'000;
+/** Session time of a tick [ns]. */
+std::int64_t PeriodOf(const Simulation& simulation) {
+  return std::llround(1e9 * simulation.options().dt);
+}
+
+/** A tick after which the last second is worth keeping. */
+bool IsFault(const device::DeviceState& before, const device::DeviceState& device,
+             const haptics::TickOutput& out) noexcept {
+  return (out.gate_actions & haptics::kGateNotFinite) != 0 ||
+         (device.condition != before.condition && device::IsFault(device.condition));
+}
 
 /** The haptic loop's body, the same in both executors. */
 class HapticLoop {
  public:
   HapticLoop(const Execution& execution, ExecutionReport* report)
-      : execution_(execution), report_(report) {}
+      : execution_(execution),
+        report_(report),
+        period_ns_(PeriodOf(*execution.simulation)),
+        shedder_(period_ns_) {}
 
-  void Tick() noexcept {
+  /** @param wake_up_ns  How late the tick begins; 0 in virtual time. */
+  void Tick(std::int64_t wake_up_ns) noexcept {
     OperatorInput input;
     input.t_ns = t_ns_;
+    input.dt = 1e-9 * static_cast<double>(period_ns_);
     input.F_H_D = last_.F_H_D;
     input.hears_seated = last_.state == haptics::HoldState::kSeated;
     input.hears_capture = last_.state == haptics::HoldState::kCaptured &&
                           state_before_ != haptics::HoldState::kCaptured;
     input.sees_part = last_.occurrence.is_valid();
     input.X_WD = last_.X_WD;
+    input.X_WH = last_.X_WH;
+    input.workspace = last_.workspace;
     state_before_ = last_.state;
-    const device::DeviceState device = execution_.hand->Step(input);
+    device::DeviceState device = execution_.hand->Step(input);
+    device.t_ns = t_ns_;
     const std::int64_t start_ns = ThreadCpuNs();
     last_ = execution_.simulation->HapticTick(device);
     const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
-    report_->compute.Add(compute_ns);
-    report_->slowest.Add({t_ns_, compute_ns, last_.occurrence, last_.state, last_.points_tested,
-                          last_.contact_count});
-    report_->overruns += compute_ns > kTickNs ? 1 : 0;
+    execution_.hand->Apply(last_.F_H_D);
+    Measure(compute_ns);
+    KeepFlight({device, last_, wake_up_ns, compute_ns, shedder_.level()});
     if (execution_.sink != nullptr) {
       execution_.sink->OnTick(device, last_);
     }
+    if (execution_.sheds_load) {
+      ++report_->ticks_at_level[static_cast<std::size_t>(shedder_.level())];
+      execution_.simulation->SetEffortLevel(shedder_.Update(compute_ns));
+    }
     ++report_->ticks;
-    t_ns_ += kTickNs;
+    t_ns_ += period_ns_;
   }
 
   [[nodiscard]] std::int64_t t_ns() const noexcept { return t_ns_; }
 
  private:
+  void Measure(std::int64_t compute_ns) noexcept {
+    report_->compute.Add(compute_ns);
+    report_->slowest.Add({t_ns_, compute_ns, last_.occurrence, last_.state, last_.points_tested,
+                          last_.contact_count});
+    report_->overruns += compute_ns > period_ns_ ? 1 : 0;
+    if (execution_.log != nullptr) {
+      execution_.log->SetComputeOfLast(compute_ns);
+    }
+  }
+
+  void KeepFlight(FlightTick tick) noexcept {
+    const bool is_fault = IsFault(device_before_, tick.device, tick.out);
+    device_before_ = tick.device;
+    if (execution_.flight == nullptr) {
+      return;
+    }
+    if (!execution_.is_live) {  // the same bytes every time
+      tick.wake_up_ns = 0;
+      tick.compute_ns = 0;
+    }
+    execution_.flight->Keep(tick);
+    if (is_fault) {
+      execution_.flight->Trigger();
+    }
+  }
+
   const Execution& execution_;
   ExecutionReport* report_;
+  std::int64_t period_ns_;
+  LoadShedder shedder_;
   haptics::TickOutput last_;
+  device::DeviceState device_before_;
   haptics::HoldState state_before_{haptics::HoldState::kEmpty};
   std::int64_t t_ns_{0};
 };
@@ -66,41 +109,18 @@ void StepPhysics(const Execution& execution) {
   if (execution.advance) {
     execution.advance();
   }
+  if (execution.flight != nullptr && execution.sink != nullptr) {
+    if (const std::vector<FlightTick> ticks = execution.flight->Take(); !ticks.empty()) {
+      execution.sink->OnFlight(ticks);
+    }
+  }
 }
 
-/** Absolute deadlines: no drift, and no burst after a stall. */
-class Pacer {
- public:
-  explicit Pacer(std::int64_t period_ns) : period_ns_(period_ns), next_ns_(MonotonicNs()) {}
-
-  /** Sleeps until the next deadline; returns how late it woke up [ns]. */
-  std::int64_t Wait() noexcept {
-    next_ns_ += period_ns_;
-    const timespec deadline{next_ns_ / kNsPerSecond, next_ns_ % kNsPerSecond};
-    while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
-    }
-    const std::int64_t late_ns = MonotonicNs() - next_ns_;
-    if (late_ns > period_ns_) {
-      next_ns_ += late_ns / period_ns_ * period_ns_;
-    }
-    return late_ns;
+void FinishFlight(const Execution& execution) {
+  if (execution.flight != nullptr) {
+    execution.flight->Finish();
+    StepPhysics(execution);
   }
-
- private:
-  std::int64_t period_ns_;
-  std::int64_t next_ns_;
-};
-
-std::string RaisePriority() {
-  std::string granted;
-  sched_param parameters{};
-  parameters.sched_priority = 80;
-  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
-  granted = error == 0
-                ? "SCHED_FIFO 80"
-                : fmt::format("normal priority (SCHED_FIFO refused: {})", std::strerror(error));
-  granted += ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? ", memory locked" : ", memory not locked";
-  return granted;
 }
 
 }  // namespace
@@ -117,18 +137,24 @@ void SlowTicks::Add(const SlowTick& tick) noexcept {
   ticks_[i] = tick;
 }
 
-ExecutionReport RunLockstep(const Execution& execution) {
+ExecutionReport RunLockstep(const Execution& given) {
   ExecutionReport report;
+  Execution execution = given;
+  execution.is_live = false;
+  execution.sheds_load = false;  // what is left out would depend on the machine
   HapticLoop loop(execution, &report);
+  const std::int64_t ticks_per_physics =
+      std::max<std::int64_t>(1, Simulation::kPhysicsStepNs / PeriodOf(*execution.simulation));
   const std::int64_t start_ns = MonotonicNs();
   const std::int64_t start_cpu_ns = ThreadCpuNs();
   StepPhysics(execution);
   while (!execution.is_done() && loop.t_ns() < execution.limit_ns) {
-    for (int i = 0; i < Simulation::kTicksPerPhysics; ++i) {
-      loop.Tick();
+    for (std::int64_t i = 0; i < ticks_per_physics; ++i) {
+      loop.Tick(0);
     }
     StepPhysics(execution);
   }
+  FinishFlight(execution);
   report.wall_ns = MonotonicNs() - start_ns;
   report.cpu_ns = ThreadCpuNs() - start_cpu_ns;
   report.session_ns = loop.t_ns();
@@ -136,32 +162,40 @@ ExecutionReport RunLockstep(const Execution& execution) {
   return report;
 }
 
-ExecutionReport RunRealtime(const Execution& execution) {
+ExecutionReport RunRealtime(const Execution& given) {
   ExecutionReport report;
+  Execution execution = given;
+  execution.is_live = true;
   std::atomic<bool> is_stopping{false};
   std::atomic<std::int64_t> t_ns{0};
   const std::int64_t start_ns = MonotonicNs();
   StepPhysics(execution);  // Puts the base in its fixture: before any other thread runs.
   std::thread haptic([&] {
-    report.scheduling = RaisePriority();
+    report.grant = RequestRealtime();
     HapticLoop loop(execution, &report);
-    Pacer pacer(kTickNs);
+    const std::int64_t period_ns = PeriodOf(*execution.simulation);
+    Pacer pacer(period_ns);
     while (!is_stopping.load(std::memory_order_relaxed)) {
       const std::int64_t late_ns = pacer.Wait();
       report.wake_up.Add(late_ns);
-      report.late_wake_ups += late_ns > kTickNs ? 1 : 0;
-      loop.Tick();
+      report.late_wake_ups += late_ns > period_ns ? 1 : 0;
+      loop.Tick(late_ns);
       t_ns.store(loop.t_ns(), std::memory_order_relaxed);
     }
+    report.missed_periods = pacer.missed();
   });
   std::thread publish([&] {
-    Pacer pacer(Simulation::kTicksPerFrame * kTickNs);
+    Pacer pacer(Simulation::kFrameNs);
     while (!is_stopping.load(std::memory_order_relaxed)) {
       (void)pacer.Wait();
-      (void)execution.simulation->Publish();
+      const Frame& frame = execution.simulation->Publish();
+      report.frame_age.Add(t_ns.load(std::memory_order_relaxed) - frame.t_ns);
+      if (execution.on_frame) {
+        execution.on_frame(frame);
+      }
     }
   });
-  Pacer pacer(Simulation::kTicksPerPhysics * kTickNs);
+  Pacer pacer(Simulation::kPhysicsStepNs);
   while (!execution.is_done() && t_ns.load(std::memory_order_relaxed) < execution.limit_ns) {
     (void)pacer.Wait();
     StepPhysics(execution);
@@ -169,7 +203,9 @@ ExecutionReport RunRealtime(const Execution& execution) {
   is_stopping = true;
   haptic.join();
   publish.join();
-  ::munlockall();
+  ReleaseRealtime();
+  FinishFlight(execution);
+  report.scheduling = report.grant.ToString();
   report.wall_ns = MonotonicNs() - start_ns;
   report.session_ns = t_ns;
   return report;

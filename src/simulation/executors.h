@@ -6,7 +6,9 @@
 #include <string>
 
 #include "base/histogram.h"
+#include "simulation/flight_recorder.h"
 #include "simulation/operator.h"
+#include "simulation/realtime_thread.h"
 #include "simulation/simulation.h"
 
 namespace hvas::simulation {
@@ -42,12 +44,17 @@ struct ExecutionReport {
   std::int64_t wall_ns{0};
   std::int64_t cpu_ns{0};  ///< Lockstep only: processor time of the whole run.
   std::uint64_t ticks{0};
-  LatencyHistogram compute;        ///< Of a haptic tick, its operator excluded.
-  SlowTicks slowest;               ///< By compute.
-  LatencyHistogram wake_up;        ///< Realtime only: from deadline to start.
-  std::uint64_t late_wake_ups{0};  ///< Started more than a period after the deadline.
-  std::uint64_t overruns{0};       ///< Compute alone took longer than a period.
-  std::string scheduling;          ///< What the system granted, in words.
+  LatencyHistogram compute;         ///< Of a haptic tick, its operator excluded.
+  SlowTicks slowest;                ///< By compute.
+  LatencyHistogram wake_up;         ///< Realtime only: from deadline to start.
+  std::uint64_t late_wake_ups{0};   ///< Started more than a period after the deadline.
+  std::uint64_t overruns{0};        ///< Compute alone took longer than a period.
+  std::uint64_t missed_periods{0};  ///< Realtime only: passed over after a stall.
+  LatencyHistogram frame_age;       ///< Realtime only: of what is published, in session time.
+  /** Realtime only: ticks by what had to be left out (kEffortLevels). */
+  std::array<std::uint64_t, kEffortLevels.size()> ticks_at_level{};
+  RealtimeGrant grant;     ///< Realtime only.
+  std::string scheduling;  ///< What the system granted, in words.
 };
 
 /** Runs the loops of a simulation until `is_done` says so or `limit_ns` of session time have
@@ -59,13 +66,18 @@ struct Execution {
   std::function<void()> advance;
   std::function<bool()> is_done;
   std::int64_t limit_ns{0};
+  FlightRecorder* flight{nullptr};             ///< May be null.
+  TickLog* log{nullptr};                       ///< The one that the simulation keeps; may be null.
+  std::function<void(const Frame&)> on_frame;  ///< On the publish thread; realtime only.
+  bool sheds_load{true};                       ///< Realtime only.
+  bool is_live{false};                         ///< Set by the executor.
 };
 
 /** Virtual time on the calling thread: bit for bit repeatable, faster than real time. */
 ExecutionReport RunLockstep(const Execution& execution);
 
-/** Three threads at the rates of X4: haptic 1 kHz with real-time priority where the system grants
- it, physics 100 Hz, publishing 30 Hz. */
+/** Three threads at the rates of X4: haptic 1 kHz and more with real-time priority where the system
+ grants it, physics 100 Hz, publishing 30 Hz. */
 ExecutionReport RunRealtime(const Execution& execution);
 
 }  // namespace hvas::simulation

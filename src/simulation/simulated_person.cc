@@ -7,7 +7,6 @@
 namespace hvas::simulation {
 namespace {
 
-constexpr double kDt = 1e-3;  // [s]; a device sample
 constexpr double kGraspTime = 0.35;
 constexpr double kSettleTime = 0.25;
 constexpr double kRestTime = 1.0;
@@ -38,6 +37,7 @@ constexpr double kYieldReach = 2e-3;     // [m], no further than this
 constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime = 0.3;       // of a carried weight
+constexpr double kSenseTime = 0.01;      // in which it notices how fast its hand is
 
 void LimitLength(double most, Vec3* v) {
   *v *= std::min(1.0, most / std::max(v->norm(), most));
@@ -107,7 +107,7 @@ bool SimulatedPerson::FollowReaches() noexcept {
     return true;
   }
   const Reach& reach = reaches_[reach_index_];
-  reach_time_s_ += kDt;
+  reach_time_s_ += dt_;
   const double s = MinimumJerk(std::min(1.0, reach_time_s_ / reach.duration_s));
   q_ref_ = reach.q_from.slerp(s, reach.q_to);
   if (reach.is_arc) {
@@ -188,13 +188,13 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   const double travel = is_by_eye ? seen_travel : hand_travel;
   const bool is_inside = is_by_eye && travel < task_.engage_distance - kLeadIn;
   if (is_backing_off_) {
-    travel_ += options_.insert_speed * kDt;
+    travel_ += options_.insert_speed * dt_;
     is_backing_off_ = travel < back_off_to_ && hand_travel < back_off_to_ + 3 * kBackOff;
     look_time_s_ = kLookTime;
     stuck_time_s_ = 0;
     push_ = kFirstPush;
   } else if (is_careful && look_time_s_ > 0) {
-    look_time_s_ -= kDt;
+    look_time_s_ -= dt_;
     if (look_time_s_ <= 0) {
       LookClosely(input);
     }
@@ -205,10 +205,10 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     const bool is_slow = speed < kSlowShare * wanted_speed;
     AdjustPush(input, speed, wanted_speed, is_careful && !is_inside);
     push_ = is_careful ? std::min(push_, kCarefulPush) : push_;
-    const double lead = push_ / options_.stiffness;
-    travel_ = std::max(travel_ - wanted_speed * kDt, hand_travel - lead);
+    const double lead = LeadOf(input);
+    travel_ = std::max(travel_ - wanted_speed * dt_, hand_travel - lead);
     const bool is_stuck = speed < kStillSpeed && (is_careful || push_ > kFirstPush);
-    stuck_time_s_ = is_stuck ? stuck_time_s_ + kDt : std::max(0.0, stuck_time_s_ - kDt);
+    stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
     if (stuck_time_s_ > (is_careful && is_inside ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
     } else if (is_careful && is_inside) {
@@ -225,7 +225,7 @@ void SimulatedPerson::AdjustPush(const OperatorInput& input, double speed, doubl
   const bool is_slow = speed < kSlowShare * wanted_speed;
   const bool is_at_limit = input.F_H_D.f.norm() >= options_.push_limit;
   const double change = is_slow && !is_at_limit && !is_light ? kPushRate : -kPushRate;
-  push_ = std::max(is_light ? kLightPush : kFirstPush, push_ + change * kDt);
+  push_ = std::max(is_light ? kLightPush : kFirstPush, push_ + change * dt_);
 }
 
 void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
@@ -236,8 +236,7 @@ void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
     return;
   }
   AdjustPush(input, V_H_.v.dot(d), options_.insert_speed, false);
-  travel_ =
-      std::min(travel_ + options_.insert_speed * kDt, hand_travel + push_ / options_.stiffness);
+  travel_ = std::min(travel_ + options_.insert_speed * dt_, hand_travel + LeadOf(input));
   const Vec3 along = p_ref_ - task_.X_WG_goal.p();
   p_ref_ += (travel_ - along.dot(d)) * d;
 }
@@ -246,20 +245,20 @@ void SimulatedPerson::YieldToTouch(const Vec3& d) noexcept {
   // As with a compliant support of the part: the walls of the hole, not the hand's belief, say
   // where the axis is.
   const Vec3 held_back = X_WH_.p() - p_ref_;
-  yield_offset_ += kDt / kYieldTime * (held_back - held_back.dot(d) * d);
-  yield_turn_ += kDt / kYieldTime * spatial::RotationBetween(q_ref_, X_WH_.q());
+  yield_offset_ += dt_ / kYieldTime * (held_back - held_back.dot(d) * d);
+  yield_turn_ += dt_ / kYieldTime * spatial::RotationBetween(q_ref_, X_WH_.q());
   LimitLength(kYieldReach, &yield_offset_);
   LimitLength(kYieldTurn, &yield_turn_);
 }
 
 void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
   // A part that wedges, tilted, comes free where it stands upright: to and fro, and slowly round.
-  rocking_angle_ += is_slow ? kDt * 2 * std::numbers::pi * kRockingRate : 0;
+  rocking_angle_ += is_slow ? dt_ * 2 * std::numbers::pi * kRockingRate : 0;
   const double strength = std::min(kMostRocking, kRocking * (1 + 2 * stuck_time_s_));
   const double tilt = is_slow ? strength * std::sin(rocking_angle_) : 0;
   const double round = kRockingTurn * rocking_angle_;
   const Vec3 wanted = tilt * (spatial::FrameFromZ(d) * Vec3(std::cos(round), std::sin(round), 0));
-  rocking_ += kDt / kRockingLag * (wanted - rocking_);
+  rocking_ += dt_ / kRockingLag * (wanted - rocking_);
 }
 
 void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
@@ -311,25 +310,35 @@ Vec3 SimulatedPerson::Tremor() noexcept {
   return tremor;
 }
 
-void SimulatedPerson::MoveHand(const spatial::Wrench& F_H_W) noexcept {
+double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
+  // The arm is as stiff as it is where the hand really is.
+  return input.workspace.scale * push_ / options_.stiffness;
+}
+
+void SimulatedPerson::LearnLoad(const spatial::Wrench& F_H_W) noexcept {
   if (phase_ == Phase::kCarry || phase_ == Phase::kGrasp) {
-    carried_force_ += (F_H_W.f - carried_force_) * (kDt / kLearnTime);
+    carried_force_ += (F_H_W.f - carried_force_) * (dt_ / kLearnTime);
   } else if (!is_gripping_) {
-    carried_force_ -= carried_force_ * (kDt / 0.05);
+    carried_force_ -= carried_force_ * (dt_ / 0.05);
   }
+}
+
+void SimulatedPerson::MoveHand(const spatial::Wrench& F_H_W) noexcept {
+  LearnLoad(F_H_W);
   const Vec3 p_wanted = p_ref_ + Tremor();
   const Vec3 f = options_.stiffness * (p_wanted - X_WH_.p()) +
                  options_.damping * (v_ref_ - V_H_.v) + F_H_W.f - carried_force_;
   const Vec3 t = options_.turn_stiffness * spatial::RotationBetween(X_WH_.q(), q_ref_) -
                  options_.turn_damping * V_H_.w + F_H_W.t;
-  V_H_.v += kDt / options_.mass * f;
-  V_H_.w += kDt / options_.inertia * t;
-  X_WH_ = spatial::Integrate(X_WH_, V_H_, kDt);
+  V_H_.v += dt_ / options_.mass * f;
+  V_H_.w += dt_ / options_.inertia * t;
+  X_WH_ = spatial::Integrate(X_WH_, V_H_, dt_);
 }
 
-device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
-  t_s_ += kDt;
-  phase_time_s_ += kDt;
+void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
+  dt_ = input.dt;
+  t_s_ += dt_;
+  phase_time_s_ += dt_;
   is_guided_ = is_guided_ || input.hears_capture;
   const Vec3 p_ref_before = p_ref_;
   switch (phase_) {
@@ -382,7 +391,7 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
       StepInsert(input);
       break;
     case Phase::kRest:
-      p_ref_ += (X_WH_.p() - p_ref_) * (kDt / kSlackTime);
+      p_ref_ += (X_WH_.p() - p_ref_) * (dt_ / kSlackTime);
       if (phase_time_s_ > kRestTime) {
         phase_ = Phase::kWithdraw;
         phase_time_s_ = 0;
@@ -394,7 +403,7 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
       StepWithdraw(input);
       break;
     case Phase::kSettle:
-      p_ref_ += (X_WH_.p() - p_ref_) * (kDt / kSlackTime);
+      p_ref_ += (X_WH_.p() - p_ref_) * (dt_ / kSlackTime);
       if (phase_time_s_ > kSettleTime) {
         phase_ = Phase::kRelease;
         phase_time_s_ = 0;
@@ -415,7 +424,26 @@ device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
       }
       break;
   }
-  v_ref_ = (p_ref_ - p_ref_before) / kDt;
+  v_ref_ = (p_ref_ - p_ref_before) / dt_;
+}
+
+HandReference SimulatedPerson::Intend(const OperatorInput& input) noexcept {
+  const Vec3 v = (input.X_WH.p() - X_WH_.p()) / input.dt;
+  V_H_.v += (v - V_H_.v) * std::min(1.0, input.dt / kSenseTime);
+  X_WH_ = input.X_WH;
+  Decide(input);
+  const Quat& q_WD = input.workspace.X_WD.q();
+  LearnLoad({q_WD * input.F_H_D.t, q_WD * input.F_H_D.f});
+  HandReference reference;
+  reference.X_WR = {q_ref_, p_ref_ + Tremor()};
+  reference.v_R_W = v_ref_;
+  reference.f_W = -carried_force_;
+  reference.is_gripping = is_gripping_;
+  return reference;
+}
+
+device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
+  Decide(input);
   MoveHand(input.F_H_D);
   device::DeviceState state;
   state.t_ns = input.t_ns;

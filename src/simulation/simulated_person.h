@@ -49,6 +49,15 @@ struct PersonOptions {
   double patience_s{25};          ///< On one part, from the beginning of insertion [s].
 };
 
+/** Where a person wants the hand to be, and what else it does; the hand is drawn there by the arm's
+ impedance. */
+struct HandReference {
+  spatial::Pose X_WR;
+  Vec3 v_R_W{Vec3::Zero()};  ///< [m/s]
+  Vec3 f_W{Vec3::Zero()};    ///< Besides, to hold up what it carries [N].
+  bool is_gripping{false};
+};
+
 /** A simulated person: an arm impedance that follows minimum-jerk reaches (Flash and Hogan, J.
  Neuroscience 5(7), 1985), feels the device's force, presses harder when stuck, searches when it
  misses, and gives up after a time. Seeded. It knows where the part should go and what the hand
@@ -71,6 +80,12 @@ class SimulatedPerson final : public Operator {
   [[nodiscard]] int searches() const noexcept { return search_count_; }
 
   device::DeviceState Step(const OperatorInput& input) noexcept override;
+
+  /** In the place of Step for a hand that holds a device, whose mechanics move it: the hand is
+   where the screen shows it. RT-safe. */
+  [[nodiscard]] HandReference Intend(const OperatorInput& input) noexcept;
+
+  [[nodiscard]] const PersonOptions& options() const noexcept { return options_; }
 
  private:
   enum class Phase {
@@ -117,6 +132,11 @@ class SimulatedPerson final : public Operator {
   void LookClosely(const OperatorInput& input) noexcept;
   /** Backs off from so far before its place, to try again. */
   void StartSearch(const Vec3& d, double travel, bool is_by_eye) noexcept;
+  /** Moves the reference on: what to do next. */
+  void Decide(const OperatorInput& input) noexcept;
+  /** How far before the hand the reference goes, to press as hard as it wants to [m]. */
+  [[nodiscard]] double LeadOf(const OperatorInput& input) const noexcept;
+  void LearnLoad(const spatial::Wrench& F_H_W) noexcept;
   void MoveHand(const spatial::Wrench& F_H_W) noexcept;
   [[nodiscard]] Vec3 Tremor() noexcept;
 
@@ -160,6 +180,7 @@ class SimulatedPerson final : public Operator {
   double look_time_s_{0};  ///< Still to look, after backing off.
   double tremor_phase_[3]{};
   double t_s_{0};
+  double dt_{1e-3};  ///< Of the present sample [s].
 };
 
 }  // namespace hvas::simulation

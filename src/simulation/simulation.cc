@@ -61,35 +61,125 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
   scene_.SetGround(model_->table_z);
 }
 
-haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) noexcept {
-  Command command;
-  while (commands_.TryPop(&command)) {
-    if (command.kind == Command::Kind::kTake) {
-      haptic_.Take(command.part);
-      metrics_ = {};
-      metrics_.t_taken_ns = device.t_ns;
-      p_last_Cm_ = command.X_WB * command.part->p_BoBcm_B;
-      events_.TryPush({device.t_ns, SimulationEvent::Kind::kTaken, command.part->occurrence,
-                       haptics::HoldState::kFree, command.X_WB, false, metrics_});
-    } else {
-      haptic_.SetLoose(command.body, false);
-      scene_.SetPose(command.body, command.X_WB);
-    }
+void Simulation::SetEffortLevel(int level) noexcept {
+  effort_level_ = level;
+  haptic_.SetEffort(kEffortLevels[static_cast<std::size_t>(level)]);
+}
+
+void Simulation::Obey(const TickCommand& command, std::int64_t t_ns) noexcept {
+  if (command.kind == TickCommand::Kind::kTake) {
+    haptic_.Take(command.part);
+    metrics_ = {};
+    metrics_.t_taken_ns = t_ns;
+    p_last_Cm_ = command.X_WB * command.part->p_BoBcm_B;
+    SimulationEvent event;
+    event.t_ns = t_ns;
+    event.kind = SimulationEvent::Kind::kTaken;
+    event.occurrence = command.part->occurrence;
+    event.state = haptics::HoldState::kFree;
+    event.X_WB = command.X_WB;
+    event.metrics = metrics_;
+    events_.TryPush(event);
+  } else {
+    haptic_.SetLoose(command.body, false);
+    scene_.SetPose(command.body, command.X_WB);
   }
+}
+
+haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) noexcept {
+  TickCommand command;
+  while (commands_.TryPop(&command)) {
+    if (log_ != nullptr) {
+      log_->Add(command);
+    }
+    Obey(command, device.t_ns);
+  }
+  haptics::TickContext context;
+  context.model_age_ns = device.t_ns - physics_t_ns_.load(std::memory_order_acquire);
+  context.is_stopped = is_stopped_.load(std::memory_order_acquire);
+  const haptics::TickOutput out = RunTick(device, context);
+  if (log_ != nullptr) {
+    log_->Add({device, context.model_age_ns, context.is_stopped,
+               static_cast<std::uint8_t>(effort_level_), 0, out.F_H_D});
+  }
+  return out;
+}
+
+haptics::TickOutput Simulation::ReplayTick(const TickLog& log, std::size_t i) noexcept {
+  const TickLog::Tick& tick = log.tick(i);
+  for (; replayed_commands_ < log.command_count() && log.command(replayed_commands_).tick <= i;
+       ++replayed_commands_) {
+    Obey(log.command(replayed_commands_).command, tick.device.t_ns);
+  }
+  SetEffortLevel(tick.effort_level);
+  return RunTick(tick.device, {tick.model_age_ns, tick.is_stopped});
+}
+
+void Simulation::TellOfSafety(const device::DeviceState& device,
+                              const haptics::TickOutput& out) noexcept {
+  constexpr std::int64_t kQuietNs = 1'000'000'000;  // an action that goes on is one event
+  SimulationEvent event;
+  event.t_ns = device.t_ns;
+  event.occurrence = out.occurrence;
+  event.state = out.state;
+  for (std::size_t bit = 0; bit < last_action_ns_.size(); ++bit) {
+    if ((out.gate_actions >> bit & 1u) == 0) {
+      continue;
+    }
+    std::int64_t& last_ns = last_action_ns_[bit];
+    if (last_ns == 0 || device.t_ns - last_ns > kQuietNs) {
+      event.gate_actions |= 1u << bit;
+    }
+    last_ns = device.t_ns;
+  }
+  if (event.gate_actions != 0) {
+    event.kind = SimulationEvent::Kind::kSafety;
+    events_.TryPush(event);
+  }
+  if (effort_level_ != told_effort_level_) {
+    told_effort_level_ = effort_level_;
+    event.kind = SimulationEvent::Kind::kEffort;
+    event.effort_level = effort_level_;
+    events_.TryPush(event);
+  }
+  if (device.condition != last_condition_) {
+    last_condition_ = device.condition;
+    event.kind = SimulationEvent::Kind::kDevice;
+    event.condition = device.condition;
+    event.vendor_code = device.vendor_code;
+    events_.TryPush(event);
+  }
+}
+
+haptics::TickOutput Simulation::RunTick(const device::DeviceState& device,
+                                        const haptics::TickContext& context) noexcept {
   if (haptic_.held() != nullptr && device.is_valid && !device.is_gripping) {
     const haptics::HeldPart& part = *haptic_.held();
     const bool was_seated = haptic_.state() == haptics::HoldState::kSeated;
     const spatial::Pose X_WB = haptic_.Drop();
-    events_.TryPush({device.t_ns, SimulationEvent::Kind::kDropped, part.occurrence,
-                     haptics::HoldState::kEmpty, X_WB, was_seated, metrics_});
+    SimulationEvent event;
+    event.t_ns = device.t_ns;
+    event.kind = SimulationEvent::Kind::kDropped;
+    event.occurrence = part.occurrence;
+    event.state = haptics::HoldState::kEmpty;
+    event.X_WB = X_WB;
+    event.was_seated = was_seated;
+    event.metrics = metrics_;
+    events_.TryPush(event);
   }
-  haptics::TickOutput out = haptic_.Tick(device);
+  haptics::TickOutput out = haptic_.Tick(device, context);
   Measure(out);
   if (out.state != last_state_) {
     last_state_ = out.state;
-    events_.TryPush({device.t_ns, SimulationEvent::Kind::kState, out.occurrence, out.state,
-                     out.X_WD, false, metrics_});
+    SimulationEvent event;
+    event.t_ns = device.t_ns;
+    event.occurrence = out.occurrence;
+    event.state = out.state;
+    event.X_WB = out.X_WD;
+    event.metrics = metrics_;
+    events_.TryPush(event);
   }
+  TellOfSafety(device, out);
   Report report{device.t_ns, device.is_gripping && device.is_valid, out, {}, 0};
   for (const haptics::FreeBody& body : haptic_.awake()) {
     report.moving[report.moving_count++] = {body.id, body.X_WB};
@@ -128,6 +218,7 @@ void Simulation::PhysicsStep(Sink* sink) {
   }
   if (reports_.Update()) {
     const Report& report = reports_.value();
+    physics_t_ns_.store(report.t_ns, std::memory_order_release);
     if (!report.is_gripping) {
       is_waiting_for_grip_to_open_ = false;
     } else if (held_ == nullptr && !is_waiting_for_grip_to_open_) {
@@ -188,7 +279,7 @@ void Simulation::PlaceInFixture(OccurrenceId id) {
   part.placement = Placement::kPlaced;
   part.X_WB = model_->bodies[id.index()].X_WB_goal;
   // Behind what is still on its way to the haptic thread, which alone writes to its scene.
-  Command command;
+  TickCommand command;
   command.body = contact::BodyId(id.index());
   command.X_WB = part.X_WB;
   commands_.TryPush(command);
@@ -246,13 +337,16 @@ void Simulation::TakeNearest(const Vec3& p_WH) {
 void Simulation::Take(const SequenceStep& step) {
   held_step_ = step;
   held_ = MakeHeldPart(step);
+  if (log_ != nullptr) {
+    log_->Keep(held_);
+  }
   const auto hold = [this](OccurrenceId id) { parts_[id.index()].placement = Placement::kHeld; };
   hold(step.occurrence);
   for (const OccurrenceId id : step.members) {
     hold(id);
   }
-  Command command;
-  command.kind = Command::Kind::kTake;
+  TickCommand command;
+  command.kind = TickCommand::Kind::kTake;
   command.part = held_.get();
   command.X_WB = held_->X_WB_start;
   commands_.TryPush(command);
@@ -357,11 +451,11 @@ OccurrenceId Simulation::FindMissingPartner(const SequenceStep& step) const {
   return missing;
 }
 
-std::unique_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& step) const {
+std::shared_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& step) const {
   const OccurrenceId id = step.occurrence;
   const Body& body = model_->bodies[id.index()];
   const dynamics::MassProperties mass = CombineMass(*model_, step);
-  auto held = std::make_unique<haptics::HeldPart>();
+  auto held = std::make_shared<haptics::HeldPart>();
   held->occurrence = id;
   held->body = contact::BodyId(id.index());
   held->shape = body.shape;

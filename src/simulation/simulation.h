@@ -13,7 +13,10 @@
 #include "base/triple_buffer.h"
 #include "contact/scene.h"
 #include "haptics/haptic_tick.h"
+#include "simulation/flight_recorder.h"
+#include "simulation/load_shedder.h"
 #include "simulation/model.h"
+#include "simulation/tick_log.h"
 
 namespace hvas::simulation {
 
@@ -33,14 +36,25 @@ struct HoldMetrics {
 
 /** Something that happened in a tick. */
 struct SimulationEvent {
-  enum class Kind : std::uint8_t { kTaken, kState, kDropped };
+  enum class Kind : std::uint8_t {
+    kTaken,
+    kState,
+    kDropped,
+    kSafety,  ///< The gate began to do something.
+    kDevice,  ///< The device's condition changed.
+    kEffort,  ///< The tick does less, or more again.
+  };
   std::int64_t t_ns{0};
   Kind kind{Kind::kState};
   product::OccurrenceId occurrence;
   haptics::HoldState state{haptics::HoldState::kEmpty};
-  spatial::Pose X_WB;      ///< kDropped: where the part was let go.
-  bool was_seated{false};  ///< kDropped: it was in its place.
-  HoldMetrics metrics;     ///< kDropped: of the whole hold.
+  spatial::Pose X_WB;                                      ///< kDropped: where the part was let go.
+  bool was_seated{false};                                  ///< kDropped: it was in its place.
+  HoldMetrics metrics;                                     ///< kDropped: of the whole hold.
+  std::uint32_t gate_actions{0};                           ///< kSafety: those that are new.
+  device::Condition condition{device::Condition::kReady};  ///< kDevice
+  std::int32_t vendor_code{0};                             ///< kDevice
+  int effort_level{0};                                     ///< kEffort
 };
 
 /** Receives what the loops produce. OnTick runs on the haptic thread and must be RT-safe; OnEvent
@@ -54,6 +68,9 @@ class Sink {
   virtual void OnTick(const device::DeviceState& device,
                       const haptics::TickOutput& out) noexcept = 0;
   virtual void OnEvent(const SimulationEvent& event) = 0;
+
+  /** The second before a fault, and what came after. Physics thread. */
+  virtual void OnFlight(const std::vector<FlightTick>& ticks) { (void)ticks; }
 };
 
 /** What a viewer needs: poses of all parts and of the hand. */
@@ -71,18 +88,33 @@ enum class Placement : std::uint8_t {
 };
 
 /** All that changes while a model is assembled. Three loops may run it at once, each function from
- its own thread: HapticTick (1 kHz), PhysicsStep (100 Hz), Publish (30 Hz). Called in turn from one
+ its own thread: HapticTick (1 kHz and more, every TickOptions::dt), PhysicsStep (100 Hz), Publish
+ (30 Hz). Called in turn from one
  thread it gives the same results every time. */
 class Simulation {
  public:
-  static constexpr double kHapticStep = 1e-3;  // [s]
-  static constexpr int kTicksPerPhysics = 10;
-  static constexpr int kTicksPerFrame = 33;
+  static constexpr std::int64_t kPhysicsStepNs = 10'000'000;
+  static constexpr std::int64_t kFrameNs = 33'000'000;
 
   Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options);
 
   /** Haptic thread. RT-safe. */
   haptics::TickOutput HapticTick(const device::DeviceState& device) noexcept;
+
+  /** Haptic thread: from the next tick on, by the levels of kEffortLevels. RT-safe. */
+  void SetEffortLevel(int level) noexcept;
+
+  /** Any thread: no force at all from the next tick on, until it is taken back (N6). RT-safe. */
+  void StopForces(bool is_stopped) noexcept {
+    is_stopped_.store(is_stopped, std::memory_order_release);
+  }
+
+  /** Before the loops run: keeps in `log` what goes into the ticks. It outlives this object. */
+  void KeepLog(TickLog* log) { log_ = log; }
+
+  /** Runs tick i of a log again, with the commands that came before it; ticks in their order, on a
+   simulation that did nothing else. */
+  haptics::TickOutput ReplayTick(const TickLog& log, std::size_t i) noexcept;
 
   /** Physics thread: taking up and letting go, where loose parts have come to. `sink` may be null.
    */
@@ -123,14 +155,6 @@ class Simulation {
     spatial::Pose X_WB;
   };
 
-  /** From physics to haptics. */
-  struct Command {
-    enum class Kind : std::uint8_t { kTake, kPlace } kind{Kind::kPlace};
-    const haptics::HeldPart* part{nullptr};
-    contact::BodyId body;
-    spatial::Pose X_WB;
-  };
-
   /** A loose part that falls or is pushed, and where it is. */
   struct Moving {
     contact::BodyId body;
@@ -146,13 +170,17 @@ class Simulation {
     std::size_t moving_count{0};
   };
 
+  haptics::TickOutput RunTick(const device::DeviceState& device,
+                              const haptics::TickContext& context) noexcept;
+  void Obey(const TickCommand& command, std::int64_t t_ns) noexcept;
+  void TellOfSafety(const device::DeviceState& device, const haptics::TickOutput& out) noexcept;
   void Measure(const haptics::TickOutput& out) noexcept;
   void HandleEvent(const SimulationEvent& event);
   void TakeNearest(const Vec3& p_WH);
   void Take(const SequenceStep& step);
   [[nodiscard]] SequenceStep StepOf(product::OccurrenceId id) const;
   [[nodiscard]] bool CanTake(const SequenceStep& step, const Vec3& p_WH) const;
-  [[nodiscard]] std::unique_ptr<haptics::HeldPart> MakeHeldPart(const SequenceStep& step) const;
+  [[nodiscard]] std::shared_ptr<haptics::HeldPart> MakeHeldPart(const SequenceStep& step) const;
   void AddMembers(const SequenceStep& step, haptics::HeldPart* held) const;
   void AddMates(const SequenceStep& step, std::size_t member, haptics::HeldPart* held) const;
   [[nodiscard]] std::vector<contact::BodyId> LeftOut(product::OccurrenceId id,
@@ -167,13 +195,24 @@ class Simulation {
   HoldMetrics metrics_;
   Vec3 p_last_Cm_{Vec3::Zero()};
 
-  Ring<Command> commands_;
+  // The haptic thread's own.
+  TickLog* log_{nullptr};
+  int effort_level_{0};
+  int told_effort_level_{0};
+  std::size_t replayed_commands_{0};
+  device::Condition last_condition_{device::Condition::kReady};
+  std::array<std::int64_t, 32> last_action_ns_{};  // When the gate last did it, by bit.
+
+  std::atomic<bool> is_stopped_{false};
+  std::atomic<std::int64_t> physics_t_ns_{0};  // Session time that physics has seen.
+
+  Ring<TickCommand> commands_;
   Ring<SimulationEvent> events_;
   TripleBuffer<Report> reports_;
   TripleBuffer<Frame> frames_;
 
   std::vector<Part> parts_;
-  std::unique_ptr<haptics::HeldPart> held_;  // Kept until haptics has let go of it.
+  std::shared_ptr<const haptics::HeldPart> held_;  // Kept until haptics has let go of it.
   SequenceStep held_step_;
   std::optional<SequenceStep> prepared_;
   bool is_waiting_for_grip_to_open_{false};

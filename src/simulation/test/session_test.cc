@@ -186,7 +186,7 @@ class ScriptedHand {
       }
       out = simulation_->HapticTick(sent);
       watch.OnTick(sent, out);
-      if (++ticks_ % Simulation::kTicksPerPhysics == 0) {
+      if (state.t_ns % Simulation::kPhysicsStepNs == 0) {
         simulation_->PhysicsStep(&watch);
       }
     }
@@ -198,7 +198,6 @@ class ScriptedHand {
 
  private:
   Simulation* simulation_;
-  int ticks_{0};
 };
 
 /** With the peg in the hand, lifted by 10 cm. */

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include "simulation/flight_recorder.h"
+#include "simulation/load_shedder.h"
+#include "simulation/realtime_thread.h"
+#include "simulation/test/session.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using testing::PegInBlockModel;
+using testing::Session;
+
+constexpr std::int64_t kPeriodNs = 1'000'000;
+
+TEST(LoadShedderTest, LevelsLeaveOutMoreAndMoreAndPointsFirst) {  // X4
+  for (std::size_t i = 1; i < kEffortLevels.size(); ++i) {
+    EXPECT_LT(kEffortLevels[i].point_budget, kEffortLevels[i - 1].point_budget);
+    EXPECT_LE(kEffortLevels[i].iterations, kEffortLevels[i - 1].iterations);
+  }
+  EXPECT_EQ(kEffortLevels[1].iterations, kEffortLevels[0].iterations);
+  EXPECT_TRUE(kEffortLevels[2].wakes_bodies);
+  EXPECT_FALSE(kEffortLevels.back().wakes_bodies);
+}
+
+TEST(LoadShedderTest, ShedsBeforeTheDeadlineAndComesBackWhenItIsQuiet) {
+  LoadShedder shedder(kPeriodNs);
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_EQ(shedder.Update(kPeriodNs / 2), 0) << "half a period is allowed";
+  }
+  EXPECT_EQ(shedder.Update(kPeriodNs / 2 + 1), 1);
+  // It waits for the change to show before it goes on.
+  EXPECT_EQ(shedder.Update(kPeriodNs / 2 + 1), 1);
+  EXPECT_EQ(shedder.Update(kPeriodNs / 2 + 1), 1);
+  EXPECT_EQ(shedder.Update(kPeriodNs / 2 + 1), 2);
+  for (int i = 0; i < 100; ++i) {
+    shedder.Update(2 * kPeriodNs);
+  }
+  EXPECT_EQ(shedder.level(), 3);
+  int ticks_to_full = 0;
+  while (shedder.Update(kPeriodNs / 10) > 0) {
+    ++ticks_to_full;
+  }
+  EXPECT_NEAR(ticks_to_full, 1500, 3) << "half a second a level";
+}
+
+FlightTick TickAt(std::int64_t i) {
+  FlightTick tick;
+  tick.device.t_ns = i * kPeriodNs;
+  return tick;
+}
+
+TEST(FlightRecorderTest, KeepsTheLastSecondAndATenthAfterAFault) {  // N6
+  FlightRecorder recorder(1000);
+  for (std::int64_t i = 0; i < 5000; ++i) {
+    recorder.Keep(TickAt(i));
+    if (i == 3000) {
+      recorder.Trigger();
+    }
+    const auto ticks = recorder.Take();
+    if (i == 3100) {
+      ASSERT_EQ(ticks.size(), 1100u);
+      for (std::size_t k = 0; k < ticks.size(); ++k) {
+        EXPECT_EQ(ticks[k].device.t_ns, (2001 + static_cast<std::int64_t>(k)) * kPeriodNs);
+      }
+    } else {
+      ASSERT_TRUE(ticks.empty()) << i;
+    }
+  }
+  EXPECT_EQ(recorder.unrecorded(), 0u);
+}
+
+TEST(FlightRecorderTest, FurtherFaultsWhileItIsBusyAreCounted) {
+  FlightRecorder recorder(1000);
+  for (std::int64_t i = 0; i < 300; ++i) {
+    recorder.Keep(TickAt(i));
+    if (i == 50 || i == 60 || i == 200) {  // the second during the first, the third untaken
+      recorder.Trigger();
+    }
+  }
+  EXPECT_EQ(recorder.unrecorded(), 2u);
+  EXPECT_EQ(recorder.Take().size(), 151u);
+  recorder.Trigger();
+  recorder.Finish();  // the session ends before the tenth of a second has passed
+  const auto last = recorder.Take();
+  ASSERT_FALSE(last.empty());
+  EXPECT_EQ(last.back().device.t_ns, 299 * kPeriodNs);
+  EXPECT_TRUE(recorder.Take().empty());
+}
+
+TEST(RealtimeThreadTest, ReadsTheListOfIsolatedCores) {
+  EXPECT_EQ(FirstCoreOf("2-3,5"), 2);
+  EXPECT_EQ(FirstCoreOf("7"), 7);
+  EXPECT_EQ(FirstCoreOf(""), -1);
+  EXPECT_EQ(FirstCoreOf("none"), -1);
+  EXPECT_EQ(FirstCoreOf("99999999999"), -1);
+  EXPECT_EQ(FirstCoreOf("100000"), -1);
+}
+
+TEST(RealtimeThreadTest, SaysWhatWasRefused) {
+  RealtimeGrant grant;
+  grant.fifo_refusal = "Operation not permitted";
+  grant.is_memory_locked = true;
+  EXPECT_EQ(grant.ToString(),
+            "normal priority (SCHED_FIFO refused: Operation not permitted), memory locked, no core "
+            "to itself");
+}
+
+TEST(TickLogTest, EveryTickRunsAgainBitForBit) {  // N9
+  const auto model = PegInBlockModel();
+  TickLog log(30'000);
+  Session session(model);
+  session.simulation.KeepLog(&log);
+  Execution execution = session.MakeExecution(20);
+  execution.log = &log;
+  (void)RunLockstep(execution);
+  ASSERT_TRUE(session.run.is_done());
+  ASSERT_GT(log.tick_count(), 1000u);
+  ASSERT_GE(log.command_count(), 2u);  // the base in its fixture, the peg in the hand
+  Simulation again(model, session.simulation.options());
+  double largest = 0;
+  for (std::size_t i = 0; i < log.tick_count(); ++i) {
+    const haptics::TickOutput out = again.ReplayTick(log, i);
+    ASSERT_EQ(out.F_H_D.f, log.tick(i).F_H_D.f) << i;
+    ASSERT_EQ(out.F_H_D.t, log.tick(i).F_H_D.t) << i;
+    largest = std::max(largest, out.F_H_D.f.norm());
+  }
+  EXPECT_GT(largest, 1);  // something was felt
+}
+
+}  // namespace
+}  // namespace hvas::simulation
