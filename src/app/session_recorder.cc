@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/flight_json.h"
+#include "haptics/safety_gate.h"
 
 namespace hvas::app {
 namespace {
@@ -72,7 +73,10 @@ void SessionRecorder::OnEvent(const simulation::SimulationEvent& event) {
     details["peak_true_n"] = event.metrics.peak_true;
     details["peak_felt_n"] = event.metrics.peak_felt;
   } else if (event.kind == simulation::SimulationEvent::Kind::kSafety) {
-    details["actions"] = event.gate_actions;
+    nlohmann::ordered_json& reasons = details["reasons"] = nlohmann::ordered_json::array();
+    for (const haptics::GateAction action : haptics::ListNewActions(0, event.gate_actions)) {
+      reasons.push_back(haptics::ToString(action));
+    }
   } else if (event.kind == simulation::SimulationEvent::Kind::kDevice) {
     details["condition"] = device::ToString(event.condition);
     details["vendor_code"] = event.vendor_code;

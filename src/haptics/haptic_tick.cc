@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace hvas::haptics {
@@ -14,6 +15,7 @@ constexpr double kMaxVirtualMass =
     1.0;  // [kg]; heavier ones too: weight is mapped, inertia bounded
 constexpr double kSeatTolerance = 50e-6;   // [m]; no deeper on the last bit into place
 constexpr double kMaxCouplingShare = 0.9;  // of the device's force; more than fits are felt with
+constexpr double kLeastTorque = 0.2;       // [N m]; turns the part where no torque is shown
 constexpr double kFitTakesOver = 2e-3;     // [m] of depth over which attraction gives way
 
 double MinimumJerk(double s) noexcept {
@@ -25,6 +27,17 @@ Mat3 VirtualInertia(const HeldPart& part, double virtual_mass) noexcept {
   const double scale = part.mass > 0 ? virtual_mass / part.mass : 0.0;
   constexpr double kBallRadius = 0.02;  // [m]
   return scale * part.I_BBcm_B + 0.4 * virtual_mass * kBallRadius * kBallRadius * Mat3::Identity();
+}
+
+SafetyLimits MakeGateLimits(const TickOptions& options) noexcept {
+  if (options.limits) {
+    return *options.limits;
+  }
+  SafetyLimits limits;
+  limits.max_force = options.device.max_force;
+  limits.max_torque = options.device.max_torque;
+  limits.max_torque_rate = 40;
+  return limits;
 }
 
 }  // namespace
@@ -53,10 +66,14 @@ HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene)
       scene_(scene),
       force_map_(MakeForceMap(options.device)),
       fit_rows_(options.force_map, options.device),
-      gate_({options.device.max_force, options.device.max_torque, 400, 40}) {}
+      passivity_(MakePassivityController(options.device, options.dt)),
+      gate_(MakeGateLimits(options)) {}
 
 void HapticTick::Take(const HeldPart* part) noexcept {
   part_ = part;
+  has_engaged_ = true;
+  captured_before_ = 0;
+  CreditPotentials();
   state_ = HoldState::kFree;
   is_stuck_ = false;
   is_first_tick_ = true;
@@ -105,7 +122,6 @@ HapticTick::Tracked HapticTick::CalcTracked(const Hand& hand) const noexcept {
 }
 
 TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext& context) noexcept {
-  (void)context;
   TickOutput out;
   out.deepest = std::numeric_limits<double>::infinity();
   const bool is_usable = state.is_valid && spatial::IsFinite(state.X_DH) &&
@@ -127,6 +143,7 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
         is_first_tick_ = false;
       }
       const Tracked tracked = CalcTracked(hand);
+      tracked_ = tracked;
       out.X_WT = tracked.X_WT;
       Hold(tracked, &out);
       // About the hand's point: the coupling acts at the centre of mass.
@@ -141,11 +158,90 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
   is_solved_ = false;
   out.state = state_;
   out.points_tested = std::exchange(points_tested_, 0);
-  out.F_H_W = gate_.Pass(out.F_H_W, options_.dt);
-  out.F_H_D = MapToDevice(handle_space_.mapping(), out.F_H_W);
   out.workspace = handle_space_.mapping();
+  out.F_H_D = MakeSafe(state, context, is_usable, out);
+  out.F_H_W = {out.workspace.X_WD.q() * out.F_H_D.t, out.workspace.X_WD.q() * out.F_H_D.f};
+  out.energy = passivity_.force().account();
+  out.turning_energy = passivity_.torque().account();
   out.gate_actions = gate_.actions();
   return out;
+}
+
+spatial::Wrench HapticTick::MakeSafe(const device::DeviceState& state, const TickContext& context,
+                                     bool is_usable, const TickOutput& out) noexcept {
+  spatial::Wrench F_H_D = handle_space_.ToDevice(out.F_H_W);
+  if (options_.controls_passivity) {
+    F_H_D.f += ShowTorque(F_H_D, state.X_DH.q());
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const spatial::Pose nowhere(Vec3::Constant(kNan));
+    F_H_D = passivity_.Limit(is_usable ? state.X_DH : nowhere, F_H_D, StoredEnergy(),
+                             StoredTurningEnergy(), options_.dt);
+  }
+  GateInput input;
+  input.F = F_H_D;
+  input.p = state.X_DH.p();
+  input.V = state.V_DH;
+  input.dt = options_.dt;
+  input.is_valid = is_usable;
+  input.is_held = state.condition != device::Condition::kNotHeld;
+  input.is_stopped = context.is_stopped || state.condition == device::Condition::kStopped;
+  input.is_gripping = state.is_gripping;
+  input.has_engaged = std::exchange(has_engaged_, false);
+  input.model_age = 1e-9 * static_cast<double>(context.model_age_ns);
+  input.client_age = 1e-9 * static_cast<double>(context.client_age_ns);
+  const spatial::Wrench given = gate_.Pass(input);
+  if (options_.controls_passivity) {
+    passivity_.Write(given);
+    // The border moves the scene under the hand: work that the handle would have done (X5).
+    const double drift_work =
+        -given.f.dot(handle_space_.drift_D()) * options_.dt / options_.workspace.mapping.scale;
+    if (drift_work > 0) {
+      passivity_.AddCredit(drift_work);
+    }
+  }
+  return given;
+}
+
+Vec3 HapticTick::ShowTorque(const spatial::Wrench& F_H_D, const Quat& q_DH) const noexcept {
+  // The force at the handle's point that turns the hand, which holds it at G, by this torque; what
+  // lies along the lever cannot be shown.
+  const double lever = options_.p_HG.norm();
+  if (!(lever > 0)) {
+    return Vec3::Zero();
+  }
+  constexpr double kCueShare = 0.2;  // of the device's force: a cue, not a push
+  const Vec3 r_D = q_DH * Vec3(-options_.p_HG);
+  const Vec3 f = F_H_D.t.cross(r_D) / (lever * lever);
+  const double most = kCueShare * options_.device.max_force;
+  return f * std::min(1.0, most / std::max(f.norm(), most));
+}
+
+void HapticTick::CreditPotentials() noexcept {
+  // What the hand is owed on the part's way to its place: weight that goes down with it.
+  const double drop = part_->X_WB_start.p().z() - part_->X_WB_goal.p().z();
+  const double weight = force_map_.Felt(part_->mass * options_.gravity_W.norm());
+  passivity_.AddCredit(weight * std::max(0.0, drop) / options_.workspace.mapping.scale);
+}
+
+double HapticTick::StoredEnergy() const noexcept {
+  if (part_ == nullptr) {
+    return 0;
+  }
+  const Vec3 e = tracked_.X_WT * part_->p_BoBcm_B - X_WD_ * part_->p_BoBcm_B;
+  const double virtual_mass = std::clamp(part_->mass, kMinVirtualMass, kMaxVirtualMass);
+  const double height = (X_WD_.p() - part_->X_WB_start.p()).dot(-options_.gravity_W.normalized());
+  const double energy = 0.5 * options_.coupling.k_lin * e.squaredNorm() +
+                        0.5 * virtual_mass * V_D_.v.squaredNorm() +
+                        weight_felt_ * std::max(0.0, height);
+  return energy / options_.workspace.mapping.scale;
+}
+
+double HapticTick::StoredTurningEnergy() const noexcept {
+  if (part_ == nullptr) {
+    return 0;
+  }
+  const Vec3 theta = spatial::RotationBetween(X_WD_.q(), tracked_.X_WT.q());
+  return 0.5 * options_.coupling.k_rot * theta.squaredNorm();
 }
 
 void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
@@ -185,6 +281,8 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   out->F_true_W.f += (weight_true_ * soft_start_ - weight_felt_) * options_.gravity_W.normalized();
   RecordFits(out);
   UpdateState();
+  has_engaged_ = has_engaged_ || guide_.captured_count() > captured_before_;
+  captured_before_ = guide_.captured_count();
 }
 
 void HapticTick::AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept {
@@ -196,7 +294,7 @@ void HapticTick::AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept
   solver_.AddPointSpring(p_WCm, k * e, k * Mat3::Identity());
   solver_.AddPointDamper(p_WCm, tracked.V_T.v, gains.b_lin * k / gains.k_lin);
   const Vec3 theta = spatial::RotationBetween(X_WD_.q(), tracked.X_WT.q());
-  const double max_torque = kMaxCouplingShare * options_.device.max_torque;
+  const double max_torque = kMaxCouplingShare * std::max(kLeastTorque, options_.device.max_torque);
   const double k_rot =
       theta.norm() * gains.k_rot > max_torque ? max_torque / theta.norm() : gains.k_rot;
   solver_.AddAngularSpring(k_rot * theta, k_rot * Mat3::Identity());
@@ -209,7 +307,7 @@ spatial::Wrench HapticTick::CalcCouplingWrench(const Tracked& tracked) const noe
   const double max_force = kMaxCouplingShare * options_.device.max_force;
   const double k = e.norm() * gains.k_lin > max_force ? max_force / e.norm() : gains.k_lin;
   const Vec3 theta = spatial::RotationBetween(tracked.X_WT.q(), X_WD_.q());
-  const double max_torque = kMaxCouplingShare * options_.device.max_torque;
+  const double max_torque = kMaxCouplingShare * std::max(kLeastTorque, options_.device.max_torque);
   const double k_rot =
       theta.norm() * gains.k_rot > max_torque ? max_torque / theta.norm() : gains.k_rot;
   const double b = gains.b_lin * k / gains.k_lin;
@@ -240,6 +338,9 @@ void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
     has_start_ = true;
     start_distance_ = std::abs(to_go);
     start_angle_ = std::abs(to_turn);
+    const double scale = options_.workspace.mapping.scale;
+    passivity_.AddCredit(0.5 * options_.guidance.attraction_force * start_distance_ / scale);
+    passivity_.AddTurningCredit(0.5 * options_.guidance.attraction_torque * start_angle_);
   }
   const auto pull = [this](double rest, double start, double strongest) {
     const double share = start > 0 ? std::min(1.0, std::abs(rest) / start) : 0.0;
@@ -353,6 +454,9 @@ void HapticTick::UpdateState() noexcept {
   if (HasArrived()) {
     state_ = HoldState::kSeated;
     seat_progress_ = 0;
+    const double to_go = (X_WD_ * part_->p_BoBcm_B - part_->X_WB_goal * part_->p_BoBcm_B).norm();
+    passivity_.AddCredit(0.5 * options_.coupling.k_lin * to_go * to_go /
+                         options_.workspace.mapping.scale);
     X_WD_seat_start_ = X_WD_;
   } else if (guide_.captured_count() > 0) {
     state_ = guide_.is_aligned() ? HoldState::kMating : HoldState::kCaptured;

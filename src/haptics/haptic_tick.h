@@ -13,6 +13,7 @@
 #include "haptics/held_part.h"
 #include "haptics/mate_guide.h"
 #include "haptics/options.h"
+#include "haptics/passivity_controller.h"
 #include "haptics/safety_gate.h"
 
 namespace hvas::haptics {
@@ -50,15 +51,18 @@ struct TickOutput {
   Vec3 f_C_W{Vec3::Zero()};
   contact::BodyId contact_body;  ///< And the body it is with; invalid for the ground or none.
   std::uint32_t gate_actions{0};
-  bool is_truncated{false};        ///< A contact query met its budget.
-  std::uint32_t points_tested{0};  ///< By all contact queries of the tick: what it cost.
-  WorkspaceMapping workspace;      ///< How the handle moved the hand.
+  bool is_truncated{false};         ///< A contact query met its budget.
+  std::uint32_t points_tested{0};   ///< By all contact queries of the tick: what it cost.
+  WorkspaceMapping workspace;       ///< How the handle moved the hand.
+  PassivityAccount energy;          ///< Of forces so far, where passivity is controlled.
+  PassivityAccount turning_energy;  ///< Of torques.
 };
 
 /** What else the loop knows at a tick. */
 struct TickContext {
-  std::int64_t model_age_ns{0};  ///< Since the physics loop last answered.
-  bool is_stopped{false};        ///< Somebody has switched all forces off.
+  std::int64_t model_age_ns{0};   ///< Since the physics loop last answered.
+  std::int64_t client_age_ns{0};  ///< Since whoever steers was last heard of.
+  bool is_stopped{false};         ///< Somebody has switched all forces off.
 };
 
 /** The haptic tick of one hand: X(1), X(2) coupling, contact on the displayed part (X7), guidance
@@ -110,6 +114,14 @@ class HapticTick {
     spatial::Twist V_T;  ///< At the part's centre of mass, in W.
   };
 
+  [[nodiscard]] spatial::Wrench MakeSafe(const device::DeviceState& state,
+                                         const TickContext& context, bool is_usable,
+                                         const TickOutput& out) noexcept;
+  [[nodiscard]] Vec3 ShowTorque(const spatial::Wrench& F_H_D, const Quat& q_DH) const noexcept;
+  void CreditPotentials() noexcept;
+  [[nodiscard]] double StoredEnergy() const noexcept;
+  [[nodiscard]] double StoredTurningEnergy() const noexcept;
+
   [[nodiscard]] Tracked CalcTracked(const Hand& hand) const noexcept;
   void Hold(const Tracked& tracked, TickOutput* out) noexcept;
   void AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept;
@@ -154,6 +166,7 @@ class HapticTick {
   contact::QueryWorkspace workspace_;
   ForceMap force_map_;
   FitRows fit_rows_;
+  PassivityController passivity_;
   SafetyGate gate_;
   ConstraintSolver solver_;
   FrictionMemory friction_;
@@ -181,7 +194,10 @@ class HapticTick {
   double seat_progress_{0};
   spatial::Pose X_WD_seat_start_;
   FitAxis fit_axis_;
-  bool is_stuck_{false};  ///< Its fits hold more than its weight.
+  bool is_stuck_{false};     ///< Its fits hold more than its weight.
+  bool has_engaged_{false};  ///< In this tick a part was taken or a mate captured.
+  int captured_before_{0};
+  Tracked tracked_;  ///< Of the last tick with a part.
   double weight_true_{0};
   double weight_felt_{0};
   std::uint32_t points_tested_{0};  ///< Of the present tick.

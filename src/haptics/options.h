@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "contact/scene.h"
 #include "device/device.h"
 #include "fits/friction.h"
+#include "haptics/safety_gate.h"
 #include "haptics/workspace.h"
 #include "mates/capture.h"
 #include "spatial/pose.h"
@@ -84,6 +86,10 @@ struct TickOptions {
   Vec3 gravity_W{0, 0, -9.81};  ///< [m/s^2]
   ForceMapKind force_map{ForceMapKind::kPublished};
   device::DeviceProfile device;
+  /** What the device is given at most; without: the device's peaks and usual rates. */
+  std::optional<SafetyLimits> limits;
+  /** A device is in the hand: the energy that it gives and takes is controlled (N6). */
+  bool controls_passivity{false};
   /** For a device that shows forces but no torques: from its point to where the hand holds it, in H
    [m]; a torque becomes the force at that lever. Zero: torques are not shown then. */
   Vec3 p_HG{Vec3::Zero()};

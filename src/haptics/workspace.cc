@@ -28,15 +28,15 @@ Hand Workspace::Update(const device::DeviceState& state, double dt) noexcept {
     Index(state.X_DH);
     hand_.V_WH = {};
     border_.setZero();
+    drift_D_.setZero();
     is_lost_ = false;
     return hand_;
   }
-  Vec3 drift = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     border_[k] = IntoBorder(state.X_DH.p()[k], 0.5 * options_.box[k], options_.border_share);
-    drift[k] = options_.border_speed * border_[k] * std::abs(border_[k]);
+    drift_D_[k] = options_.border_speed * border_[k] * std::abs(border_[k]);
   }
-  const Vec3 v_W = mapping_.X_WD.q() * drift;
+  const Vec3 v_W = mapping_.X_WD.q() * drift_D_;
   if (is_in_border()) {
     mapping_.X_WD = {mapping_.X_WD.q(), mapping_.X_WD.p() + dt * v_W};
   }

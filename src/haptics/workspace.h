@@ -38,6 +38,9 @@ class Workspace {
 
   [[nodiscard]] const WorkspaceMapping& mapping() const noexcept { return mapping_; }
 
+  /** How fast the border moves the scene under the hand, in D [m/s of the scene]. */
+  [[nodiscard]] const Vec3& drift_D() const noexcept { return drift_D_; }
+
   [[nodiscard]] bool is_in_border() const noexcept { return !border_.isZero(); }
 
  private:
@@ -48,6 +51,7 @@ class Workspace {
   WorkspaceMapping mapping_;
   Hand hand_;
   Vec3 border_{Vec3::Zero()};  ///< How far into the border, outwards; 1 at the edge.
+  Vec3 drift_D_{Vec3::Zero()};
   bool has_hand_{false};
   bool is_lost_{false};
 };

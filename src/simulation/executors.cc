@@ -17,9 +17,13 @@ std::int64_t PeriodOf(const Simulation& simulation) {
 }
 
 /** A tick after which the last second is worth keeping. */
-bool IsFault(const device::DeviceState& before, const device::DeviceState& device,
-             const haptics::TickOutput& out) noexcept {
-  return (out.gate_actions & haptics::kGateNotFinite) != 0 ||
+bool IsFault(const device::DeviceState& before, std::uint32_t actions_before,
+             const device::DeviceState& device, const haptics::TickOutput& out) noexcept {
+  constexpr std::uint32_t kFaults = haptics::kGateNotFinite | haptics::kGateLateModel |
+                                    haptics::kGateLostClient | haptics::kGateNoDevice |
+                                    haptics::kGateStopped | haptics::kGateBuzz | haptics::kGateKick;
+  const std::uint32_t begun = out.gate_actions & ~actions_before;
+  return (begun & kFaults) != 0 ||
          (device.condition != before.condition && device::IsFault(device.condition));
 }
 
@@ -79,8 +83,9 @@ class HapticLoop {
   }
 
   void KeepFlight(FlightTick tick) noexcept {
-    const bool is_fault = IsFault(device_before_, tick.device, tick.out);
+    const bool is_fault = IsFault(device_before_, actions_before_, tick.device, tick.out);
     device_before_ = tick.device;
+    actions_before_ = tick.out.gate_actions;
     if (execution_.flight == nullptr) {
       return;
     }
@@ -100,6 +105,7 @@ class HapticLoop {
   LoadShedder shedder_;
   haptics::TickOutput last_;
   device::DeviceState device_before_;
+  std::uint32_t actions_before_{0};
   haptics::HoldState state_before_{haptics::HoldState::kEmpty};
   std::int64_t t_ns_{0};
 };
