@@ -1,0 +1,99 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "device/driver.h"
+
+namespace hvas::device {
+
+/** Which library a driver needs, and where it may be. */
+struct LibrarySearch {
+  std::string title;  ///< "OpenHaptics (3D Systems)"
+  /** File names, best first; one that ends in * stands for all that begin so, newest first. */
+  std::vector<std::string> names;
+  std::vector<std::filesystem::path> folders;  ///< In the order in which they are searched.
+  bool asks_loader{true};                      ///< Besides, on the loader's own path.
+  std::string remedy;                          ///< How one comes by it.
+  std::string version;  ///< Which one is needed, in words: "version 3.5 or later".
+};
+
+/** The search of a driver in some surroundings: first their own folders, then those that
+ environment variables name, then the usual ones under their root.
+ @param variables  Environment variable and folder below it, as {"FDSDK", "lib"}.
+ @param usual  The vendor's own places, absolute; those of the system are added. */
+LibrarySearch MakeLibrarySearch(const Surroundings& surroundings,
+                                const std::vector<std::pair<std::string, std::string>>& variables,
+                                const std::vector<std::string>& usual);
+
+/** The files that a search comes upon, without opening any; what is looked for is noted. */
+std::vector<std::filesystem::path> LookForLibrary(const LibrarySearch& search,
+                                                  std::vector<Finding>* looked_for);
+
+/** Looks for a library without opening any; that there is none becomes a problem. */
+void ProbeFiles(const LibrarySearch& search, ProbeReport* report);
+
+/** A vendor's library that the program runs with. It is never unloaded: drivers of devices fail
+ when they are loaded a second time. */
+class DynamicLibrary {
+ public:
+  /** Loads the first file of a search that can be. Each place is noted with the loader's words.
+   Errors: kNotFound where there is none; kUnsupported where those that are there cannot be loaded:
+   made for another processor, broken, or in need of something that is missing. */
+  static Result<DynamicLibrary> Load(const LibrarySearch& search, std::vector<Finding>* looked_for);
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+  /** Null where it has no such symbol. */
+  [[nodiscard]] void* Find(const char* symbol) const;
+
+  [[nodiscard]] bool Has(const char* symbol) const { return Find(symbol) != nullptr; }
+
+  /** Whether it stands in for the vendor's: no other has this symbol. */
+  [[nodiscard]] bool is_emulated() const { return Has("hvas_emulator"); }
+
+ private:
+  DynamicLibrary(void* handle, std::string path) : handle_(handle), path_(std::move(path)) {}
+
+  void* handle_;
+  std::string path_;
+};
+
+/** Takes a library's functions by name, and remembers those that it lacks. */
+class SymbolBinder {
+ public:
+  explicit SymbolBinder(const DynamicLibrary& library) : library_(library) {}
+
+  template <typename Function>
+  void Bind(const char* name, Function** function) {
+    BindOptional(name, function);
+    if (*function == nullptr) {
+      missing_.emplace_back(name);
+    }
+  }
+
+  /** As Bind, for what a driver can do without. */
+  template <typename Function>
+  void BindOptional(const char* name, Function** function) {
+    *function = reinterpret_cast<Function*>(library_.Find(name));
+  }
+
+  [[nodiscard]] const std::vector<std::string>& missing() const { return missing_; }
+
+  [[nodiscard]] const std::string& path() const { return library_.path(); }
+
+ private:
+  const DynamicLibrary& library_;
+  std::vector<std::string> missing_;
+};
+
+/** Loads a library and takes its functions.
+ Errors: those of Load; kUnsupported, with the names, when it lacks any. */
+Result<DynamicLibrary> LoadFunctions(const LibrarySearch& search, std::vector<Finding>* looked_for,
+                                     const std::function<void(SymbolBinder*)>& bind);
+
+}  // namespace hvas::device
