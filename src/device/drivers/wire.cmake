@@ -27,3 +27,22 @@ target_compile_options(simulated_handle PRIVATE -Wall -Wextra -Wpedantic)
 set_target_properties(simulated_handle PROPERTIES PREFIX "" C_STANDARD 11)
 
 hvas_test(wire_faults_test SOURCES test/wire_faults_test.cc DEPS hvas::device_emulation)
+hvas_test(network_test SOURCES test/network_test.cc DEPS hvas::device_emulation OpenSSL::Crypto)
+
+# Plug-ins that have to be refused.
+function(hvas_odd_plugin name)
+  add_library(odd_plugin_${name} MODULE test/odd_plugin.c)
+  target_include_directories(odd_plugin_${name} PRIVATE plugin)
+  target_compile_definitions(odd_plugin_${name} PRIVATE ${ARGN})
+  set_target_properties(odd_plugin_${name} PROPERTIES PREFIX "")
+  add_dependencies(plugin_test odd_plugin_${name})
+endfunction()
+hvas_test(plugin_test SOURCES test/plugin_test.cc DEPS hvas::device_emulation ${CMAKE_DL_LIBS})
+hvas_odd_plugin(none)
+hvas_odd_plugin(version ODD_PLUGIN_VERSION=7)
+hvas_odd_plugin(hole ODD_PLUGIN_VERSION=HVAS_DEVICE_PLUGIN_VERSION)
+add_dependencies(plugin_test simulated_handle)
+target_compile_definitions(plugin_test PRIVATE
+  HVAS_EXAMPLE_PLUGIN="$<TARGET_FILE:simulated_handle>" HVAS_EMULATED_PLUGIN="$<TARGET_FILE:hvas_emulated_plugin>"
+  HVAS_ODD_PLUGIN_NONE="$<TARGET_FILE:odd_plugin_none>" HVAS_ODD_PLUGIN_VERSION="$<TARGET_FILE:odd_plugin_version>"
+  HVAS_ODD_PLUGIN_HOLE="$<TARGET_FILE:odd_plugin_hole>")
