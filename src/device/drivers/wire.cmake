@@ -46,3 +46,6 @@ target_compile_definitions(plugin_test PRIVATE
   HVAS_EXAMPLE_PLUGIN="$<TARGET_FILE:simulated_handle>" HVAS_EMULATED_PLUGIN="$<TARGET_FILE:hvas_emulated_plugin>"
   HVAS_ODD_PLUGIN_NONE="$<TARGET_FILE:odd_plugin_none>" HVAS_ODD_PLUGIN_VERSION="$<TARGET_FILE:odd_plugin_version>"
   HVAS_ODD_PLUGIN_HOLE="$<TARGET_FILE:odd_plugin_hole>")
+hvas_test(haply_test SOURCES test/haply_test.cc DEPS hvas::device_emulation)
+hvas_test(rate_devices_test SOURCES test/rate_devices_test.cc DEPS hvas::device_emulation)
+hvas_test(wire_live_test SOURCES test/wire_live_test.cc DEPS hvas::device_emulation LABELS unit thread)
