@@ -15,6 +15,7 @@
 #include "app/assemble_report.h"
 #include "app/force_map_option.h"
 #include "app/load_product.h"
+#include "app/opened_device.h"
 #include "app/progress.h"
 #include "app/report_failure.h"
 #include "app/session_recorder.h"
@@ -95,6 +96,63 @@ record::Meta MakeMeta(const Model& model, const AssembleOptions& options) {
           {"model_json", parts.dump()}};
 }
 
+/** What moves the hand: the simulated person alone or with an emulated device, or a device. */
+struct Hand {
+  OpenedDevice opened;
+  std::unique_ptr<simulation::SimulatedPerson> person;
+  std::unique_ptr<simulation::Operator> at_device;  ///< Null without a device.
+
+  [[nodiscard]] simulation::Operator* active() const {
+    return at_device != nullptr ? at_device.get() : person.get();
+  }
+};
+
+Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
+  Hand hand;
+  if (!options.device.empty()) {
+    auto opened = OpenAnyDevice(options.device, options.is_realtime);
+    if (!opened) {
+      return Unexpected(opened.error());
+    }
+    hand.opened = std::move(*opened);
+    if (hand.opened.emulator == nullptr && !options.is_realtime) {
+      return Fail(ErrorCode::kInvalid, "a real device needs the real-time loop", options.device,
+                  "add --realtime");
+    }
+    if (hand.opened.emulator == nullptr) {
+      hand.at_device = std::make_unique<simulation::DeviceOperator>(hand.opened.device.get());
+      return hand;
+    }
+  }
+  hand.person = std::make_unique<simulation::SimulatedPerson>(
+      simulation::PersonOptions(), options.seed, simulation::StartOfHand(model));
+  if (hand.opened.emulator != nullptr) {
+    hand.at_device =
+        std::make_unique<simulation::PersonAtDevice>(hand.person.get(), hand.opened.emulator.get(),
+                                                     hand.opened.device.get(), options.is_realtime);
+  }
+  return hand;
+}
+
+haptics::TickOptions MakeTick(const Model& model, const AssembleOptions& options,
+                              const device::Device* device, bool is_watched) {
+  haptics::TickOptions tick;
+  if (device != nullptr) {
+    tick = simulation::MakeTickOptions(device->info(), model, options.render);
+    if (is_watched) {
+      for (const std::string& note : simulation::DescribeRendering(device->info(), tick)) {
+        fmt::print(stderr, "hvas: {}: {}\n", device->info().model, note);
+      }
+    }
+  } else {
+    tick.device.name = "simulated 6-DoF device";
+    tick.dt = 1 / options.render.rate_hz;
+  }
+  tick.condition = options.condition;
+  tick.force_map = options.force_map;
+  return tick;
+}
+
 Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
                                  const AssembleOptions& options, bool is_watched) {
   record::RecorderOptions record_options;
@@ -104,14 +162,15 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
   if (!recorder) {
     return Unexpected(recorder.error());
   }
-  haptics::TickOptions tick;
-  tick.condition = options.condition;
-  tick.force_map = options.force_map;
-  tick.device.name = "simulated 6-DoF device";
-  simulation::Simulation simulation(model, tick);
-  simulation::SimulatedPerson person({}, options.seed, simulation::StartOfHand(*model));
+  const auto hand = MakeHand(*model, options);
+  if (!hand) {
+    return Unexpected(hand.error());
+  }
+  simulation::Simulation simulation(
+      model, MakeTick(*model, options, hand->opened.device.get(), is_watched));
   SessionRecorder sink(recorder->get());
-  simulation::AssemblyRun run(&simulation, &person, &sink);
+  simulation::AssemblyRun run(&simulation, hand->person.get(), &sink);
+  simulation::FlightRecorder flight(options.render.rate_hz);
   if (is_watched) {
     run.on_part = [&model, start_ns = MonotonicNs()](const simulation::AssemblyProgress& progress,
                                                      const PartResult& part) {
@@ -126,7 +185,8 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
   }
   simulation::Execution execution;
   execution.simulation = &simulation;
-  execution.hand = &person;
+  execution.hand = hand->active();
+  execution.flight = &flight;
   execution.sink = &run;
   execution.advance = [&run] { run.Advance(); };
   execution.is_done = [&run] { return run.is_done(); };
@@ -220,8 +280,19 @@ void AddAssemble(CLI::App* app, int* status) {
                    "collision, constraint, or hybrid (both, and the force of the fit)")
       ->transform(CLI::CheckedTransformer(conditions, CLI::ignore_case));
   AddForceMapOption(command, &options->force_map);
+  command->add_option("--device", options->device,
+                      "A device in the hand: see `hvas devices`; emulated:DRIVER[:PROFILE] for one "
+                      "that is not there, held by the simulated person");
+  command
+      ->add_option(
+          "--scale", options->render.scale,
+          "Millimetres of the scene for one of the device; 0, when not given: by their sizes")
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_option("--rate", options->render.rate_hz, "Of the haptic loop [Hz]")
+      ->check(CLI::Range(1000.0, 8000.0))
+      ->capture_default_str();
   command->add_flag("--realtime", options->is_realtime,
-                    "Three threads at 1000, 100 and 30 Hz instead of virtual time");
+                    "Three threads at --rate, 100 and 30 Hz instead of virtual time");
   command->add_option("--record", options->record, "Write the session to this file");
   command
       ->add_option("--limit", options->limit_s,
@@ -240,6 +311,8 @@ void AddAssemble(CLI::App* app, int* status) {
       "Examples:\n"
       "  hvas assemble products/gear_pump.step\n"
       "  hvas assemble products/bushing.step --fit shaft=H7/p6 --record press.hvasrec\n"
+      "  hvas assemble pump.step --device forcedimension --realtime\n"
+      "  hvas assemble pump.step --device emulated:openhaptics:touch_x\n"
       "  hvas assemble pump.step --json --seed 7 | jq '.parts[] | select(.seated | not)'");
   command->callback([options, status] { *status = RunAssemble(*options); });
 }

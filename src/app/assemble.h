@@ -7,6 +7,7 @@
 
 #include "app/load_product.h"
 #include "haptics/options.h"
+#include "simulation/device_session.h"
 
 namespace CLI {
 class App;
@@ -21,6 +22,8 @@ struct AssembleOptions {
   haptics::Condition condition{haptics::Condition::kHybrid};
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   bool is_realtime{false};
+  std::string device;  ///< Address of the device in the hand; empty: none.
+  simulation::RenderOptions render;
   std::filesystem::path record;  ///< Empty: no file; the digest is made all the same.
   double limit_s{0};             ///< Session time after which to stop; 0: none.
   bool is_json{false};

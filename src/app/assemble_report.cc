@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/latency_json.h"
 #include "app/text_layout.h"
 #include "base/units.h"
 #include "simulation/shapes.h"
@@ -38,13 +39,6 @@ std::size_t CountSeated(const AssemblyOutcome& outcome) {
 const std::string& PathOf(const Model& model, product::OccurrenceId id) {
   static const std::string kNone = "empty hand";
   return id.is_valid() ? model.product->occurrences[id.index()].path : kNone;
-}
-
-nlohmann::ordered_json ToJsonUs(const LatencyHistogram& histogram) {
-  return {{"median", ToUs(histogram.Quantile(0.5))},
-          {"p99", ToUs(histogram.Quantile(0.99))},
-          {"p999", ToUs(histogram.Quantile(0.999))},
-          {"max", ToUs(histogram.max_ns())}};
 }
 
 nlohmann::ordered_json ToJson(const Model& model, const simulation::SlowTicks& slowest) {
@@ -128,12 +122,12 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
   json["wall_s"] = ToS(run.wall_ns);
   json["real_time_factor"] = Ratio(run, run.wall_ns);
   json["ticks"] = run.ticks;
-  json["tick_us"] = ToJsonUs(run.compute);
+  json["tick_us"] = MakeLatencyJson(run.compute);
   json["slowest_ticks"] = ToJson(model, run.slowest);
   json["scheduling"] = run.scheduling;
   if (outcome.is_realtime) {
     json["ticks_per_s"] = static_cast<double>(run.ticks) / ToS(run.wall_ns);
-    json["wake_up_us"] = ToJsonUs(run.wake_up);
+    json["wake_up_us"] = MakeLatencyJson(run.wake_up);
     json["late_wake_ups"] = run.late_wake_ups;
     json["overruns"] = run.overruns;
     json["dropped_ticks"] = outcome.dropped_ticks;

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 
 #include "app/assemble.h"
+#include "app/devices.h"
+#include "app/doctor.h"
 #include "app/export.h"
 #include "app/fit.h"
 #include "app/inspect.h"
@@ -21,6 +23,8 @@ int Run(int argc, char** argv) {
   hvas::app::AddMate(&app, &status);
   hvas::app::AddExport(&app, &status);
   hvas::app::AddFit(&app, &status);
+  hvas::app::AddDevices(&app, &status);
+  hvas::app::AddDoctor(&app, &status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

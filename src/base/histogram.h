@@ -50,6 +50,17 @@ class LatencyHistogram {
     return max_ns();
   }
 
+  /** Of the values, those that are no longer than this, and those in its bucket. */
+  [[nodiscard]] std::uint64_t CountUpTo(std::int64_t duration_ns) const noexcept {
+    const std::size_t last =
+        BucketOf(static_cast<std::uint64_t>(std::max<std::int64_t>(duration_ns, 0)));
+    std::uint64_t seen = 0;
+    for (std::size_t i = 0; i <= last; ++i) {
+      seen += buckets_[i];
+    }
+    return seen;
+  }
+
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   [[nodiscard]] std::int64_t max_ns() const noexcept { return static_cast<std::int64_t>(max_ns_); }

@@ -12,9 +12,9 @@ struct WorkspaceOptions {
   WorkspaceMapping mapping;  ///< At first.
   /** Edges of the box that the handle moves in, about D's origin [m]; infinite: no border. */
   Vec3 box{Vec3::Constant(std::numeric_limits<double>::infinity())};
-  double border_speed{0.25};  ///< Of the scene, with the handle at the very edge [m/s].
-  double border_force{1.2};   ///< That the border pushes back with there [N].
-  double border_share{0.2};   ///< Of each half edge, that belongs to the border.
+  double border_speed{0.4};  ///< Of the scene, with the handle at the very edge [m/s].
+  double border_force{1.2};  ///< That the border pushes back with there [N].
+  double border_share{0.2};  ///< Of each half edge, that belongs to the border.
 };
 
 /** From the handle to the hand in the scene (X5). Inside the box the hand follows the handle; in

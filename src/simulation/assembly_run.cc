@@ -14,6 +14,7 @@ AssemblyRun::AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* 
     : simulation_(simulation), person_(person), downstream_(downstream) {
   const Model& model = simulation_->model();
   total_ = model.bodies.size();
+  dropped_.resize(total_);
   for (const Body& body : model.bodies) {
     lift_height_ = std::max(lift_height_, 1.2 * body.shape->box_B().size().norm());
   }
@@ -34,8 +35,7 @@ void AssemblyRun::OnFlight(const std::vector<FlightTick>& ticks) {
 
 void AssemblyRun::OnEvent(const SimulationEvent& event) {
   if (event.kind == SimulationEvent::Kind::kDropped) {
-    has_dropped_ = true;
-    dropped_ = event;
+    dropped_[event.occurrence.index()] = event;
   }
   if (downstream_ != nullptr) {
     downstream_->OnEvent(event);
@@ -92,22 +92,25 @@ PartResult& AssemblyRun::ResultOf(OccurrenceId id) {
 }
 
 std::string AssemblyRun::ExplainFailure(const SequenceStep& step) const {
-  if (!has_dropped_) {
-    return "could not be taken up";
+  const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
+  if (!dropped) {
+    return person_ != nullptr ? "could not be taken up" : "was not taken up";
   }
   if (const OccurrenceId missing = simulation_->FindMissingPartner(step); missing.is_valid()) {
     return fmt::format("{}, which it goes to, is not in its place",
                        simulation_->model().product->occurrences[missing.index()].path);
   }
-  const HoldMetrics& metrics = dropped_.metrics;
+  const HoldMetrics& metrics = dropped->metrics;
   const std::string depth = metrics.insertion > 0 ? fmt::format(", {:.2f} mm into its hole at most",
                                                                 units::ToMm(metrics.insertion))
                                                   : std::string();
+  const std::string tries = person_ != nullptr
+                                ? fmt::format("gave up after {} searches", person_->searches())
+                                : std::string("was let go elsewhere");
   if (!metrics.hardest.is_valid()) {
-    return fmt::format("gave up after {} searches{}; nothing was met", person_->searches(), depth);
+    return fmt::format("{}{}; nothing was met", tries, depth);
   }
-  return fmt::format("gave up after {} searches{}; {} stood in the way with up to {:.1f} N",
-                     person_->searches(), depth,
+  return fmt::format("{}{}; {} stood in the way with up to {:.1f} N", tries, depth,
                      simulation_->model().product->occurrences[metrics.hardest.index()].path,
                      metrics.hardest_force);
 }
@@ -115,10 +118,11 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step) const {
 void AssemblyRun::FinishStep(const SequenceStep& step) {
   const Model& model = simulation_->model();
   PartResult& result = ResultOf(step.occurrence);
-  const bool was_seated = has_dropped_ && dropped_.was_seated;
-  if (has_dropped_) {
-    const HoldMetrics& metrics = dropped_.metrics;
-    result.time += 1e-9 * static_cast<double>(dropped_.t_ns - metrics.t_taken_ns);
+  const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
+  const bool was_seated = dropped && dropped->was_seated;
+  if (dropped) {
+    const HoldMetrics& metrics = dropped->metrics;
+    result.time += 1e-9 * static_cast<double>(dropped->t_ns - metrics.t_taken_ns);
     result.path += metrics.path;
     result.peak_true = std::max(result.peak_true, metrics.peak_true);
     result.peak_felt = std::max(result.peak_felt, metrics.peak_felt);
@@ -145,8 +149,9 @@ void AssemblyRun::FinishStep(const SequenceStep& step) {
   if (on_part) {
     const auto seated = std::count_if(results_.begin(), results_.end(),
                                       [](const PartResult& part) { return part.is_seated; });
-    on_part({results_.size(), static_cast<std::size_t>(seated), total_, dropped_.t_ns},
-            ResultOf(step.occurrence));
+    on_part(
+        {results_.size(), static_cast<std::size_t>(seated), total_, dropped ? dropped->t_ns : 0},
+        ResultOf(step.occurrence));
   }
 }
 
@@ -159,11 +164,19 @@ void AssemblyRun::Update(OccurrenceId id) {
   result.pose_error_angle = spatial::RotationBetween(X_goal.q(), X_WB.q()).norm();
 }
 
+bool AssemblyRun::HasFinished(const SequenceStep& step) const {
+  if (person_ != nullptr) {
+    return person_->finished_count() != finished_before_;
+  }
+  const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
+  return dropped && dropped->was_seated;
+}
+
 void AssemblyRun::Advance() {
   const Model& model = simulation_->model();
   const auto& steps = model.sequence.steps;
   if (is_assigned_) {
-    if (person_->finished_count() == finished_before_) {
+    if (!HasFinished(steps[next_step_])) {
       return;
     }
     is_assigned_ = false;
@@ -183,9 +196,13 @@ void AssemblyRun::Advance() {
       return simulation_->placement(id) == Placement::kLoose;
     });
     simulation_->Prepare(possible);
-    has_dropped_ = false;
-    finished_before_ = person_->finished_count();
-    is_assigned_ = person_->Assign(MakeTask(possible));
+    if (person_ != nullptr) {
+      dropped_[step.occurrence.index()].reset();
+      finished_before_ = person_->finished_count();
+      is_assigned_ = person_->Assign(MakeTask(possible));
+    } else {
+      is_assigned_ = true;
+    }
     return;
   }
   if (!is_done_) {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,13 @@ struct AssemblyProgress {
   std::int64_t t_ns{0};  ///< Session time.
 };
 
-/** Lets the simulated person assemble a model, one part after the other, and keeps the account.
- As a Sink it stands between the loops and the record. */
+/** Has a model assembled, one part after the other in the order that was found, and keeps the
+ account: by the simulated person, or by whoever holds the device. As a Sink it stands between the
+ loops and the record. */
 class AssemblyRun final : public Sink {
  public:
-  /** @param downstream  Gets everything too; may be null. */
+  /** @param person  Null: a real one, who puts each part in its place in his own time.
+   @param downstream  Gets everything too; may be null. */
   AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream);
 
   void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override;
@@ -61,6 +64,7 @@ class AssemblyRun final : public Sink {
  private:
   [[nodiscard]] PartResult& ResultOf(product::OccurrenceId id);
   [[nodiscard]] std::string ExplainFailure(const SequenceStep& step) const;
+  [[nodiscard]] bool HasFinished(const SequenceStep& step) const;
   void FinishStep(const SequenceStep& step);
   void Update(product::OccurrenceId id);
   [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id) const;
@@ -74,8 +78,7 @@ class AssemblyRun final : public Sink {
   std::size_t total_{0};
   bool is_assigned_{false};
   int finished_before_{0};
-  bool has_dropped_{false};
-  SimulationEvent dropped_;
+  std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
   double lift_height_{0.05};
   bool is_done_{false};
 };

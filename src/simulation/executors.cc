@@ -34,7 +34,10 @@ class HapticLoop {
       : execution_(execution),
         report_(report),
         period_ns_(PeriodOf(*execution.simulation)),
-        shedder_(period_ns_) {}
+        shedder_(period_ns_) {
+    last_.workspace = execution.simulation->options().workspace.mapping;
+    last_.X_WH = last_.workspace.X_WD;
+  }
 
   /** @param wake_up_ns  How late the tick begins; 0 in virtual time. */
   void Tick(std::int64_t wake_up_ns) noexcept {

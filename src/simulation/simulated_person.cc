@@ -37,6 +37,8 @@ constexpr double kYieldReach = 2e-3;     // [m], no further than this
 constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime = 0.3;       // of a carried weight
+constexpr double kAtHand = 0.01;         // [m]; close enough to take something up
+constexpr double kMostLag = 0.05;        // [m]; the mind does not run ahead of the hand
 constexpr double kSenseTime = 0.01;      // in which it notices how fast its hand is
 
 void LimitLength(double most, Vec3* v) {
@@ -105,6 +107,9 @@ void SimulatedPerson::AddReach(const Vec3& p_to, const Quat& q_to, double speed,
 bool SimulatedPerson::FollowReaches() noexcept {
   if (reach_index_ >= reach_count_) {
     return true;
+  }
+  if ((p_ref_ - X_WH_.p()).norm() > kMostLag) {
+    return false;  // waits for the hand, which a device may hold up
   }
   const Reach& reach = reaches_[reach_index_];
   reach_time_s_ += dt_;
@@ -350,7 +355,8 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       break;
     }
     case Phase::kReach:
-      if (FollowReaches() && phase_time_s_ > reaches_[0].duration_s + 0.3) {
+      if (FollowReaches() && phase_time_s_ > reaches_[0].duration_s + 0.3 &&
+          (p_ref_ - X_WH_.p()).norm() < kAtHand) {
         phase_ = Phase::kGrasp;
         phase_time_s_ = 0;
         is_gripping_ = true;

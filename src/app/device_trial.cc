@@ -1,0 +1,153 @@
+#include "app/device_trial.h"
+
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "app/devices_report.h"
+#include "app/latency_json.h"
+#include "app/opened_device.h"
+#include "app/report_failure.h"
+#include "base/clock.h"
+#include "base/histogram.h"
+#include "base/triple_buffer.h"
+#include "haptics/coupling_rule.h"
+#include "haptics/passivity_controller.h"
+#include "haptics/safety_gate.h"
+#include "simulation/realtime_thread.h"
+
+namespace hvas::app {
+namespace {
+
+/** What the loop tells whoever watches. */
+struct TrialState {
+  device::DeviceState device;
+  spatial::Wrench F_H_D;
+  std::uint32_t gate_actions{0};
+};
+
+/** A floor at z = 0 of D, felt through passivity control and the gate. */
+class FloorTrial {
+ public:
+  FloorTrial(device::Device* device, double rate_hz)
+      : device_(device),
+        dt_(1 / rate_hz),
+        gains_(haptics::ChooseCoupling(device->info().profile, 1, dt_)),
+        passivity_(haptics::MakePassivityController(device->info().profile, dt_)),
+        gate_(haptics::MakeSafetyLimits(device->info().profile)) {}
+
+  void Tick() noexcept {
+    TrialState& state = states_.back();
+    state.device = device_->Read();
+    const device::DeviceState& now = state.device;
+    const double depth = -now.X_DH.p().z();
+    spatial::Wrench F;
+    if (now.is_valid && depth > 0) {
+      F.f.z() = std::max(0.0, gains_.k_lin * depth - gains_.b_lin * now.V_DH.v.z());
+    }
+    haptics::GateInput input;
+    input.F = passivity_.Limit(now.X_DH, F, std::numeric_limits<double>::quiet_NaN(), 0, dt_);
+    input.p = now.X_DH.p();
+    input.V = now.V_DH;
+    input.dt = dt_;
+    input.is_valid = now.is_valid;
+    input.is_held = now.condition != device::Condition::kNotHeld;
+    input.is_stopped = now.condition == device::Condition::kStopped;
+    input.is_gripping = now.is_gripping;
+    state.F_H_D = gate_.Pass(input);
+    passivity_.Write(state.F_H_D);
+    device_->Write(state.F_H_D);
+    state.gate_actions = gate_.actions();
+    states_.Publish();
+  }
+
+  /** The newest state, for one other thread. */
+  const TrialState& Look() {
+    states_.Update();
+    return states_.value();
+  }
+
+  [[nodiscard]] const haptics::CouplingGains& gains() const { return gains_; }
+
+ private:
+  device::Device* device_;
+  double dt_;
+  haptics::CouplingGains gains_;
+  haptics::PassivityController passivity_;
+  haptics::SafetyGate gate_;
+  TripleBuffer<TrialState> states_;
+};
+
+/** The hand of an emulated device: goes up and down through the floor, slowly. */
+void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
+  device::HandIntent hand;
+  hand.X_DR = spatial::Pose(Vec3(0, 0, 0.015 * std::cos(std::numbers::pi * t_s)));
+  device->SetHand(hand);
+}
+
+void PrintState(const TrialState& state, const device::Device& device, double t_s) {
+  const Vec3 p_mm = 1e3 * state.device.X_DH.p();
+  fmt::print("{:6.1f} s  at {:7.2f} {:7.2f} {:7.2f} mm  given {:5.2f} N  {}", t_s, p_mm.x(),
+             p_mm.y(), p_mm.z(), state.F_H_D.f.norm(), device::ToString(state.device.condition));
+  for (const haptics::GateAction action : haptics::ListNewActions(0, state.gate_actions)) {
+    fmt::print("; {}", haptics::ToString(action));
+  }
+  if (state.device.condition != device::Condition::kReady) {
+    fmt::print("; {}", device.Explain(state.device));
+  }
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int RunDeviceTrial(const DeviceTrialOptions& options) {
+  auto opened = OpenAnyDevice(options.address, true);
+  if (!opened) {
+    return ReportFailure(opened.error());
+  }
+  device::Device& device = *opened->device;
+  PrintDeviceText(device.info());
+  FloorTrial trial(&device, options.rate_hz);
+  fmt::print("A floor of {:.0f} N/m at the middle of the workspace. Press on it.\n",
+             trial.gains().k_lin);
+  std::atomic<bool> is_stopping{false};
+  simulation::RealtimeGrant grant;
+  LatencyHistogram wake_up;
+  LatencyHistogram work;
+  std::thread loop([&] {
+    grant = simulation::RequestRealtime();
+    simulation::Pacer pacer(std::llround(1e9 / options.rate_hz));
+    while (!is_stopping.load(std::memory_order_relaxed)) {
+      wake_up.Add(pacer.Wait());
+      const std::int64_t start_ns = MonotonicNs();
+      trial.Tick();
+      work.Add(MonotonicNs() - start_ns);
+    }
+  });
+  constexpr double kStep = 0.02;  // [s]
+  constexpr int kStepsPerLine = 50;
+  simulation::Pacer pacer(std::llround(1e9 * kStep));
+  for (int i = 0; i * kStep < options.seconds; ++i) {
+    if (opened->emulator != nullptr) {
+      MoveEmulatedHand(&opened->emulator->device(), i * kStep);
+    }
+    if (i % kStepsPerLine == kStepsPerLine / 2) {
+      PrintState(trial.Look(), device, i * kStep);
+    }
+    (void)pacer.Wait();
+  }
+  is_stopping = true;
+  loop.join();
+  simulation::ReleaseRealtime();
+  fmt::print("{}\n", grant.ToString());
+  PrintLatencyHistogram("wake-up after the deadline", wake_up);
+  PrintLatencyHistogram("reading, computing and writing", work);
+  return 0;
+}
+
+}  // namespace hvas::app

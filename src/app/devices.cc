@@ -1,0 +1,79 @@
+#include "app/devices.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/device_trial.h"
+#include "app/devices_report.h"
+#include "app/progress.h"
+
+namespace hvas::app {
+namespace {
+
+struct DevicesOptions {
+  bool is_probe{false};
+  bool is_json{false};
+  DeviceTrialOptions trial;
+};
+
+int RunDevices(const DevicesOptions& options) {
+  if (!options.trial.address.empty()) {
+    return RunDeviceTrial(options.trial);
+  }
+  const device::Surroundings surroundings;
+  std::vector<device::ProbeReport> reports;
+  for (const device::Driver* driver : device::Drivers()) {
+    if (options.is_probe && IsWatched() && !options.is_json) {
+      fmt::print(stderr, "looking for {} ...\033[K\r", driver->title());
+    }
+    reports.push_back(driver->Probe(surroundings, options.is_probe));
+  }
+  if (options.is_probe && IsWatched() && !options.is_json) {
+    fmt::print(stderr, "\033[K");
+  }
+  options.is_json ? PrintProbeJson(reports, options.is_probe)
+                  : PrintProbeText(reports, options.is_probe);
+  return 0;
+}
+
+std::string AddressHelp() {
+  std::string text = "Addresses:\n";
+  for (const device::Driver* driver : device::Drivers()) {
+    text += fmt::format("  {}\n", driver->address_help());
+  }
+  return text + "  emulated:DRIVER[:PROFILE], as in emulated:forcedimension:sigma7\n";
+}
+
+}  // namespace
+
+void AddDevices(CLI::App* app, int* status) {
+  CLI::App* command = app->add_subcommand(
+      "devices", "List devices for the hand: what was looked for, what is there, what is wrong");
+  const auto options = std::make_shared<DevicesOptions>();
+  command->add_flag("--probe", options->is_probe,
+                    "Start each device that is there, without force, and let it go again");
+  command->add_flag("--json", options->is_json, "Print one JSON document");
+  command->add_option(
+      "--try", options->trial.address,
+      "Feel a horizontal floor with the device of this address, and see its samples");
+  command->add_option("--seconds", options->trial.seconds, "How long to try [s]")
+      ->check(CLI::Range(0.5, 3600.0))
+      ->capture_default_str();
+  command->add_option("--rate", options->trial.rate_hz, "Of the loop [Hz]")
+      ->check(CLI::Range(1000.0, 8000.0))
+      ->capture_default_str();
+  command->footer(AddressHelp() +
+                  "Examples:\n"
+                  "  hvas devices\n"
+                  "  hvas devices --probe\n"
+                  "  hvas devices --probe --json | jq '.drivers[].problems'\n"
+                  "  hvas devices --try openhaptics --seconds 30\n"
+                  "  hvas devices --try emulated:haply");
+  command->callback([options, status] { *status = RunDevices(*options); });
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "device/device.h"
+#include "device/emulation/emulator.h"
+
+namespace hvas::app {
+
+/** A device that was asked for on the command line. */
+struct OpenedDevice {
+  std::unique_ptr<device::Emulator> emulator;  ///< Null for a real one. Outlives the device.
+  std::unique_ptr<device::Device> device;
+};
+
+/** Opens "DRIVER[:ADDRESS]", or "emulated:DRIVER[:PROFILE]" with a device of that profile that is
+ not there.
+ @param is_live  An emulator runs by the clock; else it is moved on by whoever uses it.
+ Errors: kInvalid for a driver or profile that does not exist (the message lists them); the
+ driver's. */
+[[nodiscard]] Result<OpenedDevice> OpenAnyDevice(const std::string& address, bool is_live);
+
+}  // namespace hvas::app

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "device/emulation/emulator.h"
+#include "haptics/options.h"
+#include "simulation/model.h"
+#include "simulation/operator.h"
+#include "simulation/simulated_person.h"
+
+namespace hvas::simulation {
+
+/** What a person may choose about how a model is rendered to a device. */
+struct RenderOptions {
+  double scale{0};       ///< Scene length per device length; 0: chosen from the sizes of both.
+  double rate_hz{1000};  ///< Of the haptic tick, 1000..8000.
+};
+
+/** Options of the tick for a model and a device: coupling by the device's limits and the rate, full
+ safety limits, passivity control, the handle's workspace around the product. A device that shows no
+ forces is rendered to as the simulated one would be, and given nothing. */
+[[nodiscard]] haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info,
+                                                   const Model& model, const RenderOptions& render);
+
+/** What a person should know about how this device is rendered to; one sentence each. */
+[[nodiscard]] std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,
+                                                         const haptics::TickOptions& options);
+
+/** A device as the operator. RT-safe as far as the device is. */
+class DeviceOperator final : public Operator {
+ public:
+  explicit DeviceOperator(device::Device* device) : device_(device) {}
+
+  device::DeviceState Step(const OperatorInput& input) noexcept override {
+    (void)input;
+    return device_->Read();
+  }
+
+  void Apply(const spatial::Wrench& F_H_D) noexcept override { device_->Write(F_H_D); }
+
+ private:
+  device::Device* device_;
+};
+
+/** The simulated person with an emulated device in the hand: what the person wants becomes the
+ impedance of the emulated hand, and all else goes through the device's driver, as with a real one.
+ Not RT-safe: the emulator is not. */
+class PersonAtDevice final : public Operator {
+ public:
+  PersonAtDevice(SimulatedPerson* person, device::Emulator* emulator, device::Device* device,
+                 bool is_live)
+      : person_(person), emulator_(emulator), device_(device), is_live_(is_live) {}
+
+  device::DeviceState Step(const OperatorInput& input) noexcept override;
+
+  void Apply(const spatial::Wrench& F_H_D) noexcept override { device_->Write(F_H_D); }
+
+ private:
+  SimulatedPerson* person_;
+  device::Emulator* emulator_;
+  device::Device* device_;
+  bool is_live_;  ///< The emulator moves its time on by itself.
+};
+
+}  // namespace hvas::simulation
