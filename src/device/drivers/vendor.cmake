@@ -38,3 +38,7 @@ hvas_stub(hvas_stub_needy libHD.so ${HVAS_STUB_FOLDER}/needy emulation/stub_need
 target_link_libraries(hvas_stub_needy PRIVATE hvas_stub_dependency)
 
 hvas_test(library_faults_test SOURCES test/library_faults_test.cc DEPS hvas::device_emulation)
+hvas_test(library_loading_test SOURCES test/library_loading_test.cc DEPS hvas::device_emulation)
+hvas_test(openhaptics_test SOURCES test/openhaptics_test.cc DEPS hvas::device_emulation)
+hvas_test(force_dimension_test SOURCES test/force_dimension_test.cc DEPS hvas::device_emulation)
+hvas_test(virtuose_test SOURCES test/virtuose_test.cc DEPS hvas::device_emulation)
