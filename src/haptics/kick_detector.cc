@@ -6,9 +6,10 @@
 namespace hvas::haptics {
 namespace {
 
-constexpr std::array kSpans{4e-3, 8e-3, 16e-3};  // [s]
-/** Three positions, each rounded by half a step, the middle one counted twice. */
-constexpr double kSteps = 2.0;
+constexpr std::array kSpans{4e-3, 6e-3, 8e-3, 12e-3};  // [s]
+/** Positions that are rounded by half a step, eight of them in e. */
+constexpr double kSteps = 4;
+constexpr double kHandMass = 0.05;  // [kg]; no hand that holds is lighter
 
 }  // namespace
 
@@ -18,46 +19,61 @@ Kick KickDetector::Update(const Vec3& p, const Vec3& f, double dt) noexcept {
   samples_[newest_] = {time_, p, f.norm()};
   count_ = std::min(count_ + 1, kSize);
   for (const double span : kSpans) {
-    if (const Kick kick = Judge(span, f); kick != Kick::kNone) {
-      return kick;
+    Window window;
+    if (FindWindow(span, &window)) {
+      if (const Kick kick = Judge(window, span, f); kick != Kick::kNone) {
+        return kick;
+      }
     }
   }
   return Kick::kNone;
 }
 
-const KickDetector::Sample* KickDetector::FindBefore(double age) const noexcept {
-  constexpr double kRounding = 1e-9;  // [s]
-  for (std::size_t back = 1; back < count_; ++back) {
-    const Sample& sample = samples_[(newest_ + kSize - back) % kSize];
-    if (time_ - sample.time >= age - kRounding) {
-      return &sample;
-    }
-  }
-  return nullptr;
+const KickDetector::Sample& KickDetector::FindBack(std::size_t ticks) const noexcept {
+  return samples_[(newest_ + kSize - ticks) % kSize];
 }
 
-Kick KickDetector::Judge(double span, const Vec3& f) const noexcept {
-  const Sample* start = FindBefore(2 * span);
-  const Sample* middle = FindBefore(span);
-  if (start == nullptr || middle == nullptr || middle->time <= start->time) {
-    return Kick::kNone;
+/** False while there are too few samples. Ticks need not be even, but the spans are then. */
+bool KickDetector::FindWindow(double span, Window* window) const noexcept {
+  std::array<Vec3, 4> p;
+  std::size_t found = 0;
+  window->most_force = window->least_force = FindBack(0).force;
+  for (std::size_t back = 0; back < count_ && found < p.size(); ++back) {
+    const Sample& sample = FindBack(back);
+    window->most_force = std::max(window->most_force, sample.force);
+    window->least_force = std::min(window->least_force, sample.force);
+    constexpr double kRounding = 1e-9;  // [s]
+    if (time_ - sample.time >= static_cast<double>(found) * span - kRounding) {
+      p[found++] = sample.p;
+    }
   }
-  const double late = time_ - middle->time;
-  const double early = middle->time - start->time;
-  const Vec3 moved = samples_[newest_].p - middle->p;
-  const Vec3 e = moved - late / early * (middle->p - start->p);
-  const double noise = kSteps * thresholds_.resolution;
-  const double square = late * late;
+  if (found < p.size()) {
+    return false;
+  }
+  window->deviation = p[0] - 3 * p[1] + 3 * p[2] - p[3];
+  window->moved = p[0] - p[1];
+  window->moved_before = p[1] - p[2];
+  return true;
+}
+
+Kick KickDetector::Judge(const Window& window, double span, const Vec3& f) const noexcept {
   const double force = f.norm();
-  if (force >= thresholds_.min_force && middle->force >= thresholds_.min_force) {
-    const Vec3 along = f / force;
-    if (-e.dot(along) > noise + thresholds_.hand * square && moved.dot(along) < -noise) {
+  const double mass = thresholds_.mass + kHandMass;
+  const double unseen = kSteps * thresholds_.resolution;
+  const double of_hand = thresholds_.jerk * span * span * span;
+  if (force >= thresholds_.min_force) {
+    // A force that has fallen lets the hand through.
+    const double fallen = (window.most_force - force) / mass * span * span;
+    const double against = -window.deviation.dot(f) / force;
+    const double inwards = -window.moved.dot(f) / force;
+    if (against > unseen + of_hand + fallen && inwards > thresholds_.resolution) {
       return Kick::kAgainst;
     }
   }
-  const double strongest = std::max(force, middle->force) / thresholds_.mass + thresholds_.blow;
-  const bool is_faster = moved.norm() > late / early * (middle->p - start->p).norm();
-  return is_faster && e.norm() > noise + strongest * square ? Kick::kRunaway : Kick::kNone;
+  const double change = (window.most_force - window.least_force) / mass + thresholds_.blow;
+  const bool is_faster = window.moved.norm() > window.moved_before.norm() + unseen;
+  return is_faster && window.deviation.norm() > unseen + change * span * span ? Kick::kRunaway
+                                                                              : Kick::kNone;
 }
 
 }  // namespace hvas::haptics

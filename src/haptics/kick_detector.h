@@ -11,11 +11,10 @@ namespace hvas::haptics {
 /** What a hand and a force can do to a handle, at most. SI. */
 struct KickThresholds {
   double resolution{23e-6};  ///< Of the encoders [m].
-  double max_force{7.9};     ///< Of the motors [N].
   double mass{0.1};          ///< Of the mechanism at the handle [kg].
-  double min_force{0.4};     ///< Below this a force tells nothing of its direction [N].
-  double hand{3};            ///< A hand that presses changes its acceleration by less [m/s^2].
-  double blow{80};           ///< A hand changes its acceleration by less, whatever it does [m/s^2].
+  double min_force{0.3};     ///< Below this a force tells nothing of its direction [N].
+  double jerk{200};          ///< A hand that works changes its acceleration no faster [m/s^3].
+  double blow{80};           ///< Hands change the acceleration by less, whatever they do [m/s^2].
 };
 
 enum class Kick : std::uint8_t {
@@ -24,14 +23,15 @@ enum class Kick : std::uint8_t {
   kRunaway,  ///< It speeds up more than hand and motors together explain.
 };
 
-/** Compares where the handle is with where it would be, had it gone on as before. The deviation
+/** Compares where the handle is with where it would be, had nothing that acts on it changed. The
+ deviation
 
-     e = (x_k - x_{k-h}) - (x_{k-h} - x_{k-2h})
+     e = x_k - 3 x_(k-h) + 3 x_(k-2h) - x_(k-3h)
 
- is what forces have changed meanwhile. A hand that pushes against a force is held back by it, and
- what the hand itself adds comes slowly; a handle that speeds up against its force is driven by it.
- h is 4, 8 and 16 ms: the shorter, the larger a deviation has to be to stand out of the encoders'
- steps. RT-safe. */
+ is zero under any constant force of the hand, whatever its size, and h^2 (change of force) / mass
+ after a change. A hand changes its force slowly, and a motor's force is known; what changes fast
+ and against that force is a force of the wrong sign. h is 4 to 12 ms: the shorter, the larger e has
+ to be to stand out of the encoders' steps; the longer, the more a hand explains. RT-safe. */
 class KickDetector {
  public:
   explicit KickDetector(const KickThresholds& thresholds) noexcept : thresholds_(thresholds) {}
@@ -43,7 +43,7 @@ class KickDetector {
   void Reset() noexcept { *this = KickDetector(thresholds_); }
 
  private:
-  static constexpr std::size_t kSize = 256;  // 32 ms at 8 kHz
+  static constexpr std::size_t kSize = 320;  // 36 ms at 8 kHz.
 
   struct Sample {
     double time{0};
@@ -51,8 +51,18 @@ class KickDetector {
     double force{0};  ///< Norm.
   };
 
-  [[nodiscard]] const Sample* FindBefore(double age) const noexcept;
-  [[nodiscard]] Kick Judge(double span, const Vec3& f) const noexcept;
+  /** What happened within three spans. */
+  struct Window {
+    Vec3 deviation{Vec3::Zero()};  ///< e
+    Vec3 moved{Vec3::Zero()};      ///< In the last span.
+    Vec3 moved_before{Vec3::Zero()};
+    double most_force{0};
+    double least_force{0};
+  };
+
+  [[nodiscard]] const Sample& FindBack(std::size_t ticks) const noexcept;
+  [[nodiscard]] bool FindWindow(double span, Window* window) const noexcept;
+  [[nodiscard]] Kick Judge(const Window& window, double span, const Vec3& f) const noexcept;
 
   KickThresholds thresholds_;
   double time_{0};

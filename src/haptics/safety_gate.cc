@@ -59,7 +59,6 @@ SafetyLimits MakeSafetyLimits(const device::DeviceProfile& profile) noexcept {
   limits.client_hold = 0.002;
   limits.has_detectors = true;
   limits.kick.resolution = profile.position_resolution;
-  limits.kick.max_force = profile.max_force;
   limits.kick.mass = profile.mass;
   return limits;
 }
