@@ -217,6 +217,13 @@ Result<DynamicLibrary> LoadFunctions(const LibrarySearch& search, std::vector<Fi
   }
   SymbolBinder binder(*library);
   bind(&binder);
+  const bool is_old = !search.old_function.empty() && library->Has(search.old_function.c_str());
+  if (!binder.missing().empty() && is_old) {
+    return Fail(ErrorCode::kUnsupported,
+                fmt::format("the library of {} is of {}; {} is needed", search.title,
+                            search.old_version, search.version),
+                library->path(), search.remedy);
+  }
   if (!binder.missing().empty()) {
     return Fail(ErrorCode::kUnsupported,
                 fmt::format("the library of {} lacks {}; it is of another version than HVAS needs",

@@ -20,6 +20,9 @@ struct LibrarySearch {
   bool asks_loader{true};                      ///< Besides, on the loader's own path.
   std::string remedy;                          ///< How one comes by it.
   std::string version;  ///< Which one is needed, in words: "version 3.5 or later".
+  /** A function that only an older version has, and which that is; may be empty. */
+  std::string old_function;
+  std::string old_version;
 };
 
 /** The search of a driver in some surroundings: first their own folders, then those that
@@ -84,8 +87,6 @@ class SymbolBinder {
 
   [[nodiscard]] const std::vector<std::string>& missing() const { return missing_; }
 
-  [[nodiscard]] const std::string& path() const { return library_.path(); }
-
  private:
   const DynamicLibrary& library_;
   std::vector<std::string> missing_;
@@ -95,5 +96,26 @@ class SymbolBinder {
  Errors: those of Load; kUnsupported, with the names, when it lacks any. */
 Result<DynamicLibrary> LoadFunctions(const LibrarySearch& search, std::vector<Finding>* looked_for,
                                      const std::function<void(SymbolBinder*)>& bind);
+
+/** The functions of a vendor's library. */
+template <typename Functions>
+struct VendorLibrary {
+  Functions functions;
+  bool is_emulated{false};
+};
+
+/** LoadFunctions for a struct of functions that has a BindAll beside it. */
+template <typename Functions>
+Result<VendorLibrary<Functions>> LoadVendorLibrary(const LibrarySearch& search,
+                                                   std::vector<Finding>* looked_for) {
+  VendorLibrary<Functions> library;
+  const auto loaded = LoadFunctions(
+      search, looked_for, [&](SymbolBinder* binder) { BindAll(binder, &library.functions); });
+  if (!loaded) {
+    return Unexpected(loaded.error());
+  }
+  library.is_emulated = loaded->is_emulated();
+  return library;
+}
 
 }  // namespace hvas::device

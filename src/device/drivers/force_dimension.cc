@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "device/drivers/dynamic_library.h"
 #include "device/drivers/usb_nodes.h"
 #include "device/drivers/vendor_drivers.h"
 
@@ -72,6 +71,15 @@ spatial::Pose ToPose(const Vec3& p, const double rows[3][3]) noexcept {
   return {Quat(R).normalized(), p};
 }
 
+void BindAll(SymbolBinder* binder, Functions* functions) {
+#define HVAS_BIND(name) binder->Bind(#name, &functions->name);
+  HVAS_DHD_FUNCTIONS(HVAS_BIND)
+#undef HVAS_BIND
+#define HVAS_BIND(name) binder->BindOptional(#name, &functions->name);
+  HVAS_DHD_OPTIONAL_FUNCTIONS(HVAS_BIND)
+#undef HVAS_BIND
+}
+
 }  // namespace force_dimension
 
 namespace {
@@ -89,10 +97,7 @@ constexpr std::int64_t kWatchdogNs = 20'000'000;
 constexpr std::int64_t kEnableEveryNs = 100'000'000;
 constexpr char kMaxDevices = 16;
 
-struct Library {
-  Functions dhd;
-  bool is_emulated{false};
-};
+using Library = VendorLibrary<Functions>;
 
 struct Started {
   char id;
@@ -121,7 +126,7 @@ void AskFigure(double (*ask)(char), char id, double* figure, const char* name, s
 }
 
 DeviceInfo AskInfo(const Library& library, char id) {
-  const Functions& dhd = library.dhd;
+  const Functions& dhd = library.functions;
   DeviceInfo info;
   info.driver = kName;
   info.address = std::to_string(id);
@@ -160,8 +165,8 @@ DeviceInfo AskInfo(const Library& library, char id) {
 
 /** Opens one by its number; with force off. */
 Result<Started> OpenNumber(const Library& library, char id) {
-  if (library.dhd.drdOpenID(id) < 0) {
-    return Unexpected(NotStarted(library.dhd.dhdErrorGetLast(), std::to_string(id)));
+  if (library.functions.drdOpenID(id) < 0) {
+    return Unexpected(NotStarted(library.functions.dhdErrorGetLast(), std::to_string(id)));
   }
   return Started{id, AskInfo(library, id)};
 }
@@ -169,14 +174,14 @@ Result<Started> OpenNumber(const Library& library, char id) {
 /** Opens the first that can be; with a serial number only the one that has it. */
 Result<Started> OpenFirst(const Library& library, const std::string& serial) {
   Error error = NotStarted(kErrorNoDevice, "0");
-  const int count = library.dhd.dhdGetDeviceCount();
+  const int count = library.functions.dhdGetDeviceCount();
   for (char id = 0; id < count && id < kMaxDevices; ++id) {
     auto started = OpenNumber(library, id);
     if (started && (serial.empty() || started->info.serial == serial)) {
       return started;
     }
     if (started) {
-      library.dhd.drdClose(id);
+      library.functions.drdClose(id);
     } else {
       error = started.error();
     }
@@ -258,7 +263,7 @@ class DhdDevice final : public VendorDevice {
   void ReadStatus(DeviceState* sample) noexcept;
 
   const Library library_;
-  const Functions& dhd_{library_.dhd};
+  const Functions& dhd_{library_.functions};
   char id_;
   bool is_open_;
   std::int64_t enable_ns_{0};
@@ -353,27 +358,7 @@ class DhdDriver final : public Driver {
     search.version = "version 3.5 or later of the SDK";
     return search;
   }
-
-  static Result<Library> Load(const Surroundings& surroundings, std::vector<Finding>* looked_for);
 };
-
-Result<Library> DhdDriver::Load(const Surroundings& surroundings,
-                                std::vector<Finding>* looked_for) {
-  Library library;
-  const auto loaded = LoadFunctions(Search(surroundings), looked_for, [&](SymbolBinder* binder) {
-#define HVAS_BIND(name) binder->Bind(#name, &library.dhd.name);
-    HVAS_DHD_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
-#define HVAS_BIND(name) binder->BindOptional(#name, &library.dhd.name);
-    HVAS_DHD_OPTIONAL_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
-  });
-  if (!loaded) {
-    return Unexpected(loaded.error());
-  }
-  library.is_emulated = loaded->is_emulated();
-  return library;
-}
 
 Result<std::unique_ptr<Device>> DhdDriver::Open(const std::string& address,
                                                 const Surroundings& surroundings) const {
@@ -387,7 +372,7 @@ Result<std::unique_ptr<Device>> DhdDriver::Open(const std::string& address,
     }
   }
   std::vector<Finding> looked_for;
-  const auto library = Load(surroundings, &looked_for);
+  const auto library = LoadVendorLibrary<Functions>(Search(surroundings), &looked_for);
   if (!library) {
     return Unexpected(library.error());
   }
@@ -396,8 +381,8 @@ Result<std::unique_ptr<Device>> DhdDriver::Open(const std::string& address,
   if (!started) {
     return Unexpected(started.error());
   }
-  if (const auto calibrated = Calibrate(library->dhd, *started); !calibrated) {
-    library->dhd.drdClose(started->id);
+  if (const auto calibrated = Calibrate(library->functions, *started); !calibrated) {
+    library->functions.drdClose(started->id);
     return Unexpected(calibrated.error());
   }
   return std::make_unique<DhdDevice>(*library, *started, *surroundings.clock);
@@ -410,12 +395,12 @@ ProbeReport DhdDriver::Probe(const Surroundings& surroundings, bool opens_device
     ProbeFiles(Search(surroundings), &report);
     return report;
   }
-  const auto library = Load(surroundings, &report.looked_for);
+  const auto library = LoadVendorLibrary<Functions>(Search(surroundings), &report.looked_for);
   if (!library) {
     report.problems.push_back(library.error());
     return report;
   }
-  const int count = std::min<int>(library->dhd.dhdGetDeviceCount(), kMaxDevices);
+  const int count = std::min<int>(library->functions.dhdGetDeviceCount(), kMaxDevices);
   if (count <= 0) {
     report.problems.push_back(NotStarted(kErrorNoDevice, "0"));
   }
@@ -425,7 +410,7 @@ ProbeReport DhdDriver::Probe(const Surroundings& surroundings, bool opens_device
       report.problems.push_back(started.error());
       continue;
     }
-    if (library->dhd.drdIsInitialized(started->id)) {
+    if (library->functions.drdIsInitialized(started->id)) {
       report.devices.push_back(started->info);
     } else {
       report.problems.push_back(
@@ -434,7 +419,7 @@ ProbeReport DhdDriver::Probe(const Surroundings& surroundings, bool opens_device
            "it calibrates itself when HVAS opens it to work with: keep your hands off while it "
            "moves"});
     }
-    library->dhd.drdClose(started->id);
+    library->functions.drdClose(started->id);
   }
   return report;
 }

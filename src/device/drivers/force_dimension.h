@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "device/drivers/dynamic_library.h"
 #include "device/drivers/vendor_device.h"
 
 /** What HVAS uses of Force Dimension's SDK, libdrd.so (it has the dhd functions too), as its
@@ -89,6 +90,8 @@ struct Functions {
   HVAS_DHD_OPTIONAL_FUNCTIONS(HVAS_MEMBER)
 #undef HVAS_MEMBER
 };
+
+void BindAll(SymbolBinder* binder, Functions* functions);
 
 // NOLINTEND(readability-identifier-naming)
 

@@ -42,3 +42,5 @@ hvas_test(library_loading_test SOURCES test/library_loading_test.cc DEPS hvas::d
 hvas_test(openhaptics_test SOURCES test/openhaptics_test.cc DEPS hvas::device_emulation)
 hvas_test(force_dimension_test SOURCES test/force_dimension_test.cc DEPS hvas::device_emulation)
 hvas_test(virtuose_test SOURCES test/virtuose_test.cc DEPS hvas::device_emulation)
+hvas_test(library_live_test SOURCES test/library_live_test.cc DEPS hvas::device_emulation
+          LABELS "unit;thread")

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "device/drivers/dynamic_library.h"
 #include "device/drivers/vendor_drivers.h"
 
 namespace hvas::device {
@@ -65,6 +64,15 @@ std::array<float, 6> FromWrench(const spatial::Wrench& F) noexcept {
           static_cast<float>(F.t.x()), static_cast<float>(F.t.y()), static_cast<float>(F.t.z())};
 }
 
+void BindAll(SymbolBinder* binder, Functions* functions) {
+#define HVAS_BIND(name) binder->Bind(#name, &functions->name);
+  HVAS_VIRT_FUNCTIONS(HVAS_BIND)
+#undef HVAS_BIND
+#define HVAS_BIND(name) binder->BindOptional(#name, &functions->name);
+  HVAS_VIRT_OPTIONAL_FUNCTIONS(HVAS_BIND)
+#undef HVAS_BIND
+}
+
 }  // namespace virtuose
 
 namespace {
@@ -78,17 +86,13 @@ constexpr const char* kDefaultAddress = "127.0.0.1#5000";
 constexpr const char* kRemedy =
     "install VirtuoseAPI 4 of Haption, and set VIRTUOSE_API to the folder of virtuoseAPI.so when "
     "it is not below /usr or /opt";
-constexpr const char* kVersion = "version 4 of VirtuoseAPI";
 constexpr float kTimeStep_s = 1e-3F;
 constexpr float kTimeout_s = 0.1F;
 constexpr std::int64_t kRelaysNs = 3'000'000'000;  // Until its relays have closed.
 constexpr std::int64_t kPowerEveryNs = 250'000'000;
 constexpr int kButtons = 3;
 
-struct Library {
-  Functions virt;
-  bool is_emulated{false};
-};
+using Library = VendorLibrary<Functions>;
 
 struct Started {
   void* context;
@@ -121,14 +125,15 @@ DeviceInfo AskInfo(const Library& library, void* context, const std::string& add
   info.model = "Virtuose 6D";
   int type = 0;
   int serial = 0;
-  if (library.virt.virtGetDeviceID != nullptr &&
-      library.virt.virtGetDeviceID(context, &type, &serial) == 0) {
+  if (library.functions.virtGetDeviceID != nullptr &&
+      library.functions.virtGetDeviceID(context, &type, &serial) == 0) {
     info.model += fmt::format(" (type {})", type);
     info.serial = std::to_string(serial);
   }
   int major = 0;
   int minor = 0;
-  if (library.virt.virtAPIVersion != nullptr && library.virt.virtAPIVersion(&major, &minor) == 0) {
+  if (library.functions.virtAPIVersion != nullptr &&
+      library.functions.virtAPIVersion(&major, &minor) == 0) {
     info.version = fmt::format("{}.{:02}", major, minor);
   }
   Capabilities& has = info.capabilities;
@@ -163,9 +168,10 @@ int Prepare(const Functions& virt, void* context, const DeviceProfile& profile) 
 }
 
 Result<Started> OpenAddress(const Library& library, const std::string& address) {
-  void* context = library.virt.virtOpen(address.c_str());
+  void* context = library.functions.virtOpen(address.c_str());
   if (context == nullptr) {
-    return Unexpected(NotStarted(library.virt, address, library.virt.virtGetErrorCode(nullptr)));
+    return Unexpected(
+        NotStarted(library.functions, address, library.functions.virtGetErrorCode(nullptr)));
   }
   return Started{context, AskInfo(library, context, address)};
 }
@@ -219,7 +225,7 @@ class VirtDevice final : public VendorDevice {
   void ReadPower(DeviceState* sample) noexcept;
 
   const Library library_;
-  const Functions& virt_{library_.virt};
+  const Functions& virt_{library_.functions};
   void* context_;
   std::int64_t relays_ns_;    ///< When the relays will have closed.
   std::int64_t power_ns_{0};  ///< When power may be asked for again.
@@ -336,45 +342,18 @@ class VirtDriver final : public Driver {
     search.title = kTitle;
     search.names = {"virtuoseAPI.so"};
     search.remedy = kRemedy;
-    search.version = kVersion;
+    search.version = "4.x";
+    // Version 3 has one function for all calls; the others are only in its header.
+    search.old_function = "virtCallDLL";
+    search.old_version = "version 3";
     return search;
   }
-
-  static Result<Library> Load(const Surroundings& surroundings, std::vector<Finding>* looked_for);
 };
-
-Result<Library> VirtDriver::Load(const Surroundings& surroundings,
-                                 std::vector<Finding>* looked_for) {
-  Library library;
-  bool is_version3 = false;
-  const auto loaded = LoadFunctions(Search(surroundings), looked_for, [&](SymbolBinder* binder) {
-#define HVAS_BIND(name) binder->Bind(#name, &library.virt.name);
-    HVAS_VIRT_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
-#define HVAS_BIND(name) binder->BindOptional(#name, &library.virt.name);
-    HVAS_VIRT_OPTIONAL_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
-    // Version 3 has one function for all calls; the others are only in its header.
-    void (*dispatch)() = nullptr;
-    binder->BindOptional("virtCallDLL", &dispatch);
-    is_version3 = dispatch != nullptr && library.virt.virtOpen == nullptr;
-  });
-  if (is_version3) {
-    return Fail(ErrorCode::kUnsupported,
-                fmt::format("the library of {} is of version 3; 4.x is needed", kTitle),
-                loaded.error().where, fmt::format("{} is needed; {}", kVersion, kRemedy));
-  }
-  if (!loaded) {
-    return Unexpected(loaded.error());
-  }
-  library.is_emulated = loaded->is_emulated();
-  return library;
-}
 
 Result<std::unique_ptr<Device>> VirtDriver::Open(const std::string& address,
                                                  const Surroundings& surroundings) const {
   std::vector<Finding> looked_for;
-  const auto library = Load(surroundings, &looked_for);
+  const auto library = LoadVendorLibrary<Functions>(Search(surroundings), &looked_for);
   if (!library) {
     return Unexpected(library.error());
   }
@@ -383,10 +362,10 @@ Result<std::unique_ptr<Device>> VirtDriver::Open(const std::string& address,
   if (!started) {
     return Unexpected(started.error());
   }
-  if (const int error = Prepare(library->virt, started->context, started->info.profile);
+  if (const int error = Prepare(library->functions, started->context, started->info.profile);
       error != 0) {
-    library->virt.virtClose(started->context);
-    return Unexpected(NotStarted(library->virt, whole, error));
+    library->functions.virtClose(started->context);
+    return Unexpected(NotStarted(library->functions, whole, error));
   }
   return std::make_unique<VirtDevice>(*library, *started, *surroundings.clock);
 }
@@ -397,7 +376,7 @@ ProbeReport VirtDriver::Probe(const Surroundings& surroundings, bool opens_devic
     ProbeFiles(Search(surroundings), &report);
     return report;
   }
-  const auto library = Load(surroundings, &report.looked_for);
+  const auto library = LoadVendorLibrary<Functions>(Search(surroundings), &report.looked_for);
   if (!library) {
     report.problems.push_back(library.error());
     return report;
@@ -406,7 +385,7 @@ ProbeReport VirtDriver::Probe(const Surroundings& surroundings, bool opens_devic
   report.looked_for.push_back({"controller", kDefaultAddress, started.has_value(), ""});
   if (started) {
     report.devices.push_back(started->info);
-    library->virt.virtClose(started->context);
+    library->functions.virtClose(started->context);
   } else {
     report.problems.push_back(started.error());
   }

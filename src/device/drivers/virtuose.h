@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "device/drivers/dynamic_library.h"
 #include "device/drivers/vendor_device.h"
 
 /** What HVAS uses of Haption's VirtuoseAPI 4, virtuoseAPI.so, as its header tells (names, types,
@@ -77,6 +78,8 @@ struct Functions {
   HVAS_VIRT_OPTIONAL_FUNCTIONS(HVAS_MEMBER)
 #undef HVAS_MEMBER
 };
+
+void BindAll(SymbolBinder* binder, Functions* functions);
 
 // NOLINTEND(readability-identifier-naming)
 
