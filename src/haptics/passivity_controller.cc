@@ -115,7 +115,12 @@ Vec3 PassivityChannel::Bound(const Vec3& force) const noexcept {
   for (int ago = 1; ago <= limits_.delay; ++ago) {
     left -= FindGiven(ago).written.norm() * reach(limits_.delay + 1 - ago + 1);
   }
-  const double most = std::min(limits_.max_force, std::max(0.0, left) / reach(limits_.delay + 2));
+  // left = F reach + F^2 / (2 rate) speed: what it does until it is seen, and while it is taken
+  // back.
+  const double seen = reach(limits_.delay + 2);
+  const double back = seen / (2 * limits_.rate * period);
+  const double root = std::sqrt(seen * seen + 4 * back * std::max(0.0, left));
+  const double most = std::min(limits_.max_force, 2 * std::max(0.0, left) / (seen + root));
   const double norm = force.norm();
   return norm > most ? Vec3(most / norm * force) : force;
 }
@@ -153,14 +158,19 @@ void PassivityController::Reset() noexcept {
 PassivityController MakePassivityController(const device::DeviceProfile& profile,
                                             double dt) noexcept {
   const double ticks = std::ceil(profile.delay / dt - 1e-6);
+  constexpr double kHarmless = 0.3;  // [m/s]
   PassivityLimits force;
+  force.reserve = 0.5 * profile.mass * kHarmless * kHarmless;
   force.max_force = profile.max_force;
   force.max_damping = profile.max_damping;
   force.longest_tick = 1.5 * dt;
+  force.rate = 400;
   force.delay = static_cast<int>(std::clamp(ticks, 0.0, double{PassivityChannel::kMaxDelay}));
   PassivityLimits torque = force;
   torque.max_force = profile.max_torque;
+  torque.rate = 40;
   torque.max_damping = profile.max_rotational_damping;
+  torque.reserve = PassivityLimits().reserve;
   torque.min_speed = 0.05;
   torque.acceleration = 1500;
   return {force, torque};

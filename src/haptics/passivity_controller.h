@@ -11,11 +11,14 @@ namespace hvas::haptics {
 
 /** How a passivity channel (forces and displacements, or torques and turns) behaves. SI. */
 struct PassivityLimits {
+  static constexpr double kAtOnce = std::numeric_limits<double>::infinity();
+
   double max_force{7.9};    ///< [N] or [N m]
   double max_damping{4};    ///< That the controller may add [N s/m] or [N m s/rad].
   double min_speed{5e-3};   ///< Slower motions are taken for this fast when damped [m/s], [rad/s].
   double reserve{5e-3};     ///< Energy that may go out beyond what came in [J].
   double acceleration{50};  ///< The hand speeds up no faster [m/s^2] or [rad/s^2].
+  double rate{kAtOnce};     ///< The gate takes a force back no faster [N/s] or [N m/s].
   double longest_tick{1.5e-3};  ///< No tick takes longer [s].
   int delay{0};                 ///< A wrench acts so many ticks after it was written.
   double window{0.5};           ///< Dissipation older than this is forgotten [s].
@@ -65,6 +68,8 @@ class PassivityChannel {
 
   /** The last Limit changed the force. */
   [[nodiscard]] bool is_active() const noexcept { return is_active_; }
+
+  [[nodiscard]] const PassivityLimits& limits() const noexcept { return limits_; }
 
  private:
   static constexpr std::size_t kBuckets = 32;
