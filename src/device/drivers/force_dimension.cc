@@ -245,7 +245,7 @@ class DhdDevice final : public VendorDevice {
 
   bool Reopen() override {
     LetGo();
-    const auto started = OpenFirst(library_, info_.serial);
+    const auto started = OpenFirst(library_, info().serial);
     if (started) {  // It is not calibrated here: that would move it under somebody's hand.
       id_ = started->id;
       Prepare(dhd_, *started);
@@ -292,12 +292,12 @@ VendorDevice::Reading DhdDevice::ReadVendor(DeviceState* sample) noexcept {
   Vec3& v = sample->V_DH.v;
   Vec3& w = sample->V_DH.w;
   dhd_.dhdGetLinearVelocity(&v.x(), &v.y(), &v.z(), id_);
-  if (info_.capabilities.senses_rotation) {
+  if (info().capabilities.senses_rotation) {
     dhd_.dhdGetAngularVelocityRad(&w.x(), &w.y(), &w.z(), id_);
   }
   sample->buttons = dhd_.dhdGetButtonMask(id_);
   double gap = 0;
-  if (info_.capabilities.has_grip && dhd_.dhdGetGripperGap(&gap, id_) >= 0) {
+  if (info().capabilities.has_grip && dhd_.dhdGetGripperGap(&gap, id_) >= 0) {
     sample->grip = std::clamp(1 - gap / kOpenGap, 0.0, 1.0);
   }
   sample->is_gripping = (sample->buttons & 1) != 0 || sample->grip > 0.5;

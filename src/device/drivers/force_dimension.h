@@ -11,7 +11,7 @@
  docs/devices/force_dimension.md. */
 namespace hvas::device::force_dimension {
 
-// NOLINTBEGIN(readability-identifier-naming): the vendor's names.
+// NOLINTBEGIN(readability-identifier-naming,bugprone-macro-parentheses): the vendor's names.
 extern "C" {
 void dhdGetSDKVersion(int* major, int* minor, int* release, int* revision);
 int dhdGetDeviceCount();
@@ -93,7 +93,7 @@ struct Functions {
 
 void BindAll(SymbolBinder* binder, Functions* functions);
 
-// NOLINTEND(readability-identifier-naming)
+// NOLINTEND(readability-identifier-naming,bugprone-macro-parentheses)
 
 // What a call returns besides 0 and below 0 for an error.
 inline constexpr int kTimeGuard = 1;  ///< The sample is the last one again: no error.

@@ -279,7 +279,7 @@ class HdDevice final : public VendorDevice {
   bool Reopen() override {
     LetGo();
     const std::scoped_lock lock(library_.mutex);
-    const auto started = Start(library_, info_.address);
+    const auto started = Start(library_, info().address);
     if (started) {
       Schedule(started->device);
     }
@@ -392,7 +392,7 @@ HdDevice::Sample HdDevice::Sense() noexcept {
   hd.hdGetDoublev(kAngularVelocity, w.data());
   hd.hdGetIntegerv(kButtons, &buttons);
   hd.hdGetDoublev(kInstantaneousRate, &rate_hz);
-  if (info_.capabilities.has_presence_switch) {
+  if (info().capabilities.has_presence_switch) {
     hd.hdGetBooleanv(kSafetySwitch, &is_held);
   }
   const spatial::Pose X = ToPose(transform);

@@ -10,7 +10,7 @@
  types, values). Lengths are mm, forces N, stiffness N/mm. Sources: docs/devices/openhaptics.md. */
 namespace hvas::device::openhaptics {
 
-// NOLINTBEGIN(readability-identifier-naming): the vendor's names.
+// NOLINTBEGIN(readability-identifier-naming,bugprone-macro-parentheses): the vendor's names.
 using HHD = std::uint32_t;
 using HDenum = std::uint32_t;
 using HDSchedulerHandle = unsigned long;
@@ -76,7 +76,7 @@ struct Functions {
 #undef HVAS_MEMBER
 };
 
-// NOLINTEND(readability-identifier-naming)
+// NOLINTEND(readability-identifier-naming,bugprone-macro-parentheses)
 
 inline constexpr HHD kNoDevice = 0xFFFFFFFF;
 inline constexpr std::uint32_t kDone = 0;

@@ -33,6 +33,8 @@ class VendorDevice : public Device {
   static constexpr std::int64_t kRampNs = 200'000'000;   ///< From no force to all of it.
   static constexpr std::int64_t kRetryNs = 250'000'000;  ///< Between attempts to open it again.
 
+  ~VendorDevice() override;
+
   [[nodiscard]] const DeviceInfo& info() const noexcept final { return info_; }
 
   [[nodiscard]] DeviceState Read() noexcept final;
@@ -41,8 +43,6 @@ class VendorDevice : public Device {
 
  protected:
   VendorDevice(DeviceInfo info, const Clock& clock);
-  ~VendorDevice() override;
-
   /** What asking the vendor for a sample came to. */
   enum class Reading : std::uint8_t { kNew, kRepeated, kGone };
 
@@ -60,13 +60,12 @@ class VendorDevice : public Device {
 
   [[nodiscard]] std::int64_t NowNs() const noexcept { return clock_.NowNs(); }
 
-  DeviceInfo info_;
-
  private:
   [[nodiscard]] bool IsOpen() noexcept;
   void Drop(std::int64_t now_ns) noexcept;
   void Attend();
 
+  DeviceInfo info_;
   const Clock& clock_;
   SampleGuard guard_;
   DeviceState state_;

@@ -86,8 +86,8 @@ constexpr const char* kDefaultAddress = "127.0.0.1#5000";
 constexpr const char* kRemedy =
     "install VirtuoseAPI 4 of Haption, and set VIRTUOSE_API to the folder of virtuoseAPI.so when "
     "it is not below /usr or /opt";
-constexpr float kTimeStep_s = 1e-3F;
-constexpr float kTimeout_s = 0.1F;
+constexpr float kTimeStep = 1e-3F;
+constexpr float kTimeout = 0.1F;
 constexpr std::int64_t kRelaysNs = 3'000'000'000;  // Until its relays have closed.
 constexpr std::int64_t kPowerEveryNs = 250'000'000;
 constexpr int kButtons = 3;
@@ -156,13 +156,13 @@ int Prepare(const Functions& virt, void* context, const DeviceProfile& profile) 
   const bool has_failed =
       fails(virt.virtSetIndexingMode(context, kIndexingNone)) ||
       fails(virt.virtSetForceFactor(context, 1)) || fails(virt.virtSetSpeedFactor(context, 1)) ||
-      fails(virt.virtSetTimeStep(context, kTimeStep_s)) ||
+      fails(virt.virtSetTimeStep(context, kTimeStep)) ||
       fails(virt.virtSetBaseFrame(context, base.data())) ||
       fails(virt.virtSetObservationFrame(context, observer.data())) ||
       fails(virt.virtSetCommandType(context, kCommandImpedance)) ||
       fails(virt.virtSaturateTorque(context, static_cast<float>(profile.max_force),
                                     static_cast<float>(profile.max_torque))) ||
-      fails(virt.virtSetTimeoutValue(context, kTimeout_s)) ||
+      fails(virt.virtSetTimeoutValue(context, kTimeout)) ||
       fails(virt.virtSetPowerOn(context, 1)) || fails(virt.virtSetForce(context, none.data()));
   return has_failed ? virt.virtGetErrorCode(context) : 0;
 }
@@ -200,14 +200,14 @@ class VirtDevice final : public VendorDevice {
 
   bool Reopen() override {
     LetGo();
-    const auto started = OpenAddress(library_, info_.address);
+    const auto started = OpenAddress(library_, info().address);
     if (!started) {
       return false;
     }
     context_ = started->context;
     relays_ns_ = NowNs() + kRelaysNs;
     force_error_ = 0;
-    if (Prepare(virt_, context_, info_.profile) != 0) {
+    if (Prepare(virt_, context_, info().profile) != 0) {
       LetGo();
     }
     return context_ != nullptr;

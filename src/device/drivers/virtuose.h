@@ -12,7 +12,7 @@
  docs/devices/virtuose.md. */
 namespace hvas::device::virtuose {
 
-// NOLINTBEGIN(readability-identifier-naming): the vendor's names.
+// NOLINTBEGIN(readability-identifier-naming,bugprone-macro-parentheses): the vendor's names.
 extern "C" {
 void* virtOpen(const char* address);
 int virtClose(void* device);
@@ -81,7 +81,7 @@ struct Functions {
 
 void BindAll(SymbolBinder* binder, Functions* functions);
 
-// NOLINTEND(readability-identifier-naming)
+// NOLINTEND(readability-identifier-naming,bugprone-macro-parentheses)
 
 inline constexpr int kIndexingNone = 2;
 inline constexpr int kCommandImpedance = 3;
