@@ -5,6 +5,8 @@
 #include <bitset>
 #include <cerrno>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -247,6 +249,20 @@ std::vector<std::filesystem::path> FindNodes(const std::filesystem::path& root) 
   return paths;
 }
 
+/** Whether a node that cannot be opened may be what is looked for, by what sys tells everybody
+ about its keys: words of 64 bits in hexadecimal, the highest first. Yes where nothing is told. */
+bool MayBeUsable(const std::filesystem::path& root, const std::filesystem::path& node) {
+  std::ifstream stream(root / "sys/class/input" / node.filename() / "device/capabilities/key");
+  std::vector<std::uint64_t> words;
+  for (std::string word; stream >> word;) {
+    words.insert(words.begin(), std::strtoull(word.c_str(), nullptr, 16));
+  }
+  const auto has = [&words](std::size_t bit) {
+    return bit / 64 < words.size() && ((words[bit / 64] >> (bit % 64)) & 1) != 0;
+  };
+  return words.empty() || has(BTN_GAMEPAD) || has(BTN_JOYSTICK);
+}
+
 DeviceInfo InfoOf(const Ability& ability, const std::filesystem::path& path) {
   DeviceInfo info;
   info.driver = kName;
@@ -424,8 +440,12 @@ class Gamepads final : public Driver {
     for (const std::filesystem::path& path : FindNodes(surroundings.root)) {
       EvdevNode node = EvdevNode::TryOpen(path);
       if (!node.is_open()) {
+        const int reason = errno;
+        if (!MayBeUsable(surroundings.root, path)) {
+          continue;
+        }
         report.looked_for.push_back({"input device", path.string(), false, "cannot be opened"});
-        report.problems.push_back(EvdevProblem(errno, path));
+        report.problems.push_back(EvdevProblem(reason, path));
         continue;
       }
       const Ability ability = AskAbility(node);
@@ -453,7 +473,7 @@ class Gamepads final : public Driver {
       if (device) {
         return device;
       }
-      if (device.error().code != ErrorCode::kUnsupported) {
+      if (device.error().code != ErrorCode::kUnsupported && MayBeUsable(surroundings.root, path)) {
         error = device.error();
       }
     }

@@ -1,5 +1,6 @@
 #include "device/drivers/polled_guard.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -32,7 +33,7 @@ std::int64_t PolledGuard::Begin() noexcept {
 
 DeviceState PolledGuard::Accept(DeviceState sample) noexcept {
   constexpr double kClosed = 0.5;
-  sample.t_ns = before_ns_;
+  sample.t_ns = std::max(before_ns_, now_ns_ - SampleGuard::kStaleNs);
   sample.is_gripping = (sample.buttons & 1U) != 0 || sample.grip > kClosed;
   sample.is_clutching = (sample.buttons & 2U) != 0;
   sample.is_valid = sample.is_valid && HasPose(sample.condition);

@@ -8,7 +8,8 @@
 namespace hvas::device {
 
 /** A SampleGuard for devices that are polled. What a poll finds came at some time since the poll
- before, so that this is its age at worst, and the time that it is given. RT-safe. */
+ before, so that this is its age at worst, and the time that it is given; after a pause it counts as
+ just not stale. RT-safe. */
 class PolledGuard {
  public:
   PolledGuard(const DeviceProfile& profile, const Clock& clock);

@@ -1,9 +1,14 @@
 // SpaceMouse and gamepad: rate control, what is sent, faults, probing (X5, N8).
+#include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+
+#include <fcntl.h>
+#include <linux/uinput.h>
 
 #include "device/drivers/evdev_node.h"
 #include "device/drivers/rate_control.h"
@@ -269,6 +274,92 @@ TEST(GamepadTest, WhatIsNoGamepadIsPassedOver) {
                 .error()
                 .message.find("is no gamepad"),
             std::string::npos);
+}
+
+TEST(GamepadTest, ANodeThatCannotBeOpenedIsToldOnlyIfItsKeysMayBeAGamepads) {
+  const WireFolder folder;
+  const std::string node = folder.Path("dev/input/event4");
+  { const auto gone = ListenAt(node, SOCK_SEQPACKET); }  // nobody answers there
+  Surroundings surroundings;
+  surroundings.root = folder.path();
+  EXPECT_EQ(GamepadDriver().Probe(surroundings, false).problems.at(0).where, node);
+  const std::string keys = "sys/class/input/event4/device/capabilities/key";
+  folder.Write(keys, "7cdb000000000000 0 0 0 0\n");  // bits 304 to 318: a gamepad
+  EXPECT_EQ(GamepadDriver().Probe(surroundings, false).problems.at(0).where, node);
+  folder.Write(keys, "402000000 3803078f800d001 feffffdfffefffff fffffffffffffffe\n");  // keyboard
+  EXPECT_EQ(GamepadDriver().Probe(surroundings, false).problems.at(0).message,
+            "no gamepad or joystick is plugged in");
+}
+
+/** A gamepad that the kernel itself believes in. */
+class UinputGamepad {
+ public:
+  UinputGamepad() : uinput_(::open("/dev/uinput", O_RDWR | O_NONBLOCK | O_CLOEXEC)) {}
+
+  [[nodiscard]] bool is_there() const { return uinput_.is_open(); }
+
+  /** The path of its node; empty where the kernel makes none. */
+  std::string Create() {
+    const int file = uinput_.value();
+    ::ioctl(file, UI_SET_EVBIT, EV_KEY);
+    ::ioctl(file, UI_SET_KEYBIT, BTN_SOUTH);
+    for (const int code : {ABS_X, ABS_Y}) {
+      uinput_abs_setup axis{};
+      axis.code = static_cast<std::uint16_t>(code);
+      axis.absinfo.minimum = -100;
+      axis.absinfo.maximum = 100;
+      ::ioctl(file, UI_ABS_SETUP, &axis);
+    }
+    uinput_setup setup{};
+    std::strcpy(setup.name, "EMULATED by a test of HVAS");
+    ::ioctl(file, UI_DEV_SETUP, &setup);
+    ::ioctl(file, UI_DEV_CREATE);
+    char name[64] = "";
+    ::ioctl(file, UI_GET_SYSNAME(sizeof(name)), name);
+    std::error_code failure;
+    const std::filesystem::path folder = std::filesystem::path("/sys/devices/virtual/input") / name;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
+      const std::string node = entry.path().filename().string();
+      if (node.starts_with("event")) {
+        return "/dev/input/" + node;
+      }
+    }
+    return {};
+  }
+
+  void PushRight() const {
+    input_event events[2]{};
+    events[0].type = EV_ABS;
+    events[0].code = ABS_X;
+    events[0].value = 100;
+    (void)!::write(uinput_.value(), events, sizeof(events));
+  }
+
+ private:
+  Descriptor uinput_;
+};
+
+TEST(GamepadTest, AGamepadOfTheKernelMovesThePose) {
+  UinputGamepad gamepad;
+  if (!gamepad.is_there()) {
+    GTEST_SKIP() << "no /dev/uinput here: tested with a socket in place of the kernel alone";
+  }
+  const std::string path = gamepad.Create();
+  VirtualClock clock;
+  Surroundings surroundings;
+  surroundings.clock = &clock;
+  const auto device = GamepadDriver().Open(path, surroundings);
+  if (!device && ::access(path.c_str(), R_OK) != 0) {
+    GTEST_SKIP() << "no node to read: " << device.error().ToString();
+  }
+  ASSERT_TRUE(device) << device.error().ToString();
+  gamepad.PushRight();
+  DeviceState state;
+  for (int i = 0; i < 20; ++i) {
+    clock.Advance(kTickNs);
+    state = (*device)->Read();
+  }
+  EXPECT_GT(state.X_DH.p().x(), 0);
 }
 
 TEST(GamepadTest, WithoutPermissionTheGroupAndTheRuleAreNamed) {
