@@ -124,8 +124,12 @@ Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
       return hand;
     }
   }
-  hand.person = std::make_unique<simulation::SimulatedPerson>(
-      simulation::PersonOptions(), options.seed, simulation::StartOfHand(model));
+  simulation::PersonOptions habits;
+  if (hand.opened.device != nullptr) {
+    habits.push_limit = simulation::PushLimitFor(hand.opened.device->info());
+  }
+  hand.person = std::make_unique<simulation::SimulatedPerson>(habits, options.seed,
+                                                              simulation::StartOfHand(model));
   if (hand.opened.emulator != nullptr) {
     hand.at_device =
         std::make_unique<simulation::PersonAtDevice>(hand.person.get(), hand.opened.emulator.get(),

@@ -19,7 +19,12 @@ constexpr double kFinestScale = 0.2;
 // The tick answers contact by itself, with or without the physics loop; what a late one keeps from
 // happening is the taking up and letting go. A late loop is normal on a loaded machine, a dead one
 // is not.
-constexpr double kModelHold = 0.2;        // [s]
+constexpr double kModelHold = 0.2;  // [s]
+// Continuous forces are what motors stand for a day; they take longer than a press to get warm.
+constexpr double kThermalTime = 10;  // [s]
+// Muscles build up their force in some ten milliseconds: a wish reaches the hand through three
+// such delays, without a jerk.
+constexpr double kMuscleTime = 0.02;      // [s]
 const Vec3 kGripBehindPoint{0, 0, 0.04};  // [m]; where a stylus is held
 
 double ChooseScale(const Model& model) {
@@ -64,7 +69,7 @@ haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info, const Model
   const device::DeviceProfile given = MakeGiven(info);
   options.limits = haptics::MakeSafetyLimits(given);
   options.limits->model_hold = kModelHold;
-  options.limits->kick.hand = 1e3;  // TEMPORARY
+  options.limits->thermal_time = kThermalTime;
   options.controls_passivity = info.capabilities.force_axes > 0;
   const double scale = render.scale > 0 ? render.scale : ChooseScale(model);
   options.workspace.mapping.scale = scale;
@@ -77,6 +82,11 @@ haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info, const Model
     options.p_HG = kGripBehindPoint;
   }
   return options;
+}
+
+double PushLimitFor(const device::DeviceInfo& info) {
+  constexpr double kShare = 0.86;  // above what fits are felt with at most
+  return kShare * MakeRendered(info).max_force;
 }
 
 std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,
@@ -111,20 +121,28 @@ std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,
   return notes;
 }
 
+Vec3 PersonAtDevice::FollowSmoothly(const Vec3& p_DR, double dt) noexcept {
+  Vec3 wanted = p_DR;
+  Vec3 v = Vec3::Zero();
+  for (Vec3& p : muscles_) {
+    v = (wanted - p) / std::max(dt, kMuscleTime);
+    p += dt * v;
+    wanted = p;
+  }
+  return v;
+}
+
 device::DeviceState PersonAtDevice::Step(const OperatorInput& input) noexcept {
   const HandReference reference = person_->Intend(input);
   const PersonOptions& arm = person_->options();
   const Quat q_DW = input.workspace.X_WD.q().conjugate();
   device::HandIntent hand;
   hand.X_DR = haptics::MapPoseToDevice(input.workspace, reference.X_WR);
-  hand.V_DR.v = q_DW * reference.v_R_W / input.workspace.scale;
   // Nobody tears at the stops: at the edge, the border carries the hand on.
   const Vec3 edge = 0.5 * device_->info().profile.workspace;
   const Vec3 within = hand.X_DR.p().cwiseMax(-edge).cwiseMin(edge);
-  if (within != hand.X_DR.p()) {
-    hand.X_DR = {hand.X_DR.q(), within};
-    hand.V_DR.v.setZero();
-  }
+  hand.V_DR.v = FollowSmoothly(within, input.dt);
+  hand.X_DR = {hand.X_DR.q(), muscles_.back()};
   hand.stiffness = arm.stiffness;
   hand.damping = arm.damping;
   hand.mass = arm.mass;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct RenderOptions {
  forces is rendered to as the simulated one would be, and given nothing. */
 [[nodiscard]] haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info,
                                                    const Model& model, const RenderOptions& render);
+
+/** How hard a person presses with a device before giving up: nearly as hard as it pushes back [N].
+ */
+[[nodiscard]] double PushLimitFor(const device::DeviceInfo& info);
 
 /** What a person should know about how this device is rendered to; one sentence each. */
 [[nodiscard]] std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,
@@ -58,10 +63,14 @@ class PersonAtDevice final : public Operator {
   void Apply(const spatial::Wrench& F_H_D) noexcept override { device_->Write(F_H_D); }
 
  private:
+  /** Where the hand is pulled to follows what is wanted without jerks; returns its speed. */
+  Vec3 FollowSmoothly(const Vec3& p_DR, double dt) noexcept;
+
   SimulatedPerson* person_;
   device::Emulator* emulator_;
   device::Device* device_;
   bool is_live_;  ///< The emulator moves its time on by itself.
+  std::array<Vec3, 3> muscles_{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };
 
 }  // namespace hvas::simulation

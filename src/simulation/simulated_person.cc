@@ -38,8 +38,9 @@ constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime = 0.3;       // of a carried weight
 constexpr double kAtHand = 0.01;         // [m]; close enough to take something up
+constexpr double kMostStretch = 0.012;   // [m]; further than the part the hand does not go
 constexpr double kMostLag = 0.05;        // [m]; the mind does not run ahead of the hand
-constexpr double kSenseTime = 0.01;      // in which it notices how fast its hand is
+constexpr double kSenseTime = 0.08;      // in which it notices how fast its hand is
 
 void LimitLength(double most, Vec3* v) {
   *v *= std::min(1.0, most / std::max(v->norm(), most));
@@ -212,7 +213,11 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     push_ = is_careful ? std::min(push_, kCarefulPush) : push_;
     const double lead = LeadOf(input);
     travel_ = std::max(travel_ - wanted_speed * dt_, hand_travel - lead);
-    const bool is_stuck = speed < kStillSpeed && (is_careful || push_ > kFirstPush);
+    // The device may give way where the part does not: the eye tells.
+    const bool is_left_behind = input.sees_part && seen_travel - hand_travel > kMostStretch;
+    travel_ = is_left_behind ? std::max(travel_, seen_travel - kMostStretch) : travel_;
+    const bool is_stuck =
+        is_left_behind || (speed < kStillSpeed && (is_careful || push_ > kFirstPush));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
     if (stuck_time_s_ > (is_careful && is_inside ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
@@ -321,7 +326,9 @@ double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
 }
 
 void SimulatedPerson::LearnLoad(const spatial::Wrench& F_H_W) noexcept {
-  if (phase_ == Phase::kCarry || phase_ == Phase::kGrasp) {
+  // At a device also on the way in: its border pulls where the simulated one has none.
+  if (phase_ == Phase::kCarry || phase_ == Phase::kGrasp ||
+      (is_at_device_ && phase_ == Phase::kApproach)) {
     carried_force_ += (F_H_W.f - carried_force_) * (dt_ / kLearnTime);
   } else if (!is_gripping_) {
     carried_force_ -= carried_force_ * (dt_ / 0.05);
@@ -437,6 +444,7 @@ HandReference SimulatedPerson::Intend(const OperatorInput& input) noexcept {
   const Vec3 v = (input.X_WH.p() - X_WH_.p()) / input.dt;
   V_H_.v += (v - V_H_.v) * std::min(1.0, input.dt / kSenseTime);
   X_WH_ = input.X_WH;
+  is_at_device_ = true;
   Decide(input);
   const Quat& q_WD = input.workspace.X_WD.q();
   LearnLoad({q_WD * input.F_H_D.t, q_WD * input.F_H_D.f});

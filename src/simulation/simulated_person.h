@@ -180,7 +180,8 @@ class SimulatedPerson final : public Operator {
   double look_time_s_{0};  ///< Still to look, after backing off.
   double tremor_phase_[3]{};
   double t_s_{0};
-  double dt_{1e-3};  ///< Of the present sample [s].
+  double dt_{1e-3};           ///< Of the present sample [s].
+  bool is_at_device_{false};  ///< Something else than this arm moves the hand.
 };
 
 }  // namespace hvas::simulation
