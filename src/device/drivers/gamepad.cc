@@ -243,6 +243,7 @@ std::vector<std::filesystem::path> FindNodes(const std::filesystem::path& root) 
   }
   std::sort(nodes.begin(), nodes.end());
   std::vector<std::filesystem::path> paths;
+  paths.reserve(nodes.size());
   for (auto& [number, path] : nodes) {
     paths.push_back(std::move(path));
   }

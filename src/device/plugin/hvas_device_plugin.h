@@ -18,6 +18,7 @@ extern "C" {
    members are added at the end of a struct, and `size` tells whether they are there. */
 #define HVAS_DEVICE_PLUGIN_VERSION 1u
 
+/* NOLINTBEGIN(readability-identifier-naming): names as is usual in C. */
 /* What read() found. In all but the first, HVAS gives no force. */
 enum HvasDeviceStatus {
   HVAS_DEVICE_READY = 0,          /* a new sample; force is shown */
@@ -38,6 +39,7 @@ enum HvasDeviceFlags {
   HVAS_DEVICE_HAS_EMERGENCY_STOP = 8,
   HVAS_DEVICE_IS_EMULATED = 16
 };
+/* NOLINTEND(readability-identifier-naming) */
 
 /* What a device is and can do. HVAS fills it with its defaults first: leave alone what you do not
    know. */
