@@ -1,11 +1,10 @@
 // Packets of the network device: bytes from anybody, and bytes that somebody with the key signed.
-#include "device/drivers/network_protocol.h"
-
 #include <cstddef>
 #include <cstring>
 #include <span>
 #include <string>
 
+#include "device/drivers/network_protocol.h"
 #include "fuzz/target.h"
 
 namespace hvas::fuzz {
@@ -35,8 +34,7 @@ void ReadAll(const Opened& opened) {
   WrenchPacket wrench;
   Bye bye;
   const int readable = static_cast<int>(Read(opened, &hello)) + Read(opened, &welcome) +
-                       Read(opened, &state) + Read(opened, &wrench) +
-                       Read(opened, &bye);
+                       Read(opened, &state) + Read(opened, &wrench) + Read(opened, &bye);
   Check(readable <= (opened.refusal == Refusal::kNone ? 1 : 0));
   if (Read(opened, &hello) && IsPlausible(hello)) {
     const device::DeviceInfo info = InfoOf(hello, "");

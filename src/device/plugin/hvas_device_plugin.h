@@ -39,6 +39,7 @@ enum HvasDeviceFlags {
   HVAS_DEVICE_HAS_EMERGENCY_STOP = 8,
   HVAS_DEVICE_IS_EMULATED = 16
 };
+
 /* NOLINTEND(readability-identifier-naming) */
 
 /* What a device is and can do. HVAS fills it with its defaults first: leave alone what you do not

@@ -12,6 +12,7 @@ const struct HvasDevicePlugin* hvas_device_plugin(uint32_t host_version) {
 }
 #else
 int something_else(void);
+
 int something_else(void) {
   return 1;
 }

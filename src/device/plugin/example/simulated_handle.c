@@ -1,6 +1,6 @@
-/* An example of a plug-in: a handle of some mass that slides with friction, moved by nothing but the
-   force that HVAS gives it. Each read() is one millisecond. A plug-in for a real device asks its
-   encoders instead.
+/* An example of a plug-in: a handle of some mass that slides with friction, moved by nothing but
+   the force that HVAS gives it. Each read() is one millisecond. A plug-in for a real device asks
+   its encoders instead.
 
    Argument: the handle's mass in kg, 0.1 when there is none. */
 #include <stdio.h>
@@ -10,8 +10,8 @@
 #include "hvas_device_plugin.h"
 
 static const double kStep_s = 1e-3;
-static const double kDamping = 2.0;    /* [N s/m] */
-static const double kMaxForce = 5.0;   /* [N] */
+static const double kDamping = 2.0;   /* [N s/m] */
+static const double kMaxForce = 5.0;  /* [N] */
 static const int kWatchdogReads = 20; /* without a write(), the force goes to zero */
 
 struct Handle {
@@ -29,7 +29,8 @@ static void* Open(const char* argument, char* error, uint32_t error_size) {
     mass = strtod(argument, &end);
     if (*end != '\0' || !(mass >= 0.01 && mass <= 10)) {
       snprintf(error, error_size,
-               "the mass \"%s\" is none; give one of 0.01 to 10 kg, as in plugin:FILE?0.2", argument);
+               "the mass \"%s\" is none; give one of 0.01 to 10 kg, as in plugin:FILE?0.2",
+               argument);
       return NULL;
     }
   }
@@ -82,8 +83,13 @@ static void Write(void* device, const struct HvasDeviceWrench* wrench) {
 }
 
 const struct HvasDevicePlugin* hvas_device_plugin(uint32_t host_version) {
-  static const struct HvasDevicePlugin plugin = {
-      sizeof(struct HvasDevicePlugin), HVAS_DEVICE_PLUGIN_VERSION, Open, Close, Describe, Read, Write};
+  static const struct HvasDevicePlugin plugin = {sizeof(struct HvasDevicePlugin),
+                                                 HVAS_DEVICE_PLUGIN_VERSION,
+                                                 Open,
+                                                 Close,
+                                                 Describe,
+                                                 Read,
+                                                 Write};
   (void)host_version;
   return &plugin;
 }
