@@ -67,7 +67,7 @@ class Rig {
 
   DeviceState Tick(const Law& law = nullptr) {
     emulator_->Advance(kTickNs);
-    const DeviceState state = device_->Read();
+    DeviceState state = device_->Read();
     device_->Write(law != nullptr ? law(state) : spatial::Wrench());
     return state;
   }
