@@ -30,12 +30,13 @@ struct TrialState {
   std::uint32_t gate_actions{0};
 };
 
-/** A floor at z = 0 of D, felt through passivity control and the gate. */
+/** A horizontal floor through D's origin, felt through passivity control and the gate. */
 class FloorTrial {
  public:
   FloorTrial(device::Device* device, double rate_hz)
       : device_(device),
         dt_(1 / rate_hz),
+        up_D_(device->info().profile.q_UD.conjugate() * Vec3::UnitZ()),
         gains_(haptics::ChooseCoupling(device->info().profile, 1, dt_)),
         passivity_(haptics::MakePassivityController(device->info().profile, dt_)),
         gate_(haptics::MakeSafetyLimits(device->info().profile)) {}
@@ -44,10 +45,10 @@ class FloorTrial {
     TrialState& state = states_.back();
     state.device = device_->Read();
     const device::DeviceState& now = state.device;
-    const double depth = -now.X_DH.p().z();
+    const double depth = -up_D_.dot(now.X_DH.p());
     spatial::Wrench F;
     if (now.is_valid && depth > 0) {
-      F.f.z() = std::max(0.0, gains_.k_lin * depth - gains_.b_lin * now.V_DH.v.z());
+      F.f = std::max(0.0, gains_.k_lin * depth - gains_.b_lin * up_D_.dot(now.V_DH.v)) * up_D_;
     }
     haptics::GateInput input;
     input.F = passivity_.Limit(now.X_DH, F, std::numeric_limits<double>::quiet_NaN(), 0, dt_);
@@ -76,6 +77,7 @@ class FloorTrial {
  private:
   device::Device* device_;
   double dt_;
+  Vec3 up_D_;
   haptics::CouplingGains gains_;
   haptics::PassivityController passivity_;
   haptics::SafetyGate gate_;
@@ -84,8 +86,9 @@ class FloorTrial {
 
 /** The hand of an emulated device: goes up and down through the floor, slowly. */
 void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
+  const Vec3 up_D = device->profile().q_UD.conjugate() * Vec3::UnitZ();
   device::HandIntent hand;
-  hand.X_DR = spatial::Pose(Vec3(0, 0, 0.015 * std::cos(std::numbers::pi * t_s)));
+  hand.X_DR = spatial::Pose(Vec3(0.015 * std::cos(std::numbers::pi * t_s) * up_D));
   device->SetHand(hand);
 }
 

@@ -67,6 +67,33 @@ Result<const json*> FindFigure(const json& figures, const std::string& key,
   return &(*found)["value"];
 }
 
+/** Which way an axis as "-z" points in D; zero for another text. */
+Vec3 ParseAxis(const json& text) {
+  const std::string axis = text.is_string() ? text.get<std::string>() : std::string();
+  if (axis.size() != 2 || (axis[0] != '+' && axis[0] != '-') || axis[1] < 'x' || axis[1] > 'z') {
+    return Vec3::Zero();
+  }
+  return (axis[0] == '+' ? 1 : -1) * Vec3::Unit(axis[1] - 'x');
+}
+
+Result<void> ReadAxes(const json& document, const std::string& where, SourcedProfile* profile) {
+  constexpr const char* kAxes = "axes";
+  const auto value = FindFigure(document, kAxes, where, profile);
+  if (!value) {
+    return Unexpected(value.error());
+  }
+  const json& axes = **value;
+  Mat3 R_UD = Mat3::Zero();
+  for (std::size_t k = 0; k < 3 && axes.is_array() && axes.size() == 3; ++k) {
+    R_UD.row(static_cast<Eigen::Index>(k)) = ParseAxis(axes[k]).transpose();
+  }
+  if (std::abs(R_UD.determinant() - 1) > 1e-9) {
+    return Invalid(where, kAxes, "must be three axes as in [\"+x\", \"-z\", \"+y\"], right-handed");
+  }
+  profile->profile.q_UD = Quat(R_UD);
+  return {};
+}
+
 Result<void> ReadFigures(const json& figures, const std::string& where, SourcedProfile* profile) {
   for (const Figure& figure : kFigures) {
     const auto value = FindFigure(figures, figure.key, where, profile);
@@ -148,6 +175,9 @@ Result<SourcedProfile> ParseProfile(std::string_view text, const std::string& wh
     return Invalid(where, "models", "must list what the device calls itself");
   }
   result.models = models.get<std::vector<std::string>>();
+  if (const auto read = ReadAxes(document, where, &result); !read) {
+    return Unexpected(read.error());
+  }
   const json figures = document.value("figures", json());
   if (!figures.is_object()) {
     return Invalid(where, "figures", "is missing");

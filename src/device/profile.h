@@ -26,15 +26,17 @@ struct DeviceProfile {
   double max_rotational_damping{0.02};  ///< [N m s/rad]
   double position_resolution{23e-6};    ///< [m]
   double rotation_resolution{1e-3};     ///< [rad]
-  Vec3 workspace{0.16, 0.12, 0.12};     ///< Edges of the usable box, centred at D's origin [m].
-  double rate_hz{1000};                 ///< Of its servo.
-  double mass{0.1};                     ///< Felt at the handle [kg].
-  double inertia{2e-4};                 ///< The same, about the handle's point [kg m^2].
-  double damping{0.3};                  ///< Of the mechanism alone [N s/m].
-  double rotational_damping{5e-4};      ///< [N m s/rad]
-  double friction{0.06};                ///< Coulomb's, of the mechanism [N].
-  double rotational_friction{1e-3};     ///< [N m]
-  double delay{1e-3};                   ///< From a sample to the force that answers it [s].
+  /** The device's base frame D in the user's U: x to the right, y away, z up. */
+  Quat q_UD{Quat::Identity()};
+  Vec3 workspace{0.16, 0.12, 0.12};  ///< Edges of the usable box, centred at D's origin [m].
+  double rate_hz{1000};              ///< Of its servo.
+  double mass{0.1};                  ///< Felt at the handle [kg].
+  double inertia{2e-4};              ///< The same, about the handle's point [kg m^2].
+  double damping{0.3};               ///< Of the mechanism alone [N s/m].
+  double rotational_damping{5e-4};   ///< [N m s/rad]
+  double friction{0.06};             ///< Coulomb's, of the mechanism [N].
+  double rotational_friction{1e-3};  ///< [N m]
+  double delay{1e-3};                ///< From a sample to the force that answers it [s].
 };
 
 /** Where a figure of a profile is from. */

@@ -73,7 +73,9 @@ haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info, const Model
   options.controls_passivity = info.capabilities.force_axes > 0;
   const double scale = render.scale > 0 ? render.scale : ChooseScale(model);
   options.workspace.mapping.scale = scale;
-  options.workspace.mapping.X_WD = StartOfHand(model);
+  const Quat& q_UD = info.profile.q_UD;  // the user sits as the scene stands
+  options.workspace.mapping.X_WD = {q_UD, StartOfHand(model).p()};
+  options.workspace.mapping.q_index = q_UD.conjugate();
   options.workspace.box = info.profile.workspace;
   options.workspace.border_speed *= std::max(1.0, scale);
   options.workspace.border_force = std::min(options.workspace.border_force, 0.3 * given.max_force);

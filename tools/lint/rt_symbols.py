@@ -27,7 +27,8 @@ FORBIDDEN = re.compile(
 # Hold nothing but real-time code: room/file.
 TICK_ONLY = """
     contact/kernel_avx2 contact/kernel_scalar contact/pool contact/query contact/reduce contact/refine contact/slide
-    haptics/constraint_solver haptics/force_map haptics/mate_guide haptics/safety_gate
+    haptics/buzz_detector haptics/constraint_solver haptics/force_map haptics/kick_detector haptics/mate_guide
+    haptics/passivity_controller haptics/safety_gate haptics/thermal_limit haptics/workspace
     mates/capture mates/resolve spatial/pose spatial/surface
 """.split()
 
@@ -35,6 +36,13 @@ TICK_ONLY = """
 ROOTS = [
     r"hvas::simulation::Simulation::HapticTick\(.*",
     r"hvas::simulation::SimulatedPerson::Step\(.*",  # virtual: the operator of a headless run
+    r"hvas::simulation::SimulatedPerson::Intend\(.*",
+    r"hvas::simulation::DeviceOperator::(Step|Apply)\(.*",
+    r"hvas::device::(VendorDevice|NetworkDevice)::(Read|Write)\(.*",  # virtual, as those below
+    r"hvas::device::\(anonymous namespace\)::(Hd|Dhd|Virt)Device::(ReadVendor|WriteVendor|Tick)\(.*",
+    r"hvas::device::\(anonymous namespace\)::(Gamepad|SpaceMouse|Inverse3|PluginDevice)::(Read|Write)\(.*",
+    r"hvas::device::SampleGuard::\w+\(.*",
+    r"hvas::simulation::FlightRecorder::(Keep|Trigger)\(.*",
     r"hvas::simulation::AssemblyRun::OnTick\(.*",  # virtual: the sink of every run
     r"hvas::app::.*OnTick\(.*",  # virtual: the sink that records
     r"hvas::haptics::HapticTick::(Tick|Take|Drop)\(.*",
@@ -64,8 +72,10 @@ def demangle(names):
 def find_objects(build):
     """Object files of the rooms' libraries by room/file."""
     objects = {}
-    for path in sorted((build / "src").glob("*/CMakeFiles/hvas_*.dir/*.o")):
-        objects[f"{path.parts[-4]}/{path.name.split('.')[0]}"] = path
+    for path in sorted((build / "src").glob("*/CMakeFiles/hvas_*.dir/**/*.o")):
+        room, folder = path.relative_to(build / "src").parts[0], path.parent.name
+        inner = "" if folder.endswith(".dir") else f"{folder}/"
+        objects[f"{room}/{inner}{path.name.split('.')[0]}"] = path
     return objects
 
 

@@ -6,7 +6,7 @@ target_sources(hvas_device PRIVATE
 target_link_libraries(hvas_device PRIVATE Threads::Threads ${CMAKE_DL_LIBS})
 
 set(HVAS_STUB_FOLDER ${CMAKE_CURRENT_BINARY_DIR}/emulation)
-target_sources(hvas_device_emulation PRIVATE emulation/library_emulator.cc)
+target_sources(hvas_device PRIVATE emulation/library_emulator.cc)
 set_source_files_properties(emulation/library_emulator.cc PROPERTIES
   COMPILE_DEFINITIONS HVAS_STUB_FOLDER="${HVAS_STUB_FOLDER}")
 
@@ -22,7 +22,7 @@ function(hvas_stub name file folder source)
     # The types of an EmulatedPort are told apart by addresses, which hidden symbols have twice.
     target_compile_options(${name} PRIVATE -fno-sanitize=vptr)
   endif()
-  add_dependencies(hvas_device_emulation ${name})
+  add_dependencies(hvas_device ${name})
 endfunction()
 
 hvas_stub(hvas_stub_openhaptics libHD.so ${HVAS_STUB_FOLDER} emulation/stub_openhaptics.cc)
@@ -37,10 +37,10 @@ set_target_properties(hvas_stub_dependency PROPERTIES
 hvas_stub(hvas_stub_needy libHD.so ${HVAS_STUB_FOLDER}/needy emulation/stub_needy.cc)
 target_link_libraries(hvas_stub_needy PRIVATE hvas_stub_dependency)
 
-hvas_test(library_faults_test SOURCES test/library_faults_test.cc DEPS hvas::device_emulation)
-hvas_test(library_loading_test SOURCES test/library_loading_test.cc DEPS hvas::device_emulation)
-hvas_test(openhaptics_test SOURCES test/openhaptics_test.cc DEPS hvas::device_emulation)
-hvas_test(force_dimension_test SOURCES test/force_dimension_test.cc DEPS hvas::device_emulation)
-hvas_test(virtuose_test SOURCES test/virtuose_test.cc DEPS hvas::device_emulation)
-hvas_test(library_live_test SOURCES test/library_live_test.cc DEPS hvas::device_emulation
+hvas_test(library_faults_test SOURCES test/library_faults_test.cc DEPS hvas::device)
+hvas_test(library_loading_test SOURCES test/library_loading_test.cc DEPS hvas::device)
+hvas_test(openhaptics_test SOURCES test/openhaptics_test.cc DEPS hvas::device)
+hvas_test(force_dimension_test SOURCES test/force_dimension_test.cc DEPS hvas::device)
+hvas_test(virtuose_test SOURCES test/virtuose_test.cc DEPS hvas::device)
+hvas_test(library_live_test SOURCES test/library_live_test.cc DEPS hvas::device
           LABELS "unit;thread")

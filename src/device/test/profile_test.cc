@@ -16,7 +16,7 @@ TEST(ProfileTest, KnownProfilesAreReadWithTheirSources) {
   for (const SourcedProfile& profile : KnownProfiles()) {
     SCOPED_TRACE(profile.profile.id);
     EXPECT_TRUE(ids.insert(profile.profile.id).second);
-    EXPECT_EQ(profile.sources.size(), 19u);
+    EXPECT_EQ(profile.sources.size(), 20u);
     for (const auto& [key, source] : profile.sources) {
       EXPECT_FALSE(source.source.empty()) << key;
     }
@@ -26,6 +26,10 @@ TEST(ProfileTest, KnownProfilesAreReadWithTheirSources) {
   EXPECT_EQ(desktop->profile.max_force, 7.9);  // paper W's device
   EXPECT_EQ(desktop->profile.max_stiffness, 1000);
   EXPECT_EQ(FindProfile("touch")->profile.max_force, 3.3);
+  // What is up for the device is up for the user.
+  EXPECT_LT((desktop->profile.q_UD * Vec3::UnitY() - Vec3::UnitZ()).norm(), 1e-15);
+  EXPECT_LT((desktop->profile.q_UD * Vec3::UnitZ() + Vec3::UnitY()).norm(), 1e-15);
+  EXPECT_LT((FindProfile("sigma7")->profile.q_UD * Vec3::UnitX() + Vec3::UnitY()).norm(), 1e-15);
   EXPECT_EQ(FindProfile("no such thing"), nullptr);
   EXPECT_EQ(FindProfileOfModel("openhaptics", "omega.7"), nullptr);
 }
@@ -53,6 +57,8 @@ TEST(ProfileTest, WhatIsWrongIsNamed) {
   expect_error(Changed("\"value\": 20,", "\"value\": \"20\","), "max_force_n");
   expect_error(Changed("\"value\": 20,", "\"value\": 2,"), "above its peak");
   expect_error(Changed("[0.26, 0.26, 0.26]", "[0.26, 0.26]"), "workspace_m");
+  expect_error(Changed("\"+y\", \"-x\"", "\"+y\", \"+x\""), "axes");
+  expect_error(Changed("\"+y\", \"-x\"", "\"+y\""), "axes");
   expect_error(Changed("\"verified\": false", "\"verified\": 1"), "verified");
 }
 
