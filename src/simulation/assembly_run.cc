@@ -182,9 +182,9 @@ void AssemblyRun::Advance() {
     is_assigned_ = false;
     FinishStep(steps[next_step_++]);
   }
-  for (; next_step_ < steps.size(); ++next_step_) {
+  for (; next_step_ < std::min(end_step_, steps.size()); ++next_step_) {
     const SequenceStep& step = steps[next_step_];
-    if (step.kind == SequenceStep::Kind::kBase) {
+    if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
       simulation_->PlaceInFixture(step.occurrence);
       Update(step.occurrence);
       ResultOf(step.occurrence).note = DescribeOverlaps(step.occurrence);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,6 +52,12 @@ class AssemblyRun final : public Sink {
   void OnEvent(const SimulationEvent& event) override;
   void OnFlight(const std::vector<FlightTick>& ticks) override;
 
+  /** Before it begins: only these steps of the sequence; what comes before them is in place. */
+  void Only(std::size_t first, std::size_t count) {
+    first_step_ = first;
+    end_step_ = first + count;
+  }
+
   /** After every physics step, on its thread: gives the person the next part. */
   void Advance();
 
@@ -75,6 +82,8 @@ class AssemblyRun final : public Sink {
   Sink* downstream_;
   std::vector<PartResult> results_;
   std::size_t next_step_{0};
+  std::size_t first_step_{0};
+  std::size_t end_step_{std::numeric_limits<std::size_t>::max()};
   std::size_t total_{0};
   bool is_assigned_{false};
   int finished_before_{0};

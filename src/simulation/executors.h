@@ -69,8 +69,11 @@ struct Execution {
   FlightRecorder* flight{nullptr};             ///< May be null.
   TickLog* log{nullptr};                       ///< The one that the simulation keeps; may be null.
   std::function<void(const Frame&)> on_frame;  ///< On the publish thread; realtime only.
-  bool sheds_load{true};                       ///< Realtime only.
-  bool is_live{false};                         ///< Set by the executor.
+  /** Lockstep only: the physics loop misses its step at this time [ns], as a thread that the system
+   keeps waiting; null: never. */
+  std::function<bool(std::int64_t)> is_physics_late;
+  bool sheds_load{true};  ///< Realtime only.
+  bool is_live{false};    ///< Set by the executor.
 };
 
 /** Virtual time on the calling thread: bit for bit repeatable, faster than real time. */
