@@ -14,7 +14,7 @@ class SampleGuard {
   static constexpr double kMaxSpeed = 5;      ///< [m/s]
   static constexpr double kMaxTurnRate = 60;  ///< [rad/s]
   /** Without a new sample for so long a device is stale. */
-  static constexpr std::int64_t kStaleNs = 4'000'000;
+  static constexpr std::int64_t kStaleNs = 3'500'000;
   /** After an implausible sample it has to be plausible for so long to be believed again. */
   static constexpr std::int64_t kSettleNs = 50'000'000;
 

@@ -171,7 +171,9 @@ void SafetyGate::Watch(const GateInput& input) noexcept {
   if (!limits_.has_detectors || !(input.dt > 0) || !std::isfinite(input.dt)) {
     return;
   }
-  if (!IsUsable(input)) {
+  // A hand that had no force, or another one, finds itself again first; the force is small then.
+  constexpr double kFindsItself = 0.3;  // of the soft start
+  if (!IsUsable(input) || start_progress_ < kFindsItself) {
     kick_.Reset();
     buzz_.Reset();
     turn_buzz_.Reset();

@@ -55,9 +55,7 @@ class DirectDevice final : public device::Device {
     state.buttons = sample.buttons;
     state.is_gripping = (sample.buttons & 1) != 0;
     state.is_clutching = (sample.buttons & 2) != 0;
-    state.condition = sample.is_stopped   ? device::Condition::kStopped
-                      : sample.is_holding ? device::Condition::kReady
-                                          : device::Condition::kNotHeld;
+    state.condition = Judge(sample);
     return state_ = guard_.Accept(state);
   }
 
@@ -66,6 +64,19 @@ class DirectDevice final : public device::Device {
   }
 
  private:
+  static device::Condition Judge(const device::EmulatedSample& sample) noexcept {
+    if (sample.is_stopped) {
+      return device::Condition::kStopped;
+    }
+    if (sample.fault == device::Fault::kCalibrationLost) {
+      return device::Condition::kNotCalibrated;
+    }
+    if (sample.fault == device::Fault::kForceRefused) {
+      return device::Condition::kNoForce;
+    }
+    return sample.is_holding ? device::Condition::kReady : device::Condition::kNotHeld;
+  }
+
   device::EmulatedDevice* emulated_;
   device::SampleGuard guard_;
   device::DeviceInfo info_;
