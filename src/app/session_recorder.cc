@@ -28,8 +28,17 @@ const char* ToString(simulation::SimulationEvent::Kind kind) {
       return "device";
     case simulation::SimulationEvent::Kind::kEffort:
       return "effort";
+    case simulation::SimulationEvent::Kind::kEnergy:
+      return "energy";
   }
   return "unknown";
+}
+
+nlohmann::ordered_json ToJson(const haptics::PassivityAccount& account) {
+  return {{"in_j", account.in},
+          {"out_j", account.out},
+          {"credited_j", account.credited},
+          {"withheld_j", account.withheld}};
 }
 
 }  // namespace
@@ -82,6 +91,9 @@ void SessionRecorder::OnEvent(const simulation::SimulationEvent& event) {
     details["vendor_code"] = event.vendor_code;
   } else if (event.kind == simulation::SimulationEvent::Kind::kEffort) {
     details["level"] = event.effort_level;
+  } else if (event.kind == simulation::SimulationEvent::Kind::kEnergy) {
+    details["force"] = ToJson(event.energy);
+    details["torque"] = ToJson(event.turning_energy);
   }
   recorder_->AddEvent({event.t_ns, ToString(event.kind), event.occurrence.value(), details.dump()});
 }

@@ -231,6 +231,7 @@ void Simulation::PhysicsStep(Sink* sink) {
       }
     }
   }
+  TellOfEnergy(sink);
   Frame& frame = frames_.back();
   frame.t_ns = reports_.value().t_ns;
   frame.tick = reports_.value().out;
@@ -244,6 +245,22 @@ void Simulation::PhysicsStep(Sink* sink) {
     }
   }
   frames_.Publish();
+}
+
+void Simulation::TellOfEnergy(Sink* sink) {
+  const Report& report = reports_.value();
+  if (!options_.controls_passivity || sink == nullptr || report.t_ns < next_energy_ns_) {
+    return;
+  }
+  next_energy_ns_ = report.t_ns + 1'000'000'000;
+  SimulationEvent event;
+  event.t_ns = report.t_ns;
+  event.kind = SimulationEvent::Kind::kEnergy;
+  event.occurrence = report.out.occurrence;
+  event.state = report.out.state;
+  event.energy = report.out.energy;
+  event.turning_energy = report.out.turning_energy;
+  sink->OnEvent(event);
 }
 
 const Frame& Simulation::Publish() {

@@ -43,6 +43,7 @@ struct SimulationEvent {
     kSafety,  ///< The gate began to do something.
     kDevice,  ///< The device's condition changed.
     kEffort,  ///< The tick does less, or more again.
+    kEnergy,  ///< Once a second with a device: what went to the hand and came from it.
   };
   std::int64_t t_ns{0};
   Kind kind{Kind::kState};
@@ -55,6 +56,8 @@ struct SimulationEvent {
   device::Condition condition{device::Condition::kReady};  ///< kDevice
   std::int32_t vendor_code{0};                             ///< kDevice
   int effort_level{0};                                     ///< kEffort
+  haptics::PassivityAccount energy;                        ///< kEnergy, of forces
+  haptics::PassivityAccount turning_energy;                ///< kEnergy, of torques
 };
 
 /** Receives what the loops produce. OnTick runs on the haptic thread and must be RT-safe; OnEvent
@@ -176,6 +179,7 @@ class Simulation {
   void TellOfSafety(const device::DeviceState& device, const haptics::TickOutput& out) noexcept;
   void Measure(const haptics::TickOutput& out) noexcept;
   void HandleEvent(const SimulationEvent& event);
+  void TellOfEnergy(Sink* sink);
   void TakeNearest(const Vec3& p_WH);
   void Take(const SequenceStep& step);
   [[nodiscard]] SequenceStep StepOf(product::OccurrenceId id) const;
@@ -216,6 +220,7 @@ class Simulation {
   SequenceStep held_step_;
   std::optional<SequenceStep> prepared_;
   bool is_waiting_for_grip_to_open_{false};
+  std::int64_t next_energy_ns_{0};
 };
 
 }  // namespace hvas::simulation

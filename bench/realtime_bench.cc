@@ -1,0 +1,218 @@
+// Does the haptic loop keep its deadlines on this machine, hour by hour? The simulated person
+// assembles a product again and again in real time, with somebody watching (every frame is packed
+// as a viewer would get it) and another thread that keeps a core busy. Prints wake-up, compute and
+// age of the frames; runs every session again in virtual time, and counts a tick that took longer
+// than its period as ours when it is slow again then: the host of a virtual machine takes the
+// processor away for milliseconds, and its time is charged to the thread.
+
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/latency_json.h"
+#include "app/load_product.h"
+#include "base/clock.h"
+#include "simulation/assembly_run.h"
+#include "simulation/executors.h"
+
+namespace hvas {
+namespace {
+
+using simulation::Model;
+
+struct BenchOptions {
+  std::string file;
+  double seconds{600};
+  double rate_hz{1000};
+  bool is_alone{false};
+};
+
+/** All that is told about the time that ticks took. */
+struct Totals {
+  LatencyHistogram compute, wake_up, frame_age, replayed;
+  std::uint64_t ticks{0}, late{0}, missed{0}, overruns{0}, ours{0}, different{0}, frame_bytes{0};
+  std::uint64_t ticks_at_level[simulation::kEffortLevels.size()]{};
+  std::string scheduling;
+};
+
+/** Keeps a core busy until it is told to stop. */
+class BusyThread {
+ public:
+  BusyThread() : thread_([this] { Work(); }) {}
+
+  ~BusyThread() {
+    is_stopping_ = true;
+    thread_.join();
+  }
+
+  BusyThread(const BusyThread&) = delete;
+  BusyThread& operator=(const BusyThread&) = delete;
+
+ private:
+  void Work() {
+    volatile double x = 1;
+    while (!is_stopping_.load(std::memory_order_relaxed)) {
+      for (int i = 0; i < 100'000; ++i) {
+        x = x * 1.0000001 + 1e-9;
+      }
+    }
+  }
+
+  std::atomic<bool> is_stopping_{false};
+  std::thread thread_;
+};
+
+/** The bytes of a frame that a viewer gets: a pose for each part that has moved. */
+class FramePacker {
+ public:
+  std::size_t Pack(const simulation::Frame& frame) {
+    bytes_.clear();
+    const auto add = [this](double value) {
+      const auto number = static_cast<float>(value);
+      const auto* raw = reinterpret_cast<const std::byte*>(&number);
+      bytes_.insert(bytes_.end(), raw, raw + sizeof(number));
+    };
+    last_.resize(frame.X_WB.size());
+    for (std::size_t i = 0; i < frame.X_WB.size(); ++i) {
+      const spatial::Pose& X = frame.X_WB[i];
+      if (X.p() == last_[i].p() && X.q().coeffs() == last_[i].q().coeffs()) {
+        continue;
+      }
+      last_[i] = X;
+      add(static_cast<double>(i));
+      for (int k = 0; k < 3; ++k) {
+        add(X.p()[k]);
+      }
+      for (int k = 0; k < 4; ++k) {
+        add(X.q().coeffs()[k]);
+      }
+    }
+    return bytes_.size();
+  }
+
+ private:
+  std::vector<std::byte> bytes_;
+  std::vector<spatial::Pose> last_;
+};
+
+/** Runs the session's ticks again and looks at those that took too long. */
+void Replay(const std::shared_ptr<const Model>& model, const haptics::TickOptions& options,
+            const simulation::TickLog& log, Totals* totals) {
+  simulation::Simulation again(model, options);
+  const std::int64_t period_ns = std::llround(1e9 * options.dt);
+  for (std::size_t i = 0; i < log.tick_count(); ++i) {
+    const std::int64_t start_ns = ThreadCpuNs();
+    const haptics::TickOutput out = again.ReplayTick(log, i);
+    const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
+    totals->replayed.Add(compute_ns);
+    totals->different += out.F_H_D.f == log.tick(i).F_H_D.f ? 0 : 1;
+    totals->ours += log.tick(i).compute_ns > period_ns && compute_ns > period_ns ? 1 : 0;
+  }
+}
+
+void RunSession(const std::shared_ptr<const Model>& model, const BenchOptions& bench,
+                std::uint64_t seed, double limit_s, Totals* totals) {
+  haptics::TickOptions options;
+  options.dt = 1 / bench.rate_hz;
+  simulation::TickLog log(static_cast<std::size_t>(bench.rate_hz * limit_s) + 1000);
+  simulation::Simulation simulation(model, options);
+  simulation.KeepLog(&log);
+  simulation::SimulatedPerson person({}, seed, simulation::StartOfHand(*model));
+  simulation::AssemblyRun run(&simulation, &person, nullptr);
+  simulation::FlightRecorder flight(bench.rate_hz);
+  FramePacker packer;
+  simulation::Execution execution;
+  execution.simulation = &simulation;
+  execution.hand = &person;
+  execution.sink = &run;
+  execution.advance = [&run] { run.Advance(); };
+  execution.is_done = [&run] { return run.is_done(); };
+  execution.limit_ns = std::llround(1e9 * limit_s);
+  execution.flight = &flight;
+  execution.log = &log;
+  execution.on_frame = [&](const simulation::Frame& frame) {
+    totals->frame_bytes += packer.Pack(frame);
+  };
+  const simulation::ExecutionReport report = RunRealtime(execution);
+  totals->compute.Merge(report.compute);
+  totals->wake_up.Merge(report.wake_up);
+  totals->frame_age.Merge(report.frame_age);
+  totals->ticks += report.ticks;
+  totals->late += report.late_wake_ups;
+  totals->missed += report.missed_periods;
+  totals->overruns += report.overruns;
+  for (std::size_t level = 0; level < report.ticks_at_level.size(); ++level) {
+    totals->ticks_at_level[level] += report.ticks_at_level[level];
+  }
+  totals->scheduling = report.scheduling;
+  Replay(model, options, log, totals);
+}
+
+void Print(const Totals& totals, double wall_s) {
+  fmt::print("{} ticks in {:.0f} s of real time; {}\n", totals.ticks, wall_s, totals.scheduling);
+  app::PrintLatencyHistogram("compute of a tick", totals.compute);
+  app::PrintLatencyHistogram("the same ticks in virtual time", totals.replayed);
+  app::PrintLatencyHistogram("wake-up after the deadline", totals.wake_up);
+  app::PrintLatencyHistogram("age of a frame when it is published", totals.frame_age);
+  fmt::print("late wake-ups (more than a period): {}, periods passed over: {}\n", totals.late,
+             totals.missed);
+  fmt::print("ticks that computed longer than a period: {}, of which ours (slow again): {}\n",
+             totals.overruns, totals.ours);
+  fmt::print("ticks at effort level 0, 1, 2, 3: {}, {}, {}, {}\n", totals.ticks_at_level[0],
+             totals.ticks_at_level[1], totals.ticks_at_level[2], totals.ticks_at_level[3]);
+  fmt::print("ticks that gave another force when run again: {}; frames: {:.1f} kB/s\n",
+             totals.different, 1e-3 * static_cast<double>(totals.frame_bytes) / wall_s);
+}
+
+int RunBench(const BenchOptions& bench) {
+  app::LoadOptions load;
+  load.file = bench.file;
+  load.is_quiet = true;
+  Diagnostics diagnostics;
+  auto product = app::LoadProduct(load, &diagnostics);
+  if (!product) {
+    fmt::print(stderr, "realtime_bench: {}\n", product.error().ToString());
+    return 1;
+  }
+  const auto model = simulation::Compile(std::make_shared<product::Product>(std::move(*product)),
+                                         {}, &diagnostics);
+  if (!model) {
+    fmt::print(stderr, "realtime_bench: {}\n", model.error().ToString());
+    return 1;
+  }
+  Totals totals;
+  double wall_s = 0;
+  for (std::uint64_t seed = 1; wall_s < bench.seconds; ++seed) {
+    const std::int64_t start_ns = MonotonicNs();
+    {
+      const auto busy = bench.is_alone ? nullptr : std::make_unique<BusyThread>();
+      RunSession(*model, bench, seed, bench.seconds - wall_s, &totals);
+    }
+    wall_s = static_cast<double>(totals.ticks) / bench.rate_hz;
+    fmt::print(stderr, "session {}: {:.0f} s, replayed; {:.0f} of {:.0f} s done\n", seed,
+               1e-9 * static_cast<double>(MonotonicNs() - start_ns), wall_s, bench.seconds);
+  }
+  Print(totals, wall_s);
+  return totals.ours == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace hvas
+
+int main(int argc, char** argv) {
+  CLI::App app("realtime_bench: the haptic loop in real time, and its slow ticks again");
+  hvas::BenchOptions bench;
+  app.add_option("file", bench.file, "Product, as products/gear_pump.step")->required();
+  app.add_option("--seconds", bench.seconds, "Of real time");
+  app.add_option("--rate", bench.rate_hz, "Of the loop [Hz]")->check(CLI::Range(1000.0, 8000.0));
+  app.add_flag("--alone", bench.is_alone, "Without a thread that keeps a core busy");
+  CLI11_PARSE(app, argc, argv);
+  return hvas::RunBench(bench);
+}
