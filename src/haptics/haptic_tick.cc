@@ -182,7 +182,8 @@ spatial::Wrench HapticTick::MakeSafe(const device::DeviceState& state, const Tic
   input.p = state.X_DH.p();
   input.V = state.V_DH;
   input.dt = options_.dt;
-  input.is_valid = is_usable;
+  // A device that shows no force has none that could be accounted for, and starts softly after.
+  input.is_valid = is_usable && state.condition != device::Condition::kNoForce;
   input.is_held = state.condition != device::Condition::kNotHeld;
   input.is_stopped = context.is_stopped || state.condition == device::Condition::kStopped;
   input.is_gripping = state.is_gripping;

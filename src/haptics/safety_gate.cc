@@ -84,7 +84,7 @@ const char* ToString(GateAction action) noexcept {
     case kGateLostClient:
       return "the client was not heard of";
     case kGateNoDevice:
-      return "the device had no valid position";
+      return "the device was not ready: it had no valid position, or showed no force";
     case kGateNotHeld:
       return "nobody held the device";
     case kGateStopped:
