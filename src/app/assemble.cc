@@ -115,10 +115,6 @@ Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
       return Unexpected(opened.error());
     }
     hand.opened = std::move(*opened);
-    if (hand.opened.emulator == nullptr && !options.is_realtime) {
-      return Fail(ErrorCode::kInvalid, "a real device needs the real-time loop", options.device,
-                  "add --realtime");
-    }
     if (hand.opened.emulator == nullptr) {
       hand.at_device = std::make_unique<simulation::DeviceOperator>(hand.opened.device.get());
       return hand;
@@ -139,15 +135,10 @@ Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
 }
 
 haptics::TickOptions MakeTick(const Model& model, const AssembleOptions& options,
-                              const device::Device* device, bool is_watched) {
+                              const device::Device* device) {
   haptics::TickOptions tick;
   if (device != nullptr) {
     tick = simulation::MakeTickOptions(device->info(), model, options.render);
-    if (is_watched) {
-      for (const std::string& note : simulation::DescribeRendering(device->info(), tick)) {
-        fmt::print(stderr, "hvas: {}: {}\n", device->info().model, note);
-      }
-    }
   } else {
     tick.device.name = "simulated 6-DoF device";
     tick.dt = 1 / options.render.rate_hz;
@@ -155,6 +146,15 @@ haptics::TickOptions MakeTick(const Model& model, const AssembleOptions& options
   tick.condition = options.condition;
   tick.force_map = options.force_map;
   return tick;
+}
+
+DeviceInHand DescribeDevice(const AssembleOptions& options, const device::Device* device,
+                            const haptics::TickOptions& tick) {
+  if (device == nullptr) {
+    return {};
+  }
+  const device::DeviceInfo& info = device->info();
+  return {options.device, info.model, info.is_emulated, simulation::DescribeRendering(info, tick)};
 }
 
 Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
@@ -170,8 +170,16 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
   if (!hand) {
     return Unexpected(hand.error());
   }
-  simulation::Simulation simulation(
-      model, MakeTick(*model, options, hand->opened.device.get(), is_watched));
+  const device::Device* device = hand->opened.device.get();
+  const haptics::TickOptions tick = MakeTick(*model, options, device);
+  AssemblyOutcome outcome;
+  outcome.device = DescribeDevice(options, device, tick);
+  if (is_watched) {
+    for (const std::string& note : outcome.device.notes) {
+      fmt::print(stderr, "hvas: {}: {}\n", outcome.device.model, note);
+    }
+  }
+  simulation::Simulation simulation(model, tick);
   SessionRecorder sink(recorder->get());
   simulation::AssemblyRun run(&simulation, hand->person.get(), &sink);
   simulation::FlightRecorder flight(options.render.rate_hz);
@@ -199,7 +207,6 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
                              ? options.limit_s
                              : kSecondsPerPart * size * static_cast<double>(model->bodies.size());
   execution.limit_ns = std::llround(1e9 * limit_s);
-  AssemblyOutcome outcome;
   outcome.execution =
       options.is_realtime ? simulation::RunRealtime(execution) : simulation::RunLockstep(execution);
   outcome.parts = run.results();

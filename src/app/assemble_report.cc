@@ -73,6 +73,13 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
           {"pose_error_urad", 1e6 * part.pose_error_angle}};
 }
 
+nlohmann::ordered_json ToJson(const DeviceInHand& device) {
+  return {{"address", device.address},
+          {"model", device.model},
+          {"emulated", device.is_emulated},
+          {"notes", device.notes}};
+}
+
 void PrintParts(const Model& model, const AssemblyOutcome& outcome) {
   constexpr const char* kHead = "{:>4}  {} {:>7} {:>7} {:>10} {:>7} {:>5} {:>8} {:>10}\n";
   constexpr std::size_t kNameWidth = 44;
@@ -116,6 +123,9 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
   json["seed"] = outcome.seed;
   json["digest"] = outcome.digest;
   json["force_map"] = haptics::ToString(outcome.force_map);
+  if (!outcome.device.address.empty()) {
+    json["device"] = ToJson(outcome.device);
+  }
   json["preparation_s"] = ToS(outcome.preparation_ns);
   json["contact_shapes_bytes"] = simulation::CalcShapeMemory(model).total();
   json["session_s"] = ToS(run.session_ns);
@@ -165,6 +175,10 @@ void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
         static_cast<double>(run.ticks) / ToS(run.wall_ns), ToUs(run.wake_up.Quantile(0.5)),
         ToUs(run.wake_up.Quantile(0.99)), ToUs(run.wake_up.max_ns()), run.late_wake_ups,
         run.overruns, outcome.dropped_ticks);
+  }
+  if (!outcome.device.address.empty()) {
+    fmt::print("in the hand: {}{} ({})\n", outcome.device.is_emulated ? "EMULATED " : "",
+               outcome.device.model, outcome.device.address);
   }
   fmt::print("digest {}\n", outcome.digest);
 }

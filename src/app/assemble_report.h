@@ -10,6 +10,14 @@
 
 namespace hvas::app {
 
+/** The device that was in the hand of a run. */
+struct DeviceInHand {
+  std::string address;  ///< As it was asked for; empty: none.
+  std::string model;
+  bool is_emulated{false};
+  std::vector<std::string> notes;  ///< How it was rendered to.
+};
+
 /** Everything that `hvas assemble` has to tell about a run. */
 struct AssemblyOutcome {
   std::vector<simulation::PartResult> parts;
@@ -18,6 +26,7 @@ struct AssemblyOutcome {
   std::uint64_t seed{1};
   bool is_realtime{false};
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
+  DeviceInHand device;
   std::string digest;
   std::uint64_t dropped_ticks{0};
 };

@@ -35,13 +35,13 @@ class FloorTrial {
  public:
   FloorTrial(device::Device* device, double rate_hz)
       : device_(device),
-        dt_(1 / rate_hz),
         up_D_(device->info().profile.q_UD.conjugate() * Vec3::UnitZ()),
-        gains_(haptics::ChooseCoupling(device->info().profile, 1, dt_)),
-        passivity_(haptics::MakePassivityController(device->info().profile, dt_)),
+        gains_(haptics::ChooseCoupling(device->info().profile, 1, 1 / rate_hz)),
+        passivity_(haptics::MakePassivityController(device->info().profile, 1 / rate_hz)),
         gate_(haptics::MakeSafetyLimits(device->info().profile)) {}
 
-  void Tick() noexcept {
+  /** @param dt  Since the last tick began [s]: what is late must not look like a leap. */
+  void Tick(double dt) noexcept {
     TrialState& state = states_.back();
     state.device = device_->Read();
     const device::DeviceState& now = state.device;
@@ -51,10 +51,10 @@ class FloorTrial {
       F.f = std::max(0.0, gains_.k_lin * depth - gains_.b_lin * up_D_.dot(now.V_DH.v)) * up_D_;
     }
     haptics::GateInput input;
-    input.F = passivity_.Limit(now.X_DH, F, std::numeric_limits<double>::quiet_NaN(), 0, dt_);
+    input.F = passivity_.Limit(now.X_DH, F, std::numeric_limits<double>::quiet_NaN(), 0, dt);
     input.p = now.X_DH.p();
     input.V = now.V_DH;
-    input.dt = dt_;
+    input.dt = dt;
     input.is_valid = now.is_valid;
     input.is_held = now.condition != device::Condition::kNotHeld;
     input.is_stopped = now.condition == device::Condition::kStopped;
@@ -76,7 +76,6 @@ class FloorTrial {
 
  private:
   device::Device* device_;
-  double dt_;
   Vec3 up_D_;
   haptics::CouplingGains gains_;
   haptics::PassivityController passivity_;
@@ -84,11 +83,18 @@ class FloorTrial {
   TripleBuffer<TrialState> states_;
 };
 
-/** The hand of an emulated device: goes up and down through the floor, slowly. */
+/** The hand of an emulated device: slowly down into the floor and up again, in two
+ seconds. It takes the
+ handle anew each time, as a person would after an alarm. */
 void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
-  const Vec3 up_D = device->profile().q_UD.conjugate() * Vec3::UnitZ();
+  constexpr double kDepth = 0.012;  // [m] that it would go without the floor
+  constexpr double kTurn = std::numbers::pi;
+  const Vec3 down_D = device->profile().q_UD.conjugate() * -Vec3::UnitZ();
   device::HandIntent hand;
-  hand.X_DR = spatial::Pose(Vec3(0.015 * std::cos(std::numbers::pi * t_s) * up_D));
+  hand.X_DR = spatial::Pose(Vec3(0.5 * kDepth * (1 - std::cos(kTurn * t_s)) * down_D));
+  hand.V_DR.v = 0.5 * kDepth * kTurn * std::sin(kTurn * t_s) * down_D;
+  constexpr double kHeld_s = 1.8;
+  hand.buttons = std::fmod(t_s, 2) < kHeld_s ? 1 : 0;
   device->SetHand(hand);
 }
 
@@ -114,7 +120,7 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
     return ReportFailure(opened.error());
   }
   device::Device& device = *opened->device;
-  PrintDeviceText(device.info());
+  fmt::print("{}", DescribeDevice(device.info()));
   FloorTrial trial(&device, options.rate_hz);
   fmt::print("A floor of {:.0f} N/m at the middle of the workspace. Press on it.\n",
              trial.gains().k_lin);
@@ -125,15 +131,17 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
   std::thread loop([&] {
     grant = simulation::RequestRealtime();
     simulation::Pacer pacer(std::llround(1e9 / options.rate_hz));
+    std::int64_t last_ns = MonotonicNs();
     while (!is_stopping.load(std::memory_order_relaxed)) {
       wake_up.Add(pacer.Wait());
       const std::int64_t start_ns = MonotonicNs();
-      trial.Tick();
+      trial.Tick(1e-9 * static_cast<double>(start_ns - last_ns));
+      last_ns = start_ns;
       work.Add(MonotonicNs() - start_ns);
     }
   });
-  constexpr double kStep = 0.02;  // [s]
-  constexpr int kStepsPerLine = 50;
+  constexpr double kStep = 0.002;  // [s]
+  constexpr int kStepsPerLine = 500;
   simulation::Pacer pacer(std::llround(1e9 * kStep));
   for (int i = 0; i * kStep < options.seconds; ++i) {
     if (opened->emulator != nullptr) {

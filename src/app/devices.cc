@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/device_trial.h"
 #include "app/devices_report.h"
@@ -19,6 +20,11 @@ struct DevicesOptions {
   bool is_json{false};
   DeviceTrialOptions trial;
 };
+
+/** Devices and systems may call themselves by bytes that are no text. */
+void PrintJson(const nlohmann::ordered_json& document) {
+  fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
 
 int RunDevices(const DevicesOptions& options) {
   if (!options.trial.address.empty()) {
@@ -35,8 +41,11 @@ int RunDevices(const DevicesOptions& options) {
   if (options.is_probe && IsWatched() && !options.is_json) {
     fmt::print(stderr, "\033[K");
   }
-  options.is_json ? PrintProbeJson(reports, options.is_probe)
-                  : PrintProbeText(reports, options.is_probe);
+  if (options.is_json) {
+    PrintJson(MakeProbeJson(reports, options.is_probe));
+  } else {
+    fmt::print("{}", DescribeProbe(reports, options.is_probe));
+  }
   return 0;
 }
 

@@ -1,8 +1,10 @@
 #include "app/devices_report.h"
 
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/text_layout.h"
@@ -42,7 +44,7 @@ std::string DescribeSensing(const DeviceInfo& info) {
 nlohmann::ordered_json ToJson(const DeviceInfo& info) {
   const device::Capabilities& can = info.capabilities;
   const device::DeviceProfile& profile = info.profile;
-  return {{"address", info.driver + ":" + info.address},
+  return {{"address", AddressOf(info)},
           {"model", info.model},
           {"serial", info.serial},
           {"version", info.version},
@@ -89,66 +91,177 @@ nlohmann::ordered_json ToJson(const ProbeReport& report) {
   return json;
 }
 
-void PrintFinding(const Finding& finding) {
-  fmt::print("    {} {}{}{}\n", finding.is_found ? "there:    " : "not there:", finding.what,
-             finding.where.empty() ? "" : " in " + finding.where,
-             finding.note.empty() ? "" : "; " + finding.note);
+/** Lines that begin at one column, with a word before the first. */
+std::string Labelled(const std::string& label, const std::string& text) {
+  constexpr std::size_t kIndent = 4;
+  constexpr std::size_t kTextColumn = 18;
+  return Wrap(text, kTextColumn).replace(kIndent, label.size(), label);
 }
+
+/** Findings that differ only in what was looked for, or only in where. */
+struct FindingGroup {
+  std::vector<std::string> names;
+  std::vector<std::string> places;
+  bool is_found{false};
+  std::string note;
+
+  [[nodiscard]] bool IsAlike(const FindingGroup& other) const {
+    return is_found == other.is_found && note == other.note;
+  }
+};
+
+/** The loader's own words say no more than that something is not there. */
+std::string NoteForPerson(const Finding& finding) {
+  const bool is_loaders = !finding.is_found && finding.note.starts_with(finding.what + ":");
+  return is_loaders ? "" : finding.note;
+}
+
+std::vector<FindingGroup> Group(const std::vector<Finding>& findings) {
+  std::vector<FindingGroup> by_place;
+  for (const Finding& finding : findings) {
+    FindingGroup one{{finding.what}, {finding.where}, finding.is_found, NoteForPerson(finding)};
+    if (!by_place.empty() && by_place.back().IsAlike(one) && by_place.back().places == one.places) {
+      by_place.back().names.push_back(finding.what);
+    } else {
+      by_place.push_back(std::move(one));
+    }
+  }
+  std::vector<FindingGroup> groups;
+  for (FindingGroup& one : by_place) {
+    if (!groups.empty() && groups.back().IsAlike(one) && groups.back().names == one.names) {
+      groups.back().places.push_back(one.places.front());
+    } else {
+      groups.push_back(std::move(one));
+    }
+  }
+  return groups;
+}
+
+std::string DescribeFindings(const std::vector<Finding>& findings) {
+  std::string text;
+  for (const FindingGroup& group : Group(findings)) {
+    const std::string& place = group.places.front();
+    const bool is_folder = place.starts_with('/') || place.starts_with("the ");
+    const std::string where = fmt::format("{}", fmt::join(group.places, ", "));
+    text += Labelled(group.is_found ? "there" : "not there",
+                     fmt::format("{}{}{}{}", fmt::join(group.names, ", "),
+                                 place.empty() ? "" : (is_folder ? " in " : " at ") + where,
+                                 group.note.empty() ? "" : "; ", group.note));
+  }
+  return text;
+}
+
+/** A problem's place is not told twice: the findings have it, too. */
+bool HasPlace(const ProbeReport& report, const Error& problem) {
+  return std::any_of(report.looked_for.begin(), report.looked_for.end(), [&](const Finding& f) {
+    return !f.where.empty() && problem.where.find(f.where) != std::string::npos;
+  });
+}
+
+std::string DescribeProblem(const ProbeReport& report, const Error& problem) {
+  const bool tells_place = !problem.where.empty() && !HasPlace(report, problem);
+  const bool is_absent = problem.code == ErrorCode::kNotFound;
+  std::string text = Labelled(is_absent ? "none" : "PROBLEM",
+                              problem.message + (tells_place ? ": " + problem.where : ""));
+  if (!problem.remedy.empty()) {
+    text += Labelled("what to do", problem.remedy);
+  }
+  return text;
+}
+
+std::string DescribeReport(const ProbeReport& report) {
+  std::string text = fmt::format("{}: {}\n", report.driver, report.title);
+  for (const DeviceInfo& info : report.devices) {
+    text += DescribeDevice(info);
+  }
+  for (const Error& problem : report.problems) {
+    text += DescribeProblem(report, problem);
+  }
+  return text + DescribeFindings(report.looked_for) + "\n";
+}
+
+/** As a shell takes it for one word. */
+std::string Quote(const std::string& word) {
+  const bool is_plain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./:=@%+,").find(char(c)) != std::string::npos;
+  });
+  return is_plain ? word : "'" + word + "'";
+}
+
+std::string SayHowToUse(const DeviceInfo& info) {
+  const std::string address = Quote(AddressOf(info));
+  return fmt::format(
+      "Feel a floor with it first, then put it into the hand:\n"
+      "  hvas devices --try {0} --seconds 30\n"
+      "  hvas assemble FILE --device {0} --realtime\n",
+      address);
+}
+
+constexpr const char* kWithoutDevice =
+    "Without one, the simulated person works alone or with a device that is emulated:\n"
+    "  hvas assemble FILE\n"
+    "  hvas assemble FILE --device emulated:openhaptics:touch_x\n"
+    "  hvas devices --try emulated:openhaptics --seconds 5\n";
 
 }  // namespace
 
-void PrintDeviceText(const DeviceInfo& info) {
-  fmt::print("    {}{}{}\n", info.is_emulated ? "EMULATED " : "", info.model,
-             info.serial.empty() ? "" : ", serial " + info.serial);
-  fmt::print("      address   {}\n", info.driver + ":" + info.address);
+std::string AddressOf(const DeviceInfo& info) {
+  const std::string driver = info.driver + ":";
+  return info.address.starts_with(driver) ? info.address : driver + info.address;
+}
+
+std::string DescribeDevice(const DeviceInfo& info) {
+  std::string text = Labelled(info.is_emulated ? "EMULATED" : "DEVICE",
+                              info.model + (info.serial.empty() ? "" : ", serial " + info.serial));
+  text += Labelled("address", AddressOf(info));
   if (!info.version.empty()) {
-    fmt::print("      software  {}\n", info.version);
+    text += Labelled("software", info.version);
   }
-  fmt::print("      senses    {}\n", DescribeSensing(info));
-  fmt::print("      shows     {}\n", DescribeForces(info));
+  text += Labelled("senses", DescribeSensing(info));
+  text += Labelled("shows", DescribeForces(info));
   if (!info.profile_note.empty()) {
-    fmt::print("{}", Wrap(info.profile_note, 6));
+    text += Labelled("figures", info.profile_note);
   }
+  return text;
 }
 
-void PrintProbeText(const std::vector<ProbeReport>& reports, bool has_opened) {
-  std::size_t devices = 0;
-  std::size_t problems = 0;
+std::string DescribeProbe(const std::vector<ProbeReport>& reports, bool has_opened) {
+  std::string text;
+  std::vector<DeviceInfo> devices;
   for (const ProbeReport& report : reports) {
-    fmt::print("{}  ({})\n", report.title, report.driver);
-    for (const Finding& finding : report.looked_for) {
-      PrintFinding(finding);
-    }
-    for (const DeviceInfo& info : report.devices) {
-      PrintDeviceText(info);
-    }
-    for (const Error& problem : report.problems) {
-      fmt::print("{}", Wrap((has_opened ? "cannot start: " : "") + problem.ToString(), 4));
-    }
-    devices += report.devices.size();
-    problems += report.problems.size();
-    fmt::print("\n");
+    text += DescribeReport(report);
+    devices.insert(devices.end(), report.devices.begin(), report.devices.end());
   }
-  if (has_opened) {
-    fmt::print("{} started, {} could not.\n", devices, problems);
-  } else {
-    fmt::print("Nothing was started; --probe starts each device that is there.\n");
+  if (!has_opened) {
+    return text +
+           "Nothing was started. Next, to start each device that is there, without force:\n"
+           "  hvas devices --probe\n";
   }
-  if (devices == 0) {
-    fmt::print(
-        "Without a device: the mouse works in the studio, a simulated person in `hvas assemble`,\n"
-        "and `hvas devices --try emulated:openhaptics` shows a device that is not there.\n");
+  if (devices.empty()) {
+    return text +
+           "No device can be used now. For the one that you have, do what its \"what to do\" says, "
+           "and look again.\n" +
+           kWithoutDevice;
   }
+  const auto real = std::find_if(devices.begin(), devices.end(),
+                                 [](const DeviceInfo& info) { return !info.is_emulated; });
+  const DeviceInfo& first = real != devices.end() ? *real : devices.front();
+  return text +
+         fmt::format("{} can be used.\n", devices.size() == 1
+                                              ? first.model
+                                              : fmt::format("{} devices", devices.size())) +
+         SayHowToUse(first);
 }
 
-void PrintProbeJson(const std::vector<ProbeReport>& reports, bool has_opened) {
+nlohmann::ordered_json MakeProbeJson(const std::vector<ProbeReport>& reports, bool has_opened) {
   nlohmann::ordered_json document{{"schema", 1}, {"probed", has_opened}};
   document["drivers"] = nlohmann::ordered_json::array();
   for (const ProbeReport& report : reports) {
     document["drivers"].push_back(ToJson(report));
   }
   document["emulators"] = device::EmulatedDrivers();
-  fmt::print("{}\n", document.dump(2));
+  return document;
 }
 
 }  // namespace hvas::app

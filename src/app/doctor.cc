@@ -66,6 +66,7 @@ bool IsPunctual(const Measured& measured, double rate_hz) {
 void PrintJson(const std::vector<DoctorCheck>& checks, const Measured& measured,
                const DoctorOptions& options) {
   nlohmann::ordered_json document;
+  document["schema"] = 1;
   document["checks"] = nlohmann::ordered_json::array();
   for (const DoctorCheck& check : checks) {
     document["checks"].push_back({{"name", check.name},
@@ -74,6 +75,7 @@ void PrintJson(const std::vector<DoctorCheck>& checks, const Measured& measured,
                                   {"remedy", check.remedy}});
   }
   document["rate_hz"] = options.rate_hz;
+  document["wake_ups"] = measured.wake_up.count();
   document["scheduling"] = measured.grant.ToString();
   document["wake_up_us"] = MakeLatencyJson(measured.wake_up);
   document["late_wake_ups"] = measured.late;
@@ -90,7 +92,7 @@ void PrintText(const std::vector<DoctorCheck>& checks, const Measured& measured,
       fmt::print("{}", Wrap(check.remedy, 8));
     }
   }
-  fmt::print("\nA thread that wakes up {:.0f} times a second, for {:.0f} s: {}.\n", options.rate_hz,
+  fmt::print("\nA thread that wakes up {:.0f} times a second, for {:.3g} s: {}.\n", options.rate_hz,
              options.seconds, measured.grant.ToString());
   PrintLatencyHistogram("wake-up after the deadline", measured.wake_up);
   fmt::print("{} of {} came more than a period late, {} periods were passed over.\n", measured.late,
@@ -103,7 +105,7 @@ void PrintText(const std::vector<DoctorCheck>& checks, const Measured& measured,
 
 int RunDoctor(const DoctorOptions& options) {
   if (IsWatched() && !options.is_json) {
-    fmt::print(stderr, "measuring for {:.0f} s ...\r", options.seconds);
+    fmt::print(stderr, "measuring for {:.3g} s ...\r", options.seconds);
   }
   const std::vector<DoctorCheck> checks = CheckMachine("/");
   const Measured measured = MeasureWakeUps(options);

@@ -1,5 +1,6 @@
 #include "app/opened_device.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -14,7 +15,7 @@ constexpr std::string_view kEmulated = "emulated:";
 
 const device::SourcedProfile* FindProfileFor(const std::string& driver, const std::string& id) {
   for (const device::SourcedProfile& profile : device::KnownProfiles()) {
-    if (id.empty() ? profile.driver == driver : profile.profile.id == id) {
+    if (profile.driver == driver && (id.empty() || profile.profile.id == id)) {
       return &profile;
     }
   }
@@ -31,6 +32,12 @@ std::string ListProfiles(const std::string& driver) {
   return list;
 }
 
+bool IsDriver(std::string_view name) {
+  const auto& drivers = device::Drivers();
+  return std::any_of(drivers.begin(), drivers.end(),
+                     [&](const device::Driver* driver) { return driver->name() == name; });
+}
+
 Result<OpenedDevice> OpenEmulated(const std::string& text, bool is_live) {
   const std::size_t colon = text.find(':');
   const std::string driver = text.substr(0, colon);
@@ -39,9 +46,11 @@ Result<OpenedDevice> OpenEmulated(const std::string& text, bool is_live) {
   options.is_live = is_live;
   if (const device::SourcedProfile* profile = FindProfileFor(driver, id); profile != nullptr) {
     options.profile = profile->profile;
-  } else if (!id.empty()) {
-    return Fail(ErrorCode::kInvalid, fmt::format("there is no device profile \"{}\"", id), text,
-                fmt::format("of {}: {}", driver, ListProfiles(driver)));
+  } else if (const std::string known = ListProfiles(driver); !id.empty() && !known.empty()) {
+    return Fail(ErrorCode::kInvalid, fmt::format("{} has no device profile \"{}\"", driver, id),
+                text, fmt::format("one of: {}", known));
+  } else {
+    options.profile.name = "device of a " + driver;
   }
   OpenedDevice opened;
   auto emulator = device::StartEmulator(driver, options);
@@ -62,6 +71,10 @@ Result<OpenedDevice> OpenEmulated(const std::string& text, bool is_live) {
 Result<OpenedDevice> OpenAnyDevice(const std::string& address, bool is_live) {
   if (address.rfind(kEmulated, 0) == 0) {
     return OpenEmulated(address.substr(kEmulated.size()), is_live);
+  }
+  if (!is_live && IsDriver(std::string_view(address).substr(0, address.find(':')))) {
+    return Fail(ErrorCode::kInvalid, "a real device needs the real-time loop", address,
+                "add --realtime");
   }
   auto device = device::OpenDevice(address, device::Surroundings());
   if (!device) {

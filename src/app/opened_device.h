@@ -17,7 +17,8 @@ struct OpenedDevice {
 
 /** Opens "DRIVER[:ADDRESS]", or "emulated:DRIVER[:PROFILE]" with a device of that profile that is
  not there.
- @param is_live  An emulator runs by the clock; else it is moved on by whoever uses it.
+ @param is_live  It is used by the clock; else an emulator is moved on by whoever uses it, and a
+ real device is refused.
  Errors: kInvalid for a driver or profile that does not exist (the message lists them); the
  driver's. */
 [[nodiscard]] Result<OpenedDevice> OpenAnyDevice(const std::string& address, bool is_live);
