@@ -244,6 +244,9 @@ int RunStorm(const StormOptions& storm) {
   int broken = 0;
   for (std::size_t k = 0; k < drivers.size(); ++k) {
     const Row& row = rows[k];
+    if (row.runs == 0) {
+      continue;
+    }
     fmt::print("{:<15} {:>5} {:>7} {:>7} {:>10.3f} {:>10.3f} {:>12.4f} {:>14.4f} {:>14.4f}\n",
                drivers[k], row.runs, row.seated, row.broken, row.largest_share, row.largest_step,
                row.most_work, row.energy_excess, row.turning_excess);

@@ -210,7 +210,7 @@ Vec3 HapticTick::ShowTorque(const spatial::Wrench& F_H_D, const Quat& q_DH) cons
   if (!(lever > 0)) {
     return Vec3::Zero();
   }
-  constexpr double kCueShare = 0.2;  // of the device's force: a cue, not a push
+  constexpr double kCueShare = 0.06;  // of the force: a cue, that moves no part aside
   const Vec3 r_D = q_DH * Vec3(-options_.p_HG);
   const Vec3 f = F_H_D.t.cross(r_D) / (lever * lever);
   const double most = kCueShare * options_.device.max_force;

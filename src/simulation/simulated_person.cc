@@ -37,7 +37,8 @@ constexpr double kYieldReach = 2e-3;     // [m], no further than this
 constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime = 0.3;       // of a carried weight
-constexpr double kAtHand = 0.01;         // [m]; close enough to take something up
+constexpr double kAtHand = 0.002;        // [m]; close enough to take something up
+constexpr double kCalm = 0.02;           // [m/s]; slow enough for it
 constexpr double kMostStretch = 0.012;   // [m]; further than the part the hand does not go
 constexpr double kMostLag = 0.05;        // [m]; the mind does not run ahead of the hand
 constexpr double kSenseTime = 0.08;      // in which it notices how fast its hand is
@@ -214,8 +215,9 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     const double lead = LeadOf(input);
     travel_ = std::max(travel_ - wanted_speed * dt_, hand_travel - lead);
     // The device may give way where the part does not: the eye tells.
-    const bool is_left_behind = input.sees_part && seen_travel - hand_travel > kMostStretch;
-    travel_ = is_left_behind ? std::max(travel_, seen_travel - kMostStretch) : travel_;
+    const double stretch = seen_travel - hand_travel - grip_offset_W_.dot(d);
+    const bool is_left_behind = input.sees_part && stretch > kMostStretch;
+    travel_ = is_left_behind ? std::max(travel_, hand_travel + stretch - kMostStretch) : travel_;
     const bool is_stuck =
         is_left_behind || (speed < kStillSpeed && (is_careful || push_ > kFirstPush));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
@@ -363,7 +365,7 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
     }
     case Phase::kReach:
       if (FollowReaches() && phase_time_s_ > reaches_[0].duration_s + 0.3 &&
-          (p_ref_ - X_WH_.p()).norm() < kAtHand) {
+          (p_ref_ - X_WH_.p()).norm() < kAtHand && V_H_.v.norm() < kCalm) {
         phase_ = Phase::kGrasp;
         phase_time_s_ = 0;
         is_gripping_ = true;
@@ -376,6 +378,7 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       break;
     case Phase::kCarry:
       if (FollowReaches()) {
+        grip_offset_W_ = input.X_WD * task_.p_BG - X_WH_.p();  // as it is held, unloaded
         travel_ = task_.engage_distance + kStandOff;
         StartReaches(Phase::kApproach);
         AddReach(task_.X_WG_goal.p() + travel_ * task_.extraction_W + aim_offset_,

@@ -156,6 +156,7 @@ class SimulatedPerson final : public Operator {
   Vec3 v_ref_{Vec3::Zero()};
   bool is_gripping_{false};
   Vec3 carried_force_{Vec3::Zero()};  ///< Slowly learned load that the arm holds up.
+  Vec3 grip_offset_W_{Vec3::Zero()};  ///< From the hand to the grip point, when carried [m].
   Vec3 aim_offset_{Vec3::Zero()};     ///< Of this part: where the hand wrongly believes to be.
   Vec3 aim_turn_{Vec3::Zero()};
 
