@@ -11,6 +11,7 @@
 #include "app/device_trial.h"
 #include "app/devices_report.h"
 #include "app/progress.h"
+#include "app/text_layout.h"
 
 namespace hvas::app {
 namespace {
@@ -52,7 +53,7 @@ int RunDevices(const DevicesOptions& options) {
 std::string AddressHelp() {
   std::string text = "Addresses:\n";
   for (const device::Driver* driver : device::Drivers()) {
-    text += fmt::format("  {}\n", driver->address_help());
+    text += Wrap(fmt::format("{}: {}", driver->name(), driver->address_help()), 2);
   }
   return text + "  emulated:DRIVER[:PROFILE], as in emulated:forcedimension:sigma7\n";
 }

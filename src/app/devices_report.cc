@@ -137,29 +137,33 @@ std::vector<FindingGroup> Group(const std::vector<Finding>& findings) {
   return groups;
 }
 
-std::string DescribeFindings(const std::vector<Finding>& findings) {
+/** What is there comes first. */
+std::string DescribeFindings(std::vector<Finding> findings) {
+  std::stable_partition(findings.begin(), findings.end(),
+                        [](const Finding& finding) { return finding.is_found; });
   std::string text;
   for (const FindingGroup& group : Group(findings)) {
     const std::string& place = group.places.front();
-    const bool is_folder = place.starts_with('/') || place.starts_with("the ");
+    const bool is_address = place.find(':') != std::string::npos;
     const std::string where = fmt::format("{}", fmt::join(group.places, ", "));
     text += Labelled(group.is_found ? "there" : "not there",
                      fmt::format("{}{}{}{}", fmt::join(group.names, ", "),
-                                 place.empty() ? "" : (is_folder ? " in " : " at ") + where,
+                                 place.empty() ? "" : (is_address ? " at " : " in ") + where,
                                  group.note.empty() ? "" : "; ", group.note));
   }
   return text;
 }
 
-/** A problem's place is not told twice: the findings have it, too. */
+/** A problem's place is not told twice: its message or the findings may have it, too. */
 bool HasPlace(const ProbeReport& report, const Error& problem) {
-  return std::any_of(report.looked_for.begin(), report.looked_for.end(), [&](const Finding& f) {
-    return !f.where.empty() && problem.where.find(f.where) != std::string::npos;
-  });
+  return problem.message.find(problem.where) != std::string::npos ||
+         std::any_of(report.looked_for.begin(), report.looked_for.end(), [&](const Finding& f) {
+           return !f.where.empty() && problem.where.find(f.where) != std::string::npos;
+         });
 }
 
 std::string DescribeProblem(const ProbeReport& report, const Error& problem) {
-  const bool tells_place = !problem.where.empty() && !HasPlace(report, problem);
+  const bool tells_place = !HasPlace(report, problem);
   const bool is_absent = problem.code == ErrorCode::kNotFound;
   std::string text = Labelled(is_absent ? "none" : "PROBLEM",
                               problem.message + (tells_place ? ": " + problem.where : ""));
@@ -189,6 +193,10 @@ std::string Quote(const std::string& word) {
   return is_plain ? word : "'" + word + "'";
 }
 
+std::string NameOf(const DeviceInfo& info) {
+  return (info.is_emulated ? "EMULATED " : "") + info.model;
+}
+
 std::string SayHowToUse(const DeviceInfo& info) {
   const std::string address = Quote(AddressOf(info));
   return fmt::format(
@@ -207,6 +215,9 @@ constexpr const char* kWithoutDevice =
 }  // namespace
 
 std::string AddressOf(const DeviceInfo& info) {
+  if (info.address.empty()) {
+    return info.driver;
+  }
   const std::string driver = info.driver + ":";
   return info.address.starts_with(driver) ? info.address : driver + info.address;
 }
@@ -221,7 +232,7 @@ std::string DescribeDevice(const DeviceInfo& info) {
   text += Labelled("senses", DescribeSensing(info));
   text += Labelled("shows", DescribeForces(info));
   if (!info.profile_note.empty()) {
-    text += Labelled("figures", info.profile_note);
+    text += Labelled("profile", info.profile_note);
   }
   return text;
 }
@@ -249,7 +260,7 @@ std::string DescribeProbe(const std::vector<ProbeReport>& reports, bool has_open
   const DeviceInfo& first = real != devices.end() ? *real : devices.front();
   return text +
          fmt::format("{} can be used.\n", devices.size() == 1
-                                              ? first.model
+                                              ? NameOf(first)
                                               : fmt::format("{} devices", devices.size())) +
          SayHowToUse(first);
 }

@@ -1,6 +1,9 @@
 #include "app/test/json_schema.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
 #include <set>
 
 namespace hvas::app::testing {
@@ -94,6 +97,9 @@ class Validator {
       expect(!value.is_number() || value > argument);
     } else if (keyword == "minLength") {
       expect(!value.is_string() || value.get<std::string>().size() >= argument);
+    } else if (keyword == "pattern") {
+      expect(!value.is_string() ||
+             std::regex_search(value.get<std::string>(), std::regex(argument.get<std::string>())));
     } else if (keyword == "minItems") {
       expect(!value.is_array() || value.size() >= argument);
     } else if (keyword == "maxItems") {
@@ -116,6 +122,12 @@ class Validator {
 
 std::vector<std::string> Validate(const json& schema, const json& document) {
   return Validator(schema).Check(schema, document, "");
+}
+
+json ReadSchema(const std::string& name) {
+  std::ifstream file(std::filesystem::path(HVAS_SOURCE_DIR) / "data" / "schemas" /
+                     (name + ".schema.json"));
+  return json::parse(file);
 }
 
 }  // namespace hvas::app::testing

@@ -13,4 +13,7 @@ namespace hvas::app::testing {
 [[nodiscard]] std::vector<std::string> Validate(const nlohmann::json& schema,
                                                 const nlohmann::json& document);
 
+/** data/schemas/NAME.schema.json */
+[[nodiscard]] nlohmann::json ReadSchema(const std::string& name);
+
 }  // namespace hvas::app::testing

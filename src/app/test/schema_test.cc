@@ -14,13 +14,9 @@ using mates::SideFileObject;
 using mates::SideFileType;
 using nlohmann::json;
 using testing::ProductFile;
+using testing::ReadSchema;
 using testing::RunHvasJson;
 using testing::Validate;
-
-json ReadSchema(const std::string& name) {
-  return json::parse(testing::ReadText(std::filesystem::path(HVAS_SOURCE_DIR) / "data" / "schemas" /
-                                       (name + ".schema.json")));
-}
 
 /** What a property asks for, through its reference. */
 json Resolve(const json& schema, json property) {
