@@ -143,9 +143,8 @@ Result<Outcome> Run(const std::shared_ptr<const Model>& model, const std::string
   info.profile.delay += delay;
   const haptics::TickOptions options = simulation::MakeTickOptions(info, *model, {});
   simulation::Simulation simulation(model, options);
-  simulation::PersonOptions habits;
-  habits.push_limit = simulation::PushLimitFor(info);
-  simulation::SimulatedPerson person(habits, seed, simulation::StartOfHand(*model));
+  simulation::SimulatedPerson person(simulation::MakePersonOptions(options), seed,
+                                     simulation::StartOfHand(*model));
   simulation::PersonAtDevice hand(&person, emulator->get(), device->get(), false);
   ForceWatch watch(options);
   simulation::AssemblyRun run(&simulation, &person, &watch);

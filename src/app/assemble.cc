@@ -107,6 +107,20 @@ struct Hand {
   }
 };
 
+haptics::TickOptions MakeTick(const Model& model, const AssembleOptions& options,
+                              const device::Device* device) {
+  haptics::TickOptions tick;
+  if (device != nullptr) {
+    tick = simulation::MakeTickOptions(device->info(), model, options.render);
+  } else {
+    tick.device.name = "simulated 6-DoF device";
+    tick.dt = 1 / options.render.rate_hz;
+  }
+  tick.condition = options.condition;
+  tick.force_map = options.force_map;
+  return tick;
+}
+
 Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
   Hand hand;
   if (!options.device.empty()) {
@@ -122,7 +136,7 @@ Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
   }
   simulation::PersonOptions habits;
   if (hand.opened.device != nullptr) {
-    habits.push_limit = simulation::PushLimitFor(hand.opened.device->info());
+    habits = simulation::MakePersonOptions(MakeTick(model, options, hand.opened.device.get()));
   }
   hand.person = std::make_unique<simulation::SimulatedPerson>(habits, options.seed,
                                                               simulation::StartOfHand(model));
@@ -132,20 +146,6 @@ Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
                                                      hand.opened.device.get(), options.is_realtime);
   }
   return hand;
-}
-
-haptics::TickOptions MakeTick(const Model& model, const AssembleOptions& options,
-                              const device::Device* device) {
-  haptics::TickOptions tick;
-  if (device != nullptr) {
-    tick = simulation::MakeTickOptions(device->info(), model, options.render);
-  } else {
-    tick.device.name = "simulated 6-DoF device";
-    tick.dt = 1 / options.render.rate_hz;
-  }
-  tick.condition = options.condition;
-  tick.force_map = options.force_map;
-  return tick;
 }
 
 DeviceInHand DescribeDevice(const AssembleOptions& options, const device::Device* device,

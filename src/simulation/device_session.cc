@@ -86,9 +86,15 @@ haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info, const Model
   return options;
 }
 
-double PushLimitFor(const device::DeviceInfo& info) {
-  constexpr double kShare = 0.86;  // above what fits are felt with at most
-  return kShare * MakeRendered(info).max_force;
+PersonOptions MakePersonOptions(const haptics::TickOptions& options) {
+  constexpr double kPushShare = 0.86;  // above what fits are felt with at most
+  constexpr double kSlack = 5e-3;      // [m]
+  PersonOptions habits;
+  const double push_limit = kPushShare * options.device.max_force;
+  habits.push_rate *= std::max(1.0, push_limit / habits.push_limit);
+  habits.push_limit = push_limit;
+  habits.most_stretch = options.device.max_force / options.coupling.k_lin + kSlack;
+  return habits;
 }
 
 std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,

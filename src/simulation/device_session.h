@@ -25,9 +25,9 @@ struct RenderOptions {
 [[nodiscard]] haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info,
                                                    const Model& model, const RenderOptions& render);
 
-/** How hard a person presses with a device before giving up: nearly as hard as it pushes back [N].
- */
-[[nodiscard]] double PushLimitFor(const device::DeviceInfo& info);
+/** The habits of a person with a device: presses nearly as hard as it can push back, and notices
+ when the hand goes further than a part that does not follow can be stretched from it. */
+[[nodiscard]] PersonOptions MakePersonOptions(const haptics::TickOptions& options);
 
 /** What a person should know about how this device is rendered to; one sentence each. */
 [[nodiscard]] std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,

@@ -15,7 +15,6 @@ constexpr double kReleaseTime = 0.2;
 constexpr double kShortestReach = 0.35;
 constexpr double kStandOff = 6e-3;    // [m] before anything engages, where approach ends
 constexpr double kFirstPush = 4.0;    // [N]; what the hand tries first
-constexpr double kPushRate = 6.0;     // [N/s]; how it presses harder
 constexpr double kSlowShare = 0.4;    // of the speed of insertion; slower than that presses harder
 constexpr double kStillSpeed = 1e-3;  // [m/s] that counts as not moving
 constexpr double kStuckBeforeSearch = 1.2;
@@ -39,7 +38,6 @@ constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime = 0.3;       // of a carried weight
 constexpr double kAtHand = 0.002;        // [m]; close enough to take something up
 constexpr double kCalm = 0.02;           // [m/s]; slow enough for it
-constexpr double kMostStretch = 0.012;   // [m]; further than the part the hand does not go
 constexpr double kMostLag = 0.05;        // [m]; the mind does not run ahead of the hand
 constexpr double kSenseTime = 0.08;      // in which it notices how fast its hand is
 
@@ -216,8 +214,9 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     travel_ = std::max(travel_ - wanted_speed * dt_, hand_travel - lead);
     // The device may give way where the part does not: the eye tells.
     const double stretch = seen_travel - hand_travel - grip_offset_W_.dot(d);
-    const bool is_left_behind = input.sees_part && stretch > kMostStretch;
-    travel_ = is_left_behind ? std::max(travel_, hand_travel + stretch - kMostStretch) : travel_;
+    const bool is_left_behind = input.sees_part && stretch > options_.most_stretch;
+    travel_ =
+        is_left_behind ? std::max(travel_, hand_travel + stretch - options_.most_stretch) : travel_;
     const bool is_stuck =
         is_left_behind || (speed < kStillSpeed && (is_careful || push_ > kFirstPush));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
@@ -236,7 +235,8 @@ void SimulatedPerson::AdjustPush(const OperatorInput& input, double speed, doubl
                                  bool is_light) noexcept {
   const bool is_slow = speed < kSlowShare * wanted_speed;
   const bool is_at_limit = input.F_H_D.f.norm() >= options_.push_limit;
-  const double change = is_slow && !is_at_limit && !is_light ? kPushRate : -kPushRate;
+  const double change =
+      is_slow && !is_at_limit && !is_light ? options_.push_rate : -options_.push_rate;
   push_ = std::max(is_light ? kLightPush : kFirstPush, push_ + change * dt_);
 }
 

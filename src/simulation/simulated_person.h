@@ -46,6 +46,8 @@ struct PersonOptions {
   double eye_error_angle{4e-3};   ///< [rad]
   double tremor{0.05e-3};         ///< Physiological tremor, 8..12 Hz, amplitude [m].
   double push_limit{6.8};         ///< Felt force beyond which it does not press harder [N].
+  double push_rate{6};            ///< How fast it presses harder [N/s].
+  double most_stretch{0.012};     ///< The hand goes no further than the part it holds [m].
   double patience_s{25};          ///< On one part, from the beginning of insertion [s].
 };
 
