@@ -5,6 +5,7 @@
 // than its period as ours when it is slow again then: the host of a virtual machine takes the
 // processor away for milliseconds, and its time is charged to the thread.
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -102,19 +103,43 @@ class FramePacker {
   std::vector<spatial::Pose> last_;
 };
 
-/** Runs the session's ticks again and looks at those that took too long. */
-void Replay(const std::shared_ptr<const Model>& model, const haptics::TickOptions& options,
-            const simulation::TickLog& log, Totals* totals) {
+/** Runs a session's ticks again; returns those of `slow` that took longer than a period again. */
+std::vector<std::size_t> Replay(const std::shared_ptr<const Model>& model,
+                                const haptics::TickOptions& options, const simulation::TickLog& log,
+                                const std::vector<std::size_t>& slow, Totals* totals) {
   simulation::Simulation again(model, options);
   const std::int64_t period_ns = std::llround(1e9 * options.dt);
+  std::vector<std::size_t> slow_again;
   for (std::size_t i = 0; i < log.tick_count(); ++i) {
     const std::int64_t start_ns = ThreadCpuNs();
     const haptics::TickOutput out = again.ReplayTick(log, i);
     const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
     totals->replayed.Add(compute_ns);
     totals->different += out.F_H_D.f == log.tick(i).F_H_D.f ? 0 : 1;
-    totals->ours += log.tick(i).compute_ns > period_ns && compute_ns > period_ns ? 1 : 0;
+    if (compute_ns > period_ns && std::binary_search(slow.begin(), slow.end(), i)) {
+      slow_again.push_back(i);
+    }
   }
+  return slow_again;
+}
+
+/** Counts the slow ticks that are ours: the host may steal from one that is run again, too, but
+ hardly from the same one every time. */
+void CountOurs(const std::shared_ptr<const Model>& model, const haptics::TickOptions& options,
+               const simulation::TickLog& log, Totals* totals) {
+  constexpr int kReplays = 3;
+  const std::int64_t period_ns = std::llround(1e9 * options.dt);
+  std::vector<std::size_t> slow;
+  for (std::size_t i = 0; i < log.tick_count(); ++i) {
+    if (log.tick(i).compute_ns > period_ns) {
+      slow.push_back(i);
+    }
+  }
+  slow = Replay(model, options, log, slow, totals);
+  for (int i = 1; i < kReplays && !slow.empty(); ++i) {
+    slow = Replay(model, options, log, slow, totals);
+  }
+  totals->ours += slow.size();
 }
 
 void RunSession(const std::shared_ptr<const Model>& model, const BenchOptions& bench,
@@ -152,7 +177,7 @@ void RunSession(const std::shared_ptr<const Model>& model, const BenchOptions& b
     totals->ticks_at_level[level] += report.ticks_at_level[level];
   }
   totals->scheduling = report.scheduling;
-  Replay(model, options, log, totals);
+  CountOurs(model, options, log, totals);
 }
 
 void Print(const Totals& totals, double wall_s) {

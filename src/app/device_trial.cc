@@ -1,10 +1,12 @@
 #include "app/device_trial.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -55,7 +57,9 @@ class FloorTrial {
     input.p = now.X_DH.p();
     input.V = now.V_DH;
     input.dt = dt;
-    input.is_valid = now.is_valid;
+    input.sample_dt = 1e-9 * static_cast<double>(std::max<std::int64_t>(
+                                 0, now.t_ns - std::exchange(last_sample_ns_, now.t_ns)));
+    input.is_valid = now.is_valid && now.condition != device::Condition::kNoForce;
     input.is_held = now.condition != device::Condition::kNotHeld;
     input.is_stopped = now.condition == device::Condition::kStopped;
     input.is_gripping = now.is_gripping;
@@ -76,6 +80,7 @@ class FloorTrial {
 
  private:
   device::Device* device_;
+  std::int64_t last_sample_ns_{0};
   Vec3 up_D_;
   haptics::CouplingGains gains_;
   haptics::PassivityController passivity_;

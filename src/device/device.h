@@ -33,6 +33,9 @@ enum class Condition : std::uint8_t {
 /** One sample from a device: the hand H in the device's base frame. */
 struct DeviceState {
   std::int64_t t_ns{0};
+  /** When the device took it, by the clock of its driver; 0: together with the tick. The same as
+   before: it is the last one again. */
+  std::int64_t sample_ns{0};
   spatial::Pose X_DH;
   spatial::Twist V_DH;       ///< Of H in D, expressed in D.
   bool is_gripping{false};   ///< The button or grip that holds a part.

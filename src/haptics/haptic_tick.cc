@@ -182,6 +182,11 @@ spatial::Wrench HapticTick::MakeSafe(const device::DeviceState& state, const Tic
   input.p = state.X_DH.p();
   input.V = state.V_DH;
   input.dt = options_.dt;
+  if (state.sample_ns > 0) {
+    input.sample_dt =
+        1e-9 * static_cast<double>(std::max<std::int64_t>(
+                   0, state.sample_ns - std::exchange(last_sample_ns_, state.sample_ns)));
+  }
   // A device that shows no force has none that could be accounted for, and starts softly after.
   input.is_valid = is_usable && state.condition != device::Condition::kNoForce;
   input.is_held = state.condition != device::Condition::kNotHeld;

@@ -182,6 +182,7 @@ class HapticTick {
   double clearance_{0};   ///< Least distance of the held part before the step, or the margin [m].
   double reach_{0};       ///< Largest distance of a held point from the centre of mass [m].
   Hand hand_;             ///< Of the last valid sample.
+  std::int64_t last_sample_ns_{0};
   bool is_first_tick_{true};
   bool is_solved_{false};  ///< In this tick, together with the held part.
   spatial::Pose X_HB_;     ///< Grip: the tracked part in the hand.

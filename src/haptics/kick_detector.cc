@@ -43,8 +43,16 @@ bool KickDetector::FindWindow(double span, Window* window) const noexcept {
     window->most_force = std::max(window->most_force, sample.force);
     window->least_force = std::min(window->least_force, sample.force);
     constexpr double kRounding = 1e-9;  // [s]
-    if (time_ - sample.time >= static_cast<double>(found) * span - kRounding) {
-      p[found++] = sample.p;
+    // Samples need not be even: the position of a time lies between two of them.
+    const Sample& newer = FindBack(back > 0 ? back - 1 : 0);
+    const double gap = newer.time - sample.time;
+    for (; found < p.size(); ++found) {
+      const double late = time_ - static_cast<double>(found) * span - sample.time;
+      if (late < -kRounding) {
+        break;
+      }
+      const bool is_between = gap > 0 && late > kRounding;
+      p[found] = is_between ? Vec3(sample.p + late / gap * (newer.p - sample.p)) : sample.p;
     }
   }
   if (found < p.size()) {

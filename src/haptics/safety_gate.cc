@@ -179,9 +179,13 @@ void SafetyGate::Watch(const GateInput& input) noexcept {
     turn_buzz_.Reset();
     return;
   }
-  const bool is_buzzing = buzz_.Update(input.V.v, force_.last, input.dt);
-  const bool is_turning = turn_buzz_.Update(input.V.w, torque_.last, input.dt);
-  const Kick kick = kick_.Update(input.p, force_.last, input.dt);
+  const double dt = input.sample_dt < 0 ? input.dt : input.sample_dt;
+  if (!(dt > 0)) {
+    return;
+  }
+  const bool is_buzzing = buzz_.Update(input.V.v, force_.last, dt);
+  const bool is_turning = turn_buzz_.Update(input.V.w, torque_.last, dt);
+  const Kick kick = kick_.Update(input.p, force_.last, dt);
   latch_ = (is_buzzing || is_turning ? kGateBuzz : kGatePassed) |
            (kick != Kick::kNone ? kGateKick : kGatePassed);
   if (is_latched()) {

@@ -91,7 +91,9 @@ struct GateInput {
   spatial::Wrench F;  ///< That the hand is to be given.
   Vec3 p{Vec3::Zero()};
   spatial::Twist V;
-  double dt{0};             ///< Since the last tick [s].
+  double dt{0};  ///< Since the last tick [s].
+  /** Since the last sample [s]; 0: the device has none that is new; negative: as dt. */
+  double sample_dt{-1};
   bool is_valid{true};      ///< The device has a live pose.
   bool is_held{true};       ///< The dead-man or presence switch is closed, or there is none.
   bool is_stopped{false};   ///< An emergency stop, of the device or in software.

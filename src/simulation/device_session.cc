@@ -129,6 +129,12 @@ std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,
   return notes;
 }
 
+device::DeviceState ReadDevice(device::Device* device) noexcept {
+  device::DeviceState state = device->Read();
+  state.sample_ns = state.t_ns;
+  return state;
+}
+
 Vec3 PersonAtDevice::FollowSmoothly(const Vec3& p_DR, double dt) noexcept {
   Vec3 wanted = p_DR;
   Vec3 v = Vec3::Zero();
@@ -164,7 +170,7 @@ device::DeviceState PersonAtDevice::Step(const OperatorInput& input) noexcept {
   if (!is_live_) {
     emulator_->Advance(std::llround(1e9 * input.dt));
   }
-  return device_->Read();
+  return ReadDevice(device_);
 }
 
 }  // namespace hvas::simulation

@@ -33,6 +33,9 @@ struct RenderOptions {
 [[nodiscard]] std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,
                                                          const haptics::TickOptions& options);
 
+/** A sample with the time at which the device took it. RT-safe as far as the device is. */
+[[nodiscard]] device::DeviceState ReadDevice(device::Device* device) noexcept;
+
 /** A device as the operator. RT-safe as far as the device is. */
 class DeviceOperator final : public Operator {
  public:
@@ -40,7 +43,7 @@ class DeviceOperator final : public Operator {
 
   device::DeviceState Step(const OperatorInput& input) noexcept override {
     (void)input;
-    return device_->Read();
+    return ReadDevice(device_);
   }
 
   void Apply(const spatial::Wrench& F_H_D) noexcept override { device_->Write(F_H_D); }

@@ -54,7 +54,7 @@ class HapticLoop {
     input.workspace = last_.workspace;
     state_before_ = last_.state;
     device::DeviceState device = execution_.hand->Step(input);
-    device.t_ns = t_ns_;
+    device.t_ns = t_ns_;  // session time; the device's own is in sample_ns
     const std::int64_t start_ns = ThreadCpuNs();
     last_ = execution_.simulation->HapticTick(device);
     const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
