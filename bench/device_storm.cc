@@ -54,7 +54,9 @@ class ForceWatch final : public simulation::Sink {
  public:
   explicit ForceWatch(const haptics::TickOptions& options) : options_(options) {}
 
-  void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override {
+  void OnTick(std::size_t hand, const device::DeviceState& device,
+              const haptics::TickOutput& out) noexcept override {
+    (void)hand;
     (void)device;
     constexpr std::uint32_t kCuts = haptics::kGateNoDevice | haptics::kGateNotHeld |
                                     haptics::kGateStopped | haptics::kGateBuzz | haptics::kGateKick;

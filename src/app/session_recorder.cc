@@ -43,8 +43,11 @@ nlohmann::ordered_json ToJson(const haptics::PassivityAccount& account) {
 
 }  // namespace
 
-void SessionRecorder::OnTick(const device::DeviceState& device,
+void SessionRecorder::OnTick(std::size_t hand, const device::DeviceState& device,
                              const haptics::TickOutput& out) noexcept {
+  if (hand != 0) {
+    return;
+  }
   record::TickRecord tick;
   tick.t_ns = device.t_ns;
   tick.device_pose = device.X_DH;

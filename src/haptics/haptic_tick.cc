@@ -78,7 +78,7 @@ void HapticTick::Take(const HeldPart* part) noexcept {
   is_stuck_ = false;
   is_first_tick_ = true;
   is_solved_ = false;
-  const FreeBody* falling = bodies_.FindAwake(part->body);
+  const FreeBody* falling = FindFalling(part->body);
   X_WD_ = falling != nullptr ? falling->X_WB : part->X_WB_start;
   V_D_ = {};
   soft_start_ = 0;
@@ -93,26 +93,48 @@ void HapticTick::Take(const HeldPart* part) noexcept {
     reach_ = std::max(
         reach_, (held.X_WS * box.centre() - part->p_BoBcm_B).norm() + 0.5 * box.size().norm());
     // What it lay on or beside is free to move.
-    bodies_.SetLoose(held.query.self, false);
-    scene_->SetEnabled(held.query.self, false);
+    SetLooseForAll(held.query.self, false);
   }
+  ShowInScene(other_ != nullptr);
 }
 
 spatial::Pose HapticTick::Drop() noexcept {
   const bool is_seated = state_ == HoldState::kSeated;
   spatial::Pose X_WB = is_seated ? part_->X_WB_goal : X_WD_;
-  for (std::size_t member = 0; member < shape_count(); ++member) {
-    const HeldShape held = MakeHeldShape(member, X_WB, 0);
-    scene_->SetPose(held.query.self, held.X_WS);
-    scene_->SetEnabled(held.query.self, true);
-  }
+  MoveInScene(X_WB);
+  ShowInScene(true);
   if (part_->falls_when_dropped && !is_seated && !is_stuck_) {
-    bodies_.SetLoose(part_->body, true);
+    SetLooseForAll(part_->body, true);
     bodies_.WakeFirst(part_->body, X_WB, V_D_);
   }
   part_ = nullptr;
   state_ = HoldState::kEmpty;
   return X_WB;
+}
+
+void HapticTick::MoveInScene(const spatial::Pose& X_WB) noexcept {
+  for (std::size_t member = 0; member < shape_count(); ++member) {
+    const HeldShape held = MakeHeldShape(member, X_WB, 0);
+    scene_->SetPose(held.query.self, held.X_WS);
+  }
+}
+
+void HapticTick::ShowInScene(bool is_shown) noexcept {
+  for (std::size_t member = 0; member < shape_count(); ++member) {
+    scene_->SetEnabled(MakeHeldShape(member, X_WD_, 0).query.self, is_shown);
+  }
+}
+
+void HapticTick::SetLooseForAll(contact::BodyId id, bool is_loose) noexcept {
+  bodies_.SetLoose(id, is_loose);
+  if (other_ != nullptr) {
+    other_->bodies_.SetLoose(id, is_loose);
+  }
+}
+
+const FreeBody* HapticTick::FindFalling(contact::BodyId id) noexcept {
+  const FreeBody* falling = bodies_.FindAwake(id);
+  return falling == nullptr && other_ != nullptr ? other_->bodies_.FindAwake(id) : falling;
 }
 
 HapticTick::Tracked HapticTick::CalcTracked(const Hand& hand) const noexcept {
@@ -130,6 +152,10 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
     hand_ = handle_space_.Update(state, options_.dt);
   } else {
     handle_space_.Lose();
+  }
+  const bool is_shared = other_ != nullptr && part_ != nullptr;
+  if (is_shared) {
+    ShowInScene(false);  // to itself it is no obstacle
   }
   const Hand& hand = hand_;
   out.X_WH = hand.X_WH;
@@ -156,6 +182,10 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
     StepFreeBodies(&out);
   }
   is_solved_ = false;
+  if (is_shared) {
+    MoveInScene(X_WD_);
+    ShowInScene(true);
+  }
   out.state = state_;
   out.points_tested = std::exchange(points_tested_, 0);
   out.workspace = handle_space_.mapping();

@@ -85,6 +85,12 @@ class HapticTick {
    its place, is not loose. RT-safe. */
   void SetLoose(contact::BodyId id, bool is_loose) noexcept { bodies_.SetLoose(id, is_loose); }
 
+  /** Another hand works in the same scene, and ticks in turn with this one on the same thread.
+   What one of them holds stays in the scene where it is displayed, and is an obstacle for the
+   other; a body that moves by itself belongs to the hand that woke it. To be called for both,
+   before the first tick. */
+  void ShareSceneWith(HapticTick* other) noexcept { other_ = other; }
+
   /** Those that move by themselves now; their poses are those of the scene. */
   [[nodiscard]] std::span<const FreeBody> awake() const noexcept { return bodies_.awake(); }
 
@@ -141,6 +147,10 @@ class HapticTick {
 
   [[nodiscard]] HeldShape MakeHeldShape(std::size_t member, const spatial::Pose& X_WB,
                                         double margin) noexcept;
+  void MoveInScene(const spatial::Pose& X_WB) noexcept;
+  void ShowInScene(bool is_shown) noexcept;
+  void SetLooseForAll(contact::BodyId id, bool is_loose) noexcept;
+  [[nodiscard]] const FreeBody* FindFalling(contact::BodyId id) noexcept;
   [[nodiscard]] bool IsFreeAt(const spatial::Pose& X_WB, double tolerance) noexcept;
   void MeasureDepth(TickOutput* out) noexcept;
   void MoveDisplayed(const spatial::Twist& V_Cm) noexcept;
@@ -163,6 +173,7 @@ class HapticTick {
   Effort effort_;
   Workspace handle_space_;
   contact::Scene* scene_;
+  HapticTick* other_{nullptr};  ///< Of the other hand; null: there is none.
   contact::QueryWorkspace workspace_;
   ForceMap force_map_;
   FitRows fit_rows_;

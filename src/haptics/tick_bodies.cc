@@ -43,7 +43,8 @@ TouchingBody HapticTick::Touch(const contact::Contact& c) noexcept {
     return other;
   }
   FreeBody* body = bodies_.FindAwake(c.body);
-  if (body == nullptr && effort_.wakes_bodies && c.distance < kWakeGap &&
+  const bool is_others = other_ != nullptr && other_->bodies_.FindAwake(c.body) != nullptr;
+  if (body == nullptr && !is_others && effort_.wakes_bodies && c.distance < kWakeGap &&
       bodies_.Wake(c.body, scene_->pose(c.body), {})) {
     body = bodies_.FindAwake(c.body);
     body->index = solver_.AddBody(bodies_.MakeSolverBody(*body, options_.gravity_W, options_.dt));

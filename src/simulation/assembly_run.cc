@@ -20,10 +20,10 @@ AssemblyRun::AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* 
   }
 }
 
-void AssemblyRun::OnTick(const device::DeviceState& device,
+void AssemblyRun::OnTick(std::size_t hand, const device::DeviceState& device,
                          const haptics::TickOutput& out) noexcept {
   if (downstream_ != nullptr) {
-    downstream_->OnTick(device, out);
+    downstream_->OnTick(hand, device, out);
   }
 }
 

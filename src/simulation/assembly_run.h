@@ -48,7 +48,8 @@ class AssemblyRun final : public Sink {
    @param downstream  Gets everything too; may be null. */
   AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream);
 
-  void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override;
+  void OnTick(std::size_t hand, const device::DeviceState& device,
+              const haptics::TickOutput& out) noexcept override;
   void OnEvent(const SimulationEvent& event) override;
   void OnFlight(const std::vector<FlightTick>& ticks) override;
 

@@ -1,6 +1,7 @@
 #include "simulation/executors.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <thread>
@@ -27,6 +28,32 @@ bool IsFault(const device::DeviceState& before, std::uint32_t actions_before,
          (device.condition != before.condition && device::IsFault(device.condition));
 }
 
+/** What the loop remembers of one hand from tick to tick. */
+struct HandInLoop {
+  Operator* person{nullptr};
+  haptics::TickOutput last;
+  haptics::HoldState state_before{haptics::HoldState::kEmpty};
+  device::DeviceState device_before;
+  std::uint32_t actions_before{0};
+};
+
+OperatorInput MakeInput(HandInLoop* hand, std::int64_t t_ns, std::int64_t period_ns) noexcept {
+  const haptics::TickOutput& last = hand->last;
+  OperatorInput input;
+  input.t_ns = t_ns;
+  input.dt = 1e-9 * static_cast<double>(period_ns);
+  input.F_H_D = last.F_H_D;
+  input.hears_seated = last.state == haptics::HoldState::kSeated;
+  input.hears_capture = last.state == haptics::HoldState::kCaptured &&
+                        hand->state_before != haptics::HoldState::kCaptured;
+  input.sees_part = last.occurrence.is_valid();
+  input.X_WD = last.X_WD;
+  input.X_WH = last.X_WH;
+  input.workspace = last.workspace;
+  hand->state_before = last.state;
+  return input;
+}
+
 /** The haptic loop's body, the same in both executors. */
 class HapticLoop {
  public:
@@ -35,35 +62,24 @@ class HapticLoop {
         report_(report),
         period_ns_(PeriodOf(*execution.simulation)),
         shedder_(period_ns_) {
-    last_.workspace = execution.simulation->options().workspace.mapping;
-    last_.X_WH = last_.workspace.X_WD;
+    hands_[0].person = execution.hand;
+    hands_[1].person = execution.second_hand;
+    for (std::size_t i = 0; i < hand_count(); ++i) {
+      haptics::TickOutput& last = hands_[i].last;
+      last.workspace = execution.simulation->options(i).workspace.mapping;
+      last.X_WH = last.workspace.X_WD;
+    }
   }
 
-  /** @param wake_up_ns  How late the tick begins; 0 in virtual time. */
+  /** Every hand once.
+   @param wake_up_ns  How late the tick begins; 0 in virtual time. */
   void Tick(std::int64_t wake_up_ns) noexcept {
-    OperatorInput input;
-    input.t_ns = t_ns_;
-    input.dt = 1e-9 * static_cast<double>(period_ns_);
-    input.F_H_D = last_.F_H_D;
-    input.hears_seated = last_.state == haptics::HoldState::kSeated;
-    input.hears_capture = last_.state == haptics::HoldState::kCaptured &&
-                          state_before_ != haptics::HoldState::kCaptured;
-    input.sees_part = last_.occurrence.is_valid();
-    input.X_WD = last_.X_WD;
-    input.X_WH = last_.X_WH;
-    input.workspace = last_.workspace;
-    state_before_ = last_.state;
-    device::DeviceState device = execution_.hand->Step(input);
-    device.t_ns = t_ns_;  // session time; the device's own is in sample_ns
-    const std::int64_t start_ns = ThreadCpuNs();
-    last_ = execution_.simulation->HapticTick(device);
-    const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
-    execution_.hand->Apply(last_.F_H_D);
-    Measure(compute_ns);
-    KeepFlight({device, last_, wake_up_ns, compute_ns, shedder_.level()});
-    if (execution_.sink != nullptr) {
-      execution_.sink->OnTick(device, last_);
+    std::int64_t compute_ns = 0;
+    for (std::size_t i = 0; i < hand_count(); ++i) {
+      compute_ns += TickHand(i, wake_up_ns);
     }
+    report_->compute.Add(compute_ns);
+    report_->overruns += compute_ns > period_ns_ ? 1 : 0;
     if (execution_.sheds_load) {
       ++report_->ticks_at_level[static_cast<std::size_t>(shedder_.level())];
       execution_.simulation->SetEffortLevel(shedder_.Update(compute_ns));
@@ -75,20 +91,35 @@ class HapticLoop {
   [[nodiscard]] std::int64_t t_ns() const noexcept { return t_ns_; }
 
  private:
-  void Measure(std::int64_t compute_ns) noexcept {
-    report_->compute.Add(compute_ns);
-    report_->slowest.Add({t_ns_, compute_ns, last_.occurrence, last_.state, last_.points_tested,
-                          last_.contact_count});
-    report_->overruns += compute_ns > period_ns_ ? 1 : 0;
+  [[nodiscard]] std::size_t hand_count() const noexcept {
+    return hands_[1].person != nullptr ? 2 : 1;
+  }
+
+  /** Returns its compute time [ns]. */
+  std::int64_t TickHand(std::size_t i, std::int64_t wake_up_ns) noexcept {
+    HandInLoop& hand = hands_[i];
+    device::DeviceState device = hand.person->Step(MakeInput(&hand, t_ns_, period_ns_));
+    device.t_ns = t_ns_;
+    const std::int64_t start_ns = ThreadCpuNs();
+    hand.last = execution_.simulation->HapticTick(i, device);
+    const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
+    hand.person->Apply(hand.last.F_H_D);
+    report_->slowest.Add({t_ns_, i, compute_ns, hand.last.occurrence, hand.last.state,
+                          hand.last.points_tested, hand.last.contact_count});
     if (execution_.log != nullptr) {
       execution_.log->SetComputeOfLast(compute_ns);
     }
+    KeepFlight(&hand, {device, hand.last, wake_up_ns, compute_ns, shedder_.level(), i});
+    if (execution_.sink != nullptr) {
+      execution_.sink->OnTick(i, device, hand.last);
+    }
+    return compute_ns;
   }
 
-  void KeepFlight(FlightTick tick) noexcept {
-    const bool is_fault = IsFault(device_before_, actions_before_, tick.device, tick.out);
-    device_before_ = tick.device;
-    actions_before_ = tick.out.gate_actions;
+  void KeepFlight(HandInLoop* hand, FlightTick tick) noexcept {
+    const bool is_fault = IsFault(hand->device_before, hand->actions_before, tick.device, tick.out);
+    hand->device_before = tick.device;
+    hand->actions_before = tick.out.gate_actions;
     if (execution_.flight == nullptr) {
       return;
     }
@@ -106,10 +137,7 @@ class HapticLoop {
   ExecutionReport* report_;
   std::int64_t period_ns_;
   LoadShedder shedder_;
-  haptics::TickOutput last_;
-  device::DeviceState device_before_;
-  std::uint32_t actions_before_{0};
-  haptics::HoldState state_before_{haptics::HoldState::kEmpty};
+  std::array<HandInLoop, 2> hands_;
   std::int64_t t_ns_{0};
 };
 

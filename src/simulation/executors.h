@@ -16,6 +16,7 @@ namespace hvas::simulation {
 /** A tick that took long, and what it had to do. */
 struct SlowTick {
   std::int64_t t_ns{0};
+  std::size_t hand{0};
   std::int64_t compute_ns{0};
   product::OccurrenceId occurrence;
   haptics::HoldState state{haptics::HoldState::kEmpty};
@@ -44,7 +45,7 @@ struct ExecutionReport {
   std::int64_t wall_ns{0};
   std::int64_t cpu_ns{0};  ///< Lockstep only: processor time of the whole run.
   std::uint64_t ticks{0};
-  LatencyHistogram compute;         ///< Of a haptic tick, its operator excluded.
+  LatencyHistogram compute;         ///< Of the hands' ticks of a period, operators excluded.
   SlowTicks slowest;                ///< By compute.
   LatencyHistogram wake_up;         ///< Realtime only: from deadline to start.
   std::uint64_t late_wake_ups{0};   ///< Started more than a period after the deadline.
@@ -62,6 +63,7 @@ struct ExecutionReport {
 struct Execution {
   Simulation* simulation{nullptr};
   Operator* hand{nullptr};
+  Operator* second_hand{nullptr};  ///< For a simulation with two.
   Sink* sink{nullptr};
   std::function<void()> advance;
   std::function<bool()> is_done;

@@ -5,9 +5,9 @@
 
 namespace hvas::simulation {
 
-FlightRecorder::FlightRecorder(double rate_hz)
-    : capacity_(static_cast<std::size_t>(std::lround(1.1 * rate_hz))),
-      after_ticks_(static_cast<std::size_t>(std::lround(0.1 * rate_hz))) {
+FlightRecorder::FlightRecorder(double rate_hz, std::size_t hands)
+    : capacity_(hands * static_cast<std::size_t>(std::lround(1.1 * rate_hz))),
+      after_ticks_(hands * static_cast<std::size_t>(std::lround(0.1 * rate_hz))) {
   for (Tape& tape : tapes_) {
     tape.ticks = std::make_unique<FlightTick[]>(capacity_);
   }

@@ -18,6 +18,7 @@ struct FlightTick {
   std::int64_t wake_up_ns{0};  ///< How late it began; 0 in virtual time.
   std::int64_t compute_ns{0};  ///< Processor time; 0 in virtual time.
   int effort_level{0};
+  std::size_t hand{0};
 };
 
 /** Always keeps the last second of ticks. On a fault these are set aside, with what follows for a
@@ -25,7 +26,8 @@ struct FlightTick {
  thread and are RT-safe; the rest to one other thread. */
 class FlightRecorder {
  public:
-  explicit FlightRecorder(double rate_hz);
+  /** @param rate_hz  Of each hand's ticks. */
+  explicit FlightRecorder(double rate_hz, std::size_t hands = 1);
 
   void Keep(const FlightTick& tick) noexcept;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "fits/paper_scales.h"
 #include "mates/resolve.h"
@@ -31,8 +33,9 @@ double PaperFactorOf(const product::Mate& mate) {
   }
 }
 
-Frame MakeFirstFrame(const Model& model) {
+Frame MakeFirstFrame(const Model& model, std::size_t hands) {
   Frame frame;
+  frame.ticks.resize(hands);
   for (const Body& body : model.bodies) {
     frame.X_WB.push_back(body.X_WB_start);
   }
@@ -42,51 +45,70 @@ Frame MakeFirstFrame(const Model& model) {
 }  // namespace
 
 Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options)
+    : Simulation(std::move(model), std::vector{options}) {}
+
+Simulation::Simulation(std::shared_ptr<const Model> model,
+                       const std::vector<haptics::TickOptions>& options)
     : model_(std::move(model)),
-      options_(options),
-      haptic_(options, &scene_),
       commands_(4 * model_->bodies.size() + 64),
       events_(256),
-      frames_(MakeFirstFrame(*model_)),
+      frames_(MakeFirstFrame(*model_, options.size())),
       parts_(model_->bodies.size()) {
+  for (const haptics::TickOptions& of_hand : options) {
+    hands_.emplace_back(hands_.size(), of_hand, &scene_);
+  }
+  if (hands_.size() == 2) {
+    hands_[0].haptic.ShareSceneWith(&hands_[1].haptic);
+    hands_[1].haptic.ShareSceneWith(&hands_[0].haptic);
+  }
   for (const Body& body : model_->bodies) {
     const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
     scene_.SetOffsets(id, body.faces);
     Part& part = parts_[id.index()];
     part.X_WB = body.X_WB_start;
-    haptic_.SetProperties(id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
-                               SurfaceOf(model_->product->part_of(body.occurrence).material)});
-    haptic_.SetLoose(id, true);
+    for (Hand& hand : hands_) {
+      hand.haptic.SetProperties(id,
+                                {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
+                                 SurfaceOf(model_->product->part_of(body.occurrence).material)});
+      hand.haptic.SetLoose(id, true);
+    }
   }
   scene_.SetGround(model_->table_z);
 }
 
 void Simulation::SetEffortLevel(int level) noexcept {
   effort_level_ = level;
-  haptic_.SetEffort(kEffortLevels[static_cast<std::size_t>(level)]);
+  for (Hand& hand : hands_) {
+    hand.haptic.SetEffort(kEffortLevels[static_cast<std::size_t>(level)]);
+  }
 }
 
 void Simulation::Obey(const TickCommand& command, std::int64_t t_ns) noexcept {
   if (command.kind == TickCommand::Kind::kTake) {
-    haptic_.Take(command.part);
-    metrics_ = {};
-    metrics_.t_taken_ns = t_ns;
-    p_last_Cm_ = command.X_WB * command.part->p_BoBcm_B;
+    Hand& hand = hands_[command.hand];
+    hand.haptic.Take(command.part);
+    hand.metrics = {};
+    hand.metrics.t_taken_ns = t_ns;
+    hand.p_last_Cm = command.X_WB * command.part->p_BoBcm_B;
     SimulationEvent event;
     event.t_ns = t_ns;
     event.kind = SimulationEvent::Kind::kTaken;
+    event.hand = hand.index;
     event.occurrence = command.part->occurrence;
     event.state = haptics::HoldState::kFree;
     event.X_WB = command.X_WB;
-    event.metrics = metrics_;
+    event.metrics = hand.metrics;
     events_.TryPush(event);
   } else {
-    haptic_.SetLoose(command.body, false);
+    for (Hand& hand : hands_) {
+      hand.haptic.SetLoose(command.body, false);
+    }
     scene_.SetPose(command.body, command.X_WB);
   }
 }
 
-haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) noexcept {
+haptics::TickOutput Simulation::HapticTick(std::size_t hand,
+                                           const device::DeviceState& device) noexcept {
   TickCommand command;
   while (commands_.TryPop(&command)) {
     if (log_ != nullptr) {
@@ -97,10 +119,11 @@ haptics::TickOutput Simulation::HapticTick(const device::DeviceState& device) no
   haptics::TickContext context;
   context.model_age_ns = device.t_ns - physics_t_ns_.load(std::memory_order_acquire);
   context.is_stopped = is_stopped_.load(std::memory_order_acquire);
-  const haptics::TickOutput out = RunTick(device, context);
+  const haptics::TickOutput out = RunTick(&hands_[hand], device, context);
   if (log_ != nullptr) {
     log_->Add({device, context.model_age_ns, context.is_stopped,
-               static_cast<std::uint8_t>(effort_level_), 0, out.F_H_D});
+               static_cast<std::uint8_t>(effort_level_), static_cast<std::uint8_t>(hand), 0,
+               out.F_H_D});
   }
   return out;
 }
@@ -112,21 +135,22 @@ haptics::TickOutput Simulation::ReplayTick(const TickLog& log, std::size_t i) no
     Obey(log.command(replayed_commands_).command, tick.device.t_ns);
   }
   SetEffortLevel(tick.effort_level);
-  return RunTick(tick.device, {tick.model_age_ns, tick.is_stopped});
+  return RunTick(&hands_[tick.hand], tick.device, {tick.model_age_ns, tick.is_stopped});
 }
 
-void Simulation::TellOfSafety(const device::DeviceState& device,
+void Simulation::TellOfSafety(Hand* hand, const device::DeviceState& device,
                               const haptics::TickOutput& out) noexcept {
   constexpr std::int64_t kQuietNs = 1'000'000'000;  // an action that goes on is one event
   SimulationEvent event;
   event.t_ns = device.t_ns;
+  event.hand = hand->index;
   event.occurrence = out.occurrence;
   event.state = out.state;
-  for (std::size_t bit = 0; bit < last_action_ns_.size(); ++bit) {
+  for (std::size_t bit = 0; bit < hand->last_action_ns.size(); ++bit) {
     if ((out.gate_actions >> bit & 1u) == 0) {
       continue;
     }
-    std::int64_t& last_ns = last_action_ns_[bit];
+    std::int64_t& last_ns = hand->last_action_ns[bit];
     if (last_ns == 0 || device.t_ns - last_ns > kQuietNs) {
       event.gate_actions |= 1u << bit;
     }
@@ -142,8 +166,8 @@ void Simulation::TellOfSafety(const device::DeviceState& device,
     event.effort_level = effort_level_;
     events_.TryPush(event);
   }
-  if (device.condition != last_condition_) {
-    last_condition_ = device.condition;
+  if (device.condition != hand->last_condition) {
+    hand->last_condition = device.condition;
     event.kind = SimulationEvent::Kind::kDevice;
     event.condition = device.condition;
     event.vendor_code = device.vendor_code;
@@ -151,60 +175,64 @@ void Simulation::TellOfSafety(const device::DeviceState& device,
   }
 }
 
-haptics::TickOutput Simulation::RunTick(const device::DeviceState& device,
+haptics::TickOutput Simulation::RunTick(Hand* hand, const device::DeviceState& device,
                                         const haptics::TickContext& context) noexcept {
-  if (haptic_.held() != nullptr && device.is_valid && !device.is_gripping) {
-    const haptics::HeldPart& part = *haptic_.held();
-    const bool was_seated = haptic_.state() == haptics::HoldState::kSeated;
-    const spatial::Pose X_WB = haptic_.Drop();
+  haptics::HapticTick& haptic = hand->haptic;
+  if (haptic.held() != nullptr && device.is_valid && !device.is_gripping) {
+    const haptics::HeldPart& part = *haptic.held();
+    const bool was_seated = haptic.state() == haptics::HoldState::kSeated;
+    const spatial::Pose X_WB = haptic.Drop();
     SimulationEvent event;
     event.t_ns = device.t_ns;
     event.kind = SimulationEvent::Kind::kDropped;
+    event.hand = hand->index;
     event.occurrence = part.occurrence;
     event.state = haptics::HoldState::kEmpty;
     event.X_WB = X_WB;
     event.was_seated = was_seated;
-    event.metrics = metrics_;
+    event.metrics = hand->metrics;
     events_.TryPush(event);
   }
-  haptics::TickOutput out = haptic_.Tick(device, context);
-  Measure(out);
-  if (out.state != last_state_) {
-    last_state_ = out.state;
+  haptics::TickOutput out = haptic.Tick(device, context);
+  Measure(hand, out);
+  if (out.state != hand->last_state) {
+    hand->last_state = out.state;
     SimulationEvent event;
     event.t_ns = device.t_ns;
+    event.hand = hand->index;
     event.occurrence = out.occurrence;
     event.state = out.state;
     event.X_WB = out.X_WD;
-    event.metrics = metrics_;
+    event.metrics = hand->metrics;
     events_.TryPush(event);
   }
-  TellOfSafety(device, out);
+  TellOfSafety(hand, device, out);
   Report report{device.t_ns, device.is_gripping && device.is_valid, out, {}, 0};
-  for (const haptics::FreeBody& body : haptic_.awake()) {
+  for (const haptics::FreeBody& body : std::as_const(haptic).awake()) {
     report.moving[report.moving_count++] = {body.id, body.X_WB};
   }
-  reports_.Write(report);
+  hand->reports.Write(report);
   return out;
 }
 
-void Simulation::Measure(const haptics::TickOutput& out) noexcept {
-  if (haptic_.held() == nullptr) {
+void Simulation::Measure(Hand* hand, const haptics::TickOutput& out) noexcept {
+  if (hand->haptic.held() == nullptr) {
     return;
   }
-  const Vec3 p_Cm = out.X_WD * haptic_.held()->p_BoBcm_B;
-  metrics_.path += (p_Cm - p_last_Cm_).norm();
-  p_last_Cm_ = p_Cm;
-  metrics_.peak_true = std::max(metrics_.peak_true, out.F_true_W.f.norm());
-  metrics_.peak_felt = std::max(metrics_.peak_felt, out.F_H_W.f.norm());
-  metrics_.fit_true = std::max(metrics_.fit_true, std::abs(out.axial_true));
-  metrics_.fit_felt = std::max(metrics_.fit_felt, std::abs(out.axial_felt));
-  metrics_.deepest = std::max(metrics_.deepest, -out.deepest);
-  metrics_.insertion = std::max(metrics_.insertion, out.insertion_depth);
+  HoldMetrics& metrics = hand->metrics;
+  const Vec3 p_Cm = out.X_WD * hand->haptic.held()->p_BoBcm_B;
+  metrics.path += (p_Cm - hand->p_last_Cm).norm();
+  hand->p_last_Cm = p_Cm;
+  metrics.peak_true = std::max(metrics.peak_true, out.F_true_W.f.norm());
+  metrics.peak_felt = std::max(metrics.peak_felt, out.F_H_W.f.norm());
+  metrics.fit_true = std::max(metrics.fit_true, std::abs(out.axial_true));
+  metrics.fit_felt = std::max(metrics.fit_felt, std::abs(out.axial_felt));
+  metrics.deepest = std::max(metrics.deepest, -out.deepest);
+  metrics.insertion = std::max(metrics.insertion, out.insertion_depth);
   const double force = out.f_C_W.norm();
-  if (out.contact_count > 0 && out.contact_body.is_valid() && force > metrics_.hardest_force) {
-    metrics_.hardest_force = force;
-    metrics_.hardest = out.contact_body;
+  if (out.contact_count > 0 && out.contact_body.is_valid() && force > metrics.hardest_force) {
+    metrics.hardest_force = force;
+    metrics.hardest = out.contact_body;
   }
 }
 
@@ -216,51 +244,66 @@ void Simulation::PhysicsStep(Sink* sink) {
       sink->OnEvent(event);
     }
   }
-  if (reports_.Update()) {
-    const Report& report = reports_.value();
-    physics_t_ns_.store(report.t_ns, std::memory_order_release);
-    if (!report.is_gripping) {
-      is_waiting_for_grip_to_open_ = false;
-    } else if (held_ == nullptr && !is_waiting_for_grip_to_open_) {
-      TakeNearest(report.out.X_WH.p());
+  for (Hand& hand : hands_) {
+    if (hand.reports.Update()) {
+      Heed(&hand);
     }
-    for (std::size_t i = 0; i < report.moving_count; ++i) {
-      Part& part = parts_[report.moving[i].body.index()];
-      if (part.placement == Placement::kLoose) {
-        part.X_WB = report.moving[i].X_WB;
-      }
-    }
+    TellOfEnergy(&hand, sink);
   }
-  TellOfEnergy(sink);
-  Frame& frame = frames_.back();
-  frame.t_ns = reports_.value().t_ns;
-  frame.tick = reports_.value().out;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    frame.X_WB[i] = parts_[i].X_WB;
-  }
-  if (held_ != nullptr && frame.tick.occurrence == held_->occurrence) {
-    frame.X_WB[held_->occurrence.index()] = frame.tick.X_WD;
-    for (const haptics::HeldMember& member : held_->members) {
-      frame.X_WB[member.occurrence.index()] = frame.tick.X_WD * member.X_BS;
-    }
-  }
+  FillFrame(&frames_.back());
   frames_.Publish();
 }
 
-void Simulation::TellOfEnergy(Sink* sink) {
-  const Report& report = reports_.value();
-  if (!options_.controls_passivity || sink == nullptr || report.t_ns < next_energy_ns_) {
+void Simulation::Heed(Hand* hand) {
+  const Report& report = hand->reports.value();
+  physics_t_ns_.store(report.t_ns, std::memory_order_release);
+  if (!report.is_gripping) {
+    hand->is_waiting_for_grip_to_open = false;
+  } else if (hand->held == nullptr && !hand->is_waiting_for_grip_to_open) {
+    TakeNearest(hand, report.out.X_WH.p());
+  }
+  for (std::size_t i = 0; i < report.moving_count; ++i) {
+    Part& part = parts_[report.moving[i].body.index()];
+    if (part.placement == Placement::kLoose) {
+      part.X_WB = report.moving[i].X_WB;
+    }
+  }
+}
+
+void Simulation::TellOfEnergy(Hand* hand, Sink* sink) {
+  const Report& report = hand->reports.value();
+  if (!hand->haptic.options().controls_passivity || sink == nullptr ||
+      report.t_ns < hand->next_energy_ns) {
     return;
   }
-  next_energy_ns_ = report.t_ns + 1'000'000'000;
+  hand->next_energy_ns = report.t_ns + 1'000'000'000;
   SimulationEvent event;
   event.t_ns = report.t_ns;
   event.kind = SimulationEvent::Kind::kEnergy;
+  event.hand = hand->index;
   event.occurrence = report.out.occurrence;
   event.state = report.out.state;
   event.energy = report.out.energy;
   event.turning_energy = report.out.turning_energy;
   sink->OnEvent(event);
+}
+
+void Simulation::FillFrame(Frame* frame) const {
+  frame->t_ns = hands_.front().reports.value().t_ns;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    frame->X_WB[i] = parts_[i].X_WB;
+  }
+  for (const Hand& hand : hands_) {
+    const haptics::TickOutput& tick = hand.reports.value().out;
+    frame->ticks[hand.index] = tick;
+    if (hand.held == nullptr || tick.occurrence != hand.held->occurrence) {
+      continue;
+    }
+    frame->X_WB[tick.occurrence.index()] = tick.X_WD;
+    for (const haptics::HeldMember& member : hand.held->members) {
+      frame->X_WB[member.occurrence.index()] = tick.X_WD * member.X_BS;
+    }
+  }
 }
 
 const Frame& Simulation::Publish() {
@@ -272,23 +315,24 @@ void Simulation::HandleEvent(const SimulationEvent& event) {
   if (event.kind != SimulationEvent::Kind::kDropped) {
     return;
   }
-  const bool is_shelf = held_step_.kind == SequenceStep::Kind::kPark;
+  Hand& hand = hands_[event.hand];
+  const bool is_shelf = hand.held_step.kind == SequenceStep::Kind::kPark;
   const auto settle = [&](OccurrenceId id, const spatial::Pose& X_WB) {
     Part& part = parts_[id.index()];
     part.X_WB = X_WB;
     if (event.was_seated && !is_shelf) {
       part.placement = Placement::kPlaced;
-    } else if (is_shelf || !held_step_.members.empty()) {
+    } else if (is_shelf || !hand.held_step.members.empty()) {
       part.placement = Placement::kParked;  // a subassembly does not fall apart
     } else {
       part.placement = Placement::kLoose;
     }
   };
   settle(event.occurrence, event.X_WB);
-  for (const haptics::HeldMember& member : held_->members) {
+  for (const haptics::HeldMember& member : hand.held->members) {
     settle(member.occurrence, event.X_WB * member.X_BS);
   }
-  held_ = nullptr;
+  hand.held = nullptr;
 }
 
 void Simulation::PlaceInFixture(OccurrenceId id) {
@@ -327,9 +371,9 @@ bool Simulation::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
   return is_free(step.occurrence) && std::all_of(step.members.begin(), step.members.end(), is_free);
 }
 
-void Simulation::TakeNearest(const Vec3& p_WH) {
-  if (prepared_ && CanTake(*prepared_, p_WH)) {
-    Take(*prepared_);
+void Simulation::TakeNearest(Hand* hand, const Vec3& p_WH) {
+  if (hand->prepared && CanTake(*hand->prepared, p_WH)) {
+    Take(hand, *hand->prepared);
     return;
   }
   OccurrenceId nearest;
@@ -345,27 +389,30 @@ void Simulation::TakeNearest(const Vec3& p_WH) {
     }
   }
   if (nearest.is_valid()) {
-    Take(StepOf(nearest));
+    Take(hand, StepOf(nearest));
   } else {
-    is_waiting_for_grip_to_open_ = true;  // closed on nothing: open before the next try
+    hand->is_waiting_for_grip_to_open = true;  // closed on nothing: open before the next try
   }
 }
 
-void Simulation::Take(const SequenceStep& step) {
-  held_step_ = step;
-  held_ = MakeHeldPart(step);
+void Simulation::Take(Hand* hand, const SequenceStep& step) {
+  hand->held_step = step;
+  hand->held = MakeHeldPart(step);
   if (log_ != nullptr) {
-    log_->Keep(held_);
+    log_->Keep(hand->held);
   }
-  const auto hold = [this](OccurrenceId id) { parts_[id.index()].placement = Placement::kHeld; };
-  hold(step.occurrence);
+  const auto mark_held = [this](OccurrenceId id) {
+    parts_[id.index()].placement = Placement::kHeld;
+  };
+  mark_held(step.occurrence);
   for (const OccurrenceId id : step.members) {
-    hold(id);
+    mark_held(id);
   }
   TickCommand command;
   command.kind = TickCommand::Kind::kTake;
-  command.part = held_.get();
-  command.X_WB = held_->X_WB_start;
+  command.hand = hand->index;
+  command.part = hand->held.get();
+  command.X_WB = hand->held->X_WB_start;
   commands_.TryPush(command);
 }
 

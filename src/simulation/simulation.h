@@ -47,6 +47,7 @@ struct SimulationEvent {
   };
   std::int64_t t_ns{0};
   Kind kind{Kind::kState};
+  std::size_t hand{0};
   product::OccurrenceId occurrence;
   haptics::HoldState state{haptics::HoldState::kEmpty};
   spatial::Pose X_WB;                                      ///< kDropped: where the part was let go.
@@ -68,7 +69,7 @@ class Sink {
   Sink(const Sink&) = delete;
   Sink& operator=(const Sink&) = delete;
   virtual ~Sink() = default;
-  virtual void OnTick(const device::DeviceState& device,
+  virtual void OnTick(std::size_t hand, const device::DeviceState& device,
                       const haptics::TickOutput& out) noexcept = 0;
   virtual void OnEvent(const SimulationEvent& event) = 0;
 
@@ -76,11 +77,11 @@ class Sink {
   virtual void OnFlight(const std::vector<FlightTick>& ticks) { (void)ticks; }
 };
 
-/** What a viewer needs: poses of all parts and of the hand. */
+/** What a viewer needs: poses of all parts and of the hands. */
 struct Frame {
   std::int64_t t_ns{0};
-  std::vector<spatial::Pose> X_WB;  ///< By OccurrenceId.
-  haptics::TickOutput tick;
+  std::vector<spatial::Pose> X_WB;         ///< By OccurrenceId.
+  std::vector<haptics::TickOutput> ticks;  ///< By hand.
 };
 
 enum class Placement : std::uint8_t {
@@ -91,9 +92,13 @@ enum class Placement : std::uint8_t {
 };
 
 /** All that changes while a model is assembled. Three loops may run it at once, each function from
- its own thread: HapticTick (1 kHz and more, every TickOptions::dt), PhysicsStep (100 Hz), Publish
- (30 Hz). Called in turn from one
- thread it gives the same results every time. */
+ its own thread: HapticTick (1 kHz and more, every TickOptions::dt, one hand after the other),
+ PhysicsStep (100 Hz), Publish (30 Hz). Called in turn from one thread it gives the same results
+ every time.
+
+ Two hands work in one scene. What one holds is an obstacle for the other, and cannot be taken by
+ it; mates are those with parts that are in their place when a part is taken, not with what the
+ other hand holds. A loose part that moves belongs to the hand whose part woke it. */
 class Simulation {
  public:
   static constexpr std::int64_t kPhysicsStepNs = 10'000'000;
@@ -101,8 +106,15 @@ class Simulation {
 
   Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options);
 
-  /** Haptic thread. RT-safe. */
-  haptics::TickOutput HapticTick(const device::DeviceState& device) noexcept;
+  /** @param options  Of each hand: one or two, with the same dt. */
+  Simulation(std::shared_ptr<const Model> model, const std::vector<haptics::TickOptions>& options);
+
+  /** Haptic thread: each hand once in a period, in their order. RT-safe. */
+  haptics::TickOutput HapticTick(std::size_t hand, const device::DeviceState& device) noexcept;
+
+  haptics::TickOutput HapticTick(const device::DeviceState& device) noexcept {
+    return HapticTick(0, device);
+  }
 
   /** Haptic thread: from the next tick on, by the levels of kEffortLevels. RT-safe. */
   void SetEffortLevel(int level) noexcept;
@@ -138,10 +150,10 @@ class Simulation {
     return parts_[id.index()].X_WB;
   }
 
-  /** What the next part to be taken up is for: its place, its way in, and what moves with it.
+  /** What the next part that a hand takes up is for: its place, its way in, and what moves with it.
    Physics thread. Parts that nobody prepared go to their drawn place by their step of the sequence.
  */
-  void Prepare(const SequenceStep& step) { prepared_ = step; }
+  void Prepare(const SequenceStep& step, std::size_t hand = 0) { hands_[hand].prepared = step; }
 
   /** A part that has a mate with this one and comes before it in the order, but is not in its
    place; invalid where there is none, or where another such part is in its place. Physics thread.
@@ -150,7 +162,11 @@ class Simulation {
 
   [[nodiscard]] const Model& model() const { return *model_; }
 
-  [[nodiscard]] const haptics::TickOptions& options() const { return options_; }
+  [[nodiscard]] std::size_t hand_count() const { return hands_.size(); }
+
+  [[nodiscard]] const haptics::TickOptions& options(std::size_t hand = 0) const {
+    return hands_[hand].haptic.options();
+  }
 
  private:
   struct Part {
@@ -173,15 +189,43 @@ class Simulation {
     std::size_t moving_count{0};
   };
 
-  haptics::TickOutput RunTick(const device::DeviceState& device,
+  /** One hand, with what it holds. */
+  struct Hand {
+    Hand(std::size_t i, const haptics::TickOptions& options, contact::Scene* scene)
+        : index(i), haptic(options, scene) {}
+
+    const std::size_t index;
+
+    // The haptic thread's own.
+    haptics::HapticTick haptic;
+    haptics::HoldState last_state{haptics::HoldState::kEmpty};
+    HoldMetrics metrics;
+    Vec3 p_last_Cm{Vec3::Zero()};
+    device::Condition last_condition{device::Condition::kReady};
+    std::array<std::int64_t, 32> last_action_ns{};  // When the gate last did it, by bit.
+
+    TripleBuffer<Report> reports;
+
+    // The physics thread's own.
+    std::shared_ptr<const haptics::HeldPart> held;  // Kept until haptics has let go of it.
+    SequenceStep held_step;
+    std::optional<SequenceStep> prepared;
+    bool is_waiting_for_grip_to_open{false};
+    std::int64_t next_energy_ns{0};
+  };
+
+  haptics::TickOutput RunTick(Hand* hand, const device::DeviceState& device,
                               const haptics::TickContext& context) noexcept;
   void Obey(const TickCommand& command, std::int64_t t_ns) noexcept;
-  void TellOfSafety(const device::DeviceState& device, const haptics::TickOutput& out) noexcept;
-  void Measure(const haptics::TickOutput& out) noexcept;
+  void TellOfSafety(Hand* hand, const device::DeviceState& device,
+                    const haptics::TickOutput& out) noexcept;
+  static void Measure(Hand* hand, const haptics::TickOutput& out) noexcept;
   void HandleEvent(const SimulationEvent& event);
-  void TellOfEnergy(Sink* sink);
-  void TakeNearest(const Vec3& p_WH);
-  void Take(const SequenceStep& step);
+  void Heed(Hand* hand);
+  static void TellOfEnergy(Hand* hand, Sink* sink);
+  void FillFrame(Frame* frame) const;
+  void TakeNearest(Hand* hand, const Vec3& p_WH);
+  void Take(Hand* hand, const SequenceStep& step);
   [[nodiscard]] SequenceStep StepOf(product::OccurrenceId id) const;
   [[nodiscard]] bool CanTake(const SequenceStep& step, const Vec3& p_WH) const;
   [[nodiscard]] std::shared_ptr<haptics::HeldPart> MakeHeldPart(const SequenceStep& step) const;
@@ -192,35 +236,23 @@ class Simulation {
   [[nodiscard]] spatial::Pose ClearOfTable(product::OccurrenceId id) const;
 
   std::shared_ptr<const Model> model_;
-  haptics::TickOptions options_;
   contact::Scene scene_;  // Written by the haptic thread only, once the loops run.
-  haptics::HapticTick haptic_;
-  haptics::HoldState last_state_{haptics::HoldState::kEmpty};
-  HoldMetrics metrics_;
-  Vec3 p_last_Cm_{Vec3::Zero()};
+  std::deque<Hand> hands_;
 
   // The haptic thread's own.
   TickLog* log_{nullptr};
   int effort_level_{0};
   int told_effort_level_{0};
   std::size_t replayed_commands_{0};
-  device::Condition last_condition_{device::Condition::kReady};
-  std::array<std::int64_t, 32> last_action_ns_{};  // When the gate last did it, by bit.
 
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::int64_t> physics_t_ns_{0};  // Session time that physics has seen.
 
   Ring<TickCommand> commands_;
   Ring<SimulationEvent> events_;
-  TripleBuffer<Report> reports_;
   TripleBuffer<Frame> frames_;
 
   std::vector<Part> parts_;
-  std::shared_ptr<const haptics::HeldPart> held_;  // Kept until haptics has let go of it.
-  SequenceStep held_step_;
-  std::optional<SequenceStep> prepared_;
-  bool is_waiting_for_grip_to_open_{false};
-  std::int64_t next_energy_ns_{0};
 };
 
 }  // namespace hvas::simulation

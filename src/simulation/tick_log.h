@@ -13,6 +13,7 @@ namespace hvas::simulation {
 /** What the physics loop tells the tick. */
 struct TickCommand {
   enum class Kind : std::uint8_t { kTake, kPlace } kind{Kind::kPlace};
+  std::size_t hand{0};  ///< That takes.
   const haptics::HeldPart* part{nullptr};
   contact::BodyId body;
   spatial::Pose X_WB;
@@ -28,6 +29,7 @@ class TickLog {
     std::int64_t model_age_ns{0};
     bool is_stopped{false};
     std::uint8_t effort_level{0};
+    std::uint8_t hand{0};
     std::int64_t compute_ns{0};
     spatial::Wrench F_H_D;
   };

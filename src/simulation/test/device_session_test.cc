@@ -99,7 +99,8 @@ class AfterFault final : public Sink {
   AfterFault(Sink* next, device::EmulatedDevice* device, device::Fault fault, std::int64_t at_ns)
       : next_(next), device_(device), fault_(fault), at_ns_(at_ns) {}
 
-  void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override {
+  void OnTick(std::size_t hand, const device::DeviceState& device,
+              const haptics::TickOutput& out) noexcept override {
     const double force = device_->truth().F_H_D.f.norm();
     if (device.t_ns == at_ns_) {
       force_before = force;
@@ -119,7 +120,7 @@ class AfterFault final : public Sink {
       force_later = std::max(force_later, force);
     }
     force_last_ = force;
-    next_->OnTick(device, out);
+    next_->OnTick(hand, device, out);
   }
 
   void OnEvent(const SimulationEvent& event) override { next_->OnEvent(event); }

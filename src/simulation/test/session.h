@@ -15,7 +15,8 @@ namespace hvas::simulation::testing {
 /** Keeps what a session gave, and its fingerprint. */
 class Watch final : public Sink {
  public:
-  void OnTick(const device::DeviceState& device, const haptics::TickOutput& out) noexcept override;
+  void OnTick(std::size_t hand, const device::DeviceState& device,
+              const haptics::TickOutput& out) noexcept override;
 
   void OnEvent(const SimulationEvent& event) override { events.push_back(event); }
 
@@ -72,7 +73,7 @@ inline void AddTo(Digest* digest, const spatial::Pose& X) {
   }
 }
 
-inline void Watch::OnTick(const device::DeviceState& device,
+inline void Watch::OnTick(std::size_t, const device::DeviceState& device,
                           const haptics::TickOutput& out) noexcept {
   const double jump = (out.F_H_W.f - last_force_).norm();
   if (jump > largest_jump) {

@@ -185,7 +185,7 @@ class ScriptedHand {
         sent.is_gripping = false;
       }
       out = simulation_->HapticTick(sent);
-      watch.OnTick(sent, out);
+      watch.OnTick(0, sent, out);
       if (state.t_ns % Simulation::kPhysicsStepNs == 0) {
         simulation_->PhysicsStep(&watch);
       }

@@ -40,7 +40,8 @@ const std::shared_ptr<const Model>& TrapModel() {
 /** Stands between the run and its record: what a guided part did. */
 class Guided final : public Sink {
  public:
-  void OnTick(const device::DeviceState&, const haptics::TickOutput& out) noexcept override {
+  void OnTick(std::size_t, const device::DeviceState&,
+              const haptics::TickOutput& out) noexcept override {
     const bool is_guided = out.state == HoldState::kCaptured || out.state == HoldState::kMating;
     if (out.occurrence != kPeg || !is_guided) {
       return;
