@@ -42,6 +42,17 @@ int ConstraintSolver::AddBody(const Body& body) noexcept {
   return static_cast<int>(i);
 }
 
+int ConstraintSolver::AddBody(const Vec3& p_WCm, const Vec6& V, const Mat6& inverse) noexcept {
+  if (body_count_ == static_cast<std::size_t>(kMaxBodies)) {
+    return -1;
+  }
+  const std::size_t i = body_count_++;
+  inverse_[i] = inverse;
+  p_WCm_[i] = p_WCm;
+  V_[i] = V;
+  return static_cast<int>(i);
+}
+
 void ConstraintSolver::AddWrench(const spatial::Wrench& F_Cm_W) noexcept {
   rhs_.head<3>() += dt_ * F_Cm_W.t;
   rhs_.tail<3>() += dt_ * F_Cm_W.f;

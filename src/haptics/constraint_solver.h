@@ -24,7 +24,7 @@ namespace hvas::haptics {
  No allocation after construction; RT-safe throughout. */
 class ConstraintSolver {
  public:
-  static constexpr int kMaxBodies = 9;
+  static constexpr int kMaxBodies = 10;
   static constexpr int kMaxContacts = 128;
   static constexpr int kMaxPatches = 32;
   static constexpr int kMaxBoundedRows = 4;
@@ -73,6 +73,10 @@ class ConstraintSolver {
   /** Adds a free body; its index, or -1 when there are too many. */
   int AddBody(const Body& body) noexcept;
 
+  /** Adds a body that something else moves too: its velocity without this step's contacts, and by
+   how much an impulse changes it, as [turn; shift] about its centre of mass in W. */
+  int AddBody(const Vec3& p_WCm, const Vec6& V, const Mat6& inverse) noexcept;
+
   /** A constant force f at the centre of mass and torque t. */
   void AddWrench(const spatial::Wrench& F_Cm_W) noexcept;
 
@@ -117,6 +121,12 @@ class ConstraintSolver {
     const Vec6& V = V_[static_cast<std::size_t>(body)];
     return {V.head<3>(), V.tail<3>()};
   }
+
+  /** How much impulse a change of the velocity of body 0 takes, with springs and dampers, as [turn;
+   shift]; and its inverse. Valid after Solve. */
+  [[nodiscard]] const Mat6& matrix() const noexcept { return A_; }
+
+  [[nodiscard]] const Mat6& inverse() const noexcept { return inverse_[0]; }
 
   [[nodiscard]] int contact_count() const noexcept { return contact_count_; }
 

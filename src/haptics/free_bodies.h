@@ -36,7 +36,8 @@ struct FreeBody {
  Everything but SetProperties is RT-safe. */
 class FreeBodies {
  public:
-  static constexpr std::size_t kMaxAwake = ConstraintSolver::kMaxBodies - 1;
+  /** Besides what the two hands hold. */
+  static constexpr std::size_t kMaxAwake = ConstraintSolver::kMaxBodies - 2;
 
   /** A body that may move, once it is made loose. Not RT-safe: allocates. */
   void SetProperties(contact::BodyId id, const BodyProperties& properties);

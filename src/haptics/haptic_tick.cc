@@ -78,7 +78,8 @@ void HapticTick::Take(const HeldPart* part) noexcept {
   is_stuck_ = false;
   is_first_tick_ = true;
   is_solved_ = false;
-  const FreeBody* falling = FindFalling(part->body);
+  const FreeBody* own = bodies_.FindAwake(part->body);
+  const FreeBody* falling = own != nullptr ? own : FindAwakeElsewhere(part->body);
   X_WD_ = falling != nullptr ? falling->X_WB : part->X_WB_start;
   V_D_ = {};
   soft_start_ = 0;
@@ -96,6 +97,8 @@ void HapticTick::Take(const HeldPart* part) noexcept {
     SetLooseForAll(held.query.self, false);
   }
   ShowInScene(other_ != nullptr);
+  answer_ = {};
+  F_pushed_ = {};
 }
 
 spatial::Pose HapticTick::Drop() noexcept {
@@ -114,15 +117,27 @@ spatial::Pose HapticTick::Drop() noexcept {
 
 void HapticTick::MoveInScene(const spatial::Pose& X_WB) noexcept {
   for (std::size_t member = 0; member < shape_count(); ++member) {
-    const HeldShape held = MakeHeldShape(member, X_WB, 0);
-    scene_->SetPose(held.query.self, held.X_WS);
+    scene_->SetPose(BodyOf(member), member == 0 ? X_WB : X_WB * part_->members[member - 1].X_BS);
   }
 }
 
 void HapticTick::ShowInScene(bool is_shown) noexcept {
   for (std::size_t member = 0; member < shape_count(); ++member) {
-    scene_->SetEnabled(MakeHeldShape(member, X_WD_, 0).query.self, is_shown);
+    scene_->SetEnabled(BodyOf(member), is_shown);
   }
+}
+
+contact::BodyId HapticTick::BodyOf(std::size_t member) const noexcept {
+  return member == 0 ? part_->body : part_->members[member - 1].body;
+}
+
+bool HapticTick::Holds(contact::BodyId id) const noexcept {
+  for (std::size_t member = 0; part_ != nullptr && member < shape_count(); ++member) {
+    if (BodyOf(member) == id) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void HapticTick::SetLooseForAll(contact::BodyId id, bool is_loose) noexcept {
@@ -132,9 +147,8 @@ void HapticTick::SetLooseForAll(contact::BodyId id, bool is_loose) noexcept {
   }
 }
 
-const FreeBody* HapticTick::FindFalling(contact::BodyId id) noexcept {
-  const FreeBody* falling = bodies_.FindAwake(id);
-  return falling == nullptr && other_ != nullptr ? other_->bodies_.FindAwake(id) : falling;
+FreeBody* HapticTick::FindAwakeElsewhere(contact::BodyId id) noexcept {
+  return other_ != nullptr ? other_->bodies_.FindAwake(id) : nullptr;
 }
 
 HapticTick::Tracked HapticTick::CalcTracked(const Hand& hand) const noexcept {
@@ -156,7 +170,11 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
   const bool is_shared = other_ != nullptr && part_ != nullptr;
   if (is_shared) {
     ShowInScene(false);  // to itself it is no obstacle
+    answer_ = {};
   }
+  is_answered_ = other_ != nullptr && other_->has_met_;
+  has_met_ = false;
+  guest_ = ConstraintSolver::kWorld;
   const Hand& hand = hand_;
   out.X_WH = hand.X_WH;
   out.X_WT = hand.X_WH;
@@ -185,6 +203,9 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
   if (is_shared) {
     MoveInScene(X_WD_);
     ShowInScene(true);
+  }
+  if (other_ != nullptr && guest_ == ConstraintSolver::kWorld) {
+    other_->F_pushed_ = {};
   }
   out.state = state_;
   out.points_tested = std::exchange(points_tested_, 0);
@@ -284,6 +305,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   soft_start_ = std::min(1.0, soft_start_ + options_.dt / kSoftStartTime);
   if (state_ == HoldState::kSeated) {
     MoveIntoPlace(out);
+    answer_.V = V_D_;
     out->F_felt_W = CalcCouplingWrench(tracked);
     out->F_true_W = out->F_felt_W;
     return;
@@ -301,22 +323,28 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   weight_true_ = part_->mass * options_.gravity_W.norm();
   weight_felt_ = soft_start_ * force_map_.Felt(weight_true_);
   solver_.AddWrench({Vec3::Zero(), weight_felt_ * options_.gravity_W.normalized()});
+  solver_.AddWrench(F_pushed_);
   AddGuidance(p_WCm);
   AddFreeBodies();
+  ShowOther(!is_answered_);
   AddContacts(out);
+  ShowOther(true);
   AddFreeContacts(out);
   const spatial::Twist V = solver_.Solve(effort_.iterations);
   RecordContacts(out);
   friction_.EndTick(solver_, options_.dt);
   MoveFreeBodies();
+  ShowOther(!is_answered_);
   MoveDisplayed(V);
   is_solved_ = true;
+  answer_ = {V_D_, solver_.matrix(), solver_.inverse()};
 
   out->F_felt_W = CalcCouplingWrench(tracked);
   out->F_true_W = out->F_felt_W;
   out->F_true_W.f += (weight_true_ * soft_start_ - weight_felt_) * options_.gravity_W.normalized();
   RecordFits(out);
   UpdateState();
+  ShowOther(true);
   has_engaged_ = has_engaged_ || guide_.captured_count() > captured_before_;
   captured_before_ = guide_.captured_count();
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "contact/scene.h"
 #include "device/device.h"
@@ -86,10 +87,13 @@ class HapticTick {
   void SetLoose(contact::BodyId id, bool is_loose) noexcept { bodies_.SetLoose(id, is_loose); }
 
   /** Another hand works in the same scene, and ticks in turn with this one on the same thread.
-   What one of them holds stays in the scene where it is displayed, and is an obstacle for the
-   other; a body that moves by itself belongs to the hand that woke it. To be called for both,
-   before the first tick. */
-  void ShareSceneWith(HapticTick* other) noexcept { other_ = other; }
+   What one of them holds stays in the scene where it is displayed. A body that moves by itself
+   belongs to the hand that woke it. To be called for both, before the first tick.
+   @param leads  This one ticks first, and answers for the contact of the two held parts. */
+  void ShareSceneWith(HapticTick* other, bool leads) noexcept {
+    other_ = other;
+    leads_ = leads;
+  }
 
   /** Those that move by themselves now; their poses are those of the scene. */
   [[nodiscard]] std::span<const FreeBody> awake() const noexcept { return bodies_.awake(); }
@@ -147,10 +151,15 @@ class HapticTick {
 
   [[nodiscard]] HeldShape MakeHeldShape(std::size_t member, const spatial::Pose& X_WB,
                                         double margin) noexcept;
+  [[nodiscard]] contact::BodyId BodyOf(std::size_t member) const noexcept;
+  [[nodiscard]] bool Holds(contact::BodyId id) const noexcept;
   void MoveInScene(const spatial::Pose& X_WB) noexcept;
   void ShowInScene(bool is_shown) noexcept;
   void SetLooseForAll(contact::BodyId id, bool is_loose) noexcept;
-  [[nodiscard]] const FreeBody* FindFalling(contact::BodyId id) noexcept;
+  [[nodiscard]] FreeBody* FindAwakeElsewhere(contact::BodyId id) noexcept;
+  void ShowOther(bool is_shown) noexcept;
+  void AddGuest() noexcept;
+  void PushGuest() noexcept;
   [[nodiscard]] bool IsFreeAt(const spatial::Pose& X_WB, double tolerance) noexcept;
   void MeasureDepth(TickOutput* out) noexcept;
   void MoveDisplayed(const spatial::Twist& V_Cm) noexcept;
@@ -167,13 +176,15 @@ class HapticTick {
   [[nodiscard]] spatial::Pose CalcSeatPose(double progress) const noexcept;
   void MoveIntoPlace(TickOutput* out) noexcept;
   [[nodiscard]] spatial::Wrench CalcCouplingWrench(const Tracked& tracked) const noexcept;
-  void RecordContacts(TickOutput* out) const noexcept;
+  void RecordContacts(TickOutput* out) noexcept;
+  void RecordMeeting(const contact::Contact& c, const Vec3& f_C_W) noexcept;
 
   TickOptions options_;
   Effort effort_;
   Workspace handle_space_;
   contact::Scene* scene_;
   HapticTick* other_{nullptr};  ///< Of the other hand; null: there is none.
+  bool leads_{false};
   contact::QueryWorkspace workspace_;
   ForceMap force_map_;
   FitRows fit_rows_;
@@ -213,6 +224,31 @@ class HapticTick {
   double weight_true_{0};
   double weight_felt_{0};
   std::uint32_t points_tested_{0};  ///< Of the present tick.
+
+  /** How the held part moves, and answers to a further impulse, for the other hand's step: a guest
+   there. Zero for one that goes its way whatever pushes it. */
+  struct Answer {
+    spatial::Twist V;  ///< At the centre of mass.
+    Mat6 matrix{Mat6::Zero()};
+    Mat6 inverse{Mat6::Zero()};
+  };
+
+  /** Contact of the two held parts, as the leading hand found it. */
+  struct Meeting {
+    int contact_count{0};
+    double deepest{std::numeric_limits<double>::infinity()};
+    Vec3 p_WC{Vec3::Zero()};
+    Vec3 f_C_W{Vec3::Zero()};  ///< On the leading hand's part.
+    contact::BodyId body;      ///< Of the leading hand.
+  };
+
+  Answer answer_;
+  spatial::Wrench F_pushed_;  ///< On the held part at its centre of mass, by the other's last step.
+  bool is_answered_{false};   ///< In this tick by the other hand: the contact with its part.
+  bool has_met_{false};       ///< In this tick this hand answers for it.
+  Meeting meeting_;
+  int guest_{ConstraintSolver::kWorld};  ///< The other hand's part in this tick's solver.
+  Vec6 V_guest_{Vec6::Zero()};           ///< Without what touches it in this step.
 };
 
 }  // namespace hvas::haptics

@@ -39,13 +39,17 @@ double CalcReach(const contact::Shape& shape, const Vec3& p_BQ) noexcept {
 TouchingBody HapticTick::Touch(const contact::Contact& c) noexcept {
   TouchingBody other;
   other.id = c.body.value();
+  if (other_ != nullptr && other_->Holds(c.body)) {
+    other.index = guest_;
+    other.X_WB = scene_->pose(c.body);
+    return other;
+  }
   if (!bodies_.is_loose(c.body)) {
     return other;
   }
   FreeBody* body = bodies_.FindAwake(c.body);
-  const bool is_others = other_ != nullptr && other_->bodies_.FindAwake(c.body) != nullptr;
-  if (body == nullptr && !is_others && effort_.wakes_bodies && c.distance < kWakeGap &&
-      bodies_.Wake(c.body, scene_->pose(c.body), {})) {
+  if (body == nullptr && FindAwakeElsewhere(c.body) == nullptr && effort_.wakes_bodies &&
+      c.distance < kWakeGap && bodies_.Wake(c.body, scene_->pose(c.body), {})) {
     body = bodies_.FindAwake(c.body);
     body->index = solver_.AddBody(bodies_.MakeSolverBody(*body, options_.gravity_W, options_.dt));
   }
@@ -63,6 +67,9 @@ void HapticTick::AddQueried(const TouchingBody& body, fits::FrictionSurface surf
   out->is_truncated = out->is_truncated || workspace_.stats().is_truncated;
   points_tested_ += workspace_.stats().points_tested;
   for (const contact::Contact& c : workspace_.contacts()) {
+    if (body.index == 0 && FindAwakeElsewhere(c.body) != nullptr) {
+      continue;  // its hand's step has this part as a guest
+    }
     const auto index = static_cast<std::size_t>(solver_.contact_count());
     const TouchingBody other = Touch(c);
     const BodyProperties* properties = bodies_.properties(c.body);
@@ -107,7 +114,43 @@ void HapticTick::AddContacts(TickOutput* out) noexcept {
   held_contacts_ = solver_.contact_count();
 }
 
+void HapticTick::ShowOther(bool is_shown) noexcept {
+  if (other_ != nullptr && other_->part_ != nullptr) {
+    other_->ShowInScene(is_shown);
+  }
+}
+
+void HapticTick::AddGuest() noexcept {
+  if (other_ == nullptr || other_->part_ == nullptr) {
+    return;
+  }
+  // But for what this hand pushes it with, it goes on as in its own last step: springs, fits and
+  // contacts of its own carry it as they did.
+  const Answer& answer = other_->answer_;
+  Vec6 impulse;
+  impulse << options_.dt * other_->F_pushed_.t, options_.dt * other_->F_pushed_.f;
+  V_guest_ << answer.V.w, answer.V.v;
+  V_guest_ -= answer.inverse * impulse;
+  const Vec3 p_WCm = other_->X_WD_ * other_->part_->p_BoBcm_B;
+  guest_ = solver_.AddBody(p_WCm, V_guest_, answer.inverse);
+}
+
+void HapticTick::PushGuest() noexcept {
+  if (guest_ == ConstraintSolver::kWorld) {
+    return;
+  }
+  const spatial::Twist V = solver_.velocity(guest_);
+  Vec6 change;
+  change << V.w, V.v;
+  change -= V_guest_;
+  const Vec6 F = other_->answer_.matrix * change / options_.dt;
+  other_->F_pushed_ = {F.head<3>(), F.tail<3>()};
+  // Where it will be at the end of the step: what pushes it does not stop at where it was.
+  other_->MoveInScene(MoveAbout(other_->X_WD_, other_->part_->p_BoBcm_B, V, options_.dt));
+}
+
 void HapticTick::AddFreeBodies() noexcept {
+  AddGuest();
   for (FreeBody& body : bodies_.awake()) {
     body.index = solver_.AddBody(bodies_.MakeSolverBody(body, options_.gravity_W, options_.dt));
   }
@@ -138,6 +181,7 @@ void HapticTick::AddFreeContacts(TickOutput* out) noexcept {
 }
 
 void HapticTick::MoveFreeBodies() noexcept {
+  PushGuest();
   const ContactOptions& options = options_.contact;
   for (FreeBody& body : bodies_.awake()) {
     const contact::Shape& shape = scene_->shape(body.id);
@@ -207,21 +251,48 @@ bool HapticTick::IsFreeAt(const spatial::Pose& X_WB, double tolerance) noexcept 
   return true;
 }
 
-void HapticTick::RecordContacts(TickOutput* out) const noexcept {
+void HapticTick::RecordContacts(TickOutput* out) noexcept {
   double hardest = 0;
+  meeting_ = {};
+  has_met_ = leads_ && guest_ != ConstraintSolver::kWorld;
+  if (is_answered_) {
+    const Meeting& meeting = other_->meeting_;
+    out->contact_count = meeting.contact_count;
+    out->deepest = std::min(out->deepest, meeting.deepest);
+    out->p_WC = meeting.p_WC;
+    out->f_C_W = -meeting.f_C_W;
+    out->contact_body = meeting.body;
+    hardest = meeting.f_C_W.norm();
+  }
   for (int i = 0; i < held_contacts_; ++i) {
+    const contact::Contact& c = contacts_[static_cast<std::size_t>(i)];
     const double force = solver_.normal_force(i);
+    if (has_met_ && other_->Holds(c.body)) {
+      RecordMeeting(c, solver_.contact_force(i));
+    }
     if (force <= 1e-6) {
       continue;
     }
     ++out->contact_count;
     if (force > hardest) {
       hardest = force;
-      const contact::Contact& c = contacts_[static_cast<std::size_t>(i)];
       out->p_WC = c.p_WC;
       out->f_C_W = solver_.contact_force(i);
       out->contact_body = c.body;
     }
+  }
+}
+
+void HapticTick::RecordMeeting(const contact::Contact& c, const Vec3& f_C_W) noexcept {
+  meeting_.body = part_->body;
+  meeting_.deepest = std::min(meeting_.deepest, c.distance);
+  if (f_C_W.norm() <= 1e-6) {
+    return;
+  }
+  ++meeting_.contact_count;
+  if (f_C_W.norm() > meeting_.f_C_W.norm()) {
+    meeting_.p_WC = c.p_WC;
+    meeting_.f_C_W = f_C_W;
   }
 }
 

@@ -58,8 +58,8 @@ Simulation::Simulation(std::shared_ptr<const Model> model,
     hands_.emplace_back(hands_.size(), of_hand, &scene_);
   }
   if (hands_.size() == 2) {
-    hands_[0].haptic.ShareSceneWith(&hands_[1].haptic);
-    hands_[1].haptic.ShareSceneWith(&hands_[0].haptic);
+    hands_[0].haptic.ShareSceneWith(&hands_[1].haptic, true);
+    hands_[1].haptic.ShareSceneWith(&hands_[0].haptic, false);
   }
   for (const Body& body : model_->bodies) {
     const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);

@@ -22,8 +22,9 @@ using testing::OccurrenceId;
 using testing::Pose;
 using testing::Watch;
 
-static_assert(noexcept(std::declval<Simulation&>().HapticTick(1, std::declval<const DeviceState&>())));
-static_assert(noexcept(std::declval<haptics::HapticTick&>().ShareSceneWith(nullptr)));
+static_assert(noexcept(std::declval<Simulation&>().HapticTick(1,
+                                                              std::declval<const DeviceState&>())));
+static_assert(noexcept(std::declval<haptics::HapticTick&>().ShareSceneWith(nullptr, true)));
 
 constexpr double kHalf = 15e-3;  // [m] of each block's edges
 const OccurrenceId kFirst(0);
@@ -114,13 +115,12 @@ TEST(TwoHandsTest, PartsPushAgainstEachOtherWithOneForce) {  // X7
   hands.Run(0.1, Vec3(0.1, 0, 0));
   for (int k = 0; k < 10; ++k) {
     hands.Run(0.1);
-    std::printf("x %.3f %.3f  y %.3f %.3f z %.3f %.3f deep %.1f %.1f n %d %d t %.4f %.4f\n",
-                hands.out[0].F_felt_W.f.x(), hands.out[1].F_felt_W.f.x(),
-                hands.out[0].F_felt_W.f.y(), hands.out[1].F_felt_W.f.y(),
-                hands.out[0].F_felt_W.f.z(), hands.out[1].F_felt_W.f.z(),
-                1e6 * hands.out[0].deepest, 1e6 * hands.out[1].deepest, hands.out[0].contact_count,
-                hands.out[1].contact_count, hands.out[0].F_felt_W.t.norm(),
-                hands.out[1].F_felt_W.t.norm());
+    std::printf(
+        "x %.3f %.3f  y %.3f %.3f z %.3f %.3f deep %.1f %.1f n %d %d t %.4f %.4f\n",
+        hands.out[0].F_felt_W.f.x(), hands.out[1].F_felt_W.f.x(), hands.out[0].F_felt_W.f.y(),
+        hands.out[1].F_felt_W.f.y(), hands.out[0].F_felt_W.f.z(), hands.out[1].F_felt_W.f.z(),
+        1e6 * hands.out[0].deepest, 1e6 * hands.out[1].deepest, hands.out[0].contact_count,
+        hands.out[1].contact_count, hands.out[0].F_felt_W.t.norm(), hands.out[1].F_felt_W.t.norm());
   }
   // On the way together at 50 mm/s.
   for (const double v : {0.05, -0.05, 0.2, -0.2}) {
