@@ -334,17 +334,18 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   RecordContacts(out);
   friction_.EndTick(solver_, options_.dt);
   MoveFreeBodies();
-  ShowOther(!is_answered_);
+  // To stop where it meets the other's part would not keep that one from coming on.
+  ShowOther(!is_answered_ && !(has_met_ && other_->answer_.yields));
   MoveDisplayed(V);
+  ShowOther(true);
   is_solved_ = true;
-  answer_ = {V_D_, solver_.matrix(), solver_.inverse()};
+  answer_ = {true, V_D_, solver_.matrix(), solver_.inverse()};
 
   out->F_felt_W = CalcCouplingWrench(tracked);
   out->F_true_W = out->F_felt_W;
   out->F_true_W.f += (weight_true_ * soft_start_ - weight_felt_) * options_.gravity_W.normalized();
   RecordFits(out);
   UpdateState();
-  ShowOther(true);
   has_engaged_ = has_engaged_ || guide_.captured_count() > captured_before_;
   captured_before_ = guide_.captured_count();
 }

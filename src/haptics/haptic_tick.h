@@ -160,6 +160,7 @@ class HapticTick {
   void ShowOther(bool is_shown) noexcept;
   void AddGuest() noexcept;
   void PushGuest() noexcept;
+  [[nodiscard]] double GuestSpeed() const noexcept;
   [[nodiscard]] bool IsFreeAt(const spatial::Pose& X_WB, double tolerance) noexcept;
   void MeasureDepth(TickOutput* out) noexcept;
   void MoveDisplayed(const spatial::Twist& V_Cm) noexcept;
@@ -228,6 +229,7 @@ class HapticTick {
   /** How the held part moves, and answers to a further impulse, for the other hand's step: a guest
    there. Zero for one that goes its way whatever pushes it. */
   struct Answer {
+    bool yields{false};
     spatial::Twist V;  ///< At the centre of mass.
     Mat6 matrix{Mat6::Zero()};
     Mat6 inverse{Mat6::Zero()};

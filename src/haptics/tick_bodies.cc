@@ -100,7 +100,7 @@ void HapticTick::AddContacts(TickOutput* out) noexcept {
   const spatial::Twist V = solver_.SolveUnconstrained();
   const double speed = std::min(contact.max_speed, V.v.norm()) +
                        std::min(contact.max_turn_rate, V.w.norm()) * reach_;
-  const double margin = contact.min_margin + 1.5 * speed * options_.dt;
+  const double margin = contact.min_margin + 1.5 * (speed + GuestSpeed()) * options_.dt;
   clearance_ = margin;
   const spatial::Pose X_WD_ahead = MoveAbout(X_WD_, part_->p_BoBcm_B, V_D_, options_.dt);
   for (std::size_t member = 0; member < shape_count(); ++member) {
@@ -133,6 +133,12 @@ void HapticTick::AddGuest() noexcept {
   V_guest_ -= answer.inverse * impulse;
   const Vec3 p_WCm = other_->X_WD_ * other_->part_->p_BoBcm_B;
   guest_ = solver_.AddBody(p_WCm, V_guest_, answer.inverse);
+}
+
+double HapticTick::GuestSpeed() const noexcept {
+  return guest_ == ConstraintSolver::kWorld
+             ? 0.0
+             : V_guest_.tail<3>().norm() + V_guest_.head<3>().norm() * other_->reach_;
 }
 
 void HapticTick::PushGuest() noexcept {
@@ -171,7 +177,8 @@ void HapticTick::AddFreeContacts(TickOutput* out) noexcept {
     query.broken_edges = {options.edge_break, bodies_.Move(body, body.V, options_.dt)};
     const double speed = body.V.v.norm() + body.V.w.norm() * CalcReach(shape, properties.p_BoBcm_B);
     query.margin =
-        options.min_margin + 1.5 * options_.dt * (speed + options_.dt * options_.gravity_W.norm());
+        options.min_margin +
+        1.5 * options_.dt * (speed + GuestSpeed() + options_.dt * options_.gravity_W.norm());
     scene_->Query(shape, body.X_WB, query, &workspace_);
     body.clearance = std::min(query.margin, workspace_.deepest());
     AddQueried({body.index, body.id.value(), body.X_WB}, properties.surface, options.rolling_arm,
