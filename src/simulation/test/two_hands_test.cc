@@ -3,12 +3,15 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "device/driver.h"
 #include "device/emulation/emulator.h"
+#include "device/profile.h"
 #include "simulation/device_session.h"
 #include "simulation/executors.h"
 #include "simulation/test/session.h"
@@ -106,33 +109,278 @@ class TwoHands {
   Watch events;
 };
 
+/** How far the two hands' forces along x are from being equal and opposite, of their size. */
+double CalcMismatch(const TwoHands& hands) {
+  const double f_0 = hands.out[0].F_felt_W.f.x();
+  const double f_1 = hands.out[1].F_felt_W.f.x();
+  return std::abs(f_0 + f_1) / std::max(std::abs(f_0), std::abs(f_1));
+}
+
 TEST(TwoHandsTest, PartsPushAgainstEachOtherWithOneForce) {  // X7
   TwoHands hands(Blocks());
   hands.TakeBlocksUp();
   for (const haptics::TickOutput& out : hands.out) {
     EXPECT_EQ(out.contact_count, 0);
   }
-  hands.Run(0.1, Vec3(0.1, 0, 0));
-  for (int k = 0; k < 10; ++k) {
-    hands.Run(0.1);
-    std::printf(
-        "x %.3f %.3f  y %.3f %.3f z %.3f %.3f deep %.1f %.1f n %d %d t %.4f %.4f\n",
-        hands.out[0].F_felt_W.f.x(), hands.out[1].F_felt_W.f.x(), hands.out[0].F_felt_W.f.y(),
-        hands.out[1].F_felt_W.f.y(), hands.out[0].F_felt_W.f.z(), hands.out[1].F_felt_W.f.z(),
-        1e6 * hands.out[0].deepest, 1e6 * hands.out[1].deepest, hands.out[0].contact_count,
-        hands.out[1].contact_count, hands.out[0].F_felt_W.t.norm(), hands.out[1].F_felt_W.t.norm());
+  hands.Run(0.1, Vec3(0.1, 0, 0));  // 5 mm beyond the first touch
+  hands.Run(0.5);
+  // Half of that for either hand's coupling.
+  const double expected = haptics::CouplingGains().k_lin * 2.5e-3;
+  EXPECT_NEAR(hands.out[0].F_felt_W.f.x(), -expected, 0.02 * expected);
+  EXPECT_LT(CalcMismatch(hands), 0.01);
+  EXPECT_GT(hands.out[0].contact_count, 2);
+  EXPECT_EQ(hands.out[0].contact_count, hands.out[1].contact_count);
+  EXPECT_EQ(hands.out[0].contact_body.index(), kSecond.index());
+  EXPECT_EQ(hands.out[1].contact_body.index(), kFirst.index());
+  EXPECT_EQ(hands.out[0].f_C_W, -hands.out[1].f_C_W);
+  // Also on the way together, whoever pushes, once the start is over.
+  for (const double speed : {0.05, -0.05, 0.2}) {
+    const Vec3 v(speed, 0, 0);
+    hands.Run(0.5, v, v);
+    EXPECT_NEAR(hands.out[0].F_felt_W.f.x(), -expected, 0.02 * expected) << speed;
+    EXPECT_LT(CalcMismatch(hands), 0.03) << speed;
   }
-  // On the way together at 50 mm/s.
-  for (const double v : {0.05, -0.05, 0.2, -0.2}) {
-    std::printf("v %g\n", v);
-    for (int k = 0; k < 5; ++k) {
-      hands.Run(0.1, Vec3(v, 0, 0), Vec3(v, 0, 0));
-      std::printf("x %.3f %.3f deep %.1f %.1f n %d %d jump %g %g\n", hands.out[0].F_felt_W.f.x(),
-                  hands.out[1].F_felt_W.f.x(), 1e6 * hands.out[0].deepest,
-                  1e6 * hands.out[1].deepest, hands.out[0].contact_count,
-                  hands.out[1].contact_count, hands.watches[0].largest_jump,
-                  hands.watches[1].largest_jump);
+  for (const Watch& watch : hands.watches) {
+    EXPECT_LE(watch.deepest, haptics::ContactOptions().stop_depth);
+    EXPECT_TRUE(watch.is_finite);
+  }
+  // Turned about at once, which no hand can, they still do not get into each other.
+  hands.Run(0.5, Vec3(-0.2, 0, 0), Vec3(-0.2, 0, 0));
+  EXPECT_LE(hands.watches[0].deepest, 2 * haptics::ContactOptions().stop_depth);
+  EXPECT_LT(CalcMismatch(hands), 0.03);
+}
+
+TEST(TwoHandsTest, OneRunsIntoTheOtherWithoutGettingIntoIt) {  // X7
+  for (const std::size_t fast : {0u, 1u}) {
+    SCOPED_TRACE(fast);
+    TwoHands hands(Blocks());
+    hands.TakeBlocksUp();
+    std::array v{Vec3(0, 0, 0), Vec3(0, 0, 0)};
+    v[fast].x() = fast == 0 ? 0.5 : -0.5;
+    hands.Run(0.03, v[0], v[1]);
+    hands.Run(0.5);
+    EXPECT_LE(hands.watches[0].deepest, 2 * haptics::ContactOptions().stop_depth);
+    EXPECT_LT(CalcMismatch(hands), 0.01);
+    EXPECT_GT(std::abs(hands.out[0].F_felt_W.f.x()), 3);
+  }
+}
+
+TEST(TwoHandsTest, OneHandPressesWhatTheOtherHasOnTheTable) {  // X7
+  for (const std::size_t upper : {0u, 1u}) {
+    SCOPED_TRACE(upper);
+    const std::size_t lower = 1 - upper;
+    TwoHands hands(Blocks());
+    hands.Take(lower, kFirst);
+    hands.Take(upper, kSecond);
+    const auto move = [&](const Vec3& v, double time) {
+      hands.Run(time, upper == 0 ? v : Vec3::Zero(), upper == 1 ? v : Vec3::Zero());
+    };
+    move(Vec3(0, 0, 0.1), 0.6);
+    const Vec3 p_over = hands.states[lower].X_DH.p() + Vec3(0, 0, 0.06);
+    move(p_over - hands.states[upper].X_DH.p(), 1.0);
+    move(Vec3(0, 0, -0.066), 0.5);
+    move(Vec3::Zero(), 0.5);
+    // The upper hand presses 3 mm deep, the table bears it.
+    const double weight = hands.watches[upper].ticks > 0 ? 1.23 : 0;
+    EXPECT_NEAR(hands.out[upper].F_felt_W.f.z(), 3.0 - weight, 0.3);
+    std::printf("upper %zu: %.3f %.3f  deep %.1f %.1f\n", upper, hands.out[upper].F_felt_W.f.z(),
+                hands.out[lower].F_felt_W.f.z(), 1e6 * hands.watches[upper].deepest,
+                1e6 * hands.watches[lower].deepest);
+    for (const Watch& watch : hands.watches) {
+      EXPECT_LE(watch.deepest, haptics::ContactOptions().stop_depth);
     }
+  }
+}
+
+TEST(TwoHandsTest, WhatOneHandHoldsTheOtherCannotTake) {  // X3
+  TwoHands hands(Blocks());
+  hands.Take(0, kFirst);
+  ASSERT_EQ(hands.simulation.placement(kFirst), Placement::kHeld);
+  hands.Take(1, kFirst);
+  EXPECT_FALSE(hands.out[1].occurrence.is_valid());
+  EXPECT_EQ(hands.out[0].occurrence, kFirst);
+  // Once it is let go of, it can.
+  hands.states[0].is_gripping = false;
+  hands.states[1].is_gripping = false;
+  hands.Run(0.2);
+  hands.Take(1, kFirst);
+  EXPECT_EQ(hands.out[1].occurrence, kFirst);
+  std::vector<std::pair<SimulationEvent::Kind, std::size_t>> told;
+  for (const SimulationEvent& event : hands.events.events) {
+    if (event.kind != SimulationEvent::Kind::kState) {
+      told.emplace_back(event.kind, event.hand);
+    }
+  }
+  using Kind = SimulationEvent::Kind;
+  const std::vector<std::pair<Kind, std::size_t>> expected{
+      {Kind::kTaken, 0}, {Kind::kDropped, 0}, {Kind::kTaken, 1}};
+  EXPECT_EQ(told, expected);
+}
+
+TEST(TwoHandsTest, EitherHandPushesALoosePart) {  // X7
+  for (const std::size_t hand : {0u, 1u}) {
+    SCOPED_TRACE(hand);
+    TwoHands hands(Blocks());
+    hands.Take(1 - hand, kSecond);
+    hands.Take(hand, kFirst);
+    const Vec3 p_before = hands.CentreOf(kThird);
+    // Beside the third block, 5 mm away and 2 mm over the table, then 15 mm on.
+    const auto move = [&](const Vec3& v, double time) {
+      hands.Run(time, hand == 0 ? v : Vec3::Zero(), hand == 1 ? v : Vec3::Zero());
+    };
+    move(Vec3(0, 0, 0.1), 0.6);
+    const Vec3 n = Vec3(p_before - hands.states[1 - hand].X_DH.p()).cwiseProduct(Vec3(1, 1, 0));
+    const Vec3 away = std::abs(n.x()) > std::abs(n.y()) ? Vec3(std::copysign(1, n.x()), 0, 0)
+                                                        : Vec3(0, std::copysign(1, n.y()), 0);
+    const Vec3 p_beside = p_before - (2 * kHalf + 5e-3) * away + Vec3(0, 0, 0.06);
+    move(p_beside - hands.states[hand].X_DH.p(), 1.0);
+    move(Vec3(0, 0, -0.058), 1.0);
+    move(Vec3::Zero(), 0.2);
+    move(0.02 * away, 1.0);
+    move(Vec3::Zero(), 0.3);
+    EXPECT_GT((hands.CentreOf(kThird) - p_before).dot(away), 10e-3);
+    EXPECT_NEAR(hands.CentreOf(kThird).z(), p_before.z(), 0.1e-3);
+    EXPECT_LE(hands.watches[hand].deepest, haptics::ContactOptions().stop_depth);
+  }
+}
+
+TEST(TwoHandsTest, OneHandCatchesWhatTheOtherDrops) {  // X3
+  for (const std::size_t dropper : {0u, 1u}) {
+    SCOPED_TRACE(dropper);
+    TwoHands hands(Blocks());
+    hands.Take(dropper, kFirst);
+    const Vec3 up(0, 0, 0.1);
+    hands.Run(1.0, dropper == 0 ? up : Vec3::Zero(), dropper == 1 ? up : Vec3::Zero());
+    const Vec3 p_held = hands.CentreOf(kFirst) + Vec3(0, 0, 0.1);
+    hands.PutHand(1 - dropper, p_held - Vec3(0, 0, 15e-3));
+    hands.states[dropper].is_gripping = false;
+    hands.Run(0.05);
+    hands.states[1 - dropper].is_gripping = true;
+    hands.Run(0.5);
+    EXPECT_EQ(hands.out[1 - dropper].occurrence, kFirst);
+    EXPECT_EQ(hands.simulation.placement(kFirst), Placement::kHeld);
+    EXPECT_NEAR(hands.out[1 - dropper].X_WD.p().z(), p_held.z() - 15e-3, 20e-3);
+    EXPECT_TRUE(hands.watches[1 - dropper].is_finite);
+    EXPECT_LE(hands.watches[1 - dropper].largest_jump, 0.5);
+  }
+}
+
+TEST(TwoHandsTest, WithOneOperatorItIsTheSimulationOfOneHand) {
+  const auto model = testing::PegInBlockModel();
+  std::array<std::string, 2> digests;
+  for (const std::size_t hands : {1u, 2u}) {
+    Simulation simulation(model, std::vector<haptics::TickOptions>(hands));
+    SimulatedPerson person({}, 1, StartOfHand(*model));
+    Watch watch;
+    AssemblyRun run(&simulation, &person, &watch);
+    Execution execution;
+    execution.simulation = &simulation;
+    execution.hand = &person;
+    execution.sink = &run;
+    execution.advance = [&run] { run.Advance(); };
+    execution.is_done = [&run] { return run.is_done(); };
+    execution.limit_ns = 30'000'000'000;
+    (void)RunLockstep(execution);
+    EXPECT_TRUE(run.is_done());
+    ASSERT_GT(watch.largest_force, 1);
+    digests[hands - 1] = watch.Hex();
+  }
+  EXPECT_EQ(digests[0], digests[1]);
+}
+
+/** A person with an emulated device in the hand, behind the driver of its vendor. */
+struct Person {
+  Person(const char* driver, const char* profile, std::uint64_t seed, const Model& model)
+      : emulator(Start(driver, profile)),
+        device(*device::OpenDevice(emulator->address(), emulator->surroundings())),
+        options(MakeTickOptions(device->info(), model, {})),
+        person({}, seed, StartOfHand(model)),
+        hand(&person, emulator.get(), device.get(), false) {}
+
+  static std::unique_ptr<device::Emulator> Start(const char* driver, const char* profile) {
+    device::EmulatorOptions options;
+    options.profile = device::FindProfile(profile)->profile;
+    return *device::StartEmulator(driver, options);
+  }
+
+  void Assign(const Simulation& simulation, OccurrenceId id) {
+    const Body& body = simulation.model().bodies[id.index()];
+    const Pose X_BG(body.mass.p_BoBcm_B);
+    PersonTask task;
+    task.occurrence = id;
+    task.p_BG = X_BG.p();
+    task.X_WG_start = simulation.pose(id) * X_BG;
+    task.X_WG_goal = body.X_WB_goal * X_BG;
+    task.centre_W = simulation.model().centre_W;
+    task.transfer_radius = simulation.model().transfer_radius;
+    ASSERT_TRUE(person.Assign(task));
+  }
+
+  std::unique_ptr<device::Emulator> emulator;
+  std::unique_ptr<device::Device> device;
+  haptics::TickOptions options;
+  SimulatedPerson person;
+  PersonAtDevice hand;
+};
+
+/** What reaches the hands. */
+class Forces final : public Sink {
+ public:
+  void OnTick(std::size_t hand, const DeviceState&,
+              const haptics::TickOutput& out) noexcept override {
+    largest[hand] = std::max(largest[hand], out.F_H_D.f.norm());
+    ++ticks[hand];
+  }
+
+  void OnEvent(const SimulationEvent& event) override {
+    if (event.kind == SimulationEvent::Kind::kDropped) {
+      was_seated[event.hand] = was_seated[event.hand] || event.was_seated;
+    }
+  }
+
+  std::array<double, 2> largest{};
+  std::array<std::uint64_t, 2> ticks{};
+  std::array<bool, 2> was_seated{};
+};
+
+TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // N8, N9, X4
+  const auto model = Blocks();
+  Person left("openhaptics", "touch", 1, *model);
+  Person right("haply", "inverse3", 2, *model);
+  const std::vector options{left.options, right.options};
+  Simulation simulation(model, options);
+  TickLog log(100'000);
+  simulation.KeepLog(&log);
+  left.Assign(simulation, kFirst);
+  right.Assign(simulation, kThird);
+  Forces forces;
+  Execution execution;
+  execution.simulation = &simulation;
+  execution.hand = &left.hand;
+  execution.second_hand = &right.hand;
+  execution.sink = &forces;
+  execution.log = &log;
+  execution.is_done = [&] {
+    return left.person.finished_count() + right.person.finished_count() == 2;
+  };
+  execution.limit_ns = 30'000'000'000;
+  const ExecutionReport report = RunLockstep(execution);
+  EXPECT_TRUE(execution.is_done());
+  EXPECT_EQ(forces.ticks[0], report.ticks);
+  EXPECT_EQ(forces.ticks[1], report.ticks);
+  EXPECT_EQ(report.compute.count(), report.ticks);
+  for (std::size_t hand = 0; hand < 2; ++hand) {
+    EXPECT_GT(forces.largest[hand], 0.5) << hand;  // the weight at least
+    EXPECT_LE(forces.largest[hand], options[hand].device.max_force + 1e-9);
+    EXPECT_TRUE(forces.was_seated[hand]) << hand;
+  }
+  EXPECT_GT(left.emulator->device().truth().commands, 1000u);
+  EXPECT_GT(right.emulator->device().truth().commands, 1000u);
+  Simulation again(model, options);
+  ASSERT_EQ(log.tick_count(), 2 * report.ticks);
+  for (std::size_t i = 0; i < log.tick_count(); ++i) {
+    ASSERT_EQ(log.tick(i).hand, i % 2);
+    ASSERT_EQ(again.ReplayTick(log, i).F_H_D.f, log.tick(i).F_H_D.f) << i;
   }
 }
 
