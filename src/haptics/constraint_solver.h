@@ -128,6 +128,10 @@ class ConstraintSolver {
 
   [[nodiscard]] const Mat6& inverse() const noexcept { return inverse_[0]; }
 
+  /** Of all rows and contacts on body 0, as [turn; shift] about its centre of mass. Valid after
+   Solve. */
+  [[nodiscard]] Vec6 row_impulse() const noexcept { return A_ * V_[0] - rhs_; }
+
   [[nodiscard]] int contact_count() const noexcept { return contact_count_; }
 
   [[nodiscard]] int patch_count() const noexcept { return patch_count_; }

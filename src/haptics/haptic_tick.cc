@@ -317,8 +317,9 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   const double virtual_mass = std::clamp(part_->mass, kMinVirtualMass, kMaxVirtualMass);
   const Mat3 R_WB = X_WD_.R();
   friction_.BeginTick();
-  solver_.Begin(virtual_mass, R_WB * VirtualInertia(*part_, virtual_mass) * R_WB.transpose(), p_WCm,
-                V_D_, options_.dt);
+  const Mat3 I_W = R_WB * VirtualInertia(*part_, virtual_mass) * R_WB.transpose();
+  const spatial::Twist V_before = V_D_;
+  solver_.Begin(virtual_mass, I_W, p_WCm, V_D_, options_.dt);
   AddCoupling(tracked, p_WCm);
   weight_true_ = part_->mass * options_.gravity_W.norm();
   weight_felt_ = soft_start_ * force_map_.Felt(weight_true_);
@@ -339,7 +340,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   MoveDisplayed(V);
   ShowOther(true);
   is_solved_ = true;
-  answer_ = {true, V_D_, solver_.matrix(), solver_.inverse()};
+  RecordAnswer(I_W, virtual_mass, V_before);
 
   out->F_felt_W = CalcCouplingWrench(tracked);
   out->F_true_W = out->F_felt_W;

@@ -160,6 +160,7 @@ class HapticTick {
   void ShowOther(bool is_shown) noexcept;
   void AddGuest() noexcept;
   void PushGuest() noexcept;
+  void RecordAnswer(const Mat3& I_W, double mass, const spatial::Twist& V_before) noexcept;
   [[nodiscard]] double GuestSpeed() const noexcept;
   [[nodiscard]] bool IsFreeAt(const spatial::Pose& X_WB, double tolerance) noexcept;
   void MeasureDepth(TickOutput* out) noexcept;
@@ -230,7 +231,8 @@ class HapticTick {
    there. Zero for one that goes its way whatever pushes it. */
   struct Answer {
     bool yields{false};
-    spatial::Twist V;  ///< At the centre of mass.
+    spatial::Twist V;         ///< At the centre of mass.
+    Vec6 gain{Vec6::Zero()};  ///< Of momentum in the last step, that will go on in the next.
     Mat6 matrix{Mat6::Zero()};
     Mat6 inverse{Mat6::Zero()};
   };

@@ -124,15 +124,28 @@ void HapticTick::AddGuest() noexcept {
   if (other_ == nullptr || other_->part_ == nullptr) {
     return;
   }
-  // But for what this hand pushes it with, it goes on as in its own last step: springs, fits and
-  // contacts of its own carry it as they did.
+  // But for what this hand pushes it with, it goes on as in its own last step.
   const Answer& answer = other_->answer_;
   Vec6 impulse;
   impulse << options_.dt * other_->F_pushed_.t, options_.dt * other_->F_pushed_.f;
   V_guest_ << answer.V.w, answer.V.v;
-  V_guest_ -= answer.inverse * impulse;
+  V_guest_ += answer.inverse * (answer.gain - impulse);
   const Vec3 p_WCm = other_->X_WD_ * other_->part_->p_BoBcm_B;
   guest_ = solver_.AddBody(p_WCm, V_guest_, answer.inverse);
+}
+
+void HapticTick::RecordAnswer(const Mat3& I_W, double mass,
+                              const spatial::Twist& V_before) noexcept {
+  answer_ = {true, V_D_, Vec6::Zero(), solver_.matrix(), solver_.inverse()};
+  Vec6 gain;
+  gain << I_W * (V_D_.w - V_before.w), mass * (V_D_.v - V_before.v);
+  // What springs and pushes gave goes on; what contacts and fits bear, they will bear again, and
+  // what they stopped is stopped.
+  const Vec6 borne = solver_.row_impulse();
+  const double given = (gain - borne).tail<3>().norm();
+  if (given > 0) {
+    answer_.gain = std::max(0.0, 1 - borne.tail<3>().norm() / given) * gain;
+  }
 }
 
 double HapticTick::GuestSpeed() const noexcept {

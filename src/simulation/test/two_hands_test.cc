@@ -179,15 +179,18 @@ TEST(TwoHandsTest, OneHandPressesWhatTheOtherHasOnTheTable) {  // X7
     const Vec3 p_over = hands.states[lower].X_DH.p() + Vec3(0, 0, 0.06);
     move(p_over - hands.states[upper].X_DH.p(), 1.0);
     move(Vec3(0, 0, -0.066), 0.5);
-    move(Vec3::Zero(), 0.5);
-    // The upper hand presses 3 mm deep, the table bears it.
-    const double weight = hands.watches[upper].ticks > 0 ? 1.23 : 0;
-    EXPECT_NEAR(hands.out[upper].F_felt_W.f.z(), 3.0 - weight, 0.3);
-    std::printf("upper %zu: %.3f %.3f  deep %.1f %.1f\n", upper, hands.out[upper].F_felt_W.f.z(),
-                hands.out[lower].F_felt_W.f.z(), 1e6 * hands.watches[upper].deepest,
-                1e6 * hands.watches[lower].deepest);
+    move(Vec3::Zero(), 1.0);  // it rattles at first, by a few hundredths of a millimetre
+    // The upper hand presses 3 mm deep, and the table bears it: for 0.3 s without a change.
+    const double expected = haptics::CouplingGains().k_lin * 3e-3;
+    for (int i = 0; i < 300; ++i) {
+      move(Vec3::Zero(), 1e-3);
+      ASSERT_NEAR(hands.out[upper].F_felt_W.f.z(), expected, 0.02 * expected);
+      ASSERT_NEAR(hands.out[lower].F_felt_W.f.z(), 0, 0.02 * expected);
+      ASSERT_GE(hands.out[upper].deepest, -10e-6);
+    }
+    // As it came down on it at 0.13 m/s.
     for (const Watch& watch : hands.watches) {
-      EXPECT_LE(watch.deepest, haptics::ContactOptions().stop_depth);
+      EXPECT_LE(watch.deepest, 2 * haptics::ContactOptions().stop_depth);
     }
   }
 }
