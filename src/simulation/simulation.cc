@@ -45,17 +45,21 @@ Frame MakeFirstFrame(const Model& model, std::size_t hands) {
 }  // namespace
 
 Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options)
-    : Simulation(std::move(model), std::vector{options}) {}
+    : Simulation(std::move(model), &options, 1) {}
 
-Simulation::Simulation(std::shared_ptr<const Model> model,
-                       const std::vector<haptics::TickOptions>& options)
+Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& first,
+                       const haptics::TickOptions& second)
+    : Simulation(std::move(model), std::array{first, second}.data(), 2) {}
+
+Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions* options,
+                       std::size_t hands)
     : model_(std::move(model)),
       commands_(4 * model_->bodies.size() + 64),
       events_(256),
-      frames_(MakeFirstFrame(*model_, options.size())),
+      frames_(MakeFirstFrame(*model_, hands)),
       parts_(model_->bodies.size()) {
-  for (const haptics::TickOptions& of_hand : options) {
-    hands_.emplace_back(hands_.size(), of_hand, &scene_);
+  for (std::size_t i = 0; i < hands; ++i) {
+    hands_.emplace_back(i, options[i], &scene_);
   }
   if (hands_.size() == 2) {
     hands_[0].haptic.ShareSceneWith(&hands_[1].haptic, true);

@@ -106,8 +106,9 @@ class Simulation {
 
   Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options);
 
-  /** @param options  Of each hand: one or two, with the same dt. */
-  Simulation(std::shared_ptr<const Model> model, const std::vector<haptics::TickOptions>& options);
+  /** Two hands, with the same dt. */
+  Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& first,
+             const haptics::TickOptions& second);
 
   /** Haptic thread: each hand once in a period, in their order. RT-safe. */
   haptics::TickOutput HapticTick(std::size_t hand, const device::DeviceState& device) noexcept;
@@ -214,6 +215,8 @@ class Simulation {
     std::int64_t next_energy_ns{0};
   };
 
+  Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions* options,
+             std::size_t hands);
   haptics::TickOutput RunTick(Hand* hand, const device::DeviceState& device,
                               const haptics::TickContext& context) noexcept;
   void Obey(const TickCommand& command, std::int64_t t_ns) noexcept;

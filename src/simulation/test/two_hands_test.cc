@@ -56,7 +56,7 @@ const std::shared_ptr<const Model>& Blocks() {
 class TwoHands {
  public:
   explicit TwoHands(std::shared_ptr<const Model> model)
-      : simulation(std::move(model), std::vector<haptics::TickOptions>(2)) {}
+      : simulation(std::move(model), haptics::TickOptions(), haptics::TickOptions()) {}
 
   void Run(double time, const Vec3& v_0 = Vec3::Zero(), const Vec3& v_1 = Vec3::Zero()) {
     const std::array v{v_0, v_1};
@@ -270,14 +270,16 @@ TEST(TwoHandsTest, OneHandCatchesWhatTheOtherDrops) {  // X3
 
 TEST(TwoHandsTest, WithOneOperatorItIsTheSimulationOfOneHand) {
   const auto model = testing::PegInBlockModel();
-  std::array<std::string, 2> digests;
-  for (const std::size_t hands : {1u, 2u}) {
-    Simulation simulation(model, std::vector<haptics::TickOptions>(hands));
+  const haptics::TickOptions options;
+  Simulation one(model, options);
+  Simulation two(model, options, options);
+  std::vector<std::string> digests;
+  for (Simulation* simulation : {&one, &two}) {
     SimulatedPerson person({}, 1, StartOfHand(*model));
     Watch watch;
-    AssemblyRun run(&simulation, &person, &watch);
+    AssemblyRun run(simulation, &person, &watch);
     Execution execution;
-    execution.simulation = &simulation;
+    execution.simulation = simulation;
     execution.hand = &person;
     execution.sink = &run;
     execution.advance = [&run] { run.Advance(); };
@@ -286,7 +288,7 @@ TEST(TwoHandsTest, WithOneOperatorItIsTheSimulationOfOneHand) {
     (void)RunLockstep(execution);
     EXPECT_TRUE(run.is_done());
     ASSERT_GT(watch.largest_force, 1);
-    digests[hands - 1] = watch.Hex();
+    digests.push_back(watch.Hex());
   }
   EXPECT_EQ(digests[0], digests[1]);
 }
@@ -350,8 +352,7 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   const auto model = Blocks();
   Person left("openhaptics", "touch", 1, *model);
   Person right("haply", "inverse3", 2, *model);
-  const std::vector options{left.options, right.options};
-  Simulation simulation(model, options);
+  Simulation simulation(model, left.options, right.options);
   TickLog log(100'000);
   simulation.KeepLog(&log);
   left.Assign(simulation, kFirst);
@@ -374,12 +375,12 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   EXPECT_EQ(report.compute.count(), report.ticks);
   for (std::size_t hand = 0; hand < 2; ++hand) {
     EXPECT_GT(forces.largest[hand], 0.5) << hand;  // the weight at least
-    EXPECT_LE(forces.largest[hand], options[hand].device.max_force + 1e-9);
+    EXPECT_LE(forces.largest[hand], simulation.options(hand).device.max_force + 1e-9);
     EXPECT_TRUE(forces.was_seated[hand]) << hand;
   }
   EXPECT_GT(left.emulator->device().truth().commands, 1000u);
   EXPECT_GT(right.emulator->device().truth().commands, 1000u);
-  Simulation again(model, options);
+  Simulation again(model, left.options, right.options);
   ASSERT_EQ(log.tick_count(), 2 * report.ticks);
   for (std::size_t i = 0; i < log.tick_count(); ++i) {
     ASSERT_EQ(log.tick(i).hand, i % 2);
