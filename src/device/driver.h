@@ -38,18 +38,27 @@ struct ProbeReport {
   std::vector<Error> problems;      ///< For each that could not: exact reason, where, and remedy.
 };
 
+/** What a driver is called, and how its addresses are written, with an example. */
+struct DriverWords {
+  std::string_view name;   ///< "openhaptics"
+  std::string_view title;  ///< "OpenHaptics (3D Systems)"
+  std::string_view address_help;
+};
+
 /** How devices of one kind are found and opened. Stateless. */
 class Driver {
  public:
-  Driver() = default;
+  explicit constexpr Driver(const DriverWords& words) : words_(words) {}
+
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
   virtual ~Driver() = default;
 
-  [[nodiscard]] virtual std::string_view name() const = 0;   ///< "openhaptics"
-  [[nodiscard]] virtual std::string_view title() const = 0;  ///< "3D Systems (OpenHaptics HDAPI)"
-  /** How an address of it is written, with an example. */
-  [[nodiscard]] virtual std::string_view address_help() const = 0;
+  [[nodiscard]] std::string_view name() const { return words_.name; }
+
+  [[nodiscard]] std::string_view title() const { return words_.title; }
+
+  [[nodiscard]] std::string_view address_help() const { return words_.address_help; }
 
   /** Looks for devices; `opens_devices`: starts each that it finds, without force, and lets go. */
   [[nodiscard]] virtual ProbeReport Probe(const Surroundings& surroundings,
@@ -60,6 +69,15 @@ class Driver {
    Errors: kNotFound, kUnsupported, kOutOfResource..., each with the remedy. */
   [[nodiscard]] virtual Result<std::unique_ptr<Device>> Open(
       const std::string& address, const Surroundings& surroundings) const = 0;
+
+ protected:
+  /** A report with nothing in it yet. */
+  [[nodiscard]] ProbeReport BeginReport() const {
+    return {std::string(name()), std::string(title()), {}, {}, {}};
+  }
+
+ private:
+  DriverWords words_;
 };
 
 /** All drivers, in the order in which they are tried. */

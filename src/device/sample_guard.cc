@@ -23,7 +23,10 @@ double ShareOfAge(std::int64_t age_ns) noexcept {
 }
 
 DeviceState SampleGuard::Accept(const DeviceState& sample) noexcept {
+  constexpr double kClosed = 0.5;
   DeviceState state = sample;
+  state.is_gripping = (sample.buttons & 1U) != 0 || sample.grip > kClosed;
+  state.is_clutching = (sample.buttons & 2U) != 0;
   if (!IsFinite(sample)) {
     state.X_DH = last_.X_DH;
     state.V_DH = {};
@@ -43,7 +46,7 @@ DeviceState SampleGuard::Accept(const DeviceState& sample) noexcept {
         settled_ns_ = sample.t_ns + kSettleNs;
       }
     }
-    last_ = sample;
+    last_ = state;
     has_last_ = true;
     is_settling_ = is_settling_ && sample.t_ns < settled_ns_;
     if (is_settling_ && state.condition == Condition::kReady) {

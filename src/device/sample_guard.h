@@ -22,7 +22,8 @@ class SampleGuard {
   SampleGuard(double resolution, double rotation_resolution)
       : slack_(8 * resolution), turn_slack_(8 * rotation_resolution) {}
 
-  /** A driver has a new sample with its own condition; returns it as it may be passed on. */
+  /** A driver has a new sample with its own condition; returns it as it may be passed on. The first
+   button or a closed grip grips, the second button clutches. */
   [[nodiscard]] DeviceState Accept(const DeviceState& sample) noexcept;
 
   /** There is none; returns the last one, marked as stale when it is too old. Its velocity fades.

@@ -36,10 +36,12 @@ class TemporaryFolder {
     return path_ / name;
   }
 
-  /** Writes a file there, byte for byte. */
+  /** Writes a file there, byte for byte; makes the folders before it. */
   std::filesystem::path Write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
+    const std::filesystem::path file = path_ / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
   }
 
  private:

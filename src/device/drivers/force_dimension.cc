@@ -300,8 +300,6 @@ VendorDevice::Reading DhdDevice::ReadVendor(DeviceState* sample) noexcept {
   if (info().capabilities.has_grip && dhd_.dhdGetGripperGap(&gap, id_) >= 0) {
     sample->grip = std::clamp(1 - gap / kOpenGap, 0.0, 1.0);
   }
-  sample->is_gripping = (sample->buttons & 1) != 0 || sample->grip > 0.5;
-  sample->is_clutching = (sample->buttons & 2) != 0;
   ReadStatus(sample);
   return read == kTimeGuard ? Reading::kRepeated : Reading::kNew;
 }
@@ -329,14 +327,11 @@ void DhdDevice::ReadStatus(DeviceState* sample) noexcept {
 
 class DhdDriver final : public Driver {
  public:
-  [[nodiscard]] std::string_view name() const override { return kName; }
-
-  [[nodiscard]] std::string_view title() const override { return kTitle; }
-
-  [[nodiscard]] std::string_view address_help() const override {
-    return "the number of the device, as \"forcedimension:0\"; none: the first one that is free. "
-           "One that is not calibrated moves by itself when it is opened";
-  }
+  DhdDriver()
+      : Driver(
+            {kName, kTitle,
+             "the number of the device, as \"forcedimension:0\"; none: the first one that is free. "
+             "One that is not calibrated moves by itself when it is opened"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override;
@@ -389,7 +384,7 @@ Result<std::unique_ptr<Device>> DhdDriver::Open(const std::string& address,
 }
 
 ProbeReport DhdDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
-  ProbeReport report{kName, kTitle, {}, {}, {}};
+  ProbeReport report = BeginReport();
   ProbeUsb(surroundings, kUsbVendor, "Force Dimension", &report);
   if (!opens_devices) {
     ProbeFiles(Search(surroundings), &report);

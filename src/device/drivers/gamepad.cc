@@ -424,19 +424,13 @@ Result<std::unique_ptr<Device>> OpenNode(const std::filesystem::path& path,
 
 class Gamepads final : public Driver {
  public:
-  [[nodiscard]] std::string_view name() const override { return kName; }
-
-  [[nodiscard]] std::string_view title() const override {
-    return "Gamepad or joystick (Linux evdev)";
-  }
-
-  [[nodiscard]] std::string_view address_help() const override {
-    return "[NODE], as in gamepad:/dev/input/event5";
-  }
+  Gamepads()
+      : Driver({kName, "Gamepad or joystick (Linux evdev)",
+                "[NODE], as in gamepad:/dev/input/event5"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
-    ProbeReport report{kName, std::string(title()), {}, {}, {}};
+    ProbeReport report = BeginReport();
     bool has_any = false;
     for (const std::filesystem::path& path : FindNodes(surroundings.root)) {
       EvdevNode node = EvdevNode::TryOpen(path);

@@ -337,19 +337,14 @@ DeviceInfo InfoOf(const haply::Message& message, const std::string& host, std::u
 
 class Haply final : public Driver {
  public:
-  [[nodiscard]] std::string_view name() const override { return kName; }
-
-  [[nodiscard]] std::string_view title() const override {
-    return "Haply Inverse3 (Inverse Service)";
-  }
-
-  [[nodiscard]] std::string_view address_help() const override {
-    return "[HOST[:PORT]][/DEVICE_ID] of the Inverse Service, as in haply:localhost:10001/049D";
-  }
+  Haply()
+      : Driver({kName, "Haply Inverse3 (Inverse Service)",
+                "[HOST[:PORT]][/DEVICE_ID] of the Inverse Service, as in "
+                "haply:localhost:10001/049D"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
-    ProbeReport report{kName, std::string(title()), {}, {}, {}};
+    ProbeReport report = BeginReport();
     const auto device = OpenAt(HaplyAddress{}, surroundings, &report.looked_for);
     if (!device) {
       report.problems.push_back(device.error());

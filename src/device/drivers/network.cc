@@ -321,20 +321,15 @@ namespace {
 
 class Network final : public Driver {
  public:
-  [[nodiscard]] std::string_view name() const override { return kName; }
-
-  [[nodiscard]] std::string_view title() const override {
-    return "Network device (HVAS's own UDP protocol)";
-  }
-
-  [[nodiscard]] std::string_view address_help() const override {
-    return "[[HOST:]PORT][?key=FILE] to listen at, as in network:127.0.0.1:47811?key=/etc/hvas/"
-           "network.key";
-  }
+  Network()
+      : Driver(
+            {kName, "Network device (HVAS's own UDP protocol)",
+             "[[HOST:]PORT][?key=FILE] to listen at, as in network:127.0.0.1:47811?key=/etc/hvas/"
+             "network.key"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
-    ProbeReport report{kName, std::string(title()), {}, {}, {}};
+    ProbeReport report = BeginReport();
     const std::filesystem::path file = surroundings.root / kDefaultKey;
     const auto key = LoadKey(file);
     report.looked_for.push_back({"key", file.string(), key.has_value(), ""});

@@ -399,8 +399,6 @@ HdDevice::Sample HdDevice::Sense() noexcept {
   state.X_DH = {X.q(), X.p() - centre_};
   state.V_DH = {Vec3(w[0], w[1], w[2]), units::FromMm(1) * Vec3(v_mm[0], v_mm[1], v_mm[2])};
   state.buttons = static_cast<std::uint32_t>(buttons);
-  state.is_gripping = (buttons & 1) != 0;
-  state.is_clutching = (buttons & 2) != 0;
   state.condition = is_held != 0 ? Condition::kReady : Condition::kNotHeld;
   const bool is_old = rate_hz > 0 && 1000 / rate_hz > kOldUpdate_ms;
   sample.is_new = !is_old || transform != last_transform_;
@@ -433,14 +431,11 @@ void HdDevice::Tick() noexcept {
 
 class HdDriver final : public Driver {
  public:
-  [[nodiscard]] std::string_view name() const override { return kName; }
-
-  [[nodiscard]] std::string_view title() const override { return kTitle; }
-
-  [[nodiscard]] std::string_view address_help() const override {
-    return "the name that the device has in the vendor's setup program, as \"openhaptics:Default "
-           "Device\"; none: the first one";
-  }
+  HdDriver()
+      : Driver(
+            {kName, kTitle,
+             "the name that the device has in the vendor's setup program, as \"openhaptics:Default "
+             "Device\"; none: the first one"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override;
@@ -494,7 +489,7 @@ Result<Library*> HdDriver::Load(const Surroundings& surroundings,
 }
 
 ProbeReport HdDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
-  ProbeReport report{kName, kTitle, {}, {}, {}};
+  ProbeReport report = BeginReport();
   ProbeUsb(surroundings, kUsbVendor, "3D Systems", &report);
   if (!opens_devices) {
     ProbeFiles(Search(surroundings), &report);

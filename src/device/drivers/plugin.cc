@@ -274,19 +274,13 @@ Result<std::unique_ptr<Device>> OpenPlugin(const std::string& address,
 
 class Plugins final : public Driver {
  public:
-  [[nodiscard]] std::string_view name() const override { return kName; }
-
-  [[nodiscard]] std::string_view title() const override {
-    return "Plug-in (a shared library for a device that HVAS does not know)";
-  }
-
-  [[nodiscard]] std::string_view address_help() const override {
-    return "FILE[?ARGUMENT], as in plugin:/opt/lab/our_arm.so?port=3";
-  }
+  Plugins()
+      : Driver({kName, "Plug-in (a shared library for a device that HVAS does not know)",
+                "FILE[?ARGUMENT], as in plugin:/opt/lab/our_arm.so?port=3"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
-    ProbeReport report{kName, std::string(title()), {}, {}, {}};
+    ProbeReport report = BeginReport();
     const std::filesystem::path folder = surroundings.root / kFolder;
     for (const std::filesystem::path& file : FilesIn(folder)) {
       report.looked_for.push_back({"plug-in " + file.filename().string(), file.string(), true, ""});

@@ -4,17 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "device/drivers/vendor_device.h"
+#include "device/drivers/limit_wrench.h"
 
 namespace hvas::device {
 namespace {
 
 constexpr double kUnitSlack = 0.01;
-
-bool HasPose(Condition condition) noexcept {
-  return condition == Condition::kReady || condition == Condition::kNoForce ||
-         condition == Condition::kNotHeld;
-}
 
 }  // namespace
 
@@ -32,11 +27,7 @@ std::int64_t PolledGuard::Begin() noexcept {
 }
 
 DeviceState PolledGuard::Accept(DeviceState sample) noexcept {
-  constexpr double kClosed = 0.5;
   sample.t_ns = std::max(before_ns_, now_ns_ - SampleGuard::kStaleNs);
-  sample.is_gripping = (sample.buttons & 1U) != 0 || sample.grip > kClosed;
-  sample.is_clutching = (sample.buttons & 2U) != 0;
-  sample.is_valid = sample.is_valid && HasPose(sample.condition);
   return Remember(guard_.Accept(sample));
 }
 

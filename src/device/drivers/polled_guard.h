@@ -17,8 +17,7 @@ class PolledGuard {
   /** A poll begins; returns its time [ns]. */
   std::int64_t Begin() noexcept;
 
-  /** The poll found this. Its time is set here, and what is gripping and clutching follows from
-   its buttons and its grip. */
+  /** The poll found this. Its time is set here. */
   [[nodiscard]] DeviceState Accept(DeviceState sample) noexcept;
 
   /** It found nothing new. */

@@ -198,19 +198,13 @@ Error WhyNot(int reason, const std::filesystem::path& path) {
 
 class SpaceMouses final : public Driver {
  public:
-  [[nodiscard]] std::string_view name() const override { return kName; }
-
-  [[nodiscard]] std::string_view title() const override {
-    return "3Dconnexion SpaceMouse (spacenavd)";
-  }
-
-  [[nodiscard]] std::string_view address_help() const override {
-    return "[SOCKET] of spacenavd, as in spacemouse:/var/run/spnav.sock";
-  }
+  SpaceMouses()
+      : Driver({kName, "3Dconnexion SpaceMouse (spacenavd)",
+                "[SOCKET] of spacenavd, as in spacemouse:/var/run/spnav.sock"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
-    ProbeReport report{kName, std::string(title()), {}, {}, {}};
+    ProbeReport report = BeginReport();
     const std::filesystem::path path = FindSocket("", surroundings);
     const auto device = Open("", surroundings);
     report.looked_for.push_back({"spacenavd's socket", path.string(), device.has_value(), ""});

@@ -1,7 +1,7 @@
 # Drivers that load vendors' libraries when the program runs, and libraries that stand in for them.
 
 target_sources(hvas_device PRIVATE
-  drivers/dynamic_library.cc drivers/force_dimension.cc drivers/openhaptics.cc drivers/usb_nodes.cc
+  drivers/dynamic_library.cc drivers/force_dimension.cc drivers/limit_wrench.cc drivers/openhaptics.cc drivers/usb_nodes.cc
   drivers/vendor_device.cc drivers/virtuose.cc)
 target_link_libraries(hvas_device PRIVATE Threads::Threads ${CMAKE_DL_LIBS})
 

@@ -1,10 +1,11 @@
 #include "device/drivers/vendor_device.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "device/drivers/limit_wrench.h"
 
 namespace hvas::device {
 namespace {
@@ -16,13 +17,6 @@ constexpr std::int64_t kFadedNs = 4'000'000;
 double ShareBetween(std::int64_t t_ns, std::int64_t from_ns, std::int64_t to_ns) noexcept {
   const double share = static_cast<double>(t_ns - from_ns) / static_cast<double>(to_ns - from_ns);
   return std::clamp(share, 0.0, 1.0);
-}
-
-void LimitNorm(double limit, Vec3* v) noexcept {
-  const double norm = v->norm();
-  if (norm > limit) {
-    *v *= limit / norm;
-  }
 }
 
 }  // namespace
@@ -45,16 +39,6 @@ Condition ToCondition(VendorVerdict verdict) noexcept {
   return Condition::kFault;
 }
 
-spatial::Wrench LimitWrench(const spatial::Wrench& F, const DeviceProfile& profile) noexcept {
-  if (!F.f.allFinite() || !F.t.allFinite()) {
-    return {};
-  }
-  spatial::Wrench limited = F;
-  LimitNorm(profile.max_force, &limited.f);
-  LimitNorm(profile.max_torque, &limited.t);
-  return limited;
-}
-
 DeviceProfile ProfileOfModel(std::string_view driver, const std::string& model,
                              std::string_view otherwise, std::string* note) {
   const SourcedProfile* known = FindProfileOfModel(driver, model);
@@ -69,74 +53,16 @@ VendorDevice::VendorDevice(DeviceInfo info, const Clock& clock)
       guard_(info_.profile.position_resolution, info_.profile.rotation_resolution),
       last_new_ns_(clock.NowNs()),
       force_from_ns_(clock.NowNs()),
-      blocks_(dynamic_cast<const VirtualClock*>(&clock) == nullptr) {
+      reopener_(std::make_unique<Reopener>(this, clock)) {
   state_.condition = Condition::kStale;
   state_.is_valid = false;
-  if (blocks_) {
-    ::sem_init(&wake_, 0, 0);
-    attendant_ = std::thread([this] { Attend(); });
-  }
-}
-
-VendorDevice::~VendorDevice() {
-  StopReopening();
-  if (blocks_) {
-    ::sem_destroy(&wake_);
-  }
-}
-
-void VendorDevice::StopReopening() {
-  is_stopping_.store(true, std::memory_order_release);
-  if (attendant_.joinable()) {
-    ::sem_post(&wake_);
-    attendant_.join();
-  }
-}
-
-void VendorDevice::Attend() {
-  constexpr std::chrono::milliseconds kNap(10);
-  while (!is_stopping_.load(std::memory_order_acquire)) {
-    ::sem_wait(&wake_);
-    std::int64_t next_ns = MonotonicNs();
-    while (is_gone_.load(std::memory_order_acquire) &&
-           !is_stopping_.load(std::memory_order_acquire)) {
-      if (MonotonicNs() < next_ns) {
-        std::this_thread::sleep_for(kNap);
-      } else if (Reopen()) {
-        is_gone_.store(false, std::memory_order_release);
-      } else {
-        next_ns = MonotonicNs() + kRetryNs;
-      }
-    }
-  }
-}
-
-bool VendorDevice::IsOpen() noexcept {
-  if (!is_gone_.load(std::memory_order_acquire)) {
-    return true;
-  }
-  // In virtual time nothing blocks, and it is tried here, so that the same run gives the same.
-  const std::int64_t now_ns = NowNs();
-  if (!blocks_ && now_ns >= retry_ns_) {
-    retry_ns_ = now_ns + kRetryNs;
-    is_gone_.store(!Reopen(), std::memory_order_release);
-  }
-  return !is_gone_.load(std::memory_order_acquire);
-}
-
-void VendorDevice::Drop(std::int64_t now_ns) noexcept {
-  retry_ns_ = now_ns + kRetryNs;
-  is_gone_.store(true, std::memory_order_release);
-  if (blocks_) {
-    ::sem_post(&wake_);
-  }
 }
 
 DeviceState VendorDevice::Read() noexcept {
   const std::int64_t now_ns = NowNs();
   DeviceState sample;
   sample.t_ns = now_ns;
-  const bool is_open = IsOpen();
+  const bool is_open = reopener_->IsThere();
   const Reading reading = is_open ? ReadVendor(&sample) : Reading::kGone;
   if (reading == Reading::kNew) {
     last_new_ns_ = now_ns;
@@ -149,7 +75,7 @@ DeviceState VendorDevice::Read() noexcept {
     state_.is_valid = false;
     state_.vendor_code = is_open ? sample.vendor_code : state_.vendor_code;
     if (is_open) {
-      Drop(now_ns);
+      reopener_->Lose();
     }
   }
   state_.t_ns = now_ns;
@@ -162,7 +88,7 @@ DeviceState VendorDevice::Read() noexcept {
 }
 
 void VendorDevice::Write(const spatial::Wrench& F_H_D) noexcept {
-  if (is_gone_.load(std::memory_order_acquire)) {
+  if (!reopener_->IsThere()) {
     return;
   }
   spatial::Wrench F;

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <atomic>
+#include <memory>
 #include <string>
-#include <thread>
-
-#include <semaphore.h>
 
 #include "device/driver.h"
+#include "device/drivers/reopener.h"
 #include "device/sample_guard.h"
 
 namespace hvas::device {
@@ -26,14 +24,11 @@ enum class VendorVerdict : std::uint8_t {
 /** What is alike in the devices of all vendors' libraries: samples go through the guard, force only
  while all is well, ramped back after every pause, faded while samples are missing, within the
  profile; a device that is gone is opened again, off the haptic thread. */
-class VendorDevice : public Device {
+class VendorDevice : public Device, public Reopenable {
  public:
   static constexpr std::int64_t kPauseNs = 100'000'000;  ///< Without force after a refusal.
   static constexpr std::int64_t kSettleNs = 20'000'000;  ///< The same, after anything else.
   static constexpr std::int64_t kRampNs = 200'000'000;   ///< From no force to all of it.
-  static constexpr std::int64_t kRetryNs = 250'000'000;  ///< Between attempts to open it again.
-
-  ~VendorDevice() override;
 
   [[nodiscard]] const DeviceInfo& info() const noexcept final { return info_; }
 
@@ -50,43 +45,27 @@ class VendorDevice : public Device {
   virtual Reading ReadVendor(DeviceState* sample) noexcept = 0;
   /** A wrench within the profile, finite. RT-safe but for the vendor. */
   virtual void WriteVendor(const spatial::Wrench& F_H_D) noexcept = 0;
-  /** Lets go of what is gone and opens it again; whether that worked. May block. */
-  virtual bool Reopen() = 0;
   /** A vendor's code in words, or empty. */
   [[nodiscard]] virtual std::string ExplainCode(std::int32_t code) const = 0;
 
   /** To be called first in a destructor: from then on nobody else opens the device. */
-  void StopReopening();
+  void StopReopening() { reopener_.reset(); }
 
   [[nodiscard]] std::int64_t NowNs() const noexcept { return clock_.NowNs(); }
 
  private:
-  [[nodiscard]] bool IsOpen() noexcept;
-  void Drop(std::int64_t now_ns) noexcept;
-  void Attend();
-
   DeviceInfo info_;
   const Clock& clock_;
   SampleGuard guard_;
   DeviceState state_;
   std::int64_t last_new_ns_;    ///< When the last sample came.
   std::int64_t force_from_ns_;  ///< When force begins to come back.
-  std::int64_t retry_ns_{0};    ///< When it is next tried, in virtual time.
-  bool blocks_;                 ///< Opening takes real time, so it has a thread.
-  std::atomic<bool> is_gone_{false};
-  std::atomic<bool> is_stopping_{false};
-  sem_t wake_{};
-  std::thread attendant_;
+  std::unique_ptr<Reopener> reopener_;
 };
 
 /** The profile of a model, or of the weakest device of the driver where the model is not known;
  which one it was, in words, goes to `note`. */
 [[nodiscard]] DeviceProfile ProfileOfModel(std::string_view driver, const std::string& model,
                                            std::string_view otherwise, std::string* note);
-
-/** Part of a wrench that a profile allows, its direction kept; zero if it is not finite. RT-safe.
- */
-[[nodiscard]] spatial::Wrench LimitWrench(const spatial::Wrench& F,
-                                          const DeviceProfile& profile) noexcept;
 
 }  // namespace hvas::device

@@ -278,8 +278,6 @@ void VirtDevice::ReadSwitches(DeviceState* sample) noexcept {
       sample->buttons |= 1U << button;
     }
   }
-  sample->is_gripping = (sample->buttons & 1) != 0;
-  sample->is_clutching = (sample->buttons & 2) != 0;
   int is_held = 0;
   int is_closed = 0;
   unsigned alarms = 0;
@@ -321,14 +319,10 @@ VendorDevice::Reading VirtDevice::ReadVendor(DeviceState* sample) noexcept {
 
 class VirtDriver final : public Driver {
  public:
-  [[nodiscard]] std::string_view name() const override { return kName; }
-
-  [[nodiscard]] std::string_view title() const override { return kTitle; }
-
-  [[nodiscard]] std::string_view address_help() const override {
-    return "host and port of its controller, as \"virtuose:192.168.1.2#5000\"; none: "
-           "127.0.0.1#5000";
-  }
+  VirtDriver()
+      : Driver({kName, kTitle,
+                "host and port of its controller, as \"virtuose:192.168.1.2#5000\"; none: "
+                "127.0.0.1#5000"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override;
@@ -371,7 +365,7 @@ Result<std::unique_ptr<Device>> VirtDriver::Open(const std::string& address,
 }
 
 ProbeReport VirtDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
-  ProbeReport report{kName, kTitle, {}, {}, {}};
+  ProbeReport report = BeginReport();
   if (!opens_devices) {
     ProbeFiles(Search(surroundings), &report);
     return report;

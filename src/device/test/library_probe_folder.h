@@ -1,11 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "base/test/temporary_folder.h"
 #include "device/driver.h"
 
 namespace hvas::device::testing {
@@ -14,23 +13,13 @@ namespace hvas::device::testing {
 class ProbeFolder {
  public:
   ProbeFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "hvas_machine_XXXXXX").string();
-    root_ = ::mkdtemp(name.data());
-    std::filesystem::permissions(root_, std::filesystem::perms(0755));
-    surroundings_.root = root_;
+    // Also for other users than the one who runs the tests.
+    std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
+    surroundings_.root = folder_.path();
   }
-
-  ~ProbeFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(root_, ignored);
-  }
-
-  ProbeFolder(const ProbeFolder&) = delete;
-  ProbeFolder& operator=(const ProbeFolder&) = delete;
 
   void Put(const std::string& file, const std::string& content) const {
-    std::filesystem::create_directories((root_ / file).parent_path());
-    std::ofstream(root_ / file, std::ios::binary) << content;
+    folder_.Write(file, content);
   }
 
   /** A device as the kernel shows it, with the file that programs open. */
@@ -47,12 +36,14 @@ class ProbeFolder {
     Put(node, "");
   }
 
-  [[nodiscard]] std::string Path(const std::string& file) const { return (root_ / file).string(); }
+  [[nodiscard]] std::string Path(const std::string& file) const {
+    return (folder_ / file).string();
+  }
 
   [[nodiscard]] const Surroundings& surroundings() const { return surroundings_; }
 
  private:
-  std::filesystem::path root_;
+  hvas::testing::TemporaryFolder folder_;
   Surroundings surroundings_;
 };
 

@@ -11,18 +11,18 @@
 #include <openssl/crypto.h>
 #include <openssl/hmac.h>
 
+#include "base/test/temporary_folder.h"
 #include "device/drivers/polled_guard.h"
-#include "device/test/wire_folder.h"
 #include "device/test/wire_rig.h"
 
 namespace hvas::device {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using network::Refusal;
 using testing::kTickNs;
 using testing::OptionsOf;
 using testing::Push;
-using testing::WireFolder;
 using testing::WireRig;
 
 std::atomic<int> openssl_allocations{0};
@@ -346,7 +346,7 @@ std::string ErrorOf(const std::string& address) {
 }
 
 TEST(NetworkDriverTest, KeysThatAreMissingReadableByOthersOrShortAreRefused) {
-  const WireFolder folder;
+  const TemporaryFolder folder;
   const std::string file = folder.Write("network.key", "a long enough secret\n");
   const auto expect = [&](const std::string& part) {
     const std::string error = ErrorOf("127.0.0.1:1?key=" + file);
@@ -365,9 +365,9 @@ TEST(NetworkDriverTest, KeysThatAreMissingReadableByOthersOrShortAreRefused) {
 TEST(NetworkDriverTest, AddressesThatCannotBeAreExplained) {
   EXPECT_NE(ErrorOf("127.0.0.1:70000").find("\"70000\" is no port"), std::string::npos);
   EXPECT_NE(ErrorOf("1?kee=x").find("\"kee=x\" is no option"), std::string::npos);
-  const WireFolder folder;
-  const std::string key = "?key=" + folder.Write("k", "a long enough secret");
-  ::chmod(folder.Path("k").c_str(), 0600);
+  const TemporaryFolder folder;
+  const std::string key = "?key=" + folder.Write("k", "a long enough secret").string();
+  ::chmod((folder / "k").string().c_str(), 0600);
   EXPECT_NE(ErrorOf("here:2000" + key).find("is no IPv4 address"), std::string::npos);
   const auto taken = DatagramSocket::Bind("127.0.0.1", 0);
   ASSERT_TRUE(taken);
@@ -376,7 +376,7 @@ TEST(NetworkDriverTest, AddressesThatCannotBeAreExplained) {
 }
 
 TEST(NetworkDriverTest, WithoutADeviceItSaysThatNobodySaidHello) {
-  const WireFolder folder;
+  const TemporaryFolder folder;
   const std::string key = folder.Write("k", "a long enough secret");
   ::chmod(key.c_str(), 0600);
   const std::uint16_t port = DatagramSocket::Bind("127.0.0.1", 0)->port();
@@ -385,12 +385,12 @@ TEST(NetworkDriverTest, WithoutADeviceItSaysThatNobodySaidHello) {
 }
 
 TEST(NetworkDriverTest, ProbingNamesTheKeyThatIsLookedFor) {
-  const WireFolder folder;
+  const TemporaryFolder folder;
   Surroundings surroundings;
   surroundings.root = folder.path();
   ProbeReport report = NetworkDriver().Probe(surroundings, false);
   ASSERT_EQ(report.problems.size(), 1u);
-  EXPECT_EQ(report.problems[0].where, folder.Path("etc/hvas/network.key"));
+  EXPECT_EQ(report.problems[0].where, (folder / "etc/hvas/network.key").string());
   EXPECT_NE(report.problems[0].remedy.find("/dev/urandom"), std::string::npos);
   ::chmod(folder.Write("etc/hvas/network.key", "a long enough secret").c_str(), 0600);
   report = NetworkDriver().Probe(surroundings, false);

@@ -4,17 +4,17 @@
 
 #include <dlfcn.h>
 
+#include "base/test/temporary_folder.h"
 #include "device/emulation/emulated_plugin.h"
-#include "device/test/wire_folder.h"
 #include "device/test/wire_rig.h"
 
 namespace hvas::device {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using testing::kTickNs;
 using testing::OptionsOf;
 using testing::Push;
-using testing::WireFolder;
 using testing::WireRig;
 
 std::string ErrorOf(const std::string& address) {
@@ -60,7 +60,7 @@ TEST(ExamplePluginTest, SaysItselfWhatIsWrongWithItsArgument) {
 
 TEST(PluginDriverTest, WhatIsNoPluginIsExplained) {
   ExpectError("/nowhere/arm.so", "there is no such plug-in");
-  const WireFolder folder;
+  const TemporaryFolder folder;
   ExpectError(folder.Write("text.so", "not a library"), "the plug-in cannot be loaded");
   ExpectError("", "no plug-in is named, and none is installed");
   ExpectError(HVAS_ODD_PLUGIN_NONE, "it has no function hvas_device_plugin");
@@ -73,7 +73,7 @@ TEST(PluginDriverTest, AnotherVersionOfTheInterfaceIsToldClearly) {
 }
 
 TEST(PluginDriverTest, ProbingOpensWhatIsInstalled) {
-  const WireFolder folder;
+  const TemporaryFolder folder;
   Surroundings surroundings;
   surroundings.root = folder.path();
   ProbeReport report = PluginDriver().Probe(surroundings, true);

@@ -10,18 +10,18 @@
 #include <fcntl.h>
 #include <linux/uinput.h>
 
+#include "base/test/temporary_folder.h"
 #include "device/drivers/evdev_node.h"
 #include "device/drivers/rate_control.h"
 #include "device/drivers/spacenav_protocol.h"
-#include "device/test/wire_folder.h"
 #include "device/test/wire_rig.h"
 
 namespace hvas::device {
 namespace {
 
+using hvas::testing::TemporaryFolder;
 using testing::kTickNs;
 using testing::OptionsOf;
-using testing::WireFolder;
 using testing::WireRig;
 
 TEST(RateControlTest, SmallDeflectionsDoNothingAndFullOnesMoveAtFullSpeed) {
@@ -180,8 +180,8 @@ TEST(SpaceMouseTest, ACapThatIsPushedInSilenceIsTakenToBeLetGoOf) {
 }
 
 TEST(SpaceMouseTest, FramesInPiecesAreReadAsOne) {
-  const WireFolder folder;
-  const auto listener = ListenAt(folder.Path("var/run/spnav.sock"), SOCK_STREAM);
+  const TemporaryFolder folder;
+  const auto listener = ListenAt((folder / "var/run/spnav.sock").string(), SOCK_STREAM);
   ASSERT_TRUE(listener);
   VirtualClock clock;
   Surroundings surroundings;
@@ -204,18 +204,18 @@ TEST(SpaceMouseTest, FramesInPiecesAreReadAsOne) {
 }
 
 TEST(SpaceMouseTest, ProbingTellsAMissingDaemonFromOneThatHasEnded) {
-  const WireFolder folder;
+  const TemporaryFolder folder;
   Surroundings surroundings;
   surroundings.root = folder.path();
   ProbeReport report = SpaceMouseDriver().Probe(surroundings, false);
   ASSERT_EQ(report.problems.size(), 1u);
-  EXPECT_EQ(report.problems[0].where, folder.Path("var/run/spnav.sock"));
+  EXPECT_EQ(report.problems[0].where, (folder / "var/run/spnav.sock").string());
   EXPECT_NE(report.problems[0].message.find("spacenavd is not running"), std::string::npos);
   EXPECT_NE(report.problems[0].remedy.find("apt install spacenavd"), std::string::npos);
   folder.Write("etc/spnavrc", "# settings\nsensitivity = 1\nsocket = \"/run/other.sock\"\n");
   report = SpaceMouseDriver().Probe(surroundings, false);
-  EXPECT_EQ(report.problems.at(0).where, folder.Path("run/other.sock"));
-  { const auto gone = ListenAt(folder.Path("run/other.sock"), SOCK_STREAM); }
+  EXPECT_EQ(report.problems.at(0).where, (folder / "run/other.sock").string());
+  { const auto gone = ListenAt((folder / "run/other.sock").string(), SOCK_STREAM); }
   report = SpaceMouseDriver().Probe(surroundings, false);
   EXPECT_NE(report.problems.at(0).message.find("nobody listens"), std::string::npos);
 }
@@ -247,20 +247,20 @@ TEST(GamepadTest, RumbleIsAsStrongAsTheForceAndEndsByItself) {
 }
 
 TEST(GamepadTest, WhereNothingIsPluggedInItSaysSo) {
-  const WireFolder folder;
+  const TemporaryFolder folder;
   Surroundings surroundings;
   surroundings.root = folder.path();
   const ProbeReport report = GamepadDriver().Probe(surroundings, true);
   ASSERT_EQ(report.problems.size(), 1u);
   EXPECT_EQ(report.problems[0].message, "no gamepad or joystick is plugged in");
-  EXPECT_EQ(report.problems[0].where, folder.Path("dev/input"));
-  const auto device = GamepadDriver().Open(folder.Path("dev/input/event3"), surroundings);
+  EXPECT_EQ(report.problems[0].where, (folder / "dev/input").string());
+  const auto device = GamepadDriver().Open((folder / "dev/input/event3").string(), surroundings);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, "there is no such input device");
 }
 
 TEST(GamepadTest, WhatIsNoGamepadIsPassedOver) {
-  const WireFolder folder;
+  const TemporaryFolder folder;
   folder.Write("dev/input/event2", "");
   folder.Write("dev/input/mice", "");
   Surroundings surroundings;
@@ -270,15 +270,15 @@ TEST(GamepadTest, WhatIsNoGamepadIsPassedOver) {
   EXPECT_FALSE(report.looked_for[0].is_found);
   EXPECT_TRUE(report.devices.empty());
   EXPECT_NE(GamepadDriver()
-                .Open(folder.Path("dev/input/event2"), surroundings)
+                .Open((folder / "dev/input/event2").string(), surroundings)
                 .error()
                 .message.find("is no gamepad"),
             std::string::npos);
 }
 
 TEST(GamepadTest, ANodeThatCannotBeOpenedIsToldOnlyIfItsKeysMayBeAGamepads) {
-  const WireFolder folder;
-  const std::string node = folder.Path("dev/input/event4");
+  const TemporaryFolder folder;
+  const std::string node = (folder / "dev/input/event4").string();
   { const auto gone = ListenAt(node, SOCK_SEQPACKET); }  // nobody answers there
   Surroundings surroundings;
   surroundings.root = folder.path();

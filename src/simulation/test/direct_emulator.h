@@ -53,8 +53,6 @@ class DirectDevice final : public device::Device {
     state.X_DH = sample.X_DH;
     state.V_DH = sample.V_DH;
     state.buttons = sample.buttons;
-    state.is_gripping = (sample.buttons & 1) != 0;
-    state.is_clutching = (sample.buttons & 2) != 0;
     state.condition = Judge(sample);
     return state_ = guard_.Accept(state);
   }

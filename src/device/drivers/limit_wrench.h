@@ -1,0 +1,13 @@
+#pragma once
+
+#include "device/profile.h"
+#include "spatial/pose.h"
+
+namespace hvas::device {
+
+/** Part of a wrench that a profile allows, its direction kept; zero if it is not finite. RT-safe.
+ */
+[[nodiscard]] spatial::Wrench LimitWrench(const spatial::Wrench& F,
+                                          const DeviceProfile& profile) noexcept;
+
+}  // namespace hvas::device
