@@ -20,6 +20,7 @@
 #include "haptics/coupling_rule.h"
 #include "haptics/passivity_controller.h"
 #include "haptics/safety_gate.h"
+#include "simulation/device_session.h"
 #include "simulation/realtime_thread.h"
 
 namespace hvas::app {
@@ -45,25 +46,15 @@ class FloorTrial {
   /** @param dt  Since the last tick began [s]: what is late must not look like a leap. */
   void Tick(double dt) noexcept {
     TrialState& state = states_.back();
-    state.device = device_->Read();
+    state.device = simulation::ReadDevice(device_);
     const device::DeviceState& now = state.device;
     const double depth = -up_D_.dot(now.X_DH.p());
     spatial::Wrench F;
     if (now.is_valid && depth > 0) {
       F.f = std::max(0.0, gains_.k_lin * depth - gains_.b_lin * up_D_.dot(now.V_DH.v)) * up_D_;
     }
-    haptics::GateInput input;
-    input.F = passivity_.Limit(now.X_DH, F, std::numeric_limits<double>::quiet_NaN(), 0, dt);
-    input.p = now.X_DH.p();
-    input.V = now.V_DH;
-    input.dt = dt;
-    input.sample_dt = 1e-9 * static_cast<double>(std::max<std::int64_t>(
-                                 0, now.t_ns - std::exchange(last_sample_ns_, now.t_ns)));
-    input.is_valid = now.is_valid && now.condition != device::Condition::kNoForce;
-    input.is_held = now.condition != device::Condition::kNotHeld;
-    input.is_stopped = now.condition == device::Condition::kStopped;
-    input.is_gripping = now.is_gripping;
-    state.F_H_D = gate_.Pass(input);
+    F = passivity_.Limit(now.X_DH, F, std::numeric_limits<double>::quiet_NaN(), 0, dt);
+    state.F_H_D = gate_.Pass(haptics::MakeGateInput(now, F, dt, &last_sample_ns_));
     passivity_.Write(state.F_H_D);
     device_->Write(state.F_H_D);
     state.gate_actions = gate_.actions();
@@ -88,9 +79,8 @@ class FloorTrial {
   TripleBuffer<TrialState> states_;
 };
 
-/** The hand of an emulated device: slowly down into the floor and up again, in two
- seconds. It takes the
- handle anew each time, as a person would after an alarm. */
+/** The hand of an emulated device: slowly down into the floor and up again, in two seconds. It
+ takes the handle anew each time, as a person would after an alarm. */
 void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
   constexpr double kDepth = 0.012;  // [m] that it would go without the floor
   constexpr double kTurn = std::numbers::pi;

@@ -62,7 +62,7 @@ struct Capabilities {
 
 struct DeviceInfo {
   std::string driver;   ///< As in the list of drivers.
-  std::string address;  ///< That opens this one again.
+  std::string address;  ///< That opens this one again, with or without the driver's name before it.
   std::string model;
   std::string serial;
   std::string version;  ///< Of the vendor's software.

@@ -228,21 +228,9 @@ spatial::Wrench HapticTick::MakeSafe(const device::DeviceState& state, const Tic
     F_H_D = passivity_.Limit(is_usable ? state.X_DH : nowhere, F_H_D, StoredEnergy(),
                              StoredTurningEnergy(), options_.dt);
   }
-  GateInput input;
-  input.F = F_H_D;
-  input.p = state.X_DH.p();
-  input.V = state.V_DH;
-  input.dt = options_.dt;
-  if (state.sample_ns > 0) {
-    input.sample_dt =
-        1e-9 * static_cast<double>(std::max<std::int64_t>(
-                   0, state.sample_ns - std::exchange(last_sample_ns_, state.sample_ns)));
-  }
-  // A device that shows no force has none that could be accounted for, and starts softly after.
-  input.is_valid = is_usable && state.condition != device::Condition::kNoForce;
-  input.is_held = state.condition != device::Condition::kNotHeld;
-  input.is_stopped = context.is_stopped || state.condition == device::Condition::kStopped;
-  input.is_gripping = state.is_gripping;
+  GateInput input = MakeGateInput(state, F_H_D, options_.dt, &last_sample_ns_);
+  input.is_valid = input.is_valid && is_usable;
+  input.is_stopped = input.is_stopped || context.is_stopped;
   input.has_engaged = std::exchange(has_engaged_, false);
   input.model_age = 1e-9 * static_cast<double>(context.model_age_ns);
   input.client_age = 1e-9 * static_cast<double>(context.client_age_ns);
@@ -280,6 +268,8 @@ void HapticTick::CreditPotentials() noexcept {
   passivity_.AddCredit(weight * std::max(0.0, drop) / options_.workspace.mapping.scale);
 }
 
+// As if the coupling were never saturated: what counts as stored is never forgotten, so too much
+// here only makes the controller remember longer.
 double HapticTick::StoredEnergy() const noexcept {
   if (part_ == nullptr) {
     return 0;
@@ -353,32 +343,37 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
 
 void HapticTick::AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept {
   // X(1), X(2), with the damper's sign mended, and never more than the device can give.
+  const Stretch stretch = CalcStretch(tracked);
+  const CouplingGains& now = stretch.gains;
+  solver_.AddPointSpring(p_WCm, now.k_lin * stretch.e_W, now.k_lin * Mat3::Identity());
+  solver_.AddPointDamper(p_WCm, tracked.V_T.v, now.b_lin);
+  solver_.AddAngularSpring(now.k_rot * stretch.theta_W, now.k_rot * Mat3::Identity());
+  solver_.AddAngularDamper(tracked.V_T.w, now.b_rot);
+}
+
+HapticTick::Stretch HapticTick::CalcStretch(const Tracked& tracked) const noexcept {
   const CouplingGains& gains = options_.coupling;
-  const Vec3 e = tracked.X_WT * part_->p_BoBcm_B - p_WCm;
+  Stretch stretch;
+  stretch.e_W = tracked.X_WT * part_->p_BoBcm_B - X_WD_ * part_->p_BoBcm_B;
+  stretch.theta_W = spatial::RotationBetween(X_WD_.q(), tracked.X_WT.q());
   const double max_force = kMaxCouplingShare * options_.device.max_force;
-  const double k = e.norm() * gains.k_lin > max_force ? max_force / e.norm() : gains.k_lin;
-  solver_.AddPointSpring(p_WCm, k * e, k * Mat3::Identity());
-  solver_.AddPointDamper(p_WCm, tracked.V_T.v, gains.b_lin * k / gains.k_lin);
-  const Vec3 theta = spatial::RotationBetween(X_WD_.q(), tracked.X_WT.q());
   const double max_torque = kMaxCouplingShare * std::max(kLeastTorque, options_.device.max_torque);
-  const double k_rot =
-      theta.norm() * gains.k_rot > max_torque ? max_torque / theta.norm() : gains.k_rot;
-  solver_.AddAngularSpring(k_rot * theta, k_rot * Mat3::Identity());
-  solver_.AddAngularDamper(tracked.V_T.w, gains.b_rot * k_rot / gains.k_rot);
+  const auto saturate = [](double k, double stretched, double most) {
+    return stretched * k > most ? most / stretched : k;
+  };
+  CouplingGains& now = stretch.gains;
+  now.k_lin = saturate(gains.k_lin, stretch.e_W.norm(), max_force);
+  now.k_rot = saturate(gains.k_rot, stretch.theta_W.norm(), max_torque);
+  now.b_lin = gains.b_lin * now.k_lin / gains.k_lin;
+  now.b_rot = gains.b_rot * now.k_rot / gains.k_rot;
+  return stretch;
 }
 
 spatial::Wrench HapticTick::CalcCouplingWrench(const Tracked& tracked) const noexcept {
-  const CouplingGains& gains = options_.coupling;
-  const Vec3 e = X_WD_ * part_->p_BoBcm_B - tracked.X_WT * part_->p_BoBcm_B;
-  const double max_force = kMaxCouplingShare * options_.device.max_force;
-  const double k = e.norm() * gains.k_lin > max_force ? max_force / e.norm() : gains.k_lin;
-  const Vec3 theta = spatial::RotationBetween(tracked.X_WT.q(), X_WD_.q());
-  const double max_torque = kMaxCouplingShare * std::max(kLeastTorque, options_.device.max_torque);
-  const double k_rot =
-      theta.norm() * gains.k_rot > max_torque ? max_torque / theta.norm() : gains.k_rot;
-  const double b = gains.b_lin * k / gains.k_lin;
-  const double b_rot = gains.b_rot * k_rot / gains.k_rot;
-  return {k_rot * theta + b_rot * (V_D_.w - tracked.V_T.w), k * e + b * (V_D_.v - tracked.V_T.v)};
+  const Stretch stretch = CalcStretch(tracked);
+  const CouplingGains& now = stretch.gains;
+  return {now.b_rot * (V_D_.w - tracked.V_T.w) - now.k_rot * stretch.theta_W,
+          now.b_lin * (V_D_.v - tracked.V_T.v) - now.k_lin * stretch.e_W};
 }
 
 void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {

@@ -124,6 +124,14 @@ class HapticTick {
     spatial::Twist V_T;  ///< At the part's centre of mass, in W.
   };
 
+  /** How far the tracked part is from the displayed one, and the coupling there: softer where it
+   would give more than the device can. */
+  struct Stretch {
+    Vec3 e_W;      ///< Between the centres of mass [m].
+    Vec3 theta_W;  ///< [rad]
+    CouplingGains gains;
+  };
+
   [[nodiscard]] spatial::Wrench MakeSafe(const device::DeviceState& state,
                                          const TickContext& context, bool is_usable,
                                          const TickOutput& out) noexcept;
@@ -134,6 +142,7 @@ class HapticTick {
 
   [[nodiscard]] Tracked CalcTracked(const Hand& hand) const noexcept;
   void Hold(const Tracked& tracked, TickOutput* out) noexcept;
+  [[nodiscard]] Stretch CalcStretch(const Tracked& tracked) const noexcept;
   void AddCoupling(const Tracked& tracked, const Vec3& p_WCm) noexcept;
   void AddGuidance(const Vec3& p_WCm) noexcept;
   void AddFits(const MateGeometry& axis, const Vec3& p_WCm) noexcept;

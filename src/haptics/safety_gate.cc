@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hvas::haptics {
 namespace {
@@ -39,6 +40,24 @@ bool LimitNorm(double limit, Vec3* v) noexcept {
 }
 
 }  // namespace
+
+GateInput MakeGateInput(const device::DeviceState& state, const spatial::Wrench& F_H_D, double dt,
+                        std::int64_t* last_sample_ns) noexcept {
+  GateInput input;
+  input.F = F_H_D;
+  input.p = state.X_DH.p();
+  input.V = state.V_DH;
+  input.dt = dt;
+  if (state.sample_ns > 0) {
+    const std::int64_t since_ns = state.sample_ns - std::exchange(*last_sample_ns, state.sample_ns);
+    input.sample_dt = 1e-9 * static_cast<double>(std::max<std::int64_t>(0, since_ns));
+  }
+  input.is_valid = state.is_valid && state.condition != device::Condition::kNoForce;
+  input.is_held = state.condition != device::Condition::kNotHeld;
+  input.is_stopped = state.condition == device::Condition::kStopped;
+  input.is_gripping = state.is_gripping;
+  return input;
+}
 
 SafetyLimits MakeSafetyLimits(const device::DeviceProfile& profile) noexcept {
   const auto known = [](double limit) { return limit > 0 ? limit : SafetyLimits::kNever; };

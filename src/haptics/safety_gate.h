@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "device/profile.h"
+#include "device/device.h"
 #include "haptics/buzz_detector.h"
 #include "haptics/kick_detector.h"
 #include "haptics/thermal_limit.h"
@@ -102,6 +102,14 @@ struct GateInput {
   double model_age{0};      ///< Of what F was computed from [s].
   double client_age{0};     ///< Since whoever asks for F was last heard of [s].
 };
+
+/** What the gate is told of a device's state and of the wrench that the device is to be given. A
+ device that shows no force has none that could be accounted for, and starts softly after.
+ @param dt  Since the last tick [s].
+ @param last_sample_ns  When the sample before this one was taken, kept by the caller. RT-safe. */
+[[nodiscard]] GateInput MakeGateInput(const device::DeviceState& state,
+                                      const spatial::Wrench& F_H_D, double dt,
+                                      std::int64_t* last_sample_ns) noexcept;
 
 /** The last thing before every device write (N6). What goes out is finite and within its limits in
  norm and in rate, and goes to zero when something is wrong; docs/algorithms/stability.md. Keeps the

@@ -398,5 +398,18 @@ TEST(NetworkDriverTest, ProbingNamesTheKeyThatIsLookedFor) {
   EXPECT_TRUE(report.looked_for[0].is_found);
 }
 
+TEST(NetworkDriverTest, ProbingDoesNotStandInItsOwnWay) {
+  const TemporaryFolder folder;
+  Surroundings surroundings;
+  surroundings.root = folder.path();
+  ::chmod(folder.Write("etc/hvas/network.key", "a long enough secret").c_str(), 0600);
+  const ProbeReport report = NetworkDriver().Probe(surroundings, true);
+  ASSERT_EQ(report.problems.size(), 1u);
+  const std::string problem = report.problems[0].ToString();
+  const bool is_taken_by_another = !report.looked_for[1].is_found;
+  EXPECT_EQ(problem.find("another program has this port") != std::string::npos, is_taken_by_another)
+      << problem;
+}
+
 }  // namespace
 }  // namespace hvas::device
