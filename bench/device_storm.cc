@@ -16,11 +16,11 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "app/load_product.h"
 #include "base/random.h"
 #include "device/driver.h"
 #include "device/emulation/emulator.h"
 #include "haptics/passivity_controller.h"
+#include "load_model.h"
 #include "simulation/assembly_run.h"
 #include "simulation/device_session.h"
 #include "simulation/executors.h"
@@ -125,11 +125,8 @@ Result<Outcome> Run(const std::shared_ptr<const Model>& model, const std::string
                     std::uint64_t seed, const StormOptions& storm) {
   Random random(seed);
   device::EmulatorOptions emulation;
-  for (const device::SourcedProfile& profile : device::KnownProfiles()) {
-    if (profile.driver == driver) {
-      emulation.profile = profile.profile;
-      break;
-    }
+  if (const auto* known = device::FindProfileOfDriver(driver); known != nullptr) {
+    emulation.profile = known->profile;
   }
   auto emulator = device::StartEmulator(driver, emulation);
   if (!emulator) {
@@ -152,18 +149,13 @@ Result<Outcome> Run(const std::shared_ptr<const Model>& model, const std::string
   simulation::AssemblyRun run(&simulation, &person, &watch);
   const std::size_t steps = model->sequence.steps.size();
   run.Only(1 + seed % (steps - 1), 1);
-  simulation::Execution execution;
-  execution.simulation = &simulation;
-  execution.hand = &hand;
-  execution.sink = &run;
-  execution.advance = [&run] { run.Advance(); };
+  simulation::Execution execution = run.MakeExecution(&hand, storm.limit_s);
   double largest_motor = 0;
   execution.is_done = [&] {
     largest_motor = std::max(largest_motor, (*emulator)->device().truth().F_H_D.f.norm());
     return run.is_done();
   };
   execution.is_physics_late = LatePhysics(seed + 1'000'000);
-  execution.limit_ns = std::llround(1e9 * storm.limit_s);
   (void)RunLockstep(execution);
   const auto truth = (*emulator)->device().truth();
   Outcome outcome = watch.outcome;
@@ -208,21 +200,8 @@ void Add(const Outcome& outcome, std::uint64_t seed, const std::string& driver, 
   }
 }
 
-Result<std::shared_ptr<const Model>> LoadModel(const std::string& file) {
-  app::LoadOptions load;
-  load.file = file;
-  load.is_quiet = true;
-  Diagnostics diagnostics;
-  auto product = app::LoadProduct(load, &diagnostics);
-  if (!product) {
-    return Unexpected(product.error());
-  }
-  return simulation::Compile(std::make_shared<product::Product>(std::move(*product)), {},
-                             &diagnostics);
-}
-
 int RunStorm(const StormOptions& storm) {
-  const auto model = LoadModel(storm.file);
+  const auto model = bench::LoadModel(storm.file);
   if (!model) {
     fmt::print(stderr, "device_storm: {}\n", model.error().ToString());
     return 1;

@@ -18,8 +18,8 @@
 #include <fmt/format.h>
 
 #include "app/latency_json.h"
-#include "app/load_product.h"
 #include "base/clock.h"
+#include "load_model.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 
@@ -153,13 +153,7 @@ void RunSession(const std::shared_ptr<const Model>& model, const BenchOptions& b
   simulation::AssemblyRun run(&simulation, &person, nullptr);
   simulation::FlightRecorder flight(bench.rate_hz);
   FramePacker packer;
-  simulation::Execution execution;
-  execution.simulation = &simulation;
-  execution.hand = &person;
-  execution.sink = &run;
-  execution.advance = [&run] { run.Advance(); };
-  execution.is_done = [&run] { return run.is_done(); };
-  execution.limit_ns = std::llround(1e9 * limit_s);
+  simulation::Execution execution = run.MakeExecution(&person, limit_s);
   execution.flight = &flight;
   execution.log = &log;
   execution.on_frame = [&](const simulation::Frame& frame) {
@@ -197,17 +191,7 @@ void Print(const Totals& totals, double wall_s) {
 }
 
 int RunBench(const BenchOptions& bench) {
-  app::LoadOptions load;
-  load.file = bench.file;
-  load.is_quiet = true;
-  Diagnostics diagnostics;
-  auto product = app::LoadProduct(load, &diagnostics);
-  if (!product) {
-    fmt::print(stderr, "realtime_bench: {}\n", product.error().ToString());
-    return 1;
-  }
-  const auto model = simulation::Compile(std::make_shared<product::Product>(std::move(*product)),
-                                         {}, &diagnostics);
+  const auto model = bench::LoadModel(bench.file);
   if (!model) {
     fmt::print(stderr, "realtime_bench: {}\n", model.error().ToString());
     return 1;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -195,18 +194,12 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
           static_cast<double>(progress.tried) / static_cast<double>(progress.total));
     };
   }
-  simulation::Execution execution;
-  execution.simulation = &simulation;
-  execution.hand = hand->active();
-  execution.flight = &flight;
-  execution.sink = &run;
-  execution.advance = [&run] { run.Advance(); };
-  execution.is_done = [&run] { return run.is_done(); };
   const double size = std::max(1.0, model->transfer_radius / kOrdinaryRadius);
   const double limit_s = options.limit_s > 0
                              ? options.limit_s
                              : kSecondsPerPart * size * static_cast<double>(model->bodies.size());
-  execution.limit_ns = std::llround(1e9 * limit_s);
+  simulation::Execution execution = run.MakeExecution(hand->active(), limit_s);
+  execution.flight = &flight;
   outcome.execution =
       options.is_realtime ? simulation::RunRealtime(execution) : simulation::RunLockstep(execution);
   outcome.parts = run.results();

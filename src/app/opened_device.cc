@@ -13,15 +13,6 @@ namespace {
 
 constexpr std::string_view kEmulated = "emulated:";
 
-const device::SourcedProfile* FindProfileFor(const std::string& driver, const std::string& id) {
-  for (const device::SourcedProfile& profile : device::KnownProfiles()) {
-    if (profile.driver == driver && (id.empty() || profile.profile.id == id)) {
-      return &profile;
-    }
-  }
-  return nullptr;
-}
-
 std::string ListProfiles(const std::string& driver) {
   std::string list;
   for (const device::SourcedProfile& profile : device::KnownProfiles()) {
@@ -44,7 +35,7 @@ Result<OpenedDevice> OpenEmulated(const std::string& text, bool is_live) {
   const std::string id = colon == std::string::npos ? "" : text.substr(colon + 1);
   device::EmulatorOptions options;
   options.is_live = is_live;
-  if (const device::SourcedProfile* profile = FindProfileFor(driver, id); profile != nullptr) {
+  if (const auto* profile = device::FindProfileOfDriver(driver, id); profile != nullptr) {
     options.profile = profile->profile;
   } else if (const std::string known = ListProfiles(driver); !id.empty() && !known.empty()) {
     return Fail(ErrorCode::kInvalid, fmt::format("{} has no device profile \"{}\"", driver, id),

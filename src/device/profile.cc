@@ -215,4 +215,13 @@ const SourcedProfile* FindProfileOfModel(std::string_view driver, std::string_vi
   return nullptr;
 }
 
+const SourcedProfile* FindProfileOfDriver(std::string_view driver, std::string_view id) {
+  for (const SourcedProfile& profile : KnownProfiles()) {
+    if (profile.driver == driver && (id.empty() || profile.profile.id == id)) {
+      return &profile;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace hvas::device

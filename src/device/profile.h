@@ -65,4 +65,9 @@ Result<SourcedProfile> ParseProfile(std::string_view json, const std::string& wh
 [[nodiscard]] const SourcedProfile* FindProfileOfModel(std::string_view driver,
                                                        std::string_view model);
 
+/** Of a driver's devices, the one with this id, or the first one when `id` is empty; null where
+ there is none. */
+[[nodiscard]] const SourcedProfile* FindProfileOfDriver(std::string_view driver,
+                                                        std::string_view id = {});
+
 }  // namespace hvas::device

@@ -1,6 +1,7 @@
 #include "simulation/assembly_run.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,18 @@ AssemblyRun::AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* 
   for (const Body& body : model.bodies) {
     lift_height_ = std::max(lift_height_, 1.2 * body.shape->box_B().size().norm());
   }
+}
+
+Execution AssemblyRun::MakeExecution(Operator* hand, double limit_s, Operator* second_hand) {
+  Execution execution;
+  execution.simulation = simulation_;
+  execution.hand = hand;
+  execution.second_hand = second_hand;
+  execution.sink = this;
+  execution.advance = [this] { Advance(); };
+  execution.is_done = [this] { return is_done_; };
+  execution.limit_ns = std::llround(1e9 * limit_s);
+  return execution;
 }
 
 void AssemblyRun::OnTick(std::size_t hand, const device::DeviceState& device,

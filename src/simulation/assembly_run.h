@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/executors.h"
 #include "simulation/simulated_person.h"
 #include "simulation/simulation.h"
 
@@ -58,6 +59,12 @@ class AssemblyRun final : public Sink {
     first_step_ = first;
     end_step_ = first + count;
   }
+
+  /** For an executor: this run, advanced until it is done, with these in the hands.
+   @param limit_s  Of session time [s].
+   @param second_hand  Of a simulation with two; else null. */
+  [[nodiscard]] Execution MakeExecution(Operator* hand, double limit_s,
+                                        Operator* second_hand = nullptr);
 
   /** After every physics step, on its thread: gives the person the next part. */
   void Advance();

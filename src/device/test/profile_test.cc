@@ -34,6 +34,22 @@ TEST(ProfileTest, KnownProfilesAreReadWithTheirSources) {
   EXPECT_EQ(FindProfileOfModel("openhaptics", "omega.7"), nullptr);
 }
 
+TEST(ProfileTest, ADriversProfileIsTheOneAskedForOrItsFirst) {
+  const SourcedProfile* touch = FindProfileOfDriver("openhaptics", "touch");
+  ASSERT_NE(touch, nullptr);
+  EXPECT_EQ(touch, FindProfile("touch"));
+  EXPECT_EQ(FindProfileOfDriver("haply", "touch"), nullptr) << "another driver's";
+  const SourcedProfile* first = FindProfileOfDriver("openhaptics");
+  ASSERT_NE(first, nullptr);
+  for (const SourcedProfile& profile : KnownProfiles()) {
+    if (profile.driver == "openhaptics") {
+      EXPECT_EQ(first, &profile);
+      break;
+    }
+  }
+  EXPECT_EQ(FindProfileOfDriver("plugin"), nullptr) << "brings its own";
+}
+
 /** A known file with a piece of it replaced. */
 std::string Changed(const std::string& from, const std::string& to) {
   std::string text = kKnownProfileFiles.front().json;

@@ -31,14 +31,7 @@ struct DeviceSession {
         run(&simulation, &person, &watch) {}
 
   [[nodiscard]] Execution MakeExecution(double limit_s) {
-    Execution execution;
-    execution.simulation = &simulation;
-    execution.hand = &hand;
-    execution.sink = &run;
-    execution.advance = [this] { run.Advance(); };
-    execution.is_done = [this] { return run.is_done(); };
-    execution.limit_ns = static_cast<std::int64_t>(1e9 * limit_s);
-    return execution;
+    return run.MakeExecution(&hand, limit_s);
   }
 
   ExecutionReport Run(double limit_s) { return RunLockstep(MakeExecution(limit_s)); }

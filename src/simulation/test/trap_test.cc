@@ -78,11 +78,7 @@ void Try(haptics::Condition condition, std::uint64_t seed, Trial* trial,
   habits.patience_s = 6;  // Long enough to press as hard as it will, and to search once.
   Session session(model, seed, options, habits);
   AssemblyRun run(&session.simulation, &session.person, &trial->guided);
-  Execution execution = session.MakeExecution(kLimit_s);
-  execution.sink = &run;
-  execution.advance = [&run] { run.Advance(); };
-  execution.is_done = [&run] { return run.is_done(); };
-  (void)RunLockstep(execution);
+  (void)RunLockstep(run.MakeExecution(&session.person, kLimit_s));
   EXPECT_TRUE(run.is_done());
   trial->results = run.results();
 }

@@ -278,14 +278,7 @@ TEST(TwoHandsTest, WithOneOperatorItIsTheSimulationOfOneHand) {
     SimulatedPerson person({}, 1, StartOfHand(*model));
     Watch watch;
     AssemblyRun run(simulation, &person, &watch);
-    Execution execution;
-    execution.simulation = simulation;
-    execution.hand = &person;
-    execution.sink = &run;
-    execution.advance = [&run] { run.Advance(); };
-    execution.is_done = [&run] { return run.is_done(); };
-    execution.limit_ns = 30'000'000'000;
-    (void)RunLockstep(execution);
+    (void)RunLockstep(run.MakeExecution(&person, 30));
     EXPECT_TRUE(run.is_done());
     ASSERT_GT(watch.largest_force, 1);
     digests.push_back(watch.Hex());
