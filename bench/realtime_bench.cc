@@ -39,6 +39,7 @@ struct BenchOptions {
 struct Totals {
   LatencyHistogram compute, wake_up, frame_age, replayed;
   std::uint64_t ticks{0}, late{0}, missed{0}, overruns{0}, ours{0}, different{0}, frame_bytes{0};
+  std::size_t parts{0}, seated{0};
   std::uint64_t ticks_at_level[simulation::kEffortLevels.size()]{};
   std::string scheduling;
 };
@@ -171,6 +172,10 @@ void RunSession(const std::shared_ptr<const Model>& model, const BenchOptions& b
     totals->ticks_at_level[level] += report.ticks_at_level[level];
   }
   totals->scheduling = report.scheduling;
+  totals->parts += run.results().size();
+  totals->seated += static_cast<std::size_t>(
+      std::count_if(run.results().begin(), run.results().end(),
+                    [](const simulation::PartResult& part) { return part.is_seated; }));
   CountOurs(model, options, log, totals);
 }
 
@@ -186,6 +191,7 @@ void Print(const Totals& totals, double wall_s) {
              totals.overruns, totals.ours);
   fmt::print("ticks at effort level 0, 1, 2, 3: {}, {}, {}, {}\n", totals.ticks_at_level[0],
              totals.ticks_at_level[1], totals.ticks_at_level[2], totals.ticks_at_level[3]);
+  fmt::print("parts that had their turn: {}, of which seated: {}\n", totals.parts, totals.seated);
   fmt::print("ticks that gave another force when run again: {}; frames: {:.1f} kB/s\n",
              totals.different, 1e-3 * static_cast<double>(totals.frame_bytes) / wall_s);
 }

@@ -17,22 +17,24 @@ inline constexpr std::array<haptics::Effort, 4> kEffortLevels{
     haptics::Effort{256, 10, false},
 };
 
-/** Chooses the level before a deadline is missed (X4): one up as soon as a tick takes more than
- half of its period; one down when for half a second none took more than a quarter. RT-safe. */
+/** Chooses the level long before a deadline is missed (X4): one up as soon as a tick takes more than
+ it should, 200 us or half of its period; one down when for half a second none took more than half of
+ that. RT-safe. */
 class LoadShedder {
  public:
-  explicit LoadShedder(std::int64_t period_ns) : period_ns_(period_ns) {}
+  explicit LoadShedder(std::int64_t period_ns)
+      : period_ns_(period_ns), longest_ns_(std::min(kLongestNs, period_ns / 2)) {}
 
   /** @param compute_ns  Of the tick that just ended. @returns  The level of the next one. */
   int Update(std::int64_t compute_ns) noexcept {
     since_change_ns_ += period_ns_;
-    if (compute_ns > period_ns_ / 4) {
+    if (compute_ns > longest_ns_ / 2) {
       quiet_ns_ = 0;
     } else {
       quiet_ns_ += period_ns_;
     }
     constexpr int kHighest = static_cast<int>(kEffortLevels.size()) - 1;
-    if (compute_ns > period_ns_ / 2 && level_ < kHighest && since_change_ns_ >= kSettleNs) {
+    if (compute_ns > longest_ns_ && level_ < kHighest && since_change_ns_ >= kSettleNs) {
       ++level_;
       since_change_ns_ = 0;
     } else if (quiet_ns_ >= kQuietNs && level_ > 0) {
@@ -46,10 +48,12 @@ class LoadShedder {
   [[nodiscard]] int level() const noexcept { return level_; }
 
  private:
+  static constexpr std::int64_t kLongestNs = 200'000;   // that a tick should take
   static constexpr std::int64_t kSettleNs = 3'000'000;  // until a change shows
   static constexpr std::int64_t kQuietNs = 500'000'000;
 
   std::int64_t period_ns_;
+  std::int64_t longest_ns_;
   std::int64_t since_change_ns_{kSettleNs};
   std::int64_t quiet_ns_{0};
   int level_{0};
