@@ -1,0 +1,85 @@
+/**
+ * What turns the two axes of a mouse into the six of a hand, and makes a shaft find its bore.
+ *
+ * All poses are of the hand H in W. The goal is where the hand would be with the part in its place.
+ */
+
+import {
+  add,
+  distance,
+  dot,
+  lerp,
+  nearestOnLine,
+  norm,
+  scale,
+  slerp,
+  sub,
+  unit,
+  type Pose,
+  type Vec3,
+} from "./math";
+
+export interface Ray {
+  from: Vec3;
+  /** Unit. */
+  along: Vec3;
+}
+
+export interface Line {
+  p: Vec3;
+  /** Unit. */
+  d: Vec3;
+  /** Distances from p along d between which the hand may be put. */
+  low: number;
+  high: number;
+}
+
+/** Where a ray meets the plane through `p` with normal `n`; null when it hardly does. */
+export function rayOnPlane(ray: Ray, p: Vec3, n: Vec3): Vec3 | null {
+  const slope = dot(ray.along, n);
+  if (Math.abs(slope) < 1e-4) {
+    return null;
+  }
+  const t = dot(sub(p, ray.from), n) / slope;
+  return t > 0 ? add(ray.from, scale(ray.along, t)) : null;
+}
+
+/** The way in as a line for the hand: from its place outwards. */
+export function wayInLine(goal: Pose, wayIn: Vec3, length: number): Line {
+  return { p: goal.p, d: scale(unit(wayIn), -1), low: -0.02 * length, high: length };
+}
+
+export interface Snap {
+  p: Vec3;
+  /** How far the ray passes from the line there [m]. */
+  off: number;
+  /** From the eye [m]. */
+  depth: number;
+}
+
+/** The point of the line that the ray points at. */
+export function pointAtLine(ray: Ray, line: Line): Snap {
+  const s = Math.min(line.high, Math.max(line.low, nearestOnLine(line.p, line.d, ray.from, ray.along)));
+  const p = add(line.p, scale(line.d, s));
+  const depth = Math.max(1e-6, dot(sub(p, ray.from), ray.along));
+  return { p, off: distance(p, add(ray.from, scale(ray.along, depth))), depth };
+}
+
+/** Moves `from` towards `to`: a share that would halve the way in `halfLife`, at `fastest` at most. */
+export function ease(from: Vec3, to: Vec3, seconds: number, halfLife: number, fastest: number): Vec3 {
+  const share = 1 - Math.pow(0.5, seconds / halfLife);
+  const step = scale(sub(to, from), share);
+  const length = norm(step);
+  const longest = fastest * seconds;
+  return length > longest ? add(from, scale(step, longest / length)) : add(from, step);
+}
+
+export function easeTurn(from: Pose["q"], to: Pose["q"], seconds: number, halfLife: number): Pose["q"] {
+  return slerp(from, to, 1 - Math.pow(0.5, seconds / halfLife));
+}
+
+/** No further from `from` than `longest`: the coupling pulls with all of that distance. */
+export function leash(from: Vec3, to: Vec3, longest: number): Vec3 {
+  const d = distance(from, to);
+  return d > longest ? lerp(from, to, longest / d) : to;
+}

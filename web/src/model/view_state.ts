@@ -1,0 +1,106 @@
+/** What this page shows and how; the server knows nothing of it. */
+
+import { signal } from "@preact/signals";
+import type { FaceOf, Measurement } from "../protocol/messages";
+import type { SectionPlane } from "./view_link";
+
+export type Tool = "hand" | "select" | "measure" | "mate";
+export type SelectMode = "part" | "subassembly" | "face";
+export type Stereo = "none" | "side" | "anaglyph";
+export type Quality = "low" | "high";
+export type ThemeChoice = "dark" | "light" | "system";
+
+export function makeViewState() {
+  return {
+    tool: signal<Tool>("hand"),
+    selectMode: signal<SelectMode>("part"),
+    selected: signal<readonly number[]>([]),
+    selectedFace: signal<FaceOf | null>(null),
+    hovered: signal<number | null>(null),
+    hidden: signal<ReadonlySet<number>>(new Set()),
+    ghosted: signal<ReadonlySet<number>>(new Set()),
+    /** Faces picked so far by the tools that need two. */
+    picked: signal<readonly FaceOf[]>([]),
+    measurement: signal<Measurement | null>(null),
+    section: signal<SectionPlane | null>(null),
+    explode: signal(0),
+    isOrthographic: signal(false),
+    stereo: signal<Stereo>("none"),
+    quality: signal<Quality>("high"),
+    showsForces: signal(true),
+    /** Newtons to metres of arrow; null: as fits the largest force so far. */
+    locksForceScale: signal(false),
+    showsEdges: signal(true),
+    showsGrid: signal(true),
+    assists: signal(true),
+    letsGoWhenSeated: signal(true),
+    isMuted: signal(false),
+    theme: signal<ThemeChoice>("system"),
+    /** As it is drawn now. */
+    isDark: signal(true),
+  };
+}
+
+export type ViewState = ReturnType<typeof makeViewState>;
+
+/** `ids` added to the selection, or taken from it, or in place of it. */
+export function select(view: ViewState, ids: readonly number[], isAdding: boolean): void {
+  view.selectedFace.value = null;
+  if (!isAdding) {
+    view.selected.value = [...ids];
+    return;
+  }
+  const before = new Set(view.selected.value);
+  const hasAll = ids.every((id) => before.has(id));
+  for (const id of ids) {
+    if (hasAll) {
+      before.delete(id);
+    } else {
+      before.add(id);
+    }
+  }
+  view.selected.value = [...before];
+}
+
+export function setHidden(view: ViewState, ids: readonly number[], isHidden: boolean): void {
+  const next = new Set(view.hidden.value);
+  for (const id of ids) {
+    if (isHidden) {
+      next.add(id);
+    } else {
+      next.delete(id);
+    }
+  }
+  view.hidden.value = next;
+}
+
+export function toggleGhost(view: ViewState, ids: readonly number[]): void {
+  const next = new Set(view.ghosted.value);
+  const hasAll = ids.every((id) => next.has(id));
+  for (const id of ids) {
+    if (hasAll) {
+      next.delete(id);
+    } else {
+      next.add(id);
+    }
+  }
+  view.ghosted.value = next;
+}
+
+/** Hides all others; a second time shows them again. */
+export function isolate(view: ViewState, ids: readonly number[], all: readonly number[]): void {
+  const kept = new Set(ids);
+  const others = all.filter((id) => !kept.has(id));
+  const isAlready = others.length > 0 && others.every((id) => view.hidden.value.has(id));
+  view.hidden.value = isAlready ? new Set() : new Set(others);
+}
+
+export function showAll(view: ViewState): void {
+  view.hidden.value = new Set();
+  view.ghosted.value = new Set();
+}
+
+export function clearPicks(view: ViewState): void {
+  view.picked.value = [];
+  view.measurement.value = null;
+}

@@ -1,0 +1,66 @@
+/** Takes a binary message apart into its frames, and makes those of the client. */
+
+import {
+  FrameKind,
+  HandInputSize,
+  HeaderSize,
+  AcknowledgementSize,
+  kMagic,
+  kVersion,
+  readHeader,
+  writeAcknowledgement,
+  writeHandInput,
+  writeHeader,
+  type HandInput,
+  type Header,
+} from "./frames";
+
+export interface FrameView {
+  readonly header: Header;
+  /** Of the first item. */
+  readonly at: number;
+}
+
+/** Every whole frame of a message, of known kind or not. What is damaged ends the list. */
+export function splitFrames(view: DataView): FrameView[] {
+  const frames: FrameView[] = [];
+  let at = 0;
+  while (at + HeaderSize <= view.byteLength) {
+    const header = readHeader(view, at);
+    const isSound =
+      header.magic === kMagic &&
+      header.version === kVersion &&
+      header.size >= HeaderSize &&
+      at + header.size <= view.byteLength;
+    if (!isSound) {
+      break;
+    }
+    frames.push({ header, at: at + HeaderSize });
+    at += header.size;
+  }
+  return frames;
+}
+
+/** Items that fit into the frame, whatever its count says. */
+export function itemCount(header: Header, itemSize: number): number {
+  return Math.min(header.count, Math.floor((header.size - HeaderSize) / itemSize));
+}
+
+function makeFrame(kind: number, epoch: number, count: number, itemSize: number): DataView {
+  const size = HeaderSize + count * itemSize;
+  const view = new DataView(new ArrayBuffer(size));
+  writeHeader(view, 0, { magic: kMagic, version: kVersion, kind, size, seq: 0, epoch, count, t_ns: 0n });
+  return view;
+}
+
+export function makeInputFrame(epoch: number, inputs: readonly HandInput[]): ArrayBuffer {
+  const view = makeFrame(FrameKind.Input, epoch, inputs.length, HandInputSize);
+  inputs.forEach((input, k) => writeHandInput(view, HeaderSize + k * HandInputSize, input));
+  return view.buffer as ArrayBuffer;
+}
+
+export function makeCreditFrame(epoch: number, seq: number): ArrayBuffer {
+  const view = makeFrame(FrameKind.Credit, epoch, 1, AcknowledgementSize);
+  writeAcknowledgement(view, HeaderSize, { seq });
+  return view.buffer as ArrayBuffer;
+}
