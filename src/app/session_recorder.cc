@@ -11,7 +11,6 @@
 namespace hvas::app {
 namespace {
 
-constexpr std::uint32_t kGripButton = 1;
 constexpr std::uint32_t kTruncatedStatus = 1u << 16;  // above the gate's bits
 
 const char* ToString(simulation::SimulationEvent::Kind kind) {
@@ -52,7 +51,7 @@ void SessionRecorder::OnTick(std::size_t hand, const device::DeviceState& device
   tick.t_ns = device.t_ns;
   tick.device_pose = device.X_DH;
   tick.device_twist = device.V_DH;
-  tick.device_buttons = device.is_gripping ? kGripButton : 0;
+  tick.device_flags = device.is_gripping ? record::kDeviceGripping : 0;
   tick.status = out.gate_actions | (out.is_truncated ? kTruncatedStatus : 0);
   tick.X_WH = out.X_WT;
   tick.X_WD = out.X_WD;

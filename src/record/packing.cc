@@ -48,9 +48,9 @@ spatial::Pose Unflatten(const FlatPose& v) {
   return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
 }
 
-// The one place that knows the order of the fields. `F` is a ByteWriter or a ByteReader.
+// These two alone know the order of the fields. `F` is a ByteWriter or a ByteReader.
 template <typename F, typename Tick, typename Poses>
-void VisitFields(F& f, Tick& tick, Poses& poses) noexcept {
+void VisitFieldsOf1(F& f, Tick& tick, Poses& poses) noexcept {
   const auto vector = [&f](auto& v) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       f(v[i]);
@@ -60,7 +60,7 @@ void VisitFields(F& f, Tick& tick, Poses& poses) noexcept {
   f(poses[0]);
   vector(tick.device_twist.w);
   vector(tick.device_twist.v);
-  f(tick.device_buttons);
+  f(tick.device_flags);
   f(tick.status);
   f(poses[1]);
   f(poses[2]);
@@ -80,11 +80,37 @@ void VisitFields(F& f, Tick& tick, Poses& poses) noexcept {
   }
 }
 
-constexpr std::size_t kFieldBytes =
+// What schema 2 added.
+template <typename F, typename Tick>
+void VisitFieldsOf2(F& f, Tick& tick) noexcept {
+  f(tick.hand);
+  f(tick.sample_ns);
+  f(tick.device_buttons);
+  f(tick.device_condition);
+  f(tick.vendor_code);
+  f(tick.device_grip);
+  f(tick.model_age_ns);
+  f(tick.effort_level);
+}
+
+constexpr std::size_t kFieldBytesOf1 =
     sizeof(std::int64_t) + 3 * sizeof(FlatPose) + 18 * sizeof(double) + 3 * sizeof(std::uint32_t) +
     sizeof(std::uint8_t) + sizeof(std::uint16_t) + 2 * sizeof(double) +
     std::size_t{7} * TickRecord::kContacts * sizeof(float);
-static_assert(kFieldBytes == kPackedTickSize);
+static_assert(kFieldBytesOf1 == kPackedTickSize1);
+constexpr std::size_t kFieldBytesOf2 = 3 * sizeof(std::uint8_t) + 2 * sizeof(std::int64_t) +
+                                       2 * sizeof(std::uint32_t) + sizeof(double);
+static_assert(kFieldBytesOf1 + kFieldBytesOf2 == kPackedTickSize);
+
+TickRecord UnpackFieldsOf1(ByteReader& reader) noexcept {
+  TickRecord tick;
+  std::array<FlatPose, 3> poses{};
+  VisitFieldsOf1(reader, tick, poses);
+  tick.device_pose = Unflatten(poses[0]);
+  tick.X_WH = Unflatten(poses[1]);
+  tick.X_WD = Unflatten(poses[2]);
+  return tick;
+}
 
 }  // namespace
 
@@ -92,18 +118,20 @@ void Pack(const TickRecord& tick, std::span<std::byte, kPackedTickSize> bytes) n
   const std::array<FlatPose, 3> poses{Flatten(tick.device_pose), Flatten(tick.X_WH),
                                       Flatten(tick.X_WD)};
   ByteWriter writer(bytes.data());
-  VisitFields(writer, tick, poses);
+  VisitFieldsOf1(writer, tick, poses);
+  VisitFieldsOf2(writer, tick);
 }
 
 TickRecord Unpack(std::span<const std::byte, kPackedTickSize> bytes) noexcept {
-  TickRecord tick;
-  std::array<FlatPose, 3> poses{};
   ByteReader reader(bytes.data());
-  VisitFields(reader, tick, poses);
-  tick.device_pose = Unflatten(poses[0]);
-  tick.X_WH = Unflatten(poses[1]);
-  tick.X_WD = Unflatten(poses[2]);
+  TickRecord tick = UnpackFieldsOf1(reader);
+  VisitFieldsOf2(reader, tick);
   return tick;
+}
+
+TickRecord Unpack1(std::span<const std::byte, kPackedTickSize1> bytes) noexcept {
+  ByteReader reader(bytes.data());
+  return UnpackFieldsOf1(reader);
 }
 
 }  // namespace hvas::record

@@ -48,6 +48,7 @@ Result<void> Reader::CheckKind() {
                             *version, kSchemaVersion),
                 path_.string(), "Open it with the version of HVAS that wrote it");
   }
+  schema_ = *version;
   return {};
 }
 
@@ -75,7 +76,13 @@ Result<void> Reader::ReadMeta() {
   return {};
 }
 
-Result<void> Reader::ForEachTick(Span span, const std::function<bool(const TickRecord&)>& visit) {
+TickRecord Reader::UnpackOfThisFile(Bytes packed_tick) const {
+  return schema_ == 1 ? Unpack1(packed_tick.first<kPackedTickSize1>())
+                      : Unpack(packed_tick.first<kPackedTickSize>());
+}
+
+Result<void> Reader::ForEachPackedTick(Span span, const std::function<bool(Bytes)>& visit) {
+  const std::size_t size = schema_ == 1 ? kPackedTickSize1 : kPackedTickSize;
   Result<Statement> rows = database_.Prepare(
       "SELECT id, count, checksum, ticks FROM chunk WHERE "
       "last_t_ns >= ? AND first_t_ns <= ? "
@@ -92,21 +99,27 @@ Result<void> Reader::ForEachTick(Span span, const std::function<bool(const TickR
     if (!*row) {
       return {};
     }
-    const std::span<const std::byte> bytes = rows->ReadBlob(3);
+    const Bytes bytes = rows->ReadBlob(3);
     const auto count = static_cast<std::size_t>(rows->ReadInt(1));
-    if (bytes.size() != count * kPackedTickSize ||
+    if (bytes.size() != count * size ||
         static_cast<std::int64_t>(Checksum64(bytes)) != rows->ReadInt(2)) {
       return Fail(ErrorCode::kUnreadable,
                   fmt::format("Chunk {} of the record is damaged.", rows->ReadInt(0)),
                   path_.string(), "Restore the file from a copy");
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const TickRecord tick = Unpack(bytes.subspan(i * kPackedTickSize).first<kPackedTickSize>());
-      if (tick.t_ns >= span.first_ns && tick.t_ns <= span.last_ns && !visit(tick)) {
+      if (!visit(bytes.subspan(i * size, size))) {
         return {};
       }
     }
   }
+}
+
+Result<void> Reader::ForEachTick(Span span, const std::function<bool(const TickRecord&)>& visit) {
+  return ForEachPackedTick(span, [&](Bytes packed_tick) {
+    const TickRecord tick = UnpackOfThisFile(packed_tick);
+    return tick.t_ns < span.first_ns || tick.t_ns > span.last_ns || visit(tick);
+  });
 }
 
 Result<std::vector<TickRecord>> Reader::ReadTicks(Span span) {
@@ -152,10 +165,8 @@ Result<std::vector<Event>> Reader::ReadEvents() {
 
 Result<std::string> Reader::Verify() {
   SessionDigest digest;
-  std::array<std::byte, kPackedTickSize> bytes{};
-  const Result<void> done = ForEachTick({}, [&](const TickRecord& tick) {
-    Pack(tick, bytes);
-    digest.AddTick(bytes);
+  const Result<void> done = ForEachPackedTick({}, [&digest](Bytes packed_tick) {
+    digest.AddTick(packed_tick);
     return true;
   });
   if (!done) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@
 
 namespace hvas::record {
 
-/** Reads a recorded session; every chunk and event is checked against its checksum. */
+/** Reads a recorded session, of this schema or an older one; every chunk and event is checked
+ against its checksum. */
 class Reader {
  public:
   /** A span of session time, ends included; all of it by default. */
@@ -31,6 +33,7 @@ class Reader {
   /** False for a session that was cut short; what is there is still good. */
   [[nodiscard]] bool is_complete() const { return meta_.contains(kMetaDigest); }
 
+  /** Of all hands. */
   [[nodiscard]] std::int64_t tick_count() const { return tick_count_; }
 
   /** Visits ticks in the order recorded until the visitor returns false.
@@ -48,6 +51,11 @@ class Reader {
   Reader(std::filesystem::path path, Database database)
       : path_(std::move(path)), database_(std::move(database)) {}
 
+  using Bytes = std::span<const std::byte>;
+
+  /** Visits packed ticks, as many bytes each as this file's schema has, in their order. */
+  Result<void> ForEachPackedTick(Span span, const std::function<bool(Bytes)>& visit);
+  [[nodiscard]] TickRecord UnpackOfThisFile(Bytes packed_tick) const;
   Result<void> CheckKind();
   Result<void> ReadMeta();
 
@@ -55,6 +63,7 @@ class Reader {
   Database database_;
   Meta meta_;
   std::int64_t tick_count_{0};
+  std::int64_t schema_{0};
 };
 
 }  // namespace hvas::record

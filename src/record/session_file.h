@@ -19,7 +19,8 @@ namespace hvas::record {
 using Meta = std::map<std::string, std::string>;
 
 inline constexpr std::int64_t kApplicationId = 0x48564153;  // "HVAS", in the file's header.
-inline constexpr std::int64_t kSchemaVersion = 1;
+/** 1: ticks of one hand. 2: ticks of both, with all that the device told. */
+inline constexpr std::int64_t kSchemaVersion = 2;
 inline constexpr std::int64_t kChunkTicks = 250;
 
 /** Keys that the recorder adds when it ends; a record without them was cut short. */

@@ -18,15 +18,21 @@ struct ContactRecord {
   float distance{0};                                ///< [m]; negative is penetration.
 };
 
+/** Bits of TickRecord::device_flags. */
+inline constexpr std::uint32_t kDeviceGripping = 1;
+inline constexpr std::uint32_t kDeviceClutching = 1u << 1;
+inline constexpr std::uint32_t kDeviceNotValid = 1u << 2;  ///< It had no pose.
+
 /** All that a haptic tick took in and gave out, by which it can be replayed and judged. What the
- clock of the machine decides (compute time) is not here: equal sessions have equal records. */
+ clock of the machine decides (compute time) is not here: equal sessions have equal records. Fields
+ after the contacts came with schema 2 and are as below in older records. */
 struct TickRecord {
   static constexpr int kContacts = 2;
 
   std::int64_t t_ns{0};               ///< Session time.
   spatial::Pose device_pose;          ///< Handle in the device's base frame, as the device gave it.
   spatial::Twist device_twist;        ///< Likewise [rad/s, m/s].
-  std::uint32_t device_buttons{0};    ///< Bit mask.
+  std::uint32_t device_flags{0};      ///< Bit mask: kDeviceGripping and so on.
   std::uint32_t status{0};            ///< Bit mask of what the tick had to report; 0: all well.
   spatial::Pose X_WH;                 ///< Tracked: the hand in the world.
   spatial::Pose X_WD;                 ///< Displayed: where the held part (or the pointer) is shown.
@@ -38,6 +44,14 @@ struct TickRecord {
   double depth{0};                    ///< Insertion depth [m], growing inwards.
   double deepest{std::numeric_limits<double>::infinity()};  ///< Smallest gap met [m].
   std::array<ContactRecord, kContacts> contacts{};
+  std::uint8_t hand{0};              ///< Whose tick; hands of a period follow one another.
+  std::int64_t sample_ns{0};         ///< When the device took the sample, by its clock; 0: now.
+  std::uint32_t device_buttons{0};   ///< Bit mask; the first one is bit 0.
+  std::uint8_t device_condition{0};  ///< As the device was; 0: ready.
+  std::int32_t vendor_code{0};       ///< What the device's own software said last.
+  double device_grip{std::numeric_limits<double>::quiet_NaN()};  ///< 0 open .. 1 closed; NaN: none.
+  std::int64_t model_age_ns{0};  ///< Since the physics loop last answered.
+  std::uint8_t effort_level{0};  ///< What the tick left out to be in time; 0: nothing.
 };
 
 /** Something that happened, with what is worth knowing about it. */

@@ -38,7 +38,7 @@ TEST(Packing, BringsEveryFieldBackBitForBit) {
     ExpectEqual(back.device_pose, tick.device_pose);
     EXPECT_EQ(back.device_twist.w, tick.device_twist.w);
     EXPECT_EQ(back.device_twist.v, tick.device_twist.v);
-    EXPECT_EQ(back.device_buttons, tick.device_buttons);
+    EXPECT_EQ(back.device_flags, tick.device_flags);
     EXPECT_EQ(back.status, tick.status);
     ExpectEqual(back.X_WH, tick.X_WH);
     ExpectEqual(back.X_WD, tick.X_WD);
@@ -54,6 +54,14 @@ TEST(Packing, BringsEveryFieldBackBitForBit) {
       EXPECT_EQ(back.contacts[k].nhat_W, tick.contacts[k].nhat_W);
       EXPECT_EQ(back.contacts[k].distance, tick.contacts[k].distance);
     }
+    EXPECT_EQ(back.hand, tick.hand);
+    EXPECT_EQ(back.sample_ns, tick.sample_ns);
+    EXPECT_EQ(back.device_buttons, tick.device_buttons);
+    EXPECT_EQ(back.device_condition, tick.device_condition);
+    EXPECT_EQ(back.vendor_code, tick.vendor_code);
+    EXPECT_EQ(back.device_grip, tick.device_grip);
+    EXPECT_EQ(back.model_age_ns, tick.model_age_ns);
+    EXPECT_EQ(back.effort_level, tick.effort_level);
   }
 }
 
@@ -62,7 +70,10 @@ TEST(Packing, PutsFieldsAtTheirPlacesLittleEndian) {
   TickRecord tick;
   tick.t_ns = 0x0102030405060708;
   tick.device_pose = spatial::Pose(Quat(0.5, 0.5, -0.5, 0.5), Vec3(1, 2, 3));
-  tick.device_buttons = 0x11223344;
+  tick.device_flags = 0x11223344;
+  tick.hand = 9;
+  tick.sample_ns = 0x0a0b0c0d0e0f1011;
+  tick.effort_level = 3;
   tick.held = 7;
   const Bytes bytes = PackOne(tick);
   EXPECT_EQ(bytes[0], std::byte{0x08});
@@ -78,6 +89,23 @@ TEST(Packing, PutsFieldsAtTheirPlacesLittleEndian) {
   EXPECT_EQ(number(48), -0.5);
   EXPECT_EQ(bytes[112], std::byte{0x44});  // after the twist
   EXPECT_EQ(bytes[328], std::byte{0x07});  // after two poses and two wrenches
+  EXPECT_EQ(bytes[407], std::byte{0x09});  // after the contacts: where schema 1 ended
+  EXPECT_EQ(bytes[408], std::byte{0x11});
+  EXPECT_EQ(bytes[441], std::byte{0x03});
+}
+
+TEST(Packing, TickOfSchemaOneIsTheBeginningOfThisOne) {
+  const TickRecord tick = MakeTick(5);
+  const Bytes bytes = PackOne(tick);
+  const TickRecord back = Unpack1(std::span(bytes).first<kPackedTickSize1>());
+  ExpectEqual(back.device_pose, tick.device_pose);
+  ExpectEqual(back.X_WD, tick.X_WD);
+  EXPECT_EQ(back.device_flags, tick.device_flags);
+  EXPECT_EQ(back.contacts[1].distance, tick.contacts[1].distance);
+  EXPECT_EQ(back.hand, 0) << "as a record of one hand means it";
+  EXPECT_EQ(back.sample_ns, 0);
+  EXPECT_EQ(back.device_condition, 0);
+  EXPECT_TRUE(std::isnan(back.device_grip));
 }
 
 TEST(Packing, KeepsSpecialNumbers) {
@@ -87,6 +115,7 @@ TEST(Packing, KeepsSpecialNumbers) {
   EXPECT_TRUE(std::signbit(back.depth));
   EXPECT_EQ(back.deepest, std::numeric_limits<double>::infinity());
   EXPECT_EQ(back.held, kNoOccurrence);
+  EXPECT_TRUE(std::isnan(back.device_grip));
 }
 
 TEST(Packing, UsesEveryByte) {

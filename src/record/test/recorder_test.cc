@@ -1,5 +1,6 @@
 #include "record/recorder.h"
 
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <thread>
@@ -107,6 +108,23 @@ TEST(Reader, GivesTheTicksOfASpanOfTime) {
   int visited = 0;
   ASSERT_TRUE(reader.ForEachTick({}, [&](const TickRecord&) { return ++visited < 5; }).has_value());
   EXPECT_EQ(visited, 5);
+}
+
+// A file that HVAS wrote when that was its schema, and its digest as it printed it then.
+TEST(Reader, ReadsARecordOfSchemaOne) {
+  Result<Reader> reader = Reader::Open(HVAS_RECORD_OF_SCHEMA_1);
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_TRUE(reader->is_complete());
+  EXPECT_EQ(reader->Verify().value(), "f856f6c28b07ec3ca372606ceaf4ddee");
+  const std::vector<TickRecord> ticks = reader->ReadTicks({10 * kTickNs, 19 * kTickNs}).value();
+  ASSERT_EQ(ticks.size(), 10u);
+  for (const TickRecord& tick : ticks) {
+    EXPECT_EQ(tick.hand, 0);
+    EXPECT_EQ(tick.held, kNoOccurrence);
+    EXPECT_NEAR(tick.device_pose.q().norm(), 1, 1e-12);
+    EXPECT_TRUE(std::isnan(tick.device_grip));
+  }
+  EXPECT_EQ(reader->ReadEvents().value().front().kind, "energy");
 }
 
 // N7, and the digest by which two runs of one seed are compared.

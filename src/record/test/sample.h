@@ -28,7 +28,7 @@ inline TickRecord MakeTick(std::int64_t number) {
   tick.t_ns = number * kTickNs;
   tick.device_pose = pose();
   tick.device_twist = {vector(), vector()};
-  tick.device_buttons = static_cast<std::uint32_t>(random.NextBits());
+  tick.device_flags = static_cast<std::uint32_t>(random.NextBits());
   tick.status = static_cast<std::uint32_t>(random.NextBits());
   tick.X_WH = pose();
   tick.X_WD = pose();
@@ -44,6 +44,14 @@ inline TickRecord MakeTick(std::int64_t number) {
     contact.nhat_W = vector().cast<float>();
     contact.distance = static_cast<float>(random.Uniform(-1, 1));
   }
+  tick.hand = static_cast<std::uint8_t>(random.NextBits());
+  tick.sample_ns = static_cast<std::int64_t>(random.NextBits());
+  tick.device_buttons = static_cast<std::uint32_t>(random.NextBits());
+  tick.device_condition = static_cast<std::uint8_t>(random.NextBits());
+  tick.vendor_code = static_cast<std::int32_t>(random.NextBits());
+  tick.device_grip = random.Uniform(-1, 1);
+  tick.model_age_ns = static_cast<std::int64_t>(random.NextBits());
+  tick.effort_level = static_cast<std::uint8_t>(random.NextBits());
   return tick;
 }
 
