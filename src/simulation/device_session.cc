@@ -89,10 +89,19 @@ haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info, const Model
 PersonOptions MakePersonOptions(const haptics::TickOptions& options) {
   constexpr double kPushShare = 0.86;  // above what fits are felt with at most
   constexpr double kSlack = 5e-3;      // [m]
+  constexpr double kPatience = 1.6;    // of a hand that has no device between itself and the part
   PersonOptions habits;
   const double push_limit = kPushShare * options.device.max_force;
   habits.push_rate *= std::max(1.0, push_limit / habits.push_limit);
+  // Weaker devices are pressed with less from the beginning, stronger ones only where a fit
+  // resists.
+  const double share = std::min(1.0, push_limit / habits.push_limit);
+  habits.first_push *= share;
+  habits.careful_push *= share;
+  habits.light_push *= share;
+  habits.unguided_limit *= share;
   habits.push_limit = push_limit;
+  habits.patience_s *= kPatience;
   habits.most_stretch = options.device.max_force / options.coupling.k_lin + kSlack;
   return habits;
 }
@@ -135,15 +144,31 @@ device::DeviceState ReadDevice(device::Device* device) noexcept {
   return state;
 }
 
-Vec3 PersonAtDevice::FollowSmoothly(const Vec3& p_DR, double dt) noexcept {
-  Vec3 wanted = p_DR;
-  Vec3 v = Vec3::Zero();
-  for (Vec3& p : muscles_) {
-    v = (wanted - p) / std::max(dt, kMuscleTime);
-    p += dt * v;
-    wanted = p;
+const Vec3& Muscles::Follow(const Vec3& wanted, double dt, Vec3* rate) noexcept {
+  Vec3 next = wanted;
+  for (Vec3& stage : stages_) {
+    *rate = (next - stage) / std::max(dt, kMuscleTime);
+    stage += dt * *rate;
+    next = stage;
   }
-  return v;
+  return stages_.back();
+}
+
+void PersonAtDevice::Reach(const Vec3& p_DR, const Vec3& p_DH, double dt,
+                           device::HandIntent* hand) noexcept {
+  // Nobody tears at the stops: at the edge, the border carries the hand on. But whoever presses on
+  // what stands still presses as hard from there as from anywhere, and less towards the stop.
+  const haptics::WorkspaceOptions border;
+  const Vec3 edge = 0.5 * device_->info().profile.workspace;
+  const Vec3 within = p_DR.cwiseMax(-edge).cwiseMin(edge);
+  Vec3 rate;
+  const Vec3 beyond = beyond_.Follow(p_DR - within, dt, &rate);
+  hand->X_DR = {hand->X_DR.q(), place_.Follow(within, dt, &hand->V_DR.v)};
+  for (int k = 0; k < 3; ++k) {
+    const double room = edge[k] - std::copysign(1.0, beyond[k]) * p_DH[k];
+    const double share = std::clamp(room / (border.border_share * edge[k]), 0.0, 1.0);
+    hand->force[k] += share * hand->stiffness * beyond[k];
+  }
 }
 
 device::DeviceState PersonAtDevice::Step(const OperatorInput& input) noexcept {
@@ -152,11 +177,6 @@ device::DeviceState PersonAtDevice::Step(const OperatorInput& input) noexcept {
   const Quat q_DW = input.workspace.X_WD.q().conjugate();
   device::HandIntent hand;
   hand.X_DR = haptics::MapPoseToDevice(input.workspace, reference.X_WR);
-  // Nobody tears at the stops: at the edge, the border carries the hand on.
-  const Vec3 edge = 0.5 * device_->info().profile.workspace;
-  const Vec3 within = hand.X_DR.p().cwiseMax(-edge).cwiseMin(edge);
-  hand.V_DR.v = FollowSmoothly(within, input.dt);
-  hand.X_DR = {hand.X_DR.q(), muscles_.back()};
   hand.stiffness = arm.stiffness;
   hand.damping = arm.damping;
   hand.mass = arm.mass;
@@ -164,6 +184,7 @@ device::DeviceState PersonAtDevice::Step(const OperatorInput& input) noexcept {
   hand.turn_damping = arm.turn_damping;
   hand.inertia = arm.inertia;
   hand.force = q_DW * reference.f_W;
+  Reach(hand.X_DR.p(), haptics::MapPoseToDevice(input.workspace, input.X_WH).p(), input.dt, &hand);
   hand.buttons = reference.is_gripping ? 1 : 0;
   hand.grip = reference.is_gripping ? 1 : 0;
   emulator_->device().SetHand(hand);

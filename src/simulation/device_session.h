@@ -52,6 +52,17 @@ class DeviceOperator final : public Operator {
   device::Device* device_;
 };
 
+/** A wish that reaches the hand as muscles build up their force: within some ten milliseconds, and
+ without a jerk. */
+class Muscles {
+ public:
+  /** What has become of what is wanted; `rate` is how fast it changes. */
+  const Vec3& Follow(const Vec3& wanted, double dt, Vec3* rate) noexcept;
+
+ private:
+  std::array<Vec3, 3> stages_{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+};
+
 /** The simulated person with an emulated device in the hand: what the person wants becomes the
  impedance of the emulated hand, and all else goes through the device's driver, as with a real one.
  Not RT-safe: the emulator is not. */
@@ -66,14 +77,15 @@ class PersonAtDevice final : public Operator {
   void Apply(const spatial::Wrench& F_H_D) noexcept override { device_->Write(F_H_D); }
 
  private:
-  /** Where the hand is pulled to follows what is wanted without jerks; returns its speed. */
-  Vec3 FollowSmoothly(const Vec3& p_DR, double dt) noexcept;
+  /** Where the hand goes to, and the force of what it wants beyond its device's room. */
+  void Reach(const Vec3& p_DR, const Vec3& p_DH, double dt, device::HandIntent* hand) noexcept;
 
   SimulatedPerson* person_;
   device::Emulator* emulator_;
   device::Device* device_;
   bool is_live_;  ///< The emulator moves its time on by itself.
-  std::array<Vec3, 3> muscles_{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  Muscles place_;
+  Muscles beyond_;
 };
 
 }  // namespace hvas::simulation

@@ -14,17 +14,14 @@ constexpr double kSlackTime = 0.08;  // in which the arm goes slack
 constexpr double kReleaseTime = 0.2;
 constexpr double kShortestReach = 0.35;
 constexpr double kStandOff = 6e-3;    // [m] before anything engages, where approach ends
-constexpr double kFirstPush = 4.0;    // [N]; what the hand tries first
 constexpr double kSlowShare = 0.4;    // of the speed of insertion; slower than that presses harder
 constexpr double kStillSpeed = 1e-3;  // [m/s] that counts as not moving
 constexpr double kStuckBeforeSearch = 1.2;
 constexpr double kBackOff = 8e-3;        // [m] before trying elsewhere
 constexpr double kLoosen = 1.5e-3;       // [m] back when it sticks in its hole
 constexpr double kLeadIn = 1e-3;         // [m] of travel until it is inside
-constexpr double kLightPush = 0.8;       // [N]; tips nothing over
 constexpr double kLookTime = 0.4;        // [s]
 constexpr double kCarefulSpeed = 0.012;  // [m/s]; what hits the hole tilted, wedges in it
-constexpr double kCarefulPush = 2.0;     // [N]
 constexpr double kRockingRate = 3;       // [Hz]
 constexpr double kRocking = 0.02;        // [rad]; harder the longer it sticks
 constexpr double kMostRocking = 0.12;    // [rad]
@@ -37,8 +34,13 @@ constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kLearnTime = 0.3;       // of a carried weight
 constexpr double kAtHand = 0.002;        // [m]; close enough to take something up
+constexpr double kFollows = 0.5e-3;      // [m]; a part that meets nothing is as near to its hand
 constexpr double kCalm = 0.02;           // [m/s]; slow enough for it
 constexpr double kMostLag = 0.05;        // [m]; the mind does not run ahead of the hand
+constexpr double kMostTurnLag = 0.3;     // [rad]
+constexpr double kTurned = 0.05;         // [rad]; as good as turned
+constexpr double kTurning = 0.02;        // [rad/s]; slower than that, the hand does not turn
+constexpr double kMostWait = 1.5;        // [s] for a hand to come, and what it holds to hang still
 constexpr double kSenseTime = 0.08;      // in which it notices how fast its hand is
 
 void LimitLength(double most, Vec3* v) {
@@ -79,6 +81,7 @@ void SimulatedPerson::StartReaches(Phase phase) noexcept {
   reach_count_ = 0;
   reach_index_ = 0;
   reach_time_s_ = 0;
+  waited_s_ = 0;
 }
 
 void SimulatedPerson::AddReach(const Vec3& p_to, const Quat& q_to, double speed,
@@ -108,7 +111,7 @@ bool SimulatedPerson::FollowReaches() noexcept {
   if (reach_index_ >= reach_count_) {
     return true;
   }
-  if ((p_ref_ - X_WH_.p()).norm() > kMostLag) {
+  if ((p_ref_ - X_WH_.p()).norm() > kMostLag || IsTurning(kMostTurnLag)) {
     return false;  // waits for the hand, which a device may hold up
   }
   const Reach& reach = reaches_[reach_index_];
@@ -129,6 +132,17 @@ bool SimulatedPerson::FollowReaches() noexcept {
     reach_time_s_ = 0;
   }
   return reach_index_ >= reach_count_;
+}
+
+bool SimulatedPerson::IsTurning(double lag) const noexcept {
+  return is_at_device_ && spatial::RotationBetween(X_WH_.q(), q_ref_).norm() > lag &&
+         V_H_.w.norm() > kTurning;
+}
+
+bool SimulatedPerson::HasCome() noexcept {
+  waited_s_ += dt_;
+  const bool is_calm = V_H_.v.norm() < kCalm && v_part_W_.norm() < kCalm && !IsTurning(kTurned);
+  return !is_at_device_ || is_calm || waited_s_ > kMostWait;
 }
 
 void SimulatedPerson::PlanCarry() noexcept {
@@ -197,7 +211,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     is_backing_off_ = travel < back_off_to_ && hand_travel < back_off_to_ + 3 * kBackOff;
     look_time_s_ = kLookTime;
     stuck_time_s_ = 0;
-    push_ = kFirstPush;
+    push_ = options_.first_push;
   } else if (is_careful && look_time_s_ > 0) {
     look_time_s_ -= dt_;
     if (look_time_s_ <= 0) {
@@ -205,11 +219,11 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     }
   } else {
     // The arm's spring turns the lead into a force.
-    const double speed = -V_H_.v.dot(d);
+    const double speed = -MotionOf(input).dot(d);
     const double wanted_speed = is_careful ? kCarefulSpeed : options_.insert_speed;
     const bool is_slow = speed < kSlowShare * wanted_speed;
     AdjustPush(input, speed, wanted_speed, is_careful && !is_inside);
-    push_ = is_careful ? std::min(push_, kCarefulPush) : push_;
+    push_ = is_careful ? std::min(push_, options_.careful_push) : push_;
     const double lead = LeadOf(input);
     travel_ = std::max(travel_ - wanted_speed * dt_, hand_travel - lead);
     // The device may give way where the part does not: the eye tells.
@@ -218,7 +232,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     travel_ =
         is_left_behind ? std::max(travel_, hand_travel + stretch - options_.most_stretch) : travel_;
     const bool is_stuck =
-        is_left_behind || (speed < kStillSpeed && (is_careful || push_ > kFirstPush));
+        is_left_behind || (speed < kStillSpeed && (is_careful || IsPressing(input)));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
     if (stuck_time_s_ > (is_careful && is_inside ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
@@ -227,17 +241,33 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
       Rock(d, is_slow);
     }
   }
-  p_ref_ = task_.X_WG_goal.p() + travel_ * d + aim_offset_ + search_offset_ + yield_offset_;
+  p_ref_ = task_.X_WG_goal.p() + travel_ * d + hold_offset_W_ + aim_offset_ + search_offset_ +
+           yield_offset_;
   q_ref_ = spatial::RotationFromVector(aim_turn_ + yield_turn_ + rocking_) * task_.X_WG_goal.q();
+}
+
+const Vec3& SimulatedPerson::MotionOf(const OperatorInput& input) const noexcept {
+  // A device lets the hand come on while the part stands: the eye tells.
+  return is_at_device_ && input.sees_part ? v_part_W_ : V_H_.v;
+}
+
+double SimulatedPerson::PushLimit() const noexcept {
+  return is_guided_ ? options_.push_limit : options_.unguided_limit;
+}
+
+bool SimulatedPerson::IsPressing(const OperatorInput& input) const noexcept {
+  constexpr double kNearly = 0.9;
+  return is_at_device_ ? push_ >= PushLimit() || input.F_H_D.f.norm() >= kNearly * PushLimit()
+                       : push_ > options_.first_push;
 }
 
 void SimulatedPerson::AdjustPush(const OperatorInput& input, double speed, double wanted_speed,
                                  bool is_light) noexcept {
   const bool is_slow = speed < kSlowShare * wanted_speed;
-  const bool is_at_limit = input.F_H_D.f.norm() >= options_.push_limit;
+  const bool is_at_limit = input.F_H_D.f.norm() >= PushLimit();
   const double change =
       is_slow && !is_at_limit && !is_light ? options_.push_rate : -options_.push_rate;
-  push_ = std::max(is_light ? kLightPush : kFirstPush, push_ + change * dt_);
+  push_ = std::max(is_light ? options_.light_push : options_.first_push, push_ + change * dt_);
 }
 
 void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
@@ -247,7 +277,7 @@ void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
     PlanReturn();
     return;
   }
-  AdjustPush(input, V_H_.v.dot(d), options_.insert_speed, false);
+  AdjustPush(input, MotionOf(input).dot(d), options_.insert_speed, false);
   travel_ = std::min(travel_ + options_.insert_speed * dt_, hand_travel + LeadOf(input));
   const Vec3 along = p_ref_ - task_.X_WG_goal.p();
   p_ref_ += (travel_ - along.dot(d)) * d;
@@ -329,8 +359,12 @@ double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
 
 void SimulatedPerson::LearnLoad(const spatial::Wrench& F_H_W) noexcept {
   // At a device also on the way in: its border pulls where the simulated one has none.
-  if (phase_ == Phase::kCarry || phase_ == Phase::kGrasp ||
-      (is_at_device_ && phase_ == Phase::kApproach)) {
+  // What the part meets there is no load: it stretches from the hand.
+  const bool is_on_its_way =
+      phase_ == Phase::kApproach || (phase_ == Phase::kInsert && !is_guided_);
+  const bool is_free =
+      is_at_device_ && is_on_its_way && (p_part_W_ - X_WH_.p() - grip_offset_W_).norm() < kFollows;
+  if (phase_ == Phase::kCarry || phase_ == Phase::kGrasp || is_free) {
     carried_force_ += (F_H_W.f - carried_force_) * (dt_ / kLearnTime);
   } else if (!is_gripping_) {
     carried_force_ -= carried_force_ * (dt_ / 0.05);
@@ -349,6 +383,31 @@ void SimulatedPerson::MoveHand(const spatial::Wrench& F_H_W) noexcept {
   X_WH_ = spatial::Integrate(X_WH_, V_H_, dt_);
 }
 
+void SimulatedPerson::BeginApproach(const OperatorInput& input) noexcept {
+  const Vec3& d = task_.extraction_W;
+  grip_offset_W_ = input.X_WD * task_.p_BG - X_WH_.p();  // as it is held, unloaded
+  // At a device the hand closes where the border lets it: it aims with what it holds.
+  hold_offset_W_ = is_at_device_ ? Vec3(grip_offset_W_.dot(d) * d - grip_offset_W_) : Vec3::Zero();
+  travel_ = task_.engage_distance + kStandOff;
+  StartReaches(Phase::kApproach);
+  AddReach(task_.X_WG_goal.p() + travel_ * d + hold_offset_W_ + aim_offset_,
+           spatial::RotationFromVector(aim_turn_) * task_.X_WG_goal.q(), options_.approach_speed,
+           false);
+}
+
+void SimulatedPerson::BeginInsert() noexcept {
+  phase_ = Phase::kInsert;
+  phase_time_s_ = 0;
+  push_ = options_.first_push;
+  stuck_time_s_ = 0;
+  search_offset_.setZero();
+  yield_offset_.setZero();
+  yield_turn_.setZero();
+  rocking_.setZero();
+  look_time_s_ = 0;
+  is_backing_off_ = false;
+}
+
 void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
   dt_ = input.dt;
   t_s_ += dt_;
@@ -365,7 +424,7 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
     }
     case Phase::kReach:
       if (FollowReaches() && phase_time_s_ > reaches_[0].duration_s + 0.3 &&
-          (p_ref_ - X_WH_.p()).norm() < kAtHand && V_H_.v.norm() < kCalm) {
+          (p_ref_ - X_WH_.p()).norm() < kAtHand && V_H_.v.norm() < kCalm && !IsTurning(kTurned)) {
         phase_ = Phase::kGrasp;
         phase_time_s_ = 0;
         is_gripping_ = true;
@@ -377,30 +436,16 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       }
       break;
     case Phase::kCarry:
-      if (FollowReaches()) {
-        grip_offset_W_ = input.X_WD * task_.p_BG - X_WH_.p();  // as it is held, unloaded
-        travel_ = task_.engage_distance + kStandOff;
-        StartReaches(Phase::kApproach);
-        AddReach(task_.X_WG_goal.p() + travel_ * task_.extraction_W + aim_offset_,
-                 spatial::RotationFromVector(aim_turn_) * task_.X_WG_goal.q(),
-                 options_.approach_speed, false);
+      if (FollowReaches() && HasCome()) {
+        BeginApproach(input);
       }
       break;
     case Phase::kApproach:
       if (input.hears_seated) {
         phase_ = Phase::kSettle;
         phase_time_s_ = 0;
-      } else if (FollowReaches()) {
-        phase_ = Phase::kInsert;
-        phase_time_s_ = 0;
-        push_ = kFirstPush;
-        stuck_time_s_ = 0;
-        search_offset_.setZero();
-        yield_offset_.setZero();
-        yield_turn_.setZero();
-        rocking_.setZero();
-        look_time_s_ = 0;
-        is_backing_off_ = false;
+      } else if (FollowReaches() && HasCome()) {
+        BeginInsert();
       }
       break;
     case Phase::kInsert:
@@ -443,11 +488,19 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
   v_ref_ = (p_ref_ - p_ref_before) / dt_;
 }
 
+void SimulatedPerson::Watch(const OperatorInput& input) noexcept {
+  const Vec3 p_part = input.X_WD * task_.p_BG;
+  v_part_W_ += ((p_part - p_part_W_) / input.dt - v_part_W_) * std::min(1.0, input.dt / kSenseTime);
+  p_part_W_ = p_part;
+}
+
 HandReference SimulatedPerson::Intend(const OperatorInput& input) noexcept {
-  const Vec3 v = (input.X_WH.p() - X_WH_.p()) / input.dt;
-  V_H_.v += (v - V_H_.v) * std::min(1.0, input.dt / kSenseTime);
+  const double share = std::min(1.0, input.dt / kSenseTime);
+  V_H_.v += ((input.X_WH.p() - X_WH_.p()) / input.dt - V_H_.v) * share;
+  V_H_.w += (spatial::RotationBetween(X_WH_.q(), input.X_WH.q()) / input.dt - V_H_.w) * share;
   X_WH_ = input.X_WH;
   is_at_device_ = true;
+  Watch(input);
   Decide(input);
   const Quat& q_WD = input.workspace.X_WD.q();
   LearnLoad({q_WD * input.F_H_D.t, q_WD * input.F_H_D.f});

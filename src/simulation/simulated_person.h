@@ -46,9 +46,13 @@ struct PersonOptions {
   double eye_error_angle{4e-3};   ///< [rad]
   double tremor{0.05e-3};         ///< Physiological tremor, 8..12 Hz, amplitude [m].
   double push_limit{6.8};         ///< Felt force beyond which it does not press harder [N].
-  double push_rate{6};            ///< How fast it presses harder [N/s].
-  double most_stretch{0.012};     ///< The hand goes no further than the part it holds [m].
-  double patience_s{25};          ///< On one part, from the beginning of insertion [s].
+  double unguided_limit{6.8};  ///< The same while no mate guides it: nothing has to give way [N].
+  double first_push{4.0};      ///< What it tries first [N].
+  double careful_push{2.0};    ///< At most, once it has missed and looks closely [N].
+  double light_push{0.8};      ///< Tips nothing over [N].
+  double push_rate{6};         ///< How fast it presses harder [N/s].
+  double most_stretch{0.012};  ///< The hand goes no further than the part it holds [m].
+  double patience_s{25};       ///< On one part, from the beginning of insertion [s].
 };
 
 /** Where a person wants the hand to be, and what else it does; the hand is drawn there by the arm's
@@ -118,10 +122,24 @@ class SimulatedPerson final : public Operator {
   void AddReach(const Vec3& p_to, const Quat& q_to, double speed, bool is_arc) noexcept;
   /** Advances the reference along the reaches; true when all are done. */
   bool FollowReaches() noexcept;
+  /** Whether a device's hand is still on its way round, with more than `lag` to go [rad]. */
+  [[nodiscard]] bool IsTurning(double lag) const noexcept;
+  /** Whether the hand, and what it holds, has come to where the reaches end: a device may hold it
+   up, and what hangs on a soft coupling swings. Waits for it, but not for ever. */
+  [[nodiscard]] bool HasCome() noexcept;
   void PlanCarry() noexcept;
   void PlanReturn() noexcept;
+  void BeginApproach(const OperatorInput& input) noexcept;
+  void BeginInsert() noexcept;
   void StepInsert(const OperatorInput& input) noexcept;
   void StepWithdraw(const OperatorInput& input) noexcept;
+  /** How fast the part, or the hand that holds it, moves as far as the person can tell [m/s]. */
+  [[nodiscard]] const Vec3& MotionOf(const OperatorInput& input) const noexcept;
+  /** Watches the part through what may stretch between it and the hand. */
+  void Watch(const OperatorInput& input) noexcept;
+  [[nodiscard]] double PushLimit() const noexcept;
+  /** Does what it can: more force would not come of waiting. */
+  [[nodiscard]] bool IsPressing(const OperatorInput& input) const noexcept;
   /** Presses or pulls harder while little moves, but not beyond what the device pushes back with.
    @param speed  The way it wants to go [m/s]. */
   void AdjustPush(const OperatorInput& input, double speed, double wanted_speed,
@@ -159,7 +177,11 @@ class SimulatedPerson final : public Operator {
   bool is_gripping_{false};
   Vec3 carried_force_{Vec3::Zero()};  ///< Slowly learned load that the arm holds up.
   Vec3 grip_offset_W_{Vec3::Zero()};  ///< From the hand to the grip point, when carried [m].
-  Vec3 aim_offset_{Vec3::Zero()};     ///< Of this part: where the hand wrongly believes to be.
+  /** Of the hand's goal, for how the part is held at a device, across the way in [m]. */
+  Vec3 hold_offset_W_{Vec3::Zero()};
+  Vec3 p_part_W_{Vec3::Zero()};    ///< Of the grip, as seen at a device.
+  Vec3 v_part_W_{Vec3::Zero()};    ///< [m/s]
+  Vec3 aim_offset_{Vec3::Zero()};  ///< Of this part: where the hand wrongly believes to be.
   Vec3 aim_turn_{Vec3::Zero()};
 
   static constexpr int kMaxReaches = 6;
@@ -168,6 +190,7 @@ class SimulatedPerson final : public Operator {
   int reach_index_{0};
   double reach_time_s_{0};
   double phase_time_s_{0};
+  double waited_s_{0};  ///< For the hand, at the end of the reaches.
 
   double travel_{0};       ///< Reference distance still to go along the way in [m].
   double push_{0};         ///< Force that the hand is ready to press with [N].
