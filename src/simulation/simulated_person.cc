@@ -40,6 +40,7 @@ constexpr double kMostLag = 0.05;        // [m]; the mind does not run ahead of 
 constexpr double kMostTurnLag = 0.3;     // [rad]
 constexpr double kTurned = 0.05;         // [rad]; as good as turned
 constexpr double kTurning = 0.02;        // [rad/s]; slower than that, the hand does not turn
+constexpr double kCalmTime = 0.2;        // [s]; what swings is only still for a moment
 constexpr double kMostWait = 1.5;        // [s] for a hand to come, and what it holds to hang still
 constexpr double kSenseTime = 0.08;      // in which it notices how fast its hand is
 
@@ -82,6 +83,7 @@ void SimulatedPerson::StartReaches(Phase phase) noexcept {
   reach_index_ = 0;
   reach_time_s_ = 0;
   waited_s_ = 0;
+  calm_s_ = 0;
 }
 
 void SimulatedPerson::AddReach(const Vec3& p_to, const Quat& q_to, double speed,
@@ -142,7 +144,8 @@ bool SimulatedPerson::IsTurning(double lag) const noexcept {
 bool SimulatedPerson::HasCome() noexcept {
   waited_s_ += dt_;
   const bool is_calm = V_H_.v.norm() < kCalm && v_part_W_.norm() < kCalm && !IsTurning(kTurned);
-  return !is_at_device_ || is_calm || waited_s_ > kMostWait;
+  calm_s_ = is_calm ? calm_s_ + dt_ : 0;
+  return !is_at_device_ || calm_s_ > kCalmTime || waited_s_ > kMostWait;
 }
 
 void SimulatedPerson::PlanCarry() noexcept {
@@ -204,7 +207,8 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   // and gives way inside.
   const bool is_by_eye = input.sees_part && !is_guided_;
   const bool is_careful = is_by_eye && search_count_ > 0;
-  const double travel = is_by_eye ? seen_travel : hand_travel;
+  const bool is_watched = is_by_eye || (is_at_device_ && input.sees_part);
+  const double travel = is_watched ? seen_travel : hand_travel;
   const bool is_inside = is_by_eye && travel < task_.engage_distance - kLeadIn;
   if (is_backing_off_) {
     travel_ += options_.insert_speed * dt_;

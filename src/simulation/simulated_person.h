@@ -191,6 +191,7 @@ class SimulatedPerson final : public Operator {
   double reach_time_s_{0};
   double phase_time_s_{0};
   double waited_s_{0};  ///< For the hand, at the end of the reaches.
+  double calm_s_{0};    ///< Of that, without motion.
 
   double travel_{0};       ///< Reference distance still to go along the way in [m].
   double push_{0};         ///< Force that the hand is ready to press with [N].

@@ -26,7 +26,7 @@ struct DeviceSession {
         device(&emulator.device()),
         options(MakeTickOptions(device.info(), *model, render)),
         simulation(model, options),
-        person({}, seed, StartOfHand(*model)),
+        person(MakePersonOptions(options), seed, StartOfHand(*model)),
         hand(&person, &emulator, &device, false),
         run(&simulation, &person, &watch) {}
 
@@ -61,6 +61,47 @@ TEST(DeviceSessionTest, APersonAssemblesThroughADevice) {  // N8
       EXPECT_EQ(event.gate_actions & kAlarms, 0u) << "at " << event.t_ns << " ns";
     }
   }
+}
+
+/** The peg with an interference in its bore. */
+std::shared_ptr<const Model> PressedPegModel() {
+  product::Product peg = testing::PegInBlock();
+  for (product::Mate& mate : peg.mates) {
+    if (mate.kind == product::MateKind::kAxisHole) {
+      mate.fit = product::Fit{product::FitKind::kInterference, "H7/s6", 2 * testing::kBoreRadius,
+                              false, "for the test"};
+    }
+  }
+  Diagnostics diagnostics;
+  return *Compile(std::make_shared<product::Product>(std::move(peg)), testing::FastOptions(),
+                  &diagnostics);
+}
+
+// The handle comes to the border on the way there, and has little room left to press into.
+TEST(DeviceSessionTest, APressFitGoesInFromTheBorderOfADevice) {
+  const auto model = PressedPegModel();
+  for (const char* profile : {"sigma7", "inverse3", "network", "touch"}) {
+    SCOPED_TRACE(profile);
+    DeviceSession session(model, profile);
+    (void)session.Run(30);
+    const PartResult& peg = session.run.results()[1];
+    EXPECT_TRUE(peg.is_seated) << peg.reason;
+    EXPECT_GT(peg.fit_true, 300) << "there was something to press";
+    EXPECT_LE(session.watch.largest_force, session.device.info().profile.max_force + 1e-9);
+  }
+}
+
+TEST(DeviceSessionTest, HabitsFollowTheStrengthOfADevice) {
+  const auto make = [](const char* id) {
+    return MakePersonOptions(DeviceSession(PegInBlockModel(), id).options);
+  };
+  const PersonOptions alone;
+  const PersonOptions weak = make("network");
+  EXPECT_LT(weak.push_limit, alone.first_push);
+  EXPECT_LT(weak.first_push, weak.push_limit) << "what is tried first can be felt in full";
+  const PersonOptions strong = make("virtuose");
+  EXPECT_GT(strong.push_limit, 20);
+  EXPECT_EQ(strong.unguided_limit, alone.unguided_limit) << "what lies loose needs no force";
 }
 
 TEST(DeviceSessionTest, TheSameSeedGivesTheSameBytes) {
@@ -140,7 +181,7 @@ TEST(DeviceSessionTest, AFaultWhileAPartIsHeldTakesTheForceAwayAndItComesBack) {
     }
     SCOPED_TRACE(device::ToString(fault));
     DeviceSession session(PegInBlockModel(), "touch_x");
-    AfterFault sink(&session.run, &session.emulator.device(), fault, 1'600'000'000);
+    AfterFault sink(&session.run, &session.emulator.device(), fault, 2'000'000'000);
     Execution execution = session.MakeExecution(60);
     execution.sink = &sink;
     FlightRecorder flight(1000);
