@@ -17,9 +17,9 @@ inline constexpr std::array<haptics::Effort, 4> kEffortLevels{
     haptics::Effort{256, 10, false},
 };
 
-/** Chooses the level long before a deadline is missed (X4): one up as soon as a tick takes more than
- it should, 200 us or half of its period; one down when for half a second none took more than half of
- that. RT-safe. */
+/** Chooses the level long before a deadline is missed (X4): one up as soon as a tick takes more
+ than it should, 200 us or half of its period; one down when for half a second none took more than
+ half of that. RT-safe. */
 class LoadShedder {
  public:
   explicit LoadShedder(std::int64_t period_ns)
