@@ -32,16 +32,17 @@ export interface HintInput {
   scene: Scene;
   held: { occurrence: number; state: HoldState; mate: number | null } | null;
   expected: number | null;
+  /** Every part is in its place. */
+  isDone: boolean;
   canSteer: boolean;
 }
 
-export function makeHint({ scene, held, expected, canSteer }: HintInput): Hint {
+export function makeHint({ scene, held, expected, isDone, canSteer }: HintInput): Hint {
   const expectedName = expected === null ? "" : nameOf(scene, expected);
   if (held === null || held.state === "empty") {
     const key = !canSteer ? "hint.viewer" : expected !== null ? "hint.emptyExpected" : "hint.empty";
-    const isDone = scene.steps.length > 0 && scene.occurrences.every((o) => o.is_base || o.placement === "placed");
     return {
-      key: isDone && expected === null ? "hint.done" : key,
+      key: isDone ? "hint.done" : key,
       state: "empty",
       params: { part: "", into: "", expected: expectedName },
     };

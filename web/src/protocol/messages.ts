@@ -60,7 +60,7 @@ export interface Fit {
 export interface Mate {
   id: number;
   key: string;
-  kind: "axis-hole" | "face-face" | "cone-seat" | "sphere-seat";
+  kind: "axis_hole" | "face_face" | "cone_seat" | "sphere_seat";
   a: number;
   b: number;
   faces_a: number[];

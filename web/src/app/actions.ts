@@ -1,0 +1,262 @@
+/** Everything that can be done, once: menus, palette, tools, keys and the right-click menu show the same. */
+
+import { clearPicks, isolate, select, setHidden, showAll, toggleGhost, type Tool } from "../model/view_state";
+import type { ViewName } from "../view3d/camera_rig";
+import { canSteer, store, studio, ui, view, viewport } from "./app_state";
+import { chooseFile, copyLink, saveRuns, saveScreenshot } from "./exports";
+import { t } from "./i18n";
+import type { MessageKey } from "./en";
+import { enterVr } from "./vr_entry";
+
+export interface Action {
+  id: string;
+  label: () => string;
+  /** As `event.key`, lower case, with "ctrl+" or "shift+" before it. */
+  keys?: readonly string[];
+  run: () => void;
+  isEnabled?: () => boolean;
+  /** Undefined: not one that can be on or off. */
+  isOn?: () => boolean;
+}
+
+const hasScene = () => store.scene.value !== null;
+const chosen = () => view.selected.value;
+const hasChosen = () => hasScene() && chosen().length > 0;
+const steers = () => hasScene() && canSteer();
+const isHolding = () => store.held.value.some((h) => h.hand === 0);
+
+function action(id: string, label: MessageKey | (() => string), run: () => void, more: Partial<Action> = {}): Action {
+  return { id, label: typeof label === "function" ? label : () => t(label), run, ...more };
+}
+
+function toggle(id: string, label: MessageKey, flag: { value: boolean }, more: Partial<Action> = {}): Action {
+  return action(id, label, () => (flag.value = !flag.value), { isOn: () => flag.value, ...more });
+}
+
+function tool(name: Tool, id: string, label: MessageKey, key: string): Action {
+  return action(id, label, () => setTool(name), {
+    keys: [key],
+    isEnabled: hasScene,
+    isOn: () => view.tool.value === name,
+  });
+}
+
+export function setTool(name: Tool): void {
+  clearPicks(view);
+  view.tool.value = view.tool.value === name && name !== "hand" ? "hand" : name;
+}
+
+function standardView(name: ViewName, label: MessageKey, key: string): Action {
+  return action(`view-${name}`, label, () => viewport.value?.lookFrom(name), { keys: [key], isEnabled: hasScene });
+}
+
+/** Always works, whoever has control: no force any more, at once. */
+export function forcesOff(): void {
+  void studio.command({ command: "forces", off: true });
+  viewport.value?.hand.release();
+}
+
+export function takeChosen(): void {
+  const wanted = view.hovered.value ?? chosen()[0];
+  if (wanted === undefined) {
+    studio.notify(t("notice.notHeld"));
+  } else {
+    void viewport.value?.hand.take(wanted);
+  }
+}
+
+const fileActions: Action[] = [
+  action("open", "action.open", chooseFile, { keys: ["ctrl+o"], isEnabled: canSteer }),
+  action("screenshot", "action.screenshot", () => void saveScreenshot(), { isEnabled: hasScene }),
+  action("share", "action.share", () => void copyLink(), { isEnabled: hasScene }),
+  action("runs", "action.runs", saveRuns, { isEnabled: () => store.runs.value.length > 0 }),
+];
+
+const editActions: Action[] = [
+  action(
+    "undo",
+    () => (store.history.value.undo ? t("action.undoWhat", { what: store.history.value.undo }) : t("action.undo")),
+    () => void studio.command({ command: "undo" }),
+    { keys: ["ctrl+z"], isEnabled: () => canSteer() && store.history.value.undo !== null },
+  ),
+  action(
+    "redo",
+    () => (store.history.value.redo ? t("action.redoWhat", { what: store.history.value.redo }) : t("action.redo")),
+    () => void studio.command({ command: "redo" }),
+    { keys: ["ctrl+y", "ctrl+shift+z"], isEnabled: () => canSteer() && store.history.value.redo !== null },
+  ),
+  action("select-all", "action.selectAll", () => select(view, [...store.occurrences.value.keys()], false), {
+    keys: ["ctrl+a"],
+    isEnabled: hasScene,
+  }),
+  action("select-none", "action.selectNone", () => select(view, [], false), { isEnabled: hasChosen }),
+  action(
+    "find",
+    "action.find",
+    () => {
+      ui.panels.model.value = true;
+      ui.findRequest.value += 1;
+    },
+    { keys: ["/"], isEnabled: hasScene },
+  ),
+];
+
+const viewActions: Action[] = [
+  action("fit", "action.fit", () => viewport.value?.fit(chosen()), { keys: ["f"], isEnabled: hasScene }),
+  standardView("front", "action.viewFront", "1"),
+  standardView("back", "action.viewBack", "2"),
+  standardView("left", "action.viewLeft", "3"),
+  standardView("right", "action.viewRight", "4"),
+  standardView("top", "action.viewTop", "5"),
+  standardView("bottom", "action.viewBottom", "6"),
+  standardView("iso", "action.viewIso", "7"),
+  toggle("ortho", "action.ortho", view.isOrthographic, { keys: ["p"] }),
+  action("hide", "action.hide", () => setHidden(view, chosen(), true), { keys: ["h"], isEnabled: hasChosen }),
+  action("isolate", "action.isolate", () => isolate(view, chosen(), [...store.occurrences.value.keys()]), {
+    keys: ["i"],
+    isEnabled: hasChosen,
+  }),
+  action("ghost", "action.ghost", () => toggleGhost(view, chosen()), {
+    keys: ["t"],
+    isEnabled: hasChosen,
+    isOn: () => hasChosen() && chosen().every((id) => view.ghosted.value.has(id)),
+  }),
+  action("show-all", "action.showAll", () => showAll(view), {
+    keys: ["a"],
+    isEnabled: () => view.hidden.value.size + view.ghosted.value.size > 0,
+  }),
+  action("section", "action.section", toggleSection, {
+    keys: ["x"],
+    isEnabled: hasScene,
+    isOn: () => view.section.value !== null,
+  }),
+  action("explode", "action.explode", () => (view.explode.value = view.explode.value > 0 ? 0 : 0.6), {
+    keys: ["b"],
+    isEnabled: hasScene,
+    isOn: () => view.explode.value > 0,
+  }),
+  toggle("edges", "action.edges", view.showsEdges),
+  toggle("grid", "action.grid", view.showsGrid),
+  toggle("forces-shown", "action.forcesShown", view.showsForces),
+  toggle("force-scale", "action.forceScale", view.locksForceScale),
+  action("quality", "action.quality", () => (view.quality.value = view.quality.value === "high" ? "low" : "high"), {
+    isOn: () => view.quality.value === "high",
+  }),
+  action("stereo-side", "action.stereoSide", () => toggleStereo("side"), { isOn: () => view.stereo.value === "side" }),
+  action("stereo-anaglyph", "action.stereoAnaglyph", () => toggleStereo("anaglyph"), {
+    isOn: () => view.stereo.value === "anaglyph",
+  }),
+  toggle("panel-model", "action.panelModel", ui.panels.model),
+  toggle("panel-inspector", "action.panelInspector", ui.panels.inspector),
+  toggle("panel-plots", "action.panelPlots", ui.panels.plots),
+  action("theme", "action.theme", () => (view.theme.value = view.isDark.value ? "light" : "dark"), { keys: ["l"] }),
+  action("theme-system", "action.themeSystem", () => (view.theme.value = "system"), {
+    isOn: () => view.theme.value === "system",
+  }),
+];
+
+const toolActions: Action[] = [
+  tool("hand", "tool-hand", "action.toolHand", "v"),
+  tool("select", "tool-select", "action.toolSelect", "s"),
+  tool("measure", "tool-measure", "action.toolMeasure", "m"),
+  tool("mate", "tool-mate", "action.toolMate", "c"),
+  ...(["part", "subassembly", "face"] as const).map((mode) =>
+    action(
+      `mode-${mode}`,
+      (
+        {
+          part: "action.modePart",
+          subassembly: "action.modeSubassembly",
+          face: "action.modeFace",
+        } as const
+      )[mode],
+      () => (view.selectMode.value = mode),
+      { isEnabled: hasScene, isOn: () => view.selectMode.value === mode },
+    ),
+  ),
+];
+
+const simulateActions: Action[] = [
+  action("take", "action.take", takeChosen, { keys: ["g"], isEnabled: () => steers() && !isHolding() }),
+  action("release", "action.release", () => viewport.value?.hand.release(), { keys: ["r"], isEnabled: isHolding }),
+  action("align", "action.align", () => viewport.value?.hand.mouse.snapTurn(), { keys: ["o"], isEnabled: isHolding }),
+  toggle("assist", "action.assist", view.assists),
+  toggle("auto-release", "action.autoRelease", view.letsGoWhenSeated),
+  action(
+    "demo",
+    () => t(store.demo.value ? "action.demoStop" : "action.demo"),
+    () => void studio.command({ command: "demo", on: !store.demo.value }),
+    { keys: ["d"], isEnabled: steers, isOn: () => store.demo.value },
+  ),
+  action("next", "action.next", () => void studio.command({ command: "next" }), {
+    keys: ["n"],
+    isEnabled: () => steers() && !store.demo.value,
+  }),
+  action("reset", "action.reset", () => void studio.command({ command: "reset" }), { isEnabled: steers }),
+  action("forces-off", "action.forcesOff", forcesOff, { keys: ["escape"] }),
+  action("forces-on", "action.forcesOn", () => void studio.command({ command: "forces", off: false }), {
+    isEnabled: () => canSteer() && store.forcesOff.value,
+  }),
+  toggle("mute", "action.mute", view.isMuted),
+  action("lease", "action.lease", () => void studio.command({ command: "lease", action: "request" }), {
+    isEnabled: () => store.link.value === "open" && !store.hasLease.value && store.role.value === "operator",
+  }),
+  action("lease-release", "action.leaseRelease", () => void studio.command({ command: "lease", action: "release" }), {
+    isEnabled: () => store.hasLease.value && store.clients.value.length > 1,
+  }),
+  action("enter-vr", () => t(ui.isInVr.value ? "action.leaveVr" : "action.enterVr"), () => void enterVr(), {
+    isEnabled: hasScene,
+  }),
+];
+
+const helpActions: Action[] = [
+  action("palette", "action.palette", () => (ui.overlay.value = { kind: "palette" }), { keys: ["ctrl+k"] }),
+  action("shortcuts", "action.shortcuts", () => (ui.overlay.value = { kind: "shortcuts" }), { keys: ["?"] }),
+];
+
+function toggleSection(): void {
+  view.section.value = view.section.value === null ? { axis: 0, offset: 0, isFlipped: false } : null;
+}
+
+function toggleStereo(wanted: "side" | "anaglyph"): void {
+  view.stereo.value = view.stereo.value === wanted ? "none" : wanted;
+  if (view.stereo.value !== "none") {
+    view.isOrthographic.value = false;
+  }
+}
+
+export const menus: readonly { id: MessageKey; actions: readonly Action[] }[] = [
+  { id: "menu.file", actions: fileActions },
+  { id: "menu.edit", actions: editActions },
+  { id: "menu.view", actions: viewActions },
+  { id: "menu.simulate", actions: [...toolActions, ...simulateActions] },
+  { id: "menu.help", actions: helpActions },
+];
+
+export const actions: readonly Action[] = menus.flatMap((menu) => menu.actions);
+const byId = new Map(actions.map((a) => [a.id, a]));
+
+export function findAction(id: string): Action {
+  const found = byId.get(id);
+  if (found === undefined) {
+    throw new Error(`no action ${id}`);
+  }
+  return found;
+}
+
+export const isEnabled = (a: Action) => a.isEnabled?.() ?? true;
+
+export function runAction(a: Action): void {
+  if (isEnabled(a)) {
+    a.run();
+  }
+}
+
+/** "ctrl+z" as people read it. */
+export function keyLabel(keys: string): string {
+  const names: Record<string, string> = { escape: "Esc", ctrl: "Ctrl", shift: "Shift" };
+  return keys
+    .split("+")
+    .map((key) => names[key] ?? key.toUpperCase())
+    .join(" ");
+}

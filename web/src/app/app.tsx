@@ -1,0 +1,120 @@
+import { useEffect, useRef } from "preact/hooks";
+import { Viewport } from "../view3d/viewport";
+import { canSteer, store, studio, ui, view, viewport } from "./app_state";
+import { Banners, LiveRegion, Notice, useStatusPolling } from "./banners";
+import { ConstraintList } from "./constraint_list";
+import { Overlays } from "./dialogs";
+import { Header } from "./header";
+import { HintBar } from "./hint_bar";
+import { language, t } from "./i18n";
+import { Inspector } from "./inspector";
+import { ModelTree } from "./model_tree";
+import { EmptyState, LoadingDrawer } from "./opening";
+import { Plots } from "./plots";
+import { StatusBar } from "./status_bar";
+import { ToolRail } from "./tool_rail";
+import { ViewPanels } from "./view_panels";
+
+function ViewportHost() {
+  const host = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const made = new Viewport(host.current!, studio, view);
+    made.pointer.onContextMenu = (x, y, hit) => {
+      if (hit !== null && !view.selected.value.includes(hit.occurrence)) {
+        view.selected.value = [hit.occurrence];
+      }
+      ui.overlay.value = { kind: "menu", x, y, occurrence: hit?.occurrence ?? null };
+    };
+    viewport.value = made;
+  }, []);
+  const isDark = view.isDark.value;
+  const words = language.value;
+  const port = viewport.value;
+  useEffect(() => {
+    port?.refreshTheme([
+      t("cube.right"),
+      t("cube.left"),
+      t("cube.back"),
+      t("cube.front"),
+      t("cube.top"),
+      t("cube.bottom"),
+    ]);
+  }, [isDark, words, port]);
+  useEffect(() => port?.canvas.setAttribute("aria-label", t("view.label")), [port, words]);
+  return <div class="viewport" ref={host} />;
+}
+
+/** A file that is dragged onto the page is opened. */
+function useDrop(root: { current: HTMLElement | null }): void {
+  useEffect(() => {
+    const element = root.current;
+    const mark = (isOver: boolean) => element?.classList.toggle("is-dropping", isOver && canSteer());
+    const over = (event: DragEvent) => {
+      event.preventDefault();
+      mark(true);
+    };
+    const leave = (event: DragEvent) => {
+      if (event.relatedTarget === null) {
+        mark(false);
+      }
+    };
+    const drop = (event: DragEvent) => {
+      event.preventDefault();
+      mark(false);
+      const file = event.dataTransfer?.files[0];
+      if (file !== undefined && canSteer()) {
+        void studio.openUpload(file);
+      }
+    };
+    addEventListener("dragover", over);
+    addEventListener("dragleave", leave);
+    addEventListener("drop", drop);
+    return () => {
+      removeEventListener("dragover", over);
+      removeEventListener("dragleave", leave);
+      removeEventListener("drop", drop);
+    };
+  }, []);
+}
+
+export function App() {
+  const root = useRef<HTMLDivElement>(null);
+  useDrop(root);
+  useStatusPolling();
+  const hasScene = store.scene.value !== null;
+  const { model, inspector, plots } = ui.panels;
+  const shows = (flag: { value: boolean }) => hasScene && flag.value;
+  return (
+    <div
+      ref={root}
+      class={`app ${shows(model) ? "has-model" : ""} ${shows(inspector) ? "has-inspector" : ""} ${shows(plots) ? "has-plots" : ""}`}
+    >
+      <Header />
+      <main class="workspace">
+        {shows(model) ? (
+          <aside class="model-panel" aria-label={t("action.panelModel")}>
+            <ModelTree />
+            <ConstraintList />
+          </aside>
+        ) : null}
+        <div class="centre">
+          <ViewportHost />
+          <Banners />
+          {hasScene ? <ToolRail /> : <EmptyState />}
+          <ViewPanels />
+          <HintBar />
+          <LoadingDrawer />
+          <div class="drop-veil" aria-hidden="true">
+            {t("drop.here")}
+          </div>
+          <Notice />
+        </div>
+        {shows(inspector) ? <Inspector /> : null}
+      </main>
+      {shows(plots) ? <Plots /> : null}
+      <StatusBar />
+      <Overlays />
+      <LiveRegion />
+    </div>
+  );
+}

@@ -1,0 +1,92 @@
+/** What must not be missed, and what was said last. */
+
+import { useEffect } from "preact/hooks";
+import { findAction, runAction } from "./actions";
+import { canSteer, store, studio } from "./app_state";
+import { logText } from "./event_list";
+import { t } from "./i18n";
+import { Icon } from "./icons";
+
+const kNoticeMs = 5000;
+
+export function Banners() {
+  const safety = store.safety.value;
+  return (
+    <div class="banners">
+      {store.link.value === "lost" ? (
+        <div class="banner is-bad" role="alert">
+          <Icon name="warn" /> {t("banner.lost")}
+        </div>
+      ) : null}
+      {safety !== null ? (
+        <div class="banner is-bad" role="alert" data-testid="safety">
+          <Icon name="warn" />
+          <span>{t("banner.safety", { reasons: safety.reasons.join(", ") })}</span>
+          <button type="button" class="banner-button" onClick={() => (store.safety.value = null)}>
+            {t("banner.dismiss")}
+          </button>
+        </div>
+      ) : null}
+      {store.forcesOff.value && store.link.value === "open" ? (
+        <div class="banner is-bad" role="alert" data-testid="forces-are-off">
+          <Icon name="stop" />
+          <span>{t("banner.forcesOff")}</span>
+          {canSteer() ? (
+            <button type="button" class="banner-button" onClick={() => runAction(findAction("forces-on"))}>
+              {t("action.forcesOn")}
+            </button>
+          ) : null}
+        </div>
+      ) : null}
+      {store.demo.value ? (
+        <div class="banner is-info" data-testid="demo-runs">
+          <Icon name="play" />
+          <span>{t("banner.demo")}</span>
+          {canSteer() ? (
+            <button type="button" class="banner-button" onClick={() => runAction(findAction("demo"))}>
+              {t("banner.stop")}
+            </button>
+          ) : null}
+        </div>
+      ) : null}
+    </div>
+  );
+}
+
+export function Notice() {
+  const notice = store.notice.value;
+  useEffect(() => {
+    const timer = setTimeout(() => (store.notice.value = null), kNoticeMs);
+    return () => clearTimeout(timer);
+  }, [notice?.id]);
+  return (
+    <div class="notices" role="status" aria-live="polite">
+      {notice !== null ? (
+        <div class={`notice ${notice.isError ? "is-bad" : ""}`} data-testid="notice">
+          {notice.text}
+          <button type="button" class="eye-button" aria-label={t("dialog.close")} onClick={() => (store.notice.value = null)}>
+            <Icon name="close" size={14} />
+          </button>
+        </div>
+      ) : null}
+    </div>
+  );
+}
+
+/** For those who do not see the picture: each event in words. */
+export function LiveRegion() {
+  const last = store.log.value[0];
+  return (
+    <p class="sr-only" role="log" aria-live="polite">
+      {last === undefined ? "" : logText(last)}
+    </p>
+  );
+}
+
+export function useStatusPolling(): void {
+  useEffect(() => {
+    if (store.link.value === "open" && store.status.value === null) {
+      void studio.command({ command: "status" });
+    }
+  }, [store.link.value]);
+}

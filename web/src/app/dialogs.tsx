@@ -1,0 +1,193 @@
+/** Palette, list of shortcuts, right-click menu. */
+
+import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import type { ComponentChildren } from "preact";
+import { actions, findAction, isEnabled, keyLabel, menus, runAction } from "./actions";
+import { store, ui, view } from "./app_state";
+import { t } from "./i18n";
+import { Icon } from "./icons";
+import { MenuList, useOutside } from "./menu";
+
+const close = () => (ui.overlay.value = null);
+
+function Dialog({ title, children, kind }: { title: string; children: ComponentChildren; kind: string }) {
+  const box = useRef<HTMLDialogElement>(null);
+  useEffect(() => {
+    const dialog = box.current;
+    dialog?.showModal();
+    return () => dialog?.close();
+  }, []);
+  return (
+    <dialog
+      class={`dialog is-${kind}`}
+      aria-label={title}
+      ref={box}
+      data-testid={kind}
+      onCancel={close}
+      onClick={(event) => {
+        // The backdrop is the dialog itself.
+        if (event.target === box.current) {
+          close();
+        }
+      }}
+    >
+      {children}
+    </dialog>
+  );
+}
+
+function Palette() {
+  const text = useSignal("");
+  const at = useSignal(0);
+  const words = text.value.toLowerCase().split(/\s+/).filter(Boolean);
+  const found = actions.filter((a) => {
+    const label = a.label().toLowerCase();
+    return words.every((word) => label.includes(word));
+  });
+  const current = Math.min(at.value, found.length - 1);
+  const run = (k: number) => {
+    const chosen = found[k];
+    if (chosen !== undefined && isEnabled(chosen)) {
+      close();
+      runAction(chosen);
+    }
+  };
+  const onKeyDown = (event: KeyboardEvent) => {
+    const moves: Record<string, number> = { ArrowDown: current + 1, ArrowUp: current - 1 };
+    const to = moves[event.key];
+    if (to !== undefined && found.length > 0) {
+      event.preventDefault();
+      at.value = (to + found.length) % found.length;
+      document.getElementById(`palette-${at.value}`)?.scrollIntoView({ block: "nearest" });
+    } else if (event.key === "Enter") {
+      event.preventDefault();
+      run(current);
+    }
+  };
+  return (
+    <Dialog title={t("palette.title")} kind="palette">
+      <input
+        type="text"
+        role="combobox"
+        aria-expanded="true"
+        aria-controls="palette-list"
+        aria-activedescendant={`palette-${current}`}
+        aria-label={t("palette.find")}
+        placeholder={t("palette.find")}
+        data-testid="palette-input"
+        autofocus
+        value={text.value}
+        onInput={(event) => {
+          text.value = event.currentTarget.value;
+          at.value = 0;
+        }}
+        onKeyDown={onKeyDown}
+      />
+      <div class="palette-list" id="palette-list" role="listbox" aria-label={t("palette.title")}>
+        {found.map((a, k) => (
+          <div
+            key={a.id}
+            id={`palette-${k}`}
+            role="option"
+            aria-selected={k === current}
+            aria-disabled={!isEnabled(a)}
+            class="palette-row"
+            onClick={() => run(k)}
+            onPointerMove={() => (at.value = k)}
+          >
+            <span>{a.label()}</span>
+            {a.isOn?.() ? <Icon name="check" size={14} /> : null}
+            {a.keys?.[0] ? <kbd>{keyLabel(a.keys[0])}</kbd> : null}
+          </div>
+        ))}
+        {found.length === 0 ? <p class="quiet">{t("palette.none")}</p> : null}
+      </div>
+    </Dialog>
+  );
+}
+
+const kMouse = [
+  ["shortcuts.dragPart", "shortcuts.dragPartDoes"],
+  ["shortcuts.double", "shortcuts.doubleDoes"],
+  ["shortcuts.wheel", "shortcuts.wheelDoes"],
+  ["shortcuts.turn", "shortcuts.turnDoes"],
+  ["shortcuts.qe", "shortcuts.qeDoes"],
+  ["shortcuts.arrows", "shortcuts.arrowsDoes"],
+  ["shortcuts.fine", "shortcuts.fineDoes"],
+  ["shortcuts.orbit", "shortcuts.orbitDoes"],
+] as const;
+
+function Shortcuts() {
+  return (
+    <Dialog title={t("shortcuts.title")} kind="shortcuts">
+      <header class="dialog-head">
+        <h2>{t("shortcuts.title")}</h2>
+        <button type="button" class="icon-button" aria-label={t("dialog.close")} onClick={close}>
+          <Icon name="close" />
+        </button>
+      </header>
+      <div class="shortcut-columns">
+        <section>
+          <h3>{t("shortcuts.mouse")}</h3>
+          <dl class="shortcut-list is-wide">
+            {kMouse.map(([name, does]) => [<dt key={name}>{t(name)}</dt>, <dd key={does}>{t(does)}</dd>])}
+          </dl>
+        </section>
+        {menus.map((menu) => {
+          const withKeys = menu.actions.filter((a) => a.keys !== undefined);
+          return withKeys.length === 0 ? null : (
+            <section key={menu.id}>
+              <h3>{t(menu.id)}</h3>
+              <dl class="shortcut-list">
+                {withKeys.map((a) => [
+                  <dt key={a.id}>
+                    <kbd>{keyLabel(a.keys?.[0] ?? "")}</kbd>
+                  </dt>,
+                  <dd key={`${a.id}=`}>{a.label()}</dd>,
+                ])}
+              </dl>
+            </section>
+          );
+        })}
+      </div>
+    </Dialog>
+  );
+}
+
+const kOnPart = ["take", "release", "fit", "hide", "isolate", "ghost", "show-all", "section", "tool-measure", "tool-mate"];
+const kOnFloor = ["fit", "show-all", "view-iso", "view-front", "view-top", "ortho", "section", "explode", "screenshot", "palette"];
+
+function ContextMenu({ x, y, isOnPart }: { x: number; y: number; isOnPart: boolean }) {
+  const holder = useRef<HTMLDivElement>(null);
+  useOutside(true, holder, close);
+  return (
+    <div class="context-menu" ref={holder} data-testid="context-menu">
+      <MenuList
+        actions={(isOnPart ? kOnPart : kOnFloor).map(findAction)}
+        label={isOnPart ? namesOfSelection() : t("menu.view")}
+        onClose={close}
+        x={x}
+        y={y}
+      />
+    </div>
+  );
+}
+
+function namesOfSelection(): string {
+  return view.selected.value.map((id) => store.occurrences.value.get(id)?.name ?? "").join(", ");
+}
+
+export function Overlays() {
+  const overlay = ui.overlay.value;
+  switch (overlay?.kind) {
+    case "palette":
+      return <Palette />;
+    case "shortcuts":
+      return <Shortcuts />;
+    case "menu":
+      return <ContextMenu x={overlay.x} y={overlay.y} isOnPart={overlay.occurrence !== null} />;
+    default:
+      return null;
+  }
+}

@@ -1,0 +1,38 @@
+import type { LogEntry } from "../model/store";
+import type { HoldState } from "../protocol/messages";
+import { store } from "./app_state";
+import { language, t } from "./i18n";
+
+export function logText(entry: LogEntry): string {
+  const p = entry.params;
+  switch (entry.kind) {
+    case "dropped":
+      return t(p["seated"] ? "log.droppedSeated" : "log.dropped", p);
+    case "forces":
+      return t(p["off"] ? "log.forcesOff" : "log.forcesOn");
+    case "demo":
+      return t(p["on"] ? "log.demoOn" : "log.demoOff");
+    case "state":
+      return t("log.state", { part: p["part"] ?? "", state: t(`state.${p["state"] as HoldState}`) });
+    default:
+      return t(`log.${entry.kind}`, p);
+  }
+}
+
+export function EventList() {
+  const log = store.log.value;
+  if (log.length === 0) {
+    return <p class="quiet">{t("log.empty")}</p>;
+  }
+  const clock = new Intl.DateTimeFormat(language.value, { timeStyle: "medium" });
+  return (
+    <ol class="events">
+      {log.map((entry, k) => (
+        <li key={log.length - k} class={`event is-${entry.kind}`}>
+          <time dateTime={entry.at.toISOString()}>{clock.format(entry.at)}</time>
+          <span>{logText(entry)}</span>
+        </li>
+      ))}
+    </ol>
+  );
+}

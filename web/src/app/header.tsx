@@ -1,0 +1,116 @@
+import { findAction, forcesOff, isEnabled, keyLabel, runAction } from "./actions";
+import { canSteer, store, studio, ui } from "./app_state";
+import { number, t } from "./i18n";
+import { Icon, type IconName } from "./icons";
+import { MenuBar } from "./menu";
+
+export function ActionButton({ id, icon, label }: { id: string; icon: IconName; label?: string }) {
+  const found = findAction(id);
+  const name = found.label();
+  const keys = found.keys?.[0];
+  return (
+    <button
+      type="button"
+      class={label === undefined ? "icon-button" : "text-button"}
+      aria-label={name}
+      title={keys ? `${name} (${keyLabel(keys)})` : name}
+      aria-pressed={found.isOn?.()}
+      disabled={!isEnabled(found)}
+      data-testid={`button-${id}`}
+      onClick={() => runAction(found)}
+    >
+      <Icon name={icon} />
+      {label === undefined ? null : <span>{label}</span>}
+    </button>
+  );
+}
+
+function Chips() {
+  const status = store.status.value;
+  if (status === null) {
+    return null;
+  }
+  const isSoft = status.scheduling !== "" && !/fifo|rr|deadline|real/i.test(status.scheduling);
+  const device = status.device || t("header.noDevice");
+  return (
+    <div class="chips">
+      <span
+        class={`chip ${isSoft ? "is-warn" : "is-good"}`}
+        title={isSoft ? t("header.notRealtime", { scheduling: status.scheduling }) : undefined}
+        data-testid="chip-device"
+      >
+        {t("header.device", {
+          device,
+          hz: number(status.tick_hz, 0),
+          us: number(status.compute_p99_us, 0),
+        })}
+      </span>
+      <span class="chip is-good chip-physics">{t("header.physics", { hz: number(status.physics_hz, 0) })}</span>
+    </div>
+  );
+}
+
+function ForcesButton() {
+  const isOff = store.forcesOff.value;
+  return isOff ? (
+    <button
+      type="button"
+      class="forces-button is-off"
+      data-testid="forces-on"
+      disabled={!canSteer()}
+      onClick={() => void studio.command({ command: "forces", off: false })}
+    >
+      <Icon name="play" />
+      {t("action.forcesOn")}
+    </button>
+  ) : (
+    <button type="button" class="forces-button" data-testid="forces-off" title="Esc" onClick={forcesOff}>
+      <Icon name="stop" />
+      {t("action.forcesOff")}
+    </button>
+  );
+}
+
+export function Header() {
+  const scene = store.scene.value;
+  return (
+    <header class="header">
+      <h1 class="product-name">
+        <Icon name="logo" size={20} />
+        <span>{scene?.name ?? t("app.title")}</span>
+      </h1>
+      <MenuBar />
+      <span class="spacer" />
+      <ActionButton id="undo" icon="undo" />
+      <ActionButton id="redo" icon="redo" />
+      <Chips />
+      <ActionButton id="demo" icon="play" />
+      <ActionButton id="mute" icon={findAction("mute").isOn?.() ? "mute" : "sound"} />
+      <ActionButton id="theme" icon="theme" />
+      <button
+        type="button"
+        class="icon-button narrow-only"
+        aria-label={t("header.panels")}
+        onClick={() => {
+          const isShown = ui.panels.model.value || ui.panels.inspector.value;
+          ui.panels.model.value = !isShown;
+          ui.panels.inspector.value = !isShown;
+        }}
+      >
+        <Icon name="panels" />
+      </button>
+      <ActionButton id="share" icon="share" label={t("header.share")} />
+      <button
+        type="button"
+        class="vr-button"
+        data-testid="enter-vr"
+        disabled={scene === null}
+        onClick={() => runAction(findAction("enter-vr"))}
+      >
+        <Icon name="headset" />
+        <span>{findAction("enter-vr").label()}</span>
+      </button>
+      <ForcesButton />
+    </header>
+  );
+}

@@ -1,0 +1,66 @@
+/** What the system thinks, in words; with the depth as a bar while a part goes in. */
+
+import { useRef } from "preact/hooks";
+import { liveNumbers, makeHint } from "../model/hints";
+import { canSteer, store, ui, viewport } from "./app_state";
+import { findAction, runAction } from "./actions";
+import { number, t } from "./i18n";
+import { holdingHand, setText, useLive } from "./live";
+
+export function HintBar() {
+  const scene = store.scene.value;
+  const bar = useRef<HTMLDivElement>(null);
+  const fill = useRef<HTMLElement>(null);
+  const depth = useRef<HTMLElement>(null);
+  const caught = useRef<HTMLElement>(null);
+  useLive((live) => {
+    const hand = holdingHand(live);
+    const values = hand === null ? null : liveNumbers(hand);
+    const hasDepth = values !== null && values.depthGoalMm > 0 && (hand?.state ?? 0) >= 3;
+    bar.current?.classList.toggle("has-depth", hasDepth);
+    caught.current?.classList.toggle("is-shown", viewport.value?.hand.mouse.isCaught === true);
+    if (hasDepth && fill.current !== null) {
+      fill.current.style.transform = `scaleX(${values.depthShare})`;
+      setText(depth.current, t("hint.of", { depth: number(values.depthMm, 1), goal: number(values.depthGoalMm, 0) }));
+    }
+  }, 60);
+  if (scene === null) {
+    return null;
+  }
+  const held = store.held.value[0] ?? null;
+  const expected = store.expected.value?.occurrence ?? null;
+  const isDone = [...store.occurrences.value.values()].every(
+    (o) => o.is_base || store.placements.value.get(o.id) === "placed",
+  );
+  const hint = makeHint({ scene, held, expected, isDone, canSteer: canSteer() });
+  const isOwn = held !== null && viewport.value?.hand.mouse.occurrence === held.occurrence;
+  return (
+    <div class={`hint-bar is-${hint.state}`} ref={bar} data-testid="hint" data-state={hint.state}>
+      <i class="state-dot" aria-hidden="true" />
+      <div class="hint-text">
+        <strong>{hint.params.part || t(`state.${hint.state}`)}</strong>
+        {hint.params.part ? <span class="hint-state">{t(`state.${hint.state}`)}</span> : null}
+        <span class="hint-words">{t(hint.key, hint.params)}</span>
+      </div>
+      <span class="hint-caught" ref={caught}>
+        {t("hint.caught")}
+      </span>
+      <div class="hint-depth">
+        <div class="depth-bar" role="img" aria-label={t("hint.depth")}>
+          <i ref={fill} />
+        </div>
+        <span class="figures" ref={depth} />
+      </div>
+      {isOwn ? (
+        <button type="button" class="hint-button" data-testid="hint-release" onClick={() => runAction(findAction("release"))}>
+          <kbd>R</kbd> {t("action.release")}
+        </button>
+      ) : null}
+      {!canSteer() && ui.overlay.value === null && store.role.value === "operator" && store.link.value === "open" ? (
+        <button type="button" class="hint-button" data-testid="hint-lease" onClick={() => runAction(findAction("lease"))}>
+          {t("action.lease")}
+        </button>
+      ) : null}
+    </div>
+  );
+}

@@ -1,0 +1,44 @@
+import { effect } from "@preact/signals";
+import { render } from "preact";
+import { decodeView } from "../model/view_link";
+import { App } from "./app";
+import { keepPreferences, studio, viewport } from "./app_state";
+import { language, t } from "./i18n";
+import { listenToKeys } from "./keyboard";
+import { startSounds } from "./sounds";
+import { exposeHooks } from "./test_hooks";
+import { followTheme } from "./theme";
+import "./styles/base.css";
+import "./styles/layout.css";
+import "./styles/panels.css";
+import "./styles/view.css";
+
+/** The token of the link leaves the address bar before anything else can read it there. */
+function takeToken(): string | null {
+  const match = /^#t=([\w-]+)/.exec(location.hash);
+  if (match !== null) {
+    history.replaceState(null, "", location.pathname);
+  }
+  return match?.[1] ?? null;
+}
+
+const token = takeToken();
+const shared = decodeView(location.hash);
+keepPreferences();
+followTheme();
+effect(() => {
+  document.documentElement.lang = language.value;
+  document.title = t("app.title");
+});
+render(<App />, document.getElementById("app")!);
+listenToKeys();
+startSounds();
+exposeHooks();
+effect(() => {
+  if (shared !== null) {
+    viewport.value?.show(shared);
+  }
+});
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
+effect(() => viewport.value?.rig.setReducedMotion(calm.matches));
+void studio.start(token);

@@ -1,0 +1,61 @@
+/** The steps of the assembly: done, at hand, to come. */
+
+import { useEffect, useRef } from "preact/hooks";
+import { select } from "../model/view_state";
+import type { Step } from "../protocol/messages";
+import { store, view } from "./app_state";
+import { t } from "./i18n";
+import { Icon } from "./icons";
+import { isInPlace } from "./model_tree";
+
+function stepText(step: Step): string {
+  const name = store.occurrences.value.get(step.occurrence)?.name ?? "";
+  const more = step.members.filter((id) => id !== step.occurrence).length;
+  if (step.kind === "insert") {
+    return more > 0 ? t("steps.insertMany", { name, n: more }) : t("steps.insert", { name });
+  }
+  return t(`steps.${step.kind}`, { name });
+}
+
+export function Procedure() {
+  const steps = store.scene.value?.steps ?? [];
+  const at = store.step.value?.index ?? null;
+  const list = useRef<HTMLOListElement>(null);
+  useEffect(() => {
+    const now = list.current?.querySelector<HTMLElement>("[aria-current]");
+    if (now && list.current) {
+      // Only the list scrolls, not the panel around it.
+      list.current.scrollTop = now.offsetTop - list.current.offsetTop - 52;
+    }
+  }, [at, steps.length]);
+  if (steps.length === 0) {
+    return null;
+  }
+  const isDone = (step: Step, k: number) => (at !== null && k < at) || (step.kind === "insert" && isInPlace(step.occurrence));
+  const title = at !== null && at < steps.length ? t("steps.titleAt", { n: at + 1, total: steps.length }) : t("steps.title");
+  return (
+    <section class="card-group" aria-labelledby="steps-title">
+      <h2 id="steps-title">{title}</h2>
+      <ol class="steps" ref={list} tabIndex={0} aria-labelledby="steps-title">
+        {steps.map((step, k) => {
+          const isNow = k === at;
+          const done = isDone(step, k);
+          return (
+            <li key={k} class={isNow ? "is-now" : done ? "is-done" : ""} aria-current={isNow ? "step" : undefined}>
+              <button
+                type="button"
+                data-testid={`step-${k}`}
+                onClick={() => select(view, [step.occurrence, ...step.members], false)}
+              >
+                <Icon name={isNow ? "play" : done ? "check" : "dot"} size={14} />
+                <span>{stepText(step)}</span>
+                <span class="sr-only">{isNow ? t("steps.isNow") : done ? t("steps.isDone") : ""}</span>
+              </button>
+            </li>
+          );
+        })}
+      </ol>
+      {at !== null && at >= steps.length ? <p class="quiet">{t("steps.doneAll")}</p> : null}
+    </section>
+  );
+}

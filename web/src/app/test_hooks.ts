@@ -1,0 +1,81 @@
+/** What a test that drives the page from outside may look at; nothing here changes anything. */
+
+import { store, studio, view, viewport } from "./app_state";
+
+export interface StudioHooks {
+  readonly framesDrawn: number;
+  state(): unknown;
+  /** As it is drawn: position [m] and quaternion w, x, y, z in W. */
+  pose(occurrence: number): unknown;
+  /** Of the middle of a part: client pixels, and whether it is what one sees there. */
+  screen(occurrence: number): { x: number; y: number; isVisible: boolean } | null;
+  /** Of a point of W [m]: client pixels. */
+  project(p: readonly [number, number, number]): { x: number; y: number };
+}
+
+declare global {
+  interface Window {
+    hvas?: StudioHooks;
+  }
+}
+
+function toClient(at: { x: number; y: number }): { x: number; y: number } {
+  const box = viewport.value!.canvas.getBoundingClientRect();
+  return { x: box.left + at.x, y: box.top + at.y };
+}
+
+/** A pixel at which the part is what one sees: its middle, or else one around it. */
+function screen(occurrence: number): { x: number; y: number; isVisible: boolean } | null {
+  const port = viewport.value;
+  const matrix = port?.product.parts?.matrixOf(occurrence);
+  const shape = port?.product.parts?.shapeOf(occurrence);
+  if (!port || !matrix || !shape) {
+    return null;
+  }
+  const middle = shape.box.getCenter(shape.box.min.clone()).applyMatrix4(matrix);
+  const at = port.project([middle.x, middle.y, middle.z]);
+  const reach = shape.sphere.radius / port.eye.metresPerPixel([middle.x, middle.y, middle.z]);
+  for (const share of [0, 0.25, 0.45, 0.65, 0.85]) {
+    for (let k = 0; k < (share === 0 ? 1 : 16); k++) {
+      const angle = (k * Math.PI) / 8;
+      const probe = { x: at.x + share * reach * Math.cos(angle), y: at.y + share * reach * Math.sin(angle) };
+      if (port.product.pick(port.rayAt(probe.x, probe.y))?.occurrence === occurrence) {
+        return { ...toClient(probe), isVisible: true };
+      }
+    }
+  }
+  return { ...toClient(at), isVisible: false };
+}
+
+export function exposeHooks(): void {
+  window.hvas = {
+    get framesDrawn() {
+      return viewport.value?.framesDrawn ?? 0;
+    },
+    state: () => ({
+      link: store.link.value,
+      role: store.role.value,
+      hasLease: store.hasLease.value,
+      hasScene: viewport.value?.product.parts != null,
+      epoch: store.scene.value?.epoch ?? null,
+      step: store.step.value,
+      held: store.held.value,
+      hands: viewport.value?.live?.hands ?? [],
+      contacts: viewport.value?.live?.contacts.length ?? 0,
+      ageMs: viewport.value?.live?.ageMs ?? null,
+      framesPerSecond: viewport.value?.framesPerSecond ?? 0,
+      isShared: studio.frames !== null && !(studio.frames.buffer instanceof ArrayBuffer),
+      messages: studio.frames?.messagesReceived ?? 0,
+      placements: Object.fromEntries(store.placements.value),
+      forcesOff: store.forcesOff.value,
+      demo: store.demo.value,
+      selected: view.selected.value,
+      hidden: [...view.hidden.value],
+      measurement: view.measurement.value,
+      isCaught: viewport.value?.hand.mouse.isCaught ?? false,
+    }),
+    pose: (occurrence) => viewport.value?.product.poseOf(occurrence) ?? null,
+    screen,
+    project: (p) => toClient(viewport.value!.project(p)),
+  };
+}

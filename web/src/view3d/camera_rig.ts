@@ -1,0 +1,171 @@
+/** The eye: orbit, standard views, perspective or parallel. W is Z up. */
+
+import CameraControls from "camera-controls";
+import {
+  Box3,
+  Matrix4,
+  OrthographicCamera,
+  PerspectiveCamera,
+  Quaternion,
+  Raycaster,
+  Sphere,
+  Spherical,
+  Vector2,
+  Vector3,
+  Vector4,
+} from "three";
+import type { Vec3 } from "../model/math";
+
+CameraControls.install({
+  THREE: { Vector2, Vector3, Vector4, Quaternion, Matrix4, Spherical, Box3, Sphere, Raycaster },
+});
+
+export type ViewName = "front" | "back" | "left" | "right" | "top" | "bottom" | "iso";
+
+const kDirections: Record<ViewName, Vec3> = {
+  front: [0, -1, 0],
+  back: [0, 1, 0],
+  left: [-1, 0, 0],
+  right: [1, 0, 0],
+  top: [0, 0, 1],
+  bottom: [0, 0, -1],
+  iso: [0.62, -0.95, 0.62],
+};
+const kFieldOfView = 32;
+
+export class CameraRig {
+  readonly perspective = new PerspectiveCamera(kFieldOfView, 1, 0.001, 100);
+  readonly parallel = new OrthographicCamera(-1, 1, 1, -1, -10, 100);
+  readonly controls: CameraControls;
+  private aspect = 1;
+
+  constructor(element: HTMLElement) {
+    this.perspective.up.set(0, 0, 1);
+    this.parallel.up.set(0, 0, 1);
+    this.perspective.position.set(0.3, -0.5, 0.3);
+    this.controls = new CameraControls(this.perspective, element);
+    this.controls.updateCameraUp();
+    this.controls.smoothTime = 0.18;
+    this.controls.draggingSmoothTime = 0.06;
+    this.controls.dollySpeed = 0.7;
+    this.controls.dollyToCursor = true;
+    this.controls.mouseButtons.wheel = CameraControls.ACTION.DOLLY;
+    this.controls.mouseButtons.right = CameraControls.ACTION.TRUCK;
+    this.controls.mouseButtons.middle = CameraControls.ACTION.TRUCK;
+  }
+
+  get camera(): PerspectiveCamera | OrthographicCamera {
+    return this.isParallel ? this.parallel : this.perspective;
+  }
+
+  get isParallel(): boolean {
+    return this.controls.camera === this.parallel;
+  }
+
+  setReducedMotion(isReduced: boolean): void {
+    this.controls.smoothTime = isReduced ? 0.001 : 0.18;
+    this.controls.draggingSmoothTime = isReduced ? 0.001 : 0.06;
+  }
+
+  resize(width: number, height: number): void {
+    this.aspect = width / Math.max(1, height);
+    this.perspective.aspect = this.aspect;
+    this.perspective.updateProjectionMatrix();
+    const half = (this.parallel.top - this.parallel.bottom) / 2;
+    this.setHalfHeight(half);
+  }
+
+  /** Near and far for a product of this size. */
+  setReach(radius: number): void {
+    this.perspective.near = radius / 200;
+    this.perspective.far = radius * 60;
+    this.perspective.updateProjectionMatrix();
+    this.parallel.near = -radius * 30;
+    this.parallel.far = radius * 60;
+    this.controls.minDistance = radius / 50;
+    this.controls.maxDistance = radius * 14;
+    this.parallel.updateProjectionMatrix();
+  }
+
+  setParallel(isParallel: boolean): void {
+    if (isParallel === this.isParallel) {
+      return;
+    }
+    const target = this.controls.getTarget(new Vector3());
+    const eye = this.controls.getPosition(new Vector3());
+    const half = Math.tan((kFieldOfView * Math.PI) / 360) * eye.distanceTo(target);
+    if (isParallel) {
+      this.setHalfHeight(half);
+      this.parallel.position.copy(eye);
+      this.controls.camera = this.parallel;
+      void this.controls.zoomTo(1, false);
+    } else {
+      const seen = (this.parallel.top - this.parallel.bottom) / 2 / this.parallel.zoom;
+      const distance = seen / Math.tan((kFieldOfView * Math.PI) / 360);
+      eye.sub(target).setLength(distance).add(target);
+      this.controls.camera = this.perspective;
+    }
+    void this.controls.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, false);
+  }
+
+  /** Turns the eye to a direction that it then looks from. */
+  lookFrom(direction: Vec3, sphere: Sphere | null, isSmooth = true): void {
+    const target = sphere?.center ?? this.controls.getTarget(new Vector3());
+    const distance = this.controls.getPosition(new Vector3()).distanceTo(this.controls.getTarget(new Vector3()));
+    const along = new Vector3(...direction);
+    if (Math.abs(along.z) > 0.999 * along.length()) {
+      // From straight above, x is to be right.
+      along.y -= 1e-4;
+    }
+    along.setLength(sphere === null ? distance : this.distanceFor(sphere));
+    const eye = along.add(target);
+    void this.controls.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, isSmooth);
+    if (sphere !== null && this.isParallel) {
+      this.setHalfHeight(sphere.radius * 1.05 * Math.max(1, 1 / this.aspect));
+      void this.controls.zoomTo(1, isSmooth);
+    }
+  }
+
+  view(name: ViewName, sphere: Sphere | null, isSmooth = true): void {
+    this.lookFrom(kDirections[name], sphere, isSmooth);
+  }
+
+  /** Shows the sphere from where the eye is now. */
+  fit(sphere: Sphere, isSmooth = true): void {
+    const target = this.controls.getTarget(new Vector3());
+    const direction = this.controls.getPosition(new Vector3()).sub(target);
+    this.lookFrom([direction.x, direction.y, direction.z], sphere, isSmooth);
+  }
+
+  pose(): { eye: Vec3; target: Vec3 } {
+    const eye = this.controls.getPosition(new Vector3());
+    const target = this.controls.getTarget(new Vector3());
+    return { eye: eye.toArray(), target: target.toArray() };
+  }
+
+  setPose(eye: Vec3, target: Vec3): void {
+    void this.controls.setLookAt(...eye, ...target, false);
+  }
+
+  /** Metres that a pixel covers at this depth. */
+  metresPerPixel(depth: number, height: number): number {
+    if (this.isParallel) {
+      return (this.parallel.top - this.parallel.bottom) / this.parallel.zoom / height;
+    }
+    return (2 * Math.tan((kFieldOfView * Math.PI) / 360) * depth) / height;
+  }
+
+  private distanceFor(sphere: Sphere): number {
+    const half = (kFieldOfView * Math.PI) / 360;
+    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.aspect));
+    return (sphere.radius / Math.sin(narrow)) * 1.02;
+  }
+
+  private setHalfHeight(half: number): void {
+    this.parallel.top = half;
+    this.parallel.bottom = -half;
+    this.parallel.left = -half * this.aspect;
+    this.parallel.right = half * this.aspect;
+    this.parallel.updateProjectionMatrix();
+  }
+}

@@ -1,0 +1,99 @@
+/** Takes and lets go on behalf of the mouse hand, and tells the server where it is. */
+
+import type { Pose } from "../model/math";
+import type { Studio } from "../model/studio";
+import type { ViewState } from "../model/view_state";
+import type { LiveState } from "../protocol/frame_store";
+import { MouseHand, type Eye } from "./mouse_hand";
+import type { SceneView } from "./scene_view";
+
+const kHand = 0;
+/** A part that is in its place is let go after this while. */
+const kSettleMs = 500;
+
+export class HandControl {
+  readonly mouse = new MouseHand();
+  private isTaking = false;
+  private seatedSince: number | null = null;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly product: SceneView,
+    private readonly view: ViewState,
+  ) {}
+
+  get isBusy(): boolean {
+    return this.isTaking || this.mouse.occurrence !== null;
+  }
+
+  canTake(occurrence: number): boolean {
+    const { hasLease, forcesOff, demo } = this.studio.store;
+    const part = this.product.occurrence(occurrence);
+    return part !== null && !part.is_base && hasLease.peek() && !forcesOff.peek() && !demo.peek() && !this.isBusy;
+  }
+
+  /** @return Whether the hand holds the part now. */
+  async take(occurrence: number): Promise<boolean> {
+    const part = this.product.occurrence(occurrence);
+    const scene = this.product.scene;
+    if (part === null || scene === null || !this.canTake(occurrence)) {
+      return false;
+    }
+    this.isTaking = true;
+    this.view.explode.value = 0;
+    const X_WB: Pose = this.product.poseOf(occurrence) ?? part.start;
+    const answer = await this.studio.command({ command: "take", hand: kHand, occurrence });
+    this.isTaking = false;
+    if (answer === null) {
+      return false;
+    }
+    const step = scene.steps.find((s) => s.occurrence === occurrence && s.kind === "insert") ?? null;
+    const radius = this.product.parts?.shapeOf(occurrence)?.sphere.radius ?? 0.05;
+    this.mouse.begin({ occurrence, X_WB, goal: part.goal, step, radius }, answer.hand);
+    return true;
+  }
+
+  release(): void {
+    if (this.mouse.occurrence !== null) {
+      this.stop();
+      void this.studio.command({ command: "release", hand: kHand });
+    }
+  }
+
+  /** Forgets what is held without a word to the server. */
+  stop(): void {
+    this.mouse.end();
+    this.seatedSince = null;
+    this.studio.rest();
+  }
+
+  update(seconds: number, live: LiveState | null, eye: Eye): void {
+    if (this.mouse.occurrence === null) {
+      return;
+    }
+    this.mouse.assists = this.view.assists.peek();
+    const hand = live?.hands.find((h) => h.hand === kHand) ?? null;
+    const input = this.mouse.update(seconds, hand, eye);
+    if (input === null) {
+      this.stop();
+      return;
+    }
+    if (!document.hidden) {
+      this.studio.sendInput([input]);
+    }
+    const isSeated = hand?.state === 5 && hand.occurrence === this.mouse.occurrence;
+    this.letGoWhenSeated(isSeated);
+  }
+
+  private letGoWhenSeated(isSeated: boolean): void {
+    if (!isSeated) {
+      this.seatedSince = null;
+      return;
+    }
+    this.seatedSince ??= performance.now();
+    const hasSettled = performance.now() - this.seatedSince > kSettleMs;
+    if (hasSettled && this.view.letsGoWhenSeated.peek()) {
+      this.release();
+    }
+  }
+}

@@ -1,0 +1,241 @@
+/** All parts of the product: drawn in one batch, those that are ghosts in another. */
+
+import {
+  BatchedMesh,
+  Box3,
+  Color,
+  DoubleSide,
+  FrontSide,
+  Group,
+  Matrix4,
+  MeshStandardMaterial,
+  Quaternion,
+  Vector3,
+  type Plane,
+  type Ray,
+} from "three";
+import type { Pose } from "../protocol/messages";
+import { EdgeBatch } from "./edge_batch";
+import { raycastPart, type PartShape } from "./part_shape";
+
+/** Beyond this many vertices of edges a scene is drawn without. */
+const kMostEdgeTriangles = 900_000;
+const kGhostOpacity = 0.16;
+
+export interface PartLook {
+  isHidden: boolean;
+  isGhost: boolean;
+  isMarked: boolean;
+  /** Mixed into the part's colour by `amount`, 0 to 1. */
+  tint: Color | null;
+  amount: number;
+}
+
+const kPlain: PartLook = { isHidden: false, isGhost: false, isMarked: false, tint: null, amount: 0 };
+
+interface Entry {
+  occurrence: number;
+  instance: number;
+  shape: PartShape;
+  matrix: Matrix4;
+  look: PartLook;
+}
+
+export interface PickHit {
+  occurrence: number;
+  face: number;
+  point: Vector3;
+  distance: number;
+}
+
+const kUnit = new Vector3(1, 1, 1);
+const position = new Vector3();
+const turn = new Quaternion();
+
+export function toMatrix(pose: Pose, out: Matrix4): Matrix4 {
+  position.set(...pose.p);
+  turn.set(pose.q[1], pose.q[2], pose.q[3], pose.q[0]);
+  return out.compose(position, turn, kUnit);
+}
+
+function makeBatch(shapes: readonly PartShape[], material: MeshStandardMaterial): BatchedMesh {
+  const distinct = [...new Set(shapes)];
+  const vertices = distinct.reduce((n, s) => n + s.positions.length / 3, 0);
+  const indices = distinct.reduce((n, s) => n + s.index.length, 0);
+  const batch = new BatchedMesh(shapes.length, vertices, indices, material);
+  const ids = new Map(distinct.map((shape) => [shape, batch.addGeometry(shape.geometry)]));
+  for (const shape of shapes) {
+    batch.addInstance(ids.get(shape)!);
+  }
+  batch.frustumCulled = false;
+  return batch;
+}
+
+export class Parts {
+  readonly root = new Group();
+  readonly entries: readonly Entry[];
+  private readonly byOccurrence = new Map<number, Entry>();
+  private readonly solid: BatchedMesh;
+  private ghost: BatchedMesh | null = null;
+  private readonly material = new MeshStandardMaterial({
+    vertexColors: true,
+    roughness: 0.5,
+    metalness: 0.12,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
+  private readonly ghostMaterial = new MeshStandardMaterial({
+    vertexColors: true,
+    roughness: 0.6,
+    transparent: true,
+    opacity: kGhostOpacity,
+    depthWrite: false,
+  });
+  readonly edges: EdgeBatch | null;
+
+  constructor(shapes: ReadonlyMap<number, PartShape>) {
+    this.entries = [...shapes].map(([occurrence, shape], instance) => ({
+      occurrence,
+      instance,
+      shape,
+      matrix: new Matrix4(),
+      look: kPlain,
+    }));
+    for (const entry of this.entries) {
+      this.byOccurrence.set(entry.occurrence, entry);
+    }
+    const all = this.entries.map((e) => e.shape);
+    this.solid = makeBatch(all, this.material);
+    this.solid.sortObjects = false;
+    this.solid.castShadow = this.solid.receiveShadow = true;
+    this.root.add(this.solid);
+    const triangles = [...new Set(all)].reduce((n, s) => n + s.index.length / 3, 0);
+    this.edges = triangles <= kMostEdgeTriangles ? new EdgeBatch(all) : null;
+    if (this.edges !== null) {
+      this.root.add(this.edges.object);
+    }
+    for (const entry of this.entries) {
+      this.apply(entry);
+    }
+  }
+
+  shapeOf(occurrence: number): PartShape | null {
+    return this.byOccurrence.get(occurrence)?.shape ?? null;
+  }
+
+  matrixOf(occurrence: number): Matrix4 | null {
+    return this.byOccurrence.get(occurrence)?.matrix ?? null;
+  }
+
+  setPose(occurrence: number, pose: Pose): void {
+    const entry = this.byOccurrence.get(occurrence);
+    if (entry === undefined) {
+      return;
+    }
+    toMatrix(pose, entry.matrix);
+    this.solid.setMatrixAt(entry.instance, entry.matrix);
+    this.ghost?.setMatrixAt(entry.instance, entry.matrix);
+    this.setEdges(entry);
+  }
+
+  setLook(occurrence: number, look: PartLook): void {
+    const entry = this.byOccurrence.get(occurrence);
+    if (entry !== undefined) {
+      entry.look = look;
+      this.apply(entry);
+    }
+  }
+
+  setEdgesShown(isShown: boolean): void {
+    if (this.edges !== null) {
+      this.edges.object.visible = isShown;
+    }
+  }
+
+  setClipping(planes: Plane[]): void {
+    for (const material of [this.material, this.ghostMaterial, this.edges?.object.material]) {
+      if (material) {
+        material.clippingPlanes = planes;
+        material.needsUpdate = true;
+      }
+    }
+    this.material.side = planes.length > 0 ? DoubleSide : FrontSide;
+    this.material.clipShadows = planes.length > 0;
+  }
+
+  /** The nearest visible part that the ray meets, on the kept side of the planes. */
+  raycast(ray: Ray, planes: readonly Plane[] = []): PickHit | null {
+    let best: PickHit | null = null;
+    for (const entry of this.entries) {
+      if (entry.look.isHidden) {
+        continue;
+      }
+      const hit = raycastPart(entry.shape, entry.matrix, ray);
+      if (hit === null || (best !== null && hit.distance >= best.distance)) {
+        continue;
+      }
+      const point = hit.point.clone().applyMatrix4(entry.matrix);
+      if (planes.every((plane) => plane.distanceToPoint(point) >= 0)) {
+        best = { occurrence: entry.occurrence, face: hit.face, point, distance: hit.distance };
+      }
+    }
+    return best;
+  }
+
+  /** In W, of what is not hidden or of the given ones. */
+  box(only?: ReadonlySet<number>): Box3 {
+    const box = new Box3();
+    const one = new Box3();
+    for (const entry of this.entries) {
+      if (only === undefined ? !entry.look.isHidden : only.has(entry.occurrence)) {
+        box.union(one.copy(entry.shape.box).applyMatrix4(entry.matrix));
+      }
+    }
+    return box;
+  }
+
+  dispose(): void {
+    this.solid.dispose();
+    this.ghost?.dispose();
+    this.edges?.dispose();
+    this.material.dispose();
+    this.ghostMaterial.dispose();
+    for (const shape of new Set(this.entries.map((e) => e.shape))) {
+      shape.dispose();
+    }
+  }
+
+  private apply(entry: Entry): void {
+    const { look, instance } = entry;
+    if (look.isGhost && this.ghost === null) {
+      this.ghost = this.makeGhosts();
+    }
+    const color = (entry.shape.color ?? new Color(1, 1, 1)).clone();
+    if (look.tint !== null) {
+      color.lerp(look.tint, look.amount);
+    }
+    this.solid.setColorAt(instance, color);
+    this.solid.setVisibleAt(instance, !look.isHidden && !look.isGhost);
+    this.ghost?.setColorAt(instance, color);
+    this.ghost?.setVisibleAt(instance, !look.isHidden && look.isGhost);
+    this.setEdges(entry);
+  }
+
+  private setEdges(entry: Entry): void {
+    const { look } = entry;
+    const strength = look.isHidden ? 0 : look.isGhost ? 0.35 : 0.85;
+    this.edges?.setPose(entry.instance, entry.matrix, strength, look.isMarked);
+  }
+
+  private makeGhosts(): BatchedMesh {
+    const batch = makeBatch(this.entries.map((e) => e.shape), this.ghostMaterial);
+    batch.renderOrder = 2;
+    for (const entry of this.entries) {
+      batch.setMatrixAt(entry.instance, entry.matrix);
+      batch.setVisibleAt(entry.instance, false);
+    }
+    this.root.add(batch);
+    return batch;
+  }
+}

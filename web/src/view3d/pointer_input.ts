@@ -1,0 +1,265 @@
+/** Mouse, pen and fingers on the view: hover, select, pick faces, take and lead a part. */
+
+import type { Ray as ThreeRay } from "three";
+import type { Ray } from "../model/assist";
+import type { Studio } from "../model/studio";
+import { select } from "../model/view_state";
+import type { FaceOf, Scene } from "../protocol/messages";
+import type { PickHit } from "./parts";
+import type { Viewport } from "./viewport";
+
+/** A press that moves further than this is a drag [px]. */
+const kClickPx = 4;
+const kTurnPerPx = 0.008;
+const kHoverMs = 40;
+
+type Gesture =
+  | { kind: "none" }
+  /** May become a click, or a drag of the part. */
+  | { kind: "press"; x: number; y: number; hit: PickHit | null; takes: boolean }
+  | { kind: "taking"; x: number; y: number }
+  | { kind: "drag" }
+  | { kind: "turn"; x: number; y: number };
+
+function plain(ray: ThreeRay): Ray {
+  return { from: ray.origin.toArray(), along: ray.direction.toArray() };
+}
+
+export class PointerInput {
+  onContextMenu: (x: number, y: number, hit: PickHit | null) => void = () => {};
+  private gesture: Gesture = { kind: "none" };
+  private at = { x: 0, y: 0 };
+  private rightPress: { x: number; y: number } | null = null;
+  private lastHover = 0;
+
+  constructor(
+    private readonly viewport: Viewport,
+    private readonly studio: Studio,
+  ) {
+    const canvas = viewport.canvas;
+    // Captured, so that the eye's controls can be stopped before they hear of it.
+    canvas.addEventListener("pointerdown", (e) => this.onDown(e), { capture: true });
+    canvas.addEventListener("pointermove", (e) => this.onMove(e));
+    canvas.addEventListener("pointerup", (e) => this.onUp(e));
+    canvas.addEventListener("pointercancel", () => this.finish());
+    canvas.addEventListener("pointerleave", () => (viewport.view.hovered.value = null));
+    canvas.addEventListener("dblclick", (e) => this.onDoubleClick(e));
+    canvas.addEventListener("wheel", (e) => this.onWheel(e), { capture: true, passive: false });
+    canvas.addEventListener("contextmenu", (e) => e.preventDefault());
+  }
+
+  private locate(event: MouseEvent): { x: number; y: number } {
+    const box = this.viewport.canvas.getBoundingClientRect();
+    this.at = { x: event.clientX - box.left, y: event.clientY - box.top };
+    return this.at;
+  }
+
+  private pick(): PickHit | null {
+    return this.viewport.product.pick(this.viewport.rayAt(this.at.x, this.at.y));
+  }
+
+  private ray(): Ray {
+    return plain(this.viewport.rayAt(this.at.x, this.at.y));
+  }
+
+  private onDown(event: PointerEvent): void {
+    const { x, y } = this.locate(event);
+    if (!event.isPrimary) {
+      return;
+    }
+    const { view, hand } = this.viewport;
+    const hit = this.pick();
+    const isOnHeld = hit !== null && hand.mouse.occurrence === hit.occurrence;
+    if (event.button === 2) {
+      this.rightPress = { x: event.clientX, y: event.clientY };
+    }
+    if (isOnHeld && (event.button === 2 || (event.button === 0 && event.shiftKey))) {
+      this.start(event, { kind: "turn", x, y });
+    } else if (isOnHeld && event.button === 0) {
+      this.start(event, { kind: "drag" });
+      hand.mouse.grab(this.ray(), this.viewport.eye);
+    } else if (event.button === 0) {
+      const cube = this.viewport.pickCube(x, y);
+      if (cube !== null) {
+        this.viewport.rig.lookFrom(cube, this.viewport.product.boundingSphere());
+        event.stopImmediatePropagation();
+        return;
+      }
+      const isLoose = hit !== null && this.studio.store.placements.peek().get(hit.occurrence) === "loose";
+      const takes = view.tool.peek() === "hand" && hit !== null && isLoose && hand.canTake(hit.occurrence);
+      this.start(event, { kind: "press", x, y, hit, takes }, takes);
+    }
+  }
+
+  private start(event: PointerEvent, gesture: Gesture, stopsEye = gesture.kind !== "press"): void {
+    this.gesture = gesture;
+    if (stopsEye) {
+      this.viewport.rig.controls.enabled = false;
+      this.viewport.canvas.setPointerCapture(event.pointerId);
+    }
+  }
+
+  private onMove(event: PointerEvent): void {
+    const { x, y } = this.locate(event);
+    const { hand } = this.viewport;
+    const gesture = this.gesture;
+    switch (gesture.kind) {
+      case "none":
+        this.hover(event);
+        break;
+      case "press":
+        if (gesture.takes && Math.hypot(x - gesture.x, y - gesture.y) > kClickPx && gesture.hit !== null) {
+          this.gesture = { kind: "taking", x: gesture.x, y: gesture.y };
+          void this.takeAndDrag(gesture.hit.occurrence, gesture.x, gesture.y);
+        }
+        break;
+      case "drag":
+        hand.mouse.drag(this.ray(), this.viewport.eye, event.altKey);
+        break;
+      case "turn": {
+        const fine = event.altKey ? 0.2 : 1;
+        const turn = kTurnPerPx * fine;
+        hand.mouse.turn((y - gesture.y) * turn, (x - gesture.x) * turn, 0, this.viewport.eye);
+        this.gesture = { kind: "turn", x, y };
+        break;
+      }
+    }
+  }
+
+  private async takeAndDrag(occurrence: number, x: number, y: number): Promise<void> {
+    const hasTaken = await this.viewport.hand.take(occurrence);
+    if (this.gesture.kind === "taking") {
+      this.gesture = hasTaken ? { kind: "drag" } : { kind: "none" };
+    }
+    if (hasTaken) {
+      // As if the hand had been there when the pointer was pressed.
+      this.viewport.hand.mouse.grab(plain(this.viewport.rayAt(x, y)), this.viewport.eye);
+      this.viewport.hand.mouse.drag(this.ray(), this.viewport.eye, false);
+      if (this.gesture.kind !== "drag") {
+        this.viewport.hand.mouse.drop();
+      }
+    }
+  }
+
+  private onUp(event: PointerEvent): void {
+    this.locate(event);
+    const gesture = this.gesture;
+    this.finish();
+    if (event.button === 2 && this.rightPress !== null) {
+      const moved = Math.hypot(event.clientX - this.rightPress.x, event.clientY - this.rightPress.y);
+      this.rightPress = null;
+      if (moved <= kClickPx) {
+        this.onContextMenu(event.clientX, event.clientY, this.pick());
+      }
+    } else if (gesture.kind === "press" && Math.hypot(this.at.x - gesture.x, this.at.y - gesture.y) <= kClickPx) {
+      this.click(event, gesture.hit);
+    }
+  }
+
+  private finish(): void {
+    this.gesture = { kind: "none" };
+    this.viewport.rig.controls.enabled = true;
+    this.viewport.hand.mouse.drop();
+  }
+
+  private click(event: PointerEvent, hit: PickHit | null): void {
+    const { view } = this.viewport;
+    const tool = view.tool.peek();
+    if (tool === "measure" || tool === "mate") {
+      if (hit !== null) {
+        this.pickFace({ occurrence: hit.occurrence, face: hit.face });
+      }
+      return;
+    }
+    const isAdding = event.ctrlKey || event.metaKey || event.shiftKey;
+    if (hit === null) {
+      if (!isAdding) {
+        select(view, [], false);
+      }
+      return;
+    }
+    const mode = view.selectMode.peek();
+    const scene = this.viewport.product.scene;
+    if (mode === "subassembly" && scene !== null) {
+      select(view, siblingsOf(scene, hit.occurrence), isAdding);
+      return;
+    }
+    select(view, [hit.occurrence], isAdding);
+    if (mode === "face") {
+      view.selectedFace.value = { occurrence: hit.occurrence, face: hit.face };
+    }
+  }
+
+  private pickFace(face: FaceOf): void {
+    const { view } = this.viewport;
+    const picked = view.picked.peek();
+    const next = picked.length >= 2 ? [face] : [...picked, face];
+    view.picked.value = next;
+    if (view.tool.peek() === "measure") {
+      void this.measure(next);
+    }
+  }
+
+  private async measure(faces: readonly FaceOf[]): Promise<void> {
+    const [a, b] = faces;
+    if (a !== undefined) {
+      this.viewport.view.measurement.value = await this.studio.command(
+        b === undefined ? { command: "measure", a } : { command: "measure", a, b },
+      );
+    }
+  }
+
+  private onDoubleClick(event: MouseEvent): void {
+    this.locate(event);
+    const hit = this.pick();
+    const tool = this.viewport.view.tool.peek();
+    if (hit === null) {
+      return;
+    }
+    if (tool === "hand" && this.viewport.hand.mouse.occurrence === hit.occurrence) {
+      this.viewport.hand.release();
+    } else if (tool === "hand") {
+      void this.viewport.hand.take(hit.occurrence);
+    } else if (tool === "select") {
+      this.viewport.fit([hit.occurrence]);
+    }
+  }
+
+  private onWheel(event: WheelEvent): void {
+    if (this.gesture.kind !== "drag") {
+      return;
+    }
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    const { product, hand, eye } = this.viewport;
+    const step = 0.0004 * product.sphere.radius * (event.altKey ? 0.2 : 1);
+    hand.mouse.nudge(0, 0, -event.deltaY * step, eye);
+  }
+
+  private hover(event: PointerEvent): void {
+    if (event.buttons !== 0 || event.pointerType === "touch") {
+      return;
+    }
+    const now = performance.now();
+    if (now - this.lastHover < kHoverMs) {
+      return;
+    }
+    this.lastHover = now;
+    const hit = this.pick();
+    const { view, hand, canvas } = this.viewport;
+    view.hovered.value = hit?.occurrence ?? null;
+    const isHeld = hit !== null && hand.mouse.occurrence === hit.occurrence;
+    const canDrag = isHeld || (hit !== null && view.tool.peek() === "hand" && hand.canTake(hit.occurrence));
+    canvas.style.cursor = canDrag ? "grab" : hit !== null ? "pointer" : "default";
+  }
+}
+
+/** All that stands in the same subassembly. */
+function siblingsOf(scene: Scene, occurrence: number): number[] {
+  const parent = scene.occurrences.find((o) => o.id === occurrence)?.parent ?? null;
+  const below = (id: number): number[] => {
+    const sub = scene.subassemblies.find((s) => s.id === id);
+    return sub === undefined ? [] : [...sub.occurrences, ...sub.subassemblies.flatMap(below)];
+  };
+  return parent === null ? [occurrence] : below(parent);
+}

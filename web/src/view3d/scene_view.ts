@@ -1,0 +1,369 @@
+/** The product in the view: loads it, puts parts where the frames say, and shows what is marked. */
+
+import { effect } from "@preact/signals";
+import { Box3, Group, Matrix4, Quaternion, Ray, Sphere, Vector3 } from "three";
+import { explodeOffsets, type Box } from "../model/explode";
+import { Extrapolator } from "../model/extrapolate";
+import { add, lerp, slerp, toQuat, toVec3, type Pose, type Vec3 } from "../model/math";
+import type { Store } from "../model/store";
+import type { ViewState } from "../model/view_state";
+import type { FrameStore, LiveState } from "../protocol/frame_store";
+import { kNone, type HandState } from "../protocol/frames";
+import type { Occurrence, Scene } from "../protocol/messages";
+import { FeelLayer } from "./feel_layer";
+import { loadShapes } from "./glb";
+import { MarkLayer } from "./mark_layer";
+import type { Palette } from "./palette";
+import { Parts, toMatrix, type PartLook, type PickHit } from "./parts";
+import { SectionCaps } from "./section_caps";
+
+const kPulseMs = 5000;
+
+export class SceneView {
+  readonly root = new Group();
+  readonly feel = new FeelLayer();
+  readonly marks = new MarkLayer();
+  readonly caps = new SectionCaps();
+  readonly sphere = new Sphere(new Vector3(), 0.1);
+  parts: Parts | null = null;
+  scene: Scene | null = null;
+  isDirty = true;
+  /** Called when a product has been loaded and stands in the view. */
+  onLoaded: (isNew: boolean) => void = () => {};
+
+  private palette: Palette | null = null;
+  private readonly versions = new Map<number, number>();
+  private readonly poses = new Map<number, Pose>();
+  private readonly looks = new Map<number, string>();
+  private readonly extrapolators = new Map<number, Extrapolator>();
+  private offsets = new Map<number, Vec3>();
+  private shownExplode = 0;
+  private generation = -1;
+  private loadCount = 0;
+  private glbUrl = "";
+  private pulseUntil = 0;
+  private heldKey = "";
+
+  constructor(
+    private readonly store: Store,
+    private readonly view: ViewState,
+  ) {
+    this.root.add(this.feel.root, this.marks.root);
+    effect(() => void this.load(store.scene.value));
+    effect(() => this.applyLooks());
+    effect(() => this.applySection());
+    effect(() => {
+      this.parts?.setEdgesShown(view.showsEdges.value);
+      this.feel.lockScale(view.locksForceScale.value);
+      this.isDirty = true;
+    });
+    effect(() => {
+      void store.step.value;
+      this.pulseUntil = performance.now() + kPulseMs;
+    });
+    effect(() => {
+      this.marks.showMeasurement(view.measurement.value);
+      this.markFaces();
+    });
+  }
+
+  setPalette(palette: Palette): void {
+    this.palette = palette;
+    this.feel.setPalette(palette);
+    this.marks.setPalette(palette);
+    this.parts?.edges?.setInk(palette.edge, palette.edgeMarked);
+    this.looks.clear();
+    this.applyLooks();
+  }
+
+  poseOf(occurrence: number): Pose | null {
+    return this.poses.get(occurrence) ?? null;
+  }
+
+  occurrence(id: number): Occurrence | null {
+    return this.store.occurrences.value.get(id) ?? null;
+  }
+
+  /** Of what is seen, or of some parts. */
+  boundingSphere(only?: readonly number[]): Sphere {
+    const box = this.parts?.box(only === undefined ? undefined : new Set(only)) ?? new Box3();
+    return box.isEmpty() ? this.sphere.clone() : box.getBoundingSphere(new Sphere());
+  }
+
+  pick(ray: Ray): PickHit | null {
+    return this.parts?.raycast(ray, this.view.section.value === null ? [] : [this.caps.plane]) ?? null;
+  }
+
+  /** Puts everything where it is now. */
+  update(frames: FrameStore | null, live: LiveState | null, nowMs: number): void {
+    if (this.parts === null || this.scene === null) {
+      return;
+    }
+    const isCurrent = live !== null && live.epoch === this.scene.epoch;
+    if (frames !== null && isCurrent) {
+      this.takePoses(frames);
+      this.moveHeld(live, nowMs);
+    }
+    this.followExplode();
+    this.updateFeel(isCurrent ? live : null);
+    this.pulse();
+    if (this.view.section.value !== null) {
+      this.caps.update(this.parts);
+    }
+  }
+
+  private async load(scene: Scene | null): Promise<void> {
+    const turn = ++this.loadCount;
+    if (scene === null) {
+      this.clear();
+      return;
+    }
+    const isNew = this.scene === null || this.scene.source !== scene.source || this.scene.name !== scene.name;
+    if (this.parts === null || this.glbUrl !== scene.glb) {
+      const shapes = await loadShapes(scene.glb);
+      if (turn !== this.loadCount) {
+        return;
+      }
+      this.clear();
+      this.parts = new Parts(shapes);
+      this.root.add(this.parts.root);
+      this.glbUrl = scene.glb;
+    }
+    this.scene = scene;
+    this.versions.clear();
+    this.extrapolators.clear();
+    this.generation = -1;
+    this.sphere.set(new Vector3(...scene.centre_m), scene.radius_m);
+    this.feel.setRadius(scene.radius_m);
+    this.marks.setRadius(scene.radius_m);
+    for (const occurrence of scene.occurrences) {
+      const pose = occurrence.placement === "loose" ? occurrence.start : occurrence.goal;
+      this.poses.set(occurrence.id, pose);
+      this.parts.setPose(occurrence.id, pose);
+    }
+    this.offsets = explodeOffsets(scene.steps, this.goalBoxes(scene));
+    this.heldKey = "";
+    this.looks.clear();
+    if (this.palette !== null) {
+      this.parts.edges?.setInk(this.palette.edge, this.palette.edgeMarked);
+    }
+    this.parts.setEdgesShown(this.view.showsEdges.peek());
+    this.applyLooks();
+    this.applySection();
+    this.isDirty = true;
+    this.onLoaded(isNew);
+  }
+
+  private clear(): void {
+    this.caps.clear();
+    this.marks.clear();
+    this.feel.setHeld([], []);
+    if (this.parts !== null) {
+      this.root.remove(this.parts.root);
+      this.parts.dispose();
+    }
+    this.parts = null;
+    this.scene = null;
+    this.glbUrl = "";
+    this.poses.clear();
+    this.looks.clear();
+    this.isDirty = true;
+  }
+
+  private goalBoxes(scene: Scene): Map<number, Box> {
+    const boxes = new Map<number, Box>();
+    const matrix = new Matrix4();
+    for (const occurrence of scene.occurrences) {
+      const shape = this.parts?.shapeOf(occurrence.id);
+      if (shape) {
+        const box = shape.box.clone().applyMatrix4(toMatrix(occurrence.goal, matrix));
+        boxes.set(occurrence.id, { low: box.min.toArray(), high: box.max.toArray() });
+      }
+    }
+    return boxes;
+  }
+
+  private takePoses(frames: FrameStore): void {
+    if (frames.generation === this.generation) {
+      return;
+    }
+    this.generation = frames.generation;
+    const buffer = new Float32Array(7);
+    for (const entry of this.parts!.entries) {
+      const version = frames.poseVersion(entry.occurrence);
+      if (version === 0 || this.versions.get(entry.occurrence) === version) {
+        continue;
+      }
+      this.versions.set(entry.occurrence, version);
+      frames.readPose(entry.occurrence, buffer);
+      this.place(entry.occurrence, { p: toVec3(buffer), q: toQuat(buffer, 3) });
+    }
+  }
+
+  private place(occurrence: number, pose: Pose): void {
+    this.poses.set(occurrence, pose);
+    if (this.shownExplode === 0) {
+      this.parts!.setPose(occurrence, pose);
+    }
+    this.isDirty = true;
+  }
+
+  /** What is in a hand is drawn where it must be by now: sight is to lag no more than it has to. */
+  private moveHeld(live: LiveState, nowMs: number): void {
+    for (const hand of live.hands) {
+      if (hand.occurrence === kNone || hand.state === 0) {
+        this.extrapolators.delete(hand.hand);
+        continue;
+      }
+      const extrapolator = this.extrapolators.get(hand.hand) ?? new Extrapolator();
+      this.extrapolators.set(hand.hand, extrapolator);
+      extrapolator.take({ p: toVec3(hand.p_WD_m), q: toQuat(hand.q_WD) }, live.sentMs);
+      const pose = extrapolator.at(nowMs);
+      if (pose !== null) {
+        this.place(hand.occurrence, pose);
+      }
+    }
+  }
+
+  private followExplode(): void {
+    const wanted = this.view.explode.peek();
+    if (wanted === this.shownExplode) {
+      return;
+    }
+    this.shownExplode = wanted;
+    for (const occurrence of this.scene!.occurrences) {
+      const now = this.poses.get(occurrence.id) ?? occurrence.goal;
+      const offset = this.offsets.get(occurrence.id) ?? [0, 0, 0];
+      const out: Vec3 = [offset[0] * wanted, offset[1] * wanted, offset[2] * wanted];
+      // The first of the slider brings what lies about to its place in the picture.
+      const share = Math.min(1, wanted / 0.08);
+      const pose = {
+        p: lerp(now.p, add(occurrence.goal.p, out), share),
+        q: slerp(now.q, occurrence.goal.q, share),
+      };
+      this.parts!.setPose(occurrence.id, pose);
+    }
+    this.isDirty = true;
+  }
+
+  private updateFeel(live: LiveState | null): void {
+    const hand = live?.hands.find((h) => h.state > 0 && h.occurrence !== kNone) ?? null;
+    const key = hand === null ? "" : `${hand.hand}/${hand.occurrence}`;
+    if (key !== this.heldKey) {
+      this.heldKey = key;
+      this.showGhosts(hand);
+      this.isDirty = true;
+    }
+    this.feel.setGoalShown(hand !== null && hand.state < 5 && this.shownExplode === 0);
+    const shows = this.view.showsForces.peek() && this.shownExplode === 0;
+    this.feel.update(hand, live?.contacts ?? [], hand === null ? null : this.centreOfMass(hand.occurrence), shows);
+    if (hand !== null) {
+      this.isDirty = true;
+    }
+  }
+
+  private centreOfMass(occurrence: number): Vector3 | null {
+    const pose = this.poses.get(occurrence);
+    const part = this.occurrence(occurrence);
+    if (pose === undefined || part === null) {
+      return null;
+    }
+    const turn = new Quaternion(pose.q[1], pose.q[2], pose.q[3], pose.q[0]);
+    return new Vector3(...part.p_BoBcm_m).applyQuaternion(turn).add(new Vector3(...pose.p));
+  }
+
+  private showGhosts(hand: HandState | null): void {
+    const part = hand === null ? null : this.occurrence(hand.occurrence);
+    if (part === null || this.parts === null) {
+      this.feel.setHeld([], []);
+      return;
+    }
+    const step = this.scene!.steps.find((s) => s.occurrence === part.id && s.kind !== "base");
+    const ids = [part.id, ...(step?.members ?? [])];
+    const goal = ids.flatMap((id) => {
+      const shape = this.parts!.shapeOf(id);
+      const pose = this.occurrence(id)?.goal;
+      return shape !== null && pose !== undefined ? [{ shape, pose }] : [];
+    });
+    const own = this.parts.shapeOf(part.id);
+    const tracked = own === null ? [] : [{ shape: own, pose: { p: [0, 0, 0], q: [1, 0, 0, 0] } as Pose }];
+    this.feel.setHeld(goal, tracked);
+  }
+
+  private markFaces(): void {
+    const faces = [...this.view.picked.value];
+    if (this.view.selectedFace.value !== null) {
+      faces.push(this.view.selectedFace.value);
+    }
+    this.marks.showFaces(
+      faces.flatMap(({ occurrence, face }) => {
+        const shape = this.parts?.shapeOf(occurrence);
+        const matrix = this.parts?.matrixOf(occurrence);
+        return shape && matrix ? [{ shape, matrix, face }] : [];
+      }),
+    );
+    this.isDirty = true;
+  }
+
+  private pulse(): void {
+    const isPulsing = performance.now() < this.pulseUntil && this.store.expected.peek() !== null;
+    if (isPulsing) {
+      this.applyLooks();
+    }
+  }
+
+  private applyLooks(): void {
+    const { store, view } = this;
+    const selected = new Set(view.selected.value);
+    const hovered = view.hovered.value;
+    const hidden = view.hidden.value;
+    const ghosted = view.ghosted.value;
+    const held = store.heldBy.value;
+    const expected = store.expected.value;
+    const canSteer = store.hasLease.value;
+    const wanted = new Set(expected !== null && canSteer ? [expected.occurrence, ...expected.members] : []);
+    const palette = this.palette;
+    if (this.parts === null || palette === null) {
+      return;
+    }
+    const left = this.pulseUntil - performance.now();
+    const beat = left > 0 ? 0.3 + 0.22 * Math.sin(left / 160) : 0.3;
+    for (const { occurrence } of this.parts.entries) {
+      const look: PartLook = {
+        isHidden: hidden.has(occurrence),
+        isGhost: ghosted.has(occurrence),
+        isMarked: selected.has(occurrence) || occurrence === hovered,
+        tint: null,
+        amount: 0,
+      };
+      if (held.has(occurrence)) {
+        look.tint = palette.held;
+        look.amount = 0.62;
+      } else if (selected.has(occurrence)) {
+        look.tint = palette.selected;
+        look.amount = 0.5;
+      } else if (occurrence === hovered) {
+        look.tint = palette.hover;
+        look.amount = 0.32;
+      } else if (wanted.has(occurrence) && held.size === 0) {
+        look.tint = palette.expected;
+        look.amount = beat;
+      }
+      const key = `${look.isHidden}${look.isGhost}${look.isMarked}${look.tint?.getHex()}${look.amount.toFixed(2)}`;
+      if (this.looks.get(occurrence) !== key) {
+        this.looks.set(occurrence, key);
+        this.parts.setLook(occurrence, look);
+        this.isDirty = true;
+      }
+    }
+  }
+
+  private applySection(): void {
+    const section = this.view.section.value;
+    if (section !== null) {
+      this.caps.place(section, this.sphere);
+    }
+    this.parts?.setClipping(section === null ? [] : [this.caps.plane]);
+    this.isDirty = true;
+  }
+}

@@ -1,0 +1,296 @@
+/** The 3D view as a whole: renderer, loop, eye, hand. What the rest of the page asks of it is here. */
+
+import { effect } from "@preact/signals";
+import { Group, Ray, Raycaster, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
+import { toVec3, type Vec3 } from "../model/math";
+import type { Studio } from "../model/studio";
+import type { SharedView } from "../model/view_link";
+import type { ViewState } from "../model/view_state";
+import { nowMs, type LiveState } from "../protocol/frame_store";
+import { CameraRig, type ViewName } from "./camera_rig";
+import { HandControl } from "./hand_control";
+import type { Eye } from "./mouse_hand";
+import { readPalette } from "./palette";
+import { PointerInput } from "./pointer_input";
+import { SceneView } from "./scene_view";
+import { Stage } from "./stage";
+import { StereoView } from "./stereo_view";
+import { ViewCube, type CubeLabels } from "./view_cube";
+
+/** A still picture is drawn this often all the same. */
+const kIdleMs = 500;
+
+export type FrameListener = (live: LiveState | null, now: number) => void;
+
+export class Viewport {
+  readonly canvas = document.createElement("canvas");
+  readonly renderer: WebGLRenderer;
+  readonly rig: CameraRig;
+  readonly product: SceneView;
+  readonly hand: HandControl;
+  readonly pointer: PointerInput;
+  framesDrawn = 0;
+  /** Drawn frames of the last second. */
+  framesPerSecond = 0;
+  live: LiveState | null = null;
+  /** All of W; VR turns and scales it. */
+  readonly worldRoot = new Group();
+  private readonly three = new ThreeScene();
+  private readonly stage = new Stage();
+  private readonly cube = new ViewCube();
+  private readonly stereo = new StereoView();
+  private readonly listeners = new Set<FrameListener>();
+  private readonly caster = new Raycaster();
+  private width = 1;
+  private height = 1;
+  private lastTick = 0;
+  private lastDrawn = 0;
+  private lastSeq = -1;
+  private counted = { at: 0, frames: 0 };
+  private pendingView: SharedView | null = null;
+
+  constructor(
+    readonly host: HTMLElement,
+    private readonly studio: Studio,
+    readonly view: ViewState,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true, stencil: true });
+    this.renderer.localClippingEnabled = true;
+    this.renderer.autoClear = false;
+    this.renderer.setClearColor(0x000000, 0);
+    host.append(this.canvas);
+    this.rig = new CameraRig(this.canvas);
+    this.product = new SceneView(studio.store, view);
+    this.worldRoot.add(this.stage.root, this.product.root);
+    this.three.add(this.worldRoot);
+    this.hand = new HandControl(studio, this.product, view);
+    this.pointer = new PointerInput(this, studio);
+    this.product.onLoaded = (isNew) => this.onLoaded(isNew);
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.followState();
+    this.resize();
+    this.renderer.setAnimationLoop((now) => this.tick(now));
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden) {
+        studio.rest();
+      }
+    });
+  }
+
+  get eye(): Eye {
+    const camera = this.rig.camera;
+    camera.updateMatrixWorld();
+    const axis = (column: number): Vec3 => new Vector3().setFromMatrixColumn(camera.matrixWorld, column).toArray();
+    const from = camera.position;
+    return {
+      right: axis(0),
+      up: axis(1),
+      back: axis(2),
+      rayTo: (p) => this.rayThrough(new Vector3(...p).project(camera)),
+      metresPerPixel: (p) => this.rig.metresPerPixel(new Vector3(...p).distanceTo(from), this.height),
+    };
+  }
+
+  onFrame(listener: FrameListener): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  invalidate(): void {
+    this.product.isDirty = true;
+  }
+
+  /** The ray of a pixel, counted from the top left of the canvas. */
+  rayAt(x: number, y: number): Ray {
+    this.caster.setFromCamera(new Vector2((2 * x) / this.width - 1, 1 - (2 * y) / this.height), this.rig.camera);
+    return this.caster.ray.clone();
+  }
+
+  /** Where a point of W is seen: pixels from the top left of the canvas. */
+  project(p: Vec3): { x: number; y: number; isBehind: boolean } {
+    const at = new Vector3(...p).project(this.rig.camera);
+    return { x: ((at.x + 1) / 2) * this.width, y: ((1 - at.y) / 2) * this.height, isBehind: at.z > 1 };
+  }
+
+  pickCube(x: number, y: number): Vec3 | null {
+    return this.cube.pick(x, y, this.width, this.height);
+  }
+
+  refreshTheme(labels: CubeLabels): void {
+    const palette = readPalette(this.host);
+    this.stage.setPalette(palette);
+    this.product.setPalette(palette);
+    this.cube.setLabels(labels, palette);
+    this.invalidate();
+  }
+
+  setBackground(color: Color | null): void {
+    this.three.background = color;
+    this.invalidate();
+  }
+
+  fit(only?: readonly number[]): void {
+    this.rig.fit(this.product.boundingSphere(only?.length ? only : undefined));
+    this.invalidate();
+  }
+
+  lookFrom(name: ViewName): void {
+    this.rig.view(name, this.product.boundingSphere());
+    this.invalidate();
+  }
+
+  /** A view that was shared by link; waits for the product where it is not there yet. */
+  show(view: SharedView): void {
+    if (this.product.parts === null) {
+      this.pendingView = view;
+      return;
+    }
+    this.pendingView = null;
+    this.view.hidden.value = new Set(view.hidden);
+    this.view.ghosted.value = new Set(view.ghosted);
+    this.view.selected.value = view.selected;
+    this.view.explode.value = view.explode;
+    this.view.section.value = view.section;
+    this.view.isOrthographic.value = view.isOrthographic;
+    this.rig.setPose(view.eye, view.target);
+    this.invalidate();
+  }
+
+  sharedView(): SharedView {
+    const { view } = this;
+    return {
+      ...this.rig.pose(),
+      isOrthographic: view.isOrthographic.value,
+      hidden: [...view.hidden.value],
+      ghosted: [...view.ghosted.value],
+      selected: [...view.selected.value],
+      explode: view.explode.value,
+      section: view.section.value,
+    };
+  }
+
+  /** The picture as it is now, on the page's background. */
+  async screenshot(): Promise<Blob | null> {
+    this.draw();
+    const copy = document.createElement("canvas");
+    copy.width = this.canvas.width;
+    copy.height = this.canvas.height;
+    const pen = copy.getContext("2d")!;
+    const style = getComputedStyle(this.host);
+    const shade = pen.createLinearGradient(0, 0, 0, copy.height);
+    shade.addColorStop(0, style.getPropertyValue("--v-sky").trim());
+    shade.addColorStop(1, style.getPropertyValue("--v-ground").trim());
+    pen.fillStyle = shade;
+    pen.fillRect(0, 0, copy.width, copy.height);
+    pen.drawImage(this.canvas, 0, 0);
+    return new Promise((resolve) => copy.toBlob(resolve, "image/png"));
+  }
+
+  private followState(): void {
+    const { view } = this;
+    effect(() => {
+      this.rig.setParallel(view.isOrthographic.value);
+      this.invalidate();
+    });
+    effect(() => {
+      this.stage.setQuality(view.quality.value, this.renderer);
+      const ratio = view.quality.value === "high" ? Math.min(2, devicePixelRatio) : 1;
+      this.renderer.setPixelRatio(ratio);
+      this.resize();
+    });
+    effect(() => {
+      this.stage.setGridShown(view.showsGrid.value);
+      void view.stereo.value;
+      this.invalidate();
+    });
+  }
+
+  private onLoaded(isNew: boolean): void {
+    const scene = this.product.scene!;
+    this.stage.fit(this.product.sphere.center, scene.radius_m, scene.table_z_m);
+    this.rig.setReach(scene.radius_m);
+    if (this.pendingView !== null) {
+      this.show(this.pendingView);
+    } else if (isNew) {
+      this.rig.view("iso", this.product.boundingSphere(), false);
+    }
+    this.hand.stop();
+  }
+
+  private rayThrough(ndc: Vector3): { from: Vec3; along: Vec3 } {
+    this.caster.setFromCamera(new Vector2(ndc.x, ndc.y), this.rig.camera);
+    return { from: this.caster.ray.origin.toArray(), along: this.caster.ray.direction.toArray() };
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.host;
+    this.width = Math.max(1, clientWidth);
+    this.height = Math.max(1, clientHeight);
+    this.renderer.setSize(this.width, this.height, false);
+    this.rig.resize(this.width, this.height);
+    this.invalidate();
+    // The canvas is empty after a change of its size: not to be seen.
+    this.draw();
+  }
+
+  private tick(now: number): void {
+    const seconds = Math.min(0.1, (now - this.lastTick) / 1000);
+    this.lastTick = now;
+    const frames = this.studio.frames;
+    this.live = frames?.read() ?? this.live;
+    const live = this.live;
+    if (live !== null && live.seq !== this.lastSeq) {
+      this.lastSeq = live.seq;
+      if (live.epoch === this.product.scene?.epoch) {
+        this.studio.noteHands(live);
+      }
+    }
+    this.hand.update(seconds, live, this.eye);
+    this.product.update(frames, live, nowMs());
+    const hasMoved = this.rig.controls.update(seconds);
+    const isDue = this.renderer.xr.isPresenting || now - this.lastDrawn > kIdleMs;
+    if (hasMoved || this.product.isDirty || isDue) {
+      this.draw();
+      this.lastDrawn = now;
+      this.product.isDirty = false;
+    }
+    if (now - this.counted.at >= 1000) {
+      this.framesPerSecond = Math.round(((this.framesDrawn - this.counted.frames) * 1000) / (now - this.counted.at));
+      this.counted = { at: now, frames: this.framesDrawn };
+    }
+    for (const listener of this.listeners) {
+      listener(live, now);
+    }
+  }
+
+  private draw(): void {
+    const { renderer, view } = this;
+    const camera = this.rig.camera;
+    if (renderer.xr.isPresenting) {
+      renderer.clear();
+      renderer.render(this.three, camera);
+      this.framesDrawn += 1;
+      return;
+    }
+    renderer.setViewport(0, 0, this.width, this.height);
+    renderer.clear();
+    const stereo = view.stereo.peek();
+    if (stereo === "none") {
+      renderer.render(this.three, camera);
+      if (view.section.peek() !== null) {
+        renderer.clearStencil();
+        renderer.render(this.product.caps.scene, camera);
+      }
+      if (this.product.scene !== null) {
+        this.cube.render(renderer, camera, this.width, this.height);
+      }
+    } else {
+      this.stereo.render(renderer, this.three, this.rig.perspective, stereo, {
+        width: this.width,
+        height: this.height,
+        focus: new Vector3(...toVec3(this.rig.pose().target)).distanceTo(camera.position),
+      });
+    }
+    this.framesDrawn += 1;
+  }
+}
