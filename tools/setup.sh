@@ -18,7 +18,8 @@ install_packages() {
   installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "${packages[@]}" 2>/dev/null |
     awk '$1 == "ii" { print $2 }') || true
   for package in "${packages[@]}"; do
-    grep -qx -- "$package" <<<"$installed" || missing+=("$package")
+    # A command that is there from elsewhere does as well: a newer npm comes with nodejs itself.
+    grep -qx -- "$package" <<<"$installed" || command -v "$package" >/dev/null || missing+=("$package")
   done
   [ ${#missing[@]} -eq 0 ] && return
   say "installing ${#missing[@]} of ${#packages[@]} packages: ${missing[*]}"

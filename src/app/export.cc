@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/glb.h"
 #include "app/load_product.h"
 #include "app/poses.h"
 #include "app/product_json.h"
@@ -21,6 +20,7 @@
 #include "app/selection.h"
 #include "base/atomic_file.h"
 #include "cad/export_step.h"
+#include "cad/glb.h"
 
 namespace hvas::app {
 namespace {
@@ -122,7 +122,7 @@ Result<void> Export(const ExportOptions& options) {
     motions = std::move(*moved);
   }
   if (format == ".glb") {
-    const Result<std::string> glb = MakeGlb(*product, options.is_fine);
+    const Result<std::string> glb = cad::MakeGlb(*product, options.is_fine);
     return glb ? WriteAtomically(options.output, *glb) : Unexpected(glb.error());
   }
   return format == ".json" ? WriteJson(options, *product, diagnostics)

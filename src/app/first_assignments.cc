@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/names.h"
 #include "base/units.h"
 #include "mates/side_file.h"
+#include "product/names.h"
 
 namespace hvas::app {
 namespace {

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/names.h"
 #include "base/units.h"
 #include "fits/insertion.h"
 #include "fits/thermal_joining.h"
 #include "mates/make_fit.h"
+#include "product/names.h"
 
 namespace hvas::app {
 namespace {

@@ -7,13 +7,13 @@
 
 #include <fmt/format.h>
 
-#include "app/names.h"
 #include "app/svg_plot.h"
 #include "base/random.h"
 #include "base/units.h"
 #include "fits/paper_scales.h"
 #include "fits/press_stroke.h"
 #include "mates/make_fit.h"
+#include "product/names.h"
 
 namespace hvas::app {
 namespace {

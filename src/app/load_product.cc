@@ -70,7 +70,9 @@ Result<product::Product> LoadInferred(const LoadOptions& options, Diagnostics* d
   control.limits.time = options.time_limit;
   control.limits.memory = options.memory_limit;
   control.cache_directory = CacheDirectory(options);
-  if (!options.is_quiet && IsWatched()) {
+  control.stop = options.stop;
+  control.progress = options.progress;
+  if (control.progress == nullptr && !options.is_quiet && IsWatched()) {
     control.progress = ShowProgress;
   }
   cad::ImportOptions import;

@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "base/diagnostics.h"
 #include "base/result.h"
+#include "cad/import.h"
 #include "product/product.h"
 
 namespace CLI {
@@ -26,6 +28,8 @@ struct LoadOptions {
   double length_unit{1e-3};       ///< Of files that state none [m].
   double time_limit{600};         ///< For reading the file [s].
   std::uint64_t memory_limit{0};  ///< For reading the file [bytes]; 0: three quarters of all.
+  cad::ProgressFn progress;       ///< Null: on the terminal, where there is one.
+  std::stop_token stop;           ///< Ends the reading.
 };
 
 /** Adds --strict, --quiet, --no-cache, --unit, --time-limit and --memory-limit to a command. */

@@ -11,6 +11,7 @@
 #include "app/fit.h"
 #include "app/inspect.h"
 #include "app/mate.h"
+#include "app/studio.h"
 
 namespace {
 
@@ -25,6 +26,7 @@ int Run(int argc, char** argv) {
   hvas::app::AddFit(&app, &status);
   hvas::app::AddDevices(&app, &status);
   hvas::app::AddDoctor(&app, &status);
+  hvas::app::AddStudio(&app, &status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

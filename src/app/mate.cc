@@ -22,6 +22,7 @@
 #include "app/side_document.h"
 #include "mates/assignments.h"
 #include "mates/user_mate.h"
+#include "product/names.h"
 
 namespace hvas::app {
 namespace {
@@ -84,7 +85,7 @@ Result<void> Commit(Opened* opened) {
 }
 
 std::string Describe(const Product& product, const Mate& mate) {
-  std::string kind = mates::ToString(mate.kind);
+  std::string kind = ToString(mate.kind);
   std::replace(kind.begin(), kind.end(), '_', ' ');
   return fmt::format("{} {}: {} <- {}", mate.key, kind,
                      product.occurrences[mate.a.occurrence.index()].path,

@@ -8,9 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/names.h"
 #include "base/units.h"
 #include "mates/infer.h"
+#include "product/names.h"
 
 namespace hvas::app {
 namespace {

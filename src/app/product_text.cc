@@ -11,11 +11,11 @@
 
 #include <fmt/format.h>
 
-#include "app/names.h"
 #include "app/product_json.h"
 #include "app/text_layout.h"
 #include "base/units.h"
 #include "mates/infer.h"
+#include "product/names.h"
 
 namespace hvas::app {
 namespace {

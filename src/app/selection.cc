@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "app/names.h"
 #include "mates/assignments.h"
 #include "mates/side_file.h"
 #include "mates/user_mate.h"
+#include "product/names.h"
 
 namespace hvas::app {
 namespace {

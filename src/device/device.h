@@ -45,6 +45,8 @@ struct DeviceState {
   double grip{std::numeric_limits<double>::quiet_NaN()};  ///< 0 open .. 1 closed; NaN: has none.
   Condition condition{Condition::kReady};
   std::int32_t vendor_code{0};  ///< What the device's own software said last; 0: nothing.
+  /** How long ago whoever steers it from afar was last heard of; 0 for what is at hand. */
+  std::int64_t client_age_ns{0};
 };
 
 /** What a device has. What is not here it cannot do, and whoever renders to it must cope. */

@@ -233,7 +233,6 @@ spatial::Wrench HapticTick::MakeSafe(const device::DeviceState& state, const Tic
   input.is_stopped = input.is_stopped || context.is_stopped;
   input.has_engaged = std::exchange(has_engaged_, false);
   input.model_age = 1e-9 * static_cast<double>(context.model_age_ns);
-  input.client_age = 1e-9 * static_cast<double>(context.client_age_ns);
   const spatial::Wrench given = gate_.Pass(input);
   if (options_.controls_passivity) {
     passivity_.Write(given);
@@ -336,6 +335,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
   out->F_true_W = out->F_felt_W;
   out->F_true_W.f += (weight_true_ * soft_start_ - weight_felt_) * options_.gravity_W.normalized();
   RecordFits(out);
+  out->axis = DescribeAxis();
   UpdateState();
   has_engaged_ = has_engaged_ || guide_.captured_count() > captured_before_;
   captured_before_ = guide_.captured_count();
@@ -447,6 +447,23 @@ void HapticTick::RecordFits(TickOutput* out) noexcept {
   out->F_true_W.t +=
       fit_axis_.p_CmQ_W.cross(f) + (forces.torque_true - forces.torque_felt) * fit_axis_.out_W;
   out->insertion_depth = guide_.insertion_depth();
+}
+
+GuidedAxis HapticTick::DescribeAxis() const noexcept {
+  const MateGeometry* geometry = guide_.axis();
+  if (geometry == nullptr) {
+    return {};
+  }
+  const HeldMate& mate = part_->mates[guide_.axis_index()];
+  GuidedAxis axis;
+  axis.mate = mate.id;
+  axis.p_WQ = geometry->p_WQ;
+  axis.axis_W = geometry->axis_W;
+  axis.tilt = geometry->angle;
+  axis.offset = geometry->distance;
+  axis.depth = geometry->depth;
+  axis.depth_goal = CalcMateGeometry(mate, part_->X_WB_goal).engaged;
+  return axis;
 }
 
 HapticTick::HeldShape HapticTick::MakeHeldShape(std::size_t member, const spatial::Pose& X_WB,

@@ -31,6 +31,17 @@ enum class HoldState : std::uint8_t {
 
 [[nodiscard]] const char* ToString(HoldState state) noexcept;
 
+/** How the held part stands to the mate whose axis guides it. */
+struct GuidedAxis {
+  product::MateId mate;  ///< Invalid: none does.
+  Vec3 p_WQ{Vec3::Zero()};
+  Vec3 axis_W{Vec3::UnitZ()};
+  double tilt{0};        ///< [rad]
+  double offset{0};      ///< Across the axis [m].
+  double depth{0};       ///< Of insertion; negative by how far it is from the hole [m].
+  double depth_goal{0};  ///< In its place [m].
+};
+
 /** What a tick gives: the wrench for the device, and everything a record wants to know. */
 struct TickOutput {
   spatial::Wrench F_H_D;  ///< For the device: after the gate, about the hand's point, in its base.
@@ -57,13 +68,13 @@ struct TickOutput {
   WorkspaceMapping workspace;       ///< How the handle moved the hand.
   PassivityAccount energy;          ///< Of forces so far, where passivity is controlled.
   PassivityAccount turning_energy;  ///< Of torques.
+  GuidedAxis axis;
 };
 
 /** What else the loop knows at a tick. */
 struct TickContext {
-  std::int64_t model_age_ns{0};   ///< Since the physics loop last answered.
-  std::int64_t client_age_ns{0};  ///< Since whoever steers was last heard of.
-  bool is_stopped{false};         ///< Somebody has switched all forces off.
+  std::int64_t model_age_ns{0};  ///< Since the physics loop last answered.
+  bool is_stopped{false};        ///< Somebody has switched all forces off.
 };
 
 /** The haptic tick of one hand: X(1), X(2) coupling, contact on the displayed part (X7), guidance
@@ -147,6 +158,7 @@ class HapticTick {
   void AddGuidance(const Vec3& p_WCm) noexcept;
   void AddFits(const MateGeometry& axis, const Vec3& p_WCm) noexcept;
   void RecordFits(TickOutput* out) noexcept;
+  [[nodiscard]] GuidedAxis DescribeAxis() const noexcept;
   void AddContacts(TickOutput* out) noexcept;
 
   /** A part that is in the hand: the one itself, or a member of its subassembly. */

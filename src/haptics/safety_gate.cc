@@ -56,6 +56,7 @@ GateInput MakeGateInput(const device::DeviceState& state, const spatial::Wrench&
   input.is_held = state.condition != device::Condition::kNotHeld;
   input.is_stopped = state.condition == device::Condition::kStopped;
   input.is_gripping = state.is_gripping;
+  input.client_age = 1e-9 * static_cast<double>(state.client_age_ns);
   return input;
 }
 

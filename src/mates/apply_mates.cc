@@ -7,6 +7,7 @@
 
 #include "mates/assignments.h"
 #include "mates/user_mate.h"
+#include "product/names.h"
 
 namespace hvas::mates {
 namespace {

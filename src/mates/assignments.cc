@@ -13,6 +13,7 @@
 #include "fits/iso286.h"
 #include "mates/make_fit.h"
 #include "mates/stated_fits.h"
+#include "product/names.h"
 
 namespace hvas::mates {
 namespace {

@@ -423,8 +423,4 @@ std::string FindNearest(std::string_view word, const std::vector<std::string>& c
   return nearest;
 }
 
-const char* ToString(product::MateKind kind) {
-  return kMateKinds.at(static_cast<std::size_t>(kind)).data();
-}
-
 }  // namespace hvas::mates

@@ -95,6 +95,4 @@ struct SideFile {
 [[nodiscard]] std::string FindNearest(std::string_view word,
                                       const std::vector<std::string>& candidates);
 
-[[nodiscard]] const char* ToString(product::MateKind kind);  ///< "axis_hole", ...
-
 }  // namespace hvas::mates

@@ -181,8 +181,11 @@ bool AssemblyRun::HasFinished(const SequenceStep& step) const {
   if (person_ != nullptr) {
     return person_->finished_count() != finished_before_;
   }
+  // Real ones do as they like: a part may be in its place before its turn comes.
   const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
-  return dropped && dropped->was_seated;
+  const bool is_plain = step.kind == SequenceStep::Kind::kInsert && step.members.empty();
+  return (dropped && dropped->was_seated) ||
+         (is_plain && simulation_->placement(step.occurrence) == Placement::kPlaced);
 }
 
 void AssemblyRun::Advance() {

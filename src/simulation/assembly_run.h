@@ -66,6 +66,12 @@ class AssemblyRun final : public Sink {
   [[nodiscard]] Execution MakeExecution(Operator* hand, double limit_s,
                                         Operator* second_hand = nullptr);
 
+  /** Before it begins: goes on with this step; what came before it was done already. */
+  void Resume(std::size_t next_step) { next_step_ = next_step; }
+
+  /** The step of the sequence whose turn it is; their number when all are done. */
+  [[nodiscard]] std::size_t next_step() const { return next_step_; }
+
   /** After every physics step, on its thread: gives the person the next part. */
   void Advance();
 

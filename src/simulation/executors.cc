@@ -71,9 +71,9 @@ class HapticLoop {
     }
   }
 
-  /** Every hand once.
+  /** Every hand once; returns how long they computed [ns].
    @param wake_up_ns  How late the tick begins; 0 in virtual time. */
-  void Tick(std::int64_t wake_up_ns) noexcept {
+  std::int64_t Tick(std::int64_t wake_up_ns) noexcept {
     std::int64_t compute_ns = 0;
     for (std::size_t i = 0; i < hand_count(); ++i) {
       compute_ns += TickHand(i, wake_up_ns);
@@ -86,7 +86,10 @@ class HapticLoop {
     }
     ++report_->ticks;
     t_ns_ += period_ns_;
+    return compute_ns;
   }
+
+  [[nodiscard]] int effort_level() const noexcept { return shedder_.level(); }
 
   [[nodiscard]] std::int64_t t_ns() const noexcept { return t_ns_; }
 
@@ -141,6 +144,42 @@ class HapticLoop {
   std::int64_t t_ns_{0};
 };
 
+/** Tells of the last second of a loop, once a second. RT-safe. */
+class StatusTeller {
+ public:
+  StatusTeller(TripleBuffer<LoopStatus>* status, const RealtimeGrant& grant, std::int64_t period_ns)
+      : status_(status), ticks_per_second_(std::max<std::int64_t>(1, 1'000'000'000 / period_ns)) {
+    now_.is_fifo = grant.is_fifo;
+    now_.is_memory_locked = grant.is_memory_locked;
+  }
+
+  void Tell(const ExecutionReport& report, std::int64_t late_ns, std::int64_t compute_ns,
+            int effort_level) noexcept {
+    if (status_ == nullptr) {
+      return;
+    }
+    now_.wake_up.Add(late_ns);
+    now_.compute.Add(compute_ns);
+    if (++ticks_ < ticks_per_second_) {
+      return;
+    }
+    now_.ticks = report.ticks;
+    now_.late_wake_ups = report.late_wake_ups;
+    now_.overruns = report.overruns;
+    now_.effort_level = effort_level;
+    status_->Write(now_);
+    now_.wake_up = {};
+    now_.compute = {};
+    ticks_ = 0;
+  }
+
+ private:
+  TripleBuffer<LoopStatus>* status_;
+  std::int64_t ticks_per_second_;
+  std::int64_t ticks_{0};
+  LoopStatus now_;
+};
+
 void StepPhysics(const Execution& execution) {
   execution.simulation->PhysicsStep(execution.sink);
   if (execution.advance) {
@@ -187,7 +226,7 @@ ExecutionReport RunLockstep(const Execution& given) {
   StepPhysics(execution);
   while (!execution.is_done() && loop.t_ns() < execution.limit_ns) {
     for (std::int64_t i = 0; i < ticks_per_physics; ++i) {
-      loop.Tick(0);
+      (void)loop.Tick(0);
     }
     if (!execution.is_physics_late || !execution.is_physics_late(loop.t_ns())) {
       StepPhysics(execution);
@@ -213,18 +252,19 @@ ExecutionReport RunRealtime(const Execution& given) {
     report.grant = RequestRealtime();
     HapticLoop loop(execution, &report);
     const std::int64_t period_ns = PeriodOf(*execution.simulation);
+    StatusTeller status(execution.status, report.grant, period_ns);
     Pacer pacer(period_ns);
     while (!is_stopping.load(std::memory_order_relaxed)) {
       const std::int64_t late_ns = pacer.Wait();
       report.wake_up.Add(late_ns);
       report.late_wake_ups += late_ns > period_ns ? 1 : 0;
-      loop.Tick(late_ns);
+      status.Tell(report, late_ns, loop.Tick(late_ns), loop.effort_level());
       t_ns.store(loop.t_ns(), std::memory_order_relaxed);
     }
     report.missed_periods = pacer.missed();
   });
   std::thread publish([&] {
-    Pacer pacer(Simulation::kFrameNs);
+    Pacer pacer(execution.frame_ns);
     while (!is_stopping.load(std::memory_order_relaxed)) {
       (void)pacer.Wait();
       const Frame& frame = execution.simulation->Publish();

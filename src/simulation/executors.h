@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/histogram.h"
+#include "base/triple_buffer.h"
 #include "simulation/flight_recorder.h"
 #include "simulation/operator.h"
 #include "simulation/realtime_thread.h"
@@ -58,6 +59,18 @@ struct ExecutionReport {
   std::string scheduling;  ///< What the system granted, in words.
 };
 
+/** How the haptic loop fares while it runs: of the second that ended last. */
+struct LoopStatus {
+  LatencyHistogram compute;
+  LatencyHistogram wake_up;
+  std::uint64_t ticks{0};  ///< In all.
+  std::uint64_t late_wake_ups{0};
+  std::uint64_t overruns{0};
+  int effort_level{0};
+  bool is_fifo{false};  ///< As in RealtimeGrant.
+  bool is_memory_locked{false};
+};
+
 /** Runs the loops of a simulation until `is_done` says so or `limit_ns` of session time have
  passed. `advance` runs after every physics step, on its thread. */
 struct Execution {
@@ -68,9 +81,11 @@ struct Execution {
   std::function<void()> advance;
   std::function<bool()> is_done;
   std::int64_t limit_ns{0};
-  FlightRecorder* flight{nullptr};             ///< May be null.
-  TickLog* log{nullptr};                       ///< The one that the simulation keeps; may be null.
-  std::function<void(const Frame&)> on_frame;  ///< On the publish thread; realtime only.
+  FlightRecorder* flight{nullptr};              ///< May be null.
+  TickLog* log{nullptr};                        ///< The one that the simulation keeps; may be null.
+  std::function<void(const Frame&)> on_frame;   ///< On the publish thread; realtime only.
+  std::int64_t frame_ns{Simulation::kFrameNs};  ///< Between frames; realtime only.
+  TripleBuffer<LoopStatus>* status{nullptr};    ///< Written once a second; realtime only.
   /** Lockstep only: the physics loop misses its step at this time [ns], as a thread that the system
    keeps waiting; null: never. */
   std::function<bool(std::int64_t)> is_physics_late;

@@ -68,7 +68,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
   for (const Body& body : model_->bodies) {
     const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
     scene_.SetOffsets(id, body.faces);
-    Part& part = parts_[id.index()];
+    PartState& part = parts_[id.index()];
     part.X_WB = body.X_WB_start;
     for (Hand& hand : hands_) {
       hand.haptic.SetProperties(id,
@@ -78,6 +78,23 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
     }
   }
   scene_.SetGround(model_->table_z);
+}
+
+void Simulation::Restore(const std::vector<PartState>& parts) {
+  parts_ = parts;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    PartState& part = parts_[i];
+    if (part.placement == Placement::kHeld) {
+      part.placement = Placement::kLoose;
+    }
+    const contact::BodyId id(i);
+    scene_.SetPose(id, part.X_WB);
+    for (Hand& hand : hands_) {
+      hand.haptic.SetLoose(id, part.placement == Placement::kLoose);
+    }
+  }
+  FillFrame(&frames_.back());
+  frames_.Publish();
 }
 
 void Simulation::SetEffortLevel(int level) noexcept {
@@ -267,7 +284,7 @@ void Simulation::Heed(Hand* hand) {
     TakeNearest(hand, report.out.X_WH.p());
   }
   for (std::size_t i = 0; i < report.moving_count; ++i) {
-    Part& part = parts_[report.moving[i].body.index()];
+    PartState& part = parts_[report.moving[i].body.index()];
     if (part.placement == Placement::kLoose) {
       part.X_WB = report.moving[i].X_WB;
     }
@@ -322,7 +339,7 @@ void Simulation::HandleEvent(const SimulationEvent& event) {
   Hand& hand = hands_[event.hand];
   const bool is_shelf = hand.held_step.kind == SequenceStep::Kind::kPark;
   const auto settle = [&](OccurrenceId id, const spatial::Pose& X_WB) {
-    Part& part = parts_[id.index()];
+    PartState& part = parts_[id.index()];
     part.X_WB = X_WB;
     if (event.was_seated && !is_shelf) {
       part.placement = Placement::kPlaced;
@@ -340,7 +357,7 @@ void Simulation::HandleEvent(const SimulationEvent& event) {
 }
 
 void Simulation::PlaceInFixture(OccurrenceId id) {
-  Part& part = parts_[id.index()];
+  PartState& part = parts_[id.index()];
   part.placement = Placement::kPlaced;
   part.X_WB = model_->bodies[id.index()].X_WB_goal;
   // Behind what is still on its way to the haptic thread, which alone writes to its scene.

@@ -91,6 +91,12 @@ enum class Placement : std::uint8_t {
   kParked,  ///< On the shelf with its subassembly.
 };
 
+/** Where a part is, and what it does there. */
+struct PartState {
+  Placement placement{Placement::kLoose};
+  spatial::Pose X_WB;
+};
+
 /** All that changes while a model is assembled. Three loops may run it at once, each function from
  its own thread: HapticTick (1 kHz and more, every TickOptions::dt, one hand after the other),
  PhysicsStep (100 Hz), Publish (30 Hz). Called in turn from one thread it gives the same results
@@ -139,6 +145,13 @@ class Simulation {
   /** Publish thread: the newest state of everything. */
   const Frame& Publish();
 
+  /** Physics thread: all parts, by OccurrenceId. */
+  [[nodiscard]] const std::vector<PartState>& parts() const { return parts_; }
+
+  /** Before the loops run: goes on from where all parts were. What was held is loose where it was.
+   @pre one state for each part of the model. */
+  void Restore(const std::vector<PartState>& parts);
+
   /** Puts a part in its place without a hand: the base in its fixture. Physics thread. */
   void PlaceInFixture(product::OccurrenceId id);
 
@@ -170,11 +183,6 @@ class Simulation {
   }
 
  private:
-  struct Part {
-    Placement placement{Placement::kLoose};
-    spatial::Pose X_WB;
-  };
-
   /** A loose part that falls or is pushed, and where it is. */
   struct Moving {
     contact::BodyId body;
@@ -255,7 +263,7 @@ class Simulation {
   Ring<SimulationEvent> events_;
   TripleBuffer<Frame> frames_;
 
-  std::vector<Part> parts_;
+  std::vector<PartState> parts_;
 };
 
 }  // namespace hvas::simulation

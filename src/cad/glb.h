@@ -5,7 +5,7 @@
 #include "base/result.h"
 #include "product/product.h"
 
-namespace hvas::app {
+namespace hvas::cad {
 
 /** A product as a binary glTF 2.0 file (.glb), in metres, Y up.
 
@@ -18,4 +18,4 @@ namespace hvas::app {
  Fails (kOutOfResource) above the 4 GiB that the format can hold. */
 [[nodiscard]] Result<std::string> MakeGlb(const product::Product& product, bool is_fine);
 
-}  // namespace hvas::app
+}  // namespace hvas::cad

@@ -1,11 +1,9 @@
-#include "app/names.h"
+#include "product/names.h"
 
 #include <array>
 #include <cstddef>
 
-#include "mates/side_file.h"
-
-namespace hvas::app {
+namespace hvas {
 namespace {
 
 /** Names in the order of the enumerators. */
@@ -21,17 +19,23 @@ const char* ToString(Severity severity) {
   return NameOf(kNames, severity);
 }
 
-const char* ToString(spatial::SurfaceKind kind) {
+namespace spatial {
+
+const char* ToString(SurfaceKind kind) {
   constexpr std::array kNames{"plane", "cylinder", "cone", "sphere", "torus", "freeform"};
   return NameOf(kNames, kind);
 }
 
-const char* ToString(product::FeatureKind kind) {
+}  // namespace spatial
+
+namespace product {
+
+const char* ToString(FeatureKind kind) {
   constexpr std::array kNames{"hole", "shaft", "plane", "cone_seat", "taper", "socket", "ball"};
   return NameOf(kNames, kind);
 }
 
-const char* ToString(product::FormKind kind) {
+const char* ToString(FormKind kind) {
   constexpr std::array kNames{"through_hole",
                               "blind_hole",
                               "stepped_hole",
@@ -49,41 +53,42 @@ const char* ToString(product::FormKind kind) {
   return NameOf(kNames, kind);
 }
 
-const char* ToString(product::ThreadKind kind) {
+const char* ToString(ThreadKind kind) {
   constexpr std::array kNames{"none", "nominal", "modelled"};
   return NameOf(kNames, kind);
 }
 
-const char* ToString(product::InnerConstraintKind kind) {
+const char* ToString(InnerConstraintKind kind) {
   constexpr std::array kNames{"parallel", "perpendicular", "coaxial", "coplanar", "concentric"};
   return NameOf(kNames, kind);
 }
 
-const char* ToString(product::MateKind kind) {
-  return mates::ToString(kind);
+const char* ToString(MateKind kind) {
+  constexpr std::array kNames{"axis_hole", "face_face", "cone_seat", "sphere_seat"};
+  return NameOf(kNames, kind);
 }
 
-const char* ToString(product::MateOrigin origin) {
+const char* ToString(MateOrigin origin) {
   constexpr std::array kNames{"inferred", "user"};
   return NameOf(kNames, origin);
 }
 
-const char* ToString(product::SurfaceConstraintKind kind) {
+const char* ToString(SurfaceConstraintKind kind) {
   constexpr std::array kNames{"coaxial", "coplanar", "same_cone", "concentric"};
   return NameOf(kNames, kind);
 }
 
-const char* ToString(product::FitKind kind) {
+const char* ToString(FitKind kind) {
   constexpr std::array kNames{"clearance", "transition", "interference", "thread"};
   return NameOf(kNames, kind);
 }
 
-const char* ToString(product::DimensionKind kind) {
+const char* ToString(DimensionKind kind) {
   constexpr std::array kNames{"diameter", "radius", "linear", "angular", "other"};
   return NameOf(kNames, kind);
 }
 
-const char* ToString(product::GeometricToleranceKind kind) {
+const char* ToString(GeometricToleranceKind kind) {
   constexpr std::array kNames{
       "angularity",       "circular_runout", "coaxiality",   "concentricity",
       "cylindricity",     "flatness",        "line_profile", "parallelism",
@@ -92,4 +97,5 @@ const char* ToString(product::GeometricToleranceKind kind) {
   return NameOf(kNames, kind);
 }
 
-}  // namespace hvas::app
+}  // namespace product
+}  // namespace hvas

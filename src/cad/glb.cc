@@ -1,4 +1,4 @@
-#include "app/glb.h"
+#include "cad/glb.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace hvas::app {
+namespace hvas::cad {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -298,4 +298,4 @@ Result<std::string> MakeGlb(const Product& product, bool is_fine) {
   return GlbBuilder(product, is_fine).Build();
 }
 
-}  // namespace hvas::app
+}  // namespace hvas::cad

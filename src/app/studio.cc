@@ -1,0 +1,196 @@
+#include "app/studio.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/load_product.h"
+#include "app/report_failure.h"
+#include "contact/shape_cache.h"
+#include "studio/server.h"
+#include "studio/workbench.h"
+
+namespace hvas::app {
+namespace {
+
+struct StudioOptions {
+  LoadOptions load;
+  std::uint16_t port{0};
+  std::uint64_t seed{1};
+  double rate_hz{1000};
+  bool opens_browser{true};
+};
+
+/** A folder of this run's own, for what is sent to it; gone with it. */
+class UploadFolder {
+ public:
+  UploadFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "hvas-studio-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) != nullptr) {
+      path_ = pattern;
+    }
+  }
+
+  ~UploadFolder() {
+    if (!path_.empty()) {
+      std::error_code ignored;
+      std::filesystem::remove_all(path_, ignored);
+    }
+  }
+
+  UploadFolder(const UploadFolder&) = delete;
+  UploadFolder& operator=(const UploadFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/** The products that come with the program: beside it when it is installed, or with its sources. */
+std::filesystem::path ProductsFolder() {
+  std::error_code failed;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);
+  const std::filesystem::path installed =
+      program.parent_path().parent_path() / "share" / "hvas" / "products";
+  return std::filesystem::exists(installed, failed) ? installed
+                                                    : std::filesystem::path(HVAS_BUILT_PRODUCTS);
+}
+
+std::vector<studio::Example> FindExamples() {
+  std::vector<studio::Example> examples{
+      {"gear_pump", "Gear pump", "38 parts: press fits, dowels, screws", "gear_pump.step"},
+      {"bushing", "Bushing", "3 parts: a bushing pressed into a plate, and a shaft through it",
+       "bushing.step"},
+      {"frame_500", "Frame", "500 parts, to try how large a product may be", "frame_500.step"}};
+  const std::filesystem::path folder = ProductsFolder();
+  std::erase_if(examples, [&](studio::Example& example) {
+    example.file = folder / example.file;
+    return !std::filesystem::exists(example.file);
+  });
+  return examples;
+}
+
+studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
+  studio::WorkbenchOptions bench;
+  bench.seed = options.seed;
+  bench.rate_hz = options.rate_hz;
+  if (const auto directory = CacheDirectory(options.load)) {
+    bench.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
+  }
+  bench.load = [load = options.load](const std::filesystem::path& file,
+                                     const cad::ProgressFn& progress, std::stop_token stop,
+                                     Diagnostics* diagnostics) {
+    LoadOptions one = load;
+    one.file = file;
+    one.progress = progress;
+    one.stop = std::move(stop);
+    return LoadProduct(one, diagnostics);
+  };
+  return bench;
+}
+
+/** Opens the page with whatever the desktop opens pages with; says nothing where there is none. */
+void OpenBrowser(const std::string& link) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
+    return;
+  }
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execlp("xdg-open", "xdg-open", link.c_str(), static_cast<char*>(nullptr));
+    ::_exit(1);
+  }
+}
+
+/** Until the user or the system ends the program. */
+void WaitForEnd() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  int signal = 0;
+  sigwait(&signals, &signal);
+}
+
+/** In all threads, which inherit it: WaitForEnd takes them. */
+void BlockSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+int RunStudio(const StudioOptions& options) {
+  BlockSignals();
+  const UploadFolder uploads;
+  if (uploads.path().empty()) {
+    return ReportFailure({ErrorCode::kOutOfResource, "no folder for uploads can be made",
+                          std::filesystem::temp_directory_path().string(),
+                          "make room on the disk, or set TMPDIR"});
+  }
+  studio::Workbench workbench(MakeWorkbench(options));
+  studio::ServerOptions served;
+  served.port = options.port;
+  served.upload_folder = uploads.path();
+  studio::Server server(&workbench, FindExamples(), served);
+  if (const auto started = server.Start(); !started) {
+    return ReportFailure(started.error());
+  }
+  const std::string link = server.LinkFor(studio::Role::kOperator);
+  fmt::print("The studio is at {}\nTo look on: {}\nCtrl+C ends it.\n", link,
+             server.LinkFor(studio::Role::kViewer));
+  std::fflush(stdout);
+  if (!options.load.file.empty()) {
+    workbench.Open(options.load.file, options.load.file.filename().string());
+  }
+  if (options.opens_browser) {
+    OpenBrowser(link);
+  }
+  WaitForEnd();
+  fmt::print("\n");
+  workbench.Stop();
+  server.Stop();
+  return 0;
+}
+
+}  // namespace
+
+void AddStudio(CLI::App* app, int* status) {
+  CLI::App* command = app->add_subcommand(
+      "studio", "Assemble a product by hand in a browser: see it, take hold of it, feel the fit");
+  const auto options = std::make_shared<StudioOptions>();
+  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file to begin with")
+      ->check(CLI::ExistingFile);
+  command->add_option("--port", options->port, "To listen at on 127.0.0.1; any that is free")
+      ->check(CLI::Range(1, 65535));
+  command->add_flag("!--no-open", options->opens_browser, "Do not open a browser");
+  command->add_option("--seed", options->seed, "Seed of the parts' actual sizes")
+      ->capture_default_str();
+  command->add_option("--rate", options->rate_hz, "Of the haptic loop [Hz]")
+      ->check(CLI::Range(1000.0, 8000.0))
+      ->capture_default_str();
+  AddLoadOptions(command, &options->load);
+  command->footer(
+      "The address has a secret in it: whoever has the first link steers, whoever has the second\n"
+      "looks on. Only programs on this machine can reach it.\n"
+      "Examples:\n"
+      "  hvas studio\n"
+      "  hvas studio products/gear_pump.step\n"
+      "  hvas studio pump.step --port 8080 --no-open");
+  command->callback([options, status] { *status = RunStudio(*options); });
+}
+
+}  // namespace hvas::app

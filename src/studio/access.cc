@@ -1,0 +1,141 @@
+#include "studio/access.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <openssl/crypto.h>
+#include <openssl/rand.h>
+
+namespace hvas::studio {
+namespace {
+
+constexpr std::string_view kAlphabet =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
+bool IsPort(std::string_view text) {
+  constexpr std::size_t kMostDigits = 5;
+  return !text.empty() && text.size() <= kMostDigits &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+std::string ToLower(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+std::string_view Trim(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) {
+    text.remove_prefix(1);
+  }
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+}  // namespace
+
+const char* ToString(Role role) {
+  return role == Role::kOperator ? "operator" : "viewer";
+}
+
+std::string MakeToken() {
+  std::array<unsigned char, 32> bytes{};
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
+    throw std::runtime_error("the system gives no random numbers");
+  }
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    token += kAlphabet[byte % kAlphabet.size()];  // 64 letters: each is as likely as the others
+  }
+  return token;
+}
+
+bool IsSameSecret(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+std::optional<std::string> HostOf(std::string_view host_header) {
+  std::string_view host = host_header;
+  if (host.starts_with('[')) {
+    const std::size_t end = host.find(']');
+    if (end == std::string_view::npos) {
+      return std::nullopt;
+    }
+    const std::string_view rest = host.substr(end + 1);
+    if (!rest.empty() && !(rest.front() == ':' && IsPort(rest.substr(1)))) {
+      return std::nullopt;
+    }
+    return ToLower(host.substr(1, end - 1));
+  }
+  if (const std::size_t colon = host.find(':'); colon != std::string_view::npos) {
+    if (!IsPort(host.substr(colon + 1))) {
+      return std::nullopt;
+    }
+    host = host.substr(0, colon);
+  }
+  return host.empty() ? std::nullopt : std::optional(ToLower(host));
+}
+
+std::optional<std::string> FindCookie(std::string_view cookie_header, std::string_view name) {
+  while (!cookie_header.empty()) {
+    const std::size_t end = cookie_header.find(';');
+    const std::string_view pair = Trim(cookie_header.substr(0, end));
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos && pair.substr(0, equals) == name) {
+      return std::string(pair.substr(equals + 1));
+    }
+    cookie_header = end == std::string_view::npos ? "" : cookie_header.substr(end + 1);
+  }
+  return std::nullopt;
+}
+
+Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls)
+    : hosts_{"127.0.0.1", "localhost", "::1"}, is_tls_(is_tls) {
+  for (const std::string& name : names) {
+    hosts_.push_back(ToLower(name));
+  }
+  for (const std::string& host : hosts_) {
+    const bool is_v6 = host.find(':') != std::string::npos;
+    origins_.push_back(fmt::format("{}://{}{}{}:{}", is_tls ? "https" : "http", is_v6 ? "[" : "",
+                                   host, is_v6 ? "]" : "", port));
+  }
+}
+
+bool Access::AllowsHost(std::string_view host_header) const {
+  const std::optional<std::string> host = HostOf(host_header);
+  return host && std::find(hosts_.begin(), hosts_.end(), *host) != hosts_.end();
+}
+
+bool Access::AllowsOrigin(std::string_view origin) const {
+  return std::find(origins_.begin(), origins_.end(), origin) != origins_.end();
+}
+
+std::optional<Role> Access::RoleOfToken(std::string_view token) const {
+  // Both are compared every time.
+  const bool is_operator = IsSameSecret(token, operator_token_);
+  const bool is_viewer = IsSameSecret(token, viewer_token_);
+  return is_operator ? std::optional(Role::kOperator)
+                     : (is_viewer ? std::optional(Role::kViewer) : std::nullopt);
+}
+
+std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
+  const std::string session = FindCookie(cookie_header, kCookie).value_or("");
+  const bool is_operator = IsSameSecret(session, operator_session_);
+  const bool is_viewer = IsSameSecret(session, viewer_session_);
+  return is_operator ? std::optional(Role::kOperator)
+                     : (is_viewer ? std::optional(Role::kViewer) : std::nullopt);
+}
+
+std::string Access::SetCookie(Role role) const {
+  return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}", kCookie,
+                     role == Role::kOperator ? operator_session_ : viewer_session_,
+                     is_tls_ ? "; Secure" : "");
+}
+
+}  // namespace hvas::studio

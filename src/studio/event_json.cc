@@ -1,0 +1,109 @@
+#include "studio/event_json.h"
+
+#include "base/units.h"
+
+namespace hvas::studio {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using simulation::SimulationEvent;
+
+const char* CodeOf(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kNotFound:
+      return "not-found";
+    case ErrorCode::kUnreadable:
+      return "unreadable";
+    case ErrorCode::kUnsupported:
+      return "unsupported";
+    case ErrorCode::kInvalid:
+      return "invalid";
+    case ErrorCode::kOutOfResource:
+      return "out-of-resource";
+    case ErrorCode::kCancelled:
+      return "cancelled";
+    case ErrorCode::kInternal:
+      return "internal";
+  }
+  return "internal";
+}
+
+Json MetricsOf(const SimulationEvent& event) {
+  const simulation::HoldMetrics& metrics = event.metrics;
+  return {{"time_s", 1e-9 * static_cast<double>(event.t_ns - metrics.t_taken_ns)},
+          {"path_mm", units::ToMm(metrics.path)},
+          {"peak_true_n", metrics.peak_true},
+          {"peak_felt_n", metrics.peak_felt},
+          {"fit_true_n", metrics.fit_true},
+          {"depth_um", units::ToUm(metrics.deepest)},
+          {"insertion_mm", units::ToMm(metrics.insertion)}};
+}
+
+Json ReasonsOf(std::uint32_t actions) {
+  Json reasons = Json::array();
+  for (const haptics::GateAction action : haptics::ListNewActions(0, actions)) {
+    reasons.push_back(haptics::ToString(action));
+  }
+  return reasons;
+}
+
+}  // namespace
+
+const char* ToString(simulation::Placement placement) {
+  switch (placement) {
+    case simulation::Placement::kLoose:
+      return "loose";
+    case simulation::Placement::kHeld:
+      return "held";
+    case simulation::Placement::kPlaced:
+      return "placed";
+    case simulation::Placement::kParked:
+      return "parked";
+  }
+  return "loose";
+}
+
+Json ToJson(const Error& error) {
+  return {{"code", CodeOf(error.code)},
+          {"message", error.message},
+          {"where", error.where},
+          {"remedy", error.remedy}};
+}
+
+Json ToJson(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json ToJson(const spatial::Pose& X) {
+  return {{"p", ToJson(X.p())}, {"q", {X.q().w(), X.q().x(), X.q().y(), X.q().z()}}};
+}
+
+Json ToJson(const SimulationEvent& event) {
+  Json json{{"event", ""}, {"hand", event.hand}};
+  if (event.occurrence.is_valid()) {
+    json["occurrence"] = event.occurrence.value();
+  }
+  json["state"] = static_cast<int>(event.state);
+  switch (event.kind) {
+    case SimulationEvent::Kind::kTaken:
+      json["event"] = "taken";
+      return json;
+    case SimulationEvent::Kind::kState:
+      json["event"] = "state";
+      return json;
+    case SimulationEvent::Kind::kDropped:
+      json["event"] = "dropped";
+      json["was_seated"] = event.was_seated;
+      json["metrics"] = MetricsOf(event);
+      return json;
+    case SimulationEvent::Kind::kSafety:
+      json["event"] = "safety";
+      json["gate_actions"] = event.gate_actions;
+      json["reasons"] = ReasonsOf(event.gate_actions);
+      return json;
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace hvas::studio

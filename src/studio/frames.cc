@@ -1,0 +1,118 @@
+#include "studio/frames.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hvas::studio {
+namespace {
+
+std::array<float, 3> Pack(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+std::array<float, 4> Pack(const Quat& q) {
+  return {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
+          static_cast<float>(q.z())};
+}
+
+bool IsSame(const spatial::Pose& a, const spatial::Pose& b) {
+  return a.p() == b.p() && a.q().coeffs() == b.q().coeffs();
+}
+
+protocol::HandState MakeHand(const haptics::TickOutput& tick, std::size_t index, double peak_felt) {
+  protocol::HandState hand;
+  hand.hand = static_cast<std::uint32_t>(index);
+  hand.state = static_cast<std::uint32_t>(tick.state);
+  hand.occurrence = tick.occurrence.is_valid() ? tick.occurrence.value() : protocol::kNone;
+  hand.mate = tick.axis.mate.is_valid() ? tick.axis.mate.value() : protocol::kNone;
+  hand.gate_actions = tick.gate_actions;
+  hand.contact_count = static_cast<std::uint32_t>(tick.contact_count);
+  hand.p_WH_m = Pack(tick.X_WH.p());
+  hand.q_WH = Pack(tick.X_WH.q());
+  hand.p_WT_m = Pack(tick.X_WT.p());
+  hand.q_WT = Pack(tick.X_WT.q());
+  hand.p_WD_m = Pack(tick.X_WD.p());
+  hand.q_WD = Pack(tick.X_WD.q());
+  hand.f_felt_W_n = Pack(tick.F_H_W.f);
+  hand.t_felt_W_nm = Pack(tick.F_H_W.t);
+  hand.f_true_W_n = Pack(tick.F_true_W.f);
+  hand.t_true_W_nm = Pack(tick.F_true_W.t);
+  hand.peak_felt_n = static_cast<float>(peak_felt);
+  hand.axial_true_n = static_cast<float>(tick.axial_true);
+  hand.axial_felt_n = static_cast<float>(tick.axial_felt);
+  hand.depth_m = static_cast<float>(tick.axis.depth);
+  hand.depth_goal_m = static_cast<float>(tick.axis.depth_goal);
+  hand.tilt_rad = static_cast<float>(tick.axis.tilt);
+  hand.offset_m = static_cast<float>(tick.axis.offset);
+  hand.penetration_m = std::isfinite(tick.deepest) ? static_cast<float>(-tick.deepest) : 0;
+  hand.p_WAxis_m = Pack(tick.axis.p_WQ);
+  hand.axis_W = Pack(tick.axis.axis_W);
+  return hand;
+}
+
+std::vector<protocol::BodyPose> ListMoved(const simulation::Frame& frame,
+                                          std::vector<spatial::Pose>* told) {
+  std::vector<protocol::BodyPose> moved;
+  const bool is_first = told->size() != frame.X_WB.size();
+  for (std::size_t i = 0; i < frame.X_WB.size(); ++i) {
+    if (is_first || !IsSame(frame.X_WB[i], (*told)[i])) {
+      moved.push_back(
+          {static_cast<std::uint32_t>(i), Pack(frame.X_WB[i].p()), Pack(frame.X_WB[i].q())});
+    }
+  }
+  *told = frame.X_WB;
+  return moved;
+}
+
+}  // namespace
+
+std::string MakeFrames(const LiveFrame& live, std::uint32_t seq, std::vector<spatial::Pose>* told) {
+  const simulation::Frame& frame = live.frame;
+  const std::vector<protocol::BodyPose> moved = ListMoved(frame, told);
+  std::vector<protocol::HandState> hands;
+  std::vector<protocol::ContactPoint> contacts;
+  for (std::size_t i = 0; i < frame.ticks.size(); ++i) {
+    const haptics::TickOutput& tick = frame.ticks[i];
+    hands.push_back(MakeHand(tick, i, live.peak_felt));
+    if (tick.contact_count > 0) {
+      contacts.push_back(
+          {static_cast<std::uint32_t>(i),
+           tick.contact_body.is_valid() ? tick.contact_body.value() : protocol::kNone,
+           Pack(tick.p_WC), Pack(tick.f_C_W)});
+    }
+  }
+  std::string bytes;
+  AppendFrame<protocol::BodyPose>(moved, seq, live.epoch, frame.t_ns, &bytes);
+  AppendFrame<protocol::HandState>(hands, seq, live.epoch, frame.t_ns, &bytes);
+  AppendFrame<protocol::ContactPoint>(contacts, seq, live.epoch, frame.t_ns, &bytes);
+  return bytes;
+}
+
+spatial::Pose PoseOf(const protocol::HandInput& input) {
+  const auto& p = input.p_WH_m;
+  const auto& q = input.q_WH;
+  const Quat q_WH(static_cast<double>(q[0]), static_cast<double>(q[1]), static_cast<double>(q[2]),
+                  static_cast<double>(q[3]));
+  return {q_WH.normalized(),
+          Vec3(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]))};
+}
+
+Json MakeStatus(const simulation::LoopStatus& status) {
+  const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
+  constexpr double kP99 = 0.99;
+  std::string scheduling = status.is_fifo ? "real-time" : "not real-time";
+  return {{"event", "status"},
+          {"tick_hz", static_cast<double>(status.compute.count())},
+          {"compute_p99_us", us(status.compute.Quantile(kP99))},
+          {"compute_max_us", us(status.compute.max_ns())},
+          {"wake_up_p99_us", us(status.wake_up.Quantile(kP99))},
+          {"late_ticks", status.late_wake_ups},
+          {"overruns", status.overruns},
+          {"effort_level", status.effort_level},
+          {"scheduling", scheduling},
+          {"is_memory_locked", status.is_memory_locked},
+          {"physics_hz", 1e9 / static_cast<double>(simulation::Simulation::kPhysicsStepNs)},
+          {"device", "pointer"}};
+}
+
+}  // namespace hvas::studio

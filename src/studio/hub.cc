@@ -1,0 +1,205 @@
+#include "studio/hub.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/clock.h"
+#include "studio/event_json.h"
+#include "studio/frames.h"
+#include "studio/json_fields.h"
+
+namespace hvas::studio {
+
+Hub::Hub(Workbench* workbench, std::vector<Example> examples)
+    : workbench_(workbench), examples_(std::move(examples)), status_({{"event", "status"}}) {}
+
+Result<std::string> Hub::Join(Role role, ClientLink* link) {
+  if (clients_.size() >= kMostClients) {
+    return Fail(ErrorCode::kOutOfResource,
+                fmt::format("{} clients are connected already", kMostClients), "",
+                "close a window of the studio");
+  }
+  const std::string id = fmt::format("c{}", ++last_id_);
+  Client& client = clients_[id];
+  client.role = role;
+  client.link = link;
+  if (role == Role::kOperator && lease_.empty()) {
+    lease_ = id;
+  }
+  link->SendText(MakeHello(id, client).dump());
+  link->SendText(workbench_->history().dump());
+  TellOfRoles();
+  return id;
+}
+
+void Hub::Leave(const std::string& id) {
+  clients_.erase(id);
+  if (lease_ == id) {
+    // The hand closes on nothing any more: the part stays where it is, by PointerOperator's
+    // silence.
+    GiveLease("");
+  }
+  TellOfRoles();
+}
+
+Json Hub::MakeHello(const std::string& id, const Client& client) const {
+  Json examples = Json::array();
+  for (const Example& example : examples_) {
+    examples.push_back({{"id", example.id}, {"name", example.name}, {"about", example.about}});
+  }
+  return {{"event", "hello"},
+          {"version", protocol::kVersion},
+          {"role", ToString(client.role)},
+          {"client", id},
+          {"has_lease", lease_ == id},
+          {"examples", std::move(examples)},
+          {"forces_off", workbench_->forces_off()},
+          {"has_scene", workbench_->scene() != nullptr},
+          {"demo", workbench_->is_demo()}};
+}
+
+void Hub::Broadcast(const Json& event) {
+  const std::string text = event.dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (auto& [id, client] : clients_) {
+    client.link->SendText(text);
+  }
+}
+
+Json Hub::MakeRoles() const {
+  Json clients = Json::array();
+  for (const auto& [id, client] : clients_) {
+    clients.push_back({{"id", id}, {"role", ToString(client.role)}, {"has_lease", lease_ == id}});
+  }
+  return {{"event", "roles"}, {"clients", std::move(clients)}};
+}
+
+void Hub::TellOfRoles() {
+  Broadcast(MakeRoles());
+}
+
+void Hub::GiveLease(const std::string& id) {
+  lease_ = id;
+  TellOfRoles();
+}
+
+bool Hub::MaySend(Client* client, std::int64_t now_ns) const {
+  const double elapsed = 1e-9 * static_cast<double>(now_ns - client->last_command_ns);
+  client->last_command_ns = now_ns;
+  client->allowance =
+      std::min(kCommandBurst, client->allowance + kCommandsPerSecond * std::max(0.0, elapsed));
+  if (client->allowance < 1) {
+    return false;
+  }
+  client->allowance -= 1;
+  return true;
+}
+
+void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_ns) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) {
+    return;
+  }
+  ClientLink* link = found->second.link;
+  const Json command = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  Json reply{{"id", nullptr}, {"ok", false}};
+  if (command.is_object() && command.contains("id") && command["id"].is_number_integer()) {
+    reply["id"] = command["id"];
+  }
+  Result<Json> result = Json(nullptr);
+  if (!MaySend(&found->second, now_ns)) {
+    result = Fail(ErrorCode::kOutOfResource, "too many commands", "", "send fewer a second");
+  } else {
+    result = Execute(id, command);
+  }
+  reply["ok"] = result.has_value();
+  if (result) {
+    reply["result"] = std::move(*result);
+  } else {
+    reply["error"] = ToJson(result.error());
+  }
+  link->SendText(reply.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Result<Json> Hub::Execute(const std::string& id, const Json& command) {
+  const auto name = TextAt(command, "command");
+  if (!name) {
+    return Unexpected(name.error());
+  }
+  const auto found = Commands().find(*name);
+  if (found == Commands().end()) {
+    return Fail(ErrorCode::kNotFound, "there is no such command", *name, "load the page again");
+  }
+  const Caller caller{id, clients_[id].role, lease_ == id};
+  if (found->second.right == Right::kLease && !caller.has_lease) {
+    return Fail(
+        ErrorCode::kInvalid, "only whoever steers can do this", *name,
+        caller.role == Role::kOperator ? "ask for the lease first" : "this link is for looking on");
+  }
+  return (this->*found->second.handler)(caller, command);
+}
+
+void Hub::OnBinary(const std::string& id, std::string_view bytes) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) {
+    return;
+  }
+  const auto frames = ReadClientFrames(bytes);
+  if (!frames) {
+    found->second.link->Close(frames.error().message);
+    return;
+  }
+  Client& client = found->second;
+  for (const protocol::Acknowledgement& credit : frames->credits) {
+    client.seen_seq = std::max(client.seen_seq, std::min(credit.seq, client.sent_seq));
+  }
+  if (lease_ == id && !frames->inputs.empty()) {
+    constexpr std::uint32_t kGrip = 1;
+    const protocol::HandInput& input = frames->inputs.back();
+    workbench_->Move(PoseOf(input), (input.buttons & kGrip) != 0);
+  }
+  PublishFrame();
+}
+
+void Hub::PublishFrame() {
+  if (workbench_->scene() == nullptr) {
+    return;
+  }
+  const LiveFrame frame = workbench_->frame();
+  for (auto& [id, client] : clients_) {
+    if (client.serial != frame.serial && client.sent_seq - client.seen_seq < kMostUnseen) {
+      client.serial = frame.serial;
+      SendFrame(frame, &client);
+    }
+  }
+}
+
+void Hub::SendFrame(const LiveFrame& frame, Client* client) {
+  if (client->epoch != frame.epoch) {
+    client->epoch = frame.epoch;
+    client->X_WB.clear();
+  }
+  std::string bytes = MakeFrames(frame, client->sent_seq + 1, &client->X_WB);
+  if (bytes.empty()) {
+    return;
+  }
+  ++client->sent_seq;
+  client->link->SendFrames(std::move(bytes));
+}
+
+void Hub::PublishStatus() {
+  if (const auto status = workbench_->TakeStatus()) {
+    status_ = MakeStatus(*status);
+  }
+  status_["clients"] = clients_.size();
+  Broadcast(status_);
+}
+
+std::string Hub::AddUpload(const std::filesystem::path& file, const std::string& name) {
+  const std::string id = MakeToken();
+  uploads_[id] = {file, name};
+  return id;
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studio/access.h"
+#include "studio/frame_codec.h"
+#include "studio/workbench.h"
+
+namespace hvas::studio {
+
+/** The way to one client. */
+class ClientLink {
+ public:
+  ClientLink() = default;
+  ClientLink(const ClientLink&) = delete;
+  ClientLink& operator=(const ClientLink&) = delete;
+  virtual ~ClientLink() = default;
+  virtual void SendText(std::string text) = 0;
+  virtual void SendFrames(std::string bytes) = 0;
+  virtual void Close(const std::string& reason) = 0;
+};
+
+/** A product that can be opened without a file of one's own. */
+struct Example {
+  std::string id, name, about;
+  std::filesystem::path file;
+};
+
+/** Everybody who looks at one workbench: who may steer, what each is told, what each has seen. All
+ functions belong to one thread. */
+class Hub {
+ public:
+  static constexpr std::size_t kMostClients = 8;
+  static constexpr std::size_t kMostUnseen = 2;     ///< Frame messages that wait for their Credit.
+  static constexpr double kCommandsPerSecond = 50;  ///< Of one client, for long.
+  static constexpr double kCommandBurst = 100;
+
+  Hub(Workbench* workbench, std::vector<Example> examples);
+
+  /** Nothing when the house is full. @returns the client's id. */
+  [[nodiscard]] Result<std::string> Join(Role role, ClientLink* link);
+  void Leave(const std::string& id);
+
+  /** The server ends: nobody is told of anything any more. */
+  void Forget() { clients_.clear(); }
+
+  /** @param now_ns  By MonotonicNs(). */
+  void OnText(const std::string& id, std::string_view text, std::int64_t now_ns);
+  void OnBinary(const std::string& id, std::string_view bytes);
+
+  /** Tells everybody. */
+  void Broadcast(const Json& event);
+
+  /** There is a new frame: sends it to those who have seen the one before. */
+  void PublishFrame();
+
+  /** Once a second. */
+  void PublishStatus();
+
+  /** A file that was sent is here; it is opened by the id. */
+  [[nodiscard]] std::string AddUpload(const std::filesystem::path& file, const std::string& name);
+
+  [[nodiscard]] std::size_t client_count() const { return clients_.size(); }
+
+ private:
+  struct Client {
+    Role role{Role::kViewer};
+    ClientLink* link{nullptr};
+    std::uint32_t sent_seq{0};
+    std::uint32_t seen_seq{0};
+    std::uint32_t epoch{0};
+    std::uint64_t serial{0};          ///< Of the frame that it was sent last.
+    std::vector<spatial::Pose> X_WB;  ///< As it was told last.
+    double allowance{kCommandBurst};
+    std::int64_t last_command_ns{0};
+  };
+
+  struct Upload {
+    std::filesystem::path file;
+    std::string name;
+  };
+
+  struct Caller {
+    std::string id;
+    Role role;
+    bool has_lease;
+  };
+
+  using Handler = Result<Json> (Hub::*)(const Caller& caller, const Json& command);
+  enum class Right { kAnybody, kLease };
+
+  struct Command {
+    Right right;
+    Handler handler;
+  };
+
+  static const std::map<std::string, Command, std::less<>>& Commands();
+  [[nodiscard]] Result<Json> Execute(const std::string& id, const Json& command);
+  Result<Json> DoOpen(const Caller& caller, const Json& command);
+  Result<Json> DoCancel(const Caller& caller, const Json& command);
+  Result<Json> DoTake(const Caller& caller, const Json& command);
+  Result<Json> DoRelease(const Caller& caller, const Json& command);
+  Result<Json> DoForces(const Caller& caller, const Json& command);
+  Result<Json> DoDemo(const Caller& caller, const Json& command);
+  Result<Json> DoNext(const Caller& caller, const Json& command);
+  Result<Json> DoUndo(const Caller& caller, const Json& command);
+  Result<Json> DoRedo(const Caller& caller, const Json& command);
+  Result<Json> DoReset(const Caller& caller, const Json& command);
+  Result<Json> DoAssignFit(const Caller& caller, const Json& command);
+  Result<Json> DoAddMate(const Caller& caller, const Json& command);
+  Result<Json> DoRemoveMate(const Caller& caller, const Json& command);
+  Result<Json> DoMeasure(const Caller& caller, const Json& command);
+  Result<Json> DoLease(const Caller& caller, const Json& command);
+  Result<Json> DoStatus(const Caller& caller, const Json& command);
+
+  [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
+  [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
+  void GiveLease(const std::string& id);
+  void TellOfRoles();
+  [[nodiscard]] Json MakeRoles() const;
+  void SendFrame(const LiveFrame& frame, Client* client);
+
+  Workbench* workbench_;
+  std::vector<Example> examples_;
+  std::map<std::string, Client> clients_;
+  std::map<std::string, Upload> uploads_;
+  std::string lease_;  ///< Of the client that steers; empty: nobody.
+  std::uint32_t last_id_{0};
+  Json status_;
+};
+
+}  // namespace hvas::studio

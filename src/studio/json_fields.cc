@@ -1,0 +1,66 @@
+#include "studio/json_fields.h"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace hvas::studio {
+namespace {
+
+constexpr std::size_t kLongestText = 1000;
+
+Unexpected Wrong(const char* name, const char* wanted) {
+  return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" must be {}", name, wanted), "command",
+              "load the page again");
+}
+
+const Json* FieldOf(const Json& object, const char* name) {
+  if (!object.is_object()) {
+    return nullptr;
+  }
+  const auto found = object.find(name);
+  return found != object.end() ? &*found : nullptr;
+}
+
+}  // namespace
+
+Result<std::string> TextAt(const Json& object, const char* name) {
+  const Json* field = FieldOf(object, name);
+  if (field == nullptr || !field->is_string() ||
+      field->get_ref<const std::string&>().size() > kLongestText) {
+    return Wrong(name, "a text");
+  }
+  return field->get<std::string>();
+}
+
+Result<bool> FlagAt(const Json& object, const char* name) {
+  const Json* field = FieldOf(object, name);
+  if (field == nullptr || !field->is_boolean()) {
+    return Wrong(name, "true or false");
+  }
+  return field->get<bool>();
+}
+
+Result<std::uint32_t> IndexAt(const Json& object, const char* name) {
+  const Json* field = FieldOf(object, name);
+  if (field == nullptr || !field->is_number_unsigned() ||
+      field->get<std::uint64_t>() >= std::numeric_limits<std::uint32_t>::max()) {
+    return Wrong(name, "an index");
+  }
+  return field->get<std::uint32_t>();
+}
+
+Result<PickedFace> FaceAt(const Json& object, const char* name) {
+  const Json* field = FieldOf(object, name);
+  if (field == nullptr) {
+    return Wrong(name, "a face, as {\"occurrence\": 0, \"face\": 3}");
+  }
+  const auto occurrence = IndexAt(*field, "occurrence");
+  const auto face = IndexAt(*field, "face");
+  if (!occurrence || !face) {
+    return Wrong(name, "a face, as {\"occurrence\": 0, \"face\": 3}");
+  }
+  return PickedFace{product::OccurrenceId(*occurrence), product::FaceId(*face)};
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "studio/measure.h"
+
+namespace hvas::studio {
+
+/** Fields of a command. Errors (kInvalid) name the field and what it should be. */
+[[nodiscard]] Result<std::string> TextAt(const Json& object, const char* name);
+[[nodiscard]] Result<bool> FlagAt(const Json& object, const char* name);
+[[nodiscard]] Result<std::uint32_t> IndexAt(const Json& object, const char* name);
+[[nodiscard]] Result<PickedFace> FaceAt(const Json& object, const char* name);
+
+}  // namespace hvas::studio

@@ -1,0 +1,63 @@
+#include "studio/pointer.h"
+
+#include <algorithm>
+
+#include "base/clock.h"
+
+namespace hvas::studio {
+namespace {
+
+constexpr double kTime = 0.012;     // [s] of each of two stages: 60 inputs a second make no steps
+constexpr double kMostSpeed = 0.8;  // [m/s]
+constexpr double kMostTurn = 6;     // [rad/s]
+
+Vec3 Limit(const Vec3& v, double most) noexcept {
+  const double norm = v.norm();
+  return norm > most ? Vec3(v * (most / norm)) : v;
+}
+
+/** A step of a first-order lag, in place and in turning. */
+spatial::Twist Approach(const spatial::Pose& goal, double dt, spatial::Pose* X) noexcept {
+  const double rate = 1 / std::max(dt, kTime);
+  const spatial::Twist V{Limit(rate * spatial::RotationBetween(X->q(), goal.q()), kMostTurn),
+                         Limit(rate * (goal.p() - X->p()), kMostSpeed)};
+  const Vec3 turn = dt * V.w;
+  *X = {(spatial::RotationFromVector(turn) * X->q()).normalized(), X->p() + dt * V.v};
+  return V;
+}
+
+}  // namespace
+
+PointerOperator::PointerOperator(const spatial::Pose& X_WH)
+    : inputs_(PointerInput{0, X_WH, false}), X_WH_(X_WH), X_WS_(X_WH) {}
+
+void PointerOperator::Follow(const spatial::Pose& X_WH, double dt) noexcept {
+  (void)Approach(X_WH, dt, &X_WS_);
+  V_H_ = Approach(X_WS_, dt, &X_WH_);
+}
+
+device::DeviceState PointerOperator::Step(const simulation::OperatorInput& input) noexcept {
+  inputs_.Update();
+  const PointerInput& wanted = inputs_.value();
+  const std::int64_t age_ns = wanted.t_ns > 0 ? MonotonicNs() - wanted.t_ns : 0;
+  device::DeviceState state;
+  state.client_age_ns = std::max<std::int64_t>(0, age_ns);
+  state.is_gripping = wanted.is_gripping;
+  if (!input.sees_part) {
+    // An empty hand is where it is wanted at once: nothing is in it that could be torn along.
+    X_WH_ = wanted.X_WH;
+    X_WS_ = wanted.X_WH;
+    V_H_ = {};
+  } else if (age_ns < kSilentNs) {
+    Follow(wanted.X_WH, input.dt);
+  } else {
+    // Nobody steers any more: the part stays where it is.
+    Follow(X_WH_, input.dt);
+  }
+  state.X_DH = haptics::MapPoseToDevice(input.workspace, X_WH_);
+  const Quat q_DW = input.workspace.X_WD.q().conjugate();
+  state.V_DH = {q_DW * V_H_.w, q_DW * V_H_.v / input.workspace.scale};
+  return state;
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,204 @@
+#include "studio/scene_json.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "fits/iso286.h"
+#include "product/names.h"
+#include "studio/event_json.h"
+
+namespace hvas::studio {
+namespace {
+
+using product::OccurrenceId;
+using simulation::Model;
+using simulation::SequenceStep;
+
+std::string HexOf(const product::Color& color) {
+  const auto byte = [](float channel) {
+    return std::lround(255 * std::min(1.0F, std::max(0.0F, channel)));
+  };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(color.r), byte(color.g), byte(color.b));
+}
+
+const char* NameOf(SequenceStep::Kind kind) {
+  switch (kind) {
+    case SequenceStep::Kind::kBase:
+      return "base";
+    case SequenceStep::Kind::kInsert:
+      return "insert";
+    case SequenceStep::Kind::kPark:
+      return "park";
+  }
+  return "insert";
+}
+
+Json IdsOf(const std::vector<OccurrenceId>& ids) {
+  Json json = Json::array();
+  for (const OccurrenceId id : ids) {
+    json.push_back(id.value());
+  }
+  return json;
+}
+
+Json SubassembliesOf(const product::Product& product) {
+  Json all = Json::array();
+  for (const product::Subassembly& subassembly : product.subassemblies) {
+    Json children = Json::array();
+    for (const product::SubassemblyId child : subassembly.subassemblies) {
+      children.push_back(child.value());
+    }
+    all.push_back({{"id", subassembly.id.value()},
+                   {"parent", subassembly.parent.is_valid() ? Json(subassembly.parent.value())
+                                                            : Json(nullptr)},
+                   {"name", subassembly.name},
+                   {"subassemblies", std::move(children)},
+                   {"occurrences", IdsOf(subassembly.occurrences)}});
+  }
+  return all;
+}
+
+Json OccurrencesOf(const Model& model, const LiveState& state) {
+  Json all = Json::array();
+  for (const product::Occurrence& occurrence : model.product->occurrences) {
+    const product::Part& part = model.product->part_of(occurrence.id);
+    const simulation::Body& body = model.bodies[occurrence.id.index()];
+    const auto& steps = model.sequence.steps;
+    const bool is_base = std::any_of(steps.begin(), steps.end(), [&](const SequenceStep& step) {
+      return step.kind == SequenceStep::Kind::kBase && step.occurrence == occurrence.id;
+    });
+    all.push_back(
+        {{"id", occurrence.id.value()},
+         {"name", occurrence.name},
+         {"path", occurrence.path},
+         {"parent", occurrence.parent.value()},
+         {"part", occurrence.part.value()},
+         {"color", HexOf(part.color)},
+         {"placement", ToString(state.parts[occurrence.id.index()].placement)},
+         {"start", ToJson(body.X_WB_start)},
+         {"goal", ToJson(body.X_WB_goal)},
+         {"mass_kg", body.mass.mass},
+         {"material", part.material.name.empty() ? part.material.standard : part.material.name},
+         {"p_BoBcm_m", ToJson(body.mass.p_BoBcm_B)},
+         {"is_base", is_base}});
+  }
+  return all;
+}
+
+/** The fit with its limits by ISO 286 and the size that was drawn for it; diametral. */
+Json FitOf(const Model& model, const product::Mate& mate) {
+  if (!mate.fit) {
+    return nullptr;
+  }
+  const product::Fit& fit = *mate.fit;
+  Json json{{"code", fit.code},
+            {"kind", ToString(fit.kind)},
+            {"diameter_mm", units::ToMm(fit.nominal_diameter)},
+            {"clearance_min_um", nullptr},
+            {"clearance_max_um", nullptr},
+            {"clearance_actual_um", nullptr},
+            {"is_proposed", fit.is_proposed},
+            {"reason", fit.reason}};
+  if (const auto code = fits::ParseFit(fit.code)) {
+    if (const auto limits = fits::CalcFitLimits(*code, fit.nominal_diameter)) {
+      json["clearance_min_um"] = units::ToUm(limits->min_clearance);
+      json["clearance_max_um"] = units::ToUm(limits->max_clearance);
+    }
+  }
+  if (const auto& force = model.mates[mate.id.index()].fit; force != nullptr) {
+    constexpr double kMouth = 0;  // where the roughness counts least
+    json["clearance_actual_um"] = units::ToUm(2 * force->CalcClearance(kMouth));
+  }
+  return json;
+}
+
+Json MatesOf(const Model& model) {
+  const product::Product& product = *model.product;
+  Json all = Json::array();
+  for (const product::Mate& mate : product.mates) {
+    const auto faces_of = [&](const product::Connector& side) {
+      Json faces = Json::array();
+      for (const product::FaceId face :
+           product.part_of(side.occurrence).features[side.feature.index()].faces) {
+        faces.push_back(face.value());
+      }
+      return faces;
+    };
+    const spatial::Pose X_WM = model.bodies[mate.a.occurrence.index()].X_WB_goal * mate.a.X_BM;
+    all.push_back({{"id", mate.id.value()},
+                   {"key", mate.key},
+                   {"kind", ToString(mate.kind)},
+                   {"a", mate.a.occurrence.value()},
+                   {"b", mate.b.occurrence.value()},
+                   {"faces_a", faces_of(mate.a)},
+                   {"faces_b", faces_of(mate.b)},
+                   {"origin", ToString(mate.origin)},
+                   {"p_m", ToJson(X_WM.p())},
+                   {"axis", ToJson(Vec3(X_WM.q() * Vec3::UnitZ()))},
+                   {"confidence", mate.confidence},
+                   {"evidence", mate.evidence},
+                   {"fit", FitOf(model, mate)}});
+  }
+  return all;
+}
+
+Json StepsOf(const Model& model) {
+  Json all = Json::array();
+  for (const SequenceStep& step : model.sequence.steps) {
+    all.push_back({{"kind", NameOf(step.kind)},
+                   {"occurrence", step.occurrence.value()},
+                   {"members", IdsOf(step.members)},
+                   {"way_in", ToJson(Vec3(-step.extraction_W))},
+                   {"distance_m", step.engage_distance}});
+  }
+  return all;
+}
+
+Json DiagnosticsOf(const Diagnostics& diagnostics) {
+  Json all = Json::array();
+  for (const Diagnostic& item : diagnostics.items()) {
+    all.push_back({{"severity", ToString(item.severity)},
+                   {"code", item.code},
+                   {"entity", item.entity},
+                   {"message", item.message},
+                   {"remedy", item.remedy}});
+  }
+  return all;
+}
+
+std::size_t CountTriangles(const product::Product& product) {
+  std::size_t count = 0;
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    const product::Part& part = product.part_of(occurrence.id);
+    count += part.display_mesh.triangles.empty() ? part.mesh.triangles.size()
+                                                 : part.display_mesh.triangles.size();
+  }
+  return count;
+}
+
+}  // namespace
+
+Json MakeSceneJson(const OpenScene& scene, const LiveState& state) {
+  const Model& model = *scene.model;
+  const product::Product& product = *model.product;
+  return {{"epoch", scene.epoch},
+          {"name", product.name},
+          {"source", product.source},
+          {"glb", fmt::format("/api/model/{}.glb", scene.glb_hash)},
+          {"triangles", CountTriangles(product)},
+          {"table_z_m", model.table_z},
+          {"centre_m", ToJson(model.centre_W)},
+          {"radius_m", model.transfer_radius},
+          {"seed", std::to_string(model.seed)},
+          {"next_step", state.next_step},
+          {"subassemblies", SubassembliesOf(product)},
+          {"occurrences", OccurrencesOf(model, state)},
+          {"mates", MatesOf(model)},
+          {"steps", StepsOf(model)},
+          {"diagnostics", DiagnosticsOf(scene.diagnostics)}};
+}
+
+}  // namespace hvas::studio

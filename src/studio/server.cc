@@ -1,0 +1,610 @@
+// The only source that sees Boost.Beast: it takes long to compile.
+#include "studio/server.h"
+
+#include <deque>
+#include <limits>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <fmt/format.h>
+
+#include "base/clock.h"
+#include "studio/assets.h"
+#include "studio/event_json.h"
+#include "studio/scene_json.h"
+
+namespace hvas::studio {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = asio::ip::tcp;
+using beast::error_code;
+
+constexpr std::size_t kMostHeader = 8 << 10;
+constexpr std::size_t kMostBody = 4 << 10;      // of what is no upload
+constexpr std::size_t kMostMessage = 64 << 10;  // to the server
+constexpr std::size_t kMostQueued = 16 << 20;   // of text to a client that does not read
+constexpr std::chrono::seconds kIdle(30);
+constexpr std::chrono::seconds kUploadTime(300);
+
+constexpr std::string_view kContentSecurity =
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' "
+    "data: blob:; connect-src 'self'; worker-src 'self'; font-src 'self'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'";
+
+std::string_view ToView(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+beast::string_view ToBeast(std::string_view text) {
+  return {text.data(), text.size()};
+}
+
+template <typename Fields>
+std::string_view FieldOf(const Fields& fields, http::field name) {
+  return ToView(fields[name]);
+}
+
+/** All that the sessions share; one thread's. */
+struct Shared {
+  Shared(Workbench* bench, std::vector<Example> examples, const ServerOptions& given)
+      : workbench(bench), hub(bench, std::move(examples)), options(given) {}
+
+  Workbench* workbench;
+  Hub hub;
+  ServerOptions options;
+  std::unique_ptr<Access> access;
+  std::uint32_t next_upload{0};
+};
+
+/** A client's WebSocket. Text is kept until it is sent; frames are few, by the hub's credit. */
+class SocketSession final : public ClientLink, public std::enable_shared_from_this<SocketSession> {
+ public:
+  SocketSession(beast::tcp_stream stream, std::shared_ptr<Shared> shared, Role role)
+      : socket_(std::move(stream)), shared_(std::move(shared)), role_(role) {}
+
+  ~SocketSession() override { Leave(); }
+
+  template <typename Request>
+  void Run(const Request& request) {
+    socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    socket_.read_message_max(kMostMessage);
+    socket_.auto_fragment(false);
+    socket_.async_accept(request, [self = shared_from_this()](error_code error) {
+      if (!error) {
+        self->Enter();
+      }
+    });
+  }
+
+  void SendText(std::string text) override {
+    if (queued_ + text.size() > kMostQueued) {
+      Close("it does not read what it is sent");
+      return;
+    }
+    Push({std::move(text), true});
+  }
+
+  void SendFrames(std::string bytes) override { Push({std::move(bytes), false}); }
+
+  void Close(const std::string& reason) override {
+    if (std::exchange(is_closing_, true)) {
+      return;
+    }
+    constexpr std::size_t kLongestReason = 120;
+    const websocket::close_reason why(websocket::close_code::policy_error,
+                                      ToBeast(reason.substr(0, kLongestReason)));
+    socket_.async_close(why, [self = shared_from_this()](error_code) {});
+  }
+
+ private:
+  struct Message {
+    std::string bytes;
+    bool is_text;
+  };
+
+  void Enter() {
+    auto joined = shared_->hub.Join(role_, this);
+    if (!joined) {
+      Close(joined.error().message);
+      return;
+    }
+    id_ = std::move(*joined);
+    Read();
+  }
+
+  void Leave() {
+    if (!id_.empty()) {
+      shared_->hub.Leave(std::exchange(id_, ""));
+    }
+  }
+
+  void Read() {
+    socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) {
+        self->Leave();
+        return;
+      }
+      const std::string message = beast::buffers_to_string(self->buffer_.data());
+      self->buffer_.consume(self->buffer_.size());
+      if (self->socket_.got_text()) {
+        self->shared_->hub.OnText(self->id_, message, MonotonicNs());
+      } else {
+        self->shared_->hub.OnBinary(self->id_, message);
+      }
+      if (!self->is_closing_) {
+        self->Read();
+      }
+    });
+  }
+
+  void Push(Message message) {
+    if (is_closing_) {
+      return;
+    }
+    queued_ += message.bytes.size();
+    queue_.push_back(std::move(message));
+    if (queue_.size() == 1) {
+      Write();
+    }
+  }
+
+  void Write() {
+    const Message& message = queue_.front();
+    socket_.text(message.is_text);
+    socket_.async_write(asio::buffer(message.bytes),
+                        [self = shared_from_this()](error_code error, std::size_t) {
+                          if (error) {
+                            self->Leave();
+                            self->queue_.clear();
+                            return;
+                          }
+                          self->queued_ -= self->queue_.front().bytes.size();
+                          self->queue_.pop_front();
+                          if (!self->queue_.empty()) {
+                            self->Write();
+                          }
+                        });
+  }
+
+  websocket::stream<beast::tcp_stream> socket_;
+  std::shared_ptr<Shared> shared_;
+  Role role_;
+  std::string id_;
+  beast::flat_buffer buffer_;
+  std::deque<Message> queue_;
+  std::size_t queued_{0};
+  bool is_closing_{false};
+};
+
+/** One connection's requests, one after the other. */
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  HttpSession(tcp::socket socket, std::shared_ptr<Shared> shared)
+      : stream_(std::move(socket)), shared_(std::move(shared)) {}
+
+  void Run() {
+    error_code ignored;
+    stream_.socket().set_option(tcp::no_delay(true), ignored);
+    ReadHeader();
+  }
+
+ private:
+  using Header = http::request_parser<http::empty_body>;
+
+  void ReadHeader() {
+    header_.emplace();
+    header_->header_limit(kMostHeader);
+    header_->body_limit(std::numeric_limits<std::uint64_t>::max());  // each route has its own
+    stream_.expires_after(kIdle);
+    http::async_read_header(
+        stream_, buffer_, *header_, [self = shared_from_this()](error_code error, std::size_t) {
+          if (!error) {
+            self->Route();
+          } else if (error == http::error::header_limit) {
+            self->Refuse(http::status::request_header_fields_too_large,
+                         {ErrorCode::kInvalid, "the header is too long", "", ""});
+          }
+        });
+  }
+
+  /** Who may not come in at all; then what is asked for. */
+  void Route() {
+    const auto& request = header_->get();
+    const std::string_view origin = FieldOf(request, http::field::origin);
+    const Access& access = *shared_->access;
+    if (!access.AllowsHost(FieldOf(request, http::field::host))) {
+      return Refuse(http::status::forbidden,
+                    {ErrorCode::kInvalid, "this server does not answer to that host name", "Host",
+                     "open the address that it printed"});
+    }
+    const bool is_change = request.method() != http::verb::get;
+    const bool is_upgrade = websocket::is_upgrade(request);
+    if ((is_change || is_upgrade || !origin.empty()) && !access.AllowsOrigin(origin)) {
+      return Refuse(http::status::forbidden,
+                    {ErrorCode::kInvalid, "a page from elsewhere may not speak with this server",
+                     "Origin", "open the address that it printed"});
+    }
+    const std::string_view target = ToView(request.target());
+    const std::string_view path = target.substr(0, target.find('?'));
+    if (request.method() == http::verb::post && path == "/api/session") {
+      return ReadToken();
+    }
+    if (request.method() == http::verb::get && !path.starts_with("/api/") && path != "/ws") {
+      return SendAsset(path);
+    }
+    const auto role = access.RoleOfCookie(FieldOf(request, http::field::cookie));
+    if (!role) {
+      return Refuse(http::status::unauthorized,
+                    {ErrorCode::kInvalid, "nobody knows you here", "",
+                     "open the link that the program printed, with its token"});
+    }
+    RouteKnown(*role, path, is_upgrade);
+  }
+
+  void RouteKnown(Role role, std::string_view path, bool is_upgrade) {
+    constexpr std::string_view kModel = "/api/model/";
+    const http::verb method = header_->get().method();
+    if (path == "/ws" && is_upgrade) {
+      stream_.expires_never();
+      std::make_shared<SocketSession>(std::move(stream_), shared_, role)->Run(header_->get());
+    } else if (path == "/api/scene" && method == http::verb::get) {
+      SendScene();
+    } else if (path.starts_with(kModel) && method == http::verb::get) {
+      SendModel(path.substr(kModel.size()));
+    } else if (path == "/api/upload" && method == http::verb::post) {
+      ReadUpload(role);
+    } else {
+      Refuse(http::status::not_found,
+             {ErrorCode::kNotFound, "there is nothing here", std::string(path), ""});
+    }
+  }
+
+  /** Whether a body is as long as is said beforehand, and that no longer than this; if not, says
+   so. One that comes in chunks is counted by its parser. */
+  bool IsShort(std::uint64_t most) {
+    const auto length = header_->content_length();
+    if (length && *length > most) {
+      RefuseBody(http::error::body_limit);
+      return false;
+    }
+    return true;
+  }
+
+  void ReadToken() {
+    if (!IsShort(kMostBody)) {
+      return;
+    }
+    auto parser = std::make_shared<http::request_parser<http::string_body>>(std::move(*header_));
+    parser->body_limit(kMostBody);
+    http::async_read(stream_, buffer_, *parser,
+                     [self = shared_from_this(), parser](error_code error, std::size_t) {
+                       if (error) {
+                         self->RefuseBody(error);
+                       } else {
+                         self->ExchangeToken(parser->get().body());
+                       }
+                     });
+  }
+
+  void ExchangeToken(const std::string& body) {
+    const Json json = Json::parse(body, nullptr, /*allow_exceptions=*/false);
+    const std::string token =
+        json.is_object() && json.contains("token") && json["token"].is_string()
+            ? json["token"].get<std::string>()
+            : "";
+    const auto role = shared_->access->RoleOfToken(token);
+    if (!role) {
+      return Refuse(http::status::unauthorized,
+                    {ErrorCode::kInvalid, "this token is not known", "",
+                     "open the link that the program printed; each start has another one"});
+    }
+    http::response<http::string_body> response(http::status::ok, 11);
+    response.set(http::field::set_cookie, shared_->access->SetCookie(*role));
+    response.set(http::field::content_type, "application/json");
+    response.body() = Json{{"role", ToString(*role)}}.dump();
+    Send(std::move(response));
+  }
+
+  void ReadUpload(Role role) {
+    if (role != Role::kOperator) {
+      return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for looking on",
+                                              "", "ask for a link to steer"});
+    }
+    if (!IsShort(shared_->options.most_upload)) {
+      return;
+    }
+    const std::string name = NameOfUpload(ToView(header_->get().target()));
+    const std::filesystem::path folder =
+        shared_->options.upload_folder / std::to_string(++shared_->next_upload);
+    std::error_code failed;
+    std::filesystem::create_directory(folder, failed);
+    const std::filesystem::path file = folder / name;
+    auto parser = std::make_shared<http::request_parser<http::file_body>>(std::move(*header_));
+    parser->body_limit(shared_->options.most_upload);
+    error_code error;
+    parser->get().body().open(file.c_str(), beast::file_mode::write_new, error);
+    if (failed || error) {
+      return Refuse(
+          http::status::insufficient_storage,
+          {ErrorCode::kOutOfResource, "the file cannot be kept", name, "make room on the disk"});
+    }
+    stream_.expires_after(kUploadTime);
+    http::async_read(
+        stream_, buffer_, *parser,
+        [self = shared_from_this(), parser, file, name](error_code read, std::size_t) {
+          parser->get().body().close();
+          if (read) {
+            std::error_code ignored;
+            std::filesystem::remove(file, ignored);
+            return self->RefuseBody(read);
+          }
+          self->SendJson(http::status::ok, {{"upload", self->shared_->hub.AddUpload(file, name)}});
+        });
+  }
+
+  /** Only its last part, of harmless letters, with its extension, which tells the format. */
+  static std::string NameOfUpload(std::string_view target) {
+    constexpr std::string_view kName = "name=";
+    constexpr std::size_t kLongestName = 80;
+    const std::size_t at = target.find(kName);
+    std::string_view given = at == std::string_view::npos ? "" : target.substr(at + kName.size());
+    given = given.substr(0, given.find('&'));
+    std::string name;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      char c = given[i];
+      if (c == '%' && i + 2 < given.size()) {
+        c = ' ';
+        i += 2;
+      }
+      const bool is_plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
+                            (c >= 'a' && c <= 'z') || c == '.' || c == '-';
+      name += is_plain ? c : '_';
+    }
+    name = name.size() > kLongestName ? name.substr(name.size() - kLongestName) : name;
+    return name.empty() || name.front() == '.' ? "upload" + name : name;
+  }
+
+  void RefuseBody(error_code error) {
+    if (error == http::error::body_limit) {
+      Refuse(http::status::payload_too_large,
+             {ErrorCode::kOutOfResource, "this is larger than may be sent", "",
+              "open the file with `hvas studio FILE`"});
+    } else {
+      Refuse(http::status::bad_request,
+             {ErrorCode::kInvalid, "the request broke off", "", "try again"});
+    }
+  }
+
+  void SendAsset(std::string_view path) {
+    const Asset* asset = FindAsset(path == "/" ? "/index.html" : path);
+    if (asset == nullptr) {
+      return Refuse(http::status::not_found,
+                    {ErrorCode::kNotFound, "there is nothing here", std::string(path), ""});
+    }
+    const auto& request = header_->get();
+    const std::string_view accepted = FieldOf(request, http::field::accept_encoding);
+    const bool is_brotli = accepted.find("br") != std::string_view::npos && !asset->brotli.empty();
+    const bool is_gzip = accepted.find("gzip") != std::string_view::npos && !asset->gzip.empty();
+    const std::string_view bytes =
+        is_brotli ? asset->brotli : (is_gzip ? asset->gzip : asset->plain);
+    http::response<http::span_body<const char>> response(http::status::ok, 11);
+    if (is_brotli || is_gzip) {
+      response.set(http::field::content_encoding, is_brotli ? "br" : "gzip");
+    }
+    response.set(http::field::vary, "Accept-Encoding");
+    response.set(http::field::content_type, ToBeast(asset->type));
+    SendCached(std::move(response), asset->etag, asset->is_immutable, bytes, nullptr);
+  }
+
+  void SendModel(std::string_view name) {
+    const auto scene = shared_->workbench->scene();
+    if (scene == nullptr || name != scene->glb_hash + ".glb") {
+      return Refuse(http::status::not_found, {ErrorCode::kNotFound, "this model is not open",
+                                              std::string(name), "ask for /api/scene again"});
+    }
+    http::response<http::span_body<const char>> response(http::status::ok, 11);
+    response.set(http::field::content_type, "model/gltf-binary");
+    SendCached(std::move(response), scene->glb_hash, true, *scene->glb, scene);
+  }
+
+  /** What has an ETag, once for each client. @param owner  Keeps the bytes alive; may be null. */
+  void SendCached(http::response<http::span_body<const char>> response, std::string_view etag,
+                  bool is_immutable, std::string_view bytes, std::shared_ptr<const void> owner) {
+    const std::string quoted = fmt::format("\"{}\"", etag);
+    response.set(http::field::etag, quoted);
+    response.set(http::field::cache_control,
+                 is_immutable ? "private, max-age=31536000, immutable" : "no-cache");
+    if (FieldOf(header_->get(), http::field::if_none_match) == quoted) {
+      response.result(http::status::not_modified);
+    } else {
+      response.body() = {bytes.data(), bytes.size()};
+    }
+    owner_ = std::move(owner);
+    Send(std::move(response));
+  }
+
+  void SendScene() {
+    const auto scene = shared_->workbench->scene();
+    if (scene == nullptr) {
+      return Refuse(http::status::not_found,
+                    {ErrorCode::kNotFound, "no product is open", "", "open a file or an example"});
+    }
+    const LiveState state = shared_->workbench->state();
+    if (state.parts.size() != scene->model->bodies.size()) {
+      return Refuse(http::status::service_unavailable,
+                    {ErrorCode::kInternal, "the product is just being changed", "", "ask again"});
+    }
+    SendJson(http::status::ok, MakeSceneJson(*scene, state));
+  }
+
+  void SendJson(http::status status, const Json& json) {
+    http::response<http::string_body> response(status, 11);
+    response.set(http::field::content_type, "application/json");
+    response.set(http::field::cache_control, "no-store");
+    response.body() = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    Send(std::move(response));
+  }
+
+  /** Says why not, and ends the connection: what may follow in it is not read. */
+  void Refuse(http::status status, const Error& error) {
+    is_refused_ = true;
+    SendJson(status, {{"error", ToJson(error)}});
+  }
+
+  template <typename Body>
+  void Send(http::response<Body> response) {
+    response.set("Content-Security-Policy", ToBeast(kContentSecurity));
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.set("Cross-Origin-Embedder-Policy", "require-corp");
+    response.set("Cross-Origin-Resource-Policy", "same-origin");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Referrer-Policy", "no-referrer");
+    response.keep_alive(!is_refused_);
+    response.prepare_payload();
+    auto kept = std::make_shared<http::response<Body>>(std::move(response));
+    stream_.expires_after(kIdle);
+    http::async_write(stream_, *kept,
+                      [self = shared_from_this(), kept](error_code error, std::size_t) {
+                        self->owner_.reset();
+                        if (error || !kept->keep_alive()) {
+                          error_code ignored;
+                          self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+                        } else {
+                          self->ReadHeader();
+                        }
+                      });
+  }
+
+  beast::tcp_stream stream_;
+  std::shared_ptr<Shared> shared_;
+  beast::flat_buffer buffer_{kMostHeader + (64 << 10)};
+  std::optional<Header> header_;
+  std::shared_ptr<const void> owner_;
+  bool is_refused_{false};
+};
+
+}  // namespace
+
+class Server::Impl {
+ public:
+  Impl(Workbench* workbench, std::vector<Example> examples, ServerOptions options)
+      : shared_(std::make_shared<Shared>(workbench, std::move(examples), options)),
+        acceptor_(context_),
+        timer_(context_) {
+    workbench->on_event = [this](Json event) {
+      asio::post(context_, [this, event = std::move(event)] { shared_->hub.Broadcast(event); });
+    };
+    workbench->on_frame = [this] {
+      if (!has_frame_.exchange(true)) {
+        asio::post(context_, [this] {
+          has_frame_ = false;
+          shared_->hub.PublishFrame();
+        });
+      }
+    };
+  }
+
+  ~Impl() { Stop(); }
+
+  Result<void> Start() {
+    error_code error;
+    const tcp::endpoint wanted(asio::ip::address_v4::loopback(), shared_->options.port);
+    acceptor_.open(wanted.protocol(), error);
+    acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+    acceptor_.bind(wanted, error);
+    if (!error) {
+      acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    }
+    if (error) {
+      return Fail(ErrorCode::kOutOfResource, error.message(),
+                  fmt::format("127.0.0.1:{}", shared_->options.port),
+                  "choose another port with --port, or leave it out");
+    }
+    shared_->access = std::make_unique<Access>(shared_->options.names, port(), false);
+    Accept();
+    Tick();
+    thread_ = std::thread([this] { context_.run(); });
+    return {};
+  }
+
+  void Stop() {
+    context_.stop();
+    if (thread_.joinable()) {
+      thread_.join();
+    }
+    shared_->hub.Forget();
+  }
+
+  [[nodiscard]] std::uint16_t port() const {
+    error_code ignored;
+    return acceptor_.local_endpoint(ignored).port();
+  }
+
+  [[nodiscard]] std::string LinkFor(Role role) const {
+    return fmt::format("http://127.0.0.1:{}/#t={}", port(), shared_->access->token(role));
+  }
+
+ private:
+  void Accept() {
+    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+      if (!error) {
+        std::make_shared<HttpSession>(std::move(socket), shared_)->Run();
+      }
+      if (error != asio::error::operation_aborted) {
+        Accept();
+      }
+    });
+  }
+
+  void Tick() {
+    timer_.expires_after(std::chrono::seconds(1));
+    timer_.async_wait([this](error_code error) {
+      if (!error) {
+        shared_->hub.PublishStatus();
+        Tick();
+      }
+    });
+  }
+
+  asio::io_context context_{1};
+  std::shared_ptr<Shared> shared_;
+  tcp::acceptor acceptor_;
+  asio::steady_timer timer_;
+  std::atomic<bool> has_frame_{false};
+  std::thread thread_;
+};
+
+Server::Server(Workbench* workbench, std::vector<Example> examples, ServerOptions options)
+    : impl_(std::make_unique<Impl>(workbench, std::move(examples), std::move(options))) {}
+
+Server::~Server() = default;
+
+Result<void> Server::Start() {
+  return impl_->Start();
+}
+
+void Server::Stop() {
+  impl_->Stop();
+}
+
+std::uint16_t Server::port() const {
+  return impl_->port();
+}
+
+std::string Server::LinkFor(Role role) const {
+  return impl_->LinkFor(role);
+}
+
+}  // namespace hvas::studio

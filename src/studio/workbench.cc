@@ -1,0 +1,513 @@
+#include "studio/workbench.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/digest.h"
+#include "cad/glb.h"
+#include "studio/event_json.h"
+
+namespace hvas::studio {
+namespace {
+
+using product::OccurrenceId;
+using simulation::Placement;
+using simulation::SequenceStep;
+
+constexpr std::size_t kMostMoments = 100;
+
+Error NothingOpen() {
+  return {ErrorCode::kNotFound, "no product is open", "", "open a file or an example first"};
+}
+
+const std::string& NameOf(const simulation::Model& model, OccurrenceId id) {
+  return model.product->occurrences[id.index()].name;
+}
+
+bool IsGone(Placement placement) {
+  return placement == Placement::kPlaced || placement == Placement::kHeld;
+}
+
+}  // namespace
+
+SequenceStep FindStep(const simulation::Model& model, const LiveState& state, OccurrenceId id) {
+  const auto& steps = model.sequence.steps;
+  for (std::size_t i = state.next_step; i < steps.size(); ++i) {
+    const SequenceStep& step = steps[i];
+    const bool has_it = step.occurrence == id || std::find(step.members.begin(), step.members.end(),
+                                                           id) != step.members.end();
+    const Placement placement = state.parts[step.occurrence.index()].placement;
+    if (step.kind == SequenceStep::Kind::kBase || !has_it ||
+        (step.members.empty() && placement != Placement::kLoose)) {
+      continue;
+    }
+    // Of a subassembly only that moves which has got into it.
+    SequenceStep possible = step;
+    std::erase_if(possible.members, [&](OccurrenceId member) {
+      return state.parts[member.index()].placement == Placement::kLoose;
+    });
+    return possible;
+  }
+  for (const SequenceStep& step : steps) {
+    if (step.occurrence == id && step.kind == SequenceStep::Kind::kInsert) {
+      return step;
+    }
+  }
+  SequenceStep step;
+  step.occurrence = id;
+  return step;
+}
+
+Workbench::Workbench(WorkbenchOptions options)
+    : options_(std::move(options)), worker_([this](std::stop_token stop) { Work(stop); }) {}
+
+Workbench::~Workbench() {
+  Stop();
+}
+
+void Workbench::Stop() {
+  Cancel();
+  worker_.request_stop();
+  if (worker_.joinable()) {
+    worker_.join();
+  }
+  std::shared_ptr<LiveRun> run;
+  {
+    const std::lock_guard lock(mutex_);
+    run = std::exchange(run_, nullptr);
+  }
+}
+
+void Workbench::Work(std::stop_token stop) {
+  while (true) {
+    std::function<void()> job;
+    {
+      std::unique_lock lock(jobs_mutex_);
+      if (!jobs_changed_.wait(lock, stop, [this] { return !jobs_.empty(); })) {
+        return;
+      }
+      job = std::move(jobs_.front());
+      jobs_.pop_front();
+    }
+    job();
+  }
+}
+
+void Workbench::Post(std::function<void()> job) {
+  {
+    const std::lock_guard lock(jobs_mutex_);
+    jobs_.push_back(std::move(job));
+  }
+  jobs_changed_.notify_one();
+}
+
+void Workbench::Tell(Json event) const {
+  if (on_event) {
+    on_event(std::move(event));
+  }
+}
+
+void Workbench::Open(const std::filesystem::path& file, const std::string& name) {
+  {
+    const std::lock_guard lock(mutex_);
+    opening_.request_stop();  // what is being opened gives way to what comes after it
+    opening_ = {};
+  }
+  Post([this, file, name] { DoOpen(file, name); });
+}
+
+void Workbench::Cancel() {
+  const std::lock_guard lock(mutex_);
+  opening_.request_stop();
+}
+
+void Workbench::DoOpen(const std::filesystem::path& file, const std::string& name) {
+  std::stop_token stop;
+  {
+    const std::lock_guard lock(mutex_);
+    stop = opening_.get_token();
+  }
+  auto scene = std::make_shared<OpenScene>();
+  const auto progress = [this, &name](std::string_view stage, double fraction) {
+    Tell({{"event", "progress"}, {"stage", stage}, {"fraction", fraction}, {"file", name}});
+  };
+  auto product = options_.load(file, progress, stop, &scene->diagnostics);
+  auto model = product
+                   ? Compile(std::move(*product), name, &scene->diagnostics)
+                   : Result<std::shared_ptr<const simulation::Model>>(Unexpected(product.error()));
+  if (model && stop.stop_requested()) {
+    model = Fail(ErrorCode::kCancelled, "opening was stopped", name, "");
+  }
+  auto glb = model ? cad::MakeGlb(*(*model)->product, false)
+                   : Result<std::string>(Unexpected(model.error()));
+  if (!glb) {
+    Tell({{"event", "failed"}, {"file", name}, {"error", ToJson(glb.error())}});
+    return;
+  }
+  scene->model = *model;
+  Digest digest;
+  digest.AddText(*glb);
+  scene->glb_hash = digest.Hex();
+  scene->glb = std::make_shared<const std::string>(std::move(*glb));
+  scene->epoch = ++last_epoch_;
+  {
+    const std::lock_guard lock(mutex_);
+    undo_.clear();
+    redo_.clear();
+    before_take_.reset();
+  }
+  is_demo_ = false;
+  Show(scene, {}, false);
+  TellOfHistory();
+}
+
+Result<std::shared_ptr<const simulation::Model>> Workbench::Compile(product::Product product,
+                                                                    const std::string& name,
+                                                                    Diagnostics* diagnostics) {
+  if (!(product.mass() > 0)) {
+    return Fail(ErrorCode::kUnsupported,
+                "no part of it has a mass, so there is nothing to assemble", name,
+                "export it with its solids, not as surfaces");
+  }
+  simulation::CompileOptions compile;
+  compile.seed = options_.seed;
+  compile.shape_cache = options_.shape_cache;
+  compile.progress = [this, &name](const std::string& stage, double fraction) {
+    Tell({{"event", "progress"}, {"stage", stage}, {"fraction", fraction}, {"file", name}});
+  };
+  return simulation::Compile(std::make_shared<product::Product>(std::move(product)), compile,
+                             diagnostics);
+}
+
+void Workbench::Show(std::shared_ptr<const OpenScene> scene, const LiveState& state,
+                     bool has_person) {
+  LiveOptions live;
+  live.has_person = has_person;
+  live.seed = options_.seed;
+  live.rate_hz = options_.rate_hz;
+  live.X_WH = simulation::StartOfHand(*scene->model);
+  std::shared_ptr<LiveRun> ended;
+  bool is_new = false;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = std::exchange(run_, nullptr);
+    is_new = scene_ != scene;
+    scene_ = scene;
+  }
+  ended.reset();  // its threads end here, outside the lock that they may wait for
+  auto run = std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene));
+  run->StopForces(forces_off_);
+  {
+    const std::lock_guard lock(mutex_);
+    run_ = run;
+  }
+  if (is_new) {
+    Tell({{"event", "scene"}, {"epoch", scene->epoch}});
+  } else {
+    TellOfPlacements();
+  }
+  TellOfStep(*scene, run->state().next_step);
+}
+
+void Workbench::Restart(bool has_person) {
+  std::shared_ptr<const OpenScene> scene;
+  std::shared_ptr<LiveRun> run;
+  {
+    const std::lock_guard lock(mutex_);
+    scene = scene_;
+    run = run_;
+  }
+  if (run == nullptr) {
+    return;
+  }
+  const LiveState state = run->state();
+  run.reset();
+  is_demo_ = has_person;
+  Show(scene, state, has_person);
+  Tell({{"event", "demo"}, {"on", has_person}});
+}
+
+LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& scene) {
+  LiveListeners listeners;
+  listeners.on_event = [this, scene](const simulation::SimulationEvent& event) {
+    HandleEvent(*scene, event);
+  };
+  listeners.on_placement = [this](OccurrenceId id, Placement placement) {
+    Tell({{"event", "placement"}, {"occurrence", id.value()}, {"placement", ToString(placement)}});
+  };
+  listeners.on_step = [this, scene](std::size_t step) { HandleStep(*scene, step); };
+  listeners.on_frame = [this, epoch = scene->epoch](const simulation::Frame& frame,
+                                                    double peak_felt) {
+    {
+      const std::lock_guard lock(mutex_);
+      frame_ = {epoch, frame_.serial + 1, frame, peak_felt};
+    }
+    if (on_frame) {
+      on_frame();
+    }
+  };
+  return listeners;
+}
+
+void Workbench::HandleEvent(const OpenScene& scene, const simulation::SimulationEvent& event) {
+  if (event.kind == simulation::SimulationEvent::Kind::kDropped && !is_demo_) {
+    Remember(fmt::format("{} {}", event.was_seated ? "insert" : "move",
+                         NameOf(*scene.model, event.occurrence)));
+  }
+  if (Json json = ToJson(event); !json.is_null()) {
+    Tell(std::move(json));
+  }
+}
+
+void Workbench::TellOfStep(const OpenScene& scene, std::size_t step) const {
+  Tell({{"event", "step"}, {"index", step}, {"total", scene.model->sequence.steps.size()}});
+}
+
+void Workbench::HandleStep(const OpenScene& scene, std::size_t step) {
+  TellOfStep(scene, step);
+  const bool is_finished = step >= scene.model->sequence.steps.size();
+  if (is_demo_ && (is_finished || ends_demo_after_step_.exchange(false))) {
+    Post([this] { Restart(false); });
+  }
+}
+
+/** What was begun with the last take is done, and can be undone. */
+void Workbench::Remember(const std::string& what) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!before_take_) {
+      return;
+    }
+    before_take_->what = what;
+    undo_.push_back(std::move(*before_take_));
+    before_take_.reset();
+    redo_.clear();
+    if (undo_.size() > kMostMoments) {
+      undo_.erase(undo_.begin());
+    }
+  }
+  TellOfHistory();
+}
+
+Result<std::shared_ptr<LiveRun>> Workbench::IdleRun() const {
+  const std::lock_guard lock(mutex_);
+  if (run_ == nullptr) {
+    return Unexpected(NothingOpen());
+  }
+  if (is_demo_) {
+    return Fail(ErrorCode::kInvalid, "the simulated person is at work", "", "end the demo first");
+  }
+  if (run_->is_holding()) {
+    return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
+  }
+  return run_;
+}
+
+Result<spatial::Pose> Workbench::Take(OccurrenceId id) {
+  const auto run = IdleRun();
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  const simulation::Model& model = (*run)->model();
+  if (id.index() >= model.bodies.size()) {
+    return Fail(ErrorCode::kNotFound, "there is no such part", fmt::format("o{}", id.value()), "");
+  }
+  LiveState state = (*run)->state();
+  const SequenceStep step = FindStep(model, state, id);
+  const simulation::PartState& part = state.parts[step.occurrence.index()];
+  if (step.members.empty() && IsGone(part.placement)) {
+    return Fail(ErrorCode::kInvalid, "the part is in its place already", NameOf(model, id),
+                "undo to take it out again");
+  }
+  // Upright: what the hand turns, the part turns with it.
+  const spatial::Pose X_WH(part.X_WB * simulation::CombineMass(model, step).p_BoBcm_B);
+  {
+    const std::lock_guard lock(mutex_);
+    before_take_ = Moment{scene_, std::move(state), ""};
+  }
+  (*run)->Take(step, X_WH);
+  return X_WH;
+}
+
+void Workbench::Move(const spatial::Pose& X_WH, bool is_gripping) {
+  std::shared_ptr<LiveRun> run;
+  {
+    const std::lock_guard lock(mutex_);
+    run = is_demo_ ? nullptr : run_;
+  }
+  if (run != nullptr) {
+    run->Move(X_WH, is_gripping);
+  }
+}
+
+Result<void> Workbench::Release() {
+  const std::lock_guard lock(mutex_);
+  if (run_ == nullptr) {
+    return Unexpected(NothingOpen());
+  }
+  const auto& hands = frame_.frame.ticks;
+  run_->Move(hands.empty() ? spatial::Pose() : hands.front().X_WH, false);
+  return {};
+}
+
+void Workbench::SetForcesOff(bool is_off) {
+  forces_off_ = is_off;
+  const std::lock_guard lock(mutex_);
+  if (run_ != nullptr) {
+    run_->StopForces(is_off);
+  }
+}
+
+Result<void> Workbench::SetDemo(bool is_on) {
+  if (!is_on) {
+    ends_demo_after_step_ = is_demo_.load();  // a part in the hand is not dropped
+    return {};
+  }
+  const auto run = IdleRun();
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    before_take_ = Moment{scene_, (*run)->state(), ""};
+  }
+  Remember("demo");
+  ends_demo_after_step_ = false;
+  Post([this] { Restart(true); });
+  return {};
+}
+
+Result<void> Workbench::DoNext() {
+  const auto started = SetDemo(true);
+  if (started) {
+    ends_demo_after_step_ = true;
+  }
+  return started;
+}
+
+Result<void> Workbench::GoTo(std::vector<Moment>* from, std::vector<Moment>* to,
+                             const std::string& word) {
+  const auto run = IdleRun();
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  Moment moment;
+  {
+    const std::lock_guard lock(mutex_);
+    if (from->empty()) {
+      return Fail(ErrorCode::kNotFound, fmt::format("there is nothing to {}", word), "", "");
+    }
+    moment = std::move(from->back());
+    from->pop_back();
+    to->push_back({scene_, (*run)->state(), moment.what});
+  }
+  Post([this, moment] {
+    Show(moment.scene, moment.state, false);
+    TellOfHistory();
+  });
+  return {};
+}
+
+Result<void> Workbench::Undo() {
+  return GoTo(&undo_, &redo_, "undo");
+}
+
+Result<void> Workbench::Redo() {
+  return GoTo(&redo_, &undo_, "do again");
+}
+
+Result<void> Workbench::Reset() {
+  const auto run = IdleRun();
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    before_take_ = Moment{scene_, (*run)->state(), ""};
+  }
+  Remember("reset");
+  Post([this] { Show(scene(), {}, false); });
+  return {};
+}
+
+Result<void> Workbench::Change(const std::string& what, ChangeFn change) {
+  const auto run = IdleRun();
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  // Tried here first, so that whoever asks learns at once what is wrong with it.
+  product::Product trial = *(*run)->model().product;
+  if (const auto changed = change(&trial); !changed) {
+    return changed;
+  }
+  Post([this, what, change] { DoChange(what, change); });
+  return {};
+}
+
+void Workbench::DoChange(const std::string& what, const ChangeFn& change) {
+  const auto before = scene();
+  const LiveState state_before = state();
+  auto after = std::make_shared<OpenScene>(*before);
+  product::Product product = *before->model->product;
+  const auto changed = change(&product);
+  auto model = changed
+                   ? Compile(std::move(product), what, &after->diagnostics)
+                   : Result<std::shared_ptr<const simulation::Model>>(Unexpected(changed.error()));
+  if (!model) {
+    Tell({{"event", "failed"}, {"file", what}, {"error", ToJson(model.error())}});
+    return;
+  }
+  after->model = *model;
+  after->epoch = ++last_epoch_;
+  {
+    const std::lock_guard lock(mutex_);
+    before_take_ = Moment{before, state_before, ""};
+  }
+  Remember(what);
+  Show(after, state_before, false);
+}
+
+std::shared_ptr<const OpenScene> Workbench::scene() const {
+  const std::lock_guard lock(mutex_);
+  return scene_;
+}
+
+LiveState Workbench::state() const {
+  const std::lock_guard lock(mutex_);
+  return run_ != nullptr ? run_->state() : LiveState{};
+}
+
+LiveFrame Workbench::frame() const {
+  const std::lock_guard lock(mutex_);
+  return frame_;
+}
+
+std::optional<simulation::LoopStatus> Workbench::TakeStatus() {
+  const std::lock_guard lock(mutex_);
+  return run_ != nullptr ? run_->TakeStatus() : std::nullopt;
+}
+
+Json Workbench::history() const {
+  const std::lock_guard lock(mutex_);
+  const auto last = [](const std::vector<Moment>& moments) {
+    return moments.empty() ? Json(nullptr) : Json(moments.back().what);
+  };
+  return {{"event", "history"}, {"undo", last(undo_)}, {"redo", last(redo_)}};
+}
+
+void Workbench::TellOfHistory() const {
+  Tell(history());
+}
+
+void Workbench::TellOfPlacements() const {
+  const LiveState now = state();
+  for (std::size_t i = 0; i < now.parts.size(); ++i) {
+    Tell({{"event", "placement"},
+          {"occurrence", i},
+          {"placement", ToString(now.parts[i].placement)}});
+  }
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "base/diagnostics.h"
+#include "base/result.h"
+#include "cad/import.h"
+#include "contact/shape_cache.h"
+#include "product/product.h"
+#include "simulation/model.h"
+#include "studio/live_run.h"
+
+namespace hvas::studio {
+
+using Json = nlohmann::ordered_json;
+
+/** Opens a CAD file ready to assemble. */
+using LoadFn = std::function<Result<product::Product>(
+    const std::filesystem::path& file, const cad::ProgressFn& progress, std::stop_token stop,
+    Diagnostics* diagnostics)>;
+
+struct WorkbenchOptions {
+  LoadFn load;
+  std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
+  std::uint64_t seed{1};
+  double rate_hz{1000};
+};
+
+/** What is open: a model and all that a viewer needs of it. Immutable. */
+struct OpenScene {
+  std::uint32_t epoch{0};
+  std::shared_ptr<const simulation::Model> model;
+  Diagnostics diagnostics;
+  std::shared_ptr<const std::string> glb;
+  std::string glb_hash;
+};
+
+/** The newest state of everything that moves. */
+struct LiveFrame {
+  std::uint32_t epoch{0};
+  std::uint64_t serial{0};  ///< Another one for each frame.
+  simulation::Frame frame;
+  double peak_felt{0};  ///< Since the last one [N].
+};
+
+/** What is on the bench: the product that is open, the run of it, and what can be undone. All
+ functions may be called by any thread and return at once, but Stop; slow work is done by a thread
+ of its own, in the order in which it was asked for, and told of by events (docs/protocol.md). */
+class Workbench {
+ public:
+  explicit Workbench(WorkbenchOptions options);
+  ~Workbench();
+  Workbench(const Workbench&) = delete;
+  Workbench& operator=(const Workbench&) = delete;
+
+  /** Called with every event and every frame, by any thread; to be set before anything is opened.
+   */
+  std::function<void(Json)> on_event;
+  std::function<void()> on_frame;
+
+  /** Ends what runs; nothing is told of after it. */
+  void Stop();
+
+  /** @param name  As people call it. */
+  void Open(const std::filesystem::path& file, const std::string& name);
+  void Cancel();
+
+  /** @returns where the hand goes to. */
+  [[nodiscard]] Result<spatial::Pose> Take(product::OccurrenceId id);
+  void Move(const spatial::Pose& X_WH, bool is_gripping);
+  [[nodiscard]] Result<void> Release();
+
+  void SetForcesOff(bool is_off);
+
+  [[nodiscard]] bool forces_off() const { return forces_off_.load(); }
+
+  [[nodiscard]] Result<void> SetDemo(bool is_on);
+  [[nodiscard]] Result<void> DoNext();
+  [[nodiscard]] Result<void> Undo();
+  [[nodiscard]] Result<void> Redo();
+  [[nodiscard]] Result<void> Reset();
+
+  /** A change of the product: compiles a model of it aside and swaps it in. */
+  using ChangeFn = std::function<Result<void>(product::Product*)>;
+  [[nodiscard]] Result<void> Change(const std::string& what, ChangeFn change);
+
+  /** Null while nothing is open. */
+  [[nodiscard]] std::shared_ptr<const OpenScene> scene() const;
+  [[nodiscard]] LiveState state() const;
+  [[nodiscard]] LiveFrame frame() const;
+  [[nodiscard]] Json history() const;
+  [[nodiscard]] std::optional<simulation::LoopStatus> TakeStatus();
+
+  [[nodiscard]] bool is_demo() const { return is_demo_.load(); }
+
+ private:
+  /** Something that can be gone back to. */
+  struct Moment {
+    std::shared_ptr<const OpenScene> scene;
+    LiveState state;
+    std::string what;  ///< Was done after it.
+  };
+
+  void Work(std::stop_token stop);
+  void Post(std::function<void()> job);
+  void DoOpen(const std::filesystem::path& file, const std::string& name);
+  void DoChange(const std::string& what, const ChangeFn& change);
+  [[nodiscard]] Result<void> GoTo(std::vector<Moment>* from, std::vector<Moment>* to,
+                                  const std::string& word);
+  [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> Compile(product::Product product,
+                                                                         const std::string& name,
+                                                                         Diagnostics* diagnostics);
+  void Show(std::shared_ptr<const OpenScene> scene, const LiveState& state, bool has_person);
+  void Restart(bool has_person);
+  [[nodiscard]] LiveListeners MakeListeners(const std::shared_ptr<const OpenScene>& scene);
+  void HandleEvent(const OpenScene& scene, const simulation::SimulationEvent& event);
+  void HandleStep(const OpenScene& scene, std::size_t step);
+  void TellOfStep(const OpenScene& scene, std::size_t step) const;
+  void Tell(Json event) const;
+  void TellOfHistory() const;
+  void TellOfPlacements() const;
+  void Remember(const std::string& what);
+  [[nodiscard]] Result<std::shared_ptr<LiveRun>> IdleRun() const;
+
+  WorkbenchOptions options_;
+  std::atomic<bool> forces_off_{false};
+  std::atomic<bool> is_demo_{false};
+  std::atomic<bool> ends_demo_after_step_{false};
+  std::uint32_t last_epoch_{0};  ///< The worker's own.
+
+  mutable std::mutex mutex_;  ///< Of what follows.
+  std::shared_ptr<const OpenScene> scene_;
+  std::shared_ptr<LiveRun> run_;
+  std::optional<Moment> before_take_;
+  std::vector<Moment> undo_;
+  std::vector<Moment> redo_;
+  LiveFrame frame_;
+  std::stop_source opening_;
+
+  std::mutex jobs_mutex_;
+  std::condition_variable_any jobs_changed_;
+  std::deque<std::function<void()>> jobs_;
+  std::jthread worker_;  ///< The last member: the first that ends.
+};
+
+/** The step that a part's next move belongs to: of the part itself, or of the subassembly that it
+ is a member of. */
+[[nodiscard]] simulation::SequenceStep FindStep(const simulation::Model& model,
+                                                const LiveState& state, product::OccurrenceId id);
+
+}  // namespace hvas::studio
