@@ -92,12 +92,16 @@ record::Meta MakeMeta(const Model& model, const AssembleOptions& options) {
           {"seed", std::to_string(options.seed)},
           {"condition", kConditions[static_cast<std::size_t>(options.condition)]},
           {"force_map", haptics::ToString(options.force_map)},
+          {"device", options.device},
+          {"second_device", options.second_device},
           {"model_json", parts.dump()}};
 }
 
-/** What moves the hand: the simulated person alone or with an emulated device, or a device. */
+/** What moves a hand: the simulated person alone or with an emulated device, or a device. */
 struct Hand {
+  std::string address;  ///< Of the device, as it was asked for; empty: none.
   OpenedDevice opened;
+  haptics::TickOptions tick;
   std::unique_ptr<simulation::SimulatedPerson> person;
   std::unique_ptr<simulation::Operator> at_device;  ///< Null without a device.
 
@@ -120,25 +124,28 @@ haptics::TickOptions MakeTick(const Model& model, const AssembleOptions& options
   return tick;
 }
 
-Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
+Result<Hand> MakeHand(const Model& model, const AssembleOptions& options,
+                      const std::string& address, std::uint64_t seed) {
   Hand hand;
-  if (!options.device.empty()) {
-    auto opened = OpenAnyDevice(options.device, options.is_realtime);
+  hand.address = address;
+  if (!address.empty()) {
+    auto opened = OpenAnyDevice(address, options.is_realtime);
     if (!opened) {
       return Unexpected(opened.error());
     }
     hand.opened = std::move(*opened);
-    if (hand.opened.emulator == nullptr) {
-      hand.at_device = std::make_unique<simulation::DeviceOperator>(hand.opened.device.get());
-      return hand;
-    }
+  }
+  hand.tick = MakeTick(model, options, hand.opened.device.get());
+  if (hand.opened.device != nullptr && hand.opened.emulator == nullptr) {
+    hand.at_device = std::make_unique<simulation::DeviceOperator>(hand.opened.device.get());
+    return hand;
   }
   simulation::PersonOptions habits;
   if (hand.opened.device != nullptr) {
-    habits = simulation::MakePersonOptions(MakeTick(model, options, hand.opened.device.get()));
+    habits = simulation::MakePersonOptions(hand.tick);
   }
-  hand.person = std::make_unique<simulation::SimulatedPerson>(habits, options.seed,
-                                                              simulation::StartOfHand(model));
+  hand.person =
+      std::make_unique<simulation::SimulatedPerson>(habits, seed, simulation::StartOfHand(model));
   if (hand.opened.emulator != nullptr) {
     hand.at_device =
         std::make_unique<simulation::PersonAtDevice>(hand.person.get(), hand.opened.emulator.get(),
@@ -147,58 +154,112 @@ Result<Hand> MakeHand(const Model& model, const AssembleOptions& options) {
   return hand;
 }
 
-DeviceInHand DescribeDevice(const AssembleOptions& options, const device::Device* device,
-                            const haptics::TickOptions& tick) {
-  if (device == nullptr) {
-    return {};
+/** One, or two where a second device is asked for. */
+Result<std::vector<Hand>> MakeHands(const Model& model, const AssembleOptions& options) {
+  constexpr std::uint64_t kOtherSeed = 0x9e3779b97f4a7c15;  // another person, by the same seed
+  std::vector<Hand> hands;
+  auto first = MakeHand(model, options, options.device, options.seed);
+  if (!first) {
+    return Unexpected(first.error());
   }
-  const device::DeviceInfo& info = device->info();
-  return {options.device, info.model, info.is_emulated, simulation::DescribeRendering(info, tick)};
+  hands.push_back(std::move(*first));
+  if (!options.second_device.empty()) {
+    auto second = MakeHand(model, options, options.second_device, options.seed ^ kOtherSeed);
+    if (!second) {
+      return Unexpected(second.error());
+    }
+    hands.push_back(std::move(*second));
+  }
+  return hands;
+}
+
+std::unique_ptr<simulation::Simulation> MakeSimulation(const std::shared_ptr<const Model>& model,
+                                                       const std::vector<Hand>& hands) {
+  return hands.size() == 1
+             ? std::make_unique<simulation::Simulation>(model, hands[0].tick)
+             : std::make_unique<simulation::Simulation>(model, hands[0].tick, hands[1].tick);
+}
+
+/** Those that have a device, by hand. */
+std::vector<DeviceInHand> DescribeDevices(const std::vector<Hand>& hands) {
+  std::vector<DeviceInHand> devices;
+  for (const Hand& hand : hands) {
+    if (hand.opened.device != nullptr) {
+      const device::DeviceInfo& info = hand.opened.device->info();
+      devices.push_back({hand.address, info.model, info.profile.id, info.is_emulated,
+                         simulation::DescribeRendering(info, hand.tick)});
+    }
+  }
+  return devices;
+}
+
+/** Tells whoever waits how each device is rendered to. */
+void ShowNotes(const std::vector<DeviceInHand>& devices) {
+  for (std::size_t hand = 0; hand < devices.size(); ++hand) {
+    const char* whose = devices.size() == 1 ? "" : NameOfHand(hand);
+    for (const std::string& note : devices[hand].notes) {
+      fmt::print(stderr, "hvas: {}{}{}: {}\n", whose, devices.size() == 1 ? "" : ": ",
+                 devices[hand].model, note);
+    }
+  }
+}
+
+void ShowEachPart(const std::shared_ptr<const Model>& model, simulation::AssemblyRun* run) {
+  run->on_part = [model, start_ns = MonotonicNs()](const simulation::AssemblyProgress& progress,
+                                                   const PartResult& part) {
+    const auto wall_ns = static_cast<double>(std::max<std::int64_t>(1, MonotonicNs() - start_ns));
+    ShowProgress(
+        fmt::format("part {} of {}, {} in place, {:.1f} x real time; {}{},", progress.tried,
+                    progress.total, progress.seated, static_cast<double>(progress.t_ns) / wall_ns,
+                    part.is_seated ? "" : "NOT IN PLACE: ",
+                    Shorten(model->product->occurrences[part.occurrence.index()].path, 40)),
+        static_cast<double>(progress.tried) / static_cast<double>(progress.total));
+  };
+}
+
+double LimitOf(const Model& model, const AssembleOptions& options) {
+  if (options.limit_s > 0) {
+    return options.limit_s;
+  }
+  const double size = std::max(1.0, model.transfer_radius / kOrdinaryRadius);
+  return kSecondsPerPart * size * static_cast<double>(model.bodies.size());
+}
+
+Result<std::unique_ptr<record::Recorder>> MakeRecorder(const Model& model,
+                                                       const AssembleOptions& options) {
+  record::RecorderOptions recorder;
+  recorder.path = options.record;
+  recorder.is_threaded = options.is_realtime;
+  recorder.ring_ticks *= options.second_device.empty() ? 1 : 2;
+  return record::Recorder::Create(recorder, MakeMeta(model, options));
 }
 
 Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
                                  const AssembleOptions& options, bool is_watched) {
-  record::RecorderOptions record_options;
-  record_options.path = options.record;
-  record_options.is_threaded = options.is_realtime;
-  auto recorder = record::Recorder::Create(record_options, MakeMeta(*model, options));
+  auto recorder = MakeRecorder(*model, options);
   if (!recorder) {
     return Unexpected(recorder.error());
   }
-  const auto hand = MakeHand(*model, options);
-  if (!hand) {
-    return Unexpected(hand.error());
+  const auto hands = MakeHands(*model, options);
+  if (!hands) {
+    return Unexpected(hands.error());
   }
-  const device::Device* device = hand->opened.device.get();
-  const haptics::TickOptions tick = MakeTick(*model, options, device);
   AssemblyOutcome outcome;
-  outcome.device = DescribeDevice(options, device, tick);
-  if (is_watched) {
-    for (const std::string& note : outcome.device.notes) {
-      fmt::print(stderr, "hvas: {}: {}\n", outcome.device.model, note);
-    }
-  }
-  simulation::Simulation simulation(model, tick);
+  outcome.hands = hands->size();
+  outcome.devices = DescribeDevices(*hands);
+  const auto simulation = MakeSimulation(model, *hands);
   SessionRecorder sink(recorder->get());
-  simulation::AssemblyRun run(&simulation, hand->person.get(), &sink);
-  simulation::FlightRecorder flight(options.render.rate_hz);
+  const bool is_two = hands->size() == 2;
+  const simulation::Persons persons{hands->front().person.get(),
+                                    is_two ? hands->back().person.get() : nullptr};
+  simulation::AssemblyRun run(simulation.get(), persons, &sink);
+  simulation::FlightRecorder flight(options.render.rate_hz, hands->size());
   if (is_watched) {
-    run.on_part = [&model, start_ns = MonotonicNs()](const simulation::AssemblyProgress& progress,
-                                                     const PartResult& part) {
-      const auto wall_ns = static_cast<double>(std::max<std::int64_t>(1, MonotonicNs() - start_ns));
-      ShowProgress(
-          fmt::format("part {} of {}, {} in place, {:.1f} x real time; {}{},", progress.tried,
-                      progress.total, progress.seated, static_cast<double>(progress.t_ns) / wall_ns,
-                      part.is_seated ? "" : "NOT IN PLACE: ",
-                      Shorten(model->product->occurrences[part.occurrence.index()].path, 40)),
-          static_cast<double>(progress.tried) / static_cast<double>(progress.total));
-    };
+    ShowNotes(outcome.devices);
+    ShowEachPart(model, &run);
   }
-  const double size = std::max(1.0, model->transfer_radius / kOrdinaryRadius);
-  const double limit_s = options.limit_s > 0
-                             ? options.limit_s
-                             : kSecondsPerPart * size * static_cast<double>(model->bodies.size());
-  simulation::Execution execution = run.MakeExecution(hand->active(), limit_s);
+  simulation::Execution execution = run.MakeExecution(
+      hands->front().active(), LimitOf(*model, options), is_two ? hands->back().active() : nullptr);
   execution.flight = &flight;
   outcome.execution =
       options.is_realtime ? simulation::RunRealtime(execution) : simulation::RunLockstep(execution);
@@ -224,6 +285,28 @@ void AddMissing(const Model& model, AssemblyOutcome* outcome) {
       outcome->parts.push_back(part);
     }
   }
+}
+
+/** What is in the hands, and how it is rendered to. */
+void AddDeviceOptions(CLI::App* command, AssembleOptions* options) {
+  command->add_option("--device", options->device,
+                      "A device in the hand: see `hvas devices`; emulated:DRIVER[:PROFILE] for one "
+                      "that is not there, held by the simulated person");
+  command
+      ->add_option("--second-device", options->second_device,
+                   "A device in the other hand, named as the first one. A second simulated person "
+                   "takes every other part with an emulated one, and begins while the first still "
+                   "puts its part in where the two ways in are apart; with a real one the other "
+                   "hand takes what it likes")
+      ->needs("--device");
+  command
+      ->add_option(
+          "--scale", options->render.scale,
+          "Millimetres of the scene for one of the device; 0, when not given: by their sizes")
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_option("--rate", options->render.rate_hz, "Of the haptic loop [Hz]")
+      ->check(CLI::Range(1000.0, 8000.0))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -284,17 +367,7 @@ void AddAssemble(CLI::App* app, int* status) {
                    "collision, constraint, or hybrid (both, and the force of the fit)")
       ->transform(CLI::CheckedTransformer(conditions, CLI::ignore_case));
   AddForceMapOption(command, &options->force_map);
-  command->add_option("--device", options->device,
-                      "A device in the hand: see `hvas devices`; emulated:DRIVER[:PROFILE] for one "
-                      "that is not there, held by the simulated person");
-  command
-      ->add_option(
-          "--scale", options->render.scale,
-          "Millimetres of the scene for one of the device; 0, when not given: by their sizes")
-      ->check(CLI::Range(0.0, 1000.0));
-  command->add_option("--rate", options->render.rate_hz, "Of the haptic loop [Hz]")
-      ->check(CLI::Range(1000.0, 8000.0))
-      ->capture_default_str();
+  AddDeviceOptions(command, options.get());
   command->add_flag("--realtime", options->is_realtime,
                     "Three threads at --rate, 100 and 30 Hz instead of virtual time");
   command->add_option("--record", options->record, "Write the session to this file");
@@ -317,6 +390,8 @@ void AddAssemble(CLI::App* app, int* status) {
       "  hvas assemble products/bushing.step --fit shaft=H7/p6 --record press.hvasrec\n"
       "  hvas assemble pump.step --device forcedimension --realtime\n"
       "  hvas assemble pump.step --device emulated:openhaptics:touch_x\n"
+      "  hvas assemble pump.step --device emulated:openhaptics --second-device emulated:haply\n"
+      "  hvas assemble pump.step --device forcedimension --second-device haply --realtime\n"
       "  hvas assemble pump.step --json --seed 7 | jq '.parts[] | select(.seated | not)'");
   command->callback([options, status] { *status = RunAssemble(*options); });
 }

@@ -22,14 +22,16 @@ struct AssembleOptions {
   haptics::Condition condition{haptics::Condition::kHybrid};
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   bool is_realtime{false};
-  std::string device;  ///< Address of the device in the hand; empty: none.
+  std::string device;         ///< Address of the device in the hand; empty: none.
+  std::string second_device;  ///< The same of the other hand, which is there only with one.
   simulation::RenderOptions render;
   std::filesystem::path record;  ///< Empty: no file; the digest is made all the same.
   double limit_s{0};             ///< Session time after which to stop; 0: none.
   bool is_json{false};
 };
 
-/** Lays the parts of a product out on a table and lets a simulated person assemble them one by one.
+/** Lays the parts of a product out on a table and lets a simulated person, or two, or whoever has
+ the devices, assemble them one by one.
  Prints a table, or one JSON document, on stdout.
  @returns The exit status: 0 when every part is in its place, 1 on an error, 2 when one is not. */
 [[nodiscard]] int RunAssemble(const AssembleOptions& options);

@@ -36,6 +36,14 @@ std::size_t CountSeated(const AssemblyOutcome& outcome) {
                     [](const PartResult& part) { return part.is_seated; }));
 }
 
+/** Without those that came from the fixture. */
+std::size_t CountSeatedBy(const AssemblyOutcome& outcome, std::size_t hand) {
+  return static_cast<std::size_t>(
+      std::count_if(outcome.parts.begin(), outcome.parts.end(), [hand](const PartResult& part) {
+        return part.is_seated && part.hand == hand && part.time > 0;
+      }));
+}
+
 const std::string& PathOf(const Model& model, product::OccurrenceId id) {
   static const std::string kNone = "empty hand";
   return id.is_valid() ? model.product->occurrences[id.index()].path : kNone;
@@ -58,6 +66,7 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
   return {{"id", part.occurrence.value()},
           {"name", PathOf(model, part.occurrence)},
           {"seated", part.is_seated},
+          {"hand", part.hand},
           {"reason", part.reason},
           {"note", part.note},
           {"time_s", part.time},
@@ -76,6 +85,7 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
 nlohmann::ordered_json ToJson(const DeviceInHand& device) {
   return {{"address", device.address},
           {"model", device.model},
+          {"profile", device.profile},
           {"emulated", device.is_emulated},
           {"notes", device.notes}};
 }
@@ -113,7 +123,23 @@ void PrintTicks(const Model& model, const ExecutionReport& run) {
   }
 }
 
+void PrintDevices(const AssemblyOutcome& outcome) {
+  for (std::size_t hand = 0; hand < outcome.devices.size(); ++hand) {
+    const DeviceInHand& device = outcome.devices[hand];
+    fmt::print("in the {}: {}{} ({})", outcome.hands == 1 ? "hand" : NameOfHand(hand),
+               device.is_emulated ? "EMULATED " : "", device.model, device.address);
+    if (outcome.hands > 1) {
+      fmt::print("; parts put in place: {}", CountSeatedBy(outcome, hand));
+    }
+    fmt::print("\n");
+  }
+}
+
 }  // namespace
+
+const char* NameOfHand(std::size_t hand) {
+  return hand == 0 ? "first hand" : "second hand";
+}
 
 void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
   nlohmann::ordered_json json;
@@ -123,8 +149,10 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
   json["seed"] = outcome.seed;
   json["digest"] = outcome.digest;
   json["force_map"] = haptics::ToString(outcome.force_map);
-  if (!outcome.device.address.empty()) {
-    json["device"] = ToJson(outcome.device);
+  json["hands"] = outcome.hands;
+  constexpr const char* kKeys[] = {"device", "second_device"};
+  for (std::size_t hand = 0; hand < outcome.devices.size(); ++hand) {
+    json[kKeys[hand]] = ToJson(outcome.devices[hand]);
   }
   json["preparation_s"] = ToS(outcome.preparation_ns);
   json["contact_shapes_bytes"] = simulation::CalcShapeMemory(model).total();
@@ -176,10 +204,7 @@ void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
         ToUs(run.wake_up.Quantile(0.99)), ToUs(run.wake_up.max_ns()), run.late_wake_ups,
         run.overruns, outcome.dropped_ticks);
   }
-  if (!outcome.device.address.empty()) {
-    fmt::print("in the hand: {}{} ({})\n", outcome.device.is_emulated ? "EMULATED " : "",
-               outcome.device.model, outcome.device.address);
-  }
+  PrintDevices(outcome);
   fmt::print("digest {}\n", outcome.digest);
 }
 

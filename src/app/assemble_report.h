@@ -14,6 +14,7 @@ namespace hvas::app {
 struct DeviceInHand {
   std::string address;  ///< As it was asked for; empty: none.
   std::string model;
+  std::string profile;  ///< Id of the one that it is rendered by; may be empty.
   bool is_emulated{false};
   std::vector<std::string> notes;  ///< How it was rendered to.
 };
@@ -26,10 +27,14 @@ struct AssemblyOutcome {
   std::uint64_t seed{1};
   bool is_realtime{false};
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
-  DeviceInHand device;
+  std::size_t hands{1};
+  std::vector<DeviceInHand> devices;  ///< By hand; none, or one for each.
   std::string digest;
   std::uint64_t dropped_ticks{0};
 };
+
+/** "first hand", "second hand". */
+[[nodiscard]] const char* NameOfHand(std::size_t hand);
 
 /** One JSON document on stdout; every number's name ends in its unit. */
 void PrintAssemblyJson(const simulation::Model& model, const AssemblyOutcome& outcome);

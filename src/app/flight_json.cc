@@ -17,6 +17,7 @@ struct Column {
 // Devices give poses that are no numbers: these are what one looks for here.
 constexpr std::array kColumns{
     Column{"t_ms", [](const FlightTick& t) { return 1e-6 * static_cast<double>(t.device.t_ns); }},
+    Column{"hand", [](const FlightTick& t) { return double(t.hand); }},
     Column{"condition", [](const FlightTick& t) { return double(t.device.condition); }},
     Column{"vendor_code", [](const FlightTick& t) { return double(t.device.vendor_code); }},
     Column{"buttons", [](const FlightTick& t) { return double(t.device.buttons); }},

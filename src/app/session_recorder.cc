@@ -11,7 +11,9 @@
 namespace hvas::app {
 namespace {
 
-constexpr std::uint32_t kTruncatedStatus = 1u << 16;  // above the gate's bits
+// Of the status, above the gate's bits.
+constexpr std::uint32_t kTruncatedStatus = 1u << 16;
+constexpr std::uint32_t kStoppedStatus = 1u << 17;
 
 const char* ToString(simulation::SimulationEvent::Kind kind) {
   switch (kind) {
@@ -40,19 +42,36 @@ nlohmann::ordered_json ToJson(const haptics::PassivityAccount& account) {
           {"withheld_j", account.withheld}};
 }
 
+std::uint32_t FlagsOf(const device::DeviceState& device) noexcept {
+  return (device.is_gripping ? record::kDeviceGripping : 0u) |
+         (device.is_clutching ? record::kDeviceClutching : 0u) |
+         (device.is_valid ? 0u : record::kDeviceNotValid);
+}
+
+std::uint32_t StatusOf(const haptics::TickOutput& out) noexcept {
+  return out.gate_actions | (out.is_truncated ? kTruncatedStatus : 0u) |
+         (out.context.is_stopped ? kStoppedStatus : 0u);
+}
+
 }  // namespace
 
 void SessionRecorder::OnTick(std::size_t hand, const device::DeviceState& device,
                              const haptics::TickOutput& out) noexcept {
-  if (hand != 0) {
-    return;
-  }
   record::TickRecord tick;
+  tick.hand = static_cast<std::uint8_t>(hand);
   tick.t_ns = device.t_ns;
   tick.device_pose = device.X_DH;
   tick.device_twist = device.V_DH;
-  tick.device_flags = device.is_gripping ? record::kDeviceGripping : 0;
-  tick.status = out.gate_actions | (out.is_truncated ? kTruncatedStatus : 0);
+  tick.device_flags = FlagsOf(device);
+  tick.sample_ns = device.sample_ns;
+  tick.device_buttons = device.buttons;
+  tick.device_condition = static_cast<std::uint8_t>(device.condition);
+  tick.vendor_code = device.vendor_code;
+  tick.device_grip = device.grip;
+  tick.model_age_ns = out.context.model_age_ns;
+  tick.client_age_ns = device.client_age_ns;
+  tick.effort_level = static_cast<std::uint8_t>(out.context.effort_level);
+  tick.status = StatusOf(out);
   tick.X_WH = out.X_WT;
   tick.X_WD = out.X_WD;
   tick.F_true_W = out.F_true_W;
@@ -73,6 +92,7 @@ void SessionRecorder::OnTick(std::size_t hand, const device::DeviceState& device
 
 void SessionRecorder::OnEvent(const simulation::SimulationEvent& event) {
   nlohmann::ordered_json details;
+  details["hand"] = event.hand;
   details["state"] = haptics::ToString(event.state);
   if (event.kind == simulation::SimulationEvent::Kind::kDropped) {
     details["seated"] = event.was_seated;
@@ -103,6 +123,31 @@ void SessionRecorder::OnEvent(const simulation::SimulationEvent& event) {
 void SessionRecorder::OnFlight(const std::vector<simulation::FlightTick>& ticks) {
   recorder_->AddEvent({ticks.back().device.t_ns, "flight", ticks.back().out.occurrence.value(),
                        MakeFlightJson(ticks)});
+}
+
+device::DeviceState MakeDeviceState(const record::TickRecord& tick) {
+  device::DeviceState device;
+  device.t_ns = tick.t_ns;
+  device.sample_ns = tick.sample_ns;
+  device.X_DH = tick.device_pose;
+  device.V_DH = tick.device_twist;
+  device.is_gripping = (tick.device_flags & record::kDeviceGripping) != 0;
+  device.is_valid = (tick.device_flags & record::kDeviceNotValid) == 0;
+  device.is_clutching = (tick.device_flags & record::kDeviceClutching) != 0;
+  device.buttons = tick.device_buttons;
+  device.grip = tick.device_grip;
+  device.condition = static_cast<device::Condition>(tick.device_condition);
+  device.vendor_code = tick.vendor_code;
+  device.client_age_ns = tick.client_age_ns;
+  return device;
+}
+
+haptics::TickContext MakeTickContext(const record::TickRecord& tick) {
+  haptics::TickContext context;
+  context.model_age_ns = tick.model_age_ns;
+  context.is_stopped = (tick.status & kStoppedStatus) != 0;
+  context.effort_level = tick.effort_level;
+  return context;
 }
 
 }  // namespace hvas::app

@@ -7,8 +7,7 @@
 
 namespace hvas::app {
 
-/** Puts what the loops produce into a record. Ticks are those of the first hand only: the record
- has no column for the hand yet. */
+/** Puts what the loops produce into a record. */
 class SessionRecorder final : public simulation::Sink {
  public:
   explicit SessionRecorder(record::Recorder* recorder) : recorder_(recorder) {}
@@ -21,5 +20,12 @@ class SessionRecorder final : public simulation::Sink {
  private:
   record::Recorder* recorder_;
 };
+
+/** The sample that went into a recorded tick, for the tick to be run again. Of schema 1 without
+ what those records do not have: when it was taken, and how the device was. */
+[[nodiscard]] device::DeviceState MakeDeviceState(const record::TickRecord& tick);
+
+/** The rest of what went into it. */
+[[nodiscard]] haptics::TickContext MakeTickContext(const record::TickRecord& tick);
 
 }  // namespace hvas::app

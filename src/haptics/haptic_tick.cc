@@ -159,6 +159,7 @@ HapticTick::Tracked HapticTick::CalcTracked(const Hand& hand) const noexcept {
 
 TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext& context) noexcept {
   TickOutput out;
+  out.context = context;
   out.deepest = std::numeric_limits<double>::infinity();
   const bool is_usable = state.is_valid && spatial::IsFinite(state.X_DH) &&
                          state.V_DH.v.allFinite() && state.V_DH.w.allFinite();

@@ -42,6 +42,13 @@ struct GuidedAxis {
   double depth_goal{0};  ///< In its place [m].
 };
 
+/** What else the loop knows at a tick. */
+struct TickContext {
+  std::int64_t model_age_ns{0};  ///< Since the physics loop last answered.
+  bool is_stopped{false};        ///< Somebody has switched all forces off.
+  int effort_level{0};           ///< What SetEffort was told, by the loop's own count.
+};
+
 /** What a tick gives: the wrench for the device, and everything a record wants to know. */
 struct TickOutput {
   spatial::Wrench F_H_D;  ///< For the device: after the gate, about the hand's point, in its base.
@@ -69,12 +76,7 @@ struct TickOutput {
   PassivityAccount energy;          ///< Of forces so far, where passivity is controlled.
   PassivityAccount turning_energy;  ///< Of torques.
   GuidedAxis axis;
-};
-
-/** What else the loop knows at a tick. */
-struct TickContext {
-  std::int64_t model_age_ns{0};  ///< Since the physics loop last answered.
-  bool is_stopped{false};        ///< Somebody has switched all forces off.
+  TickContext context;  ///< As it was given.
 };
 
 /** The haptic tick of one hand: X(1), X(2) coupling, contact on the displayed part (X7), guidance

@@ -90,6 +90,7 @@ void VisitFieldsOf2(F& f, Tick& tick) noexcept {
   f(tick.vendor_code);
   f(tick.device_grip);
   f(tick.model_age_ns);
+  f(tick.client_age_ns);
   f(tick.effort_level);
 }
 
@@ -98,7 +99,7 @@ constexpr std::size_t kFieldBytesOf1 =
     sizeof(std::uint8_t) + sizeof(std::uint16_t) + 2 * sizeof(double) +
     std::size_t{7} * TickRecord::kContacts * sizeof(float);
 static_assert(kFieldBytesOf1 == kPackedTickSize1);
-constexpr std::size_t kFieldBytesOf2 = 3 * sizeof(std::uint8_t) + 2 * sizeof(std::int64_t) +
+constexpr std::size_t kFieldBytesOf2 = 3 * sizeof(std::uint8_t) + 3 * sizeof(std::int64_t) +
                                        2 * sizeof(std::uint32_t) + sizeof(double);
 static_assert(kFieldBytesOf1 + kFieldBytesOf2 == kPackedTickSize);
 

@@ -8,7 +8,7 @@
 namespace hvas::record {
 
 /** Bytes of a tick in a file: its fields in order, little-endian, without gaps. */
-inline constexpr std::size_t kPackedTickSize = 442;
+inline constexpr std::size_t kPackedTickSize = 450;
 /** The same in files of schema 1: they end with the contacts. */
 inline constexpr std::size_t kPackedTickSize1 = 407;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,8 +12,25 @@ namespace hvas::simulation {
 
 using product::OccurrenceId;
 
-AssemblyRun::AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream)
-    : simulation_(simulation), person_(person), downstream_(downstream) {
+namespace {
+
+bool IsSinglePart(const SequenceStep& step) {
+  return step.kind == SequenceStep::Kind::kInsert && step.members.empty();
+}
+
+}  // namespace
+
+AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream)
+    : simulation_(simulation), downstream_(downstream) {
+  for (std::size_t hand = 0; hand < persons.size(); ++hand) {
+    if (persons[hand] != nullptr) {
+      workers_.push_back({persons[hand], hand, nullptr, 0});
+    }
+  }
+  if (workers_.empty()) {
+    workers_.emplace_back();
+  }
+  last_worker_ = workers_.size() - 1;
   const Model& model = simulation_->model();
   total_ = model.bodies.size();
   dropped_.resize(total_);
@@ -50,6 +68,7 @@ void AssemblyRun::OnEvent(const SimulationEvent& event) {
   if (event.kind == SimulationEvent::Kind::kDropped) {
     dropped_[event.occurrence.index()] = event;
   }
+  states_[event.hand] = event.state;
   if (downstream_ != nullptr) {
     downstream_->OnEvent(event);
   }
@@ -104,10 +123,11 @@ PartResult& AssemblyRun::ResultOf(OccurrenceId id) {
   return results_.back();
 }
 
-std::string AssemblyRun::ExplainFailure(const SequenceStep& step) const {
+std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& worker) const {
+  const SimulatedPerson* person = worker.person;
   const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
   if (!dropped) {
-    return person_ != nullptr ? "could not be taken up" : "was not taken up";
+    return person != nullptr ? "could not be taken up" : "was not taken up";
   }
   if (const OccurrenceId missing = simulation_->FindMissingPartner(step); missing.is_valid()) {
     return fmt::format("{}, which it goes to, is not in its place",
@@ -117,8 +137,8 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step) const {
   const std::string depth = metrics.insertion > 0 ? fmt::format(", {:.2f} mm into its hole at most",
                                                                 units::ToMm(metrics.insertion))
                                                   : std::string();
-  const std::string tries = person_ != nullptr
-                                ? fmt::format("gave up after {} searches", person_->searches())
+  const std::string tries = person != nullptr
+                                ? fmt::format("gave up after {} searches", person->searches())
                                 : std::string("was let go elsewhere");
   if (!metrics.hardest.is_valid()) {
     return fmt::format("{}{}; nothing was met", tries, depth);
@@ -128,13 +148,14 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step) const {
                      metrics.hardest_force);
 }
 
-void AssemblyRun::FinishStep(const SequenceStep& step) {
+void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   const Model& model = simulation_->model();
   PartResult& result = ResultOf(step.occurrence);
   const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
   const bool was_seated = dropped && dropped->was_seated;
   if (dropped) {
     const HoldMetrics& metrics = dropped->metrics;
+    result.hand = dropped->hand;
     result.time += 1e-9 * static_cast<double>(dropped->t_ns - metrics.t_taken_ns);
     result.path += metrics.path;
     result.peak_true = std::max(result.peak_true, metrics.peak_true);
@@ -144,7 +165,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step) {
     result.deepest = std::max(result.deepest, metrics.deepest);
     result.insertion = std::max(result.insertion, metrics.insertion);
   }
-  const std::string reason = was_seated ? std::string() : ExplainFailure(step);
+  const std::string reason = was_seated ? std::string() : ExplainFailure(step, worker);
   result.reason = reason;
   result.note = DescribeOverlaps(step.occurrence);
   for (const product::MateId id : model.mates_of[step.occurrence.index()]) {
@@ -177,59 +198,127 @@ void AssemblyRun::Update(OccurrenceId id) {
   result.pose_error_angle = spatial::RotationBetween(X_goal.q(), X_WB.q()).norm();
 }
 
-bool AssemblyRun::HasFinished(const SequenceStep& step) const {
-  if (person_ != nullptr) {
-    return person_->finished_count() != finished_before_;
+bool AssemblyRun::HasFinished(const Worker& worker) const {
+  if (worker.person != nullptr) {
+    return worker.person->finished_count() != worker.finished_before;
   }
   // Real ones do as they like: a part may be in its place before its turn comes.
-  const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
-  const bool is_plain = step.kind == SequenceStep::Kind::kInsert && step.members.empty();
+  const OccurrenceId id = worker.step->occurrence;
+  const std::optional<SimulationEvent>& dropped = dropped_[id.index()];
   return (dropped && dropped->was_seated) ||
-         (is_plain && simulation_->placement(step.occurrence) == Placement::kPlaced);
+         (IsSinglePart(*worker.step) && simulation_->placement(id) == Placement::kPlaced);
+}
+
+bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker) const {
+  const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
+  return worker.person != nullptr && IsSinglePart(step) && dropped && dropped->was_seated &&
+         dropped->hand != worker.hand;
+}
+
+spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
+  constexpr double kRoom = 5e-3;  // [m] to each side, for searching and for error
+  const Body& body = simulation_->model().bodies[step.occurrence.index()];
+  const spatial::Box place = spatial::Transform(body.X_WB_goal, body.shape->box_B());
+  const Vec3 way = step.engage_distance * step.extraction_W;
+  spatial::Box box = place;
+  box.Add(spatial::Box{place.low + way, place.high + way});
+  return box.Expanded(kRoom);
+}
+
+bool AssemblyRun::CanGoOnBeside(const SequenceStep& step, const Worker& busy) const {
+  const bool is_past_carrying = states_[busy.hand] >= haptics::HoldState::kCaptured;
+  return is_past_carrying && IsSinglePart(step) && IsSinglePart(*busy.step) &&
+         !WayIn(step).Overlaps(WayIn(*busy.step));
+}
+
+AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
+  Worker* free = nullptr;
+  for (std::size_t i = 1; i <= workers_.size(); ++i) {
+    Worker& worker = workers_[(last_worker_ + i) % workers_.size()];
+    if (worker.step == nullptr) {
+      free = free == nullptr ? &worker : free;
+    } else if (!CanGoOnBeside(step, worker)) {
+      return nullptr;
+    }
+  }
+  return free;
+}
+
+bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
+  // Of a subassembly only that moves which has got into it.
+  SequenceStep possible = step;
+  std::erase_if(possible.members, [this](OccurrenceId id) {
+    return simulation_->placement(id) == Placement::kLoose;
+  });
+  for (std::size_t hand = 0; hand < simulation_->hand_count(); ++hand) {
+    if (worker->person == nullptr || hand == worker->hand) {
+      simulation_->Prepare(possible, hand);
+    }
+  }
+  if (worker->person != nullptr) {
+    dropped_[step.occurrence.index()].reset();
+    worker->finished_before = worker->person->finished_count();
+    if (!worker->person->Assign(MakeTask(possible))) {
+      return false;
+    }
+  }
+  worker->step = &step;
+  last_worker_ = static_cast<std::size_t>(worker - workers_.data());
+  return true;
+}
+
+std::size_t AssemblyRun::next_step() const {
+  std::size_t next = next_step_;
+  for (const Worker& worker : workers_) {
+    if (worker.step != nullptr) {
+      const auto& steps = simulation_->model().sequence.steps;
+      next = std::min(next, static_cast<std::size_t>(worker.step - steps.data()));
+    }
+  }
+  return next;
+}
+
+void AssemblyRun::FinishAll() {
+  for (const SequenceGap& gap : simulation_->model().sequence.gaps) {
+    ResultOf(gap.occurrence).reason = gap.reason;
+  }
+  for (const product::Occurrence& occurrence : simulation_->model().product->occurrences) {
+    Update(occurrence.id);
+  }
+  is_done_ = true;
 }
 
 void AssemblyRun::Advance() {
-  const Model& model = simulation_->model();
-  const auto& steps = model.sequence.steps;
-  if (is_assigned_) {
-    if (!HasFinished(steps[next_step_])) {
-      return;
-    }
-    is_assigned_ = false;
-    FinishStep(steps[next_step_++]);
+  if (is_done_) {
+    return;
   }
+  for (Worker& worker : workers_) {
+    if (worker.step != nullptr && HasFinished(worker)) {
+      FinishStep(*std::exchange(worker.step, nullptr), worker);
+    }
+  }
+  const auto& steps = simulation_->model().sequence.steps;
   for (; next_step_ < std::min(end_step_, steps.size()); ++next_step_) {
     const SequenceStep& step = steps[next_step_];
+    Worker* worker = FindWorkerFor(step);
+    if (worker == nullptr) {
+      return;
+    }
     if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
       simulation_->PlaceInFixture(step.occurrence);
       Update(step.occurrence);
       ResultOf(step.occurrence).note = DescribeOverlaps(step.occurrence);
-      continue;
-    }
-    // Of a subassembly only that moves which has got into it.
-    SequenceStep possible = step;
-    std::erase_if(possible.members, [this](OccurrenceId id) {
-      return simulation_->placement(id) == Placement::kLoose;
-    });
-    simulation_->Prepare(possible);
-    if (person_ != nullptr) {
-      dropped_[step.occurrence.index()].reset();
-      finished_before_ = person_->finished_count();
-      is_assigned_ = person_->Assign(MakeTask(possible));
-    } else {
-      is_assigned_ = true;
-    }
-    return;
-  }
-  if (!is_done_) {
-    for (const SequenceGap& gap : model.sequence.gaps) {
-      ResultOf(gap.occurrence).reason = gap.reason;
-    }
-    for (const product::Occurrence& occurrence : model.product->occurrences) {
-      Update(occurrence.id);
+    } else if (IsDoneByAnother(step, *worker)) {
+      FinishStep(step, *worker);
+    } else if (!Begin(step, worker)) {
+      return;
     }
   }
-  is_done_ = true;
+  const bool is_idle = std::all_of(workers_.begin(), workers_.end(),
+                                   [](const Worker& worker) { return worker.step == nullptr; });
+  if (is_idle) {
+    FinishAll();
+  }
 }
 
 spatial::Pose StartOfHand(const Model& model) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -27,6 +28,7 @@ struct PartResult {
   double fit_felt{0};          ///< The same as felt [N].
   double deepest{0};           ///< Deepest penetration met [m].
   double insertion{0};         ///< Longest that a mate's shaft was in its hole [m].
+  std::size_t hand{0};         ///< That let go of it last.
   int mates{0};                ///< With parts that were in place.
   double pose_error{0};        ///< Of the origin, from the file's pose [m].
   double pose_error_angle{0};  ///< [rad]
@@ -40,14 +42,22 @@ struct AssemblyProgress {
   std::int64_t t_ns{0};  ///< Session time.
 };
 
+/** The simulated persons, by hand; null where a real one has that hand, or there is none. */
+using Persons = std::array<SimulatedPerson*, 2>;
+
 /** Has a model assembled, one part after the other in the order that was found, and keeps the
- account: by the simulated person, or by whoever holds the device. As a Sink it stands between the
- loops and the record. */
+ account: by simulated persons, or by whoever holds the device. Two persons take turns. While one
+ puts a part in, the other begins with the next one where their ways in are apart: neither stands
+ in the other's way, whichever comes first. A real hand beside a simulated one does what it likes;
+ what it puts in its place is done. As a Sink the run stands between the loops and the record. */
 class AssemblyRun final : public Sink {
  public:
   /** @param person  Null: a real one, who puts each part in its place in his own time.
    @param downstream  Gets everything too; may be null. */
-  AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream);
+  AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream)
+      : AssemblyRun(simulation, Persons{person, nullptr}, downstream) {}
+
+  AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream);
 
   void OnTick(std::size_t hand, const device::DeviceState& device,
               const haptics::TickOutput& out) noexcept override;
@@ -69,10 +79,10 @@ class AssemblyRun final : public Sink {
   /** Before it begins: goes on with this step; what came before it was done already. */
   void Resume(std::size_t next_step) { next_step_ = next_step; }
 
-  /** The step of the sequence whose turn it is; their number when all are done. */
-  [[nodiscard]] std::size_t next_step() const { return next_step_; }
+  /** The first step of the sequence that is not done; their number when all are. */
+  [[nodiscard]] std::size_t next_step() const;
 
-  /** After every physics step, on its thread: gives the person the next part. */
+  /** After every physics step, on its thread: gives whoever is free the next part. */
   void Advance();
 
   [[nodiscard]] bool is_done() const { return is_done_; }
@@ -83,24 +93,42 @@ class AssemblyRun final : public Sink {
   std::function<void(const AssemblyProgress&, const PartResult&)> on_part;
 
  private:
+  /** Who does the steps, one at a time: a person, or whoever has the devices. */
+  struct Worker {
+    SimulatedPerson* person{nullptr};
+    std::size_t hand{0};  ///< The person's.
+    const SequenceStep* step{nullptr};
+    int finished_before{0};
+  };
+
   [[nodiscard]] PartResult& ResultOf(product::OccurrenceId id);
-  [[nodiscard]] std::string ExplainFailure(const SequenceStep& step) const;
-  [[nodiscard]] bool HasFinished(const SequenceStep& step) const;
-  void FinishStep(const SequenceStep& step);
+  [[nodiscard]] std::string ExplainFailure(const SequenceStep& step, const Worker& worker) const;
+  [[nodiscard]] bool HasFinished(const Worker& worker) const;
+  /** Another hand than the worker's has put it in its place. */
+  [[nodiscard]] bool IsDoneByAnother(const SequenceStep& step, const Worker& worker) const;
+  void FinishStep(const SequenceStep& step, const Worker& worker);
+  /** Null where the step has to wait. */
+  [[nodiscard]] Worker* FindWorkerFor(const SequenceStep& step);
+  /** Around the part in its place and on its way there, where it engages. */
+  [[nodiscard]] spatial::Box WayIn(const SequenceStep& step) const;
+  [[nodiscard]] bool CanGoOnBeside(const SequenceStep& step, const Worker& busy) const;
+  /** False when the worker could not take it on now. */
+  bool Begin(const SequenceStep& step, Worker* worker);
+  void FinishAll();
   void Update(product::OccurrenceId id);
   [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id) const;
   [[nodiscard]] PersonTask MakeTask(const SequenceStep& step) const;
 
   Simulation* simulation_;
-  SimulatedPerson* person_;
+  std::vector<Worker> workers_;
+  std::size_t last_worker_;  ///< That began a step last.
   Sink* downstream_;
   std::vector<PartResult> results_;
   std::size_t next_step_{0};
   std::size_t first_step_{0};
   std::size_t end_step_{std::numeric_limits<std::size_t>::max()};
   std::size_t total_{0};
-  bool is_assigned_{false};
-  int finished_before_{0};
+  std::array<haptics::HoldState, 2> states_{};           ///< By hand.
   std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
   double lift_height_{0.05};
   bool is_done_{false};

@@ -140,6 +140,7 @@ haptics::TickOutput Simulation::HapticTick(std::size_t hand,
   haptics::TickContext context;
   context.model_age_ns = device.t_ns - physics_t_ns_.load(std::memory_order_acquire);
   context.is_stopped = is_stopped_.load(std::memory_order_acquire);
+  context.effort_level = effort_level_;
   const haptics::TickOutput out = RunTick(&hands_[hand], device, context);
   if (log_ != nullptr) {
     log_->Add({device, context.model_age_ns, context.is_stopped,
@@ -156,7 +157,11 @@ haptics::TickOutput Simulation::ReplayTick(const TickLog& log, std::size_t i) no
     Obey(log.command(replayed_commands_).command, tick.device.t_ns);
   }
   SetEffortLevel(tick.effort_level);
-  return RunTick(&hands_[tick.hand], tick.device, {tick.model_age_ns, tick.is_stopped});
+  haptics::TickContext context;
+  context.model_age_ns = tick.model_age_ns;
+  context.is_stopped = tick.is_stopped;
+  context.effort_level = tick.effort_level;
+  return RunTick(&hands_[tick.hand], tick.device, context);
 }
 
 void Simulation::TellOfSafety(Hand* hand, const device::DeviceState& device,

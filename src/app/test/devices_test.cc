@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "app/test/run_hvas.h"
 #include "base/test/temporary_folder.h"
 #include "device/emulation/library_emulator.h"
+#include "record/reader.h"
 
 namespace hvas::app {
 namespace {
@@ -380,6 +382,61 @@ TEST(AssembleWithDevice, TableSaysThatItWasEmulated) {
                       ran.out);
 }
 
+TEST(AssembleWithTwoDevices, BothHandsWorkAndTheRecordHasBoth) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "session").string();
+  const auto assemble = [](std::vector<std::string> more) {
+    std::vector<std::string> arguments{
+        "assemble",        ProductFile("bushing"), "-q", "--device", "emulated:openhaptics:touch_x",
+        "--second-device", "emulated:haply"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunHvasJson(arguments);
+  };
+  const json run = assemble({"--record", file});
+  EXPECT_EQ(run["seated"], 3);
+  EXPECT_EQ(run["hands"], 2);
+  EXPECT_EQ(run["parts"][1]["hand"], 0);
+  EXPECT_EQ(run["parts"][2]["hand"], 1);
+  EXPECT_EQ(run["device"]["profile"], "touch_x");
+  EXPECT_EQ(run["second_device"]["profile"], "inverse3");
+  EXPECT_EQ(run["second_device"]["address"], "emulated:haply");
+  EXPECT_EQ(run["second_device"]["notes"][0], "this is an EMULATED device");
+  EXPECT_EQ(assemble({})["digest"], run["digest"]);
+
+  auto reader = record::Reader::Open(file);
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_EQ(reader->Verify().value_or(""), run["digest"]);
+  EXPECT_EQ(reader->meta().at("second_device"), "emulated:haply");
+  EXPECT_EQ(reader->tick_count(), 2 * run["ticks"].get<int>());
+  std::array<int, 2> with_part{};
+  (void)reader->ForEachTick({}, [&](const record::TickRecord& tick) {
+    with_part.at(tick.hand) += tick.held != record::kNoOccurrence ? 1 : 0;
+    return true;
+  });
+  EXPECT_GT(with_part[0], 1000);
+  EXPECT_GT(with_part[1], 1000);
+  std::array<int, 2> taken{};
+  const auto events = reader->ReadEvents();
+  ASSERT_TRUE(events.has_value());
+  for (const record::Event& event : *events) {
+    if (event.kind == "taken") {
+      ++taken.at(json::parse(event.json).at("hand"));
+    }
+  }
+  EXPECT_EQ(taken, (std::array<int, 2>{1, 1}));
+}
+
+TEST(AssembleWithTwoDevices, TableSaysWhatWasInWhichHand) {
+  const Ran ran =
+      RunHvas({"assemble", ProductFile("bushing"), "-q", "--device", "emulated:openhaptics",
+               "--second-device", "emulated:openhaptics:touch", "--limit", "0.1"});
+  EXPECT_EQ(ran.status, 2) << ran.err;
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring,
+                      "in the first hand: EMULATED PHANTOM Omni (emulated:openhaptics); parts put "
+                      "in place: 0\nin the second hand: EMULATED",
+                      ran.out);
+}
+
 void ExpectRefused(const std::vector<std::string>& options, const std::string& error) {
   std::vector<std::string> arguments{"assemble", ProductFile("bushing"), "-q"};
   arguments.insert(arguments.end(), options.begin(), options.end());
@@ -402,6 +459,10 @@ TEST(AssembleWithDevice, WhatCannotBeOpenedIsNamedWithTheRemedy) {
                 "omni, premium15, premium30, touch, touch_x)\n");
   ExpectRefused({"--device", "openhaptics"},
                 "hvas: openhaptics: a real device needs the real-time loop (add --realtime)\n");
+  ExpectRefused({"--device", "emulated:haply", "--second-device", "haply"},
+                "hvas: haply: a real device needs the real-time loop (add --realtime)\n");
+  ExpectRefused({"--second-device", "emulated:haply"},
+                "--second-device requires --device\nRun with --help for more information.\n");
 }
 
 TEST(AssembleWithDevice, LibraryThatIsMissingIsNamedWithTheRemedy) {

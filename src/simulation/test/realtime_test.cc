@@ -40,6 +40,45 @@ TEST(RealtimeTest, ThreeLoopsShareASession) {  // X4; meant for the thread sanit
   EXPECT_LE(frame.t_ns, report.session_ns);
 }
 
+/** Ticks of each hand, and whether all was finite. */
+class TicksOfHands final : public Sink {
+ public:
+  void OnTick(std::size_t hand, const device::DeviceState&,
+              const haptics::TickOutput& out) noexcept override {
+    ++ticks[hand];
+    is_finite = is_finite && out.F_H_W.f.allFinite() && spatial::IsFinite(out.X_WD);
+  }
+
+  void OnEvent(const SimulationEvent& event) override {
+    has_taken = has_taken || event.kind == SimulationEvent::Kind::kTaken;
+  }
+
+  std::uint64_t ticks[2]{};
+  bool is_finite{true};
+  bool has_taken{false};
+};
+
+TEST(RealtimeTest, TwoHandsShareASession) {  // X3, X4; meant for the thread sanitizer
+  const auto model = PegInBlockModel();
+  Simulation simulation(model, haptics::TickOptions(), haptics::TickOptions());
+  SimulatedPerson left({}, 1, StartOfHand(*model));
+  SimulatedPerson right({}, 2, StartOfHand(*model));
+  TicksOfHands hands;
+  AssemblyRun run(&simulation, Persons{&left, &right}, &hands);
+  FlightRecorder flight(1000, 2);
+  std::size_t hands_in_frame = 0;
+  Execution execution = run.MakeExecution(&left, 2, &right);
+  execution.flight = &flight;
+  execution.on_frame = [&](const Frame& frame) { hands_in_frame = frame.ticks.size(); };
+  const ExecutionReport report = RunRealtime(execution);
+  EXPECT_GT(report.ticks, 0u);
+  EXPECT_EQ(hands.ticks[0], report.ticks);
+  EXPECT_EQ(hands.ticks[1], report.ticks);
+  EXPECT_TRUE(hands.is_finite);
+  EXPECT_TRUE(hands.has_taken);
+  EXPECT_EQ(hands_in_frame, 2u);
+}
+
 TEST(RealtimeTest, RunEndsWhenItIsDone) {
   Session session(PegInBlockModel());
   Execution execution = session.MakeExecution(60);

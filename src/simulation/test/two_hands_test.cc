@@ -286,6 +286,20 @@ TEST(TwoHandsTest, WithOneOperatorItIsTheSimulationOfOneHand) {
   EXPECT_EQ(digests[0], digests[1]);
 }
 
+/** Has a person bring a part to its place. */
+void Assign(const Simulation& simulation, OccurrenceId id, SimulatedPerson* person) {
+  const Body& body = simulation.model().bodies[id.index()];
+  const Pose X_BG(body.mass.p_BoBcm_B);
+  PersonTask task;
+  task.occurrence = id;
+  task.p_BG = X_BG.p();
+  task.X_WG_start = simulation.pose(id) * X_BG;
+  task.X_WG_goal = body.X_WB_goal * X_BG;
+  task.centre_W = simulation.model().centre_W;
+  task.transfer_radius = simulation.model().transfer_radius;
+  ASSERT_TRUE(person->Assign(task));
+}
+
 /** A person with an emulated device in the hand, behind the driver of its vendor. */
 struct Person {
   Person(const char* driver, const char* profile, std::uint64_t seed, const Model& model)
@@ -299,19 +313,6 @@ struct Person {
     device::EmulatorOptions options;
     options.profile = device::FindProfile(profile)->profile;
     return *device::StartEmulator(driver, options);
-  }
-
-  void Assign(const Simulation& simulation, OccurrenceId id) {
-    const Body& body = simulation.model().bodies[id.index()];
-    const Pose X_BG(body.mass.p_BoBcm_B);
-    PersonTask task;
-    task.occurrence = id;
-    task.p_BG = X_BG.p();
-    task.X_WG_start = simulation.pose(id) * X_BG;
-    task.X_WG_goal = body.X_WB_goal * X_BG;
-    task.centre_W = simulation.model().centre_W;
-    task.transfer_radius = simulation.model().transfer_radius;
-    ASSERT_TRUE(person.Assign(task));
   }
 
   std::unique_ptr<device::Emulator> emulator;
@@ -348,8 +349,8 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   Simulation simulation(model, left.options, right.options);
   TickLog log(100'000);
   simulation.KeepLog(&log);
-  left.Assign(simulation, kFirst);
-  right.Assign(simulation, kThird);
+  Assign(simulation, kFirst, &left.person);
+  Assign(simulation, kThird, &right.person);
   Forces forces;
   Execution execution;
   execution.simulation = &simulation;
@@ -357,6 +358,11 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   execution.second_hand = &right.hand;
   execution.sink = &forces;
   execution.log = &log;
+  int steps = 0;
+  execution.advance = [&] {  // in between, somebody stops the forces for a tenth of a second
+    ++steps;
+    simulation.StopForces(steps > 100 && steps <= 110);
+  };
   execution.is_done = [&] {
     return left.person.finished_count() + right.person.finished_count() == 2;
   };
@@ -375,10 +381,116 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   EXPECT_GT(right.emulator->device().truth().commands, 1000u);
   Simulation again(model, left.options, right.options);
   ASSERT_EQ(log.tick_count(), 2 * report.ticks);
+  ASSERT_TRUE(log.tick(2 * 1050).is_stopped);
   for (std::size_t i = 0; i < log.tick_count(); ++i) {
     ASSERT_EQ(log.tick(i).hand, i % 2);
     ASSERT_EQ(again.ReplayTick(log, i).F_H_D.f, log.tick(i).F_H_D.f) << i;
   }
+}
+
+/** Two blocks, 100 mm apart, and a peg in each. */
+std::shared_ptr<const Model> PegsInBlocks() {
+  product::Product product;
+  product.name = "rigs";
+  const auto block = testing::AddPart(
+      &product, "block",
+      contact::testing::Cup(testing::kBoreRadius, 15e-3, testing::kFloor, testing::kBlockHeight));
+  const auto peg = testing::AddPart(
+      &product, "peg", contact::testing::Shaft(testing::kBoreRadius, testing::kPegLength, 20e-6));
+  for (int i = 0; i < 2; ++i) {
+    const std::string number = std::to_string(i);
+    testing::Place(&product, block, "block " + number, Pose(Vec3(0.1 * i, 0, 0)));
+    testing::Place(&product, peg, "peg " + number, Pose(Vec3(0.1 * i, 0, testing::kFloor)));
+  }
+  testing::Complete(&product);
+  Diagnostics diagnostics;
+  return *Compile(std::make_shared<product::Product>(product), testing::FastOptions(),
+                  &diagnostics);
+}
+
+/** Counts how the hands were full. */
+class FullHands final : public Sink {
+ public:
+  void OnTick(std::size_t hand, const DeviceState&,
+              const haptics::TickOutput& out) noexcept override {
+    is_full_[hand] = out.occurrence.is_valid();
+    both += hand == 1 && is_full_[0] && is_full_[1] ? 1 : 0;
+  }
+
+  void OnEvent(const SimulationEvent& event) override {
+    if (event.kind == SimulationEvent::Kind::kTaken) {
+      taken.push_back(event.hand);
+    }
+  }
+
+  int both{0};  ///< Periods with a part in either hand.
+  std::vector<std::size_t> taken;
+
+ private:
+  std::array<bool, 2> is_full_{};
+};
+
+/** Two simulated persons without devices, who assemble a model. */
+struct Pair {
+  explicit Pair(const std::shared_ptr<const Model>& model)
+      : simulation(model, haptics::TickOptions(), haptics::TickOptions()),
+        left({}, 1, StartOfHand(*model)),
+        right({}, 2, StartOfHand(*model)),
+        run(&simulation, Persons{&left, &right}, &hands) {
+    (void)RunLockstep(run.MakeExecution(&left, 60, &right));
+    EXPECT_TRUE(run.is_done());
+    for (const PartResult& part : run.results()) {
+      EXPECT_TRUE(part.is_seated) << part.reason;
+    }
+  }
+
+  Simulation simulation;
+  SimulatedPerson left;
+  SimulatedPerson right;
+  FullHands hands;
+  AssemblyRun run;
+};
+
+TEST(TwoPersonsTest, WorkAtOnceWhereTheirWaysInAreApart) {
+  const Pair pair(PegsInBlocks());
+  EXPECT_GT(pair.hands.both, 100);
+  EXPECT_EQ(pair.hands.taken, (std::vector<std::size_t>{0, 1, 0}));
+}
+
+TEST(TwoPersonsTest, TakeTurnsWhereOnePartIsInTheOthersWay) {
+  Diagnostics diagnostics;
+  const Pair pair(*Compile(std::make_shared<product::Product>(testing::CoinUnderLid()),
+                           testing::FastOptions(), &diagnostics));
+  EXPECT_EQ(pair.hands.both, 0);
+  EXPECT_EQ(pair.hands.taken, (std::vector<std::size_t>{0, 1}));
+}
+
+TEST(TwoPersonsTest, WhatAnotherHandHasPutInItsPlaceIsDone) {
+  const auto model = Blocks();
+  Simulation simulation(model, haptics::TickOptions(), haptics::TickOptions());
+  const OccurrenceId base = model->sequence.steps.front().occurrence;
+  ASSERT_NE(base, kSecond);
+  SimulatedPerson by_itself({}, 1, StartOfHand(*model));  // its tasks do not come from the run
+  SimulatedPerson partner({}, 2, StartOfHand(*model));
+  Assign(simulation, kSecond, &by_itself);
+  AssemblyRun run(&simulation, Persons{nullptr, &partner}, nullptr);
+  Execution execution = run.MakeExecution(&by_itself, 60, &partner);
+  execution.advance = [&] {
+    if (by_itself.finished_count() > 0) {
+      run.Advance();
+    }
+  };
+  (void)RunLockstep(execution);
+  ASSERT_TRUE(run.is_done());
+  ASSERT_EQ(run.results().size(), 3u);
+  for (const PartResult& part : run.results()) {
+    EXPECT_TRUE(part.is_seated) << part.reason;
+    EXPECT_EQ(part.reason, "");
+    if (part.occurrence != base) {
+      EXPECT_EQ(part.hand, part.occurrence == kSecond ? 0u : 1u);
+    }
+  }
+  EXPECT_EQ(partner.finished_count(), 1);
 }
 
 }  // namespace
