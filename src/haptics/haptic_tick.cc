@@ -9,10 +9,8 @@
 namespace hvas::haptics {
 namespace {
 
-constexpr double kSoftStartTime = 0.3;    // [s]
-constexpr double kMinVirtualMass = 0.05;  // [kg]; lighter parts are felt as this inertia
-constexpr double kMaxVirtualMass =
-    1.0;  // [kg]; heavier ones too: weight is mapped, inertia bounded
+constexpr double kSoftStartTime = 0.3;     // [s]
+constexpr double kMinVirtualMass = 0.05;   // [kg]; lighter parts are felt as this inertia
 constexpr double kSeatTolerance = 50e-6;   // [m]; no deeper on the last bit into place
 constexpr double kMaxCouplingShare = 0.9;  // of the device's force; more than fits are felt with
 constexpr double kLeastTorque = 0.2;       // [N m]; turns the part where no torque is shown
@@ -275,7 +273,7 @@ double HapticTick::StoredEnergy() const noexcept {
     return 0;
   }
   const Vec3 e = tracked_.X_WT * part_->p_BoBcm_B - X_WD_ * part_->p_BoBcm_B;
-  const double virtual_mass = std::clamp(part_->mass, kMinVirtualMass, kMaxVirtualMass);
+  const double virtual_mass = std::clamp(part_->mass, kMinVirtualMass, options_.max_virtual_mass);
   const double height = (X_WD_.p() - part_->X_WB_start.p()).dot(-options_.gravity_W.normalized());
   const double energy = 0.5 * options_.coupling.k_lin * e.squaredNorm() +
                         0.5 * virtual_mass * V_D_.v.squaredNorm() +
@@ -304,7 +302,7 @@ void HapticTick::Hold(const Tracked& tracked, TickOutput* out) noexcept {
     guide_.Update(*part_, options_.guidance, X_WD_, tracked.X_WT, options_.dt);
   }
   const Vec3 p_WCm = X_WD_ * part_->p_BoBcm_B;
-  const double virtual_mass = std::clamp(part_->mass, kMinVirtualMass, kMaxVirtualMass);
+  const double virtual_mass = std::clamp(part_->mass, kMinVirtualMass, options_.max_virtual_mass);
   const Mat3 R_WB = X_WD_.R();
   friction_.BeginTick();
   const Mat3 I_W = R_WB * VirtualInertia(*part_, virtual_mass) * R_WB.transpose();

@@ -83,7 +83,8 @@ struct TickOptions {
   CouplingGains coupling;
   GuidanceOptions guidance;
   ContactOptions contact;
-  Vec3 gravity_W{0, 0, -9.81};  ///< [m/s^2]
+  Vec3 gravity_W{0, 0, -9.81};   ///< [m/s^2]
+  double max_virtual_mass{1.0};  ///< Inertia that is felt at most; the weight is mapped [kg].
   ForceMapKind force_map{ForceMapKind::kPublished};
   device::DeviceProfile device;
   /** What the device is given at most; without: the device's peaks and usual rates. */

@@ -91,17 +91,21 @@ TEST(DeviceSessionTest, APressFitGoesInFromTheBorderOfADevice) {
   }
 }
 
-TEST(DeviceSessionTest, HabitsFollowTheStrengthOfADevice) {
-  const auto make = [](const char* id) {
-    return MakePersonOptions(DeviceSession(PegInBlockModel(), id).options);
+TEST(DeviceSessionTest, HabitsAndInertiaFollowTheStrengthOfADevice) {
+  const auto model = PegInBlockModel();
+  const auto make = [&](const char* id) {
+    DeviceSession session(model, id);
+    return std::pair{MakePersonOptions(session.options), session.options.max_virtual_mass};
   };
   const PersonOptions alone;
-  const PersonOptions weak = make("network");
+  const auto [weak, weak_mass] = make("network");
   EXPECT_LT(weak.push_limit, alone.first_push);
   EXPECT_LT(weak.first_push, weak.push_limit) << "what is tried first can be felt in full";
-  const PersonOptions strong = make("virtuose");
+  EXPECT_LT(weak_mass, 0.5);
+  const auto [strong, strong_mass] = make("virtuose");
   EXPECT_GT(strong.push_limit, 20);
   EXPECT_EQ(strong.unguided_limit, alone.unguided_limit) << "what lies loose needs no force";
+  EXPECT_EQ(strong_mass, haptics::TickOptions().max_virtual_mass);
 }
 
 TEST(DeviceSessionTest, TheSameSeedGivesTheSameBytes) {
