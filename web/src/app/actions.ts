@@ -17,6 +17,8 @@ export interface Action {
   isEnabled?: () => boolean;
   /** Undefined: not one that can be on or off. */
   isOn?: () => boolean;
+  /** A line stands before it in menus. */
+  startsGroup?: boolean;
 }
 
 const hasScene = () => store.scene.value !== null;
@@ -67,7 +69,7 @@ export function takeChosen(): void {
 
 const fileActions: Action[] = [
   action("open", "action.open", chooseFile, { keys: ["ctrl+o"], isEnabled: canSteer }),
-  action("screenshot", "action.screenshot", () => void saveScreenshot(), { isEnabled: hasScene }),
+  action("screenshot", "action.screenshot", () => void saveScreenshot(), { startsGroup: true, isEnabled: hasScene }),
   action("share", "action.share", () => void copyLink(), { isEnabled: hasScene }),
   action("runs", "action.runs", saveRuns, { isEnabled: () => store.runs.value.length > 0 }),
 ];
@@ -86,6 +88,7 @@ const editActions: Action[] = [
     { keys: ["ctrl+y", "ctrl+shift+z"], isEnabled: () => canSteer() && store.history.value.redo !== null },
   ),
   action("select-all", "action.selectAll", () => select(view, [...store.occurrences.value.keys()], false), {
+    startsGroup: true,
     keys: ["ctrl+a"],
     isEnabled: hasScene,
   }),
@@ -111,7 +114,11 @@ const viewActions: Action[] = [
   standardView("bottom", "action.viewBottom", "6"),
   standardView("iso", "action.viewIso", "7"),
   toggle("ortho", "action.ortho", view.isOrthographic, { keys: ["p"] }),
-  action("hide", "action.hide", () => setHidden(view, chosen(), true), { keys: ["h"], isEnabled: hasChosen }),
+  action("hide", "action.hide", () => setHidden(view, chosen(), true), {
+    keys: ["h"],
+    isEnabled: hasChosen,
+    startsGroup: true,
+  }),
   action("isolate", "action.isolate", () => isolate(view, chosen(), [...store.occurrences.value.keys()]), {
     keys: ["i"],
     isEnabled: hasChosen,
@@ -126,6 +133,7 @@ const viewActions: Action[] = [
     isEnabled: () => view.hidden.value.size + view.ghosted.value.size > 0,
   }),
   action("section", "action.section", toggleSection, {
+    startsGroup: true,
     keys: ["x"],
     isEnabled: hasScene,
     isOn: () => view.section.value !== null,
@@ -135,18 +143,16 @@ const viewActions: Action[] = [
     isEnabled: hasScene,
     isOn: () => view.explode.value > 0,
   }),
-  toggle("edges", "action.edges", view.showsEdges),
+  toggle("edges", "action.edges", view.showsEdges, { startsGroup: true }),
   toggle("grid", "action.grid", view.showsGrid),
   toggle("forces-shown", "action.forcesShown", view.showsForces),
   toggle("force-scale", "action.forceScale", view.locksForceScale),
-  action("quality", "action.quality", () => (view.quality.value = view.quality.value === "high" ? "low" : "high"), {
-    isOn: () => view.quality.value === "high",
-  }),
+  action("quality", "action.quality", toggleQuality, { isOn: isFine, startsGroup: true }),
   action("stereo-side", "action.stereoSide", () => toggleStereo("side"), { isOn: () => view.stereo.value === "side" }),
   action("stereo-anaglyph", "action.stereoAnaglyph", () => toggleStereo("anaglyph"), {
     isOn: () => view.stereo.value === "anaglyph",
   }),
-  toggle("panel-model", "action.panelModel", ui.panels.model),
+  toggle("panel-model", "action.panelModel", ui.panels.model, { startsGroup: true }),
   toggle("panel-inspector", "action.panelInspector", ui.panels.inspector),
   toggle("panel-plots", "action.panelPlots", ui.panels.plots),
   action("theme", "action.theme", () => (view.theme.value = view.isDark.value ? "light" : "dark"), { keys: ["l"] }),
@@ -177,7 +183,7 @@ const toolActions: Action[] = [
 ];
 
 const simulateActions: Action[] = [
-  action("take", "action.take", takeChosen, { keys: ["g"], isEnabled: () => steers() && !isHolding() }),
+  action("take", "action.take", takeChosen, { startsGroup: true, keys: ["g"], isEnabled: () => steers() && !isHolding() }),
   action("release", "action.release", () => viewport.value?.hand.release(), { keys: ["r"], isEnabled: isHolding }),
   action("align", "action.align", () => viewport.value?.hand.mouse.snapTurn(), { keys: ["o"], isEnabled: isHolding }),
   toggle("assist", "action.assist", view.assists),
@@ -186,18 +192,18 @@ const simulateActions: Action[] = [
     "demo",
     () => t(store.demo.value ? "action.demoStop" : "action.demo"),
     () => void studio.command({ command: "demo", on: !store.demo.value }),
-    { keys: ["d"], isEnabled: steers, isOn: () => store.demo.value },
+    { startsGroup: true, keys: ["d"], isEnabled: steers, isOn: () => store.demo.value },
   ),
   action("next", "action.next", () => void studio.command({ command: "next" }), {
     keys: ["n"],
     isEnabled: () => steers() && !store.demo.value,
   }),
   action("reset", "action.reset", () => void studio.command({ command: "reset" }), { isEnabled: steers }),
-  action("forces-off", "action.forcesOff", forcesOff, { keys: ["escape"] }),
+  action("forces-off", "action.forcesOff", forcesOff, { startsGroup: true, keys: ["escape"] }),
   action("forces-on", "action.forcesOn", () => void studio.command({ command: "forces", off: false }), {
     isEnabled: () => canSteer() && store.forcesOff.value,
   }),
-  toggle("mute", "action.mute", view.isMuted),
+  toggle("mute", "action.mute", view.isMuted, { startsGroup: true }),
   action("lease", "action.lease", () => void studio.command({ command: "lease", action: "request" }), {
     isEnabled: () => store.link.value === "open" && !store.hasLease.value && store.role.value === "operator",
   }),
@@ -216,6 +222,15 @@ const helpActions: Action[] = [
 
 function toggleSection(): void {
   view.section.value = view.section.value === null ? { axis: 0, offset: 0, isFlipped: false } : null;
+}
+
+function isFine(): boolean {
+  return view.quality.value === "high" && !view.isSlow.value;
+}
+
+function toggleQuality(): void {
+  view.quality.value = isFine() ? "low" : "high";
+  view.isSlow.value = false;
 }
 
 function toggleStereo(wanted: "side" | "anaglyph"): void {

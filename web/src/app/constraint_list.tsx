@@ -16,18 +16,26 @@ function stateOf(mate: Mate): "open" | "done" | "active" {
   return isInPlace(mate.a) && isInPlace(mate.b) ? "done" : "open";
 }
 
-/** Of the selection; else of the expected part; else all. */
-function shownMates(): readonly Mate[] {
-  const mates = store.scene.value?.mates ?? [];
+/** The parts whose mates are shown: the selection, else what is held or expected; none: all mates. */
+function partsInQuestion(): ReadonlySet<number> {
   const chosen = view.selected.value;
   const wanted = store.held.value[0]?.occurrence ?? store.expected.value?.occurrence;
-  const ids = new Set(chosen.length > 0 ? chosen : wanted === undefined ? [] : [wanted]);
-  return ids.size === 0 ? mates : mates.filter((m) => ids.has(m.a) || ids.has(m.b));
+  return new Set(chosen.length > 0 ? chosen : wanted === undefined ? [] : [wanted]);
+}
+
+/** Both parts, or the other one where it is plain whose mates these are. */
+function partners(mate: Mate, of: ReadonlySet<number>): string {
+  const name = (id: number) => store.occurrences.value.get(id)?.name ?? "";
+  if (of.size === 1) {
+    return name(of.has(mate.a) ? mate.b : mate.a);
+  }
+  return `${name(mate.a)} / ${name(mate.b)}`;
 }
 
 export function ConstraintList() {
-  const names = store.occurrences.value;
-  const mates = shownMates();
+  const parts = partsInQuestion();
+  const all = store.scene.value?.mates ?? [];
+  const mates = parts.size === 0 ? all : all.filter((m) => parts.has(m.a) || parts.has(m.b));
   return (
     <section class="constraints" aria-labelledby="constraints-title">
       <h2 id="constraints-title">
@@ -37,8 +45,6 @@ export function ConstraintList() {
       <ul>
         {mates.slice(0, kShown).map((mate) => {
           const state = stateOf(mate);
-          const a = names.get(mate.a)?.name ?? "";
-          const b = names.get(mate.b)?.name ?? "";
           return (
             <li key={mate.key || mate.id} class={`constraint is-${state}`}>
               <button
@@ -50,7 +56,7 @@ export function ConstraintList() {
               >
                 <i class="state-dot" role="img" aria-label={t(`mates.${state}`)} />
                 <span class="constraint-text">
-                  <span class="constraint-kind">{t(`mates.${mate.kind}`)}</span> {a} / {b}
+                  <span class="constraint-kind">{t(`mates.${mate.kind}`)}</span> {partners(mate, parts)}
                 </span>
                 {mate.fit ? <span class="badge">{mate.fit.code}</span> : null}
               </button>

@@ -24,7 +24,12 @@ export function EventList() {
   if (log.length === 0) {
     return <p class="quiet">{t("log.empty")}</p>;
   }
-  const clock = new Intl.DateTimeFormat(language.value, { timeStyle: "medium" });
+  const clock = new Intl.DateTimeFormat(language.value, {
+    hour: "2-digit",
+    minute: "2-digit",
+    second: "2-digit",
+    hourCycle: "h23",
+  });
   return (
     <ol class="events">
       {log.map((entry, k) => (

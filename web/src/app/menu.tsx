@@ -48,7 +48,7 @@ export function MenuList({ actions, label, onClose, x, y }: MenuListProps) {
           aria-checked={a.isOn?.()}
           aria-disabled={!isEnabled(a)}
           data-testid={`menu-${a.id}`}
-          class="menu-item"
+          class={`menu-item ${a.startsGroup ? "starts-group" : ""}`}
           onClick={() => {
             if (isEnabled(a)) {
               onClose();

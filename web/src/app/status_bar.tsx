@@ -24,7 +24,7 @@ export function StatusBar() {
   const meter = useRef(makeMeter());
   useLive((live) => {
     const rate = meter.current(studio.frames?.bytesReceived ?? 0, performance.now());
-    setText(fps.current, t("status.fps", { n: viewport.value?.framesPerSecond ?? 0 }));
+    setText(fps.current, t("status.fps", { n: viewport.value?.meter.framesPerSecond || "–" }));
     setText(stream.current, t("status.stream", { n: number(rate, 0) }));
     // While nothing moves nothing is sent: then there is no age to speak of.
     const isOld = live === null || live.ageMs > 2000;

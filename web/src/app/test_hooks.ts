@@ -63,7 +63,7 @@ export function exposeHooks(): void {
       hands: viewport.value?.live?.hands ?? [],
       contacts: viewport.value?.live?.contacts.length ?? 0,
       ageMs: viewport.value?.live?.ageMs ?? null,
-      framesPerSecond: viewport.value?.framesPerSecond ?? 0,
+      framesPerSecond: viewport.value?.meter.framesPerSecond ?? 0,
       isShared: studio.frames !== null && !(studio.frames.buffer instanceof ArrayBuffer),
       messages: studio.frames?.messagesReceived ?? 0,
       placements: Object.fromEntries(store.placements.value),

@@ -118,9 +118,20 @@ export class Studio {
     }
   }
 
+  /** A socket that never opened may have been refused: only a plain request tells why. */
+  private async noteRefusal(): Promise<void> {
+    const answer = await fetch("/api/scene").catch(() => null);
+    if (answer?.status === 401 || answer?.status === 403) {
+      this.store.link.value = "denied";
+    }
+  }
+
   private onClosed(): void {
+    if (this.store.link.value === "starting") {
+      void this.noteRefusal();
+    }
     batch(() => {
-      if (this.store.link.value !== "denied") {
+      if (this.store.link.value === "open") {
         this.store.link.value = "lost";
       }
       this.store.held.value = [];

@@ -27,6 +27,8 @@ export function makeViewState() {
     isOrthographic: signal(false),
     stereo: signal<Stereo>("none"),
     quality: signal<Quality>("high"),
+    /** The machine draws slowly: shadows are left out, whatever the quality. */
+    isSlow: signal(false),
     showsForces: signal(true),
     /** Newtons to metres of arrow; null: as fits the largest force so far. */
     locksForceScale: signal(false),

@@ -32,6 +32,8 @@ const kDirections: Record<ViewName, Vec3> = {
   iso: [0.62, -0.95, 0.62],
 };
 const kFieldOfView = 32;
+/** Room around what is shown: panels float over the rim of the picture. */
+const kAround = 1.16;
 
 export class CameraRig {
   readonly perspective = new PerspectiveCamera(kFieldOfView, 1, 0.001, 100);
@@ -108,33 +110,33 @@ export class CameraRig {
     void this.controls.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, false);
   }
 
-  /** Turns the eye to a direction that it then looks from. */
-  lookFrom(direction: Vec3, sphere: Sphere | null, isSmooth = true): void {
-    const target = sphere?.center ?? this.controls.getTarget(new Vector3());
-    const distance = this.controls.getPosition(new Vector3()).distanceTo(this.controls.getTarget(new Vector3()));
-    const along = new Vector3(...direction);
-    if (Math.abs(along.z) > 0.999 * along.length()) {
+  /** Looks from a direction so that all the points are in the picture. */
+  lookFrom(direction: Vec3, points: readonly Vector3[], isSmooth = true): void {
+    const back = new Vector3(...direction).normalize();
+    if (Math.abs(back.z) > 0.999) {
       // From straight above, x is to be right.
-      along.y -= 1e-4;
+      back.y -= 1e-4 * Math.sign(back.z);
+      back.normalize();
     }
-    along.setLength(sphere === null ? distance : this.distanceFor(sphere));
-    const eye = along.add(target);
+    const target = new Box3().setFromPoints([...points]).getCenter(new Vector3());
+    const seen = this.measure(points, target, back);
+    const eye = target.clone().addScaledVector(back, seen.distance);
     void this.controls.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, isSmooth);
-    if (sphere !== null && this.isParallel) {
-      this.setHalfHeight(sphere.radius * 1.05 * Math.max(1, 1 / this.aspect));
+    if (this.isParallel) {
+      this.setHalfHeight(seen.halfHeight);
       void this.controls.zoomTo(1, isSmooth);
     }
   }
 
-  view(name: ViewName, sphere: Sphere | null, isSmooth = true): void {
-    this.lookFrom(kDirections[name], sphere, isSmooth);
+  view(name: ViewName, points: readonly Vector3[], isSmooth = true): void {
+    this.lookFrom(kDirections[name], points, isSmooth);
   }
 
-  /** Shows the sphere from where the eye is now. */
-  fit(sphere: Sphere, isSmooth = true): void {
+  /** Shows the points from where the eye is now. */
+  fit(points: readonly Vector3[], isSmooth = true): void {
     const target = this.controls.getTarget(new Vector3());
     const direction = this.controls.getPosition(new Vector3()).sub(target);
-    this.lookFrom([direction.x, direction.y, direction.z], sphere, isSmooth);
+    this.lookFrom(direction.toArray(), points, isSmooth);
   }
 
   pose(): { eye: Vec3; target: Vec3 } {
@@ -155,10 +157,21 @@ export class CameraRig {
     return (2 * Math.tan((kFieldOfView * Math.PI) / 360) * depth) / height;
   }
 
-  private distanceFor(sphere: Sphere): number {
-    const half = (kFieldOfView * Math.PI) / 360;
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.aspect));
-    return (sphere.radius / Math.sin(narrow)) * 1.02;
+  /** How far away, and how high, a picture of the points has to be. */
+  private measure(points: readonly Vector3[], target: Vector3, back: Vector3): { distance: number; halfHeight: number } {
+    const right = new Vector3(0, 0, 1).cross(back).normalize();
+    const up = back.clone().cross(right);
+    const slope = Math.tan((kFieldOfView * Math.PI) / 360);
+    let distance = 0;
+    let halfHeight = 0;
+    const offset = new Vector3();
+    for (const point of points) {
+      offset.copy(point).sub(target);
+      const half = Math.max(Math.abs(offset.dot(up)), Math.abs(offset.dot(right)) / this.aspect) * kAround;
+      halfHeight = Math.max(halfHeight, half);
+      distance = Math.max(distance, half / slope + offset.dot(back));
+    }
+    return { distance: Math.max(distance, 1e-3), halfHeight: Math.max(halfHeight, 1e-3) };
   }
 
   private setHalfHeight(half: number): void {

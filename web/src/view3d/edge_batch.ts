@@ -38,8 +38,10 @@ const kVertex = /* glsl */ `
     bool isHidden = dot(turn * normalA, toEye) < 0.0 && dot(turn * normalB, toEye) < 0.0;
     vInk = vec4(mix(ink, markedInk, marked), strength);
     #include <clipping_planes_vertex>
+    // A little nearer than the faces that it bounds, and no more: else it shows through thin walls.
+    mvPosition.xyz *= isOrthographic ? 1.0 : 0.9993;
     gl_Position = projectionMatrix * mvPosition;
-    gl_Position.z -= 2e-5 * gl_Position.w;
+    gl_Position.z -= isOrthographic ? 2e-5 : 0.0;
     if (isHidden || strength <= 0.0) {
       gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     }

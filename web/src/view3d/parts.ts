@@ -2,7 +2,6 @@
 
 import {
   BatchedMesh,
-  Box3,
   Color,
   DoubleSide,
   FrontSide,
@@ -183,16 +182,21 @@ export class Parts {
     return best;
   }
 
-  /** In W, of what is not hidden or of the given ones. */
-  box(only?: ReadonlySet<number>): Box3 {
-    const box = new Box3();
-    const one = new Box3();
+  /** In W: corners of the boxes of what is not hidden, or of the given ones. */
+  corners(only?: ReadonlySet<number>): Vector3[] {
+    const corners: Vector3[] = [];
     for (const entry of this.entries) {
-      if (only === undefined ? !entry.look.isHidden : only.has(entry.occurrence)) {
-        box.union(one.copy(entry.shape.box).applyMatrix4(entry.matrix));
+      if (only === undefined ? entry.look.isHidden : !only.has(entry.occurrence)) {
+        continue;
+      }
+      const { min, max } = entry.shape.box;
+      for (const x of [min.x, max.x]) {
+        for (const y of [min.y, max.y]) {
+          corners.push(...[min.z, max.z].map((z) => new Vector3(x, y, z).applyMatrix4(entry.matrix)));
+        }
       }
     }
-    return box;
+    return corners;
   }
 
   dispose(): void {

@@ -81,7 +81,7 @@ export class PointerInput {
     } else if (event.button === 0) {
       const cube = this.viewport.pickCube(x, y);
       if (cube !== null) {
-        this.viewport.rig.lookFrom(cube, this.viewport.product.boundingSphere());
+        this.viewport.rig.lookFrom(cube, this.viewport.product.outline());
         event.stopImmediatePropagation();
         return;
       }

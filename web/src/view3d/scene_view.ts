@@ -1,7 +1,7 @@
 /** The product in the view: loads it, puts parts where the frames say, and shows what is marked. */
 
 import { effect } from "@preact/signals";
-import { Box3, Group, Matrix4, Quaternion, Ray, Sphere, Vector3 } from "three";
+import { Group, Matrix4, Quaternion, Ray, Sphere, Vector3 } from "three";
 import { explodeOffsets, type Box } from "../model/explode";
 import { Extrapolator } from "../model/extrapolate";
 import { add, lerp, slerp, toQuat, toVec3, type Pose, type Vec3 } from "../model/math";
@@ -84,10 +84,9 @@ export class SceneView {
     return this.store.occurrences.value.get(id) ?? null;
   }
 
-  /** Of what is seen, or of some parts. */
-  boundingSphere(only?: readonly number[]): Sphere {
-    const box = this.parts?.box(only === undefined ? undefined : new Set(only)) ?? new Box3();
-    return box.isEmpty() ? this.sphere.clone() : box.getBoundingSphere(new Sphere());
+  /** Corners of the boxes of what is seen, or of some parts. */
+  outline(only?: readonly number[]): Vector3[] {
+    return this.parts?.corners(only === undefined ? undefined : new Set(only)) ?? [];
   }
 
   pick(ray: Ray): PickHit | null {

@@ -7,7 +7,7 @@ import {
   Group,
   HemisphereLight,
   Mesh,
-  PCFSoftShadowMap,
+  PCFShadowMap,
   PlaneGeometry,
   ShaderMaterial,
   ShadowMaterial,
@@ -25,7 +25,7 @@ const kGridVertex = /* glsl */ `
   }
 `;
 
-/** Lines as wide as a pixel at any distance; every tenth is stronger; all fade towards the rim. */
+/** Lines as wide as a pixel at any distance; every fifth is stronger; all fade towards the rim. */
 const kGridFragment = /* glsl */ `
   uniform vec3 ink;
   uniform vec3 centre;
@@ -40,7 +40,7 @@ const kGridFragment = /* glsl */ `
   }
   void main() {
     float fade = 1.0 - smoothstep(0.2, 1.0, distance(vAt.xy, centre.xy) / reach);
-    float alpha = max(lines(cell) * 0.42, lines(cell * 10.0)) * fade * strength;
+    float alpha = max(lines(cell) * 0.4, lines(cell * 5.0)) * fade * strength;
     if (alpha < 0.004) {
       discard;
     }
@@ -49,9 +49,9 @@ const kGridFragment = /* glsl */ `
   }
 `;
 
-/** A cell of the grid: a power of ten, or twice or five times one, about a tenth of the product. */
+/** A cell of the grid: a power of ten, or twice or five times one, somewhat less than the product. */
 export function gridCell(radius: number): number {
-  const wanted = radius / 6;
+  const wanted = radius / 3;
   const power = Math.pow(10, Math.floor(Math.log10(wanted)));
   return wanted >= 5 * power ? 5 * power : wanted >= 2 * power ? 2 * power : power;
 }
@@ -121,7 +121,7 @@ export class Stage {
 
   setPalette(palette: Palette): void {
     (this.grid.material.uniforms["ink"]!.value as Color).copy(palette.grid);
-    this.grid.material.uniforms["strength"]!.value = palette.isDark ? 0.5 : 0.75;
+    this.grid.material.uniforms["strength"]!.value = palette.isDark ? 0.5 : 0.62;
     this.shade.material.opacity = palette.isDark ? 0.42 : 0.22;
     this.sky.intensity = palette.isDark ? 1.15 : 1.45;
   }
@@ -133,7 +133,7 @@ export class Stage {
   setQuality(quality: Quality, renderer: WebGLRenderer): void {
     const hasShadow = quality === "high";
     renderer.shadowMap.enabled = hasShadow;
-    renderer.shadowMap.type = PCFSoftShadowMap;
+    renderer.shadowMap.type = PCFShadowMap;
     this.sun.castShadow = hasShadow;
     this.shade.visible = hasShadow;
   }

@@ -8,6 +8,7 @@ import type { SharedView } from "../model/view_link";
 import type { ViewState } from "../model/view_state";
 import { nowMs, type LiveState } from "../protocol/frame_store";
 import { CameraRig, type ViewName } from "./camera_rig";
+import { FrameMeter } from "./frame_meter";
 import { HandControl } from "./hand_control";
 import type { Eye } from "./mouse_hand";
 import { readPalette } from "./palette";
@@ -30,8 +31,7 @@ export class Viewport {
   readonly hand: HandControl;
   readonly pointer: PointerInput;
   framesDrawn = 0;
-  /** Drawn frames of the last second. */
-  framesPerSecond = 0;
+  readonly meter = new FrameMeter();
   live: LiveState | null = null;
   /** All of W; VR turns and scales it. */
   readonly worldRoot = new Group();
@@ -46,7 +46,6 @@ export class Viewport {
   private lastTick = 0;
   private lastDrawn = 0;
   private lastSeq = -1;
-  private counted = { at: 0, frames: 0 };
   private pendingView: SharedView | null = null;
 
   constructor(
@@ -130,12 +129,12 @@ export class Viewport {
   }
 
   fit(only?: readonly number[]): void {
-    this.rig.fit(this.product.boundingSphere(only?.length ? only : undefined));
+    this.rig.fit(this.product.outline(only?.length ? only : undefined));
     this.invalidate();
   }
 
   lookFrom(name: ViewName): void {
-    this.rig.view(name, this.product.boundingSphere());
+    this.rig.view(name, this.product.outline());
     this.invalidate();
   }
 
@@ -193,8 +192,9 @@ export class Viewport {
       this.invalidate();
     });
     effect(() => {
-      this.stage.setQuality(view.quality.value, this.renderer);
-      const ratio = view.quality.value === "high" ? Math.min(2, devicePixelRatio) : 1;
+      const quality = view.isSlow.value ? "low" : view.quality.value;
+      this.stage.setQuality(quality, this.renderer);
+      const ratio = quality === "high" ? Math.min(2, devicePixelRatio) : 1;
       this.renderer.setPixelRatio(ratio);
       this.resize();
     });
@@ -212,7 +212,7 @@ export class Viewport {
     if (this.pendingView !== null) {
       this.show(this.pendingView);
     } else if (isNew) {
-      this.rig.view("iso", this.product.boundingSphere(), false);
+      this.rig.view("iso", this.product.outline(), false);
     }
     this.hand.stop();
   }
@@ -250,13 +250,12 @@ export class Viewport {
     const hasMoved = this.rig.controls.update(seconds);
     const isDue = this.renderer.xr.isPresenting || now - this.lastDrawn > kIdleMs;
     if (hasMoved || this.product.isDirty || isDue) {
+      this.product.isDirty = false;
       this.draw();
       this.lastDrawn = now;
-      this.product.isDirty = false;
-    }
-    if (now - this.counted.at >= 1000) {
-      this.framesPerSecond = Math.round(((this.framesDrawn - this.counted.frames) * 1000) / (now - this.counted.at));
-      this.counted = { at: now, frames: this.framesDrawn };
+      this.view.isSlow.value ||= this.meter.drawn(now);
+    } else {
+      this.meter.rested();
     }
     for (const listener of this.listeners) {
       listener(live, now);

@@ -1,0 +1,191 @@
+// A stand-in for the studio's server, to work on the page without it:
+//   npm run build && npm run mock -- --hvas ../build/dev/src/app/hvas --file ../products/gear_pump.step
+// It has the routes, headers and messages of docs/protocol.md, and a toy in place of the simulation.
+
+import { createServer } from "node:http";
+import { readFileSync } from "node:fs";
+import { extname, join, normalize } from "node:path";
+import { fileURLToPath } from "node:url";
+import { parseArgs } from "node:util";
+import { WebSocketServer } from "ws";
+import { packFrame, unpackFrame } from "./frames.mjs";
+import { makeScene } from "./scene.mjs";
+import { Simulation } from "./simulation.mjs";
+
+const { values: options } = parseArgs({
+  options: {
+    port: { type: "string", default: "8600" },
+    hvas: { type: "string", default: "../build/dev/src/app/hvas" },
+    file: { type: "string" },
+    example: { type: "string", default: "../products/gear_pump.step" },
+    dist: { type: "string", default: fileURLToPath(new URL("../dist", import.meta.url)) },
+  },
+});
+
+const TOKEN = "mock";
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
+const HEADERS = {
+  "Content-Security-Policy":
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' data: blob:; " +
+    "connect-src 'self'; worker-src 'self'; font-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+  "Cross-Origin-Opener-Policy": "same-origin",
+  "Cross-Origin-Embedder-Policy": "require-corp",
+  "X-Content-Type-Options": "nosniff",
+  "Referrer-Policy": "no-referrer",
+};
+const EXAMPLES = [
+  { id: "gear_pump", name: "Gear pump", about: "38 parts with press fits, bolts and pins" },
+  { id: "bushing", name: "Bushing rig", about: "Shaft, bushing and chuck: the fits of the paper" },
+  { id: "frame_500", name: "Frame of 500", about: "A large frame, to see how far it goes" },
+];
+
+let world = null;
+let simulation = null;
+let epoch = 0;
+let forcesOff = false;
+let seq = 0;
+let nextClient = 1;
+const clients = new Map();
+
+const broadcast = (event) => clients.forEach((client) => client.socket.send(JSON.stringify(event)));
+
+function open(file) {
+  epoch += 1;
+  world = makeScene(options.hvas, file, epoch);
+  simulation = new Simulation(world.scene, broadcast);
+  clients.forEach((client) => (client.knows = 0));
+  broadcast({ event: "scene", epoch });
+  simulation.nextStep();
+}
+
+function reply(response, status, body, type = "application/json") {
+  response.writeHead(status, { ...HEADERS, "Content-Type": type });
+  response.end(body);
+}
+
+const server = createServer((request, response) => {
+  const { pathname } = new URL(request.url, "http://localhost");
+  if (pathname === "/api/session") {
+    response.setHeader("Set-Cookie", `hvas=${TOKEN}; HttpOnly; SameSite=Strict; Path=/`);
+    reply(response, 200, JSON.stringify({ role: "operator" }));
+  } else if (pathname === "/api/scene") {
+    reply(response, world ? 200 : 404, JSON.stringify(world?.scene ?? {}));
+  } else if (pathname.startsWith("/api/model/")) {
+    reply(response, world ? 200 : 404, world?.glb ?? "", "model/gltf-binary");
+  } else if (pathname === "/api/upload") {
+    request.resume().on("end", () => reply(response, 200, JSON.stringify({ upload: "1" })));
+  } else {
+    sendFile(response, pathname === "/" ? "/index.html" : pathname);
+  }
+});
+
+function sendFile(response, pathname) {
+  try {
+    const path = join(options.dist, normalize(pathname));
+    reply(response, 200, readFileSync(path), TYPES[extname(path)] ?? "application/octet-stream");
+  } catch {
+    reply(response, 404, JSON.stringify({ error: { code: "not_found", message: pathname, where: "", remedy: "" } }));
+  }
+}
+
+const lease = () => Math.min(...clients.keys());
+const roles = () => [...clients.keys()].map((id) => ({ id, role: "operator", has_lease: id === lease() }));
+
+const commands = {
+  async open({ example }) {
+    const file = example ? options.example.replace("gear_pump", example) : options.example;
+    for (const [k, stage] of ["read", "heal", "mesh", "shapes", "mates", "sequence"].entries()) {
+      broadcast({ event: "progress", stage, fraction: k / 6, file });
+      await new Promise((done) => setTimeout(done, 150));
+    }
+    open(file);
+  },
+  take: ({ occurrence }) => ({ hand: simulation.take(occurrence) }),
+  release: () => simulation.release(),
+  forces({ off }) {
+    forcesOff = off;
+    simulation?.stopDemo();
+    broadcast({ event: "forces", off, by: 1 });
+  },
+  demo: ({ on }) => (on ? simulation.startDemo(true) : simulation.stopDemo()),
+  next: () => simulation.startDemo(false),
+  measure: ({ a, b }) => ({
+    kind: b ? "distance" : "face",
+    distance_mm: b ? 42.125 : null,
+    angle_deg: b ? 0 : null,
+    radius_mm: b ? null : 13,
+    area_mm2: b ? null : 1388.6,
+    text: b ? "parallel" : "cylinder",
+    p_m: b ? [simulation.poses[a.occurrence].p, simulation.poses[b.occurrence].p] : [simulation.poses[a.occurrence].p],
+  }),
+};
+
+new WebSocketServer({ server, path: "/ws" }).on("connection", (socket) => {
+  const id = nextClient++;
+  const client = { socket, pending: 0, knows: 0 };
+  clients.set(id, client);
+  const hello = { event: "hello", version: 1, role: "operator", client: id, has_lease: id === lease() };
+  socket.send(JSON.stringify({ ...hello, examples: EXAMPLES, forces_off: forcesOff, has_scene: world !== null }));
+  broadcast({ event: "roles", clients: roles() });
+  broadcast({ event: "history", undo: null, redo: null });
+  simulation?.nextStep();
+  socket.on("message", async (data, isBinary) => {
+    if (isBinary) {
+      const { name, items } = unpackFrame(data);
+      if (name === "Credit") {
+        client.pending = Math.max(0, client.pending - 1);
+      } else if (simulation && !simulation.demo) {
+        simulation.input = items[0];
+      }
+      return;
+    }
+    const { id: request, command, ...fields } = JSON.parse(data);
+    const result = (await commands[command]?.(fields)) ?? {};
+    socket.send(JSON.stringify({ id: request, ok: true, result }));
+  });
+  socket.on("close", () => {
+    clients.delete(id);
+    broadcast({ event: "roles", clients: roles() });
+  });
+});
+
+function publish() {
+  simulation?.tick();
+  for (const client of clients.values()) {
+    if (simulation === null || client.pending >= 2) {
+      continue;
+    }
+    const ids = client.knows === epoch ? [...simulation.moved] : simulation.poses.keys();
+    client.knows = epoch;
+    const t_ns = Math.round(performance.now() * 1e6);
+    const poses = [...ids].map((id) => ({ occurrence: id, p_WB_m: simulation.poses[id].p, q_WB: simulation.poses[id].q }));
+    const pack = (name, items) => packFrame(name, ++seq, epoch, t_ns, items);
+    client.pending += 1;
+    client.socket.send(
+      Buffer.concat([pack("Poses", poses), pack("Hands", [simulation.hand]), pack("Contacts", simulation.contacts())]),
+    );
+  }
+  simulation?.moved.clear();
+}
+
+setInterval(publish, 1000 / 60);
+setInterval(
+  () =>
+    broadcast({
+      event: "status",
+      tick_hz: 1000,
+      compute_p99_us: 63,
+      wake_up_p99_us: 90,
+      scheduling: "SCHED_FIFO",
+      physics_hz: 100,
+      device: "Mouse",
+      late_ticks: 0,
+      clients: clients.size,
+      effort_level: 0,
+    }),
+  1000,
+);
+if (options.file) {
+  open(options.file);
+}
+server.listen(Number(options.port), "127.0.0.1", () => console.log(`http://127.0.0.1:${options.port}/#t=${TOKEN}`));

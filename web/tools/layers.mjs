@@ -1,0 +1,62 @@
+// Imports go downward only: protocol <- model <- view3d <- app. Types count as well.
+
+import { readFileSync, readdirSync } from "node:fs";
+import { dirname, join, relative, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const root = fileURLToPath(new URL("../src", import.meta.url));
+const LAYERS = ["protocol", "model", "view3d", "app"];
+/** Packages that only these layers may know. */
+const PACKAGES = {
+  preact: ["app"],
+  "preact/hooks": ["app"],
+  uplot: ["app"],
+  "uplot/dist/uPlot.min.css": ["app"],
+  three: ["view3d"],
+  "camera-controls": ["view3d"],
+  "three-mesh-bvh": ["view3d"],
+  "@preact/signals": ["model", "view3d", "app"],
+};
+const MOST_LINES = 320;
+
+const faults = [];
+for (const layer of LAYERS) {
+  for (const name of readdirSync(join(root, layer), { recursive: true })) {
+    if (/\.tsx?$/.test(name)) {
+      check(layer, join(root, layer, name));
+    }
+  }
+}
+
+function check(layer, file) {
+  const text = readFileSync(file, "utf8");
+  const where = relative(root, file);
+  if (text.split("\n").length > MOST_LINES && !name(file).startsWith("frames")) {
+    faults.push(`${where}: more than ${MOST_LINES} lines`);
+  }
+  for (const [, target] of text.matchAll(/(?:from|import)\s*\(?\s*"([^"]+)"/g)) {
+    const fault = target.startsWith(".") ? upward(layer, file, target) : foreign(layer, target);
+    if (fault) {
+      faults.push(`${where}: ${fault}`);
+    }
+  }
+}
+
+function name(file) {
+  return file.split("/").pop();
+}
+
+function upward(layer, file, target) {
+  const to = relative(root, resolve(dirname(file), target)).split("/")[0];
+  return LAYERS.indexOf(to) > LAYERS.indexOf(layer) ? `${layer} may not know ${to}` : null;
+}
+
+function foreign(layer, target) {
+  const key = target.startsWith("three/") ? "three" : target;
+  return PACKAGES[key]?.includes(layer) ? null : `${layer} may not know ${target}`;
+}
+
+if (faults.length > 0) {
+  console.error(faults.join("\n"));
+  process.exit(1);
+}

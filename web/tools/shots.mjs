@@ -1,0 +1,50 @@
+// Pictures of the page in its states, by headless Chromium, into shots/:
+//   npm run shots -- --url http://127.0.0.1:8600/#t=mock [--only dark,light]
+
+import { mkdirSync } from "node:fs";
+import { parseArgs } from "node:util";
+import { chromium } from "playwright-core";
+
+const { values: options } = parseArgs({
+  options: {
+    url: { type: "string", default: "http://127.0.0.1:8600/#t=mock" },
+    only: { type: "string", default: "" },
+    browser: { type: "string", default: "/usr/bin/chromium" },
+  },
+});
+
+const wait = (page, ms) => page.waitForTimeout(ms);
+const states = {
+  dark: { async go(page) { await wait(page, 500); } },
+  light: { theme: "light", async go(page) { await page.getByTestId("part-1").first().click(); await wait(page, 600); } },
+  small: { size: [1280, 720], async go(page) { await page.keyboard.press("x"); await wait(page, 800); } },
+  german: { locale: "de-DE", async go(page) { await page.getByTestId("menu.view").click(); await wait(page, 400); } },
+  tablet: { size: [834, 1112], theme: "light", async go(page) { await wait(page, 600); } },
+  explode: { async go(page) { await page.keyboard.press("b"); await wait(page, 900); } },
+  demo: { async go(page) { await page.keyboard.press("n"); await wait(page, 2600); } },
+  demoLight: { theme: "light", async go(page) { await page.keyboard.press("n"); await wait(page, 2800); } },
+  shortcuts: { async go(page) { await page.keyboard.press("?"); await wait(page, 500); } },
+  palette: { theme: "light", async go(page) { await page.keyboard.press("Control+k"); await wait(page, 500); } },
+};
+
+const wanted = options.only === "" ? Object.keys(states) : options.only.split(",");
+mkdirSync("shots", { recursive: true });
+const browser = await chromium.launch({
+  executablePath: options.browser,
+  args: ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+for (const name of wanted) {
+  const { size = [1440, 900], theme = "dark", locale = "en-US", go } = states[name];
+  const context = await browser.newContext({ viewport: { width: size[0], height: size[1] }, colorScheme: theme, locale });
+  const page = await context.newPage();
+  page.on("console", (m) => ["error", "warning"].includes(m.type()) && console.log(name, m.type(), m.text()));
+  page.on("pageerror", (error) => console.log(name, "error", error.message));
+  await page.goto(options.url);
+  await page.waitForFunction(() => window.hvas?.framesDrawn > 5);
+  await wait(page, 1500);
+  await go(page);
+  await page.screenshot({ path: `shots/${name}.png` });
+  console.log(name, JSON.stringify(await page.evaluate(() => ({ drawn: window.hvas.framesDrawn, shared: window.hvas.state().isShared }))));
+  await context.close();
+}
+await browser.close();
