@@ -50,9 +50,9 @@ struct TickRecord {
   std::uint8_t device_condition{0};  ///< As the device was; 0: ready.
   std::int32_t vendor_code{0};       ///< What the device's own software said last.
   double device_grip{std::numeric_limits<double>::quiet_NaN()};  ///< 0 open .. 1 closed; NaN: none.
-  std::int64_t model_age_ns{0};  ///< Since the physics loop last answered.
+  std::int64_t model_age_ns{0};   ///< Since the physics loop last answered.
   std::int64_t client_age_ns{0};  ///< Since whoever steers from afar was last heard of.
-  std::uint8_t effort_level{0};  ///< What the tick left out to be in time; 0: nothing.
+  std::uint8_t effort_level{0};   ///< What the tick left out to be in time; 0: nothing.
 };
 
 /** Something that happened, with what is worth knowing about it. */

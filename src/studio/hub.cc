@@ -29,7 +29,9 @@ Result<std::string> Hub::Join(Role role, ClientLink* link) {
     lease_ = id;
   }
   link->SendText(MakeHello(id, client).dump());
-  link->SendText(workbench_->history().dump());
+  for (const Json& event : workbench_->NewsForLatecomer()) {
+    link->SendText(event.dump());
+  }
   TellOfRoles();
   return id;
 }

@@ -26,6 +26,10 @@ const std::string& NameOf(const simulation::Model& model, OccurrenceId id) {
   return model.product->occurrences[id.index()].name;
 }
 
+Json MakeStepEvent(const OpenScene& scene, std::size_t step) {
+  return {{"event", "step"}, {"index", step}, {"total", scene.model->sequence.steps.size()}};
+}
+
 bool IsGone(Placement placement) {
   return placement == Placement::kPlaced || placement == Placement::kHeld;
 }
@@ -262,7 +266,7 @@ void Workbench::HandleEvent(const OpenScene& scene, const simulation::Simulation
 }
 
 void Workbench::TellOfStep(const OpenScene& scene, std::size_t step) const {
-  Tell({{"event", "step"}, {"index", step}, {"total", scene.model->sequence.steps.size()}});
+  Tell(MakeStepEvent(scene, step));
 }
 
 void Workbench::HandleStep(const OpenScene& scene, std::size_t step) {
@@ -499,6 +503,14 @@ Json Workbench::history() const {
 
 void Workbench::TellOfHistory() const {
   Tell(history());
+}
+
+std::vector<Json> Workbench::NewsForLatecomer() const {
+  std::vector<Json> news{history()};
+  if (const auto open = scene()) {
+    news.push_back(MakeStepEvent(*open, state().next_step));
+  }
+  return news;
 }
 
 void Workbench::TellOfPlacements() const {

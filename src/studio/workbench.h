@@ -101,7 +101,8 @@ class Workbench {
   [[nodiscard]] std::shared_ptr<const OpenScene> scene() const;
   [[nodiscard]] LiveState state() const;
   [[nodiscard]] LiveFrame frame() const;
-  [[nodiscard]] Json history() const;
+  /** The events that whoever comes late has missed and still needs. */
+  [[nodiscard]] std::vector<Json> NewsForLatecomer() const;
   [[nodiscard]] std::optional<simulation::LoopStatus> TakeStatus();
 
   [[nodiscard]] bool is_demo() const { return is_demo_.load(); }
@@ -130,6 +131,7 @@ class Workbench {
   void HandleStep(const OpenScene& scene, std::size_t step);
   void TellOfStep(const OpenScene& scene, std::size_t step) const;
   void Tell(Json event) const;
+  [[nodiscard]] Json history() const;
   void TellOfHistory() const;
   void TellOfPlacements() const;
   void Remember(const std::string& what);
