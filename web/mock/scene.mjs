@@ -114,6 +114,7 @@ export function makeScene(hvas, file, epoch) {
     centre_m: low.map((v, k) => (v + high[k]) / 2),
     radius_m: radius,
     seed: String(run.seed),
+    next_step: 1,
     subassemblies: product.subassemblies,
     occurrences,
     mates: product.mates.map((m) => makeMate(m, occurrences, product.features)),

@@ -92,6 +92,7 @@ export class Simulation {
     while (this.expected !== null && this.placements[this.expected] === "placed") {
       this.step += 1;
     }
+    this.scene.next_step = this.step;
     this.onEvent({ event: "step", index: this.step, total: this.scene.steps.length });
   }
 

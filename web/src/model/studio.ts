@@ -152,6 +152,7 @@ export class Studio {
     const scene = (await answer.json()) as Scene;
     batch(() => {
       this.store.placements.value = new Map(scene.occurrences.map((o) => [o.id, o.placement]));
+      this.store.step.value = { index: scene.next_step, total: scene.steps.length };
       this.store.scene.value = scene;
       this.store.loading.value = null;
       this.store.failure.value = null;
@@ -248,7 +249,9 @@ export class Studio {
         this.log("taken", { part: this.nameOf(event.occurrence) });
         break;
       case "state":
-        this.log("state", { part: this.nameOf(event.occurrence), state: holdStateOf(event.state) });
+        if (event.occurrence !== undefined) {
+          this.log("state", { part: this.nameOf(event.occurrence), state: holdStateOf(event.state) });
+        }
         break;
       case "dropped": {
         const name = this.nameOf(event.occurrence);

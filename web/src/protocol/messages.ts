@@ -99,6 +99,8 @@ export interface Scene {
   centre_m: Vec3;
   radius_m: number;
   seed: string;
+  /** Index of the step whose turn it is. */
+  next_step: number;
   subassemblies: Subassembly[];
   occurrences: Occurrence[];
   mates: Mate[];
@@ -208,7 +210,8 @@ export type ServerEvent =
   | { event: "failed"; error: ServerError }
   | { event: "scene"; epoch: number }
   | { event: "placement"; occurrence: number; placement: Placement }
-  | { event: "taken" | "state"; hand: number; occurrence: number; state: HoldState | number }
+  | { event: "taken"; hand: number; occurrence: number; state: HoldState | number }
+  | { event: "state"; hand: number; occurrence?: number; state: HoldState | number }
   | {
       event: "dropped";
       hand: number;

@@ -14,10 +14,9 @@ import { FeelLayer } from "./feel_layer";
 import { loadShapes } from "./glb";
 import { MarkLayer } from "./mark_layer";
 import type { Palette } from "./palette";
-import { Parts, toMatrix, type PartLook, type PickHit } from "./parts";
+import { PartLooks } from "./part_looks";
+import { Parts, toMatrix, type PickHit } from "./parts";
 import { SectionCaps } from "./section_caps";
-
-const kPulseMs = 5000;
 
 export class SceneView {
   readonly root = new Group();
@@ -34,20 +33,20 @@ export class SceneView {
   private palette: Palette | null = null;
   private readonly versions = new Map<number, number>();
   private readonly poses = new Map<number, Pose>();
-  private readonly looks = new Map<number, string>();
+  private readonly looks: PartLooks;
   private readonly extrapolators = new Map<number, Extrapolator>();
   private offsets = new Map<number, Vec3>();
   private shownExplode = 0;
   private generation = -1;
   private loadCount = 0;
   private glbUrl = "";
-  private pulseUntil = 0;
   private heldKey = "";
 
   constructor(
     private readonly store: Store,
     private readonly view: ViewState,
   ) {
+    this.looks = new PartLooks(store, view);
     this.root.add(this.feel.root, this.marks.root);
     effect(() => void this.load(store.scene.value));
     effect(() => this.applyLooks());
@@ -56,10 +55,6 @@ export class SceneView {
       this.parts?.setEdgesShown(view.showsEdges.value);
       this.feel.lockScale(view.locksForceScale.value);
       this.isDirty = true;
-    });
-    effect(() => {
-      void store.step.value;
-      this.pulseUntil = performance.now() + kPulseMs;
     });
     effect(() => {
       this.marks.showMeasurement(view.measurement.value);
@@ -72,7 +67,7 @@ export class SceneView {
     this.feel.setPalette(palette);
     this.marks.setPalette(palette);
     this.parts?.edges?.setInk(palette.edge, palette.edgeMarked);
-    this.looks.clear();
+    this.looks.setPalette(palette);
     this.applyLooks();
   }
 
@@ -105,7 +100,7 @@ export class SceneView {
     }
     this.followExplode();
     this.updateFeel(isCurrent ? live : null);
-    this.pulse();
+    this.isDirty = this.looks.pulse(this.parts) || this.isDirty;
     if (this.view.section.value !== null) {
       this.caps.update(this.parts);
     }
@@ -304,57 +299,8 @@ export class SceneView {
     this.isDirty = true;
   }
 
-  private pulse(): void {
-    const isPulsing = performance.now() < this.pulseUntil && this.store.expected.peek() !== null;
-    if (isPulsing) {
-      this.applyLooks();
-    }
-  }
-
   private applyLooks(): void {
-    const { store, view } = this;
-    const selected = new Set(view.selected.value);
-    const hovered = view.hovered.value;
-    const hidden = view.hidden.value;
-    const ghosted = view.ghosted.value;
-    const held = store.heldBy.value;
-    const expected = store.expected.value;
-    const canSteer = store.hasLease.value;
-    const wanted = new Set(expected !== null && canSteer ? [expected.occurrence, ...expected.members] : []);
-    const palette = this.palette;
-    if (this.parts === null || palette === null) {
-      return;
-    }
-    const left = this.pulseUntil - performance.now();
-    const beat = left > 0 ? 0.3 + 0.22 * Math.sin(left / 160) : 0.3;
-    for (const { occurrence } of this.parts.entries) {
-      const look: PartLook = {
-        isHidden: hidden.has(occurrence),
-        isGhost: ghosted.has(occurrence),
-        isMarked: selected.has(occurrence) || occurrence === hovered,
-        tint: null,
-        amount: 0,
-      };
-      if (held.has(occurrence)) {
-        look.tint = palette.held;
-        look.amount = 0.62;
-      } else if (selected.has(occurrence)) {
-        look.tint = palette.selected;
-        look.amount = 0.5;
-      } else if (occurrence === hovered) {
-        look.tint = palette.hover;
-        look.amount = 0.32;
-      } else if (wanted.has(occurrence) && held.size === 0) {
-        look.tint = palette.expected;
-        look.amount = beat;
-      }
-      const key = `${look.isHidden}${look.isGhost}${look.isMarked}${look.tint?.getHex()}${look.amount.toFixed(2)}`;
-      if (this.looks.get(occurrence) !== key) {
-        this.looks.set(occurrence, key);
-        this.parts.setLook(occurrence, look);
-        this.isDirty = true;
-      }
-    }
+    this.isDirty = this.looks.apply(this.parts) || this.isDirty;
   }
 
   private applySection(): void {

@@ -1,7 +1,7 @@
 /** The 3D view as a whole: renderer, loop, eye, hand. What the rest of the page asks of it is here. */
 
 import { effect } from "@preact/signals";
-import { Group, Ray, Raycaster, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
+import { Box3, Group, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
 import { toVec3, type Vec3 } from "../model/math";
 import type { Studio } from "../model/studio";
 import type { SharedView } from "../model/view_link";
@@ -207,8 +207,11 @@ export class Viewport {
 
   private onLoaded(isNew: boolean): void {
     const scene = this.product.scene!;
-    this.stage.fit(this.product.sphere.center, scene.radius_m, scene.table_z_m);
-    this.rig.setReach(scene.radius_m);
+    const around = new Box3().setFromPoints(this.product.outline()).getBoundingSphere(new Sphere());
+    const fixed = scene.occurrences.filter((o) => o.is_base).map((o) => o.id);
+    const base = new Box3().setFromPoints(this.product.outline(fixed));
+    this.stage.fit(around, scene.radius_m, scene.table_z_m, base);
+    this.rig.setReach(Math.max(scene.radius_m, 0.5 * around.radius));
     if (this.pendingView !== null) {
       this.show(this.pendingView);
     } else if (isNew) {
