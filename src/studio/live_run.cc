@@ -22,6 +22,11 @@ haptics::TickOptions MakePointerOptions(double rate_hz) {
   options.dt = 1 / rate_hz;
   options.device.name = "pointer";
   options.limits = haptics::MakeSafetyLimits(options.device);
+  // There are no motors to be kept cool, and no handle that could be torn away.
+  options.limits->continuous_force = haptics::SafetyLimits::kNever;
+  options.limits->continuous_torque = haptics::SafetyLimits::kNever;
+  options.limits->fade_speed = haptics::SafetyLimits::kNever;
+  options.limits->cut_speed = haptics::SafetyLimits::kNever;
   options.limits->model_hold = kModelHold;
   options.limits->client_hold = 1e-9 * static_cast<double>(PointerOperator::kSilentNs);
   options.limits->client_fade = 0.25;
