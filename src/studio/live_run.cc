@@ -22,7 +22,8 @@ haptics::TickOptions MakePointerOptions(double rate_hz) {
   options.dt = 1 / rate_hz;
   options.device.name = "pointer";
   options.limits = haptics::MakeSafetyLimits(options.device);
-  // There are no motors to be kept cool, and no handle that could be torn away.
+  // There are no motors to be kept cool, and no handle that could kick or be torn away.
+  options.limits->has_detectors = false;
   options.limits->continuous_force = haptics::SafetyLimits::kNever;
   options.limits->continuous_torque = haptics::SafetyLimits::kNever;
   options.limits->fade_speed = haptics::SafetyLimits::kNever;
