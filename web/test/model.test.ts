@@ -1,0 +1,205 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { makeHint } from "../src/model/hints";
+import { Studio } from "../src/model/studio";
+import { buildTree, filterTree } from "../src/model/tree";
+import { decodeView, encodeView, type SharedView } from "../src/model/view_link";
+import { isolate, makeViewState, select, setHidden } from "../src/model/view_state";
+import type { Occurrence, Scene } from "../src/protocol/messages";
+
+function part(id: number, name: string, ofPart: number, more: Partial<Occurrence> = {}): Occurrence {
+  const pose = { p: [0, 0, 0], q: [1, 0, 0, 0] } as const;
+  return {
+    id,
+    name,
+    path: name,
+    parent: 0,
+    part: ofPart,
+    color: "#808080",
+    placement: "loose",
+    start: pose,
+    goal: pose,
+    mass_kg: 1,
+    material: "Steel",
+    p_BoBcm_m: [0, 0, 0],
+    is_base: false,
+    ...more,
+  };
+}
+
+const scene: Scene = {
+  epoch: 1,
+  name: "pump",
+  source: "pump.step",
+  glb: "/api/model/0.glb",
+  triangles: 10,
+  table_z_m: 0,
+  centre_m: [0, 0, 0],
+  radius_m: 0.1,
+  seed: "1",
+  next_step: 1,
+  subassemblies: [
+    { id: 0, parent: null, name: "pump", subassemblies: [1], occurrences: [0, 1] },
+    { id: 1, parent: 0, name: "fasteners", subassemblies: [], occurrences: [2, 3, 4] },
+  ],
+  occurrences: [
+    part(0, "housing", 0, { is_base: true, placement: "placed" }),
+    part(1, "shaft", 1),
+    part(2, "bolt 1", 2),
+    part(3, "bolt 2", 2),
+    part(4, "bolt 3", 2),
+  ],
+  mates: [],
+  steps: [
+    { kind: "base", occurrence: 0, members: [], way_in: [0, 0, -1], distance_m: 0 },
+    { kind: "insert", occurrence: 1, members: [], way_in: [0, 0, -1], distance_m: 0.05 },
+  ],
+  diagnostics: [],
+};
+
+describe("the tree", () => {
+  it("gathers like parts and leaves out the root", () => {
+    const nodes = buildTree(scene);
+    expect(nodes.map((n) => n.name)).toEqual(["fasteners", "housing", "shaft"]);
+    expect(nodes[0]?.children).toMatchObject([{ kind: "group", name: "bolt", occurrences: [2, 3, 4] }]);
+  });
+
+  it("keeps the way to what is searched", () => {
+    const found = filterTree(buildTree(scene), "BOLT 2");
+    expect(found).toHaveLength(1);
+    expect(found[0]?.occurrences).toEqual([3]);
+  });
+});
+
+describe("the view", () => {
+  it("adds to the selection and takes from it", () => {
+    const view = makeViewState();
+    select(view, [1, 2], false);
+    select(view, [3], true);
+    expect(view.selected.value).toEqual([1, 2, 3]);
+    select(view, [1, 3], true);
+    expect(view.selected.value).toEqual([2]);
+  });
+
+  it("isolates, and the second time shows all", () => {
+    const view = makeViewState();
+    isolate(view, [1], [0, 1, 2]);
+    expect([...view.hidden.value]).toEqual([0, 2]);
+    isolate(view, [1], [0, 1, 2]);
+    expect(view.hidden.value.size).toBe(0);
+    setHidden(view, [2], true);
+    expect([...view.hidden.value]).toEqual([2]);
+  });
+
+  it("goes through a link and comes back", () => {
+    const shared: SharedView = {
+      eye: [0.1, -0.25, 0.3],
+      target: [0, 0, 0.05],
+      isOrthographic: true,
+      hidden: [3, 5],
+      ghosted: [7],
+      selected: [1],
+      explode: 0.4,
+      section: { axis: 2, offset: -0.25, isFlipped: true },
+    };
+    expect(decodeView(`#${encodeView(shared)}`)).toEqual(shared);
+  });
+
+  it("takes nothing from fragments that are not its own", () => {
+    expect(decodeView("#t=secret")).toBeNull();
+    expect(decodeView("#view&eye=1,2&to=0,0,0")).toBeNull();
+    expect(decodeView("#view&eye=1,2,3&to=0,0,0&cut=9,4,1")?.section).toBeNull();
+  });
+});
+
+describe("hints", () => {
+  const base = { scene, expected: 1, isDone: false, canSteer: true };
+
+  it("name the part whose turn it is", () => {
+    expect(makeHint({ ...base, held: null })).toMatchObject({ key: "hint.emptyExpected", params: { expected: "shaft" } });
+  });
+
+  it("follow the state of what is held", () => {
+    const held = { occurrence: 1, state: "mating", mate: null } as const;
+    expect(makeHint({ ...base, held })).toMatchObject({ key: "hint.mating", params: { part: "shaft" } });
+  });
+
+  it("tell a viewer that he watches, and everyone when all is done", () => {
+    expect(makeHint({ ...base, held: null, canSteer: false }).key).toBe("hint.viewer");
+    expect(makeHint({ ...base, held: null, isDone: true }).key).toBe("hint.done");
+  });
+});
+
+/** The worker that would hold the socket. */
+class FakeWorker {
+  static last: FakeWorker;
+  sent: { type: string; text?: string }[] = [];
+  onmessage: (event: { data: unknown }) => void = () => {};
+
+  constructor() {
+    FakeWorker.last = this;
+  }
+
+  postMessage(message: { type: string; text?: string }): void {
+    this.sent.push(message);
+  }
+
+  say(message: unknown): void {
+    this.onmessage({ data: { type: "text", text: JSON.stringify(message) } });
+  }
+}
+
+describe("the session", () => {
+  beforeEach(() => {
+    vi.stubGlobal("Worker", FakeWorker);
+    vi.stubGlobal("location", { href: "http://localhost/" });
+    vi.stubGlobal("fetch", async () => ({ ok: true, status: 200, json: async () => structuredClone(scene) }));
+  });
+  afterEach(() => vi.unstubAllGlobals());
+
+  async function start(): Promise<Studio> {
+    const studio = new Studio();
+    await studio.start("token");
+    FakeWorker.last.onmessage({ data: { type: "open" } });
+    FakeWorker.last.say({
+      event: "hello",
+      version: 1,
+      role: "operator",
+      client: 5,
+      has_lease: true,
+      examples: [],
+      forces_off: false,
+      has_scene: true,
+    });
+    await vi.waitFor(() => expect(studio.store.scene.value).not.toBeNull());
+    return studio;
+  }
+
+  it("mirrors what the server says", async () => {
+    const { store } = await start();
+    expect(store.expected.value?.occurrence).toBe(1);
+    FakeWorker.last.say({ event: "placement", occurrence: 1, placement: "placed" });
+    expect(store.placements.value.get(1)).toBe("placed");
+    FakeWorker.last.say({ event: "roles", clients: [{ id: 5, role: "operator", has_lease: false }] });
+    expect(store.hasLease.value).toBe(false);
+    FakeWorker.last.say({ event: "forces", off: true, by: 2 });
+    expect(store.forcesOff.value).toBe(true);
+  });
+
+  it("answers each command once, and shows a refusal", async () => {
+    const studio = await start();
+    const answer = studio.command({ command: "take", hand: 0, occurrence: 1 });
+    const sent = JSON.parse(FakeWorker.last.sent.at(-1)?.text ?? "{}") as { id: number };
+    FakeWorker.last.say({ id: sent.id, ok: true, result: { hand: { p: [1, 2, 3], q: [1, 0, 0, 0] } } });
+    expect((await answer)?.hand.p).toEqual([1, 2, 3]);
+    const refused = studio.command({ command: "undo" });
+    const second = JSON.parse(FakeWorker.last.sent.at(-1)?.text ?? "{}") as { id: number };
+    FakeWorker.last.say({ id: second.id, ok: false, error: { code: "x", message: "No.", where: "", remedy: "Wait." } });
+    expect(await refused).toBeNull();
+    expect(studio.store.notice.value).toMatchObject({ text: "No. Wait.", isError: true });
+  });
+
+  it("passes over events of a newer server", async () => {
+    await start();
+    expect(() => FakeWorker.last.say({ event: "unheard-of" })).not.toThrow();
+  });
+});
