@@ -41,7 +41,7 @@ device::DeviceState PointerOperator::Step(const simulation::OperatorInput& input
   const PointerInput& wanted = inputs_.value();
   const std::int64_t age_ns = wanted.t_ns > 0 ? MonotonicNs() - wanted.t_ns : 0;
   device::DeviceState state;
-  state.client_age_ns = std::max<std::int64_t>(0, age_ns);
+  state.client_age_ns = input.sees_part ? std::max<std::int64_t>(0, age_ns) : 0;
   state.is_gripping = wanted.is_gripping;
   if (!input.sees_part) {
     // An empty hand is where it is wanted at once: nothing is in it that could be torn along.

@@ -1,0 +1,109 @@
+// A studio of one's own for each test, and a browser that looks at it as a person would.
+import { spawn } from "node:child_process";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
+const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
+const kChromium = process.env["HVAS_CHROMIUM"] ?? "/usr/bin/chromium";
+mkdirSync(kPictures, { recursive: true });
+
+/** Starts `hvas studio`; its links, and how to end it. */
+export async function startStudio(args = []) {
+  const child = spawn(kProgram, ["studio", "--no-open", ...args], { stdio: ["ignore", "pipe", "inherit"] });
+  let said = "";
+  await new Promise((resolve, reject) => {
+    child.stdout.on("data", (bytes) => {
+      said += bytes;
+      if (said.includes("ends it")) {
+        resolve();
+      }
+    });
+    child.on("exit", (code) => reject(new Error(`hvas studio ended with ${code}: ${said}`)));
+  });
+  const [operator, viewer] = said.match(/http:\S+/g);
+  const ended = new Promise((resolve) => child.removeAllListeners("exit").on("exit", resolve));
+  return {
+    operator,
+    viewer,
+    origin: new URL(operator).origin,
+    stop: async () => {
+      child.kill("SIGTERM");
+      return ended;
+    },
+  };
+}
+
+export function launchBrowser() {
+  return chromium.launch({
+    executablePath: kChromium,
+    args: ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+}
+
+/** A page with a studio in it. `complaints`: what the browser has to say against it. */
+export async function openPage(browser, link, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on("pageerror", (error) => complaints.push(error.message));
+  page.on("console", (message) => {
+    if (message.type() === "error") {
+      complaints.push(message.text());
+    }
+  });
+  await page.goto(link);
+  return { page, complaints };
+}
+
+/** Until this much of a scene has been drawn. */
+export async function waitForPicture(page, frames = 3) {
+  await page.waitForFunction(
+    (count) => window.hvas && window.hvas.state().hasScene && window.hvas.framesDrawn > count,
+    frames,
+    { timeout: 60_000 },
+  );
+}
+
+export function takePicture(page, name) {
+  return page.screenshot({ path: join(kPictures, `${name}.png`) });
+}
+
+export function fetchScene(page) {
+  return page.evaluate(async () => (await fetch("/api/scene")).json());
+}
+
+/** Until a part is there: "loose", "held", "placed". */
+export async function waitForPlacement(page, occurrence, placement, timeout = 30_000) {
+  const end = Date.now() + timeout;
+  let found = "";
+  while (Date.now() < end) {
+    found = (await fetchScene(page)).occurrences?.[occurrence].placement; // none while it is being changed
+    if (found === placement) {
+      return;
+    }
+    await page.waitForTimeout(200);
+  }
+  throw new Error(`part ${occurrence} is ${found} and not ${placement} after ${timeout} ms`);
+}
+
+/** Takes hold of a part with the mouse and moves it over its place and in, as far as it goes. */
+export async function insertByMouse(page, occurrence, goal, height = 0.12) {
+  const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 8, at.y - 8, { steps: 3 });  // from here on it is no click
+  await waitForPlacement(page, occurrence, "held");
+  const kSteps = 14;
+  for (let k = 0; k <= kSteps; k++) {
+    const above = height * (1 - k / (kSteps - 2));
+    const to = await page.evaluate(([x, y, z]) => window.hvas.project([x, y, z]), [
+      goal[0],
+      goal[1],
+      goal[2] + Math.max(-0.01, above),
+    ]);
+    await page.mouse.move(to.x, to.y, { steps: 3 });
+    await page.waitForTimeout(350);
+  }
+}

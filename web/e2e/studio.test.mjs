@@ -1,0 +1,152 @@
+// The studio as a person uses it, in Debian's Chromium. `npm run e2e`; pictures of what was seen go to
+// $HVAS_PICTURES.
+import assert from "node:assert/strict";
+import { after, before, describe, it } from "node:test";
+import { readFileSync } from "node:fs";
+import {
+  fetchScene,
+  insertByMouse,
+  launchBrowser,
+  openPage,
+  startStudio,
+  takePicture,
+  waitForPicture,
+  waitForPlacement,
+} from "./harness.mjs";
+
+const kBushing = "../products/bushing.step";
+const kPump = "../products/gear_pump.step";
+
+let browser;
+before(async () => {
+  browser = await launchBrowser();
+});
+after(() => browser.close());
+
+/** Runs a test with a studio, which ends with it. */
+function withStudio(args, run) {
+  return async () => {
+    const studio = await startStudio(args);
+    try {
+      await run(studio);
+    } finally {
+      assert.equal(await studio.stop(), 0, "it ends well when it is told to");
+    }
+  };
+}
+
+describe("the page", () => {
+  it("shows the pump, hides the token, and the browser has nothing against it", withStudio([kPump], async (studio) => {
+    const { page, complaints } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    assert.ok(!page.url().includes("t="), "the token has left the address");
+    assert.equal((await page.evaluate(() => document.cookie)).length, 0, "no script can read the cookie");
+    await takePicture(page, "pump");
+    assert.deepEqual(complaints, []);
+    await page.context().close();
+  }));
+
+  it("does not let in whoever has no token", withStudio([kBushing], async (studio) => {
+    const { page } = await openPage(browser, `${studio.origin}/`);
+    await page.waitForTimeout(1000);
+    await takePicture(page, "no_token");
+    assert.match(await page.textContent("body"), /link|token/i);
+    const status = await page.evaluate(async () => (await fetch("/api/scene")).status);
+    assert.equal(status, 401);
+    await page.context().close();
+  }));
+
+  it("offers examples and a place to drop a file where nothing is open", withStudio([], async (studio) => {
+    const { page } = await openPage(browser, studio.operator);
+    await page.getByTestId("drop-zone").waitFor();
+    await takePicture(page, "empty");
+    await page.getByText("Bushing", { exact: false }).first().click();
+    await waitForPicture(page);
+    assert.equal((await fetchScene(page)).occurrences.length, 3);
+    await page.context().close();
+  }));
+
+  it("opens a file that is dropped on it, and says what is wrong with one that is none", withStudio([], async (studio) => {
+    const { page } = await openPage(browser, studio.operator);
+    await page.getByTestId("drop-zone").waitFor();
+    const drop = async (name, text) => {
+      await page.evaluate(
+        ([fileName, content]) => {
+          const data = new DataTransfer();
+          data.items.add(new File([content], fileName));
+          for (const kind of ["dragenter", "dragover", "drop"]) {
+            document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: data, bubbles: true, cancelable: true }));
+          }
+        },
+        [name, text],
+      );
+    };
+    await drop("broken.step", "this is no STEP file");
+    await page.getByText(/broken\.step/).first().waitFor({ timeout: 20_000 });
+    await takePicture(page, "broken_file");
+    await drop("bushing.step", readFileSync(kBushing, "utf8"));
+    await waitForPicture(page);
+    assert.equal((await fetchScene(page)).name.length > 0, true);
+    await page.context().close();
+  }));
+});
+
+describe("the hand", () => {
+  it("inserts bushing and shaft with the mouse alone; undo and redo", withStudio([kBushing], async (studio) => {
+    const { page, complaints } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    const scene = await fetchScene(page);
+    for (const step of scene.steps.filter((s) => s.kind === "insert")) {
+      await insertByMouse(page, step.occurrence, scene.occurrences[step.occurrence].goal.p);
+      await takePicture(page, `inserting_${step.occurrence}`);
+      await page.waitForTimeout(1500);
+      await page.mouse.up();
+      await waitForPlacement(page, step.occurrence, "placed");
+    }
+    await takePicture(page, "assembled");
+    const last = scene.steps.at(-1).occurrence;
+    await page.keyboard.press("Control+z");
+    await waitForPlacement(page, last, "loose");
+    await page.keyboard.press("Control+Shift+z");
+    await waitForPlacement(page, last, "placed");
+    assert.deepEqual(complaints, []);
+    await page.context().close();
+  }));
+
+  it("rests while the forces are off, and everybody may switch them off", withStudio([kBushing], async (studio) => {
+    const operator = await openPage(browser, studio.operator);
+    await waitForPicture(operator.page);
+    const viewer = await openPage(browser, studio.viewer);
+    await waitForPicture(viewer.page);
+    await takePicture(viewer.page, "viewer");
+    await viewer.page.getByRole("button", { name: /forces off/i }).first().click();
+    await operator.page.waitForFunction(() => /forces are off/i.test(document.body.innerText));
+    await takePicture(operator.page, "forces_off");
+    await operator.page.context().close();
+    await viewer.page.context().close();
+  }));
+
+  it("lets the simulated person show how", withStudio([kBushing], async (studio) => {
+    const { page } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    await page.getByRole("button", { name: /Show me/ }).first().click();
+    await waitForPlacement(page, 1, "placed", 60_000);
+    await waitForPlacement(page, 2, "placed", 60_000);
+    await takePicture(page, "demo");
+    await page.context().close();
+  }));
+});
+
+describe("everybody", () => {
+  for (const colorScheme of ["light", "dark"]) {
+    it(`can use it in ${colorScheme}: axe finds nothing`, withStudio([kBushing], async (studio) => {
+      const { page } = await openPage(browser, studio.operator, { colorScheme, bypassCSP: true });
+      await waitForPicture(page);
+      await page.addScriptTag({ path: "node_modules/axe-core/axe.min.js" });
+      const found = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "wcag22aa"] }));
+      assert.deepEqual(found.violations.map((v) => `${v.id}: ${v.nodes[0]?.html}`), []);
+      await takePicture(page, colorScheme);
+      await page.context().close();
+    }));
+  }
+});
