@@ -71,7 +71,9 @@ std::optional<std::string> HostOf(std::string_view host_header) {
     if (!rest.empty() && !(rest.front() == ':' && IsPort(rest.substr(1)))) {
       return std::nullopt;
     }
-    return ToLower(host.substr(1, end - 1));
+    const std::string_view address = host.substr(1, end - 1);
+    return address.find(':') != std::string_view::npos ? std::optional(ToLower(address))
+                                                       : std::nullopt;
   }
   if (const std::size_t colon = host.find(':'); colon != std::string_view::npos) {
     if (!IsPort(host.substr(colon + 1))) {
@@ -100,10 +102,15 @@ Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls)
   for (const std::string& name : names) {
     hosts_.push_back(ToLower(name));
   }
+  constexpr std::uint16_t kHttp = 80;
+  constexpr std::uint16_t kHttps = 443;
+  // Browsers leave out the port that the scheme has anyway.
+  const std::string suffix =
+      port == (is_tls ? kHttps : kHttp) ? std::string() : fmt::format(":{}", port);
   for (const std::string& host : hosts_) {
     const bool is_v6 = host.find(':') != std::string::npos;
-    origins_.push_back(fmt::format("{}://{}{}{}:{}", is_tls ? "https" : "http", is_v6 ? "[" : "",
-                                   host, is_v6 ? "]" : "", port));
+    origins_.push_back(fmt::format("{}://{}{}{}{}", is_tls ? "https" : "http", is_v6 ? "[" : "",
+                                   host, is_v6 ? "]" : "", suffix));
   }
 }
 

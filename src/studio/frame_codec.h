@@ -26,11 +26,9 @@ void AppendFrame(std::span<const Item> items, std::uint32_t seq, std::uint32_t e
   header.epoch = epoch;
   header.count = static_cast<std::uint32_t>(items.size());
   header.t_ns = t_ns;
-  const std::size_t start = bytes->size();
-  bytes->resize(start + header.size);
-  std::memcpy(bytes->data() + start, &header, sizeof(header));
+  bytes->append(reinterpret_cast<const char*>(&header), sizeof(header));
   if (!items.empty()) {
-    std::memcpy(bytes->data() + start + sizeof(header), items.data(), items.size_bytes());
+    bytes->append(reinterpret_cast<const char*>(items.data()), items.size_bytes());
   }
 }
 
