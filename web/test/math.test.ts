@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { ease, leash, pointAtLine, rayOnPlane, wayInLine } from "../src/model/assist";
-import { explodeOffsets } from "../src/model/explode";
+import { clearanceOf, explodeOffsets } from "../src/model/explode";
 import { Extrapolator } from "../src/model/extrapolate";
 import {
   angleBetween,
@@ -72,7 +72,7 @@ describe("a pointer", () => {
     const above = pointAtLine({ from: [1, 0, 5], along: [-1, 0, 0] }, line);
     expect(above.p[2]).toBeCloseTo(0.1, 12);
     const below = pointAtLine({ from: [1, 0, -5], along: [-1, 0, 0] }, line);
-    expect(below.p[2]).toBeCloseTo(-0.002, 12);
+    expect(below.p[2]).toBeCloseTo(-0.03, 12);
   });
 });
 
@@ -136,5 +136,11 @@ describe("the exploded picture", () => {
     );
     expect(offsets.get(1)).toEqual(offsets.get(0));
     expect(offsets.get(2)).toEqual(offsets.get(1));
+  });
+
+  it("knows how far out a part is clear of what stands there", () => {
+    const boxes = new Map([[0, box(0)], [1, box(0.005)], [2, box(0.5)]]);
+    expect(clearanceOf(step(1, [0, 0, -1]), boxes, [0])).toBeCloseTo(0.02 + 0.005 + 0.006, 9);
+    expect(clearanceOf(step(1, [0, 0, -1]), boxes, [2])).toBeCloseTo(0.515 + 0.011, 9);
   });
 });

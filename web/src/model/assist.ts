@@ -44,9 +44,12 @@ export function rayOnPlane(ray: Ray, p: Vec3, n: Vec3): Vec3 | null {
   return t > 0 ? add(ray.from, scale(ray.along, t)) : null;
 }
 
+/** The hand may go so far beyond the part's place [m]: a press fit gives way only to a hand that leads. */
+const kPressing = 0.03;
+
 /** The way in as a line for the hand: from its place outwards. */
 export function wayInLine(goal: Pose, wayIn: Vec3, length: number): Line {
-  return { p: goal.p, d: scale(unit(wayIn), -1), low: -0.02 * length, high: length };
+  return { p: goal.p, d: scale(unit(wayIn), -1), low: -kPressing, high: length };
 }
 
 export interface Snap {

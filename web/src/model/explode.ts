@@ -55,3 +55,31 @@ export function explodeOffsets(steps: readonly Step[], boxes: ReadonlyMap<number
   }
   return offsets;
 }
+
+/** The span of a box along a direction. */
+function spanOf(box: Box, direction: Vec3): { low: number; high: number } {
+  let low = 0;
+  let high = 0;
+  for (let k = 0; k < 3; k++) {
+    const ends = [(box.low[k] ?? 0) * (direction[k] ?? 0), (box.high[k] ?? 0) * (direction[k] ?? 0)];
+    low += Math.min(...ends);
+    high += Math.max(...ends);
+  }
+  return { low, high };
+}
+
+/** How far from its place, against its way in, a part is beyond all of the placed ones; with some room. */
+export function clearanceOf(step: Step, boxes: ReadonlyMap<number, Box>, placed: readonly number[]): number {
+  const out = scale(unit(step.way_in), -1);
+  const own = boxes.get(step.occurrence);
+  if (own === undefined) {
+    return step.distance_m;
+  }
+  const { low, high } = spanOf(own, out);
+  const outermost = placed
+    .filter((id) => id !== step.occurrence)
+    .flatMap((id) => boxes.get(id) ?? [])
+    .reduce((most, box) => Math.max(most, spanOf(box, out).high), -Infinity);
+  const room = 0.25 * (high - low) + 0.006;
+  return Math.max(step.distance_m, outermost - low) + room;
+}

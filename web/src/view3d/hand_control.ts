@@ -49,7 +49,8 @@ export class HandControl {
     }
     const step = scene.steps.find((s) => s.occurrence === occurrence && s.kind === "insert") ?? null;
     const radius = this.product.parts?.shapeOf(occurrence)?.sphere.radius ?? 0.05;
-    this.mouse.begin({ occurrence, X_WB, goal: part.goal, step, radius }, answer.hand);
+    const clearance = step === null ? 0 : this.product.clearance(step);
+    this.mouse.begin({ occurrence, X_WB, goal: part.goal, step, radius, clearance }, answer.hand);
     return true;
   }
 

@@ -30,6 +30,11 @@ const kFine = 0.2;
 /** The way in catches the hand when it is seen this near to it [px]. */
 const kCatchPx = 34;
 const kHoldOnPx = 60;
+/** Of the hand [m/s]. */
+const kFastest = 0.6;
+const kSlowest = 0.12;
+/** From this share of the way in outwards the hand may cross over to it. */
+const kOutside = 0.96;
 
 /** What the view knows of the eye. */
 export interface Eye {
@@ -48,6 +53,8 @@ export interface TakenPart {
   goal: Pose;
   step: Step | null;
   radius: number;
+  /** How far out along the way in the part is clear of all that stands there [m]. */
+  clearance: number;
 }
 
 interface Hold {
@@ -86,12 +93,11 @@ export class MouseHand {
   begin(part: TakenPart, hand: Pose): void {
     const X_HB = compose(inverse(hand), part.X_WB);
     const goal = compose(part.goal, inverse(X_HB));
-    const length = part.step === null ? 0 : Math.max(part.step.distance_m, 0.8 * part.radius);
     this.hold = {
       part,
       X_HB,
       goal,
-      way: part.step?.kind === "insert" ? wayInLine(goal, part.step.way_in, length) : null,
+      way: part.step?.kind === "insert" ? wayInLine(goal, part.step.way_in, part.clearance) : null,
       free: hand,
       sent: hand,
       start: hand.p,
@@ -177,7 +183,8 @@ export class MouseHand {
     hold.wasSeen ||= isOurs;
     this.turnTowardsGoal(hold, seconds);
     const wanted = this.wantedPlace(hold, live, eye);
-    const fastest = Math.max(0.25, 5 * hold.part.radius);
+    // Quick over the table, careful where it matters.
+    const fastest = Math.min(kFastest, Math.max(kSlowest, 2.5 * distance(hold.sent.p, hold.goal.p)));
     let p = ease(hold.sent.p, wanted, seconds, 0.035, fastest);
     if (isOurs) {
       const displayed = compose({ p: toVec3(live.p_WD_m), q: toQuat(live.q_WD) }, inverse(hold.X_HB)).p;
@@ -242,7 +249,8 @@ function offLine(p: Vec3, line: Line): number {
   return norm(sub(r, scale(line.d, dot(r, line.d))));
 }
 
-/** Towards a point of the way in, but first to where the way begins: never through what is beside it. */
+/** Towards a point of the way in, but first out beside it and across to where it begins: never through
+ what stands around it. */
 function approach(from: Vec3, to: Vec3, line: Line): Vec3 {
   const far = offLine(from, line);
   const length = Math.max(1e-6, line.high);
@@ -251,10 +259,9 @@ function approach(from: Vec3, to: Vec3, line: Line): Vec3 {
   }
   const s = dot(sub(from, line.p), line.d);
   const outer = add(line.p, scale(line.d, line.high));
-  if (s > 0.85 * line.high) {
+  if (s > kOutside * line.high) {
     return outer;
   }
-  // Out first, beside the way.
   const beside = sub(from, add(line.p, scale(line.d, s)));
-  return add(outer, scale(beside, Math.min(1, 2 * (1 - s / length))));
+  return add(outer, beside);
 }

@@ -1,21 +1,22 @@
 /** The product in the view: loads it, puts parts where the frames say, and shows what is marked. */
 
 import { effect } from "@preact/signals";
-import { Group, Matrix4, Quaternion, Ray, Sphere, Vector3 } from "three";
-import { explodeOffsets, type Box } from "../model/explode";
+import { Group, Quaternion, Ray, Sphere, Vector3 } from "three";
+import { clearanceOf, explodeOffsets, type Box } from "../model/explode";
 import { Extrapolator } from "../model/extrapolate";
 import { add, lerp, slerp, toQuat, toVec3, type Pose, type Vec3 } from "../model/math";
 import type { Store } from "../model/store";
 import type { ViewState } from "../model/view_state";
 import type { FrameStore, LiveState } from "../protocol/frame_store";
 import { kNone, type HandState } from "../protocol/frames";
-import type { Occurrence, Scene } from "../protocol/messages";
+import type { Occurrence, Scene, Step } from "../protocol/messages";
 import { FeelLayer } from "./feel_layer";
+import { ghostsOf, goalBoxes } from "./goals";
 import { loadShapes } from "./glb";
 import { MarkLayer } from "./mark_layer";
 import type { Palette } from "./palette";
 import { PartLooks } from "./part_looks";
-import { Parts, toMatrix, type PickHit } from "./parts";
+import { Parts, type PickHit } from "./parts";
 import { SectionCaps } from "./section_caps";
 
 export class SceneView {
@@ -35,6 +36,7 @@ export class SceneView {
   private readonly poses = new Map<number, Pose>();
   private readonly looks: PartLooks;
   private readonly extrapolators = new Map<number, Extrapolator>();
+  private boxes = new Map<number, Box>();
   private offsets = new Map<number, Vec3>();
   private shownExplode = 0;
   private generation = -1;
@@ -82,6 +84,12 @@ export class SceneView {
   /** Corners of the boxes of what is seen, or of some parts. */
   outline(only?: readonly number[]): Vector3[] {
     return this.parts?.corners(only === undefined ? undefined : new Set(only)) ?? [];
+  }
+
+  /** How far out a part has to be to be clear of all that is in its place already [m]. */
+  clearance(step: Step): number {
+    const placed = [...this.boxes.keys()].filter((id) => this.store.placements.peek().get(id) === "placed");
+    return clearanceOf(step, this.boxes, placed);
   }
 
   pick(ray: Ray): PickHit | null {
@@ -135,7 +143,8 @@ export class SceneView {
       this.poses.set(occurrence.id, pose);
       this.parts.setPose(occurrence.id, pose);
     }
-    this.offsets = explodeOffsets(scene.steps, this.goalBoxes(scene));
+    this.boxes = goalBoxes(scene, this.parts);
+    this.offsets = explodeOffsets(scene.steps, this.boxes);
     this.heldKey = "";
     this.looks.clear();
     if (this.palette !== null) {
@@ -162,19 +171,6 @@ export class SceneView {
     this.poses.clear();
     this.looks.clear();
     this.isDirty = true;
-  }
-
-  private goalBoxes(scene: Scene): Map<number, Box> {
-    const boxes = new Map<number, Box>();
-    const matrix = new Matrix4();
-    for (const occurrence of scene.occurrences) {
-      const shape = this.parts?.shapeOf(occurrence.id);
-      if (shape) {
-        const box = shape.box.clone().applyMatrix4(toMatrix(occurrence.goal, matrix));
-        boxes.set(occurrence.id, { low: box.min.toArray(), high: box.max.toArray() });
-      }
-    }
-    return boxes;
   }
 
   private takePoses(frames: FrameStore): void {
@@ -267,20 +263,11 @@ export class SceneView {
   }
 
   private showGhosts(hand: HandState | null): void {
-    const part = hand === null ? null : this.occurrence(hand.occurrence);
-    if (part === null || this.parts === null) {
+    if (hand === null || this.parts === null || this.scene === null) {
       this.feel.setHeld([], []);
       return;
     }
-    const step = this.scene!.steps.find((s) => s.occurrence === part.id && s.kind !== "base");
-    const ids = [part.id, ...(step?.members ?? [])];
-    const goal = ids.flatMap((id) => {
-      const shape = this.parts!.shapeOf(id);
-      const pose = this.occurrence(id)?.goal;
-      return shape !== null && pose !== undefined ? [{ shape, pose }] : [];
-    });
-    const own = this.parts.shapeOf(part.id);
-    const tracked = own === null ? [] : [{ shape: own, pose: { p: [0, 0, 0], q: [1, 0, 0, 0] } as Pose }];
+    const { goal, tracked } = ghostsOf(hand.occurrence, this.scene, this.parts);
     this.feel.setHeld(goal, tracked);
   }
 

@@ -33,7 +33,7 @@ export class Stage {
   constructor() {
     this.sky.position.set(0, 0, 1);
     this.stand = new Mesh(
-      new CylinderGeometry(1, 1.12, 1, 48).rotateX(Math.PI / 2).translate(0, 0, -0.5),
+      new CylinderGeometry(1, 1.25, 1, 48).rotateX(Math.PI / 2).translate(0, 0, -0.5),
       new MeshStandardMaterial({ roughness: 0.8, metalness: 0 }),
     );
     this.stand.receiveShadow = this.stand.castShadow = true;
@@ -78,7 +78,7 @@ export class Stage {
     if (this.stand.visible) {
       const size = base.getSize(new Vector3());
       const middle = base.getCenter(new Vector3());
-      const width = 0.36 * Math.min(size.x, size.y);
+      const width = 0.2 * Math.min(size.x, size.y);
       this.stand.position.set(middle.x, middle.y, base.min.z - 1e-4);
       this.stand.scale.set(width, width, height);
     }

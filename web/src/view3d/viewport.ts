@@ -215,9 +215,19 @@ export class Viewport {
     if (this.pendingView !== null) {
       this.show(this.pendingView);
     } else if (isNew) {
-      this.rig.view("iso", this.product.outline(), false);
+      this.rig.lookFrom(this.firstDirection(), this.product.outline(), false);
     }
     this.hand.stop();
+  }
+
+  /** So that what is assembled and what lies about stand side by side. */
+  private firstDirection(): Vec3 {
+    const scene = this.product.scene!;
+    const loose = scene.occurrences.filter((o) => o.placement === "loose").map((o) => o.start.p);
+    const mean = (k: 0 | 1) => loose.reduce((sum, p) => sum + p[k] - scene.centre_m[k], 0) / Math.max(1, loose.length);
+    const [x, y] = [mean(0), mean(1)];
+    const far = Math.hypot(x, y);
+    return far < 0.8 * scene.radius_m ? [0.62, -0.95, 0.62] : [y / far, -x / far, 0.62];
   }
 
   private rayThrough(ndc: Vector3): { from: Vec3; along: Vec3 } {

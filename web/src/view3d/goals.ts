@@ -1,0 +1,33 @@
+/** Where parts belong: as boxes to reckon with, and as ghosts to be seen. */
+
+import { Matrix4 } from "three";
+import type { Box } from "../model/explode";
+import type { Scene } from "../protocol/messages";
+import type { GhostPart } from "./feel_layer";
+import { toMatrix, type Parts } from "./parts";
+
+/** Of each part in its place, in W. */
+export function goalBoxes(scene: Scene, parts: Parts): Map<number, Box> {
+  const boxes = new Map<number, Box>();
+  const matrix = new Matrix4();
+  for (const occurrence of scene.occurrences) {
+    const shape = parts.shapeOf(occurrence.id);
+    if (shape !== null) {
+      const box = shape.box.clone().applyMatrix4(toMatrix(occurrence.goal, matrix));
+      boxes.set(occurrence.id, { low: box.min.toArray(), high: box.max.toArray() });
+    }
+  }
+  return boxes;
+}
+
+/** The part, with what is held as one with it, in its place; and itself in its own frame. */
+export function ghostsOf(occurrence: number, scene: Scene, parts: Parts): { goal: GhostPart[]; tracked: GhostPart[] } {
+  const step = scene.steps.find((s) => s.occurrence === occurrence && s.kind !== "base");
+  const goal = [occurrence, ...(step?.members ?? [])].flatMap((id) => {
+    const shape = parts.shapeOf(id);
+    const pose = scene.occurrences.find((o) => o.id === id)?.goal;
+    return shape !== null && pose !== undefined ? [{ shape, pose }] : [];
+  });
+  const own = parts.shapeOf(occurrence);
+  return { goal, tracked: own === null ? [] : [{ shape: own, pose: { p: [0, 0, 0], q: [1, 0, 0, 0] } }] };
+}
