@@ -232,7 +232,7 @@ spatial::Wrench HapticTick::MakeSafe(const device::DeviceState& state, const Tic
   input.is_stopped = input.is_stopped || context.is_stopped;
   input.has_engaged = std::exchange(has_engaged_, false);
   input.model_age = 1e-9 * static_cast<double>(context.model_age_ns);
-  const spatial::Wrench given = gate_.Pass(input);
+  spatial::Wrench given = gate_.Pass(input);
   if (options_.controls_passivity) {
     passivity_.Write(given);
     // The border moves the scene under the hand: work that the handle would have done (X5).

@@ -141,7 +141,7 @@ haptics::TickOutput Simulation::HapticTick(std::size_t hand,
   context.model_age_ns = device.t_ns - physics_t_ns_.load(std::memory_order_acquire);
   context.is_stopped = is_stopped_.load(std::memory_order_acquire);
   context.effort_level = effort_level_;
-  const haptics::TickOutput out = RunTick(&hands_[hand], device, context);
+  haptics::TickOutput out = RunTick(&hands_[hand], device, context);
   if (log_ != nullptr) {
     log_->Add({device, context.model_age_ns, context.is_stopped,
                static_cast<std::uint8_t>(effort_level_), static_cast<std::uint8_t>(hand), 0,

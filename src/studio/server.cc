@@ -436,17 +436,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void SendScene() {
-    const auto scene = shared_->workbench->scene();
-    if (scene == nullptr) {
+    const auto now = shared_->workbench->Look();
+    if (now.scene == nullptr) {
       return Refuse(http::status::not_found,
                     {ErrorCode::kNotFound, "no product is open", "", "open a file or an example"});
     }
-    const LiveState state = shared_->workbench->state();
-    if (state.parts.size() != scene->model->bodies.size()) {
-      return Refuse(http::status::service_unavailable,
-                    {ErrorCode::kInternal, "the product is just being changed", "", "ask again"});
-    }
-    SendJson(http::status::ok, MakeSceneJson(*scene, state));
+    SendJson(http::status::ok, MakeSceneJson(*now.scene, now.state));
   }
 
   void SendJson(http::status status, const Json& json) {
@@ -499,7 +494,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
 class Server::Impl {
  public:
-  Impl(Workbench* workbench, std::vector<Example> examples, ServerOptions options)
+  Impl(Workbench* workbench, std::vector<Example> examples, const ServerOptions& options)
       : shared_(std::make_shared<Shared>(workbench, std::move(examples), options)),
         acceptor_(context_),
         timer_(context_) {

@@ -30,6 +30,15 @@ Json MakeStepEvent(const OpenScene& scene, std::size_t step) {
   return {{"event", "step"}, {"index", step}, {"total", scene.model->sequence.steps.size()}};
 }
 
+/** All parts on the table. */
+LiveState MakeStart(const simulation::Model& model) {
+  LiveState state;
+  for (const simulation::Body& body : model.bodies) {
+    state.parts.push_back({Placement::kLoose, body.X_WB_start});
+  }
+  return state;
+}
+
 bool IsGone(Placement placement) {
   return placement == Placement::kPlaced || placement == Placement::kHeld;
 }
@@ -65,7 +74,7 @@ SequenceStep FindStep(const simulation::Model& model, const LiveState& state, Oc
 }
 
 Workbench::Workbench(WorkbenchOptions options)
-    : options_(std::move(options)), worker_([this](std::stop_token stop) { Work(stop); }) {}
+    : options_(std::move(options)), worker_([this](const std::stop_token& stop) { Work(stop); }) {}
 
 Workbench::~Workbench() {
   Stop();
@@ -84,7 +93,7 @@ void Workbench::Stop() {
   }
 }
 
-void Workbench::Work(std::stop_token stop) {
+void Workbench::Work(const std::stop_token& stop) {
   while (true) {
     std::function<void()> job;
     {
@@ -185,7 +194,7 @@ Result<std::shared_ptr<const simulation::Model>> Workbench::Compile(product::Pro
                              diagnostics);
 }
 
-void Workbench::Show(std::shared_ptr<const OpenScene> scene, const LiveState& state,
+void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state,
                      bool has_person) {
   LiveOptions live;
   live.has_person = has_person;
@@ -199,6 +208,7 @@ void Workbench::Show(std::shared_ptr<const OpenScene> scene, const LiveState& st
     ended = std::exchange(run_, nullptr);
     is_new = scene_ != scene;
     scene_ = scene;
+    resting_ = state.parts.empty() ? MakeStart(*scene->model) : state;
   }
   ended.reset();  // its threads end here, outside the lock that they may wait for
   auto run = std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene));
@@ -384,7 +394,7 @@ Result<void> Workbench::SetDemo(bool is_on) {
 }
 
 Result<void> Workbench::DoNext() {
-  const auto started = SetDemo(true);
+  auto started = SetDemo(true);
   if (started) {
     ends_demo_after_step_ = true;
   }
@@ -436,14 +446,14 @@ Result<void> Workbench::Reset() {
   return {};
 }
 
-Result<void> Workbench::Change(const std::string& what, ChangeFn change) {
+Result<void> Workbench::Change(const std::string& what, const ChangeFn& change) {
   const auto run = IdleRun();
   if (!run) {
     return Unexpected(run.error());
   }
   // Tried here first, so that whoever asks learns at once what is wrong with it.
   product::Product trial = *(*run)->model().product;
-  if (const auto changed = change(&trial); !changed) {
+  if (auto changed = change(&trial); !changed) {
     return changed;
   }
   Post([this, what, change] { DoChange(what, change); });
@@ -478,9 +488,9 @@ std::shared_ptr<const OpenScene> Workbench::scene() const {
   return scene_;
 }
 
-LiveState Workbench::state() const {
+SceneNow Workbench::Look() const {
   const std::lock_guard lock(mutex_);
-  return run_ != nullptr ? run_->state() : LiveState{};
+  return {scene_, run_ != nullptr ? run_->state() : resting_};
 }
 
 LiveFrame Workbench::frame() const {

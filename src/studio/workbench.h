@@ -48,6 +48,12 @@ struct OpenScene {
   std::string glb_hash;
 };
 
+/** What is open, and how far it has come. */
+struct SceneNow {
+  std::shared_ptr<const OpenScene> scene;  ///< Null while nothing is.
+  LiveState state;
+};
+
 /** The newest state of everything that moves. */
 struct LiveFrame {
   std::uint32_t epoch{0};
@@ -95,11 +101,15 @@ class Workbench {
 
   /** A change of the product: compiles a model of it aside and swaps it in. */
   using ChangeFn = std::function<Result<void>(product::Product*)>;
-  [[nodiscard]] Result<void> Change(const std::string& what, ChangeFn change);
+  [[nodiscard]] Result<void> Change(const std::string& what, const ChangeFn& change);
 
   /** Null while nothing is open. */
   [[nodiscard]] std::shared_ptr<const OpenScene> scene() const;
-  [[nodiscard]] LiveState state() const;
+
+  [[nodiscard]] LiveState state() const { return Look().state; }
+
+  /** Both of one moment. */
+  [[nodiscard]] SceneNow Look() const;
   [[nodiscard]] LiveFrame frame() const;
   /** The events that whoever comes late has missed and still needs. */
   [[nodiscard]] std::vector<Json> NewsForLatecomer() const;
@@ -115,7 +125,7 @@ class Workbench {
     std::string what;  ///< Was done after it.
   };
 
-  void Work(std::stop_token stop);
+  void Work(const std::stop_token& stop);
   void Post(std::function<void()> job);
   void DoOpen(const std::filesystem::path& file, const std::string& name);
   void DoChange(const std::string& what, const ChangeFn& change);
@@ -124,7 +134,7 @@ class Workbench {
   [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> Compile(product::Product product,
                                                                          const std::string& name,
                                                                          Diagnostics* diagnostics);
-  void Show(std::shared_ptr<const OpenScene> scene, const LiveState& state, bool has_person);
+  void Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state, bool has_person);
   void Restart(bool has_person);
   [[nodiscard]] LiveListeners MakeListeners(const std::shared_ptr<const OpenScene>& scene);
   void HandleEvent(const OpenScene& scene, const simulation::SimulationEvent& event);
@@ -146,6 +156,7 @@ class Workbench {
   mutable std::mutex mutex_;  ///< Of what follows.
   std::shared_ptr<const OpenScene> scene_;
   std::shared_ptr<LiveRun> run_;
+  LiveState resting_;  ///< While one run has ended and the next has not begun.
   std::optional<Moment> before_take_;
   std::vector<Moment> undo_;
   std::vector<Moment> redo_;

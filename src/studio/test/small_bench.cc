@@ -1,0 +1,85 @@
+#include "studio/test/small_bench.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <utility>
+
+#include "simulation/test/small_products.h"
+
+namespace hvas::studio::testing {
+namespace {
+
+/** Shapes of this program's run, gone with it. */
+class ShapesOfThisRun {
+ public:
+  ShapesOfThisRun() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "hvas-shapes-XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+    cache_ = std::make_shared<contact::ShapeCache>(folder_);
+  }
+  ~ShapesOfThisRun() { std::filesystem::remove_all(folder_); }
+  ShapesOfThisRun(const ShapesOfThisRun&) = delete;
+  ShapesOfThisRun& operator=(const ShapesOfThisRun&) = delete;
+
+  [[nodiscard]] const std::shared_ptr<contact::ShapeCache>& cache() const { return cache_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::shared_ptr<contact::ShapeCache> cache_;
+};
+
+}  // namespace
+
+void EventLog::Add(Json event) {
+  {
+    const std::lock_guard lock(mutex_);
+    events_.push_back(std::move(event));
+  }
+  changed_.notify_all();
+}
+
+std::optional<Json> EventLog::Await(const std::function<bool(const Json&)>& fits,
+                                    std::size_t start, double seconds) {
+  std::unique_lock lock(mutex_);
+  std::optional<Json> found;
+  std::size_t next = start;
+  (void)changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
+    for (; next < events_.size() && !found; ++next) {
+      if (fits(events_[next])) {
+        found = events_[next];
+      }
+    }
+    return found.has_value();
+  });
+  return found;
+}
+
+std::optional<Json> EventLog::Await(const std::string& name, std::size_t start, double seconds) {
+  return Await([&name](const Json& event) { return event["event"] == name; }, start, seconds);
+}
+
+std::size_t EventLog::size() const {
+  const std::lock_guard lock(mutex_);
+  return events_.size();
+}
+
+WorkbenchOptions SmallBench() {
+  static const ShapesOfThisRun shapes;
+  WorkbenchOptions options;
+  options.shape_cache = shapes.cache();
+  options.load = [](const std::filesystem::path& file, const cad::ProgressFn& progress,
+                    std::stop_token stop, Diagnostics*) -> Result<product::Product> {
+    progress("read", 0.5);
+    if (file.filename() == "missing") {
+      return Fail(ErrorCode::kNotFound, "there is no such file", file.string(), "name another");
+    }
+    if (stop.stop_requested()) {
+      return Fail(ErrorCode::kCancelled, "stopped", file.string(), "");
+    }
+    return simulation::testing::PegInBlock();
+  };
+  return options;
+}
+
+}  // namespace hvas::studio::testing
