@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { catalogues, duration, language, number, pickLanguage, t, tn } from "../src/app/i18n";
+import { catalogues, duration, figures, language, number, pickLanguage, t, tn } from "../src/app/i18n";
 
 afterEach(() => {
   language.value = "en";
@@ -32,6 +32,13 @@ describe("words and numbers", () => {
 
   it("have no minus before a zero", () => {
     expect(number(-0.001, 2)).toBe("0.00");
+  });
+
+  it("have as many digits as say something", () => {
+    expect(figures(1671.35)).toBe("1,671");
+    expect(figures(4.6321)).toBe("4.63");
+    expect(figures(0.00278, 2)).toBe("0.0028");
+    expect(figures(0)).toBe("0.00");
   });
 
   it("tell times as minutes and seconds", () => {

@@ -185,6 +185,16 @@ describe("the session", () => {
     expect(store.forcesOff.value).toBe(true);
   });
 
+  it("raises an alarm for what cuts the force, not for what limits it", async () => {
+    const { store } = await start();
+    FakeWorker.last.say({ event: "safety", reasons: ["comes in slowly"], gate_actions: 1 << 4 });
+    expect(store.safety.value).toBeNull();
+    FakeWorker.last.say({ event: "safety", reasons: ["kicked"], gate_actions: 1 << 12 });
+    expect(store.safety.value).toEqual({ reasons: ["kicked"] });
+    FakeWorker.last.say({ event: "taken", hand: 0, occurrence: 1, state: "free" });
+    expect(store.safety.value).toBeNull();
+  });
+
   it("answers each command once, and shows a refusal", async () => {
     const studio = await start();
     const answer = studio.command({ command: "take", hand: 0, occurrence: 1 });

@@ -5,7 +5,7 @@ import { useRef } from "preact/hooks";
 import { liveNumbers } from "../model/hints";
 import type { Fit, Mate, Occurrence } from "../protocol/messages";
 import { canSteer, store, studio } from "./app_state";
-import { number, t } from "./i18n";
+import { figures, number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
 
 const kCommonFits = ["H7/g6", "H7/h6", "H7/k6", "H7/n6", "H7/p6", "H7/s6", "H8/f7", "H11/c11"];
@@ -43,13 +43,13 @@ function FitForces() {
   const ratio = useRef<HTMLElement>(null);
   useLive((live) => {
     const hand = holdingHand(live);
-    const newtons = (value: number | undefined) => (value === undefined ? "–" : `${number(value, 2)} N`);
+    const newtons = (value: number | undefined) => (value === undefined ? "–" : `${value < 1e-3 ? 0 : figures(value)} N`);
     const values = hand === null ? null : liveNumbers(hand);
     setText(axialTrue.current, newtons(hand?.axial_true_n));
     setText(axialFelt.current, newtons(hand?.axial_felt_n));
     setText(felt.current, newtons(values?.feltN));
     const hasRatio = values !== null && values.trueN > 0.05;
-    setText(ratio.current, hasRatio ? `${number(values.feltN / values.trueN, 2)} ×` : "–");
+    setText(ratio.current, hasRatio ? `${figures(values.feltN / values.trueN, 2)} ×` : "–");
   });
   return (
     <>

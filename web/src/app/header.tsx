@@ -12,7 +12,7 @@ export function ActionButton({ id, icon, label }: { id: string; icon: IconName; 
     <button
       type="button"
       class={label === undefined ? "icon-button" : "text-button"}
-      aria-label={name}
+      aria-label={label === undefined ? name : undefined}
       title={keys ? `${name} (${keyLabel(keys)})` : name}
       aria-pressed={found.isOn?.()}
       disabled={!isEnabled(found)}

@@ -54,6 +54,13 @@ export function number(value: number, digits?: number): string {
   return format.format(Math.abs(value) < 0.5 * Math.pow(10, -(digits ?? 2)) ? 0 : value);
 }
 
+/** As many digits as say something: for values that may be of any size. */
+export function figures(value: number, digits = 3): string {
+  const size = Math.abs(value);
+  const decimals = size < 1e-6 ? digits - 1 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return number(value, Math.min(decimals, digits + 2));
+}
+
 /** Minutes and seconds, as 00:24.6. */
 export function duration(seconds: number): string {
   const minutes = Math.floor(seconds / 60);

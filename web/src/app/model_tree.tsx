@@ -22,29 +22,23 @@ function flatten(nodes: readonly TreeNode[], closed: ReadonlySet<string>, opensA
   });
 }
 
-function Badge({ node }: { node: TreeNode }) {
-  const places = store.placements.value;
-  const expected = store.expected.value?.occurrence;
+/** What is said of a node at the end of its line, and how it is dressed. */
+function badgeOf(node: TreeNode): { text: string; look: string } {
   const [first] = node.occurrences;
-  if (node.kind !== "part") {
-    const done = node.occurrences.filter((id) => isInPlace(id)).length;
-    return (
-      <span class={`badge ${done === node.occurrences.length ? "is-done" : ""}`}>
-        {done}/{node.occurrences.length}
-      </span>
-    );
-  }
-  if (first === undefined) {
-    return null;
+  if (node.kind !== "part" || first === undefined) {
+    const done = node.occurrences.filter(isInPlace).length;
+    const all = node.occurrences.length;
+    return { text: `${done}/${all}`, look: done === all ? "is-done" : "" };
   }
   if (store.occurrences.value.get(first)?.is_base) {
-    return <span class="badge is-done">{t("tree.base")}</span>;
+    return { text: t("tree.base"), look: "is-done" };
   }
-  const place = store.heldBy.value.has(first) ? "held" : (places.get(first) ?? "loose");
-  if (place === "loose") {
-    return first === expected ? <span class="badge is-next">{t("tree.expected")}</span> : null;
+  const place = store.heldBy.value.has(first) ? "held" : (store.placements.value.get(first) ?? "loose");
+  if (place !== "loose") {
+    return { text: t(`place.${place}`), look: `is-${place}` };
   }
-  return <span class={`badge is-${place}`}>{t(`place.${place}`)}</span>;
+  const isNext = first === store.expected.value?.occurrence;
+  return { text: isNext ? t("tree.expected") : "", look: "is-next" };
 }
 
 export function isInPlace(id: number): boolean {
@@ -66,6 +60,7 @@ function TreeRow({ row, isActive, onToggle, onActivate }: RowProps) {
   const isHovered = node.kind === "part" && node.occurrences[0] === view.hovered.value;
   const expected = store.expected.value?.occurrence;
   const isExpected = expected !== undefined && node.occurrences.includes(expected) && !isOpen;
+  const badge = badgeOf(node);
   const name = node.kind === "group" ? `${node.name} ×${node.occurrences.length}` : node.name;
   return (
     <div
@@ -74,7 +69,7 @@ function TreeRow({ row, isActive, onToggle, onActivate }: RowProps) {
       aria-level={level}
       aria-expanded={node.children.length > 0 ? isOpen : undefined}
       aria-selected={isSelected}
-      aria-label={name}
+      aria-label={`${name} ${badge.text}`.trim()}
       data-testid={node.kind === "part" ? `part-${node.occurrences[0]}` : undefined}
       class={`tree-row ${isSelected ? "is-selected" : ""} ${isActive ? "is-active" : ""} ${isHovered ? "is-hovered" : ""} ${isHidden ? "is-hidden" : ""} ${isExpected ? "is-expected" : ""}`}
       style={{ paddingLeft: `${4 + 14 * (level - 1)}px` }}
@@ -98,7 +93,7 @@ function TreeRow({ row, isActive, onToggle, onActivate }: RowProps) {
       </span>
       {node.color === null ? <Icon name="cubes" size={14} /> : <i class="swatch" style={{ background: node.color }} />}
       <span class="tree-name">{name}</span>
-      <Badge node={node} />
+      {badge.text === "" ? null : <span class={`badge ${badge.look}`}>{badge.text}</span>}
       <button
         type="button"
         tabIndex={-1}

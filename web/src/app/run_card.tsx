@@ -1,5 +1,5 @@
 import { store } from "./app_state";
-import { duration, number, t } from "./i18n";
+import { duration, figures, number, t } from "./i18n";
 
 /** What the last hold of a part cost. */
 export function RunCard() {
@@ -13,9 +13,9 @@ export function RunCard() {
     [t("run.result"), t(run.wasSeated ? "run.seated" : "run.dropped")],
     [t("run.time"), duration(m.time_s)],
     [t("run.path"), `${number(m.path_mm, 0)} mm`],
-    [t("run.peakTrue"), `${number(m.peak_true_n, 1)} N`],
-    [t("run.peakFelt"), `${number(m.peak_felt_n, 1)} N`],
-    [t("run.fit"), `${number(m.fit_true_n, 1)} N`],
+    [t("run.peakTrue"), `${figures(m.peak_true_n)} N`],
+    [t("run.peakFelt"), `${figures(m.peak_felt_n)} N`],
+    [t("run.fit"), `${figures(m.fit_true_n)} N`],
     [t("run.insertion"), `${number(m.insertion_mm, 1)} mm`],
   ];
   return (
@@ -52,7 +52,7 @@ export function RunsTable() {
             <td>{t(run.wasSeated ? "run.seated" : "run.dropped")}</td>
             <td>{number(run.metrics.time_s, 1)}</td>
             <td>{number(run.metrics.path_mm, 0)}</td>
-            <td>{number(run.metrics.peak_true_n, 1)}</td>
+            <td>{figures(run.metrics.peak_true_n)}</td>
           </tr>
         ))}
       </tbody>

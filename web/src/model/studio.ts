@@ -8,6 +8,9 @@ import type { Command, CommandResults, Scene, ServerError, ServerEvent } from ".
 import { holdStateOf } from "./hints";
 import { makeStore, type HeldSummary, type LogKind } from "./store";
 
+/** Bits of haptics::GateAction that a user has to know of: not finite, model late, client silent, device
+ lost, buzz, kick. The others limit the force in the course of the work. */
+const kAlarms = 0b1_1001_1100_0001;
 const kLogLength = 200;
 const kRunsLength = 50;
 
@@ -207,7 +210,9 @@ export class Studio {
         this.log("forces", { off: event.off ? 1 : 0 });
         break;
       case "safety":
-        store.safety.value = event.reasons.length > 0 ? { reasons: event.reasons } : null;
+        if ((event.gate_actions & kAlarms) !== 0) {
+          store.safety.value = { reasons: event.reasons };
+        }
         if (event.reasons.length > 0) {
           this.log("safety", { text: event.reasons.join(", ") });
         }
@@ -246,6 +251,8 @@ export class Studio {
         store.placements.value = new Map(store.placements.value).set(event.occurrence, event.placement);
         break;
       case "taken":
+        // What was cut stays so until the hand takes anew.
+        store.safety.value = null;
         this.log("taken", { part: this.nameOf(event.occurrence) });
         break;
       case "state":
