@@ -92,7 +92,7 @@ function TreeRow({ row, isActive, onToggle, onActivate }: RowProps) {
         {node.children.length > 0 ? <Icon name="chevron" size={14} /> : null}
       </span>
       {node.color === null ? <Icon name="cubes" size={14} /> : <i class="swatch" style={{ background: node.color }} />}
-      <span class="tree-name">{name}</span>
+      <span class="tree-name">{name}</span>{" "}
       {badge.text === "" ? null : <span class={`badge ${badge.look}`}>{badge.text}</span>}
       <button
         type="button"

@@ -105,7 +105,7 @@ function MeasurePanel() {
             ])}
         </dl>
       ) : null}
-      {m?.text ? <p>{m.text}</p> : null}
+      {m !== null && rows.every(([, value]) => typeof value !== "number") ? <p>{m.text}</p> : null}
     </div>
   );
 }

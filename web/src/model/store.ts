@@ -31,7 +31,7 @@ export interface Run {
   metrics: RunMetrics;
 }
 
-export type LogKind = "taken" | "dropped" | "state" | "safety" | "forces" | "step" | "failed" | "opened" | "demo";
+export type LogKind = "taken" | "dropped" | "state" | "safety" | "limit" | "forces" | "step" | "failed" | "opened" | "demo";
 
 export interface LogEntry {
   at: Date;

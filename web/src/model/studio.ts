@@ -210,12 +210,7 @@ export class Studio {
         this.log("forces", { off: event.off ? 1 : 0 });
         break;
       case "safety":
-        if ((event.gate_actions & kAlarms) !== 0) {
-          store.safety.value = { reasons: event.reasons };
-        }
-        if (event.reasons.length > 0) {
-          this.log("safety", { text: event.reasons.join(", ") });
-        }
+        this.noteSafety(event.reasons, event.gate_actions);
         break;
       case "roles":
         store.clients.value = event.clients;
@@ -233,6 +228,16 @@ export class Studio {
         break;
       default:
         this.applyAssembly(event);
+    }
+  }
+
+  private noteSafety(reasons: string[], gateActions: number): void {
+    const isAlarm = (gateActions & kAlarms) !== 0;
+    if (isAlarm) {
+      this.store.safety.value = { reasons };
+    }
+    if (reasons.length > 0) {
+      this.log(isAlarm ? "safety" : "limit", { text: reasons.join(", ") });
     }
   }
 

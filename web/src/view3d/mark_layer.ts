@@ -16,6 +16,9 @@ import type { Measurement } from "../protocol/messages";
 import type { Palette } from "./palette";
 import type { PartShape } from "./part_shape";
 
+/** A point further from the product than so many radii is not drawn. */
+const kFarthest = 50;
+
 export interface MarkedFace {
   shape: PartShape;
   /** Of its part; followed as the part moves. */
@@ -72,7 +75,9 @@ export class MarkLayer {
     this.measured.clear();
     this.anchor = null;
     const points = (measurement?.p_m ?? []).map((p) => new Vector3(...p));
-    if (points.length === 0) {
+    // Lines that are all but parallel meet where nobody looks.
+    const isInSight = points.every((p) => p.length() < kFarthest * this.radius);
+    if (points.length === 0 || !isInSight) {
       return;
     }
     for (const point of points) {

@@ -4,6 +4,9 @@ import { StereoCamera, type PerspectiveCamera, type Scene, type WebGLRenderer } 
 import { AnaglyphEffect } from "three/addons/effects/AnaglyphEffect.js";
 import type { Stereo } from "../model/view_state";
 
+/** Between the eyes, as a share of the distance: easy to look at, however small the product. */
+const kEyeShare = 1 / 30;
+
 export interface StereoSize {
   width: number;
   height: number;
@@ -20,14 +23,14 @@ export class StereoView {
     if (stereo === "anaglyph") {
       this.anaglyph ??= new AnaglyphEffect(renderer);
       this.anaglyph.setSize(size.width, size.height);
+      this.anaglyph.eyeSep = size.focus * kEyeShare;
+      this.anaglyph.planeDistance = size.focus;
       renderer.autoClear = true;
       this.anaglyph.render(scene, camera);
       renderer.autoClear = false;
       return;
     }
-    this.eyes.aspect = 0.5;
-    // A thirtieth of the distance keeps the depth easy to look at, however small the product.
-    this.eyes.eyeSep = size.focus / 30;
+    this.eyes.eyeSep = size.focus * kEyeShare;
     camera.updateMatrixWorld();
     this.eyes.update(camera);
     const half = size.width / 2;

@@ -200,8 +200,14 @@ export class Viewport {
     });
     effect(() => {
       this.stage.setGridShown(view.showsGrid.value);
-      void view.stereo.value;
       this.invalidate();
+    });
+    effect(() => {
+      void view.stereo.value;
+      this.resize();
+      if (this.product.parts !== null) {
+        this.rig.fit(this.product.outline(), false);
+      }
     });
   }
 
@@ -240,7 +246,8 @@ export class Viewport {
     this.width = Math.max(1, clientWidth);
     this.height = Math.max(1, clientHeight);
     this.renderer.setSize(this.width, this.height, false);
-    this.rig.resize(this.width, this.height);
+    // Side by side, each eye has half of the width.
+    this.rig.resize(this.view.stereo.peek() === "side" ? this.width / 2 : this.width, this.height);
     this.invalidate();
     // The canvas is empty after a change of its size: not to be seen.
     this.draw();
