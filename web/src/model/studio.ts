@@ -6,6 +6,7 @@ import type { LiveState } from "../protocol/frame_store";
 import { kNone, type HandInput } from "../protocol/frames";
 import type { Command, CommandResults, Scene, ServerError, ServerEvent } from "../protocol/messages";
 import { holdStateOf } from "./hints";
+import { uploadFile } from "./upload";
 import { makeStore, type HeldSummary, type LogKind } from "./store";
 
 /** Bits of haptics::GateAction that a user has to know of: not finite, model late, client silent, device
@@ -287,35 +288,4 @@ function asServerError(error: unknown, where: string): ServerError {
     return error.detail;
   }
   return { code: "upload", message: error instanceof Error ? error.message : String(error), where, remedy: "" };
-}
-
-/** XMLHttpRequest, for fetch does not tell how much of a body has gone. */
-function uploadFile(file: File, signal: AbortSignal, onFraction: (fraction: number) => void): Promise<string> {
-  return new Promise((resolve, reject) => {
-    const request = new XMLHttpRequest();
-    request.open("POST", `/api/upload?name=${encodeURIComponent(file.name)}`);
-    request.setRequestHeader("Content-Type", "application/octet-stream");
-    request.upload.onprogress = (event) => onFraction(event.total > 0 ? event.loaded / event.total : 0);
-    request.onload = () => {
-      const answer = parseJson(request.responseText) as { upload?: string; error?: ServerError } | null;
-      if (request.status < 400 && answer?.upload !== undefined) {
-        resolve(answer.upload);
-      } else {
-        reject(answer?.error ? new CommandError(answer.error) : new Error(`${request.status} ${request.statusText}`));
-      }
-    };
-    request.onerror = () => reject(new Error(`${file.name}: the connection was lost`));
-    request.onabort = () => reject(new DOMException("aborted", "AbortError"));
-    signal.addEventListener("abort", () => request.abort());
-    onFraction(0);
-    request.send(file);
-  });
-}
-
-function parseJson(text: string): unknown {
-  try {
-    return JSON.parse(text);
-  } catch {
-    return null;
-  }
 }

@@ -17,12 +17,13 @@ export interface StereoSize {
 export class StereoView {
   private readonly eyes = new StereoCamera();
   private anaglyph: AnaglyphEffect | null = null;
+  private sizeKey = "";
 
   render(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, stereo: Stereo, size: StereoSize): void {
     camera.focus = size.focus;
     if (stereo === "anaglyph") {
       this.anaglyph ??= new AnaglyphEffect(renderer);
-      this.anaglyph.setSize(size.width, size.height);
+      this.resize(this.anaglyph, renderer, size);
       this.anaglyph.eyeSep = size.focus * kEyeShare;
       this.anaglyph.planeDistance = size.focus;
       renderer.autoClear = true;
@@ -41,5 +42,15 @@ export class StereoView {
       renderer.render(scene, eye);
     }
     renderer.setScissorTest(false);
+  }
+
+  /** The effect sizes the canvas as well, and fixes it to pixels: that is the page's to decide. */
+  private resize(effect: AnaglyphEffect, renderer: WebGLRenderer, size: StereoSize): void {
+    const key = `${size.width}/${size.height}/${renderer.getPixelRatio()}`;
+    if (key !== this.sizeKey) {
+      this.sizeKey = key;
+      effect.setSize(size.width, size.height);
+      renderer.domElement.style.width = renderer.domElement.style.height = "";
+    }
   }
 }
