@@ -30,6 +30,13 @@ Json MakeStepEvent(const OpenScene& scene, std::size_t step) {
   return {{"event", "step"}, {"index", step}, {"total", scene.model->sequence.steps.size()}};
 }
 
+bool HasSameOrder(const simulation::Sequence& a, const simulation::Sequence& b) {
+  return std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), b.steps.end(),
+                    [](const SequenceStep& x, const SequenceStep& y) {
+                      return x.kind == y.kind && x.occurrence == y.occurrence;
+                    });
+}
+
 /** All parts on the table. */
 LiveState MakeStart(const simulation::Model& model) {
   LiveState state;
@@ -287,7 +294,12 @@ void Workbench::HandleStep(const OpenScene& scene, std::size_t step) {
   }
 }
 
-/** What was begun with the last take is done, and can be undone. */
+void Workbench::Begin() {
+  SceneNow now = Look();
+  const std::lock_guard lock(mutex_);
+  before_take_ = Moment{std::move(now.scene), std::move(now.state), ""};
+}
+
 void Workbench::Remember(const std::string& what) {
   {
     const std::lock_guard lock(mutex_);
@@ -305,16 +317,27 @@ void Workbench::Remember(const std::string& what) {
   TellOfHistory();
 }
 
-Result<std::shared_ptr<LiveRun>> Workbench::IdleRun() const {
+Result<void> Workbench::CheckIdle() const {
   const std::lock_guard lock(mutex_);
-  if (run_ == nullptr) {
+  if (scene_ == nullptr) {
     return Unexpected(NothingOpen());
   }
   if (is_demo_) {
     return Fail(ErrorCode::kInvalid, "the simulated person is at work", "", "end the demo first");
   }
-  if (run_->is_holding()) {
+  if (run_ != nullptr && run_->is_holding()) {
     return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
+  }
+  return {};
+}
+
+Result<std::shared_ptr<LiveRun>> Workbench::IdleRun() const {
+  if (const auto idle = CheckIdle(); !idle) {
+    return Unexpected(idle.error());
+  }
+  const std::lock_guard lock(mutex_);
+  if (run_ == nullptr) {
+    return Fail(ErrorCode::kInvalid, "the product is just being changed", "", "try again");
   }
   return run_;
 }
@@ -379,18 +402,16 @@ Result<void> Workbench::SetDemo(bool is_on) {
     ends_demo_after_step_ = is_demo_.load();  // a part in the hand is not dropped
     return {};
   }
-  const auto run = IdleRun();
-  if (!run) {
-    return Unexpected(run.error());
+  auto idle = CheckIdle();
+  if (idle) {
+    ends_demo_after_step_ = false;
+    Post([this] {
+      Begin();
+      Remember("demo");
+      Restart(true);
+    });
   }
-  {
-    const std::lock_guard lock(mutex_);
-    before_take_ = Moment{scene_, (*run)->state(), ""};
-  }
-  Remember("demo");
-  ends_demo_after_step_ = false;
-  Post([this] { Restart(true); });
-  return {};
+  return idle;
 }
 
 Result<void> Workbench::DoNext() {
@@ -403,25 +424,31 @@ Result<void> Workbench::DoNext() {
 
 Result<void> Workbench::GoTo(std::vector<Moment>* from, std::vector<Moment>* to,
                              const std::string& word) {
-  const auto run = IdleRun();
-  if (!run) {
-    return Unexpected(run.error());
+  auto idle = CheckIdle();
+  const std::lock_guard lock(mutex_);
+  if (idle && from->empty()) {
+    return Fail(ErrorCode::kNotFound, fmt::format("there is nothing to {}", word), "", "");
   }
+  if (idle) {
+    Post([this, from, to] { DoGoTo(from, to); });
+  }
+  return idle;
+}
+
+void Workbench::DoGoTo(std::vector<Moment>* from, std::vector<Moment>* to) {
+  const SceneNow now = Look();
   Moment moment;
   {
     const std::lock_guard lock(mutex_);
     if (from->empty()) {
-      return Fail(ErrorCode::kNotFound, fmt::format("there is nothing to {}", word), "", "");
+      return;  // somebody was faster
     }
     moment = std::move(from->back());
     from->pop_back();
-    to->push_back({scene_, (*run)->state(), moment.what});
+    to->push_back({now.scene, now.state, moment.what});
   }
-  Post([this, moment] {
-    Show(moment.scene, moment.state, false);
-    TellOfHistory();
-  });
-  return {};
+  Show(moment.scene, moment.state, false);
+  TellOfHistory();
 }
 
 Result<void> Workbench::Undo() {
@@ -433,36 +460,32 @@ Result<void> Workbench::Redo() {
 }
 
 Result<void> Workbench::Reset() {
-  const auto run = IdleRun();
-  if (!run) {
-    return Unexpected(run.error());
+  auto idle = CheckIdle();
+  if (idle) {
+    Post([this] {
+      Begin();
+      Remember("reset");
+      Show(scene(), {}, false);
+    });
   }
-  {
-    const std::lock_guard lock(mutex_);
-    before_take_ = Moment{scene_, (*run)->state(), ""};
-  }
-  Remember("reset");
-  Post([this] { Show(scene(), {}, false); });
-  return {};
+  return idle;
 }
 
 Result<void> Workbench::Change(const std::string& what, const ChangeFn& change) {
-  const auto run = IdleRun();
-  if (!run) {
-    return Unexpected(run.error());
+  if (auto idle = CheckIdle(); !idle) {
+    return idle;
   }
   // Tried here first, so that whoever asks learns at once what is wrong with it.
-  product::Product trial = *(*run)->model().product;
-  if (auto changed = change(&trial); !changed) {
-    return changed;
+  product::Product trial = *scene()->model->product;
+  auto changed = change(&trial);
+  if (changed) {
+    Post([this, what, change] { DoChange(what, change); });
   }
-  Post([this, what, change] { DoChange(what, change); });
-  return {};
+  return changed;
 }
 
 void Workbench::DoChange(const std::string& what, const ChangeFn& change) {
-  const auto before = scene();
-  const LiveState state_before = state();
+  const auto [before, state] = Look();
   auto after = std::make_shared<OpenScene>(*before);
   product::Product product = *before->model->product;
   const auto changed = change(&product);
@@ -475,12 +498,11 @@ void Workbench::DoChange(const std::string& what, const ChangeFn& change) {
   }
   after->model = *model;
   after->epoch = ++last_epoch_;
-  {
-    const std::lock_guard lock(mutex_);
-    before_take_ = Moment{before, state_before, ""};
-  }
+  Begin();
   Remember(what);
-  Show(after, state_before, false);
+  // In another order, what is in its place already is passed over when its turn comes.
+  const bool has_same_order = HasSameOrder(before->model->sequence, after->model->sequence);
+  Show(after, {state.parts, has_same_order ? state.next_step : 0}, false);
 }
 
 std::shared_ptr<const OpenScene> Workbench::scene() const {

@@ -131,6 +131,7 @@ class Workbench {
   void DoChange(const std::string& what, const ChangeFn& change);
   [[nodiscard]] Result<void> GoTo(std::vector<Moment>* from, std::vector<Moment>* to,
                                   const std::string& word);
+  void DoGoTo(std::vector<Moment>* from, std::vector<Moment>* to);
   [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> Compile(product::Product product,
                                                                          const std::string& name,
                                                                          Diagnostics* diagnostics);
@@ -144,7 +145,12 @@ class Workbench {
   [[nodiscard]] Json history() const;
   void TellOfHistory() const;
   void TellOfPlacements() const;
+  /** Keeps how all is now, before something is done that can be undone. */
+  void Begin();
+  /** That was done, and can be undone. */
   void Remember(const std::string& what);
+  /** Errors: nothing is open, or somebody is at work. */
+  [[nodiscard]] Result<void> CheckIdle() const;
   [[nodiscard]] Result<std::shared_ptr<LiveRun>> IdleRun() const;
 
   WorkbenchOptions options_;
