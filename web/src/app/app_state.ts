@@ -55,7 +55,7 @@ export function keepPreferences(): void {
   view.isMuted.value = kept.muted ?? false;
   view.quality.value = kept.quality ?? "high";
   view.assists.value = kept.assists ?? true;
-  const isNarrow = innerWidth < 900;
+  const isNarrow = innerWidth < 1024;
   ui.panels.model.value = kept.model ?? !isNarrow;
   ui.panels.inspector.value = kept.inspector ?? !isNarrow;
   ui.panels.plots.value = kept.plots ?? !isNarrow;

@@ -1,19 +1,35 @@
 /** Immersive VR: both controllers take parts, lead them, and vibrate with what they push against. */
 
-import { Color, Group, Matrix4, Quaternion, Vector3, type XRTargetRaySpace } from "three";
+import {
+  Box3,
+  Color,
+  Group,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  Quaternion,
+  Sphere,
+  SphereGeometry,
+  Vector3,
+  type XRTargetRaySpace,
+} from "three";
 import type { Pose } from "../model/math";
 import { compose, inverse } from "../model/math";
 import type { Studio } from "../model/studio";
 import type { HandInput } from "../protocol/frames";
 import type { Viewport } from "./viewport";
 
-/** The product stands this large and this high before the eyes [m]. */
-const kSeenRadius = 0.35;
-const kHeight = 1.05;
-const kAhead = -0.65;
+/** All parts lie within arms' reach: this large, this high, this far before the eyes [m]. */
+const kSeenRadius = 0.5;
+const kHeight = 1;
+const kAhead = -0.55;
+/** A product is shown no larger than so many times its size. */
+const kLargest = 3;
 /** Parts nearer than this to the controller can be taken, in metres of the room. */
 const kReach = 0.12;
 const kPulseMs = 30;
+/** Radius of what is drawn of a hand [m]. */
+const kTip = 0.014;
 
 interface Grip {
   index: number;
@@ -77,6 +93,7 @@ class VrHands {
       return grip;
     });
     for (const grip of this.grips) {
+      grip.space.add(new Mesh(new SphereGeometry(kTip, 16, 12), new MeshBasicMaterial({ color: 0x9cc8ff })));
       world.parent?.add(grip.space, grip.ray);
     }
   }
@@ -99,6 +116,7 @@ class VrHands {
   dispose(): void {
     for (const grip of this.grips) {
       this.release(grip);
+      grip.space.clear();
       grip.space.removeFromParent();
       grip.ray.removeFromParent();
     }
@@ -180,12 +198,12 @@ export async function startVr(port: Viewport, studio: Studio, onEnd: () => void)
     optionalFeatures: ["local-floor", "hand-tracking"],
   });
   const world = port.worldRoot;
-  const scale = kSeenRadius / product.sphere.radius;
+  const { center, radius } = new Box3().setFromPoints(product.outline()).getBoundingSphere(new Sphere());
+  const scale = Math.min(kLargest, kSeenRadius / radius);
   // W is Z up, the room of the headset is Y up.
   world.rotation.set(-Math.PI / 2, 0, 0);
   world.scale.setScalar(scale);
-  const centre = product.sphere.center;
-  world.position.set(-centre.x * scale, kHeight - (centre.z - product.sphere.radius * 0.5) * scale, kAhead + centre.y * scale);
+  world.position.set(-center.x * scale, kHeight - center.z * scale, kAhead + center.y * scale);
   world.updateMatrixWorld(true);
   renderer.xr.enabled = true;
   renderer.xr.setReferenceSpaceType("local-floor");
