@@ -107,7 +107,7 @@ describe("the hand", () => {
     const last = scene.steps.at(-1).occurrence;
     await page.keyboard.press("Control+z");
     await waitForPlacement(page, last, "loose");
-    await page.waitForFunction(() => document.querySelector('[data-testid="redo"]')?.getAttribute("aria-disabled") !== "true" && !document.querySelector('[data-testid="redo"]')?.disabled);
+    await page.locator('[data-testid="button-redo"]:not([disabled]):not([aria-disabled="true"])').waitFor();
     await page.keyboard.press("Control+Shift+z");
     await waitForPlacement(page, last, "placed");
     assert.deepEqual(complaints, []);

@@ -9,6 +9,8 @@ export interface StudioHooks {
   pose(occurrence: number): unknown;
   /** Of the middle of a part: client pixels, and whether it is what one sees there. */
   screen(occurrence: number): { x: number; y: number; isVisible: boolean } | null;
+  /** Where the middle of a part is for somebody in VR [m]: Y up, the floor at 0. */
+  room(occurrence: number): readonly number[] | null;
   /** Of a point of W [m]: client pixels. */
   project(p: readonly [number, number, number]): { x: number; y: number };
 }
@@ -22,6 +24,16 @@ declare global {
 function toClient(at: { x: number; y: number }): { x: number; y: number } {
   const box = viewport.value!.canvas.getBoundingClientRect();
   return { x: box.left + at.x, y: box.top + at.y };
+}
+
+function room(occurrence: number): number[] | null {
+  const port = viewport.value;
+  const matrix = port?.product.parts?.matrixOf(occurrence);
+  const shape = port?.product.parts?.shapeOf(occurrence);
+  if (!port || !matrix || !shape) {
+    return null;
+  }
+  return shape.sphere.center.clone().applyMatrix4(matrix).applyMatrix4(port.worldRoot.matrixWorld).toArray();
 }
 
 /** A pixel at which the part is what one sees: its middle, or else one around it. */
@@ -76,6 +88,7 @@ export function exposeHooks(): void {
     }),
     pose: (occurrence) => viewport.value?.product.poseOf(occurrence) ?? null,
     screen,
+    room,
     project: (p) => toClient(viewport.value!.project(p)),
   };
 }

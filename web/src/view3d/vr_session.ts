@@ -21,8 +21,8 @@ import type { Viewport } from "./viewport";
 
 /** All parts lie within arms' reach: this large, this high, this far before the eyes [m]. */
 const kSeenRadius = 0.5;
-const kHeight = 1;
-const kAhead = -0.55;
+const kHeight = 1.15;
+const kAhead = -0.75;
 /** A product is shown no larger than so many times its size. */
 const kLargest = 3;
 /** Parts nearer than this to the controller can be taken, in metres of the room. */
