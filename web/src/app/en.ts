@@ -210,7 +210,7 @@ export const en = {
   "empty.title": "Assemble something",
   "empty.drop": "Drop a CAD file here",
   "empty.or": "or choose one",
-  "empty.formats": "STEP, IGES, glTF, OBJ or STL, up to 256 MB",
+  "empty.formats": "STEP, STL, OBJ, glTF or 3MF, up to 256 MB",
   "empty.examples": "or begin with an example",
   "empty.needsLease": "Whoever has control can open a product. You are watching.",
   "empty.waiting": "Waiting for the server…",
