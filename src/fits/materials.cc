@@ -269,10 +269,10 @@ const Material& DefaultMaterial() {
 }
 
 std::optional<MaterialMatch> FindMaterial(std::string_view name) {
-  static const std::vector<Alias> kKnown = MakeAliases();
+  static const std::vector<Alias> known = MakeAliases();
   const std::vector<Token> tokens = Tokenise(name);
   const Alias* best = nullptr;
-  for (const Alias& alias : kKnown) {
+  for (const Alias& alias : known) {
     const auto found =
         std::search(tokens.begin(), tokens.end(), alias.tokens.begin(), alias.tokens.end());
     if (found == tokens.end() || (best != nullptr && !SaysMore(alias, *best))) {

@@ -126,7 +126,8 @@ bool IsOfType(const SideFileKey& key, const ordered_json& value) {
   };
   switch (key.type) {
     case Type::kText:
-      return value.is_string() && (key.may_be_empty || value != "") &&
+      return value.is_string() &&
+             (key.may_be_empty || !value.get_ref<const std::string&>().empty()) &&
              (key.choices.empty() || std::find(key.choices.begin(), key.choices.end(),
                                                value.get<std::string>()) != key.choices.end());
     case Type::kNumber:
