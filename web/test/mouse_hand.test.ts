@@ -86,6 +86,12 @@ describe("the mouse hand", () => {
     expect(lowest).toBeGreaterThan(0.085);
   });
 
+  it("goes on when nothing is heard for a moment", () => {
+    const hand = take();
+    run(hand, 0.1);
+    expect(hand.update(kPeriod, null, eye)?.buttons).toBe(1);
+  });
+
   it("lets go when the server says that the hand is empty", () => {
     const hand = take();
     run(hand, 0.1);

@@ -12,6 +12,8 @@ import { makeStore, type HeldSummary, type LogKind } from "./store";
 /** Bits of haptics::GateAction that a user has to know of: not finite, model late, client silent, device
  lost, buzz, kick. The others limit the force in the course of the work. */
 const kAlarms = 0b1_1001_1100_0001;
+/** An alarm is shown this long at least, and as long as its cause lasts. */
+const kAlarmShownMs = 5000;
 const kLogLength = 200;
 const kRunsLength = 50;
 
@@ -19,6 +21,7 @@ export class Studio {
   readonly store = makeStore();
   private connection: Connection | null = null;
   private noticeId = 0;
+  private alarmedAt = 0;
   private uploading: AbortController | null = null;
 
   /** Exchanges the token, where there is one, and connects. */
@@ -102,6 +105,10 @@ export class Studio {
 
   /** What the frames say of the hands, told to the store when it differs from what is known. */
   noteHands(live: LiveState): void {
+    const isAlarmed = live.hands.some((h) => (h.gate_actions & kAlarms) !== 0);
+    if (this.store.safety.value !== null && !isAlarmed && performance.now() - this.alarmedAt > kAlarmShownMs) {
+      this.store.safety.value = null;
+    }
     const next: HeldSummary[] = live.hands
       .filter((h) => h.occurrence !== kNone && h.state !== 0)
       .map((h) => ({
@@ -236,6 +243,7 @@ export class Studio {
     const isAlarm = (gateActions & kAlarms) !== 0;
     if (isAlarm) {
       this.store.safety.value = { reasons };
+      this.alarmedAt = performance.now();
     }
     if (reasons.length > 0) {
       this.log(isAlarm ? "safety" : "limit", { text: reasons.join(", ") });

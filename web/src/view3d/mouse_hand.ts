@@ -31,8 +31,11 @@ const kFine = 0.2;
 const kCatchPx = 34;
 const kHoldOnPx = 60;
 /** Of the hand [m/s]. */
-const kFastest = 0.6;
+const kFastest = 0.4;
 const kSlowest = 0.12;
+const kCaptured = 3;
+/** A free part may be further behind: what is known of it is some time old [m]. */
+const kFreeLeash = 0.08;
 /** From this share of the way in outwards the hand may cross over to it. */
 const kOutside = 0.96;
 
@@ -176,7 +179,7 @@ export class MouseHand {
       return null;
     }
     const isOurs = live !== null && live.state > 0 && live.occurrence === hold.part.occurrence;
-    if (hold.wasSeen && !isOurs) {
+    if (hold.wasSeen && live !== null && !isOurs) {
       this.end();
       return null;
     }
@@ -185,10 +188,11 @@ export class MouseHand {
     const wanted = this.wantedPlace(hold, live, eye);
     // Quick over the table, careful where it matters.
     const fastest = Math.min(kFastest, Math.max(kSlowest, 2.5 * distance(hold.sent.p, hold.goal.p)));
-    let p = ease(hold.sent.p, wanted, seconds, 0.035, fastest);
+    let p = ease(hold.sent.p, wanted, seconds, 0.06, fastest);
     if (isOurs) {
       const displayed = compose({ p: toVec3(live.p_WD_m), q: toQuat(live.q_WD) }, inverse(hold.X_HB)).p;
-      p = leash(displayed, p, Math.max(0.015, 0.35 * hold.part.radius));
+      const isBlocked = live.contact_count > 0 || live.state >= kCaptured;
+      p = leash(displayed, p, isBlocked ? Math.max(0.015, 0.35 * hold.part.radius) : kFreeLeash);
     }
     hold.sent = { p, q: easeTurn(hold.sent.q, hold.free.q, seconds, 0.06) };
     return {
@@ -231,7 +235,7 @@ export class MouseHand {
 
   /** The axis that a captured mate has, or else the way in. */
   private guide(hold: Hold, live: HandState | null): Line | null {
-    const isGuided = live !== null && live.state >= 3 && Math.hypot(...live.axis_W) > 0.5;
+    const isGuided = live !== null && live.state >= kCaptured && Math.hypot(...live.axis_W) > 0.5;
     if (!isGuided) {
       return hold.way;
     }
