@@ -90,7 +90,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
 
   void SendText(std::string text) override {
     if (queued_ + text.size() > kMostQueued) {
-      Close("it does not read what it is sent");
+      CutOff();
       return;
     }
     Push({std::move(text), true});
@@ -106,6 +106,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
     const websocket::close_reason why(websocket::close_code::policy_error,
                                       ToBeast(reason.substr(0, kLongestReason)));
     socket_.async_close(why, [self = shared_from_this()](error_code) {});
+    LeaveSoon();
   }
 
  private:
@@ -122,6 +123,20 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
     }
     id_ = std::move(*joined);
     Read();
+  }
+
+  /** Of a client that reads nothing, not even why it has to go. */
+  void CutOff() {
+    if (!std::exchange(is_closing_, true)) {
+      beast::get_lowest_layer(socket_).close();
+      LeaveSoon();
+    }
+  }
+
+  /** Not at once: the hub may be just telling everybody something. Whoever has to go does not keep
+   its lease until it has answered. */
+  void LeaveSoon() {
+    asio::post(socket_.get_executor(), [self = shared_from_this()] { self->Leave(); });
   }
 
   void Leave() {
@@ -343,11 +358,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     stream_.expires_after(kUploadTime);
     http::async_read(
         stream_, buffer_, *parser,
-        [self = shared_from_this(), parser, file, name](error_code read, std::size_t) {
+        [self = shared_from_this(), parser, folder, file, name](error_code read, std::size_t) {
           parser->get().body().close();
           if (read) {
             std::error_code ignored;
-            std::filesystem::remove(file, ignored);
+            std::filesystem::remove_all(folder, ignored);
             return self->RefuseBody(read);
           }
           self->SendJson(http::status::ok, {{"upload", self->shared_->hub.AddUpload(file, name)}});
