@@ -11,6 +11,14 @@
 #include "studio/json_fields.h"
 
 namespace hvas::studio {
+namespace {
+
+bool IsForcesOff(const Json& command) {
+  return TextAt(command, "command").value_or("") == "forces" &&
+         FlagAt(command, "off").value_or(false);
+}
+
+}  // namespace
 
 Hub::Hub(Workbench* workbench, std::vector<Example> examples)
     : workbench_(workbench), examples_(std::move(examples)), status_({{"event", "status"}}) {}
@@ -110,7 +118,9 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
     reply["id"] = command["id"];
   }
   Result<Json> result = Json(nullptr);
-  if (!MaySend(&found->second, now_ns)) {
+  // Forces go off at once, however much was asked before (N6).
+  const bool is_urgent = IsForcesOff(command) && !workbench_->forces_off();
+  if (!MaySend(&found->second, now_ns) && !is_urgent) {
     result = Fail(ErrorCode::kOutOfResource, "too many commands", "", "send fewer a second");
   } else {
     result = Execute(id, command);
