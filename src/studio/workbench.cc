@@ -399,7 +399,8 @@ void Workbench::SetForcesOff(bool is_off) {
 
 Result<void> Workbench::SetDemo(bool is_on) {
   if (!is_on) {
-    ends_demo_after_step_ = is_demo_.load();  // a part in the hand is not dropped
+    // A part in the hand is not dropped; a demo that is about to begin ends as well.
+    Post([this] { ends_demo_after_step_ = is_demo_.load(); });
     return {};
   }
   auto idle = CheckIdle();
