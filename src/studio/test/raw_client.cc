@@ -1,7 +1,5 @@
 #include "studio/test/raw_client.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -9,6 +7,9 @@
 #include <array>
 #include <cctype>
 #include <stdexcept>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
 
 namespace hvas::studio::testing {
 namespace {

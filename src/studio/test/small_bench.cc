@@ -18,7 +18,9 @@ class ShapesOfThisRun {
     folder_ = ::mkdtemp(pattern.data());
     cache_ = std::make_shared<contact::ShapeCache>(folder_);
   }
+
   ~ShapesOfThisRun() { std::filesystem::remove_all(folder_); }
+
   ShapesOfThisRun(const ShapesOfThisRun&) = delete;
   ShapesOfThisRun& operator=(const ShapesOfThisRun&) = delete;
 
@@ -39,8 +41,8 @@ void EventLog::Add(Json event) {
   changed_.notify_all();
 }
 
-std::optional<Json> EventLog::Await(const std::function<bool(const Json&)>& fits,
-                                    std::size_t start, double seconds) {
+std::optional<Json> EventLog::Await(const std::function<bool(const Json&)>& fits, std::size_t start,
+                                    double seconds) {
   std::unique_lock lock(mutex_);
   std::optional<Json> found;
   std::size_t next = start;

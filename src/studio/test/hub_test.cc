@@ -1,0 +1,410 @@
+#include "studio/hub.h"
+
+#include <chrono>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "studio/test/small_bench.h"
+
+namespace hvas::studio {
+namespace {
+
+/** A client that keeps all that it is sent. */
+class FakeLink final : public ClientLink {
+ public:
+  void SendText(std::string text) override { texts.push_back(Json::parse(text)); }
+
+  void SendFrames(std::string bytes) override { frames.push_back(std::move(bytes)); }
+
+  void Close(const std::string& why) override { reason = why; }
+
+  /** The newest event of a name; null when there was none. */
+  [[nodiscard]] Json Last(const std::string& event) const {
+    for (auto it = texts.rbegin(); it != texts.rend(); ++it) {
+      if (it->value("event", "") == event) {
+        return *it;
+      }
+    }
+    return nullptr;
+  }
+
+  std::vector<Json> texts;
+  std::vector<std::string> frames;
+  std::string reason;
+};
+
+/** The bench is asked by the test's thread alone, as by the server's. */
+class HubTest : public ::testing::Test {
+ protected:
+  HubTest() : bench_(testing::SmallBench()), hub_(&bench_, {{"peg", "Peg", "", "peg.step"}}) {
+    bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
+  }
+
+  ~HubTest() override { bench_.Stop(); }
+
+  std::string Join(Role role, FakeLink* link) { return hub_.Join(role, link).value_or(""); }
+
+  /** The reply to a command. */
+  Json Ask(const std::string& id, FakeLink* link, Json command) {
+    command["id"] = ++last_id_;
+    return AskText(id, link, command.dump());
+  }
+
+  Json AskText(const std::string& id, FakeLink* link, std::string_view text) {
+    link->texts.clear();
+    now_ns_ += 1'000'000'000;
+    hub_.OnText(id, text, now_ns_);
+    for (const Json& json : link->texts) {
+      if (json.contains("ok")) {
+        return json;
+      }
+    }
+    return nullptr;
+  }
+
+  void OpenPeg() {
+    bench_.Open("peg.step", "peg");
+    ASSERT_TRUE(log_.Await("scene"));
+  }
+
+  /** Publishes for as long as a client is sent something new. */
+  void Publish(double seconds) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    while (std::chrono::steady_clock::now() < end) {
+      hub_.PublishFrame();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+  static protocol::Header HeaderOf(const std::string& bytes) {
+    protocol::Header header;
+    std::memcpy(&header, bytes.data(), sizeof(header));
+    return header;
+  }
+
+  void Credit(const std::string& id, std::uint32_t seq) {
+    const protocol::Acknowledgement credit{seq};
+    std::string bytes;
+    AppendFrame<protocol::Acknowledgement>(std::span(&credit, 1), 1, 1, 0, &bytes);
+    hub_.OnBinary(id, bytes);
+  }
+
+  testing::EventLog log_;
+  Workbench bench_;
+  Hub hub_;
+  std::int64_t now_ns_{1'000'000'000};
+  int last_id_{0};
+};
+
+bool IsError(const Json& reply, const std::string& code) {
+  return reply.is_object() && reply["ok"] == false && reply["error"]["code"] == code &&
+         !reply["error"]["message"].empty();
+}
+
+TEST_F(HubTest, FirstOperatorSteers) {
+  FakeLink viewer;
+  FakeLink first;
+  FakeLink second;
+  Join(Role::kViewer, &viewer);
+  Join(Role::kOperator, &first);
+  Join(Role::kOperator, &second);
+  EXPECT_EQ(viewer.Last("hello")["has_lease"], false);
+  EXPECT_EQ(first.Last("hello")["has_lease"], true);
+  EXPECT_EQ(second.Last("hello")["has_lease"], false);
+  EXPECT_EQ(viewer.Last("roles")["clients"].size(), 3u);
+  EXPECT_EQ(viewer.Last("hello")["version"], protocol::kVersion);
+}
+
+TEST_F(HubTest, OnlyWhoeverHasTheLeaseCommands) {  // N11: one operator
+  FakeLink first;
+  FakeLink second;
+  FakeLink viewer;
+  Join(Role::kOperator, &first);
+  const std::string other = Join(Role::kOperator, &second);
+  const std::string looking = Join(Role::kViewer, &viewer);
+  for (const char* command : {"open", "cancel", "take", "release", "demo", "next", "undo", "redo",
+                              "reset", "assign_fit", "add_mate", "remove_mate"}) {
+    const Json fields{{"command", command}, {"example", "peg"}, {"on", true}, {"occurrence", 1}};
+    EXPECT_TRUE(IsError(Ask(other, &second, fields), "invalid")) << command;
+    const Json refused = Ask(looking, &viewer, fields);
+    EXPECT_TRUE(IsError(refused, "invalid")) << command;
+    EXPECT_FALSE(refused["error"]["remedy"].empty());
+  }
+  EXPECT_FALSE(log_.Await("progress", 0, 0.05));  // nothing was opened
+}
+
+TEST_F(HubTest, AnybodySwitchesTheForcesOffButOnlyWhoeverSteersSwitchesThemOn) {  // N6
+  FakeLink steering;
+  FakeLink viewer;
+  const std::string hand = Join(Role::kOperator, &steering);
+  const std::string looking = Join(Role::kViewer, &viewer);
+  EXPECT_TRUE(Ask(looking, &viewer, {{"command", "forces"}, {"off", true}})["ok"]);
+  EXPECT_TRUE(bench_.forces_off());
+  EXPECT_EQ(steering.Last("forces")["off"], true);
+  EXPECT_EQ(steering.Last("forces")["by"], looking);
+  EXPECT_TRUE(IsError(Ask(looking, &viewer, {{"command", "forces"}, {"off", false}}), "invalid"));
+  EXPECT_TRUE(bench_.forces_off());
+  EXPECT_TRUE(Ask(hand, &steering, {{"command", "forces"}, {"off", false}})["ok"]);
+  EXPECT_FALSE(bench_.forces_off());
+}
+
+TEST_F(HubTest, ForcesAreSwitchedOffHoweverManyCommandsCameBefore) {  // N6
+  FakeLink link;
+  const std::string id = Join(Role::kViewer, &link);
+  for (int i = 0; i < 500; ++i) {
+    hub_.OnText(id, R"({"id": 1, "command": "status"})", now_ns_);
+  }
+  hub_.OnText(id, R"({"id": 2, "command": "forces", "off": true})", now_ns_);
+  EXPECT_TRUE(bench_.forces_off());
+}
+
+TEST_F(HubTest, LeaseIsGivenReleasedAndAskedFor) {
+  FakeLink first;
+  FakeLink second;
+  FakeLink viewer;
+  const std::string a = Join(Role::kOperator, &first);
+  const std::string b = Join(Role::kOperator, &second);
+  const std::string v = Join(Role::kViewer, &viewer);
+  const auto lease = [this](const std::string& id, FakeLink* link, Json fields) {
+    fields["command"] = "lease";
+    return Ask(id, link, fields)["ok"] == true;
+  };
+  const auto has = [&viewer](const std::string& id) {
+    const Json roles = viewer.Last("roles");
+    for (const Json& client : roles["clients"]) {
+      if (client["id"] == id) {
+        return client["has_lease"] == true;
+      }
+    }
+    return false;
+  };
+  EXPECT_TRUE(has(a));
+  EXPECT_TRUE(lease(b, &second, {{"action", "request"}}));  // asks, and waits
+  EXPECT_EQ(first.Last("lease_asked")["by"], b);
+  EXPECT_TRUE(has(a));
+  EXPECT_FALSE(lease(b, &second, {{"action", "release"}}));  // has none
+  EXPECT_FALSE(lease(b, &second, {{"action", "give"}, {"to", b}}));
+  EXPECT_FALSE(lease(a, &first, {{"action", "give"}, {"to", v}}));  // a viewer
+  EXPECT_FALSE(lease(a, &first, {{"action", "give"}, {"to", "c99"}}));
+  EXPECT_FALSE(lease(a, &first, {{"action", "give"}}));
+  EXPECT_TRUE(lease(a, &first, {{"action", "give"}, {"to", b}}));
+  EXPECT_TRUE(has(b));
+  EXPECT_FALSE(has(a));
+  EXPECT_TRUE(lease(b, &second, {{"action", "release"}}));
+  EXPECT_FALSE(has(b));
+  EXPECT_FALSE(lease(v, &viewer, {{"action", "request"}}));
+  EXPECT_TRUE(lease(a, &first, {{"action", "request"}}));
+  EXPECT_TRUE(has(a));
+}
+
+TEST_F(HubTest, LeaseIsFreeWhenItsHolderLeaves) {
+  FakeLink first;
+  FakeLink second;
+  const std::string a = Join(Role::kOperator, &first);
+  const std::string b = Join(Role::kOperator, &second);
+  hub_.Leave(a);
+  EXPECT_EQ(second.Last("roles")["clients"].size(), 1u);
+  EXPECT_TRUE(Ask(b, &second, {{"command", "lease"}, {"action", "request"}})["ok"]);
+  EXPECT_EQ(second.Last("roles")["clients"][0]["has_lease"], true);
+}
+
+TEST_F(HubTest, NinthClientIsRefused) {
+  std::vector<FakeLink> links(9);
+  std::set<std::string> ids;
+  for (std::size_t i = 0; i < 8; ++i) {
+    ids.insert(Join(Role::kViewer, &links[i]));
+  }
+  EXPECT_EQ(ids.size(), 8u);
+  const auto ninth = hub_.Join(Role::kOperator, &links[8]);
+  ASSERT_FALSE(ninth);
+  EXPECT_EQ(ninth.error().code, ErrorCode::kOutOfResource);
+  EXPECT_TRUE(links[8].texts.empty());
+  hub_.Leave(*ids.begin());
+  EXPECT_TRUE(hub_.Join(Role::kOperator, &links[8]));
+}
+
+TEST_F(HubTest, UnknownCommandIsAnsweredWithAnError) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  EXPECT_TRUE(IsError(Ask(id, &link, {{"command", "explode"}}), "not-found"));
+  EXPECT_TRUE(IsError(Ask(id, &link, {{"command", ""}}), "not-found"));
+  EXPECT_TRUE(IsError(Ask(id, &link, Json::object()), "invalid"));
+}
+
+TEST_F(HubTest, TextsThatAreNoCommandsAreAnsweredWithAnError) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  const std::string deep(60'000, '[');
+  const std::string deep_object = [] {
+    std::string text;
+    for (int i = 0; i < 10'000; ++i) {
+      text += "{\"a\":";
+    }
+    return text + "1" + std::string(10'000, '}');
+  }();
+  for (const std::string& text :
+       {std::string(), std::string("x"), std::string("null"), std::string("[]"), std::string("5"),
+        std::string("{"), std::string("\xFF\xFE"), std::string(60'000, ' '), deep,
+        deep + std::string(60'000, ']'), deep_object, std::string("{\"id\": 1}"),
+        std::string("{\"id\": 1, \"command\": 5}"), std::string("{\"id\": 1, \"command\": null}"),
+        std::string("{\"id\": 1, \"command\": [\"open\"]}"),
+        "{\"id\": 1, \"command\": \"" + std::string(60'000, 'a') + "\"}"}) {
+    const Json reply = AskText(id, &link, text);
+    EXPECT_EQ(reply["ok"], false) << text.substr(0, 40);
+    EXPECT_FALSE(reply["error"]["message"].empty());
+  }
+}
+
+TEST_F(HubTest, FieldsOfTheWrongTypeAreNamed) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  const auto names = [&](Json command, const char* field) {
+    const Json reply = Ask(id, &link, std::move(command));
+    return IsError(reply, "invalid") &&
+           reply["error"]["message"].get<std::string>().find(field) != std::string::npos;
+  };
+  EXPECT_TRUE(names({{"command", "take"}}, "occurrence"));
+  for (const Json& bad : {Json(-1), Json(0.5), Json("1"), Json(4294967295U), Json(1e300),
+                          Json(nullptr), Json::array({1}), Json(true)}) {
+    EXPECT_TRUE(names({{"command", "take"}, {"occurrence", bad}}, "occurrence")) << bad;
+  }
+  EXPECT_TRUE(names({{"command", "forces"}, {"off", "yes"}}, "off"));
+  EXPECT_TRUE(names({{"command", "forces"}}, "off"));
+  EXPECT_TRUE(names({{"command", "demo"}, {"on", 1}}, "on"));
+  EXPECT_TRUE(names({{"command", "assign_fit"}, {"mate", 0}, {"fit", 7}}, "fit"));
+  EXPECT_TRUE(names({{"command", "open"}, {"upload", 7}}, "upload"));
+  EXPECT_TRUE(names({{"command", "lease"}, {"action", Json::object()}}, "action"));
+}
+
+TEST_F(HubTest, ReplyHasTheIdOfItsCommand) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  EXPECT_EQ(AskText(id, &link, R"({"id": 77, "command": "status"})")["id"], 77);
+  EXPECT_EQ(AskText(id, &link, R"({"id": -5, "command": "status"})")["id"], -5);
+  EXPECT_EQ(AskText(id, &link, R"({"id": {"a": 1}, "command": "status"})")["id"], nullptr);
+  EXPECT_EQ(AskText(id, &link, R"({"command": "status"})")["id"], nullptr);
+}
+
+TEST_F(HubTest, TooManyCommandsASecondAreRefusedUntilTimePasses) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  const auto count_obeyed = [&](int sent) {
+    link.texts.clear();
+    for (int i = 0; i < sent; ++i) {
+      hub_.OnText(id, R"({"id": 1, "command": "status"})", now_ns_);
+    }
+    return std::count_if(link.texts.begin(), link.texts.end(),
+                         [](const Json& json) { return json.value("ok", false); });
+  };
+  EXPECT_EQ(count_obeyed(300), static_cast<int>(Hub::kCommandBurst));
+  EXPECT_TRUE(IsError(link.texts.back(), "out-of-resource"));
+  now_ns_ += 1'000'000'000;
+  EXPECT_EQ(count_obeyed(300), static_cast<int>(Hub::kCommandsPerSecond));
+  FakeLink other;  // each has its own
+  const std::string calm = Join(Role::kViewer, &other);
+  hub_.OnText(calm, R"({"id": 1, "command": "status"})", now_ns_);
+  EXPECT_EQ(other.texts.back()["ok"], true);
+}
+
+TEST_F(HubTest, CommandsWithoutAProductSayWhatToDo) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  const Json face{{"occurrence", 0}, {"face", 0}};
+  for (Json command :
+       {Json{{"command", "take"}, {"occurrence", 0}}, Json{{"command", "release"}},
+        Json{{"command", "demo"}, {"on", true}}, Json{{"command", "next"}},
+        Json{{"command", "undo"}}, Json{{"command", "redo"}}, Json{{"command", "reset"}},
+        Json{{"command", "assign_fit"}, {"mate", 0}, {"fit", "H7/g6"}},
+        Json{{"command", "add_mate"}, {"a", face}, {"b", face}},
+        Json{{"command", "remove_mate"}, {"mate", 0}}, Json{{"command", "measure"}, {"a", face}}}) {
+    const std::string name = command["command"];
+    const Json reply = Ask(id, &link, std::move(command));
+    EXPECT_TRUE(IsError(reply, "not-found")) << name;
+    EXPECT_FALSE(reply["error"]["remedy"].empty()) << name;
+  }
+  EXPECT_TRUE(IsError(Ask(id, &link, {{"command", "open"}, {"example", "x"}}), "not-found"));
+  EXPECT_TRUE(IsError(Ask(id, &link, {{"command", "open"}, {"upload", "x"}}), "not-found"));
+  hub_.PublishFrame();
+  EXPECT_TRUE(link.frames.empty());
+}
+
+TEST_F(HubTest, CommandsOnPartsThatAreNotThereAreErrors) {
+  OpenPeg();
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  const Json face{{"occurrence", 0}, {"face", 0}};
+  const Json none{{"occurrence", 99}, {"face", 0}};
+  const Json no_face{{"occurrence", 0}, {"face", 999}};
+  for (Json command :
+       {Json{{"command", "take"}, {"occurrence", 99}},
+        Json{{"command", "assign_fit"}, {"mate", 99}, {"fit", "H7/g6"}},
+        Json{{"command", "assign_fit"}, {"mate", 0}, {"fit", "nonsense"}},
+        Json{{"command", "remove_mate"}, {"mate", 99}}, Json{{"command", "measure"}, {"a", none}},
+        Json{{"command", "measure"}, {"a", no_face}},
+        Json{{"command", "measure"}, {"a", face}, {"b", none}},
+        Json{{"command", "add_mate"}, {"a", face}, {"b", none}},
+        Json{{"command", "add_mate"}, {"a", no_face}, {"b", face}}}) {
+    EXPECT_EQ(Ask(id, &link, command)["ok"], false) << command;
+  }
+  EXPECT_TRUE(Ask(id, &link, {{"command", "measure"}, {"a", face}})["ok"]);
+}
+
+TEST_F(HubTest, AtMostTwoFrameMessagesWaitToBeSeen) {
+  OpenPeg();
+  FakeLink link;
+  const std::string id = Join(Role::kViewer, &link);
+  Publish(0.5);
+  ASSERT_EQ(link.frames.size(), 2u);
+  const protocol::Header first = HeaderOf(link.frames[0]);
+  EXPECT_EQ(first.kind, static_cast<std::uint16_t>(protocol::FrameKind::kPoses));
+  EXPECT_EQ(first.count, 2u);  // the first message has all parts
+  EXPECT_EQ(first.epoch, 1u);
+  Publish(0.2);
+  ASSERT_EQ(link.frames.size(), 2u);
+  Credit(id, HeaderOf(link.frames[1]).seq);
+  ASSERT_EQ(link.frames.size(), 3u);  // at once
+  const protocol::Header newest = HeaderOf(link.frames[2]);
+  EXPECT_GT(newest.t_ns - HeaderOf(link.frames[1]).t_ns, 100'000'000);  // not what was missed
+  EXPECT_LT(newest.count, 2u);  // the block stands in its fixture
+}
+
+TEST_F(HubTest, CreditForWhatWasNeverSentIsWorthNothing) {
+  OpenPeg();
+  FakeLink link;
+  const std::string id = Join(Role::kViewer, &link);
+  Publish(0.2);
+  ASSERT_EQ(link.frames.size(), 2u);
+  Credit(id, 4'000'000'000U);
+  Publish(0.3);
+  EXPECT_LE(link.frames.size(), 4u);
+  Credit(id, 1);  // from the past
+  Publish(0.2);
+  EXPECT_LE(link.frames.size(), 4u);
+}
+
+TEST_F(HubTest, FramesThatAreNoneEndTheClient) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  hub_.OnBinary(id, "nonsense");
+  EXPECT_FALSE(link.reason.empty());
+}
+
+TEST_F(HubTest, WhoeverHasLeftIsNotHeard) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  hub_.Leave(id);
+  link.texts.clear();
+  hub_.OnText(id, R"({"id": 1, "command": "forces", "off": true})", now_ns_);
+  hub_.OnBinary(id, "nonsense");
+  hub_.Leave(id);
+  EXPECT_TRUE(link.texts.empty());
+  EXPECT_TRUE(link.reason.empty());
+  EXPECT_FALSE(bench_.forces_off());
+}
+
+}  // namespace
+}  // namespace hvas::studio

@@ -1,0 +1,309 @@
+#include "studio/workbench.h"
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "studio/test/small_bench.h"
+
+namespace hvas::studio {
+namespace {
+
+using product::OccurrenceId;
+using simulation::Placement;
+using spatial::Pose;
+using testing::EventLog;
+
+constexpr std::size_t kPeg = 1;
+constexpr int kSeated = 5;  // docs/protocol.md
+
+/** A live assembly of a block and a peg, in real time. */
+class WorkbenchTest : public ::testing::Test {
+ protected:
+  WorkbenchTest() : bench_(testing::SmallBench()) {
+    bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
+  }
+
+  ~WorkbenchTest() override { bench_.Stop(); }
+
+  void OpenPeg() {
+    const std::size_t start = log_.size();
+    bench_.Open("peg.step", "peg");
+    ASSERT_TRUE(log_.Await("scene", start));
+    ASSERT_TRUE(AwaitPlacement(0, Placement::kPlaced));  // the base goes into its fixture
+  }
+
+  [[nodiscard]] Placement PlacementOf(std::size_t i) const {
+    const LiveState state = bench_.state();
+    return i < state.parts.size() ? state.parts[i].placement : Placement::kLoose;
+  }
+
+  bool AwaitPlacement(std::size_t i, Placement wanted) const {
+    return AwaitTrue([&] { return PlacementOf(i) == wanted; });
+  }
+
+  static bool AwaitTrue(const std::function<bool()>& holds) {
+    constexpr int kTries = 3000;
+    for (int n = 0; n < kTries; ++n) {
+      if (holds()) {
+        return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+  std::optional<Json> AwaitPlacementEvent(const std::string& placement, std::size_t start) {
+    return log_.Await(
+        [&](const Json& event) {
+          return event["event"] == "placement" && event["occurrence"] == kPeg &&
+                 event["placement"] == placement;
+        },
+        start);
+  }
+
+  /** Takes the peg and waits until it is in the hand. */
+  void TakePeg() {
+    const std::size_t start = log_.size();
+    X_WB_start_ = bench_.state().parts[kPeg].X_WB;
+    const auto X_WH = bench_.Take(OccurrenceId(kPeg));
+    ASSERT_TRUE(X_WH) << X_WH.error().ToString();
+    X_WH_ = *X_WH;
+    X_HB_ = X_WH_.Inverse() * X_WB_start_;
+    ASSERT_TRUE(log_.Await(
+        [&](const Json& event) {
+          bench_.Move(X_WH_, true);
+          return event["event"] == "taken" && event["occurrence"] == kPeg;
+        },
+        start));
+  }
+
+  /** Moves the peg straight to a pose, with 100 inputs a second. Ends early when the state is
+   reached. */
+  void MovePeg(const Pose& X_WB, double seconds, int state = -1) {
+    const Pose from = X_WH_;
+    const Pose to = X_WB * X_HB_.Inverse();
+    const Vec3 turn = spatial::RotationBetween(from.q(), to.q());
+    const int inputs = static_cast<int>(100 * seconds);
+    const std::size_t start = log_.size();
+    for (int i = 1; i <= inputs; ++i) {
+      const double part = static_cast<double>(i) / inputs;
+      X_WH_ = {spatial::RotationFromVector(Vec3(part * turn)) * from.q(),
+               Vec3(from.p() + part * (to.p() - from.p()))};
+      bench_.Move(X_WH_, true);
+      if (state >= 0 && AwaitState(state, start, 0.01)) {
+        return;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+
+  bool AwaitState(int state, std::size_t start, double seconds) {
+    return log_
+        .Await(
+            [&](const Json& event) { return event["event"] == "state" && event["state"] == state; },
+            start, seconds)
+        .has_value();
+  }
+
+  /** Over the bore, then along its axis to the goal and a little on. */
+  void InsertPeg() {
+    const std::size_t start = log_.size();
+    const Pose X_goal = bench_.scene()->model->bodies[kPeg].X_WB_goal;
+    const Vec3 up = X_goal.q() * Vec3::UnitZ();
+    const auto above = [&](double height) {
+      return Pose(X_goal.q(), Vec3(X_goal.p() + height * up));
+    };
+    MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, 0.08))), 0.8);
+    MovePeg(above(0.08), 1.2);
+    MovePeg(above(0.03), 0.6);
+    MovePeg(above(-0.001), 2.0, kSeated);
+    for (int i = 0; i < 300 && !AwaitState(kSeated, start, 0.01); ++i) {
+      bench_.Move(X_WH_, true);
+    }
+    ASSERT_TRUE(AwaitState(kSeated, start, 0));
+  }
+
+  void ReleasePeg() {
+    const std::size_t start = log_.size();
+    ASSERT_TRUE(bench_.Release());
+    ASSERT_TRUE(log_.Await("dropped", start));
+  }
+
+  EventLog log_;
+  Workbench bench_;
+  Pose X_WB_start_;
+  Pose X_WH_;
+  Pose X_HB_;
+};
+
+TEST_F(WorkbenchTest, OpeningTellsOfItsProgressThenOfTheScene) {
+  OpenPeg();
+  EXPECT_TRUE(log_.Await("progress"));
+  EXPECT_EQ((*log_.Await("scene"))["epoch"], 1);
+  const auto scene = bench_.scene();
+  EXPECT_EQ(scene->model->bodies.size(), 2u);
+  EXPECT_EQ(scene->glb->substr(0, 4), "glTF");
+  EXPECT_EQ(bench_.state().parts.size(), 2u);
+  EXPECT_TRUE(AwaitTrue([this] { return bench_.frame().epoch == 1; }));
+}
+
+TEST_F(WorkbenchTest, WhatCannotBeOpenedLeavesWhatIsOpen) {
+  OpenPeg();
+  const auto before = bench_.scene();
+  bench_.Open("missing", "missing");
+  const auto failed = log_.Await("failed");
+  ASSERT_TRUE(failed);
+  EXPECT_EQ((*failed)["error"]["code"], "not-found");
+  EXPECT_EQ((*failed)["error"]["remedy"], "name another");
+  EXPECT_EQ(bench_.scene(), before);
+}
+
+TEST_F(WorkbenchTest, PartIsTakenMovedAlongItsAxisAndSeated) {
+  OpenPeg();
+  TakePeg();
+  EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kHeld));
+  EXPECT_FALSE(bench_.Take(OccurrenceId(kPeg)));  // one part in a hand
+  EXPECT_FALSE(bench_.Undo());
+  InsertPeg();
+  ASSERT_FALSE(HasFatalFailure());
+  const std::size_t start = log_.size();
+  ReleasePeg();
+  const auto dropped = log_.Await("dropped", start);
+  ASSERT_TRUE(dropped);
+  EXPECT_EQ((*dropped)["was_seated"], true);
+  EXPECT_EQ((*dropped)["occurrence"], kPeg);
+  EXPECT_GT((*dropped)["metrics"]["time_s"], 1);
+  EXPECT_GT((*dropped)["metrics"]["path_mm"], 50);
+  EXPECT_TRUE(AwaitPlacementEvent("placed", start));
+  const Pose X_WB = bench_.state().parts[kPeg].X_WB;
+  EXPECT_LT((X_WB.p() - bench_.scene()->model->bodies[kPeg].X_WB_goal.p()).norm(), 1e-6);
+  EXPECT_FALSE(bench_.Take(OccurrenceId(kPeg)));  // in its place already
+}
+
+TEST_F(WorkbenchTest, WhatWasDoneIsUndoneAndDoneAgain) {
+  OpenPeg();
+  const Vec3 p_before = bench_.state().parts[kPeg].X_WB.p();
+  TakePeg();
+  InsertPeg();
+  ASSERT_FALSE(HasFatalFailure());
+  ReleasePeg();
+  ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
+  const auto history = log_.Await(
+      [](const Json& event) { return event["event"] == "history" && event["undo"].is_string(); });
+  ASSERT_TRUE(history);
+  EXPECT_EQ((*history)["undo"], "insert peg");
+  std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.Undo());
+  EXPECT_TRUE(AwaitPlacementEvent("loose", start));
+  EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kLoose));
+  EXPECT_LT((bench_.state().parts[kPeg].X_WB.p() - p_before).norm(), 1e-3);
+  start = log_.size();
+  ASSERT_TRUE(bench_.Redo());
+  EXPECT_TRUE(AwaitPlacementEvent("placed", start));
+  EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
+}
+
+TEST_F(WorkbenchTest, HeldPartStaysAndTheForceGoesWhenNothingIsHeard) {  // N11: 250 ms
+  OpenPeg();
+  TakePeg();
+  MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, 0.05))), 0.6);
+  // Nobody sends anything any more: the operator is gone.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  const auto before = bench_.frame().frame;
+  ASSERT_EQ(before.ticks.size(), 1u);
+  EXPECT_EQ(before.ticks[0].F_H_W.f.norm(), 0);
+  EXPECT_EQ(before.ticks[0].F_H_W.t.norm(), 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto after = bench_.frame().frame;
+  EXPECT_GT(after.t_ns, before.t_ns);
+  EXPECT_LT((after.X_WB[kPeg].p() - before.X_WB[kPeg].p()).norm(), 1e-4);
+  EXPECT_EQ(PlacementOf(kPeg), Placement::kHeld);  // neither dropped nor moved on
+}
+
+TEST_F(WorkbenchTest, ForcesAreOffUntilTheyAreSwitchedOn) {  // N6
+  OpenPeg();
+  TakePeg();
+  // Down into the table: a force, if there may be one.
+  MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, -0.01))), 0.3);
+  const auto force = [this] {
+    bench_.Move(X_WH_, true);
+    const auto frame = bench_.frame().frame;
+    return frame.ticks.empty() ? 0.0 : frame.ticks[0].F_H_W.f.norm();
+  };
+  EXPECT_TRUE(AwaitTrue([&] { return force() > 0.1; }));
+  bench_.SetForcesOff(true);
+  EXPECT_TRUE(bench_.forces_off());
+  EXPECT_TRUE(AwaitTrue([&] { return force() == 0; }));
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(force(), 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  bench_.SetForcesOff(false);
+  EXPECT_TRUE(AwaitTrue([&] { return force() > 0.1; }));
+}
+
+TEST_F(WorkbenchTest, ForcesStayOffInTheNextRun) {  // N6
+  bench_.SetForcesOff(true);
+  OpenPeg();
+  EXPECT_TRUE(bench_.forces_off());
+  TakePeg();
+  MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, -0.01))), 0.3);
+  for (int i = 0; i < 30; ++i) {
+    bench_.Move(X_WH_, true);
+    const auto frame = bench_.frame().frame;
+    ASSERT_EQ(frame.ticks.size(), 1u);
+    EXPECT_EQ(frame.ticks[0].F_H_W.f.norm(), 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+TEST_F(WorkbenchTest, ChangeOfTheProductIsCompiledAndUndone) {
+  OpenPeg();
+  const auto before = bench_.scene();
+  ASSERT_FALSE(before->model->product->mates.empty());
+  EXPECT_FALSE(bench_.Change("nothing", [](product::Product*) -> Result<void> {
+    return Fail(ErrorCode::kInvalid, "no", "", "");
+  }));
+  std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.Change("change", [](product::Product* product) -> Result<void> {
+    product->name = "changed";
+    return {};
+  }));
+  ASSERT_TRUE(log_.Await("scene", start));
+  EXPECT_EQ(bench_.scene()->model->product->name, "changed");
+  EXPECT_EQ(before->model->product->name, "rig");  // a model is compiled, never edited
+  ASSERT_TRUE(AwaitTrue([&] { return bench_.state().parts.size() == 2; }));
+  start = log_.size();
+  ASSERT_TRUE(bench_.Undo());
+  ASSERT_TRUE(log_.Await("scene", start));
+  EXPECT_EQ(bench_.scene(), before);
+}
+
+TEST_F(WorkbenchTest, SimulatedPersonDoesTheNextStep) {
+  OpenPeg();
+  ASSERT_TRUE(AwaitTrue([this] { return bench_.state().next_step == 1; }));
+  const std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.DoNext());
+  ASSERT_TRUE(AwaitPlacementEvent("placed", start));
+  const auto ended = log_.Await(
+      [](const Json& event) { return event["event"] == "demo" && event["on"] == false; }, start);
+  EXPECT_TRUE(ended);
+  EXPECT_FALSE(bench_.is_demo());
+  EXPECT_EQ(PlacementOf(kPeg), Placement::kPlaced);
+}
+
+TEST_F(WorkbenchTest, StopsWhileAFileIsBeingOpened) {
+  bench_.Open("peg.step", "peg");
+  bench_.Open("peg.step", "peg");
+  bench_.Stop();
+  const std::size_t told = log_.size();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(log_.size(), told);
+}
+
+}  // namespace
+}  // namespace hvas::studio
