@@ -274,10 +274,13 @@ ExecutionReport RunRealtime(const Execution& given) {
       }
     }
   });
-  Pacer pacer(Simulation::kPhysicsStepNs);
-  while (!execution.is_done() && t_ns.load(std::memory_order_relaxed) < execution.limit_ns) {
-    (void)pacer.Wait();
-    StepPhysics(execution);
+  {
+    const PhysicsPriority priority;  // after the threads began, which would inherit it
+    Pacer pacer(Simulation::kPhysicsStepNs);
+    while (!execution.is_done() && t_ns.load(std::memory_order_relaxed) < execution.limit_ns) {
+      (void)pacer.Wait();
+      StepPhysics(execution);
+    }
   }
   is_stopping = true;
   haptic.join();

@@ -18,6 +18,7 @@ namespace hvas::simulation {
 namespace {
 
 constexpr int kPriority = 80;  // above ordinary threads, below the kernel's own
+constexpr int kPhysicsPriority = 70;
 constexpr const char* kIsolatedCores = "/sys/devices/system/cpu/isolated";
 
 int PinToIsolatedCore() {
@@ -62,6 +63,20 @@ RealtimeGrant RequestRealtime() {
   grant.memory_refusal = grant.is_memory_locked ? "" : std::strerror(errno);
   grant.core = PinToIsolatedCore();
   return grant;
+}
+
+PhysicsPriority::PhysicsPriority() noexcept {
+  sched_param parameters{};
+  ::pthread_getschedparam(::pthread_self(), &policy_before_, &parameters);
+  priority_before_ = parameters.sched_priority;
+  parameters.sched_priority = kPhysicsPriority;
+  (void)::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
+}
+
+PhysicsPriority::~PhysicsPriority() {
+  sched_param parameters{};
+  parameters.sched_priority = priority_before_;
+  (void)::pthread_setschedparam(::pthread_self(), policy_before_, &parameters);
 }
 
 void ReleaseRealtime() {

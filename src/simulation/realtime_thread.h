@@ -21,6 +21,21 @@ struct RealtimeGrant {
  of other work (isolcpus), for the calling thread. What is refused is left as it was. */
 [[nodiscard]] RealtimeGrant RequestRealtime();
 
+/** While it lives, the calling thread goes before all ordinary ones and after the haptic thread,
+ where the system grants that: for the physics loop, which the hand waits for when it takes a part.
+ */
+class PhysicsPriority {
+ public:
+  PhysicsPriority() noexcept;
+  ~PhysicsPriority();
+  PhysicsPriority(const PhysicsPriority&) = delete;
+  PhysicsPriority& operator=(const PhysicsPriority&) = delete;
+
+ private:
+  int policy_before_{0};
+  int priority_before_{0};
+};
+
 /** Gives locked memory back. */
 void ReleaseRealtime();
 

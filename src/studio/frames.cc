@@ -100,7 +100,7 @@ spatial::Pose PoseOf(const protocol::HandInput& input) {
 Json MakeStatus(const simulation::LoopStatus& status) {
   const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
   constexpr double kP99 = 0.99;
-  std::string scheduling = status.is_fifo ? "real-time" : "not real-time";
+  const std::string scheduling = status.is_fifo ? "SCHED_FIFO" : "normal priority";
   return {{"event", "status"},
           {"tick_hz", static_cast<double>(status.compute.count())},
           {"compute_p99_us", us(status.compute.Quantile(kP99))},

@@ -15,7 +15,7 @@ namespace {
 using spatial::Surface;
 using spatial::SurfaceKind;
 
-constexpr double kParallel = 1e-6;  // sine of the angle, below which axes count as parallel
+constexpr double kParallel = 1e-4;  // sine of the angle, below which axes count as parallel
 
 struct Measured {
   const product::Face* face{nullptr};
