@@ -205,7 +205,9 @@ void Hub::PublishStatus() {
     status_ = MakeStatus(*status);
   }
   status_["clients"] = clients_.size();
-  Broadcast(status_);
+  if (status_.contains("tick_hz")) {  // nothing runs before something is open
+    Broadcast(status_);
+  }
 }
 
 std::string Hub::AddUpload(const std::filesystem::path& file, const std::string& name) {
