@@ -121,7 +121,7 @@ class WorkbenchTest : public ::testing::Test {
     MovePeg(above(0.08), 1.2);
     MovePeg(above(0.03), 0.6);
     MovePeg(above(-0.001), 2.0, kSeated);
-    for (int i = 0; i < 300 && !AwaitState(kSeated, start, 0.01); ++i) {
+    for (int i = 0; i < 2000 && !AwaitState(kSeated, start, 0.01); ++i) {
       bench_.Move(X_WH_, true);
     }
     ASSERT_TRUE(AwaitState(kSeated, start, 0));
