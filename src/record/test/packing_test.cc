@@ -61,6 +61,7 @@ TEST(Packing, BringsEveryFieldBackBitForBit) {
     EXPECT_EQ(back.vendor_code, tick.vendor_code);
     EXPECT_EQ(back.device_grip, tick.device_grip);
     EXPECT_EQ(back.model_age_ns, tick.model_age_ns);
+    EXPECT_EQ(back.client_age_ns, tick.client_age_ns);
     EXPECT_EQ(back.effort_level, tick.effort_level);
   }
 }
@@ -91,7 +92,7 @@ TEST(Packing, PutsFieldsAtTheirPlacesLittleEndian) {
   EXPECT_EQ(bytes[328], std::byte{0x07});  // after two poses and two wrenches
   EXPECT_EQ(bytes[407], std::byte{0x09});  // after the contacts: where schema 1 ended
   EXPECT_EQ(bytes[408], std::byte{0x11});
-  EXPECT_EQ(bytes[441], std::byte{0x03});
+  EXPECT_EQ(bytes[449], std::byte{0x03});
 }
 
 TEST(Packing, TickOfSchemaOneIsTheBeginningOfThisOne) {

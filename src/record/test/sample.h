@@ -51,6 +51,7 @@ inline TickRecord MakeTick(std::int64_t number) {
   tick.vendor_code = static_cast<std::int32_t>(random.NextBits());
   tick.device_grip = random.Uniform(-1, 1);
   tick.model_age_ns = static_cast<std::int64_t>(random.NextBits());
+  tick.client_age_ns = static_cast<std::int64_t>(random.NextBits());
   tick.effort_level = static_cast<std::uint8_t>(random.NextBits());
   return tick;
 }
