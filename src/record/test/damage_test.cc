@@ -143,7 +143,7 @@ TEST_F(DamagedRecord, FlippedByteInTheFileIsFound) {
   for (int i = 0; i < kPlaces; ++i) {
     const std::streamoff at = size / 4 + i * (size / 2) / kPlaces;
     FlipBit(file.path(), at);
-    const auto reader = Reader::Open(file.path());
+    auto reader = Reader::Open(file.path());
     found += !reader || !reader->Verify() ? 1 : 0;
     FlipBit(file.path(), at);
   }
