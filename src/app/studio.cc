@@ -17,6 +17,7 @@
 
 #include "app/load_product.h"
 #include "app/report_failure.h"
+#include "base/scratch_folder.h"
 #include "contact/shape_cache.h"
 #include "studio/server.h"
 #include "studio/workbench.h"
@@ -30,32 +31,6 @@ struct StudioOptions {
   std::uint64_t seed{1};
   double rate_hz{1000};
   bool opens_browser{true};
-};
-
-/** A folder of this run's own, for what is sent to it; gone with it. */
-class UploadFolder {
- public:
-  UploadFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "hvas-studio-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) != nullptr) {
-      path_ = pattern;
-    }
-  }
-
-  ~UploadFolder() {
-    if (!path_.empty()) {
-      std::error_code ignored;
-      std::filesystem::remove_all(path_, ignored);
-    }
-  }
-
-  UploadFolder(const UploadFolder&) = delete;
-  UploadFolder& operator=(const UploadFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 /** The products that come with the program: beside it when it is installed, or with its sources. */
@@ -135,16 +110,14 @@ void BlockSignals() {
 
 int RunStudio(const StudioOptions& options) {
   BlockSignals();
-  const UploadFolder uploads;
-  if (uploads.path().empty()) {
-    return ReportFailure({ErrorCode::kOutOfResource, "no folder for uploads can be made",
-                          std::filesystem::temp_directory_path().string(),
-                          "make room on the disk, or set TMPDIR"});
+  const auto uploads = ScratchFolder::Make();  // for what is sent to it; gone with this run
+  if (!uploads) {
+    return ReportFailure(uploads.error());
   }
   studio::Workbench workbench(MakeWorkbench(options));
   studio::ServerOptions served;
   served.port = options.port;
-  served.upload_folder = uploads.path();
+  served.upload_folder = uploads->path();
   studio::Server server(&workbench, FindExamples(), served);
   if (const auto started = server.Start(); !started) {
     return ReportFailure(started.error());

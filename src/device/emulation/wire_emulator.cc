@@ -4,14 +4,13 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/scratch_folder.h"
 #include "device/emulation/gamepad_emulator.h"
 #include "device/emulation/haply_server.h"
 #include "device/emulation/network_client.h"
@@ -25,29 +24,10 @@ constexpr std::int64_t kStepNs = 1'000'000;
 constexpr std::int64_t kMaxLagNs = 20'000'000;  // beyond it a live emulator has been asleep
 constexpr auto kNap = std::chrono::microseconds(200);
 
-/** A folder under the system's temporary one that goes with its owner. */
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
-
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 class WireEmulator final : public Emulator {
  public:
-  WireEmulator(const EmulatorOptions& options, std::filesystem::path root)
-      : folder_(std::move(root)),
+  WireEmulator(const EmulatorOptions& options, ScratchFolder folder)
+      : folder_(std::move(folder)),
         device_(options.profile, options.X_DH),
         is_live_(options.is_live) {
     surroundings_.root = folder_.path();
@@ -113,7 +93,7 @@ class WireEmulator final : public Emulator {
     }
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   EmulatedDevice device_;
   VirtualClock clock_;
   Surroundings surroundings_;
@@ -138,14 +118,11 @@ constexpr std::array kServers{
 
 Result<std::unique_ptr<Emulator>> StartWireEmulator(MakeWireServer make,
                                                     const EmulatorOptions& options) {
-  std::error_code failure;
-  std::string folder =
-      (std::filesystem::temp_directory_path(failure) / "hvas-emulator-XXXXXX").string();
-  if (failure || ::mkdtemp(folder.data()) == nullptr) {
-    return Fail(ErrorCode::kOutOfResource, "no folder for an emulator can be made", folder,
-                "make room in the temporary folder, or set TMPDIR to another one");
+  auto folder = ScratchFolder::Make();
+  if (!folder) {
+    return Unexpected(folder.error());
   }
-  auto emulator = std::make_unique<WireEmulator>(options, folder);
+  auto emulator = std::make_unique<WireEmulator>(options, std::move(*folder));
   if (const auto started = emulator->Start(make, options.X_DH); !started) {
     return Unexpected(started.error());
   }

@@ -1,7 +1,6 @@
 #include "studio/server.h"
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/test/temporary_folder.h"
 #include "studio/test/raw_client.h"
 #include "studio/test/small_bench.h"
 
@@ -29,8 +29,6 @@ constexpr std::uint64_t kMostUpload = 10'000;  // [bytes]
 class ServerTest : public ::testing::Test {
  protected:
   ServerTest() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "hvas-upload-XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
     ServerOptions options;
     options.upload_folder = folder_;
     options.most_upload = kMostUpload;
@@ -40,10 +38,7 @@ class ServerTest : public ::testing::Test {
     started_ = server_->Start().has_value();
   }
 
-  ~ServerTest() override {
-    End();
-    std::filesystem::remove_all(folder_);
-  }
+  ~ServerTest() override { End(); }
 
   void SetUp() override { ASSERT_TRUE(started_); }
 
@@ -143,7 +138,8 @@ class ServerTest : public ::testing::Test {
     return CountFiles() == 0;
   }
 
-  std::filesystem::path folder_;
+  hvas::testing::TemporaryFolder temporary_;
+  const std::filesystem::path folder_{temporary_.path()};
   std::unique_ptr<Workbench> bench_;
   std::unique_ptr<Server> server_;
   bool started_{false};

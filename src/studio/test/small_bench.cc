@@ -1,34 +1,18 @@
 #include "studio/test/small_bench.h"
 
 #include <chrono>
-#include <cstdlib>
-#include <filesystem>
 #include <utility>
 
+#include "base/test/temporary_folder.h"
 #include "simulation/test/small_products.h"
 
 namespace hvas::studio::testing {
 namespace {
 
 /** Shapes of this program's run, gone with it. */
-class ShapesOfThisRun {
- public:
-  ShapesOfThisRun() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "hvas-shapes-XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-    cache_ = std::make_shared<contact::ShapeCache>(folder_);
-  }
-
-  ~ShapesOfThisRun() { std::filesystem::remove_all(folder_); }
-
-  ShapesOfThisRun(const ShapesOfThisRun&) = delete;
-  ShapesOfThisRun& operator=(const ShapesOfThisRun&) = delete;
-
-  [[nodiscard]] const std::shared_ptr<contact::ShapeCache>& cache() const { return cache_; }
-
- private:
-  std::filesystem::path folder_;
-  std::shared_ptr<contact::ShapeCache> cache_;
+struct ShapesOfThisRun {
+  hvas::testing::TemporaryFolder folder;
+  std::shared_ptr<contact::ShapeCache> cache{std::make_shared<contact::ShapeCache>(folder.path())};
 };
 
 }  // namespace
@@ -69,7 +53,7 @@ std::size_t EventLog::size() const {
 WorkbenchOptions SmallBench() {
   static const ShapesOfThisRun shapes;
   WorkbenchOptions options;
-  options.shape_cache = shapes.cache();
+  options.shape_cache = shapes.cache;
   options.load = [](const std::filesystem::path& file, const cad::ProgressFn& progress,
                     std::stop_token stop, Diagnostics*) -> Result<product::Product> {
     progress("read", 0.5);

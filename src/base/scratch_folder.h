@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <utility>
+
+#include "base/result.h"
+
+namespace hvas {
+
+/** A folder of one's own under the system's temporary one, which nobody else may enter; it goes,
+ with all that is in it, with its owner. */
+class ScratchFolder {
+ public:
+  /** Errors (kOutOfResource): no such folder can be made. */
+  [[nodiscard]] static Result<ScratchFolder> Make();
+
+  ScratchFolder(ScratchFolder&& other) noexcept;
+  ScratchFolder& operator=(ScratchFolder&& other) noexcept;
+  ~ScratchFolder();
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {}
+
+  std::filesystem::path path_;  ///< Empty: there is none any more.
+};
+
+}  // namespace hvas
