@@ -163,7 +163,12 @@ void Workbench::DoOpen(const std::filesystem::path& file, const std::string& nam
   auto glb = model ? cad::MakeGlb(*(*model)->product, false)
                    : Result<std::string>(Unexpected(model.error()));
   if (!glb) {
-    Tell({{"event", "failed"}, {"file", name}, {"error", ToJson(glb.error())}});
+    Json failed{{"event", "failed"}, {"file", name}, {"error", ToJson(glb.error())}};
+    {
+      const std::lock_guard lock(mutex_);
+      failure_ = failed;
+    }
+    Tell(std::move(failed));
     return;
   }
   scene->model = *model;
@@ -542,6 +547,10 @@ std::vector<Json> Workbench::NewsForLatecomer() const {
   std::vector<Json> news{history()};
   if (const auto open = scene()) {
     news.push_back(MakeStepEvent(*open, state().next_step));
+  }
+  const std::lock_guard lock(mutex_);
+  if (scene_ == nullptr && !failure_.is_null()) {
+    news.push_back(failure_);
   }
   return news;
 }

@@ -162,6 +162,7 @@ class Workbench {
   mutable std::mutex mutex_;  ///< Of what follows.
   std::shared_ptr<const OpenScene> scene_;
   std::shared_ptr<LiveRun> run_;
+  Json failure_;       ///< Of the last file that could not be opened; null: none.
   LiveState resting_;  ///< While one run has ended and the next has not begun.
   std::optional<Moment> before_take_;
   std::vector<Moment> undo_;

@@ -119,6 +119,19 @@ TEST_F(HubTest, FirstOperatorSteers) {
   EXPECT_EQ(viewer.Last("hello")["version"], protocol::kVersion);
 }
 
+TEST_F(HubTest, WhoeverComesAfterItLearnsThatTheFileCouldNotBeOpened) {
+  bench_.Open("missing", "missing.step");
+  ASSERT_TRUE(log_.Await("failed"));
+  FakeLink late;
+  Join(Role::kOperator, &late);
+  EXPECT_EQ(late.Last("failed")["file"], "missing.step");
+  EXPECT_EQ(late.Last("failed")["error"]["remedy"], "name another");
+  OpenPeg();
+  FakeLink later;
+  Join(Role::kOperator, &later);
+  EXPECT_TRUE(later.Last("failed").is_null()) << "something else is open now";
+}
+
 TEST_F(HubTest, OnlyWhoeverHasTheLeaseCommands) {  // N11: one operator
   FakeLink first;
   FakeLink second;
