@@ -88,7 +88,7 @@ function sendFile(response, pathname) {
   }
 }
 
-const lease = () => Math.min(...clients.keys());
+const lease = () => clients.keys().next().value;
 const roles = () => [...clients.keys()].map((id) => ({ id, role: "operator", has_lease: id === lease() }));
 
 const commands = {
@@ -105,7 +105,7 @@ const commands = {
   forces({ off }) {
     forcesOff = off;
     simulation?.stopDemo();
-    broadcast({ event: "forces", off, by: 1 });
+    broadcast({ event: "forces", off, by: lease() });
   },
   demo: ({ on }) => (on ? simulation.startDemo(true) : simulation.stopDemo()),
   next: () => simulation.startDemo(false),
@@ -121,7 +121,7 @@ const commands = {
 };
 
 new WebSocketServer({ server, path: "/ws" }).on("connection", (socket) => {
-  const id = nextClient++;
+  const id = `c${nextClient++}`;
   const client = { socket, pending: 0, knows: 0 };
   clients.set(id, client);
   const hello = { event: "hello", version: 1, role: "operator", client: id, has_lease: id === lease() };

@@ -164,7 +164,7 @@ describe("the session", () => {
       event: "hello",
       version: 1,
       role: "operator",
-      client: 5,
+      client: "c5",
       has_lease: true,
       examples: [],
       forces_off: false,
@@ -179,9 +179,9 @@ describe("the session", () => {
     expect(store.expected.value?.occurrence).toBe(1);
     FakeWorker.last.say({ event: "placement", occurrence: 1, placement: "placed" });
     expect(store.placements.value.get(1)).toBe("placed");
-    FakeWorker.last.say({ event: "roles", clients: [{ id: 5, role: "operator", has_lease: false }] });
+    FakeWorker.last.say({ event: "roles", clients: [{ id: "c5", role: "operator", has_lease: false }] });
     expect(store.hasLease.value).toBe(false);
-    FakeWorker.last.say({ event: "forces", off: true, by: 2 });
+    FakeWorker.last.say({ event: "forces", off: true, by: "c2" });
     expect(store.forcesOff.value).toBe(true);
   });
 

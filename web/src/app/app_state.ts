@@ -78,4 +78,4 @@ export function keepPreferences(): void {
   });
 }
 
-export const canSteer = () => store.hasLease.value && store.link.value === "open";
+export const canSteer = () => store.canSteer.value;

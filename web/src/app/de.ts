@@ -1,6 +1,8 @@
+import { deTime } from "./de_time";
 import type { MessageKey } from "./en";
 
 export const de: Record<MessageKey, string> = {
+  ...deTime,
   "app.title": "HVAS Studio",
   "app.untitled": "Kein Produkt",
   "menu.file": "Datei",

@@ -1,5 +1,8 @@
+import { enTime } from "./en_time";
+
 /** English, and with it the keys that every language has. */
 export const en = {
+  ...enTime,
   "app.title": "HVAS Studio",
   "app.untitled": "No product",
   "menu.file": "File",

@@ -12,6 +12,8 @@ export function logText(entry: LogEntry): string {
       return t(p["off"] ? "log.forcesOff" : "log.forcesOn");
     case "demo":
       return t(p["on"] ? "log.demoOn" : "log.demoOff");
+    case "recording":
+      return t(p["on"] ? "log.recordingOn" : "log.recordingOff", p);
     case "state":
       return t("log.state", { part: p["part"] ?? "", state: t(`state.${p["state"] as HoldState}`) });
     default:

@@ -69,7 +69,7 @@ function moveHeld(event: KeyboardEvent): boolean {
 function escape(): void {
   const isOpen = ui.overlay.value !== null;
   ui.overlay.value = null;
-  if (store.held.value.length > 0 || store.demo.value) {
+  if (store.live.held.value.length > 0 || store.demo.value) {
     forcesOff();
   } else if (!isOpen) {
     if (view.picked.value.length > 0 || view.tool.value !== "hand") {

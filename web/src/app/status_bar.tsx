@@ -23,11 +23,11 @@ export function StatusBar() {
   const age = useRef<HTMLSpanElement>(null);
   const meter = useRef(makeMeter());
   useLive((live) => {
-    const rate = meter.current(studio.frames?.bytesReceived ?? 0, performance.now());
+    const rate = meter.current(studio.liveFrames?.bytesReceived ?? 0, performance.now());
     setText(fps.current, t("status.fps", { n: viewport.value?.meter.framesPerSecond || "–" }));
     setText(stream.current, t("status.stream", { n: number(rate, 0) }));
-    // While nothing moves nothing is sent: then there is no age to speak of.
-    const isOld = live === null || live.ageMs > 2000;
+    // While nothing moves nothing is sent, and a recording is as old as it is: then there is no age to speak of.
+    const isOld = live === null || live.ageMs > 2000 || store.replay.value !== null;
     setText(age.current, t("status.age", { n: isOld ? "–" : number(live.ageMs, 1) }));
   }, 400);
   const link = store.link.value;

@@ -1,6 +1,6 @@
 /** What the server has said: a mirror in signals. Only `Studio` writes to it. */
 
-import { computed, signal } from "@preact/signals";
+import { computed, signal, type ReadonlySignal } from "@preact/signals";
 import type {
   Client,
   Example,
@@ -14,6 +14,7 @@ import type {
   ServerStatus,
   Step,
 } from "../protocol/messages";
+import type { DeviceList, HandSetup, RecordingEntry } from "../protocol/recording_messages";
 
 export type LinkState = "starting" | "open" | "lost" | "denied";
 
@@ -31,10 +32,23 @@ export interface Run {
   metrics: RunMetrics;
 }
 
-export type LogKind = "taken" | "dropped" | "state" | "safety" | "limit" | "forces" | "step" | "failed" | "opened" | "demo";
+export type LogKind =
+  | "taken"
+  | "dropped"
+  | "state"
+  | "safety"
+  | "limit"
+  | "forces"
+  | "step"
+  | "failed"
+  | "opened"
+  | "demo"
+  | "recording";
 
 export interface LogEntry {
   at: Date;
+  /** Of a recording: from its beginning. */
+  timeS?: number;
   kind: LogKind;
   params: Record<string, string | number>;
 }
@@ -45,28 +59,79 @@ export interface Loading {
   file: string;
 }
 
+export interface StepCount {
+  index: number;
+  total: number;
+}
+
 export interface History {
   undo: string | null;
   redo: string | null;
 }
 
-export function makeStore() {
-  const scene = signal<Scene | null>(null);
-  const placements = signal<ReadonlyMap<number, Placement>>(new Map());
-  const held = signal<readonly HeldSummary[]>([]);
-  const step = signal<{ index: number; total: number } | null>(null);
+/** What is shown of the work: that of now, or of a recording. */
+export interface Work {
+  readonly scene: ReadonlySignal<Scene | null>;
+  readonly placements: ReadonlySignal<ReadonlyMap<number, Placement>>;
+  /** What each hand holds; changes with its state, not with its pose. */
+  readonly held: ReadonlySignal<readonly HeldSummary[]>;
+  readonly step: ReadonlySignal<StepCount | null>;
+  readonly runs: ReadonlySignal<readonly Run[]>;
+  readonly log: ReadonlySignal<readonly LogEntry[]>;
+}
+
+/** What the server records now. */
+export interface Recording {
+  id: string;
+  name: string;
+  /** On the clock of performance.now(). */
+  sinceMs: number;
+}
+
+function makeLiveWork() {
   return {
-    link: signal<LinkState>("starting"),
+    scene: signal<Scene | null>(null),
+    placements: signal<ReadonlyMap<number, Placement>>(new Map()),
+    held: signal<readonly HeldSummary[]>([]),
+    step: signal<StepCount | null>(null),
+    runs: signal<readonly Run[]>([]),
+    log: signal<readonly LogEntry[]>([]),
+  } satisfies Work;
+}
+
+export function makeStore() {
+  const live = makeLiveWork();
+  const replay = signal<Work | null>(null);
+  const shown = <K extends keyof Work>(name: K) =>
+    computed(() => (replay.value ?? live)[name].value as Work[K]["value"]);
+  const scene = shown("scene");
+  const held = shown("held");
+  const step = shown("step");
+  const link = signal<LinkState>("starting");
+  const hasLease = signal(false);
+  const client = signal("");
+  const clients = signal<readonly Client[]>([]);
+  return {
+    link,
     role: signal<Role>("viewer"),
-    client: signal(0),
-    hasLease: signal(false),
-    clients: signal<readonly Client[]>([]),
+    client,
+    hasLease,
+    clients,
     examples: signal<readonly Example[]>([]),
+    live,
+    /** The recording that is shown in place of what is live. */
+    replay,
     scene,
-    placements,
-    /** What each hand holds; changes with its state, not with its pose. */
+    placements: shown("placements"),
     held,
     step,
+    runs: shown("runs"),
+    log: shown("log"),
+    /** What each hand is; none before the server has said it. */
+    hands: signal<readonly HandSetup[]>([]),
+    devices: signal<DeviceList | null>(null),
+    recording: signal<Recording | null>(null),
+    recordings: signal<readonly RecordingEntry[] | null>(null),
     loading: signal<Loading | null>(null),
     /** The share of a file that has gone to the server, while it goes. */
     upload: signal<{ file: string; fraction: number } | null>(null),
@@ -76,8 +141,6 @@ export function makeStore() {
     demo: signal(false),
     history: signal<History>({ undo: null, redo: null }),
     status: signal<ServerStatus | null>(null),
-    runs: signal<readonly Run[]>([]),
-    log: signal<readonly LogEntry[]>([]),
     /** Refused commands and the like: told once, for some seconds. */
     notice: signal<{ text: string; isError: boolean; id: number } | null>(null),
 
@@ -87,6 +150,13 @@ export function makeStore() {
     expected: computed<Step | null>(() => {
       const current = step.value;
       return current === null ? null : (scene.value?.steps[current.index] ?? null);
+    }),
+    /** May this page do what changes the work? */
+    canSteer: computed(() => hasLease.value && link.value === "open" && replay.value === null),
+    /** The hands that this page leads. */
+    ownHands: computed<readonly number[]>(() => {
+      const own = clients.value.find((c) => c.id === client.value);
+      return own?.hands ?? (hasLease.value ? [0] : []);
     }),
     /** By occurrence. */
     heldBy: computed<ReadonlyMap<number, HeldSummary>>(() => new Map(held.value.map((h) => [h.occurrence, h]))),

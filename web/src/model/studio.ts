@@ -3,22 +3,21 @@
 import { batch } from "@preact/signals";
 import { CommandError, Connection } from "../protocol/connection";
 import type { LiveState } from "../protocol/frame_store";
-import { kNone, type HandInput } from "../protocol/frames";
-import type { Command, CommandResults, Scene, ServerError, ServerEvent } from "../protocol/messages";
-import { holdStateOf } from "./hints";
+import type { HandInput } from "../protocol/frames";
+import type { Client, Command, CommandResults, Scene, ServerError, ServerEvent } from "../protocol/messages";
+import type { RecordingNow } from "../protocol/recording_messages";
+import { isAlarm, kAlarms, kLogLength, kRunsLength, runOf, tell, type Told } from "./event_log";
+import { isSameHeld, summarize } from "./held";
+import { Recordings } from "./recordings";
 import { uploadFile } from "./upload";
-import { makeStore, type HeldSummary, type LogKind } from "./store";
+import { makeStore } from "./store";
 
-/** Bits of haptics::GateAction that a user has to know of: not finite, model late, client silent, device
- lost, buzz, kick. The others limit the force in the course of the work. */
-const kAlarms = 0b1_1001_1100_0001;
 /** An alarm is shown this long at least, and as long as its cause lasts. */
 const kAlarmShownMs = 5000;
-const kLogLength = 200;
-const kRunsLength = 50;
 
 export class Studio {
   readonly store = makeStore();
+  readonly recordings = new Recordings(this.store, this);
   private connection: Connection | null = null;
   private noticeId = 0;
   private alarmedAt = 0;
@@ -46,7 +45,12 @@ export class Studio {
     });
   }
 
+  /** What is to be drawn: live, or of a recording. */
   get frames() {
+    return this.recordings.playback.peek()?.store ?? this.liveFrames;
+  }
+
+  get liveFrames() {
     return this.connection?.store ?? null;
   }
 
@@ -105,27 +109,18 @@ export class Studio {
 
   /** What the frames say of the hands, told to the store when it differs from what is known. */
   noteHands(live: LiveState): void {
+    const playback = this.recordings.playback.peek();
+    if (playback !== null) {
+      playback.noteHands(live);
+      return;
+    }
     const isAlarmed = live.hands.some((h) => (h.gate_actions & kAlarms) !== 0);
     if (this.store.safety.value !== null && !isAlarmed && performance.now() - this.alarmedAt > kAlarmShownMs) {
       this.store.safety.value = null;
     }
-    const next: HeldSummary[] = live.hands
-      .filter((h) => h.occurrence !== kNone && h.state !== 0)
-      .map((h) => ({
-        hand: h.hand,
-        occurrence: h.occurrence,
-        state: holdStateOf(h.state),
-        mate: h.mate === kNone ? null : h.mate,
-      }));
-    const before = this.store.held.value;
-    const isSame =
-      next.length === before.length &&
-      next.every((h, k) => {
-        const b = before[k];
-        return b?.hand === h.hand && b.occurrence === h.occurrence && b.state === h.state && b.mate === h.mate;
-      });
-    if (!isSame) {
-      this.store.held.value = next;
+    const next = summarize(live.hands);
+    if (!isSameHeld(next, this.store.live.held.value)) {
+      this.store.live.held.value = next;
     }
   }
 
@@ -145,7 +140,7 @@ export class Studio {
       if (this.store.link.value === "open") {
         this.store.link.value = "lost";
       }
-      this.store.held.value = [];
+      this.store.live.held.value = [];
       this.store.loading.value = null;
     });
   }
@@ -153,7 +148,7 @@ export class Studio {
   private async fetchScene(): Promise<void> {
     const answer = await fetch("/api/scene");
     if (answer.status === 404) {
-      this.store.scene.value = null;
+      this.store.live.scene.value = null;
       return;
     }
     if (!answer.ok) {
@@ -162,21 +157,24 @@ export class Studio {
     }
     const scene = (await answer.json()) as Scene;
     batch(() => {
-      this.store.placements.value = new Map(scene.occurrences.map((o) => [o.id, o.placement]));
-      this.store.step.value = { index: scene.next_step, total: scene.steps.length };
-      this.store.scene.value = scene;
+      const { live } = this.store;
+      live.placements.value = new Map(scene.occurrences.map((o) => [o.id, o.placement]));
+      live.step.value = { index: scene.next_step, total: scene.steps.length };
+      live.scene.value = scene;
       this.store.loading.value = null;
       this.store.failure.value = null;
     });
   }
 
-  private log(kind: LogKind, params: Record<string, string | number> = {}): void {
-    this.store.log.value = [{ at: new Date(), kind, params }, ...this.store.log.value].slice(0, kLogLength);
+  private log(told: Told | null): void {
+    const { log } = this.store.live;
+    if (told !== null) {
+      log.value = [{ at: new Date(), ...told }, ...log.value].slice(0, kLogLength);
+    }
   }
 
-  private nameOf(occurrence: number): string {
-    return this.store.occurrences.value.get(occurrence)?.name ?? `${occurrence}`;
-  }
+  private readonly nameOf = (occurrence: number): string =>
+    this.store.live.scene.peek()?.occurrences.find((o) => o.id === occurrence)?.name ?? `${occurrence}`;
 
   private onEvent(event: ServerEvent): void {
     batch(() => this.apply(event));
@@ -194,8 +192,10 @@ export class Studio {
         if (event.has_scene) {
           void this.fetchScene();
         } else {
-          store.scene.value = null;
+          store.live.scene.value = null;
         }
+        store.hands.value = event.hands ?? [];
+        this.noteRecording(event.recording ?? null);
         break;
       case "progress":
         store.failure.value = null;
@@ -204,10 +204,10 @@ export class Studio {
       case "failed":
         store.loading.value = null;
         store.failure.value = event.error;
-        this.log("failed", { text: event.error.message });
+        this.log({ kind: "failed", params: { text: event.error.message } });
         break;
       case "scene":
-        this.log("opened");
+        this.log({ kind: "opened", params: {} });
         void this.fetchScene();
         break;
       case "forces":
@@ -215,10 +215,14 @@ export class Studio {
         if (!event.off) {
           store.safety.value = null;
         }
-        this.log("forces", { off: event.off ? 1 : 0 });
+        this.log(tell(event, this.nameOf));
         break;
       case "safety":
-        this.noteSafety(event.reasons, event.gate_actions);
+        if (isAlarm(event)) {
+          store.safety.value = { reasons: event.reasons };
+          this.alarmedAt = performance.now();
+        }
+        this.log(tell(event, this.nameOf));
         break;
       case "roles":
         store.clients.value = event.clients;
@@ -229,28 +233,29 @@ export class Studio {
         break;
       case "demo":
         store.demo.value = event.on;
-        this.log("demo", { on: event.on ? 1 : 0 });
+        this.log(tell(event, this.nameOf));
         break;
       case "status":
         store.status.value = event;
+        break;
+      case "hands":
+        store.hands.value = event.hands;
+        break;
+      case "devices":
+        store.devices.value = event;
+        break;
+      case "recording":
+        this.noteRecording(event);
+        break;
+      case "recordings":
+        void this.recordings.fetchList();
         break;
       default:
         this.applyAssembly(event);
     }
   }
 
-  private noteSafety(reasons: string[], gateActions: number): void {
-    const isAlarm = (gateActions & kAlarms) !== 0;
-    if (isAlarm) {
-      this.store.safety.value = { reasons };
-      this.alarmedAt = performance.now();
-    }
-    if (reasons.length > 0) {
-      this.log(isAlarm ? "safety" : "limit", { text: reasons.join(", ") });
-    }
-  }
-
-  private noteOwnRole(clients: readonly { id: number; role: "operator" | "viewer"; has_lease: boolean }[]): void {
+  private noteOwnRole(clients: readonly Client[]): void {
     const own = clients.find((c) => c.id === this.store.client.value);
     if (own !== undefined) {
       this.store.role.value = own.role;
@@ -258,36 +263,43 @@ export class Studio {
     }
   }
 
+  /** The record that runs, or that one has ended. */
+  private noteRecording(event: RecordingNow | null): void {
+    const { recording } = this.store;
+    const before = recording.value;
+    const isOn = event?.on === true;
+    recording.value = isOn ? { id: event.id, name: event.name, sinceMs: performance.now() - 1e3 * event.t_s } : null;
+    if (isOn !== (before !== null)) {
+      this.log({ kind: "recording", params: { on: isOn ? 1 : 0, name: event?.name ?? before?.name ?? "" } });
+    }
+    if (before !== null && !isOn) {
+      this.recordings.lastMade.value = before.id;
+    }
+  }
+
   private applyAssembly(event: ServerEvent): void {
-    const store = this.store;
+    const { live, safety } = this.store;
     switch (event.event) {
       case "placement":
-        store.placements.value = new Map(store.placements.value).set(event.occurrence, event.placement);
+        live.placements.value = new Map(live.placements.value).set(event.occurrence, event.placement);
         break;
       case "taken":
         // What was cut stays so until the hand takes anew.
-        store.safety.value = null;
-        this.log("taken", { part: this.nameOf(event.occurrence) });
-        break;
-      case "state":
-        if (event.occurrence !== undefined) {
-          this.log("state", { part: this.nameOf(event.occurrence), state: holdStateOf(event.state) });
-        }
+        safety.value = null;
         break;
       case "dropped": {
-        const name = this.nameOf(event.occurrence);
-        this.log("dropped", { part: name, seated: event.was_seated ? 1 : 0 });
-        const run = { occurrence: event.occurrence, name, wasSeated: event.was_seated, metrics: event.metrics };
-        store.runs.value = [run, ...store.runs.value].slice(0, kRunsLength);
+        const run = runOf(event, this.nameOf);
+        live.runs.value = run === null ? live.runs.value : [run, ...live.runs.value].slice(0, kRunsLength);
         break;
       }
       case "step":
-        store.step.value = { index: event.index, total: event.total };
+        live.step.value = { index: event.index, total: event.total };
         break;
       default:
-        // An event of a newer server.
+        // One that is only told, or an event of a newer server.
         break;
     }
+    this.log(tell(event, this.nameOf));
   }
 }
 

@@ -77,3 +77,21 @@ export function decodeView(fragment: string): SharedView | null {
         : null,
   };
 }
+
+/** A moment of a recording. */
+export interface Moment {
+  recording: string;
+  timeS: number;
+}
+
+export function encodeMoment(moment: Moment): string {
+  return `&rec=${encodeURIComponent(moment.recording)}&at=${Number(moment.timeS.toFixed(3))}`;
+}
+
+/** Of the fragment of a view; null when it has none. */
+export function decodeMoment(fragment: string): Moment | null {
+  const fields = new URLSearchParams(fragment.replace(/^#/, ""));
+  const recording = fields.get("rec");
+  const timeS = Number(fields.get("at") ?? 0);
+  return recording === null || !(timeS >= 0) ? null : { recording, timeS };
+}

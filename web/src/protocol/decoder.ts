@@ -21,10 +21,9 @@ export interface FrameView {
   readonly at: number;
 }
 
-/** Every whole frame of a message, of known kind or not. What is damaged ends the list. */
-export function splitFrames(view: DataView): FrameView[] {
-  const frames: FrameView[] = [];
-  let at = 0;
+/** Every whole frame from `at` on, of known kind or not. What is damaged ends the walk. */
+export function* walkFrames(view: DataView, from = 0): Generator<FrameView, void> {
+  let at = from;
   while (at + HeaderSize <= view.byteLength) {
     const header = readHeader(view, at);
     const isSound =
@@ -35,10 +34,13 @@ export function splitFrames(view: DataView): FrameView[] {
     if (!isSound) {
       break;
     }
-    frames.push({ header, at: at + HeaderSize });
+    yield { header, at: at + HeaderSize };
     at += header.size;
   }
-  return frames;
+}
+
+export function splitFrames(view: DataView): FrameView[] {
+  return [...walkFrames(view)];
 }
 
 /** Items that fit into the frame, whatever its count says. */
@@ -46,10 +48,11 @@ export function itemCount(header: Header, itemSize: number): number {
   return Math.min(header.count, Math.floor((header.size - HeaderSize) / itemSize));
 }
 
-function makeFrame(kind: number, epoch: number, count: number, itemSize: number): DataView {
+/** A frame with its header and room for its items. */
+export function makeFrame(kind: number, epoch: number, count: number, itemSize: number, t_ns = 0n): DataView {
   const size = HeaderSize + count * itemSize;
   const view = new DataView(new ArrayBuffer(size));
-  writeHeader(view, 0, { magic: kMagic, version: kVersion, kind, size, seq: 0, epoch, count, t_ns: 0n });
+  writeHeader(view, 0, { magic: kMagic, version: kVersion, kind, size, seq: 0, epoch, count, t_ns });
   return view;
 }
 

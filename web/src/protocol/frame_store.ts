@@ -22,7 +22,7 @@ export const kMaxOccurrences = 16384;
 export const kMaxHands = 2;
 export const kMaxContacts = 128;
 export const kSampleSlots = 2048;
-/** Of a sample: hand, time [ms], felt force, felt torque, depth, tilt, axial true, axial felt, peak. */
+/** Of a sample: hand, time [s], then what `sampleOf` says. */
 export const kSampleFloats = 16;
 
 const kPoseFloats = 7;
@@ -55,6 +55,22 @@ function align8(n: number): number {
 /** Milliseconds of a clock that page and worker share. */
 export function nowMs(): number {
   return performance.timeOrigin + performance.now();
+}
+
+/** What the plots know of a hand. */
+export function sampleOf(hand: HandState): number[] {
+  return [
+    ...hand.f_felt_W_n,
+    ...hand.t_felt_W_nm,
+    hand.depth_m,
+    hand.tilt_rad,
+    hand.axial_true_n,
+    hand.axial_felt_n,
+    hand.peak_felt_n,
+    hand.state,
+    Math.hypot(...hand.f_true_W_n),
+    hand.contact_count,
+  ];
 }
 
 export interface LiveState {
@@ -258,18 +274,7 @@ export class FrameStore {
     const to = (index % kSampleSlots) * kSampleFloats;
     // Of the day, so that a float holds it to a hundredth of a second and better.
     const sentMs = ((this.clock[Clock.server] ?? 0) + (this.clock[Clock.offset] ?? 0)) % 1e7;
-    const values = [
-      hand.hand,
-      sentMs / 1e3,
-      ...hand.f_felt_W_n,
-      ...hand.t_felt_W_nm,
-      hand.depth_m,
-      hand.tilt_rad,
-      hand.axial_true_n,
-      hand.axial_felt_n,
-      hand.peak_felt_n,
-      hand.state,
-    ];
+    const values = [hand.hand, sentMs / 1e3, ...sampleOf(hand)];
     this.samples.set(values, to);
     Atomics.store(this.control, Control.samples, index + 1);
   }

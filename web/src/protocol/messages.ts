@@ -1,5 +1,13 @@
 /** JSON of the studio: docs/protocol.md. */
 
+import type {
+  DeviceList,
+  HandSetup,
+  HandStatus,
+  Histograms,
+  RecordingNow,
+} from "./recording_messages";
+
 export type Vec3 = readonly [number, number, number];
 /** w, x, y, z. */
 export type Quat = readonly [number, number, number, number];
@@ -138,8 +146,13 @@ export type Command =
   | { command: "add_mate"; a: FaceOf; b: FaceOf; fit?: string }
   | { command: "remove_mate"; mate: number }
   | { command: "measure"; a: FaceOf; b?: FaceOf }
-  | { command: "lease"; action: "request" | "release" | "give"; to?: number }
-  | { command: "status" };
+  | { command: "lease"; action: "request" | "release" | "give"; hand?: number; to?: string }
+  | { command: "status" }
+  | { command: "hands"; count: number }
+  | { command: "devices" }
+  | { command: "use"; hand: number; device: string; scale?: number }
+  | { command: "record"; on: boolean; name?: string }
+  | { command: "delete_recording"; id: string };
 
 type Nothing = Record<string, never>;
 export interface CommandResults {
@@ -159,6 +172,11 @@ export interface CommandResults {
   measure: Measurement;
   lease: Nothing;
   status: Nothing;
+  hands: Nothing;
+  devices: DeviceList;
+  use: Nothing;
+  record: Nothing;
+  delete_recording: Nothing;
 }
 
 export interface Example {
@@ -178,9 +196,11 @@ export interface RunMetrics {
 }
 
 export interface Client {
-  id: number;
+  id: string;
   role: Role;
   has_lease: boolean;
+  /** Which hands it leads. */
+  hands?: number[];
 }
 
 export interface ServerStatus {
@@ -193,6 +213,8 @@ export interface ServerStatus {
   late_ticks: number;
   clients: number;
   effort_level: number;
+  histograms?: Histograms;
+  hands?: HandStatus[];
 }
 
 export type ServerEvent =
@@ -200,11 +222,13 @@ export type ServerEvent =
       event: "hello";
       version: number;
       role: Role;
-      client: number;
+      client: string;
       has_lease: boolean;
       examples: Example[];
       forces_off: boolean;
       has_scene: boolean;
+      hands?: HandSetup[];
+      recording?: RecordingNow | null;
     }
   | { event: "progress"; stage: string; fraction: number; file: string }
   | { event: "failed"; error: ServerError }
@@ -222,8 +246,12 @@ export type ServerEvent =
     }
   | { event: "step"; index: number; total: number }
   | { event: "safety"; reasons: string[]; gate_actions: number }
-  | { event: "forces"; off: boolean; by: number | string | null }
+  | { event: "forces"; off: boolean; by: string | null }
   | { event: "roles"; clients: Client[] }
   | { event: "history"; undo: string | null; redo: string | null }
   | { event: "demo"; on: boolean }
+  | { event: "hands"; hands: HandSetup[] }
+  | ({ event: "devices" } & DeviceList)
+  | ({ event: "recording" } & RecordingNow)
+  | { event: "recordings" }
   | ({ event: "status" } & ServerStatus);

@@ -8,6 +8,7 @@ import type { SharedView } from "../model/view_link";
 import type { ViewState } from "../model/view_state";
 import { nowMs, type LiveState } from "../protocol/frame_store";
 import { CameraRig, type ViewName } from "./camera_rig";
+import { firstDirection } from "./first_direction";
 import { FrameMeter } from "./frame_meter";
 import { HandControl } from "./hand_control";
 import type { Eye } from "./mouse_hand";
@@ -50,6 +51,7 @@ export class Viewport {
   private lastMove = 0;
   private lastDrawn = 0;
   private lastSeq = -1;
+  private lastEpoch = -1;
   private pendingView: SharedView | null = null;
 
   constructor(
@@ -215,19 +217,9 @@ export class Viewport {
     if (this.pendingView !== null) {
       this.show(this.pendingView);
     } else if (isNew) {
-      this.rig.lookFrom(this.firstDirection(), this.product.outline(), false);
+      this.rig.lookFrom(firstDirection(scene), this.product.outline(), false);
     }
     this.hand.stop();
-  }
-
-  /** So that what is assembled and what lies about stand side by side. */
-  private firstDirection(): Vec3 {
-    const scene = this.product.scene!;
-    const loose = scene.occurrences.filter((o) => o.placement === "loose").map((o) => o.start.p);
-    const mean = (k: 0 | 1) => loose.reduce((sum, p) => sum + p[k] - scene.centre_m[k], 0) / Math.max(1, loose.length);
-    const [x, y] = [mean(0), mean(1)];
-    const far = Math.hypot(x, y);
-    return far < 0.8 * scene.radius_m ? [0.62, -0.95, 0.62] : [y / far, -x / far, 0.62];
   }
 
   private rayThrough(ndc: Vector3): { from: Vec3; along: Vec3 } {
@@ -250,16 +242,20 @@ export class Viewport {
   private tick(now: number): void {
     const seconds = Math.min(0.1, (now - this.lastTick) / 1000);
     this.lastTick = now;
+    const playback = this.studio.recordings.playback.peek();
+    playback?.tick(now);
     const frames = this.studio.frames;
     this.live = frames?.read() ?? this.live;
     const live = this.live;
-    if (live !== null && live.seq !== this.lastSeq) {
+    if (live !== null && (live.seq !== this.lastSeq || live.epoch !== this.lastEpoch)) {
       this.lastSeq = live.seq;
+      this.lastEpoch = live.epoch;
       if (live.epoch === this.product.scene?.epoch) {
         this.studio.noteHands(live);
       }
     }
-    this.product.update(frames, live, nowMs());
+    // What was recorded is drawn as it was: only of what is live it is guessed where it is by now.
+    this.product.update(frames, live, playback === null ? nowMs() : (live?.sentMs ?? 0));
     const hasMoved = this.rig.controls.update(seconds);
     const isDue = this.renderer.xr.isPresenting || now - this.lastDrawn > kIdleMs;
     if (hasMoved || this.product.isDirty || isDue) {

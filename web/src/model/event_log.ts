@@ -1,0 +1,66 @@
+/** Events of the work in the form in which they are told, whether they come now or from a recording. */
+
+import type { HoldState, RunMetrics } from "../protocol/messages";
+import { holdStateOf } from "./hints";
+import type { LogKind, Run } from "./store";
+
+/** Bits of haptics::GateAction that a user has to know of: not finite, model late, client silent, device
+ lost, buzz, kick. The others limit the force in the course of the work. */
+export const kAlarms = 0b1_1001_1100_0001;
+
+export const kLogLength = 200;
+export const kRunsLength = 50;
+
+/** As far as events have these. */
+export interface WorkEvent {
+  event: string;
+  occurrence?: number;
+  state?: HoldState | number | string;
+  was_seated?: boolean;
+  metrics?: RunMetrics;
+  reasons?: string[];
+  gate_actions?: number;
+  off?: boolean;
+  on?: boolean;
+}
+
+export interface Told {
+  kind: LogKind;
+  params: Record<string, string | number>;
+}
+
+export function isAlarm(event: { gate_actions?: number }): boolean {
+  return ((event.gate_actions ?? 0) & kAlarms) !== 0;
+}
+
+/** Null where the event is nothing to tell. */
+export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): Told | null {
+  const part = event.occurrence === undefined ? "" : nameOf(event.occurrence);
+  switch (event.event) {
+    case "taken":
+      return { kind: "taken", params: { part } };
+    case "state":
+      return part === "" ? null : { kind: "state", params: { part, state: holdStateOf(event.state as HoldState) } };
+    case "dropped":
+      return { kind: "dropped", params: { part, seated: event.was_seated ? 1 : 0 } };
+    case "safety":
+      return event.reasons === undefined || event.reasons.length === 0
+        ? null
+        : { kind: isAlarm(event) ? "safety" : "limit", params: { text: event.reasons.join(", ") } };
+    case "forces":
+      return { kind: "forces", params: { off: event.off ? 1 : 0 } };
+    case "demo":
+      return { kind: "demo", params: { on: event.on ? 1 : 0 } };
+    default:
+      return null;
+  }
+}
+
+/** What a hold of a part came to; null for other events. */
+export function runOf(event: WorkEvent, nameOf: (occurrence: number) => string): Run | null {
+  if (event.event !== "dropped" || event.occurrence === undefined || event.metrics === undefined) {
+    return null;
+  }
+  const { occurrence, metrics } = event;
+  return { occurrence, name: nameOf(occurrence), wasSeated: event.was_seated === true, metrics };
+}

@@ -1,0 +1,146 @@
+/** The recordings that the server keeps: their list, and the one that is shown. */
+
+import { batch, signal } from "@preact/signals";
+import { CommandError } from "../protocol/connection";
+import { kMaxHands, sampleOf } from "../protocol/frame_store";
+import type { Scene, ServerError } from "../protocol/messages";
+import { RecordedFrames } from "../protocol/recorded_frames";
+import type { RecordingDetail, RecordingEntry } from "../protocol/recording_messages";
+import { Playback, type RecordedRun } from "./playback";
+import type { Store } from "./store";
+import type { Studio } from "./studio";
+import { Trace } from "./trace";
+
+/** Above those of all scenes of a server. */
+const kFirstEpoch = 0x40000000;
+/** Recordings that stay in memory. */
+const kKeptRuns = 6;
+
+let epochs = 0;
+
+/** Takes the frames of a recording into the page. */
+export function makeRun(detail: RecordingDetail, bytes: ArrayBuffer): RecordedRun {
+  const traces = Array.from({ length: kMaxHands }, () => new Trace());
+  const frames = new RecordedFrames(bytes, kFirstEpoch + epochs++, (timeS, hand) => {
+    traces[hand.hand]?.push(timeS, sampleOf(hand));
+  });
+  return { detail, frames, traces };
+}
+
+async function fetchOk(address: string): Promise<Response> {
+  const answer = await fetch(address);
+  if (!answer.ok) {
+    const body = (await answer.json().catch(() => null)) as { error?: ServerError } | null;
+    throw body?.error ? new CommandError(body.error) : new Error(`${address}: ${answer.status} ${answer.statusText}`);
+  }
+  return answer;
+}
+
+async function fetchJson<T>(address: string): Promise<T> {
+  return (await (await fetchOk(address)).json()) as T;
+}
+
+export class Recordings {
+  /** What is shown in place of the live work. */
+  readonly playback = signal<Playback | null>(null);
+  /** The name of the one that is being fetched. */
+  readonly fetching = signal<string | null>(null);
+  /** The one that has just been finished, until it is looked at. */
+  readonly lastMade = signal<string | null>(null);
+  private readonly runs = new Map<string, Promise<RecordedRun>>();
+  private openCount = 0;
+
+  constructor(
+    private readonly store: Store,
+    private readonly studio: Pick<Studio, "command" | "notify">,
+  ) {}
+
+  async fetchList(): Promise<void> {
+    const list = await this.attempt(fetchJson<{ recordings: RecordingEntry[] }>("/api/recordings"));
+    if (list !== null) {
+      this.store.recordings.value = [...list.recordings].sort((a, b) => b.started_unix_ms - a.started_unix_ms);
+    }
+  }
+
+  /** Everything of a recording but its scene; what was fetched lately is there at once. */
+  fetchRun(id: string): Promise<RecordedRun> {
+    const known = this.runs.get(id);
+    if (known !== undefined) {
+      return known;
+    }
+    const fetched = fetchRun(id);
+    this.runs.set(id, fetched);
+    fetched.catch(() => this.runs.delete(id));
+    if (this.runs.size > kKeptRuns) {
+      this.runs.delete(this.runs.keys().next().value!);
+    }
+    return fetched;
+  }
+
+  /** Shows a recording from one of its moments on. @return Whether it is shown. */
+  async open(id: string, timeS = 0): Promise<boolean> {
+    const turn = ++this.openCount;
+    const entry = this.store.recordings.peek()?.find((each) => each.id === id);
+    this.fetching.value = entry?.name ?? id;
+    const fetched = await this.attempt(
+      Promise.all([this.fetchRun(id), fetchJson<Scene>(`/api/recording/${encodeURIComponent(id)}/scene`)]),
+    );
+    if (turn !== this.openCount) {
+      return false;
+    }
+    this.fetching.value = null;
+    if (fetched === null) {
+      return false;
+    }
+    const [run, scene] = fetched;
+    const playback = new Playback(run, scene, entry?.started_unix_ms ?? 0);
+    playback.seek(timeS);
+    batch(() => {
+      this.lastMade.value = null;
+      this.playback.value = playback;
+      this.store.replay.value = playback;
+    });
+    return true;
+  }
+
+  /** Back to what is live. */
+  close(): void {
+    this.openCount += 1;
+    batch(() => {
+      this.fetching.value = null;
+      this.playback.value = null;
+      this.store.replay.value = null;
+    });
+  }
+
+  async remove(id: string): Promise<void> {
+    if ((await this.studio.command({ command: "delete_recording", id })) === null) {
+      return;
+    }
+    this.runs.delete(id);
+    this.store.recordings.value = this.store.recordings.peek()?.filter((each) => each.id !== id) ?? null;
+    if (this.lastMade.peek() === id) {
+      this.lastMade.value = null;
+    }
+    if (this.playback.peek()?.run.detail.id === id) {
+      this.close();
+    }
+  }
+
+  /** A failure is told to the user and makes the promise null. */
+  async attempt<T>(work: Promise<T>): Promise<T | null> {
+    try {
+      return await work;
+    } catch (error) {
+      const detail = error instanceof CommandError ? error.detail : { message: String(error), remedy: "" };
+      this.studio.notify([detail.message, detail.remedy].filter(Boolean).join(" "), true);
+      return null;
+    }
+  }
+}
+
+async function fetchRun(id: string): Promise<RecordedRun> {
+  const detail = await fetchJson<RecordingDetail>(`/api/recording/${encodeURIComponent(id)}`);
+  const frames = await fetchOk(detail.frames);
+  return makeRun(detail, await frames.arrayBuffer());
+}
