@@ -9,6 +9,8 @@ import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 import { WebSocketServer } from "ws";
 import { packFrame, unpackFrame } from "./frames.mjs";
+import { Hands, rates } from "./hands.mjs";
+import { Recorder } from "./recorder.mjs";
 import { makeScene } from "./scene.mjs";
 import { Simulation } from "./simulation.mjs";
 
@@ -47,7 +49,12 @@ let seq = 0;
 let nextClient = 1;
 const clients = new Map();
 
-const broadcast = (event) => clients.forEach((client) => client.socket.send(JSON.stringify(event)));
+const broadcast = (event) => {
+  recorder.event(event);
+  clients.forEach((client) => client.socket.send(JSON.stringify(event)));
+};
+const recorder = new Recorder(broadcast);
+const hands = new Hands(broadcast);
 
 function open(file) {
   epoch += 1;
@@ -72,6 +79,13 @@ const server = createServer((request, response) => {
     reply(response, world ? 200 : 404, JSON.stringify(world?.scene ?? {}));
   } else if (pathname.startsWith("/api/model/")) {
     reply(response, world ? 200 : 404, world?.glb ?? "", "model/gltf-binary");
+  } else if (pathname === "/api/recordings") {
+    reply(response, 200, JSON.stringify({ recordings: recorder.list() }));
+  } else if (pathname.startsWith("/api/recording/")) {
+    const [id, what = ""] = pathname.slice("/api/recording/".length).split("/");
+    const found = recorder.answer(id, what);
+    const error = { code: "not_found", message: `There is no recording ${id}.`, where: id, remedy: "Choose another one." };
+    reply(response, found ? 200 : 404, found?.[1] ?? JSON.stringify({ error }), found?.[0]);
   } else if (pathname === "/api/upload") {
     request.resume().on("end", () => reply(response, 200, JSON.stringify({ upload: "1" })));
   } else {
@@ -89,7 +103,7 @@ function sendFile(response, pathname) {
 }
 
 const lease = () => clients.keys().next().value;
-const roles = () => [...clients.keys()].map((id) => ({ id, role: "operator", has_lease: id === lease() }));
+const roles = () => [...clients.keys()].map((id) => ({ id, role: "operator", has_lease: id === lease(), hands: id === lease() ? hands.devices.map((_, k) => k) : [] }));
 
 const commands = {
   async open({ example }) {
@@ -109,6 +123,14 @@ const commands = {
   },
   demo: ({ on }) => (on ? simulation.startDemo(true) : simulation.stopDemo()),
   next: () => simulation.startDemo(false),
+  hands: ({ count }) => hands.setCount(count, lease()),
+  devices: () => hands.search(),
+  use: ({ hand, device, scale }) => hands.use(hand, device, scale, lease()),
+  record: ({ on, name }) => (on ? recorder.start(world, simulation, name) : recorder.stop()),
+  delete_recording({ id }) {
+    recorder.done.delete(id);
+    broadcast({ event: "recordings" });
+  },
   measure: ({ a, b }) => ({
     kind: b ? "distance" : "face",
     distance_mm: b ? 42.125 : null,
@@ -125,7 +147,7 @@ new WebSocketServer({ server, path: "/ws" }).on("connection", (socket) => {
   const client = { socket, pending: 0, knows: 0 };
   clients.set(id, client);
   const hello = { event: "hello", version: 1, role: "operator", client: id, has_lease: id === lease() };
-  socket.send(JSON.stringify({ ...hello, examples: EXAMPLES, forces_off: forcesOff, has_scene: world !== null }));
+  socket.send(JSON.stringify({ ...hello, examples: EXAMPLES, forces_off: forcesOff, has_scene: world !== null, hands: hands.list(lease()), recording: recorder.state() }));
   broadcast({ event: "roles", clients: roles() });
   broadcast({ event: "history", undo: null, redo: null });
   simulation?.nextStep();
@@ -151,6 +173,9 @@ new WebSocketServer({ server, path: "/ws" }).on("connection", (socket) => {
 
 function publish() {
   simulation?.tick();
+  if (simulation !== null) {
+    recorder.frame([...simulation.moved], simulation);
+  }
   for (const client of clients.values()) {
     if (simulation === null || client.pending >= 2) {
       continue;
@@ -182,6 +207,7 @@ setInterval(
       late_ticks: 0,
       clients: clients.size,
       effort_level: 0,
+      ...rates(simulation?.hand),
     }),
   1000,
 );

@@ -14,6 +14,66 @@ const { values: options } = parseArgs({
 });
 
 const wait = (page, ms) => page.waitForTimeout(ms);
+
+/** Records how the simulated person puts a part in. */
+async function record(page) {
+  await page.getByTestId("rec").click();
+  await wait(page, 500);
+  await page.keyboard.press("n");
+  await wait(page, 6000);
+  await page.getByTestId("rec").click();
+  await page.getByTestId("open-last").waitFor();
+}
+
+/** So that there are two to choose from. */
+async function recordTwice(page) {
+  await record(page);
+  await page.keyboard.press("n");
+  await wait(page, 6000);
+  await record(page);
+}
+
+async function play(page) {
+  await record(page);
+  await page.getByTestId("open-last").click();
+  await page.getByTestId("playing").waitFor();
+  await page.getByTestId("timeline").focus();
+  await page.keyboard.press("End");
+  for (let k = 0; k < 3; k++) {
+    await page.keyboard.press("PageDown");
+  }
+  await wait(page, 900);
+}
+
+async function openList(page) {
+  await recordTwice(page);
+  await page.getByTestId("open-recordings").click();
+  await wait(page, 800);
+}
+
+async function compare(page) {
+  await openList(page);
+  const boxes = page.locator('[data-testid="recordings"] input[type="checkbox"]');
+  await boxes.nth(0).check();
+  await boxes.nth(1).check();
+  await page.getByTestId("compare-chosen").click();
+  await wait(page, 1200);
+}
+
+async function openDevices(page) {
+  await page.evaluate(() => document.activeElement?.blur());
+  await page.keyboard.press("Control+k");
+  await page.getByTestId("palette-input").fill("devices");
+  await page.keyboard.press("Enter");
+  await page.getByTestId("devices").waitFor();
+  await page.getByTestId("hands-2").click();
+  await wait(page, 2500);
+}
+
+async function rates(page) {
+  await page.getByTestId("tab-rates").click();
+  await wait(page, 1500);
+}
 const states = {
   dark: { async go(page) { await wait(page, 500); } },
   light: { theme: "light", async go(page) { await page.getByTestId("part-1").first().click(); await wait(page, 600); } },
@@ -24,6 +84,15 @@ const states = {
   demo: { async go(page) { await page.keyboard.press("n"); await wait(page, 2600); } },
   demoLight: { theme: "light", async go(page) { await page.keyboard.press("n"); await wait(page, 2800); } },
   shortcuts: { async go(page) { await page.keyboard.press("?"); await wait(page, 500); } },
+  playing: { size: [1280, 720], go: play },
+  playingLight: { size: [1280, 720], theme: "light", locale: "de-DE", go: play },
+  recordings: { size: [1280, 720], go: openList },
+  compare: { size: [1280, 720], go: compare },
+  compareLight: { size: [1280, 720], theme: "light", go: compare },
+  devices: { size: [1280, 720], go: openDevices },
+  devicesLight: { size: [1280, 720], theme: "light", go: openDevices },
+  rates: { size: [1280, 720], go: rates },
+  ratesLight: { size: [1280, 720], theme: "light", go: rates },
   palette: { theme: "light", async go(page) { await page.keyboard.press("Control+k"); await wait(page, 500); } },
 };
 

@@ -7,8 +7,8 @@ import { brotliCompressSync } from "node:zlib";
 
 const LIMIT = 300_000;
 const folder = process.argv[2] ?? "dist";
-/** Loaded only when somebody enters VR. */
-const LATER = /^vr_session/;
+/** Loaded only when somebody asks for what they show. */
+const LATER = /^(vr_session|compare|devices_dialog|recordings_dialog)/;
 
 const files = ["index.html", ...readdirSync(join(folder, "assets")).map((name) => join("assets", name))];
 let total = 0;

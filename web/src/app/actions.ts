@@ -6,34 +6,15 @@ import { canSteer, store, studio, ui, view, viewport } from "./app_state";
 import { chooseFile, copyLink, saveRuns, saveScreenshot } from "./exports";
 import { t } from "./i18n";
 import type { MessageKey } from "./en";
+import { action, toggle, type Action } from "./action";
+import { fileTimeActions, simulateTimeActions, timeActions } from "./time_actions";
 import { enterVr } from "./vr_entry";
-
-export interface Action {
-  id: string;
-  label: () => string;
-  /** As `event.key`, lower case, with "ctrl+" or "shift+" before it. */
-  keys?: readonly string[];
-  run: () => void;
-  isEnabled?: () => boolean;
-  /** Undefined: not one that can be on or off. */
-  isOn?: () => boolean;
-  /** A line stands before it in menus. */
-  startsGroup?: boolean;
-}
 
 const hasScene = () => store.scene.value !== null;
 const chosen = () => view.selected.value;
 const hasChosen = () => hasScene() && chosen().length > 0;
 const steers = () => hasScene() && canSteer();
 const isHolding = () => store.held.value.some((h) => h.hand === 0);
-
-function action(id: string, label: MessageKey | (() => string), run: () => void, more: Partial<Action> = {}): Action {
-  return { id, label: typeof label === "function" ? label : () => t(label), run, ...more };
-}
-
-function toggle(id: string, label: MessageKey, flag: { value: boolean }, more: Partial<Action> = {}): Action {
-  return action(id, label, () => (flag.value = !flag.value), { isOn: () => flag.value, ...more });
-}
 
 function tool(name: Tool, id: string, label: MessageKey, key: string): Action {
   return action(id, label, () => setTool(name), {
@@ -72,6 +53,7 @@ const fileActions: Action[] = [
   action("screenshot", "action.screenshot", () => void saveScreenshot(), { startsGroup: true, isEnabled: hasScene }),
   action("share", "action.share", () => void copyLink(), { isEnabled: hasScene }),
   action("runs", "action.runs", saveRuns, { isEnabled: () => store.runs.value.length > 0 }),
+  ...fileTimeActions,
 ];
 
 const editActions: Action[] = [
@@ -203,6 +185,7 @@ const simulateActions: Action[] = [
   action("forces-on", "action.forcesOn", () => void studio.command({ command: "forces", off: false }), {
     isEnabled: () => canSteer() && store.forcesOff.value,
   }),
+  ...simulateTimeActions,
   toggle("mute", "action.mute", view.isMuted, { startsGroup: true }),
   action("lease", "action.lease", () => void studio.command({ command: "lease", action: "request" }), {
     isEnabled: () => store.link.value === "open" && !store.hasLease.value && store.role.value === "operator",
@@ -245,6 +228,7 @@ export const menus: readonly { id: MessageKey; actions: readonly Action[] }[] = 
   { id: "menu.edit", actions: editActions },
   { id: "menu.view", actions: viewActions },
   { id: "menu.simulate", actions: [...toolActions, ...simulateActions] },
+  { id: "menu.record", actions: timeActions },
   { id: "menu.help", actions: helpActions },
 ];
 
@@ -269,7 +253,7 @@ export function runAction(a: Action): void {
 
 /** "ctrl+z" as people read it. */
 export function keyLabel(keys: string): string {
-  const names: Record<string, string> = { escape: "Esc", ctrl: "Ctrl", shift: "Shift" };
+  const names: Record<string, string> = { escape: "Esc", ctrl: "Ctrl", shift: "Shift", " ": t("keys.space") };
   return keys
     .split("+")
     .map((key) => names[key] ?? key.toUpperCase())

@@ -12,6 +12,7 @@ import { ModelTree } from "./model_tree";
 import { EmptyState, LoadingDrawer } from "./opening";
 import { Plots } from "./plots";
 import { StatusBar } from "./status_bar";
+import { Timeline } from "./timeline";
 import { ToolRail } from "./tool_rail";
 import { ViewPanels } from "./view_panels";
 
@@ -112,7 +113,10 @@ export function App() {
         {shows(inspector) ? <Inspector /> : null}
       </main>
       {shows(plots) ? <Plots /> : null}
-      <StatusBar />
+      <div class="foot">
+        <Timeline />
+        <StatusBar />
+      </div>
       <Overlays />
       <LiveRegion />
     </div>

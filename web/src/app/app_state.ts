@@ -2,6 +2,8 @@
 
 import { effect, signal } from "@preact/signals";
 import { Studio } from "../model/studio";
+import { kDefaultWindowS, type Span } from "../model/plot_range";
+import { LiveTraces } from "../model/trace";
 import { makeViewState, type ThemeChoice } from "../model/view_state";
 import type { Viewport } from "../view3d/viewport";
 import { language, pickLanguage, type Language } from "./i18n";
@@ -10,17 +12,30 @@ export const studio = new Studio();
 export const store = studio.store;
 export const view = makeViewState();
 export const viewport = signal<Viewport | null>(null);
+/** What the hands felt in the last minutes. */
+export const liveTraces = new LiveTraces();
 
 export type Overlay =
   | { kind: "palette" }
   | { kind: "shortcuts" }
+  | { kind: "recordings" }
+  | { kind: "devices" }
   | { kind: "menu"; x: number; y: number; occurrence: number | null };
+
+export type BottomTab = "events" | "runs" | "rates" | "compare";
 
 export const ui = {
   overlay: signal<Overlay | null>(null),
   panels: { model: signal(true), inspector: signal(true), plots: signal(true) },
-  bottomTab: signal<"events" | "runs">("events"),
+  bottomTab: signal<BottomTab>("events"),
   showsTorque: signal(false),
+  plotSeconds: signal<number>(kDefaultWindowS),
+  /** A stretch that is looked at in place of the newest seconds. */
+  plotSpan: signal<Span | null>(null),
+  /** Whose forces are plotted. */
+  plotHand: signal(0),
+  /** Recordings that are laid side by side. */
+  compared: signal<readonly string[]>([]),
   isInVr: signal(false),
   /** Asks the tree's search field to take the focus. */
   findRequest: signal(0),
@@ -76,6 +91,17 @@ export function keepPreferences(): void {
       // Private windows may have no storage: then nothing is kept.
     }
   });
+}
+
+/** In sight or not, nothing of the last minutes is missed while the page lives. */
+const kFollowMs = 500;
+
+export function followTraces(): void {
+  setInterval(() => {
+    if (studio.liveFrames !== null) {
+      liveTraces.follow(studio.liveFrames);
+    }
+  }, kFollowMs);
 }
 
 export const canSteer = () => store.canSteer.value;

@@ -6,6 +6,7 @@ import { canSteer, store, studio } from "./app_state";
 import { logText } from "./event_list";
 import { t } from "./i18n";
 import { Icon } from "./icons";
+import { backToLive } from "./time_source";
 
 const kNoticeMs = 5000;
 
@@ -38,6 +39,7 @@ export function Banners() {
           ) : null}
         </div>
       ) : null}
+      <PlayingBanner />
       {store.demo.value ? (
         <div class="banner is-info" data-testid="demo-runs">
           <Icon name="play" />
@@ -49,6 +51,28 @@ export function Banners() {
           ) : null}
         </div>
       ) : null}
+    </div>
+  );
+}
+
+/** What is seen is not what is. */
+function PlayingBanner() {
+  const { playback, fetching } = studio.recordings;
+  const name = playback.value?.run.detail.name;
+  if (fetching.value !== null) {
+    return (
+      <div class="banner is-info" role="status">
+        {t("banner.fetching", { name: fetching.value })}
+      </div>
+    );
+  }
+  return name === undefined ? null : (
+    <div class="banner is-info" data-testid="playing">
+      <Icon name="play" />
+      <span>{t("banner.playing", { name })}</span>
+      <button type="button" class="banner-button" data-testid="back-to-live" onClick={backToLive}>
+        {t("action.live")}
+      </button>
     </div>
   );
 }

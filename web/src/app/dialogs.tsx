@@ -1,41 +1,16 @@
 /** Palette, list of shortcuts, right-click menu. */
 
 import { useSignal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
-import type { ComponentChildren } from "preact";
+import { useRef } from "preact/hooks";
 import { actions, findAction, isEnabled, keyLabel, menus, runAction } from "./actions";
 import { store, ui, view } from "./app_state";
+import { Dialog, DialogHead } from "./dialog";
 import { t } from "./i18n";
 import { Icon } from "./icons";
+import { Lazy } from "./lazy";
 import { MenuList, useOutside } from "./menu";
 
 const close = () => (ui.overlay.value = null);
-
-function Dialog({ title, children, kind }: { title: string; children: ComponentChildren; kind: string }) {
-  const box = useRef<HTMLDialogElement>(null);
-  useEffect(() => {
-    const dialog = box.current;
-    dialog?.showModal();
-    return () => dialog?.close();
-  }, []);
-  return (
-    <dialog
-      class={`dialog is-${kind}`}
-      aria-label={title}
-      ref={box}
-      data-testid={kind}
-      onCancel={close}
-      onClick={(event) => {
-        // The backdrop is the dialog itself.
-        if (event.target === box.current) {
-          close();
-        }
-      }}
-    >
-      {children}
-    </dialog>
-  );
-}
 
 function Palette() {
   const text = useSignal("");
@@ -66,7 +41,7 @@ function Palette() {
     }
   };
   return (
-    <Dialog title={t("palette.title")} kind="palette">
+    <Dialog title={t("palette.title")} kind="palette" onClose={close}>
       <input
         type="text"
         role="combobox"
@@ -120,13 +95,8 @@ const kMouse = [
 
 function Shortcuts() {
   return (
-    <Dialog title={t("shortcuts.title")} kind="shortcuts">
-      <header class="dialog-head">
-        <h2>{t("shortcuts.title")}</h2>
-        <button type="button" class="icon-button" aria-label={t("dialog.close")} onClick={close}>
-          <Icon name="close" />
-        </button>
-      </header>
+    <Dialog title={t("shortcuts.title")} kind="shortcuts" onClose={close}>
+      <DialogHead title={t("shortcuts.title")} onClose={close} />
       <div class="shortcut-columns">
         <section>
           <h3>{t("shortcuts.mouse")}</h3>
@@ -185,6 +155,10 @@ export function Overlays() {
       return <Palette />;
     case "shortcuts":
       return <Shortcuts />;
+    case "recordings":
+      return <Lazy key="recordings" load={() => import("./recordings_dialog")} />;
+    case "devices":
+      return <Lazy key="devices" load={() => import("./devices_dialog")} />;
     case "menu":
       return <ContextMenu x={overlay.x} y={overlay.y} isOnPart={overlay.occurrence !== null} />;
     default:

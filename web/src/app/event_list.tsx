@@ -1,9 +1,10 @@
-import type { LogEntry } from "../model/store";
+import type { Told } from "../model/event_log";
 import type { HoldState } from "../protocol/messages";
 import { store } from "./app_state";
-import { language, t } from "./i18n";
+import { duration, language, t } from "./i18n";
+import { seek } from "./time_source";
 
-export function logText(entry: LogEntry): string {
+export function logText(entry: Told): string {
   const p = entry.params;
   switch (entry.kind) {
     case "dropped":
@@ -36,7 +37,13 @@ export function EventList() {
     <ol class="events">
       {log.map((entry, k) => (
         <li key={log.length - k} class={`event is-${entry.kind}`}>
-          <time dateTime={entry.at.toISOString()}>{clock.format(entry.at)}</time>
+          {entry.timeS === undefined ? (
+            <time dateTime={entry.at.toISOString()}>{clock.format(entry.at)}</time>
+          ) : (
+            <button type="button" class="event-time" onClick={() => seek(entry.timeS ?? 0)}>
+              {duration(entry.timeS)}
+            </button>
+          )}
           <span>{logText(entry)}</span>
         </li>
       ))}

@@ -1,8 +1,10 @@
 /** Files and links: in by the chooser, out as pictures, tables and addresses. */
 
-import { encodeView } from "../model/view_link";
-import { store, studio, viewport } from "./app_state";
+import { kTraceFields, readSeries } from "../model/trace";
+import { encodeMoment, encodeView } from "../model/view_link";
+import { store, studio, ui, viewport } from "./app_state";
 import { t } from "./i18n";
+import { shownSpan, traceOf } from "./time_source";
 
 export const acceptedFiles = ".step,.stp,.iges,.igs,.glb,.gltf,.obj,.stl";
 
@@ -17,6 +19,11 @@ export function chooseFile(): void {
     }
   };
   input.click();
+}
+
+export function saveTable(rows: readonly (readonly (string | number)[])[], name: string): void {
+  const text = rows.map((row) => `${row.map((v) => (typeof v === "string" ? JSON.stringify(v) : v)).join(",")}\n`);
+  save(new Blob(text, { type: "text/csv" }), `${stem()}_${name}.csv`);
 }
 
 function save(blob: Blob, name: string): void {
@@ -42,11 +49,16 @@ export async function saveScreenshot(): Promise<void> {
 
 export function saveRuns(): void {
   const columns = ["time_s", "path_mm", "peak_true_n", "peak_felt_n", "fit_true_n", "depth_um", "insertion_mm"] as const;
-  const rows = store.runs.value.map((run) =>
-    [JSON.stringify(run.name), run.wasSeated ? 1 : 0, ...columns.map((c) => run.metrics[c])].join(","),
-  );
-  const text = [["part", "was_seated", ...columns].join(","), ...rows.reverse(), ""].join("\n");
-  save(new Blob([text], { type: "text/csv" }), `${stem()}_runs.csv`);
+  const rows = store.runs.value.map((run) => [run.name, run.wasSeated ? 1 : 0, ...columns.map((c) => run.metrics[c])]);
+  saveTable([["part", "was_seated", ...columns], ...rows.reverse()], "runs");
+}
+
+/** What the plots show, every sample of it. */
+export function savePlot(): void {
+  const { fromS, toS } = shownSpan();
+  const { timesS, columns } = readSeries(traceOf(ui.plotHand.value), kTraceFields, fromS, toS, Infinity);
+  const rows = timesS.map((timeS, k) => [Number((timeS - fromS).toFixed(6)), ...columns.map((column) => column[k] ?? 0)]);
+  saveTable([["time_s", ...kTraceFields], ...rows], "plot");
 }
 
 export async function copyLink(): Promise<void> {
@@ -54,7 +66,10 @@ export async function copyLink(): Promise<void> {
   if (shared === undefined) {
     return;
   }
-  history.replaceState(null, "", `#${encodeView(shared)}`);
+  const playback = studio.recordings.playback.peek();
+  const moment =
+    playback === null ? "" : encodeMoment({ recording: playback.run.detail.id, timeS: playback.timeS });
+  history.replaceState(null, "", `#${encodeView(shared)}${moment}`);
   try {
     await navigator.clipboard.writeText(location.href);
     studio.notify(t("notice.copied"));

@@ -1,29 +1,9 @@
-import { findAction, forcesOff, isEnabled, keyLabel, runAction } from "./actions";
+import { ActionButton } from "./action_button";
+import { findAction, forcesOff, runAction } from "./actions";
 import { canSteer, store, studio, ui } from "./app_state";
 import { number, t } from "./i18n";
-import { Icon, type IconName } from "./icons";
+import { Icon } from "./icons";
 import { MenuBar } from "./menu";
-
-export function ActionButton({ id, icon, label }: { id: string; icon: IconName; label?: string }) {
-  const found = findAction(id);
-  const name = found.label();
-  const keys = found.keys?.[0];
-  return (
-    <button
-      type="button"
-      class={label === undefined ? "icon-button" : "text-button"}
-      aria-label={label === undefined ? name : undefined}
-      title={keys ? `${name} (${keyLabel(keys)})` : name}
-      aria-pressed={found.isOn?.()}
-      disabled={!isEnabled(found)}
-      data-testid={`button-${id}`}
-      onClick={() => runAction(found)}
-    >
-      <Icon name={icon} />
-      {label === undefined ? null : <span>{label}</span>}
-    </button>
-  );
-}
 
 function Chips() {
   const status = store.status.value;

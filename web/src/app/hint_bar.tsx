@@ -56,7 +56,7 @@ export function HintBar() {
           <kbd>R</kbd> {t("action.release")}
         </button>
       ) : null}
-      {!canSteer() && ui.overlay.value === null && store.role.value === "operator" && store.link.value === "open" ? (
+      {!store.hasLease.value && ui.overlay.value === null && store.role.value === "operator" && store.link.value === "open" ? (
         <button type="button" class="hint-button" data-testid="hint-lease" onClick={() => runAction(findAction("lease"))}>
           {t("action.lease")}
         </button>

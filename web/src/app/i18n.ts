@@ -66,3 +66,13 @@ export function duration(seconds: number): string {
   const minutes = Math.floor(seconds / 60);
   return `${String(minutes).padStart(2, "0")}:${(seconds - 60 * minutes).toFixed(1).padStart(4, "0")}`;
 }
+
+/** Day and time, short. */
+export function dateTime(unixMs: number): string {
+  const format = new Intl.DateTimeFormat(language.value, { dateStyle: "medium", timeStyle: "short" });
+  return format.format(new Date(unixMs));
+}
+
+export function megabytes(bytes: number): string {
+  return `${number(bytes / 1e6, bytes < 1e7 ? 1 : 0)} MB`;
+}

@@ -1,10 +1,11 @@
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { decodeView } from "../model/view_link";
+import { decodeMoment, decodeView } from "../model/view_link";
 import { App } from "./app";
-import { keepPreferences, studio, viewport } from "./app_state";
+import { followTraces, keepPreferences, studio, viewport } from "./app_state";
 import { language, t } from "./i18n";
 import { listenToKeys } from "./keyboard";
+import { showShared } from "./shared_link";
 import { startSounds } from "./sounds";
 import { exposeHooks } from "./test_hooks";
 import { followTheme } from "./theme";
@@ -12,6 +13,7 @@ import "./styles/base.css";
 import "./styles/layout.css";
 import "./styles/panels.css";
 import "./styles/view.css";
+import "./styles/time.css";
 
 /** The token of the link leaves the address bar before anything else can read it there. */
 function takeToken(): string | null {
@@ -24,7 +26,9 @@ function takeToken(): string | null {
 
 const token = takeToken();
 const shared = decodeView(location.hash);
+const moment = decodeMoment(location.hash);
 keepPreferences();
+followTraces();
 followTheme();
 effect(() => {
   document.documentElement.lang = language.value;
@@ -34,11 +38,7 @@ render(<App />, document.getElementById("app")!);
 listenToKeys();
 startSounds();
 exposeHooks();
-effect(() => {
-  if (shared !== null) {
-    viewport.value?.show(shared);
-  }
-});
+showShared(shared, moment);
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 effect(() => viewport.value?.rig.setReducedMotion(calm.matches));
 void studio.start(token);

@@ -1,7 +1,8 @@
 /** Menus of actions: under the words of the header, and at the pointer. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
-import { isEnabled, keyLabel, menus, runAction, type Action } from "./actions";
+import type { Action } from "./action";
+import { isEnabled, keyLabel, menus, runAction } from "./actions";
 import { t } from "./i18n";
 import { Icon } from "./icons";
 

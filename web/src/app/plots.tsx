@@ -1,175 +1,167 @@
-/** Force and depth over the last seconds, and beside them events and runs. */
+/** Force and depth over time, and beside them events, runs, rates and the comparison of recordings. */
 
-import { useEffect, useRef } from "preact/hooks";
-import uPlot from "uplot";
-import "uplot/dist/uPlot.min.css";
-import { kWindowS, readWindow, type PlotWindow } from "../model/samples";
-import { studio, ui, view, viewport } from "./app_state";
+import { kWindowsS } from "../model/plot_range";
+import type { TraceField } from "../model/trace";
+import { store, ui, type BottomTab } from "./app_state";
+import { Chart, type Quantity } from "./chart";
 import { EventList } from "./event_list";
-import { language, number, t } from "./i18n";
+import { savePlot } from "./exports";
+import { number, t } from "./i18n";
+import { Icon } from "./icons";
+import { Lazy } from "./lazy";
+import { Rates } from "./rates";
 import { RunsTable } from "./run_card";
 
-const kRedrawMs = 45;
+const kColors = ["--s-red", "--s-orange", "--s-blue"] as const;
 
-interface Curve {
-  label: string;
-  /** Name of the CSS variable. */
-  color: string;
-  scale?: string;
+function vector(letter: string, fields: readonly [TraceField, TraceField, TraceField]): Quantity[] {
+  return fields.map((field, k) => ({ field, factor: 1, label: `${letter}${"xyz"[k]}`, color: kColors[k]! }));
 }
 
-function cssColor(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-}
+const kForce = vector("F", ["fx_n", "fy_n", "fz_n"]);
+const kTorque = vector("T", ["tx_nm", "ty_nm", "tz_nm"]);
+const kForceRanges = { n: 1 };
+const kTorqueRanges = { nm: 0.05 };
+const kDepthRanges = { mm: 5, deg: 2 };
 
-function axis(scale: string, isTime: boolean, side?: uPlot.Axis.Side): uPlot.Axis {
-  const ink = cssColor("--ink-2");
-  return {
-    scale,
-    stroke: ink,
-    font: "11px Inter, system-ui, sans-serif",
-    size: isTime ? 22 : 40,
-    space: isTime ? 60 : 22,
-    gap: 4,
-    grid: { stroke: cssColor("--line"), width: 1, show: side !== 1 },
-    ticks: { show: false },
-    values: (_, all) => all.map((v) => (isTime ? `${number(v)}` : number(v))),
-    ...(side === undefined ? {} : { side }),
-  };
-}
-
-function makePlot(host: HTMLElement, curves: readonly Curve[], ranges: Record<string, number>): uPlot {
-  const scales: uPlot.Scales = { x: { time: false, range: () => [-kWindowS, 0] } };
-  for (const [name, least] of Object.entries(ranges)) {
-    // Never so narrow that noise looks like a signal.
-    scales[name] = { range: (_, low, high) => [Math.min(low ?? 0, name === "deg" ? 0 : -least / 4) * 1.05, Math.max(high ?? 0, least) * 1.05] };
-  }
-  const names = Object.keys(ranges);
-  const options: uPlot.Options = {
-    width: Math.max(50, host.clientWidth),
-    height: Math.max(40, host.clientHeight),
-    legend: { show: false },
-    cursor: { drag: { x: false, y: false }, points: { show: false } },
-    scales,
-    axes: [axis("x", true), ...names.map((name, k) => axis(name, false, k === 1 ? 1 : undefined))],
-    series: [
-      {},
-      ...curves.map((curve) => ({
-        label: curve.label,
-        stroke: cssColor(curve.color),
-        scale: curve.scale ?? names[0] ?? "y",
-        width: 1.5,
-        points: { show: false },
-      })),
-    ],
-  };
-  return new uPlot(options, [[], ...curves.map(() => [])], host);
-}
-
-interface ChartProps {
-  title: string;
-  unit: string;
-  curves: readonly Curve[];
-  ranges: Record<string, number>;
-  read: (window: PlotWindow) => number[][];
-  onTitle?: () => void;
-}
-
-function Chart({ title, unit, curves, ranges, read, onTitle }: ChartProps) {
-  const host = useRef<HTMLDivElement>(null);
-  const idle = useRef<HTMLParagraphElement>(null);
-  const port = viewport.value;
-  // Canvases do not follow CSS: made anew when the theme or the language changes.
-  const look = `${view.isDark.value}/${language.value}/${title}`;
-  useEffect(() => {
-    const element = host.current;
-    if (element === null) {
-      return;
-    }
-    const plot = makePlot(element, curves, ranges);
-    const observer = new ResizeObserver(() => {
-      plot.setSize({ width: Math.max(50, element.clientWidth), height: Math.max(40, element.clientHeight) });
-    });
-    observer.observe(element);
-    let last = 0;
-    let count = -1;
-    const stop = port?.onFrame((_, now) => {
-      const frames = studio.frames;
-      if (frames === null || now - last < kRedrawMs || frames.sampleCount === count) {
-        return;
-      }
-      last = now;
-      count = frames.sampleCount;
-      const samples = readWindow(frames, 0);
-      idle.current?.classList.toggle("is-shown", samples.time.length === 0);
-      plot.setData([samples.time, ...read(samples)] as uPlot.AlignedData);
-    });
-    return () => {
-      stop?.();
-      observer.disconnect();
-      plot.destroy();
-    };
-  }, [look, port]);
+function ForceOrTorque() {
+  const isTorque = ui.showsTorque.value;
   return (
-    <figure class="chart">
-      <figcaption>
-        {onTitle === undefined ? (
-          <span class="chart-title">{title}</span>
-        ) : (
-          <button type="button" class="chart-title" title={t("plot.switch")} onClick={onTitle}>
-            {title}
-          </button>
-        )}
-        <span class="chart-unit">{unit}</span>
-        {curves.map((curve) => (
-          <span key={curve.label} class="chart-key" style={{ color: `var(${curve.color})` }}>
-            {curve.label}
-          </span>
-        ))}
-      </figcaption>
-      <div class="chart-canvas" ref={host} role="img" aria-label={`${title} ${unit}`} />
-      <p class="chart-idle quiet is-shown" ref={idle}>
-        {t("plot.idle")}
-      </p>
-    </figure>
+    <span class="chart-choice" role="group" aria-label={t("plot.switch")}>
+      {([false, true] as const).map((each) => (
+        <button
+          key={String(each)}
+          type="button"
+          class="chart-title"
+          aria-pressed={each === isTorque}
+          data-testid={each ? "plot-torque" : "plot-force"}
+          onClick={() => (ui.showsTorque.value = each)}
+        >
+          {t(each ? "plot.torque" : "plot.force")}
+        </button>
+      ))}
+    </span>
   );
 }
 
-const kForce: Curve[] = [
-  { label: "Fx", color: "--s-red" },
-  { label: "Fy", color: "--s-orange" },
-  { label: "Fz", color: "--s-blue" },
-];
-const kTorque: Curve[] = [
-  { label: "Tx", color: "--s-red" },
-  { label: "Ty", color: "--s-orange" },
-  { label: "Tz", color: "--s-blue" },
-];
+function windowName(seconds: number): string {
+  return seconds < 60 ? t("plot.windowS", { n: seconds }) : t("plot.windowMin", { n: number(seconds / 60, 0) });
+}
+
+function PlotTools() {
+  const isHeld = ui.plotSpan.value !== null;
+  return (
+    <span class="plot-tools">
+      {store.hands.value.length > 1 ? (
+        <select
+          aria-label={t("plot.hand")}
+          value={ui.plotHand.value}
+          onChange={(event) => (ui.plotHand.value = Number(event.currentTarget.value))}
+        >
+          {[0, 1].map((hand) => (
+            <option key={hand} value={hand}>
+              {t("hands.name", { n: hand + 1 })}
+            </option>
+          ))}
+        </select>
+      ) : null}
+      {isHeld ? (
+        <button type="button" class="plot-button" data-testid="plot-unzoom" onClick={() => (ui.plotSpan.value = null)}>
+          {t("plot.unzoom")}
+        </button>
+      ) : (
+        <select
+          aria-label={t("plot.window")}
+          data-testid="plot-window"
+          value={ui.plotSeconds.value}
+          onChange={(event) => (ui.plotSeconds.value = Number(event.currentTarget.value))}
+        >
+          {kWindowsS.map((seconds) => (
+            <option key={seconds} value={seconds}>
+              {windowName(seconds)}
+            </option>
+          ))}
+        </select>
+      )}
+      <button
+        type="button"
+        class="icon-button is-small"
+        aria-label={t("action.plotCsv")}
+        title={t("action.plotCsv")}
+        data-testid="plot-csv"
+        onClick={savePlot}
+      >
+        <Icon name="download" size={15} />
+      </button>
+    </span>
+  );
+}
+
+function Charts() {
+  const isTorque = ui.showsTorque.value;
+  const depth: Quantity[] = [
+    { field: "depth_m", factor: 1e3, label: t("plot.depth"), color: "--s-green", scale: "mm" },
+    { field: "tilt_rad", factor: 180 / Math.PI, label: t("plot.tilt"), color: "--s-violet", scale: "deg" },
+  ];
+  return (
+    <>
+      <Chart
+        key={isTorque ? "torque" : "force"}
+        name={t(isTorque ? "plot.torque" : "plot.force")}
+        unit={isTorque ? "N m" : "N"}
+        curves={isTorque ? kTorque : kForce}
+        ranges={isTorque ? kTorqueRanges : kForceRanges}
+        title={<ForceOrTorque />}
+      />
+      <Chart
+        name={`${t("plot.depth")} / ${t("plot.tilt")}`}
+        unit="mm / °"
+        curves={depth}
+        ranges={kDepthRanges}
+        title={
+          <span class="chart-title">
+            {t("plot.depth")} / {t("plot.tilt")}
+          </span>
+        }
+        tools={<PlotTools />}
+      />
+    </>
+  );
+}
+
+const kTabs: readonly BottomTab[] = ["events", "runs", "rates", "compare"];
+/** These need the room of the charts. */
+const isWide = (tab: BottomTab) => tab === "rates" || tab === "compare";
+
+function TabContent({ tab }: { tab: BottomTab }) {
+  switch (tab) {
+    case "events":
+      return <EventList />;
+    case "runs":
+      return <RunsTable />;
+    case "rates":
+      return <Rates />;
+    case "compare":
+      return <Lazy load={() => import("./compare")} />;
+  }
+}
 
 export function Plots() {
   const tab = ui.bottomTab.value;
-  const isTorque = ui.showsTorque.value;
-  const flip = () => (ui.showsTorque.value = !isTorque);
+  const onKeyDown = (event: KeyboardEvent) => {
+    const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+    if (step !== 0) {
+      const to = kTabs[(kTabs.indexOf(tab) + step + kTabs.length) % kTabs.length]!;
+      ui.bottomTab.value = to;
+      document.getElementById(`tab-${to}`)?.focus();
+    }
+  };
   return (
-    <section class="plots" aria-label={t("action.panelPlots")}>
-      {isTorque ? (
-        <Chart key="t" title={t("plot.torque")} unit="N m" curves={kTorque} ranges={{ nm: 0.05 }} read={(w) => w.torque} onTitle={flip} />
-      ) : (
-        <Chart key="f" title={t("plot.force")} unit="N" curves={kForce} ranges={{ n: 1 }} read={(w) => w.force} onTitle={flip} />
-      )}
-      <Chart
-        title={`${t("plot.depth")} / ${t("plot.tilt")}`}
-        unit="mm / °"
-        curves={[
-          { label: t("plot.depth"), color: "--s-green", scale: "mm" },
-          { label: t("plot.tilt"), color: "--s-violet", scale: "deg" },
-        ]}
-        ranges={{ mm: 5, deg: 2 }}
-        read={(w) => [w.depthMm, w.tiltDeg]}
-      />
+    <section class={`plots ${isWide(tab) ? "is-wide" : ""}`} aria-label={t("action.panelPlots")}>
+      {isWide(tab) ? null : <Charts />}
       <div class="tabs-panel">
-        <div class="tabs" role="tablist">
-          {(["events", "runs"] as const).map((name) => (
+        <div class="tabs" role="tablist" aria-label={t("action.panelPlots")} onKeyDown={onKeyDown}>
+          {kTabs.map((name) => (
             <button
               key={name}
               type="button"
@@ -177,6 +169,7 @@ export function Plots() {
               id={`tab-${name}`}
               aria-selected={tab === name}
               aria-controls="tab-content"
+              tabIndex={tab === name ? 0 : -1}
               data-testid={`tab-${name}`}
               onClick={() => (ui.bottomTab.value = name)}
             >
@@ -185,7 +178,7 @@ export function Plots() {
           ))}
         </div>
         <div class="tab-content" id="tab-content" role="tabpanel" aria-labelledby={`tab-${tab}`} tabIndex={0}>
-          {tab === "events" ? <EventList /> : <RunsTable />}
+          <TabContent tab={tab} />
         </div>
       </div>
     </section>

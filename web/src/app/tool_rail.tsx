@@ -1,5 +1,5 @@
 import { findAction } from "./actions";
-import { ActionButton } from "./header";
+import { ActionButton } from "./action_button";
 import { t } from "./i18n";
 import type { IconName } from "./icons";
 

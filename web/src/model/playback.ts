@@ -12,8 +12,8 @@ import type { HeldSummary, LogEntry, Run, StepCount, Work } from "./store";
 import type { Trace } from "./trace";
 
 export const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8] as const;
-/** A page that was out of sight does not jump when it is seen again [s]. */
-const kLongestStepS = 0.25;
+/** A page that was out of sight does not jump when it is seen again [s]; slow ones draw this seldom. */
+const kLongestStepS = 1;
 
 /** All that was fetched of a recording. */
 export interface RecordedRun {

@@ -110,13 +110,13 @@ export function makeStore() {
   const link = signal<LinkState>("starting");
   const hasLease = signal(false);
   const client = signal("");
-  const clients = signal<readonly Client[]>([]);
+  const hands = signal<readonly HandSetup[]>([]);
   return {
     link,
     role: signal<Role>("viewer"),
     client,
     hasLease,
-    clients,
+    clients: signal<readonly Client[]>([]),
     examples: signal<readonly Example[]>([]),
     live,
     /** The recording that is shown in place of what is live. */
@@ -128,7 +128,7 @@ export function makeStore() {
     runs: shown("runs"),
     log: shown("log"),
     /** What each hand is; none before the server has said it. */
-    hands: signal<readonly HandSetup[]>([]),
+    hands,
     devices: signal<DeviceList | null>(null),
     recording: signal<Recording | null>(null),
     recordings: signal<readonly RecordingEntry[] | null>(null),
@@ -153,11 +153,12 @@ export function makeStore() {
     }),
     /** May this page do what changes the work? */
     canSteer: computed(() => hasLease.value && link.value === "open" && replay.value === null),
-    /** The hands that this page leads. */
-    ownHands: computed<readonly number[]>(() => {
-      const own = clients.value.find((c) => c.id === client.value);
-      return own?.hands ?? (hasLease.value ? [0] : []);
-    }),
+    /** The hands that this page leads. A server that says nothing of hands has one. */
+    ownHands: computed<readonly number[]>(() =>
+      hands.value.length === 0
+        ? hasLease.value ? [0] : []
+        : hands.value.filter((h) => h.lease === client.value).map((h) => h.hand),
+    ),
     /** By occurrence. */
     heldBy: computed<ReadonlyMap<number, HeldSummary>>(() => new Map(held.value.map((h) => [h.occurrence, h]))),
   };

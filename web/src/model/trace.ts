@@ -168,19 +168,21 @@ export function readSeries(trace: Trace, fields: readonly TraceField[], fromS: n
   for (let index = first - (first % stride); index < end; index += stride) {
     const last = Math.min(index + stride, end) - 1;
     out.timesS.push(trace.timeAt(index), trace.timeAt(last));
-    fields.forEach((field, k) => out.columns[k]!.push(...extremes(trace, field, index, last)));
+    fields.forEach((field, k) => {
+      out.columns[k]!.push(...extremes((at) => trace.valueAt(at, field), index, last));
+    });
   }
   return out;
 }
 
-function extremes(trace: Trace, field: TraceField, first: number, last: number): [number, number] {
+/** The least and the greatest of some values, in their order. */
+export function extremes(valueAt: (index: number) => number, first: number, last: number): [number, number] {
   let low = first;
   let high = first;
   for (let index = first + 1; index <= last; index++) {
-    const value = trace.valueAt(index, field);
-    low = value < trace.valueAt(low, field) ? index : low;
-    high = value > trace.valueAt(high, field) ? index : high;
+    const value = valueAt(index);
+    low = value < valueAt(low) ? index : low;
+    high = value > valueAt(high) ? index : high;
   }
-  const [a, b] = low < high ? [low, high] : [high, low];
-  return [trace.valueAt(a, field), trace.valueAt(b, field)];
+  return low < high ? [valueAt(low), valueAt(high)] : [valueAt(high), valueAt(low)];
 }

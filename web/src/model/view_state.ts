@@ -13,6 +13,8 @@ export type ThemeChoice = "dark" | "light" | "system";
 export function makeViewState() {
   return {
     tool: signal<Tool>("hand"),
+    /** The hand that the mouse leads where there are two. */
+    hand: signal(0),
     selectMode: signal<SelectMode>("part"),
     selected: signal<readonly number[]>([]),
     selectedFace: signal<FaceOf | null>(null),
