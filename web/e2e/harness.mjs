@@ -1,12 +1,17 @@
 // A studio of one's own for each test, and a browser that looks at it as a person would.
-import { spawn } from "node:child_process";
-import { mkdirSync } from "node:fs";
-import { join } from "node:path";
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { copyFileSync, mkdirSync, mkdtempSync, readFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, join } from "node:path";
 import { chromium } from "playwright-core";
 
 const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
 const kChromium = process.env["HVAS_CHROMIUM"] ?? "/usr/bin/chromium";
+/** A folder with the page, in place of the one in the program, which then need not be built for each change.
+ But its worker: from elsewhere it gets no socket. */
+const kWeb = process.env["HVAS_WEB"];
 mkdirSync(kPictures, { recursive: true });
 
 /** Starts `hvas studio`; its links, and how to end it. */
@@ -35,6 +40,32 @@ export async function startStudio(args = []) {
   };
 }
 
+/** Runs a test with a studio, which ends with it. */
+export function withStudio(args, run) {
+  return async () => {
+    const studio = await startStudio(args);
+    try {
+      await run(studio);
+    } finally {
+      assert.equal(await studio.stop(), 0, "it ends well when it is told to");
+    }
+  };
+}
+
+/** Runs `hvas` to its end; what it prints. */
+export function runProgram(args) {
+  return execFileSync(kProgram, args, { encoding: "utf8", stdio: ["ignore", "pipe", "inherit"] });
+}
+
+/** A copy of a file in a folder of its own, with what belongs to it beside it. */
+export function copyToTemporary(files) {
+  const folder = mkdtempSync(join(tmpdir(), "hvas-e2e-"));
+  for (const file of files) {
+    copyFileSync(file, join(folder, basename(file)));
+  }
+  return join(folder, basename(files[0]));
+}
+
 export function launchBrowser() {
   return chromium.launch({
     executablePath: kChromium,
@@ -42,9 +73,27 @@ export function launchBrowser() {
   });
 }
 
-/** A page with a studio in it. `complaints`: what the browser has to say against it. */
-export async function openPage(browser, link, options = {}) {
+function serveFrom(folder) {
+  return async (route) => {
+    const { pathname } = new URL(route.request().url());
+    const index = await route.fetch({ url: new URL("/", route.request().url()).href });
+    const headers = { ...index.headers() };
+    delete headers["content-encoding"];
+    delete headers["content-length"];
+    const types = { js: "text/javascript", css: "text/css", svg: "image/svg+xml" };
+    headers["content-type"] = types[pathname.split(".").pop()] ?? "text/html";
+    const body = readFileSync(join(folder, pathname === "/" ? "index.html" : pathname));
+    await route.fulfill({ status: 200, headers, body });
+  };
+}
+
+/** A page with a studio in it. `complaints`: what the browser has to say against it. `beforeLoad` gets the page
+ before there is anything in it. */
+export async function openPage(browser, link, { beforeLoad = null, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  if (kWeb !== undefined) {
+    await context.route(/^[^?]*(\/|\/assets\/(?!worker)[^/]*)$/, serveFrom(kWeb));
+  }
   const page = await context.newPage();
   const complaints = [];
   page.on("pageerror", (error) => complaints.push(error.message));
@@ -53,6 +102,7 @@ export async function openPage(browser, link, options = {}) {
       complaints.push(message.text());
     }
   });
+  await beforeLoad?.(page);
   await page.goto(link);
   return { page, complaints };
 }
@@ -88,13 +138,45 @@ export async function waitForPlacement(page, occurrence, placement, timeout = 30
   throw new Error(`part ${occurrence} is ${found} and not ${placement} after ${timeout} ms`);
 }
 
-/** Takes hold of a part with the mouse and moves it over its place and in, as far as it goes. */
-export async function insertByMouse(page, occurrence, goal, height = 0.12) {
+export function stateOf(page) {
+  return page.evaluate(() => window.hvas.state());
+}
+
+/** Until what the page knows is so; returns it. */
+export async function waitForState(page, isSo, timeout = 20_000) {
+  const end = Date.now() + timeout;
+  let state;
+  while (Date.now() < end) {
+    state = await stateOf(page);
+    if (isSo(state)) {
+      return state;
+    }
+    await page.waitForTimeout(50);
+  }
+  throw new Error(`not so after ${timeout} ms: ${isSo}, but ${JSON.stringify(state)}`);
+}
+
+/** Clicks where one sees this face of a part. */
+export async function clickFace(page, occurrence, face) {
+  const at = await page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f), [occurrence, face]);
+  assert.ok(at, `face ${face} of part ${occurrence} is to be seen`);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.up();
+}
+
+/** Presses on a part and drags it a little: it is in the hand then. */
+export async function takeByMouse(page, occurrence) {
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();
   await page.mouse.move(at.x + 8, at.y - 8, { steps: 3 });  // from here on it is no click
   await waitForPlacement(page, occurrence, "held");
+}
+
+/** Takes hold of a part with the mouse and moves it over its place and in, as far as it goes. */
+export async function insertByMouse(page, occurrence, goal, height = 0.12) {
+  await takeByMouse(page, occurrence);
   const kSteps = 14;
   for (let k = 0; k <= kSteps; k++) {
     const above = height * (1 - k / (kSteps - 2));

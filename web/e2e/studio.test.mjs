@@ -8,10 +8,10 @@ import {
   insertByMouse,
   launchBrowser,
   openPage,
-  startStudio,
   takePicture,
   waitForPicture,
   waitForPlacement,
+  withStudio,
 } from "./harness.mjs";
 
 const kBushing = "../products/bushing.step";
@@ -22,18 +22,6 @@ before(async () => {
   browser = await launchBrowser();
 });
 after(() => browser.close());
-
-/** Runs a test with a studio, which ends with it. */
-function withStudio(args, run) {
-  return async () => {
-    const studio = await startStudio(args);
-    try {
-      await run(studio);
-    } finally {
-      assert.equal(await studio.stop(), 0, "it ends well when it is told to");
-    }
-  };
-}
 
 describe("the page", () => {
   it("shows the pump, hides the token, and the browser has nothing against it", withStudio([kPump], async (studio) => {

@@ -36,7 +36,9 @@ function standardView(name: ViewName, label: MessageKey, key: string): Action {
 /** Always works, whoever has control: no force any more, at once. */
 export function forcesOff(): void {
   void studio.command({ command: "forces", off: true });
-  viewport.value?.hand.release();
+  if (viewport.value?.hand.isBusy) {
+    viewport.value.hand.release();
+  }
 }
 
 export function takeChosen(): void {
@@ -45,6 +47,21 @@ export function takeChosen(): void {
     studio.notify(t("notice.notHeld"));
   } else {
     void viewport.value?.hand.take(wanted);
+  }
+}
+
+async function askForLease(): Promise<void> {
+  const answer = await studio.command({ command: "lease", action: "request" });
+  if (answer?.waits_for !== undefined) {
+    studio.notify(t("notice.leaseAsked"));
+  }
+}
+
+/** To whoever asked for it. */
+function giveLease(): void {
+  const to = store.leaseAskedBy.value;
+  if (to !== null) {
+    void studio.command({ command: "lease", action: "give", to });
   }
 }
 
@@ -166,7 +183,10 @@ const toolActions: Action[] = [
 
 const simulateActions: Action[] = [
   action("take", "action.take", takeChosen, { startsGroup: true, keys: ["g"], isEnabled: () => steers() && !isHolding() }),
-  action("release", "action.release", () => viewport.value?.hand.release(), { keys: ["r"], isEnabled: isHolding }),
+  action("release", "action.release", () => viewport.value?.hand.release(), {
+    keys: ["r"],
+    isEnabled: () => isHolding() && canSteer() && !store.demo.value,
+  }),
   action("align", "action.align", () => viewport.value?.hand.mouse.snapTurn(), { keys: ["o"], isEnabled: isHolding }),
   toggle("assist", "action.assist", view.assists),
   toggle("auto-release", "action.autoRelease", view.letsGoWhenSeated),
@@ -187,9 +207,10 @@ const simulateActions: Action[] = [
   }),
   ...simulateTimeActions,
   toggle("mute", "action.mute", view.isMuted, { startsGroup: true }),
-  action("lease", "action.lease", () => void studio.command({ command: "lease", action: "request" }), {
+  action("lease", "action.lease", () => void askForLease(), {
     isEnabled: () => store.link.value === "open" && !store.hasLease.value && store.role.value === "operator",
   }),
+  action("lease-give", "action.leaseGive", giveLease, { isEnabled: () => store.leaseAskedBy.value !== null }),
   action("lease-release", "action.leaseRelease", () => void studio.command({ command: "lease", action: "release" }), {
     isEnabled: () => store.hasLease.value && store.clients.value.length > 1,
   }),

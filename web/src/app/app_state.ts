@@ -49,6 +49,7 @@ interface Kept {
   muted: boolean;
   quality: "low" | "high";
   assists: boolean;
+  seated: boolean;
   model: boolean;
   inspector: boolean;
   plots: boolean;
@@ -70,6 +71,7 @@ export function keepPreferences(): void {
   view.isMuted.value = kept.muted ?? false;
   view.quality.value = kept.quality ?? "high";
   view.assists.value = kept.assists ?? true;
+  view.isSeated.value = kept.seated ?? false;
   const isNarrow = innerWidth < 1024;
   ui.panels.model.value = kept.model ?? !isNarrow;
   ui.panels.inspector.value = kept.inspector ?? !isNarrow;
@@ -81,6 +83,7 @@ export function keepPreferences(): void {
       muted: view.isMuted.value,
       quality: view.quality.value,
       assists: view.assists.value,
+      seated: view.isSeated.value,
       model: ui.panels.model.value,
       inspector: ui.panels.inspector.value,
       plots: ui.panels.plots.value,

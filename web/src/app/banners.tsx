@@ -40,6 +40,18 @@ export function Banners() {
         </div>
       ) : null}
       <PlayingBanner />
+      {store.leaseAskedBy.value !== null ? (
+        <div class="banner is-info" role="alert" data-testid="lease-asked">
+          <Icon name="hand" />
+          <span>{t("banner.leaseAsked", { client: store.leaseAskedBy.value })}</span>
+          <button type="button" class="banner-button" onClick={() => runAction(findAction("lease-give"))}>
+            {t("banner.give")}
+          </button>
+          <button type="button" class="banner-button" onClick={() => (store.leaseAskedBy.value = null)}>
+            {t("banner.keep")}
+          </button>
+        </div>
+      ) : null}
       {store.demo.value ? (
         <div class="banner is-info" data-testid="demo-runs">
           <Icon name="play" />

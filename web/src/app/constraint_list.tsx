@@ -65,6 +65,7 @@ export function ConstraintList() {
                   type="button"
                   class="eye-button"
                   aria-label={t("action.removeMate")}
+                  data-testid={`remove-mate-${mate.id}`}
                   onClick={() => void studio.command({ command: "remove_mate", mate: mate.id })}
                 >
                   <Icon name="close" size={14} />

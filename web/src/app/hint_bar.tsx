@@ -3,7 +3,7 @@
 import { useRef } from "preact/hooks";
 import { liveNumbers, makeHint } from "../model/hints";
 import { canSteer, store, ui, viewport } from "./app_state";
-import { findAction, runAction } from "./actions";
+import { findAction, isEnabled, runAction } from "./actions";
 import { number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
 
@@ -29,11 +29,8 @@ export function HintBar() {
   }
   const held = store.held.value[0] ?? null;
   const expected = store.expected.value?.occurrence ?? null;
-  const isDone = [...store.occurrences.value.values()].every(
-    (o) => o.is_base || store.placements.value.get(o.id) === "placed",
-  );
-  const hint = makeHint({ scene, held, expected, isDone, canSteer: canSteer() });
-  const isOwn = held !== null && viewport.value?.hand.mouse.occurrence === held.occurrence;
+  const hint = makeHint({ scene, held, expected, isDone: store.isDone.value, canSteer: canSteer() });
+  const mayLetGo = held !== null && isEnabled(findAction("release"));
   return (
     <div class={`hint-bar is-${hint.state}`} ref={bar} data-testid="hint" data-state={hint.state}>
       <i class="state-dot" aria-hidden="true" />
@@ -51,7 +48,7 @@ export function HintBar() {
         </div>
         <span class="figures" ref={depth} />
       </div>
-      {isOwn ? (
+      {mayLetGo ? (
         <button type="button" class="hint-button" data-testid="hint-release" onClick={() => runAction(findAction("release"))}>
           <kbd>R</kbd> {t("action.release")}
         </button>

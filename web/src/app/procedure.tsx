@@ -17,6 +17,14 @@ function stepText(step: Step): string {
   return t(`steps.${step.kind}`, { name });
 }
 
+/** The step at hand, with its number. */
+export function stepTitle(): string {
+  const at = store.step.value?.index ?? 0;
+  const step = store.scene.value?.steps[at];
+  const total = store.scene.value?.steps.length ?? 0;
+  return step === undefined ? t("steps.doneAll") : `${at + 1}/${total} · ${stepText(step)}`;
+}
+
 export function Procedure() {
   const steps = store.scene.value?.steps ?? [];
   const at = store.step.value?.index ?? null;

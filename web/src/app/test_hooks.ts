@@ -1,6 +1,13 @@
 /** What a test that drives the page from outside may look at; nothing here changes anything. */
 
-import { store, studio, view, viewport } from "./app_state";
+import type { RoomHand } from "../view3d/vr/host";
+import { store, studio, ui, view, viewport } from "./app_state";
+
+interface Seen {
+  x: number;
+  y: number;
+  isVisible: boolean;
+}
 
 export interface StudioHooks {
   readonly framesDrawn: number;
@@ -8,9 +15,17 @@ export interface StudioHooks {
   /** As it is drawn: position [m] and quaternion w, x, y, z in W. */
   pose(occurrence: number): unknown;
   /** Of the middle of a part: client pixels, and whether it is what one sees there. */
-  screen(occurrence: number): { x: number; y: number; isVisible: boolean } | null;
-  /** Where the middle of a part is for somebody in VR [m]: Y up, the floor at 0. */
-  room(occurrence: number): readonly number[] | null;
+  screen(occurrence: number): Seen | null;
+  /** A client pixel at which one sees this face of a part, or null. */
+  screenOfFace(occurrence: number, face: number): Seen | null;
+  /** For somebody in VR, in the room [m], Y up, the floor at 0: where the middle of a part is, how W stands
+   there, where a button of a panel is, and both hands. */
+  room: {
+    part(occurrence: number): readonly number[] | null;
+    world(): { p: readonly number[]; q: readonly number[]; scale: number };
+    button(id: string): readonly number[] | null;
+    hands(): readonly RoomHand[];
+  };
   /** Of a point of W [m]: client pixels. */
   project(p: readonly [number, number, number]): { x: number; y: number };
 }
@@ -26,7 +41,12 @@ function toClient(at: { x: number; y: number }): { x: number; y: number } {
   return { x: box.left + at.x, y: box.top + at.y };
 }
 
-function room(occurrence: number): number[] | null {
+function world(): { p: number[]; q: number[]; scale: number } {
+  const { position, quaternion: q, scale } = viewport.value!.worldRoot;
+  return { p: position.toArray(), q: [q.w, q.x, q.y, q.z], scale: scale.x };
+}
+
+function partInRoom(occurrence: number): number[] | null {
   const port = viewport.value;
   const matrix = port?.product.parts?.matrixOf(occurrence);
   const shape = port?.product.parts?.shapeOf(occurrence);
@@ -37,7 +57,7 @@ function room(occurrence: number): number[] | null {
 }
 
 /** A pixel at which the part is what one sees: its middle, or else one around it. */
-function screen(occurrence: number): { x: number; y: number; isVisible: boolean } | null {
+function screen(occurrence: number): Seen | null {
   const port = viewport.value;
   const matrix = port?.product.parts?.matrixOf(occurrence);
   const shape = port?.product.parts?.shapeOf(occurrence);
@@ -57,6 +77,31 @@ function screen(occurrence: number): { x: number; y: number; isVisible: boolean 
     }
   }
   return { ...toClient(at), isVisible: false };
+}
+
+/** Of the triangles of the face, the first whose middle nothing hides. */
+function screenOfFace(occurrence: number, face: number): Seen | null {
+  const port = viewport.value;
+  const matrix = port?.product.parts?.matrixOf(occurrence);
+  const shape = port?.product.parts?.shapeOf(occurrence);
+  if (!port || !matrix || !shape) {
+    return null;
+  }
+  const triangles = shape.faceGeometry(face).index?.array ?? [];
+  const middle = shape.box.min.clone();
+  const corner = middle.clone();
+  for (let k = 0; k < triangles.length; k += 3) {
+    middle.set(0, 0, 0);
+    for (let c = 0; c < 3; c++) {
+      middle.addScaledVector(corner.fromArray(shape.positions, 3 * (triangles[k + c] ?? 0)), 1 / 3);
+    }
+    const at = port.project(middle.applyMatrix4(matrix).toArray());
+    const hit = port.product.pick(port.rayAt(at.x, at.y));
+    if (hit?.occurrence === occurrence && hit.face === face) {
+      return { ...toClient(at), isVisible: true };
+    }
+  }
+  return null;
 }
 
 export function exposeHooks(): void {
@@ -80,7 +125,9 @@ export function exposeHooks(): void {
       messages: studio.liveFrames?.messagesReceived ?? 0,
       placements: Object.fromEntries(store.placements.value),
       forcesOff: store.forcesOff.value,
+      safety: store.safety.value,
       demo: store.demo.value,
+      isInVr: ui.isInVr.value,
       selected: view.selected.value,
       hidden: [...view.hidden.value],
       measurement: view.measurement.value,
@@ -88,7 +135,13 @@ export function exposeHooks(): void {
     }),
     pose: (occurrence) => viewport.value?.product.poseOf(occurrence) ?? null,
     screen,
-    room,
+    screenOfFace,
+    room: {
+      part: partInRoom,
+      world,
+      button: (id) => viewport.value?.room?.buttonAt(id) ?? null,
+      hands: () => viewport.value?.room?.describeHands() ?? [],
+    },
     project: (p) => toClient(viewport.value!.project(p)),
   };
 }

@@ -1,7 +1,56 @@
 /** The button for VR; what it needs is loaded when it is pressed. */
 
-import { store, studio, ui, viewport } from "./app_state";
-import { t } from "./i18n";
+import { makeHint } from "../model/hints";
+import type { VrHost, VrStatus } from "../view3d/vr/host";
+import { findAction, forcesOff, runAction } from "./actions";
+import { canSteer, store, studio, ui, viewport } from "./app_state";
+import { number, t } from "./i18n";
+import { stepTitle } from "./procedure";
+
+function describe(): VrStatus {
+  const held = store.held.value[0] ?? null;
+  const expected = store.expected.value;
+  const hint = makeHint({
+    scene: store.scene.value!,
+    held,
+    expected: expected?.occurrence ?? null,
+    isDone: store.isDone.value,
+    canSteer: canSteer(),
+  });
+  const alarm = store.forcesOff.value ? t("banner.forcesOff") : null;
+  const safety = store.safety.value;
+  return {
+    title: stepTitle(),
+    hint: t(hint.key === "hint.emptyExpected" ? "vr.takeExpected" : hint.key === "hint.empty" ? "vr.take" : hint.key, hint.params),
+    alarm: safety !== null ? t("banner.safety", { reasons: safety.reasons.join(", ") }) : alarm,
+    canUndo: store.history.value.undo !== null,
+    isForcesOff: store.forcesOff.value,
+  };
+}
+
+const host: VrHost = {
+  say: (word) => t(`vr.${word}`),
+  number,
+  status: describe,
+  run: (action) => {
+    switch (action) {
+      case "undo":
+      case "next":
+        runAction(findAction(action));
+        break;
+      case "forces":
+        if (store.forcesOff.value) {
+          runAction(findAction("forces-on"));
+        } else {
+          forcesOff();
+        }
+        break;
+      case "leave":
+        void viewport.value?.renderer.xr.getSession()?.end();
+        break;
+    }
+  },
+};
 
 export async function enterVr(): Promise<void> {
   const port = viewport.value;
@@ -9,7 +58,7 @@ export async function enterVr(): Promise<void> {
     return;
   }
   if (ui.isInVr.value) {
-    await port.renderer.xr.getSession()?.end();
+    host.run("leave");
     return;
   }
   const isSupported = await navigator.xr?.isSessionSupported("immersive-vr").catch(() => false);
@@ -17,7 +66,11 @@ export async function enterVr(): Promise<void> {
     studio.notify(t("notice.vrMissing"), true);
     return;
   }
-  const { startVr } = await import("../view3d/vr_session");
-  ui.isInVr.value = true;
-  await startVr(port, studio, () => (ui.isInVr.value = false));
+  const { startVr } = await import("../view3d/vr/session");
+  try {
+    await startVr(port, studio, host, () => (ui.isInVr.value = false));
+    ui.isInVr.value = true;
+  } catch (error) {
+    studio.notify(t("notice.vrFailed", { text: error instanceof Error ? error.message : String(error) }), true);
+  }
 }

@@ -105,6 +105,7 @@ export function makeStore() {
   const shown = <K extends keyof Work>(name: K) =>
     computed(() => (replay.value ?? live)[name].value as Work[K]["value"]);
   const scene = shown("scene");
+  const placements = shown("placements");
   const held = shown("held");
   const step = shown("step");
   const link = signal<LinkState>("starting");
@@ -117,12 +118,14 @@ export function makeStore() {
     client,
     hasLease,
     clients: signal<readonly Client[]>([]),
+    /** Who asks this page for control. */
+    leaseAskedBy: signal<string | null>(null),
     examples: signal<readonly Example[]>([]),
     live,
     /** The recording that is shown in place of what is live. */
     replay,
     scene,
-    placements: shown("placements"),
+    placements,
     held,
     step,
     runs: shown("runs"),
@@ -151,6 +154,10 @@ export function makeStore() {
       const current = step.value;
       return current === null ? null : (scene.value?.steps[current.index] ?? null);
     }),
+    /** Every part is in its place. */
+    isDone: computed(() =>
+      (scene.value?.occurrences ?? []).every((o) => o.is_base || placements.value.get(o.id) === "placed"),
+    ),
     /** May this page do what changes the work? */
     canSteer: computed(() => hasLease.value && link.value === "open" && replay.value === null),
     /** The hands that this page leads. A server that says nothing of hands has one. */

@@ -189,6 +189,7 @@ export class Studio {
         store.hasLease.value = event.has_lease;
         store.examples.value = event.examples;
         store.forcesOff.value = event.forces_off;
+        store.demo.value = event.demo;
         if (event.has_scene) {
           void this.fetchScene();
         } else {
@@ -228,6 +229,9 @@ export class Studio {
         store.clients.value = event.clients;
         this.noteOwnRole(event.clients);
         break;
+      case "lease_asked":
+        store.leaseAskedBy.value = event.by;
+        break;
       case "history":
         store.history.value = { undo: event.undo, redo: event.redo };
         break;
@@ -260,6 +264,10 @@ export class Studio {
     if (own !== undefined) {
       this.store.role.value = own.role;
       this.store.hasLease.value = own.has_lease;
+    }
+    const isAsked = own?.has_lease === true && clients.some((c) => c.id === this.store.leaseAskedBy.value);
+    if (!isAsked) {
+      this.store.leaseAskedBy.value = null;
     }
   }
 

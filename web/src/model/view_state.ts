@@ -38,6 +38,8 @@ export function makeViewState() {
     showsGrid: signal(true),
     assists: signal(true),
     letsGoWhenSeated: signal(true),
+    /** In VR: the table is at the height of somebody who sits. */
+    isSeated: signal(false),
     isMuted: signal(false),
     theme: signal<ThemeChoice>("system"),
     /** As it is drawn now. */

@@ -170,7 +170,7 @@ export interface CommandResults {
   add_mate: Nothing;
   remove_mate: Nothing;
   measure: Measurement;
-  lease: Nothing;
+  lease: { waits_for?: string };
   status: Nothing;
   hands: Nothing;
   devices: DeviceList;
@@ -229,6 +229,7 @@ export type ServerEvent =
       has_scene: boolean;
       hands?: HandSetup[];
       recording?: RecordingNow | null;
+      demo: boolean;
     }
   | { event: "progress"; stage: string; fraction: number; file: string }
   | { event: "failed"; error: ServerError }
@@ -248,6 +249,7 @@ export type ServerEvent =
   | { event: "safety"; reasons: string[]; gate_actions: number }
   | { event: "forces"; off: boolean; by: string | null }
   | { event: "roles"; clients: Client[] }
+  | { event: "lease_asked"; by: string }
   | { event: "history"; undo: string | null; redo: string | null }
   | { event: "demo"; on: boolean }
   | { event: "hands"; hands: HandSetup[] }

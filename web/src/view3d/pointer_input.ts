@@ -86,7 +86,8 @@ export class PointerInput {
         return;
       }
       const isLoose = hit !== null && this.studio.store.placements.peek().get(hit.occurrence) === "loose";
-      const takes = view.tool.peek() === "hand" && hit !== null && isLoose && hand.canTake(hit.occurrence);
+      const canTake = hit !== null && (isLoose ? hand.canTake(hit.occurrence) : hand.isLeftInHand(hit.occurrence));
+      const takes = view.tool.peek() === "hand" && canTake;
       this.start(event, { kind: "press", x, y, hit, takes }, takes);
     }
   }

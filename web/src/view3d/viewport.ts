@@ -1,7 +1,7 @@
 /** The 3D view as a whole: renderer, loop, eye, hand. What the rest of the page asks of it is here. */
 
 import { effect } from "@preact/signals";
-import { Box3, Group, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
+import { Box3, Group, PerspectiveCamera, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
 import { toVec3, type Vec3 } from "../model/math";
 import type { Studio } from "../model/studio";
 import type { SharedView } from "../model/view_link";
@@ -16,8 +16,10 @@ import { readPalette } from "./palette";
 import { copyPicture } from "./picture";
 import { PointerInput } from "./pointer_input";
 import { SceneView } from "./scene_view";
+import { applyView, readView } from "./shared_view";
 import { Stage } from "./stage";
 import { StereoView } from "./stereo_view";
+import type { Room } from "./vr/host";
 import { ViewCube, type CubeLabels } from "./view_cube";
 
 /** A still picture is drawn this often all the same. */
@@ -39,6 +41,10 @@ export class Viewport {
   live: LiveState | null = null;
   /** All of W; VR turns and scales it. */
   readonly worldRoot = new Group();
+  /** Of somebody in VR; the rig's cameras are the desktop's. */
+  readonly vrEyes = new PerspectiveCamera(70, 1, 0.03, 60);
+  /** While somebody is in VR. */
+  room: Room | null = null;
   private readonly three = new ThreeScene();
   private readonly stage = new Stage();
   private readonly cube = new ViewCube();
@@ -130,9 +136,16 @@ export class Viewport {
     this.invalidate();
   }
 
-  setBackground(color: Color | null): void {
-    this.three.background = color;
-    this.invalidate();
+  /** Somebody is in VR from now on. */
+  enterRoom(background: Color, room: Room): void {
+    this.three.background = background;
+    this.room = room;
+  }
+
+  leaveRoom(): void {
+    this.three.background = null;
+    this.room = null;
+    this.resize();
   }
 
   fit(only?: readonly number[]): void {
@@ -152,27 +165,12 @@ export class Viewport {
       return;
     }
     this.pendingView = null;
-    this.view.hidden.value = new Set(view.hidden);
-    this.view.ghosted.value = new Set(view.ghosted);
-    this.view.selected.value = view.selected;
-    this.view.explode.value = view.explode;
-    this.view.section.value = view.section;
-    this.view.isOrthographic.value = view.isOrthographic;
-    this.rig.setPose(view.eye, view.target);
+    applyView(view, this.view, this.rig);
     this.invalidate();
   }
 
   sharedView(): SharedView {
-    const { view } = this;
-    return {
-      ...this.rig.pose(),
-      isOrthographic: view.isOrthographic.value,
-      hidden: [...view.hidden.value],
-      ghosted: [...view.ghosted.value],
-      selected: [...view.selected.value],
-      explode: view.explode.value,
-      section: view.section.value,
-    };
+    return readView(this.view, this.rig);
   }
 
   /** The picture as it is now, on the page's background. */
@@ -266,6 +264,7 @@ export class Viewport {
     } else {
       this.meter.rested();
     }
+    this.room?.update(now);
     for (const listener of this.listeners) {
       listener(live, now);
     }
@@ -286,7 +285,7 @@ export class Viewport {
     const camera = this.rig.camera;
     if (renderer.xr.isPresenting) {
       renderer.clear();
-      renderer.render(this.three, camera);
+      renderer.render(this.three, this.vrEyes);
       this.framesDrawn += 1;
       return;
     }

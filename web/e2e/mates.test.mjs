@@ -1,0 +1,119 @@
+// Mates and fits defined, changed and removed in the 3D view (X8, X12).
+import assert from "node:assert/strict";
+import { after, before, describe, it } from "node:test";
+import {
+  clickFace,
+  copyToTemporary,
+  fetchScene,
+  launchBrowser,
+  openPage,
+  runProgram,
+  takePicture,
+  waitForPicture,
+  waitForState,
+  withStudio,
+} from "./harness.mjs";
+
+const kBushing = "../products/bushing.step";
+
+let browser;
+before(async () => {
+  browser = await launchBrowser();
+});
+after(() => browser.close());
+
+/** A mate of the product with its number out of it, as if inference had not found it. */
+function removeMate(kind, a, b) {
+  const file = copyToTemporary([kBushing, kBushing.replace(".step", ".hvas.json")]);
+  const { mates } = JSON.parse(runProgram(["inspect", file, "--json"]));
+  const of = (m) => [m.hole?.occurrence ?? m.a?.occurrence, m.shaft?.occurrence ?? m.b?.occurrence];
+  const found = mates.find((m) => m.kind === kind && of(m).includes(a) && of(m).includes(b));
+  runProgram(["mate", "remove", file, `m${found.id}`]);
+  return { file, mate: found };
+}
+
+async function epochAfter(page, epoch) {
+  return waitForState(page, (state) => state.hasScene && state.epoch > epoch, 60_000);
+}
+
+describe("a mate", () => {
+  it("is defined by two clicks and a fit, and removed again", async () => {
+    const { file, mate } = removeMate("axis_hole", 1, 2);
+    await withStudio([file], async (studio) => {
+      const { page, complaints } = await openPage(browser, studio.operator);
+      await waitForPicture(page);
+      const before = await fetchScene(page);
+      await page.keyboard.press("c");
+      await page.getByTestId("mate-panel").waitFor();
+      const [hole, shaft] = [mate.surfaces[0].a, mate.surfaces[0].b];
+      await clickFace(page, mate.hole.occurrence, hole);
+      await clickFace(page, mate.shaft.occurrence, shaft);
+      await page.getByTestId("mate-fit").fill("H7/k6");
+      await takePicture(page, "mate_picked");
+      await page.getByTestId("mate-create").click();
+      await epochAfter(page, before.epoch);
+      const after = await fetchScene(page);
+      const added = after.mates.find((m) => m.origin === "user");
+      assert.equal(after.mates.length, before.mates.length + 1);
+      assert.deepEqual([added.kind, added.fit.code], ["axis_hole", "H7/k6"]);
+      const line = page.getByTestId(`mate-${added.id}`);
+      await line.waitFor();
+      assert.match(await line.textContent(), /H7\/k6/);
+      await takePicture(page, "mate_added");
+
+      await page.getByTestId(`remove-mate-${added.id}`).click();
+      await epochAfter(page, after.epoch);
+      assert.equal((await fetchScene(page)).mates.length, before.mates.length);
+      await page.keyboard.press("Control+z");
+      await epochAfter(page, after.epoch + 1);
+      assert.equal((await fetchScene(page)).mates.length, after.mates.length, "undone");
+      assert.deepEqual(complaints, []);
+      await page.context().close();
+    })();
+  });
+
+  it("that cannot be is refused with the reason", withStudio([kBushing], async (studio) => {
+    const { page } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    const scene = await fetchScene(page);
+    const plane = scene.mates.find((m) => m.kind === "face_face");
+    const axis = scene.mates.find((m) => m.kind === "axis_hole" && m.b !== plane.a);
+    await page.keyboard.press("c");
+    await clickFace(page, axis.b, axis.faces_b[0]);
+    const flat = await page.evaluate((mates) => {
+      for (const m of mates) {
+        for (const [o, f] of [[m.a, m.faces_a[0]], [m.b, m.faces_b[0]]]) {
+          if (window.hvas.screenOfFace(o, f)) {
+            return [o, f];
+          }
+        }
+      }
+      return null;
+    }, scene.mates.filter((m) => m.kind === "face_face" && m.a !== axis.b && m.b !== axis.b));
+    if (flat === null) {
+      await page.evaluate(() => {});
+    }
+    await page.context().close();
+  }));
+
+  it("changes its fit in the inspector", withStudio([kBushing], async (studio) => {
+    const { page } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    const before = await fetchScene(page);
+    await page.getByTestId("part-2").click();
+    const input = page.getByTestId("fit-input");
+    await input.waitFor();
+    await input.fill("H7/p6");
+    await page.getByTestId("fit-apply").click();
+    await epochAfter(page, before.epoch);
+    const fits = (await fetchScene(page)).mates.filter((m) => (m.a === 2 || m.b === 2) && m.fit).map((m) => m.fit.code);
+    assert.ok(fits.includes("H7/p6"), `${fits}`);
+    await page.getByRole("heading", { name: /H7\/p6/ }).waitFor();
+    await takePicture(page, "fit_changed");
+    await input.fill("H7/zz99");
+    await page.getByTestId("fit-apply").click();
+    await page.getByTestId("notice").waitFor();
+    await takePicture(page, "fit_refused");
+    await page.context().close();
+  }));
+});

@@ -1,0 +1,209 @@
+// Several people at one studio, and pages that have no business there (N6 of the requirements, docs/studio.md).
+import assert from "node:assert/strict";
+import { once } from "node:events";
+import { createServer } from "node:http";
+import { after, before, describe, it } from "node:test";
+import WebSocket from "ws";
+import {
+  fetchScene,
+  launchBrowser,
+  openPage,
+  stateOf,
+  takeByMouse,
+  takePicture,
+  waitForPicture,
+  waitForPlacement,
+  waitForState,
+  withStudio,
+} from "./harness.mjs";
+
+const kBushing = "../products/bushing.step";
+const kShaft = 2;
+
+let browser;
+before(async () => {
+  browser = await launchBrowser();
+});
+after(() => browser.close());
+
+const poseOf = (page, occurrence) => page.evaluate((id) => window.hvas.pose(id), occurrence);
+const distance = (a, b) => Math.hypot(...a.p.map((v, k) => v - b.p[k]));
+
+describe("somebody who looks on", () => {
+  it("sees the part where the operator moves it, and cannot steer", withStudio([kBushing], async (studio) => {
+    const { page: operator } = await openPage(browser, studio.operator);
+    await waitForPicture(operator);
+    const { page: viewer } = await openPage(browser, studio.viewer);
+    await waitForPicture(viewer);
+    assert.equal((await stateOf(viewer)).role, "viewer");
+    const start = await poseOf(viewer, kShaft);
+    await takeByMouse(operator, kShaft);
+    const at = await operator.evaluate((id) => window.hvas.screen(id), kShaft);
+    await operator.mouse.move(at.x - 60, at.y - 120, { steps: 12 });
+    await operator.waitForTimeout(2000);
+    const [seen, led] = [await poseOf(viewer, kShaft), await poseOf(operator, kShaft)];
+    assert.ok(distance(seen, start) > 0.02, "the part has moved in the viewer's picture");
+    assert.ok(distance(seen, led) < 1e-3, `both see it in one place: ${distance(seen, led)} m apart`);
+    await takePicture(viewer, "viewer_follows");
+
+    const refused = await viewer.evaluate(async () => {
+      const before = window.hvas.state().held.length;
+      document.querySelector("canvas").focus();
+      return before;
+    });
+    assert.equal(refused, 1);
+    await viewer.keyboard.press("r");
+    await viewer.waitForTimeout(500);
+    await waitForPlacement(operator, kShaft, "held");
+    assert.equal(await viewer.getByTestId("hint-release").count(), 0);
+    await operator.mouse.up();
+    await operator.context().close();
+    await viewer.context().close();
+  }));
+
+  it("cannot send commands or input by hand either", withStudio([kBushing], async (studio) => {
+    const { page } = await openPage(browser, studio.viewer);
+    await waitForPicture(page);
+    const error = await page.evaluate(async () => {
+      const socket = new WebSocket(`ws://${location.host}/ws`);
+      await new Promise((resolve) => (socket.onopen = resolve));
+      socket.send(JSON.stringify({ id: 1, command: "take", hand: 0, occurrence: 2 }));
+      return new Promise((resolve) => {
+        socket.onmessage = (message) => {
+          const said = typeof message.data === "string" ? JSON.parse(message.data) : {};
+          if (said.id === 1) {
+            resolve(said.error);
+          }
+        };
+      });
+    });
+    assert.match(error.message, /only whoever steers/);
+    assert.match(error.remedy, /looking on/);
+    await waitForPlacement(page, kShaft, "loose");
+    await page.context().close();
+  }));
+});
+
+describe("two operators", () => {
+  it("hand over the control, with the part in the hand", withStudio([kBushing], async (studio) => {
+    const { page: first } = await openPage(browser, studio.operator);
+    await waitForPicture(first);
+    const { page: second } = await openPage(browser, studio.operator);
+    await waitForPicture(second);
+    assert.equal((await stateOf(second)).hasLease, false);
+    await takeByMouse(first, kShaft);
+    await first.mouse.up();  // the part stays in the hand until it is let go
+
+    await second.getByTestId("hint-lease").click();
+    await first.getByTestId("lease-asked").waitFor();
+    await takePicture(first, "lease_asked");
+    await takePicture(second, "lease_waits");
+    await first.getByTestId("lease-asked").getByRole("button", { name: "Give" }).click();
+    await waitForState(second, (state) => state.hasLease);
+    await waitForState(first, (state) => !state.hasLease);
+    assert.equal(await first.getByTestId("lease-asked").count(), 0);
+
+    const before = await poseOf(second, kShaft);
+    const at = await second.evaluate((id) => window.hvas.screen(id), kShaft);
+    await second.mouse.move(at.x, at.y);
+    await second.mouse.down();
+    await second.mouse.move(at.x + 10, at.y - 60, { steps: 10 });
+    await second.waitForTimeout(1500);
+    await waitForPlacement(second, kShaft, "held");
+    assert.ok(distance(await poseOf(second, kShaft), before) > 0.01, "the second one goes on with it");
+    await takePicture(second, "lease_given");
+    await second.mouse.up();
+    await second.keyboard.press("r");
+    await waitForPlacement(second, kShaft, "loose");
+    await first.context().close();
+    await second.context().close();
+  }));
+
+  it("find it free where the first has left", withStudio([kBushing], async (studio) => {
+    const { page: first } = await openPage(browser, studio.operator);
+    await waitForPicture(first);
+    const { page: second } = await openPage(browser, studio.operator);
+    await waitForPicture(second);
+    await first.context().close();
+    await second.getByTestId("hint-lease").click();
+    await waitForState(second, (state) => state.hasLease);
+    await second.context().close();
+  }));
+});
+
+describe("what comes from elsewhere", () => {
+  /** A page of another origin on the same machine, as anybody could have open. */
+  async function withStranger(run) {
+    const server = createServer((request, response) => {
+      response.writeHead(200, { "Content-Type": "text/html" });
+      response.end("<!doctype html><title>elsewhere</title>");
+    });
+    server.listen(0, "127.0.0.1");
+    await once(server, "listening");
+    try {
+      await run(`http://127.0.0.1:${server.address().port}`);
+    } finally {
+      server.close();
+    }
+  }
+
+  it("is refused in a browser that knows the studio's cookie", withStudio([kBushing], (studio) => withStranger(async (elsewhere) => {
+    const { page } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    const scene = await fetchScene(page);
+    const stranger = await page.context().newPage();
+    await stranger.goto(elsewhere);
+    const tried = await stranger.evaluate(async (origin) => {
+      const read = await fetch(`${origin}/api/scene`, { credentials: "include" }).then((r) => r.text(), () => "refused");
+      const sent = await fetch(`${origin}/api/upload?name=a.step`, {
+        method: "POST",
+        mode: "no-cors",
+        credentials: "include",
+        body: "ISO-10303-21;",
+      }).then((r) => r.type, () => "refused");
+      const socket = await new Promise((resolve) => {
+        const opened = new WebSocket(`${origin.replace("http", "ws")}/ws`);
+        opened.onopen = () => resolve("open");
+        opened.onerror = () => resolve("refused");
+      });
+      return { read, sent, socket };
+    }, studio.origin);
+    assert.equal(tried.read, "refused", "it cannot read what is open");
+    assert.equal(tried.socket, "refused", "it gets no socket");
+    // A browser hides the answer to such a request; the server's own word is below.
+    assert.ok(["opaque", "refused"].includes(tried.sent));
+    assert.equal((await fetchScene(page)).epoch, scene.epoch);
+    await page.context().close();
+  })));
+
+  it("is refused by the server itself, with and without cookie", withStudio([kBushing], async (studio) => {
+    const token = new URL(studio.operator).hash.slice("#t=".length);
+    const session = await fetch(`${studio.origin}/api/session`, {
+      method: "POST",
+      headers: { "Content-Type": "application/json", Origin: studio.origin },
+      body: JSON.stringify({ token }),
+    });
+    assert.equal(session.status, 200);
+    const cookie = session.headers.get("set-cookie").split(";")[0];
+    const evil = "http://evil.example";
+    const upload = (headers) =>
+      fetch(`${studio.origin}/api/upload?name=a.step`, { method: "POST", headers, body: "x" }).then((r) => r.status);
+    assert.equal(await upload({ Cookie: cookie, Origin: evil }), 403);
+    assert.equal(await upload({ Cookie: cookie, Origin: `${studio.origin}.evil.example` }), 403);
+    assert.equal(await upload({ Origin: studio.origin }), 401);
+    assert.equal((await fetch(`${studio.origin}/api/scene`)).status, 401);
+    assert.equal((await fetch(`${studio.origin}/api/scene`, { headers: { Cookie: "hvas=00" } })).status, 401);
+
+    const upgrade = (headers) =>
+      new Promise((resolve) => {
+        const socket = new WebSocket(`${studio.origin.replace("http", "ws")}/ws`, { headers });
+        socket.on("open", () => resolve(101) || socket.close());
+        socket.on("unexpected-response", (_, response) => resolve(response.statusCode));
+        socket.on("error", () => {});
+      });
+    assert.equal(await upgrade({ Cookie: cookie, Origin: evil }), 403);
+    assert.equal(await upgrade({ Origin: studio.origin }), 401);
+    assert.equal(await upgrade({ Cookie: cookie, Origin: studio.origin, Host: "evil.example" }), 403);
+    assert.equal(await upgrade({ Cookie: cookie, Origin: studio.origin }), 101);
+  }));
+});
