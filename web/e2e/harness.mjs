@@ -1,7 +1,7 @@
 // A studio of one's own for each test, and a browser that looks at it as a person would.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { copyFileSync, mkdirSync, mkdtempSync, readFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, mkdtempSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { chromium } from "playwright-core";
@@ -9,9 +9,6 @@ import { chromium } from "playwright-core";
 const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
 const kChromium = process.env["HVAS_CHROMIUM"] ?? "/usr/bin/chromium";
-/** A folder with the page, in place of the one in the program, which then need not be built for each change.
- But its worker: from elsewhere it gets no socket. */
-const kWeb = process.env["HVAS_WEB"];
 mkdirSync(kPictures, { recursive: true });
 
 /** Starts `hvas studio`; its links, and how to end it. */
@@ -73,27 +70,10 @@ export function launchBrowser() {
   });
 }
 
-function serveFrom(folder) {
-  return async (route) => {
-    const { pathname } = new URL(route.request().url());
-    const index = await route.fetch({ url: new URL("/", route.request().url()).href });
-    const headers = { ...index.headers() };
-    delete headers["content-encoding"];
-    delete headers["content-length"];
-    const types = { js: "text/javascript", css: "text/css", svg: "image/svg+xml" };
-    headers["content-type"] = types[pathname.split(".").pop()] ?? "text/html";
-    const body = readFileSync(join(folder, pathname === "/" ? "index.html" : pathname));
-    await route.fulfill({ status: 200, headers, body });
-  };
-}
-
 /** A page with a studio in it. `complaints`: what the browser has to say against it. `beforeLoad` gets the page
  before there is anything in it. */
 export async function openPage(browser, link, { beforeLoad = null, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
-  if (kWeb !== undefined) {
-    await context.route(/^[^?]*(\/|\/assets\/(?!worker)[^/]*)$/, serveFrom(kWeb));
-  }
   const page = await context.newPage();
   const complaints = [];
   page.on("pageerror", (error) => complaints.push(error.message));

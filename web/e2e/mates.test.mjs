@@ -15,6 +15,7 @@ import {
 } from "./harness.mjs";
 
 const kBushing = "../products/bushing.step";
+const [kSleeve, kShaft] = [1, 2];
 
 let browser;
 before(async () => {
@@ -38,7 +39,7 @@ async function epochAfter(page, epoch) {
 
 describe("a mate", () => {
   it("is defined by two clicks and a fit, and removed again", async () => {
-    const { file, mate } = removeMate("axis_hole", 1, 2);
+    const { file, mate } = removeMate("axis_hole", kSleeve, kShaft);
     await withStudio([file], async (studio) => {
       const { page, complaints } = await openPage(browser, studio.operator);
       await waitForPicture(page);
@@ -65,7 +66,7 @@ describe("a mate", () => {
       await epochAfter(page, after.epoch);
       assert.equal((await fetchScene(page)).mates.length, before.mates.length);
       await page.keyboard.press("Control+z");
-      await epochAfter(page, after.epoch + 1);
+      await waitForState(page, ({ epoch }) => epoch === after.epoch);
       assert.equal((await fetchScene(page)).mates.length, after.mates.length, "undone");
       assert.deepEqual(complaints, []);
       await page.context().close();
@@ -75,24 +76,20 @@ describe("a mate", () => {
   it("that cannot be is refused with the reason", withStudio([kBushing], async (studio) => {
     const { page } = await openPage(browser, studio.operator);
     await waitForPicture(page);
-    const scene = await fetchScene(page);
-    const plane = scene.mates.find((m) => m.kind === "face_face");
-    const axis = scene.mates.find((m) => m.kind === "axis_hole" && m.b !== plane.a);
+    const { mates, epoch } = await fetchScene(page);
+    const shaft = mates.find((m) => m.kind === "axis_hole" && m.b === kShaft);
+    const planes = mates.filter((m) => m.kind === "face_face").flatMap((m) => [[m.a, m.faces_a[0]], [m.b, m.faces_b[0]]]);
+    const seen = await page.evaluate(
+      ([faces, sleeve]) => faces.find(([o, f]) => o === sleeve && window.hvas.screenOfFace(o, f) !== null),
+      [planes, kSleeve],
+    );
     await page.keyboard.press("c");
-    await clickFace(page, axis.b, axis.faces_b[0]);
-    const flat = await page.evaluate((mates) => {
-      for (const m of mates) {
-        for (const [o, f] of [[m.a, m.faces_a[0]], [m.b, m.faces_b[0]]]) {
-          if (window.hvas.screenOfFace(o, f)) {
-            return [o, f];
-          }
-        }
-      }
-      return null;
-    }, scene.mates.filter((m) => m.kind === "face_face" && m.a !== axis.b && m.b !== axis.b));
-    if (flat === null) {
-      await page.evaluate(() => {});
-    }
+    await clickFace(page, kShaft, shaft.faces_b[0]);
+    await clickFace(page, ...seen);
+    await page.getByTestId("mate-create").click();
+    assert.match(await page.getByTestId("notice").textContent(), /a plane and a shaft|a shaft and a plane/);
+    await takePicture(page, "mate_refused");
+    assert.equal((await fetchScene(page)).epoch, epoch);
     await page.context().close();
   }));
 
@@ -100,13 +97,13 @@ describe("a mate", () => {
     const { page } = await openPage(browser, studio.operator);
     await waitForPicture(page);
     const before = await fetchScene(page);
-    await page.getByTestId("part-2").click();
+    await page.getByTestId(`part-${kShaft}`).click();
     const input = page.getByTestId("fit-input");
     await input.waitFor();
     await input.fill("H7/p6");
     await page.getByTestId("fit-apply").click();
     await epochAfter(page, before.epoch);
-    const fits = (await fetchScene(page)).mates.filter((m) => (m.a === 2 || m.b === 2) && m.fit).map((m) => m.fit.code);
+    const fits = (await fetchScene(page)).mates.filter((m) => (m.a === kShaft || m.b === kShaft) && m.fit).map((m) => m.fit.code);
     assert.ok(fits.includes("H7/p6"), `${fits}`);
     await page.getByRole("heading", { name: /H7\/p6/ }).waitFor();
     await takePicture(page, "fit_changed");

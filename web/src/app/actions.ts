@@ -144,6 +144,7 @@ const viewActions: Action[] = [
   }),
   toggle("edges", "action.edges", view.showsEdges, { startsGroup: true }),
   toggle("grid", "action.grid", view.showsGrid),
+  toggle("workshop", "action.workshop", view.showsWorkshop, { keys: ["w"], isEnabled: isFine }),
   toggle("forces-shown", "action.forcesShown", view.showsForces),
   toggle("force-scale", "action.forceScale", view.locksForceScale),
   action("quality", "action.quality", toggleQuality, { isOn: isFine, startsGroup: true }),

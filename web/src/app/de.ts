@@ -1,8 +1,10 @@
 import { deTime } from "./de_time";
+import { deView } from "./de_view";
 import type { MessageKey } from "./en";
 
 export const de: Record<MessageKey, string> = {
   ...deTime,
+  ...deView,
   "app.title": "HVAS Studio",
   "app.untitled": "Kein Produkt",
   "menu.file": "Datei",
@@ -300,19 +302,4 @@ export const de: Record<MessageKey, string> = {
   "notice.leaseAsked": "Angefragt. Wer die Steuerung hat, kann sie Ihnen geben.",
   "notice.vrMissing": "Kein Headset gefunden.",
   "notice.vrFailed": "VR ließ sich nicht starten: {text}",
-  "vr.take": "Nach einem Teil greifen und abdrücken, oder Finger schließen.",
-  "vr.takeExpected": "Als Nächstes: {expected}. Danach greifen und abdrücken, oder Finger schließen.",
-  "vr.depth": "Tiefe",
-  "vr.force": "Kraft",
-  "vr.undo": "Zurück",
-  "vr.forcesOff": "Kräfte aus",
-  "vr.forcesOn": "Kräfte ein",
-  "vr.next": "Schritt zeigen",
-  "vr.leave": "VR verlassen",
-  "vr.seated": "Im Sitzen",
-  "vr.larger": "Größer",
-  "vr.smaller": "Kleiner",
-  "vr.left": "Nach links",
-  "vr.right": "Nach rechts",
-  "vr.before": "Zu mir",
 };

@@ -1,8 +1,10 @@
 import { enTime } from "./en_time";
+import { enView } from "./en_view";
 
 /** English, and with it the keys that every language has. */
 export const en = {
   ...enTime,
+  ...enView,
   "app.title": "HVAS Studio",
   "app.untitled": "No product",
   "menu.file": "File",
@@ -299,21 +301,6 @@ export const en = {
   "notice.leaseAsked": "Asked. Whoever has control can give it to you.",
   "notice.vrMissing": "No headset was found.",
   "notice.vrFailed": "VR could not be entered: {text}",
-  "vr.take": "Reach for a part and press the trigger, or pinch.",
-  "vr.takeExpected": "Next: {expected}. Reach for it and press the trigger, or pinch.",
-  "vr.depth": "Depth",
-  "vr.force": "Force",
-  "vr.undo": "Undo",
-  "vr.forcesOff": "Forces off",
-  "vr.forcesOn": "Forces on",
-  "vr.next": "Show this step",
-  "vr.leave": "Leave VR",
-  "vr.seated": "Seated",
-  "vr.larger": "Larger",
-  "vr.smaller": "Smaller",
-  "vr.left": "Turn left",
-  "vr.right": "Turn right",
-  "vr.before": "To me",
 } as const;
 
 export type MessageKey = keyof typeof en;

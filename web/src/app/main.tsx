@@ -2,9 +2,10 @@ import { effect } from "@preact/signals";
 import { render } from "preact";
 import { decodeMoment, decodeView } from "../model/view_link";
 import { App } from "./app";
-import { followTraces, keepPreferences, studio, viewport } from "./app_state";
+import { followTraces, studio, view, viewport } from "./app_state";
 import { language, t } from "./i18n";
 import { listenToKeys } from "./keyboard";
+import { keepPreferences } from "./preferences";
 import { showShared } from "./shared_link";
 import { startSounds } from "./sounds";
 import { exposeHooks } from "./test_hooks";
@@ -41,4 +42,9 @@ exposeHooks();
 showShared(shared, moment);
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 effect(() => viewport.value?.rig.setReducedMotion(calm.matches));
+effect(() => {
+  if (view.isSlow.value) {
+    studio.notify(t("notice.slow"));
+  }
+});
 void studio.start(token);

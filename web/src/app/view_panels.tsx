@@ -8,6 +8,7 @@ import { canSteer, store, studio, view, viewport } from "./app_state";
 import { number, t } from "./i18n";
 import { Icon } from "./icons";
 import { useLive } from "./live";
+import { WorkshopPanel } from "./workshop_panel";
 
 function SectionPanel() {
   const section = view.section.value;
@@ -225,6 +226,7 @@ export function ViewPanels() {
       <div class="float-row">
         <SectionPanel />
         <ExplodePanel />
+        <WorkshopPanel />
       </div>
       {tool === "measure" ? <MeasurePanel /> : null}
       {tool === "mate" ? <MatePanel /> : null}

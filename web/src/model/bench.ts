@@ -49,17 +49,7 @@ export function keepOnBench(item: BenchItem, size: BenchSize): BenchItem {
   return { ...item, x: clamp(item.x, size.x - 0.06), y: clamp(item.y, size.y - 0.06) };
 }
 
-/** What was kept, as far as it makes sense; null: nothing was. */
-export function parseItems(text: string | null): BenchItem[] | null {
-  try {
-    const read: unknown = JSON.parse(text ?? "");
-    return Array.isArray(read) ? read.filter(isItem) : null;
-  } catch {
-    return null;
-  }
-}
-
-function isItem(value: unknown): value is BenchItem {
+export function isItem(value: unknown): value is BenchItem {
   const { kind, x, y, turn } = (value ?? {}) as Partial<BenchItem>;
   return kBenchKinds.includes(kind as BenchKind) && [x, y, turn].every((v) => Number.isFinite(v));
 }

@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals";
 import type { FaceOf, Measurement } from "../protocol/messages";
+import type { BenchItem } from "./bench";
 import type { SectionPlane } from "./view_link";
 
 export type Tool = "hand" | "select" | "measure" | "mate";
@@ -36,6 +37,10 @@ export function makeViewState() {
     locksForceScale: signal(false),
     showsEdges: signal(true),
     showsGrid: signal(true),
+    /** Floor, walls, bench and tools around the product. */
+    showsWorkshop: signal(false),
+    /** What stands on the bench; null: as at first. */
+    benchItems: signal<readonly BenchItem[] | null>(null),
     assists: signal(true),
     letsGoWhenSeated: signal(true),
     /** In VR: the table is at the height of somebody who sits. */

@@ -32,6 +32,8 @@ const kDirections: Record<ViewName, Vec3> = {
   iso: [0.62, -0.95, 0.62],
 };
 const kFieldOfView = 32;
+/** What stands around a small product is to be seen as well [m]. */
+const kFarWall = 15;
 /** Room around what is shown: panels float over the rim of the picture. */
 const kAround = 1.16;
 
@@ -80,7 +82,7 @@ export class CameraRig {
   /** Near and far for a product of this size. */
   setReach(radius: number): void {
     this.perspective.near = radius / 200;
-    this.perspective.far = radius * 60;
+    this.perspective.far = Math.max(kFarWall, radius * 60);
     this.perspective.updateProjectionMatrix();
     this.parallel.near = -radius * 30;
     this.parallel.far = radius * 60;

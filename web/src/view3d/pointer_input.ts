@@ -12,6 +12,8 @@ import type { Viewport } from "./viewport";
 const kClickPx = 4;
 const kTurnPerPx = 0.008;
 const kHoverMs = 40;
+/** Of what stands on the bench, a notch of the wheel [rad]. */
+const kBenchTurn = Math.PI / 12;
 
 type Gesture =
   | { kind: "none" }
@@ -19,7 +21,9 @@ type Gesture =
   | { kind: "press"; x: number; y: number; hit: PickHit | null; takes: boolean }
   | { kind: "taking"; x: number; y: number }
   | { kind: "drag" }
-  | { kind: "turn"; x: number; y: number };
+  | { kind: "turn"; x: number; y: number }
+  /** Of something on the bench. */
+  | { kind: "bench" };
 
 function plain(ray: ThreeRay): Ray {
   return { from: ray.origin.toArray(), along: ray.direction.toArray() };
@@ -85,6 +89,10 @@ export class PointerInput {
         event.stopImmediatePropagation();
         return;
       }
+      if (view.tool.peek() === "hand" && this.viewport.workshop.press(this.viewport.rayAt(x, y), hit?.distance ?? Infinity)) {
+        this.start(event, { kind: "bench" });
+        return;
+      }
       const isLoose = hit !== null && this.studio.store.placements.peek().get(hit.occurrence) === "loose";
       const canTake = hit !== null && (isLoose ? hand.canTake(hit.occurrence) : hand.isLeftInHand(hit.occurrence));
       const takes = view.tool.peek() === "hand" && canTake;
@@ -116,6 +124,9 @@ export class PointerInput {
         break;
       case "drag":
         hand.mouse.drag(this.ray(), this.viewport.eye, event.altKey);
+        break;
+      case "bench":
+        this.viewport.workshop.drag(this.viewport.rayAt(x, y));
         break;
       case "turn": {
         const fine = event.altKey ? 0.2 : 1;
@@ -161,6 +172,7 @@ export class PointerInput {
     this.gesture = { kind: "none" };
     this.viewport.rig.controls.enabled = true;
     this.viewport.hand.mouse.drop();
+    this.viewport.workshop.drop();
   }
 
   private click(event: PointerEvent, hit: PickHit | null): void {
@@ -227,11 +239,15 @@ export class PointerInput {
   }
 
   private onWheel(event: WheelEvent): void {
-    if (this.gesture.kind !== "drag") {
+    if (this.gesture.kind !== "drag" && this.gesture.kind !== "bench") {
       return;
     }
     event.preventDefault();
     event.stopImmediatePropagation();
+    if (this.gesture.kind === "bench") {
+      this.viewport.workshop.turn(Math.sign(event.deltaY) * kBenchTurn);
+      return;
+    }
     const { product, hand, eye } = this.viewport;
     const step = 0.0004 * product.sphere.radius * (event.altKey ? 0.2 : 1);
     hand.mouse.nudge(0, 0, -event.deltaY * step, eye);

@@ -2,7 +2,7 @@
 
 import { effect } from "@preact/signals";
 import { Box3, Group, PerspectiveCamera, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
-import { toVec3, type Vec3 } from "../model/math";
+import type { Vec3 } from "../model/math";
 import type { Studio } from "../model/studio";
 import type { SharedView } from "../model/view_link";
 import type { ViewState } from "../model/view_state";
@@ -12,15 +12,16 @@ import { firstDirection } from "./first_direction";
 import { FrameMeter } from "./frame_meter";
 import { HandControl } from "./hand_control";
 import type { Eye } from "./mouse_hand";
+import { Painter } from "./painter";
 import { readPalette } from "./palette";
 import { copyPicture } from "./picture";
 import { PointerInput } from "./pointer_input";
 import { SceneView } from "./scene_view";
 import { applyView, readView } from "./shared_view";
 import { Stage } from "./stage";
-import { StereoView } from "./stereo_view";
-import type { Room } from "./vr/host";
 import { ViewCube, type CubeLabels } from "./view_cube";
+import type { Room } from "./vr/host";
+import { WorkshopHost } from "./workshop_host";
 
 /** A still picture is drawn this often all the same. */
 const kIdleMs = 500;
@@ -36,6 +37,7 @@ export class Viewport {
   readonly product: SceneView;
   readonly hand: HandControl;
   readonly pointer: PointerInput;
+  readonly workshop: WorkshopHost;
   framesDrawn = 0;
   readonly meter = new FrameMeter();
   live: LiveState | null = null;
@@ -48,7 +50,7 @@ export class Viewport {
   private readonly three = new ThreeScene();
   private readonly stage = new Stage();
   private readonly cube = new ViewCube();
-  private readonly stereo = new StereoView();
+  private readonly painter: Painter;
   private readonly listeners = new Set<FrameListener>();
   private readonly caster = new Raycaster();
   private width = 1;
@@ -74,6 +76,12 @@ export class Viewport {
     this.product = new SceneView(studio.store, view);
     this.worldRoot.add(this.stage.root, this.product.root);
     this.three.add(this.worldRoot);
+    this.painter = new Painter(this.renderer, this.three, this.rig, this.product, this.cube, view);
+    this.workshop = new WorkshopHost(this.worldRoot, view);
+    this.workshop.onChange = () => {
+      this.stage.setGridShown(view.showsGrid.peek() && !this.workshop.isShown);
+      this.invalidate();
+    };
     this.hand = new HandControl(studio, this.product, view);
     this.pointer = new PointerInput(this, studio);
     this.product.onLoaded = (isNew) => this.onLoaded(isNew);
@@ -193,7 +201,7 @@ export class Viewport {
       this.resize();
     });
     effect(() => {
-      this.stage.setGridShown(view.showsGrid.value);
+      this.stage.setGridShown(view.showsGrid.value && !this.workshop.isShown);
       this.invalidate();
     });
     effect(() => {
@@ -211,6 +219,7 @@ export class Viewport {
     const fixed = scene.occurrences.filter((o) => o.is_base).map((o) => o.id);
     const base = new Box3().setFromPoints(this.product.outline(fixed));
     this.stage.fit(around, scene.radius_m, scene.table_z_m, base);
+    this.workshop.fit(around, scene.table_z_m);
     this.rig.setReach(Math.max(scene.radius_m, 0.5 * around.radius));
     if (this.pendingView !== null) {
       this.show(this.pendingView);
@@ -281,33 +290,7 @@ export class Viewport {
   }
 
   private draw(): void {
-    const { renderer, view } = this;
-    const camera = this.rig.camera;
-    if (renderer.xr.isPresenting) {
-      renderer.clear();
-      renderer.render(this.three, this.vrEyes);
-      this.framesDrawn += 1;
-      return;
-    }
-    renderer.setViewport(0, 0, this.width, this.height);
-    renderer.clear();
-    const stereo = view.stereo.peek();
-    if (stereo === "none") {
-      renderer.render(this.three, camera);
-      if (view.section.peek() !== null) {
-        renderer.clearStencil();
-        renderer.render(this.product.caps.scene, camera);
-      }
-      if (this.product.scene !== null) {
-        this.cube.render(renderer, camera, this.width, this.height);
-      }
-    } else {
-      this.stereo.render(renderer, this.three, this.rig.perspective, stereo, {
-        width: this.width,
-        height: this.height,
-        focus: new Vector3(...toVec3(this.rig.pose().target)).distanceTo(camera.position),
-      });
-    }
+    this.painter.draw(this.width, this.height, this.vrEyes);
     this.framesDrawn += 1;
   }
 }

@@ -6,11 +6,10 @@ import {
   Mesh,
   MeshBasicMaterial,
   PlaneGeometry,
+  Raycaster,
   SRGBColorSpace,
   type Ray,
-  type Raycaster,
 } from "three";
-import { Raycaster as Caster } from "three";
 
 export interface PanelButton {
   id: string;
@@ -45,8 +44,9 @@ interface Placed extends PanelButton {
 const kPixelsPerMetre = 1600;
 const kInk = "#e8ebf1";
 const kQuiet = "#a3adbd";
-const kBack = "#171b24";
-const kRaised = "#262e3d";
+const kBack = "#1e2430";
+const kRim = "#5a6678";
+const kRaised = "#34405a";
 const kAccent = "#4f9dff";
 const kBad = "#ff6b6b";
 const kFont = "system-ui, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
@@ -56,7 +56,7 @@ export class Panel {
   private readonly canvas = document.createElement("canvas");
   private readonly pen: CanvasRenderingContext2D;
   private readonly texture: CanvasTexture;
-  private readonly caster: Raycaster = new Caster();
+  private readonly caster = new Raycaster();
   private placed: Placed[] = [];
   private drawn = "";
 
@@ -85,7 +85,10 @@ export class Panel {
     const { pen, canvas } = this;
     const em = this.em * kPixelsPerMetre;
     pen.clearRect(0, 0, canvas.width, canvas.height);
-    this.box(0, 0, canvas.width, canvas.height, 0.7 * em, kBack);
+    this.box(2, 2, canvas.width - 4, canvas.height - 4, 0.7 * em, kBack);
+    pen.lineWidth = 3;
+    pen.strokeStyle = kRim;
+    pen.stroke();
     let y = 1.5 * em;
     this.text(content.title, 0.8 * em, y, 1.12 * em, kInk, true);
     for (const line of content.lines) {

@@ -12,7 +12,7 @@ import type { VrWorld } from "./vr_world";
 /** Before the eyes, and below the line of sight [m]. */
 const kDistance = 1.2;
 const kBelow = 0.12;
-const kBeside = 0.42;
+const kBeside = 0.5;
 const kForceFull = 8;
 const kRedrawMs = 100;
 const kOnWrist = new Matrix4()
@@ -62,7 +62,7 @@ export class VrPanels {
   placeMain(): void {
     this.isPlaced = true;
     const { p, yaw } = this.world.head;
-    const angle = yaw + Math.asin(kBeside / kDistance);
+    const angle = yaw - Math.asin(kBeside / kDistance);
     const mesh = this.main.mesh;
     mesh.position.set(p[0] - kDistance * Math.sin(angle), p[1] - kBelow, p[2] - kDistance * Math.cos(angle));
     mesh.quaternion.setFromAxisAngle(new Vector3(0, 1, 0), angle);

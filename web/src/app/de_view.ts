@@ -1,0 +1,33 @@
+/** German of VR, the workshop and the view. */
+import type { enView } from "./en_view";
+
+export const deView: Record<keyof typeof enView, string> = {
+  "vr.take": "Nach einem Teil greifen und abdrücken, oder Finger schließen.",
+  "vr.takeExpected": "Als Nächstes: {expected}. Danach greifen und abdrücken, oder Finger schließen.",
+  "vr.depth": "Tiefe",
+  "vr.force": "Kraft",
+  "vr.undo": "Zurück",
+  "vr.forcesOff": "Kräfte aus",
+  "vr.forcesOn": "Kräfte ein",
+  "vr.next": "Schritt zeigen",
+  "vr.leave": "VR verlassen",
+  "vr.seated": "Im Sitzen",
+  "vr.larger": "Größer",
+  "vr.smaller": "Kleiner",
+  "vr.left": "Nach links",
+  "vr.right": "Nach rechts",
+  "vr.before": "Zu mir",
+  "action.workshop": "Werkstatt",
+  "bench.title": "Auf der Werkbank",
+  "bench.help": "Klick: hinstellen oder wegräumen. Pfeiltasten schieben, Q und E drehen; oder in der Ansicht ziehen.",
+  "bench.reset": "Wie zu Beginn",
+  "bench.vise": "Schraubstock",
+  "bench.chuck": "Futter",
+  "bench.hammer": "Hammer",
+  "bench.screwdriver": "Schraubendreher",
+  "bench.spanner": "Schlüssel",
+  "bench.caliper": "Messschieber",
+  "bench.tray": "Kasten",
+  "bench.vblock": "Prisma",
+  "notice.slow": "Dieser Rechner zeichnet langsam: ohne Schatten und Werkstatt (Menü Ansicht).",
+};
