@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "spatial/box.h"
+#include "spatial/pose.h"
+
+namespace hvas::sweep {
+
+/** Where a part B was in W, one pose after the other. From one to the next it goes along a screw:
+ straight where it does not turn, along an arc where it only turns. */
+using Path = std::vector<spatial::Pose>;
+
+/** Straight on by d_W [m]. */
+[[nodiscard]] Path MakeTranslation(const spatial::Pose& X_WB, const Vec3& d_W);
+
+/** Around an axis in W through a point of it, by any angle [rad]. @pre axis_W is a unit vector. */
+[[nodiscard]] Path MakeRotation(const spatial::Pose& X_WB, const Vec3& p_WQ, const Vec3& axis_W,
+                                double angle);
+
+/** The pose at a fraction of the screw from one to another; the shorter way round.
+ Source: Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation, 2.3.2. */
+[[nodiscard]] spatial::Pose Interpolate(const spatial::Pose& from, const spatial::Pose& to,
+                                        double fraction);
+
+/** The same way in steps in which no point of a box moves further than `step` [m]; where the part
+ rests, poses that differ by less than an eighth of it are left out. */
+[[nodiscard]] Path Resample(const Path& path, const spatial::Box& box_B, double step);
+
+/** Way of a point of B [m], with arcs as the chords between the poses. */
+[[nodiscard]] double CalcLength(const Path& path, const Vec3& p_BQ);
+
+}  // namespace hvas::sweep
