@@ -12,7 +12,8 @@ import { Icon } from "./icons";
 import { Rates } from "./rates";
 
 const close = () => (ui.overlay.value = null);
-const leads = (hand: number) => canSteer() && store.ownHands.value.includes(hand);
+/** Also while a recording is looked at: hands are live. */
+const leads = (hand: number) => store.link.value === "open" && store.ownHands.value.includes(hand);
 
 async function search(): Promise<void> {
   const list = await studio.command({ command: "devices" });
