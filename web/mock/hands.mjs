@@ -6,6 +6,7 @@ const MOUSE = {
   model: "Simulated device of 7.9 N",
   is_emulated: false,
   has_force: true,
+  has_torque: true,
   max_force_n: 7.9,
   scale: 1,
   notes: [],
@@ -36,16 +37,16 @@ export class Hands {
     this.isSearching = false;
   }
 
-  list(lease) {
-    return this.devices.map((device, hand) => ({ hand, device, condition: "ready", lease }));
+  list() {
+    return this.devices.map((device, hand) => ({ hand, device, condition: "ready" }));
   }
 
-  setCount(count, lease) {
+  setCount(count) {
     this.devices = Array.from({ length: count }, (_, hand) => this.devices[hand] ?? MOUSE);
-    this.tell(lease);
+    this.tell();
   }
 
-  use(hand, address, scale, lease) {
+  use(hand, address, scale) {
     const found = FOUND.find((each) => each.address === address);
     this.devices[hand] =
       found === undefined
@@ -57,11 +58,11 @@ export class Hands {
             scale: scale || 1.6,
             notes: ["No torque: only the force of a contact is felt."],
           };
-    this.tell(lease);
+    this.tell();
   }
 
-  tell(lease) {
-    this.onChange({ event: "hands", hands: this.list(lease) });
+  tell() {
+    this.onChange({ event: "hands", hands: this.list() });
   }
 
   search() {
@@ -88,9 +89,7 @@ export function rates(hand) {
     hands: [0, 1].map((k) => ({
       hand: k,
       force_n: k === 0 ? Math.hypot(...(hand?.f_felt_W_n ?? [0])) : 0,
-      limit_n: 7.9,
-      speed_m_s: k === 0 && hand?.state ? 0.12 : 0,
-      condition: "ready",
+      torque_nm: k === 0 ? Math.hypot(...(hand?.t_felt_W_nm ?? [0])) : 0,
       energy_j: 0.0021,
     })),
   };

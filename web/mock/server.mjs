@@ -103,7 +103,7 @@ function sendFile(response, pathname) {
 }
 
 const lease = () => clients.keys().next().value;
-const roles = () => [...clients.keys()].map((id) => ({ id, role: "operator", has_lease: id === lease(), hands: id === lease() ? hands.devices.map((_, k) => k) : [] }));
+const roles = () => [...clients.keys()].map((id) => ({ id, role: "operator", has_lease: id === lease(), hands: id === lease() ? [0, 1] : [] }));
 
 const commands = {
   async open({ example }) {
@@ -123,9 +123,9 @@ const commands = {
   },
   demo: ({ on }) => (on ? simulation.startDemo(true) : simulation.stopDemo()),
   next: () => simulation.startDemo(false),
-  hands: ({ count }) => hands.setCount(count, lease()),
+  hands: ({ count }) => hands.setCount(count),
   devices: () => hands.search(),
-  use: ({ hand, device, scale }) => hands.use(hand, device, scale, lease()),
+  use: ({ hand, device, scale }) => hands.use(hand, device, scale),
   record: ({ on, name }) => (on ? recorder.start(world, simulation, name) : recorder.stop()),
   delete_recording({ id }) {
     recorder.done.delete(id);
@@ -147,7 +147,7 @@ new WebSocketServer({ server, path: "/ws" }).on("connection", (socket) => {
   const client = { socket, pending: 0, knows: 0 };
   clients.set(id, client);
   const hello = { event: "hello", version: 1, role: "operator", client: id, has_lease: id === lease() };
-  socket.send(JSON.stringify({ ...hello, examples: EXAMPLES, forces_off: forcesOff, has_scene: world !== null, hands: hands.list(lease()), recording: recorder.state() }));
+  socket.send(JSON.stringify({ ...hello, examples: EXAMPLES, forces_off: forcesOff, has_scene: world !== null, hands: hands.list(), recording: recorder.state() }));
   broadcast({ event: "roles", clients: roles() });
   broadcast({ event: "history", undo: null, redo: null });
   simulation?.nextStep();
@@ -203,7 +203,6 @@ setInterval(
       wake_up_p99_us: 90,
       scheduling: "SCHED_FIFO",
       physics_hz: 100,
-      device: "Mouse",
       late_ticks: 0,
       clients: clients.size,
       effort_level: 0,

@@ -9,9 +9,10 @@ import {
   totalOf,
 } from "../src/model/compare";
 import { makeBars } from "../src/model/histogram";
-import { forceShare, isPointerHand, parseScale } from "../src/model/hands";
+import { forceShare, isPointerHand, leaderOf, parseScale } from "../src/model/hands";
 import { heldAt, markedSpan, rangeOf, type PlotClock } from "../src/model/plot_range";
 import { makeRun } from "../src/model/recordings";
+import type { Client } from "../src/protocol/messages";
 import type { HandSetup, PartResult, RecordedEvent, RecordingDetail } from "../src/protocol/recording_messages";
 import { kPeriodNs, toyDetail, toyFrames } from "./toy_recording";
 
@@ -184,9 +185,8 @@ describe("a histogram", () => {
 describe("hands", () => {
   const mouse: HandSetup = {
     hand: 0,
-    device: { address: "pointer", name: "Mouse", model: "", is_emulated: false, has_force: true, max_force_n: 8, scale: 1, notes: [] },
+    device: { address: "pointer", name: "Mouse", model: "", is_emulated: false, has_force: true, has_torque: true, max_force_n: 8, scale: 1, notes: [] },
     condition: "ready",
-    lease: "c1",
   };
   const touch: HandSetup = { ...mouse, hand: 1, device: { ...mouse.device, address: "touch:0" } };
 
@@ -202,10 +202,22 @@ describe("hands", () => {
     expect(["", " 1.5 ", "0,25", "0", "-1", "x", "1e9"].map(parseScale)).toEqual([0, 1.5, 0.25, null, null, null, null]);
   });
 
-  it("tell their force as a share of its limit", () => {
-    const status = { hand: 0, force_n: 2, limit_n: 8, speed_m_s: 0, condition: "ready", energy_j: 0 };
-    expect(forceShare(status)).toBe(0.25);
-    expect(forceShare({ ...status, force_n: 9 })).toBe(1);
-    expect(forceShare({ ...status, limit_n: 0 })).toBe(0);
+  it("follow the mouse with an emulated device in them", () => {
+    const emulated = { ...touch, device: { ...touch.device, is_emulated: true } };
+    expect(isPointerHand([mouse, emulated], [0, 1], 1)).toBe(true);
+  });
+
+  it("are led by one client each", () => {
+    const clients: Client[] = [
+      { id: "c1", role: "operator", has_lease: true, hands: [0] },
+      { id: "c2", role: "operator", has_lease: false, hands: [1] },
+    ];
+    expect([0, 1, 2].map((hand) => leaderOf(clients, hand)?.id)).toEqual(["c1", "c2", undefined]);
+  });
+
+  it("tell their force as a share of the most", () => {
+    expect(forceShare(2, 8)).toBe(0.25);
+    expect(forceShare(9, 8)).toBe(1);
+    expect(forceShare(1, null)).toBe(0);
   });
 });

@@ -39,6 +39,15 @@ export function Banners() {
           ) : null}
         </div>
       ) : null}
+      {[...store.deviceTroubles.value].map(([hand, text]) => (
+        <div class="banner is-bad" role="alert" key={hand} data-testid={`device-trouble-${hand}`}>
+          <Icon name="warn" />
+          <span>{t("banner.device", { n: hand + 1, text })}</span>
+          <button type="button" class="banner-button" onClick={() => runAction(findAction("devices"))}>
+            {t("devices.title")}
+          </button>
+        </div>
+      ))}
       <PlayingBanner />
       {store.leaseAskedBy.value !== null ? (
         <div class="banner is-info" role="alert" data-testid="lease-asked">

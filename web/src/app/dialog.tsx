@@ -43,9 +43,11 @@ export function Dialog({ title, kind, onClose, children }: DialogProps) {
 /** The page's own notices are out of reach behind it. */
 function Refusal() {
   const notice = store.notice.value;
+  const failure = store.failure.value;
+  const text = notice?.isError ? notice.text : failure === null ? "" : `${failure.message} ${failure.where}. ${failure.remedy}`;
   return (
     <div role="status" aria-live="polite">
-      {notice?.isError ? <p class="note is-bad dialog-refusal">{notice.text}</p> : null}
+      {text === "" ? null : <p class="note is-bad dialog-refusal">{text}</p>}
     </div>
   );
 }

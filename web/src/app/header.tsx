@@ -1,6 +1,7 @@
 import { ActionButton } from "./action_button";
 import { findAction, forcesOff, runAction } from "./actions";
 import { canSteer, store, studio, ui } from "./app_state";
+import { deviceName } from "./device_name";
 import { number, t } from "./i18n";
 import { Icon } from "./icons";
 import { MenuBar } from "./menu";
@@ -11,7 +12,7 @@ function Chips() {
     return null;
   }
   const isSoft = status.scheduling !== "" && !/fifo|rr|deadline|real/i.test(status.scheduling);
-  const device = status.device || t("header.noDevice");
+  const device = store.hands.value.map(deviceName).join(" + ") || t("header.noDevice");
   return (
     <div class="chips">
       <span

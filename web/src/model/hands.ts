@@ -1,20 +1,28 @@
 /** Who leads which hand, and with what. */
 
-import type { HandSetup, HandStatus } from "../protocol/recording_messages";
+import type { Client } from "../protocol/messages";
+import type { HandSetup } from "../protocol/recording_messages";
 
 export const kPointer = "pointer";
 
-/** May the mouse of this page move the hand? */
+/** May the mouse of this page move the hand? An emulated device is held by it as well. */
 export function isPointerHand(hands: readonly HandSetup[], own: readonly number[], hand: number): boolean {
   const setup = hands.find((each) => each.hand === hand);
-  // A server that says nothing of hands has one, for the pointer.
-  const isThere = setup === undefined ? hand === 0 && hands.length === 0 : setup.device.address === kPointer;
+  const isThere =
+    setup === undefined
+      ? hand === 0 && hands.length === 0
+      : setup.device.address === kPointer || setup.device.is_emulated;
   return isThere && own.includes(hand);
 }
 
-/** How much of what may be is there now, from 0 to 1. */
-export function forceShare(status: HandStatus): number {
-  return status.limit_n > 0 ? Math.min(1, Math.max(0, status.force_n / status.limit_n)) : 0;
+/** The client that leads a hand. */
+export function leaderOf(clients: readonly Client[], hand: number): Client | null {
+  return clients.find((client) => (client.hands ?? (client.has_lease ? [0] : [])).includes(hand)) ?? null;
+}
+
+/** How much of the most that there may be is there now, from 0 to 1. */
+export function forceShare(forceN: number, mostN: number | null): number {
+  return mostN !== null && mostN > 0 ? Math.min(1, Math.max(0, forceN / mostN)) : 0;
 }
 
 /** What the device of a hand is told to do: 0 for the scale of its profile. Null for what is no number. */
@@ -25,4 +33,17 @@ export function parseScale(text: string): number | null {
   }
   const value = Number(trimmed);
   return Number.isFinite(value) && value > 0 && value <= 100 ? value : null;
+}
+
+/** What is the matter with each hand's device, after news of one of them. */
+export function withTrouble(
+  before: ReadonlyMap<number, string>,
+  news: { hand: number; condition: string; text: string },
+): ReadonlyMap<number, string> {
+  const after = new Map(before);
+  after.delete(news.hand);
+  if (news.condition !== "ready") {
+    after.set(news.hand, news.text);
+  }
+  return after;
 }

@@ -5,7 +5,8 @@ import { CommandError } from "../protocol/connection";
 import { kMaxHands, sampleOf } from "../protocol/frame_store";
 import type { Scene, ServerError } from "../protocol/messages";
 import { RecordedFrames } from "../protocol/recorded_frames";
-import type { RecordingDetail, RecordingEntry } from "../protocol/recording_messages";
+import type { RecordingDetail, RecordingEntry, RecordingNow } from "../protocol/recording_messages";
+import type { Told } from "./event_log";
 import { Playback, type RecordedRun } from "./playback";
 import type { Store } from "./store";
 import type { Studio } from "./studio";
@@ -54,6 +55,21 @@ export class Recordings {
     private readonly store: Store,
     private readonly studio: Pick<Studio, "command" | "notify">,
   ) {}
+
+  /** The server records, or does not any more. @return What there is to tell. */
+  note(event: RecordingNow | null): Told | null {
+    const { recording } = this.store;
+    const before = recording.value;
+    const isOn = event?.on === true;
+    recording.value = isOn ? { id: event.id, name: event.name, sinceMs: performance.now() - 1e3 * event.t_s } : null;
+    if (isOn === (before !== null)) {
+      return null;
+    }
+    if (before !== null) {
+      this.lastMade.value = before.id;
+    }
+    return { kind: "recording", params: { on: isOn ? 1 : 0, name: event?.name ?? before?.name ?? "" } };
+  }
 
   async fetchList(): Promise<void> {
     const list = await this.attempt(fetchJson<{ recordings: RecordingEntry[] }>("/api/recordings"));

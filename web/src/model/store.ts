@@ -111,13 +111,13 @@ export function makeStore() {
   const link = signal<LinkState>("starting");
   const hasLease = signal(false);
   const client = signal("");
-  const hands = signal<readonly HandSetup[]>([]);
+  const clients = signal<readonly Client[]>([]);
   return {
     link,
     role: signal<Role>("viewer"),
     client,
     hasLease,
-    clients: signal<readonly Client[]>([]),
+    clients,
     /** Who asks this page for control. */
     leaseAskedBy: signal<string | null>(null),
     examples: signal<readonly Example[]>([]),
@@ -131,7 +131,9 @@ export function makeStore() {
     runs: shown("runs"),
     log: shown("log"),
     /** What each hand is; none before the server has said it. */
-    hands,
+    hands: signal<readonly HandSetup[]>([]),
+    /** What is the matter with a hand's device, and what to do about it. */
+    deviceTroubles: signal<ReadonlyMap<number, string>>(new Map()),
     devices: signal<DeviceList | null>(null),
     recording: signal<Recording | null>(null),
     recordings: signal<readonly RecordingEntry[] | null>(null),
@@ -160,12 +162,11 @@ export function makeStore() {
     ),
     /** May this page do what changes the work? */
     canSteer: computed(() => hasLease.value && link.value === "open" && replay.value === null),
-    /** The hands that this page leads. A server that says nothing of hands has one. */
-    ownHands: computed<readonly number[]>(() =>
-      hands.value.length === 0
-        ? hasLease.value ? [0] : []
-        : hands.value.filter((h) => h.lease === client.value).map((h) => h.hand),
-    ),
+    /** The hands that this page leads. */
+    ownHands: computed<readonly number[]>(() => {
+      const own = clients.value.find((c) => c.id === client.value);
+      return own?.hands ?? (hasLease.value ? [0] : []);
+    }),
     /** By occurrence. */
     heldBy: computed<ReadonlyMap<number, HeldSummary>>(() => new Map(held.value.map((h) => [h.occurrence, h]))),
   };

@@ -5,8 +5,8 @@ import { CommandError, Connection } from "../protocol/connection";
 import type { LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
 import type { Client, Command, CommandResults, Scene, ServerError, ServerEvent } from "../protocol/messages";
-import type { RecordingNow } from "../protocol/recording_messages";
 import { isAlarm, kAlarms, kLogLength, kRunsLength, runOf, tell, type Told } from "./event_log";
+import { withTrouble } from "./hands";
 import { isSameHeld, summarize } from "./held";
 import { Recordings } from "./recordings";
 import { uploadFile } from "./upload";
@@ -196,7 +196,7 @@ export class Studio {
           store.live.scene.value = null;
         }
         store.hands.value = event.hands ?? [];
-        this.noteRecording(event.recording ?? null);
+        this.recordings.note(event.recording ?? null);
         break;
       case "progress":
         store.failure.value = null;
@@ -245,11 +245,14 @@ export class Studio {
       case "hands":
         store.hands.value = event.hands;
         break;
+      case "device":
+        store.deviceTroubles.value = withTrouble(store.deviceTroubles.value, event);
+        break;
       case "devices":
         store.devices.value = event;
         break;
       case "recording":
-        this.noteRecording(event);
+        this.log(this.recordings.note(event));
         break;
       case "recordings":
         void this.recordings.fetchList();
@@ -268,20 +271,6 @@ export class Studio {
     const isAsked = own?.has_lease === true && clients.some((c) => c.id === this.store.leaseAskedBy.value);
     if (!isAsked) {
       this.store.leaseAskedBy.value = null;
-    }
-  }
-
-  /** The record that runs, or that one has ended. */
-  private noteRecording(event: RecordingNow | null): void {
-    const { recording } = this.store;
-    const before = recording.value;
-    const isOn = event?.on === true;
-    recording.value = isOn ? { id: event.id, name: event.name, sinceMs: performance.now() - 1e3 * event.t_s } : null;
-    if (isOn !== (before !== null)) {
-      this.log({ kind: "recording", params: { on: isOn ? 1 : 0, name: event?.name ?? before?.name ?? "" } });
-    }
-    if (before !== null && !isOn) {
-      this.recordings.lastMade.value = before.id;
     }
   }
 

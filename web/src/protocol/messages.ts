@@ -209,7 +209,6 @@ export interface ServerStatus {
   wake_up_p99_us: number;
   scheduling: string;
   physics_hz: number;
-  device: string;
   late_ticks: number;
   clients: number;
   effort_level: number;
@@ -253,6 +252,7 @@ export type ServerEvent =
   | { event: "history"; undo: string | null; redo: string | null }
   | { event: "demo"; on: boolean }
   | { event: "hands"; hands: HandSetup[] }
+  | { event: "device"; hand: number; condition: string; text: string }
   | ({ event: "devices" } & DeviceList)
   | ({ event: "recording" } & RecordingNow)
   | { event: "recordings" }

@@ -7,10 +7,13 @@ export interface DeviceInHand {
   address: string;
   name: string;
   model: string;
+  serial?: string;
   is_emulated: boolean;
   has_force: boolean;
-  max_force_n: number;
-  scale: number;
+  has_torque: boolean;
+  /** Null while nothing is open. */
+  max_force_n: number | null;
+  scale: number | null;
   notes: string[];
 }
 
@@ -18,8 +21,6 @@ export interface HandSetup {
   hand: number;
   device: DeviceInHand;
   condition: string;
-  /** The client that has this hand, as "c1". */
-  lease: string | null;
 }
 
 export interface FoundDevice {
@@ -36,12 +37,11 @@ export interface DeviceList {
   is_searching: boolean;
 }
 
+/** What the hand is given by the last tick, and what it gave and took since the run began. */
 export interface HandStatus {
   hand: number;
   force_n: number;
-  limit_n: number;
-  speed_m_s: number;
-  condition: string;
+  torque_nm: number;
   energy_j: number;
 }
 

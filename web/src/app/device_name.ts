@@ -1,0 +1,7 @@
+import { kPointer } from "../model/hands";
+import type { HandSetup } from "../protocol/recording_messages";
+import { t } from "./i18n";
+
+export function deviceName({ device }: HandSetup): string {
+  return device.address === kPointer ? t("devices.mouse") : device.name;
+}
