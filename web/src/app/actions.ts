@@ -14,7 +14,7 @@ const hasScene = () => store.scene.value !== null;
 const chosen = () => view.selected.value;
 const hasChosen = () => hasScene() && chosen().length > 0;
 const steers = () => hasScene() && canSteer();
-const isHolding = () => store.held.value.some((h) => h.hand === 0);
+const isHolding = () => store.held.value.some((h) => h.hand === view.hand.value);
 
 function tool(name: Tool, id: string, label: MessageKey, key: string): Action {
   return action(id, label, () => setTool(name), {
@@ -36,9 +36,7 @@ function standardView(name: ViewName, label: MessageKey, key: string): Action {
 /** Always works, whoever has control: no force any more, at once. */
 export function forcesOff(): void {
   void studio.command({ command: "forces", off: true });
-  if (viewport.value?.hand.isBusy) {
-    viewport.value.hand.release();
-  }
+  viewport.value?.hand.releaseAll();
 }
 
 export function takeChosen(): void {

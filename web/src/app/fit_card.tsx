@@ -36,13 +36,13 @@ function limits(fit: Fit): { label: string; text: string; actual: string } {
   };
 }
 
-function FitForces() {
+function FitForces({ part }: { part: number }) {
   const axialTrue = useRef<HTMLElement>(null);
   const axialFelt = useRef<HTMLElement>(null);
   const felt = useRef<HTMLElement>(null);
   const ratio = useRef<HTMLElement>(null);
   useLive((live) => {
-    const hand = holdingHand(live);
+    const hand = holdingHand(live, part);
     const newtons = (value: number | undefined) => (value === undefined ? "–" : `${value < 1e-3 ? 0 : figures(value)} N`);
     const values = hand === null ? null : liveNumbers(hand);
     setText(axialTrue.current, newtons(hand?.axial_true_n));
@@ -127,7 +127,7 @@ export function FitCard({ part }: { part: Occurrence }) {
           {told !== null ? <dd>{told.text}</dd> : null}
           {told !== null ? <dt>{t("fit.actual", { seed: store.scene.value?.seed ?? "" })}</dt> : null}
           {told !== null ? <dd>{told.actual}</dd> : null}
-          <FitForces />
+          <FitForces part={part.id} />
         </dl>
         {canSteer() && mate.kind === "axis_hole" ? <FitChoice mate={mate} key={mate.id} /> : null}
       </div>

@@ -2,7 +2,7 @@
 
 import { useRef } from "preact/hooks";
 import { liveNumbers, makeHint } from "../model/hints";
-import { canSteer, store, ui, viewport } from "./app_state";
+import { canSteer, store, ui, view, viewport } from "./app_state";
 import { findAction, isEnabled, runAction } from "./actions";
 import { number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
@@ -27,7 +27,8 @@ export function HintBar() {
   if (scene === null) {
     return null;
   }
-  const held = store.held.value[0] ?? null;
+  const hasTwo = store.hands.value.length > 1;
+  const held = store.held.value.find((h) => h.hand === view.hand.value) ?? store.held.value[0] ?? null;
   const expected = store.expected.value?.occurrence ?? null;
   const hint = makeHint({ scene, held, expected, isDone: store.isDone.value, canSteer: canSteer() });
   const mayLetGo = held !== null && isEnabled(findAction("release"));
@@ -35,6 +36,7 @@ export function HintBar() {
     <div class={`hint-bar is-${hint.state}`} ref={bar} data-testid="hint" data-state={hint.state}>
       <i class="state-dot" aria-hidden="true" />
       <div class="hint-text">
+        {hasTwo ? <span class="badge">{t("hands.name", { n: (held?.hand ?? view.hand.value) + 1 })}</span> : null}
         <strong>{hint.params.part || t(`state.${hint.state}`)}</strong>
         {hint.params.part ? <span class="hint-state">{t(`state.${hint.state}`)}</span> : null}
         <span class="hint-words">{t(hint.key, hint.params)}</span>

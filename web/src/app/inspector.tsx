@@ -20,7 +20,7 @@ function Selected({ part }: { part: Occurrence }) {
   const tilt = useRef<HTMLElement>(null);
   const offset = useRef<HTMLElement>(null);
   useLive((live) => {
-    const hand = holdingHand(live);
+    const hand = holdingHand(live, part.id);
     const isGuided = hand !== null && hand.occurrence === part.id && hand.mate !== kNone && hand.state >= 2;
     const values = isGuided ? liveNumbers(hand) : null;
     setText(tilt.current, values === null ? "–" : `${number(values.tiltDeg, 2)}°`);

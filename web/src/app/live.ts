@@ -3,7 +3,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { LiveState } from "../protocol/frame_store";
 import type { HandState } from "../protocol/frames";
-import { viewport } from "./app_state";
+import { view, viewport } from "./app_state";
 
 /** Ten times a second is as fast as people read. */
 const kReadMs = 100;
@@ -23,9 +23,11 @@ export function useLive(write: (live: LiveState | null) => void, everyMs = kRead
   }, [port, everyMs]);
 }
 
-/** The hand that holds something, or none. */
-export function holdingHand(live: LiveState | null): HandState | null {
-  return live?.hands.find((h) => h.state > 0) ?? null;
+/** The hand that holds something, or none; of two the one that has `wanted`, or that the mouse leads. */
+export function holdingHand(live: LiveState | null, wanted: number | null = null): HandState | null {
+  const holding = live?.hands.filter((h) => h.state > 0) ?? [];
+  const ofWanted = wanted === null ? undefined : holding.find((h) => h.occurrence === wanted);
+  return ofWanted ?? holding.find((h) => h.hand === view.hand.peek()) ?? holding[0] ?? null;
 }
 
 /** Writes only what has changed: the page is not laid out anew for nothing. */

@@ -41,7 +41,7 @@ export function seek(timeS: number): void {
 
 /** Opens a recording in place of what is live. */
 export async function openRecording(id: string, timeS = 0): Promise<void> {
-  viewport.value?.hand.release();
+  viewport.value?.hand.releaseAll();
   if (await studio.recordings.open(id, timeS)) {
     ui.plotSpan.value = null;
   }

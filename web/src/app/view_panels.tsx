@@ -184,7 +184,7 @@ function Legend() {
     if (!port || !at || bar.current === null || text.current === null) {
       return;
     }
-    const px = port.product.feel.scale.perN / Math.max(1e-9, port.eye.metresPerPixel(at.p));
+    const px = port.product.arrowScale.now.perN / Math.max(1e-9, port.eye.metresPerPixel(at.p));
     const unit = [0.5, 1, 2, 5, 10, 20, 50, 100].find((n) => n * px >= 36) ?? 100;
     bar.current.style.width = `${Math.min(120, unit * px)}px`;
     text.current.textContent = `${number(unit)} N`;

@@ -91,6 +91,33 @@ export interface ForceScale {
   perNm: number;
 }
 
+/** How long arrows are: the same for both hands, so that their forces can be compared by eye. */
+export class ArrowScale {
+  isLocked = false;
+  private radius = 0.1;
+  private largestN = 4;
+
+  fit(radius: number): void {
+    this.radius = radius;
+    this.largestN = 4;
+  }
+
+  take(forceN: number): void {
+    if (!this.isLocked) {
+      this.largestN = Math.max(this.largestN, forceN);
+    }
+  }
+
+  share(forceN: number): number {
+    return Math.min(1, forceN / this.largestN);
+  }
+
+  get now(): ForceScale {
+    const longest = 0.65 * this.radius;
+    return { perN: longest / this.largestN, perNm: longest / (0.25 * this.largestN * this.radius) };
+  }
+}
+
 export class FeelLayer {
   readonly root = new Group();
   private readonly force = new Arrow();
@@ -100,10 +127,8 @@ export class FeelLayer {
   private readonly dots: InstancedMesh;
   private readonly axis: LineSegments<BufferGeometry, LineDashedMaterial>;
   private radius = 0.1;
-  private largestN = 4;
-  private isScaleLocked = false;
 
-  constructor() {
+  constructor(private readonly scale: ArrowScale) {
     this.dots = new InstancedMesh(
       new SphereGeometry(1, 12, 8),
       new MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.95 }),
@@ -136,17 +161,6 @@ export class FeelLayer {
 
   setRadius(radius: number): void {
     this.radius = radius;
-    this.largestN = 4;
-  }
-
-  lockScale(isLocked: boolean): void {
-    this.isScaleLocked = isLocked;
-  }
-
-  /** Of the arrows, for the legend. */
-  get scale(): ForceScale {
-    const longest = 0.65 * this.radius;
-    return { perN: longest / this.largestN, perNm: longest / (0.25 * this.largestN * this.radius) };
   }
 
   /** @param goal  In W; `tracked` in the frame of the held part. Empty: nothing is held. */
@@ -183,10 +197,8 @@ export class FeelLayer {
     }
     const f = new Vector3(...hand.f_felt_W_n);
     const t = new Vector3(...hand.t_felt_W_nm);
-    if (!this.isScaleLocked) {
-      this.largestN = Math.max(this.largestN, f.length());
-    }
-    const { perN, perNm } = this.scale;
+    this.scale.take(f.length());
+    const { perN, perNm } = this.scale.now;
     const longest = 0.8 * this.radius;
     if (f.length() > kLeastForce) {
       const length = Math.min(longest, f.length() * perN);
@@ -203,7 +215,7 @@ export class FeelLayer {
     this.dots.count = Math.min(contacts.length, kMaxContacts);
     for (let k = 0; k < this.dots.count; k++) {
       const contact = contacts[k]!;
-      const size = this.radius * (0.009 + 0.009 * Math.min(1, Math.hypot(...contact.f_C_W_n) / this.largestN));
+      const size = this.radius * (0.009 + 0.009 * this.scale.share(Math.hypot(...contact.f_C_W_n)));
       matrix.makeScale(size, size, size).setPosition(...toVec3(contact.p_WC_m));
       this.dots.setMatrixAt(k, matrix);
     }

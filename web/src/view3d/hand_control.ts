@@ -1,10 +1,13 @@
-/** Takes and lets go on behalf of the mouse hand, and tells the server where it is. */
+/** Takes and lets go on behalf of the hands that the mouse leads, and tells the server where they are. It
+ leads one at a time; the other one stays where it was led to. */
 
 import { effect } from "@preact/signals";
+import { isPointerHand } from "../model/hands";
 import { toQuat, toVec3, type Pose } from "../model/math";
 import type { Studio } from "../model/studio";
 import type { ViewState } from "../model/view_state";
-import type { LiveState } from "../protocol/frame_store";
+import { kMaxHands, type LiveState } from "../protocol/frame_store";
+import type { HandInput } from "../protocol/frames";
 import type { Occurrence } from "../protocol/messages";
 import { MouseHand, type Eye } from "./mouse_hand";
 import type { SceneView } from "./scene_view";
@@ -14,14 +17,22 @@ interface Taken {
   X_WH: Pose;
 }
 
-const kHand = 0;
 /** A part that is in its place is let go after this while. */
 const kSettleMs = 500;
 
+interface Led {
+  readonly hand: number;
+  readonly mouse: MouseHand;
+  seatedSince: number | null;
+}
+
 export class HandControl {
-  readonly mouse = new MouseHand();
+  private readonly led: readonly Led[] = Array.from({ length: kMaxHands }, (_, hand) => ({
+    hand,
+    mouse: new MouseHand(hand),
+    seatedSince: null,
+  }));
   private isTaking = false;
-  private seatedSince: number | null = null;
 
   constructor(
     private readonly studio: Studio,
@@ -30,27 +41,48 @@ export class HandControl {
   ) {
     effect(() => {
       // Whoever steers now goes on from where the part is.
-      if (!studio.store.hasLease.value && this.mouse.occurrence !== null) {
-        this.stop();
+      const own = studio.store.ownHands.value;
+      for (const led of this.led.filter(({ hand }) => !own.includes(hand))) {
+        this.forget(led);
+      }
+    });
+    effect(() => {
+      if (view.hand.value >= Math.max(1, studio.store.hands.value.length)) {
+        view.hand.value = 0;
       }
     });
   }
 
+  /** The hand that the mouse leads now. */
+  get mouse(): MouseHand {
+    return this.led[this.view.hand.peek()]!.mouse;
+  }
+
   get isBusy(): boolean {
-    return this.isTaking || this.mouse.occurrence !== null;
+    return this.isTaking || this.led.some(({ mouse }) => mouse.occurrence !== null);
+  }
+
+  /** The mouse goes over to the hand that has this part, where it is one that it leads. */
+  turnTo(occurrence: number): void {
+    const led = this.led.find(({ mouse }) => mouse.occurrence === occurrence);
+    if (led !== undefined) {
+      this.view.hand.value = led.hand;
+    }
   }
 
   canTake(occurrence: number): boolean {
-    const { hasLease, forcesOff, demo } = this.studio.store;
+    const { forcesOff, demo, hands, ownHands, replay } = this.studio.store;
     const part = this.product.occurrence(occurrence);
-    return part !== null && !part.is_base && hasLease.peek() && !forcesOff.peek() && !demo.peek() && !this.isBusy;
+    const mayLead = isPointerHand(hands.peek(), ownHands.peek(), this.view.hand.peek()) && replay.peek() === null;
+    const isFree = !this.isTaking && this.mouse.occurrence === null;
+    return part !== null && !part.is_base && mayLead && isFree && !forcesOff.peek() && !demo.peek();
   }
 
   /** Whether the part has been in the hand since before this page steered: it was loaded anew, or
    control was handed over. */
   isLeftInHand(occurrence: number): boolean {
     const held = this.studio.store.heldBy.peek().get(occurrence);
-    return held?.hand === kHand && this.canTake(occurrence);
+    return held?.hand === this.view.hand.peek() && this.canTake(occurrence);
   }
 
   /** @return Whether the hand holds the part now. */
@@ -60,78 +92,104 @@ export class HandControl {
     if (part === null || scene === null || !this.canTake(occurrence)) {
       return false;
     }
+    const { hand, mouse } = this.led[this.view.hand.peek()]!;
     this.view.explode.value = 0;
-    const taken = this.isLeftInHand(occurrence) ? this.takeOver() : await this.takeUp(part);
+    const taken = this.isLeftInHand(occurrence) ? this.takeOver(hand) : await this.takeUp(hand, part);
     if (taken === null) {
       return false;
     }
     const step = scene.steps.find((s) => s.occurrence === occurrence && s.kind === "insert") ?? null;
     const radius = this.product.parts?.shapeOf(occurrence)?.sphere.radius ?? 0.05;
     const clearance = step === null ? 0 : this.product.clearance(step);
-    this.mouse.begin({ occurrence, X_WB: taken.X_WB, goal: part.goal, step, radius, clearance }, taken.X_WH);
+    mouse.begin({ occurrence, X_WB: taken.X_WB, goal: part.goal, step, radius, clearance }, taken.X_WH);
     return true;
   }
 
-  private async takeUp(part: Occurrence): Promise<Taken | null> {
+  private async takeUp(hand: number, part: Occurrence): Promise<Taken | null> {
     this.isTaking = true;
     const X_WB = this.product.poseOf(part.id) ?? part.start;
-    const answer = await this.studio.command({ command: "take", hand: kHand, occurrence: part.id });
+    const answer = await this.studio.command({ command: "take", hand, occurrence: part.id });
     this.isTaking = false;
     return answer === null ? null : { X_WB, X_WH: answer.hand };
   }
 
-  private takeOver(): Taken | null {
-    const hand = this.studio.frames?.read()?.hands.find((h) => h.hand === kHand);
-    if (hand === undefined) {
+  private takeOver(hand: number): Taken | null {
+    const state = this.studio.frames?.read()?.hands.find((h) => h.hand === hand);
+    if (state === undefined) {
       return null;
     }
     // The grip is between the hand and the part that it tracks.
     return {
-      X_WB: { p: toVec3(hand.p_WT_m), q: toQuat(hand.q_WT) },
-      X_WH: { p: toVec3(hand.p_WH_m), q: toQuat(hand.q_WH) },
+      X_WB: { p: toVec3(state.p_WT_m), q: toQuat(state.q_WT) },
+      X_WH: { p: toVec3(state.p_WH_m), q: toQuat(state.q_WH) },
     };
   }
 
   /** Also what was in the hand before this page steered. */
-  release(): void {
-    this.stop();
-    void this.studio.command({ command: "release", hand: kHand });
+  release(hand = this.view.hand.peek()): void {
+    this.forget(this.led[hand]!);
+    void this.studio.command({ command: "release", hand });
+  }
+
+  /** All that is held. */
+  releaseAll(): void {
+    for (const { hand } of this.led.filter(({ mouse }) => mouse.occurrence !== null)) {
+      this.release(hand);
+    }
   }
 
   /** Forgets what is held without a word to the server. */
   stop(): void {
-    this.mouse.end();
-    this.seatedSince = null;
-    this.studio.rest();
+    this.led.forEach((led) => this.forget(led));
+  }
+
+  private forget(led: Led): void {
+    led.mouse.end();
+    led.seatedSince = null;
+    if (!this.isBusy) {
+      this.studio.rest();
+    }
   }
 
   update(seconds: number, live: LiveState | null, eye: Eye): void {
-    if (this.mouse.occurrence === null) {
-      return;
+    const inputs: HandInput[] = [];
+    for (const led of this.led) {
+      const input = this.move(led, seconds, live, eye);
+      if (input !== null) {
+        inputs.push(input);
+      }
     }
-    this.mouse.assists = this.view.assists.peek();
-    const hand = live?.hands.find((h) => h.hand === kHand) ?? null;
-    const input = this.mouse.update(seconds, hand, eye);
-    if (input === null) {
-      this.stop();
-      return;
+    if (inputs.length > 0 && !document.hidden) {
+      this.studio.sendInput(inputs);
     }
-    if (!document.hidden) {
-      this.studio.sendInput([input]);
+    for (const led of this.led) {
+      this.letGoWhenSeated(led, live);
     }
-    const isSeated = hand?.state === 5 && hand.occurrence === this.mouse.occurrence;
-    this.letGoWhenSeated(isSeated);
   }
 
-  private letGoWhenSeated(isSeated: boolean): void {
+  private move(led: Led, seconds: number, live: LiveState | null, eye: Eye): HandInput | null {
+    if (led.mouse.occurrence === null) {
+      return null;
+    }
+    led.mouse.assists = this.view.assists.peek();
+    const input = led.mouse.update(seconds, live?.hands.find((h) => h.hand === led.hand) ?? null, eye);
+    if (input === null) {
+      this.forget(led);
+    }
+    return input;
+  }
+
+  private letGoWhenSeated(led: Led, live: LiveState | null): void {
+    const hand = live?.hands.find((h) => h.hand === led.hand);
+    const isSeated = led.mouse.occurrence !== null && hand?.state === 5 && hand.occurrence === led.mouse.occurrence;
     if (!isSeated) {
-      this.seatedSince = null;
+      led.seatedSince = null;
       return;
     }
-    this.seatedSince ??= performance.now();
-    const hasSettled = performance.now() - this.seatedSince > kSettleMs;
+    led.seatedSince ??= performance.now();
+    const hasSettled = performance.now() - led.seatedSince > kSettleMs;
     if (hasSettled && this.view.letsGoWhenSeated.peek()) {
-      this.release();
+      this.release(led.hand);
     }
   }
 }

@@ -25,7 +25,6 @@ import {
 import type { HandInput, HandState } from "../protocol/frames";
 import type { Step } from "../protocol/messages";
 
-const kHand = 0;
 const kFine = 0.2;
 /** The way in catches the hand when it is seen this near to it [px]. */
 const kCatchPx = 34;
@@ -79,6 +78,9 @@ export class MouseHand {
   assists = true;
   private hold: Hold | null = null;
   private grabbed: Vec3 | null = null;
+
+  /** @param hand  Which of the hands it is, for the server. */
+  constructor(private readonly hand = 0) {}
 
   get occurrence(): number | null {
     return this.hold?.part.occurrence ?? null;
@@ -196,7 +198,7 @@ export class MouseHand {
     }
     hold.sent = { p, q: easeTurn(hold.sent.q, hold.free.q, seconds, 0.06) };
     return {
-      hand: kHand,
+      hand: this.hand,
       buttons: 1,
       p_WH_m: hold.sent.p,
       q_WH: hold.sent.q,

@@ -73,6 +73,9 @@ export class PointerInput {
     }
     const { view, hand } = this.viewport;
     const hit = this.pick();
+    if (hit !== null) {
+      hand.turnTo(hit.occurrence);
+    }
     const isOnHeld = hit !== null && hand.mouse.occurrence === hit.occurrence;
     if (event.button === 2) {
       this.rightPress = { x: event.clientX, y: event.clientY };

@@ -7,10 +7,10 @@ import { Extrapolator } from "../model/extrapolate";
 import { add, lerp, slerp, toQuat, toVec3, type Pose, type Vec3 } from "../model/math";
 import type { Store } from "../model/store";
 import type { ViewState } from "../model/view_state";
-import type { FrameStore, LiveState } from "../protocol/frame_store";
+import { kMaxHands, type FrameStore, type LiveState } from "../protocol/frame_store";
 import { kNone, type HandState } from "../protocol/frames";
 import type { Occurrence, Scene, Step } from "../protocol/messages";
-import { FeelLayer } from "./feel_layer";
+import { ArrowScale, FeelLayer } from "./feel_layer";
 import { ghostsOf, goalBoxes } from "./goals";
 import { loadShapes } from "./glb";
 import { MarkLayer } from "./mark_layer";
@@ -21,7 +21,7 @@ import { SectionCaps } from "./section_caps";
 
 export class SceneView {
   readonly root = new Group();
-  readonly feel = new FeelLayer();
+  readonly arrowScale = new ArrowScale();
   readonly marks = new MarkLayer();
   readonly caps = new SectionCaps();
   readonly sphere = new Sphere(new Vector3(), 0.1);
@@ -42,20 +42,22 @@ export class SceneView {
   private generation = -1;
   private loadCount = 0;
   private glbUrl = "";
-  private heldKey = "";
+  /** One for each hand. */
+  private readonly feels = Array.from({ length: kMaxHands }, () => new FeelLayer(this.arrowScale));
+  private readonly heldKeys = this.feels.map(() => "");
 
   constructor(
     private readonly store: Store,
     private readonly view: ViewState,
   ) {
     this.looks = new PartLooks(store, view);
-    this.root.add(this.feel.root, this.marks.root);
+    this.root.add(...this.feels.map((feel) => feel.root), this.marks.root);
     effect(() => void this.load(store.scene.value));
     effect(() => this.applyLooks());
     effect(() => this.applySection());
     effect(() => {
       this.parts?.setEdgesShown(view.showsEdges.value);
-      this.feel.lockScale(view.locksForceScale.value);
+      this.arrowScale.isLocked = view.locksForceScale.value;
       this.isDirty = true;
     });
     effect(() => {
@@ -66,7 +68,7 @@ export class SceneView {
 
   setPalette(palette: Palette): void {
     this.palette = palette;
-    this.feel.setPalette(palette);
+    this.feels.forEach((feel) => feel.setPalette(palette));
     this.marks.setPalette(palette);
     this.parts?.edges?.setInk(palette.edge, palette.edgeMarked);
     this.looks.setPalette(palette);
@@ -136,7 +138,8 @@ export class SceneView {
     this.extrapolators.clear();
     this.generation = -1;
     this.sphere.set(new Vector3(...scene.centre_m), scene.radius_m);
-    this.feel.setRadius(scene.radius_m);
+    this.arrowScale.fit(scene.radius_m);
+    this.feels.forEach((feel) => feel.setRadius(scene.radius_m));
     this.marks.setRadius(scene.radius_m);
     for (const occurrence of scene.occurrences) {
       const pose = occurrence.placement === "loose" ? occurrence.start : occurrence.goal;
@@ -145,7 +148,7 @@ export class SceneView {
     }
     this.boxes = goalBoxes(scene, this.parts);
     this.offsets = explodeOffsets(scene.steps, this.boxes);
-    this.heldKey = "";
+    this.heldKeys.fill("");
     this.looks.clear();
     if (this.palette !== null) {
       this.parts.edges?.setInk(this.palette.edge, this.palette.edgeMarked);
@@ -160,7 +163,7 @@ export class SceneView {
   private clear(): void {
     this.caps.clear();
     this.marks.clear();
-    this.feel.setHeld([], []);
+    this.feels.forEach((feel) => feel.setHeld([], []));
     if (this.parts !== null) {
       this.root.remove(this.parts.root);
       this.parts.dispose();
@@ -237,19 +240,21 @@ export class SceneView {
   }
 
   private updateFeel(live: LiveState | null): void {
-    const hand = live?.hands.find((h) => h.state > 0 && h.occurrence !== kNone) ?? null;
-    const key = hand === null ? "" : `${hand.hand}/${hand.occurrence}`;
-    if (key !== this.heldKey) {
-      this.heldKey = key;
-      this.showGhosts(hand);
-      this.isDirty = true;
-    }
-    this.feel.setGoalShown(hand !== null && hand.state < 5 && this.shownExplode === 0);
-    const shows = this.view.showsForces.peek() && this.shownExplode === 0;
-    this.feel.update(hand, live?.contacts ?? [], hand === null ? null : this.centreOfMass(hand.occurrence), shows);
-    if (hand !== null) {
-      this.isDirty = true;
-    }
+    const isWhole = this.shownExplode === 0;
+    const shows = this.view.showsForces.peek() && isWhole;
+    this.feels.forEach((feel, k) => {
+      const hand = live?.hands.find((h) => h.hand === k && h.state > 0 && h.occurrence !== kNone) ?? null;
+      const key = hand === null ? "" : `${hand.occurrence}`;
+      if (key !== this.heldKeys[k]) {
+        this.heldKeys[k] = key;
+        this.showGhosts(feel, hand);
+        this.isDirty = true;
+      }
+      const contacts = live?.contacts.filter((contact) => contact.hand === k) ?? [];
+      feel.setGoalShown(hand !== null && hand.state < 5 && isWhole);
+      feel.update(hand, contacts, hand === null ? null : this.centreOfMass(hand.occurrence), shows);
+      this.isDirty ||= hand !== null;
+    });
   }
 
   private centreOfMass(occurrence: number): Vector3 | null {
@@ -262,13 +267,13 @@ export class SceneView {
     return new Vector3(...part.p_BoBcm_m).applyQuaternion(turn).add(new Vector3(...pose.p));
   }
 
-  private showGhosts(hand: HandState | null): void {
+  private showGhosts(feel: FeelLayer, hand: HandState | null): void {
     if (hand === null || this.parts === null || this.scene === null) {
-      this.feel.setHeld([], []);
+      feel.setHeld([], []);
       return;
     }
     const { goal, tracked } = ghostsOf(hand.occurrence, this.scene, this.parts);
-    this.feel.setHeld(goal, tracked);
+    feel.setHeld(goal, tracked);
   }
 
   private markFaces(): void {
