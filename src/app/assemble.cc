@@ -14,13 +14,13 @@
 #include "app/assemble_report.h"
 #include "app/force_map_option.h"
 #include "app/load_product.h"
-#include "app/opened_device.h"
 #include "app/progress.h"
 #include "app/report_failure.h"
 #include "app/session_recorder.h"
 #include "app/text_layout.h"
 #include "base/clock.h"
 #include "contact/shape_cache.h"
+#include "device/opened_device.h"
 #include "record/recorder.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
@@ -100,7 +100,7 @@ record::Meta MakeMeta(const Model& model, const AssembleOptions& options) {
 /** What moves a hand: the simulated person alone or with an emulated device, or a device. */
 struct Hand {
   std::string address;  ///< Of the device, as it was asked for; empty: none.
-  OpenedDevice opened;
+  device::OpenedDevice opened;
   haptics::TickOptions tick;
   std::unique_ptr<simulation::SimulatedPerson> person;
   std::unique_ptr<simulation::Operator> at_device;  ///< Null without a device.
@@ -129,7 +129,7 @@ Result<Hand> MakeHand(const Model& model, const AssembleOptions& options,
   Hand hand;
   hand.address = address;
   if (!address.empty()) {
-    auto opened = OpenAnyDevice(address, options.is_realtime);
+    auto opened = device::OpenAnyDevice(address, options.is_realtime);
     if (!opened) {
       return Unexpected(opened.error());
     }
@@ -156,15 +156,15 @@ Result<Hand> MakeHand(const Model& model, const AssembleOptions& options,
 
 /** One, or two where a second device is asked for. */
 Result<std::vector<Hand>> MakeHands(const Model& model, const AssembleOptions& options) {
-  constexpr std::uint64_t kOtherSeed = 0x9e3779b97f4a7c15;  // another person, by the same seed
   std::vector<Hand> hands;
-  auto first = MakeHand(model, options, options.device, options.seed);
+  auto first = MakeHand(model, options, options.device, simulation::SeedOfHand(options.seed, 0));
   if (!first) {
     return Unexpected(first.error());
   }
   hands.push_back(std::move(*first));
   if (!options.second_device.empty()) {
-    auto second = MakeHand(model, options, options.second_device, options.seed ^ kOtherSeed);
+    auto second =
+        MakeHand(model, options, options.second_device, simulation::SeedOfHand(options.seed, 1));
     if (!second) {
       return Unexpected(second.error());
     }

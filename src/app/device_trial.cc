@@ -12,11 +12,11 @@
 
 #include "app/devices_report.h"
 #include "app/latency_json.h"
-#include "app/opened_device.h"
 #include "app/report_failure.h"
 #include "base/clock.h"
 #include "base/histogram.h"
 #include "base/triple_buffer.h"
+#include "device/opened_device.h"
 #include "haptics/coupling_rule.h"
 #include "haptics/passivity_controller.h"
 #include "haptics/safety_gate.h"
@@ -110,7 +110,7 @@ void PrintState(const TrialState& state, const device::Device& device, double t_
 }  // namespace
 
 int RunDeviceTrial(const DeviceTrialOptions& options) {
-  auto opened = OpenAnyDevice(options.address, true);
+  auto opened = device::OpenAnyDevice(options.address, true);
   if (!opened) {
     return ReportFailure(opened.error());
   }

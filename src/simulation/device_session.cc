@@ -195,7 +195,9 @@ device::DeviceState PersonAtDevice::Step(const OperatorInput& input) noexcept {
   if (!is_live_) {
     emulator_->Advance(std::llround(1e9 * input.dt));
   }
-  return ReadDevice(device_);
+  device::DeviceState state = ReadDevice(device_);
+  state.client_age_ns = reference.client_age_ns;
+  return state;
 }
 
 }  // namespace hvas::simulation

@@ -63,12 +63,12 @@ class Muscles {
   std::array<Vec3, 3> stages_{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };
 
-/** The simulated person with an emulated device in the hand: what the person wants becomes the
- impedance of the emulated hand, and all else goes through the device's driver, as with a real one.
- Not RT-safe: the emulator is not. */
+/** A person, simulated or at a page far away, with an emulated device in the hand: what the person
+ wants becomes the impedance of the emulated hand, and all else goes through the device's driver, as
+ with a real one. Not RT-safe: the emulator is not. */
 class PersonAtDevice final : public Operator {
  public:
-  PersonAtDevice(SimulatedPerson* person, device::Emulator* emulator, device::Device* device,
+  PersonAtDevice(DeviceHolder* person, device::Emulator* emulator, device::Device* device,
                  bool is_live)
       : person_(person), emulator_(emulator), device_(device), is_live_(is_live) {}
 
@@ -80,7 +80,7 @@ class PersonAtDevice final : public Operator {
   /** Where the hand goes to, and the force of what it wants beyond its device's room. */
   void Reach(const Vec3& p_DR, const Vec3& p_DH, double dt, device::HandIntent* hand) noexcept;
 
-  SimulatedPerson* person_;
+  DeviceHolder* person_;
   device::Emulator* emulator_;
   device::Device* device_;
   bool is_live_;  ///< The emulator moves its time on by itself.

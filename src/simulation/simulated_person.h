@@ -62,13 +62,35 @@ struct HandReference {
   Vec3 v_R_W{Vec3::Zero()};  ///< [m/s]
   Vec3 f_W{Vec3::Zero()};    ///< Besides, to hold up what it carries [N].
   bool is_gripping{false};
+  std::int64_t client_age_ns{0};  ///< As in device::DeviceState.
 };
+
+/** Somebody whose hand holds a device, whose mechanics move it. */
+class DeviceHolder {
+ public:
+  DeviceHolder() = default;
+  DeviceHolder(const DeviceHolder&) = delete;
+  DeviceHolder& operator=(const DeviceHolder&) = delete;
+  virtual ~DeviceHolder() = default;
+
+  /** In the place of Operator::Step: the hand is where the screen shows it. RT-safe. */
+  [[nodiscard]] virtual HandReference Intend(const OperatorInput& input) noexcept = 0;
+
+  /** Of the arm: its impedance. */
+  [[nodiscard]] virtual const PersonOptions& options() const noexcept = 0;
+};
+
+/** Of the person who has this hand, in a session with this seed. */
+[[nodiscard]] constexpr std::uint64_t SeedOfHand(std::uint64_t seed, std::size_t hand) {
+  constexpr std::uint64_t kOther = 0x9e3779b97f4a7c15;
+  return hand == 0 ? seed : seed ^ kOther;
+}
 
 /** A simulated person: an arm impedance that follows minimum-jerk reaches (Flash and Hogan, J.
  Neuroscience 5(7), 1985), feels the device's force, presses harder when stuck, searches when it
  misses, and gives up after a time. Seeded. It knows where the part should go and what the hand
  feels and hears. RT-safe. */
-class SimulatedPerson final : public Operator {
+class SimulatedPerson final : public Operator, public DeviceHolder {
  public:
   SimulatedPerson(const PersonOptions& options, std::uint64_t seed, const spatial::Pose& X_WH);
 
@@ -87,11 +109,9 @@ class SimulatedPerson final : public Operator {
 
   device::DeviceState Step(const OperatorInput& input) noexcept override;
 
-  /** In the place of Step for a hand that holds a device, whose mechanics move it: the hand is
-   where the screen shows it. RT-safe. */
-  [[nodiscard]] HandReference Intend(const OperatorInput& input) noexcept;
+  [[nodiscard]] HandReference Intend(const OperatorInput& input) noexcept override;
 
-  [[nodiscard]] const PersonOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const PersonOptions& options() const noexcept override { return options_; }
 
  private:
   enum class Phase {

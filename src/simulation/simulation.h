@@ -169,6 +169,13 @@ class Simulation {
  */
   void Prepare(const SequenceStep& step, std::size_t hand = 0) { hands_[hand].prepared = step; }
 
+  /** Before the loops run: what is closed already closed on something else, and takes nothing until
+   it has been open. */
+  void AwaitOpenGrip(std::size_t hand) { hands_[hand].is_waiting_for_grip_to_open = true; }
+
+  /** Something is in this hand, or on its way into it. Physics thread. */
+  [[nodiscard]] bool is_holding(std::size_t hand) const { return hands_[hand].held != nullptr; }
+
   /** A part that has a mate with this one and comes before it in the order, but is not in its
    place; invalid where there is none, or where another such part is in its place. Physics thread.
  */

@@ -1,6 +1,7 @@
 // What clients may ask for: the commands of docs/protocol.md, in its order.
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -24,14 +25,17 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
   static const std::map<std::string, Command, std::less<>> commands{
       {"open", {Right::kLease, &Hub::DoOpen}},
       {"cancel", {Right::kLease, &Hub::DoCancel}},
-      {"take", {Right::kLease, &Hub::DoTake}},
-      {"release", {Right::kLease, &Hub::DoRelease}},
+      {"take", {Right::kHand, &Hub::DoTake}},
+      {"release", {Right::kHand, &Hub::DoRelease}},
       {"forces", {Right::kAnybody, &Hub::DoForces}},
       {"demo", {Right::kLease, &Hub::DoDemo}},
       {"next", {Right::kLease, &Hub::DoNext}},
       {"undo", {Right::kLease, &Hub::DoUndo}},
       {"redo", {Right::kLease, &Hub::DoRedo}},
       {"reset", {Right::kLease, &Hub::DoReset}},
+      {"hands", {Right::kLease, &Hub::DoHands}},
+      {"devices", {Right::kAnybody, &Hub::DoDevices}},
+      {"use", {Right::kLease, &Hub::DoUse}},
       {"assign_fit", {Right::kLease, &Hub::DoAssignFit}},
       {"add_mate", {Right::kLease, &Hub::DoAddMate}},
       {"remove_mate", {Right::kLease, &Hub::DoRemoveMate}},
@@ -42,8 +46,7 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
   return commands;
 }
 
-Result<Json> Hub::DoOpen(const Caller& caller, const Json& command) {
-  (void)caller;
+Result<Json> Hub::DoOpen(const Json& command) {
   if (const auto id = TextAt(command, "example")) {
     const auto found = std::find_if(examples_.begin(), examples_.end(),
                                     [&](const Example& example) { return example.id == *id; });
@@ -65,30 +68,27 @@ Result<Json> Hub::DoOpen(const Caller& caller, const Json& command) {
   return Json::object();
 }
 
-Result<Json> Hub::DoCancel(const Caller& caller, const Json& command) {
-  (void)caller;
-  (void)command;
+Result<Json> Hub::DoCancel() {
   workbench_->Cancel();
   return Json::object();
 }
 
-Result<Json> Hub::DoTake(const Caller& caller, const Json& command) {
-  (void)caller;
+Result<Json> Hub::DoTake(const Json& command) {
+  const auto hand = HandAt(command);
   const auto id = IndexAt(command, "occurrence");
-  if (!id) {
-    return Unexpected(id.error());
+  if (!hand || !id) {
+    return Unexpected(!hand ? hand.error() : id.error());
   }
-  const auto X_WH = workbench_->Take(product::OccurrenceId(*id));
+  const auto X_WH = workbench_->Take(*hand, product::OccurrenceId(*id));
   if (!X_WH) {
     return Unexpected(X_WH.error());
   }
   return Json{{"hand", ToJson(*X_WH)}};
 }
 
-Result<Json> Hub::DoRelease(const Caller& caller, const Json& command) {
-  (void)caller;
-  (void)command;
-  return Done(workbench_->Release());
+Result<Json> Hub::DoRelease(const Json& command) {
+  const auto hand = HandAt(command);
+  return hand ? Done(workbench_->Release(*hand)) : Result<Json>(Unexpected(hand.error()));
 }
 
 Result<Json> Hub::DoForces(const Caller& caller, const Json& command) {
@@ -105,8 +105,7 @@ Result<Json> Hub::DoForces(const Caller& caller, const Json& command) {
   return Json::object();
 }
 
-Result<Json> Hub::DoDemo(const Caller& caller, const Json& command) {
-  (void)caller;
+Result<Json> Hub::DoDemo(const Json& command) {
   const auto is_on = FlagAt(command, "on");
   if (!is_on) {
     return Unexpected(is_on.error());
@@ -114,32 +113,43 @@ Result<Json> Hub::DoDemo(const Caller& caller, const Json& command) {
   return Done(workbench_->SetDemo(*is_on));
 }
 
-Result<Json> Hub::DoNext(const Caller& caller, const Json& command) {
-  (void)caller;
-  (void)command;
+Result<Json> Hub::DoNext() {
   return Done(workbench_->DoNext());
 }
 
-Result<Json> Hub::DoUndo(const Caller& caller, const Json& command) {
-  (void)caller;
-  (void)command;
+Result<Json> Hub::DoUndo() {
   return Done(workbench_->Undo());
 }
 
-Result<Json> Hub::DoRedo(const Caller& caller, const Json& command) {
-  (void)caller;
-  (void)command;
+Result<Json> Hub::DoRedo() {
   return Done(workbench_->Redo());
 }
 
-Result<Json> Hub::DoReset(const Caller& caller, const Json& command) {
-  (void)caller;
-  (void)command;
+Result<Json> Hub::DoReset() {
   return Done(workbench_->Reset());
 }
 
-Result<Json> Hub::DoAssignFit(const Caller& caller, const Json& command) {
-  (void)caller;
+Result<Json> Hub::DoHands(const Json& command) {
+  const auto count = IndexAt(command, "count");
+  return count ? Done(workbench_->SetHandCount(*count)) : Result<Json>(Unexpected(count.error()));
+}
+
+Result<Json> Hub::DoDevices() {
+  workbench_->SearchDevices();
+  return workbench_->devices();
+}
+
+Result<Json> Hub::DoUse(const Json& command) {
+  const auto hand = HandAt(command);
+  const auto device = TextAt(command, "device");
+  const auto scale = NumberAt(command, "scale", {0, 1000}, 0);
+  if (!hand || !device || !scale) {
+    return Unexpected(!hand ? hand.error() : !device ? device.error() : scale.error());
+  }
+  return Done(workbench_->UseDevice(*hand, *device, *scale));
+}
+
+Result<Json> Hub::DoAssignFit(const Json& command) {
   const auto mate = IndexAt(command, "mate");
   const auto fit = TextAt(command, "fit");
   if (!mate || !fit) {
@@ -151,8 +161,7 @@ Result<Json> Hub::DoAssignFit(const Caller& caller, const Json& command) {
       [assignment](product::Product* product) { return mates::AssignFit(product, assignment); }));
 }
 
-Result<Json> Hub::DoAddMate(const Caller& caller, const Json& command) {
-  (void)caller;
+Result<Json> Hub::DoAddMate(const Json& command) {
   const auto a = FaceAt(command, "a");
   const auto b = FaceAt(command, "b");
   if (!a || !b) {
@@ -173,8 +182,7 @@ Result<Json> Hub::DoAddMate(const Caller& caller, const Json& command) {
   return Done(workbench_->Change("add mate", add));
 }
 
-Result<Json> Hub::DoRemoveMate(const Caller& caller, const Json& command) {
-  (void)caller;
+Result<Json> Hub::DoRemoveMate(const Json& command) {
   const auto mate = IndexAt(command, "mate");
   if (!mate) {
     return Unexpected(mate.error());
@@ -186,8 +194,7 @@ Result<Json> Hub::DoRemoveMate(const Caller& caller, const Json& command) {
   }));
 }
 
-Result<Json> Hub::DoMeasure(const Caller& caller, const Json& command) {
-  (void)caller;
+Result<Json> Hub::DoMeasure(const Json& command) {
   const auto scene = workbench_->scene();
   if (scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
@@ -207,40 +214,66 @@ Result<Json> Hub::DoMeasure(const Caller& caller, const Json& command) {
   return Measure(*scene->model, workbench_->state(), *a, second);
 }
 
+Result<std::vector<std::size_t>> Hub::LeasesAt(const Json& command) const {
+  if (!command.contains("hand")) {
+    return std::vector<std::size_t>{0, 1};
+  }
+  const auto hand = HandAt(command);
+  if (!hand) {
+    return Unexpected(hand.error());
+  }
+  return std::vector<std::size_t>{*hand};
+}
+
+Result<Json> Hub::RequestLease(const Caller& caller, const std::vector<std::size_t>& hands) {
+  std::string holder;
+  for (const std::size_t hand : hands) {
+    if (leases_[hand].empty()) {
+      leases_[hand] = caller.id;
+    } else if (leases_[hand] != caller.id) {
+      holder = leases_[hand];
+    }
+  }
+  TellOfRoles();
+  if (holder.empty()) {
+    return Json::object();
+  }
+  const Json asks{{"event", "lease_asked"}, {"by", caller.id}, {"hands", hands}};
+  clients_[holder].link->SendText(asks.dump());
+  return Json{{"waits_for", holder}};
+}
+
 Result<Json> Hub::DoLease(const Caller& caller, const Json& command) {
   const auto action = TextAt(command, "action");
-  if (!action) {
-    return Unexpected(action.error());
-  }
-  if (*action == "request" && caller.role == Role::kOperator && lease_.empty()) {
-    GiveLease(caller.id);
-    return Json::object();
+  const auto hands = LeasesAt(command);
+  if (!action || !hands) {
+    return Unexpected(!action ? action.error() : hands.error());
   }
   if (*action == "request" && caller.role == Role::kOperator) {
-    const Json asks{{"event", "lease_asked"}, {"by", caller.id}};
-    clients_[lease_].link->SendText(asks.dump());
-    return Json{{"waits_for", lease_}};
+    return RequestLease(caller, *hands);
   }
-  if (*action == "release" && caller.has_lease) {
-    GiveLease("");
+  const std::vector<std::size_t> own = HandsOf(caller.id);
+  std::vector<std::size_t> given;
+  std::set_intersection(own.begin(), own.end(), hands->begin(), hands->end(),
+                        std::back_inserter(given));
+  if (*action == "release" && !given.empty()) {
+    GiveLease(given, "");
     return Json::object();
   }
-  if (*action == "give" && caller.has_lease) {
+  if (*action == "give" && !given.empty()) {
     const std::string to = TextAt(command, "to").value_or("");
     const auto found = clients_.find(to);
     if (found == clients_.end() || found->second.role != Role::kOperator) {
       return Fail(ErrorCode::kNotFound, "there is no such operator", to, "");
     }
-    GiveLease(to);
+    GiveLease(given, to);
     return Json::object();
   }
   return Fail(ErrorCode::kInvalid, "this cannot be done with the lease now", *action,
               caller.role == Role::kViewer ? "this link is for looking on" : "");
 }
 
-Result<Json> Hub::DoStatus(const Caller& caller, const Json& command) {
-  (void)caller;
-  (void)command;
+Result<Json> Hub::DoStatus() {
   return status_;
 }
 

@@ -1,7 +1,9 @@
 #include "studio/frames.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace hvas::studio {
 namespace {
@@ -64,6 +66,28 @@ std::vector<protocol::BodyPose> ListMoved(const simulation::Frame& frame,
   return moved;
 }
 
+/** Counts between edges, the last of all that is longer. */
+Json CountBetween(const LatencyHistogram& histogram, std::span<const int> edges_us) {
+  constexpr std::int64_t kNsPerUs = 1000;
+  Json counts = Json::array();
+  std::uint64_t before = 0;
+  for (const int edge_us : edges_us) {
+    const std::uint64_t up_to = histogram.CountUpTo(edge_us * kNsPerUs);
+    counts.push_back(up_to - before);
+    before = up_to;
+  }
+  counts.push_back(histogram.count() - before);
+  return counts;
+}
+
+Json MakeHistograms(const simulation::LoopStatus& status) {
+  static constexpr std::array kEdgesUs{10,  20,  30,  50,  75,   100,  150, 200,
+                                       300, 400, 500, 750, 1000, 2000, 5000};
+  return {{"edges_us", kEdgesUs},
+          {"compute", CountBetween(status.compute, kEdgesUs)},
+          {"wake_up", CountBetween(status.wake_up, kEdgesUs)}};
+}
+
 }  // namespace
 
 std::string MakeFrames(const LiveFrame& live, std::uint32_t seq, std::vector<spatial::Pose>* told) {
@@ -73,7 +97,7 @@ std::string MakeFrames(const LiveFrame& live, std::uint32_t seq, std::vector<spa
   std::vector<protocol::ContactPoint> contacts;
   for (std::size_t i = 0; i < frame.ticks.size(); ++i) {
     const haptics::TickOutput& tick = frame.ticks[i];
-    hands.push_back(MakeHand(tick, i, live.peak_felt));
+    hands.push_back(MakeHand(tick, i, live.peak_felt[i]));
     if (tick.contact_count > 0) {
       contacts.push_back(
           {static_cast<std::uint32_t>(i),
@@ -97,6 +121,15 @@ spatial::Pose PoseOf(const protocol::HandInput& input) {
           Vec3(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]))};
 }
 
+Json MakeHandStatus(const LiveFrame& frame, std::size_t hand) {
+  const haptics::TickOutput& tick = frame.frame.ticks[hand];
+  return {{"hand", hand},
+          {"speed_m_s", frame.hand_speed[hand]},
+          {"force_n", tick.F_H_D.f.norm()},
+          {"torque_nm", tick.F_H_D.t.norm()},
+          {"energy_j", tick.energy.in - tick.energy.out}};
+}
+
 Json MakeStatus(const simulation::LoopStatus& status) {
   const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
   constexpr double kP99 = 0.99;
@@ -112,7 +145,7 @@ Json MakeStatus(const simulation::LoopStatus& status) {
           {"scheduling", scheduling},
           {"is_memory_locked", status.is_memory_locked},
           {"physics_hz", 1e9 / static_cast<double>(simulation::Simulation::kPhysicsStepNs)},
-          {"device", "pointer"}};
+          {"histograms", MakeHistograms(status)}};
 }
 
 }  // namespace hvas::studio

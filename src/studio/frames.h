@@ -17,6 +17,9 @@ namespace hvas::studio {
 /** Where an input wants the hand. @pre it came through ReadClientFrames. */
 [[nodiscard]] spatial::Pose PoseOf(const protocol::HandInput& input);
 
+/** What "status" says of a hand. */
+[[nodiscard]] Json MakeHandStatus(const LiveFrame& frame, std::size_t hand);
+
 /** The event "status" of docs/protocol.md, without what the hub knows. */
 [[nodiscard]] Json MakeStatus(const simulation::LoopStatus& status);
 

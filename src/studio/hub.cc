@@ -33,8 +33,10 @@ Result<std::string> Hub::Join(Role role, ClientLink* link) {
   Client& client = clients_[id];
   client.role = role;
   client.link = link;
-  if (role == Role::kOperator && lease_.empty()) {
-    lease_ = id;
+  for (std::string& lease : leases_) {
+    if (role == Role::kOperator && lease.empty()) {
+      lease = id;
+    }
   }
   link->SendText(MakeHello(id, client).dump());
   for (const Json& event : workbench_->NewsForLatecomer()) {
@@ -46,12 +48,8 @@ Result<std::string> Hub::Join(Role role, ClientLink* link) {
 
 void Hub::Leave(const std::string& id) {
   clients_.erase(id);
-  if (lease_ == id) {
-    // The hand closes on nothing any more: the part stays where it is, by PointerOperator's
-    // silence.
-    GiveLease("");
-  }
-  TellOfRoles();
+  // A hand that nobody steers any more stays where it is, by PointerOperator's silence.
+  GiveLease(HandsOf(id), "");
 }
 
 Json Hub::MakeHello(const std::string& id, const Client& client) const {
@@ -63,14 +61,18 @@ Json Hub::MakeHello(const std::string& id, const Client& client) const {
           {"version", protocol::kVersion},
           {"role", ToString(client.role)},
           {"client", id},
-          {"has_lease", lease_ == id},
+          {"has_lease", leases_[0] == id},
+          {"hands", MakeHands()},
           {"examples", std::move(examples)},
           {"forces_off", workbench_->forces_off()},
           {"has_scene", workbench_->scene() != nullptr},
           {"demo", workbench_->is_demo()}};
 }
 
-void Hub::Broadcast(const Json& event) {
+void Hub::Broadcast(Json event) {
+  if (event.value("event", "") == "hands") {
+    event["hands"] = MakeHands();  // whose they are, only this side knows
+  }
   const std::string text = event.dump(-1, ' ', false, Json::error_handler_t::replace);
   for (auto& [id, client] : clients_) {
     client.link->SendText(text);
@@ -80,18 +82,42 @@ void Hub::Broadcast(const Json& event) {
 Json Hub::MakeRoles() const {
   Json clients = Json::array();
   for (const auto& [id, client] : clients_) {
-    clients.push_back({{"id", id}, {"role", ToString(client.role)}, {"has_lease", lease_ == id}});
+    clients.push_back({{"id", id},
+                       {"role", ToString(client.role)},
+                       {"has_lease", leases_[0] == id},
+                       {"hands", HandsOf(id)}});
   }
   return {{"event", "roles"}, {"clients", std::move(clients)}};
 }
 
 void Hub::TellOfRoles() {
   Broadcast(MakeRoles());
+  Broadcast({{"event", "hands"}});
 }
 
-void Hub::GiveLease(const std::string& id) {
-  lease_ = id;
+Json Hub::MakeHands() const {
+  Json hands = workbench_->hands();
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    hands[i]["lease"] = leases_[i].empty() ? Json(nullptr) : Json(leases_[i]);
+  }
+  return hands;
+}
+
+void Hub::GiveLease(const std::vector<std::size_t>& hands, const std::string& id) {
+  for (const std::size_t hand : hands) {
+    leases_[hand] = id;
+  }
   TellOfRoles();
+}
+
+std::vector<std::size_t> Hub::HandsOf(const std::string& id) const {
+  std::vector<std::size_t> hands;
+  for (std::size_t hand = 0; hand < leases_.size(); ++hand) {
+    if (leases_[hand] == id) {
+      hands.push_back(hand);
+    }
+  }
+  return hands;
 }
 
 bool Hub::MaySend(Client* client, std::int64_t now_ns) const {
@@ -143,13 +169,36 @@ Result<Json> Hub::Execute(const std::string& id, const Json& command) {
   if (found == Commands().end()) {
     return Fail(ErrorCode::kNotFound, "there is no such command", *name, "load the page again");
   }
-  const Caller caller{id, clients_[id].role, lease_ == id};
-  if (found->second.right == Right::kLease && !caller.has_lease) {
+  const Caller caller{id, clients_[id].role, leases_[0] == id};
+  if (!MayDo(found->second.right, caller, command)) {
     return Fail(
         ErrorCode::kInvalid, "only whoever steers can do this", *name,
         caller.role == Role::kOperator ? "ask for the lease first" : "this link is for looking on");
   }
-  return (this->*found->second.handler)(caller, command);
+  return Call(found->second.handler, caller, command);
+}
+
+bool Hub::MayDo(Right right, const Caller& caller, const Json& command) const {
+  switch (right) {
+    case Right::kAnybody:
+      return true;
+    case Right::kLease:
+      return caller.has_lease;
+    case Right::kHand:
+      return leases_[HandAt(command).value_or(0)] == caller.id;
+  }
+  return false;
+}
+
+Result<Json> Hub::Call(const Handler& handler, const Caller& caller, const Json& command) {
+  switch (handler.index()) {
+    case 0:
+      return (this->*std::get<0>(handler))();
+    case 1:
+      return (this->*std::get<1>(handler))(command);
+    default:
+      return (this->*std::get<2>(handler))(caller, command);
+  }
 }
 
 void Hub::OnBinary(const std::string& id, std::string_view bytes) {
@@ -166,10 +215,11 @@ void Hub::OnBinary(const std::string& id, std::string_view bytes) {
   for (const protocol::Acknowledgement& credit : frames->credits) {
     client.seen_seq = std::max(client.seen_seq, std::min(credit.seq, client.sent_seq));
   }
-  if (lease_ == id && !frames->inputs.empty()) {
-    constexpr std::uint32_t kGrip = 1;
-    const protocol::HandInput& input = frames->inputs.back();
-    workbench_->Move(PoseOf(input), (input.buttons & kGrip) != 0);
+  constexpr std::uint32_t kGrip = 1;
+  for (const protocol::HandInput& input : frames->inputs) {
+    if (input.hand < leases_.size() && leases_[input.hand] == id) {
+      workbench_->Move(input.hand, PoseOf(input), (input.buttons & kGrip) != 0);
+    }
   }
   PublishFrame();
 }
@@ -205,6 +255,15 @@ void Hub::PublishStatus() {
     status_ = MakeStatus(*status);
   }
   status_["clients"] = clients_.size();
+  status_["hands"] = Json::array();
+  const LiveFrame frame = workbench_->frame();
+  const Json hands = workbench_->hands();
+  for (std::size_t i = 0; i < std::min(hands.size(), frame.frame.ticks.size()); ++i) {
+    Json now = MakeHandStatus(frame, i);
+    now["limit_n"] = hands[i]["device"]["max_force_n"];
+    now["condition"] = hands[i]["condition"];
+    status_["hands"].push_back(std::move(now));
+  }
   if (status_.contains("tick_hz")) {  // nothing runs before something is open
     Broadcast(status_);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -7,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "studio/access.h"
@@ -56,7 +58,7 @@ class Hub {
   void OnBinary(const std::string& id, std::string_view bytes);
 
   /** Tells everybody. */
-  void Broadcast(const Json& event);
+  void Broadcast(Json event);
 
   /** There is a new frame: sends it to those who have seen the one before. */
   void PublishFrame();
@@ -90,11 +92,17 @@ class Hub {
   struct Caller {
     std::string id;
     Role role;
-    bool has_lease;
+    bool has_lease;  ///< Of hand 0.
   };
 
-  using Handler = Result<Json> (Hub::*)(const Caller& caller, const Json& command);
-  enum class Right { kAnybody, kLease };
+  enum class Right {
+    kAnybody,
+    kLease,  ///< Of hand 0.
+    kHand,   ///< Of the hand that the command names.
+  };
+
+  using Handler = std::variant<Result<Json> (Hub::*)(), Result<Json> (Hub::*)(const Json& command),
+                               Result<Json> (Hub::*)(const Caller& caller, const Json& command)>;
 
   struct Command {
     Right right;
@@ -103,27 +111,39 @@ class Hub {
 
   static const std::map<std::string, Command, std::less<>>& Commands();
   [[nodiscard]] Result<Json> Execute(const std::string& id, const Json& command);
-  Result<Json> DoOpen(const Caller& caller, const Json& command);
-  Result<Json> DoCancel(const Caller& caller, const Json& command);
-  Result<Json> DoTake(const Caller& caller, const Json& command);
-  Result<Json> DoRelease(const Caller& caller, const Json& command);
+  [[nodiscard]] bool MayDo(Right right, const Caller& caller, const Json& command) const;
+  [[nodiscard]] Result<Json> Call(const Handler& handler, const Caller& caller,
+                                  const Json& command);
+  Result<Json> DoOpen(const Json& command);
+  Result<Json> DoCancel();
+  Result<Json> DoTake(const Json& command);
+  Result<Json> DoRelease(const Json& command);
   Result<Json> DoForces(const Caller& caller, const Json& command);
-  Result<Json> DoDemo(const Caller& caller, const Json& command);
-  Result<Json> DoNext(const Caller& caller, const Json& command);
-  Result<Json> DoUndo(const Caller& caller, const Json& command);
-  Result<Json> DoRedo(const Caller& caller, const Json& command);
-  Result<Json> DoReset(const Caller& caller, const Json& command);
-  Result<Json> DoAssignFit(const Caller& caller, const Json& command);
-  Result<Json> DoAddMate(const Caller& caller, const Json& command);
-  Result<Json> DoRemoveMate(const Caller& caller, const Json& command);
-  Result<Json> DoMeasure(const Caller& caller, const Json& command);
+  Result<Json> DoDemo(const Json& command);
+  Result<Json> DoNext();
+  Result<Json> DoUndo();
+  Result<Json> DoRedo();
+  Result<Json> DoReset();
+  Result<Json> DoHands(const Json& command);
+  Result<Json> DoDevices();
+  Result<Json> DoUse(const Json& command);
+  Result<Json> DoAssignFit(const Json& command);
+  Result<Json> DoAddMate(const Json& command);
+  Result<Json> DoRemoveMate(const Json& command);
+  Result<Json> DoMeasure(const Json& command);
   Result<Json> DoLease(const Caller& caller, const Json& command);
-  Result<Json> DoStatus(const Caller& caller, const Json& command);
+  Result<Json> DoStatus();
 
   [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
   [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
-  void GiveLease(const std::string& id);
+  /** Whose are these hands: nobody's, when `id` is empty. */
+  void GiveLease(const std::vector<std::size_t>& hands, const std::string& id);
+  [[nodiscard]] std::vector<std::size_t> HandsOf(const std::string& id) const;
+  /** That a command of the lease is about: the one that it names, or all. */
+  [[nodiscard]] Result<std::vector<std::size_t>> LeasesAt(const Json& command) const;
+  Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);
   void TellOfRoles();
+  [[nodiscard]] Json MakeHands() const;
   [[nodiscard]] Json MakeRoles() const;
   void SendFrame(const LiveFrame& frame, Client* client);
 
@@ -131,7 +151,8 @@ class Hub {
   std::vector<Example> examples_;
   std::map<std::string, Client> clients_;
   std::map<std::string, Upload> uploads_;
-  std::string lease_;  ///< Of the client that steers; empty: nobody.
+  /** By hand: the client that steers it; empty: nobody. */
+  std::array<std::string, HandRack::kMostHands> leases_;
   std::uint32_t last_id_{0};
   Json status_;
 };

@@ -50,6 +50,30 @@ Result<std::uint32_t> IndexAt(const Json& object, const char* name) {
   return field->get<std::uint32_t>();
 }
 
+Result<std::size_t> HandAt(const Json& object) {
+  if (FieldOf(object, "hand") == nullptr) {
+    return 0;
+  }
+  const auto hand = IndexAt(object, "hand");
+  if (!hand || *hand >= HandRack::kMostHands) {
+    return Wrong("hand", "0 or 1");
+  }
+  return *hand;
+}
+
+Result<double> NumberAt(const Json& object, const char* name, const Limits& limits,
+                        double missing) {
+  const Json* field = FieldOf(object, name);
+  if (field == nullptr) {
+    return missing;
+  }
+  const double number = field->is_number() ? field->get<double>() : limits.low - 1;
+  if (!(number >= limits.low && number <= limits.high)) {
+    return Wrong(name, fmt::format("a number of {} to {}", limits.low, limits.high).c_str());
+  }
+  return number;
+}
+
 Result<PickedFace> FaceAt(const Json& object, const char* name) {
   const Json* field = FieldOf(object, name);
   if (field == nullptr) {

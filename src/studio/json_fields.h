@@ -11,6 +11,16 @@ namespace hvas::studio {
 [[nodiscard]] Result<std::string> TextAt(const Json& object, const char* name);
 [[nodiscard]] Result<bool> FlagAt(const Json& object, const char* name);
 [[nodiscard]] Result<std::uint32_t> IndexAt(const Json& object, const char* name);
+/** "hand": 0 where there is none. */
+[[nodiscard]] Result<std::size_t> HandAt(const Json& object);
+
+/** A number within limits, ends included; `missing` where there is none. */
+struct Limits {
+  double low, high;
+};
+
+[[nodiscard]] Result<double> NumberAt(const Json& object, const char* name, const Limits& limits,
+                                      double missing);
 [[nodiscard]] Result<PickedFace> FaceAt(const Json& object, const char* name);
 
 }  // namespace hvas::studio

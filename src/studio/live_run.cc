@@ -14,37 +14,53 @@ using simulation::Placement;
 constexpr std::int64_t kFrameNs = 16'666'667;  // what screens show
 constexpr double kForEver = 1e9;               // [s]
 
-}  // namespace
-
-haptics::TickOptions MakePointerOptions(double rate_hz) {
-  constexpr double kModelHold = 0.2;  // [s]; as with a device
-  haptics::TickOptions options;
-  options.dt = 1 / rate_hz;
-  options.device.name = "pointer";
-  options.limits = haptics::MakeSafetyLimits(options.device);
-  // There are no motors to be kept cool, and no handle that could kick or be torn away.
-  options.limits->has_detectors = false;
-  options.limits->continuous_force = haptics::SafetyLimits::kNever;
-  options.limits->continuous_torque = haptics::SafetyLimits::kNever;
-  options.limits->fade_speed = haptics::SafetyLimits::kNever;
-  options.limits->cut_speed = haptics::SafetyLimits::kNever;
-  options.limits->model_hold = kModelHold;
-  options.limits->client_hold = 1e-9 * static_cast<double>(PointerOperator::kSilentNs);
-  options.limits->client_fade = 0.25;
-  return options;
+std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
+                                                 const simulation::Model& model) {
+  std::vector<std::unique_ptr<LiveHand>> hands;
+  for (const HandSetup& setup : options.hands) {
+    const HandPurpose purpose{options.has_person,
+                              simulation::SeedOfHand(options.seed, hands.size()),
+                              simulation::StartOfHand(model), options.rate_hz};
+    hands.push_back(std::make_unique<LiveHand>(setup, purpose, model));
+  }
+  return hands;
 }
+
+simulation::Simulation MakeSimulation(std::shared_ptr<const simulation::Model> model,
+                                      const std::vector<std::unique_ptr<LiveHand>>& hands) {
+  const haptics::TickOptions& first = hands.front()->tick_options();
+  return hands.size() == 1
+             ? simulation::Simulation(std::move(model), first)
+             : simulation::Simulation(std::move(model), first, hands.back()->tick_options());
+}
+
+simulation::Persons PersonsOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
+  return {hands.front()->person(), hands.size() == 1 ? nullptr : hands.back()->person()};
+}
+
+PeakForces TakePeaks(std::array<std::atomic<double>, 2>* peaks) {
+  return {(*peaks)[0].exchange(0), (*peaks)[1].exchange(0)};
+}
+
+bool IsHeld(const simulation::PartState& part) {
+  return part.placement == Placement::kHeld;
+}
+
+}  // namespace
 
 LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState& start,
                  const LiveOptions& options, LiveListeners listeners)
     : listeners_(std::move(listeners)),
-      simulation_(std::move(model), MakePointerOptions(options.rate_hz)),
-      pointer_(options.X_WH),
-      person_(options.has_person ? std::make_unique<simulation::SimulatedPerson>(
-                                       simulation::PersonOptions(), options.seed, options.X_WH)
-                                 : nullptr),
-      assembly_(&simulation_, person_.get(), this) {
+      hands_(MakeHands(options, *model)),
+      simulation_(MakeSimulation(std::move(model), hands_)),
+      assembly_(&simulation_, PersonsOf(hands_), this) {
   if (!start.parts.empty()) {
     simulation_.Restore(start.parts);
+  }
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    if (!hands_[i]->follows_pointer()) {
+      simulation_.AwaitOpenGrip(i);
+    }
   }
   assembly_.Resume(start.next_step);
   observed_ = {simulation_.parts(), start.next_step};
@@ -57,33 +73,32 @@ LiveRun::~LiveRun() {
 }
 
 void LiveRun::Run(const LiveOptions& options) {
-  simulation::Operator* hand = person_ != nullptr
-                                   ? static_cast<simulation::Operator*>(person_.get())
-                                   : static_cast<simulation::Operator*>(&pointer_);
-  simulation::FlightRecorder flight(options.rate_hz);
-  simulation::Execution execution = assembly_.MakeExecution(hand, kForEver);
+  simulation::FlightRecorder flight(options.rate_hz, hands_.size());
+  simulation::Execution execution = assembly_.MakeExecution(
+      hands_.front()->active(), kForEver, hands_.size() == 1 ? nullptr : hands_.back()->active());
   execution.advance = [this] { Advance(); };
   execution.is_done = [this] { return is_stopping_.load(); };
   execution.flight = &flight;
   execution.frame_ns = kFrameNs;
   execution.status = &status_;
   execution.on_frame = [this](const simulation::Frame& frame) {
-    listeners_.on_frame(frame, peak_felt_.exchange(0));
+    listeners_.on_frame(frame, TakePeaks(&peak_felt_));
   };
   (void)simulation::RunRealtime(execution);
 }
 
-void LiveRun::Take(const simulation::SequenceStep& step, const spatial::Pose& X_WH) {
+void LiveRun::Take(std::size_t hand, const simulation::SequenceStep& step,
+                   const spatial::Pose& X_WH) {
   const std::lock_guard lock(mutex_);
-  tasks_.emplace_back([this, step, X_WH] {
-    simulation_.Prepare(step);
-    pointer_.Move({MonotonicNs(), X_WH, true});
+  tasks_.emplace_back([this, hand, step, X_WH] {
+    simulation_.Prepare(step, hand);
+    hands_[hand]->pointer().Move({MonotonicNs(), X_WH, true});
   });
 }
 
-void LiveRun::Move(const spatial::Pose& X_WH, bool is_gripping) {
+void LiveRun::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
   const std::lock_guard lock(mutex_);
-  pointer_.Move({MonotonicNs(), X_WH, is_gripping});
+  hands_[hand]->pointer().Move({MonotonicNs(), X_WH, is_gripping});
 }
 
 LiveState LiveRun::state() const {
@@ -91,9 +106,14 @@ LiveState LiveRun::state() const {
   return observed_;
 }
 
-bool LiveRun::is_holding() const {
+bool LiveRun::is_holding(std::size_t hand) const {
   const std::lock_guard lock(mutex_);
-  return is_holding_;
+  return is_holding_[hand];
+}
+
+LiveState LiveRun::state_before_take() const {
+  const std::lock_guard lock(mutex_);
+  return before_take_;
 }
 
 std::optional<simulation::LoopStatus> LiveRun::TakeStatus() {
@@ -102,11 +122,10 @@ std::optional<simulation::LoopStatus> LiveRun::TakeStatus() {
 
 void LiveRun::OnTick(std::size_t hand, const device::DeviceState& device,
                      const haptics::TickOutput& out) noexcept {
-  (void)hand;
   (void)device;
   const double felt = out.F_H_W.f.norm();
-  if (felt > peak_felt_.load(std::memory_order_relaxed)) {
-    peak_felt_.store(felt, std::memory_order_relaxed);
+  if (felt > peak_felt_[hand].load(std::memory_order_relaxed)) {
+    peak_felt_[hand].store(felt, std::memory_order_relaxed);
   }
 }
 
@@ -132,8 +151,13 @@ void LiveRun::Observe() {
   {
     const std::lock_guard lock(mutex_);
     before = std::exchange(observed_, now);
-    is_holding_ = std::any_of(now.parts.begin(), now.parts.end(),
-                              [](const auto& part) { return part.placement == Placement::kHeld; });
+    for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
+      is_holding_[hand] = simulation_.is_holding(hand);
+    }
+    const bool has_closed =
+        !std::equal(now.parts.begin(), now.parts.end(), before.parts.begin(),
+                    [](const auto& a, const auto& b) { return !IsHeld(a) || IsHeld(b); });
+    before_take_ = has_closed ? before : before_take_;
   }
   for (std::size_t i = 0; i < now.parts.size(); ++i) {
     if (before.parts[i].placement != now.parts[i].placement) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <functional>
@@ -13,8 +14,7 @@
 #include "base/triple_buffer.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
-#include "simulation/simulated_person.h"
-#include "studio/pointer.h"
+#include "studio/live_hand.h"
 
 namespace hvas::studio {
 
@@ -24,17 +24,21 @@ struct LiveState {
   std::size_t next_step{0};
 };
 
+/** Of each hand: the largest force since it was asked for last [N]. */
+using PeakForces = std::array<double, 2>;
+
 /** Who is told of what. All but on_frame are called on the physics thread. */
 struct LiveListeners {
   std::function<void(const simulation::SimulationEvent&)> on_event;
   std::function<void(product::OccurrenceId, simulation::Placement)> on_placement;
   std::function<void(std::size_t step)> on_step;
-  std::function<void(const simulation::Frame&, double peak_felt)> on_frame;  ///< Publish thread.
+  /** Publish thread. */
+  std::function<void(const simulation::Frame&, const PeakForces&)> on_frame;
 };
 
 struct LiveOptions {
-  bool has_person{false};  ///< The simulated person works, instead of whoever holds the pointer.
-  spatial::Pose X_WH;      ///< Where the hand is at first.
+  bool has_person{false};           ///< As in HandPurpose.
+  std::vector<HandSetup> hands{1};  ///< One or two.
   std::uint64_t seed{1};
   double rate_hz{1000};
 };
@@ -47,17 +51,24 @@ class LiveRun final : private simulation::Sink {
           const LiveOptions& options, LiveListeners listeners);
   ~LiveRun() override;
 
-  /** Has the hand go to a part and close on it. Any thread. */
-  void Take(const simulation::SequenceStep& step, const spatial::Pose& X_WH);
+  /** Has a hand go to a part and close on it. Any thread.
+   @pre the hand follows a pointer. */
+  void Take(std::size_t hand, const simulation::SequenceStep& step, const spatial::Pose& X_WH);
 
-  /** Where the pointer wants the hand. Any thread. */
-  void Move(const spatial::Pose& X_WH, bool is_gripping);
+  /** Where the pointer wants a hand. Any thread. */
+  void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
 
   void StopForces(bool is_stopped) { simulation_.StopForces(is_stopped); }
 
   /** As of the last physics step. Any thread. */
   [[nodiscard]] LiveState state() const;
-  [[nodiscard]] bool is_holding() const;
+  [[nodiscard]] bool is_holding(std::size_t hand) const;
+  /** As it was before the hand that closed last had closed. */
+  [[nodiscard]] LiveState state_before_take() const;
+
+  [[nodiscard]] std::size_t hand_count() const { return hands_.size(); }
+
+  [[nodiscard]] const LiveHand& hand(std::size_t i) const { return *hands_[i]; }
 
   /** Of the last second, when one has ended since the last call. One thread. */
   [[nodiscard]] std::optional<simulation::LoopStatus> TakeStatus();
@@ -73,24 +84,20 @@ class LiveRun final : private simulation::Sink {
   void Run(const LiveOptions& options);
 
   LiveListeners listeners_;
+  std::vector<std::unique_ptr<LiveHand>> hands_;
   simulation::Simulation simulation_;
-  PointerOperator pointer_;
-  std::unique_ptr<simulation::SimulatedPerson> person_;
   simulation::AssemblyRun assembly_;
   TripleBuffer<simulation::LoopStatus> status_;
-  std::atomic<double> peak_felt_{0};
+  std::array<std::atomic<double>, 2> peak_felt_{};
   std::atomic<bool> is_stopping_{false};
 
   mutable std::mutex mutex_;  ///< Of what follows; never taken by the haptic thread.
   std::vector<std::function<void()>> tasks_;
   LiveState observed_;
-  bool is_holding_{false};
+  LiveState before_take_;
+  std::array<bool, 2> is_holding_{};  ///< By hand.
 
   std::thread thread_;
 };
-
-/** Options of the tick for a hand that is moved from afar: as for the simulated device, with full
- safety limits, and the force taken back when nothing is heard from the client. */
-[[nodiscard]] haptics::TickOptions MakePointerOptions(double rate_hz);
 
 }  // namespace hvas::studio

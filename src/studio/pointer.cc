@@ -36,19 +36,38 @@ void PointerOperator::Follow(const spatial::Pose& X_WH, double dt) noexcept {
   V_H_ = Approach(X_WS_, dt, &X_WH_);
 }
 
-device::DeviceState PointerOperator::Step(const simulation::OperatorInput& input) noexcept {
+const PointerInput& PointerOperator::Listen(bool sees_part, std::int64_t* age_ns) noexcept {
   inputs_.Update();
   const PointerInput& wanted = inputs_.value();
-  const std::int64_t age_ns = wanted.t_ns > 0 ? MonotonicNs() - wanted.t_ns : 0;
+  // An empty hand waits for nobody.
+  *age_ns =
+      sees_part && wanted.t_ns > 0 ? std::max<std::int64_t>(0, MonotonicNs() - wanted.t_ns) : 0;
+  return wanted;
+}
+
+simulation::HandReference PointerOperator::Intend(const simulation::OperatorInput& input) noexcept {
+  constexpr double kThere = 5e-3;  // [m]
+  simulation::HandReference reference;
+  const PointerInput& wanted = Listen(input.sees_part, &reference.client_age_ns);
+  Follow(reference.client_age_ns < kSilentNs ? wanted.X_WH : X_WH_, input.dt);
+  reference.X_WR = X_WH_;
+  reference.v_R_W = V_H_.v;
+  // The device has to bring the hand there before it can close on a part.
+  const bool is_there = (input.X_WH.p() - wanted.X_WH.p()).norm() < kThere;
+  reference.is_gripping = wanted.is_gripping && (input.sees_part || is_there);
+  return reference;
+}
+
+device::DeviceState PointerOperator::Step(const simulation::OperatorInput& input) noexcept {
   device::DeviceState state;
-  state.client_age_ns = input.sees_part ? std::max<std::int64_t>(0, age_ns) : 0;
+  const PointerInput& wanted = Listen(input.sees_part, &state.client_age_ns);
   state.is_gripping = wanted.is_gripping;
   if (!input.sees_part) {
     // An empty hand is where it is wanted at once: nothing is in it that could be torn along.
     X_WH_ = wanted.X_WH;
     X_WS_ = wanted.X_WH;
     V_H_ = {};
-  } else if (age_ns < kSilentNs) {
+  } else if (state.client_age_ns < kSilentNs) {
     Follow(wanted.X_WH, input.dt);
   } else {
     // Nobody steers any more: the part stays where it is.

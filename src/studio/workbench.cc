@@ -18,6 +18,10 @@ using simulation::SequenceStep;
 
 constexpr std::size_t kMostMoments = 100;
 
+Error DemoAtWork() {
+  return {ErrorCode::kInvalid, "the simulated person is at work", "", "end the demo first"};
+}
+
 Error NothingOpen() {
   return {ErrorCode::kNotFound, "no product is open", "", "open a file or an example first"};
 }
@@ -46,8 +50,38 @@ LiveState MakeStart(const simulation::Model& model) {
   return state;
 }
 
-bool IsGone(Placement placement) {
-  return placement == Placement::kPlaced || placement == Placement::kHeld;
+/** Nothing where a part can be taken. */
+std::optional<Error> ExplainGone(Placement placement, const std::string& name) {
+  switch (placement) {
+    case Placement::kPlaced:
+      return Error{ErrorCode::kInvalid, "the part is in its place already", name,
+                   "undo to take it out again"};
+    case Placement::kHeld:
+      return Error{ErrorCode::kInvalid, "the part is in a hand already", name, "let it go first"};
+    default:
+      return std::nullopt;
+  }
+}
+
+std::array<double, 2> SpeedsBetween(const simulation::Frame& before,
+                                    const simulation::Frame& after) {
+  std::array<double, 2> speeds{};
+  const double elapsed = 1e-9 * static_cast<double>(after.t_ns - before.t_ns);
+  for (std::size_t i = 0; i < after.ticks.size(); ++i) {
+    if (i < before.ticks.size() && elapsed > 0) {
+      speeds[i] = (after.ticks[i].X_WH.p() - before.ticks[i].X_WH.p()).norm() / elapsed;
+    }
+  }
+  return speeds;
+}
+
+bool IsHolding(const LiveRun& run) {
+  for (std::size_t hand = 0; hand < run.hand_count(); ++hand) {
+    if (run.is_holding(hand)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -181,7 +215,7 @@ void Workbench::DoOpen(const std::filesystem::path& file, const std::string& nam
     const std::lock_guard lock(mutex_);
     undo_.clear();
     redo_.clear();
-    before_take_.reset();
+    before_take_ = {};
   }
   is_demo_ = false;
   Show(scene, {}, false);
@@ -210,9 +244,9 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
                      bool has_person) {
   LiveOptions live;
   live.has_person = has_person;
+  live.hands = rack_.setups();
   live.seed = options_.seed;
   live.rate_hz = options_.rate_hz;
-  live.X_WH = simulation::StartOfHand(*scene->model);
   std::shared_ptr<LiveRun> ended;
   bool is_new = false;
   {
@@ -221,6 +255,7 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
     is_new = scene_ != scene;
     scene_ = scene;
     resting_ = state.parts.empty() ? MakeStart(*scene->model) : state;
+    before_take_ = {};
   }
   ended.reset();  // its threads end here, outside the lock that they may wait for
   auto run = std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene));
@@ -235,6 +270,7 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
     TellOfPlacements();
   }
   TellOfStep(*scene, run->state().next_step);
+  TellOfHands();
 }
 
 void Workbench::Restart(bool has_person) {
@@ -265,10 +301,11 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
   };
   listeners.on_step = [this, scene](std::size_t step) { HandleStep(*scene, step); };
   listeners.on_frame = [this, epoch = scene->epoch](const simulation::Frame& frame,
-                                                    double peak_felt) {
+                                                    const PeakForces& peak_felt) {
     {
       const std::lock_guard lock(mutex_);
-      frame_ = {epoch, frame_.serial + 1, frame, peak_felt};
+      const auto speed = SpeedsBetween(frame_.frame, frame);
+      frame_ = {epoch, frame_.serial + 1, frame, peak_felt, speed};
     }
     if (on_frame) {
       on_frame();
@@ -278,13 +315,42 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
 }
 
 void Workbench::HandleEvent(const OpenScene& scene, const simulation::SimulationEvent& event) {
-  if (event.kind == simulation::SimulationEvent::Kind::kDropped && !is_demo_) {
-    Remember(fmt::format("{} {}", event.was_seated ? "insert" : "move",
-                         NameOf(*scene.model, event.occurrence)));
-  }
+  HandleHold(scene, event);
+  HandleDevice(event);
   if (Json json = ToJson(event); !json.is_null()) {
     Tell(std::move(json));
   }
+}
+
+void Workbench::HandleHold(const OpenScene& scene, const simulation::SimulationEvent& event) {
+  using Kind = simulation::SimulationEvent::Kind;
+  if (is_demo_ || (event.kind != Kind::kTaken && event.kind != Kind::kDropped)) {
+    return;
+  }
+  std::optional<Moment> before;
+  {
+    const std::lock_guard lock(mutex_);
+    before = std::exchange(before_take_[event.hand], std::nullopt);
+    if (event.kind == Kind::kTaken && run_ != nullptr) {
+      before_take_[event.hand] = Moment{scene_, run_->state_before_take(), ""};
+    }
+  }
+  if (event.kind == Kind::kDropped && before) {
+    Remember(std::move(*before), fmt::format("{} {}", event.was_seated ? "insert" : "move",
+                                             NameOf(*scene.model, event.occurrence)));
+  }
+}
+
+void Workbench::HandleDevice(const simulation::SimulationEvent& event) {
+  if (event.kind != simulation::SimulationEvent::Kind::kDevice) {
+    return;
+  }
+  const std::string text = rack_.SetState(event.hand, event.condition, event.vendor_code);
+  Tell({{"event", "device"},
+        {"hand", event.hand},
+        {"condition", device::ToString(event.condition)},
+        {"text", text}});
+  TellOfHands();
 }
 
 void Workbench::TellOfStep(const OpenScene& scene, std::size_t step) const {
@@ -299,21 +365,16 @@ void Workbench::HandleStep(const OpenScene& scene, std::size_t step) {
   }
 }
 
-void Workbench::Begin() {
+Workbench::Moment Workbench::Begin() const {
   SceneNow now = Look();
-  const std::lock_guard lock(mutex_);
-  before_take_ = Moment{std::move(now.scene), std::move(now.state), ""};
+  return {std::move(now.scene), std::move(now.state), ""};
 }
 
-void Workbench::Remember(const std::string& what) {
+void Workbench::Remember(Moment before, const std::string& what) {
   {
     const std::lock_guard lock(mutex_);
-    if (!before_take_) {
-      return;
-    }
-    before_take_->what = what;
-    undo_.push_back(std::move(*before_take_));
-    before_take_.reset();
+    before.what = what;
+    undo_.push_back(std::move(before));
     redo_.clear();
     if (undo_.size() > kMostMoments) {
       undo_.erase(undo_.begin());
@@ -328,27 +389,38 @@ Result<void> Workbench::CheckIdle() const {
     return Unexpected(NothingOpen());
   }
   if (is_demo_) {
-    return Fail(ErrorCode::kInvalid, "the simulated person is at work", "", "end the demo first");
+    return Unexpected(DemoAtWork());
   }
-  if (run_ != nullptr && run_->is_holding()) {
+  if (run_ != nullptr && IsHolding(*run_)) {
     return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
   }
   return {};
 }
 
-Result<std::shared_ptr<LiveRun>> Workbench::IdleRun() const {
-  if (const auto idle = CheckIdle(); !idle) {
-    return Unexpected(idle.error());
-  }
+Result<std::shared_ptr<LiveRun>> Workbench::RunForHand(std::size_t hand) const {
   const std::lock_guard lock(mutex_);
+  if (scene_ == nullptr) {
+    return Unexpected(NothingOpen());
+  }
+  if (is_demo_) {
+    return Unexpected(DemoAtWork());
+  }
   if (run_ == nullptr) {
     return Fail(ErrorCode::kInvalid, "the product is just being changed", "", "try again");
+  }
+  if (hand >= run_->hand_count()) {
+    return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
+                "ask for two hands first");
+  }
+  if (!run_->hand(hand).follows_pointer()) {
+    return Fail(ErrorCode::kInvalid, "a device is in this hand", fmt::format("hand {}", hand),
+                "take the part with it, or give the hand back to the pointer");
   }
   return run_;
 }
 
-Result<spatial::Pose> Workbench::Take(OccurrenceId id) {
-  const auto run = IdleRun();
+Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
+  const auto run = RunForHand(hand);
   if (!run) {
     return Unexpected(run.error());
   }
@@ -356,42 +428,122 @@ Result<spatial::Pose> Workbench::Take(OccurrenceId id) {
   if (id.index() >= model.bodies.size()) {
     return Fail(ErrorCode::kNotFound, "there is no such part", fmt::format("o{}", id.value()), "");
   }
-  LiveState state = (*run)->state();
+  if ((*run)->is_holding(hand)) {
+    return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
+  }
+  const LiveState state = (*run)->state();
   const SequenceStep step = FindStep(model, state, id);
   const simulation::PartState& part = state.parts[step.occurrence.index()];
-  if (step.members.empty() && IsGone(part.placement)) {
-    return Fail(ErrorCode::kInvalid, "the part is in its place already", NameOf(model, id),
-                "undo to take it out again");
+  const auto gone = ExplainGone(part.placement, NameOf(model, id));
+  if (gone && (step.members.empty() || part.placement == Placement::kHeld)) {
+    return Unexpected(*gone);
   }
   // Upright: what the hand turns, the part turns with it.
   const spatial::Pose X_WH(part.X_WB * simulation::CombineMass(model, step).p_BoBcm_B);
-  {
-    const std::lock_guard lock(mutex_);
-    before_take_ = Moment{scene_, std::move(state), ""};
-  }
-  (*run)->Take(step, X_WH);
+  (*run)->Take(hand, step, X_WH);
   return X_WH;
 }
 
-void Workbench::Move(const spatial::Pose& X_WH, bool is_gripping) {
-  std::shared_ptr<LiveRun> run;
-  {
-    const std::lock_guard lock(mutex_);
-    run = is_demo_ ? nullptr : run_;
-  }
-  if (run != nullptr) {
-    run->Move(X_WH, is_gripping);
+void Workbench::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
+  if (const auto run = RunForHand(hand)) {
+    (*run)->Move(hand, X_WH, is_gripping);
   }
 }
 
-Result<void> Workbench::Release() {
-  const std::lock_guard lock(mutex_);
-  if (run_ == nullptr) {
-    return Unexpected(NothingOpen());
+Result<void> Workbench::Release(std::size_t hand) {
+  const auto run = RunForHand(hand);
+  if (!run) {
+    return Unexpected(run.error());
   }
-  const auto& hands = frame_.frame.ticks;
-  run_->Move(hands.empty() ? spatial::Pose() : hands.front().X_WH, false);
+  const auto& hands = frame().frame.ticks;
+  (*run)->Move(hand, hand < hands.size() ? hands[hand].X_WH : spatial::Pose(), false);
   return {};
+}
+
+Result<void> Workbench::SetHandCount(std::size_t count) {
+  if (count != 1 && count != HandRack::kMostHands) {
+    return Fail(ErrorCode::kInvalid, "there are one or two hands", "count", "");
+  }
+  auto idle = CheckHands();
+  if (idle) {
+    Post([this, count] {
+      if (rack_.count() != count) {
+        rack_.SetCount(count);
+        RestartWithHands();
+      }
+    });
+  }
+  return idle;
+}
+
+Result<void> Workbench::UseDevice(std::size_t hand, const std::string& address, double scale) {
+  auto idle = CheckHands();
+  if (idle) {
+    Post([this, hand, address, scale] {
+      if (const auto used = rack_.Use(hand, address, scale); !used) {
+        Tell({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
+        return;
+      }
+      RestartWithHands();
+    });
+  }
+  return idle;
+}
+
+Result<void> Workbench::CheckHands() const {
+  auto idle = CheckIdle();
+  return scene() == nullptr ? Result<void>() : idle;
+}
+
+void Workbench::RestartWithHands() {
+  if (scene() != nullptr) {
+    Restart(false);
+  } else {
+    TellOfHands();
+  }
+}
+
+void Workbench::SearchDevices() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(is_searching_, true)) {
+      return;
+    }
+  }
+  Post([this] {
+    Json found = studio::SearchDevices();
+    {
+      const std::lock_guard lock(mutex_);
+      devices_ = std::move(found);
+      is_searching_ = false;
+    }
+    Json event = devices();
+    event["event"] = "devices";
+    Tell(std::move(event));
+  });
+}
+
+Json Workbench::devices() const {
+  const std::lock_guard lock(mutex_);
+  return {{"devices", devices_.is_null() ? Json::array() : devices_},
+          {"is_searching", is_searching_}};
+}
+
+Json Workbench::hands() const {
+  std::shared_ptr<LiveRun> run;
+  {
+    const std::lock_guard lock(mutex_);
+    run = run_;
+  }
+  std::vector<const haptics::TickOptions*> options;
+  for (std::size_t i = 0; run != nullptr && i < run->hand_count(); ++i) {
+    options.push_back(&run->hand(i).tick_options());
+  }
+  return rack_.Describe(options);
+}
+
+void Workbench::TellOfHands() const {
+  Tell({{"event", "hands"}, {"hands", hands()}});
 }
 
 void Workbench::SetForcesOff(bool is_off) {
@@ -412,8 +564,7 @@ Result<void> Workbench::SetDemo(bool is_on) {
   if (idle) {
     ends_demo_after_step_ = false;
     Post([this] {
-      Begin();
-      Remember("demo");
+      Remember(Begin(), "demo");
       Restart(true);
     });
   }
@@ -469,8 +620,7 @@ Result<void> Workbench::Reset() {
   auto idle = CheckIdle();
   if (idle) {
     Post([this] {
-      Begin();
-      Remember("reset");
+      Remember(Begin(), "reset");
       Show(scene(), {}, false);
     });
   }
@@ -504,8 +654,7 @@ void Workbench::DoChange(const std::string& what, const ChangeFn& change) {
   }
   after->model = *model;
   after->epoch = ++last_epoch_;
-  Begin();
-  Remember(what);
+  Remember(Begin(), what);
   // In another order, what is in its place already is passed over when its turn comes.
   const bool has_same_order = HasSameOrder(before->model->sequence, after->model->sequence);
   Show(after, {state.parts, has_same_order ? state.next_step : 0}, false);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -21,6 +22,7 @@
 #include "contact/shape_cache.h"
 #include "product/product.h"
 #include "simulation/model.h"
+#include "studio/hand_rack.h"
 #include "studio/live_run.h"
 
 namespace hvas::studio {
@@ -59,7 +61,8 @@ struct LiveFrame {
   std::uint32_t epoch{0};
   std::uint64_t serial{0};  ///< Another one for each frame.
   simulation::Frame frame;
-  double peak_felt{0};  ///< Since the last one [N].
+  PeakForces peak_felt{};              ///< Since the last one [N].
+  std::array<double, 2> hand_speed{};  ///< By hand, since the last one [m/s].
 };
 
 /** What is on the bench: the product that is open, the run of it, and what can be undone. All
@@ -84,10 +87,19 @@ class Workbench {
   void Open(const std::filesystem::path& file, const std::string& name);
   void Cancel();
 
-  /** @returns where the hand goes to. */
-  [[nodiscard]] Result<spatial::Pose> Take(product::OccurrenceId id);
-  void Move(const spatial::Pose& X_WH, bool is_gripping);
-  [[nodiscard]] Result<void> Release();
+  /** For hands that follow a pointer. @returns where the hand goes to. */
+  [[nodiscard]] Result<spatial::Pose> Take(std::size_t hand, product::OccurrenceId id);
+  void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
+  [[nodiscard]] Result<void> Release(std::size_t hand);
+
+  /** One hand or two. */
+  [[nodiscard]] Result<void> SetHandCount(std::size_t count);
+  /** Puts a device into a hand, or HandRack::kPointer; told of by the event "hands" or "failed". */
+  [[nodiscard]] Result<void> UseDevice(std::size_t hand, const std::string& address, double scale);
+  /** Told of by the event "devices". */
+  void SearchDevices();
+  [[nodiscard]] Json devices() const;
+  [[nodiscard]] Json hands() const;
 
   void SetForcesOff(bool is_off);
 
@@ -146,12 +158,19 @@ class Workbench {
   void TellOfHistory() const;
   void TellOfPlacements() const;
   /** Keeps how all is now, before something is done that can be undone. */
-  void Begin();
-  /** That was done, and can be undone. */
-  void Remember(const std::string& what);
+  [[nodiscard]] Moment Begin() const;
+  /** That was done since then, and can be undone. */
+  void Remember(Moment before, const std::string& what);
+  void TellOfHands() const;
+  /** Errors: somebody is at work. */
+  [[nodiscard]] Result<void> CheckHands() const;
+  void RestartWithHands();
+  void HandleHold(const OpenScene& scene, const simulation::SimulationEvent& event);
+  void HandleDevice(const simulation::SimulationEvent& event);
   /** Errors: nothing is open, or somebody is at work. */
   [[nodiscard]] Result<void> CheckIdle() const;
-  [[nodiscard]] Result<std::shared_ptr<LiveRun>> IdleRun() const;
+  /** The same of one hand: the other may hold something. */
+  [[nodiscard]] Result<std::shared_ptr<LiveRun>> RunForHand(std::size_t hand) const;
 
   WorkbenchOptions options_;
   std::atomic<bool> forces_off_{false};
@@ -164,11 +183,15 @@ class Workbench {
   std::shared_ptr<LiveRun> run_;
   Json failure_;       ///< Of the last file that could not be opened; null: none.
   LiveState resting_;  ///< While one run has ended and the next has not begun.
-  std::optional<Moment> before_take_;
+  std::array<std::optional<Moment>, HandRack::kMostHands> before_take_;  ///< By hand.
   std::vector<Moment> undo_;
   std::vector<Moment> redo_;
   LiveFrame frame_;
   std::stop_source opening_;
+  Json devices_;  ///< That were found; null before the first search.
+  bool is_searching_{false};
+
+  HandRack rack_;
 
   std::mutex jobs_mutex_;
   std::condition_variable_any jobs_changed_;

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "app/load_product.h"
-#include "app/opened_device.h"
 #include "app/test/run_hvas.h"
 #include "base/test/temporary_folder.h"
+#include "device/opened_device.h"
 #include "record/reader.h"
 #include "simulation/assembly_run.h"
 #include "simulation/device_session.h"
@@ -39,12 +39,12 @@ std::shared_ptr<const simulation::Model> Bushing() {
 /** A simulated person with an emulated device in the hand. */
 struct Hand {
   Hand(const simulation::Model& model, const char* address, std::uint64_t seed)
-      : opened(*OpenAnyDevice(address, false)),
+      : opened(*device::OpenAnyDevice(address, false)),
         options(simulation::MakeTickOptions(opened.device->info(), model, {})),
         person(simulation::MakePersonOptions(options), seed, simulation::StartOfHand(model)),
         at_device(&person, opened.emulator.get(), opened.device.get(), false) {}
 
-  OpenedDevice opened;
+  device::OpenedDevice opened;
   haptics::TickOptions options;
   simulation::SimulatedPerson person;
   simulation::PersonAtDevice at_device;

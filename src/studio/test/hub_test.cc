@@ -140,7 +140,7 @@ TEST_F(HubTest, OnlyWhoeverHasTheLeaseCommands) {  // N11: one operator
   const std::string other = Join(Role::kOperator, &second);
   const std::string looking = Join(Role::kViewer, &viewer);
   for (const char* command : {"open", "cancel", "take", "release", "demo", "next", "undo", "redo",
-                              "reset", "assign_fit", "add_mate", "remove_mate"}) {
+                              "reset", "hands", "use", "assign_fit", "add_mate", "remove_mate"}) {
     const Json fields{{"command", command}, {"example", "peg"}, {"on", true}, {"occurrence", 1}};
     EXPECT_TRUE(IsError(Ask(other, &second, fields), "invalid")) << command;
     const Json refused = Ask(looking, &viewer, fields);
@@ -225,6 +225,37 @@ TEST_F(HubTest, LeaseIsFreeWhenItsHolderLeaves) {
   EXPECT_EQ(second.Last("roles")["clients"][0]["has_lease"], true);
 }
 
+TEST_F(HubTest, TwoOperatorsHaveOneHandEach) {  // N11
+  OpenPeg();
+  FakeLink first;
+  FakeLink second;
+  const std::string a = Join(Role::kOperator, &first);
+  const std::string b = Join(Role::kOperator, &second);
+  const auto ask = [this](const std::string& id, FakeLink* link, const char* command, Json fields) {
+    fields["command"] = command;
+    return Ask(id, link, fields);
+  };
+  EXPECT_EQ(first.Last("hello")["hands"].size(), 1u);
+  const std::size_t start = log_.size();
+  EXPECT_TRUE(IsError(ask(b, &second, "hands", {{"count", 2}}), "invalid"));
+  EXPECT_EQ(ask(a, &first, "hands", {{"count", 2}})["ok"], true);
+  ASSERT_TRUE(log_.Await(
+      [](const Json& e) { return e["event"] == "hands" && e["hands"].size() == 2; }, start));
+  EXPECT_EQ(ask(a, &first, "lease", {{"action", "give"}, {"to", b}, {"hand", 1}})["ok"], true);
+  const Json clients = second.Last("roles")["clients"];
+  EXPECT_EQ(clients[0]["hands"], Json::array({0}));
+  EXPECT_EQ(clients[1]["hands"], Json::array({1}));
+  EXPECT_EQ(clients[1]["has_lease"], false);
+  // Each commands the own hand only, and the second one nothing else.
+  EXPECT_TRUE(IsError(ask(b, &second, "take", {{"hand", 0}, {"occurrence", 1}}), "invalid"));
+  EXPECT_TRUE(IsError(ask(a, &first, "take", {{"hand", 1}, {"occurrence", 1}}), "invalid"));
+  EXPECT_TRUE(IsError(ask(b, &second, "reset", {}), "invalid"));
+  EXPECT_EQ(ask(b, &second, "take", {{"hand", 1}, {"occurrence", 1}})["ok"], true);
+  hub_.Leave(a);
+  EXPECT_EQ(ask(b, &second, "lease", {{"action", "request"}})["ok"], true);
+  EXPECT_EQ(second.Last("roles")["clients"][0]["hands"], Json::array({0, 1}));
+}
+
 TEST_F(HubTest, NinthClientIsRefused) {
   std::vector<FakeLink> links(9);
   std::set<std::string> ids;
@@ -285,6 +316,13 @@ TEST_F(HubTest, FieldsOfTheWrongTypeAreNamed) {
                           Json(nullptr), Json::array({1}), Json(true)}) {
     EXPECT_TRUE(names({{"command", "take"}, {"occurrence", bad}}, "occurrence")) << bad;
   }
+  EXPECT_TRUE(names({{"command", "take"}, {"hand", 2}, {"occurrence", 1}}, "hand"));
+  EXPECT_TRUE(names({{"command", "release"}, {"hand", "left"}}, "hand"));
+  EXPECT_TRUE(names({{"command", "use"}, {"hand", 0}}, "device"));
+  for (const Json& bad : {Json(-1), Json(1e300), Json("1"), Json(nullptr)}) {
+    EXPECT_TRUE(names({{"command", "use"}, {"device", "x"}, {"scale", bad}}, "scale")) << bad;
+  }
+  EXPECT_TRUE(names({{"command", "hands"}}, "count"));
   EXPECT_TRUE(names({{"command", "forces"}, {"off", "yes"}}, "off"));
   EXPECT_TRUE(names({{"command", "forces"}}, "off"));
   EXPECT_TRUE(names({{"command", "demo"}, {"on", 1}}, "on"));

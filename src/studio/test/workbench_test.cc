@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "device/driver.h"
 #include "studio/test/small_bench.h"
 
 namespace hvas::studio {
@@ -69,13 +70,13 @@ class WorkbenchTest : public ::testing::Test {
   void TakePeg() {
     const std::size_t start = log_.size();
     X_WB_start_ = bench_.state().parts[kPeg].X_WB;
-    const auto X_WH = bench_.Take(OccurrenceId(kPeg));
+    const auto X_WH = bench_.Take(hand_, OccurrenceId(kPeg));
     ASSERT_TRUE(X_WH) << X_WH.error().ToString();
     X_WH_ = *X_WH;
     X_HB_ = X_WH_.Inverse() * X_WB_start_;
     ASSERT_TRUE(log_.Await(
         [&](const Json& event) {
-          bench_.Move(X_WH_, true);
+          bench_.Move(hand_, X_WH_, true);
           return event["event"] == "taken" && event["occurrence"] == kPeg;
         },
         start));
@@ -93,7 +94,7 @@ class WorkbenchTest : public ::testing::Test {
       const double part = static_cast<double>(i) / inputs;
       X_WH_ = {spatial::RotationFromVector(Vec3(part * turn)) * from.q(),
                Vec3(from.p() + part * (to.p() - from.p()))};
-      bench_.Move(X_WH_, true);
+      bench_.Move(hand_, X_WH_, true);
       if (state >= 0 && AwaitState(state, start, 0.01)) {
         return;
       }
@@ -122,19 +123,32 @@ class WorkbenchTest : public ::testing::Test {
     MovePeg(above(0.03), 0.6);
     MovePeg(above(-0.001), 2.0, kSeated);
     for (int i = 0; i < 2000 && !AwaitState(kSeated, start, 0.01); ++i) {
-      bench_.Move(X_WH_, true);
+      bench_.Move(hand_, X_WH_, true);
     }
     ASSERT_TRUE(AwaitState(kSeated, start, 0));
   }
 
   void ReleasePeg() {
     const std::size_t start = log_.size();
-    ASSERT_TRUE(bench_.Release());
+    ASSERT_TRUE(bench_.Release(hand_));
     ASSERT_TRUE(log_.Await("dropped", start));
+  }
+
+  /** Waits until a hand has this device. */
+  bool AwaitDevice(std::size_t hand, const std::string& address, std::size_t start) {
+    return log_
+        .Await(
+            [&](const Json& event) {
+              return event["event"] == "hands" && hand < event["hands"].size() &&
+                     event["hands"][hand]["device"]["address"] == address;
+            },
+            start)
+        .has_value();
   }
 
   EventLog log_;
   Workbench bench_;
+  std::size_t hand_{0};  ///< That takes the peg.
   Pose X_WB_start_;
   Pose X_WH_;
   Pose X_HB_;
@@ -166,7 +180,7 @@ TEST_F(WorkbenchTest, PartIsTakenMovedAlongItsAxisAndSeated) {
   OpenPeg();
   TakePeg();
   EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kHeld));
-  EXPECT_FALSE(bench_.Take(OccurrenceId(kPeg)));  // one part in a hand
+  EXPECT_FALSE(bench_.Take(hand_, OccurrenceId(kPeg)));  // one part in a hand
   EXPECT_FALSE(bench_.Undo());
   InsertPeg();
   ASSERT_FALSE(HasFatalFailure());
@@ -181,7 +195,7 @@ TEST_F(WorkbenchTest, PartIsTakenMovedAlongItsAxisAndSeated) {
   EXPECT_TRUE(AwaitPlacementEvent("placed", start));
   const Pose X_WB = bench_.state().parts[kPeg].X_WB;
   EXPECT_LT((X_WB.p() - bench_.scene()->model->bodies[kPeg].X_WB_goal.p()).norm(), 1e-6);
-  EXPECT_FALSE(bench_.Take(OccurrenceId(kPeg)));  // in its place already
+  EXPECT_FALSE(bench_.Take(hand_, OccurrenceId(kPeg)));  // in its place already
 }
 
 TEST_F(WorkbenchTest, WhatWasDoneIsUndoneAndDoneAgain) {
@@ -230,7 +244,7 @@ TEST_F(WorkbenchTest, ForcesAreOffUntilTheyAreSwitchedOn) {  // N6
   // Down into the table: a force, if there may be one.
   MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, -0.01))), 0.3);
   const auto force = [this] {
-    bench_.Move(X_WH_, true);
+    bench_.Move(hand_, X_WH_, true);
     const auto frame = bench_.frame().frame;
     return frame.ticks.empty() ? 0.0 : frame.ticks[0].F_H_W.f.norm();
   };
@@ -253,7 +267,7 @@ TEST_F(WorkbenchTest, ForcesStayOffInTheNextRun) {  // N6
   TakePeg();
   MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, -0.01))), 0.3);
   for (int i = 0; i < 30; ++i) {
-    bench_.Move(X_WH_, true);
+    bench_.Move(hand_, X_WH_, true);
     const auto frame = bench_.frame().frame;
     ASSERT_EQ(frame.ticks.size(), 1u);
     EXPECT_EQ(frame.ticks[0].F_H_W.f.norm(), 0);
@@ -294,6 +308,83 @@ TEST_F(WorkbenchTest, SimulatedPersonDoesTheNextStep) {
   EXPECT_TRUE(ended);
   EXPECT_FALSE(bench_.is_demo());
   EXPECT_EQ(PlacementOf(kPeg), Placement::kPlaced);
+}
+
+TEST_F(WorkbenchTest, SecondHandDoesWhatTheFirstOneDoes) {  // N11: two hands
+  OpenPeg();
+  EXPECT_FALSE(bench_.Take(1, OccurrenceId(kPeg)));  // there is one hand only
+  EXPECT_FALSE(bench_.SetHandCount(3));
+  const std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.SetHandCount(2));
+  ASSERT_TRUE(AwaitDevice(1, HandRack::kPointer, start));
+  hand_ = 1;
+  TakePeg();
+  EXPECT_FALSE(bench_.Take(0, OccurrenceId(kPeg)));  // it is in the other hand
+  EXPECT_FALSE(bench_.SetHandCount(1));
+  InsertPeg();
+  ASSERT_FALSE(HasFatalFailure());
+  EXPECT_EQ(bench_.frame().frame.ticks.size(), 2u);
+  EXPECT_FALSE(bench_.frame().frame.ticks[0].occurrence.is_valid());
+  ReleasePeg();
+  ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
+  ASSERT_TRUE(bench_.Undo());
+  ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kLoose));
+  ASSERT_TRUE(bench_.SetHandCount(1));
+  EXPECT_TRUE(AwaitTrue([this] { return bench_.frame().frame.ticks.size() == 1; }));
+}
+
+TEST_F(WorkbenchTest, EmulatedDeviceInsertsThePegByThePointer) {  // N3
+  OpenPeg();
+  constexpr const char* kAddress = "emulated:openhaptics:touch_x";
+  const std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.UseDevice(0, kAddress, 0));
+  ASSERT_TRUE(AwaitDevice(0, kAddress, start));
+  const Json hand = bench_.hands()[0];
+  EXPECT_EQ(hand["condition"], "ready");
+  EXPECT_EQ(hand["device"]["is_emulated"], true);
+  EXPECT_GT(hand["device"]["max_force_n"], 1);
+  EXPECT_GT(hand["device"]["scale"], 0);
+  EXPECT_FALSE(hand["device"]["notes"].empty());
+  TakePeg();
+  InsertPeg();
+  ASSERT_FALSE(HasFatalFailure());
+  ReleasePeg();
+  EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
+  ASSERT_TRUE(bench_.UseDevice(0, HandRack::kPointer, 0));
+  EXPECT_TRUE(AwaitDevice(0, HandRack::kPointer, start));
+}
+
+TEST_F(WorkbenchTest, DeviceThatCannotBeUsedIsToldOfAndLeavesTheHandAsItWas) {
+  const auto fails = [this](std::size_t hand, const std::string& address) {
+    const std::size_t start = log_.size();
+    EXPECT_TRUE(bench_.UseDevice(hand, address, 0));
+    const auto failed = log_.Await("failed", start);
+    return failed && (*failed)["file"] == address && !(*failed)["error"]["remedy"].empty();
+  };
+  EXPECT_TRUE(fails(0, "nonsense"));
+  EXPECT_TRUE(fails(0, "emulated:openhaptics:nonsense"));
+  EXPECT_TRUE(fails(1, "emulated:openhaptics"));  // there is one hand
+  EXPECT_EQ(bench_.hands()[0]["device"]["address"], HandRack::kPointer);
+  ASSERT_TRUE(bench_.SetHandCount(2));
+  const std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.UseDevice(0, "emulated:haply", 0));
+  ASSERT_TRUE(AwaitDevice(0, "emulated:haply", start));
+  EXPECT_TRUE(fails(1, "emulated:haply"));  // it is in the other one
+}
+
+TEST_F(WorkbenchTest, DevicesAreFoundWithoutOpeningThem) {
+  bench_.SearchDevices();
+  const auto told = log_.Await("devices");
+  ASSERT_TRUE(told);
+  EXPECT_EQ((*told)["is_searching"], false);
+  std::size_t emulated = 0;
+  for (const Json& device : (*told)["devices"]) {
+    emulated += device["is_emulated"] == true ? 1 : 0;
+    EXPECT_FALSE(device["address"].get<std::string>().empty());
+    EXPECT_FALSE(device["name"].get<std::string>().empty());
+  }
+  EXPECT_EQ(emulated, device::KnownProfiles().size());
+  EXPECT_EQ((*told)["devices"].size(), emulated + device::Drivers().size());
 }
 
 TEST_F(WorkbenchTest, StopsWhileAFileIsBeingOpened) {

@@ -1,4 +1,4 @@
-#include "app/opened_device.h"
+#include "device/opened_device.h"
 
 #include <algorithm>
 #include <string_view>
@@ -8,14 +8,14 @@
 
 #include "device/driver.h"
 
-namespace hvas::app {
+namespace hvas::device {
 namespace {
 
 constexpr std::string_view kEmulated = "emulated:";
 
 std::string ListProfiles(const std::string& driver) {
   std::string list;
-  for (const device::SourcedProfile& profile : device::KnownProfiles()) {
+  for (const SourcedProfile& profile : KnownProfiles()) {
     if (profile.driver == driver) {
       list += (list.empty() ? "" : ", ") + profile.profile.id;
     }
@@ -24,18 +24,18 @@ std::string ListProfiles(const std::string& driver) {
 }
 
 bool IsDriver(std::string_view name) {
-  const auto& drivers = device::Drivers();
+  const auto& drivers = Drivers();
   return std::any_of(drivers.begin(), drivers.end(),
-                     [&](const device::Driver* driver) { return driver->name() == name; });
+                     [&](const Driver* driver) { return driver->name() == name; });
 }
 
 Result<OpenedDevice> OpenEmulated(const std::string& text, bool is_live) {
   const std::size_t colon = text.find(':');
   const std::string driver = text.substr(0, colon);
   const std::string id = colon == std::string::npos ? "" : text.substr(colon + 1);
-  device::EmulatorOptions options;
+  EmulatorOptions options;
   options.is_live = is_live;
-  if (const auto* profile = device::FindProfileOfDriver(driver, id); profile != nullptr) {
+  if (const auto* profile = FindProfileOfDriver(driver, id); profile != nullptr) {
     options.profile = profile->profile;
   } else if (const std::string known = ListProfiles(driver); !id.empty() && !known.empty()) {
     return Fail(ErrorCode::kInvalid, fmt::format("{} has no device profile \"{}\"", driver, id),
@@ -44,12 +44,12 @@ Result<OpenedDevice> OpenEmulated(const std::string& text, bool is_live) {
     options.profile.name = "device of a " + driver;
   }
   OpenedDevice opened;
-  auto emulator = device::StartEmulator(driver, options);
+  auto emulator = StartEmulator(driver, options);
   if (!emulator) {
     return Unexpected(emulator.error());
   }
   opened.emulator = std::move(*emulator);
-  auto device = device::OpenDevice(opened.emulator->address(), opened.emulator->surroundings());
+  auto device = OpenDevice(opened.emulator->address(), opened.emulator->surroundings());
   if (!device) {
     return Unexpected(device.error());
   }
@@ -67,7 +67,7 @@ Result<OpenedDevice> OpenAnyDevice(const std::string& address, bool is_live) {
     return Fail(ErrorCode::kInvalid, "a real device needs the real-time loop", address,
                 "add --realtime");
   }
-  auto device = device::OpenDevice(address, device::Surroundings());
+  auto device = OpenDevice(address, Surroundings());
   if (!device) {
     return Unexpected(device.error());
   }
@@ -76,4 +76,4 @@ Result<OpenedDevice> OpenAnyDevice(const std::string& address, bool is_live) {
   return opened;
 }
 
-}  // namespace hvas::app
+}  // namespace hvas::device

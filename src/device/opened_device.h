@@ -7,12 +7,12 @@
 #include "device/device.h"
 #include "device/emulation/emulator.h"
 
-namespace hvas::app {
+namespace hvas::device {
 
-/** A device that was asked for on the command line. */
+/** A device, real or emulated, by the address that a person gave. */
 struct OpenedDevice {
-  std::unique_ptr<device::Emulator> emulator;  ///< Null for a real one. Outlives the device.
-  std::unique_ptr<device::Device> device;
+  std::unique_ptr<Emulator> emulator;  ///< Null for a real one. Outlives the device.
+  std::unique_ptr<Device> device;
 };
 
 /** Opens "DRIVER[:ADDRESS]", or "emulated:DRIVER[:PROFILE]" with a device of that profile that is
@@ -23,4 +23,4 @@ struct OpenedDevice {
  driver's. */
 [[nodiscard]] Result<OpenedDevice> OpenAnyDevice(const std::string& address, bool is_live);
 
-}  // namespace hvas::app
+}  // namespace hvas::device

@@ -1,0 +1,173 @@
+#include "studio/hand_rack.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace hvas::studio {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/** The pointer, as a device is described. */
+device::DeviceInfo MakePointerInfo() {
+  device::DeviceInfo info;
+  info.model = "Mouse, touch or controller";
+  info.capabilities.force_axes = 3;  // they are computed, and shown as arrows and sounds
+  info.capabilities.torque_axes = 3;
+  return info;
+}
+
+Json DescribeDevice(const std::string& address, const device::DeviceInfo& info,
+                    const haptics::TickOptions* tick) {
+  Json json{{"address", address},
+            {"name", info.profile.name.empty() ? info.model : info.profile.name},
+            {"model", info.model},
+            {"serial", info.serial},
+            {"is_emulated", info.is_emulated},
+            {"has_force", info.capabilities.force_axes > 0},
+            {"has_torque", info.capabilities.torque_axes > 0},
+            {"max_force_n", nullptr},
+            {"scale", nullptr},
+            {"notes", Json::array()}};
+  if (tick != nullptr) {
+    json["max_force_n"] = tick->limits ? tick->limits->max_force : tick->device.max_force;
+    json["scale"] = tick->workspace.mapping.scale;
+    json["notes"] = address == HandRack::kPointer ? std::vector<std::string>()
+                                                  : simulation::DescribeRendering(info, *tick);
+  }
+  return json;
+}
+
+std::string DescribeProbe(const device::ProbeReport& report) {
+  if (!report.problems.empty()) {
+    const Error& problem = report.problems.front();
+    return problem.remedy.empty() ? problem.message
+                                  : fmt::format("{}: {}", problem.message, problem.remedy);
+  }
+  std::vector<std::string> found;
+  for (const device::Finding& finding : report.looked_for) {
+    if (finding.is_found) {
+      found.push_back(finding.what);
+    }
+  }
+  return found.empty() ? "" : fmt::format("found {}", fmt::join(found, ", "));
+}
+
+}  // namespace
+
+std::size_t HandRack::count() const {
+  const std::lock_guard lock(mutex_);
+  return slots_.size();
+}
+
+void HandRack::SetCount(std::size_t count) {
+  std::vector<Slot> closed;  // outside the lock
+  const std::lock_guard lock(mutex_);
+  while (slots_.size() > count) {
+    closed.push_back(std::move(slots_.back()));
+    slots_.pop_back();
+  }
+  slots_.resize(count);
+}
+
+Result<void> HandRack::Use(std::size_t hand, const std::string& address, double scale) {
+  Slot slot;
+  slot.address = address;
+  {
+    const std::lock_guard lock(mutex_);
+    if (hand >= slots_.size()) {
+      return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
+                  "ask for two hands first");
+    }
+    for (std::size_t i = 0; i < slots_.size() && address != kPointer; ++i) {
+      if (slots_[i].address == address && i != hand) {
+        return Fail(ErrorCode::kInvalid, "this device is in the other hand", address,
+                    "put another one there first");
+      }
+    }
+    if (slots_[hand].address == address) {
+      slot = slots_[hand];
+    }
+  }
+  if (address != kPointer && slot.setup.device == nullptr) {
+    auto opened = device::OpenAnyDevice(address, true);
+    if (!opened) {
+      return Unexpected(opened.error());
+    }
+    slot.setup.device = std::make_shared<device::OpenedDevice>(std::move(*opened));
+  }
+  slot.setup.scale = scale;
+  const std::lock_guard lock(mutex_);
+  std::swap(slots_[hand], slot);
+  return {};
+}
+
+std::vector<HandSetup> HandRack::setups() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<HandSetup> setups;
+  for (const Slot& slot : slots_) {
+    setups.push_back(slot.setup);
+  }
+  return setups;
+}
+
+std::string HandRack::SetState(std::size_t hand, device::Condition condition,
+                               std::int32_t vendor_code) {
+  const std::lock_guard lock(mutex_);
+  if (hand >= slots_.size() || slots_[hand].setup.device == nullptr) {
+    return {};
+  }
+  slots_[hand].condition = condition;
+  device::DeviceState state;
+  state.condition = condition;
+  state.vendor_code = vendor_code;
+  return slots_[hand].setup.device->device->Explain(state);
+}
+
+Json HandRack::Describe(const std::vector<const haptics::TickOptions*>& hands) const {
+  const std::lock_guard lock(mutex_);
+  Json list = Json::array();
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    const Slot& slot = slots_[i];
+    const haptics::TickOptions* tick = i < hands.size() ? hands[i] : nullptr;
+    const device::DeviceInfo info =
+        slot.setup.device != nullptr ? slot.setup.device->device->info() : MakePointerInfo();
+    list.push_back({{"hand", i},
+                    {"device", DescribeDevice(slot.address, info, tick)},
+                    {"condition", device::ToString(slot.condition)}});
+  }
+  return list;
+}
+
+Json SearchDevices() {
+  const device::Surroundings surroundings;
+  Json list = Json::array();
+  for (const device::Driver* driver : device::Drivers()) {
+    const device::ProbeReport report = driver->Probe(surroundings, false);
+    const bool is_found =
+        std::any_of(report.looked_for.begin(), report.looked_for.end(),
+                    [](const device::Finding& finding) { return finding.is_found; });
+    list.push_back({{"address", driver->name()},
+                    {"driver", driver->name()},
+                    {"name", driver->title()},
+                    {"detail", DescribeProbe(report)},
+                    {"is_emulated", false},
+                    {"is_ready", is_found && report.problems.empty()}});
+  }
+  for (const device::SourcedProfile& profile : device::KnownProfiles()) {
+    list.push_back(
+        {{"address", fmt::format("emulated:{}:{}", profile.driver, profile.profile.id)},
+         {"driver", profile.driver},
+         {"name", profile.profile.name},
+         {"detail", "not there: computed, and held by the pointer or the simulated person"},
+         {"is_emulated", true},
+         {"is_ready", true}});
+  }
+  return list;
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,72 @@
+#include "studio/live_hand.h"
+
+namespace hvas::studio {
+namespace {
+
+/** Whoever moves the hand may be gone: it is given no force then, and the part stays. */
+void AddClientLimits(haptics::SafetyLimits* limits) {
+  limits->client_hold = 1e-9 * static_cast<double>(PointerOperator::kSilentNs);
+  limits->client_fade = 0.25;  // [s]
+}
+
+haptics::TickOptions MakeOptions(const HandSetup& setup, const HandPurpose& purpose,
+                                 bool goes_through_device, const simulation::Model& model) {
+  if (!goes_through_device) {
+    return MakePointerOptions(purpose.rate_hz);
+  }
+  haptics::TickOptions options = simulation::MakeTickOptions(setup.device->device->info(), model,
+                                                             {setup.scale, purpose.rate_hz});
+  if (setup.device->emulator != nullptr && !purpose.has_person) {
+    AddClientLimits(&*options.limits);
+  }
+  return options;
+}
+
+}  // namespace
+
+haptics::TickOptions MakePointerOptions(double rate_hz) {
+  constexpr double kModelHold = 0.2;  // [s]; as with a device
+  haptics::TickOptions options;
+  options.dt = 1 / rate_hz;
+  options.device.name = "pointer";
+  options.limits = haptics::MakeSafetyLimits(options.device);
+  // There are no motors to be kept cool, and no handle that could kick or be torn away.
+  options.limits->has_detectors = false;
+  options.limits->continuous_force = haptics::SafetyLimits::kNever;
+  options.limits->continuous_torque = haptics::SafetyLimits::kNever;
+  options.limits->fade_speed = haptics::SafetyLimits::kNever;
+  options.limits->cut_speed = haptics::SafetyLimits::kNever;
+  options.limits->model_hold = kModelHold;
+  AddClientLimits(&*options.limits);
+  return options;
+}
+
+LiveHand::LiveHand(const HandSetup& setup, const HandPurpose& purpose,
+                   const simulation::Model& model)
+    : device_(setup.device), pointer_(purpose.X_WH) {
+  const bool is_emulated = device_ != nullptr && device_->emulator != nullptr;
+  const bool goes_through_device = is_emulated || (device_ != nullptr && !purpose.has_person);
+  tick_options_ = MakeOptions(setup, purpose, goes_through_device, model);
+  if (purpose.has_person) {
+    person_ = std::make_unique<simulation::SimulatedPerson>(
+        is_emulated ? simulation::MakePersonOptions(tick_options_) : simulation::PersonOptions(),
+        purpose.seed, purpose.X_WH);
+  }
+  if (is_emulated) {
+    simulation::DeviceHolder* holder = &pointer_;
+    if (person_ != nullptr) {
+      holder = person_.get();
+    }
+    at_device_ = std::make_unique<simulation::PersonAtDevice>(holder, device_->emulator.get(),
+                                                              device_->device.get(), true);
+  } else if (goes_through_device) {
+    at_device_ = std::make_unique<simulation::DeviceOperator>(device_->device.get());
+  }
+  follows_pointer_ = person_ == nullptr && (is_emulated || device_ == nullptr);
+  active_ = at_device_.get();
+  if (active_ == nullptr) {
+    active_ = person_ != nullptr ? static_cast<simulation::Operator*>(person_.get()) : &pointer_;
+  }
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,123 @@
+#include "studio/live_run.h"
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "base/clock.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::studio {
+namespace {
+
+using spatial::Pose;
+
+constexpr std::size_t kPeg = 1;
+
+/** The last that a run told, kept for the test's thread. */
+class Listener {
+ public:
+  [[nodiscard]] LiveListeners functions() {
+    LiveListeners listeners;
+    listeners.on_event = [this](const simulation::SimulationEvent& event) {
+      if (event.kind == simulation::SimulationEvent::Kind::kDevice) {
+        condition_ = event.condition;
+      }
+    };
+    listeners.on_placement = [](product::OccurrenceId, simulation::Placement) {};
+    listeners.on_step = [](std::size_t) {};
+    listeners.on_frame = [this](const simulation::Frame& frame, const PeakForces&) {
+      const std::lock_guard lock(mutex_);
+      frame_ = frame;
+    };
+    return listeners;
+  }
+
+  [[nodiscard]] device::Condition condition() const { return condition_; }
+
+  [[nodiscard]] simulation::Frame frame() const {
+    const std::lock_guard lock(mutex_);
+    return frame_;
+  }
+
+ private:
+  std::atomic<device::Condition> condition_{device::Condition::kReady};
+  mutable std::mutex mutex_;
+  simulation::Frame frame_;
+};
+
+/** A live run with an emulated device in the hand, which the pointer moves. */
+class LiveRunTest : public ::testing::Test {
+ protected:
+  LiveRunTest() : model_(simulation::testing::PegInBlockModel()) {
+    device_ = std::make_shared<device::OpenedDevice>(
+        *device::OpenAnyDevice("emulated:forcedimension:sigma7", true));
+    LiveOptions options;
+    options.hands = {{device_, 0}};
+    run_ = std::make_unique<LiveRun>(model_, LiveState(), options, listener_.functions());
+  }
+
+  void SetFault(device::Fault fault) { device_->emulator->device().SetFault(fault); }
+
+  /** Moves the hand to a place until something holds, for a minute at most. */
+  bool MoveUntil(const Vec3& p_WH, const std::function<bool()>& holds) {
+    constexpr int kTries = 6000;
+    for (int i = 0; i < kTries; ++i) {
+      run_->Move(0, Pose(p_WH), true);
+      if (holds()) {
+        return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+  [[nodiscard]] double force() const {
+    const simulation::Frame frame = listener_.frame();
+    return frame.ticks.empty() ? 0 : frame.ticks[0].F_H_D.f.norm();
+  }
+
+  std::shared_ptr<const simulation::Model> model_;
+  Listener listener_;
+  std::shared_ptr<device::OpenedDevice> device_;
+  std::unique_ptr<LiveRun> run_;
+};
+
+TEST_F(LiveRunTest, DeviceThatIsPulledOutGivesNoForceAndIsTakenUpAgain) {  // N6
+  const Pose X_WB = run_->state().parts[kPeg].X_WB;
+  const simulation::SequenceStep step =
+      *std::find_if(model_->sequence.steps.begin(), model_->sequence.steps.end(),
+                    [](const auto& s) { return s.occurrence.index() == kPeg; });
+  const Vec3 p_WH = X_WB * model_->bodies[kPeg].mass.p_BoBcm_B;
+  run_->Take(0, step, Pose(p_WH));
+  ASSERT_TRUE(MoveUntil(p_WH, [this] { return run_->is_holding(0); }));
+  const Vec3 p_below = p_WH - Vec3(0, 0, 0.01);  // into the table
+  ASSERT_TRUE(MoveUntil(p_below, [this] { return force() > 0.5; }));
+  SetFault(device::Fault::kUnplugged);
+  ASSERT_TRUE(
+      MoveUntil(p_below, [this] { return listener_.condition() != device::Condition::kReady; }));
+  ASSERT_TRUE(MoveUntil(p_below, [this] { return force() == 0; }));
+  EXPECT_TRUE(run_->is_holding(0)) << "the part stays where it is";
+  SetFault(device::Fault::kNone);
+  EXPECT_TRUE(
+      MoveUntil(p_below, [this] { return listener_.condition() == device::Condition::kReady; }));
+  EXPECT_TRUE(MoveUntil(p_below, [this] { return force() > 0.5; }));
+}
+
+TEST_F(LiveRunTest, DeviceGoesFromOneRunToTheNext) {
+  const Pose X_WB = run_->state().parts[kPeg].X_WB;
+  run_.reset();
+  LiveOptions options;
+  options.hands = {{device_, 0}};
+  run_ = std::make_unique<LiveRun>(model_, LiveState(), options, listener_.functions());
+  const Vec3 p_WH = X_WB * model_->bodies[kPeg].mass.p_BoBcm_B;
+  EXPECT_TRUE(MoveUntil(p_WH, [&] {
+    const simulation::Frame frame = listener_.frame();
+    return !frame.ticks.empty() && (frame.ticks[0].X_WH.p() - p_WH).norm() < 2e-3;
+  }));
+}
+
+}  // namespace
+}  // namespace hvas::studio
