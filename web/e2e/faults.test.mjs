@@ -104,8 +104,7 @@ describe("a page that steers", () => {
     await page.mouse.up();
     await page.reload();
     await waitForPicture(page);
-    await page.getByTestId("hint-lease").click();  // whoever leaves has no control any more
-    await waitForState(page, (state) => state.hasLease);
+    await waitForState(page, (state) => state.hasLease);  // nobody else wants it
     await waitForState(page, ({ held }) => held[0]?.occurrence === kShaft);
     await takePicture(page, "fault_reloaded");
     await goesOn(page);

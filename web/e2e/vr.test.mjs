@@ -268,6 +268,7 @@ describe("somebody in VR", () => {
     await press(page, right, "seated");
     assert.ok((await world()).p[1] !== first.p[1]);
     await takePicture(page, "vr_seated_mode");
+    await left.moveTo({ p: [-0.25, 1.25, -0.35], q: [1, 0, 0, 0] });
     await press(page, right, "forces");
     await waitForState(page, ({ forcesOff }) => forcesOff);
     await takePicture(page, "vr_forces_off");

@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { makeHint } from "../src/model/hints";
 import { Studio } from "../src/model/studio";
-import { buildTree, filterTree } from "../src/model/tree";
+import { buildTree, filterTree, groupAround } from "../src/model/tree";
 import { decodeView, encodeView, type SharedView } from "../src/model/view_link";
 import { isolate, makeViewState, select, setHidden } from "../src/model/view_state";
 import type { Occurrence, Scene } from "../src/protocol/messages";
@@ -44,9 +44,9 @@ const scene: Scene = {
   occurrences: [
     part(0, "housing", 0, { is_base: true, placement: "placed" }),
     part(1, "shaft", 1),
-    part(2, "bolt 1", 2),
-    part(3, "bolt 2", 2),
-    part(4, "bolt 3", 2),
+    part(2, "bolt 1", 2, { parent: 1 }),
+    part(3, "bolt 2", 2, { parent: 1 }),
+    part(4, "bolt 3", 2, { parent: 1 }),
   ],
   mates: [],
   steps: [
@@ -55,6 +55,16 @@ const scene: Scene = {
   ],
   diagnostics: [],
 };
+
+describe("a click on a part, by subassemblies", () => {
+  it("selects the one that it stands in, then the one around that up to the product, and begins anew", () => {
+    const first = groupAround(scene, 3, []);
+    expect(first.sort()).toEqual([2, 3, 4]);
+    const second = groupAround(scene, 3, first);
+    expect(second.sort()).toEqual([0, 1, 2, 3, 4]);
+    expect(groupAround(scene, 3, second).sort()).toEqual([2, 3, 4]);
+  });
+});
 
 describe("the tree", () => {
   it("gathers like parts and leaves out the root", () => {

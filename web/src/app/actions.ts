@@ -1,8 +1,9 @@
 /** Everything that can be done, once: menus, palette, tools, keys and the right-click menu show the same. */
 
 import { clearPicks, isolate, select, setHidden, showAll, toggleGhost, type Tool } from "../model/view_state";
+import type { PathKind } from "../model/part_path";
 import type { ViewName } from "../view3d/camera_rig";
-import { canSteer, store, studio, ui, view, viewport } from "./app_state";
+import { canSteer, paths, store, studio, ui, view, viewport } from "./app_state";
 import { chooseFile, copyLink, saveRuns, saveScreenshot } from "./exports";
 import { t } from "./i18n";
 import type { MessageKey } from "./en";
@@ -13,6 +14,7 @@ import { enterVr } from "./vr_entry";
 const hasScene = () => store.scene.value !== null;
 const chosen = () => view.selected.value;
 const hasChosen = () => hasScene() && chosen().length > 0;
+const hasOneChosen = () => hasScene() && chosen().length === 1;
 const steers = () => hasScene() && canSteer();
 const isHolding = () => store.held.value.some((h) => h.hand === view.hand.value);
 
@@ -129,6 +131,8 @@ const viewActions: Action[] = [
     keys: ["a"],
     isEnabled: () => view.hidden.value.size + view.ghosted.value.size > 0,
   }),
+  action("path-points", "action.pathPoints", () => showPath("points"), { isEnabled: hasOneChosen, startsGroup: true }),
+  action("path-swept", "action.pathSwept", () => showPath("swept"), { isEnabled: hasOneChosen }),
   action("section", "action.section", toggleSection, {
     startsGroup: true,
     keys: ["x"],
@@ -142,10 +146,10 @@ const viewActions: Action[] = [
   }),
   toggle("edges", "action.edges", view.showsEdges, { startsGroup: true }),
   toggle("grid", "action.grid", view.showsGrid),
-  toggle("workshop", "action.workshop", view.showsWorkshop, { keys: ["w"], isEnabled: isFine }),
+  action("workshop", "action.workshop", toggleWorkshop, { keys: ["k"], isOn: () => view.showsWorkshop.value }),
   toggle("forces-shown", "action.forcesShown", view.showsForces),
   toggle("force-scale", "action.forceScale", view.locksForceScale),
-  action("quality", "action.quality", toggleQuality, { isOn: isFine, startsGroup: true }),
+  action("quality", "action.quality", toggleQuality, { isOn: () => view.isFine.value, startsGroup: true }),
   action("stereo-side", "action.stereoSide", () => toggleStereo("side"), { isOn: () => view.stereo.value === "side" }),
   action("stereo-anaglyph", "action.stereoAnaglyph", () => toggleStereo("anaglyph"), {
     isOn: () => view.stereo.value === "anaglyph",
@@ -223,17 +227,27 @@ const helpActions: Action[] = [
   action("shortcuts", "action.shortcuts", () => (ui.overlay.value = { kind: "shortcuts" }), { keys: ["?"] }),
 ];
 
+function showPath(kind: PathKind): void {
+  const [occurrence] = chosen();
+  if (occurrence !== undefined) {
+    void paths.show(occurrence, kind);
+  }
+}
+
 function toggleSection(): void {
   view.section.value = view.section.value === null ? { axis: 0, offset: 0, isFlipped: false } : null;
 }
 
-function isFine(): boolean {
-  return view.quality.value === "high" && !view.isSlow.value;
+function toggleWorkshop(): void {
+  view.showsWorkshop.value = !view.showsWorkshop.value;
+  if (view.showsWorkshop.value && !view.isFine.value) {
+    // Whoever asks for it gets it, on a slow machine as well.
+    view.quality.value = "high";
+  }
 }
 
 function toggleQuality(): void {
-  view.quality.value = isFine() ? "low" : "high";
-  view.isSlow.value = false;
+  view.quality.value = view.isFine.value ? "low" : "high";
 }
 
 function toggleStereo(wanted: "side" | "anaglyph"): void {

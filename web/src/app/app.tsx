@@ -1,6 +1,6 @@
 import { useEffect, useRef } from "preact/hooks";
 import { Viewport } from "../view3d/viewport";
-import { canSteer, store, studio, ui, view, viewport } from "./app_state";
+import { canSteer, paths, store, studio, ui, view, viewport } from "./app_state";
 import { Banners, LiveRegion, Notice, useStatusPolling } from "./banners";
 import { ConstraintList } from "./constraint_list";
 import { Overlays } from "./dialogs";
@@ -26,6 +26,7 @@ function ViewportHost() {
       }
       ui.overlay.value = { kind: "menu", x, y, occurrence: hit?.occurrence ?? null };
     };
+    made.showPaths(paths);
     viewport.value = made;
   }, []);
   const isDark = view.isDark.value;

@@ -1,6 +1,7 @@
 /** The one studio of this page, and what its parts share. */
 
 import { signal } from "@preact/signals";
+import { PartPaths } from "../model/part_path";
 import { Studio } from "../model/studio";
 import { kDefaultWindowS, type Span } from "../model/plot_range";
 import { LiveTraces } from "../model/trace";
@@ -10,6 +11,7 @@ import type { Viewport } from "../view3d/viewport";
 export const studio = new Studio();
 export const store = studio.store;
 export const view = makeViewState();
+export const paths = new PartPaths(studio);
 export const viewport = signal<Viewport | null>(null);
 /** What the hands felt in the last minutes. */
 export const liveTraces = new LiveTraces();

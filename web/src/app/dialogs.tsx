@@ -125,7 +125,7 @@ function Shortcuts() {
   );
 }
 
-const kOnPart = ["take", "release", "fit", "hide", "isolate", "ghost", "show-all", "section", "tool-measure", "tool-mate"];
+const kOnPart = ["take", "release", "fit", "hide", "isolate", "ghost", "show-all", "path-points", "path-swept", "section", "tool-measure", "tool-mate"];
 const kOnFloor = ["fit", "show-all", "view-iso", "view-front", "view-top", "ortho", "section", "explode", "screenshot", "palette"];
 
 function ContextMenu({ x, y, isOnPart }: { x: number; y: number; isOnPart: boolean }) {

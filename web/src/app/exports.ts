@@ -35,6 +35,20 @@ function save(blob: Blob, name: string): void {
   studio.notify(t("notice.saved", { file: name }));
 }
 
+export function saveText(text: string, name: string, type: string): void {
+  save(new Blob([text], { type }), name);
+}
+
+/** What the server has made, as a file. */
+export async function saveUrl(url: string, name: string): Promise<void> {
+  const answer = await fetch(url);
+  if (answer.ok) {
+    save(await answer.blob(), name);
+  } else {
+    studio.notify(`${answer.status} ${answer.statusText}`, true);
+  }
+}
+
 function stem(): string {
   const name = store.scene.value?.name ?? "studio";
   return name.replace(/[^\p{L}\p{N}]+/gu, "_");

@@ -43,7 +43,7 @@ showShared(shared, moment);
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 effect(() => viewport.value?.rig.setReducedMotion(calm.matches));
 effect(() => {
-  if (view.isSlow.value) {
+  if (view.isSlow.value && !view.isFine.value) {
     studio.notify(t("notice.slow"));
   }
 });

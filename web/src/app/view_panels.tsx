@@ -8,6 +8,7 @@ import { canSteer, store, studio, view, viewport } from "./app_state";
 import { number, t } from "./i18n";
 import { Icon } from "./icons";
 import { useLive } from "./live";
+import { PathPanel } from "./path_panel";
 import { WorkshopPanel } from "./workshop_panel";
 
 function SectionPanel() {
@@ -230,6 +231,7 @@ export function ViewPanels() {
       </div>
       {tool === "measure" ? <MeasurePanel /> : null}
       {tool === "mate" ? <MatePanel /> : null}
+      {tool !== "mate" && tool !== "measure" ? <PathPanel /> : null}
       <MeasureLabel />
       <Legend />
     </>

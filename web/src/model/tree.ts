@@ -101,3 +101,31 @@ export function filterTree(nodes: readonly TreeNode[], text: string): TreeNode[]
   }
   return kept;
 }
+
+/** The subassembly that a part stands in; where just that is selected, the next one around it, up to the
+ whole product, and then the first again. */
+export function groupAround(scene: Scene, occurrence: number, selected: readonly number[]): number[] {
+  const subassemblies = new Map(scene.subassemblies.map((s) => [s.id, s]));
+  const below = (sub: Subassembly): number[] => [
+    ...sub.occurrences,
+    ...sub.subassemblies.flatMap((id) => below(subassemblies.get(id)!)),
+  ];
+  const chosen = new Set(selected);
+  const isChosen = (ids: readonly number[]) => ids.length === chosen.size && ids.every((id) => chosen.has(id));
+  let at = scene.occurrences.find((o) => o.id === occurrence)?.parent ?? null;
+  let ids = [occurrence];
+  while (at !== null) {
+    const sub = subassemblies.get(at);
+    if (sub === undefined) {
+      break;
+    }
+    const around = below(sub);
+    const climbs = isChosen(around) && sub.parent !== null;
+    ids = around;
+    if (!climbs) {
+      break;
+    }
+    at = sub.parent;
+  }
+  return ids;
+}

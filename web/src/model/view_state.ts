@@ -1,6 +1,6 @@
 /** What this page shows and how; the server knows nothing of it. */
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import type { FaceOf, Measurement } from "../protocol/messages";
 import type { BenchItem } from "./bench";
 import type { SectionPlane } from "./view_link";
@@ -8,10 +8,12 @@ import type { SectionPlane } from "./view_link";
 export type Tool = "hand" | "select" | "measure" | "mate";
 export type SelectMode = "part" | "subassembly" | "face";
 export type Stereo = "none" | "side" | "anaglyph";
-export type Quality = "low" | "high";
+export type Quality = "low" | "auto" | "high";
 export type ThemeChoice = "dark" | "light" | "system";
 
 export function makeViewState() {
+  const quality = signal<Quality>("auto");
+  const isSlow = signal(false);
   return {
     tool: signal<Tool>("hand"),
     /** The hand that the mouse leads where there are two. */
@@ -29,9 +31,11 @@ export function makeViewState() {
     explode: signal(0),
     isOrthographic: signal(false),
     stereo: signal<Stereo>("none"),
-    quality: signal<Quality>("high"),
-    /** The machine draws slowly: shadows are left out, whatever the quality. */
-    isSlow: signal(false),
+    quality,
+    /** The machine draws slowly: without a graphics processor, for one. */
+    isSlow,
+    /** Shadows and workshop are drawn: as is wished, or else where the machine is fast enough. */
+    isFine: computed(() => quality.value === "high" || (quality.value === "auto" && !isSlow.value)),
     showsForces: signal(true),
     /** Newtons to metres of arrow; null: as fits the largest force so far. */
     locksForceScale: signal(false),

@@ -131,6 +131,19 @@ export interface Measurement {
   p_m: Vec3[];
 }
 
+/** The way of a part: its centre of mass, and the part itself. */
+export interface PathPoints {
+  points_m: Vec3[];
+  poses: Pose[];
+}
+
+/** The room that a part takes along its way. */
+export interface PathSwept {
+  glb: string;
+  volume_mm3: number;
+  error_mm: number;
+}
+
 export type Command =
   | { command: "open"; example?: string; upload?: string }
   | { command: "cancel" }
@@ -146,6 +159,7 @@ export type Command =
   | { command: "add_mate"; a: FaceOf; b: FaceOf; fit?: string }
   | { command: "remove_mate"; mate: number }
   | { command: "measure"; a: FaceOf; b?: FaceOf }
+  | { command: "path"; occurrence: number; as: "points" | "swept"; resolution_mm?: number }
   | { command: "lease"; action: "request" | "release" | "give"; hand?: number; to?: string }
   | { command: "status" }
   | { command: "hands"; count: number }
@@ -170,6 +184,7 @@ export interface CommandResults {
   add_mate: Nothing;
   remove_mate: Nothing;
   measure: Measurement;
+  path: PathPoints | PathSwept;
   lease: { waits_for?: string };
   status: Nothing;
   hands: Nothing;

@@ -18,6 +18,7 @@ export interface Palette {
   cap: Color;
   face: Color;
   measure: Color;
+  path: Color;
   cubeFace: string;
   cubeInk: string;
   cubeEdge: string;
@@ -44,6 +45,7 @@ export function readPalette(element: Element): Palette {
     cap: color("--v-cap"),
     face: color("--v-face"),
     measure: color("--v-measure"),
+    path: color("--v-path"),
     cubeFace: text("--v-cube-face"),
     cubeInk: text("--v-cube-ink"),
     cubeEdge: text("--v-cube-edge"),

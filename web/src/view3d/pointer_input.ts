@@ -3,8 +3,9 @@
 import type { Ray as ThreeRay } from "three";
 import type { Ray } from "../model/assist";
 import type { Studio } from "../model/studio";
+import { groupAround } from "../model/tree";
 import { select } from "../model/view_state";
-import type { FaceOf, Scene } from "../protocol/messages";
+import type { FaceOf } from "../protocol/messages";
 import type { PickHit } from "./parts";
 import type { Viewport } from "./viewport";
 
@@ -197,7 +198,7 @@ export class PointerInput {
     const mode = view.selectMode.peek();
     const scene = this.viewport.product.scene;
     if (mode === "subassembly" && scene !== null) {
-      select(view, siblingsOf(scene, hit.occurrence), isAdding);
+      select(view, groupAround(scene, hit.occurrence, view.selected.peek()), isAdding);
       return;
     }
     select(view, [hit.occurrence], isAdding);
@@ -272,14 +273,4 @@ export class PointerInput {
     const canDrag = isHeld || (hit !== null && view.tool.peek() === "hand" && hand.canTake(hit.occurrence));
     canvas.style.cursor = canDrag ? "grab" : hit !== null ? "pointer" : "default";
   }
-}
-
-/** All that stands in the same subassembly. */
-function siblingsOf(scene: Scene, occurrence: number): number[] {
-  const parent = scene.occurrences.find((o) => o.id === occurrence)?.parent ?? null;
-  const below = (id: number): number[] => {
-    const sub = scene.subassemblies.find((s) => s.id === id);
-    return sub === undefined ? [] : [...sub.occurrences, ...sub.subassemblies.flatMap(below)];
-  };
-  return parent === null ? [occurrence] : below(parent);
 }

@@ -16,7 +16,6 @@ import {
   type Sphere,
   type WebGLRenderer,
 } from "three";
-import type { Quality } from "../model/view_state";
 import { FloorGrid } from "./floor_grid";
 import type { Palette } from "./palette";
 
@@ -95,8 +94,7 @@ export class Stage {
     this.grid.object.visible = isShown;
   }
 
-  setQuality(quality: Quality, renderer: WebGLRenderer): void {
-    const hasShadow = quality === "high";
+  setShadows(hasShadow: boolean, renderer: WebGLRenderer): void {
     renderer.shadowMap.enabled = hasShadow;
     renderer.shadowMap.type = PCFShadowMap;
     this.sun.castShadow = hasShadow;

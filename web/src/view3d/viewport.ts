@@ -3,6 +3,7 @@
 import { effect } from "@preact/signals";
 import { Box3, Group, PerspectiveCamera, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
 import type { Vec3 } from "../model/math";
+import type { PartPaths } from "../model/part_path";
 import type { Studio } from "../model/studio";
 import type { SharedView } from "../model/view_link";
 import type { ViewState } from "../model/view_state";
@@ -15,6 +16,7 @@ import type { Eye } from "./mouse_hand";
 import { Painter } from "./painter";
 import { readPalette } from "./palette";
 import { copyPicture } from "./picture";
+import { PathLayer } from "./path_layer";
 import { PointerInput } from "./pointer_input";
 import { SceneView } from "./scene_view";
 import { applyView, readView } from "./shared_view";
@@ -60,6 +62,7 @@ export class Viewport {
   private lastDrawn = 0;
   private lastSeq = -1;
   private lastEpoch = -1;
+  private pathLayer: PathLayer | null = null;
   private pendingView: SharedView | null = null;
 
   constructor(
@@ -140,8 +143,16 @@ export class Viewport {
     const palette = readPalette(this.host);
     this.stage.setPalette(palette);
     this.product.setPalette(palette);
+    this.pathLayer?.setPalette(palette);
     this.cube.setLabels(labels, palette);
     this.invalidate();
+  }
+
+  showPaths(paths: PartPaths): void {
+    const layer = new PathLayer(paths);
+    layer.onChange = () => this.invalidate();
+    this.pathLayer = layer;
+    this.worldRoot.add(layer.root);
   }
 
   /** Somebody is in VR from now on. */
@@ -194,10 +205,9 @@ export class Viewport {
       this.invalidate();
     });
     effect(() => {
-      const quality = view.isSlow.value ? "low" : view.quality.value;
-      this.stage.setQuality(quality, this.renderer);
-      const ratio = quality === "high" ? Math.min(2, devicePixelRatio) : 1;
-      this.renderer.setPixelRatio(ratio);
+      const isFine = view.isFine.value;
+      this.stage.setShadows(isFine, this.renderer);
+      this.renderer.setPixelRatio(isFine ? Math.min(2, devicePixelRatio) : 1);
       this.resize();
     });
     effect(() => {
@@ -220,6 +230,7 @@ export class Viewport {
     const base = new Box3().setFromPoints(this.product.outline(fixed));
     this.stage.fit(around, scene.radius_m, scene.table_z_m, base);
     this.workshop.fit(around, scene.table_z_m);
+    this.pathLayer?.setRadius(scene.radius_m);
     this.rig.setReach(Math.max(scene.radius_m, 0.5 * around.radius));
     if (this.pendingView !== null) {
       this.show(this.pendingView);

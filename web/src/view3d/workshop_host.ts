@@ -97,8 +97,7 @@ export class WorkshopHost {
   }
 
   private get isWanted(): boolean {
-    const { showsWorkshop, quality, isSlow } = this.view;
-    return showsWorkshop.value && quality.value === "high" && !isSlow.value;
+    return this.view.showsWorkshop.value && this.view.isFine.value;
   }
 
   private async load(): Promise<void> {
