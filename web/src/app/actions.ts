@@ -139,11 +139,8 @@ const viewActions: Action[] = [
     isEnabled: hasScene,
     isOn: () => view.section.value !== null,
   }),
-  action("explode", "action.explode", () => (view.explode.value = view.explode.value > 0 ? 0 : 0.6), {
-    keys: ["b"],
-    isEnabled: hasScene,
-    isOn: () => view.explode.value > 0,
-  }),
+  action("explode", "action.explode", toggleExplode, { keys: ["b"], isEnabled: hasScene, isOn: () => view.explode.value > 0 }),
+  action("apart", "action.apart", toggleApart, { keys: ["j"], isEnabled: hasScene, isOn: () => view.apart.value !== null }),
   toggle("edges", "action.edges", view.showsEdges, { startsGroup: true }),
   toggle("grid", "action.grid", view.showsGrid),
   action("workshop", "action.workshop", toggleWorkshop, { keys: ["k"], isOn: () => view.showsWorkshop.value }),
@@ -236,6 +233,16 @@ function showPath(kind: PathKind): void {
 
 function toggleSection(): void {
   view.section.value = view.section.value === null ? { axis: 0, offset: 0, isFlipped: false } : null;
+}
+
+function toggleExplode(): void {
+  view.apart.value = null;
+  view.explode.value = view.explode.value > 0 ? 0 : 0.6;
+}
+
+function toggleApart(): void {
+  view.explode.value = 0;
+  view.apart.value = view.apart.value === null ? 0 : null;
 }
 
 function toggleWorkshop(): void {

@@ -41,7 +41,10 @@ startSounds();
 exposeHooks();
 showShared(shared, moment);
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
-effect(() => viewport.value?.rig.setReducedMotion(calm.matches));
+const followCalm = () => (view.isCalm.value = calm.matches);
+followCalm();
+calm.addEventListener("change", followCalm);
+effect(() => viewport.value?.rig.setReducedMotion(view.isCalm.value));
 effect(() => {
   if (view.isSlow.value && !view.isFine.value) {
     studio.notify(t("notice.slow"));

@@ -8,6 +8,7 @@ import { canSteer, store, studio, view, viewport } from "./app_state";
 import { number, t } from "./i18n";
 import { Icon } from "./icons";
 import { useLive } from "./live";
+import { ApartPanel } from "./apart_panel";
 import { PathPanel } from "./path_panel";
 import { WorkshopPanel } from "./workshop_panel";
 
@@ -227,6 +228,7 @@ export function ViewPanels() {
       <div class="float-row">
         <SectionPanel />
         <ExplodePanel />
+        <ApartPanel />
         <WorkshopPanel />
       </div>
       {tool === "measure" ? <MeasurePanel /> : null}

@@ -29,6 +29,8 @@ export function makeViewState() {
     measurement: signal<Measurement | null>(null),
     section: signal<SectionPlane | null>(null),
     explode: signal(0),
+    /** So many steps of the procedure are drawn undone, from its end; null: it is not taken apart. */
+    apart: signal<number | null>(null),
     isOrthographic: signal(false),
     stereo: signal<Stereo>("none"),
     quality,
@@ -49,6 +51,8 @@ export function makeViewState() {
     letsGoWhenSeated: signal(true),
     /** In VR: the table is at the height of somebody who sits. */
     isSeated: signal(false),
+    /** No motion that is not needed. */
+    isCalm: signal(false),
     isMuted: signal(false),
     theme: signal<ThemeChoice>("system"),
     /** As it is drawn now. */

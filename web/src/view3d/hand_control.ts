@@ -94,6 +94,7 @@ export class HandControl {
     }
     const { hand, mouse } = this.led[this.view.hand.peek()]!;
     this.view.explode.value = 0;
+    this.view.apart.value = null;
     const taken = this.isLeftInHand(occurrence) ? this.takeOver(hand) : await this.takeUp(hand, part);
     if (taken === null) {
       return false;

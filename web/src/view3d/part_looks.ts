@@ -1,6 +1,7 @@
 /** How each part looks for what it is: hidden, a ghost, pointed at, selected, held, the next one. */
 
 import { effect } from "@preact/signals";
+import { takingApart } from "../model/apart";
 import type { Store } from "../model/store";
 import type { ViewState } from "../model/view_state";
 import type { Palette } from "./palette";
@@ -35,7 +36,7 @@ export class PartLooks {
 
   /** For some seconds the part whose turn it is beats. @return Whether anything has changed. */
   pulse(parts: Parts): boolean {
-    const beats = performance.now() < this.pulseUntil && this.store.expected.peek() !== null;
+    const beats = !this.view.isCalm.peek() && performance.now() < this.pulseUntil && this.store.expected.peek() !== null;
     return beats && this.apply(parts);
   }
 
@@ -65,14 +66,15 @@ export class PartLooks {
     const hidden = view.hidden.value;
     const ghosted = view.ghosted.value;
     const held = store.heldBy.value;
-    const expected = store.expected.value;
-    const isWanted = expected !== null && store.hasLease.value && held.size === 0;
+    const apart = view.apart.value;
+    const expected = apart === null ? store.expected.value : (takingApart(store.scene.value?.steps ?? [])[apart] ?? null);
+    const isWanted = expected !== null && (apart !== null || (store.hasLease.value && held.size === 0));
     const wanted = new Set(isWanted ? [expected.occurrence, ...expected.members] : []);
     if (palette === null) {
       return null;
     }
     const left = this.pulseUntil - performance.now();
-    const beat = left > 0 ? 0.3 + 0.22 * Math.sin(left / 160) : 0.3;
+    const beat = left > 0 && !view.isCalm.value ? 0.3 + 0.22 * Math.sin(left / 160) : 0.3;
     const tintOf = (id: number): Pick<PartLook, "tint" | "amount"> => {
       if (held.has(id)) {
         return { tint: palette.held, amount: 0.62 };

@@ -2,15 +2,16 @@
 
 import { effect } from "@preact/signals";
 import { Group, Quaternion, Ray, Sphere, Vector3 } from "three";
-import { clearanceOf, explodeOffsets, type Box } from "../model/explode";
+import { clearanceOf, type Box } from "../model/explode";
 import { Extrapolator } from "../model/extrapolate";
-import { add, lerp, slerp, toQuat, toVec3, type Pose, type Vec3 } from "../model/math";
+import { toQuat, toVec3, type Pose } from "../model/math";
 import type { Store } from "../model/store";
 import type { ViewState } from "../model/view_state";
 import { kMaxHands, type FrameStore, type LiveState } from "../protocol/frame_store";
 import { kNone, type HandState } from "../protocol/frames";
 import type { Occurrence, Scene, Step } from "../protocol/messages";
 import { ArrowScale, FeelLayer } from "./feel_layer";
+import { ExplodeLayer } from "./explode_layer";
 import { ghostsOf, goalBoxes } from "./goals";
 import { loadShapes } from "./glb";
 import { MarkLayer } from "./mark_layer";
@@ -24,6 +25,7 @@ export class SceneView {
   readonly arrowScale = new ArrowScale();
   readonly marks = new MarkLayer();
   readonly caps = new SectionCaps();
+  readonly explode: ExplodeLayer;
   readonly sphere = new Sphere(new Vector3(), 0.1);
   parts: Parts | null = null;
   scene: Scene | null = null;
@@ -37,8 +39,6 @@ export class SceneView {
   private readonly looks: PartLooks;
   private readonly extrapolators = new Map<number, Extrapolator>();
   private boxes = new Map<number, Box>();
-  private offsets = new Map<number, Vec3>();
-  private shownExplode = 0;
   private generation = -1;
   private loadCount = 0;
   private glbUrl = "";
@@ -51,7 +51,8 @@ export class SceneView {
     private readonly view: ViewState,
   ) {
     this.looks = new PartLooks(store, view);
-    this.root.add(...this.feels.map((feel) => feel.root), this.marks.root);
+    this.explode = new ExplodeLayer(view);
+    this.root.add(...this.feels.map((feel) => feel.root), this.marks.root, this.explode.lines);
     effect(() => void this.load(store.scene.value));
     effect(() => this.applyLooks());
     effect(() => this.applySection());
@@ -70,6 +71,7 @@ export class SceneView {
     this.palette = palette;
     this.feels.forEach((feel) => feel.setPalette(palette));
     this.marks.setPalette(palette);
+    this.explode.setInk(palette.axis);
     this.parts?.edges?.setInk(palette.edge, palette.edgeMarked);
     this.looks.setPalette(palette);
     this.applyLooks();
@@ -108,7 +110,7 @@ export class SceneView {
       this.takePoses(frames);
       this.moveHeld(live, nowMs);
     }
-    this.followExplode();
+    this.isDirty = this.explode.update(this.poses, this.parts) || this.isDirty;
     this.updateFeel(isCurrent ? live : null);
     this.isDirty = this.looks.pulse(this.parts) || this.isDirty;
     if (this.view.section.value !== null) {
@@ -147,7 +149,7 @@ export class SceneView {
       this.parts.setPose(occurrence.id, pose);
     }
     this.boxes = goalBoxes(scene, this.parts);
-    this.offsets = explodeOffsets(scene.steps, this.boxes);
+    this.explode.setProduct(scene, this.boxes);
     this.heldKeys.fill("");
     this.looks.clear();
     if (this.palette !== null) {
@@ -195,7 +197,7 @@ export class SceneView {
 
   private place(occurrence: number, pose: Pose): void {
     this.poses.set(occurrence, pose);
-    if (this.shownExplode === 0) {
+    if (!this.explode.isOn) {
       this.parts!.setPose(occurrence, pose);
     }
     this.isDirty = true;
@@ -218,29 +220,8 @@ export class SceneView {
     }
   }
 
-  private followExplode(): void {
-    const wanted = this.view.explode.peek();
-    if (wanted === this.shownExplode) {
-      return;
-    }
-    this.shownExplode = wanted;
-    for (const occurrence of this.scene!.occurrences) {
-      const now = this.poses.get(occurrence.id) ?? occurrence.goal;
-      const offset = this.offsets.get(occurrence.id) ?? [0, 0, 0];
-      const out: Vec3 = [offset[0] * wanted, offset[1] * wanted, offset[2] * wanted];
-      // The first of the slider brings what lies about to its place in the picture.
-      const share = Math.min(1, wanted / 0.08);
-      const pose = {
-        p: lerp(now.p, add(occurrence.goal.p, out), share),
-        q: slerp(now.q, occurrence.goal.q, share),
-      };
-      this.parts!.setPose(occurrence.id, pose);
-    }
-    this.isDirty = true;
-  }
-
   private updateFeel(live: LiveState | null): void {
-    const isWhole = this.shownExplode === 0;
+    const isWhole = !this.explode.isOn;
     const shows = this.view.showsForces.peek() && isWhole;
     this.feels.forEach((feel, k) => {
       const hand = live?.hands.find((h) => h.hand === k && h.state > 0 && h.occurrence !== kNone) ?? null;
