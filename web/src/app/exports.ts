@@ -22,7 +22,9 @@ export function chooseFile(): void {
 }
 
 export function saveTable(rows: readonly (readonly (string | number)[])[], name: string): void {
-  const text = rows.map((row) => `${row.map((v) => (typeof v === "string" ? JSON.stringify(v) : v)).join(",")}\n`);
+  // Seven figures are all that a frame's numbers have.
+  const cell = (value: string | number) => (typeof value === "string" ? JSON.stringify(value) : Number(value.toPrecision(7)));
+  const text = rows.map((row) => `${row.map(cell).join(",")}\n`);
   save(new Blob(text, { type: "text/csv" }), `${stem()}_${name}.csv`);
 }
 

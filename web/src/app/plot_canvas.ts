@@ -69,7 +69,7 @@ function timeLabels(times: readonly number[], isHeld: boolean): string[] {
   if (!isHeld) {
     return times.map((s) => number(s));
   }
-  const clock = new Intl.DateTimeFormat(language.value, { timeStyle: "medium" });
+  const clock = new Intl.DateTimeFormat(language.value, { timeStyle: "medium", hourCycle: "h23" });
   return times.map((s) => clock.format(new Date(1e3 * s)));
 }
 

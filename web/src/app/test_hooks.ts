@@ -104,6 +104,19 @@ function screenOfFace(occurrence: number, face: number): Seen | null {
   return null;
 }
 
+function playbackState(): unknown {
+  const playback = studio.recordings.playback.value;
+  return playback === null
+    ? null
+    : {
+        id: playback.run.detail.id,
+        timeS: playback.timeS,
+        durationS: playback.durationS,
+        isPlaying: playback.isPlaying.value,
+        marks: playback.marks.map(({ kind, timeS }) => ({ kind, timeS })),
+      };
+}
+
 export function exposeHooks(): void {
   window.hvas = {
     get framesDrawn() {
@@ -123,6 +136,9 @@ export function exposeHooks(): void {
       framesPerSecond: viewport.value?.meter.framesPerSecond ?? 0,
       isShared: studio.liveFrames !== null && !(studio.liveFrames.buffer instanceof ArrayBuffer),
       messages: studio.liveFrames?.messagesReceived ?? 0,
+      playback: playbackState(),
+      recording: store.recording.value?.id ?? null,
+      plotSpan: ui.plotSpan.value,
       placements: Object.fromEntries(store.placements.value),
       forcesOff: store.forcesOff.value,
       safety: store.safety.value,
