@@ -9,19 +9,19 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "app/assemble_report.h"
-#include "app/force_map_option.h"
 #include "app/load_product.h"
 #include "app/progress.h"
+#include "app/rendering_options.h"
 #include "app/report_failure.h"
-#include "app/session_recorder.h"
 #include "app/text_layout.h"
 #include "base/clock.h"
 #include "contact/shape_cache.h"
 #include "device/opened_device.h"
 #include "record/recorder.h"
+#include "session/recorded_model.h"
+#include "session/session_recorder.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 #include "simulation/model.h"
@@ -81,20 +81,12 @@ Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
 
 record::Meta MakeMeta(const Model& model, const AssembleOptions& options) {
   static constexpr const char* kConditions[] = {"collision", "constraint", "hybrid"};
-  nlohmann::ordered_json parts = nlohmann::ordered_json::array();
-  for (const product::Occurrence& occurrence : model.product->occurrences) {
-    parts.push_back({{"id", occurrence.id.value()},
-                     {"path", occurrence.path},
-                     {"shape_hash", model.product->part_of(occurrence.id).shape_hash}});
-  }
-  return {{"product", model.product->name},
-          {"source", model.product->source},
-          {"seed", std::to_string(options.seed)},
-          {"condition", kConditions[static_cast<std::size_t>(options.condition)]},
-          {"force_map", haptics::ToString(options.force_map)},
-          {"device", options.device},
-          {"second_device", options.second_device},
-          {"model_json", parts.dump()}};
+  record::Meta meta = session::MakeModelMeta(model);
+  meta["condition"] = kConditions[static_cast<std::size_t>(options.condition)];
+  meta["force_map"] = haptics::ToString(options.force_map);
+  meta["device"] = options.device;
+  meta["second_device"] = options.second_device;
+  return meta;
 }
 
 /** What moves a hand: the simulated person alone or with an emulated device, or a device. */
@@ -248,7 +240,8 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
   outcome.hands = hands->size();
   outcome.devices = DescribeDevices(*hands);
   const auto simulation = MakeSimulation(model, *hands);
-  SessionRecorder sink(recorder->get());
+  session::SessionRecorder sink(recorder->get(), *model);
+  sink.Begin(simulation.get());
   const bool is_two = hands->size() == 2;
   const simulation::Persons persons{hands->front().person.get(),
                                     is_two ? hands->back().person.get() : nullptr};
@@ -358,14 +351,7 @@ void AddAssemble(CLI::App* app, int* status) {
       ->capture_default_str();
   command->add_option("--fit", options->load.fits,
                       "AXIS=FIT, as in m12=H7/p6: a mate's id, a part's name, or 'all'");
-  const std::map<std::string, haptics::Condition> conditions{
-      {"collision", haptics::Condition::kCollision},
-      {"constraint", haptics::Condition::kConstraint},
-      {"hybrid", haptics::Condition::kHybrid}};
-  command
-      ->add_option("--condition", options->condition,
-                   "collision, constraint, or hybrid (both, and the force of the fit)")
-      ->transform(CLI::CheckedTransformer(conditions, CLI::ignore_case));
+  AddConditionOption(command, &options->condition);
   AddForceMapOption(command, &options->force_map);
   AddDeviceOptions(command, options.get());
   command->add_flag("--realtime", options->is_realtime,

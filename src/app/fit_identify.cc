@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/force_map_option.h"
+#include "app/rendering_options.h"
 #include "app/report_failure.h"
 #include "simulation/identification.h"
 

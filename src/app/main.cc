@@ -11,6 +11,7 @@
 #include "app/fit.h"
 #include "app/inspect.h"
 #include "app/mate.h"
+#include "app/replay.h"
 #include "app/studio.h"
 
 namespace {
@@ -26,6 +27,7 @@ int Run(int argc, char** argv) {
   hvas::app::AddFit(&app, &status);
   hvas::app::AddDevices(&app, &status);
   hvas::app::AddDoctor(&app, &status);
+  hvas::app::AddReplay(&app, &status);
   hvas::app::AddStudio(&app, &status);
   try {
     app.parse(argc, argv);

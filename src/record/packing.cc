@@ -94,26 +94,27 @@ void VisitFieldsOf2(F& f, Tick& tick) noexcept {
   f(tick.effort_level);
 }
 
-constexpr std::size_t kFieldBytesOf1 =
+constexpr std::size_t kPackedTickSize1 =
     sizeof(std::int64_t) + 3 * sizeof(FlatPose) + 18 * sizeof(double) + 3 * sizeof(std::uint32_t) +
     sizeof(std::uint8_t) + sizeof(std::uint16_t) + 2 * sizeof(double) +
     std::size_t{7} * TickRecord::kContacts * sizeof(float);
-static_assert(kFieldBytesOf1 == kPackedTickSize1);
-constexpr std::size_t kFieldBytesOf2 = 3 * sizeof(std::uint8_t) + 3 * sizeof(std::int64_t) +
-                                       2 * sizeof(std::uint32_t) + sizeof(double);
-static_assert(kFieldBytesOf1 + kFieldBytesOf2 == kPackedTickSize);
-
-TickRecord UnpackFieldsOf1(ByteReader& reader) noexcept {
-  TickRecord tick;
-  std::array<FlatPose, 3> poses{};
-  VisitFieldsOf1(reader, tick, poses);
-  tick.device_pose = Unflatten(poses[0]);
-  tick.X_WH = Unflatten(poses[1]);
-  tick.X_WD = Unflatten(poses[2]);
-  return tick;
-}
+constexpr std::size_t kPackedTickSize2 = kPackedTickSize1 + 3 * sizeof(std::uint8_t) +
+                                         3 * sizeof(std::int64_t) + 2 * sizeof(std::uint32_t) +
+                                         sizeof(double);
+static_assert(kPackedTickSize == kPackedTickSize2 + sizeof(std::uint32_t));
 
 }  // namespace
+
+std::size_t PackedTickSize(std::int64_t schema) noexcept {
+  switch (schema) {
+    case 1:
+      return kPackedTickSize1;
+    case 2:
+      return kPackedTickSize2;
+    default:
+      return kPackedTickSize;
+  }
+}
 
 void Pack(const TickRecord& tick, std::span<std::byte, kPackedTickSize> bytes) noexcept {
   const std::array<FlatPose, 3> poses{Flatten(tick.device_pose), Flatten(tick.X_WH),
@@ -121,18 +122,28 @@ void Pack(const TickRecord& tick, std::span<std::byte, kPackedTickSize> bytes) n
   ByteWriter writer(bytes.data());
   VisitFieldsOf1(writer, tick, poses);
   VisitFieldsOf2(writer, tick);
+  writer(tick.commands);
 }
 
-TickRecord Unpack(std::span<const std::byte, kPackedTickSize> bytes) noexcept {
+TickRecord Unpack(std::span<const std::byte> bytes, std::int64_t schema) noexcept {
   ByteReader reader(bytes.data());
-  TickRecord tick = UnpackFieldsOf1(reader);
-  VisitFieldsOf2(reader, tick);
+  TickRecord tick;
+  std::array<FlatPose, 3> poses{};
+  VisitFieldsOf1(reader, tick, poses);
+  tick.device_pose = Unflatten(poses[0]);
+  tick.X_WH = Unflatten(poses[1]);
+  tick.X_WD = Unflatten(poses[2]);
+  if (schema >= 2) {
+    VisitFieldsOf2(reader, tick);
+  }
+  if (schema >= 3) {
+    reader(tick.commands);
+  }
   return tick;
 }
 
-TickRecord Unpack1(std::span<const std::byte, kPackedTickSize1> bytes) noexcept {
-  ByteReader reader(bytes.data());
-  return UnpackFieldsOf1(reader);
+TickRecord Unpack(std::span<const std::byte, kPackedTickSize> bytes) noexcept {
+  return Unpack(bytes, kSchemaVersion);
 }
 
 }  // namespace hvas::record

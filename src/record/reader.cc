@@ -1,14 +1,41 @@
 #include "record/reader.h"
 
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "base/digest.h"
+#include "record/compression.h"
 #include "record/packing.h"
 #include "record/session_digest.h"
 
 namespace hvas::record {
+namespace {
+
+bool IsWhole(std::span<const std::byte> bytes, std::int64_t checksum) {
+  return static_cast<std::int64_t>(Checksum64(bytes)) == checksum;
+}
+
+/** Visits the rows of a statement that is ready to run, until the visitor fails or returns false.
+ */
+Result<void> ForEachRow(Statement* rows,
+                        const std::function<Result<bool>(const Statement&)>& visit) {
+  for (;;) {
+    Result<bool> goes_on = rows->Step();
+    if (goes_on && *goes_on) {
+      goes_on = visit(*rows);
+    }
+    if (!goes_on) {
+      return Unexpected(goes_on.error());
+    }
+    if (!*goes_on) {
+      return {};
+    }
+  }
+}
+
+}  // namespace
 
 Result<Reader> Reader::Open(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -57,15 +84,12 @@ Result<void> Reader::ReadMeta() {
   if (!rows) {
     return Unexpected(rows.error());
   }
-  for (;;) {
-    const Result<bool> row = rows->Step();
-    if (!row) {
-      return Unexpected(row.error());
-    }
-    if (!*row) {
-      break;
-    }
-    meta_[rows->ReadText(0)] = rows->ReadText(1);
+  const Result<void> done = ForEachRow(&*rows, [this](const Statement& row) -> Result<bool> {
+    meta_[row.ReadText(0)] = row.ReadText(1);
+    return true;
+  });
+  if (!done) {
+    return done;
   }
   const Result<std::int64_t> count =
       database_.QueryInt("SELECT coalesce(sum(count), 0) FROM chunk");
@@ -76,13 +100,27 @@ Result<void> Reader::ReadMeta() {
   return {};
 }
 
-TickRecord Reader::UnpackOfThisFile(Bytes packed_tick) const {
-  return schema_ == 1 ? Unpack1(packed_tick.first<kPackedTickSize1>())
-                      : Unpack(packed_tick.first<kPackedTickSize>());
+Unexpected Reader::Damaged(const std::string& what) const {
+  return Fail(ErrorCode::kUnreadable, fmt::format("{} of the record is damaged.", what),
+              path_.string(), "Restore the file from a copy");
+}
+
+Result<std::vector<std::byte>> Reader::UnpackChunk(const Statement& row) const {
+  const Bytes block = row.ReadBlob(3);
+  const std::size_t size = PackedTickSize(schema_);
+  const std::int64_t count = row.ReadInt(1);
+  std::vector<std::byte> packed;
+  if (count > 0 && count <= kChunkTicks && IsWhole(block, row.ReadInt(2))) {
+    packed = schema_ < 3 ? std::vector<std::byte>(block.begin(), block.end())
+                         : DecompressTicks(block, size, static_cast<std::size_t>(count));
+  }
+  if (packed.empty() || packed.size() != static_cast<std::size_t>(count) * size) {
+    return Damaged(fmt::format("Chunk {}", row.ReadInt(0)));
+  }
+  return packed;
 }
 
 Result<void> Reader::ForEachPackedTick(Span span, const std::function<bool(Bytes)>& visit) {
-  const std::size_t size = schema_ == 1 ? kPackedTickSize1 : kPackedTickSize;
   Result<Statement> rows = database_.Prepare(
       "SELECT id, count, checksum, ticks FROM chunk WHERE "
       "last_t_ns >= ? AND first_t_ns <= ? "
@@ -91,33 +129,24 @@ Result<void> Reader::ForEachPackedTick(Span span, const std::function<bool(Bytes
     return Unexpected(rows.error());
   }
   rows->Bind(1, span.first_ns).Bind(2, span.last_ns);
-  for (;;) {
-    const Result<bool> row = rows->Step();
-    if (!row) {
-      return Unexpected(row.error());
+  const std::size_t size = PackedTickSize(schema_);
+  return ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
+    const Result<std::vector<std::byte>> packed = UnpackChunk(row);
+    if (!packed) {
+      return Unexpected(packed.error());
     }
-    if (!*row) {
-      return {};
-    }
-    const Bytes bytes = rows->ReadBlob(3);
-    const auto count = static_cast<std::size_t>(rows->ReadInt(1));
-    if (bytes.size() != count * size ||
-        static_cast<std::int64_t>(Checksum64(bytes)) != rows->ReadInt(2)) {
-      return Fail(ErrorCode::kUnreadable,
-                  fmt::format("Chunk {} of the record is damaged.", rows->ReadInt(0)),
-                  path_.string(), "Restore the file from a copy");
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!visit(bytes.subspan(i * size, size))) {
-        return {};
+    for (std::size_t at = 0; at < packed->size(); at += size) {
+      if (!visit(Bytes(*packed).subspan(at, size))) {
+        return false;
       }
     }
-  }
+    return true;
+  });
 }
 
 Result<void> Reader::ForEachTick(Span span, const std::function<bool(const TickRecord&)>& visit) {
   return ForEachPackedTick(span, [&](Bytes packed_tick) {
-    const TickRecord tick = UnpackOfThisFile(packed_tick);
+    const TickRecord tick = Unpack(packed_tick, schema_);
     return tick.t_ns < span.first_ns || tick.t_ns > span.last_ns || visit(tick);
   });
 }
@@ -142,28 +171,129 @@ Result<std::vector<Event>> Reader::ReadEvents() {
     return Unexpected(rows.error());
   }
   std::vector<Event> events;
-  for (;;) {
-    const Result<bool> row = rows->Step();
-    if (!row) {
-      return Unexpected(row.error());
+  const Result<void> done = ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
+    Event event{row.ReadInt(1), row.ReadText(2), kNoOccurrence, row.ReadText(4)};
+    if (!row.is_null(3)) {
+      event.occurrence = static_cast<std::uint32_t>(row.ReadInt(3));
     }
-    if (!*row) {
-      return events;
-    }
-    Event event{rows->ReadInt(1), rows->ReadText(2), kNoOccurrence, rows->ReadText(4)};
-    if (!rows->is_null(3)) {
-      event.occurrence = static_cast<std::uint32_t>(rows->ReadInt(3));
-    }
-    if (static_cast<std::int64_t>(CalcChecksum(event)) != rows->ReadInt(5)) {
-      return Fail(ErrorCode::kUnreadable,
-                  fmt::format("Event {} of the record is damaged.", rows->ReadInt(0)),
-                  path_.string(), "Restore the file from a copy");
+    if (static_cast<std::int64_t>(CalcChecksum(event)) != row.ReadInt(5)) {
+      return Damaged(fmt::format("Event {}", row.ReadInt(0)));
     }
     events.push_back(std::move(event));
+    return true;
+  });
+  if (!done) {
+    return Unexpected(done.error());
   }
+  return events;
 }
 
-Result<std::string> Reader::Verify() {
+Result<std::vector<Command>> Reader::ReadCommands() {
+  std::vector<Command> commands;
+  if (schema_ < 3) {
+    return commands;
+  }
+  Result<Statement> rows = database_.Prepare(
+      "SELECT id, t_ns, number, kind, json, checksum "
+      "FROM command ORDER BY id");
+  if (!rows) {
+    return Unexpected(rows.error());
+  }
+  const Result<void> done = ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
+    Command command{row.ReadInt(1), row.ReadInt(2), row.ReadText(3), row.ReadText(4)};
+    if (static_cast<std::int64_t>(CalcChecksum(command)) != row.ReadInt(5)) {
+      return Damaged(fmt::format("Command {}", row.ReadInt(0)));
+    }
+    commands.push_back(std::move(command));
+    return true;
+  });
+  if (!done) {
+    return Unexpected(done.error());
+  }
+  return commands;
+}
+
+Result<void> Reader::ForEachFrame(Span span, const std::function<bool(const Frame&)>& visit) {
+  if (schema_ < 3) {
+    return {};
+  }
+  Result<Statement> rows = database_.Prepare(
+      "SELECT id, t_ns, checksum, bytes FROM frame WHERE t_ns >= ? AND t_ns <= ? ORDER BY id");
+  if (!rows) {
+    return Unexpected(rows.error());
+  }
+  rows->Bind(1, span.first_ns).Bind(2, span.last_ns);
+  return ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
+    const Bytes bytes = row.ReadBlob(3);
+    if (!IsWhole(bytes, row.ReadInt(2))) {
+      return Damaged(fmt::format("Frame {}", row.ReadInt(0)));
+    }
+    return visit({row.ReadInt(1), {bytes.begin(), bytes.end()}});
+  });
+}
+
+Result<std::vector<std::string>> Reader::ListAttachments() {
+  std::vector<std::string> names;
+  if (schema_ < 3) {
+    return names;
+  }
+  Result<Statement> rows = database_.Prepare("SELECT name FROM attachment ORDER BY name");
+  if (!rows) {
+    return Unexpected(rows.error());
+  }
+  const Result<void> done = ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
+    names.push_back(row.ReadText(0));
+    return true;
+  });
+  if (!done) {
+    return Unexpected(done.error());
+  }
+  return names;
+}
+
+Result<std::vector<std::byte>> Reader::ReadAttachment(const std::string& name) {
+  constexpr std::size_t kMostBytes = std::size_t{4} << 30;  // no record needs more memory
+  std::optional<std::vector<std::byte>> found;
+  if (schema_ >= 3) {
+    Result<Statement> rows =
+        database_.Prepare("SELECT checksum, bytes FROM attachment WHERE name = ?");
+    if (!rows) {
+      return Unexpected(rows.error());
+    }
+    rows->Bind(1, name);
+    const Result<void> done = ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
+      const Bytes block = row.ReadBlob(1);
+      if (!IsWhole(block, row.ReadInt(0))) {
+        return Damaged(fmt::format("Attachment \"{}\"", name));
+      }
+      found = Decompress(block, kMostBytes);
+      return true;
+    });
+    if (!done) {
+      return Unexpected(done.error());
+    }
+  }
+  if (!found) {
+    return Fail(ErrorCode::kNotFound, fmt::format("The record has no \"{}\".", name),
+                path_.string());
+  }
+  return std::move(*found);
+}
+
+Result<void> Reader::CheckAttachments() {
+  const Result<std::vector<std::string>> names = ListAttachments();
+  if (!names) {
+    return Unexpected(names.error());
+  }
+  for (const std::string& name : *names) {
+    if (const auto bytes = ReadAttachment(name); !bytes) {
+      return Unexpected(bytes.error());
+    }
+  }
+  return {};
+}
+
+Result<std::string> Reader::CalcDigest() {
   SessionDigest digest;
   const Result<void> done = ForEachPackedTick({}, [&digest](Bytes packed_tick) {
     digest.AddTick(packed_tick);
@@ -179,8 +309,32 @@ Result<std::string> Reader::Verify() {
   for (const Event& event : *events) {
     digest.AddEvent(event);
   }
-  const std::string hex = digest.Hex();
-  if (is_complete() && meta_.at(kMetaDigest) != hex) {
+  const Result<std::vector<Command>> commands = ReadCommands();
+  if (!commands) {
+    return Unexpected(commands.error());
+  }
+  for (const Command& command : *commands) {
+    digest.AddCommand(command);
+  }
+  return digest.Hex();
+}
+
+Result<std::string> Reader::Verify() {
+  // One transaction: all of it as at one moment, whoever goes on writing.
+  Result<void> done = database_.Execute("BEGIN");
+  if (done) {
+    done = ReadMeta();
+  }
+  Result<std::string> hex = done ? CalcDigest() : Unexpected(done.error());
+  done = ForEachFrame({}, [](const Frame&) { return true; });
+  if (done) {
+    done = CheckAttachments();
+  }
+  static_cast<void>(database_.Execute("COMMIT"));
+  if (hex && !done) {
+    return Unexpected(done.error());
+  }
+  if (hex && is_complete() && meta_.at(kMetaDigest) != *hex) {
     return Fail(ErrorCode::kUnreadable, "The record is not the one that was written.",
                 path_.string(), "Restore the file from a copy");
   }

@@ -14,8 +14,8 @@
 
 namespace hvas::record {
 
-/** Reads a recorded session, of this schema or an older one; every chunk and event is checked
- against its checksum. */
+/** Reads a recorded session, of this schema or an older one, also while it is being recorded;
+ everything is checked against its checksum. */
 class Reader {
  public:
   /** A span of session time, ends included; all of it by default. */
@@ -30,10 +30,18 @@ class Reader {
 
   [[nodiscard]] const Meta& meta() const { return meta_; }
 
-  /** False for a session that was cut short; what is there is still good. */
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  [[nodiscard]] std::int64_t schema() const { return schema_; }
+
+  /** Takes in how far a session that is being recorded has come: meta() and tick_count(). The
+   other functions always read what is there when they are called. */
+  Result<void> Refresh() { return ReadMeta(); }
+
+  /** False for a session that was cut short, or goes on; what is there is still good. */
   [[nodiscard]] bool is_complete() const { return meta_.contains(kMetaDigest); }
 
-  /** Of all hands. */
+  /** Of all hands, when it was opened or refreshed. */
   [[nodiscard]] std::int64_t tick_count() const { return tick_count_; }
 
   /** Visits ticks in the order recorded until the visitor returns false.
@@ -41,10 +49,19 @@ class Reader {
   Result<void> ForEachTick(Span span, const std::function<bool(const TickRecord&)>& visit);
   Result<std::vector<TickRecord>> ReadTicks(Span span);
   Result<std::vector<Event>> ReadEvents();
+  /** In the order given. None in a record of before schema 3. */
+  Result<std::vector<Command>> ReadCommands();
 
-  /** Reads everything and returns its digest.
-   Errors: kUnreadable when a chunk or event is damaged, or a complete record has another digest
-   than the one noted at its end. */
+  /** Visits frames of a span in the order recorded until the visitor returns false. */
+  Result<void> ForEachFrame(Span span, const std::function<bool(const Frame&)>& visit);
+
+  /** Errors: kNotFound for one that the record does not have. */
+  Result<std::vector<std::byte>> ReadAttachment(const std::string& name);
+  [[nodiscard]] Result<std::vector<std::string>> ListAttachments();
+
+  /** Reads everything, as it is at one moment, and returns its digest.
+   Errors: kUnreadable when anything is damaged, or a complete record has another digest than the
+   one noted at its end. */
   Result<std::string> Verify();
 
  private:
@@ -53,9 +70,13 @@ class Reader {
 
   using Bytes = std::span<const std::byte>;
 
+  [[nodiscard]] Unexpected Damaged(const std::string& what) const;
+  Result<std::vector<std::byte>> UnpackChunk(const Statement& row) const;
+  Result<std::string> CalcDigest();
+  Result<void> CheckAttachments();
+
   /** Visits packed ticks, as many bytes each as this file's schema has, in their order. */
   Result<void> ForEachPackedTick(Span span, const std::function<bool(Bytes)>& visit);
-  [[nodiscard]] TickRecord UnpackOfThisFile(Bytes packed_tick) const;
   Result<void> CheckKind();
   Result<void> ReadMeta();
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/clock.h"
@@ -19,7 +20,10 @@ namespace {
 constexpr std::chrono::milliseconds kPollPeriod{20};
 constexpr std::int64_t kFlushPeriodNs = 2 * kNsPerSecond / 5;
 
-// Takes ticks and events to the digest and, while the disk is well, to the file.
+// All but ticks.
+using Item = std::variant<Event, Command, Frame, Attachment>;
+
+// Takes what is added to the digest and, while the disk is well, to the file.
 class Sink {
  public:
   explicit Sink(std::optional<SessionFile> file) : file_(std::move(file)) {}
@@ -29,16 +33,23 @@ class Sink {
     Pack(tick, bytes);
     digest_.AddTick(bytes);
     if (is_writing()) {
-      Note(file_->AddTick(tick.t_ns, bytes));
+      Note(file_->Add(tick.t_ns, bytes));
     }
   }
 
   void Add(const Event& event) {
     digest_.AddEvent(event);
-    if (is_writing()) {
-      Note(file_->AddEvent(event));
-    }
+    Write(event);
   }
+
+  void Add(const Command& command) {
+    digest_.AddCommand(command);
+    Write(command);
+  }
+
+  void Add(const Frame& frame) { Write(frame); }
+
+  void Add(const Attachment& attachment) { Write(attachment); }
 
   void Commit() {
     if (is_writing()) {
@@ -46,10 +57,10 @@ class Sink {
     }
   }
 
-  void Close(std::uint64_t dropped_ticks) {
+  void Close(Meta meta) {
     if (is_writing()) {
-      Note(file_->Close(
-          {{kMetaDigest, digest_.Hex()}, {kMetaDropped, std::to_string(dropped_ticks)}}));
+      meta[kMetaDigest] = digest_.Hex();
+      Note(file_->Close(meta));
     }
     file_.reset();
   }
@@ -60,6 +71,13 @@ class Sink {
 
  private:
   [[nodiscard]] bool is_writing() const { return file_.has_value() && !error_.has_value(); }
+
+  template <typename T>
+  void Write(const T& item) {
+    if (is_writing()) {
+      Note(file_->Add(item));
+    }
+  }
 
   void Note(const Result<void>& done) {
     if (!done) {
@@ -76,7 +94,9 @@ class Sink {
 
 struct Recorder::Impl {
   Impl(std::optional<SessionFile> file, const RecorderOptions& options)
-      : sink(std::move(file)), is_threaded(options.is_threaded) {
+      : sink(std::move(file)),
+        is_threaded(options.is_threaded),
+        waiting_frame_bytes(options.waiting_frame_bytes) {
     if (is_threaded) {
       ring.emplace(options.ring_ticks);
       writer = std::thread([this] { Write(); });
@@ -101,18 +121,64 @@ struct Recorder::Impl {
     }
   }
 
+  // Takes the ticks before the items, and writes them after: a command that one of these ticks
+  // obeyed is among these items or is written already.
   void Drain() {
+    ticks.clear();
     TickRecord tick;
-    while (ring->TryPop(&tick)) {
-      sink.Add(tick);
+    while (ticks.size() < ring->capacity() && ring->TryPop(&tick)) {
+      ticks.push_back(tick);
+    }
+    std::vector<Item> taken;
+    {
+      const std::scoped_lock lock(items_mutex);
+      taken.swap(items);
+      frame_bytes = 0;
+    }
+    for (const Item& item : taken) {
+      Sink* to = &sink;
+      std::visit([to](const auto& one) { to->Add(one); }, item);
+    }
+    for (const TickRecord& one : ticks) {
+      sink.Add(one);
     }
   }
 
-  mutable std::mutex mutex;  // Guards the sink; never taken by AddTick() when threaded.
+  void Add(Item item) {
+    if (is_threaded) {
+      const std::scoped_lock lock(items_mutex);
+      items.push_back(std::move(item));
+      return;
+    }
+    const std::scoped_lock lock(mutex);
+    Sink* to = &sink;
+    std::visit([to](const auto& one) { to->Add(one); }, item);
+  }
+
+  // Whether there is room for a frame among those that wait.
+  bool Reserve(std::size_t bytes) {
+    const std::scoped_lock lock(items_mutex);
+    if (is_threaded && frame_bytes + bytes > waiting_frame_bytes) {
+      ++dropped_frames;
+      return false;
+    }
+    frame_bytes += bytes;
+    return true;
+  }
+
+  mutable std::mutex mutex;  // Guards the sink; threaded, the writer alone holds it for long.
   Sink sink;
   const bool is_threaded;
+  const std::size_t waiting_frame_bytes;
   bool is_finished{false};
   std::optional<Ring<TickRecord>> ring;
+  std::vector<TickRecord> ticks;  // Of the writer thread.
+
+  mutable std::mutex items_mutex;  // Guards what waits for the writer thread, and its count.
+  std::vector<Item> items;
+  std::size_t frame_bytes{0};
+  std::uint64_t dropped_frames{0};
+
   std::mutex wake_mutex;
   std::condition_variable wake;
   bool is_stopping{false};
@@ -131,7 +197,8 @@ Result<std::unique_ptr<Recorder>> Recorder::Create(const RecorderOptions& option
   if (!options.path.empty()) {
     Meta whole = meta;
     whole[kMetaStarted] = std::to_string(WallClockNs());
-    Result<SessionFile> created = SessionFile::Create(options.path, whole, options.max_file_bytes);
+    Result<SessionFile> created =
+        SessionFile::Create({options.path, options.max_file_bytes, options.is_threaded}, whole);
     if (!created) {
       return Unexpected(created.error());
     }
@@ -149,9 +216,24 @@ bool Recorder::AddTick(const TickRecord& tick) noexcept {
   return true;
 }
 
-void Recorder::AddEvent(const Event& event) {
-  const std::scoped_lock lock(impl_->mutex);
-  impl_->sink.Add(event);
+void Recorder::AddEvent(Event event) {
+  impl_->Add(std::move(event));
+}
+
+void Recorder::AddCommand(Command command) {
+  impl_->Add(std::move(command));
+}
+
+bool Recorder::AddFrame(Frame frame) {
+  const bool has_room = impl_->Reserve(frame.bytes.size());
+  if (has_room) {
+    impl_->Add(std::move(frame));
+  }
+  return has_room;
+}
+
+void Recorder::AddAttachment(Attachment attachment) {
+  impl_->Add(std::move(attachment));
 }
 
 Result<void> Recorder::Finish() {
@@ -165,7 +247,8 @@ Result<void> Recorder::Finish() {
       impl_->writer.join();
     }
     const std::scoped_lock lock(impl_->mutex);
-    impl_->sink.Close(dropped_ticks());
+    impl_->sink.Close({{kMetaDropped, std::to_string(dropped_ticks())},
+                       {kMetaDroppedFrames, std::to_string(dropped_frames())}});
   }
   if (const std::optional<Error> failed = error()) {
     return Unexpected(*failed);
@@ -185,6 +268,11 @@ std::int64_t Recorder::tick_count() const {
 
 std::uint64_t Recorder::dropped_ticks() const {
   return impl_->ring.has_value() ? impl_->ring->dropped() : 0;
+}
+
+std::uint64_t Recorder::dropped_frames() const {
+  const std::scoped_lock lock(impl_->items_mutex);
+  return impl_->dropped_frames;
 }
 
 std::optional<Error> Recorder::error() const {

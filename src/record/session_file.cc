@@ -8,7 +8,7 @@
 
 #include "base/clock.h"
 #include "base/digest.h"
-#include "record/packing.h"
+#include "record/compression.h"
 #include "record/session_digest.h"
 
 namespace hvas::record {
@@ -34,7 +34,34 @@ CREATE TABLE event (
   occurrence INTEGER,
   json TEXT NOT NULL,
   checksum INTEGER NOT NULL);
+CREATE TABLE command (
+  id INTEGER PRIMARY KEY,
+  t_ns INTEGER NOT NULL,
+  number INTEGER NOT NULL,
+  kind TEXT NOT NULL,
+  json TEXT NOT NULL,
+  checksum INTEGER NOT NULL);
+CREATE TABLE frame (
+  id INTEGER PRIMARY KEY,
+  t_ns INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  bytes BLOB NOT NULL);
+CREATE TABLE attachment (
+  name TEXT PRIMARY KEY,
+  checksum INTEGER NOT NULL,
+  bytes BLOB NOT NULL);
 )";
+
+constexpr const char* kInsertMeta = "INSERT OR REPLACE INTO meta VALUES (?, ?)";
+constexpr const char* kInsertChunk =
+    "INSERT INTO chunk (first_t_ns, last_t_ns, count, checksum, ticks) VALUES (?, ?, ?, ?, ?)";
+constexpr const char* kInsertEvent =
+    "INSERT INTO event (t_ns, kind, occurrence, json, checksum) VALUES (?, ?, ?, ?, ?)";
+constexpr const char* kInsertCommand =
+    "INSERT INTO command (t_ns, number, kind, json, checksum) VALUES (?, ?, ?, ?, ?)";
+constexpr const char* kInsertFrame = "INSERT INTO frame (t_ns, checksum, bytes) VALUES (?, ?, ?)";
+constexpr const char* kInsertAttachment =
+    "INSERT OR REPLACE INTO attachment (name, checksum, bytes) VALUES (?, ?, ?)";
 
 // A record, or an empty file, may be replaced; anything else is somebody's work.
 Result<void> RemoveOldRecord(const std::filesystem::path& path) {
@@ -61,14 +88,14 @@ Result<void> RemoveOldRecord(const std::filesystem::path& path) {
   return {};
 }
 
-Result<void> CreateSchema(Database* database, std::int64_t max_bytes) {
+Result<void> CreateSchema(Database* database, const SessionFileOptions& options) {
   std::string sql = fmt::format(
-      "PRAGMA page_size={}; PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL;"
+      "PRAGMA page_size={}; PRAGMA journal_mode=WAL; PRAGMA synchronous={};"
       "PRAGMA application_id={};",
-      kPageSize, kApplicationId);
-  if (max_bytes > 0) {
-    sql +=
-        fmt::format("PRAGMA max_page_count={};", std::max<std::int64_t>(max_bytes / kPageSize, 1));
+      kPageSize, options.outlives_power ? "FULL" : "NORMAL", kApplicationId);
+  if (options.max_bytes > 0) {
+    sql += fmt::format("PRAGMA max_page_count={};",
+                       std::max<std::int64_t>(options.max_bytes / kPageSize, 1));
   }
   sql += "BEGIN;" + std::string(kSchema) +
          fmt::format("INSERT INTO schema_version VALUES ({}); COMMIT;", kSchemaVersion);
@@ -77,44 +104,47 @@ Result<void> CreateSchema(Database* database, std::int64_t max_bytes) {
 
 }  // namespace
 
-Result<SessionFile> SessionFile::Create(const std::filesystem::path& path, const Meta& meta,
-                                        std::int64_t max_bytes) {
-  Result<void> done = RemoveOldRecord(path);
+Result<SessionFile> SessionFile::Create(const SessionFileOptions& options, const Meta& meta) {
+  Result<void> done = RemoveOldRecord(options.path);
   if (!done) {
     return Unexpected(done.error());
   }
-  Result<Database> database = Database::Open(path, Database::Mode::kCreate);
+  Result<Database> database = Database::Open(options.path, Database::Mode::kCreate);
   if (!database) {
     return Unexpected(database.error());
   }
-  done = CreateSchema(&*database, max_bytes);
+  done = CreateSchema(&*database, options);
   if (!done) {
     return Unexpected(done.error());
   }
-  Result<Statement> meta_in = database->Prepare("INSERT OR REPLACE INTO meta VALUES (?, ?)");
-  Result<Statement> chunk_in = database->Prepare(
-      "INSERT INTO chunk (first_t_ns, last_t_ns, count, "
-      "checksum, ticks) VALUES (?, ?, ?, ?, ?)");
-  Result<Statement> event_in = database->Prepare(
-      "INSERT INTO event (t_ns, kind, occurrence, json, "
-      "checksum) VALUES (?, ?, ?, ?, ?)");
-  for (const Result<Statement>* statement : {&meta_in, &chunk_in, &event_in}) {
-    if (!*statement) {
-      return Unexpected(statement->error());
-    }
+  Result<Statements> statements = Prepare(&*database);
+  if (!statements) {
+    return Unexpected(statements.error());
   }
-  SessionFile file(std::move(*database),
-                   Statements{std::move(*meta_in), std::move(*chunk_in), std::move(*event_in)});
+  SessionFile file(std::move(*database), std::move(*statements));
   file.chunk_.reserve(kChunkTicks * kPackedTickSize);
   done = file.AddMeta(meta);
-  if (!done) {
-    return Unexpected(done.error());
+  if (done) {
+    done = file.Commit();
   }
-  done = file.Commit();
   if (!done) {
     return Unexpected(done.error());
   }
   return file;
+}
+
+Result<SessionFile::Statements> SessionFile::Prepare(Database* database) {
+  std::vector<Statement> made;
+  for (const char* sql :
+       {kInsertMeta, kInsertChunk, kInsertEvent, kInsertCommand, kInsertFrame, kInsertAttachment}) {
+    Result<Statement> statement = database->Prepare(sql);
+    if (!statement) {
+      return Unexpected(statement.error());
+    }
+    made.push_back(std::move(*statement));
+  }
+  return Statements{std::move(made[0]), std::move(made[1]), std::move(made[2]),
+                    std::move(made[3]), std::move(made[4]), std::move(made[5])};
 }
 
 Result<void> SessionFile::AddMeta(const Meta& meta) {
@@ -125,7 +155,7 @@ Result<void> SessionFile::AddMeta(const Meta& meta) {
   return done;
 }
 
-Result<void> SessionFile::AddTick(std::int64_t t_ns, std::span<const std::byte> packed_tick) {
+Result<void> SessionFile::Add(std::int64_t t_ns, std::span<const std::byte> packed_tick) {
   Result<void> done = BeginIfNeeded(t_ns);
   if (!done) {
     return done;
@@ -142,11 +172,7 @@ Result<void> SessionFile::AddTick(std::int64_t t_ns, std::span<const std::byte> 
   return done ? CommitIfDue(t_ns) : done;
 }
 
-Result<void> SessionFile::AddEvent(const Event& event) {
-  Result<void> done = BeginIfNeeded(event.t_ns);
-  if (!done) {
-    return done;
-  }
+Result<void> SessionFile::Add(const Event& event) {
   Statement& statement = statements_.event;
   statement.Bind(1, event.t_ns).Bind(2, event.kind).Bind(4, event.json);
   statement.Bind(5, static_cast<std::int64_t>(CalcChecksum(event)));
@@ -155,15 +181,49 @@ Result<void> SessionFile::AddEvent(const Event& event) {
   } else {
     statement.Bind(3, std::int64_t{event.occurrence});
   }
-  done = statement.Run();
-  return done ? CommitIfDue(event.t_ns) : done;
+  return Insert(event.t_ns, &statement);
+}
+
+Result<void> SessionFile::Add(const Command& command) {
+  statements_.command.Bind(1, command.t_ns)
+      .Bind(2, command.number)
+      .Bind(3, command.kind)
+      .Bind(4, command.json)
+      .Bind(5, static_cast<std::int64_t>(CalcChecksum(command)));
+  return Insert(command.t_ns, &statements_.command);
+}
+
+Result<void> SessionFile::Add(const Frame& frame) {
+  const std::span<const std::byte> bytes(frame.bytes);
+  statements_.frame.Bind(1, frame.t_ns)
+      .Bind(2, static_cast<std::int64_t>(Checksum64(bytes)))
+      .Bind(3, bytes);
+  return Insert(frame.t_ns, &statements_.frame);
+}
+
+Result<void> SessionFile::Add(const Attachment& attachment) {
+  const std::vector<std::byte> block = Compress(attachment.bytes);
+  const std::span<const std::byte> bytes(block);
+  statements_.attachment.Bind(1, attachment.name)
+      .Bind(2, static_cast<std::int64_t>(Checksum64(bytes)))
+      .Bind(3, bytes);
+  return Insert(transaction_start_ns_.value_or(0), &statements_.attachment);
+}
+
+Result<void> SessionFile::Insert(std::int64_t t_ns, Statement* statement) {
+  Result<void> done = BeginIfNeeded(t_ns);
+  if (done) {
+    done = statement->Run();
+  }
+  return done ? CommitIfDue(t_ns) : done;
 }
 
 Result<void> SessionFile::WriteChunk() {
   if (chunk_ticks_ == 0) {
     return {};
   }
-  const std::span<const std::byte> bytes(chunk_);
+  const std::vector<std::byte> block = CompressTicks(chunk_, kPackedTickSize);
+  const std::span<const std::byte> bytes(block);
   Result<void> done = statements_.chunk.Bind(1, chunk_first_ns_)
                           .Bind(2, chunk_last_ns_)
                           .Bind(3, chunk_ticks_)
@@ -206,7 +266,11 @@ Result<void> SessionFile::Close(const Meta& meta) {
   if (done) {
     done = Commit();
   }
-  return done ? database_.Execute("PRAGMA journal_mode=DELETE") : done;
+  if (done) {
+    // All is on the disk by now; while somebody reads, it just stays in two files.
+    static_cast<void>(database_.Execute("PRAGMA journal_mode=DELETE"));
+  }
+  return done;
 }
 
 }  // namespace hvas::record

@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "record/database.h"
+#include "record/packing.h"
 #include "record/tick_record.h"
 
 /** The layout of a record, shared by the one who writes it and the one who reads it. */
@@ -19,29 +20,38 @@ namespace hvas::record {
 using Meta = std::map<std::string, std::string>;
 
 inline constexpr std::int64_t kApplicationId = 0x48564153;  // "HVAS", in the file's header.
-/** 1: ticks of one hand. 2: ticks of both, with all that the device told. */
-inline constexpr std::int64_t kSchemaVersion = 2;
 inline constexpr std::int64_t kChunkTicks = 250;
 
 /** Keys that the recorder adds when it ends; a record without them was cut short. */
 inline constexpr const char* kMetaDigest = "digest";
 inline constexpr const char* kMetaDropped = "dropped_ticks";
+inline constexpr const char* kMetaDroppedFrames = "dropped_frames";
 inline constexpr const char* kMetaStarted = "started_unix_ns";
 
-/** The file under a running recorder: ticks gathered into chunks, chunks and events into
+struct SessionFileOptions {
+  std::filesystem::path path;
+  std::int64_t max_bytes{0};  ///< The file may not grow beyond this; 0 for no limit.
+  /** What was committed survives a power cut, too, and not only the end of the process. */
+  bool outlives_power{false};
+};
+
+/** The file under a running recorder: ticks gathered into chunks, chunks and all else into
  transactions of at most half a second of session time. */
 class SessionFile {
  public:
-  /** Creates the file, replacing an older record there but nothing else.
-   @param max_bytes The file may not grow beyond this; 0 for no limit. */
-  static Result<SessionFile> Create(const std::filesystem::path& path, const Meta& meta,
-                                    std::int64_t max_bytes);
+  /** Creates the file, replacing an older record there but nothing else. */
+  static Result<SessionFile> Create(const SessionFileOptions& options, const Meta& meta);
 
-  Result<void> AddTick(std::int64_t t_ns, std::span<const std::byte> packed_tick);
-  Result<void> AddEvent(const Event& event);
+  Result<void> Add(std::int64_t t_ns, std::span<const std::byte> packed_tick);
+  Result<void> Add(const Event& event);
+  Result<void> Add(const Command& command);
+  Result<void> Add(const Frame& frame);
+  /** Replaces one of the same name. */
+  Result<void> Add(const Attachment& attachment);
   /** Makes all that was added survive the end of the process. */
   Result<void> Commit();
-  /** Commits, adds the last meta entries and leaves one file without side files. */
+  /** Commits, adds the last meta entries and, unless somebody reads it, leaves one file without
+   side files. */
   Result<void> Close(const Meta& meta);
 
  private:
@@ -49,12 +59,17 @@ class SessionFile {
     Statement meta;
     Statement chunk;
     Statement event;
+    Statement command;
+    Statement frame;
+    Statement attachment;
   };
 
   SessionFile(Database database, Statements statements)
       : database_(std::move(database)), statements_(std::move(statements)) {}
 
+  static Result<Statements> Prepare(Database* database);
   Result<void> AddMeta(const Meta& meta);
+  Result<void> Insert(std::int64_t t_ns, Statement* statement);
   Result<void> WriteChunk();
   Result<void> BeginIfNeeded(std::int64_t t_ns);
   Result<void> CommitIfDue(std::int64_t t_ns);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "spatial/pose.h"
 
@@ -25,7 +27,8 @@ inline constexpr std::uint32_t kDeviceNotValid = 1u << 2;  ///< It had no pose.
 
 /** All that a haptic tick took in and gave out, by which it can be replayed and judged. What the
  clock of the machine decides (compute time) is not here: equal sessions have equal records. Fields
- after the contacts came with schema 2 and are as below in older records. */
+ after the contacts came with schema 2, the last one with schema 3; in older records they are as
+ below. */
 struct TickRecord {
   static constexpr int kContacts = 2;
 
@@ -53,6 +56,7 @@ struct TickRecord {
   std::int64_t model_age_ns{0};   ///< Since the physics loop last answered.
   std::int64_t client_age_ns{0};  ///< Since whoever steers from afar was last heard of.
   std::uint8_t effort_level{0};   ///< What the tick left out to be in time; 0: nothing.
+  std::uint32_t commands{0};      ///< Obeyed before it, of all since the stretch began.
 };
 
 /** Something that happened, with what is worth knowing about it. */
@@ -61,6 +65,27 @@ struct Event {
   std::string kind;                         ///< Stable key, for example "seated".
   std::uint32_t occurrence{kNoOccurrence};  ///< The part that it is about, if any.
   std::string json;                         ///< Details as a JSON object; may be empty.
+};
+
+/** What reached the ticks from outside, between one and the next: the first of a stretch begins it,
+ the others follow by their number. What it says is between those who write and who replay it. */
+struct Command {
+  std::int64_t t_ns{0};    ///< Session time.
+  std::int64_t number{0};  ///< 0 begins a stretch; TickRecord::commands counts the others.
+  std::string kind;        ///< Stable key, for example "take".
+  std::string json;        ///< Details as a JSON object, numbers exact to the last bit.
+};
+
+/** What a viewer was shown; this room does not look into it. */
+struct Frame {
+  std::int64_t t_ns{0};  ///< Session time.
+  std::vector<std::byte> bytes;
+};
+
+/** A file that goes with the record: the product, or what a viewer needs to show it. */
+struct Attachment {
+  std::string name;
+  std::vector<std::byte> bytes;
 };
 
 }  // namespace hvas::record

@@ -136,6 +136,7 @@ haptics::TickOutput Simulation::HapticTick(std::size_t hand,
       log_->Add(command);
     }
     Obey(command, device.t_ns);
+    ++obeyed_commands_;
   }
   haptics::TickContext context;
   context.model_age_ns = device.t_ns - physics_t_ns_.load(std::memory_order_acquire);
@@ -156,12 +157,35 @@ haptics::TickOutput Simulation::ReplayTick(const TickLog& log, std::size_t i) no
        ++replayed_commands_) {
     Obey(log.command(replayed_commands_).command, tick.device.t_ns);
   }
-  SetEffortLevel(tick.effort_level);
   haptics::TickContext context;
   context.model_age_ns = tick.model_age_ns;
   context.is_stopped = tick.is_stopped;
   context.effort_level = tick.effort_level;
-  return RunTick(&hands_[tick.hand], tick.device, context);
+  return ReplayTick(tick.hand, tick.device, context);
+}
+
+haptics::TickOutput Simulation::ReplayTick(std::size_t hand, const device::DeviceState& device,
+                                           const haptics::TickContext& context) noexcept {
+  SetEffortLevel(context.effort_level);
+  return RunTick(&hands_[hand], device, context);
+}
+
+void Simulation::ReplayCommand(const GivenCommand& given, std::int64_t t_ns) {
+  parts_ = given.parts;
+  TickCommand command;
+  command.kind = given.kind;
+  command.hand = given.hand;
+  std::shared_ptr<const haptics::HeldPart> held_before;  // until the tick has let go of it
+  if (given.kind == TickCommand::Kind::kTake) {
+    Hand& hand = hands_[given.hand];
+    held_before = std::exchange(hand.held, MakeHeldPart(given.step));
+    command.part = hand.held.get();
+    command.X_WB = hand.held->X_WB_start;
+  } else {
+    command.body = contact::BodyId(given.step.occurrence.index());
+    command.X_WB = parts_[given.step.occurrence.index()].X_WB;
+  }
+  Obey(command, t_ns);
 }
 
 void Simulation::TellOfSafety(Hand* hand, const device::DeviceState& device,
@@ -369,6 +393,17 @@ void Simulation::PlaceInFixture(OccurrenceId id) {
   TickCommand command;
   command.body = contact::BodyId(id.index());
   command.X_WB = part.X_WB;
+  SequenceStep step;
+  step.occurrence = id;
+  Give(command, step);
+}
+
+void Simulation::Give(const TickCommand& command, const SequenceStep& step) {
+  ++given_commands_;
+  if (tell_of_command_) {
+    tell_of_command_({given_commands_, physics_t_ns_.load(std::memory_order_relaxed), command.kind,
+                      command.hand, step, parts_});
+  }
   commands_.TryPush(command);
 }
 
@@ -427,6 +462,12 @@ void Simulation::Take(Hand* hand, const SequenceStep& step) {
   if (log_ != nullptr) {
     log_->Keep(hand->held);
   }
+  TickCommand command;
+  command.kind = TickCommand::Kind::kTake;
+  command.hand = hand->index;
+  command.part = hand->held.get();
+  command.X_WB = hand->held->X_WB_start;
+  Give(command, step);
   const auto mark_held = [this](OccurrenceId id) {
     parts_[id.index()].placement = Placement::kHeld;
   };
@@ -434,12 +475,6 @@ void Simulation::Take(Hand* hand, const SequenceStep& step) {
   for (const OccurrenceId id : step.members) {
     mark_held(id);
   }
-  TickCommand command;
-  command.kind = TickCommand::Kind::kTake;
-  command.hand = hand->index;
-  command.part = hand->held.get();
-  command.X_WB = hand->held->X_WB_start;
-  commands_.TryPush(command);
 }
 
 std::vector<contact::BodyId> Simulation::LeftOut(OccurrenceId id, const SequenceStep& step) const {

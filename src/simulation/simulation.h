@@ -4,9 +4,11 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/ring.h"
@@ -97,6 +99,17 @@ struct PartState {
   spatial::Pose X_WB;
 };
 
+/** What the physics loop had the ticks do, with all that it knew then: enough to have it done
+ again, whatever physics has come to know since. */
+struct GivenCommand {
+  std::uint32_t number{0};  ///< 1 for the first one since the simulation began.
+  std::int64_t t_ns{0};     ///< Session time that physics had seen.
+  TickCommand::Kind kind{TickCommand::Kind::kPlace};
+  std::size_t hand{0};           ///< That takes.
+  SequenceStep step;             ///< What is taken; of what is placed the occurrence alone.
+  std::vector<PartState> parts;  ///< By OccurrenceId.
+};
+
 /** All that changes while a model is assembled. Three loops may run it at once, each function from
  its own thread: HapticTick (1 kHz and more, every TickOptions::dt, one hand after the other),
  PhysicsStep (100 Hz), Publish (30 Hz). Called in turn from one thread it gives the same results
@@ -134,9 +147,22 @@ class Simulation {
   /** Before the loops run: keeps in `log` what goes into the ticks. It outlives this object. */
   void KeepLog(TickLog* log) { log_ = log; }
 
+  /** Before the loops run: tells of each command before a tick can obey it. Physics thread. */
+  void TellOfCommands(std::function<void(const GivenCommand&)> tell) {
+    tell_of_command_ = std::move(tell);
+  }
+
+  /** Haptic thread: how many commands the ticks have obeyed. RT-safe. */
+  [[nodiscard]] std::uint32_t obeyed_commands() const noexcept { return obeyed_commands_; }
+
   /** Runs tick i of a log again, with the commands that came before it; ticks in their order, on a
    simulation that did nothing else. */
   haptics::TickOutput ReplayTick(const TickLog& log, std::size_t i) noexcept;
+
+  /** The same for one tick, and for a command before it. */
+  haptics::TickOutput ReplayTick(std::size_t hand, const device::DeviceState& device,
+                                 const haptics::TickContext& context) noexcept;
+  void ReplayCommand(const GivenCommand& command, std::int64_t t_ns);
 
   /** Physics thread: taking up and letting go, where loose parts have come to. `sink` may be null.
    */
@@ -235,6 +261,7 @@ class Simulation {
   haptics::TickOutput RunTick(Hand* hand, const device::DeviceState& device,
                               const haptics::TickContext& context) noexcept;
   void Obey(const TickCommand& command, std::int64_t t_ns) noexcept;
+  void Give(const TickCommand& command, const SequenceStep& step);
   void TellOfSafety(Hand* hand, const device::DeviceState& device,
                     const haptics::TickOutput& out) noexcept;
   static void Measure(Hand* hand, const haptics::TickOutput& out) noexcept;
@@ -262,6 +289,7 @@ class Simulation {
   int effort_level_{0};
   int told_effort_level_{0};
   std::size_t replayed_commands_{0};
+  std::uint32_t obeyed_commands_{0};
 
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::int64_t> physics_t_ns_{0};  // Session time that physics has seen.
@@ -270,7 +298,10 @@ class Simulation {
   Ring<SimulationEvent> events_;
   TripleBuffer<Frame> frames_;
 
+  // The physics thread's own.
   std::vector<PartState> parts_;
+  std::function<void(const GivenCommand&)> tell_of_command_;
+  std::uint32_t given_commands_{0};
 };
 
 }  // namespace hvas::simulation

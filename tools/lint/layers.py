@@ -23,6 +23,7 @@ OUTSIDE = {
     "nlohmann": (r"nlohmann/", r"nlohmann_json"),
     "Bullet": (r"bt[A-Z]|LinearMath/|BulletDynamics/|BulletCollision/", r"hvas_bullet|\$\{HVAS_BULLET"),
     "sqlite3": (r"sqlite3\.h", r"SQLite::"),
+    "zstd": (r"zstd\.h", r"\$\{HVAS_ZSTD"),
     "CLI": (r"CLI/", r"CLI11::"),
     "Boost": (r"boost/", r"Boost::"),
     "OpenSSL": (r"openssl/", r"OpenSSL::"),

@@ -1,6 +1,7 @@
 // What is left of a record after the process was killed or the file was damaged.
 
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -33,7 +34,12 @@ std::int64_t RecordAndKill(const RecorderOptions& options, std::int64_t kill_aft
   if (child == 0) {
     auto recorder = Recorder::Create(options, {{"product", "victim"}});
     for (std::int64_t i = 0; recorder; ++i) {
-      if ((*recorder)->AddTick(MakeTick(i))) {
+      TickRecord tick = MakeTick(i);
+      tick.commands = static_cast<std::uint32_t>(i / 10);
+      if (i % 10 == 0) {
+        (*recorder)->AddCommand(MakeCommand(i / 10));
+      }
+      if ((*recorder)->AddTick(tick)) {
         added->store(i + 1);
       }
       if (pause.count() > 0) {
@@ -66,6 +72,10 @@ void ExpectAtMostOneSecondLost(const std::filesystem::path& path, std::int64_t a
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     ASSERT_EQ(ticks[i].t_ns, static_cast<std::int64_t>(i) * kTickNs) << "no gap";
   }
+  if (!ticks.empty()) {
+    EXPECT_GT(reader->ReadCommands().value().size(), ticks.back().commands)
+        << "what a tick obeyed is there when the tick is";
+  }
 }
 
 TEST(KilledRecorder, LosesAtMostOneSecondAndNeverTheFile) {
@@ -87,6 +97,61 @@ TEST(KilledRecorder, LosesAtMostOneSecondWhenThreadedInRealTime) {
   EXPECT_GT(Reader::Open(file.path())->tick_count(), 500);
 }
 
+// A power cut may leave any beginning of the journal, whose end was not on the disk yet.
+TEST(KilledRecorder, OpensWithWhateverIsLeftOfItsJournal) {
+  const TemporaryFile file("power.hvas");
+  const std::int64_t added = RecordAndKill({file.path()}, 3000, {});
+  const std::filesystem::path journal = file.path().string() + "-wal";
+  const auto whole = static_cast<std::int64_t>(std::filesystem::file_size(journal));
+  const TemporaryFile copy("copy.hvas");
+  std::int64_t most = 0;
+  constexpr int kPlaces = 40;
+  for (int i = 0; i <= kPlaces; ++i) {
+    SCOPED_TRACE(i);
+    std::filesystem::remove(copy.path().string() + "-shm");
+    constexpr auto kOver = std::filesystem::copy_options::overwrite_existing;
+    std::filesystem::copy_file(file.path(), copy.path(), kOver);
+    std::filesystem::copy_file(journal, copy.path().string() + "-wal", kOver);
+    std::filesystem::resize_file(copy.path().string() + "-wal",
+                                 static_cast<std::uintmax_t>(whole * i / kPlaces));
+    Result<Reader> reader = Reader::Open(copy.path());
+    if (!reader) {  // cut before the first transaction: an empty database
+      EXPECT_EQ(reader.error().code, ErrorCode::kUnreadable);
+      EXPECT_LT(i, kPlaces / 4);
+      continue;
+    }
+    EXPECT_TRUE(reader->Verify().has_value());
+    EXPECT_GE(reader->tick_count(), most) << "the more is left, the more is read";
+    most = reader->tick_count();
+  }
+  EXPECT_GE(most, added - 1000);
+}
+
+// A disk that is full, as a limit on the size of files: what was written is whole.
+TEST(KilledRecorder, LosesAtMostOneSecondWhenTheDiskIsFull) {
+  const TemporaryFile file("full.hvas");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1 << 20, 1 << 20};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    auto recorder = Recorder::Create({file.path()}, {{"product", "victim"}});
+    std::int64_t i = 0;
+    while (recorder && !(*recorder)->error() && i < 100'000) {
+      (*recorder)->AddTick(MakeTick(i++));
+    }
+    const bool has_failed = recorder && !(*recorder)->Finish() &&
+                            (*recorder)->error()->code == ErrorCode::kOutOfResource;
+    ::_exit(has_failed && i > 1000 && i < 5000 ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_EQ(status, 0) << "the failure was not told, or came when there was room";
+  Reader reader = Reader::Open(file.path()).value();
+  EXPECT_TRUE(reader.Verify().has_value());
+  EXPECT_GT(reader.tick_count(), 1000);
+}
+
 // Runs SQL on a record behind HVAS' back.
 void Tamper(const std::filesystem::path& path, const char* sql) {
   sqlite3* database = nullptr;
@@ -105,7 +170,10 @@ class DamagedRecord : public ::testing::Test {
     }
     for (int i = 0; i < 3; ++i) {
       (*recorder)->AddEvent(MakeEvent(i));
+      (*recorder)->AddCommand(MakeCommand(i));
+      (*recorder)->AddFrame(MakeFrame(i));
     }
+    (*recorder)->AddAttachment({"product", MakeBytes(1, 1000)});
     EXPECT_TRUE((*recorder)->Finish().has_value());
   }
 
@@ -156,6 +224,18 @@ TEST_F(DamagedRecord, EventIsFound) {
   const auto events = Reader::Open(file.path())->ReadEvents();
   ASSERT_FALSE(events.has_value());
   EXPECT_NE(events.error().message.find("Event 2"), std::string::npos);
+}
+
+TEST_F(DamagedRecord, CommandFrameAndAttachmentAreFound) {
+  Tamper(file.path(), "UPDATE command SET number = 7 WHERE id = 3");
+  Tamper(file.path(), "UPDATE frame SET bytes = zeroblob(length(bytes)) WHERE id = 1");
+  Tamper(file.path(), "UPDATE attachment SET bytes = zeroblob(length(bytes))");
+  Reader reader = Reader::Open(file.path()).value();
+  EXPECT_NE(reader.ReadCommands().error().message.find("Command 3"), std::string::npos);
+  const auto frames = reader.ForEachFrame({}, [](const Frame&) { return true; });
+  EXPECT_NE(frames.error().message.find("Frame 1"), std::string::npos);
+  EXPECT_NE(reader.ReadAttachment("product").error().message.find("product"), std::string::npos);
+  EXPECT_FALSE(reader.Verify().has_value());
 }
 
 TEST_F(DamagedRecord, MissingChunkIsFoundByTheDigest) {

@@ -63,6 +63,7 @@ TEST(Packing, BringsEveryFieldBackBitForBit) {
     EXPECT_EQ(back.model_age_ns, tick.model_age_ns);
     EXPECT_EQ(back.client_age_ns, tick.client_age_ns);
     EXPECT_EQ(back.effort_level, tick.effort_level);
+    EXPECT_EQ(back.commands, tick.commands);
   }
 }
 
@@ -75,6 +76,7 @@ TEST(Packing, PutsFieldsAtTheirPlacesLittleEndian) {
   tick.hand = 9;
   tick.sample_ns = 0x0a0b0c0d0e0f1011;
   tick.effort_level = 3;
+  tick.commands = 5;
   tick.held = 7;
   const Bytes bytes = PackOne(tick);
   EXPECT_EQ(bytes[0], std::byte{0x08});
@@ -92,13 +94,17 @@ TEST(Packing, PutsFieldsAtTheirPlacesLittleEndian) {
   EXPECT_EQ(bytes[328], std::byte{0x07});  // after two poses and two wrenches
   EXPECT_EQ(bytes[407], std::byte{0x09});  // after the contacts: where schema 1 ended
   EXPECT_EQ(bytes[408], std::byte{0x11});
-  EXPECT_EQ(bytes[449], std::byte{0x03});
+  EXPECT_EQ(bytes[449], std::byte{0x03});  // where schema 2 ended
+  EXPECT_EQ(bytes[450], std::byte{0x05});
+  EXPECT_EQ(PackedTickSize(1), 407u);
+  EXPECT_EQ(PackedTickSize(2), 450u);
+  EXPECT_EQ(PackedTickSize(3), bytes.size());
 }
 
-TEST(Packing, TickOfSchemaOneIsTheBeginningOfThisOne) {
+TEST(Packing, TickOfAnOlderSchemaIsTheBeginningOfThisOne) {
   const TickRecord tick = MakeTick(5);
   const Bytes bytes = PackOne(tick);
-  const TickRecord back = Unpack1(std::span(bytes).first<kPackedTickSize1>());
+  const TickRecord back = Unpack(std::span(bytes).first(PackedTickSize(1)), 1);
   ExpectEqual(back.device_pose, tick.device_pose);
   ExpectEqual(back.X_WD, tick.X_WD);
   EXPECT_EQ(back.device_flags, tick.device_flags);
@@ -107,6 +113,10 @@ TEST(Packing, TickOfSchemaOneIsTheBeginningOfThisOne) {
   EXPECT_EQ(back.sample_ns, 0);
   EXPECT_EQ(back.device_condition, 0);
   EXPECT_TRUE(std::isnan(back.device_grip));
+  const TickRecord second = Unpack(std::span(bytes).first(PackedTickSize(2)), 2);
+  EXPECT_EQ(second.hand, tick.hand);
+  EXPECT_EQ(second.effort_level, tick.effort_level);
+  EXPECT_EQ(second.commands, 0u);
 }
 
 TEST(Packing, KeepsSpecialNumbers) {

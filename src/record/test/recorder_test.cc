@@ -1,5 +1,8 @@
 #include "record/recorder.h"
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -29,6 +32,8 @@ void Fill(Recorder* recorder, int ticks) {
     }
     if (i % 100 == 0) {
       recorder->AddEvent(MakeEvent(i));
+      recorder->AddCommand(MakeCommand(i));
+      recorder->AddFrame(MakeFrame(i));
     }
   }
 }
@@ -87,6 +92,42 @@ TEST_P(RecorderRoundTrip, ReadsBackWhatWasAdded) {
   }
 }
 
+TEST_P(RecorderRoundTrip, ReadsBackWhatGoesWithTheTicks) {
+  const TemporaryFile file("with.hvas");
+  const std::unique_ptr<Recorder> recorder = MakeRecorder({file.path(), GetParam()});
+  recorder->AddAttachment({"product", MakeBytes(1, 100)});
+  recorder->AddAttachment({"model.glb", MakeBytes(2, 300'000)});
+  Fill(recorder.get(), kTicks);
+  recorder->AddAttachment({"product", MakeBytes(3, 50)});
+  ASSERT_TRUE(recorder->Finish().has_value());
+
+  Reader reader = Reader::Open(file.path()).value();
+  EXPECT_EQ(reader.Verify().value(), recorder->Digest());
+  const std::vector<Command> commands = reader.ReadCommands().value();
+  ASSERT_EQ(commands.size(), 13u);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const Command expected = MakeCommand(std::int64_t{100} * static_cast<std::int64_t>(i));
+    EXPECT_EQ(commands[i].t_ns, expected.t_ns);
+    EXPECT_EQ(commands[i].number, expected.number);
+    EXPECT_EQ(commands[i].kind, expected.kind);
+    EXPECT_EQ(commands[i].json, expected.json);
+  }
+  std::int64_t number = 200;
+  const Result<void> done =
+      reader.ForEachFrame({200 * kTickNs, 1100 * kTickNs}, [&](const Frame& frame) {
+        EXPECT_EQ(frame.t_ns, number * kTickNs);
+        EXPECT_EQ(frame.bytes, MakeFrame(number).bytes);
+        number += 100;
+        return number <= 900;
+      });
+  EXPECT_TRUE(done.has_value());
+  EXPECT_EQ(number, 1000) << "from the span's beginning until the visitor has enough";
+  EXPECT_EQ(reader.ListAttachments().value(), (std::vector<std::string>{"model.glb", "product"}));
+  EXPECT_EQ(reader.ReadAttachment("product").value(), MakeBytes(3, 50));
+  EXPECT_EQ(reader.ReadAttachment("model.glb").value(), MakeBytes(2, 300'000));
+  EXPECT_EQ(reader.ReadAttachment("scene.json").error().code, ErrorCode::kNotFound);
+}
+
 INSTANTIATE_TEST_SUITE_P(Modes, RecorderRoundTrip, ::testing::Bool());
 
 TEST(Recorder, LeavesASingleFile) {
@@ -127,6 +168,89 @@ TEST(Reader, ReadsARecordOfSchemaOne) {
   EXPECT_EQ(reader->ReadEvents().value().front().kind, "energy");
 }
 
+// The same of schema 2: two hands, and all that their devices told.
+TEST(Reader, ReadsARecordOfSchemaTwo) {
+  Result<Reader> reader = Reader::Open(HVAS_RECORD_OF_SCHEMA_2);
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_TRUE(reader->is_complete());
+  EXPECT_EQ(reader->schema(), 2);
+  EXPECT_EQ(reader->Verify().value(), "3d267eab06c5d8eca1e4b6827313ae5b");
+  const std::vector<TickRecord> ticks = reader->ReadTicks({10 * kTickNs, 19 * kTickNs}).value();
+  ASSERT_EQ(ticks.size(), 20u);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    EXPECT_EQ(ticks[i].hand, i % 2);
+    EXPECT_GT(ticks[i].sample_ns, 0);
+    EXPECT_EQ(ticks[i].commands, 0u);
+  }
+  EXPECT_TRUE(reader->ReadCommands().value().empty());
+  EXPECT_TRUE(reader->ListAttachments().value().empty());
+  EXPECT_TRUE(reader->ForEachFrame({}, [](const Frame&) { return true; }).has_value());
+}
+
+// And of this one, by which a later program shows that it still reads it.
+TEST(Reader, ReadsARecordOfSchemaThree) {
+  Result<Reader> reader = Reader::Open(HVAS_RECORD_OF_SCHEMA_3);
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_TRUE(reader->is_complete());
+  EXPECT_EQ(reader->schema(), 3);
+  EXPECT_EQ(reader->Verify().value(), "c35f3f7da5b8d74220b70b324954ab13");
+  EXPECT_EQ(reader->ReadCommands().value().front().kind, "begin");
+  EXPECT_FALSE(reader->ReadAttachment("product").value().empty());
+}
+
+TEST(Reader, ReadsASessionWhileItIsRecorded) {
+  const TemporaryFile file("live.hvas");
+  const std::unique_ptr<Recorder> recorder = MakeRecorder({file.path(), true});
+  std::atomic<bool> is_done{false};
+  std::thread session([&] {
+    for (int i = 0; !is_done; ++i) {
+      recorder->AddTick(MakeTick(i));
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  });
+  Reader reader = Reader::Open(file.path()).value();
+  std::int64_t before = reader.tick_count();
+  for (int seen = 0; seen < 3;) {
+    ASSERT_TRUE(reader.Refresh().has_value());
+    seen += reader.tick_count() > before ? 1 : 0;
+    before = std::max(before, reader.tick_count());
+    EXPECT_TRUE(reader.Verify().has_value());
+    const std::vector<TickRecord> ticks = reader.ReadTicks({}).value();
+    for (std::size_t i = 1; i < ticks.size(); ++i) {
+      ASSERT_EQ(ticks[i].t_ns - ticks[i - 1].t_ns, kTickNs);
+    }
+  }
+  EXPECT_FALSE(reader.is_complete());
+  is_done = true;
+  session.join();
+  ASSERT_TRUE(recorder->Finish().has_value()) << "although somebody reads";
+  EXPECT_EQ(reader.Verify().value(), recorder->Digest());
+  EXPECT_TRUE(reader.is_complete());
+  EXPECT_EQ(recorder->dropped_ticks(), 0u);
+}
+
+TEST(Recorder, CountsFramesThatFoundNoRoom) {
+  const TemporaryFile file("frames.hvas");
+  RecorderOptions options;
+  options.path = file.path();
+  options.is_threaded = true;
+  options.waiting_frame_bytes = 1000;
+  const std::unique_ptr<Recorder> recorder = MakeRecorder(options);
+  std::uint64_t refused = 0;
+  constexpr int kBurst = 2000;  // of 200 bytes and more, in far less than the writer's pause
+  for (int i = 0; i < kBurst; ++i) {
+    refused += recorder->AddFrame(MakeFrame(i)) ? 0 : 1;
+  }
+  ASSERT_TRUE(recorder->Finish().has_value());
+  EXPECT_GT(refused, 0u);
+  EXPECT_EQ(recorder->dropped_frames(), refused);
+  Reader reader = Reader::Open(file.path()).value();
+  EXPECT_EQ(reader.meta().at(kMetaDroppedFrames), std::to_string(refused));
+  std::uint64_t kept = 0;
+  ASSERT_TRUE(reader.ForEachFrame({}, [&](const Frame&) { return ++kept > 0; }).has_value());
+  EXPECT_EQ(kept + refused, kBurst);
+}
+
 // N7, and the digest by which two runs of one seed are compared.
 TEST(RecorderDigest, IsEqualForEqualSessionsHoweverTheyAreRecorded) {
   const TemporaryFile file("digest.hvas");
@@ -162,6 +286,11 @@ TEST(RecorderDigest, ChangesWithEveryTickAndEvent) {
   EXPECT_NE(DigestOf([](Recorder* r) {
               Fill(r, 50);
               r->AddEvent(MakeEvent(1));
+            }),
+            digest);
+  EXPECT_NE(DigestOf([](Recorder* r) {
+              Fill(r, 50);
+              r->AddCommand(MakeCommand(1));
             }),
             digest);
 }

@@ -53,6 +53,7 @@ inline TickRecord MakeTick(std::int64_t number) {
   tick.model_age_ns = static_cast<std::int64_t>(random.NextBits());
   tick.client_age_ns = static_cast<std::int64_t>(random.NextBits());
   tick.effort_level = static_cast<std::uint8_t>(random.NextBits());
+  tick.commands = static_cast<std::uint32_t>(random.NextBits());
   return tick;
 }
 
@@ -60,6 +61,24 @@ inline Event MakeEvent(std::int64_t number) {
   return {number * kTickNs, number % 2 == 0 ? "seated" : "captured",
           number % 3 == 0 ? kNoOccurrence : static_cast<std::uint32_t>(number),
           "{\"depth_mm\": " + std::to_string(number) + ", \"name\": \"Büchse\"}"};
+}
+
+inline Command MakeCommand(std::int64_t number) {
+  return {number * kTickNs, number, number == 0 ? "begin" : "take",
+          "{\"occurrence\": " + std::to_string(number) + ", \"x_m\": 0.1}"};
+}
+
+inline std::vector<std::byte> MakeBytes(std::int64_t number, std::size_t size) {
+  Random random(static_cast<std::uint64_t>(number) + 1);
+  std::vector<std::byte> bytes(size);
+  for (std::byte& byte : bytes) {
+    byte = static_cast<std::byte>(random.NextBits());
+  }
+  return bytes;
+}
+
+inline Frame MakeFrame(std::int64_t number) {
+  return {number * kTickNs, MakeBytes(number, 200 + static_cast<std::size_t>(number % 100))};
 }
 
 /** A file name in a folder of its own, removed with its side files at the end. */

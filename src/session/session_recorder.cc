@@ -1,14 +1,18 @@
-#include "app/session_recorder.h"
+#include "session/session_recorder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "app/flight_json.h"
 #include "haptics/safety_gate.h"
+#include "session/command_json.h"
+#include "session/flight_json.h"
+#include "session/recorded_model.h"
 
-namespace hvas::app {
+namespace hvas::session {
 namespace {
 
 // Of the status, above the gate's bits.
@@ -55,8 +59,8 @@ std::uint32_t StatusOf(const haptics::TickOutput& out) noexcept {
 
 }  // namespace
 
-void SessionRecorder::OnTick(std::size_t hand, const device::DeviceState& device,
-                             const haptics::TickOutput& out) noexcept {
+record::TickRecord MakeTickRecord(std::size_t hand, const device::DeviceState& device,
+                                  const haptics::TickOutput& out, std::uint32_t commands) noexcept {
   record::TickRecord tick;
   tick.hand = static_cast<std::uint8_t>(hand);
   tick.t_ns = device.t_ns;
@@ -87,6 +91,41 @@ void SessionRecorder::OnTick(std::size_t hand, const device::DeviceState& device
     tick.contacts[0].nhat_W = out.f_C_W.normalized().cast<float>();
     tick.contacts[0].distance = static_cast<float>(out.deepest);
   }
+  tick.commands = commands;
+  return tick;
+}
+
+SessionRecorder::SessionRecorder(record::Recorder* recorder, const simulation::Model& model)
+    : recorder_(recorder) {
+  AttachModel(model, recorder);
+}
+
+void SessionRecorder::Begin(simulation::Simulation* simulation) {
+  simulation_ = simulation;
+  start_ns_ = t_ns();
+  period_ns_ = std::llround(1e9 * simulation->options().dt);
+  told_ = simulation->parts();
+  Beginning beginning;
+  beginning.parts = told_;
+  for (std::size_t hand = 0; hand < simulation->hand_count(); ++hand) {
+    beginning.hands.push_back(simulation->options(hand));
+  }
+  recorder_->AddCommand({start_ns_, 0, kBeginKind, MakeBeginningJson(beginning)});
+  simulation->TellOfCommands([this](const simulation::GivenCommand& given) { OnCommand(given); });
+}
+
+void SessionRecorder::OnCommand(const simulation::GivenCommand& given) {
+  record::Command command = MakeCommand(given, told_);
+  command.t_ns += start_ns_;
+  recorder_->AddCommand(std::move(command));
+  told_ = given.parts;
+}
+
+void SessionRecorder::OnTick(std::size_t hand, const device::DeviceState& device,
+                             const haptics::TickOutput& out) noexcept {
+  record::TickRecord tick = MakeTickRecord(hand, device, out, simulation_->obeyed_commands());
+  tick.t_ns += start_ns_;
+  t_ns_.store(tick.t_ns + period_ns_, std::memory_order_relaxed);
   recorder_->AddTick(tick);
 }
 
@@ -117,12 +156,17 @@ void SessionRecorder::OnEvent(const simulation::SimulationEvent& event) {
     details["force"] = ToJson(event.energy);
     details["torque"] = ToJson(event.turning_energy);
   }
-  recorder_->AddEvent({event.t_ns, ToString(event.kind), event.occurrence.value(), details.dump()});
+  recorder_->AddEvent(
+      {start_ns_ + event.t_ns, ToString(event.kind), event.occurrence.value(), details.dump()});
 }
 
 void SessionRecorder::OnFlight(const std::vector<simulation::FlightTick>& ticks) {
-  recorder_->AddEvent({ticks.back().device.t_ns, "flight", ticks.back().out.occurrence.value(),
-                       MakeFlightJson(ticks)});
+  std::vector<simulation::FlightTick> in_session = ticks;
+  for (simulation::FlightTick& tick : in_session) {
+    tick.device.t_ns += start_ns_;
+  }
+  recorder_->AddEvent({in_session.back().device.t_ns, "flight",
+                       in_session.back().out.occurrence.value(), MakeFlightJson(in_session)});
 }
 
 device::DeviceState MakeDeviceState(const record::TickRecord& tick) {
@@ -150,4 +194,4 @@ haptics::TickContext MakeTickContext(const record::TickRecord& tick) {
   return context;
 }
 
-}  // namespace hvas::app
+}  // namespace hvas::session

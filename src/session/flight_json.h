@@ -5,10 +5,10 @@
 
 #include "simulation/flight_recorder.h"
 
-namespace hvas::app {
+namespace hvas::session {
 
 /** A recording of the flight recorder as a JSON object: `columns`, names with units, and `ticks`,
  one array of numbers each (null where one is not finite). */
 [[nodiscard]] std::string MakeFlightJson(const std::vector<simulation::FlightTick>& ticks);
 
-}  // namespace hvas::app
+}  // namespace hvas::session

@@ -1,10 +1,10 @@
-#include "app/flight_json.h"
+#include "session/flight_json.h"
 
 #include <array>
 
 #include <nlohmann/json.hpp>
 
-namespace hvas::app {
+namespace hvas::session {
 namespace {
 
 using simulation::FlightTick;
@@ -70,4 +70,4 @@ std::string MakeFlightJson(const std::vector<FlightTick>& ticks) {
   return nlohmann::json{{"columns", columns}, {"ticks", rows}}.dump();
 }
 
-}  // namespace hvas::app
+}  // namespace hvas::session

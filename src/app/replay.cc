@@ -1,0 +1,171 @@
+#include "app/replay.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/progress.h"
+#include "app/rendering_options.h"
+#include "app/report_failure.h"
+#include "app/text_layout.h"
+#include "base/units.h"
+#include "session/replay.h"
+
+namespace hvas::app {
+namespace {
+
+using session::ReplayedPart;
+using session::ReplayReport;
+using simulation::Model;
+
+constexpr int kDifferent = 2;
+
+double Seconds(std::int64_t ns) {
+  return 1e-9 * static_cast<double>(ns);
+}
+
+double SpeedOf(const ReplayReport& report) {
+  return static_cast<double>(report.session_ns) /
+         static_cast<double>(std::max<std::int64_t>(1, report.wall_ns));
+}
+
+const std::string& PathOf(const Model& model, const ReplayedPart& part) {
+  return model.product->occurrences[part.occurrence.index()].path;
+}
+
+nlohmann::ordered_json MakeOutcomeJson(const ReplayedPart::Outcome& outcome) {
+  return {{"peak_true_n", outcome.peak_true},
+          {"peak_felt_n", outcome.peak_felt},
+          {"insertion_m", outcome.depth},
+          {"seated", outcome.is_seated}};
+}
+
+void PrintJson(const Model& model, const record::Reader& reader, const ReplayReport& report) {
+  nlohmann::ordered_json json{{"product", model.product->name},
+                              {"complete", reader.is_complete()},
+                              {"exact", report.is_exact()},
+                              {"stretches", report.stretches},
+                              {"ticks", report.ticks},
+                              {"different_ticks", report.different_ticks},
+                              {"unreachable_ticks", report.unreachable_ticks},
+                              {"largest_felt_difference_n", report.largest_felt_difference},
+                              {"rms_felt_difference_n", report.rms_felt_difference},
+                              {"largest_way_m", report.largest_way},
+                              {"session_s", Seconds(report.session_ns)},
+                              {"wall_s", Seconds(report.wall_ns)},
+                              {"real_time_factor", SpeedOf(report)}};
+  if (report.first) {
+    json["first_difference"] = {{"time_s", Seconds(report.first->t_ns)},
+                                {"hand", report.first->hand},
+                                {"what", report.first->field}};
+  }
+  nlohmann::ordered_json& parts = json["parts"] = nlohmann::ordered_json::array();
+  for (const ReplayedPart& part : report.parts) {
+    parts.push_back({{"occurrence", part.occurrence.value()},
+                     {"path", PathOf(model, part)},
+                     {"held_s", Seconds(part.held_ns)},
+                     {"recorded", MakeOutcomeJson(part.recorded)},
+                     {"replayed", MakeOutcomeJson(part.replayed)}});
+  }
+  fmt::print("{}\n", json.dump(2));
+}
+
+void PrintParts(const Model& model, const ReplayReport& report) {
+  constexpr std::size_t kNameWidth = 36;
+  const auto bounded = [](const ReplayedPart::Outcome& outcome) {
+    return fmt::format("{:7.2f} N {:7.2f} N {:7.2f} mm {}", outcome.peak_true, outcome.peak_felt,
+                       units::ToMm(outcome.depth), outcome.is_seated ? "in " : "out");
+  };
+  fmt::print("\n{} {:>33}   {:>33}\n", PadTo("part: peak true, felt, depth, place", kNameWidth),
+             "recorded", "replayed");
+  for (const ReplayedPart& part : report.parts) {
+    fmt::print("{} {}   {}\n", PadTo(Shorten(PathOf(model, part), kNameWidth), kNameWidth),
+               bounded(part.recorded), bounded(part.replayed));
+  }
+}
+
+void PrintText(const Model& model, const record::Reader& reader, const ReplayReport& report) {
+  fmt::print(
+      "{}: {} ticks of {:.1f} s in {} stretch{} run again in {:.2f} s, {:.0f} times as fast\n",
+      model.product->name, report.ticks, Seconds(report.session_ns), report.stretches,
+      report.stretches == 1 ? "" : "es", Seconds(report.wall_ns), SpeedOf(report));
+  if (!reader.is_complete()) {
+    fmt::print("The session was cut short, or goes on: this is what there is of it.\n");
+  }
+  if (report.is_exact()) {
+    fmt::print("Every wrench and pose is the recorded one, bit for bit.\n");
+    return;
+  }
+  if (report.unreachable_ticks > 0) {
+    fmt::print("{} ticks could not be run again: the record lacks ticks before them.\n",
+               report.unreachable_ticks);
+  }
+  if (report.first) {
+    fmt::print("{} of them differ, the first one at {:.3f} s (hand {}): {}.\n",
+               report.different_ticks, Seconds(report.first->t_ns), report.first->hand,
+               report.first->field);
+    fmt::print("Felt force: {:.3g} N apart at most, {:.3g} N rms; parts: {:.3g} mm at most.\n",
+               report.largest_felt_difference, report.rms_felt_difference,
+               units::ToMm(report.largest_way));
+    PrintParts(model, report);
+  }
+}
+
+}  // namespace
+
+int RunReplay(const ReplayArguments& arguments) {
+  auto reader = record::Reader::Open(arguments.record.file);
+  if (!reader) {
+    return ReportFailure(reader.error());
+  }
+  const auto model = PrepareModel(&*reader, arguments.record);
+  if (!model) {
+    return ReportFailure(model.error());
+  }
+  session::ReplayOptions options;
+  options.condition = arguments.condition;
+  options.force_map = arguments.force_map;
+  if (!arguments.record.is_quiet && IsWatched()) {
+    options.progress = [](double fraction) { ShowProgress("replay", fraction); };
+  }
+  const auto report = session::Replay(&*reader, *model, options);
+  if (!report) {
+    return ReportFailure(report.error());
+  }
+  if (arguments.is_json) {
+    PrintJson(**model, *reader, *report);
+  } else {
+    PrintText(**model, *reader, *report);
+  }
+  return arguments.is_verified && !report->is_exact() ? kDifferent : 0;
+}
+
+void AddReplay(CLI::App* app, int* status) {
+  CLI::App* command = app->add_subcommand(
+      "replay", "Run a recorded session again, and compare every wrench with the record");
+  const auto arguments = std::make_shared<ReplayArguments>();
+  AddRecordOptions(command, &arguments->record);
+  CLI::Option* verify = command->add_flag("--verify", arguments->is_verified,
+                                                "Exit with 2 unless every bit is the recorded one");
+  AddConditionOption(command, &arguments->condition)
+      ->description(
+          "Render what was recorded under this condition instead: collision, constraint "
+          "or hybrid")
+      ->excludes(verify);
+  AddForceMapOption(command, &arguments->force_map)->excludes(verify);
+  command->add_flag("--json", arguments->is_json, "Print one JSON document");
+  command->footer(
+      "Exit status: 0; 2 when --verify found a difference, 1 on an error.\n"
+      "With another condition or force map the hand moves as it was recorded: it did not feel what "
+      "is rendered now.\n"
+      "Examples:\n"
+      "  hvas replay press.hvasrec --verify\n"
+      "  hvas replay press.hvasrec --force-map paper\n"
+      "  hvas replay press.hvasrec --condition collision --json | jq '.parts[].replayed'");
+  command->callback([arguments, status] { *status = RunReplay(*arguments); });
+}
+
+}  // namespace hvas::app

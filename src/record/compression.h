@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+/** Blocks of bytes made small for the disk (Zstandard frames). */
+namespace hvas::record {
+
+[[nodiscard]] std::vector<std::byte> Compress(std::span<const std::byte> bytes);
+
+/** Empty for anything but a block of Compress(), and for one of more than `limit` bytes. Takes any
+ bytes. */
+[[nodiscard]] std::vector<std::byte> Decompress(std::span<const std::byte> block,
+                                                std::size_t limit);
+
+/** Of ticks, each `tick_size` bytes: what changes little from one to the next comes together, and
+ takes little room.
+ @pre a whole number of ticks. */
+[[nodiscard]] std::vector<std::byte> CompressTicks(std::span<const std::byte> packed,
+                                                   std::size_t tick_size);
+
+/** The packed ticks; empty where the block is not one of `count` ticks. Takes any bytes. */
+[[nodiscard]] std::vector<std::byte> DecompressTicks(std::span<const std::byte> block,
+                                                     std::size_t tick_size, std::size_t count);
+
+}  // namespace hvas::record

@@ -1,0 +1,183 @@
+#include "session/command_json.h"
+
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "session/tick_options_json.h"
+
+namespace hvas::session {
+namespace {
+
+using simulation::GivenCommand;
+using simulation::PartState;
+using simulation::SequenceStep;
+
+constexpr std::array kPlacements{"loose", "held", "placed", "parked"};
+constexpr std::array kStepKinds{"base", "insert", "park"};
+
+Unexpected Refuse(const std::string& what, const std::string& field) {
+  return Fail(ErrorCode::kUnreadable, fmt::format("{} has no good \"{}\".", what, field));
+}
+
+Json MakePartJson(const PartState& part) {
+  return {{"placement", kPlacements.at(static_cast<std::size_t>(part.placement))},
+          {"X_WB", MakeJson(part.X_WB)}};
+}
+
+void ReadPart(JsonFields* fields, PartState* part) {
+  (*fields)("placement", part->placement, kPlacements);
+  (*fields)("X_WB", part->X_WB);
+}
+
+/** To the last bit, the sign of a zero, too. */
+bool IsSame(const PartState& a, const PartState& b) {
+  return a.placement == b.placement &&
+         std::memcmp(a.X_WB.p().data(), b.X_WB.p().data(), sizeof(Vec3)) == 0 &&
+         std::memcmp(a.X_WB.q().coeffs().data(), b.X_WB.q().coeffs().data(), 4 * sizeof(double)) ==
+             0;
+}
+
+Json MakeStepJson(const SequenceStep& step) {
+  Json members = Json::array();
+  for (const product::OccurrenceId id : step.members) {
+    members.push_back(id.value());
+  }
+  return {{"kind", kStepKinds.at(static_cast<std::size_t>(step.kind))},
+          {"occurrence", step.occurrence.value()},
+          {"members", std::move(members)},
+          {"extraction_W", MakeJson(step.extraction_W)},
+          {"engage_distance_m", MakeJson(step.engage_distance)},
+          {"offset_W_m", MakeJson(step.offset_W)}};
+}
+
+SequenceStep ReadStep(JsonFields* fields, std::size_t part_count) {
+  SequenceStep step;
+  (*fields)("kind", step.kind, kStepKinds);
+  fields->IdBelow("occurrence", part_count, &step.occurrence);
+  (*fields)("extraction_W", step.extraction_W);
+  (*fields)("engage_distance_m", step.engage_distance);
+  (*fields)("offset_W_m", step.offset_W);
+  for (const Json& member : fields->Array("members")) {
+    if (!member.is_number_unsigned() || member.get<std::size_t>() >= part_count) {
+      fields->Refuse("members");
+      break;
+    }
+    step.members.emplace_back(member.get<std::size_t>());
+  }
+  return step;
+}
+
+}  // namespace
+
+std::string MakeBeginningJson(const Beginning& beginning) {
+  Json hands = Json::array();
+  for (const haptics::TickOptions& options : beginning.hands) {
+    hands.push_back(MakeTickOptionsJson(options));
+  }
+  Json parts = Json::array();
+  for (const PartState& part : beginning.parts) {
+    parts.push_back(MakePartJson(part));
+  }
+  return Json{{"hands", std::move(hands)}, {"parts", std::move(parts)}}.dump();
+}
+
+Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count) {
+  constexpr const char* kWhat = "The beginning of a stretch";
+  constexpr std::size_t kMostHands = 2;
+  const Json json = Json::parse(text, nullptr, false);
+  JsonFields fields(json);
+  Beginning beginning;
+  for (const Json& hand : fields.Array("hands")) {
+    auto options = ParseTickOptions(hand);
+    if (!options) {
+      return Unexpected(options.error());
+    }
+    beginning.hands.push_back(std::move(*options));
+  }
+  for (const Json& part : fields.Array("parts")) {
+    JsonFields inner(part);
+    ReadPart(&inner, &beginning.parts.emplace_back());
+    fields.Take(inner);
+  }
+  if (!fields.refused().empty()) {
+    return Refuse(kWhat, fields.refused());
+  }
+  if (beginning.hands.empty() || beginning.hands.size() > kMostHands) {
+    return Refuse(kWhat, "hands");
+  }
+  if (beginning.parts.size() != part_count) {
+    return Refuse(kWhat, "parts");
+  }
+  return beginning;
+}
+
+record::Command MakeCommand(const GivenCommand& given, const std::vector<PartState>& before) {
+  const bool is_take = given.kind == simulation::TickCommand::Kind::kTake;
+  Json changed = Json::array();
+  for (std::size_t i = 0; i < given.parts.size(); ++i) {
+    if (!IsSame(given.parts[i], before[i])) {
+      Json part = MakePartJson(given.parts[i]);
+      part["occurrence"] = i;
+      changed.push_back(std::move(part));
+    }
+  }
+  const Json json{
+      {"hand", given.hand}, {"step", MakeStepJson(given.step)}, {"parts", std::move(changed)}};
+  return {given.t_ns, given.number, is_take ? kTakeKind : kPlaceKind, json.dump()};
+}
+
+Result<GivenCommand> ParseCommand(const record::Command& command,
+                                  const std::vector<PartState>& before, std::size_t hands) {
+  const std::string what = fmt::format("Command {}", command.number);
+  const Json json = Json::parse(command.json, nullptr, false);
+  JsonFields fields(json);
+  GivenCommand given;
+  given.number = static_cast<std::uint32_t>(command.number);
+  given.t_ns = command.t_ns;
+  if (command.kind != kTakeKind && command.kind != kPlaceKind) {
+    return Refuse(what, "kind");
+  }
+  given.kind = command.kind == kTakeKind ? simulation::TickCommand::Kind::kTake
+                                         : simulation::TickCommand::Kind::kPlace;
+  fields.Index("hand", hands, &given.hand);
+  JsonFields step = fields.Inner("step");
+  given.step = ReadStep(&step, before.size());
+  fields.Take(step);
+  given.parts = before;
+  for (const Json& part : fields.Array("parts")) {
+    JsonFields inner(part);
+    std::size_t occurrence = 0;
+    inner.Index("occurrence", before.size(), &occurrence);
+    ReadPart(&inner, &given.parts[occurrence]);
+    fields.Take(inner);
+  }
+  if (!fields.refused().empty()) {
+    return Refuse(what, fields.refused());
+  }
+  return given;
+}
+
+Json MakeStepsJson(const std::vector<SequenceStep>& steps) {
+  Json json = Json::array();
+  for (const SequenceStep& step : steps) {
+    json.push_back(MakeStepJson(step));
+  }
+  return json;
+}
+
+Result<std::vector<SequenceStep>> ParseSteps(const Json& json, std::size_t part_count) {
+  std::vector<SequenceStep> steps;
+  for (const Json& step : json) {
+    JsonFields fields(step);
+    steps.push_back(ReadStep(&fields, part_count));
+    if (!fields.refused().empty()) {
+      return Refuse("A step of the order", fields.refused());
+    }
+  }
+  return steps;
+}
+
+}  // namespace hvas::session

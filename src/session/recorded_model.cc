@@ -1,0 +1,130 @@
+#include "session/recorded_model.h"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/digest.h"
+#include "product/product_io.h"
+#include "session/command_json.h"
+
+namespace hvas::session {
+namespace {
+
+constexpr const char* kSeed = "seed";
+constexpr const char* kSteps = "steps";
+constexpr const char* kFingerprint = "fingerprint";
+
+/** Of what the ticks see of a model: equal models have equal ones. */
+std::string CalcFingerprint(const simulation::Model& model) {
+  Digest digest;
+  const auto add_pose = [&digest](const spatial::Pose& X) {
+    digest.AddBytes(std::as_bytes(std::span(X.p().data(), 3)));
+    digest.AddBytes(std::as_bytes(std::span(X.q().coeffs().data(), 4)));
+  };
+  for (const simulation::Body& body : model.bodies) {
+    add_pose(body.X_WB_start);
+    add_pose(body.X_WB_goal);
+    digest.AddDouble(body.mass.mass);
+    digest.AddText(model.product->part_of(body.occurrence).shape_hash);
+    digest.AddDouble(body.shape->voxel());
+  }
+  for (const simulation::DrawnOverlap& overlap : model.sequence.overlaps) {
+    digest.AddInt(overlap.a.value());
+    digest.AddInt(overlap.b.value());
+  }
+  digest.AddDouble(model.table_z);
+  return digest.Hex();
+}
+
+}  // namespace
+
+record::Meta MakeModelMeta(const simulation::Model& model) {
+  Json parts = Json::array();
+  for (const product::Occurrence& occurrence : model.product->occurrences) {
+    parts.push_back({{"id", occurrence.id.value()},
+                     {"path", occurrence.path},
+                     {"shape_hash", model.product->part_of(occurrence.id).shape_hash}});
+  }
+  return {{"product", model.product->name},
+          {"source", model.product->source},
+          {"seed", std::to_string(model.seed)},
+          {"model_json", parts.dump()}};
+}
+
+void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
+  recorder->AddAttachment({kProductAttachment, product::SerialiseProduct(*model.product)});
+  const Json json{{kSeed, model.seed},
+                  {kSteps, MakeStepsJson(model.sequence.steps)},
+                  {kFingerprint, CalcFingerprint(model)}};
+  const std::string text = json.dump();
+  const auto bytes = std::as_bytes(std::span(text));
+  recorder->AddAttachment({kModelAttachment, {bytes.begin(), bytes.end()}});
+}
+
+Result<product::Product> LoadProduct(record::Reader* reader) {
+  const auto bytes = reader->ReadAttachment(kProductAttachment);
+  if (!bytes && bytes.error().code == ErrorCode::kNotFound) {
+    return Fail(ErrorCode::kUnsupported, "The record has no product in it, as older ones have not.",
+                reader->path().string(), "Record the session again");
+  }
+  if (!bytes) {
+    return Unexpected(bytes.error());
+  }
+  auto product = product::DeserialiseProduct(*bytes);
+  if (!product) {
+    return Fail(
+        ErrorCode::kUnsupported,
+        "The product in the record is of another version of HVAS: " + product.error().message + ".",
+        reader->path().string(), "Open it with the version of HVAS that wrote it");
+  }
+  return product;
+}
+
+Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reader,
+                                                           simulation::CompileOptions options,
+                                                           Diagnostics* diagnostics) {
+  auto product = LoadProduct(reader);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  const auto bytes = reader->ReadAttachment(kModelAttachment);
+  if (!bytes) {
+    return Unexpected(bytes.error());
+  }
+  const Json json =
+      Json::parse(reinterpret_cast<const char*>(bytes->data()),
+                  reinterpret_cast<const char*>(bytes->data() + bytes->size()), nullptr, false);
+  JsonFields fields(json);
+  std::string fingerprint;
+  fields(kFingerprint, fingerprint);
+  auto steps = ParseSteps(fields.Array(kSteps), product->occurrences.size());
+  if (!steps) {
+    return Unexpected(steps.error());
+  }
+  if (!fields.has(kSeed) || !json[kSeed].is_number_unsigned()) {
+    fields.Refuse(kSeed);
+  }
+  if (!fields.refused().empty()) {
+    return Fail(ErrorCode::kUnreadable,
+                "The model in the record has no good \"" + fields.refused() + "\".",
+                reader->path().string(), "Restore the file from a copy");
+  }
+  options.seed = json[kSeed].get<std::uint64_t>();
+  auto compiled = simulation::Compile(std::make_shared<product::Product>(std::move(*product)),
+                                      options, diagnostics);
+  if (!compiled) {
+    return compiled;
+  }
+  auto model = std::make_shared<simulation::Model>(**compiled);
+  model->sequence.steps = std::move(*steps);
+  if (CalcFingerprint(*model) != fingerprint) {
+    diagnostics->Warn("model-differs", reader->path().string(),
+                      "this version of HVAS prepares the product in another way than the one that "
+                      "recorded it, so its ticks can come out otherwise",
+                      "replay it with the version that recorded it");
+  }
+  return std::shared_ptr<const simulation::Model>(std::move(model));
+}
+
+}  // namespace hvas::session

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "base/result.h"
+#include "record/reader.h"
+#include "record/recorder.h"
+#include "simulation/model.h"
+
+namespace hvas::session {
+
+/** Attachments of a record by which its model is made again. */
+inline constexpr const char* kProductAttachment = "product";
+inline constexpr const char* kModelAttachment = "model.json";
+
+/** What a record's meta says of a model. */
+[[nodiscard]] record::Meta MakeModelMeta(const simulation::Model& model);
+
+/** Puts into a record what LoadModel takes out of it: the product with its mates and fits, the
+ seed, the order of assembly, and a fingerprint. */
+void AttachModel(const simulation::Model& model, record::Recorder* recorder);
+
+/** Errors: kUnsupported for a record without a product, or with one of another format. */
+[[nodiscard]] Result<product::Product> LoadProduct(record::Reader* reader);
+
+/** A record's model, compiled anew.
+ @param options  How; the seed is that of the record.
+ Warns where it is not the one that was recorded, as another version of HVAS prepares it.
+ Errors: as LoadProduct() and simulation::Compile(). */
+[[nodiscard]] Result<std::shared_ptr<const simulation::Model>> LoadModel(
+    record::Reader* reader, simulation::CompileOptions options, Diagnostics* diagnostics);
+
+}  // namespace hvas::session

@@ -1,0 +1,213 @@
+#include "session/replay.h"
+
+#include <atomic>
+#include <thread>
+
+#include "base/test/temporary_folder.h"
+#include "session/command_json.h"
+#include "session/test/recorded_session.h"
+
+namespace hvas::session {
+namespace {
+
+using simulation::testing::PegInBlockModel;
+using testing::MakeRecorder;
+using testing::ReplayFile;
+using testing::Stretch;
+
+class ReplayTest : public ::testing::Test {
+ protected:
+  hvas::testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "session";
+};
+
+void ExpectExact(const Result<ReplayReport>& report) {
+  ASSERT_TRUE(report.has_value()) << report.error().ToString();
+  EXPECT_EQ(report->different_ticks, 0) << report->first->field << " at " << report->first->t_ns;
+  EXPECT_EQ(report->unreachable_ticks, 0);
+  EXPECT_TRUE(report->is_exact());
+}
+
+TEST_F(ReplayTest, SessionInVirtualTimeComesOutBitForBit) {  // N7
+  const auto model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file);
+  SessionRecorder sink(recorder.get(), *model);
+  Stretch stretch(model, 1, &sink);
+  sink.Begin(stretch.simulation.get());
+  const auto ran = RunLockstep(stretch.MakeExecution(60));
+  ASSERT_TRUE(recorder->Finish().has_value());
+  const auto report = ReplayFile(file);
+  ExpectExact(report);
+  EXPECT_EQ(report->stretches, 1);
+  EXPECT_EQ(report->ticks, static_cast<std::int64_t>(ran.ticks));
+  EXPECT_EQ(report->session_ns, ran.session_ns);
+  ASSERT_EQ(report->parts.size(), 1u) << "the base was not in the hand";
+  EXPECT_TRUE(report->parts[0].replayed.is_seated);
+  EXPECT_GT(report->parts[0].replayed.peak_felt, 0.5);
+  EXPECT_EQ(report->parts[0].replayed.peak_felt, report->parts[0].recorded.peak_felt);
+}
+
+TEST_F(ReplayTest, SessionOfBothHandsInRealTimeComesOutBitForBit) {
+  // Physics on a thread of its own, late when it likes; forces stopped for a while by another one.
+  const auto model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file, true);
+  SessionRecorder sink(recorder.get(), *model);
+  Stretch stretch(model, 2, &sink);
+  sink.Begin(stretch.simulation.get());
+  std::atomic<bool> is_done{false};
+  std::thread somebody([&] {
+    for (bool stops = true; !is_done; stops = !stops) {
+      stretch.simulation->StopForces(stops);
+      std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    }
+  });
+  simulation::FlightRecorder flight(1000, 2);
+  simulation::Execution execution = stretch.MakeExecution(3);
+  execution.flight = &flight;
+  const auto ran = RunRealtime(execution);
+  is_done = true;
+  somebody.join();
+  ASSERT_TRUE(recorder->Finish().has_value());
+  if (recorder->dropped_ticks() > 0) {
+    GTEST_SKIP() << "the machine was too busy to write";
+  }
+  const auto report = ReplayFile(file);
+  ExpectExact(report);
+  EXPECT_EQ(report->ticks, 2 * static_cast<std::int64_t>(ran.ticks));
+  EXPECT_FALSE(report->parts.empty());
+}
+
+/** Three runs that follow one another, each from where the parts were then; the first one ends with
+ the peg in the hand, half in its bore. */
+std::int64_t RecordStretches(const std::filesystem::path& file) {
+  const auto model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file);
+  SessionRecorder sink(recorder.get(), *model);
+  std::int64_t ticks = 0;
+  std::vector<simulation::PartState> parts;
+  for (const std::size_t hands : {1, 2, 1}) {
+    haptics::TickOptions options;
+    options.condition = ticks == 0 ? haptics::Condition::kHybrid : haptics::Condition::kConstraint;
+    Stretch stretch(model, hands, &sink, options);
+    if (!parts.empty()) {
+      stretch.simulation->Restore(parts);
+      stretch.run.Resume(1);
+    }
+    sink.Begin(stretch.simulation.get());
+    const auto ran = RunLockstep(stretch.MakeExecution(5));
+    ticks += static_cast<std::int64_t>(ran.ticks * hands);
+    parts = stretch.simulation->parts();
+  }
+  EXPECT_EQ(sink.t_ns(), recorder->Finish().has_value() ? sink.t_ns() : 0);
+  return ticks;
+}
+
+TEST_F(ReplayTest, StretchesOfOneSessionComeOutBitForBit) {
+  const std::int64_t ticks = RecordStretches(file);
+  const auto report = ReplayFile(file);
+  ExpectExact(report);
+  EXPECT_EQ(report->stretches, 3);
+  EXPECT_EQ(report->ticks, ticks);
+  const auto all = record::Reader::Open(file)->ReadTicks({});
+  for (std::size_t i = 1; i < all->size(); ++i) {
+    const std::int64_t step_ns = (*all)[i].t_ns - (*all)[i - 1].t_ns;
+    ASSERT_TRUE(step_ns == 1'000'000 || (step_ns == 0 && (*all)[i].hand == 1))
+        << "session time goes on";
+  }
+}
+
+/** Lets a session go through, but for one tick. */
+class Loser final : public simulation::Sink {
+ public:
+  Loser(SessionRecorder* sink, std::int64_t lost_ns) : sink_(sink), lost_ns_(lost_ns) {}
+
+  void OnTick(std::size_t hand, const device::DeviceState& device,
+              const haptics::TickOutput& out) noexcept override {
+    if (device.t_ns != lost_ns_) {
+      sink_->OnTick(hand, device, out);
+    }
+  }
+
+  void OnEvent(const simulation::SimulationEvent& event) override { sink_->OnEvent(event); }
+
+ private:
+  SessionRecorder* sink_;
+  std::int64_t lost_ns_;
+};
+
+TEST_F(ReplayTest, GoesAsFarAsNoTickIsMissingAndOnWithTheNextStretch) {
+  const auto model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file);
+  SessionRecorder sink(recorder.get(), *model);
+  Loser loser(&sink, 700'000'000);
+  for (int i = 0; i < 2; ++i) {
+    Stretch stretch(model, 1, i == 0 ? static_cast<simulation::Sink*>(&loser) : &sink);
+    sink.Begin(stretch.simulation.get());
+    (void)RunLockstep(stretch.MakeExecution(1));
+  }
+  ASSERT_TRUE(recorder->Finish().has_value());
+  const auto report = ReplayFile(file);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->ticks, 700 + 1000);
+  EXPECT_EQ(report->different_ticks, 0);
+  EXPECT_EQ(report->unreachable_ticks, 299);
+  EXPECT_FALSE(report->is_exact());
+}
+
+TEST_F(ReplayTest, OtherParametersComeOutOtherwise) {  // X14, N4
+  const auto model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file);
+  SessionRecorder sink(recorder.get(), *model);
+  Stretch stretch(model, 1, &sink);
+  sink.Begin(stretch.simulation.get());
+  (void)RunLockstep(stretch.MakeExecution(60));
+  ASSERT_TRUE(recorder->Finish().has_value());
+  ReplayOptions options;
+  options.condition = haptics::Condition::kCollision;
+  const auto alone = ReplayFile(file, options);
+  ASSERT_TRUE(alone.has_value());
+  EXPECT_GT(alone->different_ticks, 0);
+  EXPECT_GT(alone->largest_felt_difference, 0.01);
+  ASSERT_TRUE(alone->first.has_value());
+  EXPECT_FALSE(alone->first->field.empty());
+  EXPECT_TRUE(alone->parts[0].recorded.is_seated);
+  EXPECT_FALSE(alone->parts[0].replayed.is_seated) << "without mates nothing finds its seat";
+  options = {};
+  options.condition = haptics::Condition::kHybrid;  // as it was
+  ExpectExact(ReplayFile(file, options));
+}
+
+TEST_F(ReplayTest, OlderRecordsAreRefusedWithTheirLayout) {
+  for (const char* name : {"session_schema_1.sqlite", "session_schema_2.sqlite"}) {
+    const auto path = std::filesystem::path(HVAS_SOURCE_DIR) / "src/record/test" / name;
+    auto reader = record::Reader::Open(path);
+    ASSERT_TRUE(reader.has_value());
+    Diagnostics diagnostics;
+    const auto model = LoadModel(&*reader, {}, &diagnostics);
+    ASSERT_FALSE(model.has_value());
+    EXPECT_EQ(model.error().code, ErrorCode::kUnsupported);
+    const auto report = Replay(&*reader, PegInBlockModel(), {});
+    ASSERT_FALSE(report.has_value());
+    EXPECT_EQ(report.error().code, ErrorCode::kUnsupported);
+    EXPECT_NE(report.error().message.find(std::to_string(reader->schema())), std::string::npos);
+  }
+}
+
+TEST_F(ReplayTest, MissingCommandIsNamed) {
+  const auto recorder = MakeRecorder(file);
+  const auto model = PegInBlockModel();
+  AttachModel(*model, recorder.get());
+  simulation::Simulation simulation(model, haptics::TickOptions());
+  recorder->AddCommand(
+      {0, 0, kBeginKind, MakeBeginningJson({{simulation.options()}, simulation.parts()})});
+  recorder->AddTick(MakeTickRecord(0, {}, {}, 1));
+  ASSERT_TRUE(recorder->Finish().has_value());
+  const auto report = ReplayFile(file);
+  ASSERT_FALSE(report.has_value());
+  EXPECT_EQ(report.error().code, ErrorCode::kUnreadable);
+  EXPECT_NE(report.error().message.find("command 1"), std::string::npos);
+  EXPECT_EQ(report.error().where, file.string());
+}
+
+}  // namespace
+}  // namespace hvas::session
