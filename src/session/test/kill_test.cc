@@ -36,8 +36,8 @@ TEST_P(KilledSession, LosesAtMostOneSecondAndRunsAgainBitForBitUpToThere) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Times, KilledSession, ::testing::Bool(), [](const auto& info) {
-  return info.param ? "InRealTime" : "InVirtualTime";
+INSTANTIATE_TEST_SUITE_P(Times, KilledSession, ::testing::Bool(), [](const auto& mode) {
+  return mode.param ? "InRealTime" : "InVirtualTime";
 });
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST(RecordedModelTest, IsMadeAgainFromTheFileAlone) {
   EXPECT_EQ(diagnostics.Count(Severity::kWarning), 0);
   // Prepared in another way it is told.
   simulation::CompileOptions finer = simulation::testing::FastOptions();
-  finer.shape.voxel *= 0.5;
+  finer.shape.voxel = 0.7e-3;
   ASSERT_TRUE(LoadModel(&*reader, finer, &diagnostics).has_value());
   ASSERT_EQ(diagnostics.Count(Severity::kWarning), 1);
   EXPECT_EQ(diagnostics.items().back().code, "model-differs");
