@@ -118,6 +118,13 @@ export async function waitForPlacement(page, occurrence, placement, timeout = 30
   throw new Error(`part ${occurrence} is ${found} and not ${placement} after ${timeout} ms`);
 }
 
+/** What axe has against the page as it is; the page has to be opened with `bypassCSP`. */
+export async function findBarriers(page) {
+  await page.addScriptTag({ path: "node_modules/axe-core/axe.min.js" });
+  const found = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "wcag22aa"] }));
+  return found.violations.map((v) => `${v.id}: ${v.nodes[0]?.html}`);
+}
+
 export function stateOf(page) {
   return page.evaluate(() => window.hvas.state());
 }

@@ -59,9 +59,9 @@ async function askForLease(): Promise<void> {
 
 /** To whoever asked for it. */
 function giveLease(): void {
-  const to = store.leaseAskedBy.value;
-  if (to !== null) {
-    void studio.command({ command: "lease", action: "give", to });
+  const asked = store.leaseAsked.value;
+  for (const hand of asked?.hands.filter((each) => store.ownHands.value.includes(each)) ?? []) {
+    void studio.command({ command: "lease", action: "give", to: asked!.by, hand });
   }
 }
 
@@ -210,7 +210,7 @@ const simulateActions: Action[] = [
   action("lease", "action.lease", () => void askForLease(), {
     isEnabled: () => store.link.value === "open" && !store.hasLease.value && store.role.value === "operator",
   }),
-  action("lease-give", "action.leaseGive", giveLease, { isEnabled: () => store.leaseAskedBy.value !== null }),
+  action("lease-give", "action.leaseGive", giveLease, { isEnabled: () => store.leaseAsked.value !== null }),
   action("lease-release", "action.leaseRelease", () => void studio.command({ command: "lease", action: "release" }), {
     isEnabled: () => store.hasLease.value && store.clients.value.length > 1,
   }),

@@ -12,6 +12,8 @@ const kNoticeMs = 5000;
 
 export function Banners() {
   const safety = store.safety.value;
+  const asked = store.leaseAsked.value;
+  const hasTwo = store.hands.value.length > 1;
   return (
     <div class="banners">
       {store.link.value === "lost" ? (
@@ -49,14 +51,18 @@ export function Banners() {
         </div>
       ))}
       <PlayingBanner />
-      {store.leaseAskedBy.value !== null ? (
+      {asked !== null ? (
         <div class="banner is-info" role="alert" data-testid="lease-asked">
           <Icon name="hand" />
-          <span>{t("banner.leaseAsked", { client: store.leaseAskedBy.value })}</span>
+          <span>
+            {hasTwo && asked.hands.length === 1
+              ? t("banner.handAsked", { client: asked.by, n: (asked.hands[0] ?? 0) + 1 })
+              : t("banner.leaseAsked", { client: asked.by })}
+          </span>
           <button type="button" class="banner-button" onClick={() => runAction(findAction("lease-give"))}>
             {t("banner.give")}
           </button>
-          <button type="button" class="banner-button" onClick={() => (store.leaseAskedBy.value = null)}>
+          <button type="button" class="banner-button" onClick={() => (store.leaseAsked.value = null)}>
             {t("banner.keep")}
           </button>
         </div>

@@ -137,4 +137,5 @@ export const enTime = {
   "condition.lost": "lost",
   "condition.stopped": "stopped",
   "condition.fault": "fault",
+  "banner.handAsked": "{client} asks for hand {n}.",
 } as const;

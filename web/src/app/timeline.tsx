@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { liveMarks, type Mark } from "../model/marks";
 import { kSpeeds, type Playback } from "../model/playback";
 import { ActionButton } from "./action_button";
-import { findAction, isEnabled, runAction } from "./actions";
+import { findAction, isEnabled, keyLabel, runAction } from "./actions";
 import { liveTraces, store, studio, ui } from "./app_state";
 import { logText } from "./event_list";
 import { duration, number, t } from "./i18n";
@@ -37,7 +37,7 @@ function RecordButton() {
       class={`rec-button ${isOn ? "is-on" : ""}`}
       aria-pressed={isOn}
       aria-label={found.label()}
-      title={`${found.label()} (K)`}
+      title={`${found.label()} (${keyLabel(found.keys?.[0] ?? "")})`}
       disabled={!isEnabled(found)}
       data-testid="rec"
       onClick={() => runAction(found)}

@@ -118,8 +118,8 @@ export function makeStore() {
     client,
     hasLease,
     clients,
-    /** Who asks this page for control. */
-    leaseAskedBy: signal<string | null>(null),
+    /** Who asks this page for control, and of which hands. */
+    leaseAsked: signal<{ by: string; hands: readonly number[] } | null>(null),
     examples: signal<readonly Example[]>([]),
     live,
     /** The recording that is shown in place of what is live. */

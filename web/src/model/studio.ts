@@ -230,7 +230,7 @@ export class Studio {
         this.noteOwnRole(event.clients);
         break;
       case "lease_asked":
-        store.leaseAskedBy.value = event.by;
+        store.leaseAsked.value = event;
         break;
       case "history":
         store.history.value = { undo: event.undo, redo: event.redo };
@@ -268,9 +268,10 @@ export class Studio {
       this.store.role.value = own.role;
       this.store.hasLease.value = own.has_lease;
     }
-    const isAsked = own?.has_lease === true && clients.some((c) => c.id === this.store.leaseAskedBy.value);
+    const asked = this.store.leaseAsked.value;
+    const isAsked = clients.some((c) => c.id === asked?.by) && own?.hands?.some((hand) => asked?.hands.includes(hand)) === true;
     if (!isAsked) {
-      this.store.leaseAskedBy.value = null;
+      this.store.leaseAsked.value = null;
     }
   }
 

@@ -263,7 +263,7 @@ export type ServerEvent =
   | { event: "safety"; reasons: string[]; gate_actions: number }
   | { event: "forces"; off: boolean; by: string | null }
   | { event: "roles"; clients: Client[] }
-  | { event: "lease_asked"; by: string }
+  | { event: "lease_asked"; by: string; hands: number[] }
   | { event: "history"; undo: string | null; redo: string | null }
   | { event: "demo"; on: boolean }
   | { event: "hands"; hands: HandSetup[] }
