@@ -112,6 +112,7 @@ const viewActions: Action[] = [
   standardView("top", "action.viewTop", "5"),
   standardView("bottom", "action.viewBottom", "6"),
   standardView("iso", "action.viewIso", "7"),
+  action("views", "action.views", () => (ui.overlay.value = { kind: "views" }), { isEnabled: hasScene }),
   toggle("ortho", "action.ortho", view.isOrthographic, { keys: ["p"] }),
   action("hide", "action.hide", () => setHidden(view, chosen(), true), {
     keys: ["h"],

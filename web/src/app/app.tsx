@@ -11,6 +11,7 @@ import { Inspector } from "./inspector";
 import { ModelTree } from "./model_tree";
 import { EmptyState, LoadingDrawer } from "./opening";
 import { Plots } from "./plots";
+import { sizeOf, Splitter } from "./splitter";
 import { StatusBar } from "./status_bar";
 import { Timeline } from "./timeline";
 import { ToolRail } from "./tool_rail";
@@ -89,6 +90,11 @@ export function App() {
   return (
     <div
       ref={root}
+      style={{
+        "--model-width": sizeOf("model"),
+        "--inspector-width": sizeOf("inspector"),
+        "--plots-height": sizeOf("plots"),
+      }}
       class={`app ${shows(model) ? "has-model" : ""} ${shows(inspector) ? "has-inspector" : ""} ${shows(plots) ? "has-plots" : ""}`}
     >
       <Header />
@@ -110,6 +116,9 @@ export function App() {
             {t("drop.here")}
           </div>
           <Notice />
+          {shows(model) ? <Splitter name="model" /> : null}
+          {shows(inspector) ? <Splitter name="inspector" /> : null}
+          {shows(plots) ? <Splitter name="plots" /> : null}
         </div>
         {shows(inspector) ? <Inspector /> : null}
       </main>

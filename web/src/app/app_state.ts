@@ -21,6 +21,7 @@ export type Overlay =
   | { kind: "shortcuts" }
   | { kind: "recordings" }
   | { kind: "devices" }
+  | { kind: "views" }
   | { kind: "menu"; x: number; y: number; occurrence: number | null };
 
 export type BottomTab = "events" | "runs" | "rates" | "compare";

@@ -157,6 +157,8 @@ export function Overlays() {
       return <Shortcuts />;
     case "recordings":
       return <Lazy key="recordings" load={() => import("./recordings_dialog")} />;
+    case "views":
+      return <Lazy key="views" load={() => import("./views_dialog")} />;
     case "devices":
       return <Lazy key="devices" load={() => import("./devices_dialog")} />;
     case "menu":

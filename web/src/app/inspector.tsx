@@ -11,6 +11,8 @@ import { holdingHand, setText, useLive } from "./live";
 import { isInPlace } from "./model_tree";
 import { Procedure } from "./procedure";
 import { RunCard } from "./run_card";
+import { StepsCard } from "./steps_card";
+import { SummaryCard } from "./summary_card";
 
 function massText(kg: number): string {
   return kg >= 1 ? `${number(kg, 2)} kg` : `${number(1e3 * kg, kg >= 0.01 ? 0 : 2)} g`;
@@ -71,6 +73,8 @@ export function Inspector() {
         </section>
       )}
       {part !== null ? <FitCard part={part} key={`fit${part.id}`} /> : null}
+      <StepsCard />
+      <SummaryCard />
       <Procedure />
       <RunCard />
     </aside>

@@ -5,7 +5,6 @@ import { clearPicks, select } from "../model/view_state";
 import { store, ui, view, viewport } from "./app_state";
 
 const kNudgePx = 6;
-const kTurn = (5 * Math.PI) / 180;
 
 const byKey = new Map(actions.flatMap((a) => (a.keys ?? []).map((key) => [key, a] as const)));
 
@@ -24,16 +23,26 @@ function belongsToControl(event: KeyboardEvent): boolean {
   return target.closest(owner) !== null;
 }
 
+/** What an arrow key moves the held part by [m]. */
+export function keyStep(): number {
+  const port = viewport.value;
+  const held = port?.hand.mouse.occurrence ?? null;
+  const at = port === null || held === null ? undefined : port.product.poseOf(held)?.p;
+  if (view.keyMove.value > 0 || port === null) {
+    return view.keyMove.value;
+  }
+  return kNudgePx * (at === undefined ? 1e-3 : port.eye.metresPerPixel(at));
+}
+
 function moveHeld(event: KeyboardEvent): boolean {
   const port = viewport.value;
   const held = port?.hand.mouse.occurrence ?? null;
   if (port === null || held === null) {
     return false;
   }
-  const at = port.product.poseOf(held)?.p;
   const fine = event.altKey ? 0.2 : 1;
-  const step = kNudgePx * fine * (at === undefined ? 1e-3 : port.eye.metresPerPixel(at));
-  const turn = kTurn * fine;
+  const step = keyStep() * fine;
+  const turn = view.keyTurn.value * fine;
   const { mouse } = port.hand;
   switch (event.key.toLowerCase()) {
     case "arrowleft":

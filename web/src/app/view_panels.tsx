@@ -8,6 +8,7 @@ import { canSteer, store, studio, view, viewport } from "./app_state";
 import { number, t } from "./i18n";
 import { Icon } from "./icons";
 import { useLive } from "./live";
+import { QuantityEntry } from "./quantity_entry";
 import { ApartPanel } from "./apart_panel";
 import { PathPanel } from "./path_panel";
 import { WorkshopPanel } from "./workshop_panel";
@@ -43,6 +44,14 @@ function SectionPanel() {
         aria-label={t("section.offset")}
         data-testid="section-offset"
         onInput={(event) => set({ offset: Number(event.currentTarget.value) })}
+      />
+      <QuantityEntry
+        kind="length"
+        label={t("section.offset")}
+        value={section.offset * (store.scene.value?.radius_m ?? 0)}
+        digits={1}
+        testId="section-mm"
+        onChange={(metres) => set({ offset: Math.min(1, Math.max(-1, metres / (store.scene.value?.radius_m ?? 1))) })}
       />
       <button type="button" class="icon-button" aria-label={t("section.flip")} title={t("section.flip")} onClick={() => set({ isFlipped: !section.isFlipped })}>
         <Icon name="flip" />

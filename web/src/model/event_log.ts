@@ -57,10 +57,10 @@ export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): 
 }
 
 /** What a hold of a part came to; null for other events. */
-export function runOf(event: WorkEvent, nameOf: (occurrence: number) => string): Run | null {
+export function runOf(event: WorkEvent, nameOf: (occurrence: number) => string, collisions = 0): Run | null {
   if (event.event !== "dropped" || event.occurrence === undefined || event.metrics === undefined) {
     return null;
   }
   const { occurrence, metrics } = event;
-  return { occurrence, name: nameOf(occurrence), wasSeated: event.was_seated === true, metrics };
+  return { occurrence, name: nameOf(occurrence), wasSeated: event.was_seated === true, metrics, collisions };
 }

@@ -30,6 +30,8 @@ export interface Run {
   name: string;
   wasSeated: boolean;
   metrics: RunMetrics;
+  /** As far as the frames show them. */
+  collisions: number;
 }
 
 export type LogKind =

@@ -5,6 +5,7 @@ import { CommandError, Connection } from "../protocol/connection";
 import type { LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
 import type { Client, Command, CommandResults, Scene, ServerError, ServerEvent } from "../protocol/messages";
+import { CollisionCounter } from "./collisions";
 import { isAlarm, kAlarms, kLogLength, kRunsLength, runOf, tell, type Told } from "./event_log";
 import { withTrouble } from "./hands";
 import { isSameHeld, summarize } from "./held";
@@ -19,6 +20,7 @@ export class Studio {
   readonly store = makeStore();
   readonly recordings = new Recordings(this.store, this);
   private connection: Connection | null = null;
+  private readonly collisions = new CollisionCounter();
   private noticeId = 0;
   private alarmedAt = 0;
   private uploading: AbortController | null = null;
@@ -118,6 +120,7 @@ export class Studio {
     if (this.store.safety.value !== null && !isAlarmed && performance.now() - this.alarmedAt > kAlarmShownMs) {
       this.store.safety.value = null;
     }
+    this.collisions.note(live.hands);
     const next = summarize(live.hands);
     if (!isSameHeld(next, this.store.live.held.value)) {
       this.store.live.held.value = next;
@@ -286,7 +289,7 @@ export class Studio {
         safety.value = null;
         break;
       case "dropped": {
-        const run = runOf(event, this.nameOf);
+        const run = runOf(event, this.nameOf, this.collisions.take(event.hand));
         live.runs.value = run === null ? live.runs.value : [run, ...live.runs.value].slice(0, kRunsLength);
         break;
       }

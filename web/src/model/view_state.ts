@@ -53,6 +53,10 @@ export function makeViewState() {
     isSeated: signal(false),
     /** No motion that is not needed. */
     isCalm: signal(false),
+    /** What an arrow key moves the held part by [m]; 0: some pixels of the picture. */
+    keyMove: signal(0),
+    /** What Q and E turn it by [rad]. */
+    keyTurn: signal((5 * Math.PI) / 180),
     isMuted: signal(false),
     theme: signal<ThemeChoice>("system"),
     /** As it is drawn now. */
