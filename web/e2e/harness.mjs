@@ -118,6 +118,20 @@ export async function waitForPlacement(page, occurrence, placement, timeout = 30
   throw new Error(`part ${occurrence} is ${found} and not ${placement} after ${timeout} ms`);
 }
 
+/** A file is dragged onto the page and let go there. */
+export function dropFile(page, name, text) {
+  return page.evaluate(
+    ([fileName, content]) => {
+      const data = new DataTransfer();
+      data.items.add(new File([content], fileName));
+      for (const kind of ["dragenter", "dragover", "drop"]) {
+        document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: data, bubbles: true, cancelable: true }));
+      }
+    },
+    [name, text],
+  );
+}
+
 /** What axe has against the page as it is; the page has to be opened with `bypassCSP`. */
 export async function findBarriers(page) {
   await page.addScriptTag({ path: "node_modules/axe-core/axe.min.js" });

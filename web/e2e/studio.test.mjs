@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { readFileSync } from "node:fs";
 import {
+  dropFile,
   fetchScene,
   findBarriers,
   insertByMouse,
@@ -58,22 +59,10 @@ describe("the page", () => {
   it("opens a file that is dropped on it, and says what is wrong with one that is none", withStudio([], async (studio) => {
     const { page } = await openPage(browser, studio.operator);
     await page.getByTestId("drop-zone").waitFor();
-    const drop = async (name, text) => {
-      await page.evaluate(
-        ([fileName, content]) => {
-          const data = new DataTransfer();
-          data.items.add(new File([content], fileName));
-          for (const kind of ["dragenter", "dragover", "drop"]) {
-            document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: data, bubbles: true, cancelable: true }));
-          }
-        },
-        [name, text],
-      );
-    };
-    await drop("broken.step", "this is no STEP file");
+    await dropFile(page, "broken.step", "this is no STEP file");
     await page.getByText(/broken\.step/).first().waitFor({ timeout: 20_000 });
     await takePicture(page, "broken_file");
-    await drop("bushing.step", readFileSync(kBushing, "utf8"));
+    await dropFile(page, "bushing.step", readFileSync(kBushing, "utf8"));
     await waitForPicture(page);
     assert.equal((await fetchScene(page)).name.length > 0, true);
     await page.context().close();

@@ -1,6 +1,6 @@
 /** The one studio of this page, and what its parts share. */
 
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { PartPaths } from "../model/part_path";
 import { Studio } from "../model/studio";
 import { kDefaultWindowS, type Span } from "../model/plot_range";
@@ -57,6 +57,7 @@ export const ui = {
 const kFollowMs = 500;
 
 export function followTraces(): void {
+  effect(() => void (ui.plotHand.value = view.hand.value));
   setInterval(() => {
     if (studio.liveFrames !== null) {
       liveTraces.follow(studio.liveFrames);

@@ -114,7 +114,7 @@ export const deTime: Record<keyof typeof enTime, string> = {
   "devices.scaleAuto": "von selbst",
   "devices.scaleHelp": "Meter in der Szene je Meter der Hand, über 0 und höchstens 100; leer: von selbst",
   "devices.force": "Kraft jetzt und ihre Grenze",
-  "devices.energy": "Abgegebene Energie",
+  "devices.energy": "Von der Hand aufgenommen",
   "devices.toMouse": "Zurück zur Maus",
   "devices.ledByNone": "Niemand führt sie.",
   "devices.ledByYou": "Sie führen sie.",

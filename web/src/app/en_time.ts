@@ -112,7 +112,7 @@ export const enTime = {
   "devices.scaleAuto": "by itself",
   "devices.scaleHelp": "Metres in the scene for each metre of the hand, above 0 and at most 100; empty: by itself",
   "devices.force": "Force now, and its limit",
-  "devices.energy": "Energy given out",
+  "devices.energy": "Energy taken from the hand",
   "devices.toMouse": "Back to the mouse",
   "devices.ledByNone": "Nobody leads it.",
   "devices.ledByYou": "You lead it.",
