@@ -1,6 +1,7 @@
 /** The steps of the assembly: done, at hand, to come. */
 
 import { useEffect, useRef } from "preact/hooks";
+import { takingApart } from "../model/apart";
 import { select } from "../model/view_state";
 import type { Step } from "../protocol/messages";
 import { store, view } from "./app_state";
@@ -8,8 +9,12 @@ import { t } from "./i18n";
 import { Icon } from "./icons";
 import { isInPlace } from "./model_tree";
 
+function nameOf(step: Step): string {
+  return store.occurrences.value.get(step.occurrence)?.name ?? "";
+}
+
 function stepText(step: Step): string {
-  const name = store.occurrences.value.get(step.occurrence)?.name ?? "";
+  const name = nameOf(step);
   const more = step.members.filter((id) => id !== step.occurrence).length;
   if (step.kind === "insert") {
     return more > 0 ? t("steps.insertMany", { name, n: more }) : t("steps.insert", { name });
@@ -25,9 +30,17 @@ export function stepTitle(): string {
   return step === undefined ? t("steps.doneAll") : `${at + 1}/${total} · ${stepText(step)}`;
 }
 
-export function Procedure() {
+/** Backwards while the product is taken apart. */
+function shownSteps(): { steps: readonly Step[]; at: number | null; isApart: boolean } {
   const steps = store.scene.value?.steps ?? [];
-  const at = store.step.value?.index ?? null;
+  const apart = view.apart.value;
+  return apart === null
+    ? { steps, at: store.step.value?.index ?? null, isApart: false }
+    : { steps: takingApart(steps), at: apart, isApart: true };
+}
+
+export function Procedure() {
+  const { steps, at, isApart } = shownSteps();
   const list = useRef<HTMLOListElement>(null);
   useEffect(() => {
     const now = list.current?.querySelector<HTMLElement>("[aria-current]");
@@ -39,7 +52,8 @@ export function Procedure() {
   if (steps.length === 0) {
     return null;
   }
-  const isDone = (step: Step, k: number) => (at !== null && k < at) || (step.kind === "insert" && isInPlace(step.occurrence));
+  const isDone = (step: Step, k: number) =>
+    (at !== null && k < at) || (!isApart && step.kind === "insert" && isInPlace(step.occurrence));
   const title = at !== null && at < steps.length ? t("steps.titleAt", { n: at + 1, total: steps.length }) : t("steps.title");
   return (
     <section class="card-group" aria-labelledby="steps-title">
@@ -56,14 +70,14 @@ export function Procedure() {
                 onClick={() => select(view, [step.occurrence, ...step.members], false)}
               >
                 <Icon name={isNow ? "play" : done ? "check" : "dot"} size={14} />
-                <span>{stepText(step)}</span>
+                <span>{isApart ? t("apart.next", { name: nameOf(step) }) : stepText(step)}</span>
                 <span class="sr-only">{isNow ? t("steps.isNow") : done ? t("steps.isDone") : ""}</span>
               </button>
             </li>
           );
         })}
       </ol>
-      {at !== null && at >= steps.length ? <p class="quiet">{t("steps.doneAll")}</p> : null}
+      {at !== null && at >= steps.length ? <p class="quiet">{t(isApart ? "apart.done" : "steps.doneAll")}</p> : null}
     </section>
   );
 }
