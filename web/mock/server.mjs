@@ -105,6 +105,18 @@ function sendFile(response, pathname) {
 const lease = () => clients.keys().next().value;
 const roles = () => [...clients.keys()].map((id) => ({ id, role: "operator", has_lease: id === lease(), hands: id === lease() ? [0, 1] : [] }));
 
+/** From where it lies, up, across and down into its place. */
+function makePath({ start, goal }) {
+  const high = Math.max(start.p[2], goal.p[2]) + 0.08;
+  const corners = [start.p, [start.p[0], start.p[1], high], [goal.p[0], goal.p[1], high], goal.p];
+  const points_m = Array.from({ length: 61 }, (_, k) => {
+    const [from, to] = [corners[Math.min(2, Math.floor(k / 20))], corners[Math.min(3, Math.floor(k / 20) + 1)]];
+    const share = k === 60 ? 1 : (k % 20) / 20;
+    return from.map((v, axis) => v + share * (to[axis] - v));
+  });
+  return { points_m, poses: points_m.map((p, k) => ({ p, q: k < 20 ? start.q : goal.q })) };
+}
+
 const commands = {
   async open({ example }) {
     const file = example ? options.example.replace("gear_pump", example) : options.example;
@@ -131,6 +143,10 @@ const commands = {
     recorder.done.delete(id);
     broadcast({ event: "recordings" });
   },
+  path: ({ occurrence, as }) =>
+    as === "swept"
+      ? { glb: world.scene.glb, volume_mm3: 51_200, error_mm: 0.2 }
+      : makePath(world.scene.occurrences[occurrence]),
   measure: ({ a, b }) => ({
     kind: b ? "distance" : "face",
     distance_mm: b ? 42.125 : null,
