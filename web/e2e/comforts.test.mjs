@@ -20,7 +20,7 @@ const kStates = {
   apart: (page) => page.keyboard.press("j"),
   measure: (page) => page.keyboard.press("m"),
   mate: (page) => page.keyboard.press("c"),
-  workshop: (page) => page.keyboard.press("k"),
+  workshop: (page) => page.keyboard.press("u"),
   selected: (page) => page.getByTestId("part-2").click(),
   menu: (page) => page.getByTestId("menu.view").click(),
   palette: (page) => page.keyboard.press("Control+k"),
@@ -93,7 +93,7 @@ describe("what one sets up", () => {
     await page.getByTestId("view-keep").click();
     await page.getByRole("button", { name: "Close" }).last().click();
     await page.keyboard.press("x");
-    await page.keyboard.press("k");
+    await page.keyboard.press("u");
     await page.getByTestId("bench-hammer").click();
     assert.equal(await page.getByTestId("bench-hammer").getAttribute("aria-pressed"), "false");
     await takePicture(page, "workshop");

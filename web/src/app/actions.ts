@@ -144,7 +144,7 @@ const viewActions: Action[] = [
   action("apart", "action.apart", toggleApart, { keys: ["j"], isEnabled: hasScene, isOn: () => view.apart.value !== null }),
   toggle("edges", "action.edges", view.showsEdges, { startsGroup: true }),
   toggle("grid", "action.grid", view.showsGrid),
-  action("workshop", "action.workshop", toggleWorkshop, { keys: ["k"], isOn: () => view.showsWorkshop.value }),
+  action("workshop", "action.workshop", toggleWorkshop, { keys: ["u"], isOn: () => view.showsWorkshop.value }),
   toggle("forces-shown", "action.forcesShown", view.showsForces),
   toggle("force-scale", "action.forceScale", view.locksForceScale),
   action("quality", "action.quality", toggleQuality, { isOn: () => view.isFine.value, startsGroup: true }),
