@@ -4,27 +4,8 @@ import { Studio } from "../src/model/studio";
 import { buildTree, filterTree, groupAround } from "../src/model/tree";
 import { decodeView, encodeView, type SharedView } from "../src/model/view_link";
 import { isolate, makeViewState, select, setHidden } from "../src/model/view_state";
-import type { Occurrence, Scene } from "../src/protocol/messages";
-
-function part(id: number, name: string, ofPart: number, more: Partial<Occurrence> = {}): Occurrence {
-  const pose = { p: [0, 0, 0], q: [1, 0, 0, 0] } as const;
-  return {
-    id,
-    name,
-    path: name,
-    parent: 0,
-    part: ofPart,
-    color: "#808080",
-    placement: "loose",
-    start: pose,
-    goal: pose,
-    mass_kg: 1,
-    material: "Steel",
-    p_BoBcm_m: [0, 0, 0],
-    is_base: false,
-    ...more,
-  };
-}
+import type { Scene } from "../src/protocol/messages";
+import { makePart } from "./toy_part";
 
 const scene: Scene = {
   epoch: 1,
@@ -42,11 +23,11 @@ const scene: Scene = {
     { id: 1, parent: 0, name: "fasteners", subassemblies: [], occurrences: [2, 3, 4] },
   ],
   occurrences: [
-    part(0, "housing", 0, { is_base: true, placement: "placed" }),
-    part(1, "shaft", 1),
-    part(2, "bolt 1", 2, { parent: 1 }),
-    part(3, "bolt 2", 2, { parent: 1 }),
-    part(4, "bolt 3", 2, { parent: 1 }),
+    makePart(0, "housing", 0, { is_base: true, placement: "placed" }),
+    makePart(1, "shaft", 1),
+    makePart(2, "bolt 1", 2, { parent: 1 }),
+    makePart(3, "bolt 2", 2, { parent: 1 }),
+    makePart(4, "bolt 3", 2, { parent: 1 }),
   ],
   mates: [],
   steps: [
@@ -193,6 +174,20 @@ describe("the session", () => {
     expect(store.hasLease.value).toBe(false);
     FakeWorker.last.say({ event: "forces", off: true, by: "c2" });
     expect(store.forcesOff.value).toBe(true);
+  });
+
+  it("knows its hands, the trouble with their devices, and that it is recorded", async () => {
+    const { store } = await start();
+    expect(store.ownHands.value).toEqual([0]);
+    FakeWorker.last.say({ event: "roles", clients: [{ id: "c5", role: "operator", has_lease: false, hands: [1] }] });
+    expect(store.ownHands.value).toEqual([1]);
+    FakeWorker.last.say({ event: "device", hand: 1, condition: "lost", text: "is lost; plug it in again" });
+    expect(store.deviceTroubles.value.get(1)).toMatch(/plug it in/);
+    FakeWorker.last.say({ event: "device", hand: 1, condition: "ready", text: "is ready" });
+    expect(store.deviceTroubles.value.size).toBe(0);
+    FakeWorker.last.say({ event: "recording", on: true, id: "r1", name: "First", t_s: 0 });
+    expect(store.recording.value?.name).toBe("First");
+    expect(store.log.value[0]).toMatchObject({ kind: "recording", params: { on: 1, name: "First" } });
   });
 
   it("raises an alarm for what cuts the force, not for what limits it", async () => {

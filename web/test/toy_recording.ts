@@ -12,8 +12,9 @@ import {
   writeHandState,
   type HandState,
 } from "../src/protocol/frames";
-import { makeFrame } from "../src/protocol/decoder";
-import type { Occurrence, Scene } from "../src/protocol/messages";
+import { joinBytes, makeFrame } from "../src/protocol/decoder";
+import type { Scene } from "../src/protocol/messages";
+import { makePart } from "./toy_part";
 import type { RecordedEvent, RecordingDetail } from "../src/protocol/recording_messages";
 
 export const kPeriodNs = 16_666_667;
@@ -84,13 +85,7 @@ export function toyFrames(moments: number, more: (moment: number) => Partial<Han
       pieces.push(pack(FrameKind.Contacts, t_ns, [contact], ContactPointSize, writeContactPoint));
     }
   }
-  const all = new Uint8Array(pieces.reduce((size, piece) => size + piece.byteLength, 0));
-  let at = 0;
-  for (const piece of pieces) {
-    all.set(piece, at);
-    at += piece.byteLength;
-  }
-  return all.buffer;
+  return joinBytes(pieces);
 }
 
 export function toyDetail(events: RecordedEvent[], durationS: number): RecordingDetail {
@@ -107,25 +102,6 @@ export function toyDetail(events: RecordedEvent[], durationS: number): Recording
   };
 }
 
-function toyPart(id: number): Occurrence {
-  const pose = { p: [id, 0, 0], q: [1, 0, 0, 0] } as const;
-  return {
-    id,
-    name: `part ${id}`,
-    path: `toy/part ${id}`,
-    parent: 0,
-    part: id,
-    color: "#808080",
-    placement: id === 0 ? "placed" : "loose",
-    start: pose,
-    goal: pose,
-    mass_kg: 1,
-    material: "Steel",
-    p_BoBcm_m: [0, 0, 0],
-    is_base: id === 0,
-  };
-}
-
 export const toyScene: Scene = {
   epoch: 3,
   name: "toy",
@@ -138,7 +114,13 @@ export const toyScene: Scene = {
   seed: "1",
   next_step: 1,
   subassemblies: [{ id: 0, parent: null, name: "toy", subassemblies: [], occurrences: [0, 1, 2] }],
-  occurrences: [0, 1, 2].map(toyPart),
+  occurrences: [0, 1, 2].map((id) =>
+    makePart(id, `part ${id}`, id, {
+      start: { p: [id, 0, 0], q: [1, 0, 0, 0] },
+      placement: id === 0 ? "placed" : "loose",
+      is_base: id === 0,
+    }),
+  ),
   mates: [],
   steps: [0, 1, 2].map((occurrence) => ({
     kind: occurrence === 0 ? "base" : "insert",

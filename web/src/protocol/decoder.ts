@@ -67,3 +67,14 @@ export function makeCreditFrame(epoch: number, seq: number): ArrayBuffer {
   writeAcknowledgement(view, HeaderSize, { seq });
   return view.buffer as ArrayBuffer;
 }
+
+/** Pieces of a message, one after the other. */
+export function joinBytes(pieces: readonly Uint8Array[]): ArrayBuffer {
+  const all = new Uint8Array(pieces.reduce((size, piece) => size + piece.byteLength, 0));
+  let at = 0;
+  for (const piece of pieces) {
+    all.set(piece, at);
+    at += piece.byteLength;
+  }
+  return all.buffer;
+}

@@ -6,7 +6,7 @@
  * key before it and the few messages from there, through the same store as what comes from the server.
  */
 
-import { itemCount, makeFrame, walkFrames } from "./decoder";
+import { itemCount, joinBytes, makeFrame, walkFrames } from "./decoder";
 import { FrameStore, nowMs } from "./frame_store";
 import { BodyPoseSize, FrameKind, HandStateSize, HeaderSize, readHandState, type HandState } from "./frames";
 
@@ -41,14 +41,7 @@ class Known {
     const poses = makeFrame(FrameKind.Poses, epoch, this.poses.size, BodyPoseSize, t_ns);
     const body = new Uint8Array(poses.buffer);
     [...this.poses.values()].forEach((pose, k) => body.set(pose, HeaderSize + k * BodyPoseSize));
-    const pieces = [body, this.hands, this.contacts].filter((piece) => piece !== null);
-    const key = new Uint8Array(pieces.reduce((size, piece) => size + piece.byteLength, 0));
-    let at = 0;
-    for (const piece of pieces) {
-      key.set(piece, at);
-      at += piece.byteLength;
-    }
-    return key.buffer;
+    return joinBytes([body, this.hands, this.contacts].filter((piece) => piece !== null));
   }
 }
 
