@@ -44,7 +44,7 @@ export function encodeView(view: SharedView): string {
     fields.set("explode", view.explode.toFixed(2));
   }
   if (view.section !== null) {
-    fields.set("cut", short([view.section.axis, view.section.offset, view.section.isFlipped ? 1 : 0], 3));
+    fields.set("cut", short([view.section.axis, view.section.offset, view.section.isFlipped ? 1 : 0], 5));
   }
   return `view&${fields.toString().replaceAll("%2C", ",")}`;
 }
