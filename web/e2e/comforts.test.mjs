@@ -13,27 +13,31 @@ before(async () => {
 });
 after(() => browser.close());
 
-/** Each begins where nothing else is open, and says how to get there. */
+/** A key that opens something and closes it again. */
+const toggle = (key) => ({ open: (page) => page.keyboard.press(key), close: (page) => page.keyboard.press(key) });
+/** What Escape closes. */
+const dialog = (open) => ({ open, close: (page) => page.keyboard.press("Escape") });
+
 const kStates = {
-  section: (page) => page.keyboard.press("x"),
-  explode: (page) => page.keyboard.press("b"),
-  apart: (page) => page.keyboard.press("j"),
-  measure: (page) => page.keyboard.press("m"),
-  mate: (page) => page.keyboard.press("c"),
-  workshop: (page) => page.keyboard.press("u"),
-  selected: (page) => page.getByTestId("part-2").click(),
-  menu: (page) => page.getByTestId("menu.view").click(),
-  palette: (page) => page.keyboard.press("Control+k"),
-  shortcuts: (page) => page.keyboard.press("?"),
-  views: async (page) => {
+  section: toggle("x"),
+  explode: toggle("b"),
+  apart: toggle("j"),
+  measure: toggle("m"),
+  mate: toggle("c"),
+  workshop: toggle("u"),
+  menu: dialog((page) => page.getByTestId("menu.view").click()),
+  palette: dialog((page) => page.keyboard.press("Control+k")),
+  shortcuts: dialog((page) => page.keyboard.press("?")),
+  views: dialog(async (page) => {
     await page.getByTestId("menu.view").click();
     await page.getByTestId("menu-views").click();
     await page.getByTestId("view-name").waitFor();
-  },
-  context: async (page) => {
+  }),
+  context: dialog(async (page) => {
     await page.getByTestId("part-1").click({ button: "right" });
     await page.getByTestId("context-menu").waitFor();
-  },
+  }),
+  selected: { open: (page) => page.getByTestId("part-2").click(), close: () => {} },
 };
 
 async function findFaults(page) {
@@ -48,15 +52,12 @@ describe("every state of the page", () => {
       const { page, complaints } = await openPage(browser, studio.operator, { colorScheme, viewport, bypassCSP: true });
       await waitForPicture(page);
       await page.addScriptTag({ path: "node_modules/axe-core/axe.min.js" });
-      for (const [name, go] of Object.entries(kStates)) {
-        await go(page);
+      for (const [name, { open, close }] of Object.entries(kStates)) {
+        await open(page);
         await page.waitForTimeout(250);
         assert.deepEqual(await findFaults(page), [], name);
         await takePicture(page, `state_${name}_${colorScheme}`);
-        await page.keyboard.press("Escape");
-        await page.reload();
-        await waitForPicture(page);
-        await page.addScriptTag({ path: "node_modules/axe-core/axe.min.js" });
+        await close(page);
       }
       const wide = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
       assert.equal(wide, false, "nothing sticks out at the side");
