@@ -35,7 +35,7 @@ const kStates = {
   }),
   context: dialog(async (page) => {
     await page.getByTestId("part-1").click({ button: "right" });
-    await page.getByTestId("context-menu").waitFor();
+    await page.getByTestId("menu-path-points").waitFor();
   }),
   selected: { open: (page) => page.getByTestId("part-2").click(), close: () => {} },
 };

@@ -38,7 +38,7 @@ export function firstItems({ x, y }: BenchSize): BenchItem[] {
     at("hammer", side, 0.05, 1.3),
     at("screwdriver", side, -0.18, 1.7),
     at("spanner", -side, -0.02, 1.45),
-    at("caliper", -side, -0.22, 1.6),
+    at("caliper", -side + 0.09, -0.16, 1.6),
     at("tray", 0.2, back),
     at("vblock", -0.18, back),
   ];
