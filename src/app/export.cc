@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/export_record.h"
 #include "app/load_product.h"
 #include "app/poses.h"
 #include "app/product_json.h"
@@ -34,6 +35,7 @@ struct ExportOptions {
   bool is_fine{false};
   bool has_meshes{false};
   bool is_forced{false};
+  RecordSelection record;
 };
 
 /** In small letters, with the dot. */
@@ -48,7 +50,13 @@ std::string FormatOf(const std::filesystem::path& file) {
 /** What can be known to fail before the work. */
 Result<void> Check(const ExportOptions& options, const std::string& format) {
   const std::string name = options.output.string();
-  if (format != ".glb" && format != ".json" && format != ".step" && format != ".stp") {
+  if (IsRecord(options.load.file)) {
+    if (!IsRecordFormat(format)) {
+      return Fail(ErrorCode::kInvalid,
+                  "the name has no ending of a format that a record can be written as", name,
+                  std::string("end it with ") + kRecordFormats);
+    }
+  } else if (format != ".glb" && format != ".json" && format != ".step" && format != ".stp") {
     return Fail(ErrorCode::kInvalid, "the name has no ending of a format that can be written", name,
                 "end it with .glb, .json or .step");
   }
@@ -108,6 +116,9 @@ Result<void> Export(const ExportOptions& options) {
   if (const auto checked = Check(options, format); !checked) {
     return checked;
   }
+  if (IsRecord(options.load.file)) {
+    return ExportRecord(options.load.file, options.output, format, options.record);
+  }
   Diagnostics diagnostics;
   Result<Product> product = LoadProduct(options.load, &diagnostics);
   if (!product) {
@@ -133,21 +144,27 @@ Result<void> Export(const ExportOptions& options) {
 
 void AddExport(CLI::App* app, int* status) {
   CLI::App* command =
-      app->add_subcommand("export", "Write a CAD file as .glb, .json or .step, by the ending of X");
+      app->add_subcommand("export", "Write a CAD file as .glb, .json or .step, or a record as .csv, .json, "
+                                    ".h5, .mcap or .glb, by the ending of X");
   const auto options = std::make_shared<ExportOptions>();
-  command->add_option("file", options->load.file, "CAD file")->required();
+  command->add_option("file", options->load.file, "CAD file, or a record")->required();
   command->add_option("-o,--output", options->output, "File to write")->required();
   command->add_option("--poses", options->poses,
                       "Poses in place of those drawn: a pose file or a record of hvas assemble");
   command->add_flag("--fine", options->is_fine, "The meshes for contact, not those for the eye");
   command->add_flag("--meshes", options->has_meshes, "Meshes in the .json, too");
   command->add_flag("--force", options->is_forced, "Replace a file that is there");
+  AddRecordSelection(command, &options->record);
   AddLoadOptions(command, &options->load);
   command->footer(
       "  .glb   glTF 2.0 in metres, Y up: the tree as nodes, a mesh for each part, colours of\n"
       "         faces, and with each vertex the index of its face (_FACE_ID)\n"
       "  .json  what hvas inspect --json prints\n"
       "  .step  AP214: structure, poses, names and colours, all in one file\n"
+      "Of a record of hvas assemble or the studio (docs/record.md), every number with its unit:\n"
+      "  .csv   a row for each tick          .json  the same, with the events and what it is of\n"
+      "  .h5    HDF5: a column for each number, compressed, with units and events\n"
+      "  .mcap  for Foxglove and Rerun       .glb   the ways of the parts as lines\n"
       "A pose file is {\"format\": \"hvas-poses-1\", \"poses\": [{\"occurrence\": \"pump/shaft\",\n"
       "\"position_mm\": [0, 0, 50], \"rotation_wxyz\": [1, 0, 0, 0]}]}; of a record, each part is\n"
       "where it was let go last. What is not spoken of stays as drawn.\n"
@@ -157,7 +174,9 @@ void AddExport(CLI::App* app, int* status) {
       "  hvas export pump.stp -o whole.step --force\n"
       "  hvas export pump.step -o exploded.step --poses exploded.json\n"
       "  hvas assemble pump.step --record run.hvasrec && "
-      "hvas export pump.step -o run.glb --poses run.hvasrec");
+      "hvas export pump.step -o run.glb --poses run.hvasrec\n"
+      "  hvas export run.hvasrec -o run.csv --every 10 --from 20 --to 30\n"
+      "  hvas export run.hvasrec -o run.mcap --every 20");
   command->callback([options, status] {
     const Result<void> done = Export(*options);
     *status = done ? 0 : ReportFailure(done.error());

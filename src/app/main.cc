@@ -12,6 +12,7 @@
 #include "app/inspect.h"
 #include "app/mate.h"
 #include "app/replay.h"
+#include "app/report.h"
 #include "app/studio.h"
 
 namespace {
@@ -28,6 +29,7 @@ int Run(int argc, char** argv) {
   hvas::app::AddDevices(&app, &status);
   hvas::app::AddDoctor(&app, &status);
   hvas::app::AddReplay(&app, &status);
+  hvas::app::AddReport(&app, &status);
   hvas::app::AddStudio(&app, &status);
   try {
     app.parse(argc, argv);

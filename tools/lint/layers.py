@@ -24,6 +24,7 @@ OUTSIDE = {
     "Bullet": (r"bt[A-Z]|LinearMath/|BulletDynamics/|BulletCollision/", r"hvas_bullet|\$\{HVAS_BULLET"),
     "sqlite3": (r"sqlite3\.h", r"SQLite::"),
     "zstd": (r"zstd\.h", r"\$\{HVAS_ZSTD"),
+    "HDF5": (r"hdf5\.h", r"\$\{HVAS_HDF5"),
     "CLI": (r"CLI/", r"CLI11::"),
     "Boost": (r"boost/", r"Boost::"),
     "OpenSSL": (r"openssl/", r"OpenSSL::"),

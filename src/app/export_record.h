@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "base/result.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hvas::app {
+
+/** What of a record is written. */
+struct RecordSelection {
+  double from_s{-1e9};
+  double to_s{1e9};
+  std::int64_t every{1};
+};
+
+/** Adds --from, --to and --every to a command. */
+void AddRecordSelection(CLI::App* command, RecordSelection* selection);
+
+/** Whether a file is a database as records are, by its first bytes. */
+[[nodiscard]] bool IsRecord(const std::filesystem::path& file);
+
+/** The endings that ExportRecord() knows, for people. */
+inline constexpr const char* kRecordFormats = ".csv, .json, .h5, .mcap or .glb";
+
+[[nodiscard]] bool IsRecordFormat(const std::string& ending);
+
+/** Writes a record by the ending of the output, one of the above. Errors: the reader's and the
+ writer's. */
+[[nodiscard]] Result<void> ExportRecord(const std::filesystem::path& file,
+                                        const std::filesystem::path& output,
+                                        const std::string& ending,
+                                        const RecordSelection& selection);
+
+}  // namespace hvas::app

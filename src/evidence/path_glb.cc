@@ -1,0 +1,141 @@
+// The ways of parts as glTF 2.0 (the specification's names and numbers).
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/bytes.h"
+#include "evidence/holds.h"
+#include "evidence/output_file.h"
+#include "evidence/tables.h"
+
+namespace hvas::evidence {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
+constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN\0"
+constexpr int kFloat = 5126;
+constexpr int kArrayBuffer = 34962;
+constexpr int kLineStrip = 3;
+
+std::string_view TextOf(ByteWriter& writer) {
+  return {reinterpret_cast<const char*>(writer.bytes().data()), writer.bytes().size()};
+}
+
+class PathGlb {
+ public:
+  PathGlb() {
+    json_["asset"] = {{"version", "2.0"}, {"generator", "HVAS"}};
+    json_["scene"] = 0;
+    // A root turns z up into y up.
+    const double half = std::sqrt(0.5);
+    json_["nodes"] = {{{"name", "paths"}, {"rotation", {-half, 0, 0, half}}}};
+    json_["scenes"] = {{{"nodes", {0}}}};
+    json_["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {0.04, 0.13, 0.55, 1}}}},
+                           {"extensions", {{"KHR_materials_unlit", Json::object()}}}}};
+    json_["extensionsUsed"] = {"KHR_materials_unlit"};
+  }
+
+  void Add(const Hold& hold, const std::string& name) {
+    if (hold.points.size() < 2) {
+      return;
+    }
+    std::array<float, 3> low{INFINITY, INFINITY, INFINITY};
+    std::array<float, 3> high{-INFINITY, -INFINITY, -INFINITY};
+    for (const Vec3& p : hold.points) {
+      std::array<float, 3> xyz{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        xyz[k] = static_cast<float>(p[static_cast<Eigen::Index>(k)]);
+        low[k] = std::min(low[k], xyz[k]);
+        high[k] = std::max(high[k], xyz[k]);
+      }
+      positions_.Plain(xyz.data(), xyz.size());
+    }
+    const std::size_t index = json_["accessors"].size();
+    json_["accessors"].push_back({{"bufferView", 0},
+                                  {"byteOffset", sizeof(float) * 3 * points_},
+                                  {"componentType", kFloat},
+                                  {"count", hold.points.size()},
+                                  {"type", "VEC3"},
+                                  {"min", low},
+                                  {"max", high}});
+    points_ += hold.points.size();
+    json_["meshes"].push_back({{"primitives",
+                                {{{"attributes", {{"POSITION", index}}},
+                                  {"material", 0},
+                                  {"mode", kLineStrip}}}}});
+    json_["nodes"].push_back(
+        {{"name", name},
+         {"mesh", index},
+         {"extras",
+          {{"occurrence", hold.occurrence},
+           {"hand", hold.hand},
+           {"start_s", 1e-9 * static_cast<double>(hold.start_ns)},
+           {"end_s", 1e-9 * static_cast<double>(hold.end_ns)},
+           {"path_m", hold.path},
+           {"seated", hold.is_seated}}}});
+    json_["nodes"][0]["children"].push_back(index + 1);
+  }
+
+  void Write(OutputFile* output) {
+    const std::size_t size = positions_.bytes().size();
+    if (size > 0) {
+      json_["buffers"] = {{{"byteLength", size}}};
+      json_["bufferViews"] = {{{"buffer", 0}, {"byteLength", size}, {"target", kArrayBuffer}}};
+    }
+    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    constexpr std::uint32_t kVersion = 2;
+    const auto json_size = static_cast<std::uint32_t>(text.size());
+    const auto bin_size = static_cast<std::uint32_t>(size);
+    const std::uint32_t total = 12 + 8 + json_size + (size > 0 ? 8 + bin_size : 0);
+    ByteWriter head;
+    for (const std::uint32_t value : {kGlbMagic, kVersion, total, json_size, kJsonChunk}) {
+      head.Plain(&value, 1);
+    }
+    output->Write(TextOf(head));
+    output->Write(text);
+    if (size > 0) {
+      ByteWriter chunk;
+      for (const std::uint32_t value : {bin_size, kBinChunk}) {
+        chunk.Plain(&value, 1);
+      }
+      output->Write(TextOf(chunk));
+      output->Write(TextOf(positions_));
+    }
+  }
+
+ private:
+  Json json_;
+  ByteWriter positions_;
+  std::size_t points_{0};
+};
+
+}  // namespace
+
+Result<void> WritePathGlb(record::Reader* reader, const Selection& selection,
+                          const std::filesystem::path& file) {
+  const auto holds = FindHolds(reader, selection.span, MakeCentres(reader));
+  if (!holds) {
+    return Unexpected(holds.error());
+  }
+  auto output = OutputFile::Create(file);
+  if (!output) {
+    return Unexpected(output.error());
+  }
+  const std::vector<std::string> paths = ReadPaths(*reader);
+  PathGlb glb;
+  for (const Hold& hold : *holds) {
+    glb.Add(hold, NameOf(paths, hold.occurrence));
+  }
+  glb.Write(&*output);
+  return output->Finish();
+}
+
+}  // namespace hvas::evidence

@@ -1,0 +1,218 @@
+#include "evidence/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <zlib.h>
+
+namespace hvas::evidence {
+namespace {
+
+constexpr int kSamples = 2;        // along each edge of a pixel
+constexpr double kRoom = 0.94;     // of the picture, that the box may fill
+constexpr double kSharpCos = 0.8;  // normals that differ by more make an edge
+constexpr double kAmbient = 0.42;
+
+/** What is seen at a sample. */
+struct Sample {
+  double depth{std::numeric_limits<double>::infinity()};
+  std::uint32_t occurrence{std::numeric_limits<std::uint32_t>::max()};
+  std::array<float, 3> normal{};
+  std::array<float, 3> color{};
+
+  [[nodiscard]] bool is_empty() const { return std::isinf(depth); }
+};
+
+class Canvas {
+ public:
+  explicit Canvas(const Projection& projection)
+      : projection_(projection),
+        width_(kSamples * projection.width()),
+        height_(kSamples * projection.height()),
+        samples_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
+
+  void Draw(const product::Product& product) {
+    for (const product::Occurrence& occurrence : product.occurrences) {
+      const product::Part& part = product.part_of(occurrence.id);
+      for (const product::Face& face : part.faces) {
+        const product::Color& color = face.color.value_or(part.color);
+        for (std::uint32_t t = 0; t < face.display_triangle_count; ++t) {
+          const auto& corners = part.display_mesh.triangles[face.first_display_triangle + t];
+          std::array<Vec3, 3> p_W;
+          for (std::size_t k = 0; k < 3; ++k) {
+            p_W[k] = occurrence.X_WB * part.display_mesh.vertices[corners[k]];
+          }
+          DrawTriangle(p_W, occurrence.id.value(), {color.r, color.g, color.b});
+        }
+      }
+    }
+  }
+
+  /** RGBA, row by row, each behind a byte that says it is not filtered, as PNG has them. */
+  [[nodiscard]] std::string Develop() const {
+    std::string rows;
+    for (int y = 0; y < projection_.height(); ++y) {
+      rows.push_back('\0');
+      for (int x = 0; x < projection_.width(); ++x) {
+        DevelopPixel(x, y, &rows);
+      }
+    }
+    return rows;
+  }
+
+ private:
+  void DrawTriangle(const std::array<Vec3, 3>& p_W, std::uint32_t occurrence,
+                    const std::array<float, 3>& color) {
+    std::array<Vec3, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = projection_.Project(p_W[k]);
+      p[k].head<2>() *= kSamples;
+    }
+    const Vec3 normal = projection_.Turn((p_W[1] - p_W[0]).cross(p_W[2] - p_W[0])).normalized();
+    const double area =
+        (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[2].x() - p[0].x()) * (p[1].y() - p[0].y());
+    if (!(std::abs(area) > 0) || !normal.allFinite()) {
+      return;
+    }
+    const auto [left, right] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
+    const auto [top, bottom] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
+    const int x_end = std::min(width_ - 1, static_cast<int>(std::ceil(right)));
+    const int y_end = std::min(height_ - 1, static_cast<int>(std::ceil(bottom)));
+    for (int y = std::max(0, static_cast<int>(top)); y <= y_end; ++y) {
+      for (int x = std::max(0, static_cast<int>(left)); x <= x_end; ++x) {
+        const Vec3 share = SharesAt(p, area, x + 0.5, y + 0.5);
+        const double depth = share.x() * p[0].z() + share.y() * p[1].z() + share.z() * p[2].z();
+        Sample& sample = samples_[IndexOf(x, y)];
+        if (share.minCoeff() >= 0 && depth < sample.depth) {
+          sample = {depth, occurrence,
+                    {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                     static_cast<float>(normal.z())},
+                    color};
+        }
+      }
+    }
+  }
+
+  /** Barycentric coordinates. */
+  [[nodiscard]] static Vec3 SharesAt(const std::array<Vec3, 3>& p, double area, double x,
+                                     double y) {
+    const auto cross = [&](const Vec3& a, const Vec3& b) {
+      return (a.x() - x) * (b.y() - y) - (b.x() - x) * (a.y() - y);
+    };
+    return Vec3(cross(p[1], p[2]), cross(p[2], p[0]), cross(p[0], p[1])) / area;
+  }
+
+  [[nodiscard]] std::size_t IndexOf(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
+
+  [[nodiscard]] bool IsEdge(int x, int y) const {
+    const Sample& here = samples_[IndexOf(x, y)];
+    const auto differs = [&](int other_x, int other_y) {
+      if (other_x >= width_ || other_y >= height_) {
+        return false;
+      }
+      const Sample& other = samples_[IndexOf(other_x, other_y)];
+      float cosine = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        cosine += here.normal[k] * other.normal[k];
+      }
+      return here.occurrence != other.occurrence ||
+             (!here.is_empty() && static_cast<double>(cosine) < kSharpCos);
+    };
+    return differs(x + 1, y) || differs(x, y + 1);
+  }
+
+  void DevelopPixel(int x, int y, std::string* rows) const {
+    std::array<double, 4> sum{};
+    for (int k = 0; k < kSamples * kSamples; ++k) {
+      const int sample_x = kSamples * x + k % kSamples;
+      const int sample_y = kSamples * y + k / kSamples;
+      const Sample& sample = samples_[IndexOf(sample_x, sample_y)];
+      if (sample.is_empty()) {
+        continue;
+      }
+      // Light from the upper left, behind the eye.
+      const Vec3 light = Vec3(-0.4, 0.6, 0.7).normalized();
+      const double facing = std::abs(light.x() * static_cast<double>(sample.normal[0]) +
+                                     light.y() * static_cast<double>(sample.normal[1]) +
+                                     light.z() * static_cast<double>(sample.normal[2]));
+      const double shade =
+          IsEdge(sample_x, sample_y) ? 0.25 : kAmbient + (1 - kAmbient) * facing;
+      for (std::size_t c = 0; c < 3; ++c) {
+        sum[c] += shade * static_cast<double>(sample.color[c]);
+      }
+      sum[3] += 1;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double mean = sum[3] > 0 ? sum[c] / sum[3] : 0;
+      rows->push_back(static_cast<char>(std::lround(255 * std::clamp(mean, 0.0, 1.0))));
+    }
+    rows->push_back(static_cast<char>(std::lround(255 * sum[3] / (kSamples * kSamples))));
+  }
+
+  const Projection& projection_;
+  int width_;
+  int height_;
+  std::vector<Sample> samples_;
+};
+
+void AppendNumber(std::uint32_t value, std::string* bytes) {
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    bytes->push_back(static_cast<char>(value >> shift & 0xffU));
+  }
+}
+
+/** A PNG chunk: length, kind, content, checksum of the last two. */
+void AppendChunk(const std::string& kind, const std::string& content, std::string* png) {
+  const std::string body = kind + content;
+  AppendNumber(static_cast<std::uint32_t>(content.size()), png);
+  *png += body;
+  const uLong sum = crc32(0, reinterpret_cast<const Bytef*>(body.data()),
+                          static_cast<uInt>(body.size()));
+  AppendNumber(static_cast<std::uint32_t>(sum), png);
+}
+
+std::string MakePng(const std::string& rows, int width, int height) {
+  uLongf size = compressBound(rows.size());
+  std::string packed(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+            reinterpret_cast<const Bytef*>(rows.data()), rows.size(), Z_BEST_COMPRESSION);
+  packed.resize(size);
+  std::string head;
+  AppendNumber(static_cast<std::uint32_t>(width), &head);
+  AppendNumber(static_cast<std::uint32_t>(height), &head);
+  head += std::string("\x08\x06\0\0\0", 5);  // 8 bits, RGBA, nothing special
+  std::string png = "\x89PNG\r\n\x1a\n";
+  AppendChunk("IHDR", head, &png);
+  AppendChunk("IDAT", packed, &png);
+  AppendChunk("IEND", "", &png);
+  return png;
+}
+
+}  // namespace
+
+Projection::Projection(const spatial::Box& box_W, int width, int height)
+    : centre_W_(box_W.centre()), width_(width), height_(height) {
+  const Vec3 to_eye = Vec3(0.75, -1.0, 0.7).normalized();
+  const Vec3 right = Vec3::UnitZ().cross(to_eye).normalized();
+  R_VW_.row(0) = right.transpose();
+  R_VW_.row(1) = to_eye.cross(right).transpose();
+  R_VW_.row(2) = to_eye.transpose();
+  const Vec3 half = 0.5 * box_W.size();
+  const double half_x = R_VW_.row(0).cwiseAbs().dot(half.transpose());
+  const double half_y = R_VW_.row(1).cwiseAbs().dot(half.transpose());
+  constexpr double kLeast = 1e-9;  // [m]; a box may be a point
+  scale_ = 0.5 * kRoom * std::min(width / std::max(half_x, kLeast), height / std::max(half_y, kLeast));
+}
+
+std::string MakePicture(const product::Product& product, const Projection& projection) {
+  Canvas canvas(projection);
+  canvas.Draw(product);
+  return MakePng(canvas.Develop(), projection.width(), projection.height());
+}
+
+}  // namespace hvas::evidence

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evidence/holds.h"
+#include "product/product.h"
+#include "record/reader.h"
+
+namespace hvas::evidence {
+
+/** The largest forces within a short time. */
+struct ForceBin {
+  double t{0};           ///< Session time of its middle [s].
+  double true_force{0};  ///< [N]
+  double felt_force{0};  ///< [N]
+  double insertion{0};   ///< [m]
+};
+
+/** What happened in one hand. */
+struct HandSummary {
+  std::int64_t ticks{0};
+  double period{0};            ///< Between its ticks [s].
+  std::vector<ForceBin> bins;  ///< Over the whole session.
+  double energy_in{0};         ///< That the hand put into the device, by forces [J].
+  double energy_out{0};        ///< That it was given [J].
+  bool has_energy{false};      ///< Passivity was controlled, and so it was accounted for.
+  double longest_model_age{0};  ///< Since physics had answered last [s].
+  std::int64_t shed_ticks{0};   ///< That left something out to be in time.
+};
+
+/** A fit of the product, and the sizes that were drawn for this session. */
+struct FitSummary {
+  std::string name;       ///< Of the shaft and the hole.
+  std::string code;       ///< ISO 286.
+  double nominal{0};      ///< Diameter [m].
+  double hole{0};         ///< Actual diameter [m].
+  double shaft{0};        ///< [m]
+  double max_force{0};    ///< To press it in to its end [N].
+};
+
+/** A recorded session, for people. */
+struct Summary {
+  record::Meta meta;
+  bool is_complete{false};
+  double duration{0};  ///< [s]
+  std::vector<std::string> paths;  ///< By occurrence.
+  std::vector<Hold> holds;
+  std::vector<HandSummary> hands;
+  std::vector<record::Event> incidents;  ///< Of safety, device, effort and flight.
+  std::vector<FitSummary> fits;
+  std::optional<product::Product> product;  ///< None in records of before schema 3.
+};
+
+/** Reads all of a record. Errors: the reader's. */
+[[nodiscard]] Result<Summary> Summarise(record::Reader* reader);
+
+}  // namespace hvas::evidence

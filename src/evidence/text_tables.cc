@@ -1,0 +1,111 @@
+// CSV and JSON.
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "evidence/output_file.h"
+#include "evidence/tables.h"
+
+namespace hvas::evidence {
+namespace {
+
+using record::TickRecord;
+using Json = nlohmann::ordered_json;
+
+/** Meta without what is told elsewhere. */
+Json MakeMetaJson(const record::Reader& reader) {
+  Json json = Json::object();
+  for (const auto& [key, value] : reader.meta()) {
+    if (key != "model_json") {
+      json[key] = value;
+    }
+  }
+  return json;
+}
+
+Result<std::string> MakeHead(record::Reader* reader) {
+  auto events = reader->ReadEvents();
+  if (!events) {
+    return Unexpected(events.error());
+  }
+  Json columns = Json::array();
+  for (const Column& column : TickColumns()) {
+    columns.push_back(
+        {{"name", column.name}, {"unit", column.unit}, {"description", column.description}});
+  }
+  Json list = Json::array();
+  for (const record::Event& event : *events) {
+    Json item{{"time_s", 1e-9 * static_cast<double>(event.t_ns)}, {"kind", event.kind}};
+    if (event.occurrence != record::kNoOccurrence) {
+      item["occurrence"] = event.occurrence;
+    }
+    item["details"] = Json::parse(event.json.empty() ? "{}" : event.json, nullptr, false);
+    list.push_back(std::move(item));
+  }
+  const Json head{{"format", "hvas-session-1"},
+                  {"complete", reader->is_complete()},
+                  {"meta", MakeMetaJson(*reader)},
+                  {"parts", ReadPaths(*reader)},
+                  {"events", std::move(list)},
+                  {"columns", std::move(columns)}};
+  return head.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Result<void> WriteCsv(record::Reader* reader, const Selection& selection,
+                      const std::filesystem::path& file) {
+  auto output = OutputFile::Create(file);
+  if (!output) {
+    return Unexpected(output.error());
+  }
+  std::string line;
+  for (const Column& column : TickColumns()) {
+    line += (line.empty() ? "" : ",") + std::string(column.name);
+  }
+  output->Write(line + "\n");
+  const Result<void> done = ForEachSelected(reader, selection, [&](const TickRecord& tick) {
+    line.clear();
+    for (const Column& column : TickColumns()) {
+      const double value = column.get(tick);
+      // What is not finite is an empty cell, which spreadsheets take for none.
+      line += std::isfinite(value) ? fmt::format("{},", value) : ",";
+    }
+    line.back() = '\n';
+    output->Write(line);
+  });
+  return done ? output->Finish() : done;
+}
+
+Result<void> WriteJson(record::Reader* reader, const Selection& selection,
+                       const std::filesystem::path& file) {
+  auto output = OutputFile::Create(file);
+  if (!output) {
+    return Unexpected(output.error());
+  }
+  auto head = MakeHead(reader);
+  if (!head) {
+    return Unexpected(head.error());
+  }
+  head->pop_back();  // the object goes on with the ticks, of which there are many
+  output->Write(*head + ",\"ticks\":[");
+  const char* separator = "\n";
+  std::string row;
+  const Result<void> done = ForEachSelected(reader, selection, [&](const TickRecord& tick) {
+    row = separator;
+    row += '[';
+    for (const Column& column : TickColumns()) {
+      const double value = column.get(tick);
+      row += std::isfinite(value) ? fmt::format("{},", value) : "null,";
+    }
+    row.back() = ']';
+    output->Write(row);
+    separator = ",\n";
+  });
+  output->Write("\n]}\n");
+  return done ? output->Finish() : done;
+}
+
+}  // namespace hvas::evidence
