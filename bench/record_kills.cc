@@ -1,5 +1,6 @@
-// Kills recording sessions at random moments, and tells what is left: does every record open, how much
-// does it lack, and does it run again bit for bit up to there? Exit status 1 when one does not.
+// Kills recording sessions at random moments, and tells what is left: does every record open, how
+// much does it lack, and does it run again bit for bit up to there? Exit status 1 when one does
+// not.
 
 #include <algorithm>
 #include <chrono>
@@ -105,11 +106,9 @@ int Run(const std::string& file, int runs, double longest_s, std::uint64_t seed)
     const auto path = folder->path() / fmt::format("{}.hvasrec", i);
     const auto after = std::chrono::milliseconds(std::llround(1e3 * random.Uniform(0, longest_s)));
     const bool is_realtime = i % 2 == 0;
-    const std::int64_t ran =
-        session::testing::RecordAndKill(*model, path, is_realtime, after);
+    const std::int64_t ran = session::testing::RecordAndKill(*model, path, is_realtime, after);
     tally.killed += ran >= 0 ? 1 : 0;
-    const std::string problem =
-        ran < 0 ? "it ended by itself" : Judge(path, ran, options, &tally);
+    const std::string problem = ran < 0 ? "it ended by itself" : Judge(path, ran, options, &tally);
     if (!problem.empty()) {
       ++tally.bad;
       fmt::print("run {} ({}, killed after {} ms, {} ticks): {}\n", i,

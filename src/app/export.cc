@@ -144,8 +144,9 @@ Result<void> Export(const ExportOptions& options) {
 
 void AddExport(CLI::App* app, int* status) {
   CLI::App* command =
-      app->add_subcommand("export", "Write a CAD file as .glb, .json or .step, or a record as .csv, .json, "
-                                    ".h5, .mcap or .glb, by the ending of X");
+      app->add_subcommand("export",
+                          "Write a CAD file as .glb, .json or .step, or a record as .csv, .json, "
+                          ".h5, .mcap or .glb, by the ending of X");
   const auto options = std::make_shared<ExportOptions>();
   command->add_option("file", options->load.file, "CAD file, or a record")->required();
   command->add_option("-o,--output", options->output, "File to write")->required();

@@ -149,7 +149,7 @@ void AddReplay(CLI::App* app, int* status) {
   const auto arguments = std::make_shared<ReplayArguments>();
   AddRecordOptions(command, &arguments->record);
   CLI::Option* verify = command->add_flag("--verify", arguments->is_verified,
-                                                "Exit with 2 unless every bit is the recorded one");
+                                          "Exit with 2 unless every bit is the recorded one");
   AddConditionOption(command, &arguments->condition)
       ->description(
           "Render what was recorded under this condition instead: collision, constraint "

@@ -1,7 +1,5 @@
 #include "app/report.h"
 
-#include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +10,8 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <spawn.h>
 
 #include "app/report_failure.h"
 #include "app/report_page.h"
@@ -65,8 +65,7 @@ Result<void> Print(const std::filesystem::path& page, const std::filesystem::pat
     std::filesystem::copy_file(printed, pdf, std::filesystem::copy_options::overwrite_existing,
                                failed);
     if (status != 0 || failed) {
-      return Fail(ErrorCode::kUnsupported,
-                  std::string(browser) + " could not print the report",
+      return Fail(ErrorCode::kUnsupported, std::string(browser) + " could not print the report",
                   pdf.string(), "write it as .html, and print that");
     }
     return {};

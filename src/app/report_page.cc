@@ -31,7 +31,7 @@ constexpr const char* kStyle = R"(
 :root{color-scheme:light dark;--page:#fff;--ink:#1d2126;--soft:#4a525b;--rule:#dfe3e8;--good:#1b7f3b;--bad:#b3261e;--tile:#f4f6f8}
 @media(prefers-color-scheme:dark){:root{--page:#15181c;--ink:#e8ebee;--soft:#aeb6bf;--rule:#2d333a;--good:#6fd08c;--bad:#ff8a80;--tile:#1e2329}}
 *{box-sizing:border-box}
-body{margin:0 auto;max-width:60rem;padding:2rem 1.25rem 4rem;background:var(--page);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
+body{margin:0 auto;max-width:66rem;padding:2rem 1.25rem 4rem;background:var(--page);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
 h1{font-size:1.9rem;line-height:1.2;margin:0}h2{font-size:1.25rem;margin:2.5rem 0 .5rem}
 p{margin:.4rem 0}.soft,figcaption,small{color:var(--soft)}
 .verdict{font-size:1.15rem;margin:1rem 0}.good{color:var(--good);font-weight:600}.bad{color:var(--bad);font-weight:600}
@@ -41,15 +41,16 @@ p{margin:.4rem 0}.soft,figcaption,small{color:var(--soft)}
 figure{margin:1rem 0}figure img,figure svg{display:block;width:100%;height:auto}
 .over{position:relative}.over svg{position:absolute;inset:0}.over img{opacity:.55}
 .scroll{overflow-x:auto}
-table{border-collapse:collapse;width:100%;font-size:.9rem;font-variant-numeric:tabular-nums}
-th,td{padding:.3rem .5rem;text-align:right;border-bottom:1px solid var(--rule);white-space:nowrap}
+table{border-collapse:collapse;width:100%;font-size:.82rem;font-variant-numeric:tabular-nums}
+th,td{padding:.25rem .4rem;text-align:right;border-bottom:1px solid var(--rule);white-space:nowrap}
 th{font-weight:600;color:var(--soft);vertical-align:bottom}
 th:first-child,td:first-child,.l{text-align:left!important;white-space:normal}
+td:first-child{min-width:11rem}
 .w0{stroke:#0b62c4}.w1{stroke:#bb430a}.w2{stroke:#1b7f3b}.w3{stroke:#6b4fb3}.w4{stroke:#6a737d}
 .way{fill:none;stroke-width:1.6;stroke-linejoin:round;opacity:.85}
 @media(prefers-color-scheme:dark){.w0{stroke:#6cb0ff}.w1{stroke:#ff9c66}.w2{stroke:#6fd08c}.w3{stroke:#b9a3ff}.w4{stroke:#aeb6bf}}
 @media print{:root{color-scheme:light;--page:#fff;--ink:#000;--soft:#444;--rule:#ccc;--good:#14602c;--bad:#8f1d17;--tile:#f4f6f8}
-body{max-width:none;padding:0;font-size:10.5pt}h2{break-after:avoid}figure,tr,.tiles{break-inside:avoid}
+body{max-width:none;padding:0;font-size:10.5pt}table{font-size:7.5pt}.scroll{overflow:visible}h2{break-after:avoid}figure,tr,.tiles{break-inside:avoid}
 figure svg .page{fill:#fff!important}figure svg text{fill:#000!important}figure svg .grid{stroke:#ddd!important}}
 @page{margin:16mm}
 )";
@@ -180,9 +181,10 @@ std::string MakeProductPicture(const Summary& summary) {
     return {};
   }
   const evidence::Projection projection(summary.product->box_W, kPictureWidth, kPictureHeight);
-  return fmt::format("<figure>{}</figure>",
-                     MakeImage(*summary.product, projection,
-                               summary.product->name + ", put together, from the front right above"));
+  return fmt::format(
+      "<figure>{}</figure>",
+      MakeImage(*summary.product, projection,
+                summary.product->name + ", put together, from the front right above"));
 }
 
 /** The ways of the parts over a faint picture of the product. */
@@ -214,7 +216,8 @@ std::string MakeWays(const Summary& summary) {
   }
   return fmt::format(
       "<h2>Ways of the parts</h2><figure><div{}>{}<svg viewBox=\"0 0 {} {}\" "
-      "role=\"img\" aria-label=\"Ways of the parts\">{}</svg></div><figcaption>From where each part "
+      "role=\"img\" aria-label=\"Ways of the parts\">{}</svg></div><figcaption>From where each "
+      "part "
       "was taken up to where it was let go, by its centre of mass; from the front right above."
       "</figcaption></figure>",
       summary.product ? " class=\"over\"" : "",
@@ -227,11 +230,11 @@ std::string MakeSequence(const Summary& summary) {
       "<h2>Sequence</h2><div class=\"scroll\"><table><thead><tr><th>Part</th><th>Hand</th>"
       "<th>Taken<br>[s]</th><th>In hand<br>[s]</th><th>Way<br>[m]</th><th>True force<br>[N]</th>"
       "<th>Felt force<br>[N]</th><th>Inserted<br>[mm]</th><th>Collisions</th>"
-      "<th>In contact<br>[s]</th><th class=\"l\">Outcome</th></tr></thead><tbody>";
+      "<th>In contact<br>[s]</th><th>Outcome</th></tr></thead><tbody>";
   for (const Hold& hold : summary.holds) {
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{:.3f}</td><td>{:.4g}</td>"
-        "<td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{:.2f}</td><td class=\"l {}\">{}</td></tr>",
+        "<td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{:.2f}</td><td class=\"{}\">{}</td></tr>",
         Escape(NameOf(summary, hold.occurrence)), hold.hand == 0 ? "first" : "second",
         1e-9 * static_cast<double>(hold.start_ns),
         1e-9 * static_cast<double>(hold.end_ns - hold.start_ns), hold.path, hold.peak_true,
@@ -240,7 +243,8 @@ std::string MakeSequence(const Summary& summary) {
         hold.is_seated ? "in place" : "let go");
   }
   return html +
-         "</tbody></table></div><p><small>Largest forces of each hold. A collision is contact after "
+         "</tbody></table></div><p><small>Largest forces of each hold. A collision is contact "
+         "after "
          "a tenth of a second without.</small></p>";
 }
 
@@ -304,10 +308,11 @@ std::string MakeLoops(const Summary& summary) {
         hand.has_energy ? fmt::format("{:.3f}", hand.energy_out) : "-");
   }
   const std::string dropped = MetaOf(summary, record::kMetaDropped);
-  return html + fmt::format(
-                    "</tbody></table></div><p><small>Energy is accounted for with a device that "
-                    "shows forces, of the last stretch. Ticks that the record lacks: {}.</small></p>",
-                    dropped.empty() ? "not known, as it was cut short" : dropped);
+  return html +
+         fmt::format(
+             "</tbody></table></div><p><small>Energy is accounted for with a device that "
+             "shows forces, of the last stretch. Ticks that the record lacks: {}.</small></p>",
+             dropped.empty() ? "not known, as it was cut short" : dropped);
 }
 
 /** What an event says, in words. */
@@ -332,8 +337,9 @@ std::string Explain(const record::Event& event) {
 std::string MakeIncidents(const Summary& summary) {
   std::string html = "<h2>Safety and devices</h2>";
   if (summary.incidents.empty()) {
-    return html + "<p>Nothing happened that the safety gate had to act on, or that a device told of."
-                  "</p>";
+    return html +
+           "<p>Nothing happened that the safety gate had to act on, or that a device told of."
+           "</p>";
   }
   html +=
       "<div class=\"scroll\"><table><thead><tr><th>Time [s]</th><th class=\"l\">What</th>"
@@ -361,7 +367,8 @@ std::string MakeSource(const Summary& summary) {
     return address.empty() ? std::string("simulated, or a pointer") : Escape(address);
   };
   return fmt::format(
-      "<h2>About this session</h2><p>Condition {}; force map {}; seed {}; device in the first hand: "
+      "<h2>About this session</h2><p>Condition {}; force map {}; seed {}; device in the first "
+      "hand: "
       "{}{}.</p><p class=\"soft\"><small>Digest {}: the record runs again bit for bit (hvas replay "
       "--verify).</small></p>",
       Escape(MetaOf(summary, "condition")), Escape(MetaOf(summary, "force_map")),

@@ -93,8 +93,8 @@ class Writer {
     const Handle in_file(H5Dget_space(set), &H5Sclose);
     Note(H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, &at, nullptr, &count, nullptr));
     const Handle in_memory(H5Screate_simple(1, &count, nullptr), &H5Sclose);
-    Note(H5Dwrite(set, H5T_NATIVE_DOUBLE, in_memory.id(), in_file.id(), H5P_DEFAULT,
-                  values.data()));
+    Note(
+        H5Dwrite(set, H5T_NATIVE_DOUBLE, in_memory.id(), in_file.id(), H5P_DEFAULT, values.data()));
   }
 
   void WriteTexts(hid_t group, const char* name, const std::vector<std::string>& texts) {

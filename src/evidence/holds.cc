@@ -43,8 +43,7 @@ void Begin(const TickRecord& tick, const Vec3& p, Present* present, std::vector<
 
 void Follow(const TickRecord& tick, const Vec3& p, Present* present, Hold* hold) {
   hold->end_ns = tick.t_ns;
-  hold->is_seated =
-      static_cast<haptics::HoldState>(tick.state) == haptics::HoldState::kSeated;
+  hold->is_seated = static_cast<haptics::HoldState>(tick.state) == haptics::HoldState::kSeated;
   hold->peak_true = std::max(hold->peak_true, tick.F_true_W.f.norm());
   hold->peak_felt = std::max(hold->peak_felt, tick.F_felt_W.f.norm());
   hold->insertion = std::max(hold->insertion, tick.depth);
@@ -71,8 +70,8 @@ Result<std::vector<Hold>> FindHolds(record::Reader* reader, const record::Reader
   std::array<Present, 2> hands;
   const Result<void> done = reader->ForEachTick(span, [&](const TickRecord& tick) {
     Present& present = hands[tick.hand == 0 ? 0 : 1];
-    const Vec3 p = tick.held == record::kNoOccurrence ? Vec3::Zero()
-                                                      : Vec3(tick.X_WD * p_BQ(tick.held));
+    const Vec3 p =
+        tick.held == record::kNoOccurrence ? Vec3::Zero() : Vec3(tick.X_WD * p_BQ(tick.held));
     if (tick.held != present.occurrence) {
       Begin(tick, p, &present, &holds);
     }

@@ -14,12 +14,12 @@ struct Hold {
   std::uint8_t hand{0};
   std::int64_t start_ns{0};
   std::int64_t end_ns{0};
-  bool is_seated{false};  ///< When it was let go.
-  double peak_true{0};    ///< [N]
-  double peak_felt{0};    ///< [N]
-  double insertion{0};    ///< Longest that a mate's shaft was in its hole [m].
-  double deepest{0};      ///< Deepest penetration, >= 0 [m].
-  double path{0};         ///< Of the point that is followed [m].
+  bool is_seated{false};       ///< When it was let go.
+  double peak_true{0};         ///< [N]
+  double peak_felt{0};         ///< [N]
+  double insertion{0};         ///< Longest that a mate's shaft was in its hole [m].
+  double deepest{0};           ///< Deepest penetration, >= 0 [m].
+  double path{0};              ///< Of the point that is followed [m].
   std::int64_t contact_ns{0};  ///< That something pressed.
   int collisions{0};           ///< How often contact began, after a tenth of a second without.
   std::vector<Vec3> points;    ///< Its way in the world, wherever it has moved on by kPointGap [m].

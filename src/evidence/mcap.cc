@@ -69,24 +69,19 @@ class McapWriter {
     const std::uint16_t number = ++channels_;  // of both: 0 is no schema
     Write(Opcode::kSchema,
           Content().Number(number).Text(schema_name).Text("jsonschema").Text(schema.dump()));
-    Write(Opcode::kChannel, Content()
-                                .Number(number)
-                                .Number(number)
-                                .Text(topic)
-                                .Text("json")
-                                .Number(std::uint32_t{0}));
+    Write(Opcode::kChannel, Content().Number(number).Number(number).Text(topic).Text("json").Number(
+                                std::uint32_t{0}));
     return number;
   }
 
   void Add(std::uint16_t channel, std::int64_t t_ns, const Json& message) {
     const auto t = static_cast<std::uint64_t>(t_ns);
-    Write(Opcode::kMessage,
-          Content()
-              .Number(channel)
-              .Number(sequence_++)
-              .Number(t)
-              .Number(t)
-              .Raw(message.dump(-1, ' ', false, Json::error_handler_t::replace)));
+    Write(Opcode::kMessage, Content()
+                                .Number(channel)
+                                .Number(sequence_++)
+                                .Number(t)
+                                .Number(t)
+                                .Raw(message.dump(-1, ' ', false, Json::error_handler_t::replace)));
   }
 
   void Finish() {

@@ -66,20 +66,18 @@ class PathGlb {
                                   {"min", low},
                                   {"max", high}});
     points_ += hold.points.size();
-    json_["meshes"].push_back({{"primitives",
-                                {{{"attributes", {{"POSITION", index}}},
-                                  {"material", 0},
-                                  {"mode", kLineStrip}}}}});
-    json_["nodes"].push_back(
-        {{"name", name},
-         {"mesh", index},
-         {"extras",
-          {{"occurrence", hold.occurrence},
-           {"hand", hold.hand},
-           {"start_s", 1e-9 * static_cast<double>(hold.start_ns)},
-           {"end_s", 1e-9 * static_cast<double>(hold.end_ns)},
-           {"path_m", hold.path},
-           {"seated", hold.is_seated}}}});
+    json_["meshes"].push_back(
+        {{"primitives",
+          {{{"attributes", {{"POSITION", index}}}, {"material", 0}, {"mode", kLineStrip}}}}});
+    json_["nodes"].push_back({{"name", name},
+                              {"mesh", index},
+                              {"extras",
+                               {{"occurrence", hold.occurrence},
+                                {"hand", hold.hand},
+                                {"start_s", 1e-9 * static_cast<double>(hold.start_ns)},
+                                {"end_s", 1e-9 * static_cast<double>(hold.end_ns)},
+                                {"path_m", hold.path},
+                                {"seated", hold.is_seated}}}});
     json_["nodes"][0]["children"].push_back(index + 1);
   }
 

@@ -71,8 +71,8 @@ class Canvas {
       p[k].head<2>() *= kSamples;
     }
     const Vec3 normal = projection_.Turn((p_W[1] - p_W[0]).cross(p_W[2] - p_W[0])).normalized();
-    const double area =
-        (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[2].x() - p[0].x()) * (p[1].y() - p[0].y());
+    const double area = (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) -
+                        (p[2].x() - p[0].x()) * (p[1].y() - p[0].y());
     if (!(std::abs(area) > 0) || !normal.allFinite()) {
       return;
     }
@@ -86,7 +86,8 @@ class Canvas {
         const double depth = share.x() * p[0].z() + share.y() * p[1].z() + share.z() * p[2].z();
         Sample& sample = samples_[IndexOf(x, y)];
         if (share.minCoeff() >= 0 && depth < sample.depth) {
-          sample = {depth, occurrence,
+          sample = {depth,
+                    occurrence,
                     {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
                      static_cast<float>(normal.z())},
                     color};
@@ -140,8 +141,7 @@ class Canvas {
       const double facing = std::abs(light.x() * static_cast<double>(sample.normal[0]) +
                                      light.y() * static_cast<double>(sample.normal[1]) +
                                      light.z() * static_cast<double>(sample.normal[2]));
-      const double shade =
-          IsEdge(sample_x, sample_y) ? 0.25 : kAmbient + (1 - kAmbient) * facing;
+      const double shade = IsEdge(sample_x, sample_y) ? 0.25 : kAmbient + (1 - kAmbient) * facing;
       for (std::size_t c = 0; c < 3; ++c) {
         sum[c] += shade * static_cast<double>(sample.color[c]);
       }
@@ -171,8 +171,8 @@ void AppendChunk(const std::string& kind, const std::string& content, std::strin
   const std::string body = kind + content;
   AppendNumber(static_cast<std::uint32_t>(content.size()), png);
   *png += body;
-  const uLong sum = crc32(0, reinterpret_cast<const Bytef*>(body.data()),
-                          static_cast<uInt>(body.size()));
+  const uLong sum =
+      crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
   AppendNumber(static_cast<std::uint32_t>(sum), png);
 }
 
@@ -206,7 +206,8 @@ Projection::Projection(const spatial::Box& box_W, int width, int height)
   const double half_x = R_VW_.row(0).cwiseAbs().dot(half.transpose());
   const double half_y = R_VW_.row(1).cwiseAbs().dot(half.transpose());
   constexpr double kLeast = 1e-9;  // [m]; a box may be a point
-  scale_ = 0.5 * kRoom * std::min(width / std::max(half_x, kLeast), height / std::max(half_y, kLeast));
+  scale_ =
+      0.5 * kRoom * std::min(width / std::max(half_x, kLeast), height / std::max(half_y, kLeast));
 }
 
 std::string MakePicture(const product::Product& product, const Projection& projection) {

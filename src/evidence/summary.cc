@@ -24,8 +24,8 @@ class Binner {
     const std::int64_t index = tick.t_ns / width_ns_;
     if (bins_.empty() || index != last_index_) {
       last_index_ = index;
-      bins_.push_back({1e-9 * (static_cast<double>(index) + 0.5) * static_cast<double>(width_ns_),
-                       0, 0, 0});
+      bins_.push_back(
+          {1e-9 * (static_cast<double>(index) + 0.5) * static_cast<double>(width_ns_), 0, 0, 0});
     }
     Take({0, tick.F_true_W.f.norm(), tick.F_felt_W.f.norm(), tick.depth}, &bins_.back());
     if (bins_.size() > 2 * kBins) {
@@ -49,8 +49,8 @@ class Binner {
     for (const ForceBin& bin : bins_) {
       const auto index = static_cast<std::int64_t>(1e9 * bin.t) / width_ns_;
       if (wider.empty() || index != last) {
-        wider.push_back({1e-9 * (static_cast<double>(index) + 0.5) * static_cast<double>(width_ns_),
-                         0, 0, 0});
+        wider.push_back(
+            {1e-9 * (static_cast<double>(index) + 0.5) * static_cast<double>(width_ns_), 0, 0, 0});
         last = index;
       }
       Take(bin, &wider.back());
@@ -128,8 +128,7 @@ void DrawFits(Summary* summary) {
       seed == summary->meta.end() ? 1 : std::strtoull(seed->second.c_str(), nullptr, 10);
   Diagnostics ignored;  // told of when the session was prepared
   for (const product::Mate& mate : product.mates) {
-    const auto fit =
-        mate.fit ? simulation::MakeFitForce(product, mate, number, &ignored) : nullptr;
+    const auto fit = mate.fit ? simulation::MakeFitForce(product, mate, number, &ignored) : nullptr;
     if (fit == nullptr) {
       continue;
     }

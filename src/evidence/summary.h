@@ -23,30 +23,30 @@ struct ForceBin {
 /** What happened in one hand. */
 struct HandSummary {
   std::int64_t ticks{0};
-  double period{0};            ///< Between its ticks [s].
-  std::vector<ForceBin> bins;  ///< Over the whole session.
-  double energy_in{0};         ///< That the hand put into the device, by forces [J].
-  double energy_out{0};        ///< That it was given [J].
-  bool has_energy{false};      ///< Passivity was controlled, and so it was accounted for.
+  double period{0};             ///< Between its ticks [s].
+  std::vector<ForceBin> bins;   ///< Over the whole session.
+  double energy_in{0};          ///< That the hand put into the device, by forces [J].
+  double energy_out{0};         ///< That it was given [J].
+  bool has_energy{false};       ///< Passivity was controlled, and so it was accounted for.
   double longest_model_age{0};  ///< Since physics had answered last [s].
   std::int64_t shed_ticks{0};   ///< That left something out to be in time.
 };
 
 /** A fit of the product, and the sizes that were drawn for this session. */
 struct FitSummary {
-  std::string name;       ///< Of the shaft and the hole.
-  std::string code;       ///< ISO 286.
-  double nominal{0};      ///< Diameter [m].
-  double hole{0};         ///< Actual diameter [m].
-  double shaft{0};        ///< [m]
-  double max_force{0};    ///< To press it in to its end [N].
+  std::string name;     ///< Of the shaft and the hole.
+  std::string code;     ///< ISO 286.
+  double nominal{0};    ///< Diameter [m].
+  double hole{0};       ///< Actual diameter [m].
+  double shaft{0};      ///< [m]
+  double max_force{0};  ///< To press it in to its end [N].
 };
 
 /** A recorded session, for people. */
 struct Summary {
   record::Meta meta;
   bool is_complete{false};
-  double duration{0};  ///< [s]
+  double duration{0};              ///< [s]
   std::vector<std::string> paths;  ///< By occurrence.
   std::vector<Hold> holds;
   std::vector<HandSummary> hands;

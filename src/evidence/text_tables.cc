@@ -44,12 +44,9 @@ Result<std::string> MakeHead(record::Reader* reader) {
     item["details"] = Json::parse(event.json.empty() ? "{}" : event.json, nullptr, false);
     list.push_back(std::move(item));
   }
-  const Json head{{"format", "hvas-session-1"},
-                  {"complete", reader->is_complete()},
-                  {"meta", MakeMetaJson(*reader)},
-                  {"parts", ReadPaths(*reader)},
-                  {"events", std::move(list)},
-                  {"columns", std::move(columns)}};
+  const Json head{{"format", "hvas-session-1"},    {"complete", reader->is_complete()},
+                  {"meta", MakeMetaJson(*reader)}, {"parts", ReadPaths(*reader)},
+                  {"events", std::move(list)},     {"columns", std::move(columns)}};
   return head.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -1,5 +1,7 @@
 // Recorded sessions run again: with devices in both hands, and by the program itself.
 
+#include "session/replay.h"
+
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -13,7 +15,6 @@
 #include "device/opened_device.h"
 #include "record/reader.h"
 #include "session/recorded_model.h"
-#include "session/replay.h"
 #include "session/session_recorder.h"
 #include "simulation/assembly_run.h"
 #include "simulation/device_session.h"
@@ -121,8 +122,8 @@ TEST(SessionReplayTest, EveryTickOfBothHandsRunsAgainFromTheFile) {  // X4, N6, 
 class ReplayCommandTest : public ::testing::Test {
  protected:
   void Record(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"assemble", ProductFile("bushing"), "--fit", "all=H7/p6",
-                                       "--record", file,                   "-q"};
+    std::vector<std::string> arguments{
+        "assemble", ProductFile("bushing"), "--fit", "all=H7/p6", "--record", file, "-q"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     (void)RunHvas(arguments);
   }

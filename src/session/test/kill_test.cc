@@ -1,8 +1,7 @@
 // What is left of a session whose process was killed: bench/record_kills does two hundred.
 
-#include "session/test/killed_session.h"
-
 #include "base/test/temporary_folder.h"
+#include "session/test/killed_session.h"
 #include "session/test/recorded_session.h"
 
 namespace hvas::session {
@@ -16,8 +15,8 @@ TEST_P(KilledSession, LosesAtMostOneSecondAndRunsAgainBitForBitUpToThere) {
     SCOPED_TRACE(after_ms);
     const hvas::testing::TemporaryFolder folder;
     const auto file = folder / "session";
-    const std::int64_t ran = testing::RecordAndKill(model, file, GetParam(),
-                                                    std::chrono::milliseconds(after_ms));
+    const std::int64_t ran =
+        testing::RecordAndKill(model, file, GetParam(), std::chrono::milliseconds(after_ms));
     ASSERT_GE(ran, 0) << "it ended by itself";
     auto reader = record::Reader::Open(file);
     if (!reader && ran == 0) {

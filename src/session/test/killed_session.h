@@ -69,8 +69,8 @@ class Teller final : public simulation::Sink {
   }
 }
 
-/** Records a session in a process of its own and kills that after a while; returns the ticks that it
- had run by then, or -1 where it ended by itself.
+/** Records a session in a process of its own and kills that after a while; returns the ticks that
+ it had run by then, or -1 where it ended by itself.
  @pre this process has one thread. */
 inline std::int64_t RecordAndKill(const std::shared_ptr<const simulation::Model>& model,
                                   const std::filesystem::path& path, bool is_realtime,
