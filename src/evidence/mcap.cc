@@ -1,6 +1,7 @@
 // MCAP (https://mcap.dev/spec): records of an opcode, their length and their content, one after the
 // other, without chunks; everything little-endian, texts behind their length.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -183,10 +184,13 @@ Json MakeLog(const record::Event& event, const std::vector<std::string>& paths) 
 
 Result<void> WriteMcap(record::Reader* reader, const Selection& selection,
                        const std::filesystem::path& file) {
-  const auto events = reader->ReadEvents();
+  auto events = reader->ReadEvents();
   if (!events) {
     return Unexpected(events.error());
   }
+  // In the order of their times, as readers without an index expect it.
+  std::stable_sort(events->begin(), events->end(),
+                   [](const auto& a, const auto& b) { return a.t_ns < b.t_ns; });
   auto output = OutputFile::Create(file);
   if (!output) {
     return Unexpected(output.error());
@@ -199,7 +203,6 @@ Result<void> WriteMcap(record::Reader* reader, const Selection& selection,
       writer.AddChannel("/hand1", "hvas.Tick", MakeTickSchema())};
   const std::uint16_t transforms = writer.AddChannel("/tf", "foxglove.FrameTransforms", any);
   const std::uint16_t log = writer.AddChannel("/events", "foxglove.Log", any);
-  // In the order of their times, as readers without an index expect it.
   std::size_t next = 0;
   const auto add_events_until = [&](std::int64_t t_ns) {
     for (; next < events->size() && (*events)[next].t_ns <= t_ns; ++next) {

@@ -36,13 +36,17 @@ class Canvas {
   void Draw(const product::Product& product) {
     for (const product::Occurrence& occurrence : product.occurrences) {
       const product::Part& part = product.part_of(occurrence.id);
+      // The mesh for the eye, or where there is none that for contact.
+      const bool is_light = !part.display_mesh.triangles.empty();
+      const product::Mesh& mesh = is_light ? part.display_mesh : part.mesh;
       for (const product::Face& face : part.faces) {
-        const product::Color& color = face.color.value_or(part.color);
-        for (std::uint32_t t = 0; t < face.display_triangle_count; ++t) {
-          const auto& corners = part.display_mesh.triangles[face.first_display_triangle + t];
+        const product::Color color = face.color.value_or(part.color);
+        const std::size_t first = is_light ? face.first_display_triangle : face.first_triangle;
+        const std::size_t count = is_light ? face.display_triangle_count : face.triangle_count;
+        for (std::size_t t = first; t < first + count; ++t) {
           std::array<Vec3, 3> p_W;
           for (std::size_t k = 0; k < 3; ++k) {
-            p_W[k] = occurrence.X_WB * part.display_mesh.vertices[corners[k]];
+            p_W[k] = occurrence.X_WB * mesh.vertices[mesh.triangles[t][k]];
           }
           DrawTriangle(p_W, occurrence.id.value(), {color.r, color.g, color.b});
         }
