@@ -51,7 +51,7 @@ export const deTime: Record<keyof typeof enTime, string> = {
   "rates.computeP99": "Rechenzeit, p99",
   "rates.wakeUpP99": "Aufwachen, p99",
   "rates.scheduling": "Scheduling",
-  "rates.age": "Alter des Bildes",
+  "rates.age": "Bildalter",
   "rates.compute": "Rechenzeit eines Takts",
   "rates.wakeUp": "Zu spät aufgewacht um",
   "rates.upTo": "bis {us}",

@@ -49,7 +49,7 @@ export const enTime = {
   "rates.computeP99": "Compute, p99",
   "rates.wakeUpP99": "Wake-up, p99",
   "rates.scheduling": "Scheduling",
-  "rates.age": "Age of the picture",
+  "rates.age": "Picture age",
   "rates.compute": "Compute time of a tick",
   "rates.wakeUp": "Wake-up late by",
   "rates.upTo": "up to {us}",
