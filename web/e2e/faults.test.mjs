@@ -2,9 +2,11 @@
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import {
+  distance,
   fetchScene,
   launchBrowser,
   openPage,
+  poseOf,
   stateOf,
   takeByMouse,
   takePicture,
@@ -22,9 +24,6 @@ before(async () => {
   browser = await launchBrowser();
 });
 after(() => browser.close());
-
-const poseOf = (page, occurrence) => page.evaluate((id) => window.hvas.pose(id), occurrence);
-const distance = (a, b) => Math.hypot(...a.p.map((v, k) => v - b.p[k]));
 
 /** Holds the shaft over the table, with somebody who looks on. */
 async function holdShaft(studio) {

@@ -157,6 +157,16 @@ export async function waitForState(page, isSo, timeout = 20_000) {
   throw new Error(`not so after ${timeout} ms: ${isSo}, but ${JSON.stringify(state)}`);
 }
 
+/** Of a part, as the page draws it, in W. */
+export function poseOf(page, occurrence) {
+  return page.evaluate((id) => window.hvas.pose(id), occurrence);
+}
+
+/** Between the origins of two poses [m]. */
+export function distance(a, b) {
+  return Math.hypot(...a.p.map((v, k) => v - b.p[k]));
+}
+
 /** Clicks where one sees this face of a part. */
 export async function clickFace(page, occurrence, face) {
   const at = await page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f), [occurrence, face]);

@@ -5,9 +5,11 @@ import { createServer } from "node:http";
 import { after, before, describe, it } from "node:test";
 import WebSocket from "ws";
 import {
+  distance,
   fetchScene,
   launchBrowser,
   openPage,
+  poseOf,
   stateOf,
   takeByMouse,
   takePicture,
@@ -25,9 +27,6 @@ before(async () => {
   browser = await launchBrowser();
 });
 after(() => browser.close());
-
-const poseOf = (page, occurrence) => page.evaluate((id) => window.hvas.pose(id), occurrence);
-const distance = (a, b) => Math.hypot(...a.p.map((v, k) => v - b.p[k]));
 
 describe("somebody who looks on", () => {
   it("sees the part where the operator moves it, and cannot steer", withStudio([kBushing], async (studio) => {

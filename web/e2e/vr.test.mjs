@@ -3,9 +3,11 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
 import {
+  distance,
   fetchScene,
   launchBrowser,
   openPage,
+  poseOf,
   stateOf,
   takePicture,
   waitForPicture,
@@ -189,7 +191,7 @@ describe("somebody in VR", () => {
     await page.waitForTimeout(800);
     await page.evaluate(() => (window.headset.controllers.right.connected = false));
     await waitForState(page, ({ safety }) => safety !== null);
-    const left = await page.evaluate((id) => window.hvas.pose(id), kShaft);
+    const left = await poseOf(page, kShaft);
     await waitForPlacement(page, kShaft, "held");
     await takePicture(page, "vr_lost");
     // It comes back somewhere else, without its button: the part does not leap.
@@ -198,15 +200,13 @@ describe("somebody in VR", () => {
     await page.evaluate(() => (window.headset.controllers.right.connected = true));
     await frames(page, 8);
     await page.waitForTimeout(1000);
-    const back = await page.evaluate((id) => window.hvas.pose(id), kShaft);
-    assert.ok(Math.hypot(...back.p.map((v, k) => v - left.p[k])) < 0.005, "no leap");
+    assert.ok(distance(await poseOf(page, kShaft), left) < 0.005, "no leap");
     await trigger(page, "right", 1);
     await frames(page, 3);
     const from = await lead.pose();
     await lead.moveTo({ ...from, p: [from.p[0] - 0.15, from.p[1], from.p[2]] }, 10);
     await page.waitForTimeout(800);
-    const led = await page.evaluate((id) => window.hvas.pose(id), kShaft);
-    assert.ok(Math.hypot(...led.p.map((v, k) => v - left.p[k])) > 0.02, "it goes on");
+    assert.ok(distance(await poseOf(page, kShaft), left) > 0.02, "it goes on");
     await trigger(page, "right", 0);
     await waitForPlacement(page, kShaft, "loose");
     await page.context().close();
@@ -302,5 +302,5 @@ async function press(page, lead, id) {
 
 async function occurrenceNow(page, scene, id) {
   const part = scene.occurrences[id];
-  return { ...part, start: await page.evaluate((o) => window.hvas.pose(o), id) };
+  return { ...part, start: await poseOf(page, id) };
 }
