@@ -39,7 +39,7 @@ void CheckOrigin(const studio::Access& access, std::string_view line) {
 }
 
 void CheckCookie(const studio::Access& access, std::string_view line) {
-  const auto value = studio::FindCookie(line, studio::Access::kCookie);
+  const auto value = studio::FindCookie(line, access.cookie_name());
   if (value) {
     Check(line.find(*value) != std::string_view::npos);
     Check(value->find(';') == std::string::npos);

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -19,6 +20,7 @@
 #include "app/report_failure.h"
 #include "base/scratch_folder.h"
 #include "contact/shape_cache.h"
+#include "studio/certificate.h"
 #include "studio/server.h"
 #include "studio/workbench.h"
 
@@ -28,6 +30,9 @@ namespace {
 struct StudioOptions {
   LoadOptions load;
   std::uint16_t port{0};
+  std::string listen;              ///< Empty: this machine only.
+  std::vector<std::string> hosts;  ///< Further names of this machine.
+  studio::TlsFiles tls;            ///< Empty: a certificate of our own.
   std::uint64_t seed{1};
   double rate_hz{1000};
   bool opens_browser{true};
@@ -108,6 +113,50 @@ void BlockSignals() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
+/** Everything that a server for other machines needs besides. @returns what to print of its
+ certificate. */
+Result<std::string> PrepareForOthers(const StudioOptions& options, studio::ServerOptions* served) {
+  auto names = studio::ListNamesOf(options.listen);
+  if (!names) {
+    return Unexpected(names.error());
+  }
+  names->insert(names->end(), options.hosts.begin(), options.hosts.end());
+  served->address = options.listen;
+  served->names = std::move(*names);
+  if (!options.tls.certificate.empty()) {
+    served->tls = options.tls;
+    const auto fingerprint = studio::CalcFingerprint(options.tls.certificate);
+    return fingerprint
+               ? Result<std::string>(fmt::format("Its certificate: SHA-256 {}\n", *fingerprint))
+               : Unexpected(fingerprint.error());
+  }
+  const auto folder = studio::FindCertificateFolder();
+  if (!folder) {
+    return Unexpected(folder.error());
+  }
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto own = studio::KeepCertificate(
+      *folder, served->names, std::chrono::duration_cast<std::chrono::seconds>(now).count());
+  if (!own) {
+    return Unexpected(own.error());
+  }
+  served->tls = own->files;
+  return fmt::format(
+      "Browsers will warn of its certificate{}, which nobody has signed. Go on only when it is\n"
+      "  SHA-256 {}\n",
+      own->is_new ? ", a new one" : "", own->fingerprint);
+}
+
+void PrintLinks(const studio::Server& server, const studio::ServerOptions& served) {
+  const std::vector<std::string> hosts =
+      served.tls ? served.names : std::vector<std::string>{"127.0.0.1"};
+  for (const std::string& host : hosts) {
+    fmt::print("{} {}\n", &host == hosts.data() ? "The studio is at" : "              or",
+               server.LinkFor(studio::Role::kOperator, host));
+  }
+  fmt::print("To look on: {}\n", server.LinkFor(studio::Role::kViewer, hosts.front()));
+}
+
 int RunStudio(const StudioOptions& options) {
   BlockSignals();
   const auto uploads = ScratchFolder::Make();  // for what is sent to it; gone with this run
@@ -118,19 +167,27 @@ int RunStudio(const StudioOptions& options) {
   studio::ServerOptions served;
   served.port = options.port;
   served.upload_folder = uploads->path();
+  std::string about_certificate;
+  if (!options.listen.empty()) {
+    auto prepared = PrepareForOthers(options, &served);
+    if (!prepared) {
+      return ReportFailure(prepared.error());
+    }
+    about_certificate = std::move(*prepared);
+  }
   studio::Server server(&workbench, FindExamples(), served);
   if (const auto started = server.Start(); !started) {
     return ReportFailure(started.error());
   }
-  const std::string link = server.LinkFor(studio::Role::kOperator);
-  fmt::print("The studio is at {}\nTo look on: {}\nCtrl+C ends it.\n", link,
-             server.LinkFor(studio::Role::kViewer));
+  PrintLinks(server, served);
+  fmt::print("{}Ctrl+C ends it.\n", about_certificate);
   std::fflush(stdout);
   if (!options.load.file.empty()) {
     workbench.Open(options.load.file, options.load.file.filename().string());
   }
   if (options.opens_browser) {
-    OpenBrowser(link);
+    OpenBrowser(
+        server.LinkFor(studio::Role::kOperator, served.tls ? served.names.front() : "127.0.0.1"));
   }
   WaitForEnd();
   fmt::print("\n");
@@ -147,8 +204,20 @@ void AddStudio(CLI::App* app, int* status) {
   const auto options = std::make_shared<StudioOptions>();
   command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file to begin with")
       ->check(CLI::ExistingFile);
-  command->add_option("--port", options->port, "To listen at on 127.0.0.1; any that is free")
+  command->add_option("--port", options->port, "To listen at; any that is free")
       ->check(CLI::Range(1, 65535));
+  CLI::Option* listen = command->add_option(
+      "--listen", options->listen,
+      "Let headsets and other machines in, at this address of this one, or 0.0.0.0; with TLS");
+  command->add_option("--host", options->hosts, "A further name that this machine is reached by")
+      ->needs(listen);
+  CLI::Option* certificate = command
+                                 ->add_option("--certificate", options->tls.certificate,
+                                              "In PEM, in place of one that is made and kept")
+                                 ->needs(listen);
+  CLI::Option* key = command->add_option("--key", options->tls.key, "Of the certificate, in PEM")
+                         ->needs(certificate);
+  certificate->needs(key);
   command->add_flag("!--no-open", options->opens_browser, "Do not open a browser");
   command->add_option("--seed", options->seed, "Seed of the parts' actual sizes")
       ->capture_default_str();
@@ -158,11 +227,19 @@ void AddStudio(CLI::App* app, int* status) {
   AddLoadOptions(command, &options->load);
   command->footer(
       "The address has a secret in it: whoever has the first link steers, whoever has the second\n"
-      "looks on. Only programs on this machine can reach it.\n"
+      "looks on. Only programs on this machine can reach it, but with --listen; then everything "
+      "is\n"
+      "encrypted, and the fingerprint that is printed is to be compared with the browser's.\n"
+      "A headset on a cable needs no --listen: `adb reverse tcp:8080 tcp:8080`, and in its "
+      "browser\n"
+      "the link with localhost in place of 127.0.0.1.\n"
       "Examples:\n"
       "  hvas studio\n"
       "  hvas studio products/gear_pump.step\n"
-      "  hvas studio pump.step --port 8080 --no-open");
+      "  hvas studio pump.step --port 8080 --no-open\n"
+      "  hvas studio pump.step --listen 192.168.1.5 --port 8443\n"
+      "  hvas studio pump.step --listen 0.0.0.0 --host workshop.local\n"
+      "  hvas studio --listen 0.0.0.0 --host studio.example --certificate full.pem --key key.pem");
   command->callback([options, status] { *status = RunStudio(*options); });
 }
 

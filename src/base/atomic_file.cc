@@ -31,8 +31,11 @@ Unexpected FailWith(int error, const std::filesystem::path& file) {
               file.string(), std::move(remedy));
 }
 
-/** Permissions of the file that is to be replaced, or those of a new one. */
-mode_t ModeFor(const std::filesystem::path& file) {
+mode_t ModeFor(const std::filesystem::path& file, FileReaders readers) {
+  if (readers == FileReaders::kOwner) {
+    return S_IRUSR | S_IWUSR;
+  }
+
   struct stat status {};
 
   if (::stat(file.c_str(), &status) == 0) {
@@ -46,7 +49,8 @@ mode_t ModeFor(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view bytes) {
+Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view bytes,
+                             FileReaders readers) {
   std::error_code error;
   std::filesystem::path target = file;
   if (std::filesystem::is_symlink(file, error)) {
@@ -65,7 +69,8 @@ Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view
     return FailWith(errno, file);
   }
   int failure = WriteAll(descriptor, std::as_bytes(std::span(bytes)));
-  if (failure == 0 && (::fchmod(descriptor, ModeFor(target)) != 0 || ::fsync(descriptor) != 0)) {
+  if (failure == 0 &&
+      (::fchmod(descriptor, ModeFor(target, readers)) != 0 || ::fsync(descriptor) != 0)) {
     failure = errno;
   }
   if (::close(descriptor) != 0 && failure == 0) {

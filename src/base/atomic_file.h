@@ -7,11 +7,18 @@
 
 namespace hvas {
 
+/** Who may read a file that is written. */
+enum class FileReaders {
+  kAsBefore,  ///< As a file that is replaced; a new one as the user's mask has it.
+  kOwner,     ///< Nobody else, at no moment.
+};
+
 /** Writes a whole file, or leaves what was there: a new file beside it, onto the disk, then renamed
- over it. Keeps the permissions of a file that is replaced, and writes through symbolic links.
+ over it. Writes through symbolic links.
  Errors: kNotFound (no such folder), kOutOfResource (disk full), kInvalid (not a file, no
  permission); each leaves no file behind. */
 [[nodiscard]] Result<void> WriteAtomically(const std::filesystem::path& file,
-                                           std::string_view bytes);
+                                           std::string_view bytes,
+                                           FileReaders readers = FileReaders::kAsBefore);
 
 }  // namespace hvas

@@ -98,20 +98,27 @@ std::optional<std::string> FindCookie(std::string_view cookie_header, std::strin
 }
 
 Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls)
-    : hosts_{"127.0.0.1", "localhost", "::1"}, is_tls_(is_tls) {
+    : hosts_{"127.0.0.1", "localhost", "::1"},
+      cookie_name_(fmt::format("hvas_session_{}", port)),
+      port_(port),
+      is_tls_(is_tls) {
   for (const std::string& name : names) {
     hosts_.push_back(ToLower(name));
   }
+  for (const std::string& host : hosts_) {
+    origins_.push_back(OriginOf(host));
+  }
+}
+
+std::string Access::OriginOf(std::string_view host) const {
   constexpr std::uint16_t kHttp = 80;
   constexpr std::uint16_t kHttps = 443;
   // Browsers leave out the port that the scheme has anyway.
   const std::string suffix =
-      port == (is_tls ? kHttps : kHttp) ? std::string() : fmt::format(":{}", port);
-  for (const std::string& host : hosts_) {
-    const bool is_v6 = host.find(':') != std::string::npos;
-    origins_.push_back(fmt::format("{}://{}{}{}{}", is_tls ? "https" : "http", is_v6 ? "[" : "",
-                                   host, is_v6 ? "]" : "", suffix));
-  }
+      port_ == (is_tls_ ? kHttps : kHttp) ? std::string() : fmt::format(":{}", port_);
+  const bool is_v6 = host.find(':') != std::string_view::npos;
+  return fmt::format("{}://{}{}{}{}", is_tls_ ? "https" : "http", is_v6 ? "[" : "", host,
+                     is_v6 ? "]" : "", suffix);
 }
 
 bool Access::AllowsHost(std::string_view host_header) const {
@@ -132,7 +139,7 @@ std::optional<Role> Access::RoleOfToken(std::string_view token) const {
 }
 
 std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
-  const std::string session = FindCookie(cookie_header, kCookie).value_or("");
+  const std::string session = FindCookie(cookie_header, cookie_name_).value_or("");
   const bool is_operator = IsSameSecret(session, operator_session_);
   const bool is_viewer = IsSameSecret(session, viewer_session_);
   return is_operator ? std::optional(Role::kOperator)
@@ -140,7 +147,7 @@ std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
 }
 
 std::string Access::SetCookie(Role role) const {
-  return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}", kCookie,
+  return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}", cookie_name_,
                      role == Role::kOperator ? operator_session_ : viewer_session_,
                      is_tls_ ? "; Secure" : "");
 }

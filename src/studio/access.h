@@ -33,12 +33,13 @@ enum class Role : std::uint8_t {
  and the secrets. Immutable. */
 class Access {
  public:
-  static constexpr std::string_view kCookie = "hvas_session";
-
   /** @param names  Hosts besides those of the loopback that it answers to.
    @param port  As the browser sees it.
    @param is_tls  Pages come by https. */
   Access(std::vector<std::string> names, std::uint16_t port, bool is_tls);
+
+  /** As browsers write it, of a host name or an address. */
+  [[nodiscard]] std::string OriginOf(std::string_view host) const;
 
   /** Against DNS rebinding: only names that are this machine's. */
   [[nodiscard]] bool AllowsHost(std::string_view host_header) const;
@@ -52,6 +53,10 @@ class Access {
   /** The role of a session, from the Cookie header. */
   [[nodiscard]] std::optional<Role> RoleOfCookie(std::string_view cookie_header) const;
 
+  /** Has the port in it: browsers keep the cookies of all ports of a host together, and two studios
+   may run on one. */
+  [[nodiscard]] const std::string& cookie_name() const { return cookie_name_; }
+
   /** What Set-Cookie says to whoever came with a token of this role. */
   [[nodiscard]] std::string SetCookie(Role role) const;
 
@@ -62,6 +67,8 @@ class Access {
  private:
   std::vector<std::string> hosts_;
   std::vector<std::string> origins_;
+  std::string cookie_name_;
+  std::uint16_t port_;
   bool is_tls_;
   std::string operator_token_{MakeToken()};
   std::string viewer_token_{MakeToken()};

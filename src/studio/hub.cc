@@ -138,18 +138,18 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
     return;
   }
   ClientLink* link = found->second.link;
-  const Json command = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const Result<Json> command = ParseCommand(text);
   Json reply{{"id", nullptr}, {"ok", false}};
-  if (command.is_object() && command.contains("id") && command["id"].is_number_integer()) {
-    reply["id"] = command["id"];
+  if (command && command->contains("id") && (*command)["id"].is_number_integer()) {
+    reply["id"] = (*command)["id"];
   }
-  Result<Json> result = Json(nullptr);
+  Result<Json> result = command;
   // Forces go off at once, however much was asked before (N6).
-  const bool is_urgent = IsForcesOff(command) && !workbench_->forces_off();
+  const bool is_urgent = command && IsForcesOff(*command) && !workbench_->forces_off();
   if (!MaySend(&found->second, now_ns) && !is_urgent) {
     result = Fail(ErrorCode::kOutOfResource, "too many commands", "", "send fewer a second");
-  } else {
-    result = Execute(id, command);
+  } else if (command) {
+    result = Execute(id, *command);
   }
   reply["ok"] = result.has_value();
   if (result) {

@@ -8,6 +8,7 @@ namespace hvas::studio {
 namespace {
 
 constexpr std::size_t kLongestText = 1000;
+constexpr std::size_t kMostFields = 64;  // of a command, those of its objects among them
 
 Unexpected Wrong(const char* name, const char* wanted) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" must be {}", name, wanted), "command",
@@ -23,6 +24,23 @@ const Json* FieldOf(const Json& object, const char* name) {
 }
 
 }  // namespace
+
+Result<Json> ParseCommand(std::string_view text) {
+  std::size_t fields = 0;
+  const auto keep = [&fields](int, Json::parse_event_t event, const Json&) {
+    fields += event == Json::parse_event_t::key ? 1 : 0;
+    return fields <= kMostFields;
+  };
+  Json command = Json::parse(text, keep, /*allow_exceptions=*/false);
+  if (fields > kMostFields) {
+    return Fail(ErrorCode::kInvalid, fmt::format("a command has at most {} fields", kMostFields),
+                "command", "load the page again");
+  }
+  if (!command.is_object()) {
+    return Fail(ErrorCode::kInvalid, "this is no JSON object", "command", "load the page again");
+  }
+  return command;
+}
 
 Result<std::string> TextAt(const Json& object, const char* name) {
   const Json* field = FieldOf(object, name);

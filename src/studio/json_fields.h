@@ -1,11 +1,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "base/result.h"
 #include "studio/measure.h"
 
 namespace hvas::studio {
+
+/** What a client sent as a command. Errors (kInvalid): it is no JSON object, or has more fields
+ than any command: keeping them in order takes the square of their number. */
+[[nodiscard]] Result<Json> ParseCommand(std::string_view text);
 
 /** Fields of a command. Errors (kInvalid) name the field and what it should be. */
 [[nodiscard]] Result<std::string> TextAt(const Json& object, const char* name);

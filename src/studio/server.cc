@@ -10,6 +10,7 @@
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -18,6 +19,7 @@
 
 #include "base/clock.h"
 #include "studio/assets.h"
+#include "studio/connection.h"
 #include "studio/event_json.h"
 #include "studio/scene_json.h"
 
@@ -35,8 +37,10 @@ constexpr std::size_t kMostHeader = 8 << 10;
 constexpr std::size_t kMostBody = 4 << 10;      // of what is no upload
 constexpr std::size_t kMostMessage = 64 << 10;  // to the server
 constexpr std::size_t kMostQueued = 16 << 20;   // of text to a client that does not read
-constexpr std::chrono::seconds kIdle(30);
+constexpr double kSlowest = 128 << 10;          // that an answer may be read with [bytes/s]
 constexpr std::chrono::seconds kUploadTime(300);
+constexpr std::chrono::seconds kLinger(5);                    // for what was sent in vain
+constexpr std::chrono::milliseconds kWaitForDescriptor(100);  // when the system has no more
 
 constexpr std::string_view kContentSecurity =
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' "
@@ -56,6 +60,29 @@ std::string_view FieldOf(const Fields& fields, http::field name) {
   return ToView(fields[name]);
 }
 
+/** Errors (kUnreadable): a file is no PEM, is locked by a password, or the two do not belong
+ together. */
+Result<std::unique_ptr<asio::ssl::context>> MakeTls(const TlsFiles& files) {
+  auto tls = std::make_unique<asio::ssl::context>(asio::ssl::context::tls_server);
+  SSL_CTX_set_min_proto_version(tls->native_handle(), TLS1_2_VERSION);
+  error_code error;
+  tls->set_password_callback([](std::size_t, asio::ssl::context::password_purpose) { return ""; },
+                             error);
+  tls->use_certificate_chain_file(files.certificate.string(), error);
+  if (error) {
+    return Fail(ErrorCode::kUnreadable, "this certificate cannot be used: " + error.message(),
+                files.certificate.string(),
+                "give --certificate a file in PEM, the server's own certificate first");
+  }
+  tls->use_private_key_file(files.key.string(), asio::ssl::context::pem, error);
+  if (error) {
+    return Fail(ErrorCode::kUnreadable, "this key cannot be used: " + error.message(),
+                files.key.string(),
+                "give --key the certificate's own key, in PEM, without a password");
+  }
+  return tls;
+}
+
 /** All that the sessions share; one thread's. */
 struct Shared {
   Shared(Workbench* bench, std::vector<Example> examples, const ServerOptions& given)
@@ -65,20 +92,24 @@ struct Shared {
   Hub hub;
   ServerOptions options;
   std::unique_ptr<Access> access;
+  std::unique_ptr<asio::ssl::context> tls;  ///< Null: nothing is encrypted.
+  std::shared_ptr<Guests> guests{std::make_shared<Guests>()};
   std::uint32_t next_upload{0};
 };
 
 /** A client's WebSocket. Text is kept until it is sent; frames are few, by the hub's credit. */
 class SocketSession final : public ClientLink, public std::enable_shared_from_this<SocketSession> {
  public:
-  SocketSession(beast::tcp_stream stream, std::shared_ptr<Shared> shared, Role role)
-      : socket_(std::move(stream)), shared_(std::move(shared)), role_(role) {}
+  SocketSession(Connection connection, std::shared_ptr<Shared> shared, Role role)
+      : socket_(std::move(connection)), shared_(std::move(shared)), role_(role) {}
 
   ~SocketSession() override { Leave(); }
 
   template <typename Request>
   void Run(const Request& request) {
-    socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    // Whoever has gone without a word, or sleeps, is asked after half the time, and let go of.
+    const auto patience = shared_->options.patience;
+    socket_.set_option(websocket::stream_base::timeout{patience, patience, true});
     socket_.read_message_max(kMostMessage);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](error_code error) {
@@ -193,7 +224,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
                         });
   }
 
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<Connection> socket_;
   std::shared_ptr<Shared> shared_;
   Role role_;
   std::string id_;
@@ -207,24 +238,60 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket socket, std::shared_ptr<Shared> shared)
-      : stream_(std::move(socket)), shared_(std::move(shared)) {}
+      : connection_(std::move(socket), shared->guests), shared_(std::move(shared)) {}
 
   void Run() {
+    if (!connection_.is_in()) {
+      return;
+    }
     error_code ignored;
-    stream_.socket().set_option(tcp::no_delay(true), ignored);
-    ReadHeader();
+    wire().socket().set_option(tcp::no_delay(true), ignored);
+    if (shared_->tls == nullptr) {
+      ReadHeader();
+    } else {
+      BeginTls();
+    }
   }
 
  private:
   using Header = http::request_parser<http::empty_body>;
 
+  beast::tcp_stream& wire() { return connection_.next_layer(); }
+
+  /** A browser that was given http:// is told where to go; all others begin with a handshake. */
+  void BeginTls() {
+    wire().expires_after(shared_->options.patience);
+    beast::async_detect_ssl(wire(), buffer_,
+                            [self = shared_from_this()](error_code error, bool is_tls) {
+                              if (error) {
+                                return;
+                              }
+                              if (is_tls) {
+                                self->ShakeHands();
+                              } else {
+                                self->ReadHeader();
+                              }
+                            });
+  }
+
+  void ShakeHands() {
+    connection_.BeginTls(shared_->tls.get())
+        .async_handshake(asio::ssl::stream_base::server, buffer_.data(),
+                         [self = shared_from_this()](error_code error, std::size_t used) {
+                           if (!error) {
+                             self->buffer_.consume(used);
+                             self->ReadHeader();
+                           }
+                         });
+  }
+
   void ReadHeader() {
     header_.emplace();
     header_->header_limit(kMostHeader);
     header_->body_limit(std::numeric_limits<std::uint64_t>::max());  // each route has its own
-    stream_.expires_after(kIdle);
+    wire().expires_after(shared_->options.patience);
     http::async_read_header(
-        stream_, buffer_, *header_, [self = shared_from_this()](error_code error, std::size_t) {
+        connection_, buffer_, *header_, [self = shared_from_this()](error_code error, std::size_t) {
           if (!error) {
             self->Route();
           } else if (error == http::error::header_limit) {
@@ -243,6 +310,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return Refuse(http::status::forbidden,
                     {ErrorCode::kInvalid, "this server does not answer to that host name", "Host",
                      "open the address that it printed"});
+    }
+    if (shared_->tls != nullptr && !connection_.is_tls()) {
+      return SendToTls();
     }
     const bool is_change = request.method() != http::verb::get;
     const bool is_upgrade = websocket::is_upgrade(request);
@@ -265,15 +335,28 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                     {ErrorCode::kInvalid, "nobody knows you here", "",
                      "open the link that the program printed, with its token"});
     }
+    connection_.SetKnown();
     RouteKnown(*role, path, is_upgrade);
+  }
+
+  /** The same page by https. The secret stays behind its #, in the browser. @pre Host is allowed.
+   */
+  void SendToTls() {
+    const std::string page = fmt::format("https://{}/", FieldOf(header_->get(), http::field::host));
+    http::response<http::string_body> response(http::status::temporary_redirect, 11);
+    response.set(http::field::location, page);
+    response.set(http::field::content_type, "text/plain; charset=utf-8");
+    response.body() = fmt::format("This studio speaks https only: open {}\n", page);
+    is_refused_ = true;
+    Send(std::move(response));
   }
 
   void RouteKnown(Role role, std::string_view path, bool is_upgrade) {
     constexpr std::string_view kModel = "/api/model/";
     const http::verb method = header_->get().method();
     if (path == "/ws" && is_upgrade) {
-      stream_.expires_never();
-      std::make_shared<SocketSession>(std::move(stream_), shared_, role)->Run(header_->get());
+      wire().expires_never();
+      std::make_shared<SocketSession>(std::move(connection_), shared_, role)->Run(header_->get());
     } else if (path == "/api/scene" && method == http::verb::get) {
       SendScene();
     } else if (path.starts_with(kModel) && method == http::verb::get) {
@@ -303,7 +386,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     auto parser = std::make_shared<http::request_parser<http::string_body>>(std::move(*header_));
     parser->body_limit(kMostBody);
-    http::async_read(stream_, buffer_, *parser,
+    http::async_read(connection_, buffer_, *parser,
                      [self = shared_from_this(), parser](error_code error, std::size_t) {
                        if (error) {
                          self->RefuseBody(error);
@@ -355,9 +438,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
           http::status::insufficient_storage,
           {ErrorCode::kOutOfResource, "the file cannot be kept", name, "make room on the disk"});
     }
-    stream_.expires_after(kUploadTime);
+    wire().expires_after(kUploadTime);
     http::async_read(
-        stream_, buffer_, *parser,
+        connection_, buffer_, *parser,
         [self = shared_from_this(), parser, folder, file, name](error_code read, std::size_t) {
           parser->get().body().close();
           if (read) {
@@ -483,21 +566,47 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response.set("Referrer-Policy", "no-referrer");
     response.keep_alive(!is_refused_);
     response.prepare_payload();
+    const std::chrono::duration<double> long_enough(
+        static_cast<double>(response.payload_size().value_or(0)) / kSlowest);
+    wire().expires_after(shared_->options.patience +
+                         std::chrono::duration_cast<std::chrono::milliseconds>(long_enough));
     auto kept = std::make_shared<http::response<Body>>(std::move(response));
-    stream_.expires_after(kIdle);
-    http::async_write(stream_, *kept,
+    http::async_write(connection_, *kept,
                       [self = shared_from_this(), kept](error_code error, std::size_t) {
                         self->owner_.reset();
-                        if (error || !kept->keep_alive()) {
-                          error_code ignored;
-                          self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-                        } else {
+                        if (error) {
+                          return;
+                        }
+                        if (kept->keep_alive()) {
                           self->ReadHeader();
+                        } else {
+                          self->End();
                         }
                       });
   }
 
-  beast::tcp_stream stream_;
+  /** What still comes is read and thrown away for a while: were it not, the system would end the
+   connection at once, and with it the answer that is on its way. */
+  void End() {
+    wire().expires_after(kLinger);
+    if (!connection_.is_tls()) {
+      error_code ignored;
+      wire().socket().shutdown(tcp::socket::shutdown_send, ignored);
+    }
+    buffer_.clear();
+    ThrowAway();
+  }
+
+  void ThrowAway() {
+    connection_.async_read_some(buffer_.prepare(kMostHeader),
+                                [self = shared_from_this()](error_code error, std::size_t) {
+                                  if (!error) {
+                                    self->ThrowAway();
+                                  }
+                                });
+  }
+
+  Connection connection_;
   std::shared_ptr<Shared> shared_;
   beast::flat_buffer buffer_{kMostHeader + (64 << 10)};
   std::optional<Header> header_;
@@ -512,7 +621,8 @@ class Server::Impl {
   Impl(Workbench* workbench, std::vector<Example> examples, const ServerOptions& options)
       : shared_(std::make_shared<Shared>(workbench, std::move(examples), options)),
         acceptor_(context_),
-        timer_(context_) {
+        timer_(context_),
+        pause_(context_) {
     workbench->on_event = [this](Json event) {
       asio::post(context_, [this, event = std::move(event)] { shared_->hub.Broadcast(event); });
     };
@@ -529,20 +639,28 @@ class Server::Impl {
   ~Impl() { Stop(); }
 
   Result<void> Start() {
+    const ServerOptions& options = shared_->options;
     error_code error;
-    const tcp::endpoint wanted(asio::ip::address_v4::loopback(), shared_->options.port);
-    acceptor_.open(wanted.protocol(), error);
-    acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-    acceptor_.bind(wanted, error);
-    if (!error) {
-      acceptor_.listen(asio::socket_base::max_listen_connections, error);
-    }
+    const auto address = asio::ip::make_address(options.address, error);
     if (error) {
-      return Fail(ErrorCode::kOutOfResource, error.message(),
-                  fmt::format("127.0.0.1:{}", shared_->options.port),
-                  "choose another port with --port, or leave it out");
+      return Fail(ErrorCode::kInvalid, "this is no address", options.address,
+                  "give one of this machine, or 0.0.0.0 for all that it has");
     }
-    shared_->access = std::make_unique<Access>(shared_->options.names, port(), false);
+    if (!address.is_loopback() && !options.tls) {
+      return Fail(ErrorCode::kInvalid, "other machines are not spoken with unencrypted",
+                  options.address, "give a certificate, or listen on 127.0.0.1");
+    }
+    if (options.tls) {
+      auto tls = MakeTls(*options.tls);
+      if (!tls) {
+        return Unexpected(tls.error());
+      }
+      shared_->tls = std::move(*tls);
+    }
+    if (const auto listening = Listen({address, options.port}); !listening) {
+      return listening;
+    }
+    shared_->access = std::make_unique<Access>(options.names, port(), options.tls.has_value());
     Accept();
     Tick();
     thread_ = std::thread([this] { context_.run(); });
@@ -562,17 +680,49 @@ class Server::Impl {
     return acceptor_.local_endpoint(ignored).port();
   }
 
-  [[nodiscard]] std::string LinkFor(Role role) const {
-    return fmt::format("http://127.0.0.1:{}/#t={}", port(), shared_->access->token(role));
+  [[nodiscard]] std::string LinkFor(Role role, std::string_view host) const {
+    return fmt::format("{}/#t={}", shared_->access->OriginOf(host), shared_->access->token(role));
   }
 
  private:
+  Result<void> Listen(const tcp::endpoint& wanted) {
+    error_code error;
+    acceptor_.open(wanted.protocol(), error);
+    if (!error) {
+      acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+      acceptor_.bind(wanted, error);
+    }
+    if (!error) {
+      acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    }
+    if (error) {
+      const bool is_elsewhere = error == std::errc::address_not_available;
+      return Fail(ErrorCode::kOutOfResource, error.message(),
+                  fmt::format("{}:{}", wanted.address().to_string(), wanted.port()),
+                  is_elsewhere ? "listen on an address of this machine, or on 0.0.0.0"
+                               : "choose another port with --port, or leave it out");
+    }
+    return {};
+  }
+
   void Accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-      if (!error) {
-        std::make_shared<HttpSession>(std::move(socket), shared_)->Run();
+      if (error == asio::error::operation_aborted) {
+        return;
       }
-      if (error != asio::error::operation_aborted) {
+      if (error) {
+        return AcceptLater();
+      }
+      std::make_shared<HttpSession>(std::move(socket), shared_)->Run();
+      Accept();
+    });
+  }
+
+  /** The system has no descriptor left, and would say so again at once. */
+  void AcceptLater() {
+    pause_.expires_after(kWaitForDescriptor);
+    pause_.async_wait([this](error_code error) {
+      if (!error) {
         Accept();
       }
     });
@@ -592,6 +742,7 @@ class Server::Impl {
   std::shared_ptr<Shared> shared_;
   tcp::acceptor acceptor_;
   asio::steady_timer timer_;
+  asio::steady_timer pause_;
   std::atomic<bool> has_frame_{false};
   std::thread thread_;
 };
@@ -613,8 +764,8 @@ std::uint16_t Server::port() const {
   return impl_->port();
 }
 
-std::string Server::LinkFor(Role role) const {
-  return impl_->LinkFor(role);
+std::string Server::LinkFor(Role role, std::string_view host) const {
+  return impl_->LinkFor(role, host);
 }
 
 }  // namespace hvas::studio

@@ -122,8 +122,8 @@ Workbench::~Workbench() {
 }
 
 void Workbench::Stop() {
-  Cancel();
   worker_.request_stop();
+  Cancel();  // after it: nothing else begins
   if (worker_.joinable()) {
     worker_.join();
   }
@@ -139,7 +139,8 @@ void Workbench::Work(const std::stop_token& stop) {
     std::function<void()> job;
     {
       std::unique_lock lock(jobs_mutex_);
-      if (!jobs_changed_.wait(lock, stop, [this] { return !jobs_.empty(); })) {
+      (void)jobs_changed_.wait(lock, stop, [this] { return !jobs_.empty(); });
+      if (stop.stop_requested()) {
         return;
       }
       job = std::move(jobs_.front());

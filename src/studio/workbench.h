@@ -80,7 +80,8 @@ class Workbench {
   std::function<void(Json)> on_event;
   std::function<void()> on_frame;
 
-  /** Ends what runs; nothing is told of after it. */
+  /** Ends what runs, and drops what was asked for and has not begun; nothing is told of after it.
+   */
   void Stop();
 
   /** @param name  As people call it. */

@@ -32,7 +32,7 @@ OUTSIDE = {
 TEST_ONLY = (r"(gtest|gmock|benchmark)/",)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Headers of the standard library and of POSIX; all others have to be in OUTSIDE.
-STANDARD = re.compile(r"[a-z_]+|((sys|linux|netinet|arpa)/)?[a-z]+\.h|[a-z0-9]*intrin\.h")
+STANDARD = re.compile(r"[a-z_]+|((sys|linux|net|netinet|arpa)/)?[a-z]+\.h|[a-z0-9]*intrin\.h")
 
 
 def read_table(architecture):

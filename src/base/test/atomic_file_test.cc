@@ -50,6 +50,15 @@ TEST_F(AtomicFile, KeepsPermissionsAndSymbolicLinks) {
   EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0640));
 }
 
+TEST_F(AtomicFile, WhatIsItsOwnersAloneIsReadByNobodyElse) {
+  const std::filesystem::path file = folder_ / "key.pem";
+  ASSERT_TRUE(WriteAtomically(file, "a", FileReaders::kOwner).has_value());
+  EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0600));
+  std::filesystem::permissions(file, std::filesystem::perms(0644));
+  ASSERT_TRUE(WriteAtomically(file, "b", FileReaders::kOwner).has_value());
+  EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0600));
+}
+
 TEST_F(AtomicFile, FullDiskIsAnErrorAndLeavesTheOldFile) {
   const std::filesystem::path file = folder_ / "a.json";
   std::ofstream(file) << "old";

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint16_t kPort = 8123;
 
 std::string HeaderWith(const std::string& value) {
-  return std::string(Access::kCookie) + "=" + value;
+  return "hvas_session_" + std::to_string(kPort) + "=" + value;
 }
 
 /** What stands between '=' and the first ';' of a Set-Cookie. */
@@ -228,6 +228,19 @@ TEST(AccessTest, SecretsOfOneServerAreNoneOfAnother) {
   const Access other({}, kPort, false);
   EXPECT_EQ(other.RoleOfToken(one.token(Role::kOperator)), std::nullopt);
   EXPECT_EQ(other.RoleOfCookie(HeaderWith(SessionOf(one, Role::kOperator))), std::nullopt);
+}
+
+TEST(AccessTest, CookiesOfTwoServersOnOneHostDoNotMeet) {  // browsers tell no ports apart
+  const Access one({}, kPort, false);
+  const Access other({}, kPort + 1, false);
+  EXPECT_NE(one.cookie_name(), other.cookie_name());
+  const auto pair_of = [](const Access& access, Role role) {
+    const std::string cookie = access.SetCookie(role);
+    return cookie.substr(0, cookie.find(';'));
+  };
+  const std::string both = pair_of(one, Role::kOperator) + "; " + pair_of(other, Role::kViewer);
+  EXPECT_EQ(one.RoleOfCookie(both), Role::kOperator);
+  EXPECT_EQ(other.RoleOfCookie(both), Role::kViewer);
 }
 
 TEST(AccessTest, CookieIsOutOfReachOfScriptsAndOtherSites) {

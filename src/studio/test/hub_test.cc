@@ -303,6 +303,26 @@ TEST_F(HubTest, TextsThatAreNoCommandsAreAnsweredWithAnError) {
   }
 }
 
+TEST_F(HubTest, CommandsOfMoreFieldsThanAnyHasAreRefused) {
+  FakeLink link;
+  const std::string id = Join(Role::kOperator, &link);
+  const auto command_with = [](int more) {
+    std::string text = R"({"id": 1, "command": "status")";
+    for (int i = 0; i < more; ++i) {
+      text += ",\"" + std::to_string(i) + "\":0";
+    }
+    return text + "}";
+  };
+  EXPECT_EQ(AskText(id, &link, command_with(62))["ok"], true);
+  EXPECT_TRUE(IsError(AskText(id, &link, command_with(63)), "invalid"));
+  EXPECT_TRUE(IsError(AskText(id, &link, command_with(7000)), "invalid"));  // 64 KiB
+  // In whatever they are.
+  EXPECT_TRUE(IsError(AskText(id, &link,
+                              R"({"id": 1, "command": "status", "a": [)" + command_with(31) + "," +
+                                  command_with(31) + "]}"),
+                      "invalid"));
+}
+
 TEST_F(HubTest, FieldsOfTheWrongTypeAreNamed) {
   FakeLink link;
   const std::string id = Join(Role::kOperator, &link);

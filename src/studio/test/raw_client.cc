@@ -10,6 +10,8 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <openssl/ssl.h>
+#include <openssl/x509v3.h>
 
 namespace hvas::studio::testing {
 namespace {
@@ -50,12 +52,49 @@ RawClient::RawClient(std::uint16_t port, int receive_buffer)
 }
 
 RawClient::~RawClient() {
+  tls_.reset();
   ::close(socket_);
+}
+
+void RawClient::TlsEnd::operator()(ssl_st* tls) const {
+  SSL_free(tls);
+}
+
+std::string RawClient::ShakeHands(const std::filesystem::path& trusted,
+                                  const std::string& address) {
+  SSL_CTX* context = SSL_CTX_new(TLS_client_method());
+  SSL_CTX_load_verify_file(context, trusted.c_str());
+  X509_VERIFY_PARAM_set1_ip_asc(SSL_CTX_get0_param(context), address.c_str());
+  tls_.reset(SSL_new(context));
+  SSL_CTX_free(context);  // tls_ keeps it
+  SSL_set_fd(tls_.get(), socket_);
+  if (SSL_connect(tls_.get()) != 1) {
+    return "";
+  }
+  return X509_verify_cert_error_string(SSL_get_verify_result(tls_.get()));
+}
+
+std::string RawClient::PeerFingerprint() const {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  X509* certificate = SSL_get1_peer_certificate(tls_.get());
+  X509_digest(certificate, EVP_sha256(), digest.data(), &size);
+  X509_free(certificate);
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string text;
+  for (unsigned int i = 0; i < size; ++i) {
+    text += i > 0 ? ":" : "";
+    text += kDigits[digest[i] >> 4U];
+    text += kDigits[digest[i] & 0xFU];
+  }
+  return text;
 }
 
 bool RawClient::Send(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    const ssize_t sent = tls_ != nullptr
+                             ? SSL_write(tls_.get(), bytes.data(), static_cast<int>(bytes.size()))
+                             : ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent <= 0) {
       return false;
     }
@@ -75,9 +114,14 @@ bool RawClient::Send(const Request& request) {
   return Send(text + "\r\n" + request.body);
 }
 
+std::int64_t RawClient::ReceiveSome(char* bytes, std::size_t size) {
+  return tls_ != nullptr ? SSL_read(tls_.get(), bytes, static_cast<int>(size))
+                         : ::recv(socket_, bytes, size, 0);
+}
+
 bool RawClient::Receive() {
   std::array<char, 65536> bytes{};
-  const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), 0);
+  const std::int64_t got = ReceiveSome(bytes.data(), bytes.size());
   if (got <= 0) {
     return false;
   }
@@ -130,9 +174,10 @@ Reply RawClient::Ask(const Request& request) {
 
 bool RawClient::IsClosed() {
   std::array<char, 65536> bytes{};
-  ssize_t got = 0;
+  std::int64_t got = 0;
   do {
-    got = ::recv(socket_, bytes.data(), bytes.size(), 0);
+    errno = 0;
+    got = ReceiveSome(bytes.data(), bytes.size());
   } while (got > 0);
   return got == 0 || (errno != EAGAIN && errno != EWOULDBLOCK);
 }

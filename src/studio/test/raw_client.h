@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+struct ssl_st;
 
 namespace hvas::studio::testing {
 
@@ -43,6 +47,14 @@ class RawClient {
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
 
+  /** Speaks TLS from here on. @returns what is wrong with the server's certificate, when only those
+   of a PEM file are trusted and the server should be at an address; "ok" when nothing is, "" when
+   there was no handshake. */
+  std::string ShakeHands(const std::filesystem::path& trusted, const std::string& address);
+
+  /** SHA-256 of the certificate that the server has shown: "0A:1B:..". */
+  [[nodiscard]] std::string PeerFingerprint() const;
+
   /** False when the server has closed the connection. */
   bool Send(std::string_view bytes);
   bool Send(const Request& request);
@@ -62,10 +74,16 @@ class RawClient {
   std::optional<Message> ReadMessage();
 
  private:
+  struct TlsEnd {
+    void operator()(ssl_st* tls) const;
+  };
+
   bool Receive();
+  std::int64_t ReceiveSome(char* bytes, std::size_t size);
   bool Await(std::size_t size);
 
   int socket_{-1};
+  std::unique_ptr<ssl_st, TlsEnd> tls_;  ///< Null: not encrypted.
   std::string received_;
 };
 

@@ -1,6 +1,10 @@
 #include "studio/server.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -25,17 +29,47 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 
 constexpr std::uint64_t kMostUpload = 10'000;  // [bytes]
 
+/** While it lives, this program may have 200 descriptors. */
+class FewDescriptors {
+ public:
+  FewDescriptors() {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit few{200, before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &few);
+  }
+
+  ~FewDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+
+  FewDescriptors(const FewDescriptors&) = delete;
+  FewDescriptors& operator=(const FewDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+/** Of a server that speaks TLS, by a certificate that was made for this machine's loopback. */
+ServerOptions MakeTlsOptions() {
+  static const hvas::testing::TemporaryFolder folder;  // one for all
+  ServerOptions options;
+  options.tls = KeepCertificate(folder.path() / "tls", {"127.0.0.1"}, std::time(nullptr))->files;
+  return options;
+}
+
 /** A server on a free port, with nothing open. */
 class ServerTest : public ::testing::Test {
  protected:
-  ServerTest() {
-    ServerOptions options;
+  ServerTest() : ServerTest(ServerOptions()) {}
+
+  explicit ServerTest(ServerOptions options) : is_tls_(options.tls.has_value()) {
     options.upload_folder = folder_;
     options.most_upload = kMostUpload;
     bench_ = std::make_unique<Workbench>(testing::SmallBench());
     server_ = std::make_unique<Server>(
         bench_.get(), std::vector<Example>{{"peg", "Peg", "a peg", "peg.step"}}, options);
     started_ = server_->Start().has_value();
+    if (is_tls_) {
+      trusted_ = options.tls->certificate;
+    }
   }
 
   ~ServerTest() override { End(); }
@@ -52,14 +86,23 @@ class ServerTest : public ::testing::Test {
 
   [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_->port()); }
 
-  [[nodiscard]] std::string origin() const { return "http://" + host(); }
+  [[nodiscard]] std::string origin() const { return (is_tls_ ? "https://" : "http://") + host(); }
+
+  /** Connected as a browser would be. */
+  [[nodiscard]] std::unique_ptr<RawClient> Connect(int receive_buffer = 0) const {
+    auto client = std::make_unique<RawClient>(server_->port(), receive_buffer);
+    if (is_tls_) {
+      EXPECT_EQ(client->ShakeHands(trusted_, "127.0.0.1"), "ok");
+    }
+    return client;
+  }
 
   [[nodiscard]] std::string TokenOf(Role role) const {
     const std::string link = server_->LinkFor(role);
     return link.substr(link.find("#t=") + 3);
   }
 
-  Reply Ask(const Request& request) { return RawClient(server_->port()).Ask(request); }
+  Reply Ask(const Request& request) { return Connect()->Ask(request); }
 
   Reply Get(const std::string& target, Headers more = {}) {
     more.insert(more.begin(), {"Host", host()});
@@ -81,8 +124,12 @@ class ServerTest : public ::testing::Test {
     return given.substr(0, given.find(';'));
   }
 
+  [[nodiscard]] std::string CookieName() const {
+    return "hvas_session_" + std::to_string(server_->port());
+  }
+
   std::unique_ptr<RawClient> Join(Role role, int receive_buffer = 0) {
-    auto client = std::make_unique<RawClient>(server_->port(), receive_buffer);
+    auto client = Connect(receive_buffer);
     client->SendUpgrade({{"Host", host()}, {"Origin", origin()}, {"Cookie", CookieOf(role)}});
     EXPECT_EQ(client->ReadReply().status, 101);
     return client;
@@ -140,6 +187,8 @@ class ServerTest : public ::testing::Test {
 
   hvas::testing::TemporaryFolder temporary_;
   const std::filesystem::path folder_{temporary_.path()};
+  const bool is_tls_;
+  std::filesystem::path trusted_;
   std::unique_ptr<Workbench> bench_;
   std::unique_ptr<Server> server_;
   bool started_{false};
@@ -253,8 +302,8 @@ TEST_F(ServerTest, WrongTokensAreRefused) {
 
 TEST_F(ServerTest, NothingIsGivenWithoutACookie) {
   for (const Headers& headers :
-       {Headers{}, Headers{{"Cookie", "hvas_session=" + MakeToken()}},
-        Headers{{"Cookie", "hvas_session=" + TokenOf(Role::kOperator)}},
+       {Headers{}, Headers{{"Cookie", CookieName() + "=" + MakeToken()}},
+        Headers{{"Cookie", CookieName() + "=" + TokenOf(Role::kOperator)}},
         Headers{{"Authorization", "Bearer " + TokenOf(Role::kOperator)}}}) {
     for (const char* target : {"/api/scene", "/api/model/0.glb", "/ws", "/api/anything", "/api/"}) {
       EXPECT_EQ(Get(target, headers).status, 401) << target;
@@ -531,6 +580,226 @@ TEST_F(ServerTest, RubbishInsteadOfARequestEndsTheConnection) {
     EXPECT_TRUE(status == 0 || status >= 400) << status;
   }
   EXPECT_EQ(Get("/").status, 200);
+}
+
+TEST_F(ServerTest, WhoeverHoldsConnectionsOpenKeepsNobodyOut) {
+  const std::string cookie = CookieOf(Role::kOperator);
+  const auto known = Join(Role::kOperator);
+  EXPECT_FALSE(AwaitEvent(known.get(), "hello").is_null());
+  std::vector<std::unique_ptr<RawClient>> strangers;
+  for (int i = 0; i < 150; ++i) {  // more than twice what may be open
+    strangers.push_back(std::make_unique<RawClient>(server_->port()));
+  }
+  EXPECT_EQ(Get("/").status, 200);
+  EXPECT_TRUE(strangers.front()->IsClosed());  // the first to come is the first to go
+  EXPECT_EQ(Command(known.get(), {{"id", 1}, {"command", "status"}})["ok"], true);
+  EXPECT_EQ(Get("/api/scene", {{"Cookie", cookie}}).status, 404);
+}
+
+TEST_F(ServerTest, UploadFarAboveTheLimitIsAnsweredBeforeTheConnectionEnds) {
+  RawClient client(server_->port());
+  client.Send("POST /api/upload?name=a.stp HTTP/1.1\r\nHost: " + host() +
+              "\r\nOrigin: " + origin() + "\r\nCookie: " + CookieOf(Role::kOperator) +
+              "\r\nContent-Length: 50000000\r\n\r\n");
+  // As browsers do, all is sent before the answer is read.
+  EXPECT_TRUE(client.Send(std::string(50'000'000, 'x')));
+  EXPECT_EQ(client.ReadReply().status, 413);
+}
+
+TEST_F(ServerTest, OutOfDescriptorsItRestsAndGoesOn) {
+  const FewDescriptors few;
+  std::vector<int> taken;
+  for (int copy = ::dup(0); copy >= 0; copy = ::dup(0)) {
+    taken.push_back(copy);
+  }
+  ASSERT_EQ(errno, EMFILE);
+  ::close(taken.back());
+  taken.pop_back();
+  RawClient waiting(server_->port());  // has the last one
+  waiting.Send({"GET", "/", {{"Host", host()}}, ""});
+  const std::clock_t start = std::clock();  // of the processor, not of the wall
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const double busy_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  for (const int copy : taken) {
+    ::close(copy);
+  }
+  EXPECT_LT(busy_s, 0.25);
+  EXPECT_EQ(waiting.ReadReply().status, 200);
+}
+
+/** A server that does not wait long. */
+class ImpatientServerTest : public ServerTest {
+ protected:
+  ImpatientServerTest() : ServerTest(MakeOptions()) {}
+
+  static ServerOptions MakeOptions() {
+    ServerOptions options;
+    options.patience = std::chrono::milliseconds(300);
+    return options;
+  }
+};
+
+TEST_F(ImpatientServerTest, WhoeverIsSilentIsLetGo) {
+  RawClient silent(server_->port());
+  RawClient slow(server_->port());
+  slow.Send("GET / HTTP/1.1\r\nHost: 127.0.");
+  RawClient idle(server_->port());
+  EXPECT_EQ(idle.Ask({"GET", "/", {{"Host", host()}}, ""}).status, 200);
+  EXPECT_TRUE(silent.IsClosed());
+  EXPECT_TRUE(slow.IsClosed());
+  EXPECT_TRUE(idle.IsClosed());
+}
+
+TEST_F(ImpatientServerTest, SocketThatDoesNotAnswerIsLetGoAndItsLeaseIsFree) {  // a headset asleep
+  const auto asleep = Join(Role::kOperator);
+  EXPECT_TRUE(AwaitEvent(asleep.get(), "hello")["has_lease"]);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  for (int i = 0; i < 100; ++i) {
+    const auto next = Join(Role::kOperator);
+    if (AwaitEvent(next.get(), "hello")["has_lease"]) {
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  ADD_FAILURE() << "it still has the lease";
+}
+
+class TlsServerTest : public ServerTest {
+ protected:
+  TlsServerTest() : TlsServerTest(std::chrono::milliseconds(30'000)) {}
+
+  explicit TlsServerTest(std::chrono::milliseconds patience) : ServerTest(MakeOptions(patience)) {}
+
+  static ServerOptions MakeOptions(std::chrono::milliseconds patience) {
+    ServerOptions options = MakeTlsOptions();
+    options.patience = patience;
+    return options;
+  }
+};
+
+TEST_F(TlsServerTest, PageCookieSceneAndSocketComeEncrypted) {  // N11: headsets need https
+  EXPECT_EQ(server_->LinkFor(Role::kOperator).substr(0, 18), "https://127.0.0.1:");
+  EXPECT_EQ(Get("/").status, 200);
+  const Reply given = GiveToken(TokenOf(Role::kOperator));
+  EXPECT_EQ(given.status, 200);
+  EXPECT_NE(given.headers.at("set-cookie").find("; Secure"), std::string::npos);
+  const auto client = JoinAndOpen();
+  const std::string cookie = CookieOf(Role::kOperator);
+  const Reply scene = Get("/api/scene", {{"Cookie", cookie}});
+  ASSERT_EQ(scene.status, 200);
+  const Reply model = Get(Json::parse(scene.body)["glb"], {{"Cookie", cookie}});
+  EXPECT_EQ(model.body.substr(0, 4), "glTF");
+  EXPECT_EQ(
+      Post("/api/upload?name=a.stp", std::string(kMostUpload, 'x'), {{"Cookie", cookie}}).status,
+      200);
+  EXPECT_EQ(Command(client.get(), {{"id", 5}, {"command", "status"}})["ok"], true);
+}
+
+TEST_F(TlsServerTest, CertificateIsTheOneWhoseFingerprintWasPrinted) {
+  const auto client = Connect();
+  EXPECT_EQ(client->PeerFingerprint(), CalcFingerprint(trusted_).value_or("none"));
+  RawClient elsewhere(server_->port());
+  EXPECT_EQ(elsewhere.ShakeHands(trusted_, "127.0.0.2"), "IP address mismatch");
+}
+
+TEST_F(TlsServerTest, OtherHostsAndOriginsAreRefusedAsWithout) {
+  EXPECT_EQ(Ask({"GET", "/", {{"Host", "evil.example"}}, ""}).status, 403);
+  const std::string cookie = CookieOf(Role::kOperator);
+  for (const std::string& other :
+       {"http://" + host(), std::string("https://evil.example"), origin() + "0"}) {
+    const auto client = Connect();
+    client->SendUpgrade({{"Host", host()}, {"Origin", other}, {"Cookie", cookie}});
+    EXPECT_EQ(client->ReadReply().status, 403) << other;
+  }
+}
+
+TEST_F(TlsServerTest, UnencryptedRequestIsSentToThePageByHttps) {
+  RawClient plain(server_->port());
+  const Reply reply = plain.Ask({"GET", "/api/scene", {{"Host", host()}}, ""});
+  EXPECT_EQ(reply.status, 307);
+  EXPECT_EQ(reply.headers.at("location"), origin() + "/");
+  EXPECT_NE(reply.body.find("https only"), std::string::npos);
+  EXPECT_TRUE(plain.IsClosed());
+  RawClient rebound(server_->port());
+  EXPECT_EQ(rebound.Ask({"GET", "/", {{"Host", "evil.example"}}, ""}).status, 403);
+  RawClient token(server_->port());  // not even with the right token
+  const Reply given = token.Ask({"POST",
+                                 "/api/session",
+                                 {{"Host", host()}, {"Origin", origin()}},
+                                 Json{{"token", TokenOf(Role::kOperator)}}.dump()});
+  EXPECT_EQ(given.status, 307);
+  EXPECT_EQ(given.headers.count("set-cookie"), 0u);
+}
+
+TEST_F(TlsServerTest, RubbishInsteadOfAHandshakeEndsTheConnection) {
+  for (const std::string& bytes :
+       {std::string("\x16\x03\x01\x02\x00\x01\x00\xFF\xFF\xFF\xFF\xFF", 12),
+        std::string(600, '\x16'), std::string("\0\0\0\0", 4), std::string("\r\n\r\n")}) {
+    RawClient client(server_->port());
+    client.Send(bytes + std::string(600, '\x01'));
+    EXPECT_TRUE(client.IsClosed());
+  }
+  EXPECT_EQ(Get("/").status, 200);
+}
+
+TEST_F(TlsServerTest, StopsInTheMiddleOfHandshakes) {
+  RawClient begun(server_->port());
+  begun.Send(std::string("\x16\x03\x01\x02\x00", 5));
+  const auto client = JoinAndOpen();
+  End();
+  EXPECT_TRUE(begun.IsClosed());
+  EXPECT_TRUE(client->IsClosed());
+}
+
+class ImpatientTlsServerTest : public TlsServerTest {
+ protected:
+  ImpatientTlsServerTest() : TlsServerTest(std::chrono::milliseconds(300)) {}
+};
+
+TEST_F(ImpatientTlsServerTest, HandshakesThatNeverEndAreLetGo) {
+  RawClient silent(server_->port());
+  RawClient begun(server_->port());
+  begun.Send(std::string("\x16\x03\x01\x02\x00", 5));
+  EXPECT_TRUE(silent.IsClosed());
+  EXPECT_TRUE(begun.IsClosed());
+}
+
+/** Why a server cannot start; kInternal when it can. */
+Error FindObstacle(const ServerOptions& options) {
+  Workbench bench(testing::SmallBench());
+  Server server(&bench, {}, options);
+  const auto started = server.Start();
+  bench.Stop();
+  return started ? Error() : started.error();
+}
+
+TEST(ServerStartTest, OtherMachinesAreNotServedUnencrypted) {
+  ServerOptions options;
+  for (const char* address : {"0.0.0.0", "::", "192.0.2.1"}) {
+    options.address = address;
+    const Error error = FindObstacle(options);
+    EXPECT_EQ(error.code, ErrorCode::kInvalid) << address;
+    EXPECT_NE(error.message.find("unencrypted"), std::string::npos) << error.message;
+  }
+  options.address = "localhost";
+  EXPECT_EQ(FindObstacle(options).code, ErrorCode::kInvalid);
+}
+
+TEST(ServerStartTest, AddressesOfOtherMachinesAndFilesThatAreNoneAreErrors) {
+  ServerOptions options = MakeTlsOptions();
+  options.address = "192.0.2.1";  // of no machine; RFC 5737
+  EXPECT_NE(FindObstacle(options).remedy.find("address of this machine"), std::string::npos);
+  options.address = "127.0.0.1";
+  const std::filesystem::path certificate = options.tls->certificate;
+  const hvas::testing::TemporaryFolder folder;
+  const std::filesystem::path broken = folder / "broken.pem";
+  std::ofstream(broken) << "-----BEGIN PRIVATE KEY-----\nAAAA\n-----END PRIVATE KEY-----\n";
+  options.tls = TlsFiles{certificate, broken};
+  const Error no_key = FindObstacle(options);
+  EXPECT_EQ(no_key.where, broken.string());
+  EXPECT_NE(no_key.remedy.find("--key"), std::string::npos);
+  options.tls = TlsFiles{folder / "missing.pem", certificate};
+  EXPECT_NE(FindObstacle(options).remedy.find("--certificate"), std::string::npos);
 }
 
 // Protection: headers, caching.

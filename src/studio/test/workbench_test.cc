@@ -396,5 +396,31 @@ TEST_F(WorkbenchTest, StopsWhileAFileIsBeingOpened) {
   EXPECT_EQ(log_.size(), told);
 }
 
+TEST(WorkbenchStopTest, WhatHasNotBegunIsDropped) {
+  WorkbenchOptions options = testing::SmallBench();
+  options.load = [load = options.load](const std::filesystem::path& file,
+                                       const cad::ProgressFn& progress, const std::stop_token& stop,
+                                       Diagnostics* diagnostics) {
+    while (file == "slow.step" && !stop.stop_requested()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return load(file, progress, stop, diagnostics);
+  };
+  Workbench bench(options);
+  EventLog log;
+  bench.on_event = [&log](Json event) { log.Add(std::move(event)); };
+  bench.Open("peg.step", "peg");
+  ASSERT_TRUE(log.Await("scene"));
+  bench.Open("slow.step", "slow");
+  int changes = 0;
+  const auto change = [&changes](product::Product*) -> Result<void> {
+    ++changes;
+    return {};
+  };
+  ASSERT_TRUE(bench.Change("behind it", change));  // is tried at once
+  bench.Stop();
+  EXPECT_EQ(changes, 1);
+}
+
 }  // namespace
 }  // namespace hvas::studio

@@ -1,0 +1,323 @@
+#include "studio/certificate.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <openssl/bn.h>
+#include <openssl/ec.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/x509v3.h>
+
+#include "base/atomic_file.h"
+
+namespace hvas::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kDayS = 86'400;
+constexpr std::int64_t kValidDays = 397;    // the longest that browsers take from anybody
+constexpr std::int64_t kRenewedDays = 14;   // before the end
+constexpr std::int64_t kBackdatedDays = 1;  // for clocks that are behind
+
+template <auto kFree>
+struct Free {
+  template <typename T>
+  void operator()(T* value) const {
+    kFree(value);
+  }
+};
+
+using Bio = std::unique_ptr<BIO, Free<BIO_free>>;
+using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
+using X509Ptr = std::unique_ptr<X509, Free<X509_free>>;
+
+bool IsAddress(const std::string& name) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  return ::inet_pton(AF_INET, name.c_str(), bytes.data()) == 1 ||
+         ::inet_pton(AF_INET6, name.c_str(), bytes.data()) == 1;
+}
+
+/** As DNS has them. */
+bool IsHostName(const std::string& name) {
+  constexpr std::size_t kLongest = 253;
+  return !name.empty() && name.size() <= kLongest && name.front() != '.' && name.front() != '-' &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.'; });
+}
+
+Bio MakeBio(std::string_view bytes) {
+  return Bio(BIO_new_mem_buf(bytes.data(), static_cast<int>(bytes.size())));
+}
+
+/** A key with a password has none here: nobody is asked. */
+int RefusePassword(char* /*password*/, int /*size*/, int /*is_new*/, void* /*user*/) {
+  return 0;
+}
+
+X509Ptr ReadCertificate(std::string_view pem) {
+  return X509Ptr(PEM_read_bio_X509(MakeBio(pem).get(), nullptr, RefusePassword, nullptr));
+}
+
+Key ReadKey(std::string_view pem) {
+  return Key(PEM_read_bio_PrivateKey(MakeBio(pem).get(), nullptr, RefusePassword, nullptr));
+}
+
+std::string ReadAll(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+bool HasName(X509* certificate, const std::string& name) {
+  return IsAddress(name) ? X509_check_ip_asc(certificate, name.c_str(), 0) == 1
+                         : X509_check_host(certificate, name.c_str(), name.size(), 0, nullptr) == 1;
+}
+
+bool EndsBefore(const X509* certificate, std::int64_t time_s) {
+  std::time_t time = time_s;
+  return X509_cmp_time(X509_get0_notAfter(certificate), &time) <= 0;
+}
+
+bool AddExtension(X509* certificate, int kind, const std::string& value) {
+  X509V3_CTX context;
+  X509V3_set_ctx_nodb(&context);
+  X509V3_set_ctx(&context, certificate, certificate, nullptr, nullptr, 0);
+  const std::unique_ptr<X509_EXTENSION, Free<X509_EXTENSION_free>> extension(
+      X509V3_EXT_conf_nid(nullptr, &context, kind, value.c_str()));
+  return extension != nullptr && X509_add_ext(certificate, extension.get(), -1) == 1;
+}
+
+bool SetSerial(X509* certificate) {
+  constexpr int kBits = 127;
+  const std::unique_ptr<BIGNUM, Free<BN_free>> number(BN_new());
+  return number != nullptr &&
+         BN_rand(number.get(), kBits, BN_RAND_TOP_ANY, BN_RAND_BOTTOM_ANY) == 1 &&
+         BN_to_ASN1_INTEGER(number.get(), X509_get_serialNumber(certificate)) != nullptr;
+}
+
+bool SetNames(X509* certificate, const std::vector<std::string>& names) {
+  std::vector<std::string> alternatives;
+  for (const std::string& name : names) {
+    alternatives.push_back(fmt::format("{}:{}", IsAddress(name) ? "IP" : "DNS", name));
+  }
+  const auto* common = reinterpret_cast<const unsigned char*>("HVAS studio");
+  X509_NAME* subject = X509_get_subject_name(certificate);
+  return X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC, common, -1, -1, 0) == 1 &&
+         X509_set_issuer_name(certificate, subject) == 1 &&
+         AddExtension(certificate, NID_subject_alt_name,
+                      fmt::format("{}", fmt::join(alternatives, ",")));
+}
+
+/** Key and certificate in one text, so that they are replaced together; empty when OpenSSL has no
+ random numbers or no memory. */
+std::string MakePem(const std::vector<std::string>& names, std::int64_t now_s) {
+  const Key key(EVP_EC_gen("P-256"));
+  const X509Ptr certificate(X509_new());
+  std::time_t now = now_s;
+  const bool is_made =
+      key != nullptr && certificate != nullptr &&
+      X509_set_version(certificate.get(), X509_VERSION_3) == 1 && SetSerial(certificate.get()) &&
+      X509_time_adj_ex(X509_getm_notBefore(certificate.get()), -kBackdatedDays, 0, &now) !=
+          nullptr &&
+      X509_time_adj_ex(X509_getm_notAfter(certificate.get()), kValidDays, 0, &now) != nullptr &&
+      X509_set_pubkey(certificate.get(), key.get()) == 1 && SetNames(certificate.get(), names) &&
+      AddExtension(certificate.get(), NID_basic_constraints, "critical,CA:FALSE") &&
+      AddExtension(certificate.get(), NID_key_usage, "critical,digitalSignature") &&
+      AddExtension(certificate.get(), NID_ext_key_usage, "serverAuth") &&
+      X509_sign(certificate.get(), key.get(), EVP_sha256()) > 0;
+  const Bio out(BIO_new(BIO_s_mem()));
+  if (!is_made || out == nullptr ||
+      PEM_write_bio_PKCS8PrivateKey(out.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) !=
+          1 ||
+      PEM_write_bio_X509(out.get(), certificate.get()) != 1) {
+    return "";
+  }
+  char* bytes = nullptr;
+  const long size = BIO_get_mem_data(out.get(), &bytes);
+  return {bytes, static_cast<std::size_t>(size)};
+}
+
+std::string FingerprintOf(const X509* certificate) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  X509_digest(certificate, EVP_sha256(), digest.data(), &size);
+  return fmt::format("{:02X}", fmt::join(digest.begin(), digest.begin() + size, ":"));
+}
+
+Result<void> CheckNames(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (!IsAddress(name) && !IsHostName(name)) {
+      return Fail(ErrorCode::kInvalid, "this is neither a host name nor an address", name,
+                  "give it as in studio.example or 192.168.1.5");
+    }
+  }
+  return {};
+}
+
+/** What is kept, when it is good for the names for long enough; nothing when there is none or it
+ has to be made anew. */
+Result<std::optional<SelfSigned>> FindKept(const fs::path& file,
+                                           const std::vector<std::string>& names,
+                                           std::int64_t now_s) {
+  struct stat status {};
+
+  if (::stat(file.c_str(), &status) != 0 && errno == ENOENT) {
+    return std::nullopt;
+  }
+  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    return Fail(ErrorCode::kInvalid, "others than you can read this key", file.string(),
+                fmt::format("delete it for a new one, or: chmod 600 '{}'", file.string()));
+  }
+  const std::string pem = ReadAll(file);
+  const X509Ptr certificate = ReadCertificate(pem);
+  const Key key = ReadKey(pem);
+  if (certificate == nullptr || key == nullptr ||
+      X509_check_private_key(certificate.get(), key.get()) != 1) {
+    return Fail(ErrorCode::kUnreadable, "this is no certificate with its key", file.string(),
+                "delete it: a new one is made then");
+  }
+  const bool has_names = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+    return HasName(certificate.get(), name);
+  });
+  if (!has_names || EndsBefore(certificate.get(), now_s + kRenewedDays * kDayS)) {
+    return std::nullopt;
+  }
+  return SelfSigned{{file, file}, FingerprintOf(certificate.get()), false};
+}
+
+Result<void> MakeFolder(const fs::path& folder) {
+  std::error_code failed;
+  if (fs::create_directories(folder, failed)) {
+    fs::permissions(folder, fs::perms::owner_all, failed);
+  }
+  return failed ? Result<void>(Fail(ErrorCode::kOutOfResource,
+                                    "this folder cannot be made: " + failed.message(),
+                                    folder.string(), "set XDG_STATE_HOME to one that can"))
+                : Result<void>();
+}
+
+/** As people and certificates write it; nothing for what is of no other kind than asked for. */
+std::optional<std::string> ReachableAddress(const sockaddr* address) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (address == nullptr) {
+    return std::nullopt;
+  }
+  if (address->sa_family == AF_INET) {
+    const auto* v4 = reinterpret_cast<const sockaddr_in*>(address);
+    return ::inet_ntop(AF_INET, &v4->sin_addr, text.data(), text.size());
+  }
+  if (address->sa_family == AF_INET6) {
+    const auto* v6 = reinterpret_cast<const sockaddr_in6*>(address);
+    if (!IN6_IS_ADDR_LINKLOCAL(&v6->sin6_addr)) {  // browsers take none with a zone
+      return ::inet_ntop(AF_INET6, &v6->sin6_addr, text.data(), text.size());
+    }
+  }
+  return std::nullopt;
+}
+
+/** Of all interfaces that are up, but the loopback. */
+std::vector<std::string> ListAddresses(bool has_v6) {
+  std::vector<std::string> addresses;
+  ifaddrs* list = nullptr;
+  if (::getifaddrs(&list) != 0) {
+    return addresses;
+  }
+  const std::unique_ptr<ifaddrs, Free<::freeifaddrs>> owner(list);
+  for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
+    const bool is_reached = (at->ifa_flags & IFF_UP) != 0 && (at->ifa_flags & IFF_LOOPBACK) == 0;
+    const auto address = ReachableAddress(at->ifa_addr);
+    if (is_reached && address && (has_v6 || at->ifa_addr->sa_family == AF_INET)) {
+      addresses.push_back(*address);
+    }
+  }
+  return addresses;
+}
+
+}  // namespace
+
+Result<fs::path> FindCertificateFolder() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return fs::path(value == nullptr ? "" : value);
+  };
+  if (const fs::path state = variable("XDG_STATE_HOME"); state.is_absolute()) {
+    return state / "hvas";
+  }
+  if (const fs::path home = variable("HOME"); home.is_absolute()) {
+    return home / ".local" / "state" / "hvas";
+  }
+  return Fail(ErrorCode::kNotFound, "there is no home folder to keep a certificate in", "HOME",
+              "set XDG_STATE_HOME to a folder, or give --certificate and --key");
+}
+
+Result<SelfSigned> KeepCertificate(const fs::path& folder, const std::vector<std::string>& names,
+                                   std::int64_t now_s) {
+  if (const auto checked = CheckNames(names); !checked) {
+    return Unexpected(checked.error());
+  }
+  const fs::path file = folder / "studio.pem";
+  auto kept = FindKept(file, names, now_s);
+  if (!kept) {
+    return Unexpected(kept.error());
+  }
+  if (*kept) {
+    return **kept;
+  }
+  const std::string pem = MakePem(names, now_s);
+  if (pem.empty()) {
+    return Fail(ErrorCode::kInternal, "OpenSSL makes no certificate", file.string(),
+                "give --certificate and --key");
+  }
+  if (const auto made = MakeFolder(folder); !made) {
+    return Unexpected(made.error());
+  }
+  if (const auto written = WriteAtomically(file, pem, FileReaders::kOwner); !written) {
+    return Unexpected(written.error());
+  }
+  return SelfSigned{{file, file}, FingerprintOf(ReadCertificate(pem).get()), true};
+}
+
+Result<std::string> CalcFingerprint(const fs::path& certificate) {
+  const X509Ptr read = ReadCertificate(ReadAll(certificate));
+  if (read == nullptr) {
+    return Fail(ErrorCode::kUnreadable, "there is no certificate in PEM in this file",
+                certificate.string(), "give the file that begins with -----BEGIN CERTIFICATE-----");
+  }
+  return FingerprintOf(read.get());
+}
+
+Result<std::vector<std::string>> ListNamesOf(const std::string& address) {
+  if (!IsAddress(address)) {
+    return Fail(ErrorCode::kInvalid, "this is no address", address,
+                "give one of this machine, or 0.0.0.0 for all that it has");
+  }
+  std::vector<std::string> names{address};
+  if (address == "0.0.0.0" || address == "::") {
+    names = ListAddresses(address == "::");
+  }
+  constexpr std::size_t kLongest = 256;
+  std::array<char, kLongest> own{};
+  if (::gethostname(own.data(), own.size() - 1) == 0 && IsHostName(own.data())) {
+    names.emplace_back(own.data());
+  }
+  return names;
+}
+
+}  // namespace hvas::studio
