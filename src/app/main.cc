@@ -11,6 +11,7 @@
 #include "app/fit.h"
 #include "app/inspect.h"
 #include "app/mate.h"
+#include "app/path.h"
 #include "app/replay.h"
 #include "app/report.h"
 #include "app/studio.h"
@@ -25,6 +26,7 @@ int Run(int argc, char** argv) {
   hvas::app::AddAssemble(&app, &status);
   hvas::app::AddMate(&app, &status);
   hvas::app::AddExport(&app, &status);
+  hvas::app::AddPath(&app, &status);
   hvas::app::AddFit(&app, &status);
   hvas::app::AddDevices(&app, &status);
   hvas::app::AddDoctor(&app, &status);

@@ -134,31 +134,6 @@ Result<Poses> ReadPoseFile(std::string_view text, const std::string& name, const
   return poses;
 }
 
-/** The occurrences of a product by their numbers in a record, which knows their paths. */
-Result<std::map<std::uint32_t, OccurrenceId>> MatchParts(const record::Meta& meta,
-                                                         const std::string& name,
-                                                         const Product& product) {
-  const auto found = meta.find("model_json");
-  const Json parts = Json::parse(found != meta.end() ? found->second : "", nullptr, false);
-  std::map<std::uint32_t, OccurrenceId> ids;
-  for (const Json& part : parts.is_array() ? parts : Json::array()) {
-    const bool is_known = part.is_object() && part.contains("path") && part["path"].is_string() &&
-                          part.contains("id") && part["id"].is_number_unsigned();
-    const std::string path = is_known ? part["path"].get<std::string>() : std::string();
-    const auto at = std::find_if(product.occurrences.begin(), product.occurrences.end(),
-                                 [&path](const auto& other) { return other.path == path; });
-    if (!is_known || at == product.occurrences.end() || !part.contains("shape_hash") ||
-        part["shape_hash"] != product.part_of(at->id).shape_hash) {
-      return Fail(ErrorCode::kInvalid,
-                  fmt::format("the record is of another product: {} has no such part \"{}\"",
-                              product.source, path),
-                  name, "export the file that was assembled");
-    }
-    ids[part["id"].get<std::uint32_t>()] = at->id;
-  }
-  return ids;
-}
-
 Result<Poses> ReadRecord(const std::filesystem::path& file, const Product& product) {
   const std::string name = file.filename().string();
   auto reader = record::Reader::Open(file);
@@ -193,6 +168,30 @@ Result<Poses> ReadRecord(const std::filesystem::path& file, const Product& produ
 }
 
 }  // namespace
+
+Result<std::map<std::uint32_t, OccurrenceId>> MatchParts(const record::Meta& meta,
+                                                         const std::string& name,
+                                                         const Product& product) {
+  const auto found = meta.find("model_json");
+  const Json parts = Json::parse(found != meta.end() ? found->second : "", nullptr, false);
+  std::map<std::uint32_t, OccurrenceId> ids;
+  for (const Json& part : parts.is_array() ? parts : Json::array()) {
+    const bool is_known = part.is_object() && part.contains("path") && part["path"].is_string() &&
+                          part.contains("id") && part["id"].is_number_unsigned();
+    const std::string path = is_known ? part["path"].get<std::string>() : std::string();
+    const auto at = std::find_if(product.occurrences.begin(), product.occurrences.end(),
+                                 [&path](const auto& other) { return other.path == path; });
+    if (!is_known || at == product.occurrences.end() || !part.contains("shape_hash") ||
+        part["shape_hash"] != product.part_of(at->id).shape_hash) {
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("the record is of another product: {} has no such part \"{}\"",
+                              product.source, path),
+                  name, "export the file that was assembled");
+    }
+    ids[part["id"].get<std::uint32_t>()] = at->id;
+  }
+  return ids;
+}
 
 Result<cad::PartMotions> ApplyPoses(const std::filesystem::path& file, Product* product) {
   const Result<cad::MappedFile> bytes = cad::MappedFile::Open(file);

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "base/result.h"
 #include "cad/export_step.h"
 #include "product/product.h"
+#include "record/session_file.h"
 
 namespace hvas::app {
 
@@ -16,5 +20,11 @@ namespace hvas::app {
  wrong in it; nothing is moved then. */
 [[nodiscard]] Result<cad::PartMotions> ApplyPoses(const std::filesystem::path& file,
                                                   product::Product* product);
+
+/** The occurrences of a product by their numbers in a record, which knows their paths.
+ @param name  Of the record's file.
+ Errors (kInvalid): the record is of another product. */
+[[nodiscard]] Result<std::map<std::uint32_t, product::OccurrenceId>> MatchParts(
+    const record::Meta& meta, const std::string& name, const product::Product& product);
 
 }  // namespace hvas::app

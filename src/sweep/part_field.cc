@@ -35,8 +35,10 @@ class FieldFiller {
   void Fill(const NodeRange& range, const NearList& list) {
     const Vec3 centre = range.CalcCentre(grid_);
     const double radius = range.CalcRadius(grid_);
-    const double distance =
-        field_.search_.FindSigned(list, centre, 0, contact::LeastOf(list).triangle).distance;
+    const double distance = field_.search_
+                                .FindSigned(list, centre, contact::NearSearch::kAnywhere,
+                                            contact::LeastOf(list).triangle)
+                                .distance;
     if (std::abs(distance) > radius + field_.band_) {
       const auto least = static_cast<float>(std::copysign(std::abs(distance) - radius, distance));
       ForEachNode(grid_, range, [&](std::size_t node, const Vec3&) { grid_.values[node] = least; });

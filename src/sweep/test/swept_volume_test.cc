@@ -117,6 +117,17 @@ TEST(SweptVolumeTest, PartThatDoesNotMoveSweepsItself) {
   EXPECT_NEAR(itself.volume / (kPi * (4e-4 - 1e-4) * 0.03), 1, 0.01);
 }
 
+TEST(SweptVolumeTest, SteppedPartSweepsNothingBesideIt) {  // one piece, within the part's box
+  const ShapeSource part = contact::testing::GroovedShaft(0.02, 0.06, 1e-5);
+  const SweptVolume itself = MustSweep(part, {Pose()}, 1e-3);
+  EXPECT_EQ(testing::CalcEuler(itself.mesh), 2);
+  const Vec3 half(0.02, 0.02, 0.03);
+  for (const Vec3& vertex : itself.mesh.vertices) {
+    const Vec3 beyond = (vertex - Vec3(0, 0, 0.03)).cwiseAbs() - half;
+    EXPECT_LT(beyond.maxCoeff(), itself.error);
+  }
+}
+
 // What holds for any path.
 
 Path DrawPath(Random* random) {

@@ -1,0 +1,184 @@
+#include "studio/paths.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/digest.h"
+#include "cad/glb.h"
+#include "simulation/shapes.h"
+
+namespace hvas::studio {
+namespace {
+
+using product::OccurrenceId;
+using spatial::Pose;
+
+/** Less is no motion that anybody sees. */
+bool HasMoved(const Pose& from, const Pose& to) {
+  constexpr double kWay = 20e-6;  // [m]
+  constexpr double kTurn = 2e-4;  // [rad]
+  return (to.p() - from.p()).norm() > kWay ||
+         spatial::RotationBetween(from.q(), to.q()).norm() > kTurn;
+}
+
+Result<std::shared_ptr<const SweptGlb>> Compute(const Sweeper::Task& task,
+                                                const std::stop_token& stop) {
+  const product::Occurrence& occurrence = task.model->product->occurrences[task.occurrence.index()];
+  sweep::SweepOptions options;
+  options.resolution = task.resolution;
+  options.threads = 1;  // the others are the hand's
+  options.stop = stop;
+  const auto swept =
+      sweep::Sweep(simulation::MakeShapeSource(task.model->product->part_of(task.occurrence)),
+                   task.path, options);
+  if (!swept) {
+    Error error = swept.error();
+    error.where = occurrence.name;
+    return Unexpected(std::move(error));
+  }
+  auto glb = MakeGlb(swept->mesh, occurrence.name);
+  if (!glb) {
+    return Unexpected(glb.error());
+  }
+  Digest digest;
+  digest.AddText(*glb);
+  return std::make_shared<const SweptGlb>(
+      SweptGlb{digest.Hex(), std::move(*glb), swept->volume, swept->error});
+}
+
+}  // namespace
+
+void PathLog::Add(const simulation::Frame& frame) {
+  const std::lock_guard lock(mutex_);
+  held_.resize(frame.ticks.size());
+  for (std::size_t hand = 0; hand < frame.ticks.size(); ++hand) {
+    const OccurrenceId id = frame.ticks[hand].occurrence;
+    const bool is_new = std::exchange(held_[hand], id) != id;
+    if (!id.is_valid() || id.index() >= frame.X_WB.size()) {
+      continue;
+    }
+    if (is_new) {
+      holds_[id] = {};
+    }
+    Append(frame.X_WB[id.index()], &holds_[id]);
+  }
+}
+
+void PathLog::Append(const Pose& X_WB, Hold* hold) {
+  hold->newest = X_WB;
+  if (!hold->path.empty() && !HasMoved(hold->path.back(), X_WB)) {
+    return;
+  }
+  if (!hold->path.empty() && ++hold->passed < hold->stride) {
+    return;
+  }
+  hold->passed = 0;
+  hold->path.push_back(X_WB);
+  if (hold->path.size() < kMostPoses) {
+    return;
+  }
+  for (std::size_t i = 0; 2 * i < hold->path.size(); ++i) {
+    hold->path[i] = hold->path[2 * i];
+  }
+  hold->path.resize((hold->path.size() + 1) / 2);
+  hold->stride *= 2;
+}
+
+void PathLog::Clear() {
+  const std::lock_guard lock(mutex_);
+  holds_.clear();
+  held_.clear();
+}
+
+sweep::Path PathLog::PathOf(OccurrenceId id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = holds_.find(id);
+  if (found == holds_.end()) {
+    return {};
+  }
+  sweep::Path path = found->second.path;
+  path.push_back(found->second.newest);
+  return path;
+}
+
+Result<std::string> MakeGlb(const sweep::SurfaceMesh& mesh, const std::string& name) {
+  product::Part part;
+  part.id = product::PartId(0);
+  part.name = name;
+  part.mesh = {mesh.vertices, mesh.triangles};
+  product::Face face;
+  face.triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
+  part.faces.push_back(face);
+  product::Product product;
+  product.name = name;
+  product.parts.push_back(std::move(part));
+  product::Subassembly root;
+  root.id = product::SubassemblyId(0);
+  root.name = name;
+  root.occurrences.emplace_back(0);
+  product.subassemblies.push_back(std::move(root));
+  product.occurrences.push_back(
+      {OccurrenceId(0), product::PartId(0), product::SubassemblyId(0), name, name, Pose()});
+  return cad::MakeGlb(product, /*is_fine=*/true);
+}
+
+Sweeper::Sweeper() : thread_([this](const std::stop_token& stop) { Work(stop); }) {}
+
+Result<void> Sweeper::Post(Task task) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (tasks_.size() >= kMostWaiting) {
+      return Fail(ErrorCode::kOutOfResource,
+                  fmt::format("{} swept volumes are asked for already", kMostWaiting), "",
+                  "wait for one of them");
+    }
+    tasks_.push_back(std::move(task));
+  }
+  changed_.notify_one();
+  return {};
+}
+
+void Sweeper::Work(const std::stop_token& stop) {
+  while (true) {
+    Task task;
+    {
+      std::unique_lock lock(mutex_);
+      (void)changed_.wait(lock, stop, [this] { return !tasks_.empty(); });
+      if (stop.stop_requested()) {
+        return;
+      }
+      task = std::move(tasks_.front());
+      tasks_.pop_front();
+    }
+    const auto swept = Compute(task, stop);
+    if (stop.stop_requested()) {
+      return;
+    }
+    if (swept) {
+      const std::lock_guard lock(mutex_);
+      kept_.push_back(*swept);
+      if (kept_.size() > kMostKept) {
+        kept_.pop_front();
+      }
+    }
+    task.done(swept);
+  }
+}
+
+std::shared_ptr<const SweptGlb> Sweeper::Find(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(kept_.begin(), kept_.end(), [&id](const auto& kept) { return kept->id == id; });
+  return found != kept_.end() ? *found : nullptr;
+}
+
+void Sweeper::Stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+}  // namespace hvas::studio
