@@ -40,6 +40,7 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       {"add_mate", {Right::kLease, &Hub::DoAddMate}},
       {"remove_mate", {Right::kLease, &Hub::DoRemoveMate}},
       {"measure", {Right::kAnybody, &Hub::DoMeasure}},
+      {"path", {Right::kAnybody, &Hub::DoPath}},
       {"lease", {Right::kAnybody, &Hub::DoLease}},
       {"status", {Right::kAnybody, &Hub::DoStatus}},
   };

@@ -18,6 +18,10 @@ bool IsForcesOff(const Json& command) {
          FlagAt(command, "off").value_or(false);
 }
 
+std::string Print(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 Hub::Hub(Workbench* workbench, std::vector<Example> examples)
@@ -73,7 +77,13 @@ void Hub::Broadcast(Json event) {
   if (event.value("event", "") == "hands") {
     event["hands"] = MakeHands();  // whose they are, only this side knows
   }
-  const std::string text = event.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (event.value("event", "") == "reply") {
+    if (const auto waiting = clients_.find(event["to"]); waiting != clients_.end()) {
+      waiting->second.link->SendText(Print(event["reply"]));
+    }
+    return;
+  }
+  const std::string text = Print(event);
   for (auto& [id, client] : clients_) {
     client.link->SendText(text);
   }
@@ -139,10 +149,6 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
   }
   ClientLink* link = found->second.link;
   const Result<Json> command = ParseCommand(text);
-  Json reply{{"id", nullptr}, {"ok", false}};
-  if (command && command->contains("id") && (*command)["id"].is_number_integer()) {
-    reply["id"] = (*command)["id"];
-  }
   Result<Json> result = command;
   // Forces go off at once, however much was asked before (N6).
   const bool is_urgent = command && IsForcesOff(*command) && !workbench_->forces_off();
@@ -151,13 +157,9 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
   } else if (command) {
     result = Execute(id, *command);
   }
-  reply["ok"] = result.has_value();
-  if (result) {
-    reply["result"] = std::move(*result);
-  } else {
-    reply["error"] = ToJson(result.error());
+  if (!result || !result->is_discarded()) {
+    link->SendText(Print(MakeReply(command ? IdOf(*command) : Json(nullptr), result)));
   }
-  link->SendText(reply.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 Result<Json> Hub::Execute(const std::string& id, const Json& command) {

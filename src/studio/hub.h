@@ -57,7 +57,7 @@ class Hub {
   void OnText(const std::string& id, std::string_view text, std::int64_t now_ns);
   void OnBinary(const std::string& id, std::string_view bytes);
 
-  /** Tells everybody. */
+  /** Tells everybody; the event "reply" (MakeLateReply) only whoever waits for it. */
   void Broadcast(Json event);
 
   /** There is a new frame: sends it to those who have seen the one before. */
@@ -131,6 +131,7 @@ class Hub {
   Result<Json> DoAddMate(const Json& command);
   Result<Json> DoRemoveMate(const Json& command);
   Result<Json> DoMeasure(const Json& command);
+  Result<Json> DoPath(const Caller& caller, const Json& command);
   Result<Json> DoLease(const Caller& caller, const Json& command);
   Result<Json> DoStatus();
 

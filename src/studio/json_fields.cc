@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "studio/event_json.h"
+
 namespace hvas::studio {
 namespace {
 
@@ -40,6 +42,25 @@ Result<Json> ParseCommand(std::string_view text) {
     return Fail(ErrorCode::kInvalid, "this is no JSON object", "command", "load the page again");
   }
   return command;
+}
+
+Json IdOf(const Json& command) {
+  const Json* id = FieldOf(command, "id");
+  return id != nullptr && id->is_number_integer() ? *id : Json(nullptr);
+}
+
+Json MakeReply(const Json& id, const Result<Json>& result) {
+  Json reply{{"id", id}, {"ok", result.has_value()}};
+  if (result) {
+    reply["result"] = *result;
+  } else {
+    reply["error"] = ToJson(result.error());
+  }
+  return reply;
+}
+
+Json MakeLateReply(const std::string& to, const Json& id, const Result<Json>& result) {
+  return {{"event", "reply"}, {"to", to}, {"reply", MakeReply(id, result)}};
 }
 
 Result<std::string> TextAt(const Json& object, const char* name) {

@@ -12,6 +12,20 @@ namespace hvas::studio {
  than any command: keeping them in order takes the square of their number. */
 [[nodiscard]] Result<Json> ParseCommand(std::string_view text);
 
+/** By which the reply is known: the command's "id", null where that is no whole number. */
+[[nodiscard]] Json IdOf(const Json& command);
+
+/** What a command is answered with. */
+[[nodiscard]] Json MakeReply(const Json& id, const Result<Json>& result);
+
+/** What the handler of a command returns that is answered later, by the event of MakeLateReply. */
+[[nodiscard]] inline Json AnsweredLater() {
+  return Json(Json::value_t::discarded);
+}
+
+/** For Hub::Broadcast. @param to  The client that waits for it. */
+[[nodiscard]] Json MakeLateReply(const std::string& to, const Json& id, const Result<Json>& result);
+
 /** Fields of a command. Errors (kInvalid) name the field and what it should be. */
 [[nodiscard]] Result<std::string> TextAt(const Json& object, const char* name);
 [[nodiscard]] Result<bool> FlagAt(const Json& object, const char* name);

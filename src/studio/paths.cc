@@ -167,10 +167,10 @@ void Sweeper::Work(const std::stop_token& stop) {
   }
 }
 
-std::shared_ptr<const SweptGlb> Sweeper::Find(const std::string& id) const {
+std::shared_ptr<const SweptGlb> Sweeper::Find(std::string_view id) const {
   const std::lock_guard lock(mutex_);
   const auto found =
-      std::find_if(kept_.begin(), kept_.end(), [&id](const auto& kept) { return kept->id == id; });
+      std::find_if(kept_.begin(), kept_.end(), [id](const auto& kept) { return kept->id == id; });
   return found != kept_.end() ? *found : nullptr;
 }
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -84,7 +85,7 @@ class Sweeper {
   [[nodiscard]] Result<void> Post(Task task);
 
   /** Of those computed last; null: none of this id. */
-  [[nodiscard]] std::shared_ptr<const SweptGlb> Find(const std::string& id) const;
+  [[nodiscard]] std::shared_ptr<const SweptGlb> Find(std::string_view id) const;
 
   /** Ends what is being computed, and forgets what waits. */
   void Stop();

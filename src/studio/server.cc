@@ -353,6 +353,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void RouteKnown(Role role, std::string_view path, bool is_upgrade) {
     constexpr std::string_view kModel = "/api/model/";
+    constexpr std::string_view kPath = "/api/path/";
     const http::verb method = header_->get().method();
     if (path == "/ws" && is_upgrade) {
       wire().expires_never();
@@ -361,6 +362,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       SendScene();
     } else if (path.starts_with(kModel) && method == http::verb::get) {
       SendModel(path.substr(kModel.size()));
+    } else if (path.starts_with(kPath) && method == http::verb::get) {
+      SendPath(path.substr(kPath.size()));
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
     } else {
@@ -512,9 +515,23 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return Refuse(http::status::not_found, {ErrorCode::kNotFound, "this model is not open",
                                               std::string(name), "ask for /api/scene again"});
     }
+    SendGlb(scene->glb_hash, *scene->glb, scene);
+  }
+
+  void SendPath(std::string_view name) {
+    const auto swept = shared_->workbench->sweeper().Find(name.substr(0, name.find(".glb")));
+    if (swept == nullptr || name != swept->id + ".glb") {
+      return Refuse(http::status::not_found,
+                    {ErrorCode::kNotFound, "this swept volume is not kept any more",
+                     std::string(name), "ask for it again"});
+    }
+    SendGlb(swept->id, swept->glb, swept);
+  }
+
+  void SendGlb(std::string_view id, std::string_view bytes, std::shared_ptr<const void> owner) {
     http::response<http::span_body<const char>> response(http::status::ok, 11);
     response.set(http::field::content_type, "model/gltf-binary");
-    SendCached(std::move(response), scene->glb_hash, true, *scene->glb, scene);
+    SendCached(std::move(response), id, true, bytes, std::move(owner));
   }
 
   /** What has an ETag, once for each client. @param owner  Keeps the bytes alive; may be null. */

@@ -122,6 +122,7 @@ Workbench::~Workbench() {
 }
 
 void Workbench::Stop() {
+  sweeper_.Stop();
   worker_.request_stop();
   Cancel();  // after it: nothing else begins
   if (worker_.joinable()) {
@@ -220,6 +221,7 @@ void Workbench::DoOpen(const std::filesystem::path& file, const std::string& nam
   }
   is_demo_ = false;
   Show(scene, {}, false);
+  paths_.Clear();  // of the product before: its last frame has come
   TellOfHistory();
 }
 
@@ -308,6 +310,7 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
       const auto speed = SpeedsBetween(frame_.frame, frame);
       frame_ = {epoch, frame_.serial + 1, frame, peak_felt, speed};
     }
+    paths_.Add(frame);
     if (on_frame) {
       on_frame();
     }

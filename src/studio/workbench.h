@@ -24,6 +24,7 @@
 #include "simulation/model.h"
 #include "studio/hand_rack.h"
 #include "studio/live_run.h"
+#include "studio/paths.h"
 
 namespace hvas::studio {
 
@@ -119,6 +120,11 @@ class Workbench {
   /** Null while nothing is open. */
   [[nodiscard]] std::shared_ptr<const OpenScene> scene() const;
 
+  /** Of the parts of what is open. */
+  [[nodiscard]] const PathLog& paths() const { return paths_; }
+
+  [[nodiscard]] Sweeper& sweeper() { return sweeper_; }
+
   [[nodiscard]] LiveState state() const { return Look().state; }
 
   /** Both of one moment. */
@@ -193,6 +199,8 @@ class Workbench {
   bool is_searching_{false};
 
   HandRack rack_;
+  PathLog paths_;
+  Sweeper sweeper_;
 
   std::mutex jobs_mutex_;
   std::condition_variable_any jobs_changed_;

@@ -1,0 +1,73 @@
+// The command `path` of docs/protocol.md.
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "studio/event_json.h"
+#include "studio/hub.h"
+#include "studio/json_fields.h"
+
+namespace hvas::studio {
+namespace {
+
+Json MakePoints(const sweep::Path& path, const Vec3& p_BoBcm_B) {
+  Json points = Json::array();
+  Json poses = Json::array();
+  for (const spatial::Pose& X_WB : path) {
+    points.push_back(ToJson(Vec3(X_WB * p_BoBcm_B)));
+    poses.push_back(ToJson(X_WB));
+  }
+  return {{"points_m", std::move(points)}, {"poses", std::move(poses)}};
+}
+
+Result<Json> Describe(const Result<std::shared_ptr<const SweptGlb>>& swept) {
+  if (!swept) {
+    return Unexpected(swept.error());
+  }
+  return Json{{"glb", fmt::format("/api/path/{}.glb", (*swept)->id)},
+              {"volume_mm3", units::ToMm3((*swept)->volume)},
+              {"error_mm", units::ToMm((*swept)->error)}};
+}
+
+}  // namespace
+
+Result<Json> Hub::DoPath(const Caller& caller, const Json& command) {
+  constexpr Limits kResolutionMm{0.01, 1000};
+  const auto scene = workbench_->scene();
+  const auto index = IndexAt(command, "occurrence");
+  const auto as = TextAt(command, "as");
+  const auto resolution_mm = NumberAt(command, "resolution_mm", kResolutionMm, 0);
+  if (scene == nullptr) {
+    return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
+  }
+  if (!index || !as || !resolution_mm) {
+    return Unexpected(!index ? index.error() : (!as ? as.error() : resolution_mm.error()));
+  }
+  const product::OccurrenceId id(*index);
+  const product::Product& product = *scene->model->product;
+  if (id.index() >= product.occurrences.size()) {
+    return Fail(ErrorCode::kNotFound, "there is no such part", fmt::format("o{}", *index), "");
+  }
+  sweep::Path path = workbench_->paths().PathOf(id);
+  if (path.empty()) {
+    return Fail(ErrorCode::kNotFound, "this part has been in no hand yet",
+                product.occurrences[id.index()].name, "move it, or let the simulated person do so");
+  }
+  if (*as == "points") {
+    return MakePoints(path, product.part_of(id).mass.p_BoBcm_B);
+  }
+  if (*as != "swept") {
+    return Fail(ErrorCode::kInvalid, R"("as" must be "points" or "swept")", "command",
+                "load the page again");
+  }
+  const auto done = [bench = workbench_, to = caller.id, reply_to = IdOf(command)](
+                        const Result<std::shared_ptr<const SweptGlb>>& swept) {
+    bench->on_event(MakeLateReply(to, reply_to, Describe(swept)));
+  };
+  const auto posted = workbench_->sweeper().Post(
+      {scene->model, id, std::move(path), units::FromMm(*resolution_mm), done});
+  return posted ? Result<Json>(AnsweredLater()) : Unexpected(posted.error());
+}
+
+}  // namespace hvas::studio
