@@ -19,6 +19,7 @@
 #include "app/load_product.h"
 #include "app/report_failure.h"
 #include "base/scratch_folder.h"
+#include "base/user_folder.h"
 #include "contact/shape_cache.h"
 #include "studio/certificate.h"
 #include "studio/server.h"
@@ -33,6 +34,7 @@ struct StudioOptions {
   std::string listen;              ///< Empty: this machine only.
   std::vector<std::string> hosts;  ///< Further names of this machine.
   studio::TlsFiles tls;            ///< Empty: a certificate of our own.
+  std::filesystem::path recordings;  ///< Empty: the user's own.
   std::uint64_t seed{1};
   double rate_hz{1000};
   bool opens_browser{true};
@@ -64,6 +66,11 @@ std::vector<studio::Example> FindExamples() {
 
 studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
   studio::WorkbenchOptions bench;
+  bench.recordings_folder = options.recordings;
+  if (const auto data = FindUserFolder("XDG_DATA_HOME", ".local/share");
+      data && options.recordings.empty()) {
+    bench.recordings_folder = *data / "recordings";
+  }
   bench.seed = options.seed;
   bench.rate_hz = options.rate_hz;
   if (const auto directory = CacheDirectory(options.load)) {
@@ -219,6 +226,8 @@ void AddStudio(CLI::App* app, int* status) {
                          ->needs(certificate);
   certificate->needs(key);
   command->add_flag("!--no-open", options->opens_browser, "Do not open a browser");
+  command->add_option("--recordings", options->recordings,
+                      "Folder of what is recorded; ~/.local/share/hvas/recordings");
   command->add_option("--seed", options->seed, "Seed of the parts' actual sizes")
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Of the haptic loop [Hz]")

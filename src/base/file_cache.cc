@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include "base/user_folder.h"
 #include "base/write_all.h"
 
 namespace hvas {
@@ -67,26 +69,15 @@ bool WriteNew(const fs::path& path, std::initializer_list<std::span<const std::b
   return ::close(descriptor) == 0 && is_written;
 }
 
-std::string Variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? std::string() : value;
-}
-
 }  // namespace
 
 FileCache::FileCache(fs::path directory, std::string extension, std::uintmax_t capacity)
     : directory_(std::move(directory)), extension_(std::move(extension)), capacity_(capacity) {}
 
 std::optional<fs::path> FileCache::DefaultDirectory() {
-  if (Variable("HVAS_CACHE") == "off") {
-    return std::nullopt;
-  }
-  const fs::path caches = Variable("XDG_CACHE_HOME");
-  if (caches.is_absolute()) {  // Others are to be ignored; XDG Base Directory Specification.
-    return caches / "hvas";
-  }
-  const fs::path home = Variable("HOME");
-  return home.is_absolute() ? std::optional(home / ".cache" / "hvas") : std::nullopt;
+  const char* wanted = std::getenv("HVAS_CACHE");
+  const bool is_off = wanted != nullptr && std::string_view(wanted) == "off";
+  return is_off ? std::nullopt : FindUserFolder("XDG_CACHE_HOME", ".cache");
 }
 
 fs::path FileCache::PathOf(const std::string& key) const {

@@ -44,6 +44,11 @@ class Reader {
   /** Of all hands, when it was opened or refreshed. */
   [[nodiscard]] std::int64_t tick_count() const { return tick_count_; }
 
+  /** Session time of the last tick that is there [ns]; 0 for none. */
+  [[nodiscard]] Result<std::int64_t> ReadLength() {
+    return database_.QueryInt("SELECT coalesce(max(last_t_ns), 0) FROM chunk");
+  }
+
   /** Visits ticks in the order recorded until the visitor returns false.
    Errors: kUnreadable at the first damaged chunk; what came before was visited. */
   Result<void> ForEachTick(Span span, const std::function<bool(const TickRecord&)>& visit);

@@ -110,6 +110,7 @@ void Simulation::Obey(const TickCommand& command, std::int64_t t_ns) noexcept {
     hand.haptic.Take(command.part);
     hand.metrics = {};
     hand.metrics.t_taken_ns = t_ns;
+    hand.last_contact_ns = t_ns;  // it is taken off what it lies on
     hand.p_last_Cm = command.X_WB * command.part->p_BoBcm_B;
     SimulationEvent event;
     event.t_ns = t_ns;
@@ -244,7 +245,7 @@ haptics::TickOutput Simulation::RunTick(Hand* hand, const device::DeviceState& d
     events_.TryPush(event);
   }
   haptics::TickOutput out = haptic.Tick(device, context);
-  Measure(hand, out);
+  Measure(hand, device.t_ns, out);
   if (out.state != hand->last_state) {
     hand->last_state = out.state;
     SimulationEvent event;
@@ -265,7 +266,7 @@ haptics::TickOutput Simulation::RunTick(Hand* hand, const device::DeviceState& d
   return out;
 }
 
-void Simulation::Measure(Hand* hand, const haptics::TickOutput& out) noexcept {
+void Simulation::Measure(Hand* hand, std::int64_t t_ns, const haptics::TickOutput& out) noexcept {
   if (hand->haptic.held() == nullptr) {
     return;
   }
@@ -279,6 +280,12 @@ void Simulation::Measure(Hand* hand, const haptics::TickOutput& out) noexcept {
   metrics.fit_felt = std::max(metrics.fit_felt, std::abs(out.axial_felt));
   metrics.deepest = std::max(metrics.deepest, -out.deepest);
   metrics.insertion = std::max(metrics.insertion, out.insertion_depth);
+  if (out.contact_count > 0) {
+    constexpr std::int64_t kApartNs = 100'000'000;  // what touches again sooner has not let go
+    const bool is_new = t_ns - hand->last_contact_ns > kApartNs;
+    metrics.collisions += is_new && out.state < haptics::HoldState::kCaptured ? 1 : 0;
+    hand->last_contact_ns = t_ns;
+  }
   const double force = out.f_C_W.norm();
   if (out.contact_count > 0 && out.contact_body.is_valid() && force > metrics.hardest_force) {
     metrics.hardest_force = force;

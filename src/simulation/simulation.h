@@ -32,6 +32,7 @@ struct HoldMetrics {
   double fit_felt{0};       ///< The same as felt [N].
   double deepest{0};        ///< Deepest penetration, >= 0 [m].
   double insertion{0};      ///< Longest engagement of a captured axis [m].
+  int collisions{0};        ///< Times that it met something before a mate guided it.
   contact::BodyId hardest;  ///< Body pressed hardest while the hand was inserting; may be invalid.
   double hardest_force{0};  ///< [N]
 };
@@ -243,6 +244,7 @@ class Simulation {
     haptics::HoldState last_state{haptics::HoldState::kEmpty};
     HoldMetrics metrics;
     Vec3 p_last_Cm{Vec3::Zero()};
+    std::int64_t last_contact_ns{0};
     device::Condition last_condition{device::Condition::kReady};
     std::array<std::int64_t, 32> last_action_ns{};  // When the gate last did it, by bit.
 
@@ -264,7 +266,7 @@ class Simulation {
   void Give(const TickCommand& command, const SequenceStep& step);
   void TellOfSafety(Hand* hand, const device::DeviceState& device,
                     const haptics::TickOutput& out) noexcept;
-  static void Measure(Hand* hand, const haptics::TickOutput& out) noexcept;
+  static void Measure(Hand* hand, std::int64_t t_ns, const haptics::TickOutput& out) noexcept;
   void HandleEvent(const SimulationEvent& event);
   void Heed(Hand* hand);
   static void TellOfEnergy(Hand* hand, Sink* sink);

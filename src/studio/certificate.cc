@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -26,6 +25,7 @@
 #include <openssl/x509v3.h>
 
 #include "base/atomic_file.h"
+#include "base/user_folder.h"
 
 namespace hvas::studio {
 namespace {
@@ -253,15 +253,8 @@ std::vector<std::string> ListAddresses(bool has_v6) {
 }  // namespace
 
 Result<fs::path> FindCertificateFolder() {
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);
-    return fs::path(value == nullptr ? "" : value);
-  };
-  if (const fs::path state = variable("XDG_STATE_HOME"); state.is_absolute()) {
-    return state / "hvas";
-  }
-  if (const fs::path home = variable("HOME"); home.is_absolute()) {
-    return home / ".local" / "state" / "hvas";
+  if (const auto folder = FindUserFolder("XDG_STATE_HOME", ".local/state")) {
+    return *folder;
   }
   return Fail(ErrorCode::kNotFound, "there is no home folder to keep a certificate in", "HOME",
               "set XDG_STATE_HOME to a folder, or give --certificate and --key");

@@ -36,6 +36,8 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       {"hands", {Right::kLease, &Hub::DoHands}},
       {"devices", {Right::kAnybody, &Hub::DoDevices}},
       {"use", {Right::kLease, &Hub::DoUse}},
+      {"record", {Right::kLease, &Hub::DoRecord}},
+      {"delete_recording", {Right::kLease, &Hub::DoDeleteRecording}},
       {"assign_fit", {Right::kLease, &Hub::DoAssignFit}},
       {"add_mate", {Right::kLease, &Hub::DoAddMate}},
       {"remove_mate", {Right::kLease, &Hub::DoRemoveMate}},
@@ -148,6 +150,20 @@ Result<Json> Hub::DoUse(const Json& command) {
     return Unexpected(!hand ? hand.error() : !device ? device.error() : scale.error());
   }
   return Done(workbench_->UseDevice(*hand, *device, *scale));
+}
+
+Result<Json> Hub::DoRecord(const Json& command) {
+  const auto is_on = FlagAt(command, "on");
+  if (!is_on) {
+    return Unexpected(is_on.error());
+  }
+  return Done(*is_on ? workbench_->StartRecording(TextAt(command, "name").value_or(""))
+                     : workbench_->StopRecording());
+}
+
+Result<Json> Hub::DoDeleteRecording(const Json& command) {
+  const auto id = TextAt(command, "id");
+  return id ? Done(workbench_->DeleteRecording(*id)) : Result<Json>(Unexpected(id.error()));
 }
 
 Result<Json> Hub::DoAssignFit(const Json& command) {

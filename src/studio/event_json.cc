@@ -36,7 +36,8 @@ Json MetricsOf(const SimulationEvent& event) {
           {"peak_felt_n", metrics.peak_felt},
           {"fit_true_n", metrics.fit_true},
           {"depth_um", units::ToUm(metrics.deepest)},
-          {"insertion_mm", units::ToMm(metrics.insertion)}};
+          {"insertion_mm", units::ToMm(metrics.insertion)},
+          {"collisions", metrics.collisions}};
 }
 
 Json ReasonsOf(std::uint32_t actions) {

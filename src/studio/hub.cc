@@ -67,6 +67,7 @@ Json Hub::MakeHello(const std::string& id, const Client& client) const {
           {"client", id},
           {"has_lease", leases_[0] == id},
           {"hands", MakeHands()},
+          {"recording", workbench_->recording()},
           {"examples", std::move(examples)},
           {"forces_off", workbench_->forces_off()},
           {"has_scene", workbench_->scene() != nullptr},

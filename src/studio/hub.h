@@ -127,6 +127,8 @@ class Hub {
   Result<Json> DoHands(const Json& command);
   Result<Json> DoDevices();
   Result<Json> DoUse(const Json& command);
+  Result<Json> DoRecord(const Json& command);
+  Result<Json> DoDeleteRecording(const Json& command);
   Result<Json> DoAssignFit(const Json& command);
   Result<Json> DoAddMate(const Json& command);
   Result<Json> DoRemoveMate(const Json& command);

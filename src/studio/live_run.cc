@@ -51,6 +51,7 @@ bool IsHeld(const simulation::PartState& part) {
 LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState& start,
                  const LiveOptions& options, LiveListeners listeners)
     : listeners_(std::move(listeners)),
+      recording_(options.recording),
       hands_(MakeHands(options, *model)),
       simulation_(MakeSimulation(std::move(model), hands_)),
       assembly_(&simulation_, PersonsOf(hands_), this) {
@@ -61,6 +62,9 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
     if (!hands_[i]->follows_pointer()) {
       simulation_.AwaitOpenGrip(i);
     }
+  }
+  if (recording_ != nullptr) {
+    recording_->Begin(&simulation_);
   }
   assembly_.Resume(start.next_step);
   observed_ = {simulation_.parts(), start.next_step};
@@ -122,7 +126,9 @@ std::optional<simulation::LoopStatus> LiveRun::TakeStatus() {
 
 void LiveRun::OnTick(std::size_t hand, const device::DeviceState& device,
                      const haptics::TickOutput& out) noexcept {
-  (void)device;
+  if (recording_ != nullptr) {
+    recording_->OnTick(hand, device, out);
+  }
   const double felt = out.F_H_W.f.norm();
   if (felt > peak_felt_[hand].load(std::memory_order_relaxed)) {
     peak_felt_[hand].store(felt, std::memory_order_relaxed);
@@ -130,7 +136,16 @@ void LiveRun::OnTick(std::size_t hand, const device::DeviceState& device,
 }
 
 void LiveRun::OnEvent(const simulation::SimulationEvent& event) {
+  if (recording_ != nullptr) {
+    recording_->OnEvent(event);
+  }
   listeners_.on_event(event);
+}
+
+void LiveRun::OnFlight(const std::vector<simulation::FlightTick>& ticks) {
+  if (recording_ != nullptr) {
+    recording_->OnFlight(ticks);
+  }
 }
 
 void LiveRun::Advance() {

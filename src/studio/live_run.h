@@ -15,6 +15,7 @@
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 #include "studio/live_hand.h"
+#include "studio/recording.h"
 
 namespace hvas::studio {
 
@@ -23,9 +24,6 @@ struct LiveState {
   std::vector<simulation::PartState> parts;  ///< By OccurrenceId; empty: all on the table.
   std::size_t next_step{0};
 };
-
-/** Of each hand: the largest force since it was asked for last [N]. */
-using PeakForces = std::array<double, 2>;
 
 /** Who is told of what. All but on_frame are called on the physics thread. */
 struct LiveListeners {
@@ -41,6 +39,7 @@ struct LiveOptions {
   std::vector<HandSetup> hands{1};  ///< One or two.
   std::uint64_t seed{1};
   double rate_hz{1000};
+  std::shared_ptr<Recording> recording;  ///< Of what happens; may be null.
 };
 
 /** One stretch of a live assembly: a simulation of a model, run in real time until it is destroyed.
@@ -79,11 +78,13 @@ class LiveRun final : private simulation::Sink {
   void OnTick(std::size_t hand, const device::DeviceState& device,
               const haptics::TickOutput& out) noexcept override;
   void OnEvent(const simulation::SimulationEvent& event) override;
+  void OnFlight(const std::vector<simulation::FlightTick>& ticks) override;
   void Advance();
   void Observe();
   void Run(const LiveOptions& options);
 
   LiveListeners listeners_;
+  std::shared_ptr<Recording> recording_;
   std::vector<std::unique_ptr<LiveHand>> hands_;
   simulation::Simulation simulation_;
   simulation::AssemblyRun assembly_;

@@ -21,6 +21,7 @@
 #include "studio/assets.h"
 #include "studio/connection.h"
 #include "studio/event_json.h"
+#include "studio/recording_routes.h"
 #include "studio/scene_json.h"
 
 namespace hvas::studio {
@@ -364,6 +365,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       SendModel(path.substr(kModel.size()));
     } else if (path.starts_with(kPath) && method == http::verb::get) {
       SendPath(path.substr(kPath.size()));
+    } else if (path.starts_with("/api/recording") && method == http::verb::get) {
+      SendRecording(path);
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
     } else {
@@ -547,6 +550,38 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       response.body() = {bytes.data(), bytes.size()};
     }
     owner_ = std::move(owner);
+    Send(std::move(response));
+  }
+
+  void SendRecording(std::string_view path) {
+    auto answer = AnswerRecording(&shared_->workbench->shelf(), path);
+    if (!answer) {
+      const bool is_missing = answer.error().code == ErrorCode::kNotFound;
+      return Refuse(is_missing ? http::status::not_found : http::status::internal_server_error,
+                    answer.error());
+    }
+    if (answer->file) {
+      return SendFile(*answer->file, answer->type);
+    }
+    http::response<http::string_body> response(http::status::ok, 11);
+    response.set(http::field::content_type, answer->type);
+    response.set(http::field::cache_control, "no-store");
+    response.body() = std::move(answer->bytes);
+    Send(std::move(response));
+  }
+
+  /** For saving: it may be large. */
+  void SendFile(const std::filesystem::path& file, const std::string& type) {
+    http::response<http::file_body> response(http::status::ok, 11);
+    error_code failed;
+    response.body().open(file.c_str(), boost::beast::file_mode::scan, failed);
+    if (failed) {
+      return Refuse(http::status::not_found,
+                    {ErrorCode::kNotFound, failed.message(), file.filename().string(), ""});
+    }
+    response.set(http::field::content_type, type);
+    response.set(http::field::content_disposition,
+                 fmt::format("attachment; filename=\"{}\"", file.filename().string()));
     Send(std::move(response));
   }
 

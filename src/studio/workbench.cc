@@ -8,6 +8,7 @@
 #include "base/digest.h"
 #include "cad/glb.h"
 #include "studio/event_json.h"
+#include "studio/scene_json.h"
 
 namespace hvas::studio {
 namespace {
@@ -115,7 +116,9 @@ SequenceStep FindStep(const simulation::Model& model, const LiveState& state, Oc
 }
 
 Workbench::Workbench(WorkbenchOptions options)
-    : options_(std::move(options)), worker_([this](const std::stop_token& stop) { Work(stop); }) {}
+    : options_(std::move(options)),
+      shelf_(options_.recordings_folder),
+      worker_([this](const std::stop_token& stop) { Work(stop); }) {}
 
 Workbench::~Workbench() {
   Stop();
@@ -133,6 +136,8 @@ void Workbench::Stop() {
     const std::lock_guard lock(mutex_);
     run = std::exchange(run_, nullptr);
   }
+  run.reset();
+  FinishRecording();
 }
 
 void Workbench::Work(const std::stop_token& stop) {
@@ -160,6 +165,14 @@ void Workbench::Post(std::function<void()> job) {
 }
 
 void Workbench::Tell(Json event) const {
+  std::shared_ptr<Recording> recording;
+  {
+    const std::lock_guard lock(mutex_);
+    recording = recording_;
+  }
+  if (recording != nullptr) {
+    recording->AddTold(event);
+  }
   if (on_event) {
     on_event(std::move(event));
   }
@@ -252,6 +265,7 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
   live.rate_hz = options_.rate_hz;
   std::shared_ptr<LiveRun> ended;
   bool is_new = false;
+  bool is_recorded = false;
   {
     const std::lock_guard lock(mutex_);
     ended = std::exchange(run_, nullptr);
@@ -259,8 +273,13 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
     scene_ = scene;
     resting_ = state.parts.empty() ? MakeStart(*scene->model) : state;
     before_take_ = {};
+    is_recorded = recording_ != nullptr && recording_->scene() == scene.get();
   }
   ended.reset();  // its threads end here, outside the lock that they may wait for
+  if (!is_recorded) {
+    FinishRecording();  // a record is of one scene
+  }
+  live.recording = recording_;
   auto run = std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene));
   run->StopForces(forces_off_);
   {
@@ -305,10 +324,17 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
   listeners.on_step = [this, scene](std::size_t step) { HandleStep(*scene, step); };
   listeners.on_frame = [this, epoch = scene->epoch](const simulation::Frame& frame,
                                                     const PeakForces& peak_felt) {
+    LiveFrame shown;
+    std::shared_ptr<Recording> recording;
     {
       const std::lock_guard lock(mutex_);
       const auto speed = SpeedsBetween(frame_.frame, frame);
       frame_ = {epoch, frame_.serial + 1, frame, peak_felt, speed};
+      recording = recording_;
+      shown = recording != nullptr ? frame_ : LiveFrame();
+    }
+    if (recording != nullptr) {
+      recording->AddFrame(shown);
     }
     paths_.Add(frame);
     if (on_frame) {
@@ -629,6 +655,88 @@ Result<void> Workbench::Reset() {
     });
   }
   return idle;
+}
+
+Result<void> Workbench::StartRecording(const std::string& name) {
+  if (auto idle = CheckIdle(); !idle) {
+    return idle;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (recording_ != nullptr) {
+      return Fail(ErrorCode::kInvalid, "this is being recorded already", "", "end that first");
+    }
+  }
+  const auto file = shelf_.MakePath(scene()->model->product->name);
+  if (!file) {
+    return Unexpected(file.error());
+  }
+  Post([this, file = *file, name] { DoStartRecording(file, name); });
+  return {};
+}
+
+void Workbench::DoStartRecording(const std::filesystem::path& file, const std::string& name) {
+  const auto [scene, state] = Look();
+  const std::string called = name.empty() ? scene->model->product->name : name;
+  auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state));
+  if (!started) {
+    Tell({{"event", "failed"}, {"file", file.string()}, {"error", ToJson(started.error())}});
+    return;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    recording_ = *started;
+  }
+  Restart(false);  // a record begins with how the hands are set up and where all parts are
+  TellOfRecording((*started)->Describe());
+}
+
+Result<void> Workbench::StopRecording() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (recording_ == nullptr) {
+      return Fail(ErrorCode::kInvalid, "nothing is being recorded", "", "");
+    }
+  }
+  Post([this] { FinishRecording(); });
+  return {};
+}
+
+void Workbench::FinishRecording() {
+  std::shared_ptr<Recording> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = std::exchange(recording_, nullptr);
+  }
+  if (ended == nullptr) {
+    return;
+  }
+  if (const auto stopped = ended->Stop(); !stopped) {
+    Tell({{"event", "failed"}, {"file", "recording"}, {"error", ToJson(stopped.error())}});
+  }
+  TellOfRecording(ended->Describe());
+}
+
+void Workbench::TellOfRecording(Json recording) const {
+  recording["event"] = "recording";
+  Tell(std::move(recording));
+  Tell({{"event", "recordings"}});
+}
+
+Json Workbench::recording() const {
+  const std::lock_guard lock(mutex_);
+  return recording_ != nullptr ? recording_->Describe() : Json(nullptr);
+}
+
+Result<void> Workbench::DeleteRecording(const std::string& id) {
+  if (const Json now = recording(); !now.is_null() && now["id"] == id) {
+    return Fail(ErrorCode::kInvalid, "this is being recorded", id, "end that first");
+  }
+  auto deleted = shelf_.Delete(id);
+  if (deleted) {
+    Tell({{"event", "recordings"}});
+  }
+  return deleted;
 }
 
 Result<void> Workbench::Change(const std::string& what, const ChangeFn& change) {

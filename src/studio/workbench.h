@@ -25,6 +25,8 @@
 #include "studio/hand_rack.h"
 #include "studio/live_run.h"
 #include "studio/paths.h"
+#include "studio/recording.h"
+#include "studio/recording_shelf.h"
 
 namespace hvas::studio {
 
@@ -38,32 +40,15 @@ using LoadFn = std::function<Result<product::Product>(
 struct WorkbenchOptions {
   LoadFn load;
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
+  std::filesystem::path recordings_folder;  ///< Empty: nothing can be recorded.
   std::uint64_t seed{1};
   double rate_hz{1000};
-};
-
-/** What is open: a model and all that a viewer needs of it. Immutable. */
-struct OpenScene {
-  std::uint32_t epoch{0};
-  std::shared_ptr<const simulation::Model> model;
-  Diagnostics diagnostics;
-  std::shared_ptr<const std::string> glb;
-  std::string glb_hash;
 };
 
 /** What is open, and how far it has come. */
 struct SceneNow {
   std::shared_ptr<const OpenScene> scene;  ///< Null while nothing is.
   LiveState state;
-};
-
-/** The newest state of everything that moves. */
-struct LiveFrame {
-  std::uint32_t epoch{0};
-  std::uint64_t serial{0};  ///< Another one for each frame.
-  simulation::Frame frame;
-  PeakForces peak_felt{};              ///< Since the last one [N].
-  std::array<double, 2> hand_speed{};  ///< By hand, since the last one [m/s].
 };
 
 /** What is on the bench: the product that is open, the run of it, and what can be undone. All
@@ -112,6 +97,17 @@ class Workbench {
   [[nodiscard]] Result<void> Undo();
   [[nodiscard]] Result<void> Redo();
   [[nodiscard]] Result<void> Reset();
+
+  /** Records the work on this scene from now on; nothing may be in a hand. Told of by the event
+   "recording". */
+  [[nodiscard]] Result<void> StartRecording(const std::string& name);
+  [[nodiscard]] Result<void> StopRecording();
+  /** What is being recorded; null where nothing is. */
+  [[nodiscard]] Json recording() const;
+
+  [[nodiscard]] RecordingShelf& shelf() { return shelf_; }
+  /** Not what is being recorded. */
+  [[nodiscard]] Result<void> DeleteRecording(const std::string& id);
 
   /** A change of the product: compiles a model of it aside and swaps it in. */
   using ChangeFn = std::function<Result<void>(product::Product*)>;
@@ -169,6 +165,9 @@ class Workbench {
   /** That was done since then, and can be undone. */
   void Remember(Moment before, const std::string& what);
   void TellOfHands() const;
+  void DoStartRecording(const std::filesystem::path& file, const std::string& name);
+  void TellOfRecording(Json recording) const;
+  void FinishRecording();
   /** Errors: somebody is at work. */
   [[nodiscard]] Result<void> CheckHands() const;
   void RestartWithHands();
@@ -198,9 +197,12 @@ class Workbench {
   Json devices_;  ///< That were found; null before the first search.
   bool is_searching_{false};
 
+  std::shared_ptr<Recording> recording_;  ///< Null while nothing is recorded.
+
   HandRack rack_;
   PathLog paths_;
   Sweeper sweeper_;
+  RecordingShelf shelf_;
 
   std::mutex jobs_mutex_;
   std::condition_variable_any jobs_changed_;

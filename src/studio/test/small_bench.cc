@@ -9,9 +9,10 @@
 namespace hvas::studio::testing {
 namespace {
 
-/** Shapes of this program's run, gone with it. */
-struct ShapesOfThisRun {
+/** Shapes and recordings of this program's run, gone with it. */
+struct FilesOfThisRun {
   hvas::testing::TemporaryFolder folder;
+  hvas::testing::TemporaryFolder recordings;
   std::shared_ptr<contact::ShapeCache> cache{std::make_shared<contact::ShapeCache>(folder.path())};
 };
 
@@ -51,9 +52,10 @@ std::size_t EventLog::size() const {
 }
 
 WorkbenchOptions SmallBench() {
-  static const ShapesOfThisRun shapes;
+  static const FilesOfThisRun files;
   WorkbenchOptions options;
-  options.shape_cache = shapes.cache;
+  options.shape_cache = files.cache;
+  options.recordings_folder = files.recordings.path();
   options.load = [](const std::filesystem::path& file, const cad::ProgressFn& progress,
                     std::stop_token stop, Diagnostics*) -> Result<product::Product> {
     progress("read", 0.5);

@@ -30,7 +30,8 @@ class EventLog {
 };
 
 /** Of a workbench whose every file is simulation::testing::PegInBlock: occurrence 0 is the block,
- 1 the peg. A file named "missing" cannot be opened. Shapes are made once in a program. */
+ 1 the peg. A file named "missing" cannot be opened. Shapes are made once in a program, and
+ recordings are gone with it. */
 [[nodiscard]] WorkbenchOptions SmallBench();
 
 }  // namespace hvas::studio::testing

@@ -1,6 +1,8 @@
 #include "studio/workbench.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <thread>
@@ -8,6 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "device/driver.h"
+#include "record/reader.h"
+#include "session/replay.h"
+#include "studio/frame_codec.h"
 #include "studio/test/small_bench.h"
 
 namespace hvas::studio {
@@ -132,6 +137,28 @@ class WorkbenchTest : public ::testing::Test {
     const std::size_t start = log_.size();
     ASSERT_TRUE(bench_.Release(hand_));
     ASSERT_TRUE(log_.Await("dropped", start));
+  }
+
+  /** As a page reads them: all bodies first, time that never goes back. */
+  static void CheckFrames(const std::string& bytes) {
+    std::size_t at = 0;
+    std::int64_t last_ns = 0;
+    int frames = 0;
+    while (at + sizeof(protocol::Header) <= bytes.size()) {
+      protocol::Header header;
+      std::memcpy(&header, bytes.data() + at, sizeof(header));
+      if (frames++ == 0) {
+        EXPECT_EQ(header.kind, static_cast<std::uint16_t>(protocol::FrameKind::kPoses));
+        EXPECT_EQ(header.count, 2u);
+      }
+      EXPECT_GE(header.t_ns, last_ns);
+      last_ns = header.t_ns;
+      ASSERT_GT(header.size, 0u);
+      at += header.size;
+    }
+    EXPECT_EQ(at, bytes.size());
+    EXPECT_GT(frames, 200);
+    EXPECT_GT(last_ns, 4'000'000'000);
   }
 
   /** Waits until a hand has this device. */
@@ -385,6 +412,86 @@ TEST_F(WorkbenchTest, DevicesAreFoundWithoutOpeningThem) {
   }
   EXPECT_EQ(emulated, device::KnownProfiles().size());
   EXPECT_EQ((*told)["devices"].size(), emulated + device::Drivers().size());
+}
+
+TEST_F(WorkbenchTest, RecordingIsListedPlayedAndRunAgainBitForBit) {  // X14, N7
+  EXPECT_FALSE(bench_.StartRecording(""));  // nothing is open
+  OpenPeg();
+  const std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.StartRecording("first try"));
+  const auto begun = log_.Await("recording", start);
+  ASSERT_TRUE(begun);
+  EXPECT_EQ((*begun)["on"], true);
+  const std::string id = (*begun)["id"];
+  EXPECT_FALSE(bench_.StartRecording("another"));
+  EXPECT_FALSE(bench_.DeleteRecording(id));
+  TakePeg();
+  InsertPeg();
+  ASSERT_FALSE(HasFatalFailure());
+  ReleasePeg();
+  ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
+  ASSERT_TRUE(bench_.Undo());  // another stretch
+  ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kLoose));
+  ASSERT_TRUE(bench_.StopRecording());
+  ASSERT_TRUE(log_.Await([](const Json& e) { return e["event"] == "recording" && e["on"] == false; },
+                         start));
+  EXPECT_FALSE(bench_.StopRecording());
+  EXPECT_TRUE(bench_.recording().is_null());
+
+  const Json list = bench_.shelf().List()["recordings"];
+  const auto listed = std::find_if(list.begin(), list.end(),
+                                   [&](const Json& entry) { return entry["id"] == id; });
+  ASSERT_NE(listed, list.end());
+  EXPECT_EQ((*listed)["name"], "first try");
+  EXPECT_EQ((*listed)["is_complete"], true);
+  EXPECT_GT((*listed)["duration_s"], 4);
+
+  const auto detail = bench_.shelf().Describe(id);
+  ASSERT_TRUE(detail) << detail.error().ToString();
+  ASSERT_EQ((*detail)["results"].size(), 1u);
+  const Json& result = (*detail)["results"][0];
+  EXPECT_EQ(result["occurrence"], kPeg);
+  EXPECT_EQ(result["is_seated"], true);
+  EXPECT_GT(result["time_s"], 1);
+  EXPECT_GT(result["path_m"], 0.05);
+  CheckFrames(*bench_.shelf().ReadFrames(id));
+  const auto scene = bench_.shelf().ReadAttachment(id, kSceneAttachment);
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(Json::parse(*scene)["occurrences"].size(), 2u);
+  EXPECT_EQ(*bench_.shelf().ReadAttachment(id, kGlbAttachment), *bench_.scene()->glb);
+
+  auto reader = record::Reader::Open(*bench_.shelf().Find(id));
+  ASSERT_TRUE(reader);
+  const auto replay = session::Replay(&*reader, bench_.scene()->model, {});
+  ASSERT_TRUE(replay) << replay.error().ToString();
+  EXPECT_TRUE(replay->is_exact());
+  EXPECT_EQ(replay->stretches, 2);
+  EXPECT_GT(replay->ticks, 4000);
+
+  EXPECT_TRUE(bench_.DeleteRecording(id));
+  EXPECT_FALSE(bench_.shelf().Find(id));
+}
+
+TEST_F(WorkbenchTest, ChangeOfTheProductEndsTheRecording) {
+  OpenPeg();
+  ASSERT_TRUE(bench_.StartRecording(""));
+  ASSERT_TRUE(log_.Await("recording"));
+  const std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.Change("change", [](product::Product*) -> Result<void> { return {}; }));
+  const auto ended = log_.Await("recording", start);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ((*ended)["on"], false);
+  const auto described = bench_.shelf().Describe((*ended)["id"]);
+  ASSERT_TRUE(described);
+  EXPECT_EQ((*described)["is_complete"], true);
+}
+
+TEST_F(WorkbenchTest, RecordingsAreFoundByTheirIdAlone) {
+  for (const char* id : {"", ".", "..", "../../etc/passwd", "/etc/passwd", "a/b", "none"}) {
+    EXPECT_FALSE(bench_.shelf().Find(id)) << id;
+    EXPECT_FALSE(bench_.DeleteRecording(id)) << id;
+    EXPECT_FALSE(bench_.shelf().ReadFrames(id)) << id;
+  }
 }
 
 TEST_F(WorkbenchTest, StopsWhileAFileIsBeingOpened) {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "simulation/model.h"
+#include "simulation/simulation.h"
+
+namespace hvas::studio {
+
+/** What is open: a model and all that a viewer needs of it. Immutable. */
+struct OpenScene {
+  std::uint32_t epoch{0};
+  std::shared_ptr<const simulation::Model> model;
+  Diagnostics diagnostics;
+  std::shared_ptr<const std::string> glb;
+  std::string glb_hash;
+};
+
+/** Of each hand: the largest force since it was asked for last [N]. */
+using PeakForces = std::array<double, 2>;
+
+/** The newest state of everything that moves. */
+struct LiveFrame {
+  std::uint32_t epoch{0};
+  std::uint64_t serial{0};  ///< Another one for each frame.
+  simulation::Frame frame;
+  PeakForces peak_felt{};               ///< Since the last one [N].
+  std::array<double, 2> hand_speed{};  ///< By hand, since the last one [m/s].
+};
+
+}  // namespace hvas::studio

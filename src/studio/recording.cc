@@ -1,0 +1,109 @@
+#include "studio/recording.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "product/names.h"
+#include "session/recorded_model.h"
+#include "studio/frames.h"
+
+namespace hvas::studio {
+namespace {
+
+/** What a page that plays the session needs of what was told. */
+constexpr std::array<std::string_view, 8> kToldEvents{"taken", "state", "dropped", "placement",
+                                                      "step",  "safety", "device", "demo"};
+
+std::vector<std::byte> BytesOf(std::string_view text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+Recording::Recording(std::unique_ptr<record::Recorder> recorder,
+                     std::shared_ptr<const OpenScene> scene, std::string id, std::string name)
+    : scene_(std::move(scene)),
+      id_(std::move(id)),
+      name_(std::move(name)),
+      recorder_(std::move(recorder)),
+      sink_(recorder_.get(), *scene_->model) {}
+
+Result<std::shared_ptr<Recording>> Recording::Start(const std::filesystem::path& file,
+                                                    const std::string& name,
+                                                    std::shared_ptr<const OpenScene> scene,
+                                                    const nlohmann::ordered_json& scene_json) {
+  record::RecorderOptions options;
+  options.path = file;
+  options.is_threaded = true;
+  options.ring_ticks *= 2;  // of two hands
+  record::Meta meta = session::MakeModelMeta(*scene->model);
+  meta[kNameMeta] = name;
+  auto recorder = record::Recorder::Create(options, meta);
+  if (!recorder) {
+    return Unexpected(recorder.error());
+  }
+  (*recorder)->AddAttachment({kSceneAttachment, BytesOf(scene_json.dump())});
+  (*recorder)->AddAttachment({kGlbAttachment, BytesOf(*scene->glb)});
+  return std::shared_ptr<Recording>(
+      new Recording(std::move(*recorder), std::move(scene), file.stem().string(), name));
+}
+
+void Recording::Begin(simulation::Simulation* simulation) {
+  start_ns_ = sink_.t_ns();
+  sink_.Begin(simulation);
+}
+
+void Recording::OnTick(std::size_t hand, const device::DeviceState& device,
+                       const haptics::TickOutput& out) noexcept {
+  if (is_on_.load(std::memory_order_relaxed)) {
+    sink_.OnTick(hand, device, out);
+  }
+}
+
+void Recording::OnEvent(const simulation::SimulationEvent& event) {
+  if (is_on_) {
+    sink_.OnEvent(event);
+  }
+}
+
+void Recording::OnFlight(const std::vector<simulation::FlightTick>& ticks) {
+  if (is_on_) {
+    sink_.OnFlight(ticks);
+  }
+}
+
+void Recording::AddFrame(const LiveFrame& frame) {
+  if (!is_on_) {
+    return;
+  }
+  LiveFrame in_session = frame;
+  in_session.frame.t_ns += start_ns_;
+  const std::string bytes = MakeFrames(in_session, ++frame_count_, &shown_);
+  recorder_->AddFrame({in_session.frame.t_ns, BytesOf(bytes)});
+}
+
+void Recording::AddTold(const nlohmann::ordered_json& event) {
+  const std::string name = event.value("event", "");
+  if (is_on_ && std::find(kToldEvents.begin(), kToldEvents.end(), name) != kToldEvents.end()) {
+    recorder_->AddEvent(
+        {sink_.t_ns(), kToldKind, event.value("occurrence", record::kNoOccurrence), event.dump()});
+  }
+}
+
+Result<void> Recording::Stop() {
+  is_on_ = false;
+  return recorder_->Finish();
+}
+
+nlohmann::ordered_json Recording::Describe() const {
+  return {{"on", is_on_.load()},
+          {"id", id_},
+          {"name", name_},
+          {"t_s", 1e-9 * static_cast<double>(sink_.t_ns())}};
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,260 @@
+#include "studio/recording_shelf.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "record/reader.h"
+#include "studio/recording.h"
+
+namespace hvas::studio {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kSuffix = ".hvasrec";
+constexpr std::int64_t kNsPerMs = 1'000'000;
+
+/** Letters, digits and dashes. */
+std::string MakeStem(const std::string& name) {
+  constexpr std::size_t kLongest = 40;
+  std::string stem;
+  for (const char letter : name) {
+    const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                          (letter >= '0' && letter <= '9');
+    if (is_plain && stem.size() < kLongest) {
+      stem += letter;
+    } else if (!stem.empty() && stem.back() != '-') {
+      stem += '-';
+    }
+  }
+  return stem.empty() ? "session" : stem;
+}
+
+std::string TextOf(const record::Meta& meta, const std::string& key) {
+  const auto found = meta.find(key);
+  return found == meta.end() ? "" : found->second;
+}
+
+Json DescribeFile(const std::string& id, const std::filesystem::path& file, std::uintmax_t bytes) {
+  auto reader = record::Reader::Open(file);
+  if (!reader) {
+    return nullptr;
+  }
+  const record::Meta& meta = reader->meta();
+  const std::string name = TextOf(meta, kNameMeta);
+  const std::string product = TextOf(meta, "product");
+  const std::int64_t started_ns = std::atoll(TextOf(meta, record::kMetaStarted).c_str());
+  return {{"id", id},
+          {"name", name.empty() ? product : name},
+          {"product", product},
+          {"started_unix_ms", started_ns / kNsPerMs},
+          {"duration_s", 1e-9 * static_cast<double>(reader->ReadLength().value_or(0))},
+          {"is_complete", reader->is_complete()},
+          {"bytes", bytes}};
+}
+
+/** What each part's holds amounted to, of the events "dropped". */
+class Results {
+ public:
+  void Add(const Json& dropped, const std::vector<std::string>& paths) {
+    const auto occurrence = dropped.value("occurrence", record::kNoOccurrence);
+    Json& result = FindOrAdd(occurrence, paths);
+    const Json& metrics = dropped.at("metrics");
+    const auto add = [&](const char* key, const char* from, double unit) {
+      result[key] = result[key].get<double>() + unit * metrics.value(from, 0.0);
+    };
+    const auto keep_largest = [&](const char* key, const char* from) {
+      result[key] = std::max(result[key].get<double>(), metrics.value(from, 0.0));
+    };
+    result["is_seated"] = dropped.value("was_seated", false);
+    add("time_s", "time_s", 1);
+    add("path_m", "path_mm", 1e-3);
+    add("collisions", "collisions", 1);
+    keep_largest("peak_true_n", "peak_true_n");
+    keep_largest("peak_felt_n", "peak_felt_n");
+    keep_largest("insertion_mm", "insertion_mm");
+  }
+
+  [[nodiscard]] const Json& list() const { return list_; }
+
+ private:
+  Json& FindOrAdd(std::uint32_t occurrence, const std::vector<std::string>& paths) {
+    for (Json& result : list_) {
+      if (result["occurrence"] == occurrence) {
+        return result;
+      }
+    }
+    list_.push_back({{"occurrence", occurrence},
+                     {"path", occurrence < paths.size() ? paths[occurrence] : ""},
+                     {"is_seated", false},
+                     {"time_s", 0.0},
+                     {"path_m", 0.0},
+                     {"peak_true_n", 0.0},
+                     {"peak_felt_n", 0.0},
+                     {"collisions", 0.0},
+                     {"insertion_mm", 0.0}});
+    return list_.back();
+  }
+
+  Json list_ = Json::array();
+};
+
+std::vector<std::string> PathsOf(const record::Meta& meta) {
+  std::vector<std::string> paths;
+  const Json parts = Json::parse(TextOf(meta, "model_json"), nullptr, false);
+  if (parts.is_array()) {
+    for (const Json& part : parts) {
+      paths.push_back(part.value("path", ""));
+    }
+  }
+  return paths;
+}
+
+}  // namespace
+
+Result<std::filesystem::path> RecordingShelf::MakePath(const std::string& product) const {
+  if (folder_.empty()) {
+    return Fail(ErrorCode::kUnsupported, "there is no folder for recordings", "",
+                "start the studio with --recordings FOLDER");
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(folder_, failed);
+  if (failed) {
+    return Fail(ErrorCode::kOutOfResource, failed.message(), folder_.string(),
+                "start the studio with --recordings FOLDER");
+  }
+  const std::string stem =
+      fmt::format("{}-{:%Y%m%d-%H%M%S}", MakeStem(product), fmt::localtime(std::time(nullptr)));
+  std::filesystem::path file = folder_ / (stem + kSuffix);
+  for (int i = 2; std::filesystem::exists(file, failed); ++i) {
+    file = folder_ / fmt::format("{}-{}{}", stem, i, kSuffix);
+  }
+  return file;
+}
+
+Json RecordingShelf::List() {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, Entry> entries;
+  std::error_code failed;
+  for (const auto& item : std::filesystem::directory_iterator(folder_, failed)) {
+    if (item.path().extension() != kSuffix) {
+      continue;
+    }
+    const std::string id = item.path().stem().string();
+    Entry entry{item.last_write_time(failed), item.file_size(failed), nullptr};
+    const auto known = entries_.find(id);
+    const bool is_same = known != entries_.end() && known->second.written == entry.written &&
+                         known->second.bytes == entry.bytes;
+    entry.description =
+        is_same ? known->second.description : DescribeFile(id, item.path(), entry.bytes);
+    entries[id] = std::move(entry);
+  }
+  entries_ = std::move(entries);
+  std::vector<Json> list;
+  for (const auto& [id, entry] : entries_) {
+    if (!entry.description.is_null()) {
+      list.push_back(entry.description);
+    }
+  }
+  std::sort(list.begin(), list.end(), [](const Json& a, const Json& b) {
+    return a["started_unix_ms"].get<std::int64_t>() > b["started_unix_ms"].get<std::int64_t>();
+  });
+  return {{"recordings", list}};
+}
+
+Result<std::filesystem::path> RecordingShelf::Find(const std::string& id) const {
+  std::error_code failed;
+  for (const auto& item : std::filesystem::directory_iterator(folder_, failed)) {
+    if (item.path().extension() == kSuffix && item.path().stem() == id) {
+      return item.path();
+    }
+  }
+  return Fail(ErrorCode::kNotFound, "there is no such recording", id, "look at the list again");
+}
+
+Result<record::Reader> RecordingShelf::Open(const std::string& id) const {
+  const auto file = Find(id);
+  return file ? record::Reader::Open(*file) : Unexpected(file.error());
+}
+
+Result<Json> RecordingShelf::Describe(const std::string& id) const {
+  auto reader = Open(id);
+  if (!reader) {
+    return Unexpected(reader.error());
+  }
+  const auto told = reader->ReadEvents();
+  if (!told) {
+    return Unexpected(told.error());
+  }
+  std::error_code failed;
+  Json json = DescribeFile(id, reader->path(), std::filesystem::file_size(reader->path(), failed));
+  const std::string route = "/api/recording/" + id;
+  json["scene"] = route + "/scene";
+  json["glb"] = route + "/model.glb";
+  json["frames"] = route + "/frames";
+  Results results;
+  Json& events = json["events"] = Json::array();
+  for (const record::Event& event : *told) {
+    Json one = event.kind == kToldKind ? Json::parse(event.json, nullptr, false) : Json();
+    if (!one.is_object()) {
+      continue;
+    }
+    if (one.value("event", "") == "dropped" && one.contains("metrics")) {
+      results.Add(one, PathsOf(reader->meta()));
+    }
+    one["t_ns"] = event.t_ns;
+    events.push_back(std::move(one));
+  }
+  json["results"] = results.list();
+  return json;
+}
+
+Result<std::string> RecordingShelf::ReadFrames(const std::string& id) const {
+  auto reader = Open(id);
+  if (!reader) {
+    return Unexpected(reader.error());
+  }
+  std::string bytes;
+  const auto read = reader->ForEachFrame({}, [&bytes](const record::Frame& frame) {
+    bytes.append(reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size());
+    return true;
+  });
+  return read ? Result<std::string>(std::move(bytes)) : Unexpected(read.error());
+}
+
+Result<std::string> RecordingShelf::ReadAttachment(const std::string& id,
+                                                   const std::string& name) const {
+  auto reader = Open(id);
+  if (!reader) {
+    return Unexpected(reader.error());
+  }
+  const auto bytes = reader->ReadAttachment(name);
+  if (!bytes) {
+    return Unexpected(bytes.error());
+  }
+  return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+Result<void> RecordingShelf::Delete(const std::string& id) {
+  const auto file = Find(id);
+  if (!file) {
+    return Unexpected(file.error());
+  }
+  std::error_code failed;
+  for (const char* suffix : {"-wal", "-shm", ""}) {
+    std::filesystem::remove(file->string() + suffix, failed);
+  }
+  return failed ? Result<void>(Fail(ErrorCode::kOutOfResource, failed.message(), file->string(),
+                                    "delete the file by hand"))
+                : Result<void>();
+}
+
+}  // namespace hvas::studio
