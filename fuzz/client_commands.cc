@@ -33,8 +33,8 @@ void TestOne(std::string_view bytes) {
     (void)studio::FaceAt(*command, name);
   }
   // What was understood is understood again.
-  const auto again = studio::ParseCommand(
-      command->dump(-1, ' ', false, studio::Json::error_handler_t::replace));
+  const auto again =
+      studio::ParseCommand(command->dump(-1, ' ', false, studio::Json::error_handler_t::replace));
   Check(again && CountFields(*again) == CountFields(*command));
 }
 
