@@ -31,9 +31,9 @@ namespace {
 struct StudioOptions {
   LoadOptions load;
   std::uint16_t port{0};
-  std::string listen;              ///< Empty: this machine only.
-  std::vector<std::string> hosts;  ///< Further names of this machine.
-  studio::TlsFiles tls;            ///< Empty: a certificate of our own.
+  std::string listen;                ///< Empty: this machine only.
+  std::vector<std::string> hosts;    ///< Further names of this machine.
+  studio::TlsFiles tls;              ///< Empty: a certificate of our own.
   std::filesystem::path recordings;  ///< Empty: the user's own.
   std::uint64_t seed{1};
   double rate_hz{1000};

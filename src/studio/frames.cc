@@ -132,10 +132,12 @@ Json MakeHandStatus(const LiveFrame& frame, std::size_t hand) {
 
 Json MakeStatus(const simulation::LoopStatus& status) {
   const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
+  constexpr double kP50 = 0.5;
   constexpr double kP99 = 0.99;
   const std::string scheduling = status.is_fifo ? "SCHED_FIFO" : "normal priority";
   return {{"event", "status"},
           {"tick_hz", static_cast<double>(status.compute.count())},
+          {"compute_p50_us", us(status.compute.Quantile(kP50))},
           {"compute_p99_us", us(status.compute.Quantile(kP99))},
           {"compute_max_us", us(status.compute.max_ns())},
           {"wake_up_p99_us", us(status.wake_up.Quantile(kP99))},

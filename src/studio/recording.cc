@@ -14,8 +14,8 @@ namespace hvas::studio {
 namespace {
 
 /** What a page that plays the session needs of what was told. */
-constexpr std::array<std::string_view, 8> kToldEvents{"taken", "state", "dropped", "placement",
-                                                      "step",  "safety", "device", "demo"};
+constexpr std::array<std::string_view, 8> kToldEvents{"taken", "state",  "dropped", "placement",
+                                                      "step",  "safety", "device",  "demo"};
 
 std::vector<std::byte> BytesOf(std::string_view text) {
   const auto bytes = std::as_bytes(std::span(text));

@@ -40,7 +40,7 @@ using LoadFn = std::function<Result<product::Product>(
 struct WorkbenchOptions {
   LoadFn load;
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
-  std::filesystem::path recordings_folder;  ///< Empty: nothing can be recorded.
+  std::filesystem::path recordings_folder;           ///< Empty: nothing can be recorded.
   std::uint64_t seed{1};
   double rate_hz{1000};
 };
@@ -106,6 +106,7 @@ class Workbench {
   [[nodiscard]] Json recording() const;
 
   [[nodiscard]] RecordingShelf& shelf() { return shelf_; }
+
   /** Not what is being recorded. */
   [[nodiscard]] Result<void> DeleteRecording(const std::string& id);
 

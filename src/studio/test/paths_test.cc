@@ -124,8 +124,11 @@ class PathCommandTest : public ::testing::Test {
     ASSERT_TRUE(log_.Await("scene"));
   }
 
-  /** The simulated person puts the peg into its hole. */
+  /** The simulated person puts the peg into its hole, once the block stands in its fixture. */
   void PutPegIn() {
+    ASSERT_TRUE(log_.Await([](const Json& event) {
+      return event["event"] == "placement" && event["placement"] == "placed";
+    }));
     ASSERT_TRUE(bench_.DoNext());
     ASSERT_TRUE(log_.Await([](const Json& event) {
       return event["event"] == "dropped" && event["was_seated"] == true;

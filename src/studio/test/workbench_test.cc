@@ -415,7 +415,7 @@ TEST_F(WorkbenchTest, DevicesAreFoundWithoutOpeningThem) {
 }
 
 TEST_F(WorkbenchTest, RecordingIsListedPlayedAndRunAgainBitForBit) {  // X14, N7
-  EXPECT_FALSE(bench_.StartRecording(""));  // nothing is open
+  EXPECT_FALSE(bench_.StartRecording(""));                            // nothing is open
   OpenPeg();
   const std::size_t start = log_.size();
   ASSERT_TRUE(bench_.StartRecording("first try"));
@@ -433,14 +433,14 @@ TEST_F(WorkbenchTest, RecordingIsListedPlayedAndRunAgainBitForBit) {  // X14, N7
   ASSERT_TRUE(bench_.Undo());  // another stretch
   ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kLoose));
   ASSERT_TRUE(bench_.StopRecording());
-  ASSERT_TRUE(log_.Await([](const Json& e) { return e["event"] == "recording" && e["on"] == false; },
-                         start));
+  ASSERT_TRUE(log_.Await(
+      [](const Json& e) { return e["event"] == "recording" && e["on"] == false; }, start));
   EXPECT_FALSE(bench_.StopRecording());
   EXPECT_TRUE(bench_.recording().is_null());
 
   const Json list = bench_.shelf().List()["recordings"];
-  const auto listed = std::find_if(list.begin(), list.end(),
-                                   [&](const Json& entry) { return entry["id"] == id; });
+  const auto listed =
+      std::find_if(list.begin(), list.end(), [&](const Json& entry) { return entry["id"] == id; });
   ASSERT_NE(listed, list.end());
   EXPECT_EQ((*listed)["name"], "first try");
   EXPECT_EQ((*listed)["is_complete"], true);
