@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -56,7 +57,8 @@ std::vector<std::vector<double>> ReadTable(const std::string& csv) {
     std::string cell;
     rows.emplace_back();
     while (std::getline(cells, cell, ',')) {
-      rows.back().push_back(cell.empty() ? NAN : std::stod(cell));
+      rows.back().push_back(cell.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                         : std::stod(cell));
     }
   }
   return rows;
