@@ -280,7 +280,8 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
     FinishRecording();  // a record is of one scene
   }
   live.recording = recording_;
-  auto run = std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene));
+  auto run =
+      std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene, live.recording));
   run->StopForces(forces_off_);
   {
     const std::lock_guard lock(mutex_);
@@ -313,7 +314,8 @@ void Workbench::Restart(bool has_person) {
   Tell({{"event", "demo"}, {"on", has_person}});
 }
 
-LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& scene) {
+LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& scene,
+                                       const std::shared_ptr<Recording>& recording) {
   LiveListeners listeners;
   listeners.on_event = [this, scene](const simulation::SimulationEvent& event) {
     HandleEvent(*scene, event);
@@ -322,15 +324,13 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
     Tell({{"event", "placement"}, {"occurrence", id.value()}, {"placement", ToString(placement)}});
   };
   listeners.on_step = [this, scene](std::size_t step) { HandleStep(*scene, step); };
-  listeners.on_frame = [this, epoch = scene->epoch](const simulation::Frame& frame,
-                                                    const PeakForces& peak_felt) {
+  listeners.on_frame = [this, epoch = scene->epoch, recording](const simulation::Frame& frame,
+                                                               const PeakForces& peak_felt) {
     LiveFrame shown;
-    std::shared_ptr<Recording> recording;
     {
       const std::lock_guard lock(mutex_);
       const auto speed = SpeedsBetween(frame_.frame, frame);
       frame_ = {epoch, frame_.serial + 1, frame, peak_felt, speed};
-      recording = recording_;
       shown = recording != nullptr ? frame_ : LiveFrame();
     }
     if (recording != nullptr) {

@@ -153,7 +153,8 @@ class Workbench {
                                                                          Diagnostics* diagnostics);
   void Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state, bool has_person);
   void Restart(bool has_person);
-  [[nodiscard]] LiveListeners MakeListeners(const std::shared_ptr<const OpenScene>& scene);
+  [[nodiscard]] LiveListeners MakeListeners(const std::shared_ptr<const OpenScene>& scene,
+                                            const std::shared_ptr<Recording>& recording);
   void HandleEvent(const OpenScene& scene, const simulation::SimulationEvent& event);
   void HandleStep(const OpenScene& scene, std::size_t step);
   void TellOfStep(const OpenScene& scene, std::size_t step) const;

@@ -31,7 +31,7 @@ class PathCommandTest : public ::testing::Test {
   /** Arguments for the shaft of the bushing rig. */
   [[nodiscard]] std::vector<std::string> ForShaft(std::vector<std::string> more,
                                                   const std::string& output) const {
-    std::vector<std::string> all{"path", ProductFile("bushing"), "--part", "shaft 40", "-q"};
+    std::vector<std::string> all{"path", ProductFile("bushing"), "--part", "shaft", "-q"};
     all.insert(all.end(), more.begin(), more.end());
     all.insert(all.end(), {"-o", In(output)});
     return all;

@@ -885,7 +885,8 @@ TEST_F(ServerTest, SceneAndItsModelAreGiven) {
 }
 
 TEST_F(ServerTest, FramesComeWithCreditOnly) {
-  const auto client = JoinAndOpen();
+  const auto opened = JoinAndOpen();
+  const auto client = Join(Role::kViewer);  // it is sent frames from its first one on
   const auto next_frame = [&]() -> std::optional<Message> {
     while (auto message = client->ReadMessage()) {
       if (message->opcode == Message::kBinary) {
