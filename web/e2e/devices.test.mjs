@@ -31,7 +31,7 @@ async function openDevices(page) {
 }
 
 async function closeDialog(page) {
-  await page.getByRole("button", { name: "Close" }).click();
+  await page.getByTestId("devices").getByRole("button", { name: "Close" }).click();
 }
 
 describe("the hands", () => {

@@ -159,7 +159,8 @@ describe("opening", () => {
     await waitForPicture(page);
     const { epoch } = await fetchScene(page);
     const chooser = page.waitForEvent("filechooser");
-    await page.keyboard.press("Control+o");
+    await page.getByTestId("menu.file").click();
+    await page.getByTestId("menu-open").click();
     await (await chooser).setFiles("../products/frame_500.step");
     await page.getByTestId("cancel-open").click({ timeout: 20_000 });
     await page.getByTestId("loading").waitFor({ state: "detached" });
