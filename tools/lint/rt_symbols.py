@@ -44,7 +44,9 @@ ROOTS = [
     r"hvas::device::SampleGuard::\w+\(.*",
     r"hvas::simulation::FlightRecorder::(Keep|Trigger)\(.*",
     r"hvas::simulation::AssemblyRun::OnTick\(.*",  # virtual: the sink of every run
-    r"hvas::app::.*OnTick\(.*",  # virtual: the sink that records
+    r"hvas::session::SessionRecorder::OnTick\(.*",  # virtual: the sink that records
+    r"hvas::studio::(LiveRun|Recording)::OnTick\(.*",  # virtual: the sinks of a live run
+    r"hvas::studio::PointerOperator::(Step|Intend)\(.*",  # virtual: the operator of a page
     r"hvas::haptics::HapticTick::(Tick|Take|Drop)\(.*",
     r"hvas::contact::Scene::(Query|IsFree|SetPose|SetEnabled)\(.*",
     r"hvas::fits::FitForce::Calc\w+\(.*",
