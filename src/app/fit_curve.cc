@@ -6,13 +6,19 @@
 
 #include <fmt/format.h>
 
-#include "app/svg_plot.h"
 #include "base/random.h"
 #include "base/units.h"
 #include "fits/press_stroke.h"
+#include "pages/svg_plot.h"
 
 namespace hvas::app {
 namespace {
+
+using pages::PlotFigure;
+using pages::PlotPanel;
+using pages::PlotRange;
+using pages::PlotSeries;
+using pages::PlotStyle;
 
 constexpr int kSteps = 200;
 

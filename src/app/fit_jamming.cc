@@ -7,11 +7,17 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/svg_plot.h"
 #include "base/units.h"
+#include "pages/svg_plot.h"
 
 namespace hvas::app {
 namespace {
+
+using pages::PlotFigure;
+using pages::PlotPanel;
+using pages::PlotRange;
+using pages::PlotSeries;
+using pages::PlotStyle;
 
 double Radius(const FitJamming& j) {
   return 0.5 * j.pair.peg_diameter;

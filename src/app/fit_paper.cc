@@ -7,16 +7,22 @@
 
 #include <fmt/format.h>
 
-#include "app/svg_plot.h"
 #include "base/random.h"
 #include "base/units.h"
 #include "fits/paper_scales.h"
 #include "fits/press_stroke.h"
 #include "mates/make_fit.h"
+#include "pages/svg_plot.h"
 #include "product/names.h"
 
 namespace hvas::app {
 namespace {
+
+using pages::PlotFigure;
+using pages::PlotPanel;
+using pages::PlotRange;
+using pages::PlotSeries;
+using pages::PlotStyle;
 
 constexpr double kSpeed = 0.01;  // Of the hand; the paper does not say [m/s].
 constexpr int kSteps = 500;

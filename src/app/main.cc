@@ -15,6 +15,7 @@
 #include "app/replay.h"
 #include "app/report.h"
 #include "app/studio.h"
+#include "app/study.h"
 
 namespace {
 
@@ -33,6 +34,7 @@ int Run(int argc, char** argv) {
   hvas::app::AddReplay(&app, &status);
   hvas::app::AddReport(&app, &status);
   hvas::app::AddStudio(&app, &status);
+  hvas::app::AddStudy(&app, &status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

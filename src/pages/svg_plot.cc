@@ -1,4 +1,4 @@
-#include "app/svg_plot.h"
+#include "pages/svg_plot.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
-namespace hvas::app {
+#include "pages/html_page.h"
+
+namespace hvas::pages {
 namespace {
 
 constexpr double kWidth = 760;
@@ -38,26 +40,6 @@ constexpr std::string_view kStyle =
     ".s0{stroke:#6cb0ff}.s1{stroke:#ff9c66}.s2{stroke:#6fd08c}.s3{stroke:#b9a3ff}.s4{stroke:#"
     "aeb6bf}"
     ".f0{fill:#6cb0ff}.f1{fill:#ff9c66}.f2{fill:#6fd08c}.f3{fill:#b9a3ff}.f4{fill:#aeb6bf}}";
-
-std::string Escape(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 /** Letters, not bytes, of UTF-8. */
 double WidthOf(std::string_view text) {
@@ -349,4 +331,4 @@ std::string ToSvg(const PlotFigure& figure) {
       kWidth, y + kMargin, Escape(figure.title), kStyle, body);
 }
 
-}  // namespace hvas::app
+}  // namespace hvas::pages

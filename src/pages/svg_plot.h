@@ -7,7 +7,7 @@
 
 /** Plots as SVG: axes with ticks, legend, light and dark by what the reader prefers. Same figure,
  same bytes. */
-namespace hvas::app {
+namespace hvas::pages {
 
 struct PlotPoint {
   double x{0};
@@ -57,4 +57,4 @@ struct PlotFigure {
 
 [[nodiscard]] std::string ToSvg(const PlotFigure& figure);
 
-}  // namespace hvas::app
+}  // namespace hvas::pages

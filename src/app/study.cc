@@ -1,0 +1,12 @@
+#include "app/study.h"
+
+#include <CLI/CLI.hpp>
+
+namespace hvas::app {
+
+void AddStudy(CLI::App* app, int* /*status*/) {
+  CLI::App* study = app->add_subcommand("study", "Experiments with people, up to the statistics");
+  study->require_subcommand(1);
+}
+
+}  // namespace hvas::app

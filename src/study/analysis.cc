@@ -1,0 +1,3 @@
+#include "study/analysis.h"
+
+namespace hvas::study {}  // namespace hvas::study
