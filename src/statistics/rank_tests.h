@@ -18,10 +18,6 @@ struct MidRanks {
 /** Values closer than `tolerance` to their neighbour in order are tied. @pre all are finite. */
 [[nodiscard]] MidRanks CalcMidRanks(std::span<const double> values, double tolerance = 0);
 
-/** Values of this size that differ by less are equal but for rounding: 12.3 - 12.1 and 10.3 - 10.1.
- */
-[[nodiscard]] double FindTieTolerance(std::span<const double> values);
-
 /** Do conditions differ? Friedman, J. Am. Stat. Assoc. 32, 1937, with correction for ties. */
 struct Friedman {
   std::size_t row_count{0};

@@ -32,8 +32,10 @@ struct Confusion {
   std::optional<double> kappa;
 };
 
-/** Errors: kInvalid for a matrix that is not square, negative counts, or nothing counted. */
+/** @param chance Of a right answer by guessing. Errors: kInvalid for a matrix that is not square,
+ negative counts, nothing counted, and as CalcShare. */
 [[nodiscard]] Result<Confusion> CalcConfusion(std::vector<std::vector<std::int64_t>> counts,
+                                              std::optional<double> chance = {},
                                               double confidence = 0.95);
 
 }  // namespace hvas::statistics

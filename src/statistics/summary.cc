@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "statistics/distributions.h"
+#include "statistics/samples.h"
 
 namespace hvas::statistics {
 
@@ -22,14 +23,8 @@ Result<Summary> Summarise(std::span<const double> values, double confidence) {
   if (const auto checked = CheckConfidence(confidence); !checked) {
     return Unexpected(checked.error());
   }
-  if (values.empty()) {
-    return Fail(ErrorCode::kInvalid, "there are no values", "sample", "give at least one");
-  }
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) {
-      return Fail(ErrorCode::kInvalid, fmt::format("value {} is not finite", i + 1), "sample",
-                  "leave out what was not measured");
-    }
+  if (const auto checked = CheckSample(values); !checked) {
+    return Unexpected(checked.error());
   }
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());

@@ -106,10 +106,11 @@ struct Identification {
   statistics::Confusion confusion;  ///< [shown][answered], in the order of `names`.
   std::size_t participant_count{0};
   double confidence{0.95};
+  std::optional<double> chance;  ///< Of a right answer by guessing; none where one thing is shown.
 };
 
-/** Errors: kInvalid for no answers. */
+/** Chance is one in the number of things shown. Errors: kInvalid for no answers. */
 [[nodiscard]] Result<Identification> AnalyseIdentification(const std::vector<Answer>& answers,
-                                                           double alpha);
+                                                           double alpha = 0.05);
 
 }  // namespace hvas::study
