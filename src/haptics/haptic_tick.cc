@@ -14,6 +14,7 @@ constexpr double kMinVirtualMass = 0.05;   // [kg]; lighter parts are felt as th
 constexpr double kSeatTolerance = 50e-6;   // [m]; no deeper on the last bit into place
 constexpr double kMaxCouplingShare = 0.9;  // of the device's force; more than fits are felt with
 constexpr double kLeastTorque = 0.2;       // [N m]; turns the part where no torque is shown
+constexpr double kLeaveFactor = 2;         // of the limits of being seated, to be out of place
 constexpr double kFitTakesOver = 2e-3;     // [m] of depth over which attraction gives way
 
 double MinimumJerk(double s) noexcept {
@@ -84,6 +85,10 @@ void HapticTick::Take(const HeldPart* part) noexcept {
   has_start_ = false;
   seat_progress_ = 0;
   guide_.Reset();
+  leaves_place_ = part->starts_in_place;
+  if (leaves_place_) {
+    guide_.StartInPlace();
+  }
   fit_rows_.Reset();
   reach_ = 0;
   for (std::size_t member = 0; member < shape_count(); ++member) {
@@ -100,15 +105,16 @@ void HapticTick::Take(const HeldPart* part) noexcept {
 }
 
 spatial::Pose HapticTick::Drop() noexcept {
-  const bool is_seated = state_ == HoldState::kSeated;
-  spatial::Pose X_WB = is_seated ? part_->X_WB_goal : X_WD_;
+  const bool was_in_place = is_in_place();
+  spatial::Pose X_WB = was_in_place ? part_->X_WB_goal : X_WD_;
   MoveInScene(X_WB);
   ShowInScene(true);
-  if (part_->falls_when_dropped && !is_seated && !is_stuck_) {
+  if (part_->falls_when_dropped && !was_in_place && !is_stuck_) {
     SetLooseForAll(part_->body, true);
     bodies_.WakeFirst(part_->body, X_WB, V_D_);
   }
   part_ = nullptr;
+  leaves_place_ = false;
   state_ = HoldState::kEmpty;
   return X_WB;
 }
@@ -504,6 +510,11 @@ bool HapticTick::HasArrived() noexcept {
   }
   const Vec3 d = X_WD_ * part_->p_BoBcm_B - part_->X_WB_goal * part_->p_BoBcm_B;
   const double angle = spatial::RotationBetween(X_WD_.q(), part_->X_WB_goal.q()).norm();
+  leaves_place_ = leaves_place_ && d.norm() < kLeaveFactor * guidance.loose_seat_distance &&
+                  angle < kLeaveFactor * guidance.seat_angle;
+  if (leaves_place_) {
+    return false;
+  }
   if (d.norm() > guidance.loose_seat_distance || angle > guidance.seat_angle) {
     return false;
   }

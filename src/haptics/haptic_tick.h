@@ -115,8 +115,13 @@ class HapticTick {
    hold. RT-safe. */
   void Take(const HeldPart* part) noexcept;
 
-  /** Lets go. Returns the part's pose: its exact place when it was seated. There it is in the scene
-   again; it falls, unless it is in its place or its fits hold it. RT-safe. */
+  /** The held part has come into its place, or has not left it yet. */
+  [[nodiscard]] bool is_in_place() const noexcept {
+    return state_ == HoldState::kSeated || leaves_place_;
+  }
+
+  /** Lets go. Returns the part's pose: its exact place when it is in place. There it is in the
+   scene again; it falls, unless it is in its place or its fits hold it. RT-safe. */
   spatial::Pose Drop() noexcept;
 
   /** From the next tick on. RT-safe. */
@@ -242,8 +247,9 @@ class HapticTick {
   double seat_progress_{0};
   spatial::Pose X_WD_seat_start_;
   FitAxis fit_axis_;
-  bool is_stuck_{false};     ///< Its fits hold more than its weight.
-  bool has_engaged_{false};  ///< In this tick a part was taken or a mate captured.
+  bool leaves_place_{false};  ///< Was taken up in its place, and is not out of it yet.
+  bool is_stuck_{false};      ///< Its fits hold more than its weight.
+  bool has_engaged_{false};   ///< In this tick a part was taken or a mate captured.
   int captured_before_{0};
   Tracked tracked_;  ///< Of the last tick with a part.
   double weight_true_{0};

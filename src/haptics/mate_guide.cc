@@ -113,6 +113,14 @@ MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) n
   return g;
 }
 
+void MateGuide::StartInPlace() noexcept {
+  MateState in_place;
+  in_place.is_captured = true;
+  in_place.is_aligned = true;
+  in_place.ramp = 1;
+  mates_.fill(in_place);
+}
+
 void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
                        const spatial::Pose& X_WB, const spatial::Pose& X_WT, double dt) noexcept {
   is_near_ = false;

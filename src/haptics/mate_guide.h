@@ -37,6 +37,9 @@ class MateGuide {
 
   void Reset() noexcept { mates_.fill({}); }
 
+  /** All mates of a part that is in its place hold it there from the first tick on. */
+  void StartInPlace() noexcept;
+
   /** Captures and releases for the part at X_WB (displayed) while the hand wants X_WT. */
   void Update(const HeldPart& part, const GuidanceOptions& options, const spatial::Pose& X_WB,
               const spatial::Pose& X_WT, double dt) noexcept;

@@ -34,6 +34,7 @@ AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* d
   const Model& model = simulation_->model();
   total_ = model.bodies.size();
   dropped_.resize(total_);
+  is_finished_.resize(model.sequence.steps.size());
   for (const Body& body : model.bodies) {
     lift_height_ = std::max(lift_height_, 1.2 * body.shape->box_B().size().norm());
   }
@@ -67,10 +68,25 @@ void AssemblyRun::OnFlight(const std::vector<FlightTick>& ticks) {
 void AssemblyRun::OnEvent(const SimulationEvent& event) {
   if (event.kind == SimulationEvent::Kind::kDropped) {
     dropped_[event.occurrence.index()] = event;
+    GoBackTo(event);
   }
   states_[event.hand] = event.state;
   if (downstream_ != nullptr) {
     downstream_->OnEvent(event);
+  }
+}
+
+void AssemblyRun::GoBackTo(const SimulationEvent& dropped) {
+  const auto& steps = simulation_->model().sequence.steps;
+  const std::size_t next = next_step();
+  for (std::size_t i = 0; !dropped.was_seated && i < next; ++i) {
+    if (IsSinglePart(steps[i]) && steps[i].occurrence == dropped.occurrence) {
+      is_finished_[i] = false;
+      is_done_ = false;
+      next_step_ = i;
+      workers_.front().step = nullptr;  // real hands take parts out, and are the only worker
+      return;
+    }
   }
 }
 
@@ -180,6 +196,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
     other.reason = reason.empty() ? other.reason : "its subassembly " + reason;
   }
   Update(step.occurrence);
+  is_finished_[static_cast<std::size_t>(&step - model.sequence.steps.data())] = true;
   if (on_part) {
     const auto seated = std::count_if(results_.begin(), results_.end(),
                                       [](const PartResult& part) { return part.is_seated; });
@@ -213,6 +230,11 @@ bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker
   const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
   return worker.person != nullptr && IsSinglePart(step) && dropped && dropped->was_seated &&
          dropped->hand != worker.hand;
+}
+
+bool AssemblyRun::IsInPlaceAlready(const SequenceStep& step) const {
+  return IsSinglePart(step) && !dropped_[step.occurrence.index()] &&
+         simulation_->placement(step.occurrence) == Placement::kPlaced;
 }
 
 spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
@@ -300,6 +322,9 @@ void AssemblyRun::Advance() {
   const auto& steps = simulation_->model().sequence.steps;
   for (; next_step_ < std::min(end_step_, steps.size()); ++next_step_) {
     const SequenceStep& step = steps[next_step_];
+    if (is_finished_[next_step_] || IsInPlaceAlready(step)) {
+      continue;
+    }
     Worker* worker = FindWorkerFor(step);
     if (worker == nullptr) {
       return;

@@ -106,6 +106,10 @@ class AssemblyRun final : public Sink {
   [[nodiscard]] bool HasFinished(const Worker& worker) const;
   /** Another hand than the worker's has put it in its place. */
   [[nodiscard]] bool IsDoneByAnother(const SequenceStep& step, const Worker& worker) const;
+  /** It was there before the run began. */
+  [[nodiscard]] bool IsInPlaceAlready(const SequenceStep& step) const;
+  /** Its step is to be done again where the part was in its place before. */
+  void GoBackTo(const SimulationEvent& dropped);
   void FinishStep(const SequenceStep& step, const Worker& worker);
   /** Null where the step has to wait. */
   [[nodiscard]] Worker* FindWorkerFor(const SequenceStep& step);
@@ -124,6 +128,7 @@ class AssemblyRun final : public Sink {
   std::size_t last_worker_;  ///< That began a step last.
   Sink* downstream_;
   std::vector<PartResult> results_;
+  std::vector<bool> is_finished_;  ///< By step.
   std::size_t next_step_{0};
   std::size_t first_step_{0};
   std::size_t end_step_{std::numeric_limits<std::size_t>::max()};

@@ -17,6 +17,7 @@ struct SequenceStep {
     kBase,    ///< The first part of a product or subassembly: it is put into the fixture.
     kInsert,  ///< From the table, or from the shelf, into its place.
     kPark,    ///< A finished subassembly goes as one body onto the shelf, out of the way.
+    kRemove,  ///< Out of its place again, by the way it came. Not planned: a person's own wish.
   };
   Kind kind{Kind::kInsert};
   product::OccurrenceId occurrence;            ///< The part, or the base of the subassembly.

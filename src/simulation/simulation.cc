@@ -231,7 +231,7 @@ haptics::TickOutput Simulation::RunTick(Hand* hand, const device::DeviceState& d
   haptics::HapticTick& haptic = hand->haptic;
   if (haptic.held() != nullptr && device.is_valid && !device.is_gripping) {
     const haptics::HeldPart& part = *haptic.held();
-    const bool was_seated = haptic.state() == haptics::HoldState::kSeated;
+    const bool was_in_place = haptic.is_in_place();
     const spatial::Pose X_WB = haptic.Drop();
     SimulationEvent event;
     event.t_ns = device.t_ns;
@@ -240,7 +240,7 @@ haptics::TickOutput Simulation::RunTick(Hand* hand, const device::DeviceState& d
     event.occurrence = part.occurrence;
     event.state = haptics::HoldState::kEmpty;
     event.X_WB = X_WB;
-    event.was_seated = was_seated;
+    event.was_seated = was_in_place;
     event.metrics = hand->metrics;
     events_.TryPush(event);
   }
@@ -432,6 +432,9 @@ bool Simulation::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
   }
   const auto is_free = [&](OccurrenceId id) {
     const Placement placement = parts_[id.index()].placement;
+    if (step.kind == SequenceStep::Kind::kRemove) {
+      return placement == Placement::kPlaced;
+    }
     return step.members.empty()
                ? placement == Placement::kLoose
                : placement == Placement::kPlaced || placement == Placement::kParked;
@@ -596,7 +599,9 @@ std::shared_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& 
   held->I_BBcm_B = mass.I_BBcm_B;
   held->surface = SurfaceOf(model_->product->part_of(id).material);
   held->falls_when_dropped = step.members.empty() && step.kind != SequenceStep::Kind::kPark;
-  held->X_WB_start = step.members.empty() ? ClearOfTable(id) : parts_[id.index()].X_WB;
+  held->starts_in_place = step.kind == SequenceStep::Kind::kRemove;
+  const bool lies_on_table = step.members.empty() && !held->starts_in_place;
+  held->X_WB_start = lies_on_table ? ClearOfTable(id) : parts_[id.index()].X_WB;
   held->insertion_W = -step.extraction_W;
   held->left_out = LeftOut(id, step);
   AddMembers(step, held.get());
@@ -608,6 +613,10 @@ std::shared_ptr<haptics::HeldPart> Simulation::MakeHeldPart(const SequenceStep& 
     AddMates(step, member, held.get());
   }
   held->lacks_partners = held->mates.empty() && FindMissingPartner(step).is_valid();
+  if (held->starts_in_place) {
+    held->X_WB_goal = held->X_WB_start;
+    return held;
+  }
   // The place is where the mates say; what they leave free is taken from the drawing (X9).
   std::vector<mates::MateConstraint> constraints;
   for (const haptics::HeldMate& mate : held->mates) {

@@ -32,6 +32,8 @@ const char* NameOf(SequenceStep::Kind kind) {
       return "insert";
     case SequenceStep::Kind::kPark:
       return "park";
+    case SequenceStep::Kind::kRemove:
+      return "remove";
   }
   return "insert";
 }

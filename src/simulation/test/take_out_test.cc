@@ -1,0 +1,132 @@
+// A part that is in its place is taken out again by hand, by the way it came (X16).
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "simulation/test/session.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using testing::OccurrenceId;
+using testing::Pose;
+
+constexpr std::size_t kPeg = 1;
+
+/** A hand that closes at a place, goes along a straight line, and opens at its end. */
+class StraightHand final : public Operator {
+ public:
+  StraightHand(const Vec3& p_from, const Vec3& p_to) : p_from_(p_from), p_to_(p_to) {}
+
+  device::DeviceState Step(const OperatorInput& input) noexcept override {
+    t_ = t_ < 0 ? 0 : t_ + input.dt;
+    pull_ = std::max(pull_, -input.F_H_D.f.z());
+    device::DeviceState state;
+    state.t_ns = input.t_ns;
+    state.is_valid = true;
+    const double share = std::clamp((t_ - kRest) / kMove, 0.0, 1.0);
+    state.X_DH = Pose(Vec3(p_from_ + share * (p_to_ - p_from_)));
+    state.V_DH.v = share > 0 && share < 1 ? Vec3((p_to_ - p_from_) / kMove) : Vec3::Zero();
+    state.is_gripping = t_ > 0.5 * kRest && t_ < kRest + kMove + kRest;
+    return state;
+  }
+
+  [[nodiscard]] bool is_done() const { return t_ > kRest + kMove + 2 * kRest; }
+
+  /** The most that it was held back with [N]. */
+  [[nodiscard]] double pull() const { return pull_; }
+
+ private:
+  static constexpr double kRest = 0.4;  // [s]
+  static constexpr double kMove = 2.0;  // [s]
+  Vec3 p_from_;
+  Vec3 p_to_;
+  double t_{-1};
+  double pull_{0};
+};
+
+class TakeOutTest : public ::testing::Test {
+ protected:
+  explicit TakeOutTest(std::shared_ptr<const Model> model = testing::PegInBlockModel())
+      : session_(std::move(model)) {
+    (void)RunLockstep(session_.MakeExecution(60));
+    EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kPlaced);
+  }
+
+  /** The next run goes on where this one is, with a hand that takes the peg out along `way`.
+   @returns the most that the hand was held back with along z [N]. */
+  double Pull(const Vec3& way, AssemblyRun* run) {
+    Simulation& simulation = session_.simulation;
+    SequenceStep step = StepOfPeg();
+    step.kind = SequenceStep::Kind::kRemove;
+    const Vec3 p_WG =
+        simulation.pose(OccurrenceId(kPeg)) * simulation.model().bodies[kPeg].mass.p_BoBcm_B;
+    StraightHand hand(p_WG, p_WG + way);
+    simulation.Prepare(step);
+    Execution execution = run->MakeExecution(&hand, 10);
+    execution.is_done = [&hand] { return hand.is_done(); };
+    (void)RunLockstep(execution);
+    return hand.pull();
+  }
+
+  [[nodiscard]] const SequenceStep& StepOfPeg() const {
+    return session_.simulation.model().sequence.steps.back();
+  }
+
+  [[nodiscard]] Pose pose() const { return session_.simulation.pose(OccurrenceId(kPeg)); }
+
+  testing::Session session_;
+  testing::Watch watch_;
+};
+
+TEST_F(TakeOutTest, PegComesOutOfItsBoreAndItsStepIsToBeDoneAgain) {
+  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  hands.Advance();
+  const Pose before = pose();
+  (void)Pull(Vec3(0, 0, 60e-3), &hands);
+  EXPECT_GT(pose().p().z(), before.p().z() + 15e-3);  // it fell on the block
+  EXPECT_LT(watch_.deepest, 0.2e-3);
+  EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kLoose);
+  EXPECT_EQ(hands.next_step(), session_.simulation.model().sequence.steps.size() - 1);
+  const auto seen = [this](haptics::HoldState state) {
+    return std::any_of(watch_.events.begin(), watch_.events.end(),
+                       [state](const SimulationEvent& event) { return event.state == state; });
+  };
+  EXPECT_TRUE(seen(haptics::HoldState::kMating));
+  EXPECT_FALSE(seen(haptics::HoldState::kSeated));  // it is not drawn back into its place
+}
+
+TEST_F(TakeOutTest, PegThatIsHeldAndLetGoIsWhereItWas) {
+  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  hands.Advance();
+  const Pose before = pose();
+  (void)Pull(Vec3(0, 0, 1e-3), &hands);
+  EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kPlaced);
+  EXPECT_EQ((pose().p() - before.p()).norm(), 0);
+}
+
+TEST_F(TakeOutTest, WallOfTheBoreHoldsThePegBackSideways) {
+  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  hands.Advance();
+  const Pose before = pose();
+  (void)Pull(Vec3(40e-3, 0, 0), &hands);
+  EXPECT_LT((pose().p() - before.p()).norm(), 1e-3);
+  EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kPlaced);
+}
+
+TEST_F(TakeOutTest, PersonPutsItInAgain) {
+  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  hands.Advance();
+  (void)Pull(Vec3(0, 30e-3, 60e-3), &hands);
+  ASSERT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kLoose);
+  AssemblyRun again(&session_.simulation, &session_.person, nullptr);
+  again.Resume(hands.next_step());
+  (void)RunLockstep(again.MakeExecution(&session_.person, 120));
+  EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kPlaced);
+}
+
+}  // namespace
+}  // namespace hvas::simulation
