@@ -71,14 +71,14 @@ studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
       data && options.recordings.empty()) {
     bench.recordings_folder = *data / "recordings";
   }
-  bench.seed = options.seed;
+  bench.scenes.seed = options.seed;
   bench.rate_hz = options.rate_hz;
   if (const auto directory = CacheDirectory(options.load)) {
-    bench.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
+    bench.scenes.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
   }
-  bench.load = [load = options.load](const std::filesystem::path& file,
-                                     const cad::ProgressFn& progress, std::stop_token stop,
-                                     Diagnostics* diagnostics) {
+  bench.scenes.load = [load = options.load](const std::filesystem::path& file,
+                                            const cad::ProgressFn& progress, std::stop_token stop,
+                                            Diagnostics* diagnostics) {
     LoadOptions one = load;
     one.file = file;
     one.progress = progress;

@@ -57,6 +57,33 @@ std::string DescribeProbe(const device::ProbeReport& report) {
   return found.empty() ? "" : fmt::format("found {}", fmt::join(found, ", "));
 }
 
+Json ListDevices() {
+  const device::Surroundings surroundings;
+  Json list = Json::array();
+  for (const device::Driver* driver : device::Drivers()) {
+    const device::ProbeReport report = driver->Probe(surroundings, false);
+    const bool is_found =
+        std::any_of(report.looked_for.begin(), report.looked_for.end(),
+                    [](const device::Finding& finding) { return finding.is_found; });
+    list.push_back({{"address", driver->name()},
+                    {"driver", driver->name()},
+                    {"name", driver->title()},
+                    {"detail", DescribeProbe(report)},
+                    {"is_emulated", false},
+                    {"is_ready", is_found && report.problems.empty()}});
+  }
+  for (const device::SourcedProfile& profile : device::KnownProfiles()) {
+    list.push_back(
+        {{"address", fmt::format("emulated:{}:{}", profile.driver, profile.profile.id)},
+         {"driver", profile.driver},
+         {"name", profile.profile.name},
+         {"detail", "not there: computed, and held by the pointer or the simulated person"},
+         {"is_emulated", true},
+         {"is_ready", true}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::size_t HandRack::count() const {
@@ -143,31 +170,21 @@ Json HandRack::Describe(const std::vector<const haptics::TickOptions*>& hands) c
   return list;
 }
 
-Json SearchDevices() {
-  const device::Surroundings surroundings;
-  Json list = Json::array();
-  for (const device::Driver* driver : device::Drivers()) {
-    const device::ProbeReport report = driver->Probe(surroundings, false);
-    const bool is_found =
-        std::any_of(report.looked_for.begin(), report.looked_for.end(),
-                    [](const device::Finding& finding) { return finding.is_found; });
-    list.push_back({{"address", driver->name()},
-                    {"driver", driver->name()},
-                    {"name", driver->title()},
-                    {"detail", DescribeProbe(report)},
-                    {"is_emulated", false},
-                    {"is_ready", is_found && report.problems.empty()}});
-  }
-  for (const device::SourcedProfile& profile : device::KnownProfiles()) {
-    list.push_back(
-        {{"address", fmt::format("emulated:{}:{}", profile.driver, profile.profile.id)},
-         {"driver", profile.driver},
-         {"name", profile.profile.name},
-         {"detail", "not there: computed, and held by the pointer or the simulated person"},
-         {"is_emulated", true},
-         {"is_ready", true}});
-  }
-  return list;
+bool DeviceSearch::Begin() {
+  const std::lock_guard lock(mutex_);
+  return !std::exchange(is_searching_, true);
+}
+
+void DeviceSearch::Run() {
+  Json found = ListDevices();
+  const std::lock_guard lock(mutex_);
+  found_ = std::move(found);
+  is_searching_ = false;
+}
+
+Json DeviceSearch::Describe() const {
+  const std::lock_guard lock(mutex_);
+  return {{"devices", found_}, {"is_searching", is_searching_}};
 }
 
 }  // namespace hvas::studio

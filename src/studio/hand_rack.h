@@ -50,7 +50,22 @@ class HandRack {
   std::vector<Slot> slots_{1};
 };
 
-/** What could be put into a hand: "devices" of docs/protocol.md, without opening any. */
-[[nodiscard]] nlohmann::ordered_json SearchDevices();
+/** What could be put into a hand, found without opening any. Any thread. */
+class DeviceSearch {
+ public:
+  /** @returns whether the caller is to call Run: false where somebody searches already. */
+  [[nodiscard]] bool Begin();
+
+  /** Takes some seconds. */
+  void Run();
+
+  /** "devices" of docs/protocol.md: those found last. */
+  [[nodiscard]] nlohmann::ordered_json Describe() const;
+
+ private:
+  mutable std::mutex mutex_;
+  nlohmann::ordered_json found_{nlohmann::ordered_json::array()};
+  bool is_searching_{false};
+};
 
 }  // namespace hvas::studio

@@ -124,47 +124,29 @@ Result<std::string> MakeGlb(const sweep::SurfaceMesh& mesh, const std::string& n
   return cad::MakeGlb(product, /*is_fine=*/true);
 }
 
-Sweeper::Sweeper() : thread_([this](const std::stop_token& stop) { Work(stop); }) {}
-
 Result<void> Sweeper::Post(Task task) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (tasks_.size() >= kMostWaiting) {
-      return Fail(ErrorCode::kOutOfResource,
-                  fmt::format("{} swept volumes are asked for already", kMostWaiting), "",
-                  "wait for one of them");
-    }
-    tasks_.push_back(std::move(task));
+  const auto job = [this, task = std::move(task)](const std::stop_token& stop) { Do(task, stop); };
+  if (!thread_.TryPost(job, kMostWaiting)) {
+    return Fail(ErrorCode::kOutOfResource,
+                fmt::format("{} swept volumes are asked for already", kMostWaiting), "",
+                "wait for one of them");
   }
-  changed_.notify_one();
   return {};
 }
 
-void Sweeper::Work(const std::stop_token& stop) {
-  while (true) {
-    Task task;
-    {
-      std::unique_lock lock(mutex_);
-      (void)changed_.wait(lock, stop, [this] { return !tasks_.empty(); });
-      if (stop.stop_requested()) {
-        return;
-      }
-      task = std::move(tasks_.front());
-      tasks_.pop_front();
-    }
-    const auto swept = Compute(task, stop);
-    if (stop.stop_requested()) {
-      return;
-    }
-    if (swept) {
-      const std::lock_guard lock(mutex_);
-      kept_.push_back(*swept);
-      if (kept_.size() > kMostKept) {
-        kept_.pop_front();
-      }
-    }
-    task.done(swept);
+void Sweeper::Do(const Task& task, const std::stop_token& stop) {
+  const auto swept = Compute(task, stop);
+  if (stop.stop_requested()) {
+    return;
   }
+  if (swept) {
+    const std::lock_guard lock(mutex_);
+    kept_.push_back(*swept);
+    if (kept_.size() > kMostKept) {
+      kept_.pop_front();
+    }
+  }
+  task.done(swept);
 }
 
 std::shared_ptr<const SweptGlb> Sweeper::Find(std::string_view id) const {
@@ -172,13 +154,6 @@ std::shared_ptr<const SweptGlb> Sweeper::Find(std::string_view id) const {
   const auto found =
       std::find_if(kept_.begin(), kept_.end(), [id](const auto& kept) { return kept->id == id; });
   return found != kept_.end() ? *found : nullptr;
-}
-
-void Sweeper::Stop() {
-  thread_.request_stop();
-  if (thread_.joinable()) {
-    thread_.join();
-  }
 }
 
 }  // namespace hvas::studio

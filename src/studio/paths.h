@@ -1,6 +1,5 @@
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -10,9 +9,9 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
+#include "base/job_thread.h"
 #include "base/result.h"
 #include "simulation/model.h"
 #include "simulation/simulation.h"
@@ -74,13 +73,6 @@ class Sweeper {
     DoneFn done;           ///< Called by the sweeper's thread; not after Stop.
   };
 
-  Sweeper();
-
-  ~Sweeper() { Stop(); }
-
-  Sweeper(const Sweeper&) = delete;
-  Sweeper& operator=(const Sweeper&) = delete;
-
   /** Errors (kOutOfResource): so many wait already. */
   [[nodiscard]] Result<void> Post(Task task);
 
@@ -88,16 +80,14 @@ class Sweeper {
   [[nodiscard]] std::shared_ptr<const SweptGlb> Find(std::string_view id) const;
 
   /** Ends what is being computed, and forgets what waits. */
-  void Stop();
+  void Stop() { thread_.Stop(); }
 
  private:
-  void Work(const std::stop_token& stop);
+  void Do(const Task& task, const std::stop_token& stop);
 
   mutable std::mutex mutex_;
-  std::condition_variable_any changed_;
-  std::deque<Task> tasks_;
   std::deque<std::shared_ptr<const SweptGlb>> kept_;
-  std::jthread thread_;  ///< The last member: the first that ends.
+  JobThread thread_;  ///< The last member: the first that ends.
 };
 
 }  // namespace hvas::studio

@@ -5,9 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "base/digest.h"
-#include "cad/glb.h"
 #include "studio/event_json.h"
+#include "studio/next_step.h"
 #include "studio/scene_json.h"
 
 namespace hvas::studio {
@@ -16,8 +15,6 @@ namespace {
 using product::OccurrenceId;
 using simulation::Placement;
 using simulation::SequenceStep;
-
-constexpr std::size_t kMostMoments = 100;
 
 Error DemoAtWork() {
   return {ErrorCode::kInvalid, "the simulated person is at work", "", "end the demo first"};
@@ -55,8 +52,8 @@ LiveState MakeStart(const simulation::Model& model) {
 std::optional<Error> ExplainGone(Placement placement, const std::string& name) {
   switch (placement) {
     case Placement::kPlaced:
-      return Error{ErrorCode::kInvalid, "the part is in its place already", name,
-                   "undo to take it out again"};
+      return Error{ErrorCode::kInvalid, "the part stands in its fixture", name,
+                   "take the other parts to it"};
     case Placement::kHeld:
       return Error{ErrorCode::kInvalid, "the part is in a hand already", name, "let it go first"};
     default:
@@ -76,6 +73,16 @@ std::array<double, 2> SpeedsBetween(const simulation::Frame& before,
   return speeds;
 }
 
+/** For the list of what can be undone; null for what changed nothing. */
+const char* WhatWasDone(const SceneNow& before, const simulation::SimulationEvent& dropped) {
+  const bool was_placed =
+      before.state.parts[dropped.occurrence.index()].placement == Placement::kPlaced;
+  if (dropped.was_seated) {
+    return was_placed ? nullptr : "insert";
+  }
+  return was_placed ? "take out" : "move";
+}
+
 bool IsHolding(const LiveRun& run) {
   for (std::size_t hand = 0; hand < run.hand_count(); ++hand) {
     if (run.is_holding(hand)) {
@@ -87,38 +94,8 @@ bool IsHolding(const LiveRun& run) {
 
 }  // namespace
 
-SequenceStep FindStep(const simulation::Model& model, const LiveState& state, OccurrenceId id) {
-  const auto& steps = model.sequence.steps;
-  for (std::size_t i = state.next_step; i < steps.size(); ++i) {
-    const SequenceStep& step = steps[i];
-    const bool has_it = step.occurrence == id || std::find(step.members.begin(), step.members.end(),
-                                                           id) != step.members.end();
-    const Placement placement = state.parts[step.occurrence.index()].placement;
-    if (step.kind == SequenceStep::Kind::kBase || !has_it ||
-        (step.members.empty() && placement != Placement::kLoose)) {
-      continue;
-    }
-    // Of a subassembly only that moves which has got into it.
-    SequenceStep possible = step;
-    std::erase_if(possible.members, [&](OccurrenceId member) {
-      return state.parts[member.index()].placement == Placement::kLoose;
-    });
-    return possible;
-  }
-  for (const SequenceStep& step : steps) {
-    if (step.occurrence == id && step.kind == SequenceStep::Kind::kInsert) {
-      return step;
-    }
-  }
-  SequenceStep step;
-  step.occurrence = id;
-  return step;
-}
-
 Workbench::Workbench(WorkbenchOptions options)
-    : options_(std::move(options)),
-      shelf_(options_.recordings_folder),
-      worker_([this](const std::stop_token& stop) { Work(stop); }) {}
+    : options_(std::move(options)), builder_(options_.scenes), shelf_(options_.recordings_folder) {}
 
 Workbench::~Workbench() {
   Stop();
@@ -126,11 +103,9 @@ Workbench::~Workbench() {
 
 void Workbench::Stop() {
   sweeper_.Stop();
-  worker_.request_stop();
+  worker_.RequestStop();
   Cancel();  // after it: nothing else begins
-  if (worker_.joinable()) {
-    worker_.join();
-  }
+  worker_.Stop();
   std::shared_ptr<LiveRun> run;
   {
     const std::lock_guard lock(mutex_);
@@ -140,28 +115,8 @@ void Workbench::Stop() {
   FinishRecording();
 }
 
-void Workbench::Work(const std::stop_token& stop) {
-  while (true) {
-    std::function<void()> job;
-    {
-      std::unique_lock lock(jobs_mutex_);
-      (void)jobs_changed_.wait(lock, stop, [this] { return !jobs_.empty(); });
-      if (stop.stop_requested()) {
-        return;
-      }
-      job = std::move(jobs_.front());
-      jobs_.pop_front();
-    }
-    job();
-  }
-}
-
 void Workbench::Post(std::function<void()> job) {
-  {
-    const std::lock_guard lock(jobs_mutex_);
-    jobs_.push_back(std::move(job));
-  }
-  jobs_changed_.notify_one();
+  worker_.Post([job = std::move(job)](const std::stop_token&) { job(); });
 }
 
 void Workbench::Tell(Json event) const {
@@ -198,21 +153,9 @@ void Workbench::DoOpen(const std::filesystem::path& file, const std::string& nam
     const std::lock_guard lock(mutex_);
     stop = opening_.get_token();
   }
-  auto scene = std::make_shared<OpenScene>();
-  const auto progress = [this, &name](std::string_view stage, double fraction) {
-    Tell({{"event", "progress"}, {"stage", stage}, {"fraction", fraction}, {"file", name}});
-  };
-  auto product = options_.load(file, progress, stop, &scene->diagnostics);
-  auto model = product
-                   ? Compile(std::move(*product), name, &scene->diagnostics)
-                   : Result<std::shared_ptr<const simulation::Model>>(Unexpected(product.error()));
-  if (model && stop.stop_requested()) {
-    model = Fail(ErrorCode::kCancelled, "opening was stopped", name, "");
-  }
-  auto glb = model ? cad::MakeGlb(*(*model)->product, false)
-                   : Result<std::string>(Unexpected(model.error()));
-  if (!glb) {
-    Json failed{{"event", "failed"}, {"file", name}, {"error", ToJson(glb.error())}};
+  const auto scene = builder_.Open(file, name, TellProgressOf(name), stop);
+  if (!scene) {
+    Json failed{{"event", "failed"}, {"file", name}, {"error", ToJson(scene.error())}};
     {
       const std::lock_guard lock(mutex_);
       failure_ = failed;
@@ -220,40 +163,16 @@ void Workbench::DoOpen(const std::filesystem::path& file, const std::string& nam
     Tell(std::move(failed));
     return;
   }
-  scene->model = *model;
-  Digest digest;
-  digest.AddText(*glb);
-  scene->glb_hash = digest.Hex();
-  scene->glb = std::make_shared<const std::string>(std::move(*glb));
-  scene->epoch = ++last_epoch_;
-  {
-    const std::lock_guard lock(mutex_);
-    undo_.clear();
-    redo_.clear();
-    before_take_ = {};
-  }
-  is_demo_ = false;
-  Show(scene, {}, false);
+  history_.Clear();
+  Show(*scene, {}, false);
   paths_.Clear();  // of the product before: its last frame has come
   TellOfHistory();
 }
 
-Result<std::shared_ptr<const simulation::Model>> Workbench::Compile(product::Product product,
-                                                                    const std::string& name,
-                                                                    Diagnostics* diagnostics) {
-  if (!(product.mass() > 0)) {
-    return Fail(ErrorCode::kUnsupported,
-                "no part of it has a mass, so there is nothing to assemble", name,
-                "export it with its solids, not as surfaces");
-  }
-  simulation::CompileOptions compile;
-  compile.seed = options_.seed;
-  compile.shape_cache = options_.shape_cache;
-  compile.progress = [this, &name](const std::string& stage, double fraction) {
+cad::ProgressFn Workbench::TellProgressOf(const std::string& name) const {
+  return [this, name](std::string_view stage, double fraction) {
     Tell({{"event", "progress"}, {"stage", stage}, {"fraction", fraction}, {"file", name}});
   };
-  return simulation::Compile(std::make_shared<product::Product>(std::move(product)), compile,
-                             diagnostics);
 }
 
 void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state,
@@ -261,7 +180,7 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
   LiveOptions live;
   live.has_person = has_person;
   live.hands = rack_.setups();
-  live.seed = options_.seed;
+  live.seed = options_.scenes.seed;
   live.rate_hz = options_.rate_hz;
   std::shared_ptr<LiveRun> ended;
   bool is_new = false;
@@ -279,9 +198,9 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
   if (!is_recorded) {
     FinishRecording();  // a record is of one scene
   }
+  is_demo_ = has_person;  // not before: what the run before told last was still its own
   live.recording = recording_;
-  auto run =
-      std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene, live.recording));
+  auto run = std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene, live));
   run->StopForces(forces_off_);
   {
     const std::lock_guard lock(mutex_);
@@ -309,13 +228,12 @@ void Workbench::Restart(bool has_person) {
   }
   const LiveState state = run->state();
   run.reset();
-  is_demo_ = has_person;
   Show(scene, state, has_person);
   Tell({{"event", "demo"}, {"on", has_person}});
 }
 
 LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& scene,
-                                       const std::shared_ptr<Recording>& recording) {
+                                       const LiveOptions& live) {
   LiveListeners listeners;
   listeners.on_event = [this, scene](const simulation::SimulationEvent& event) {
     HandleEvent(*scene, event);
@@ -323,9 +241,11 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
   listeners.on_placement = [this](OccurrenceId id, Placement placement) {
     Tell({{"event", "placement"}, {"occurrence", id.value()}, {"placement", ToString(placement)}});
   };
-  listeners.on_step = [this, scene](std::size_t step) { HandleStep(*scene, step); };
-  listeners.on_frame = [this, epoch = scene->epoch, recording](const simulation::Frame& frame,
-                                                               const PeakForces& peak_felt) {
+  listeners.on_step = [this, scene, has_person = live.has_person](std::size_t step) {
+    HandleStep(*scene, step, has_person);
+  };
+  listeners.on_frame = [this, epoch = scene->epoch, recording = live.recording](
+                           const simulation::Frame& frame, const PeakForces& peak_felt) {
     LiveFrame shown;
     {
       const std::lock_guard lock(mutex_);
@@ -357,17 +277,18 @@ void Workbench::HandleHold(const OpenScene& scene, const simulation::SimulationE
   if (is_demo_ || (event.kind != Kind::kTaken && event.kind != Kind::kDropped)) {
     return;
   }
-  std::optional<Moment> before;
+  std::optional<SceneNow> before;
   {
     const std::lock_guard lock(mutex_);
     before = std::exchange(before_take_[event.hand], std::nullopt);
     if (event.kind == Kind::kTaken && run_ != nullptr) {
-      before_take_[event.hand] = Moment{scene_, run_->state_before_take(), ""};
+      before_take_[event.hand] = SceneNow{scene_, run_->state_before_take()};
     }
   }
-  if (event.kind == Kind::kDropped && before) {
-    Remember(std::move(*before), fmt::format("{} {}", event.was_seated ? "insert" : "move",
-                                             NameOf(*scene.model, event.occurrence)));
+  const char* what = event.kind == Kind::kDropped && before ? WhatWasDone(*before, event) : nullptr;
+  if (what != nullptr) {
+    Remember(std::move(*before),
+             fmt::format("{} {}", what, NameOf(*scene.model, event.occurrence)));
   }
 }
 
@@ -387,29 +308,19 @@ void Workbench::TellOfStep(const OpenScene& scene, std::size_t step) const {
   Tell(MakeStepEvent(scene, step));
 }
 
-void Workbench::HandleStep(const OpenScene& scene, std::size_t step) {
+void Workbench::HandleStep(const OpenScene& scene, std::size_t step, bool has_person) {
   TellOfStep(scene, step);
-  const bool is_finished = step >= scene.model->sequence.steps.size();
-  if (is_demo_ && (is_finished || ends_demo_after_step_.exchange(false))) {
+  const auto& steps = scene.model->sequence.steps;
+  const bool is_finished = step >= steps.size();
+  // What stands in a fixture was nobody's work: it ends no demo of one step.
+  const bool is_work = step > 0 && steps[step - 1].kind != SequenceStep::Kind::kBase;
+  if (has_person && (is_finished || (is_work && ends_demo_after_step_.exchange(false)))) {
     Post([this] { Restart(false); });
   }
 }
 
-Workbench::Moment Workbench::Begin() const {
-  SceneNow now = Look();
-  return {std::move(now.scene), std::move(now.state), ""};
-}
-
-void Workbench::Remember(Moment before, const std::string& what) {
-  {
-    const std::lock_guard lock(mutex_);
-    before.what = what;
-    undo_.push_back(std::move(before));
-    redo_.clear();
-    if (undo_.size() > kMostMoments) {
-      undo_.erase(undo_.begin());
-    }
-  }
+void Workbench::Remember(SceneNow before, const std::string& what) {
+  history_.Remember(std::move(before), what);
   TellOfHistory();
 }
 
@@ -465,7 +376,8 @@ Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
   const SequenceStep step = FindStep(model, state, id);
   const simulation::PartState& part = state.parts[step.occurrence.index()];
   const auto gone = ExplainGone(part.placement, NameOf(model, id));
-  if (gone && (step.members.empty() || part.placement == Placement::kHeld)) {
+  const bool is_there = step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
+  if (gone && (!is_there || part.placement == Placement::kHeld)) {
     return Unexpected(*gone);
   }
   // Upright: what the hand turns, the part turns with it.
@@ -534,29 +446,18 @@ void Workbench::RestartWithHands() {
 }
 
 void Workbench::SearchDevices() {
-  {
-    const std::lock_guard lock(mutex_);
-    if (std::exchange(is_searching_, true)) {
-      return;
-    }
+  if (device_search_.Begin()) {
+    Post([this] {
+      device_search_.Run();
+      Json event = devices();
+      event["event"] = "devices";
+      Tell(std::move(event));
+    });
   }
-  Post([this] {
-    Json found = studio::SearchDevices();
-    {
-      const std::lock_guard lock(mutex_);
-      devices_ = std::move(found);
-      is_searching_ = false;
-    }
-    Json event = devices();
-    event["event"] = "devices";
-    Tell(std::move(event));
-  });
 }
 
 Json Workbench::devices() const {
-  const std::lock_guard lock(mutex_);
-  return {{"devices", devices_.is_null() ? Json::array() : devices_},
-          {"is_searching", is_searching_}};
+  return device_search_.Describe();
 }
 
 Json Workbench::hands() const {
@@ -594,7 +495,7 @@ Result<void> Workbench::SetDemo(bool is_on) {
   if (idle) {
     ends_demo_after_step_ = false;
     Post([this] {
-      Remember(Begin(), "demo");
+      Remember(Look(), "demo");
       Restart(true);
     });
   }
@@ -609,48 +510,35 @@ Result<void> Workbench::DoNext() {
   return started;
 }
 
-Result<void> Workbench::GoTo(std::vector<Moment>* from, std::vector<Moment>* to,
-                             const std::string& word) {
-  auto idle = CheckIdle();
-  const std::lock_guard lock(mutex_);
-  if (idle && from->empty()) {
-    return Fail(ErrorCode::kNotFound, fmt::format("there is nothing to {}", word), "", "");
+Result<void> Workbench::GoTo(History::Direction direction) {
+  auto possible = CheckIdle();
+  if (possible) {
+    possible = history_.Check(direction);
   }
-  if (idle) {
-    Post([this, from, to] { DoGoTo(from, to); });
+  if (possible) {
+    Post([this, direction] {
+      if (const auto then = history_.Go(direction, Look())) {  // else somebody was faster
+        Show(then->scene, then->state, false);
+        TellOfHistory();
+      }
+    });
   }
-  return idle;
-}
-
-void Workbench::DoGoTo(std::vector<Moment>* from, std::vector<Moment>* to) {
-  const SceneNow now = Look();
-  Moment moment;
-  {
-    const std::lock_guard lock(mutex_);
-    if (from->empty()) {
-      return;  // somebody was faster
-    }
-    moment = std::move(from->back());
-    from->pop_back();
-    to->push_back({now.scene, now.state, moment.what});
-  }
-  Show(moment.scene, moment.state, false);
-  TellOfHistory();
+  return possible;
 }
 
 Result<void> Workbench::Undo() {
-  return GoTo(&undo_, &redo_, "undo");
+  return GoTo(History::Direction::kUndo);
 }
 
 Result<void> Workbench::Redo() {
-  return GoTo(&redo_, &undo_, "do again");
+  return GoTo(History::Direction::kRedo);
 }
 
 Result<void> Workbench::Reset() {
   auto idle = CheckIdle();
   if (idle) {
     Post([this] {
-      Remember(Begin(), "reset");
+      Remember(Look(), "reset");
       Show(scene(), {}, false);
     });
   }
@@ -677,6 +565,9 @@ Result<void> Workbench::StartRecording(const std::string& name) {
 
 void Workbench::DoStartRecording(const std::filesystem::path& file, const std::string& name) {
   const auto [scene, state] = Look();
+  if (!recording().is_null()) {
+    return;  // somebody was faster
+  }
   const std::string called = name.empty() ? scene->model->product->name : name;
   auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state));
   if (!started) {
@@ -754,22 +645,15 @@ Result<void> Workbench::Change(const std::string& what, const ChangeFn& change) 
 
 void Workbench::DoChange(const std::string& what, const ChangeFn& change) {
   const auto [before, state] = Look();
-  auto after = std::make_shared<OpenScene>(*before);
-  product::Product product = *before->model->product;
-  const auto changed = change(&product);
-  auto model = changed
-                   ? Compile(std::move(product), what, &after->diagnostics)
-                   : Result<std::shared_ptr<const simulation::Model>>(Unexpected(changed.error()));
-  if (!model) {
-    Tell({{"event", "failed"}, {"file", what}, {"error", ToJson(model.error())}});
+  const auto after = builder_.Change(*before, what, change, TellProgressOf(what));
+  if (!after) {
+    Tell({{"event", "failed"}, {"file", what}, {"error", ToJson(after.error())}});
     return;
   }
-  after->model = *model;
-  after->epoch = ++last_epoch_;
-  Remember(Begin(), what);
+  Remember(Look(), what);
   // In another order, what is in its place already is passed over when its turn comes.
-  const bool has_same_order = HasSameOrder(before->model->sequence, after->model->sequence);
-  Show(after, {state.parts, has_same_order ? state.next_step : 0}, false);
+  const bool has_same_order = HasSameOrder(before->model->sequence, (*after)->model->sequence);
+  Show(*after, {state.parts, has_same_order ? state.next_step : 0}, false);
 }
 
 std::shared_ptr<const OpenScene> Workbench::scene() const {
@@ -792,20 +676,12 @@ std::optional<simulation::LoopStatus> Workbench::TakeStatus() {
   return run_ != nullptr ? run_->TakeStatus() : std::nullopt;
 }
 
-Json Workbench::history() const {
-  const std::lock_guard lock(mutex_);
-  const auto last = [](const std::vector<Moment>& moments) {
-    return moments.empty() ? Json(nullptr) : Json(moments.back().what);
-  };
-  return {{"event", "history"}, {"undo", last(undo_)}, {"redo", last(redo_)}};
-}
-
 void Workbench::TellOfHistory() const {
-  Tell(history());
+  Tell(history_.Describe());
 }
 
 std::vector<Json> Workbench::NewsForLatecomer() const {
-  std::vector<Json> news{history()};
+  std::vector<Json> news{history_.Describe()};
   if (const auto open = scene()) {
     news.push_back(MakeStepEvent(*open, state().next_step));
   }

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <array>
-#include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -11,44 +9,28 @@
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "base/diagnostics.h"
+#include "base/job_thread.h"
 #include "base/result.h"
-#include "cad/import.h"
-#include "contact/shape_cache.h"
-#include "product/product.h"
-#include "simulation/model.h"
 #include "studio/hand_rack.h"
+#include "studio/history.h"
 #include "studio/live_run.h"
 #include "studio/paths.h"
 #include "studio/recording.h"
 #include "studio/recording_shelf.h"
+#include "studio/scene_builder.h"
 
 namespace hvas::studio {
 
 using Json = nlohmann::ordered_json;
 
-/** Opens a CAD file ready to assemble. */
-using LoadFn = std::function<Result<product::Product>(
-    const std::filesystem::path& file, const cad::ProgressFn& progress, std::stop_token stop,
-    Diagnostics* diagnostics)>;
-
 struct WorkbenchOptions {
-  LoadFn load;
-  std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
-  std::filesystem::path recordings_folder;           ///< Empty: nothing can be recorded.
-  std::uint64_t seed{1};
+  SceneBuilder::Options scenes;
+  std::filesystem::path recordings_folder;  ///< Empty: nothing can be recorded.
   double rate_hz{1000};
-};
-
-/** What is open, and how far it has come. */
-struct SceneNow {
-  std::shared_ptr<const OpenScene> scene;  ///< Null while nothing is.
-  LiveState state;
 };
 
 /** What is on the bench: the product that is open, the run of it, and what can be undone. All
@@ -111,7 +93,6 @@ class Workbench {
   [[nodiscard]] Result<void> DeleteRecording(const std::string& id);
 
   /** A change of the product: compiles a model of it aside and swaps it in. */
-  using ChangeFn = std::function<Result<void>(product::Product*)>;
   [[nodiscard]] Result<void> Change(const std::string& what, const ChangeFn& change);
 
   /** Null while nothing is open. */
@@ -134,38 +115,23 @@ class Workbench {
   [[nodiscard]] bool is_demo() const { return is_demo_.load(); }
 
  private:
-  /** Something that can be gone back to. */
-  struct Moment {
-    std::shared_ptr<const OpenScene> scene;
-    LiveState state;
-    std::string what;  ///< Was done after it.
-  };
-
-  void Work(const std::stop_token& stop);
   void Post(std::function<void()> job);
   void DoOpen(const std::filesystem::path& file, const std::string& name);
   void DoChange(const std::string& what, const ChangeFn& change);
-  [[nodiscard]] Result<void> GoTo(std::vector<Moment>* from, std::vector<Moment>* to,
-                                  const std::string& word);
-  void DoGoTo(std::vector<Moment>* from, std::vector<Moment>* to);
-  [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> Compile(product::Product product,
-                                                                         const std::string& name,
-                                                                         Diagnostics* diagnostics);
+  [[nodiscard]] Result<void> GoTo(History::Direction direction);
+  [[nodiscard]] cad::ProgressFn TellProgressOf(const std::string& name) const;
   void Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state, bool has_person);
   void Restart(bool has_person);
   [[nodiscard]] LiveListeners MakeListeners(const std::shared_ptr<const OpenScene>& scene,
-                                            const std::shared_ptr<Recording>& recording);
+                                            const LiveOptions& live);
   void HandleEvent(const OpenScene& scene, const simulation::SimulationEvent& event);
-  void HandleStep(const OpenScene& scene, std::size_t step);
+  void HandleStep(const OpenScene& scene, std::size_t step, bool has_person);
   void TellOfStep(const OpenScene& scene, std::size_t step) const;
   void Tell(Json event) const;
-  [[nodiscard]] Json history() const;
   void TellOfHistory() const;
   void TellOfPlacements() const;
-  /** Keeps how all is now, before something is done that can be undone. */
-  [[nodiscard]] Moment Begin() const;
-  /** That was done since then, and can be undone. */
-  void Remember(Moment before, const std::string& what);
+  /** That was done, and can be undone. */
+  void Remember(SceneNow before, const std::string& what);
   void TellOfHands() const;
   void DoStartRecording(const std::filesystem::path& file, const std::string& name);
   void TellOfRecording(Json recording) const;
@@ -184,37 +150,26 @@ class Workbench {
   std::atomic<bool> forces_off_{false};
   std::atomic<bool> is_demo_{false};
   std::atomic<bool> ends_demo_after_step_{false};
-  std::uint32_t last_epoch_{0};  ///< The worker's own.
+  SceneBuilder builder_;  ///< The worker's own.
 
   mutable std::mutex mutex_;  ///< Of what follows.
   std::shared_ptr<const OpenScene> scene_;
   std::shared_ptr<LiveRun> run_;
   Json failure_;       ///< Of the last file that could not be opened; null: none.
   LiveState resting_;  ///< While one run has ended and the next has not begun.
-  std::array<std::optional<Moment>, HandRack::kMostHands> before_take_;  ///< By hand.
-  std::vector<Moment> undo_;
-  std::vector<Moment> redo_;
+  std::array<std::optional<SceneNow>, HandRack::kMostHands> before_take_;  ///< By hand.
   LiveFrame frame_;
   std::stop_source opening_;
-  Json devices_;  ///< That were found; null before the first search.
-  bool is_searching_{false};
-
   std::shared_ptr<Recording> recording_;  ///< Null while nothing is recorded.
 
+  History history_;
   HandRack rack_;
+  DeviceSearch device_search_;
   PathLog paths_;
   Sweeper sweeper_;
   RecordingShelf shelf_;
 
-  std::mutex jobs_mutex_;
-  std::condition_variable_any jobs_changed_;
-  std::deque<std::function<void()>> jobs_;
-  std::jthread worker_;  ///< The last member: the first that ends.
+  JobThread worker_;  ///< The last member: the first that ends.
 };
-
-/** The step that a part's next move belongs to: of the part itself, or of the subassembly that it
- is a member of. */
-[[nodiscard]] simulation::SequenceStep FindStep(const simulation::Model& model,
-                                                const LiveState& state, product::OccurrenceId id);
 
 }  // namespace hvas::studio

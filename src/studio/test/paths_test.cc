@@ -126,9 +126,8 @@ class PathCommandTest : public ::testing::Test {
 
   /** The simulated person puts the peg into its hole, once the block stands in its fixture. */
   void PutPegIn() {
-    ASSERT_TRUE(log_.Await([](const Json& event) {
-      return event["event"] == "placement" && event["placement"] == "placed";
-    }));
+    ASSERT_TRUE(log_.Await(
+        [](const Json& event) { return event["event"] == "step" && event["index"] == 1; }));
     ASSERT_TRUE(bench_.DoNext());
     ASSERT_TRUE(log_.Await([](const Json& event) {
       return event["event"] == "dropped" && event["was_seated"] == true;

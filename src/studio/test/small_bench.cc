@@ -54,10 +54,10 @@ std::size_t EventLog::size() const {
 WorkbenchOptions SmallBench() {
   static const FilesOfThisRun files;
   WorkbenchOptions options;
-  options.shape_cache = files.cache;
+  options.scenes.shape_cache = files.cache;
   options.recordings_folder = files.recordings.path();
-  options.load = [](const std::filesystem::path& file, const cad::ProgressFn& progress,
-                    std::stop_token stop, Diagnostics*) -> Result<product::Product> {
+  options.scenes.load = [](const std::filesystem::path& file, const cad::ProgressFn& progress,
+                           std::stop_token stop, Diagnostics*) -> Result<product::Product> {
     progress("read", 0.5);
     if (file.filename() == "missing") {
       return Fail(ErrorCode::kNotFound, "there is no such file", file.string(), "name another");

@@ -23,6 +23,7 @@ using simulation::Placement;
 using spatial::Pose;
 using testing::EventLog;
 
+constexpr std::size_t kBlock = 0;
 constexpr std::size_t kPeg = 1;
 constexpr int kSeated = 5;  // docs/protocol.md
 
@@ -222,7 +223,23 @@ TEST_F(WorkbenchTest, PartIsTakenMovedAlongItsAxisAndSeated) {
   EXPECT_TRUE(AwaitPlacementEvent("placed", start));
   const Pose X_WB = bench_.state().parts[kPeg].X_WB;
   EXPECT_LT((X_WB.p() - bench_.scene()->model->bodies[kPeg].X_WB_goal.p()).norm(), 1e-6);
-  EXPECT_FALSE(bench_.Take(hand_, OccurrenceId(kPeg)));  // in its place already
+}
+
+TEST_F(WorkbenchTest, SeatedPartIsTakenOutAgain) {  // X16
+  OpenPeg();
+  EXPECT_FALSE(bench_.Take(hand_, OccurrenceId(kBlock)));  // stands in its fixture
+  TakePeg();
+  InsertPeg();
+  ReleasePeg();
+  ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
+  TakePeg();
+  MovePeg(Pose(X_WB_start_.q(), X_WB_start_.p() + Vec3(0.05, 0, 0.08)), 2);
+  ReleasePeg();
+  ASSERT_FALSE(HasFatalFailure());
+  EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kLoose));
+  EXPECT_TRUE(AwaitTrue([this] { return bench_.state().next_step == 1; }));  // to be done again
+  ASSERT_TRUE(bench_.Undo());
+  EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
 }
 
 TEST_F(WorkbenchTest, WhatWasDoneIsUndoneAndDoneAgain) {
@@ -510,9 +527,9 @@ TEST_F(WorkbenchTest, StopsWhileAFileIsBeingOpened) {
 
 TEST(WorkbenchStopTest, WhatHasNotBegunIsDropped) {
   WorkbenchOptions options = testing::SmallBench();
-  options.load = [load = options.load](const std::filesystem::path& file,
-                                       const cad::ProgressFn& progress, const std::stop_token& stop,
-                                       Diagnostics* diagnostics) {
+  options.scenes.load = [load = options.scenes.load](
+                            const std::filesystem::path& file, const cad::ProgressFn& progress,
+                            const std::stop_token& stop, Diagnostics* diagnostics) {
     while (file == "slow.step" && !stop.stop_requested()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

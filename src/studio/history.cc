@@ -1,0 +1,57 @@
+#include "studio/history.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace hvas::studio {
+
+using Json = nlohmann::ordered_json;
+
+void History::Remember(SceneNow before, const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  undo_.push_back({std::move(before), what});
+  redo_.clear();
+  if (undo_.size() > kMostMoments) {
+    undo_.erase(undo_.begin());
+  }
+}
+
+Result<void> History::Check(Direction direction) const {
+  const std::lock_guard lock(mutex_);
+  const bool is_undo = direction == Direction::kUndo;
+  if ((is_undo ? undo_ : redo_).empty()) {
+    return Fail(ErrorCode::kNotFound,
+                fmt::format("there is nothing to {}", is_undo ? "undo" : "do again"), "", "");
+  }
+  return {};
+}
+
+std::optional<SceneNow> History::Go(Direction direction, const SceneNow& now) {
+  const std::lock_guard lock(mutex_);
+  auto& from = direction == Direction::kUndo ? undo_ : redo_;
+  auto& to = direction == Direction::kUndo ? redo_ : undo_;
+  if (from.empty()) {
+    return std::nullopt;
+  }
+  Moment moment = std::move(from.back());
+  from.pop_back();
+  to.push_back({now, std::move(moment.what)});
+  return std::move(moment.scene);
+}
+
+void History::Clear() {
+  const std::lock_guard lock(mutex_);
+  undo_.clear();
+  redo_.clear();
+}
+
+Json History::Describe() const {
+  const std::lock_guard lock(mutex_);
+  const auto last = [](const std::vector<Moment>& moments) {
+    return moments.empty() ? Json(nullptr) : Json(moments.back().what);
+  };
+  return {{"event", "history"}, {"undo", last(undo_)}, {"redo", last(redo_)}};
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,42 @@
+#include "studio/next_step.h"
+
+#include <algorithm>
+
+namespace hvas::studio {
+
+using product::OccurrenceId;
+using simulation::Placement;
+using simulation::SequenceStep;
+
+SequenceStep FindStep(const simulation::Model& model, const LiveState& state, OccurrenceId id) {
+  const auto& steps = model.sequence.steps;
+  for (std::size_t i = state.next_step; i < steps.size(); ++i) {
+    const SequenceStep& step = steps[i];
+    const bool has_it = step.occurrence == id || std::find(step.members.begin(), step.members.end(),
+                                                           id) != step.members.end();
+    const Placement placement = state.parts[step.occurrence.index()].placement;
+    if (step.kind == SequenceStep::Kind::kBase || !has_it ||
+        (step.members.empty() && placement != Placement::kLoose)) {
+      continue;
+    }
+    // Of a subassembly only that moves which has got into it.
+    SequenceStep possible = step;
+    std::erase_if(possible.members, [&](OccurrenceId member) {
+      return state.parts[member.index()].placement == Placement::kLoose;
+    });
+    return possible;
+  }
+  for (const SequenceStep& step : steps) {
+    if (step.occurrence == id && step.kind == SequenceStep::Kind::kInsert) {
+      SequenceStep move = step;
+      const bool is_in_place = state.parts[id.index()].placement == Placement::kPlaced;
+      move.kind = is_in_place ? SequenceStep::Kind::kRemove : step.kind;
+      return move;
+    }
+  }
+  SequenceStep step;
+  step.occurrence = id;
+  return step;
+}
+
+}  // namespace hvas::studio
