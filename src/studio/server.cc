@@ -18,11 +18,10 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
-#include "studio/assets.h"
+#include "studio/answers.h"
 #include "studio/connection.h"
 #include "studio/event_json.h"
-#include "studio/recording_routes.h"
-#include "studio/scene_json.h"
+#include "studio/tls.h"
 
 namespace hvas::studio {
 namespace {
@@ -59,29 +58,6 @@ beast::string_view ToBeast(std::string_view text) {
 template <typename Fields>
 std::string_view FieldOf(const Fields& fields, http::field name) {
   return ToView(fields[name]);
-}
-
-/** Errors (kUnreadable): a file is no PEM, is locked by a password, or the two do not belong
- together. */
-Result<std::unique_ptr<asio::ssl::context>> MakeTls(const TlsFiles& files) {
-  auto tls = std::make_unique<asio::ssl::context>(asio::ssl::context::tls_server);
-  SSL_CTX_set_min_proto_version(tls->native_handle(), TLS1_2_VERSION);
-  error_code error;
-  tls->set_password_callback([](std::size_t, asio::ssl::context::password_purpose) { return ""; },
-                             error);
-  tls->use_certificate_chain_file(files.certificate.string(), error);
-  if (error) {
-    return Fail(ErrorCode::kUnreadable, "this certificate cannot be used: " + error.message(),
-                files.certificate.string(),
-                "give --certificate a file in PEM, the server's own certificate first");
-  }
-  tls->use_private_key_file(files.key.string(), asio::ssl::context::pem, error);
-  if (error) {
-    return Fail(ErrorCode::kUnreadable, "this key cannot be used: " + error.message(),
-                files.key.string(),
-                "give --key the certificate's own key, in PEM, without a password");
-  }
-  return tls;
 }
 
 /** All that the sessions share; one thread's. */
@@ -328,7 +304,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return ReadToken();
     }
     if (request.method() == http::verb::get && !path.starts_with("/api/") && path != "/ws") {
-      return SendAsset(path);
+      const auto accepted = FieldOf(request, http::field::accept_encoding);
+      return Reply(AnswerAsset(path, accepted));
     }
     const auto role = access.RoleOfCookie(FieldOf(request, http::field::cookie));
     if (!role) {
@@ -353,20 +330,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void RouteKnown(Role role, std::string_view path, bool is_upgrade) {
-    constexpr std::string_view kModel = "/api/model/";
-    constexpr std::string_view kPath = "/api/path/";
     const http::verb method = header_->get().method();
     if (path == "/ws" && is_upgrade) {
       wire().expires_never();
       std::make_shared<SocketSession>(std::move(connection_), shared_, role)->Run(header_->get());
-    } else if (path == "/api/scene" && method == http::verb::get) {
-      SendScene();
-    } else if (path.starts_with(kModel) && method == http::verb::get) {
-      SendModel(path.substr(kModel.size()));
-    } else if (path.starts_with(kPath) && method == http::verb::get) {
-      SendPath(path.substr(kPath.size()));
-    } else if (path.starts_with("/api/recording") && method == http::verb::get) {
-      SendRecording(path);
+    } else if (method == http::verb::get) {
+      Reply(AnswerApi(shared_->workbench, path));
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
     } else {
@@ -458,28 +427,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         });
   }
 
-  /** Only its last part, of harmless letters, with its extension, which tells the format. */
-  static std::string NameOfUpload(std::string_view target) {
-    constexpr std::string_view kName = "name=";
-    constexpr std::size_t kLongestName = 80;
-    const std::size_t at = target.find(kName);
-    std::string_view given = at == std::string_view::npos ? "" : target.substr(at + kName.size());
-    given = given.substr(0, given.find('&'));
-    std::string name;
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      char c = given[i];
-      if (c == '%' && i + 2 < given.size()) {
-        c = ' ';
-        i += 2;
-      }
-      const bool is_plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
-                            (c >= 'a' && c <= 'z') || c == '.' || c == '-';
-      name += is_plain ? c : '_';
-    }
-    name = name.size() > kLongestName ? name.substr(name.size() - kLongestName) : name;
-    return name.empty() || name.front() == '.' ? "upload" + name : name;
-  }
-
   void RefuseBody(error_code error) {
     if (error == http::error::body_limit) {
       Refuse(http::status::payload_too_large,
@@ -491,70 +438,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
   }
 
-  void SendAsset(std::string_view path) {
-    const Asset* asset = FindAsset(path == "/" ? "/index.html" : path);
-    if (asset == nullptr) {
-      return Refuse(http::status::not_found,
-                    {ErrorCode::kNotFound, "there is nothing here", std::string(path), ""});
-    }
-    const auto& request = header_->get();
-    const std::string_view accepted = FieldOf(request, http::field::accept_encoding);
-    const bool is_brotli = accepted.find("br") != std::string_view::npos && !asset->brotli.empty();
-    const bool is_gzip = accepted.find("gzip") != std::string_view::npos && !asset->gzip.empty();
-    const std::string_view bytes =
-        is_brotli ? asset->brotli : (is_gzip ? asset->gzip : asset->plain);
-    http::response<http::span_body<const char>> response(http::status::ok, 11);
-    if (is_brotli || is_gzip) {
-      response.set(http::field::content_encoding, is_brotli ? "br" : "gzip");
-    }
-    response.set(http::field::vary, "Accept-Encoding");
-    response.set(http::field::content_type, ToBeast(asset->type));
-    SendCached(std::move(response), asset->etag, asset->is_immutable, bytes, nullptr);
-  }
-
-  void SendModel(std::string_view name) {
-    const auto scene = shared_->workbench->scene();
-    if (scene == nullptr || name != scene->glb_hash + ".glb") {
-      return Refuse(http::status::not_found, {ErrorCode::kNotFound, "this model is not open",
-                                              std::string(name), "ask for /api/scene again"});
-    }
-    SendGlb(scene->glb_hash, *scene->glb, scene);
-  }
-
-  void SendPath(std::string_view name) {
-    const auto swept = shared_->workbench->sweeper().Find(name.substr(0, name.find(".glb")));
-    if (swept == nullptr || name != swept->id + ".glb") {
-      return Refuse(http::status::not_found,
-                    {ErrorCode::kNotFound, "this swept volume is not kept any more",
-                     std::string(name), "ask for it again"});
-    }
-    SendGlb(swept->id, swept->glb, swept);
-  }
-
-  void SendGlb(std::string_view id, std::string_view bytes, std::shared_ptr<const void> owner) {
-    http::response<http::span_body<const char>> response(http::status::ok, 11);
-    response.set(http::field::content_type, "model/gltf-binary");
-    SendCached(std::move(response), id, true, bytes, std::move(owner));
-  }
-
-  /** What has an ETag, once for each client. @param owner  Keeps the bytes alive; may be null. */
-  void SendCached(http::response<http::span_body<const char>> response, std::string_view etag,
-                  bool is_immutable, std::string_view bytes, std::shared_ptr<const void> owner) {
-    const std::string quoted = fmt::format("\"{}\"", etag);
-    response.set(http::field::etag, quoted);
-    response.set(http::field::cache_control,
-                 is_immutable ? "private, max-age=31536000, immutable" : "no-cache");
-    if (FieldOf(header_->get(), http::field::if_none_match) == quoted) {
-      response.result(http::status::not_modified);
-    } else {
-      response.body() = {bytes.data(), bytes.size()};
-    }
-    owner_ = std::move(owner);
-    Send(std::move(response));
-  }
-
-  void SendRecording(std::string_view path) {
-    auto answer = AnswerRecording(&shared_->workbench->shelf(), path);
+  void Reply(Result<Answer> answer) {
     if (!answer) {
       const bool is_missing = answer.error().code == ErrorCode::kNotFound;
       return Refuse(is_missing ? http::status::not_found : http::status::internal_server_error,
@@ -563,10 +447,26 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (answer->file) {
       return SendFile(*answer->file, answer->type);
     }
-    http::response<http::string_body> response(http::status::ok, 11);
+    http::response<http::span_body<const char>> response(http::status::ok, 11);
     response.set(http::field::content_type, answer->type);
-    response.set(http::field::cache_control, "no-store");
-    response.body() = std::move(answer->bytes);
+    const std::string etag = fmt::format("\"{}\"", answer->etag);
+    if (answer->etag.empty()) {
+      response.set(http::field::cache_control, "no-store");
+    } else {
+      response.set(http::field::etag, etag);
+      response.set(http::field::vary, "Accept-Encoding");
+      response.set(http::field::cache_control,
+                   answer->is_immutable ? "private, max-age=31536000, immutable" : "no-cache");
+    }
+    if (!answer->encoding.empty()) {
+      response.set(http::field::content_encoding, answer->encoding);
+    }
+    if (!answer->etag.empty() && FieldOf(header_->get(), http::field::if_none_match) == etag) {
+      response.result(http::status::not_modified);
+    } else {
+      response.body() = {answer->bytes.data(), answer->bytes.size()};
+    }
+    owner_ = std::move(answer->owner);
     Send(std::move(response));
   }
 
@@ -583,15 +483,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response.set(http::field::content_disposition,
                  fmt::format("attachment; filename=\"{}\"", file.filename().string()));
     Send(std::move(response));
-  }
-
-  void SendScene() {
-    const auto now = shared_->workbench->Look();
-    if (now.scene == nullptr) {
-      return Refuse(http::status::not_found,
-                    {ErrorCode::kNotFound, "no product is open", "", "open a file or an example"});
-    }
-    SendJson(http::status::ok, MakeSceneJson(*now.scene, now.state));
   }
 
   void SendJson(http::status status, const Json& json) {

@@ -1,0 +1,166 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/test/temporary_folder.h"
+#include "studio/server.h"
+#include "studio/test/raw_client.h"
+#include "studio/test/small_bench.h"
+
+namespace hvas::studio::testing {
+
+using Headers = std::vector<std::pair<std::string, std::string>>;
+
+inline constexpr std::uint64_t kMostUpload = 10'000;  // [bytes]
+
+/** A server on a free port, with nothing open. */
+class ServerTest : public ::testing::Test {
+ protected:
+  ServerTest() : ServerTest(ServerOptions()) {}
+
+  explicit ServerTest(ServerOptions options) : is_tls_(options.tls.has_value()) {
+    options.upload_folder = folder_;
+    options.most_upload = kMostUpload;
+    bench_ = std::make_unique<Workbench>(testing::SmallBench());
+    server_ = std::make_unique<Server>(
+        bench_.get(), std::vector<Example>{{"peg", "Peg", "a peg", "peg.step"}}, options);
+    started_ = server_->Start().has_value();
+    if (is_tls_) {
+      trusted_ = options.tls->certificate;
+    }
+  }
+
+  ~ServerTest() override { End(); }
+
+  void SetUp() override { ASSERT_TRUE(started_); }
+
+  void End() {
+    if (server_ != nullptr) {
+      bench_->Stop();
+      server_->Stop();
+      server_.reset();
+    }
+  }
+
+  [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_->port()); }
+
+  [[nodiscard]] std::string origin() const { return (is_tls_ ? "https://" : "http://") + host(); }
+
+  /** Connected as a browser would be. */
+  [[nodiscard]] std::unique_ptr<RawClient> Connect(int receive_buffer = 0) const {
+    auto client = std::make_unique<RawClient>(server_->port(), receive_buffer);
+    if (is_tls_) {
+      EXPECT_EQ(client->ShakeHands(trusted_, "127.0.0.1"), "ok");
+    }
+    return client;
+  }
+
+  [[nodiscard]] std::string TokenOf(Role role) const {
+    const std::string link = server_->LinkFor(role);
+    return link.substr(link.find("#t=") + 3);
+  }
+
+  Reply Ask(const Request& request) { return Connect()->Ask(request); }
+
+  Reply Get(const std::string& target, Headers more = {}) {
+    more.insert(more.begin(), {"Host", host()});
+    return Ask({"GET", target, std::move(more), ""});
+  }
+
+  Reply Post(const std::string& target, const std::string& body, Headers more = {}) {
+    more.insert(more.begin(), {{"Host", host()}, {"Origin", origin()}});
+    return Ask({"POST", target, std::move(more), body});
+  }
+
+  Reply GiveToken(const std::string& token) {
+    return Post("/api/session", Json{{"token", token}}.dump());
+  }
+
+  /** As the Cookie header of a client of a role. */
+  std::string CookieOf(Role role) {
+    const std::string given = GiveToken(TokenOf(role)).headers["set-cookie"];
+    return given.substr(0, given.find(';'));
+  }
+
+  [[nodiscard]] std::string CookieName() const {
+    return "hvas_session_" + std::to_string(server_->port());
+  }
+
+  std::unique_ptr<RawClient> Join(Role role, int receive_buffer = 0) {
+    auto client = Connect(receive_buffer);
+    client->SendUpgrade({{"Host", host()}, {"Origin", origin()}, {"Cookie", CookieOf(role)}});
+    EXPECT_EQ(client->ReadReply().status, 101);
+    return client;
+  }
+
+  /** The next text message that fits; null when none came. */
+  static Json Await(RawClient* client, const std::function<bool(const Json&)>& fits) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (std::chrono::steady_clock::now() < until) {  // statuses come for ever
+      const auto message = client->ReadMessage();
+      if (!message) {
+        break;
+      }
+      if (message->opcode == Message::kText) {
+        Json json = Json::parse(message->bytes);
+        if (fits(json)) {
+          return json;
+        }
+      }
+    }
+    return nullptr;
+  }
+
+  static Json AwaitEvent(RawClient* client, const std::string& name) {
+    return Await(client, [&name](const Json& json) { return json.value("event", "") == name; });
+  }
+
+  static Json Command(RawClient* client, const Json& command) {
+    client->SendMessage(Message::kText, command.dump());
+    return Await(client, [&](const Json& json) { return json.value("id", -1) == command["id"]; });
+  }
+
+  /** With the small product open. */
+  std::unique_ptr<RawClient> JoinAndOpen() {
+    auto client = Join(Role::kOperator);
+    EXPECT_TRUE(Command(client.get(), {{"id", 1}, {"command", "open"}, {"example", "peg"}})["ok"]);
+    EXPECT_FALSE(AwaitEvent(client.get(), "scene").is_null());
+    return client;
+  }
+
+  [[nodiscard]] std::size_t CountFiles() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::recursive_directory_iterator(folder_),
+                      std::filesystem::recursive_directory_iterator()));
+  }
+
+  /** What was kept is thrown away after the answer: waits for it. */
+  [[nodiscard]] bool BecomesEmpty() const {
+    constexpr int kTries = 500;
+    for (int i = 0; i < kTries && CountFiles() > 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return CountFiles() == 0;
+  }
+
+  hvas::testing::TemporaryFolder temporary_;
+  const std::filesystem::path folder_{temporary_.path()};
+  const bool is_tls_;
+  std::filesystem::path trusted_;
+  std::unique_ptr<Workbench> bench_;
+  std::unique_ptr<Server> server_;
+  bool started_{false};
+};
+
+}  // namespace hvas::studio::testing
