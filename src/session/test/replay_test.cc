@@ -68,9 +68,7 @@ TEST_F(ReplayTest, SessionOfBothHandsInRealTimeComesOutBitForBit) {
   is_done = true;
   somebody.join();
   ASSERT_TRUE(recorder->Finish().has_value());
-  if (recorder->dropped_ticks() > 0) {
-    GTEST_SKIP() << "the machine was too busy to write";
-  }
+  ASSERT_EQ(recorder->dropped_ticks(), 0u);  // the ring holds more than this run has
   const auto report = ReplayFile(file);
   ExpectExact(report);
   EXPECT_EQ(report->ticks, 2 * static_cast<std::int64_t>(ran.ticks));
