@@ -16,7 +16,9 @@ namespace {
 /** What the parser hands over, cell by cell. */
 struct Parsed {
   std::vector<std::vector<std::string>> rows;
+  std::vector<std::size_t> lines;  // In which they begin.
   std::vector<std::string> row;
+  std::size_t line{1};  // In which the row begins that is being read.
 };
 
 void TakeCell(void* text, std::size_t size, void* data) {
@@ -26,8 +28,40 @@ void TakeCell(void* text, std::size_t size, void* data) {
 void TakeRow(int /*last_character*/, void* data) {
   auto* parsed = static_cast<Parsed*>(data);
   parsed->rows.push_back(std::move(parsed->row));
+  parsed->lines.push_back(parsed->line);
   parsed->row.clear();
 }
+
+/** Keeps Parsed::line: the parser, which is given a line or a piece of one at a time, does not
+ * tell.
+ */
+class LineCounter {
+ public:
+  explicit LineCounter(Parsed* parsed) : parsed_(parsed) {}
+
+  /** After the parser has had the piece, which ends at the end of its line, or before. */
+  void Pass(std::string_view piece) {
+    has_row_ = has_row_ || parsed_->rows.size() > rows_;
+    has_text_ = has_text_ || piece.find_first_not_of(" \t\r\n") != std::string_view::npos;
+    rows_ = parsed_->rows.size();
+    if (piece.back() != '\n') {
+      return;
+    }
+    ++line_;
+    is_open_ = !has_row_ && (has_text_ || is_open_);
+    parsed_->line = is_open_ ? parsed_->line : line_;
+    has_row_ = false;
+    has_text_ = false;
+  }
+
+ private:
+  Parsed* parsed_;
+  std::size_t line_{1};
+  std::size_t rows_{0};
+  bool has_row_{false};
+  bool has_text_{false};
+  bool is_open_{false};  // A row goes on in the next line, by quotes.
+};
 
 struct CloseFile {
   void operator()(std::FILE* file) const {
@@ -50,7 +84,7 @@ bool NeedsQuotes(const std::string& cell) {
 
 }  // namespace
 
-Result<CsvTable> CsvTable::Read(const std::filesystem::path& path) {
+Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimiter) {
   const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin
                                                                : std::fopen(path.c_str(), "rb"));
   if (file == nullptr) {
@@ -58,19 +92,28 @@ Result<CsvTable> CsvTable::Read(const std::filesystem::path& path) {
   }
   csv_parser parser{};
   csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
+  csv_set_delim(&parser, static_cast<unsigned char>(delimiter));
   Parsed parsed;
   std::array<char, 1 << 16> buffer;
   bool is_good = true;
   std::size_t size = 0;
+  LineCounter lines(&parsed);
   while (is_good && (size = std::fread(buffer.data(), 1, buffer.size(), file.get())) > 0) {
-    is_good = csv_parse(&parser, buffer.data(), size, TakeCell, TakeRow, &parsed) == size;
+    std::string_view rest(buffer.data(), size);
+    while (is_good && !rest.empty()) {
+      const std::string_view piece = rest.substr(0, std::min(rest.find('\n'), rest.size() - 1) + 1);
+      is_good = csv_parse(&parser, piece.data(), piece.size(), TakeCell, TakeRow, &parsed) ==
+                piece.size();
+      lines.Pass(piece);
+      rest.remove_prefix(piece.size());
+    }
   }
   is_good = is_good && csv_fini(&parser, TakeCell, TakeRow, &parsed) == 0;
   const int error = csv_error(&parser);
   csv_free(&parser);
   if (!is_good) {
     return Fail(ErrorCode::kInvalid, csv_strerror(error),
-                fmt::format("{}:{}", path.string(), parsed.rows.size() + 1),
+                fmt::format("{}:{}", path.string(), parsed.line),
                 "write quotes within a cell twice, and close each");
   }
   if (parsed.rows.empty()) {
@@ -88,10 +131,12 @@ Result<CsvTable> CsvTable::Read(const std::filesystem::path& path) {
       return Fail(ErrorCode::kInvalid,
                   fmt::format("has {} cells, but there are {} columns", parsed.rows[i].size(),
                               table.columns_.size()),
-                  fmt::format("{}:{}", path.string(), i + 1), "put cells with commas in quotes");
+                  fmt::format("{}:{}", path.string(), parsed.lines[i]),
+                  fmt::format("put cells with '{}' in quotes", delimiter));
     }
     parsed.rows[i].resize(table.columns_.size());
     table.rows_.push_back(std::move(parsed.rows[i]));
+    table.lines_.push_back(parsed.lines[i]);
   }
   return table;
 }

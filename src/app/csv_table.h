@@ -16,9 +16,15 @@ class CsvTable {
   /** Reads a file; "-" is the standard input. Rows that end early are filled up with nothing.
    Errors: kNotFound (no such file), kInvalid (no header, quotes that do not close, a row with more
    cells than there are columns), with the line. */
-  [[nodiscard]] static Result<CsvTable> Read(const std::filesystem::path& file);
+  [[nodiscard]] static Result<CsvTable> Read(const std::filesystem::path& file,
+                                             char delimiter = ',');
+
+  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
 
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
+
+  /** The line of the file in which a row begins, from 1. */
+  [[nodiscard]] std::size_t LineOf(std::size_t row) const { return lines_[row]; }
 
   /** Errors: kInvalid, naming the columns that a table has to have and has not. */
   [[nodiscard]] Result<void> Require(const std::vector<std::string>& columns) const;
@@ -40,6 +46,7 @@ class CsvTable {
 
   std::vector<std::string> columns_;
   std::vector<std::vector<std::string>> rows_;
+  std::vector<std::size_t> lines_;
 };
 
 }  // namespace hvas::app

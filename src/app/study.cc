@@ -2,11 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/study_analyse.h"
+
 namespace hvas::app {
 
-void AddStudy(CLI::App* app, int* /*status*/) {
+void AddStudy(CLI::App* app, int* status) {
   CLI::App* study = app->add_subcommand("study", "Experiments with people, up to the statistics");
   study->require_subcommand(1);
+  AddStudyAnalyse(study, status);
 }
 
 }  // namespace hvas::app

@@ -26,6 +26,8 @@ enum class PlotStyle : std::uint8_t {
   kArea,       ///< The points go round it.
   kFaintArea,  ///< The same, fainter.
   kMarks,      ///< A ring at each point.
+  kDots,       ///< A filled dot at each point.
+  kSolid,      ///< As kArea, and opaque.
 };
 
 /** What is drawn in one colour under one name; without a name it is not in the legend. Points that
@@ -37,6 +39,13 @@ struct PlotSeries {
   std::vector<PlotPoint> points;
 };
 
+/** A word in the plot, about its point. */
+struct PlotText {
+  PlotPoint at;
+  std::string text;
+  bool is_on_solid{false};  ///< On kSolid: in the colour of the page.
+};
+
 /** Axes with series. Labels carry their units. */
 struct PlotPanel {
   std::string title;
@@ -45,14 +54,20 @@ struct PlotPanel {
   std::string right_label;  ///< Of a second scale on the right; empty: none.
   double right_factor{1};   ///< What one of y is on the right, > 0.
   std::vector<PlotSeries> series;
-  std::optional<PlotRange> x;  ///< All points without.
-  std::optional<PlotRange> y;  ///< All points and zero without.
+  std::optional<PlotRange> x;          ///< All points without.
+  std::optional<PlotRange> y;          ///< All points and zero without.
+  std::vector<std::string> x_names{};  ///< What stands at x = 0, 1, ..., instead of numbers.
+  std::vector<std::string> y_names{};  ///< The same of y; counted downwards.
+  std::vector<PlotText> texts{};
 };
 
 struct PlotFigure {
   std::string title;
   std::vector<std::string> notes;  ///< Paragraphs under the title.
   std::vector<PlotPanel> panels;   ///< One below the other.
+  std::string description;         ///< What is to be seen, for who does not see it.
+  std::string id;                  ///< Another one for each figure of a page: letters, digits, '-'.
+  double width{760};               ///< [px], 400 or more.
 };
 
 [[nodiscard]] std::string ToSvg(const PlotFigure& figure);

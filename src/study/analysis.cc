@@ -143,10 +143,13 @@ Result<void> AddFriedman(Analysis* analysis) {
   }
   analysis->complete_rows = rows.size();
   if (rows.size() < analysis->table.rows.size()) {
-    analysis->notes.push_back(
-        fmt::format("{} of {} participants lack a condition: the Friedman test leaves them out, "
-                    "comparisons of pairs only where one of the two is missing.",
-                    analysis->table.rows.size() - rows.size(), analysis->table.rows.size()));
+    analysis->notes.push_back(fmt::format(
+        "{} of {} participants lack a condition: {}.", analysis->table.rows.size() - rows.size(),
+        analysis->table.rows.size(),
+        analysis->conditions.size() > 2
+            ? "the Friedman test leaves them out, a comparison of two conditions only where one of "
+              "these is missing"
+            : "the comparison leaves them out"));
   }
   if (analysis->conditions.size() < 3) {
     return {};

@@ -79,6 +79,20 @@ struct Analysis {
  the participant and condition. */
 [[nodiscard]] Result<Analysis> Analyse(const Table& table, const AnalysisOptions& options);
 
+/** What the Friedman test says, in a sentence; empty where there is none. Plain text. */
+[[nodiscard]] std::string TellFriedman(const Analysis& analysis);
+
+/** Which of a pair has more, or is better where that was stated: "B1 higher"; "not shown" where no
+ difference is. Plain text. */
+[[nodiscard]] std::string TellPair(const Analysis& analysis, const PairResult& pair);
+
+/** How the figures are to be read: conventions of the tests that were made. Plain text, a paragraph
+ each. */
+[[nodiscard]] std::vector<std::string> TellConventions(const Analysis& analysis);
+
+/** A probability as it is printed: "0.0128", "< 0.0001". */
+[[nodiscard]] std::string FormatP(double p);
+
 /** One trial of a long table. */
 struct Trial {
   std::string participant;

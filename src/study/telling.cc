@@ -1,0 +1,82 @@
+// What an analysis says, in words that the page and the command share.
+
+#include <fmt/format.h>
+
+#include "study/analysis.h"
+
+namespace hvas::study {
+
+std::string FormatP(double p) {
+  constexpr double kLeast = 1e-4;
+  return p < kLeast ? "< 0.0001" : p < 0.01 ? fmt::format("{:.5f}", p) : fmt::format("{:.4f}", p);
+}
+
+std::string TellFriedman(const Analysis& analysis) {
+  if (!analysis.friedman || !analysis.friedman->p) {
+    return {};
+  }
+  const statistics::Friedman& friedman = *analysis.friedman;
+  // The exact test stands where there is one: the other is its approximation.
+  const double p = friedman.exact_p.value_or(*friedman.p);
+  return fmt::format(
+      "{}: Friedman chi-square {:.4f} with {} degrees of freedom, p {}{}, Kendall's W {:.3f}, {} "
+      "participants.",
+      p <= analysis.options.alpha ? "The conditions differ"
+                                  : "No difference of the conditions is shown",
+      *friedman.chi_square, friedman.condition_count - 1, FormatP(*friedman.p),
+      friedman.exact_p ? fmt::format(" (exact {})", FormatP(*friedman.exact_p)) : "",
+      *friedman.kendall_w, friedman.row_count);
+}
+
+std::string TellPair(const Analysis& analysis, const PairResult& pair) {
+  if (!pair.is_different) {
+    return "not shown";
+  }
+  const bool is_second_higher = pair.wilcoxon.positive_rank_sum > pair.wilcoxon.negative_rank_sum;
+  const auto& names = analysis.table.conditions;
+  const std::string& higher = names[is_second_higher ? pair.second : pair.first];
+  const std::string& lower = names[is_second_higher ? pair.first : pair.second];
+  switch (analysis.options.direction) {
+    case Direction::kHigherIsBetter:
+      return higher + " better";
+    case Direction::kLowerIsBetter:
+      return lower + " better";
+    case Direction::kNotStated:
+      break;
+  }
+  return higher + " higher";
+}
+
+std::vector<std::string> TellConventions(const Analysis& analysis) {
+  const double level = 100 * (1 - analysis.options.alpha);
+  std::vector<std::string> told{
+      fmt::format("Intervals hold {:g} %, each for itself. Quartiles are linear between order "
+                  "statistics (type 7). Differences are second minus first, in per cent of the "
+                  "first mean.",
+                  level),
+      fmt::format("Wilcoxon signed ranks: zero differences dropped, ties at mid ranks; p by the "
+                  "normal approximation with corrected variance and without correction for "
+                  "continuity, and exact by all signs. Both are of two sides. A difference is "
+                  "taken as shown where Holm's p, {}, is at most {:g}.",
+                  !analysis.pairs.empty() && analysis.pairs.front().exact_holm_p
+                      ? "of the exact test"
+                      : "of the normal approximation",
+                  analysis.options.alpha)};
+  if (analysis.pairs.size() > 1) {
+    told.push_back(
+        fmt::format("Level of one of {} comparisons after Bonferroni: {:.4f}. Adjusted p are to be "
+                    "compared with {:g} itself.",
+                    analysis.pairs.size(), analysis.bonferroni_level, analysis.options.alpha));
+  }
+  if (analysis.options.of) {
+    told.push_back(fmt::format(
+        "Shares take all trials of all participants as independent; where some "
+        "participants are better than others, the true interval is wider. Chance: {:.4g}, "
+        "{}; its p is of one side.",
+        analysis.chance,
+        analysis.options.chance ? "as stated" : "one in the number of conditions"));
+  }
+  return told;
+}
+
+}  // namespace hvas::study
