@@ -1,5 +1,6 @@
 /** What a test that drives the page from outside may look at; nothing here changes anything. */
 
+import { nowMs } from "../protocol/frame_store";
 import type { RoomHand } from "../view3d/vr/host";
 import { store, studio, ui, view, viewport } from "./app_state";
 
@@ -26,6 +27,8 @@ export interface StudioHooks {
     button(id: string): readonly number[] | null;
     hands(): readonly RoomHand[];
   };
+  /** What it costs the page to take new poses of all parts, each time [ms]; without drawing them. */
+  timePoses(times: number): readonly number[];
   /** Of a point of W [m]: client pixels. */
   project(p: readonly [number, number, number]): { x: number; y: number };
 }
@@ -104,6 +107,18 @@ function screenOfFace(occurrence: number, face: number): Seen | null {
   return null;
 }
 
+function timePoses(times: number): number[] {
+  const port = viewport.value!;
+  const frames = studio.liveFrames;
+  return Array.from({ length: times }, () => {
+    const live = frames?.read() ?? null;
+    port.product.forgetPoses();
+    const start = performance.now();
+    port.product.update(frames, live, nowMs());
+    return performance.now() - start;
+  });
+}
+
 function playbackState(): unknown {
   const playback = studio.recordings.playback.value;
   return playback === null
@@ -152,6 +167,7 @@ export function exposeHooks(): void {
     pose: (occurrence) => viewport.value?.product.poseOf(occurrence) ?? null,
     screen,
     screenOfFace,
+    timePoses,
     room: {
       part: partInRoom,
       world,

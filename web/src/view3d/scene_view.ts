@@ -136,9 +136,7 @@ export class SceneView {
       this.glbUrl = scene.glb;
     }
     this.scene = scene;
-    this.versions.clear();
-    this.extrapolators.clear();
-    this.generation = -1;
+    this.forgetPoses();
     this.sphere.set(new Vector3(...scene.centre_m), scene.radius_m);
     this.arrowScale.fit(scene.radius_m);
     this.feels.forEach((feel) => feel.setRadius(scene.radius_m));
@@ -176,6 +174,13 @@ export class SceneView {
     this.poses.clear();
     this.looks.clear();
     this.isDirty = true;
+  }
+
+  /** All of them are to be taken from the frames again. */
+  forgetPoses(): void {
+    this.versions.clear();
+    this.extrapolators.clear();
+    this.generation = -1;
   }
 
   private takePoses(frames: FrameStore): void {
