@@ -7,7 +7,8 @@ function(hvas_library name)
 endfunction()
 
 # hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s]): one GoogleTest program, one ctest entry.
-# Unit tests are fast and need no other room's data; label slower ones `e2e` so that the sanitizer runs can leave them out.
+# Unit tests are fast and need no other room's data; label slower ones
+# `e2e`, or `numeric` where they only compare figures, so that the sanitizer runs can leave them out.
 function(hvas_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

@@ -10,6 +10,7 @@ import {
   insertByMouse,
   launchBrowser,
   openPage,
+  takeOutByMouse,
   takePicture,
   waitForPicture,
   waitForPlacement,
@@ -88,6 +89,11 @@ describe("the hand", () => {
     await page.locator('[data-testid="button-redo"]:not([disabled]):not([aria-disabled="true"])').waitFor();
     await page.keyboard.press("Control+Shift+z");
     await waitForPlacement(page, last, "placed");
+    await takeOutByMouse(page, last, scene.occurrences[last].goal.p);
+    await takePicture(page, "taken_out");
+    await page.mouse.up();
+    await page.keyboard.press("r");
+    await waitForPlacement(page, last, "loose");
     assert.deepEqual(complaints, []);
     await page.context().close();
   }));
@@ -112,6 +118,24 @@ describe("the hand", () => {
     await waitForPlacement(page, 1, "placed", 60_000);
     await waitForPlacement(page, 2, "placed", 60_000);
     await takePicture(page, "demo");
+    await page.context().close();
+  }));
+
+  it("shows the way that a part went, as points and as the room that it needs", withStudio([kBushing], async (studio) => {
+    const { page, complaints } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    await page.getByRole("button", { name: /Show me/ }).first().click();
+    await waitForPlacement(page, 2, "placed", 60_000);
+    await page.getByTestId("part-2").click({ button: "right" });
+    await page.getByText("Show its path as points").click();
+    await page.getByText("Turning").waitFor();
+    await takePicture(page, "path_points");
+    await page.getByTestId("part-2").click({ button: "right" });
+    await page.getByText("Show its path as swept volume").click();
+    await page.getByText("Exact to").waitFor({ timeout: 60_000 });
+    await page.waitForTimeout(500);
+    await takePicture(page, "path_swept");
+    assert.deepEqual(complaints, []);
     await page.context().close();
   }));
 });

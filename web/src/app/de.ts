@@ -251,6 +251,8 @@ export const de: Record<MessageKey, string> = {
   "shortcuts.mouse": "Maus",
   "shortcuts.dragPart": "Loses Teil ziehen",
   "shortcuts.dragPartDoes": "nimmt es und bewegt es in der Bildebene",
+  "shortcuts.dragOut": "Gewähltes Teil an seinem Platz ziehen",
+  "shortcuts.dragOutDoes": "nimmt es wieder heraus",
   "shortcuts.wheel": "Rad beim Ziehen",
   "shortcuts.wheelDoes": "näher oder weiter",
   "shortcuts.turn": "Teil in der Hand rechts oder mit Umschalt ziehen",

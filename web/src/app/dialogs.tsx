@@ -84,6 +84,7 @@ function Palette() {
 
 const kMouse = [
   ["shortcuts.dragPart", "shortcuts.dragPartDoes"],
+  ["shortcuts.dragOut", "shortcuts.dragOutDoes"],
   ["shortcuts.double", "shortcuts.doubleDoes"],
   ["shortcuts.wheel", "shortcuts.wheelDoes"],
   ["shortcuts.turn", "shortcuts.turnDoes"],

@@ -250,6 +250,8 @@ export const en = {
   "shortcuts.mouse": "Mouse",
   "shortcuts.dragPart": "Drag a loose part",
   "shortcuts.dragPartDoes": "takes it and moves it in the plane of the view",
+  "shortcuts.dragOut": "Drag a selected part that is in its place",
+  "shortcuts.dragOutDoes": "takes it out again",
   "shortcuts.wheel": "Wheel while dragging",
   "shortcuts.wheelDoes": "nearer or further",
   "shortcuts.turn": "Right drag or Shift drag on the held part",

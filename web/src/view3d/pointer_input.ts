@@ -97,11 +97,17 @@ export class PointerInput {
         this.start(event, { kind: "bench" });
         return;
       }
-      const isLoose = hit !== null && this.studio.store.placements.peek().get(hit.occurrence) === "loose";
-      const canTake = hit !== null && (isLoose ? hand.canTake(hit.occurrence) : hand.isLeftInHand(hit.occurrence));
-      const takes = view.tool.peek() === "hand" && canTake;
+      const takes = view.tool.peek() === "hand" && hit !== null && this.canDrag(hit.occurrence);
       this.start(event, { kind: "press", x, y, hit, takes }, takes);
     }
+  }
+
+  /** What is in its place is taken out only where it was selected before: a drag on it looks around. */
+  private canDrag(occurrence: number): boolean {
+    const { view, hand } = this.viewport;
+    const placement = this.studio.store.placements.peek().get(occurrence);
+    const isOffered = placement === "loose" || (placement === "placed" && view.selected.peek().includes(occurrence));
+    return isOffered ? hand.canTake(occurrence) : hand.isLeftInHand(occurrence);
   }
 
   private start(event: PointerEvent, gesture: Gesture, stopsEye = gesture.kind !== "press"): void {
@@ -270,7 +276,7 @@ export class PointerInput {
     const { view, hand, canvas } = this.viewport;
     view.hovered.value = hit?.occurrence ?? null;
     const isHeld = hit !== null && hand.mouse.occurrence === hit.occurrence;
-    const canDrag = isHeld || (hit !== null && view.tool.peek() === "hand" && hand.canTake(hit.occurrence));
+    const canDrag = isHeld || (hit !== null && view.tool.peek() === "hand" && this.canDrag(hit.occurrence));
     canvas.style.cursor = canDrag ? "grab" : hit !== null ? "pointer" : "default";
   }
 }
