@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -14,6 +13,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/glb_container.h"
+
 namespace hvas::cad {
 namespace {
 
@@ -22,12 +23,7 @@ using product::Color;
 using product::Part;
 using product::Product;
 
-static_assert(std::endian::native == std::endian::little, "glTF is little endian");
-
 // Numbers that the glTF 2.0 specification gives.
-constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
-constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN\0"
 constexpr int kFloat = 5126;
 constexpr int kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962;
@@ -259,27 +255,10 @@ class GlbBuilder {
     if (!binary.empty()) {
       json_["buffers"] = {{{"byteLength", binary.size()}}};
     }
-    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.append((4 - text.size() % 4) % 4, ' ');
-    constexpr std::size_t kHeader = 12;
-    constexpr std::size_t kChunkHeader = 8;
-    const std::size_t length =
-        kHeader + kChunkHeader + text.size() + (binary.empty() ? 0 : kChunkHeader + binary.size());
-    if (length > std::numeric_limits<std::uint32_t>::max()) {
-      return Fail(ErrorCode::kOutOfResource, "the meshes are larger than the 4 GiB of a .glb file",
-                  product_.source, "export it without --fine, or subassembly by subassembly");
-    }
-    std::string glb;
-    glb.reserve(length);
-    for (const std::uint32_t word : {kGlbMagic, 2U, static_cast<std::uint32_t>(length),
-                                     static_cast<std::uint32_t>(text.size()), kJsonChunk}) {
-      Append(word, &glb);
-    }
-    glb += text;
-    if (!binary.empty()) {
-      Append(static_cast<std::uint32_t>(binary.size()), &glb);
-      Append(kBinChunk, &glb);
-      glb += binary;
+    auto glb = PackGlb(json_.dump(-1, ' ', false, Json::error_handler_t::replace), binary);
+    if (!glb) {
+      glb.error().where = product_.source;
+      glb.error().remedy = "export it without --fine, or subassembly by subassembly";
     }
     return glb;
   }

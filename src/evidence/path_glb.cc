@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/bytes.h"
+#include "base/glb_container.h"
 #include "evidence/holds.h"
 #include "evidence/output_file.h"
 #include "evidence/tables.h"
@@ -17,16 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
-constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN\0"
 constexpr int kFloat = 5126;
 constexpr int kArrayBuffer = 34962;
 constexpr int kLineStrip = 3;
-
-std::string_view TextOf(ByteWriter& writer) {
-  return {reinterpret_cast<const char*>(writer.bytes().data()), writer.bytes().size()};
-}
 
 class PathGlb {
  public:
@@ -81,32 +75,15 @@ class PathGlb {
     json_["nodes"][0]["children"].push_back(index + 1);
   }
 
-  void Write(OutputFile* output) {
-    const std::size_t size = positions_.bytes().size();
-    if (size > 0) {
+  Result<std::string> Pack() {
+    const std::string_view positions(reinterpret_cast<const char*>(positions_.bytes().data()),
+                                     positions_.bytes().size());
+    if (!positions.empty()) {
+      const std::size_t size = positions.size();
       json_["buffers"] = {{{"byteLength", size}}};
       json_["bufferViews"] = {{{"buffer", 0}, {"byteLength", size}, {"target", kArrayBuffer}}};
     }
-    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    constexpr std::uint32_t kVersion = 2;
-    const auto json_size = static_cast<std::uint32_t>(text.size());
-    const auto bin_size = static_cast<std::uint32_t>(size);
-    const std::uint32_t total = 12 + 8 + json_size + (size > 0 ? 8 + bin_size : 0);
-    ByteWriter head;
-    for (const std::uint32_t value : {kGlbMagic, kVersion, total, json_size, kJsonChunk}) {
-      head.Plain(&value, 1);
-    }
-    output->Write(TextOf(head));
-    output->Write(text);
-    if (size > 0) {
-      ByteWriter chunk;
-      for (const std::uint32_t value : {bin_size, kBinChunk}) {
-        chunk.Plain(&value, 1);
-      }
-      output->Write(TextOf(chunk));
-      output->Write(TextOf(positions_));
-    }
+    return PackGlb(json_.dump(-1, ' ', false, Json::error_handler_t::replace), positions);
   }
 
  private:
@@ -132,7 +109,11 @@ Result<void> WritePathGlb(record::Reader* reader, const Selection& selection,
   for (const Hold& hold : *holds) {
     glb.Add(hold, NameOf(paths, hold.occurrence));
   }
-  glb.Write(&*output);
+  const auto bytes = glb.Pack();
+  if (!bytes) {
+    return Unexpected(bytes.error());
+  }
+  output->Write(*bytes);
   return output->Finish();
 }
 
