@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/study_analyse.h"
+#include "app/study_power.h"
 
 namespace hvas::app {
 
@@ -10,6 +11,7 @@ void AddStudy(CLI::App* app, int* status) {
   CLI::App* study = app->add_subcommand("study", "Experiments with people, up to the statistics");
   study->require_subcommand(1);
   AddStudyAnalyse(study, status);
+  AddStudyPower(study, status);
 }
 
 }  // namespace hvas::app

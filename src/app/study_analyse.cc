@@ -1,7 +1,6 @@
 #include "app/study_analyse.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <string>
 
@@ -229,38 +228,13 @@ Result<void> Analyse(AnalyseArguments a) {
   return Show(a, json, study::AnalysisHtml(*analysis));
 }
 
-void AddTableOptions(CLI::App* command, StudyTableOptions* table) {
-  command
-      ->add_option("--table", table->file,
-                   "Results (CSV); - for the standard input. Wide: participant, then a column a "
-                   "condition. Long: participant, condition, value, a row a trial. Answers: "
-                   "participant, shown, answered")
-      ->required();
-  command->add_option("--delimiter", table->delimiter, "Between cells: one character, or tab")
-      ->capture_default_str();
-  command->add_option("--columns", table->columns, "The conditions of a wide table, if not all")
-      ->delimiter(',');
-  command->add_option("--value", table->value,
-                      "The column of values of a long table, if not value");
-  command->add_option("--quantity", table->quantity, "What the values are: \"completion time\"");
-  command->add_option("--unit", table->unit, "Of the values: s");
-  const std::map<std::string, study::TrialSummary> summaries{
-      {"mean", study::TrialSummary::kMean}, {"median", study::TrialSummary::kMedian}};
-  command
-      ->add_option("--trials", table->trials,
-                   "Which one number stands for the trials of a participant and condition: mean or "
-                   "median")
-      ->transform(CLI::CheckedTransformer(summaries))
-      ->default_str("mean");
-}
-
 }  // namespace
 
 void AddStudyAnalyse(CLI::App* study, int* status) {
   CLI::App* command = study->add_subcommand(
       "analyse", "Tests, intervals, effect sizes and figures of a table of results");
   const auto a = std::make_shared<AnalyseArguments>();
-  AddTableOptions(command, &a->table);
+  AddStudyTableOptions(command, &a->table)->required();
   command->add_option("--alpha", a->options.alpha, "Level of all comparisons together")
       ->capture_default_str();
   command->add_option("--of", a->options.of,

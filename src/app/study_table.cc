@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <set>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "app/csv_table.h"
@@ -228,6 +230,31 @@ Result<StudyTable> ReadAnswers(const Source& source) {
 }
 
 }  // namespace
+
+CLI::Option* AddStudyTableOptions(CLI::App* command, StudyTableOptions* table) {
+  CLI::Option* file = command->add_option(
+      "--table", table->file,
+      "Results (CSV); - for the standard input. Wide: participant, then a column a "
+      "condition. Long: participant, condition, value, a row a trial. Answers: "
+      "participant, shown, answered");
+  command->add_option("--delimiter", table->delimiter, "Between cells: one character, or tab")
+      ->capture_default_str();
+  command->add_option("--columns", table->columns, "The conditions of a wide table, if not all")
+      ->delimiter(',');
+  command->add_option("--value", table->value,
+                      "The column of values of a long table, if not value");
+  command->add_option("--quantity", table->quantity, "What the values are: \"completion time\"");
+  command->add_option("--unit", table->unit, "Of the values: s");
+  const std::map<std::string, study::TrialSummary> summaries{
+      {"mean", study::TrialSummary::kMean}, {"median", study::TrialSummary::kMedian}};
+  command
+      ->add_option("--trials", table->trials,
+                   "Which one number stands for the trials of a participant and condition: mean or "
+                   "median")
+      ->transform(CLI::CheckedTransformer(summaries))
+      ->default_str("mean");
+  return file;
+}
 
 Result<StudyTable> ReadStudyTable(const StudyTableOptions& options) {
   const auto delimiter = ParseDelimiter(options.delimiter);

@@ -8,6 +8,11 @@
 #include "base/result.h"
 #include "study/analysis.h"
 
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 namespace hvas::app {
 
 /** How a table of results is to be read. */
@@ -26,6 +31,9 @@ struct StudyTable {
   std::variant<study::Table, std::vector<study::Answer>> content;
   std::vector<std::string> notes;  ///< What was passed over.
 };
+
+/** @returns --table itself, which a command may require. */
+CLI::Option* AddStudyTableOptions(CLI::App* command, StudyTableOptions* table);
 
 /** Reads one of three forms, told by the header: wide (first column the participant, the others
  conditions), long (participant, condition, a value, one row a trial), answers (participant, shown,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -14,8 +14,8 @@
 namespace hvas::statistics {
 namespace {
 
-/** Steps of the exact Friedman distribution that are worth the wait, about a second. */
-constexpr std::size_t kMostFriedmanSteps = 4'000'000;
+/** Steps of the exact Friedman distribution that are worth the wait: some tenths of a second. */
+constexpr std::size_t kMostFriedmanSteps = 2'000'000;
 
 using Sums = std::vector<int>;
 
@@ -24,16 +24,13 @@ int Doubled(double rank) {
   return static_cast<int>(std::lround(2 * rank));
 }
 
-/** Orders of one row's doubled ranks, each with its share of all. */
-std::vector<std::pair<Sums, double>> ListOrders(Sums ranks) {
+/** Orders of one row's doubled ranks that differ; each stands for as many of all. */
+std::vector<Sums> ListOrders(Sums ranks) {
   std::sort(ranks.begin(), ranks.end());
-  std::vector<std::pair<Sums, double>> orders;
+  std::vector<Sums> orders;
   do {
-    orders.emplace_back(ranks, 0);
+    orders.push_back(ranks);
   } while (std::next_permutation(ranks.begin(), ranks.end()));
-  for (auto& order : orders) {
-    order.second = 1 / static_cast<double>(orders.size());
-  }
   return orders;
 }
 
@@ -43,38 +40,76 @@ std::int64_t CalcSquares(const Sums& sums) {
       [](std::int64_t total, int sum) { return total + static_cast<std::int64_t>(sum) * sum; });
 }
 
+/** Sums of some rows in one number, for what can be compared fast: sorted, 12 bits each. */
+constexpr int kBitsOfSum = 12;
+constexpr std::size_t kMostPacked = 5;
+
+std::uint64_t Pack(Sums* sums) {
+  std::sort(sums->begin(), sums->end());
+  return std::accumulate(sums->begin(), sums->end(), std::uint64_t{0},
+                         [](std::uint64_t key, int sum) {
+                           return key << kBitsOfSum | static_cast<std::uint64_t>(sum);
+                         });
+}
+
+Sums Unpack(std::uint64_t key, std::size_t size) {
+  Sums sums(size);
+  for (std::size_t j = size; j-- > 0; key >>= kBitsOfSum) {
+    sums[j] = static_cast<int>(key & ((1U << kBitsOfSum) - 1));
+  }
+  return sums;
+}
+
+/** How probable each is; sorted by key, and each key once. */
+using Distribution = std::vector<std::pair<std::uint64_t, double>>;
+
+/** Adds up what has the same key. */
+void Merge(Distribution* states) {
+  std::sort(states->begin(), states->end());
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < states->size(); ++i) {
+    if ((*states)[i].first == (*states)[kept].first) {
+      (*states)[kept].second += (*states)[i].second;
+    } else {
+      (*states)[++kept] = (*states)[i];
+    }
+  }
+  states->resize(kept + 1);
+}
+
 /** P(sum of squared rank sums as large or larger) when each row's ranks stand in any order. Sums
  are kept sorted: no column is unlike another, so only their multiset counts. */
 std::optional<double> CalcExactFriedman(const std::vector<Sums>& rows, const Sums& observed) {
-  constexpr std::size_t kMostConditions = 8;
-  if (observed.size() > kMostConditions) {
+  const std::size_t size = observed.size();
+  if (size > kMostPacked || 2 * size * rows.size() >= 1U << kBitsOfSum) {
     return std::nullopt;
   }
-  std::map<Sums, double> states{{Sums(observed.size(), 0), 1.0}};
+  Distribution states{{0, 1.0}};
   std::size_t steps = 0;
   for (const Sums& row : rows) {
-    const auto orders = ListOrders(row);
+    const std::vector<Sums> orders = ListOrders(row);
+    const double share = 1 / static_cast<double>(orders.size());
     steps += states.size() * orders.size();
     if (steps > kMostFriedmanSteps) {
       return std::nullopt;
     }
-    std::map<Sums, double> next;
-    for (const auto& [sums, share] : states) {
-      for (const auto& [order, order_share] : orders) {
-        Sums added(sums);
-        for (std::size_t j = 0; j < added.size(); ++j) {
-          added[j] += order[j];
-        }
-        std::sort(added.begin(), added.end());
-        next[std::move(added)] += share * order_share;
+    Distribution next;
+    next.reserve(states.size() * orders.size());
+    for (const auto& state : states) {
+      const Sums sums = Unpack(state.first, size);
+      Sums added(size);
+      for (const Sums& order : orders) {
+        std::transform(sums.begin(), sums.end(), order.begin(), added.begin(), std::plus<>());
+        next.emplace_back(Pack(&added), state.second * share);
       }
     }
+    Merge(&next);
     states = std::move(next);
   }
   const std::int64_t squares = CalcSquares(observed);
   double p = 0;
-  for (const auto& [sums, share] : states) {
-    p += CalcSquares(sums) >= squares ? share : 0;
+  for (const auto& state : states) {
+    p += CalcSquares(Unpack(state.first, size)) >= squares ? state.second : 0;
   }
   return std::min(p, 1.0);
 }
@@ -145,7 +180,7 @@ MidRanks CalcMidRanks(std::span<const double> values, double tolerance) {
   return result;
 }
 
-Result<Friedman> TestFriedman(std::span<const std::vector<double>> rows) {
+Result<Friedman> TestFriedman(std::span<const std::vector<double>> rows, Exact exact) {
   if (const auto checked = CheckRows(rows); !checked) {
     return Unexpected(checked.error());
   }
@@ -177,12 +212,15 @@ Result<Friedman> TestFriedman(std::span<const std::vector<double>> rows) {
     result.chi_square = 12 * squares / scale;
     result.p = CalcChiSquareUpper(*result.chi_square, k - 1);
     result.kendall_w = *result.chi_square / (n * (k - 1));
-    result.exact_p = CalcExactFriedman(ranks, sums);
+    if (exact == Exact::kYes) {
+      result.exact_p = CalcExactFriedman(ranks, sums);
+    }
   }
   return result;
 }
 
-Result<Wilcoxon> TestWilcoxon(std::span<const double> first, std::span<const double> second) {
+Result<Wilcoxon> TestWilcoxon(std::span<const double> first, std::span<const double> second,
+                              Exact exact) {
   const auto differences = CalcDifferences(first, second);
   if (!differences) {
     return Unexpected(differences.error());
@@ -214,7 +252,7 @@ Result<Wilcoxon> TestWilcoxon(std::span<const double> first, std::span<const dou
   const double variance = n * (n + 1) * (2 * n + 1) / 24 - mid.tie_sum / 48;
   result.z = (result.positive_rank_sum - 0.25 * n * (n + 1)) / std::sqrt(variance);
   result.p = std::min(1.0, 2 * CalcNormalUpper(std::abs(*result.z)));
-  if (result.n <= kMostExactPairs) {
+  if (exact == Exact::kYes && result.n <= kMostExactPairs) {
     result.exact_p = CalcExactWilcoxon(doubled, positive);
   }
   result.rank_biserial =

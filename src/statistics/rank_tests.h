@@ -18,6 +18,9 @@ struct MidRanks {
 /** Values closer than `tolerance` to their neighbour in order are tied. @pre all are finite. */
 [[nodiscard]] MidRanks CalcMidRanks(std::span<const double> values, double tolerance = 0);
 
+/** Whether the exact p of a test is computed, too: takes much longer than the rest. */
+enum class Exact { kNo, kYes };
+
 /** Do conditions differ? Friedman, J. Am. Stat. Assoc. 32, 1937, with correction for ties. */
 struct Friedman {
   std::size_t row_count{0};
@@ -28,13 +31,15 @@ struct Friedman {
   std::optional<double> chi_square;
   std::optional<double> p;
   std::optional<double> kendall_w;
-  /** By all permutations of ranks within rows. None where there are too many to go through. */
+  /** By all permutations of ranks within rows. None where there are too many to go through:
+   without ties three conditions go up to 125 rows, four to 26, five to 9. */
   std::optional<double> exact_p;
 };
 
 /** @param rows One value a condition each. Errors: kInvalid for fewer than two rows or conditions,
  rows of different length, values that are not finite. */
-[[nodiscard]] Result<Friedman> TestFriedman(std::span<const std::vector<double>> rows);
+[[nodiscard]] Result<Friedman> TestFriedman(std::span<const std::vector<double>> rows,
+                                            Exact exact = Exact::kYes);
 
 /** Are differences around zero? Wilcoxon, Biometrics Bulletin 1, 1945: signed ranks. Zero
  differences are dropped. */
@@ -60,7 +65,8 @@ inline constexpr std::size_t kMostExactPairs = 200;
 /** @param first, second One pair each; differences are second minus first. Errors: kInvalid for
  samples of different size, none, or values that are not finite. */
 [[nodiscard]] Result<Wilcoxon> TestWilcoxon(std::span<const double> first,
-                                            std::span<const double> second);
+                                            std::span<const double> second,
+                                            Exact exact = Exact::kYes);
 
 /** p times their number, at most 1. */
 [[nodiscard]] std::vector<double> AdjustBonferroni(std::span<const double> p);
