@@ -192,7 +192,7 @@ Result<void> Show(const AnalyseArguments& a, const nlohmann::ordered_json& json,
 
 Result<void> Analyse(AnalyseArguments a) {
   if (!a.output.empty()) {
-    if (const auto checked = CheckPageFile(a.output, a.is_forced); !checked) {
+    if (auto checked = CheckPageFile(a.output, a.is_forced); !checked) {
       return checked;
     }
   }

@@ -13,13 +13,14 @@ namespace {
  `t`, by bisection: the share falls as the non-centrality grows. */
 double FindNonCentrality(double t, double dof, double below) {
   constexpr int kSteps = 200;
+  constexpr int kMostDoublings = 20;
   double low = t - 1;
   double high = t + 1;
-  for (double step = 1; CalcNonCentralStudent(t, dof, low) < below && step < 1e6; step *= 2) {
-    low -= step;
+  for (int i = 0; i < kMostDoublings && CalcNonCentralStudent(t, dof, low) < below; ++i) {
+    low = t - 2 * (t - low);
   }
-  for (double step = 1; CalcNonCentralStudent(t, dof, high) > below && step < 1e6; step *= 2) {
-    high += step;
+  for (int i = 0; i < kMostDoublings && CalcNonCentralStudent(t, dof, high) > below; ++i) {
+    high = t + 2 * (high - t);
   }
   for (int i = 0; i < kSteps && low < high; ++i) {
     const double middle = 0.5 * (low + high);

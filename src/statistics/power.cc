@@ -129,6 +129,7 @@ Result<bool> RunStudy(const Design& design, const PowerOptions& options, int par
                       std::uint64_t run) {
   Random random(options.seed * 0xD1342543DE82EF95U + run);  // Every run has its own people.
   std::vector<std::vector<double>> rows;
+  rows.reserve(static_cast<std::size_t>(participants));
   for (int i = 0; i < participants; ++i) {
     rows.push_back(std::visit(DrawRow{&random}, design));
   }

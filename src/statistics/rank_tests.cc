@@ -151,7 +151,7 @@ Result<void> CheckRows(std::span<const std::vector<double>> rows) {
           fmt::format("row {} has {} values, the first {}", i + 1, rows[i].size(), rows[0].size()),
           "Friedman test", "leave out rows that are not complete");
     }
-    if (const auto checked = CheckSample(rows[i]); !checked) {
+    if (auto checked = CheckSample(rows[i]); !checked) {
       return checked;
     }
   }

@@ -87,7 +87,7 @@ Result<void> CheckTable(const Table& table, const AnalysisOptions& options) {
           "participant " + row.participant, "give one cell a condition, empty where missing");
     }
     for (std::size_t j = 0; j < row.values.size(); ++j) {
-      if (const auto checked = CheckCell(table, row, j, options); !checked) {
+      if (auto checked = CheckCell(table, row, j, options); !checked) {
         return checked;
       }
     }
