@@ -24,7 +24,7 @@ th{font-weight:600;color:var(--soft);vertical-align:bottom}
 th:first-child,td:first-child,.l{text-align:left!important;white-space:normal}
 td:first-child{min-width:11rem}
 @media print{:root{color-scheme:light;--page:#fff;--ink:#000;--soft:#444;--rule:#ccc;--good:#14602c;--bad:#8f1d17;--tile:#f4f6f8}
-body{max-width:none;padding:0;font-size:10.5pt}table{font-size:7.5pt}.scroll{overflow:visible}h2,h3{break-after:avoid}figure,tr,.tiles{break-inside:avoid}figure svg{max-height:225mm}
+body{max-width:none;padding:0;font-size:10.5pt}table{font-size:7.5pt}th,td{padding:.2rem}td:first-child{min-width:7rem}.scroll{overflow:visible}h2,h3{break-after:avoid}figure,tr,.tiles{break-inside:avoid}figure svg{max-height:225mm}
 figure svg .page{fill:#fff!important}figure svg text{fill:#000!important}figure svg .onsolid{fill:#fff!important}figure svg .grid{stroke:#ddd!important}}
 @page{margin:16mm}
 )";

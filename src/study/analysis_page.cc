@@ -150,7 +150,7 @@ std::string MakeTests(const Analysis& analysis) {
         {PairName(analysis, pair), std::to_string(w.n), std::to_string(w.zero_count), Format(w.z),
          FormatPOf(w.p), Escape(FormatP(pair.bonferroni_p)), Escape(FormatP(pair.holm_p)),
          FormatPOf(w.exact_p), FormatPOf(pair.exact_bonferroni_p), FormatPOf(pair.exact_holm_p),
-         fmt::format("<span class=\"{}\">{}</span>", pair.is_different ? "good" : "soft",
+         fmt::format("<span class=\"{} l\">{}</span>", pair.is_different ? "good" : "soft",
                      Escape(TellPair(analysis, pair)))});
   }
   return "<h3>Wilcoxon signed ranks</h3>" +
