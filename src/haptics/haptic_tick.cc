@@ -412,12 +412,11 @@ void HapticTick::AddGuidance(const Vec3& p_WCm) noexcept {
     const double share = start > 0 ? std::min(1.0, std::abs(rest) / start) : 0.0;
     return std::copysign(soft_start_ * share * strongest, rest);
   };
-  const double left = part_->mates[guide_.axis_index()].fit != nullptr
-                          ? std::clamp(1 - axis->depth / kFitTakesOver, 0.0, 1.0)
-                          : 1.0;
+  const bool has_fit = options_.renders_fits && part_->mates[guide_.axis_index()].fit != nullptr;
+  const double left = has_fit ? std::clamp(1 - axis->depth / kFitTakesOver, 0.0, 1.0) : 1.0;
   solver_.AddWrench({pull(to_turn, start_angle_, options_.guidance.attraction_torque) * a,
                      left * pull(to_go, start_distance_, options_.guidance.attraction_force) * a});
-  if (guide_.is_aligned()) {
+  if (guide_.is_aligned() && options_.renders_fits) {
     AddFits(*axis, p_WCm);
   } else {
     fit_rows_.Reset();

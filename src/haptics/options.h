@@ -79,6 +79,9 @@ struct Effort {
 
 struct TickOptions {
   Condition condition{Condition::kHybrid};
+  /** Fits resist on the way in and out; without, a guided part slides as if it had none (W8: A3).
+   */
+  bool renders_fits{true};
   WorkspaceOptions workspace;
   CouplingGains coupling;
   GuidanceOptions guidance;

@@ -212,12 +212,13 @@ struct AllFields {
     VisitInner(f, "turn_buzz", turn_buzz);
   }
 
-  /** All but the limits, which may be missing. */
+  /** All but the limits and whether fits are rendered, which may be missing. */
   template <typename F>
   static void Visit(F& f, haptics::TickOptions& value) {
-    auto& [condition, workspace, coupling, guidance, contact, gravity_W, max_virtual_mass,
-           force_map, device, limits, controls_passivity, p_HG, dt] = value;
+    auto& [condition, renders_fits, workspace, coupling, guidance, contact, gravity_W,
+           max_virtual_mass, force_map, device, limits, controls_passivity, p_HG, dt] = value;
     static_cast<void>(limits);
+    static_cast<void>(renders_fits);
     f("condition", condition, kConditions);
     VisitInner(f, "workspace", workspace);
     VisitInner(f, "coupling", coupling);
@@ -234,6 +235,7 @@ struct AllFields {
 };
 
 constexpr const char* kLimits = "limits";
+constexpr const char* kRendersFits = "renders_fits";  // Only where they are not.
 
 }  // namespace
 
@@ -245,6 +247,9 @@ Json MakeTickOptionsJson(const haptics::TickOptions& options) {
   if (copy.limits) {
     AllFields::VisitInner(maker, kLimits, *copy.limits);
   }
+  if (!copy.renders_fits) {
+    maker(kRendersFits, copy.renders_fits);
+  }
   return json;
 }
 
@@ -254,6 +259,9 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   AllFields::Visit(fields, options);
   if (fields.has(kLimits)) {
     AllFields::VisitInner(fields, kLimits, options.limits.emplace());
+  }
+  if (fields.has(kRendersFits)) {
+    fields(kRendersFits, options.renders_fits);
   }
   if (!fields.refused().empty()) {
     return Fail(ErrorCode::kUnreadable,

@@ -27,6 +27,7 @@ OUTSIDE = {
     "HDF5": (r"hdf5\.h", r"\$\{HVAS_HDF5"),
     "CLI": (r"CLI/", r"CLI11::"),
     "Boost": (r"boost/", r"Boost::"),
+    "yaml": (r"yaml-cpp/", r"\$\{HVAS_YAML"),
     "OpenSSL": (r"openssl/", r"OpenSSL::"),
 }
 TEST_ONLY = (r"(gtest|gmock|benchmark)/",)

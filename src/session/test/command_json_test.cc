@@ -135,6 +135,14 @@ TEST(TickOptionsJson, BringsAllOptionsBack) {
   }
 }
 
+TEST(TickOptionsJson, SaysWhereFitsAreNotRenderedAndReadsOlderOnesThatDoNotSay) {  // W8: A3
+  haptics::TickOptions options;
+  EXPECT_FALSE(MakeTickOptionsJson(options).contains("renders_fits"));
+  EXPECT_TRUE(ParseTickOptions(MakeTickOptionsJson(options))->renders_fits);
+  options.renders_fits = false;
+  EXPECT_FALSE(ParseTickOptions(MakeTickOptionsJson(options))->renders_fits);
+}
+
 TEST(TickOptionsJson, NamesAFieldThatIsMissing) {
   Json json = MakeTickOptionsJson(MakeOptions());
   json["limits"]["kick"].erase("jerk_m_per_s3");

@@ -193,6 +193,22 @@ TEST(FitInHand, InsertsRestsAndComesOutAgain) {
   }
 }
 
+// W8, A3: collision and constraint without the force of the fit. Guided as with it, and home sooner.
+TEST(FitInHand, IsNotFeltWhereItIsNotRendered) {
+  const auto fit = MakeFit("H7/p6");
+  haptics::TickOptions without;
+  without.renders_fits = false;
+  const std::vector<Moment> with_fit = Trial(fit, -1, 1).Run(40);
+  const std::vector<Moment> moments = Trial(fit, -1, 1, without).Run(40);
+  ASSERT_FALSE(moments.empty());
+  EXPECT_EQ(moments.back().out.state, HoldState::kSeated);
+  for (const Moment& moment : moments) {
+    ASSERT_EQ(moment.out.axial_true, 0);
+    ASSERT_EQ(moment.out.axial_felt, 0);
+  }
+  EXPECT_LT(moments.size(), with_fit.size());
+}
+
 // N5: what breaks a press fit loose is mu pi E (1 - c_0^2) delta l, W(6) with W(7); here of smooth
 // surfaces, in newtons that no table of ours has.
 TEST(FitInHand, BreakawayIsTheClosedForm) {

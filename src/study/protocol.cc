@@ -1,0 +1,429 @@
+#include "study/protocol.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/digest.h"
+#include "base/units.h"
+#include "fits/iso286.h"
+#include "study/yaml_fields.h"
+
+namespace hvas::study {
+namespace {
+
+constexpr std::size_t kMostConditions = 26;
+constexpr int kMostTrials = 5000;  // Of one participant.
+constexpr double kMostSeconds = 86400;
+constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};
+constexpr std::array<std::string_view, 3> kHidden{"condition", "time", "progress"};
+
+/** Ids become names of files and of columns. */
+bool IsId(std::string_view text) {
+  return !text.empty() && text.size() <= 40 &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) {
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                  c == '_' || c == '-';
+         });
+}
+
+/** Reads what stands in a document into a protocol. */
+class ProtocolReader {
+ public:
+  ProtocolReader(YamlDocument* document, Protocol* protocol)
+      : document_(document), protocol_(protocol) {}
+
+  void Read() {
+    YamlFields fields(document_, document_->root(), "the protocol");
+    if (fields.Text("format") != kProtocolFormat) {
+      document_->Refuse(fields.Get("format"), "the protocol is of a format that is not known",
+                        fmt::format("write `format: {}`", kProtocolFormat));
+    }
+    protocol_->id = ReadId(&fields);
+    protocol_->languages = ReadLanguages(&fields);
+    protocol_->title = ReadText(&fields, "title", true);
+    protocol_->about = fields.TextOr("about", "");
+    protocol_->source = fields.TextOr("source", "");
+    protocol_->product = fields.Text("product");
+    protocol_->part = fields.Text("part");
+    protocol_->participants = fields.IntegerOr("participants", {1, 999}, 1);
+    protocol_->mating_window =
+        fields.NumberOr("mating_window_s", {0, 30}, protocol_->mating_window);
+    protocol_->consent = ReadText(&fields, "consent", true);
+    ReadConditions(&fields);
+    ReadTraining(&fields);
+    ReadBlocks(&fields);
+    ReadQuestions(&fields);
+    ReadHidden(&fields);
+    fields.Finish();
+    CheckTrials(fields);
+  }
+
+ private:
+  std::string ReadId(YamlFields* fields) {
+    const std::string id = fields->Text("id");
+    if (!id.empty() && !IsId(id)) {
+      document_->Refuse(fields->Get("id"),
+                        fmt::format("the id \"{}\" of {} cannot be used", id, fields->entity()),
+                        "use at most 40 letters, digits, - and _");
+    }
+    return id;
+  }
+
+  void RefuseIfTaken(const YamlFields& fields, const std::string& id, std::set<std::string>* ids) {
+    if (!id.empty() && !ids->insert(id).second) {
+      document_->Refuse(fields.node(), fmt::format("the id \"{}\" is there twice", id),
+                        "give each its own");
+    }
+  }
+
+  std::vector<std::string> ReadLanguages(YamlFields* fields) {
+    std::vector<std::string> languages = fields->TextsOr("languages", {"en"});
+    for (const std::string& language : languages) {
+      if (language != "en" && language != "de") {
+        document_->Refuse(fields->Get("languages"),
+                          fmt::format("the language \"{}\" is not known", language),
+                          "write [en] or [en, de]");
+      }
+    }
+    return languages;
+  }
+
+  LocalText ReadText(YamlFields* fields, const std::string& key, bool is_required) {
+    const YAML::Node value = is_required ? fields->Require(key) : fields->Get(key);
+    LocalText text;
+    if (!value.IsDefined()) {
+      return text;
+    }
+    if (value.IsScalar()) {
+      text.en = fields->Text(key);
+      return text;
+    }
+    YamlFields languages(document_, value, fmt::format("\"{}\" of {}", key, fields->entity()));
+    text.en = languages.Text("en");
+    text.de = languages.TextOr("de", "");
+    languages.Finish();
+    return text;
+  }
+
+  void ReadConditions(YamlFields* fields) {
+    const YAML::Node list = fields->Require("conditions");
+    if (!list.IsDefined()) {
+      return;
+    }
+    std::set<std::string> ids;
+    Condition common;
+    if (const YAML::Node defaults = fields->Get("defaults"); defaults.IsDefined()) {
+      YamlFields these(document_, defaults, "the defaults");
+      ReadRendering(&these, &common);
+      these.Finish();
+    }
+    for (const YAML::Node& node : ListOf(document_, list, "\"conditions\"")) {
+      YamlFields one(document_, node,
+                     fmt::format("condition {}", protocol_->conditions.size() + 1));
+      Condition condition = common;
+      condition.id = ReadId(&one);
+      RefuseIfTaken(one, condition.id, &ids);
+      condition.name = ReadText(&one, "name", true);
+      condition.instruction = ReadText(&one, "instruction", false);
+      static_cast<void>(one.Require("method"));
+      condition.method = one.WordOr("method", kMethods, condition.method);
+      ReadRendering(&one, &condition);
+      condition.answer = one.TextOr("answer", "");
+      if (one.Has("published_mean_s")) {
+        condition.published_mean = one.NumberOr("published_mean_s", {0.01, kMostSeconds}, 1);
+      }
+      one.Finish();
+      protocol_->conditions.push_back(std::move(condition));
+    }
+    if (protocol_->conditions.empty() || protocol_->conditions.size() > kMostConditions) {
+      document_->Refuse(list, "\"conditions\" has none, or more than 26",
+                        "write from 1 to 26 conditions");
+    }
+  }
+
+  /** What the defaults may have, too. */
+  void ReadRendering(YamlFields* fields, Condition* condition) {
+    condition->fit = fields->TextOr("fit", condition->fit);
+    if (!condition->fit.empty() && !fits::ParseFit(condition->fit)) {
+      document_->Refuse(fields->Get("fit"),
+                        fmt::format("\"{}\" of {} is no fit", condition->fit, fields->entity()),
+                        "write a fit of ISO 286, as H7/g6");
+    }
+    condition->renders_fits = fields->FlagOr("fit_force", condition->renders_fits);
+    condition->force_map = fields->WordOr("force_map", kForceMaps, condition->force_map);
+    condition->coupling = fields->NumberOr("coupling_n_per_m", {50, 5000}, condition->coupling);
+    condition->time_limit = fields->NumberOr("time_limit_s", {1, 3600}, condition->time_limit);
+    if (const YAML::Node node = fields->Get("capture"); node.IsDefined()) {
+      YamlFields capture(document_, node, fmt::format("the capture of {}", fields->entity()));
+      mates::CaptureThresholds& limits = condition->capture;
+      limits.angle =
+          units::FromDeg(capture.NumberOr("angle_deg", {0.1, 90}, units::ToDeg(limits.angle)));
+      limits.axis_distance = units::FromMm(
+          capture.NumberOr("axis_distance_mm", {0.01, 100}, units::ToMm(limits.axis_distance)));
+      limits.face_distance = units::FromMm(
+          capture.NumberOr("face_distance_mm", {0.01, 100}, units::ToMm(limits.face_distance)));
+      capture.Finish();
+    }
+  }
+
+  /** @returns no index where there is no such condition. */
+  std::optional<std::size_t> FindIndex(const YAML::Node& at, const std::string& id,
+                                       const std::string& entity) {
+    const auto& all = protocol_->conditions;
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Condition& c) { return c.id == id; });
+    if (found == all.end()) {
+      document_->Refuse(at,
+                        fmt::format("{} names a condition that there is not: \"{}\"", entity, id),
+                        "name one of \"conditions\"");
+      return std::nullopt;
+    }
+    return static_cast<std::size_t>(found - all.begin());
+  }
+
+  void ReadTraining(YamlFields* fields) {
+    const YAML::Node node = fields->Get("training");
+    if (!node.IsDefined()) {
+      return;
+    }
+    YamlFields training(document_, node, "the training");
+    protocol_->training.duration =
+        60 * training.NumberOr("minutes", {0, 600}, protocol_->training.duration);
+    protocol_->training.text = ReadText(&training, "text", false);
+    if (training.Has("condition")) {
+      protocol_->training.condition =
+          FindIndex(training.Get("condition"), training.Text("condition"), "the training");
+    }
+    training.Finish();
+  }
+
+  void ReadBlocks(YamlFields* fields) {
+    const YAML::Node list = fields->Require("blocks");
+    if (!list.IsDefined()) {
+      return;
+    }
+    std::set<std::string> ids;
+    for (const YAML::Node& node : ListOf(document_, list, "\"blocks\"")) {
+      YamlFields one(document_, node, fmt::format("block {}", protocol_->blocks.size() + 1));
+      Block block;
+      block.id = ReadId(&one);
+      RefuseIfTaken(one, block.id, &ids);
+      block.name = ReadText(&one, "name", false);
+      block.is_identification = one.FlagOr("identification", false);
+      block.repetitions = one.IntegerOr("repetitions", {1, 1000}, 1);
+      block.order =
+          one.WordOr("order", kOrders, block.is_identification ? Order::kRandom : block.order);
+      block.keeps_repetitions_together = one.FlagOr("together", !block.is_identification);
+      block.question = ReadText(&one, "question", block.is_identification);
+      ReadConditionsOf(&one, &block);
+      one.Finish();
+      if (block.is_identification) {
+        CheckIdentification(one, block);
+      }
+      protocol_->blocks.push_back(std::move(block));
+    }
+    if (protocol_->blocks.empty()) {
+      document_->Refuse(list, "\"blocks\" is empty", "write at least one");
+    }
+  }
+
+  void ReadConditionsOf(YamlFields* fields, Block* block) {
+    std::vector<std::string> all;
+    for (const Condition& condition : protocol_->conditions) {
+      all.push_back(condition.id);
+    }
+    const std::vector<std::string> names = fields->TextsOr("conditions", all);
+    const YAML::Node at = fields->Has("conditions") ? fields->Get("conditions") : fields->node();
+    for (const std::string& name : names) {
+      const auto index = FindIndex(at, name, fields->entity());
+      if (index && std::count(block->conditions.begin(), block->conditions.end(), *index) > 0) {
+        document_->Refuse(at, fmt::format("{} has \"{}\" twice", fields->entity(), name),
+                          "name each once, and set \"repetitions\"");
+      }
+      if (index) {
+        block->conditions.push_back(*index);
+      }
+    }
+    if (block->conditions.empty()) {
+      document_->Refuse(at, fmt::format("{} has no condition", fields->entity()),
+                        "name at least one");
+    }
+  }
+
+  void CheckIdentification(const YamlFields& fields, const Block& block) {
+    std::set<std::string> answers;
+    for (const std::size_t index : block.conditions) {
+      const Condition& condition = protocol_->conditions[index];
+      const std::string answer = condition.answer.empty() ? condition.fit : condition.answer;
+      if (answer.empty() || !answers.insert(answer).second) {
+        document_->Refuse(
+            fields.node(),
+            fmt::format("in {} the answer of condition \"{}\" is missing, or another's too",
+                        fields.entity(), condition.id),
+            "give its conditions different fits, or each an \"answer\"");
+      }
+    }
+    if (block.order != Order::kRandom || block.keeps_repetitions_together) {
+      document_->Refuse(
+          fields.node(),
+          fmt::format("{} is identification, so its trials are shuffled", fields.entity()),
+          "leave \"order\" and \"together\" out");
+    }
+  }
+
+  void ReadQuestions(YamlFields* fields) {
+    const YAML::Node list = fields->Get("questions");
+    if (!list.IsDefined()) {
+      return;
+    }
+    std::set<std::string> ids;
+    for (const YAML::Node& node : ListOf(document_, list, "\"questions\"")) {
+      YamlFields one(document_, node, fmt::format("question {}", protocol_->questions.size() + 1));
+      Question question;
+      question.id = ReadId(&one);
+      RefuseIfTaken(one, question.id, &ids);
+      static_cast<void>(one.Require("kind"));
+      question.kind = one.WordOr("kind", kQuestionKinds, question.kind);
+      question.asked = one.WordOr("asked", kAsked, question.asked);
+      question.block = one.TextOr("block", "");
+      question.text = ReadText(&one, "text", true);
+      ReadKind(&one, &question);
+      one.Finish();
+      const auto is_block = [&](const Block& block) { return block.id == question.block; };
+      if (!question.block.empty() &&
+          std::none_of(protocol_->blocks.begin(), protocol_->blocks.end(), is_block)) {
+        document_->Refuse(
+            one.node()["block"],
+            fmt::format("{} names a block that there is not: \"{}\"", one.entity(), question.block),
+            "name one of \"blocks\"");
+      }
+      protocol_->questions.push_back(std::move(question));
+    }
+  }
+
+  void ReadKind(YamlFields* fields, Question* question) {
+    switch (question->kind) {
+      case QuestionKind::kScale:
+        question->low = fields->IntegerOr("low", {0, 100}, question->low);
+        question->high = fields->IntegerOr("high", {1, 100}, question->high);
+        question->low_text = ReadText(fields, "low_text", false);
+        question->high_text = ReadText(fields, "high_text", false);
+        if (question->low >= question->high) {
+          document_->Refuse(fields->node(),
+                            fmt::format("the scale of {} goes from {} to {}", fields->entity(),
+                                        question->low, question->high),
+                            "let \"low\" be less than \"high\"");
+        }
+        return;
+      case QuestionKind::kText:
+        question->longest = fields->IntegerOr("longest", {1, 20000}, question->longest);
+        return;
+      case QuestionKind::kChoice:
+        break;
+    }
+    const YAML::Node list = fields->Require("choices");
+    if (!list.IsDefined()) {
+      return;
+    }
+    std::set<std::string> ids;
+    for (const YAML::Node& node : ListOf(document_, list, "\"choices\"")) {
+      YamlFields one(document_, node, fmt::format("a choice of {}", fields->entity()));
+      Choice choice;
+      choice.id = ReadId(&one);
+      RefuseIfTaken(one, choice.id, &ids);
+      choice.text = ReadText(&one, "text", true);
+      one.Finish();
+      question->choices.push_back(std::move(choice));
+    }
+    if (question->choices.size() < 2) {
+      document_->Refuse(list, fmt::format("{} has fewer than two choices", fields->entity()),
+                        "write two or more");
+    }
+  }
+
+  void ReadHidden(YamlFields* fields) {
+    if (!fields->Has("hidden")) {
+      return;
+    }
+    protocol_->hidden = {false, false, false};
+    for (const std::string& name : fields->TextsOr("hidden", {})) {
+      if (std::find(kHidden.begin(), kHidden.end(), name) == kHidden.end()) {
+        document_->Refuse(
+            fields->Get("hidden"), fmt::format("\"{}\" cannot be hidden or shown", name),
+            fmt::format("write some of [{}]; fits are always hidden", fmt::join(kHidden, ", ")));
+      }
+      protocol_->hidden.condition |= name == "condition";
+      protocol_->hidden.time |= name == "time";
+      protocol_->hidden.progress |= name == "progress";
+    }
+    const bool is_blind = std::any_of(protocol_->blocks.begin(), protocol_->blocks.end(),
+                                      [](const Block& block) { return block.is_identification; });
+    if (is_blind && !protocol_->hidden.condition) {
+      document_->Refuse(fields->Get("hidden"),
+                        "identification would not be blind: names of conditions are shown",
+                        "add condition to \"hidden\"");
+    }
+  }
+
+  void CheckTrials(const YamlFields& fields) {
+    if (protocol_->CountTrials() > kMostTrials) {
+      document_->Refuse(fields.node(),
+                        fmt::format("a participant would have {} trials", protocol_->CountTrials()),
+                        fmt::format("at most {} are possible: lower \"repetitions\"", kMostTrials));
+    }
+  }
+
+  YamlDocument* document_;
+  Protocol* protocol_;
+};
+
+}  // namespace
+
+const Condition* Protocol::FindCondition(std::string_view condition_id) const {
+  const auto found = std::find_if(conditions.begin(), conditions.end(),
+                                  [&](const Condition& c) { return c.id == condition_id; });
+  return found == conditions.end() ? nullptr : &*found;
+}
+
+int Protocol::CountTrials() const {
+  int count = 0;
+  for (const Block& block : blocks) {
+    count += static_cast<int>(block.conditions.size()) * block.repetitions;
+  }
+  return count;
+}
+
+Result<Protocol> ParseProtocol(const std::string& text, const std::filesystem::path& file) {
+  auto document = YamlDocument::Parse(text, file.string());
+  if (!document) {
+    return Unexpected(document.error());
+  }
+  Protocol protocol;
+  ProtocolReader(&*document, &protocol).Read();
+  if (document->error()) {
+    return Unexpected(*document->error());
+  }
+  protocol.file = file;
+  protocol.text = text;
+  Digest digest;
+  digest.AddText(text);
+  protocol.digest = digest.Hex();
+  return protocol;
+}
+
+Result<Protocol> ReadProtocol(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    return Fail(ErrorCode::kNotFound, "the protocol cannot be read", file.string(),
+                "check the name");
+  }
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return ParseProtocol(text, file);
+}
+
+}  // namespace hvas::study
