@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -134,7 +135,7 @@ class Experiment {
     }
   }
 
-  const IdentificationOptions& options_;
+  IdentificationOptions options_;
   Random random_;
   std::vector<fits::FitLimits> limits_;
   std::vector<fits::FitKind> kinds_;
@@ -194,12 +195,41 @@ double CalcFeltForce(const fits::FitForce& fit, fits::FitKind kind, double depth
   return haptics::MakeForceMap(device).Felt(force + side_friction);
 }
 
-Result<Identification> Identify(const IdentificationOptions& options) {
+struct FitObserver::State {
+  explicit State(const IdentificationOptions& options)
+      : experiment(options), templates(experiment.Train()) {}
+
+  Experiment experiment;
+  std::array<Template, kShownFits> templates;
+};
+
+FitObserver::FitObserver(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+FitObserver::FitObserver(FitObserver&&) noexcept = default;
+FitObserver& FitObserver::operator=(FitObserver&&) noexcept = default;
+FitObserver::~FitObserver() = default;
+
+Result<FitObserver> FitObserver::Train(const IdentificationOptions& options) {
   if (Result<void> check = Check(options); !check) {
     return Unexpected(check.error());
   }
-  Experiment experiment(options);
-  const std::array<Template, kShownFits> templates = experiment.Train();
+  return FitObserver(std::make_unique<State>(options));
+}
+
+int FitObserver::Answer(int shown, double* felt_end) {
+  double end = 0;
+  const Curve curve = state_->experiment.Perceive(shown, &end);
+  if (felt_end != nullptr) {
+    *felt_end = end;
+  }
+  return static_cast<int>(state_->experiment.Answer(curve, state_->templates));
+}
+
+Result<Identification> Identify(const IdentificationOptions& options) {
+  auto observer = FitObserver::Train(options);
+  if (!observer) {
+    return Unexpected(observer.error());
+  }
   Identification result;
   for (int shown = 0; shown < kShownFits; ++shown) {
     const auto i = static_cast<std::size_t>(shown);
@@ -207,8 +237,8 @@ Result<Identification> Identify(const IdentificationOptions& options) {
     double squares = 0;
     for (int trial = 0; trial < options.trials; ++trial) {
       double felt_end = 0;
-      const Curve curve = experiment.Perceive(shown, &felt_end);
-      ++result.counts[i][experiment.Answer(curve, templates)];
+      const int answered = observer->Answer(shown, &felt_end);
+      ++result.counts[i][static_cast<std::size_t>(answered)];
       sum += felt_end;
       squares += felt_end * felt_end;
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "base/result.h"
 #include "fits/fit_force.h"
@@ -77,6 +78,26 @@ struct ShareInterval {
 [[nodiscard]] double CalcFeltForce(const fits::FitForce& fit, fits::FitKind kind, double depth,
                                    double side_friction, haptics::ForceMapKind map,
                                    const device::DeviceProfile& device);
+
+/** The observer, trained, to be shown fits in any order. Repeats exactly. */
+class FitObserver {
+ public:
+  /** Errors: kInvalid for options out of their ranges. */
+  [[nodiscard]] static Result<FitObserver> Train(const IdentificationOptions& options);
+
+  FitObserver(FitObserver&&) noexcept;
+  FitObserver& operator=(FitObserver&&) noexcept;
+  ~FitObserver();
+
+  /** Shows a pair of a fit, and has the observer say which it was: places in kShownFitNames.
+   @param felt_end  Receives the force at full depth [N]; may be null. */
+  int Answer(int shown, double* felt_end = nullptr);
+
+ private:
+  struct State;
+  explicit FitObserver(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
 
 /** Shows every fit `trials` times; the observer answers with the nearest of three templates of felt
  force over depth. A template is the mean of the curves of a training, and at every look how far

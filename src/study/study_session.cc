@@ -35,8 +35,9 @@ const char* WhatNow(Phase phase) {
 
 /** Characters, not bytes, of UTF-8. */
 std::size_t CountCharacters(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
 }
 
 }  // namespace
@@ -102,8 +103,8 @@ StudySession::StudySession(const Protocol* protocol, int participant, std::uint6
 void StudySession::AddQuestions(Asked asked, std::size_t trial) {
   for (std::size_t q = 0; q < protocol_->questions.size(); ++q) {
     const Question& question = protocol_->questions[q];
-    const bool is_here = asked == Asked::kAtEnd || question.block.empty() ||
-                         question.block == BlockOf(trial).id;
+    const bool is_here =
+        asked == Asked::kAtEnd || question.block.empty() || question.block == BlockOf(trial).id;
     if (question.asked == asked && is_here) {
       agenda_.push_back({ItemKind::kQuestion, trial, q});
     }
@@ -154,7 +155,7 @@ std::optional<OpenQuestion> StudySession::question() const {
   }
   const Item& item = agenda_[at_];
   if (item.kind == ItemKind::kIdentify) {
-    return OpenQuestion{std::string(kIdentify), nullptr, item.trial};
+    return OpenQuestion{std::string(kIdentifyQuestion), nullptr, item.trial};
   }
   const Question& question = protocol_->questions[item.question];
   return OpenQuestion{question.id, &question, item.trial};

@@ -16,10 +16,10 @@
 namespace hvas::study {
 
 enum class Phase : std::uint8_t {
-  kWaiting,   ///< Nobody has begun, or begun again.
+  kWaiting,  ///< Nobody has begun, or begun again.
   kConsent,
   kTraining,
-  kReady,     ///< For the trial at hand.
+  kReady,  ///< For the trial at hand.
   kRunning,
   kQuestion,
   kPaused,    ///< By the experimenter.
@@ -69,7 +69,7 @@ inline constexpr std::array<std::string_view, 10> kEventKinds{
     "trial_ended", "answered", "note",           "aborted",        "resumed"};
 
 /** The question of identification: after a trial, which condition it was. */
-inline constexpr std::string_view kIdentify = "identify";
+inline constexpr std::string_view kIdentifyQuestion = "identify";
 
 /** A trial that is over. */
 struct DoneTrial {

@@ -21,8 +21,8 @@ inline constexpr std::array<std::string_view, 3> kOutcomes{"done", "timed_out", 
 
 /** What the hand feels of the mating, in a frame whose z axis is the way out (X15). */
 struct MatingSample {
-  double t{0};              ///< Before the part is in its place, or the trial over; <= 0 [s].
-  Vec3 f{Vec3::Zero()};     ///< [N]
+  double t{0};                ///< Before the part is in its place, or the trial over; <= 0 [s].
+  Vec3 f{Vec3::Zero()};       ///< [N]
   Vec3 torque{Vec3::Zero()};  ///< About the hand's point [N m].
 };
 

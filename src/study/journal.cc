@@ -1,0 +1,306 @@
+#include "study/journal.h"
+
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/digest.h"
+#include "base/write_all.h"
+
+namespace hvas::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Kind = StudyEvent::Kind;
+
+constexpr const char* kFormat = "hvas-study-journal-1";
+
+template <typename E, std::size_t N>
+bool ReadWord(const Json& json, const std::array<std::string_view, N>& words, E* value) {
+  for (std::size_t i = 0; i < N; ++i) {
+    if (json == words[i]) {
+      *value = static_cast<E>(i);
+      return true;
+    }
+  }
+  return false;
+}
+
+Json MakeResultJson(const TrialResult& result) {
+  Json mating = Json::array();
+  for (const MatingSample& s : result.mating) {
+    mating.push_back({s.t, s.f.x(), s.f.y(), s.f.z(), s.torque.x(), s.torque.y(), s.torque.z()});
+  }
+  Json json{{"outcome", kOutcomes[static_cast<std::size_t>(result.outcome)]}};
+  if (result.time) {
+    json["time_s"] = *result.time;
+  }
+  json["collisions"] = result.collisions;
+  json["peak_felt_n"] = result.peak_felt;
+  json["peak_true_n"] = result.peak_true;
+  json["insertion_m"] = result.insertion;
+  json["mating"] = std::move(mating);
+  return json;
+}
+
+TrialResult ParseResult(const Json& json) {
+  TrialResult result;
+  if (!ReadWord(json.at("outcome"), kOutcomes, &result.outcome)) {
+    throw Json::other_error::create(0, "outcome", nullptr);
+  }
+  if (json.contains("time_s")) {
+    result.time = json.at("time_s").get<double>();
+  }
+  result.collisions = json.at("collisions").get<int>();
+  result.peak_felt = json.at("peak_felt_n").get<double>();
+  result.peak_true = json.at("peak_true_n").get<double>();
+  result.insertion = json.at("insertion_m").get<double>();
+  for (const Json& s : json.at("mating")) {
+    const auto at = [&](std::size_t i) { return s.at(i).get<double>(); };
+    result.mating.push_back({at(0), Vec3(at(1), at(2), at(3)), Vec3(at(4), at(5), at(6))});
+  }
+  return result;
+}
+
+Json MakeValueJson(const AnswerValue& value) {
+  if (const int* number = std::get_if<int>(&value)) {
+    return *number;
+  }
+  const std::string* text = std::get_if<std::string>(&value);
+  return text != nullptr ? Json(*text) : Json(nullptr);
+}
+
+AnswerValue ParseValue(const Json& json) {
+  if (json.is_number_integer()) {
+    return json.get<int>();
+  }
+  return json.is_string() ? AnswerValue(json.get<std::string>()) : AnswerValue();
+}
+
+Json MakeEventJson(const StudyEvent& event) {
+  Json json{{"event", kEventKinds[static_cast<std::size_t>(event.kind)]}};
+  if (event.unix_ms != 0) {
+    json["unix_ms"] = event.unix_ms;
+  }
+  switch (event.kind) {
+    case Kind::kConsent:
+      json["agrees"] = event.agrees;
+      json["language"] = event.language;
+      break;
+    case Kind::kTrialBegun:
+      json["trial"] = event.trial;
+      break;
+    case Kind::kTrialEnded:
+      json["trial"] = event.trial;
+      json["result"] = MakeResultJson(event.result);
+      break;
+    case Kind::kAnswered:
+      json["trial"] = event.trial;
+      json["question"] = event.question;
+      json["value"] = MakeValueJson(event.value);
+      break;
+    case Kind::kNote:
+    case Kind::kAborted:
+      json["text"] = event.text;
+      break;
+    case Kind::kBegun:
+    case Kind::kTrainingBegun:
+    case Kind::kTrainingEnded:
+    case Kind::kResumed:
+      break;
+  }
+  return json;
+}
+
+/** Throws what nlohmann does for what is not as MakeEventJson() makes it. */
+StudyEvent ParseEvent(const Json& json) {
+  StudyEvent event;
+  if (!ReadWord(json.at("event"), kEventKinds, &event.kind)) {
+    throw Json::other_error::create(0, "event", nullptr);
+  }
+  event.unix_ms = json.value("unix_ms", std::int64_t{0});
+  event.agrees = json.value("agrees", false);
+  event.language = json.value("language", "");
+  event.trial = json.value("trial", std::size_t{0});
+  event.question = json.value("question", "");
+  event.text = json.value("text", "");
+  if (json.contains("value")) {
+    event.value = ParseValue(json["value"]);
+  }
+  if (event.kind == Kind::kTrialEnded) {
+    event.result = ParseResult(json.at("result"));
+  }
+  return event;
+}
+
+std::string SumOf(std::string_view text) {
+  return fmt::format("{:016x}", Checksum64(std::as_bytes(std::span(text.data(), text.size()))));
+}
+
+std::string MakeLine(const Json& json) {
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text + "\t" + SumOf(text) + "\n";
+}
+
+/** Nothing for a line that is torn or damaged. */
+std::optional<Json> ParseLine(std::string_view line) {
+  const std::size_t tab = line.rfind('\t');
+  if (tab == std::string_view::npos || SumOf(line.substr(0, tab)) != line.substr(tab + 1)) {
+    return std::nullopt;
+  }
+  Json json = Json::parse(line.substr(0, tab), nullptr, false);
+  return json.is_object() ? std::optional<Json>(std::move(json)) : std::nullopt;
+}
+
+Json MakeHeadJson(const JournalHead& head) {
+  return {{"format", kFormat},
+          {"participant", head.participant},
+          {"protocol", head.protocol},
+          {"seed", head.seed},
+          {"simulated", head.is_simulated}};
+}
+
+JournalHead ParseHead(const Json& json) {
+  if (json.at("format") != kFormat) {
+    throw Json::other_error::create(0, "format", nullptr);
+  }
+  return {json.at("participant").get<std::string>(), json.at("protocol").get<std::string>(),
+          json.at("seed").get<std::uint64_t>(), json.at("simulated").get<bool>()};
+}
+
+Unexpected Damaged(const std::filesystem::path& file, int line) {
+  return Fail(ErrorCode::kUnreadable, "this line of the journal is damaged",
+              fmt::format("{}:{}", file.string(), line),
+              "restore the file from a copy; only a last line may be torn");
+}
+
+Unexpected DiskFailed(const std::filesystem::path& file, int error) {
+  return Fail(ErrorCode::kOutOfResource,
+              fmt::format("the journal cannot be written: {}", std::strerror(error)), file.string(),
+              "make room on the disk, or give the folder write permission");
+}
+
+}  // namespace
+
+Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    return Fail(ErrorCode::kNotFound, "the journal cannot be read", file.string(),
+                "check the name of the participant");
+  }
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  ReadOnlyJournal journal;
+  int number = 0;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t end = bytes.find('\n', at);
+    if (end == std::string::npos) {
+      break;  // torn
+    }
+    ++number;
+    const auto json = ParseLine(std::string_view(bytes).substr(at, end - at));
+    if (!json) {
+      if (end + 1 == bytes.size()) {
+        break;  // as a power cut may leave it: the length is there, and not all of the bytes
+      }
+      return Damaged(file, number);
+    }
+    try {
+      if (number == 1) {
+        journal.head = ParseHead(*json);
+      } else {
+        journal.events.push_back(ParseEvent(*json));
+      }
+    } catch (const Json::exception&) {
+      return Damaged(file, number);
+    }
+    at = end + 1;
+    journal.good_bytes = static_cast<std::int64_t>(at);
+  }
+  return journal;
+}
+
+Result<Journal> Journal::Open(const std::filesystem::path& file, const JournalHead& head,
+                              bool is_synced) {
+  // Nobody else's business: what people did and said.
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (descriptor < 0) {
+    return DiskFailed(file, errno);
+  }
+  Journal journal(descriptor, is_synced);
+  journal.file_ = file;
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    return Fail(ErrorCode::kInvalid, "another program is at this participant's session",
+                file.string(), "end that one first");
+  }
+  auto old = ReadJournal(file);
+  if (!old) {
+    return Unexpected(old.error());
+  }
+  const bool is_new = old->good_bytes == 0;
+  if (!is_new && MakeHeadJson(old->head) != MakeHeadJson(head)) {
+    return Fail(ErrorCode::kInvalid, "this journal is of another participant, protocol or seed",
+                file.string(), "use the folder with the protocol that it was begun with");
+  }
+  journal.size_ = old->good_bytes;
+  journal.events_ = std::move(old->events);
+  if (::ftruncate(descriptor, old->good_bytes) != 0 ||
+      ::lseek(descriptor, old->good_bytes, SEEK_SET) < 0) {
+    return DiskFailed(file, errno);
+  }
+  if (is_new) {
+    if (const auto written = journal.Write(MakeLine(MakeHeadJson(head))); !written) {
+      return Unexpected(written.error());
+    }
+  }
+  return journal;
+}
+
+Journal::Journal(Journal&& other) noexcept
+    : file_(std::move(other.file_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      is_synced_(other.is_synced_),
+      size_(other.size_),
+      events_(std::move(other.events_)) {}
+
+Journal::~Journal() {
+  if (descriptor_ >= 0) {
+    ::close(descriptor_);
+  }
+}
+
+Result<void> Journal::Write(const std::string& line) {
+  int error = WriteAll(descriptor_, std::as_bytes(std::span(line.data(), line.size())));
+  if (error == 0 && is_synced_ && ::fdatasync(descriptor_) != 0) {
+    error = errno;
+  }
+  if (error != 0) {
+    // What is half there must not be in front of the next line.
+    static_cast<void>(::ftruncate(descriptor_, size_));
+    static_cast<void>(::lseek(descriptor_, size_, SEEK_SET));
+    return DiskFailed(file_, error);
+  }
+  size_ += static_cast<std::int64_t>(line.size());
+  return {};
+}
+
+Result<void> Journal::Append(const StudyEvent& event) {
+  const Result<void> written = Write(MakeLine(MakeEventJson(event)));
+  if (written) {
+    events_.push_back(event);
+  }
+  return written;
+}
+
+}  // namespace hvas::study

@@ -1,0 +1,202 @@
+#include "study/simulated_participant.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "mates/assignments.h"
+#include "session/recorded_model.h"
+#include "session/session_recorder.h"
+#include "simulation/assembly_run.h"
+#include "simulation/executors.h"
+#include "study/schedule.h"
+#include "study/trial_watch.h"
+
+namespace hvas::study {
+namespace {
+
+constexpr std::uint64_t kSkillStream = 101;
+constexpr int kObserverTraining = 60;  // insertions of each fit
+
+/** Lognormal about a median. @param sigma  Of the logarithm. */
+double Vary(double median, double sigma, Random* random) {
+  return median * std::exp(sigma * random->Normal());
+}
+
+}  // namespace
+
+Skill DrawSkill(int participant, std::uint64_t seed) {
+  Random random(MixSeed(seed, kSkillStream, static_cast<std::uint64_t>(participant)));
+  Skill skill;
+  skill.reaction_s = Vary(skill.reaction_s, 0.2, &random);
+  skill.speed = Vary(1, 0.2, &random);
+  skill.aim = Vary(1, 0.3, &random);
+  skill.tremor = Vary(1, 0.3, &random);
+  skill.weber = std::min(0.3, Vary(skill.weber, 0.3, &random));
+  skill.threshold = Vary(skill.threshold, 0.3, &random);
+  return skill;
+}
+
+simulation::PersonOptions MakePerson(const Skill& skill, Random* random) {
+  simulation::PersonOptions person;
+  const double speed = skill.speed * Vary(1, 0.1, random);
+  person.carry_speed *= speed;
+  person.approach_speed *= speed;
+  person.insert_speed *= speed;
+  person.aim_error *= skill.aim;
+  person.aim_error_angle *= skill.aim;
+  person.eye_error *= skill.aim;
+  person.eye_error_angle *= skill.aim;
+  person.tremor *= skill.tremor;
+  return person;
+}
+
+double DrawPickingTime(int constraints, const Skill& skill, Random* random) {
+  constexpr double kMental = 1.35;
+  constexpr double kPoint = 1.1;
+  constexpr double kClick = 0.2;
+  constexpr double kHome = 0.4;
+  constexpr double kSigma = 0.2;
+  double time = Vary(kHome, kSigma, random);
+  for (int i = 0; i < std::max(1, constraints); ++i) {
+    // First surface, second surface, kind.
+    for (const double operation :
+         {kMental, kPoint, kClick, kPoint, kClick, kMental, kPoint, kClick}) {
+      time += Vary(operation, kSigma, random);
+    }
+  }
+  return skill.reaction_s + time / skill.speed;
+}
+
+haptics::TickOptions MakeTickOptions(const Condition& condition) {
+  haptics::TickOptions tick;
+  tick.device.name = "simulated 6-DoF device";
+  tick.condition = condition.method == Method::kCollision    ? haptics::Condition::kCollision
+                   : condition.method == Method::kConstraint ? haptics::Condition::kConstraint
+                                                             : haptics::Condition::kHybrid;
+  tick.renders_fits = condition.renders_fits;
+  tick.force_map = condition.force_map;
+  tick.guidance.capture = condition.capture;
+  tick.coupling.k_lin = condition.coupling;
+  return tick;
+}
+
+Result<std::size_t> FindPartStep(const simulation::Model& model, const std::string& part) {
+  const auto id = mates::FindOccurrence(*model.product, part);
+  if (!id) {
+    return Unexpected(id.error());
+  }
+  const auto& steps = model.sequence.steps;
+  const auto found = std::find_if(steps.begin(), steps.end(), [&](const auto& step) {
+    return step.occurrence == *id && step.kind == simulation::SequenceStep::Kind::kInsert &&
+           step.members.empty();
+  });
+  if (found == steps.end()) {
+    return Fail(ErrorCode::kNotFound, "this part is not put in its place by itself", part,
+                "name another part of the product");
+  }
+  return static_cast<std::size_t>(found - steps.begin());
+}
+
+int CountConstraints(const simulation::Model& model, std::size_t step) {
+  const auto& steps = model.sequence.steps;
+  int count = 0;
+  for (const product::MateId id : model.mates_of[steps[step].occurrence.index()]) {
+    const product::Mate& mate = model.product->mates[id.index()];
+    const product::OccurrenceId other =
+        mate.a.occurrence == steps[step].occurrence ? mate.b.occurrence : mate.a.occurrence;
+    const auto end = steps.begin() + static_cast<std::ptrdiff_t>(step);
+    count += std::any_of(steps.begin(), end, [&](const auto& s) { return s.occurrence == other; });
+  }
+  return count;
+}
+
+Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& condition,
+                                      const Skill& skill, std::uint64_t seed,
+                                      const std::filesystem::path& record) {
+  const simulation::Model& model = *setup.model;
+  const simulation::SequenceStep& step = model.sequence.steps[setup.step];
+  Random random(seed);
+  if (condition.method == Method::kPicking) {
+    TrialResult result;
+    result.time = DrawPickingTime(CountConstraints(model, setup.step), skill, &random);
+    result.outcome = *result.time < condition.time_limit ? Outcome::kDone : Outcome::kTimedOut;
+    result.time = std::min(*result.time, condition.time_limit);
+    return result;
+  }
+  const haptics::TickOptions tick = MakeTickOptions(condition);
+  simulation::SimulatedPerson person(MakePerson(skill, &random), random.NextBits(),
+                                     simulation::StartOfHand(model));
+  simulation::Simulation simulation(setup.model, tick);
+  std::unique_ptr<record::Recorder> recorder;
+  std::optional<session::SessionRecorder> sink;
+  if (!record.empty()) {
+    record::RecorderOptions options;
+    options.path = record;
+    record::Meta meta = session::MakeModelMeta(model);
+    meta["condition"] = condition.id;
+    meta["simulated"] = "a simulated participant of a study";
+    auto created = record::Recorder::Create(options, meta);
+    if (!created) {
+      return Unexpected(created.error());
+    }
+    recorder = std::move(*created);
+    sink.emplace(recorder.get(), model);
+    sink->Begin(&simulation);
+  }
+  TrialWatch watch(step.occurrence, step.extraction_W, setup.mating_window, tick.dt,
+                   sink ? &*sink : nullptr);
+  simulation::AssemblyRun run(&simulation, &person, &watch);
+  run.Only(setup.step, 1);
+  simulation::Execution execution = run.MakeExecution(&person, condition.time_limit);
+  const auto begin_ns = std::llround(1e9 * skill.reaction_s);
+  std::int64_t now_ns = 0;
+  execution.advance = [&] {
+    now_ns += simulation::Simulation::kPhysicsStepNs;
+    if (now_ns >= begin_ns) {
+      run.Advance();
+    }
+  };
+  // What the hand does after the part is home belongs to nobody's time.
+  execution.is_done = [&] { return run.is_done() || watch.is_seated(); };
+  const simulation::ExecutionReport report = simulation::RunLockstep(execution);
+  if (recorder != nullptr) {
+    if (const auto finished = recorder->Finish(); !finished) {
+      return Unexpected(finished.error());
+    }
+  }
+  TrialResult result = watch.MakeResult();
+  if (!watch.is_seated() && !run.is_done()) {
+    result.outcome = Outcome::kTimedOut;
+    result.time = 1e-9 * static_cast<double>(report.session_ns);
+  }
+  return result;
+}
+
+Result<int> FindShownFit(const std::string& fit) {
+  const auto& names = simulation::kShownFitNames;
+  const auto found = std::find(names.begin(), names.end(), fit);
+  if (found == names.end()) {
+    return Fail(ErrorCode::kUnsupported,
+                fmt::format("the simulated observer does not know the fit {}", fit),
+                "identification",
+                fmt::format("use {}, or run the study with people", fmt::join(names, ", ")));
+  }
+  return static_cast<int>(found - names.begin());
+}
+
+Result<simulation::FitObserver> MakeObserver(const Skill& skill, const Condition& condition,
+                                             std::uint64_t seed) {
+  simulation::IdentificationOptions options;
+  options.seed = seed;
+  options.training = kObserverTraining;
+  options.map = condition.force_map;
+  options.observer.weber = skill.weber;
+  options.observer.threshold = skill.threshold;
+  options.coupling_stiffness = condition.coupling;
+  options.aim_error *= skill.aim;
+  return simulation::FitObserver::Train(options);
+}
+
+}  // namespace hvas::study
