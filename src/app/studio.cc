@@ -18,6 +18,7 @@
 
 #include "app/load_product.h"
 #include "app/report_failure.h"
+#include "app/shipped_files.h"
 #include "base/scratch_folder.h"
 #include "base/user_folder.h"
 #include "contact/shape_cache.h"
@@ -39,16 +40,6 @@ struct StudioOptions {
   double rate_hz{1000};
   bool opens_browser{true};
 };
-
-/** The products that come with the program: beside it when it is installed, or with its sources. */
-std::filesystem::path ProductsFolder() {
-  std::error_code failed;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);
-  const std::filesystem::path installed =
-      program.parent_path().parent_path() / "share" / "hvas" / "products";
-  return std::filesystem::exists(installed, failed) ? installed
-                                                    : std::filesystem::path(HVAS_BUILT_PRODUCTS);
-}
 
 std::vector<studio::Example> FindExamples() {
   std::vector<studio::Example> examples{

@@ -4,6 +4,7 @@
 
 #include "app/study_analyse.h"
 #include "app/study_power.h"
+#include "app/study_run.h"
 
 namespace hvas::app {
 
@@ -12,6 +13,7 @@ void AddStudy(CLI::App* app, int* status) {
   study->require_subcommand(1);
   AddStudyAnalyse(study, status);
   AddStudyPower(study, status);
+  AddStudyRun(study, status);
 }
 
 }  // namespace hvas::app

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/load_product.h"
-#include "app/print_page.h"
+#include "app/page_file.h"
 #include "app/progress.h"
 #include "app/report_failure.h"
 #include "app/study_protocol.h"
@@ -92,13 +92,13 @@ void PrintSummary(const StudyFolder& folder, const std::vector<Participant>& par
   }
 }
 
-Result<void> WritePage(const StudyFolder& folder, const std::vector<Participant>& participants,
+Result<void> WriteStudyPage(const StudyFolder& folder, const std::vector<Participant>& participants,
                        const std::filesystem::path& output) {
   auto page = study::MakeStudyPage(folder, participants);
   if (!page) {
     return Unexpected(page.error());
   }
-  return WriteOrPrintPage(*page, output);
+  return WritePage(output, *page);
 }
 
 /** The tables and the report, in the folder. */
@@ -112,7 +112,7 @@ Result<void> WriteResults(const StudyFolder& folder, const std::vector<Participa
       return written;
     }
   }
-  return WritePage(folder, participants, folder.path() / "report.html");
+  return WriteStudyPage(folder, participants, folder.path() / "report.html");
 }
 
 Result<void> RunSimulated(const RunOptions& options) {
@@ -380,10 +380,10 @@ void AddReport(CLI::App* study, int* status) {
       "  hvas study report fits -o fits.html\n"
       "  hvas study report fits -o fits.pdf --force");
   command->callback([folder, output, is_forced, status] {
-    Result<void> done = CheckPage(*output, *is_forced);
+    Result<void> done = CheckPageFile(*output, *is_forced);
     if (done) {
       const auto study = OpenAll(*folder);
-      done = study ? WritePage(study->folder, study->participants, *output)
+      done = study ? WriteStudyPage(study->folder, study->participants, *output)
                    : Result<void>(Unexpected(study.error()));
     }
     *status = done ? 0 : ReportFailure(done.error());

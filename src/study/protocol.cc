@@ -137,6 +137,9 @@ class ProtocolReader {
       if (one.Has("published_mean_s")) {
         condition.published_mean = one.NumberOr("published_mean_s", {0.01, kMostSeconds}, 1);
       }
+      if (one.Has("published_right_share")) {
+        condition.published_right_share = one.NumberOr("published_right_share", {0, 1}, 1);
+      }
       one.Finish();
       protocol_->conditions.push_back(std::move(condition));
     }

@@ -57,7 +57,8 @@ struct Condition {
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   double coupling{1000};   ///< Stiffness that contact and constraint are felt with at most [N/m].
   double time_limit{120};  ///< Of a trial [s].
-  std::optional<double> published_mean;  ///< Of the paper's people [s].
+  std::optional<double> published_mean;         ///< Of the paper's people [s].
+  std::optional<double> published_right_share;  ///< In identification, of theirs.
 };
 
 /** How the order of conditions is varied between participants. */
