@@ -19,7 +19,9 @@ std::vector<std::string> ListShipped() {
   std::vector<std::string> names;
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(StudiesFolder(), failed)) {
-    names.push_back(entry.path().stem().string());
+    if (entry.path().extension() == ".yaml") {
+      names.push_back(entry.path().stem().string());
+    }
   }
   std::sort(names.begin(), names.end());
   return names;
