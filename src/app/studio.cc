@@ -19,11 +19,13 @@
 #include "app/load_product.h"
 #include "app/report_failure.h"
 #include "app/shipped_files.h"
+#include "app/study_protocol.h"
 #include "base/scratch_folder.h"
 #include "base/user_folder.h"
 #include "contact/shape_cache.h"
 #include "studio/certificate.h"
 #include "studio/server.h"
+#include "studio/study_desk.h"
 #include "studio/workbench.h"
 
 namespace hvas::app {
@@ -39,6 +41,9 @@ struct StudioOptions {
   std::uint64_t seed{1};
   double rate_hz{1000};
   bool opens_browser{true};
+  std::string study;             ///< A protocol; empty: none.
+  std::string participant;       ///< "P01"
+  std::filesystem::path folder;  ///< Of the study; empty: the protocol's id.
 };
 
 std::vector<studio::Example> FindExamples() {
@@ -152,7 +157,42 @@ void PrintLinks(const studio::Server& server, const studio::ServerOptions& serve
     fmt::print("{} {}\n", &host == hosts.data() ? "The studio is at" : "              or",
                server.LinkFor(studio::Role::kOperator, host));
   }
+  if (served.desk != nullptr) {
+    fmt::print("The link above is the experimenter's. The participant's: {}\n",
+               server.LinkFor(studio::Role::kParticipant, hosts.front()));
+  }
   fmt::print("To look on: {}\n", server.LinkFor(studio::Role::kViewer, hosts.front()));
+}
+
+/** The session of a study, or nothing where none is asked for. */
+Result<std::unique_ptr<studio::StudyDesk>> OpenDesk(const StudioOptions& options,
+                                                    studio::Workbench* workbench) {
+  if (options.study.empty()) {
+    return nullptr;
+  }
+  const auto protocol = FindProtocol(options.study);
+  if (!protocol) {
+    return Unexpected(protocol.error());
+  }
+  studio::StudyDesk::Options desk;
+  desk.participant = options.participant;
+  const auto product = FindProductOf(*protocol);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  desk.product = *product;
+  desk.unix_ms = [] {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return static_cast<std::int64_t>(
+        std::chrono::duration_cast<std::chrono::milliseconds>(now).count());
+  };
+  auto folder = study::StudyFolder::Create(
+      options.folder.empty() ? std::filesystem::path(protocol->id) : options.folder, *protocol,
+      options.seed);
+  if (!folder) {
+    return Unexpected(folder.error());
+  }
+  return studio::StudyDesk::Open(std::move(*folder), workbench, std::move(desk));
 }
 
 int RunStudio(const StudioOptions& options) {
@@ -173,11 +213,19 @@ int RunStudio(const StudioOptions& options) {
     }
     about_certificate = std::move(*prepared);
   }
+  const auto desk = OpenDesk(options, &workbench);
+  if (!desk) {
+    return ReportFailure(desk.error());
+  }
+  served.desk = desk->get();
   studio::Server server(&workbench, FindExamples(), served);
   if (const auto started = server.Start(); !started) {
     return ReportFailure(started.error());
   }
   PrintLinks(server, served);
+  if (*desk != nullptr) {
+    (*desk)->Start();
+  }
   fmt::print("{}Ctrl+C ends it.\n", about_certificate);
   std::fflush(stdout);
   if (!options.load.file.empty()) {
@@ -219,7 +267,17 @@ void AddStudio(CLI::App* app, int* status) {
   command->add_flag("!--no-open", options->opens_browser, "Do not open a browser");
   command->add_option("--recordings", options->recordings,
                       "Folder of what is recorded; ~/.local/share/hvas/recordings");
-  command->add_option("--seed", options->seed, "Seed of the parts' actual sizes")
+  CLI::Option* study = command->add_option(
+      "--study", options->study, "Run a study with a person: a protocol, or xia-2011 or fit-2016");
+  CLI::Option* participant =
+      command->add_option("--participant", options->participant, "Who takes part: P01 and so on")
+          ->needs(study);
+  study->needs(participant);
+  command
+      ->add_option("-o,--output", options->folder,
+                   "The study's folder; when not given, the protocol's id")
+      ->needs(study);
+  command->add_option("--seed", options->seed, "Seed of the parts' actual sizes, and of a study")
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Of the haptic loop [Hz]")
       ->check(CLI::Range(1000.0, 8000.0))
@@ -236,6 +294,7 @@ void AddStudio(CLI::App* app, int* status) {
       "Examples:\n"
       "  hvas studio\n"
       "  hvas studio products/gear_pump.step\n"
+      "  hvas studio --study fit-2016 --participant P01 -o fits\n"
       "  hvas studio pump.step --port 8080 --no-open\n"
       "  hvas studio pump.step --listen 192.168.1.5 --port 8443\n"
       "  hvas studio pump.step --listen 0.0.0.0 --host workshop.local\n"

@@ -1,6 +1,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -9,6 +10,8 @@
 
 namespace hvas {
 namespace {
+
+constexpr std::chrono::milliseconds kNowAndThen(250);
 
 void RunAlone(std::size_t count, const std::function<void(std::size_t)>& work,
               const std::function<void(std::size_t)>& progress) {
@@ -68,7 +71,7 @@ class Crew {
   void Watch(std::size_t size, const std::function<void(std::size_t)>& progress) {
     std::unique_lock lock(mutex_);
     while (ended_ < size) {
-      changed_.wait(lock);
+      changed_.wait_for(lock, kNowAndThen);  // one index may take long, and work has news of its own
       if (progress) {
         const std::size_t done = done_;
         lock.unlock();

@@ -41,7 +41,15 @@ std::string_view Trim(std::string_view text) {
 }  // namespace
 
 const char* ToString(Role role) {
-  return role == Role::kOperator ? "operator" : "viewer";
+  switch (role) {
+    case Role::kOperator:
+      return "operator";
+    case Role::kParticipant:
+      return "participant";
+    case Role::kViewer:
+      break;
+  }
+  return "viewer";
 }
 
 std::string MakeToken() {
@@ -130,26 +138,29 @@ bool Access::AllowsOrigin(std::string_view origin) const {
   return std::find(origins_.begin(), origins_.end(), origin) != origins_.end();
 }
 
+std::optional<Role> Access::FindRole(std::string_view secret,
+                                     const std::array<std::string, kRoles.size()>& secrets) {
+  // All are compared every time.
+  std::optional<Role> role;
+  for (const Role one : kRoles) {
+    if (IsSameSecret(secret, secrets[static_cast<std::size_t>(one)])) {
+      role = one;
+    }
+  }
+  return role;
+}
+
 std::optional<Role> Access::RoleOfToken(std::string_view token) const {
-  // Both are compared every time.
-  const bool is_operator = IsSameSecret(token, operator_token_);
-  const bool is_viewer = IsSameSecret(token, viewer_token_);
-  return is_operator ? std::optional(Role::kOperator)
-                     : (is_viewer ? std::optional(Role::kViewer) : std::nullopt);
+  return FindRole(token, tokens_);
 }
 
 std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
-  const std::string session = FindCookie(cookie_header, cookie_name_).value_or("");
-  const bool is_operator = IsSameSecret(session, operator_session_);
-  const bool is_viewer = IsSameSecret(session, viewer_session_);
-  return is_operator ? std::optional(Role::kOperator)
-                     : (is_viewer ? std::optional(Role::kViewer) : std::nullopt);
+  return FindRole(FindCookie(cookie_header, cookie_name_).value_or(""), sessions_);
 }
 
 std::string Access::SetCookie(Role role) const {
   return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}", cookie_name_,
-                     role == Role::kOperator ? operator_session_ : viewer_session_,
-                     is_tls_ ? "; Secure" : "");
+                     sessions_[static_cast<std::size_t>(role)], is_tls_ ? "; Secure" : "");
 }
 
 }  // namespace hvas::studio

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,7 +13,11 @@ namespace hvas::studio {
 enum class Role : std::uint8_t {
   kOperator,  ///< May hold the lease, and with it steer.
   kViewer,    ///< Looks on; may always switch the forces off.
+  /** Of a study: may hold the lease, and sees nothing of what a study hides. */
+  kParticipant,
 };
+
+inline constexpr std::array kRoles{Role::kOperator, Role::kViewer, Role::kParticipant};
 
 [[nodiscard]] const char* ToString(Role role);
 
@@ -61,19 +67,21 @@ class Access {
   [[nodiscard]] std::string SetCookie(Role role) const;
 
   [[nodiscard]] const std::string& token(Role role) const {
-    return role == Role::kOperator ? operator_token_ : viewer_token_;
+    return tokens_[static_cast<std::size_t>(role)];
   }
 
  private:
+  [[nodiscard]] static std::optional<Role> FindRole(
+      std::string_view secret, const std::array<std::string, kRoles.size()>& secrets);
+
   std::vector<std::string> hosts_;
   std::vector<std::string> origins_;
   std::string cookie_name_;
   std::uint16_t port_;
   bool is_tls_;
-  std::string operator_token_{MakeToken()};
-  std::string viewer_token_{MakeToken()};
-  std::string operator_session_{MakeToken()};
-  std::string viewer_session_{MakeToken()};
+  // By role.
+  std::array<std::string, kRoles.size()> tokens_{MakeToken(), MakeToken(), MakeToken()};
+  std::array<std::string, kRoles.size()> sessions_{MakeToken(), MakeToken(), MakeToken()};
 };
 
 }  // namespace hvas::studio

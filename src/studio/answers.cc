@@ -46,12 +46,13 @@ Answer MakeGlbAnswer(std::string_view bytes, const std::string& digest,
   return answer;
 }
 
-Result<Answer> AnswerScene(const Workbench& workbench) {
+Result<Answer> AnswerScene(const Workbench& workbench, bool is_shielded) {
   const SceneNow now = workbench.Look();
   if (now.scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example");
   }
-  return Own(MakeSceneJson(*now.scene, now.state));
+  return Own(is_shielded ? MakeShieldedSceneJson(*now.scene, now.state)
+                         : MakeSceneJson(*now.scene, now.state));
 }
 
 Result<Answer> AnswerModel(const Workbench& workbench, std::string_view name) {
@@ -128,12 +129,15 @@ Result<Answer> AnswerAsset(std::string_view path, std::string_view accepted) {
   return answer;
 }
 
-Result<Answer> AnswerApi(Workbench* workbench, std::string_view path) {
+Result<Answer> AnswerApi(Workbench* workbench, std::string_view path, bool is_shielded) {
   constexpr std::string_view kModel = "/api/model/";
   constexpr std::string_view kPath = "/api/path/";
   constexpr std::string_view kRecording = "/api/recording/";
   if (path == "/api/scene") {
-    return AnswerScene(*workbench);
+    return AnswerScene(*workbench, is_shielded);
+  }
+  if (is_shielded && !path.starts_with(kModel)) {
+    return NothingHere(path);
   }
   if (path == "/api/recordings") {
     return Own(workbench->shelf().List());

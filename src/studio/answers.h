@@ -27,8 +27,10 @@ struct Answer {
 [[nodiscard]] Result<Answer> AnswerAsset(std::string_view path, std::string_view accepted);
 
 /** What is under /api/, for those who may come in (docs/protocol.md).
- Errors: kNotFound for what is not there; those of a record. */
-[[nodiscard]] Result<Answer> AnswerApi(Workbench* workbench, std::string_view path);
+ @param is_shielded  For whoever takes part in a study: the scene without its fits, the meshes, and
+ nothing else. Errors: kNotFound for what is not there; those of a record. */
+[[nodiscard]] Result<Answer> AnswerApi(Workbench* workbench, std::string_view path,
+                                       bool is_shielded = false);
 
 /** How an uploaded file is called here: the last part of the name that a request's target gives it,
  of harmless letters, with its extension, which tells the format. */

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "mates/assignments.h"
 #include "mates/user_mate.h"
 #include "studio/event_json.h"
@@ -45,6 +46,7 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       {"path", {Right::kAnybody, &Hub::DoPath}},
       {"lease", {Right::kAnybody, &Hub::DoLease}},
       {"status", {Right::kAnybody, &Hub::DoStatus}},
+      {"study", {Right::kAnybody, &Hub::DoStudy}},
   };
   return commands;
 }
@@ -266,7 +268,7 @@ Result<Json> Hub::DoLease(const Caller& caller, const Json& command) {
   if (!action || !hands) {
     return Unexpected(!action ? action.error() : hands.error());
   }
-  if (*action == "request" && caller.role == Role::kOperator) {
+  if (*action == "request" && caller.role != Role::kViewer) {
     return RequestLease(caller, *hands);
   }
   const std::vector<std::size_t> own = HandsOf(caller.id);
@@ -292,6 +294,18 @@ Result<Json> Hub::DoLease(const Caller& caller, const Json& command) {
 
 Result<Json> Hub::DoStatus() {
   return status_;
+}
+
+Result<Json> Hub::DoStudy(const Caller& caller, const Json& command) {
+  if (desk_ == nullptr) {
+    return Fail(ErrorCode::kInvalid, "no study is run here", "study",
+                "begin the studio with --study and --participant");
+  }
+  auto result = desk_->Do(caller.role, command, MonotonicNs());
+  if (result && TextAt(command, "action").value_or("") != "state") {
+    TellOfStudy();
+  }
+  return result;
 }
 
 }  // namespace hvas::studio

@@ -1,6 +1,7 @@
 #include "studio/hub.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +17,17 @@ namespace {
 bool IsForcesOff(const Json& command) {
   return TextAt(command, "command").value_or("") == "forces" &&
          FlagAt(command, "off").value_or(false);
+}
+
+/** Without the true forces, which tell fits apart better than a hand does. */
+LiveFrame WithoutTruth(const LiveFrame& frame) {
+  LiveFrame felt = frame;
+  for (haptics::TickOutput& tick : felt.frame.ticks) {
+    tick.F_true_W = {};
+    tick.axial_true = 0;
+    tick.f_C_W = Vec3::Zero();
+  }
+  return felt;
 }
 
 std::string Print(const Json& json) {
@@ -38,13 +50,19 @@ Result<std::string> Hub::Join(Role role, ClientLink* link) {
   client.role = role;
   client.link = link;
   for (std::string& lease : leases_) {
-    if (role == Role::kOperator && lease.empty()) {
+    if (role == Role::kOperator && lease.empty() && desk_ == nullptr) {
       lease = id;
     }
   }
+  if (role == Role::kParticipant) {
+    leases_[0] = id;
+  }
   link->SendText(MakeHello(id, client).dump());
   for (const Json& event : workbench_->NewsForLatecomer()) {
-    link->SendText(event.dump());
+    SendTo(client, event, event.dump());
+  }
+  if (desk_ != nullptr) {
+    link->SendText(Print(desk_->MakeState(role, MonotonicNs())));
   }
   TellOfRoles();
   return id;
@@ -58,7 +76,7 @@ void Hub::Leave(const std::string& id) {
 
 Json Hub::MakeHello(const std::string& id, const Client& client) const {
   Json examples = Json::array();
-  for (const Example& example : examples_) {
+  for (const Example& example : desk_ == nullptr ? examples_ : std::vector<Example>()) {
     examples.push_back({{"id", example.id}, {"name", example.name}, {"about", example.about}});
   }
   return {{"event", "hello"},
@@ -67,7 +85,8 @@ Json Hub::MakeHello(const std::string& id, const Client& client) const {
           {"client", id},
           {"has_lease", leases_[0] == id},
           {"hands", MakeHands()},
-          {"recording", workbench_->recording()},
+          {"has_study", desk_ != nullptr},
+          {"recording", IsShielded(client.role) ? Json(nullptr) : workbench_->recording()},
           {"examples", std::move(examples)},
           {"forces_off", workbench_->forces_off()},
           {"has_scene", workbench_->scene() != nullptr},
@@ -84,10 +103,60 @@ void Hub::Broadcast(Json event) {
     }
     return;
   }
-  const std::string text = Print(event);
-  for (auto& [id, client] : clients_) {
-    client.link->SendText(text);
+  const bool has_news = desk_ != nullptr && desk_->OnBench(event, MonotonicNs());
+  if (!event.value("event", "").starts_with("trial_")) {  // those are between bench and desk
+    const std::string text = Print(event);
+    for (auto& [id, client] : clients_) {
+      SendTo(client, event, text);
+    }
   }
+  if (has_news) {
+    TellOfStudy();
+  }
+}
+
+void Hub::SendTo(const Client& client, const Json& event, const std::string& text) {
+  if (!IsShielded(client.role)) {
+    client.link->SendText(text);
+    return;
+  }
+  constexpr std::array kShown{"scene", "placement", "taken", "dropped",
+                              "state", "forces",    "hands", "roles"};
+  const std::string name = event.value("event", "");
+  if (std::none_of(kShown.begin(), kShown.end(), [&](const char* one) { return name == one; })) {
+    return;
+  }
+  if (name == "dropped") {
+    Json shown = event;
+    shown.erase("metrics");
+    client.link->SendText(Print(shown));
+    return;
+  }
+  client.link->SendText(text);
+}
+
+void Hub::TellOfStudy() {
+  const std::int64_t now_ns = MonotonicNs();
+  for (auto& [id, client] : clients_) {
+    client.link->SendText(Print(desk_->MakeState(client.role, now_ns)));
+  }
+}
+
+Result<void> Hub::CheckStudy(const Caller& caller, const std::string& name) const {
+  if (desk_ == nullptr) {
+    return {};
+  }
+  constexpr std::array kShielded{"study", "take", "release", "forces", "lease", "status"};
+  constexpr std::array kExperimenters{"study",  "release", "forces", "lease",
+                                      "status", "devices", "use",    "measure"};
+  const auto has = [&](const auto& names) {
+    return std::any_of(names.begin(), names.end(), [&](const char* one) { return name == one; });
+  };
+  if (!(IsShielded(caller.role) ? has(kShielded) : has(kExperimenters))) {
+    return Fail(ErrorCode::kInvalid, "not while a study is run", name,
+                "end the study first; then the studio is as always");
+  }
+  return name == "take" ? desk_->CheckTake() : Result<void>();
 }
 
 Json Hub::MakeRoles() const {
@@ -173,6 +242,9 @@ Result<Json> Hub::Execute(const std::string& id, const Json& command) {
     return Fail(ErrorCode::kNotFound, "there is no such command", *name, "load the page again");
   }
   const Caller caller{id, clients_[id].role, leases_[0] == id};
+  if (const auto checked = CheckStudy(caller, *name); !checked) {
+    return Unexpected(checked.error());
+  }
   if (!MayDo(found->second.right, caller, command)) {
     return Fail(
         ErrorCode::kInvalid, "only whoever steers can do this", *name,
@@ -245,7 +317,8 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
     client->epoch = frame.epoch;
     client->X_WB.clear();
   }
-  std::string bytes = MakeFrames(frame, client->sent_seq + 1, &client->X_WB);
+  std::string bytes = MakeFrames(IsShielded(client->role) ? WithoutTruth(frame) : frame,
+                                 client->sent_seq + 1, &client->X_WB);
   if (bytes.empty()) {
     return;
   }
@@ -254,6 +327,9 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
 }
 
 void Hub::PublishStatus() {
+  if (desk_ != nullptr && desk_->Poll(MonotonicNs())) {
+    TellOfStudy();
+  }
   if (const auto status = workbench_->TakeStatus()) {
     status_ = MakeStatus(*status);
   }

@@ -13,6 +13,7 @@
 
 #include "studio/access.h"
 #include "studio/frame_codec.h"
+#include "studio/study_desk.h"
 #include "studio/workbench.h"
 
 namespace hvas::studio {
@@ -45,6 +46,15 @@ class Hub {
   static constexpr double kCommandBurst = 100;
 
   Hub(Workbench* workbench, std::vector<Example> examples);
+
+  /** Before anybody joins: a study is run, and who is no experimenter sees nothing of it but what
+   the participant may see. It outlives this. */
+  void RunStudy(StudyDesk* desk) { desk_ = desk; }
+
+  /** Whoever has this role sees no more than the participant of a study may see. */
+  [[nodiscard]] bool IsShielded(Role role) const {
+    return desk_ != nullptr && role != Role::kOperator;
+  }
 
   /** Nothing when the house is full. @returns the client's id. */
   [[nodiscard]] Result<std::string> Join(Role role, ClientLink* link);
@@ -136,6 +146,12 @@ class Hub {
   Result<Json> DoPath(const Caller& caller, const Json& command);
   Result<Json> DoLease(const Caller& caller, const Json& command);
   Result<Json> DoStatus();
+  Result<Json> DoStudy(const Caller& caller, const Json& command);
+
+  /** Errors: not while a study runs, or not for this role. */
+  [[nodiscard]] Result<void> CheckStudy(const Caller& caller, const std::string& name) const;
+  void TellOfStudy();
+  void SendTo(const Client& client, const Json& event, const std::string& text);
 
   [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
   [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
@@ -151,6 +167,7 @@ class Hub {
   void SendFrame(const LiveFrame& frame, Client* client);
 
   Workbench* workbench_;
+  StudyDesk* desk_{nullptr};  ///< Null: no study is run.
   std::vector<Example> examples_;
   std::map<std::string, Client> clients_;
   std::map<std::string, Upload> uploads_;

@@ -47,6 +47,9 @@ LiveHand::LiveHand(const HandSetup& setup, const HandPurpose& purpose,
   const bool is_emulated = device_ != nullptr && device_->emulator != nullptr;
   const bool goes_through_device = is_emulated || (device_ != nullptr && !purpose.has_person);
   tick_options_ = MakeOptions(setup, purpose, goes_through_device, model);
+  if (purpose.trial != nullptr) {
+    purpose.trial->Adjust(goes_through_device, &tick_options_);
+  }
   if (purpose.has_person) {
     person_ = std::make_unique<simulation::SimulatedPerson>(
         is_emulated ? simulation::MakePersonOptions(tick_options_) : simulation::PersonOptions(),

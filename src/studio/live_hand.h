@@ -6,6 +6,7 @@
 #include "device/opened_device.h"
 #include "simulation/device_session.h"
 #include "simulation/simulated_person.h"
+#include "studio/live_trial.h"
 #include "studio/pointer.h"
 
 namespace hvas::studio {
@@ -22,6 +23,7 @@ struct HandPurpose {
   std::uint64_t seed{1};
   spatial::Pose X_WH;  ///< Where the hand is at first.
   double rate_hz{1000};
+  const LiveTrial* trial{nullptr};  ///< Of a study; may be null.
 };
 
 /** Options of the tick for a hand that is moved from afar: as for the simulated device, with full

@@ -20,7 +20,7 @@ std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
   for (const HandSetup& setup : options.hands) {
     const HandPurpose purpose{options.has_person,
                               simulation::SeedOfHand(options.seed, hands.size()),
-                              simulation::StartOfHand(model), options.rate_hz};
+                              simulation::StartOfHand(model), options.rate_hz, options.trial.get()};
     hands.push_back(std::make_unique<LiveHand>(setup, purpose, model));
   }
   return hands;
@@ -52,6 +52,7 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
                  const LiveOptions& options, LiveListeners listeners)
     : listeners_(std::move(listeners)),
       recording_(options.recording),
+      trial_(options.trial),
       hands_(MakeHands(options, *model)),
       simulation_(MakeSimulation(std::move(model), hands_)),
       assembly_(&simulation_, PersonsOf(hands_), this) {
@@ -65,6 +66,9 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
   }
   if (recording_ != nullptr) {
     recording_->Begin(&simulation_);
+  }
+  if (trial_ != nullptr) {
+    trial_->Begin(&simulation_);
   }
   assembly_.Resume(start.next_step);
   observed_ = {simulation_.parts(), start.next_step};
@@ -129,6 +133,9 @@ void LiveRun::OnTick(std::size_t hand, const device::DeviceState& device,
   if (recording_ != nullptr) {
     recording_->OnTick(hand, device, out);
   }
+  if (trial_ != nullptr) {
+    trial_->OnTick(hand, device, out);
+  }
   const double felt = out.F_H_W.f.norm();
   if (felt > peak_felt_[hand].load(std::memory_order_relaxed)) {
     peak_felt_[hand].store(felt, std::memory_order_relaxed);
@@ -139,12 +146,18 @@ void LiveRun::OnEvent(const simulation::SimulationEvent& event) {
   if (recording_ != nullptr) {
     recording_->OnEvent(event);
   }
+  if (trial_ != nullptr) {
+    trial_->OnEvent(event);
+  }
   listeners_.on_event(event);
 }
 
 void LiveRun::OnFlight(const std::vector<simulation::FlightTick>& ticks) {
   if (recording_ != nullptr) {
     recording_->OnFlight(ticks);
+  }
+  if (trial_ != nullptr) {
+    trial_->OnFlight(ticks);
   }
 }
 

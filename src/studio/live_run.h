@@ -15,6 +15,7 @@
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 #include "studio/live_hand.h"
+#include "studio/live_trial.h"
 #include "studio/recording.h"
 
 namespace hvas::studio {
@@ -40,6 +41,7 @@ struct LiveOptions {
   std::uint64_t seed{1};
   double rate_hz{1000};
   std::shared_ptr<Recording> recording;  ///< Of what happens; may be null.
+  std::shared_ptr<LiveTrial> trial;      ///< Of a study; may be null.
 };
 
 /** One stretch of a live assembly: a simulation of a model, run in real time until it is destroyed.
@@ -85,6 +87,7 @@ class LiveRun final : private simulation::Sink {
 
   LiveListeners listeners_;
   std::shared_ptr<Recording> recording_;
+  std::shared_ptr<LiveTrial> trial_;
   std::vector<std::unique_ptr<LiveHand>> hands_;
   simulation::Simulation simulation_;
   simulation::AssemblyRun assembly_;

@@ -37,6 +37,12 @@ Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const 
   return scene;
 }
 
+SharedScene SceneBuilder::Again(const OpenScene& before) {
+  auto scene = std::make_shared<OpenScene>(before);
+  scene->epoch = ++last_epoch_;
+  return scene;
+}
+
 Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const std::string& what,
                                          const ChangeFn& change, const cad::ProgressFn& progress) {
   product::Product product = *before.model->product;

@@ -41,6 +41,9 @@ class SceneBuilder {
                                                               const cad::ProgressFn& progress,
                                                               const std::stop_token& stop);
 
+  /** The same, as a scene of its own. */
+  [[nodiscard]] std::shared_ptr<const OpenScene> Again(const OpenScene& before);
+
   /** The same product after a change; its pictures stay. Errors: of the change. */
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> Change(const OpenScene& before,
                                                                 const std::string& what,

@@ -203,4 +203,15 @@ Json MakeSceneJson(const OpenScene& scene, const LiveState& state) {
           {"diagnostics", DiagnosticsOf(scene.diagnostics)}};
 }
 
+Json MakeShieldedSceneJson(const OpenScene& scene, const LiveState& state) {
+  Json json = MakeSceneJson(scene, state);
+  json["diagnostics"] = Json::array();
+  json.erase("seed");
+  for (Json& mate : json["mates"]) {
+    mate["fit"] = nullptr;
+    mate["evidence"] = "";
+  }
+  return json;
+}
+
 }  // namespace hvas::studio

@@ -63,7 +63,9 @@ std::string_view FieldOf(const Fields& fields, http::field name) {
 /** All that the sessions share; one thread's. */
 struct Shared {
   Shared(Workbench* bench, std::vector<Example> examples, const ServerOptions& given)
-      : workbench(bench), hub(bench, std::move(examples)), options(given) {}
+      : workbench(bench), hub(bench, std::move(examples)), options(given) {
+    hub.RunStudy(given.desk);
+  }
 
   Workbench* workbench;
   Hub hub;
@@ -335,7 +337,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       wire().expires_never();
       std::make_shared<SocketSession>(std::move(connection_), shared_, role)->Run(header_->get());
     } else if (method == http::verb::get) {
-      Reply(AnswerApi(shared_->workbench, path));
+      Reply(AnswerApi(shared_->workbench, path, shared_->hub.IsShielded(role)));
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
     } else {

@@ -27,6 +27,7 @@ struct ServerOptions {
   /** With whoever is connected and says nothing: a handshake, a header, an answer that is not read,
    a WebSocket that does not answer. */
   std::chrono::milliseconds patience{30'000};
+  StudyDesk* desk{nullptr};  ///< Of the study that is run; null: none.
 };
 
 /** The studio's HTTP and WebSocket server (docs/protocol.md), with one thread of its own. */

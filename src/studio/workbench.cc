@@ -182,6 +182,7 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
   live.hands = rack_.setups();
   live.seed = options_.scenes.seed;
   live.rate_hz = options_.rate_hz;
+  live.trial = trial();
   std::shared_ptr<LiveRun> ended;
   bool is_new = false;
   bool is_recorded = false;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "studio/hand_rack.h"
 #include "studio/history.h"
 #include "studio/live_run.h"
+#include "studio/live_trial.h"
 #include "studio/paths.h"
 #include "studio/recording.h"
 #include "studio/recording_shelf.h"
@@ -92,6 +94,18 @@ class Workbench {
   /** Not what is being recorded. */
   [[nodiscard]] Result<void> DeleteRecording(const std::string& id);
 
+  /** Begins a trial of a study on what was opened: the parts before its part are in their place,
+   all others on the table, in a scene of its own whatever came before it, so that no scene tells
+   two conditions apart. Told of by the event "trial_begun" or "trial_failed", which are not for
+   clients; then the functions below know of it. */
+  void BeginTrial(const LiveTrial::Plan& plan);
+  /** Ends its run, and then tells the event "trial_over". */
+  void EndTrial();
+  [[nodiscard]] std::shared_ptr<LiveTrial> trial() const;
+  [[nodiscard]] product::OccurrenceId trial_part() const;
+  /** Mates of its part with those in their place. */
+  [[nodiscard]] std::vector<product::MateId> trial_constraints() const;
+
   /** A change of the product: compiles a model of it aside and swaps it in. */
   [[nodiscard]] Result<void> Change(const std::string& what, const ChangeFn& change);
 
@@ -118,6 +132,11 @@ class Workbench {
   void Post(std::function<void()> job);
   void DoOpen(const std::filesystem::path& file, const std::string& name);
   void DoChange(const std::string& what, const ChangeFn& change);
+  void DoBeginTrial(const LiveTrial::Plan& plan);
+  void DoEndTrial();
+  /** A scene with the part's fit; compiled once. */
+  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> FindTrialScene(
+      const LiveTrial::Plan& plan);
   [[nodiscard]] Result<void> GoTo(History::Direction direction);
   [[nodiscard]] cad::ProgressFn TellProgressOf(const std::string& name) const;
   void Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state, bool has_person);
@@ -161,6 +180,11 @@ class Workbench {
   LiveFrame frame_;
   std::stop_source opening_;
   std::shared_ptr<Recording> recording_;  ///< Null while nothing is recorded.
+
+  std::shared_ptr<LiveTrial> trial_;  ///< Null while there is none.
+  std::size_t trial_step_{0};         ///< Of the sequence: its part's.
+  /** By fit; the worker's own. */
+  std::map<std::string, std::shared_ptr<const OpenScene>> trial_scenes_;
 
   History history_;
   HandRack rack_;

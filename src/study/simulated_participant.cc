@@ -69,16 +69,20 @@ double DrawPickingTime(int constraints, const Skill& skill, Random* random) {
   return skill.reaction_s + time / skill.speed;
 }
 
+void ApplyCondition(const Condition& condition, haptics::TickOptions* tick) {
+  tick->condition = condition.method == Method::kCollision    ? haptics::Condition::kCollision
+                    : condition.method == Method::kConstraint ? haptics::Condition::kConstraint
+                                                              : haptics::Condition::kHybrid;
+  tick->renders_fits = condition.renders_fits;
+  tick->force_map = condition.force_map;
+  tick->guidance.capture = condition.capture;
+  tick->coupling.k_lin = condition.coupling;
+}
+
 haptics::TickOptions MakeTickOptions(const Condition& condition) {
   haptics::TickOptions tick;
   tick.device.name = "simulated 6-DoF device";
-  tick.condition = condition.method == Method::kCollision    ? haptics::Condition::kCollision
-                   : condition.method == Method::kConstraint ? haptics::Condition::kConstraint
-                                                             : haptics::Condition::kHybrid;
-  tick.renders_fits = condition.renders_fits;
-  tick.force_map = condition.force_map;
-  tick.guidance.capture = condition.capture;
-  tick.coupling.k_lin = condition.coupling;
+  ApplyCondition(condition, &tick);
   return tick;
 }
 
@@ -99,17 +103,19 @@ Result<std::size_t> FindPartStep(const simulation::Model& model, const std::stri
   return static_cast<std::size_t>(found - steps.begin());
 }
 
-int CountConstraints(const simulation::Model& model, std::size_t step) {
+std::vector<product::MateId> ListConstraints(const simulation::Model& model, std::size_t step) {
   const auto& steps = model.sequence.steps;
-  int count = 0;
+  std::vector<product::MateId> constraints;
   for (const product::MateId id : model.mates_of[steps[step].occurrence.index()]) {
     const product::Mate& mate = model.product->mates[id.index()];
     const product::OccurrenceId other =
         mate.a.occurrence == steps[step].occurrence ? mate.b.occurrence : mate.a.occurrence;
     const auto end = steps.begin() + static_cast<std::ptrdiff_t>(step);
-    count += std::any_of(steps.begin(), end, [&](const auto& s) { return s.occurrence == other; });
+    if (std::any_of(steps.begin(), end, [&](const auto& s) { return s.occurrence == other; })) {
+      constraints.push_back(id);
+    }
   }
-  return count;
+  return constraints;
 }
 
 Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& condition,
@@ -120,7 +126,8 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
   Random random(seed);
   if (condition.method == Method::kPicking) {
     TrialResult result;
-    result.time = DrawPickingTime(CountConstraints(model, setup.step), skill, &random);
+    result.time = DrawPickingTime(static_cast<int>(ListConstraints(model, setup.step).size()),
+                                  skill, &random);
     result.outcome = *result.time < condition.time_limit ? Outcome::kDone : Outcome::kTimedOut;
     result.time = std::min(*result.time, condition.time_limit);
     return result;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/random.h"
 #include "base/result.h"
@@ -48,6 +49,9 @@ struct TrialSetup {
   double mating_window{3};                         ///< [s]
 };
 
+/** Sets what is on in a condition: contact, mates, fits, and how they are felt. */
+void ApplyCondition(const Condition& condition, haptics::TickOptions* tick);
+
 /** The options of the tick in a condition, without a device. */
 [[nodiscard]] haptics::TickOptions MakeTickOptions(const Condition& condition);
 
@@ -65,7 +69,8 @@ struct TrialSetup {
                                                const std::string& part);
 
 /** Mates of a step's part with parts that come before it. */
-[[nodiscard]] int CountConstraints(const simulation::Model& model, std::size_t step);
+[[nodiscard]] std::vector<product::MateId> ListConstraints(const simulation::Model& model,
+                                                           std::size_t step);
 
 /** The observer that this participant is in blind identification. */
 [[nodiscard]] Result<simulation::FitObserver> MakeObserver(const Skill& skill,

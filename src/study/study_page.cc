@@ -322,30 +322,30 @@ class StudyPage {
     return series;
   }
 
-  static std::string PlotForces(const std::string& title, const TrialResult& result) {
-    PlotPanel forces{title + ": force on the hand",
-                     "before the part is in its place [s]",
-                     "force [N]",
-                     "",
-                     1,
-                     {},
-                     {},
-                     {}};
+  static PlotPanel MakePanel(const std::string& title, const std::string& y_label) {
+    PlotPanel panel;
+    panel.title = title;
+    panel.x_label = "before the part is in its place [s]";
+    panel.y_label = y_label;
+    return panel;
+  }
+
+  static std::string PlotForces(const std::string& condition, const TrialResult& result) {
+    PlotPanel forces = MakePanel(condition + ": force on the hand", "force [N]");
     forces.series = {MakeSeries("F_x", 0, result, [](const MatingSample& s) { return s.f.x(); }),
                      MakeSeries("F_y", 1, result, [](const MatingSample& s) { return s.f.y(); }),
                      MakeSeries("F_z", 2, result, [](const MatingSample& s) { return s.f.z(); })};
-    PlotPanel torques{title + ": torque on the hand",
-                      "before the part is in its place [s]",
-                      "torque [N m]",
-                      "",
-                      1,
-                      {},
-                      {},
-                      {}};
+    PlotPanel torques = MakePanel(condition + ": torque on the hand", "torque [N m]");
     torques.series = {
         MakeSeries("T_x", 0, result, [](const MatingSample& s) { return s.torque.x(); }),
         MakeSeries("T_y", 1, result, [](const MatingSample& s) { return s.torque.y(); })};
-    return pages::ToSvg({"", {}, {forces, torques}});
+    PlotFigure figure;
+    figure.panels = {forces, torques};
+    figure.description =
+        "Force and torque on the hand over the last seconds of a trial under condition " +
+        condition;
+    figure.id = "f" + condition;
+    return pages::ToSvg(figure);
   }
 
   [[nodiscard]] std::string MakeForces() const {

@@ -106,6 +106,9 @@ class StudySession {
   /** Errors: kInvalid for what cannot happen now, with what can. Nothing has changed then. */
   [[nodiscard]] Result<void> Apply(const StudyEvent& event);
 
+  /** The program was begun again: waits for kBegun, as at first. */
+  void AwaitBeginning() { is_waiting_ = true; }
+
   [[nodiscard]] Phase phase() const;
 
   /** The trial at hand: that is trained for, waited for, run or asked about. None before the first

@@ -35,6 +35,7 @@ void TrialWatch::OnTick(std::size_t hand, const device::DeviceState& device,
     first_ns_ = device.t_ns;
   }
   last_ns_ = device.t_ns;
+  elapsed_ns_.store(last_ns_ - first_ns_, std::memory_order_relaxed);
   sums_.peak_felt = std::max(sums_.peak_felt, out.F_H_W.f.norm());
   if (out.occurrence.is_valid()) {
     sums_.peak_true = std::max(sums_.peak_true, out.F_true_W.f.norm());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,11 @@ class TrialWatch final : public simulation::Sink {
   void OnEvent(const simulation::SimulationEvent& event) override;
   void OnFlight(const std::vector<simulation::FlightTick>& ticks) override;
 
+  /** Since the first tick [s]. Any thread. */
+  [[nodiscard]] double elapsed_s() const {
+    return 1e-9 * static_cast<double>(elapsed_ns_.load(std::memory_order_relaxed));
+  }
+
   /** Haptic thread, or once the loops have ended. */
   [[nodiscard]] bool is_seated() const { return is_seated_; }
 
@@ -49,6 +55,7 @@ class TrialWatch final : public simulation::Sink {
   bool is_seated_{false};
   std::int64_t first_ns_{0};
   std::int64_t last_ns_{0};
+  std::atomic<std::int64_t> elapsed_ns_{0};
   std::int64_t contact_ns_;
   TrialResult sums_;
   std::vector<Kept> kept_;  ///< Round and round, of one size.

@@ -45,7 +45,8 @@ ROOTS = [
     r"hvas::simulation::FlightRecorder::(Keep|Trigger)\(.*",
     r"hvas::simulation::AssemblyRun::OnTick\(.*",  # virtual: the sink of every run
     r"hvas::session::SessionRecorder::OnTick\(.*",  # virtual: the sink that records
-    r"hvas::studio::(LiveRun|Recording)::OnTick\(.*",  # virtual: the sinks of a live run
+    r"hvas::study::TrialWatch::OnTick\(.*",  # virtual: the account of a trial
+    r"hvas::studio::(LiveRun|LiveTrial|Recording)::OnTick\(.*",  # virtual: the sinks of a live run
     r"hvas::studio::PointerOperator::(Step|Intend)\(.*",  # virtual: the operator of a page
     r"hvas::haptics::HapticTick::(Tick|Take|Drop)\(.*",
     r"hvas::contact::Scene::(Query|IsFree|SetPose|SetEnabled)\(.*",

@@ -1,0 +1,549 @@
+#include "studio/study_desk.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "mates/user_mate.h"
+#include "studio/json_fields.h"
+#include "study/simulated_participant.h"
+
+namespace hvas::studio {
+namespace {
+
+using study::Condition;
+using study::DoneTrial;
+using study::Outcome;
+using study::Phase;
+using study::StudyEvent;
+
+constexpr std::size_t kLongestNote = 4000;
+
+double Seconds(std::int64_t ns) {
+  return 1e-9 * static_cast<double>(ns);
+}
+
+Unexpected NotNow(const char* what, const char* remedy) {
+  return Fail(ErrorCode::kInvalid, fmt::format("{} is not possible now", what), "study", remedy);
+}
+
+Json OrNull(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+/** Who may do what: the participant, or the experimenter at the operator's link. */
+bool MayDo(Role role, const std::string& action) {
+  constexpr std::array kParticipants{"state", "consent", "ready", "answer", "pick"};
+  constexpr std::array kExperimenters{"state", "begin", "ready", "next", "note", "abort", "resume"};
+  const auto has = [&](const auto& actions) {
+    return std::any_of(actions.begin(), actions.end(),
+                       [&](const char* one) { return action == one; });
+  };
+  switch (role) {
+    case Role::kParticipant:
+      return has(kParticipants);
+    case Role::kOperator:
+      return has(kExperimenters);
+    case Role::kViewer:
+      break;
+  }
+  return action == "state";
+}
+
+}  // namespace
+
+StudyDesk::StudyDesk(study::StudyFolder folder, Workbench* bench, Options options,
+                     study::Journal journal, int number)
+    : folder_(std::move(folder)),
+      bench_(bench),
+      options_(std::move(options)),
+      journal_(std::move(journal)),
+      session_(&folder_.protocol(), number, folder_.seed()),
+      id_(options_.participant) {}
+
+Result<std::unique_ptr<StudyDesk>> StudyDesk::Open(study::StudyFolder folder, Workbench* bench,
+                                                   Options options) {
+  const auto number = study::ParseParticipantId(options.participant);
+  if (!number) {
+    return Unexpected(number.error());
+  }
+  auto journal = folder.OpenJournal(options.participant, /*is_simulated=*/false);
+  if (!journal) {
+    return Unexpected(journal.error());
+  }
+  std::unique_ptr<StudyDesk> desk(
+      new StudyDesk(std::move(folder), bench, std::move(options), std::move(*journal), *number));
+  if (const auto applied = study::ApplyAll(desk->journal_.events(), &desk->session_); !applied) {
+    return Unexpected(applied.error());
+  }
+  desk->is_resumed_ = !desk->journal_.events().empty();
+  desk->session_.AwaitBeginning();
+  return desk;
+}
+
+void StudyDesk::Start() {
+  bench_->Open(options_.product, folder_.protocol().title.en);
+}
+
+Result<void> StudyDesk::Tell(StudyEvent event) {
+  event.unix_ms = options_.unix_ms ? options_.unix_ms() : 0;
+  study::StudySession before = session_;
+  if (const auto applied = session_.Apply(event); !applied) {
+    return applied;
+  }
+  const auto written = journal_.Append(event);
+  if (!written) {
+    session_ = std::move(before);  // what is not in the journal has not happened
+  }
+  return written;
+}
+
+Result<Json> StudyDesk::Do(Role role, const Json& command, std::int64_t now_ns) {
+  const auto action = TextAt(command, "action");
+  if (!action) {
+    return Unexpected(action.error());
+  }
+  if (!MayDo(role, *action)) {
+    return Fail(ErrorCode::kInvalid, "this link may not do that, or there is no such action",
+                *action, "see who may in docs/protocol.md");
+  }
+  if (*action == "pick") {
+    return Pick(role, command, now_ns);
+  }
+  if (const auto done = Act(role, *action, command, now_ns); !done) {
+    return Unexpected(done.error());
+  }
+  return Json{{"state", MakeState(role, now_ns)}};
+}
+
+Result<void> StudyDesk::Act(Role role, const std::string& action, const Json& command,
+                            std::int64_t now_ns) {
+  StudyEvent event;
+  if (action == "begin") {
+    if (!is_open_) {
+      return NotNow("to begin", "wait until the product is open");
+    }
+    if (session_.phase() != Phase::kWaiting) {
+      return NotNow("to begin", "the session has begun already");
+    }
+    event.kind = Kind::kBegun;
+    return Tell(event);
+  }
+  if (action == "consent") {
+    return Consent(command);
+  }
+  if (action == "ready") {
+    return Ready(now_ns);
+  }
+  if (action == "next") {
+    return Next();
+  }
+  if (action == "answer") {
+    return Answer(command);
+  }
+  if (action == "note") {
+    const auto text = TextAt(command, "text");
+    if (!text || text->empty() || text->size() > kLongestNote) {
+      return Fail(ErrorCode::kInvalid, "this is no note", "text",
+                  fmt::format("write from 1 to {} bytes", kLongestNote));
+    }
+    event.kind = Kind::kNote;
+    event.text = *text;
+    return Tell(event);
+  }
+  if (action == "abort") {
+    return Abort(TextAt(command, "reason").value_or("no reason given"));
+  }
+  if (action == "resume") {
+    event.kind = Kind::kResumed;
+    return Tell(event);
+  }
+  static_cast<void>(role);
+  return {};
+}
+
+Result<void> StudyDesk::Consent(const Json& command) {
+  const auto agrees = FlagAt(command, "agreed");
+  if (!agrees) {
+    return Unexpected(agrees.error());
+  }
+  StudyEvent event;
+  event.kind = Kind::kConsent;
+  event.agrees = *agrees;
+  event.language = TextAt(command, "language").value_or(folder_.protocol().languages.front());
+  return Tell(event);
+}
+
+Result<void> StudyDesk::Ready(std::int64_t now_ns) {
+  if (trial_ != nullptr) {
+    return NotNow("to begin", "what is on the bench has to end first");
+  }
+  StudyEvent event;
+  event.trial = session_.trial().value_or(0);
+  event.kind = session_.phase() == Phase::kTraining ? Kind::kTrainingBegun : Kind::kTrialBegun;
+  const auto told = Tell(event);
+  if (told) {
+    training_since_ns_ = now_ns;
+    BeginOnBench();
+  }
+  return told;
+}
+
+Result<void> StudyDesk::Next() {
+  const Phase phase = session_.phase();
+  if (phase == Phase::kTraining && session_.is_running()) {
+    StudyEvent event;
+    event.kind = Kind::kTrainingEnded;
+    const auto told = Tell(event);
+    if (told) {
+      EndOnBench(Outcome::kNotDone);
+    }
+    return told;
+  }
+  if (phase == Phase::kRunning) {
+    EndOnBench(Outcome::kNotDone);
+    return {};
+  }
+  return NotNow("this", "it ends a training or a trial that runs");
+}
+
+Result<void> StudyDesk::Answer(const Json& command) {
+  const auto question = TextAt(command, "question");
+  if (!question) {
+    return Unexpected(question.error());
+  }
+  StudyEvent event;
+  event.kind = Kind::kAnswered;
+  event.question = *question;
+  event.trial = session_.trial().value_or(0);
+  const Json value = command.contains("value") ? command["value"] : Json(nullptr);
+  if (value.is_number_integer()) {
+    event.value = value.get<int>();
+  } else if (value.is_string()) {
+    event.value = value.get<std::string>();
+  } else if (!value.is_null()) {
+    return Fail(ErrorCode::kInvalid, "this is no answer to the question", *question,
+                "give a whole number, a text, or null for none");
+  }
+  return Tell(std::move(event));
+}
+
+Result<void> StudyDesk::Abort(const std::string& reason) {
+  StudyEvent event;
+  event.kind = Kind::kAborted;
+  event.text = reason.substr(0, kLongestNote);
+  const auto told = Tell(event);
+  if (told) {
+    last_abort_ = event.text;
+    EndOnBench(Outcome::kNotDone);
+  }
+  return told;
+}
+
+const Condition* StudyDesk::ConditionAtHand() const {
+  const study::Protocol& protocol = folder_.protocol();
+  if (session_.phase() == Phase::kTraining) {
+    return &protocol.conditions[protocol.training.condition.value_or(0)];
+  }
+  const auto trial = session_.trial();
+  return trial ? &session_.ConditionOf(*trial) : nullptr;
+}
+
+bool StudyDesk::IsPicking() const {
+  return trial_ != nullptr && trial_->plan().condition.method == study::Method::kPicking;
+}
+
+void StudyDesk::BeginOnBench() {
+  LiveTrial::Plan plan;
+  plan.condition = *ConditionAtHand();
+  plan.part = folder_.protocol().part;
+  plan.mating_window = folder_.protocol().mating_window;
+  plan.has_person = options_.has_person;
+  if (options_.keeps_records && session_.phase() == Phase::kRunning) {
+    plan.record = folder_.RecordFile(id_, *session_.trial());
+    std::error_code ignored;
+    std::filesystem::remove(plan.record, ignored);  // of a trial that was interrupted
+  }
+  ending_.reset();
+  hold_.clear();
+  bench_->BeginTrial(plan);
+}
+
+void StudyDesk::EndOnBench(Outcome outcome) {
+  if (trial_ != nullptr && !ending_) {
+    ending_ = outcome;
+    bench_->EndTrial();
+  }
+}
+
+Result<void> StudyDesk::FinishTrial() {
+  const std::shared_ptr<LiveTrial> over = std::exchange(trial_, nullptr);
+  const Outcome outcome = ending_.value_or(Outcome::kNotDone);
+  ending_.reset();
+  missing_.clear();
+  hold_.clear();
+  if (session_.phase() == Phase::kTraining && session_.is_running()) {
+    BeginOnBench();  // as often as the participant likes
+    return {};
+  }
+  if (over == nullptr || session_.phase() != Phase::kRunning) {
+    return {};  // aborted: it counts for nothing
+  }
+  StudyEvent event;
+  event.kind = Kind::kTrialEnded;
+  event.trial = *session_.trial();
+  event.result = over->watch().MakeResult();
+  event.result.outcome = outcome;
+  if (outcome == Outcome::kTimedOut && event.result.time) {
+    event.result.time = std::min(*event.result.time, over->plan().condition.time_limit);
+  }
+  return Tell(std::move(event));
+}
+
+bool StudyDesk::OnBench(const Json& event, std::int64_t /*now_ns*/) {
+  const std::string name = event.value("event", "");
+  if (name == "scene") {
+    return !std::exchange(is_open_, true);
+  }
+  if (name == "trial_begun") {
+    trial_ = bench_->trial();
+    part_ = bench_->trial_part();
+    missing_ = bench_->trial_constraints();
+    return true;
+  }
+  if (name == "trial_over") {
+    if (const auto finished = FinishTrial(); !finished) {
+      static_cast<void>(Abort(finished.error().ToString()));
+    }
+    return true;
+  }
+  if (name == "trial_failed") {
+    trial_ = nullptr;
+    static_cast<void>(Abort(event.value("reason", "the trial could not begin")));
+    return true;
+  }
+  if (name == "state" || name == "taken" || name == "dropped") {
+    hold_ = name == "dropped" ? "" : event.value("state", "");
+    const bool is_part = part_ && event.value("occurrence", -1) == static_cast<int>(part_->value());
+    if (trial_ != nullptr && is_part && hold_ == "seated") {
+      EndOnBench(Outcome::kDone);
+    }
+    return true;
+  }
+  return false;
+}
+
+bool StudyDesk::Poll(std::int64_t now_ns) {
+  const Phase phase = session_.phase();
+  if (phase == Phase::kTraining && session_.is_running()) {
+    if (Seconds(now_ns - training_since_ns_) >= folder_.protocol().training.duration) {
+      static_cast<void>(Next());
+    }
+    return true;
+  }
+  if (phase != Phase::kRunning || trial_ == nullptr) {
+    return false;
+  }
+  if (trial_->watch().elapsed_s() >= trial_->plan().condition.time_limit) {
+    EndOnBench(Outcome::kTimedOut);
+  }
+  return true;
+}
+
+Result<void> StudyDesk::CheckTake() const {
+  if (trial_ == nullptr || ending_) {
+    return NotNow("to take a part", "wait until the trial has begun");
+  }
+  return IsPicking()
+             ? Result<void>(NotNow("to take a part", "pick the surfaces that belong together"))
+             : Result<void>();
+}
+
+Result<Json> StudyDesk::Pick(Role role, const Json& command, std::int64_t now_ns) {
+  const auto a = FaceAt(command, "a");
+  const auto b = FaceAt(command, "b");
+  if (!a || !b) {
+    return Unexpected(!a ? a.error() : b.error());
+  }
+  if (!IsPicking() || ending_) {
+    return NotNow("to pick", "surfaces are picked in a trial whose method is picking");
+  }
+  const auto scene = bench_->scene();
+  const auto mate = mates::MakeMate(*scene->model->product, {a->occurrence, a->face, {}},
+                                    {b->occurrence, b->face, {}});
+  const auto found = mate ? std::find(missing_.begin(), missing_.end(), mate->id) : missing_.end();
+  const bool is_set = found != missing_.end();
+  if (is_set) {
+    missing_.erase(found);
+  }
+  if (is_set && missing_.empty()) {
+    EndOnBench(Outcome::kDone);
+  }
+  return Json{{"is_set", is_set}, {"left", missing_.size()}, {"state", MakeState(role, now_ns)}};
+}
+
+Json StudyDesk::MakeState(Role role, std::int64_t now_ns) const {
+  const study::Protocol& protocol = folder_.protocol();
+  const bool is_experimenter = role == Role::kOperator;
+  const bool sees_progress = is_experimenter || !protocol.hidden.progress;
+  const std::string& language = session_.language();
+  const auto trial = session_.trial();
+  Json state{{"event", "study"},
+             {"view", is_experimenter ? "experimenter" : "participant"},
+             {"title", protocol.title.In(language)},
+             {"language", language},
+             {"languages", protocol.languages},
+             {"phase", study::ToString(session_.phase())},
+             {"is_running", session_.is_running()},
+             {"is_open", is_open_}};
+  state["trial"] = trial && sees_progress ? Json(*trial + 1) : Json(nullptr);
+  state["trials"] = sees_progress ? Json(session_.schedule().size()) : Json(nullptr);
+  // In every language: the participant chooses it with the consent.
+  Json consent = nullptr;
+  if (session_.phase() == Phase::kConsent) {
+    consent = {{"en", protocol.consent.en}, {"de", protocol.consent.In("de")}};
+  }
+  state["consent"] = std::move(consent);
+  AddTrialAtHand(now_ns, is_experimenter, &state);
+  state["question"] = MakeQuestion();
+  if (is_experimenter) {
+    AddForExperimenter(&state);
+  }
+  return state;
+}
+
+void StudyDesk::AddTrialAtHand(std::int64_t now_ns, bool sees_all, Json* state) const {
+  const study::Protocol& protocol = folder_.protocol();
+  const Phase phase = session_.phase();
+  const bool is_training = phase == Phase::kTraining;
+  const bool is_at_hand = is_training || phase == Phase::kReady || phase == Phase::kRunning;
+  const Condition* condition = is_at_hand ? ConditionAtHand() : nullptr;
+  Json& s = *state;
+  for (const char* key : {"instruction", "method", "occurrence", "elapsed_s", "limit_s"}) {
+    s[key] = nullptr;
+  }
+  if (condition == nullptr) {
+    return;
+  }
+  const std::string& language = session_.language();
+  s["instruction"] =
+      OrNull(is_training && !protocol.training.text.empty() ? protocol.training.text.In(language)
+                                                            : condition->instruction.In(language));
+  s["method"] = condition->method == study::Method::kPicking ? "picking" : "hand";
+  s["occurrence"] = part_ ? Json(part_->value()) : Json(nullptr);
+  if (!protocol.hidden.condition && !sees_all) {
+    s["condition_name"] = condition->name.In(language);
+  }
+  if (!sees_all && protocol.hidden.time && !is_training) {
+    return;
+  }
+  s["limit_s"] = is_training ? protocol.training.duration : condition->time_limit;
+  if (is_training && session_.is_running()) {
+    s["elapsed_s"] = Seconds(now_ns - training_since_ns_);
+  } else if (trial_ != nullptr && phase == Phase::kRunning) {
+    s["elapsed_s"] = trial_->watch().elapsed_s();
+  }
+}
+
+Json StudyDesk::MakeQuestion() const {
+  const auto open = session_.question();
+  if (!open) {
+    return nullptr;
+  }
+  const std::string& language = session_.language();
+  Json json{{"id", open->id}};
+  if (open->question == nullptr) {
+    const study::Block& block = session_.BlockOf(open->trial);
+    json["kind"] = "choice";
+    json["text"] = block.question.In(language);
+    json["choices"] = Json::array();  // in the protocol's order, whatever was shown
+    for (const std::size_t c : block.conditions) {
+      const std::string& answer = study::AnswerOf(folder_.protocol().conditions[c]);
+      json["choices"].push_back({{"id", answer}, {"text", answer}});
+    }
+    return json;
+  }
+  const study::Question& question = *open->question;
+  json["kind"] = study::kQuestionKinds[static_cast<std::size_t>(question.kind)];
+  json["text"] = question.text.In(language);
+  switch (question.kind) {
+    case study::QuestionKind::kScale:
+      json["low"] = question.low;
+      json["high"] = question.high;
+      json["low_text"] = question.low_text.In(language);
+      json["high_text"] = question.high_text.In(language);
+      break;
+    case study::QuestionKind::kChoice:
+      json["choices"] = Json::array();
+      for (const study::Choice& choice : question.choices) {
+        json["choices"].push_back({{"id", choice.id}, {"text", choice.text.In(language)}});
+      }
+      break;
+    case study::QuestionKind::kText:
+      json["longest"] = question.longest;
+      break;
+  }
+  return json;
+}
+
+Json StudyDesk::MakeDone() const {
+  Json list = Json::array();
+  for (const DoneTrial& done : session_.done()) {
+    const Condition& condition = session_.ConditionOf(done.index);
+    const bool is_answered = !done.answer.empty();
+    list.push_back({{"trial", done.index + 1},
+                    {"condition", condition.id},
+                    {"repetition", session_.schedule()[done.index].repetition},
+                    {"outcome", study::kOutcomes[static_cast<std::size_t>(done.result.outcome)]},
+                    {"time_s", done.result.time ? Json(*done.result.time) : Json(nullptr)},
+                    {"collisions", done.result.collisions},
+                    {"peak_force_n", done.result.peak_felt},
+                    {"answer", OrNull(done.answer)},
+                    {"is_right", is_answered ? Json(done.answer == study::AnswerOf(condition))
+                                             : Json(nullptr)}});
+  }
+  return list;
+}
+
+void StudyDesk::AddForExperimenter(Json* state) const {
+  const study::Protocol& protocol = folder_.protocol();
+  const auto trial = session_.trial();
+  const Condition* condition = ConditionAtHand();
+  Json& s = *state;
+  s["participant"] = id_;
+  s["is_resumed"] = is_resumed_;
+  s["interruptions"] = session_.interruptions().size();
+  s["protocol"] = protocol.id;
+  s["digest"] = protocol.digest;
+  s["folder"] = folder_.path().string();
+  s["condition"] = condition != nullptr ? Json(condition->id) : Json(nullptr);
+  s["condition_name"] = condition != nullptr ? OrNull(condition->name.en) : Json(nullptr);
+  s["fit"] = condition != nullptr ? OrNull(condition->fit) : Json(nullptr);
+  s["repetition"] = trial ? Json(session_.schedule()[*trial].repetition) : Json(nullptr);
+  s["block"] = trial ? Json(session_.BlockOf(*trial).id) : Json(nullptr);
+  s["is_identification"] = trial && session_.BlockOf(*trial).is_identification;
+  s["next"] = nullptr;
+  if (trial && *trial + 1 < session_.schedule().size()) {
+    s["next"] = {{"condition", session_.ConditionOf(*trial + 1).id},
+                 {"repetition", session_.schedule()[*trial + 1].repetition}};
+  }
+  s["hold"] = OrNull(hold_);
+  s["done"] = MakeDone();
+  s["answers"] = Json::array();
+  for (const study::GivenAnswer& answer : session_.answers()) {
+    const int* number = std::get_if<int>(&answer.value);
+    const std::string* text = std::get_if<std::string>(&answer.value);
+    s["answers"].push_back({{"question", answer.question},
+                            {"value", number != nullptr ? Json(*number)
+                                      : text != nullptr ? Json(*text)
+                                                        : Json(nullptr)}});
+  }
+  s["notes"] = Json::array();
+  for (const study::Note& note : session_.notes()) {
+    s["notes"].push_back({{"text", note.text}, {"trial", note.trial + 1}});
+  }
+  s["reason"] = session_.phase() == Phase::kPaused ? OrNull(last_abort_) : Json(nullptr);
+}
+
+}  // namespace hvas::studio

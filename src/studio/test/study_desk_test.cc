@@ -1,0 +1,281 @@
+// A study at the studio: who may do what, what reaches the participant, trials in real time (N9,
+// X14, W8, W11, W12).
+
+#include "studio/study_desk.h"
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "base/scratch_folder.h"
+#include "studio/hub.h"
+#include "studio/scene_json.h"
+#include "studio/test/small_bench.h"
+
+namespace hvas::studio {
+namespace {
+
+constexpr const char* kProtocol = R"(
+format: hvas-study-1
+id: desk
+title: A peg
+product: peg
+part: peg
+languages: [en, de]
+consent: You may stop.
+defaults: {time_limit_s: 1}
+conditions:
+  - {id: Cpick, name: Picked, method: constraints_by_picking, time_limit_s: 60}
+  - {id: Cloose, name: Loose one, method: hybrid, fit: H7/g6, instruction: Put it in.}
+  - {id: Ctight, name: Tight one, method: hybrid, fit: H7/p6, instruction: Put it in.}
+blocks:
+  - {id: Btimed, conditions: [Cpick], order: given}
+  - {id: Bblind, conditions: [Cloose, Ctight], identification: true, question: Which}
+questions:
+  - {id: calm, kind: scale, text: How calm?, asked: at_end}
+)";
+
+class FakeLink final : public ClientLink {
+ public:
+  void SendText(std::string text) override { texts.push_back(std::move(text)); }
+
+  void SendFrames(std::string) override {}
+
+  void Close(const std::string&) override {}
+
+  std::vector<std::string> texts;
+};
+
+/** Hub, bench and desk, driven by the test's thread alone, as by the server's. */
+class StudyDeskTest : public ::testing::Test {
+ protected:
+  StudyDeskTest() : bench_(testing::SmallBench()), hub_(&bench_, {}) {
+    bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
+    Open(false);
+  }
+
+  ~StudyDeskTest() override { bench_.Stop(); }
+
+  void Open(bool has_person) {
+    desk_.reset();
+    const auto protocol = study::ParseProtocol(kProtocol, "desk.yaml");
+    ASSERT_TRUE(protocol) << protocol.error().ToString();
+    auto folder = study::StudyFolder::Create(scratch_.path() / "study", *protocol, 1);
+    ASSERT_TRUE(folder) << folder.error().ToString();
+    StudyDesk::Options options;
+    options.participant = "P01";
+    options.product = "peg.step";
+    options.has_person = has_person;
+    auto desk = StudyDesk::Open(std::move(*folder), &bench_, std::move(options));
+    ASSERT_TRUE(desk) << desk.error().ToString();
+    desk_ = std::move(*desk);
+    hub_.RunStudy(desk_.get());
+  }
+
+  void Join() {
+    experimenter_ = *hub_.Join(Role::kOperator, &experimenter_link_);
+    participant_ = *hub_.Join(Role::kParticipant, &participant_link_);
+  }
+
+  /** Passes on what the bench tells until an event has come, as the server does. */
+  void PumpUntil(const std::string& name) {
+    for (;;) {
+      const auto event = log_.Await([](const Json&) { return true; }, pumped_, 60);
+      ASSERT_TRUE(event) << "waiting for " << name;
+      ++pumped_;
+      hub_.Broadcast(*event);
+      if ((*event)["event"] == name) {
+        return;
+      }
+    }
+  }
+
+  Json Ask(const std::string& id, Json command) {
+    FakeLink& link = id == participant_ ? participant_link_ : experimenter_link_;
+    command["id"] = ++last_id_;
+    command["command"] = "study";
+    now_ns_ += 1'000'000'000;
+    const std::size_t from = link.texts.size();
+    hub_.OnText(id, command.dump(), now_ns_);
+    for (std::size_t i = from; i < link.texts.size(); ++i) {
+      if (Json reply = Json::parse(link.texts[i]); reply.contains("ok")) {
+        return reply;
+      }
+    }
+    return nullptr;
+  }
+
+  /** @returns the phase after it, or the error's message. */
+  std::string Do(const std::string& id, const Json& command) {
+    const Json reply = Ask(id, command);
+    return reply["ok"] == true ? reply["result"]["state"]["phase"].get<std::string>()
+                               : reply["error"]["message"].get<std::string>();
+  }
+
+  std::string Phase() {
+    return desk_->MakeState(Role::kOperator, now_ns_)["phase"].get<std::string>();
+  }
+
+  void BeginTrials() {
+    Join();
+    desk_->Start();
+    PumpUntil("scene");
+    ASSERT_EQ(Do(experimenter_, {{"action", "begin"}}), "consent");
+    ASSERT_EQ(Do(participant_, {{"action", "consent"}, {"agreed", true}, {"language", "de"}}),
+              "ready");
+  }
+
+  ScratchFolder scratch_ = *ScratchFolder::Make();
+  testing::EventLog log_;
+  Workbench bench_;
+  Hub hub_;
+  std::unique_ptr<StudyDesk> desk_;
+  FakeLink experimenter_link_;
+  FakeLink participant_link_;
+  std::string experimenter_;
+  std::string participant_;
+  std::size_t pumped_{0};
+  int last_id_{0};
+  std::int64_t now_ns_{1'000'000'000};
+};
+
+TEST_F(StudyDeskTest, EachLinkMayDoWhatIsItsOwn) {
+  Join();
+  EXPECT_NE(Do(participant_, {{"action", "begin"}}), "consent");
+  EXPECT_NE(Do(experimenter_, {{"action", "consent"}, {"agreed", true}}), "ready");
+  EXPECT_EQ(Do(participant_, {{"action", "state"}}), "waiting");
+  for (const char* command : {"open", "undo", "demo", "assign_fit", "recordings", "measure"}) {
+    now_ns_ += 1'000'000'000;
+    participant_link_.texts.clear();
+    hub_.OnText(participant_, Json{{"id", 1}, {"command", command}}.dump(), now_ns_);
+    ASSERT_EQ(participant_link_.texts.size(), 1U);
+    EXPECT_EQ(Json::parse(participant_link_.texts[0])["ok"], false) << command;
+  }
+}
+
+TEST_F(StudyDeskTest, ConstraintsArePickedAndTheTrialIsDone) {  // W8: A1
+  BeginTrials();
+  ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
+  PumpUntil("trial_begun");
+  EXPECT_EQ(desk_->MakeState(Role::kParticipant, now_ns_)["method"], "picking");
+  EXPECT_FALSE(desk_->CheckTake());
+  const auto scene = bench_.scene();
+  const Json wrong = Ask(participant_, {{"action", "pick"},
+                                        {"a", {{"occurrence", 0}, {"face", 0}}},
+                                        {"b", {{"occurrence", 0}, {"face", 1}}}});
+  EXPECT_EQ(wrong["result"]["is_set"], false);
+  const auto constraints = bench_.trial_constraints();
+  ASSERT_FALSE(constraints.empty());
+  Json last;
+  for (const product::MateId id : constraints) {
+    const product::Mate& mate = scene->model->product->mates[id.index()];
+    const auto face_of = [&](const product::Connector& side) {
+      const product::Part& part = scene->model->product->part_of(side.occurrence);
+      return Json{{"occurrence", side.occurrence.value()},
+                  {"face", part.features[side.feature.index()].faces.front().value()}};
+    };
+    last = Ask(participant_, {{"action", "pick"}, {"a", face_of(mate.a)}, {"b", face_of(mate.b)}});
+    EXPECT_EQ(last["result"]["is_set"], true) << last.dump();
+  }
+  EXPECT_EQ(last["result"]["left"], 0);
+  PumpUntil("trial_over");
+  EXPECT_EQ(Phase(), "ready");
+  const Json state = desk_->MakeState(Role::kOperator, now_ns_);
+  EXPECT_EQ(state["done"][0]["outcome"], "done");
+  EXPECT_GT(state["done"][0]["time_s"].get<double>(), 0);
+}
+
+TEST_F(StudyDeskTest, BlindFitsDoNotReachTheParticipant) {  // W12
+  BeginTrials();
+  for (int trial = 0; trial < 3; ++trial) {
+    ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
+    PumpUntil("trial_begun");
+    const std::string scene = MakeShieldedSceneJson(*bench_.scene(), bench_.state()).dump();
+    for (const char* secret : {"H7/", "clearance", "interference", "Ctight", "Tight"}) {
+      EXPECT_EQ(scene.find(secret), std::string::npos) << secret;
+    }
+    ASSERT_EQ(Do(experimenter_, {{"action", "next"}}), "running");
+    PumpUntil("trial_over");
+    if (trial > 0) {
+      ASSERT_EQ(Phase(), "question");
+      const Json choices = desk_->MakeState(Role::kParticipant, now_ns_)["question"]["choices"];
+      EXPECT_EQ(choices.dump(), R"([{"id":"H7/g6","text":"H7/g6"},{"id":"H7/p6","text":"H7/p6"}])");
+      Do(participant_, {{"action", "answer"}, {"question", "identify"}, {"value", "H7/p6"}});
+    }
+  }
+  EXPECT_EQ(Do(participant_, {{"action", "answer"}, {"question", "calm"}, {"value", 9}}), "done");
+  int with_choices = 0;
+  for (std::string text : participant_link_.texts) {
+    // The answers to choose from are the same for all trials.
+    const std::string choices = R"([{"id":"H7/g6","text":"H7/g6"},{"id":"H7/p6","text":"H7/p6"}])";
+    for (std::size_t at = text.find(choices); at != std::string::npos; at = text.find(choices)) {
+      text.erase(at, choices.size());
+      ++with_choices;
+    }
+    for (const char* secret : {"H7/", "Ctight", "Cloose", "Tight", "Loose", "Bblind", "true_n",
+                               "clearance", "interference"}) {
+      EXPECT_EQ(text.find(secret), std::string::npos) << secret << " in " << text;
+    }
+  }
+  EXPECT_GT(with_choices, 1);
+  bool does_experimenter_see = false;
+  for (const std::string& text : experimenter_link_.texts) {
+    does_experimenter_see = does_experimenter_see || text.find("H7/p6") != std::string::npos;
+  }
+  EXPECT_TRUE(does_experimenter_see);
+}
+
+TEST_F(StudyDeskTest, TimesOutByTheTickClockAndAbortsCountForNothing) {
+  BeginTrials();
+  ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
+  PumpUntil("trial_begun");
+  ASSERT_EQ(Do(experimenter_, {{"action", "abort"}, {"reason", "telephone"}}), "paused");
+  PumpUntil("trial_over");
+  ASSERT_EQ(Do(experimenter_, {{"action", "note"}, {"text", "rang twice"}}), "paused");
+  ASSERT_EQ(Do(experimenter_, {{"action", "resume"}}), "ready");
+  const Json state = desk_->MakeState(Role::kOperator, now_ns_);
+  EXPECT_EQ(state["trial"], 1);
+  EXPECT_TRUE(state["done"].empty());
+  EXPECT_EQ(state["interruptions"], 1);
+  EXPECT_EQ(state["notes"][0]["text"], "rang twice");
+  Do(participant_, {{"action", "ready"}});
+  PumpUntil("trial_begun");
+  Do(experimenter_, {{"action", "next"}});
+  PumpUntil("trial_over");
+  Do(participant_, {{"action", "ready"}});  // a trial of one second
+  PumpUntil("trial_begun");
+  for (int i = 0; i < 600 && bench_.trial()->watch().elapsed_s() < 1; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  hub_.PublishStatus();
+  PumpUntil("trial_over");
+  const Json done = desk_->MakeState(Role::kOperator, now_ns_)["done"];
+  ASSERT_EQ(done.size(), 2U);
+  EXPECT_EQ(done[0]["outcome"], "not_done");
+  EXPECT_EQ(done[1]["outcome"], "timed_out");
+  EXPECT_DOUBLE_EQ(done[1]["time_s"].get<double>(), 1);
+}
+
+TEST_F(StudyDeskTest, GoesOnAfterTheProgramHasEnded) {
+  BeginTrials();
+  Do(participant_, {{"action", "ready"}});
+  PumpUntil("trial_begun");
+  Do(experimenter_, {{"action", "next"}});
+  PumpUntil("trial_over");
+  hub_.Forget();
+  Open(false);  // as a program that is begun again
+  EXPECT_EQ(Phase(), "waiting");
+  EXPECT_TRUE(desk_->OnBench({{"event", "scene"}}, now_ns_));
+  ASSERT_TRUE(desk_->Do(Role::kOperator, {{"action", "begin"}}, now_ns_));
+  EXPECT_EQ(Phase(), "ready");
+  const Json state = desk_->MakeState(Role::kOperator, now_ns_);
+  EXPECT_EQ(state["is_resumed"], true);
+  EXPECT_EQ(state["interruptions"], 1);
+  EXPECT_EQ(state["trial"], 2);
+  EXPECT_EQ(state["language"], "de");
+}
+
+}  // namespace
+}  // namespace hvas::studio
