@@ -34,7 +34,7 @@ blocks:
   - {id: Btimed, conditions: [Cpick], order: given}
   - {id: Bblind, conditions: [Cloose, Ctight], identification: true, question: Which}
 questions:
-  - {id: calm, kind: scale, text: How calm?, asked: at_end}
+  - {id: calm, kind: scale, text: How calm, asked: at_end}
 )";
 
 class FakeLink final : public ClientLink {

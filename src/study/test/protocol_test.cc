@@ -170,6 +170,18 @@ TEST(ShippedProtocols, FitsHaveSixExperimentsAndBlindIdentification) {  // W7, W
   EXPECT_EQ(scales, 4);
 }
 
+TEST(ShippedProtocols, SampleOfTheDocumentationIsOne) {
+  std::ifstream file(HVAS_SOURCE_DIR "/docs/studies.md");
+  std::stringstream page;
+  page << file.rdbuf();
+  const std::string text = page.str();
+  const std::string fence = "```yaml\n";
+  const std::size_t from = text.find(fence) + fence.size();
+  const auto protocol = ParseProtocol(text.substr(from, text.find("```", from) - from), "sample");
+  ASSERT_TRUE(protocol) << protocol.error().ToString();
+  EXPECT_EQ(protocol->CountTrials(), 2 * 5 + 2 * 15);
+}
+
 /** All names of properties in a schema. */
 void CollectKeys(const nlohmann::json& schema, std::set<std::string>* keys) {
   if (schema.is_object() && schema.contains("properties")) {

@@ -78,6 +78,7 @@ TEST_F(SimulatedStudyTest, InterruptedItGoesOnWithTheSameTrials) {
   std::ofstream(journal, std::ios::binary | std::ios::trunc) << bytes.substr(0, bytes.size() / 2);
   ASSERT_LT(cut.ReadParticipant("P02")->session->done().size(), 7U);
   const StudyFolder resumed = Run("cut", 1);
+  EXPECT_EQ(ReadFolder(resumed.path()), ReadFolder(whole.path()));
   const auto a = whole.ReadParticipant("P02");
   const auto b = resumed.ReadParticipant("P02");
   ASSERT_TRUE(a && b);

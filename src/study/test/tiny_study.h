@@ -38,8 +38,8 @@ blocks:
   - {id: timed, conditions: [free, guided, mouse], order: latin_square}
   - {id: blind, conditions: [loose, tight], identification: true, repetitions: 2, question: Which}
 questions:
-  - {id: calm, kind: scale, text: How calm was it?, low: 1, high: 10}
-  - {id: easy, kind: scale, text: How easy was it?, low: 1, high: 10}
+  - {id: calm, kind: scale, text: How calm, low: 1, high: 10}
+  - {id: easy, kind: scale, text: How easy, low: 1, high: 10}
   - id: hand
     kind: choice
     asked: after_block
@@ -48,7 +48,7 @@ questions:
     choices:
       - {id: left, text: The left one}
       - {id: right, text: The right one}
-  - {id: remarks, kind: text, text: Anything else?, longest: 10}
+  - {id: remarks, kind: text, text: Anything else, longest: 10}
 )";
 
 inline Protocol MakeTinyProtocol() {
