@@ -193,7 +193,8 @@ TEST(FitInHand, InsertsRestsAndComesOutAgain) {
   }
 }
 
-// W8, A3: collision and constraint without the force of the fit. Guided as with it, and home sooner.
+// W8, A3: collision and constraint without the force of the fit. Guided as with it, and home
+// sooner.
 TEST(FitInHand, IsNotFeltWhereItIsNotRendered) {
   const auto fit = MakeFit("H7/p6");
   haptics::TickOptions without;
