@@ -291,9 +291,10 @@ void Hub::OnBinary(const std::string& id, std::string_view bytes) {
     client.seen_seq = std::max(client.seen_seq, std::min(credit.seq, client.sent_seq));
   }
   constexpr std::uint32_t kGrip = 1;
+  const bool may_grip = desk_ == nullptr || desk_->CheckTake().has_value();
   for (const protocol::HandInput& input : frames->inputs) {
     if (input.hand < leases_.size() && leases_[input.hand] == id) {
-      workbench_->Move(input.hand, PoseOf(input), (input.buttons & kGrip) != 0);
+      workbench_->Move(input.hand, PoseOf(input), may_grip && (input.buttons & kGrip) != 0);
     }
   }
   PublishFrame();

@@ -201,7 +201,7 @@ Result<void> StudyDesk::Next() {
     }
     return told;
   }
-  if (phase == Phase::kRunning) {
+  if (phase == Phase::kRunning && trial_ != nullptr) {
     EndOnBench(Outcome::kNotDone);
     return {};
   }
@@ -310,6 +310,9 @@ bool StudyDesk::OnBench(const Json& event, std::int64_t /*now_ns*/) {
     trial_ = bench_->trial();
     part_ = bench_->trial_part();
     missing_ = bench_->trial_constraints();
+    if (!session_.is_running()) {
+      EndOnBench(Outcome::kNotDone);  // it was aborted, or the training ended, before it had begun
+    }
     return true;
   }
   if (name == "trial_over") {

@@ -100,6 +100,7 @@ void Workbench::DoBeginTrial(const LiveTrial::Plan& plan) {
     trial_ = *trial;
     trial_step_ = *step;
   }
+  history_.Clear();  // nothing is undone in a study
   const bool is_picked = plan.condition.method == study::Method::kPicking;
   Show(*found, MakeTrialState(model, *step), plan.has_person && !is_picked);
   Tell({{"event", "trial_begun"}});

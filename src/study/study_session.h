@@ -117,7 +117,7 @@ class StudySession {
 
   [[nodiscard]] std::optional<OpenQuestion> question() const;
 
-  /** In `kTraining`: it has begun. */
+  /** A trial, or the training, has begun. */
   [[nodiscard]] bool is_running() const { return is_running_; }
 
   [[nodiscard]] const Protocol& protocol() const { return *protocol_; }

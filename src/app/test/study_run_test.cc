@@ -1,0 +1,82 @@
+// The shipped studies through the program: N9, X14, X15, W8 to W12. With few participants here;
+// with all of them in docs/studies.md.
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "app/test/run_hvas.h"
+#include "base/test/temporary_folder.h"
+
+namespace hvas::app::testing {
+namespace {
+
+class StudyRunTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string Folder(const std::string& name) const {
+    return (scratch_ / name).string();
+  }
+
+  hvas::testing::TemporaryFolder scratch_;
+};
+
+TEST_F(StudyRunTest, XiaGivesTheSameAgainAndDeletesAParticipant) {
+  const auto json = RunHvasJson({"study", "run", "xia-2011", "--simulated", "2", "--records",
+                                 "none", "-o", Folder("one"), "--json"});
+  EXPECT_NE(json["what"].get<std::string>().find("simulated"), std::string::npos);
+  ASSERT_EQ(json["conditions"].size(), 3U);
+  for (const auto& condition : json["conditions"]) {
+    EXPECT_EQ(condition["trials"], 20);
+    EXPECT_GE(condition["done"], 18) << condition.dump();
+  }
+  // What paper X found: contact alone takes the longest.
+  EXPECT_GT(json["conditions"][0]["mean_time_s"], json["conditions"][1]["mean_time_s"]);
+  EXPECT_GT(json["conditions"][0]["mean_time_s"], json["conditions"][2]["mean_time_s"]);
+  RunHvasJson({"study", "run", "xia-2011", "--simulated", "2", "--records", "none", "--threads",
+               "1", "-o", Folder("two"), "--json"});
+  for (const char* file : {"participants/P01.jsonl", "participants/P02.jsonl", "trials.csv",
+                           "answers.csv", "report.html", "study.json"}) {
+    const std::string one = ReadText(scratch_ / "one" / file);
+    EXPECT_FALSE(one.empty()) << file;
+    EXPECT_EQ(one, ReadText(scratch_ / "two" / file)) << file;
+  }
+  const Ran deleted = RunHvas({"study", "delete", Folder("one"), "--participant", "P02"});
+  EXPECT_EQ(deleted.status, 0) << deleted.err;
+  EXPECT_NE(deleted.out.find("P02.jsonl"), std::string::npos);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(scratch_ / "one")) {
+    if (entry.is_regular_file()) {
+      EXPECT_EQ(ReadText(entry.path()).find("P02"), std::string::npos) << entry.path();
+    }
+  }
+}
+
+TEST_F(StudyRunTest, FitsRunFromConsentToTheReport) {
+  const auto json =
+      RunHvasJson({"study", "run", "fit-2016", "--simulated", "2", "-o", Folder("fits"), "--json"});
+  ASSERT_EQ(json["conditions"].size(), 6U);
+  for (const auto& participant : json["participants"]) {
+    EXPECT_EQ(participant["phase"], "done");
+    EXPECT_EQ(participant["trials_done"], 75);
+  }
+  const std::string report = ReadText(scratch_ / "fits" / "report.html");
+  for (const char* part : {"Simulated.", "15.06", "49.78", "24.58", "26.73", "not printed", "H7/p6",
+                           "F_z", "answer no questions"}) {
+    EXPECT_NE(report.find(part), std::string::npos) << part;
+  }
+  EXPECT_TRUE(std::filesystem::exists(scratch_ / "fits" / "records" / "P01"));
+}
+
+TEST_F(StudyRunTest, WrongProtocolIsToldWithItsLine) {
+  const auto file = scratch_.Write("wrong.yaml", "format: hvas-study-1\nid: a b\n");
+  const Ran ran = RunHvas({"study", "check", file.string()});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.err.find("wrong.yaml:2:5"), std::string::npos) << ran.err;
+  const Ran missing = RunHvas({"study", "run", "no-such-study"});
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_NE(missing.err.find("fit-2016, xia-2011"), std::string::npos) << missing.err;
+}
+
+}  // namespace
+}  // namespace hvas::app::testing
