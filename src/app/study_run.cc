@@ -93,7 +93,7 @@ void PrintSummary(const StudyFolder& folder, const std::vector<Participant>& par
 }
 
 Result<void> WriteStudyPage(const StudyFolder& folder, const std::vector<Participant>& participants,
-                       const std::filesystem::path& output) {
+                            const std::filesystem::path& output) {
   auto page = study::MakeStudyPage(folder, participants);
   if (!page) {
     return Unexpected(page.error());
@@ -166,8 +166,8 @@ Result<void> RunSimulated(const RunOptions& options) {
   return {};
 }
 
-void AddRun(CLI::App* study, int* status) {
-  CLI::App* command = study->add_subcommand(
+void AddRun(CLI::App* group, int* status) {
+  CLI::App* command = group->add_subcommand(
       "run", "Run a whole study with simulated participants, up to its report");
   const auto options = std::make_shared<RunOptions>();
   command->add_option("protocol", options->protocol, "A protocol: a file, or xia-2011 or fit-2016")
@@ -235,8 +235,8 @@ void PrintCheck(const Protocol& protocol) {
   }
 }
 
-void AddCheck(CLI::App* study, int* status) {
-  CLI::App* command = study->add_subcommand("check", "Check a protocol, with lines and columns");
+void AddCheck(CLI::App* group, int* status) {
+  CLI::App* command = group->add_subcommand("check", "Check a protocol, with lines and columns");
   const auto file = std::make_shared<std::string>();
   command->add_option("protocol", *file, "A protocol: a file, or the id of a shipped one")
       ->required();
@@ -284,9 +284,9 @@ void PrintList(const Opened& study) {
   }
 }
 
-void AddList(CLI::App* study, int* status) {
+void AddList(CLI::App* group, int* status) {
   CLI::App* command =
-      study->add_subcommand("list", "List the participants of a study, and how far they are");
+      group->add_subcommand("list", "List the participants of a study, and how far they are");
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto is_json = std::make_shared<bool>(false);
   command->add_option("folder", *folder, "The study's folder")->required();
@@ -304,9 +304,9 @@ void AddList(CLI::App* study, int* status) {
   });
 }
 
-void AddExport(CLI::App* study, int* status) {
+void AddExport(CLI::App* group, int* status) {
   CLI::App* command =
-      study->add_subcommand("export", "Write a study's results as a table: CSV, a row a trial");
+      group->add_subcommand("export", "Write a study's results as a table: CSV, a row a trial");
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto output = std::make_shared<std::filesystem::path>();
   const auto has_answers = std::make_shared<bool>(false);
@@ -333,8 +333,8 @@ void AddExport(CLI::App* study, int* status) {
   });
 }
 
-void AddDelete(CLI::App* study, int* status) {
-  CLI::App* command = study->add_subcommand("delete", "Remove all of one participant, for good");
+void AddDelete(CLI::App* group, int* status) {
+  CLI::App* command = group->add_subcommand("delete", "Remove all of one participant, for good");
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto id = std::make_shared<std::string>();
   command->add_option("folder", *folder, "The study's folder")->required();
@@ -362,8 +362,8 @@ void AddDelete(CLI::App* study, int* status) {
   });
 }
 
-void AddReport(CLI::App* study, int* status) {
-  CLI::App* command = study->add_subcommand(
+void AddReport(CLI::App* group, int* status) {
+  CLI::App* command = group->add_subcommand(
       "report", "Tell of a study on one page: times, forces, answers, statistics");
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto output = std::make_shared<std::filesystem::path>();
@@ -392,13 +392,13 @@ void AddReport(CLI::App* study, int* status) {
 
 }  // namespace
 
-void AddStudyRun(CLI::App* study, int* status) {
-  AddCheck(study, status);
-  AddRun(study, status);
-  AddList(study, status);
-  AddExport(study, status);
-  AddReport(study, status);
-  AddDelete(study, status);
+void AddStudyRun(CLI::App* group, int* status) {
+  AddCheck(group, status);
+  AddRun(group, status);
+  AddList(group, status);
+  AddExport(group, status);
+  AddReport(group, status);
+  AddDelete(group, status);
 }
 
 }  // namespace hvas::app
