@@ -71,7 +71,8 @@ class Crew {
   void Watch(std::size_t size, const std::function<void(std::size_t)>& progress) {
     std::unique_lock lock(mutex_);
     while (ended_ < size) {
-      changed_.wait_for(lock, kNowAndThen);  // one index may take long, and work has news of its own
+      changed_.wait_for(lock,
+                        kNowAndThen);  // one index may take long, and work has news of its own
       if (progress) {
         const std::size_t done = done_;
         lock.unlock();
