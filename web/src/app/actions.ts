@@ -50,6 +50,10 @@ export function takeChosen(): void {
   }
 }
 
+/** Nobody takes the hand of a study's participant. */
+const mayAskForLease = () =>
+  store.link.value === "open" && !store.hasLease.value && store.role.value === "operator" && store.study.value === null;
+
 async function askForLease(): Promise<void> {
   const answer = await studio.command({ command: "lease", action: "request" });
   if (answer?.waits_for !== undefined) {
@@ -209,7 +213,7 @@ const simulateActions: Action[] = [
   ...simulateTimeActions,
   toggle("mute", "action.mute", view.isMuted, { startsGroup: true }),
   action("lease", "action.lease", () => void askForLease(), {
-    isEnabled: () => store.link.value === "open" && !store.hasLease.value && store.role.value === "operator",
+    isEnabled: mayAskForLease,
   }),
   action("lease-give", "action.leaseGive", giveLease, { isEnabled: () => store.leaseAsked.value !== null }),
   action("lease-release", "action.leaseRelease", () => void studio.command({ command: "lease", action: "release" }), {

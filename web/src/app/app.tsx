@@ -1,13 +1,13 @@
 import { useEffect, useRef } from "preact/hooks";
-import { Viewport } from "../view3d/viewport";
-import { canSteer, paths, store, studio, ui, view, viewport } from "./app_state";
+import { canSteer, store, studio, ui } from "./app_state";
 import { Banners, LiveRegion, Notice, useStatusPolling } from "./banners";
 import { ConstraintList } from "./constraint_list";
 import { Overlays } from "./dialogs";
 import { Header } from "./header";
 import { HintBar } from "./hint_bar";
-import { language, t } from "./i18n";
+import { t } from "./i18n";
 import { Inspector } from "./inspector";
+import { Lazy } from "./lazy";
 import { ModelTree } from "./model_tree";
 import { EmptyState, LoadingDrawer } from "./opening";
 import { Plots } from "./plots";
@@ -16,36 +16,7 @@ import { StatusBar } from "./status_bar";
 import { Timeline } from "./timeline";
 import { ToolRail } from "./tool_rail";
 import { ViewPanels } from "./view_panels";
-
-function ViewportHost() {
-  const host = useRef<HTMLDivElement>(null);
-  useEffect(() => {
-    const made = new Viewport(host.current!, studio, view);
-    made.pointer.onContextMenu = (x, y, hit) => {
-      if (hit !== null && !view.selected.value.includes(hit.occurrence)) {
-        view.selected.value = [hit.occurrence];
-      }
-      ui.overlay.value = { kind: "menu", x, y, occurrence: hit?.occurrence ?? null };
-    };
-    made.showPaths(paths);
-    viewport.value = made;
-  }, []);
-  const isDark = view.isDark.value;
-  const words = language.value;
-  const port = viewport.value;
-  useEffect(() => {
-    port?.refreshTheme([
-      t("cube.right"),
-      t("cube.left"),
-      t("cube.back"),
-      t("cube.front"),
-      t("cube.top"),
-      t("cube.bottom"),
-    ]);
-  }, [isDark, words, port]);
-  useEffect(() => port?.canvas.setAttribute("aria-label", t("view.label")), [port, words]);
-  return <div class="viewport" ref={host} />;
-}
+import { ViewportHost } from "./viewport_host";
 
 /** A file that is dragged onto the page is opened. */
 function useDrop(root: { current: HTMLElement | null }): void {
@@ -85,8 +56,9 @@ export function App() {
   useDrop(root);
   useStatusPolling();
   const hasScene = store.scene.value !== null;
+  const isStudy = studio.study.experimenter.value !== null;
   const { model, inspector, plots } = ui.panels;
-  const shows = (flag: { value: boolean }) => hasScene && flag.value;
+  const shows = (flag: { value: boolean }) => hasScene && flag.value && !(isStudy && flag !== plots);
   return (
     <div
       ref={root}
@@ -95,7 +67,7 @@ export function App() {
         "--inspector-width": sizeOf("inspector"),
         "--plots-height": sizeOf("plots"),
       }}
-      class={`app ${shows(model) ? "has-model" : ""} ${shows(inspector) ? "has-inspector" : ""} ${shows(plots) ? "has-plots" : ""}`}
+      class={`app ${shows(model) ? "has-model" : ""} ${shows(inspector) ? "has-inspector" : ""} ${shows(plots) ? "has-plots" : ""} ${isStudy ? "has-study" : ""}`}
     >
       <Header />
       <main class="workspace">
@@ -108,7 +80,7 @@ export function App() {
         <div class="centre">
           <ViewportHost />
           <Banners />
-          {hasScene ? <ToolRail /> : <EmptyState />}
+          {hasScene ? <ToolRail /> : isStudy ? null : <EmptyState />}
           <ViewPanels />
           <HintBar />
           <LoadingDrawer />
@@ -121,10 +93,11 @@ export function App() {
           {shows(plots) ? <Splitter name="plots" /> : null}
         </div>
         {shows(inspector) ? <Inspector /> : null}
+        {isStudy ? <Lazy load={() => import("./study/experimenter")} /> : null}
       </main>
       {shows(plots) ? <Plots /> : null}
       <div class="foot">
-        <Timeline />
+        {isStudy ? null : <Timeline />}
         <StatusBar />
       </div>
       <Overlays />

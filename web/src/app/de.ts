@@ -1,8 +1,10 @@
+import { deStudy } from "./de_study";
 import { deTime } from "./de_time";
 import { deView } from "./de_view";
 import type { MessageKey } from "./en";
 
 export const de: Record<MessageKey, string> = {
+  ...deStudy,
   ...deTime,
   ...deView,
   "app.title": "HVAS Studio",

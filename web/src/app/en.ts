@@ -1,8 +1,10 @@
+import { enStudy } from "./en_study";
 import { enTime } from "./en_time";
 import { enView } from "./en_view";
 
 /** English, and with it the keys that every language has. */
 export const en = {
+  ...enStudy,
   ...enTime,
   ...enView,
   "app.title": "HVAS Studio",

@@ -31,7 +31,7 @@ function Chips() {
   );
 }
 
-function ForcesButton() {
+export function ForcesButton() {
   const isOff = store.forcesOff.value;
   return isOff ? (
     <button

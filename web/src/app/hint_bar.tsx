@@ -2,7 +2,7 @@
 
 import { useRef } from "preact/hooks";
 import { liveNumbers, makeHint } from "../model/hints";
-import { canSteer, store, ui, view, viewport } from "./app_state";
+import { canSteer, store, studio, ui, view, viewport } from "./app_state";
 import { findAction, isEnabled, runAction } from "./actions";
 import { number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
@@ -31,6 +31,7 @@ export function HintBar() {
   const held = store.held.value.find((h) => h.hand === view.hand.value) ?? store.held.value[0] ?? null;
   const expected = store.expected.value?.occurrence ?? null;
   const hint = makeHint({ scene, held, expected, isDone: store.isDone.value, canSteer: canSteer() });
+  const mayAsk = store.role.value === "operator" && studio.study.experimenter.value === null;
   const mayLetGo = held !== null && isEnabled(findAction("release"));
   return (
     <div class={`hint-bar is-${hint.state}`} ref={bar} data-testid="hint" data-state={hint.state}>
@@ -55,7 +56,7 @@ export function HintBar() {
           <kbd>R</kbd> {t("action.release")}
         </button>
       ) : null}
-      {!store.hasLease.value && ui.overlay.value === null && store.role.value === "operator" && store.link.value === "open" ? (
+      {!store.hasLease.value && ui.overlay.value === null && mayAsk && store.link.value === "open" ? (
         <button type="button" class="hint-button" data-testid="hint-lease" onClick={() => runAction(findAction("lease"))}>
           {t("action.lease")}
         </button>

@@ -2,7 +2,7 @@
 
 import { actions, forcesOff, runAction } from "./actions";
 import { clearPicks, select } from "../model/view_state";
-import { store, ui, view, viewport } from "./app_state";
+import { store, studio, ui, view, viewport } from "./app_state";
 
 const kNudgePx = 6;
 
@@ -92,7 +92,33 @@ function escape(): void {
   }
 }
 
+/** In a study there is the hand, and the way out; no view, tool or help that others did not have. */
+function onParticipantKey(event: KeyboardEvent): void {
+  const { isTask, state } = studio.study;
+  if (event.key === "Escape") {
+    forcesOff();
+    return;
+  }
+  const isOther = event.ctrlKey || event.metaKey || event.defaultPrevented || belongsToControl(event);
+  if (!isTask.value || isOther || isTyping(event.target)) {
+    return;
+  }
+  const wanted = state.value?.occurrence ?? null;
+  const key = event.key.toLowerCase();
+  if (key === "g" && wanted !== null) {
+    void viewport.value?.hand.take(wanted);
+  } else if (key === "r" && store.held.value.length > 0) {
+    viewport.value?.hand.release();
+  } else if (moveHeld(event)) {
+    event.preventDefault();
+  }
+}
+
 function onKey(event: KeyboardEvent): void {
+  if (studio.study.isParticipantView.value) {
+    onParticipantKey(event);
+    return;
+  }
   if (event.key === "Escape") {
     escape();
     return;

@@ -1,11 +1,11 @@
 import { effect } from "@preact/signals";
 import { render } from "preact";
 import { decodeMoment, decodeView } from "../model/view_link";
-import { App } from "./app";
-import { followTraces, studio, view, viewport } from "./app_state";
+import { followTraces, store, studio, view, viewport } from "./app_state";
 import { language, t } from "./i18n";
 import { listenToKeys } from "./keyboard";
 import { keepPreferences } from "./preferences";
+import { rememberParticipant, Root } from "./root";
 import { showShared } from "./shared_link";
 import { startSounds } from "./sounds";
 import { exposeHooks } from "./test_hooks";
@@ -33,9 +33,10 @@ followTraces();
 followTheme();
 effect(() => {
   document.documentElement.lang = language.value;
-  document.title = t("app.title");
+  document.title = store.study.value?.title || t("app.title");
 });
-render(<App />, document.getElementById("app")!);
+effect(rememberParticipant);
+render(<Root hasToken={token !== null} />, document.getElementById("app")!);
 listenToKeys();
 startSounds();
 exposeHooks();

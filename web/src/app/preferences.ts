@@ -3,7 +3,7 @@
 import { effect, type Signal } from "@preact/signals";
 import { isItem } from "../model/bench";
 import { decodeView } from "../model/view_link";
-import { ui, view, type SavedView } from "./app_state";
+import { studio, ui, view, type SavedView } from "./app_state";
 import { language, pickLanguage } from "./i18n";
 
 const kKey = "hvas-studio";
@@ -83,6 +83,9 @@ export function keepPreferences(): void {
     preference.read(kept[name]);
   }
   effect(() => {
+    if (studio.study.isParticipantView.value) {
+      return; // A study sets up the view; what its user is used to stays as it is.
+    }
     const now = Object.fromEntries(Object.entries(kPreferences).map(([name, preference]) => [name, preference.value()]));
     try {
       localStorage.setItem(kKey, JSON.stringify(now));

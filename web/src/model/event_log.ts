@@ -14,7 +14,7 @@ export const kRunsLength = 50;
 /** As far as events have these. */
 export interface WorkEvent {
   event: string;
-  occurrence?: number;
+  occurrence?: number | null;
   state?: HoldState | number | string;
   was_seated?: boolean;
   metrics?: RunMetrics;
@@ -35,7 +35,7 @@ export function isAlarm(event: { gate_actions?: number }): boolean {
 
 /** Null where the event is nothing to tell. */
 export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): Told | null {
-  const part = event.occurrence === undefined ? "" : nameOf(event.occurrence);
+  const part = event.occurrence == null ? "" : nameOf(event.occurrence);
   switch (event.event) {
     case "taken":
       return { kind: "taken", params: { part } };
@@ -58,7 +58,7 @@ export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): 
 
 /** What a hold of a part came to; null for other events. */
 export function runOf(event: WorkEvent, nameOf: (occurrence: number) => string, collisions = 0): Run | null {
-  if (event.event !== "dropped" || event.occurrence === undefined || event.metrics === undefined) {
+  if (event.event !== "dropped" || event.occurrence == null || event.metrics === undefined) {
     return null;
   }
   const { occurrence, metrics } = event;

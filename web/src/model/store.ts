@@ -15,6 +15,7 @@ import type {
   Step,
 } from "../protocol/messages";
 import type { DeviceList, HandSetup, RecordingEntry } from "../protocol/recording_messages";
+import type { StudyState } from "../protocol/study_messages";
 
 export type LinkState = "starting" | "open" | "lost" | "denied";
 
@@ -114,9 +115,16 @@ export function makeStore() {
   const hasLease = signal(false);
   const client = signal("");
   const clients = signal<readonly Client[]>([]);
+  const study = signal<StudyState | null>(null);
+  /** Whoever watches over a study does not do its work. */
+  const isWatchingOver = computed(() => study.value?.view === "experimenter");
   return {
     link,
     role: signal<Role>("viewer"),
+    /** The server has said which role this page has. */
+    isGreeted: signal(false),
+    /** While a study runs. */
+    study,
     client,
     hasLease,
     clients,
@@ -155,6 +163,10 @@ export function makeStore() {
       () => new Map((scene.value?.occurrences ?? []).map((o) => [o.id, o])),
     ),
     expected: computed<Step | null>(() => {
+      const wanted = study.value?.occurrence ?? null;
+      if (wanted !== null) {
+        return scene.value?.steps.find((each) => each.occurrence === wanted) ?? null;
+      }
       const current = step.value;
       return current === null ? null : (scene.value?.steps[current.index] ?? null);
     }),
@@ -163,9 +175,14 @@ export function makeStore() {
       (scene.value?.occurrences ?? []).every((o) => o.is_base || placements.value.get(o.id) === "placed"),
     ),
     /** May this page do what changes the work? */
-    canSteer: computed(() => hasLease.value && link.value === "open" && replay.value === null),
+    canSteer: computed(
+      () => hasLease.value && link.value === "open" && replay.value === null && !isWatchingOver.value,
+    ),
     /** The hands that this page leads. */
     ownHands: computed<readonly number[]>(() => {
+      if (isWatchingOver.value) {
+        return [];
+      }
       const own = clients.value.find((c) => c.id === client.value);
       return own?.hands ?? (hasLease.value ? [0] : []);
     }),

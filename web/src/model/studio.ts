@@ -4,14 +4,16 @@ import { batch } from "@preact/signals";
 import { CommandError, Connection } from "../protocol/connection";
 import type { LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
-import type { Client, Command, CommandResults, Scene, ServerError, ServerEvent } from "../protocol/messages";
+import type { Client, Command, CommandResults, Role, Scene, ServerEvent } from "../protocol/messages";
 import { CollisionCounter } from "./collisions";
 import { isAlarm, kAlarms, kLogLength, kRunsLength, runOf, tell, type Told } from "./event_log";
 import { withTrouble } from "./hands";
 import { isSameHeld, summarize } from "./held";
 import { Recordings } from "./recordings";
-import { uploadFile } from "./upload";
+import { exchangeToken } from "./session";
 import { makeStore } from "./store";
+import { StudyModel } from "./study";
+import { asServerError, uploadFile } from "./upload";
 
 /** An alarm is shown this long at least, and as long as its cause lasts. */
 const kAlarmShownMs = 5000;
@@ -19,6 +21,7 @@ const kAlarmShownMs = 5000;
 export class Studio {
   readonly store = makeStore();
   readonly recordings = new Recordings(this.store, this);
+  readonly study = new StudyModel(this.store, this);
   private connection: Connection | null = null;
   private readonly collisions = new CollisionCounter();
   private noticeId = 0;
@@ -27,16 +30,13 @@ export class Studio {
 
   /** Exchanges the token, where there is one, and connects. */
   async start(token: string | null): Promise<void> {
-    if (token !== null) {
-      const answer = await fetch("/api/session", {
-        method: "POST",
-        headers: { "Content-Type": "application/json" },
-        body: JSON.stringify({ token }),
-      }).catch(() => null);
-      if (answer !== null && !answer.ok) {
-        this.store.link.value = "denied";
-        return;
-      }
+    const admission = await exchangeToken(token);
+    if (admission.isDenied) {
+      this.store.link.value = "denied";
+      return;
+    }
+    if (admission.role !== null) {
+      this.greet(admission.role);
     }
     const url = new URL("/ws", location.href);
     url.protocol = url.protocol.replace("http", "ws");
@@ -187,7 +187,7 @@ export class Studio {
     const store = this.store;
     switch (event.event) {
       case "hello":
-        store.role.value = event.role;
+        this.greet(event.role);
         store.client.value = event.client;
         store.hasLease.value = event.has_lease;
         store.examples.value = event.examples;
@@ -200,6 +200,9 @@ export class Studio {
         }
         store.hands.value = event.hands ?? [];
         this.recordings.note(event.recording ?? null);
+        if (event.role === "participant") {
+          void this.study.refresh();
+        }
         break;
       case "progress":
         store.failure.value = null;
@@ -257,12 +260,20 @@ export class Studio {
       case "recording":
         this.log(this.recordings.note(event));
         break;
+      case "study":
+        this.study.take(event);
+        break;
       case "recordings":
         void this.recordings.fetchList();
         break;
       default:
         this.applyAssembly(event);
     }
+  }
+
+  private greet(role: Role): void {
+    this.store.role.value = role;
+    this.store.isGreeted.value = true;
   }
 
   private noteOwnRole(clients: readonly Client[]): void {
@@ -302,11 +313,4 @@ export class Studio {
     }
     this.log(tell(event, this.nameOf));
   }
-}
-
-function asServerError(error: unknown, where: string): ServerError {
-  if (error instanceof CommandError) {
-    return error.detail;
-  }
-  return { code: "upload", message: error instanceof Error ? error.message : String(error), where, remedy: "" };
 }

@@ -37,3 +37,10 @@ function parseJson(text: string): unknown {
     return null;
   }
 }
+
+export function asServerError(error: unknown, where: string): ServerError {
+  if (error instanceof CommandError) {
+    return error.detail;
+  }
+  return { code: "upload", message: error instanceof Error ? error.message : String(error), where, remedy: "" };
+}

@@ -43,6 +43,8 @@ export function makeViewState() {
     locksForceScale: signal(false),
     showsEdges: signal(true),
     showsGrid: signal(true),
+    /** The cube in the corner that turns the view. */
+    showsCube: signal(true),
     /** Floor, walls, bench and tools around the product. */
     showsWorkshop: signal(false),
     /** What stands on the bench; null: as at first. */

@@ -7,6 +7,7 @@ import type {
   Histograms,
   RecordingNow,
 } from "./recording_messages";
+import type { StudyCommand, StudyReply, StudyState } from "./study_messages";
 
 export type Vec3 = readonly [number, number, number];
 /** w, x, y, z. */
@@ -25,7 +26,7 @@ export interface ServerError {
 }
 
 export type Placement = "loose" | "held" | "placed" | "parked";
-export type Role = "operator" | "viewer";
+export type Role = "operator" | "viewer" | "participant";
 export type HoldState = "empty" | "free" | "near" | "captured" | "mating" | "seated";
 
 export const kHoldStates: readonly HoldState[] = ["empty", "free", "near", "captured", "mating", "seated"];
@@ -166,7 +167,8 @@ export type Command =
   | { command: "devices" }
   | { command: "use"; hand: number; device: string; scale?: number }
   | { command: "record"; on: boolean; name?: string }
-  | { command: "delete_recording"; id: string };
+  | { command: "delete_recording"; id: string }
+  | StudyCommand;
 
 type Nothing = Record<string, never>;
 export interface CommandResults {
@@ -192,6 +194,7 @@ export interface CommandResults {
   use: Nothing;
   record: Nothing;
   delete_recording: Nothing;
+  study: StudyReply;
 }
 
 export interface Example {
@@ -257,7 +260,8 @@ export type ServerEvent =
       occurrence: number;
       state: HoldState | number;
       was_seated: boolean;
-      metrics: RunMetrics;
+      /** Not for participants of a study. */
+      metrics?: RunMetrics;
     }
   | { event: "step"; index: number; total: number }
   | { event: "safety"; reasons: string[]; gate_actions: number }
@@ -271,4 +275,5 @@ export type ServerEvent =
   | ({ event: "devices" } & DeviceList)
   | ({ event: "recording" } & RecordingNow)
   | { event: "recordings" }
+  | ({ event: "study" } & StudyState)
   | ({ event: "status" } & ServerStatus);

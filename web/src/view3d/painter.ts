@@ -46,7 +46,7 @@ export class Painter {
       renderer.clearStencil();
       renderer.render(this.product.caps.scene, camera);
     }
-    if (this.product.scene !== null) {
+    if (this.product.scene !== null && this.view.showsCube.peek()) {
       this.cube.render(renderer, this.rig.camera, width, height);
     }
   }

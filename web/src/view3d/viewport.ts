@@ -136,7 +136,7 @@ export class Viewport {
   }
 
   pickCube(x: number, y: number): Vec3 | null {
-    return this.cube.pick(x, y, this.width, this.height);
+    return this.view.showsCube.peek() ? this.cube.pick(x, y, this.width, this.height) : null;
   }
 
   refreshTheme(labels: CubeLabels): void {
@@ -170,6 +170,14 @@ export class Viewport {
   fit(only?: readonly number[]): void {
     this.rig.fit(this.product.outline(only?.length ? only : undefined));
     this.invalidate();
+  }
+
+  /** As the product is seen at first. */
+  lookAnew(): void {
+    if (this.product.scene !== null) {
+      this.rig.lookFrom(firstDirection(this.product.scene), this.product.outline(), false);
+      this.invalidate();
+    }
   }
 
   lookFrom(name: ViewName): void {

@@ -1,0 +1,66 @@
+/** What every participant sees alike, whatever was set up in this browser before. */
+
+import { effect, untracked } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import { clearPicks, showAll } from "../../model/view_state";
+import { store, studio, ui, view, viewport } from "../app_state";
+import { language, pickLanguage } from "../i18n";
+
+/** No arrows and no sounds of forces: a fit is told by the hand alone. No help of the page's own either:
+ what guides the part is what the condition says. */
+function setUpView(): void {
+  view.showsForces.value = false;
+  view.isMuted.value = true;
+  view.assists.value = false;
+  view.letsGoWhenSeated.value = true;
+  view.showsWorkshop.value = false;
+  view.showsCube.value = false;
+  view.showsEdges.value = true;
+  view.showsGrid.value = true;
+  view.stereo.value = "none";
+  view.isOrthographic.value = false;
+  view.section.value = null;
+  view.explode.value = 0;
+  view.apart.value = null;
+  view.selectMode.value = "part";
+  ui.overlay.value = null;
+}
+
+/** Each trial begins with the same picture. */
+function beginTask(): void {
+  view.selected.value = [];
+  showAll(view);
+  clearPicks(view);
+  view.tool.value = studio.study.isPicking.peek() ? "mate" : "hand";
+  viewport.peek()?.lookAnew();
+}
+
+/** Two faces that are picked are what is sent. */
+function sendPicks(onPicked: (isSet: boolean) => void): void {
+  const [a, b] = view.picked.value;
+  if (studio.study.isPicking.peek() && a !== undefined && b !== undefined) {
+    clearPicks(view);
+    void studio.study.pick(a, b).then(onPicked);
+  }
+}
+
+export function useParticipantSetup(onPicked: (isSet: boolean) => void): void {
+  useEffect(() => {
+    setUpView();
+    const stops = [
+      effect(() => {
+        const told = store.study.value?.language;
+        if (told !== undefined) {
+          language.value = pickLanguage(told, navigator.languages);
+        }
+      }),
+      effect(() => {
+        if (studio.study.isTask.value && store.scene.value !== null) {
+          untracked(beginTask);
+        }
+      }),
+      effect(() => sendPicks(onPicked)),
+    ];
+    return () => stops.forEach((stop) => stop());
+  }, []);
+}

@@ -1,0 +1,53 @@
+/** The picture. There is one of it on a page, whichever view shows it. */
+
+import { useEffect, useRef } from "preact/hooks";
+import { Viewport } from "../view3d/viewport";
+import { paths, studio, ui, view, viewport } from "./app_state";
+import { language, t } from "./i18n";
+
+const element = (() => {
+  let made: HTMLDivElement | null = null;
+  return () => {
+    made ??= document.createElement("div");
+    made.className = "viewport";
+    return made;
+  };
+})();
+
+function makeViewport(): Viewport {
+  const made = new Viewport(element(), studio, view);
+  made.pointer.onContextMenu = (x, y, hit) => {
+    if (studio.study.isParticipantView.value) {
+      return;
+    }
+    if (hit !== null && !view.selected.value.includes(hit.occurrence)) {
+      view.selected.value = [hit.occurrence];
+    }
+    ui.overlay.value = { kind: "menu", x, y, occurrence: hit?.occurrence ?? null };
+  };
+  made.showPaths(paths);
+  return made;
+}
+
+export function ViewportHost() {
+  const host = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    host.current?.append(element());
+    viewport.value ??= makeViewport();
+  }, []);
+  const isDark = view.isDark.value;
+  const words = language.value;
+  const port = viewport.value;
+  useEffect(() => {
+    port?.refreshTheme([
+      t("cube.right"),
+      t("cube.left"),
+      t("cube.back"),
+      t("cube.front"),
+      t("cube.top"),
+      t("cube.bottom"),
+    ]);
+  }, [isDark, words, port]);
+  useEffect(() => port?.canvas.setAttribute("aria-label", t("view.label")), [port, words]);
+  return <div class="viewport-host" ref={host} />;
+}

@@ -1,0 +1,168 @@
+/** A study as this page knows it: what the server told last, and what one may do about it. */
+
+import { computed, signal } from "@preact/signals";
+import type { Command, CommandResults, FaceOf } from "../protocol/messages";
+import type {
+  AnswerValue,
+  ExperimenterState,
+  StudyCommand,
+  StudyQuestion,
+  StudyState,
+} from "../protocol/study_messages";
+import type { Store } from "./store";
+
+/** What is sent to the server; null: it was refused. */
+export interface Commander {
+  command<K extends Command["command"]>(command: Extract<Command, { command: K }>): Promise<CommandResults[K] | null>;
+}
+
+type Action = StudyCommand extends infer Each ? (Each extends StudyCommand ? Omit<Each, "command"> : never) : never;
+
+/** Phases in which the product is in sight, and the hand may work. */
+function isTask(state: StudyState | null): boolean {
+  return state !== null && (state.phase === "running" || (state.phase === "training" && state.is_running));
+}
+
+export class StudyModel {
+  /** Something was sent and not answered yet: a second press counts for nothing. */
+  readonly isBusy = signal(false);
+  /** Constraints that are still to be picked; null: none was picked yet. */
+  readonly leftToPick = signal<number | null>(null);
+  readonly state = computed(() => this.store.study.value);
+  readonly phase = computed(() => this.state.value?.phase ?? "waiting");
+  readonly isTask = computed(() => isTask(this.state.value));
+  readonly isPicking = computed(() => this.isTask.value && this.state.value?.method === "picking");
+  /** What the experimenter is told; null on all other pages. */
+  readonly experimenter = computed<ExperimenterState | null>(() => {
+    const state = this.state.value;
+    return state?.view === "experimenter" ? state : null;
+  });
+  /** This page shows what the participant sees. */
+  readonly isParticipantView = computed(
+    () => this.store.role.value === "participant" || this.state.value?.view === "participant",
+  );
+  /** This page is the participant's, and not that of somebody who looks on. */
+  readonly mayAct = computed(() => this.store.role.value === "participant" && this.store.link.value === "open");
+  /** Share of the trials that are over; null where it is not told. */
+  readonly progress = computed(() => {
+    const state = this.state.value;
+    if (state === null || state.trial === null || state.trials === null || state.trials <= 0) {
+      return null;
+    }
+    return state.phase === "done" ? 1 : Math.min(1, Math.max(0, (state.trial - 1) / state.trials));
+  });
+  private toldMs = 0;
+
+  constructor(
+    private readonly store: Store,
+    private readonly commander: Commander,
+  ) {}
+
+  /** @param nowMs  On the clock of performance.now(). */
+  take(state: StudyState, nowMs = performance.now()): void {
+    const before = this.store.study.peek();
+    if (before === null || !isTask(before) || !isTask(state) || before.trial !== state.trial) {
+      this.leftToPick.value = null;
+    }
+    this.toldMs = nowMs;
+    this.store.study.value = state;
+  }
+
+  /** Of the trial or training that runs [s]; null where the participant is not told. */
+  elapsedS(nowMs = performance.now()): number | null {
+    const state = this.state.peek();
+    if (state === null || state.elapsed_s === null || !isTask(state)) {
+      return null;
+    }
+    // The server says it once a second; what has passed since is added, but no more than that.
+    const since = this.store.link.peek() === "open" ? Math.min(1, Math.max(0, (nowMs - this.toldMs) / 1000)) : 0;
+    return Math.min(state.limit_s ?? Infinity, state.elapsed_s + since);
+  }
+
+  refresh(): Promise<boolean> {
+    return this.act({ action: "state" });
+  }
+
+  /** The words of the consent, in another language. */
+  speak(language: string): Promise<boolean> {
+    return this.act({ action: "state", language });
+  }
+
+  begin(): Promise<boolean> {
+    return this.act({ action: "begin" });
+  }
+
+  consent(agreed: boolean): Promise<boolean> {
+    return this.act({ action: "consent", agreed, language: this.state.peek()?.language ?? "en" });
+  }
+
+  ready(): Promise<boolean> {
+    return this.act({ action: "ready" });
+  }
+
+  next(): Promise<boolean> {
+    return this.act({ action: "next" });
+  }
+
+  answer(question: string, value: AnswerValue): Promise<boolean> {
+    return this.act({ action: "answer", question, value });
+  }
+
+  pick(a: FaceOf, b: FaceOf): Promise<boolean> {
+    return this.act({ action: "pick", a, b });
+  }
+
+  note(text: string): Promise<boolean> {
+    return this.act({ action: "note", text });
+  }
+
+  abort(reason: string): Promise<boolean> {
+    return this.act({ action: "abort", reason });
+  }
+
+  resume(): Promise<boolean> {
+    return this.act({ action: "resume" });
+  }
+
+  /** @return Whether it was done. */
+  private async act(action: Action): Promise<boolean> {
+    if (this.isBusy.peek()) {
+      return false;
+    }
+    this.isBusy.value = true;
+    try {
+      const reply = await this.commander.command<"study">({ command: "study", ...action } as StudyCommand);
+      if (reply === null) {
+        return false;
+      }
+      this.take(reply.state);
+      this.leftToPick.value = reply.left ?? this.leftToPick.value;
+      return action.action !== "pick" || reply.is_set === true;
+    } finally {
+      this.isBusy.value = false;
+    }
+  }
+}
+
+/** The numbers of a scale, from its low end to its high one. */
+export function stepsOf(question: StudyQuestion): readonly number[] {
+  const low = question.low ?? 1;
+  return Array.from({ length: Math.max(0, (question.high ?? 10) - low) + 1 }, (_, k) => low + k);
+}
+
+export type AnswerFault = "missing" | "tooLong" | "unknown";
+
+/** What is wrong with an answer before it is sent; null: nothing. */
+export function faultOf(question: StudyQuestion, value: AnswerValue): AnswerFault | null {
+  if (value === null || value === "") {
+    return "missing";
+  }
+  switch (question.kind) {
+    case "scale":
+      return stepsOf(question).includes(Number(value)) ? null : "unknown";
+    case "choice":
+      return (question.choices ?? []).some((choice) => choice.id === value) ? null : "unknown";
+    case "text":
+      return [...String(value)].length > (question.longest ?? Infinity) ? "tooLong" : null;
+  }
+}
