@@ -1,5 +1,6 @@
 // A stand-in for the studio's server, to work on the page without it:
 //   npm run build && npm run mock -- --hvas ../build/dev/src/app/hvas --file ../products/gear_pump.step
+//   ... --study [--person]   a tiny study in place of the studio; the person does the trials by hand
 // It has the routes, headers and messages of docs/protocol.md, and a toy in place of the simulation.
 
 import { createServer } from "node:http";
@@ -13,18 +14,21 @@ import { Hands, rates } from "./hands.mjs";
 import { Recorder } from "./recorder.mjs";
 import { makeScene } from "./scene.mjs";
 import { Simulation } from "./simulation.mjs";
+import { eventFor, handFor, MockStudy, sceneFor } from "./study.mjs";
 
 const { values: options } = parseArgs({
   options: {
     port: { type: "string", default: "8600" },
     hvas: { type: "string", default: "../build/dev/src/app/hvas" },
     file: { type: "string" },
+    study: { type: "boolean", default: false },
+    person: { type: "boolean", default: false },
     example: { type: "string", default: "../products/gear_pump.step" },
     dist: { type: "string", default: fileURLToPath(new URL("../dist", import.meta.url)) },
   },
 });
 
-const TOKEN = "mock";
+const TOKENS = { mock: "operator", viewer: "viewer", participant: "participant" };
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
 const HEADERS = {
   "Content-Security-Policy":
@@ -49,9 +53,27 @@ let seq = 0;
 let nextClient = 1;
 const clients = new Map();
 
+let study = null;
+const CUT_MS = 4000;
+let cutUntil = 0;
+
+/** Without a study everybody is an operator. */
+function roleOf(request) {
+  const token = /hvas=(\w+)/.exec(request.headers.cookie ?? "")?.[1];
+  return study === null ? "operator" : TOKENS[token];
+}
+
+function send(client, event) {
+  const told = eventFor(client.role, event);
+  if (told !== null) {
+    client.socket.send(JSON.stringify(told));
+  }
+}
+
 const broadcast = (event) => {
   recorder.event(event);
-  clients.forEach((client) => client.socket.send(JSON.stringify(event)));
+  clients.forEach((client) => send(client, event));
+  study?.noteHold(event);
 };
 const recorder = new Recorder(broadcast);
 const hands = new Hands(broadcast);
@@ -65,6 +87,53 @@ function open(file) {
   simulation.nextStep();
 }
 
+const PART = 2;
+const LAY_OUT_MS = 500;
+const REACTION_MS = 900;
+const CALM_PACE = 0.4;
+
+/** All parts but one are in their places. */
+function layOut() {
+  epoch += 1;
+  world.scene.epoch = epoch;
+  world.scene.occurrences.forEach((o) => (o.placement = o.id === PART ? "loose" : "placed"));
+  simulation = new Simulation(world.scene, (event) => event.event !== "demo" && broadcast(event));
+  simulation.poses = world.scene.occurrences.map((o) => (o.id === PART ? o.start : o.goal));
+  clients.forEach((client) => (client.knows = 0));
+  broadcast({ event: "scene", epoch });
+  simulation.nextStep();
+}
+
+const bench = {
+  timers: [],
+  later(ms, what) {
+    this.timers.push(setTimeout(what, ms));
+  },
+  begin() {
+    this.end();
+    this.later(LAY_OUT_MS, () => {
+      layOut();
+      study.began();
+      if (options.person) {
+        this.later(REACTION_MS, () => study.state("participant").method === "hand" && simulation.startDemo(false, CALM_PACE));
+      }
+    });
+  },
+  end() {
+    this.timers.splice(0).forEach(clearTimeout);
+    if (simulation !== null) {
+      simulation.demo = null;
+    }
+  },
+};
+
+function startStudy() {
+  const onChange = () => clients.forEach((client) => send(client, study.state(client.role)));
+  study = new MockStudy({ onChange, bench, occurrence: PART, link: "/#t=participant" });
+  layOut();
+  setInterval(() => study.isTask && onChange(), 1000);
+}
+
 function reply(response, status, body, type = "application/json") {
   response.writeHead(status, { ...HEADERS, "Content-Type": type });
   response.end(body);
@@ -73,10 +142,9 @@ function reply(response, status, body, type = "application/json") {
 const server = createServer((request, response) => {
   const { pathname } = new URL(request.url, "http://localhost");
   if (pathname === "/api/session") {
-    response.setHeader("Set-Cookie", `hvas=${TOKEN}; HttpOnly; SameSite=Strict; Path=/`);
-    reply(response, 200, JSON.stringify({ role: "operator" }));
+    admit(request, response);
   } else if (pathname === "/api/scene") {
-    reply(response, world ? 200 : 404, JSON.stringify(world?.scene ?? {}));
+    reply(response, world ? 200 : 404, JSON.stringify(world ? sceneFor(roleOf(request), world.scene) : {}));
   } else if (pathname.startsWith("/api/model/")) {
     reply(response, world ? 200 : 404, world?.glb ?? "", "model/gltf-binary");
   } else if (pathname === "/api/recordings") {
@@ -93,6 +161,19 @@ const server = createServer((request, response) => {
   }
 });
 
+function admit(request, response) {
+  let body = "";
+  request.on("data", (bytes) => (body += bytes));
+  request.on("end", () => {
+    const { token } = JSON.parse(body);
+    const isKnown = Object.hasOwn(TOKENS, token);
+    if (isKnown) {
+      response.setHeader("Set-Cookie", `hvas=${token}; HttpOnly; SameSite=Strict; Path=/`);
+    }
+    reply(response, isKnown ? 200 : 403, JSON.stringify({ role: study === null ? "operator" : TOKENS[token] }));
+  });
+}
+
 function sendFile(response, pathname) {
   try {
     const path = join(options.dist, normalize(pathname));
@@ -102,8 +183,8 @@ function sendFile(response, pathname) {
   }
 }
 
-const lease = () => clients.keys().next().value;
-const roles = () => [...clients.keys()].map((id) => ({ id, role: "operator", has_lease: id === lease(), hands: id === lease() ? [0, 1] : [] }));
+const lease = () => [...clients].find(([, client]) => client.role === (study === null ? "operator" : "participant"))?.[0];
+const roles = () => [...clients].map(([id, { role }]) => ({ id, role, has_lease: id === lease(), hands: id === lease() ? [0, 1] : [] }));
 
 /** From where it lies, up, across and down into its place. */
 function makePath({ start, goal }) {
@@ -158,13 +239,21 @@ const commands = {
   }),
 };
 
-new WebSocketServer({ server, path: "/ws" }).on("connection", (socket) => {
+new WebSocketServer({ server, path: "/ws" }).on("connection", (socket, upgrade) => {
+  const role = roleOf(upgrade);
+  if (role === undefined || performance.now() < cutUntil) {
+    socket.close();
+    return;
+  }
   const id = `c${nextClient++}`;
-  const client = { socket, pending: 0, knows: 0 };
+  const client = { socket, role, pending: 0, knows: 0 };
   clients.set(id, client);
-  const hello = { event: "hello", version: 1, role: "operator", client: id, has_lease: id === lease() };
+  const hello = { event: "hello", version: 1, role, client: id, has_lease: id === lease() };
   socket.send(JSON.stringify({ ...hello, examples: EXAMPLES, forces_off: forcesOff, has_scene: world !== null, hands: hands.list(), recording: recorder.state() }));
   broadcast({ event: "roles", clients: roles() });
+  if (study !== null) {
+    send(client, study.state(role));
+  }
   broadcast({ event: "history", undo: null, redo: null });
   simulation?.nextStep();
   socket.on("message", async (data, isBinary) => {
@@ -178,6 +267,11 @@ new WebSocketServer({ server, path: "/ws" }).on("connection", (socket) => {
       return;
     }
     const { id: request, command, ...fields } = JSON.parse(data);
+    if (command === "study") {
+      const answer = study?.do(role, fields) ?? { error: { code: "invalid", message: "no study runs", where: "", remedy: "" } };
+      socket.send(JSON.stringify({ id: request, ok: answer.error === undefined, ...answer }));
+      return;
+    }
     const result = (await commands[command]?.(fields)) ?? {};
     socket.send(JSON.stringify({ id: request, ok: true, result }));
   });
@@ -203,7 +297,7 @@ function publish() {
     const pack = (name, items) => packFrame(name, ++seq, epoch, t_ns, items);
     client.pending += 1;
     client.socket.send(
-      Buffer.concat([pack("Poses", poses), pack("Hands", [simulation.hand]), pack("Contacts", simulation.contacts())]),
+      Buffer.concat([pack("Poses", poses), pack("Hands", [handFor(client.role, simulation.hand)]), pack("Contacts", simulation.contacts())]),
     );
   }
   simulation?.moved.clear();
@@ -226,7 +320,19 @@ setInterval(
     }),
   1000,
 );
+// As a network does that breaks down for a while.
+process.on("SIGUSR2", () => {
+  cutUntil = performance.now() + CUT_MS;
+  clients.forEach((client) => client.socket.terminate());
+});
 if (options.file) {
   open(options.file);
 }
-server.listen(Number(options.port), "127.0.0.1", () => console.log(`http://127.0.0.1:${options.port}/#t=${TOKEN}`));
+if (options.study) {
+  startStudy();
+}
+server.listen(Number(options.port), "127.0.0.1", () => {
+  const origin = `http://127.0.0.1:${server.address().port}`;
+  const tokens = options.study ? Object.keys(TOKENS) : ["mock"];
+  console.log(tokens.map((token) => `${origin}/#t=${token}`).join("\n"));
+});

@@ -210,8 +210,9 @@ export class Simulation {
     }));
   }
 
-  /** A scripted person: lifts the expected part, carries it over its place and lowers it. */
-  startDemo(isEndless) {
+  /** A scripted person: lifts the expected part, carries it over its place and lowers it.
+   @param pace  Corners of its way a second. */
+  startDemo(isEndless, pace = 1.4) {
     let phase = 0;
     let t = 0;
     let from = null;
@@ -235,7 +236,7 @@ export class Simulation {
         const goal = add(this.held.part.goal.p, rotate(this.held.part.goal.q, this.held.part.p_BoBcm_m));
         const high = Math.max(from.p[2], goal[2]) + 2 * this.length;
         const path = [from.p, [from.p[0], from.p[1], high], [goal[0], goal[1], high], add(goal, [0, 0, -0.004])];
-        const s = Math.min(2.999, t * 1.4);
+        const s = Math.min(2.999, t * pace);
         const k = Math.floor(s);
         this.input = { p_WH_m: add(path[k], times(sub(path[k + 1], path[k]), s - k)), q_WH: this.held.part.goal.q };
         if (this.state !== SEATED) {

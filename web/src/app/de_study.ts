@@ -96,6 +96,7 @@ export const deStudy: Record<keyof typeof enStudy, string> = {
   "desk.next": "Danach",
   "desk.felt": "Kraft, gefühlt",
   "desk.true": "Kraft, wahr",
+  "desk.opening": "Das Produkt wird geöffnet.",
   "desk.begin": "Sitzung beginnen",
   "desk.goOn": "Sitzung fortsetzen",
   "desk.startTrial": "Durchgang starten",

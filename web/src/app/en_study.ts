@@ -94,6 +94,7 @@ export const enStudy = {
   "desk.next": "After it",
   "desk.felt": "Force, felt",
   "desk.true": "Force, true",
+  "desk.opening": "The product is being opened.",
   "desk.begin": "Begin the session",
   "desk.goOn": "Go on with the session",
   "desk.startTrial": "Start the trial",

@@ -21,7 +21,7 @@ const kAlarmShownMs = 5000;
 export class Studio {
   readonly store = makeStore();
   readonly recordings = new Recordings(this.store, this);
-  readonly study = new StudyModel(this.store, this);
+  readonly study = new StudyModel(this.store, this, globalThis.navigator?.languages ?? []);
   private connection: Connection | null = null;
   private readonly collisions = new CollisionCounter();
   private noticeId = 0;

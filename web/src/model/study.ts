@@ -51,11 +51,31 @@ export class StudyModel {
     }
     return state.phase === "done" ? 1 : Math.min(1, Math.max(0, (state.trial - 1) / state.trials));
   });
+  /** The trial at hand has been laid out, and its clock runs; where the time is hidden it is not told. */
+  readonly isLive = computed(() => {
+    const state = this.state.value;
+    return isTask(state) && (state?.limit_s === null || state?.elapsed_s !== null);
+  });
+  /** That the participant chose before the consent; null: none yet. */
+  readonly chosenLanguage = signal<string | null>(null);
+  /** Of all that the participant reads; null while no study is known. */
+  readonly language = computed(() => {
+    const state = this.state.value;
+    if (state === null || (state.phase !== "consent" && state.phase !== "waiting")) {
+      return state?.language ?? null;
+    }
+    const liked = [this.chosenLanguage.value, ...this.spoken.map((tag) => tag.slice(0, 2).toLowerCase())];
+    return liked.find((code) => code !== null && state.languages.includes(code)) ?? state.language;
+  });
+  /** When this page was told of a note, by its number, on the wall clock. */
+  readonly noteTimes = new Map<number, number>();
   private toldMs = 0;
 
+  /** @param spoken  Tags of the languages that the browser's user prefers. */
   constructor(
     private readonly store: Store,
     private readonly commander: Commander,
+    private readonly spoken: readonly string[] = [],
   ) {}
 
   /** @param nowMs  On the clock of performance.now(). */
@@ -63,6 +83,11 @@ export class StudyModel {
     const before = this.store.study.peek();
     if (before === null || !isTask(before) || !isTask(state) || before.trial !== state.trial) {
       this.leftToPick.value = null;
+    }
+    if (before?.view === "experimenter" && state.view === "experimenter") {
+      for (let k = before.notes.length; k < state.notes.length; k++) {
+        this.noteTimes.set(k, Date.now());
+      }
     }
     this.toldMs = nowMs;
     this.store.study.value = state;
@@ -83,17 +108,12 @@ export class StudyModel {
     return this.act({ action: "state" });
   }
 
-  /** The words of the consent, in another language. */
-  speak(language: string): Promise<boolean> {
-    return this.act({ action: "state", language });
-  }
-
   begin(): Promise<boolean> {
     return this.act({ action: "begin" });
   }
 
   consent(agreed: boolean): Promise<boolean> {
-    return this.act({ action: "consent", agreed, language: this.state.peek()?.language ?? "en" });
+    return this.act({ action: "consent", agreed, language: this.language.peek() ?? "en" });
   }
 
   ready(): Promise<boolean> {

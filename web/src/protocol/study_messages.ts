@@ -32,6 +32,9 @@ export interface StudyQuestion {
   longest?: number;
 }
 
+/** The question of blind identification: it has to be answered. */
+export const kIdentifyQuestion = "identify";
+
 /** What a participant is told, and all that a participant's client knows. */
 export interface ParticipantState {
   view: "participant";
@@ -44,10 +47,15 @@ export interface ParticipantState {
   /** From 1; null where the study does not say how far it is. */
   trial: number | null;
   trials: number | null;
-  consent: string | null;
+  /** The product is open: the session can begin. */
+  is_open: boolean;
+  /** By language: the participant chooses one with the consent. */
+  consent: Readonly<Record<string, string>> | null;
   instruction: string | null;
   method: "hand" | "picking" | null;
   occurrence: number | null;
+  /** For participants only where the protocol does not hide it. */
+  condition_name?: string | null;
   elapsed_s: number | null;
   limit_s: number | null;
   question: StudyQuestion | null;
@@ -74,7 +82,6 @@ export interface StudyNote {
   text: string;
   /** That was at hand. */
   trial: number | null;
-  unix_ms?: number;
 }
 
 export interface ExperimenterState extends Omit<ParticipantState, "view"> {
@@ -86,7 +93,6 @@ export interface ExperimenterState extends Omit<ParticipantState, "view"> {
   digest: string;
   folder: string;
   condition: string | null;
-  condition_name: string;
   fit: string | null;
   repetition: number | null;
   block: string | null;
@@ -106,7 +112,7 @@ export interface ExperimenterState extends Omit<ParticipantState, "view"> {
 export type StudyState = ParticipantState | ExperimenterState;
 
 export type StudyCommand = { command: "study" } & (
-  | { action: "state"; language?: string }
+  | { action: "state" }
   | { action: "begin" }
   | { action: "consent"; agreed: boolean; language: string }
   | { action: "ready" }

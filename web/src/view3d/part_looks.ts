@@ -21,6 +21,7 @@ export class PartLooks {
   ) {
     effect(() => {
       void store.step.value;
+      void store.expected.value;
       this.pulseUntil = performance.now() + kPulseMs;
     });
   }

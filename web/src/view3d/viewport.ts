@@ -43,6 +43,8 @@ export class Viewport {
   framesDrawn = 0;
   readonly meter = new FrameMeter();
   live: LiveState | null = null;
+  /** Nobody sees the picture, so it is not drawn. */
+  isResting = false;
   /** All of W; VR turns and scales it. */
   readonly worldRoot = new Group();
   /** Of somebody in VR; the rig's cameras are the desktop's. */
@@ -284,7 +286,7 @@ export class Viewport {
     this.product.update(frames, live, playback === null ? nowMs() : (live?.sentMs ?? 0));
     const hasMoved = this.rig.controls.update(seconds);
     const isDue = this.renderer.xr.isPresenting || now - this.lastDrawn > kIdleMs;
-    if (hasMoved || this.product.isDirty || isDue) {
+    if (!this.isResting && (hasMoved || this.product.isDirty || isDue)) {
       this.product.isDirty = false;
       this.draw();
       this.lastDrawn = now;

@@ -1,6 +1,7 @@
 /** What a participant agrees to, or not. */
 
 import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
 import type { StudyState } from "../../protocol/study_messages";
 import { studio } from "../app_state";
 import { languageNames, t, type Language } from "../i18n";
@@ -18,10 +19,10 @@ function Languages({ state }: { state: StudyState }) {
           <input
             type="radio"
             name="language"
-            checked={state.language === code}
+            checked={studio.study.language.value === code}
             disabled={!studio.study.mayAct.value}
             data-testid={`study-language-${code}`}
-            onChange={() => void studio.study.speak(code)}
+            onChange={() => (studio.study.chosenLanguage.value = code)}
           />
           <span>{languageNames[code as Language] ?? code}</span>
         </label>
@@ -31,6 +32,8 @@ function Languages({ state }: { state: StudyState }) {
 }
 
 function Declining({ onBack }: { onBack: () => void }) {
+  const back = useRef<HTMLButtonElement>(null);
+  useEffect(() => back.current?.focus(), []);
   return (
     <div class="study-confirm" role="group" aria-label={t("study.decline")} data-testid="decline-confirm">
       <p>{t("study.declineSure")}</p>
@@ -38,7 +41,7 @@ function Declining({ onBack }: { onBack: () => void }) {
         <button type="button" class="study-button" data-testid="decline-yes" onClick={() => void studio.study.consent(false)}>
           {t("study.declineYes")}
         </button>
-        <button type="button" class="study-button" data-testid="decline-no" onClick={onBack}>
+        <button type="button" class="study-button" data-testid="decline-no" ref={back} onClick={onBack}>
           {t("study.declineNo")}
         </button>
       </p>
@@ -47,6 +50,7 @@ function Declining({ onBack }: { onBack: () => void }) {
 }
 
 export function ConsentPage({ state }: { state: StudyState }) {
+  const spoken = studio.study.language.value ?? state.language;
   const agrees = useSignal(false);
   const isMissed = useSignal(false);
   const isDeclining = useSignal(false);
@@ -59,8 +63,8 @@ export function ConsentPage({ state }: { state: StudyState }) {
   return (
     <StudyPage kind="consent" title={state.title}>
       <Languages state={state} />
-      <section class="study-consent" lang={state.language} aria-label={t("study.consentText")}>
-        <Paragraphs text={state.consent ?? ""} />
+      <section class="study-consent" lang={spoken} aria-label={t("study.consentText")}>
+        <Paragraphs text={state.consent?.[spoken] ?? state.consent?.["en"] ?? ""} />
       </section>
       <label class="study-check">
         <input

@@ -112,7 +112,7 @@ function Live({ state }: { state: ExperimenterState }) {
 
 function Now({ state }: { state: ExperimenterState }) {
   const rows: [string, string | null][] = [
-    [t("desk.condition"), state.condition === null ? null : `${state.condition} · ${state.condition_name}`],
+    [t("desk.condition"), state.condition === null ? null : [state.condition, state.condition_name].filter(Boolean).join(" · ")],
     [t("fit.title"), state.fit],
     [t("desk.repetition"), state.repetition === null ? null : number(state.repetition, 0)],
     [t("desk.block"), state.block === null ? null : state.is_identification ? `${state.block} (${t("desk.blind")})` : state.block],
@@ -138,7 +138,8 @@ function Now({ state }: { state: ExperimenterState }) {
 function Controls({ state }: { state: ExperimenterState }) {
   const isAborting = useSignal(false);
   const { study } = studio;
-  const isOff = study.isBusy.value || store.link.value !== "open" || store.role.value !== "operator";
+  const isOpening = state.phase === "waiting" && !state.is_open;
+  const isOff = isOpening || study.isBusy.value || store.link.value !== "open" || store.role.value !== "operator";
   const main = {
     waiting: { id: "desk-begin", label: t(state.is_resumed ? "desk.goOn" : "desk.begin"), run: () => study.begin() },
     training: state.is_running
@@ -161,6 +162,7 @@ function Controls({ state }: { state: ExperimenterState }) {
           {t("desk.pausedFor", { reason: state.reason })}
         </p>
       ) : null}
+      {isOpening ? <p class="quiet">{t("desk.opening")}</p> : null}
       {main === null && !isOver ? <p class="quiet">{t("desk.participantsTurn")}</p> : null}
       {isOver ? <p>{t(state.phase === "done" ? "desk.isDone" : "desk.isDeclined", { folder: state.folder })}</p> : null}
       <p class="desk-buttons">

@@ -9,9 +9,10 @@ function timeOf(unixMs: number): string {
   return new Intl.DateTimeFormat(language.value, { timeStyle: "medium" }).format(new Date(unixMs));
 }
 
-function Note({ note }: { note: StudyNote }) {
+function Note({ note, number }: { note: StudyNote; number: number }) {
+  const unixMs = studio.study.noteTimes.get(number);
   const at = [
-    note.unix_ms === undefined ? null : timeOf(note.unix_ms),
+    unixMs === undefined ? null : timeOf(unixMs),
     note.trial === null ? null : t("study.trial", { n: note.trial }),
   ].filter((each) => each !== null);
   return (
@@ -46,9 +47,7 @@ export function Notes({ state }: { state: ExperimenterState }) {
         </button>
       </form>
       <ul class="desk-notes" data-testid="notes">
-        {[...state.notes].reverse().map((note, k) => (
-          <Note key={state.notes.length - k} note={note} />
-        ))}
+        {state.notes.map((note, k) => <Note key={k} note={note} number={k} />).reverse()}
       </ul>
     </section>
   );

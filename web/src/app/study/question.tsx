@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import { faultOf, stepsOf, type AnswerFault } from "../../model/study";
-import type { AnswerValue, StudyQuestion, StudyState } from "../../protocol/study_messages";
+import { kIdentifyQuestion, type AnswerValue, type StudyQuestion, type StudyState } from "../../protocol/study_messages";
 import { studio } from "../app_state";
 import { t } from "../i18n";
 import { BigButton, StudyPage } from "./pages";
@@ -127,15 +127,17 @@ export function QuestionPage({ state, question }: { state: StudyState; question:
       </p>
       <p class="study-buttons">
         <BigButton testId="answer-send" label={t("study.send")} onPress={send} />
-        <button
-          type="button"
-          class="study-button is-quiet"
-          data-testid="answer-skip"
-          disabled={!studio.study.mayAct.value || studio.study.isBusy.value}
-          onClick={() => void studio.study.answer(question.id, null)}
-        >
-          {t("study.skip")}
-        </button>
+        {question.id === kIdentifyQuestion ? null : (
+          <button
+            type="button"
+            class="study-button is-quiet"
+            data-testid="answer-skip"
+            disabled={!studio.study.mayAct.value || studio.study.isBusy.value}
+            onClick={() => void studio.study.answer(question.id, null)}
+          >
+            {t("study.skip")}
+          </button>
+        )}
       </p>
     </StudyPage>
   );

@@ -35,6 +35,14 @@ function beginTask(): void {
   viewport.peek()?.lookAnew();
 }
 
+function setResting(isResting: boolean): void {
+  const port = viewport.value;
+  if (port !== null) {
+    port.isResting = isResting;
+    port.invalidate();
+  }
+}
+
 /** Two faces that are picked are what is sent. */
 function sendPicks(onPicked: (isSet: boolean) => void): void {
   const [a, b] = view.picked.value;
@@ -49,9 +57,9 @@ export function useParticipantSetup(onPicked: (isSet: boolean) => void): void {
     setUpView();
     const stops = [
       effect(() => {
-        const told = store.study.value?.language;
-        if (told !== undefined) {
-          language.value = pickLanguage(told, navigator.languages);
+        const spoken = studio.study.language.value;
+        if (spoken !== null) {
+          language.value = pickLanguage(spoken, navigator.languages);
         }
       }),
       effect(() => {
@@ -60,7 +68,11 @@ export function useParticipantSetup(onPicked: (isSet: boolean) => void): void {
         }
       }),
       effect(() => sendPicks(onPicked)),
+      effect(() => setResting(!studio.study.isTask.value)),
     ];
-    return () => stops.forEach((stop) => stop());
+    return () => {
+      stops.forEach((stop) => stop());
+      setResting(false);
+    };
   }, []);
 }

@@ -78,7 +78,7 @@ function TaskHint({ wasSet }: { wasSet: Signal<boolean | null> }) {
   return (
     <div class={`task-hint is-${state}`} ref={box} data-testid="task-hint" data-state={state}>
       <i class="task-dot" aria-hidden="true" />
-      <span role="status">{store.scene.value === null ? t("study.loading") : isPicking ? pickHint(wasSet.value) : handHint()}</span>
+      <span role="status">{!studio.study.isLive.value ? t("study.loading") : isPicking ? pickHint(wasSet.value) : handHint()}</span>
       <span class="task-depth" role="img" aria-label={t("hint.depth")}>
         <i ref={fill} />
       </span>
@@ -86,16 +86,20 @@ function TaskHint({ wasSet }: { wasSet: Signal<boolean | null> }) {
   );
 }
 
-/** For a moment, as it begins. */
+/** Until it begins, and for a moment then. */
 function Go() {
+  const isLive = studio.study.isLive.value;
   const isShown = useSignal(true);
   useEffect(() => {
+    if (!isLive) {
+      return;
+    }
     const timer = setTimeout(() => (isShown.value = false), kGoMs);
     return () => clearTimeout(timer);
-  }, []);
+  }, [isLive]);
   return (
     <p class="task-go" role="status">
-      {isShown.value ? <span>{t("study.go")}</span> : null}
+      {isShown.value ? <span class={isLive ? "" : "is-waiting"}>{t(isLive ? "study.go" : "study.loading")}</span> : null}
     </p>
   );
 }
@@ -137,6 +141,7 @@ export function Task({ wasSet }: { wasSet: Signal<boolean | null> }) {
           <h1 tabIndex={-1} ref={head}>
             {state.instruction || t("study.doTask")}
           </h1>
+          {state.condition_name ? <p class="task-count">{state.condition_name}</p> : null}
         </div>
         <Time />
         <ForcesButton />

@@ -47,12 +47,12 @@ function Means({ state }: { state: ExperimenterState }) {
 export function TrialTable({ state }: { state: ExperimenterState }) {
   const hasAnswers = state.done.some((trial) => trial.answer !== null);
   return (
-    <section class="desk-card" aria-labelledby="desk-trials">
-      <h3 id="desk-trials">{t("desk.trials")}</h3>
+    <section class="desk-card" aria-labelledby="desk-trials-title">
+      <h3 id="desk-trials-title">{t("desk.trials")}</h3>
       {state.done.length === 0 ? <p class="quiet">{t("desk.noTrials")}</p> : null}
       <Means state={state} />
       {state.done.length === 0 ? null : (
-        <div class="desk-scroll" tabIndex={0} role="group" aria-labelledby="desk-trials">
+        <div class="desk-scroll" tabIndex={0} role="group" aria-labelledby="desk-trials-title">
           <table class="desk-table" data-testid="desk-trials">
             <thead>
               <tr>
