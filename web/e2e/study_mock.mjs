@@ -53,8 +53,8 @@ class Other {
   }
 }
 
-async function startMockStudy(args) {
-  const options = ["--port", "0", "--hvas", kProgram, "--dist", kPage, "--file", "../products/bushing.step", "--study", ...args];
+async function startMockStudy() {
+  const options = ["--port", "0", "--hvas", kProgram, "--dist", kPage, "--file", "../products/bushing.step", "--study"];
   const child = spawn("node", ["mock/server.mjs", ...options], { stdio: ["ignore", "pipe", "inherit"] });
   const ended = once(child, "exit");
   let said = "";
@@ -78,6 +78,8 @@ async function startMockStudy(args) {
       others.push(new Other(link));
       return others.at(-1);
     },
+    /** Somebody does the trial that runs, by hand. */
+    work: () => child.kill("SIGUSR1"),
     /** All connections are lost, for some seconds. */
     cut: () => child.kill("SIGUSR2"),
     stop: async () => {
@@ -89,9 +91,9 @@ async function startMockStudy(args) {
 }
 
 /** Runs a test with a study, which ends with it. */
-export function withMockStudy(args, run) {
+export function withMockStudy(run) {
   return async () => {
-    const study = await startMockStudy(args);
+    const study = await startMockStudy();
     try {
       await run(study);
     } finally {

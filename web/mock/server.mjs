@@ -1,6 +1,6 @@
 // A stand-in for the studio's server, to work on the page without it:
 //   npm run build && npm run mock -- --hvas ../build/dev/src/app/hvas --file ../products/gear_pump.step
-//   ... --study [--person]   a tiny study in place of the studio; the person does the trials by hand
+//   ... --study   a tiny study in place of the studio. SIGUSR1: somebody does the trial; SIGUSR2: all connections are lost
 // It has the routes, headers and messages of docs/protocol.md, and a toy in place of the simulation.
 
 import { createServer } from "node:http";
@@ -22,7 +22,6 @@ const { values: options } = parseArgs({
     hvas: { type: "string", default: "../build/dev/src/app/hvas" },
     file: { type: "string" },
     study: { type: "boolean", default: false },
-    person: { type: "boolean", default: false },
     example: { type: "string", default: "../products/gear_pump.step" },
     dist: { type: "string", default: fileURLToPath(new URL("../dist", import.meta.url)) },
   },
@@ -89,8 +88,7 @@ function open(file) {
 
 const PART = 2;
 const LAY_OUT_MS = 500;
-const REACTION_MS = 900;
-const CALM_PACE = 0.4;
+const CALM_PACE = 0.3;
 
 /** All parts but one are in their places. */
 function layOut() {
@@ -114,9 +112,6 @@ const bench = {
     this.later(LAY_OUT_MS, () => {
       layOut();
       study.began();
-      if (options.person) {
-        this.later(REACTION_MS, () => study.state("participant").method === "hand" && simulation.startDemo(false, CALM_PACE));
-      }
     });
   },
   end() {
@@ -320,6 +315,7 @@ setInterval(
     }),
   1000,
 );
+process.on("SIGUSR1", () => study?.isTask && simulation.startDemo(false, CALM_PACE));
 // As a network does that breaks down for a while.
 process.on("SIGUSR2", () => {
   cutUntil = performance.now() + CUT_MS;

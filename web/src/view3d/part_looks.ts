@@ -75,7 +75,10 @@ export class PartLooks {
       return null;
     }
     const left = this.pulseUntil - performance.now();
-    const beat = left > 0 && !view.isCalm.value ? 0.3 + 0.22 * Math.sin(left / 160) : 0.3;
+    // In a study the part is told by its mark alone.
+    const isStudied = store.study.value !== null;
+    const steady = isStudied ? 0.6 : 0.3;
+    const beat = left > 0 && !view.isCalm.value ? steady + 0.22 * Math.sin(left / 160) : steady;
     const tintOf = (id: number): Pick<PartLook, "tint" | "amount"> => {
       if (held.has(id)) {
         return { tint: palette.held, amount: 0.62 };
@@ -91,7 +94,7 @@ export class PartLooks {
     return (id) => ({
       isHidden: hidden.has(id),
       isGhost: ghosted.has(id),
-      isMarked: selected.has(id) || id === hovered,
+      isMarked: selected.has(id) || id === hovered || (isStudied && wanted.has(id)),
       ...tintOf(id),
     });
   }

@@ -198,8 +198,8 @@ export default function Experimenter() {
       <Head state={state} />
       <Controls state={state} />
       <Now state={state} />
-      <TrialTable state={state} />
       <Notes state={state} />
+      <TrialTable state={state} />
       <Answers state={state} />
       <p class="desk-files quiet">
         {t("desk.files", { folder: state.folder, protocol: state.protocol, digest: state.digest.slice(0, 12) })}

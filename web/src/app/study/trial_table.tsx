@@ -26,7 +26,7 @@ function Means({ state }: { state: ExperimenterState }) {
       <caption class="sr-only">{t("desk.means")}</caption>
       <thead>
         <tr>
-          <th scope="col">{t("desk.condition")}</th>
+          <th scope="col" class="is-word">{t("desk.condition")}</th>
           <th scope="col">{t("desk.count")}</th>
           <th scope="col">{t("desk.meanTime")}</th>
         </tr>
@@ -34,7 +34,7 @@ function Means({ state }: { state: ExperimenterState }) {
       <tbody>
         {means.map((each) => (
           <tr key={each.condition}>
-            <th scope="row">{each.condition}</th>
+            <th scope="row" class="is-word">{each.condition}</th>
             <td>{each.count}</td>
             <td>{each.meanS === null ? "–" : number(each.meanS, 2)}</td>
           </tr>
@@ -57,26 +57,26 @@ export function TrialTable({ state }: { state: ExperimenterState }) {
             <thead>
               <tr>
                 <th scope="col">{t("desk.number")}</th>
-                <th scope="col">{t("desk.condition")}</th>
+                <th scope="col" class="is-word">{t("desk.condition")}</th>
                 <th scope="col">{t("desk.rep")}</th>
                 <th scope="col">{t("desk.time")}</th>
                 <th scope="col">{t("desk.collisions")}</th>
                 <th scope="col">{t("desk.peak")}</th>
                 {hasAnswers ? <th scope="col">{t("desk.answer")}</th> : null}
-                <th scope="col">{t("run.result")}</th>
+                <th scope="col" class="is-word">{t("run.result")}</th>
               </tr>
             </thead>
             <tbody>
               {[...state.done].reverse().map((trial) => (
                 <tr key={trial.trial}>
                   <td>{trial.trial}</td>
-                  <th scope="row">{trial.condition}</th>
+                  <th scope="row" class="is-word">{trial.condition}</th>
                   <td>{trial.repetition}</td>
                   <td>{trial.time_s === null ? "–" : number(trial.time_s, 2)}</td>
                   <td>{trial.collisions ?? "–"}</td>
                   <td>{trial.peak_force_n === null ? "–" : figures(trial.peak_force_n)}</td>
                   {hasAnswers ? <td>{answerText(trial)}</td> : null}
-                  <td>
+                  <td class="is-word">
                     <Outcome trial={trial} />
                   </td>
                 </tr>
