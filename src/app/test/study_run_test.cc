@@ -34,8 +34,9 @@ TEST_F(StudyRunTest, XiaGivesTheSameAgainAndDeletesAParticipant) {
   // What paper X found: contact alone takes the longest.
   EXPECT_GT(json["conditions"][0]["mean_time_s"], json["conditions"][1]["mean_time_s"]);
   EXPECT_GT(json["conditions"][0]["mean_time_s"], json["conditions"][2]["mean_time_s"]);
-  RunHvasJson({"study", "run", "xia-2011", "--simulated", "2", "--records", "none", "--threads",
-               "1", "-o", Folder("two"), "--json"});
+  const auto again = RunHvasJson({"study", "run", "xia-2011", "--simulated", "2", "--records",
+                                  "none", "--threads", "1", "-o", Folder("two"), "--json"});
+  EXPECT_EQ(again["conditions"], json["conditions"]);
   for (const char* file : {"participants/P01.jsonl", "participants/P02.jsonl", "trials.csv",
                            "answers.csv", "report.html", "study.json"}) {
     const std::string one = ReadText(scratch_ / "one" / file);

@@ -114,6 +114,13 @@ class StudyDeskTest : public ::testing::Test {
                                : reply["error"]["message"].get<std::string>();
   }
 
+  /** Of the trial on the bench [s]. */
+  void AwaitElapsed(double seconds) {
+    for (int i = 0; i < 6000 && bench_.trial()->watch().elapsed_s() < seconds; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+
   std::string Phase() {
     return desk_->MakeState(Role::kOperator, now_ns_)["phase"].get<std::string>();
   }
@@ -161,6 +168,7 @@ TEST_F(StudyDeskTest, ConstraintsArePickedAndTheTrialIsDone) {  // W8: A1
   PumpUntil("trial_begun");
   EXPECT_EQ(desk_->MakeState(Role::kParticipant, now_ns_)["method"], "picking");
   EXPECT_FALSE(desk_->CheckTake());
+  AwaitElapsed(0.01);
   const auto scene = bench_.scene();
   const Json wrong = Ask(participant_, {{"action", "pick"},
                                         {"a", {{"occurrence", 0}, {"face", 0}}},
@@ -246,9 +254,7 @@ TEST_F(StudyDeskTest, TimesOutByTheTickClockAndAbortsCountForNothing) {
   PumpUntil("trial_over");
   Do(participant_, {{"action", "ready"}});  // a trial of one second
   PumpUntil("trial_begun");
-  for (int i = 0; i < 600 && bench_.trial()->watch().elapsed_s() < 1; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
+  AwaitElapsed(1);
   hub_.PublishStatus();
   PumpUntil("trial_over");
   const Json done = desk_->MakeState(Role::kOperator, now_ns_)["done"];
@@ -256,6 +262,24 @@ TEST_F(StudyDeskTest, TimesOutByTheTickClockAndAbortsCountForNothing) {
   EXPECT_EQ(done[0]["outcome"], "not_done");
   EXPECT_EQ(done[1]["outcome"], "timed_out");
   EXPECT_DOUBLE_EQ(done[1]["time_s"].get<double>(), 1);
+}
+
+TEST_F(StudyDeskTest, PartInItsPlaceEndsTheTrialAndLeavesItsRecord) {
+  Open(true);  // the simulated person works
+  BeginTrials();
+  Do(participant_, {{"action", "ready"}});
+  PumpUntil("trial_begun");
+  Do(experimenter_, {{"action", "next"}});
+  PumpUntil("trial_over");
+  ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
+  PumpUntil("trial_over");
+  EXPECT_EQ(Phase(), "question");
+  const Json done = desk_->MakeState(Role::kOperator, now_ns_)["done"][1];
+  EXPECT_EQ(done["outcome"], "done");
+  EXPECT_GT(done["time_s"].get<double>(), 1);
+  EXPECT_LT(done["time_s"].get<double>(), 30);
+  EXPECT_TRUE(
+      std::filesystem::exists(scratch_.path() / "study" / "records" / "P01" / "002.hvasrec"));
 }
 
 TEST_F(StudyDeskTest, GoesOnAfterTheProgramHasEnded) {
