@@ -327,9 +327,10 @@ bool StudyDesk::OnBench(const Json& event, std::int64_t /*now_ns*/) {
     return true;
   }
   if (name == "state" || name == "taken" || name == "dropped") {
-    hold_ = name == "dropped" ? "" : event.value("state", "");
+    const auto state = static_cast<haptics::HoldState>(event.value("state", 0));
     const bool is_part = part_ && event.value("occurrence", -1) == static_cast<int>(part_->value());
-    if (trial_ != nullptr && is_part && hold_ == "seated") {
+    hold_ = name == "dropped" ? "" : haptics::ToString(state);
+    if (trial_ != nullptr && is_part && name != "dropped" && state == haptics::HoldState::kSeated) {
       EndOnBench(Outcome::kDone);
     }
     return true;
