@@ -238,7 +238,10 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     const bool is_stuck =
         is_left_behind || (speed < kStillSpeed && (is_careful || IsPressing(input)));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
-    if (stuck_time_s_ > (is_careful && is_inside ? kRockingTime : kStuckBeforeSearch)) {
+    if (input.sees_part && seen_travel < -kStandOff) {
+      StartSearch(d, travel, false);  // Beyond its place, where nothing stops it: it was missed.
+      back_off_to_ = task_.engage_distance + kStandOff;
+    } else if (stuck_time_s_ > (is_careful && is_inside ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
     } else if (is_careful && is_inside) {
       YieldToTouch(d);

@@ -303,5 +303,19 @@ TEST(SimulationTest, FramesShowEveryPartWhereItIs) {
   EXPECT_EQ(frame.X_WB[1].p(), hand.out.X_WD.p());
 }
 
+TEST(SessionTest, WhoMissesWhereNothingStopsThePartLooksAndComesAgain) {  // X14: constraint only
+  haptics::TickOptions options;
+  options.condition = haptics::Condition::kConstraint;
+  options.guidance.capture.axis_distance = 3e-3;
+  PersonOptions hasty;
+  hasty.carry_speed *= 1.5;
+  hasty.aim_error *= 4;
+  constexpr std::uint64_t kMissesAtFirst = 5;
+  Session session(testing::PegInBlockModel(), kMissesAtFirst, options, hasty);
+  (void)RunLockstep(session.MakeExecution(kLimit_s));
+  EXPECT_EQ(session.simulation.placement(testing::OccurrenceId(1)), Placement::kPlaced);
+  EXPECT_GT(session.person.searches(), 0);
+}
+
 }  // namespace
 }  // namespace hvas::simulation
