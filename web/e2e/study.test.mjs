@@ -267,6 +267,25 @@ describe("a participant", () => {
   }));
 });
 
+describe("a viewer", () => {
+  it("sees what the participant sees, and can do nothing", withMockStudy(async (study) => {
+    const [desk, person] = [study.join(study.operator), study.join(study.participant)];
+    await desk.do("begin");
+    const { page } = await openQuietPage(study.viewer);
+    await page.getByTestId("page-consent").waitFor();
+    await page.getByText("You are watching").waitFor();
+    assert.ok(await page.getByTestId("consent-agree").isDisabled());
+    assert.equal(await page.getByTestId("consent-begin").getAttribute("aria-disabled"), "true");
+    await person.do("consent", { agreed: true, language: "en" });
+    await desk.do("ready");
+    await page.getByTestId("task-time").waitFor();
+    await waitForPicture(page);
+    await assertTellsNothing(page);
+    await look(page, "viewer");
+    await page.context().close();
+  }));
+});
+
 describe("the experimenter", () => {
   it("sees all of a session, writes notes, aborts for a reason, and goes on", withMockStudy(async (study) => {
     const { desk, person, complaints } = await openAsExperimenter(study);

@@ -99,12 +99,18 @@ describe("what is in sight", () => {
     expect(study.experimenter.value?.fit).toBe("H7/g6");
   });
 
-  it("has not begun before its clock runs, but where the time is hidden that is not known", () => {
+  it("has not begun before its clock runs, or where the time is hidden before its scene is there", () => {
+    const scene = (epoch: number) => (store.live.scene.value = { epoch, steps: [], occurrences: [] } as never);
+    scene(4);
+    study.take(told);
     study.take({ ...running, elapsed_s: null });
     expect(study.isLive.value).toBe(false);
     study.take(running);
     expect(study.isLive.value).toBe(true);
+    study.take(told);
     study.take({ ...running, elapsed_s: null, limit_s: null });
+    expect(study.isLive.value).toBe(false);
+    scene(5);
     expect(study.isLive.value).toBe(true);
   });
 });

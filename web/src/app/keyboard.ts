@@ -94,7 +94,7 @@ function escape(): void {
 
 /** In a study there is the hand, and the way out; no view, tool or help that others did not have. */
 function onParticipantKey(event: KeyboardEvent): void {
-  const { isTask, state } = studio.study;
+  const { isPicking, isTask, state } = studio.study;
   if (event.key === "Escape") {
     forcesOff();
     return;
@@ -105,7 +105,7 @@ function onParticipantKey(event: KeyboardEvent): void {
   }
   const wanted = state.value?.occurrence ?? null;
   const key = event.key.toLowerCase();
-  if (key === "g" && wanted !== null) {
+  if (key === "g" && wanted !== null && !isPicking.value) {
     void viewport.value?.hand.take(wanted);
   } else if (key === "r" && store.held.value.length > 0) {
     viewport.value?.hand.release();

@@ -51,10 +51,14 @@ export class StudyModel {
     }
     return state.phase === "done" ? 1 : Math.min(1, Math.max(0, (state.trial - 1) / state.trials));
   });
-  /** The trial at hand has been laid out, and its clock runs; where the time is hidden it is not told. */
+  /** The trial at hand has been laid out, and its clock runs. Where the time is hidden, its own scene tells. */
   readonly isLive = computed(() => {
     const state = this.state.value;
-    return isTask(state) && (state?.limit_s === null || state?.elapsed_s !== null);
+    if (state === null || !isTask(state)) {
+      return false;
+    }
+    const hasNewScene = (this.store.scene.value?.epoch ?? null) !== this.epochBefore.value;
+    return state.limit_s === null ? hasNewScene : state.elapsed_s !== null;
   });
   /** That the participant chose before the consent; null: none yet. */
   readonly chosenLanguage = signal<string | null>(null);
@@ -69,6 +73,8 @@ export class StudyModel {
   });
   /** When this page was told of a note, by its number, on the wall clock. */
   readonly noteTimes = new Map<number, number>();
+  /** Of the scene before the trial. */
+  private readonly epochBefore = signal<number | null>(null);
   private toldMs = 0;
 
   /** @param spoken  Tags of the languages that the browser's user prefers. */
@@ -88,6 +94,9 @@ export class StudyModel {
       for (let k = before.notes.length; k < state.notes.length; k++) {
         this.noteTimes.set(k, Date.now());
       }
+    }
+    if (!isTask(state)) {
+      this.epochBefore.value = this.store.scene.peek()?.epoch ?? null;
     }
     this.toldMs = nowMs;
     this.store.study.value = state;

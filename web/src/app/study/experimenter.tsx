@@ -16,6 +16,8 @@ import "./experimenter.css";
 
 const kTimeMs = 200;
 
+const isOver = (state: ExperimenterState) => state.phase === "done" || state.phase === "declined";
+
 function CopyLink({ link }: { link: string | null | undefined }) {
   if (!link) {
     return <p class="quiet">{t("desk.noLink")}</p>;
@@ -153,8 +155,7 @@ function Controls({ state }: { state: ExperimenterState }) {
     declined: null,
     done: null,
   }[state.phase];
-  const isOver = state.phase === "done" || state.phase === "declined";
-  const mayAbort = !isOver && state.phase !== "paused" && state.phase !== "waiting";
+  const mayAbort = !isOver(state) && state.phase !== "paused" && state.phase !== "waiting";
   return (
     <div class="desk-controls">
       {state.phase === "paused" && state.reason !== null ? (
@@ -163,8 +164,8 @@ function Controls({ state }: { state: ExperimenterState }) {
         </p>
       ) : null}
       {isOpening ? <p class="quiet">{t("desk.opening")}</p> : null}
-      {main === null && !isOver ? <p class="quiet">{t("desk.participantsTurn")}</p> : null}
-      {isOver ? <p>{t(state.phase === "done" ? "desk.isDone" : "desk.isDeclined", { folder: state.folder })}</p> : null}
+      {main === null && !isOver(state) ? <p class="quiet">{t("desk.participantsTurn")}</p> : null}
+      {isOver(state) ? <p>{t(state.phase === "done" ? "desk.isDone" : "desk.isDeclined", { folder: state.folder })}</p> : null}
       <p class="desk-buttons">
         {main === null ? null : (
           <button
@@ -197,7 +198,7 @@ export default function Experimenter() {
     <aside class="desk" aria-label={t("desk.title")} data-testid="desk">
       <Head state={state} />
       <Controls state={state} />
-      <Now state={state} />
+      {isOver(state) ? null : <Now state={state} />}
       <Notes state={state} />
       <TrialTable state={state} />
       <Answers state={state} />
