@@ -17,6 +17,7 @@ namespace hvas::study {
 namespace {
 
 constexpr std::uint64_t kSkillStream = 101;
+constexpr double kMedianSpeed = 0.85;
 constexpr int kObserverTraining = 60;  // insertions of each fit
 
 /** Lognormal about a median. @param sigma  Of the logarithm. */
@@ -30,7 +31,8 @@ Skill DrawSkill(int participant, std::uint64_t seed) {
   Random random(MixSeed(seed, kSkillStream, static_cast<std::uint64_t>(participant)));
   Skill skill;
   skill.reaction_s = Vary(skill.reaction_s, 0.2, &random);
-  skill.speed = Vary(1, 0.2, &random);
+  skill.speed = std::min(1.0, Vary(kMedianSpeed, 0.15, &random));
+  skill.mouse = Vary(1, 0.2, &random);
   skill.aim = Vary(1, 0.3, &random);
   skill.tremor = Vary(1, 0.3, &random);
   skill.weber = std::min(0.3, Vary(skill.weber, 0.3, &random));
@@ -40,7 +42,7 @@ Skill DrawSkill(int participant, std::uint64_t seed) {
 
 simulation::PersonOptions MakePerson(const Skill& skill, Random* random) {
   simulation::PersonOptions person;
-  const double speed = skill.speed * Vary(1, 0.1, random);
+  const double speed = std::min(1.0, skill.speed * Vary(1, 0.1, random));
   person.carry_speed *= speed;
   person.approach_speed *= speed;
   person.insert_speed *= speed;
@@ -66,7 +68,7 @@ double DrawPickingTime(int constraints, const Skill& skill, Random* random) {
       time += Vary(operation, kSigma, random);
     }
   }
-  return skill.reaction_s + time / skill.speed;
+  return skill.reaction_s + time * skill.mouse;
 }
 
 void ApplyCondition(const Condition& condition, haptics::TickOptions* tick) {

@@ -22,11 +22,14 @@ namespace hvas::study {
 /** How one simulated participant differs from another. Factors are lognormal about 1. */
 struct Skill {
   double reaction_s{0.4};  ///< Before a trial's first motion [s].
-  double speed{1};         ///< Factor of all speeds of the arm; of all times with the mouse, too.
-  double aim{1};           ///< Factor of where the hand and the eye err.
-  double tremor{1};        ///< Factor.
-  double weber{0.10};      ///< Just noticeable difference of a force, as a part of it.
-  double threshold{0.1};   ///< Least force that is perceived [N].
+  /** Factor of all speeds of the arm. No more than 1: faster, the part would lag behind the hand by
+   more than the coupling bears, and the arm learns that lag as if it were weight. */
+  double speed{1};
+  double mouse{1};        ///< Factor of all times with the mouse.
+  double aim{1};          ///< Factor of where the hand and the eye err.
+  double tremor{1};       ///< Factor.
+  double weber{0.10};     ///< Just noticeable difference of a force, as a part of it.
+  double threshold{0.1};  ///< Least force that is perceived [N].
 };
 
 /** The skill of a participant. The same number and seed give the same. */

@@ -167,7 +167,8 @@ TEST(Skill, DiffersBetweenParticipantsAndIsTheSameAgain) {
   EXPECT_NE(DrawSkill(3, 1).speed, DrawSkill(3, 2).speed);
   double mean = 0;
   for (int i = 1; i <= 999; ++i) {
-    mean += std::log(DrawSkill(i, 1).speed) / 999;
+    EXPECT_LE(DrawSkill(i, 1).speed, 1);
+    mean += std::log(DrawSkill(i, 1).mouse) / 999;
   }
   EXPECT_NEAR(mean, 0, 0.03);  // of a standard error of 0.2 / sqrt(999)
 }
