@@ -69,14 +69,14 @@ export class PartLooks {
     const held = store.heldBy.value;
     const apart = view.apart.value;
     const expected = apart === null ? store.expected.value : (takingApart(store.scene.value?.steps ?? [])[apart] ?? null);
-    const isWanted = expected !== null && (apart !== null || (store.hasLease.value && held.size === 0));
+    // In a study the part is told by its mark alone.
+    const isStudied = store.study.value !== null;
+    const isWanted = expected !== null && (apart !== null || ((isStudied || store.hasLease.value) && held.size === 0));
     const wanted = new Set(isWanted ? [expected.occurrence, ...expected.members] : []);
     if (palette === null) {
       return null;
     }
     const left = this.pulseUntil - performance.now();
-    // In a study the part is told by its mark alone.
-    const isStudied = store.study.value !== null;
     const steady = isStudied ? 0.6 : 0.3;
     const beat = left > 0 && !view.isCalm.value ? steady + 0.22 * Math.sin(left / 160) : steady;
     const tintOf = (id: number): Pick<PartLook, "tint" | "amount"> => {
