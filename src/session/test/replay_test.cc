@@ -92,7 +92,7 @@ std::int64_t RecordStretches(const std::filesystem::path& file) {
       stretch.run.Resume(1);
     }
     sink.Begin(stretch.simulation.get());
-    const auto ran = RunLockstep(stretch.MakeExecution(5));
+    const auto ran = RunLockstep(stretch.MakeExecution(3));
     ticks += static_cast<std::int64_t>(ran.ticks * hands);
     parts = stretch.simulation->parts();
   }
