@@ -90,6 +90,17 @@ export class SceneView {
     return this.parts?.corners(only === undefined ? undefined : new Set(only)) ?? [];
   }
 
+  /** Of what is to be seen at first: in a study also the place of the part at hand. */
+  firstOutline(): Vector3[] {
+    const box = this.boxes.get(this.store.study.peek()?.occurrence ?? -1);
+    if (box === undefined) {
+      return this.outline();
+    }
+    const [low, high] = [new Vector3(...box.low), new Vector3(...box.high)];
+    const at = (k: number) => new Vector3(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z);
+    return [...this.outline(), ...Array.from({ length: 8 }, (_, k) => at(k))];
+  }
+
   /** How far out a part has to be to be clear of all that is in its place already [m]. */
   clearance(step: Step): number {
     const placed = [...this.boxes.keys()].filter((id) => this.store.placements.peek().get(id) === "placed");

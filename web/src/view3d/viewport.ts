@@ -177,7 +177,7 @@ export class Viewport {
   /** As the product is seen at first. */
   lookAnew(): void {
     if (this.product.scene !== null) {
-      this.rig.lookFrom(firstDirection(this.product.scene), this.product.outline(), false);
+      this.rig.lookFrom(firstDirection(this.product.scene), this.product.firstOutline(), false);
       this.invalidate();
     }
   }
@@ -245,7 +245,7 @@ export class Viewport {
     if (this.pendingView !== null) {
       this.show(this.pendingView);
     } else if (isNew) {
-      this.rig.lookFrom(firstDirection(scene), this.product.outline(), false);
+      this.rig.lookFrom(firstDirection(scene), this.product.firstOutline(), false);
     }
     this.hand.stop();
   }
