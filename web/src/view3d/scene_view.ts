@@ -1,6 +1,6 @@
 /** The product in the view: loads it, puts parts where the frames say, and shows what is marked. */
 
-import { effect } from "@preact/signals";
+import { effect, untracked } from "@preact/signals";
 import { Group, Quaternion, Ray, Sphere, Vector3 } from "three";
 import { clearanceOf, type Box } from "../model/explode";
 import { Extrapolator } from "../model/extrapolate";
@@ -53,7 +53,11 @@ export class SceneView {
     this.looks = new PartLooks(store, view);
     this.explode = new ExplodeLayer(view);
     this.root.add(...this.feels.map((feel) => feel.root), this.marks.root, this.explode.lines);
-    effect(() => void this.load(store.scene.value));
+    // Only a new scene: what loading reads besides would load it again, and take the part out of the hand.
+    effect(() => {
+      const scene = store.scene.value;
+      void untracked(() => this.load(scene));
+    });
     effect(() => this.applyLooks());
     effect(() => this.applySection());
     effect(() => {
