@@ -51,10 +51,12 @@ Json MakeSummaryJson(const StudyFolder& folder, const std::vector<Participant>& 
   Json conditions = Json::array();
   const Protocol& protocol = folder.protocol();
   for (const study::ConditionTimes& times : study::SummariseTimes(protocol, participants)) {
-    Json one{{"condition", protocol.conditions[times.condition].id},
-             {"trials", times.trials},
-             {"done", times.done},
-             {"mean_time_s", times.done > 0 ? Json(times.mean) : Json(nullptr)}};
+    Json one{
+        {"condition", protocol.conditions[times.condition].id},
+        {"trials", times.trials},
+        {"done", times.done},
+        {"mean_time_s", times.done > 0 ? Json(times.mean) : Json(nullptr)},
+        {"restricted_mean_time_s", times.trials > 0 ? Json(times.restricted_mean) : Json(nullptr)}};
     const auto published = protocol.conditions[times.condition].published_mean;
     one["published_mean_s"] = published ? Json(*published) : Json(nullptr);
     conditions.push_back(std::move(one));
@@ -82,14 +84,16 @@ void PrintSummary(const StudyFolder& folder, const std::vector<Participant>& par
   if (is_simulated) {
     fmt::print("{}\n", kSimulated);
   }
-  fmt::print("\n{:<14}{:>8}{:>8}{:>14}{:>16}\n", "condition", "trials", "done", "mean time [s]",
-             "published [s]");
+  fmt::print("\n{:<14}{:>8}{:>8}{:>18}{:>18}{:>16}\n", "condition", "trials", "done",
+             "mean of done [s]", "mean of all* [s]", "published [s]");
   for (const study::ConditionTimes& times : study::SummariseTimes(protocol, participants)) {
     const study::Condition& condition = protocol.conditions[times.condition];
-    fmt::print("{:<14}{:>8}{:>8}{:>14}{:>16}\n", condition.id, times.trials, times.done,
+    fmt::print("{:<14}{:>8}{:>8}{:>18}{:>18}{:>16}\n", condition.id, times.trials, times.done,
                times.done > 0 ? fmt::format("{:.2f}", times.mean) : "-",
+               times.trials > 0 ? fmt::format("{:.2f}", times.restricted_mean) : "-",
                condition.published_mean ? fmt::format("{:.2f}", *condition.published_mean) : "-");
   }
+  fmt::print("* those that were not done with their time limit\n");
 }
 
 Result<void> WriteStudyPage(const StudyFolder& folder, const std::vector<Participant>& participants,

@@ -158,18 +158,22 @@ class StudyPage {
   [[nodiscard]] std::string MakeTimes() const {
     const std::vector<ConditionTimes> times = SummariseTimes(protocol_, participants_);
     std::string html = fmt::format(
-        "<section><h2>Mean times</h2><p>Of all trials that were done, {}; from the first tick of a "
-        "trial to the one in which the part is in its place.</p>"
+        "<section><h2>Mean times</h2><p>From the first tick of a trial to the one in which the "
+        "part "
+        "is in its place, {}: of all trials that were done; and of all trials, with the time limit "
+        "for those that were not.</p>"
         "<div class=\"scroll\"><table><thead><tr><th class=\"l\">condition</th><th>trials</th>"
-        "<th>done</th><th>mean, {} [s]</th><th>published, people [s]</th></tr></thead><tbody>",
+        "<th>done</th><th>mean of done, {} [s]</th><th>mean of all [s]</th><th>published, people "
+        "[s]</th></tr></thead><tbody>",
         Whose(), Whose());
     std::vector<ConditionTimes> both;
     for (const ConditionTimes& one : times) {
       const auto& published = protocol_.conditions[one.condition].published_mean;
       html += fmt::format(
-          "<tr><td class=\"l\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+          "<tr><td class=\"l\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
           protocol_.conditions[one.condition].id, one.trials, one.done,
           one.done > 0 ? fmt::format("{:.2f}", one.mean) : "-",
+          one.trials > 0 ? fmt::format("{:.2f}", one.restricted_mean) : "-",
           published ? fmt::format("{:g}", *published) : "not printed");
       if (one.done > 0 && published) {
         both.push_back(one);
@@ -177,11 +181,12 @@ class StudyPage {
     }
     html += "</tbody></table></div>";
     if (both.size() > 1) {
-      const std::string here = OrderBy(both, [](const auto& t) { return t.mean; });
+      const std::string here = OrderBy(both, [](const auto& t) { return t.restricted_mean; });
       const std::string there = OrderBy(both, [&](const auto& t) { return PublishedOf(t); });
       html += fmt::format(
-          "<p class=\"verdict\">Order here ({}): {}. Order published: {}. {}</p>", Whose(), here,
-          there, here == there ? "They are the same." : "They are <strong>not</strong> the same.");
+          "<p class=\"verdict\">Order here ({}, of all): {}. Order published: {}. {}</p>", Whose(),
+          here, there,
+          here == there ? "They are the same." : "They are <strong>not</strong> the same.");
       html += MakePercents(both);
     }
     return html + "</section>";
@@ -195,11 +200,11 @@ class StudyPage {
     std::string html = "<ul>";
     for (const ConditionTimes& one : both) {
       if (one.condition != fastest.condition) {
-        html +=
-            fmt::format("<li>{} below {}: {:.1f} % here, {:.1f} % published.</li>",
-                        protocol_.conditions[fastest.condition].id,
-                        protocol_.conditions[one.condition].id, 100 * (1 - fastest.mean / one.mean),
-                        100 * (1 - PublishedOf(fastest) / PublishedOf(one)));
+        html += fmt::format("<li>{} below {}: {:.1f} % here, {:.1f} % published.</li>",
+                            protocol_.conditions[fastest.condition].id,
+                            protocol_.conditions[one.condition].id,
+                            100 * (1 - fastest.restricted_mean / one.restricted_mean),
+                            100 * (1 - PublishedOf(fastest) / PublishedOf(one)));
       }
     }
     return html + "</ul>";

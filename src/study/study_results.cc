@@ -74,6 +74,9 @@ std::vector<ConditionTimes> SummariseTimes(const Protocol& protocol,
         if (done.result.outcome == Outcome::kDone && done.result.time) {
           ++times.done;
           times.mean += *done.result.time;
+          times.restricted_mean += *done.result.time;
+        } else {
+          times.restricted_mean += protocol.conditions[planned.condition].time_limit;
         }
       });
     }
@@ -83,6 +86,7 @@ std::vector<ConditionTimes> SummariseTimes(const Protocol& protocol,
     if (is_timed[c]) {
       all[c].condition = c;
       all[c].mean /= static_cast<double>(std::max<std::size_t>(1, all[c].done));
+      all[c].restricted_mean /= static_cast<double>(std::max<std::size_t>(1, all[c].trials));
       timed.push_back(all[c]);
     }
   }

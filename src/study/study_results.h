@@ -15,6 +15,9 @@ struct ConditionTimes {
   std::size_t trials{0};     ///< That are over.
   std::size_t done{0};       ///< Of these, with the part in its place: those of the mean.
   double mean{0};            ///< [s]
+  /** With those that were not done as if they had ended at their time limit: the restricted mean of
+   survival analysis. Without it a condition that few get through would look quick. [s] */
+  double restricted_mean{0};
 };
 
 /** Of the conditions that have trials planned in such blocks, in the protocol's order. */
