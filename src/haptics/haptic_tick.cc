@@ -511,7 +511,7 @@ bool HapticTick::HasArrived() noexcept {
   const double angle = spatial::RotationBetween(X_WD_.q(), part_->X_WB_goal.q()).norm();
   leaves_place_ = leaves_place_ && d.norm() < kLeaveFactor * guidance.loose_seat_distance &&
                   angle < kLeaveFactor * guidance.seat_angle;
-  if (leaves_place_) {
+  if (leaves_place_ || IsDrawnOut()) {
     return false;
   }
   if (d.norm() > guidance.loose_seat_distance || angle > guidance.seat_angle) {
@@ -535,6 +535,13 @@ bool HapticTick::HasArrived() noexcept {
     }
   }
   return true;
+}
+
+bool HapticTick::IsDrawnOut() const noexcept {
+  const Vec3& p_BoBcm_B = part_->p_BoBcm_B;
+  const Vec3 lead = tracked_.X_WT * p_BoBcm_B - part_->X_WB_goal * p_BoBcm_B;
+  return part_->starts_in_place &&
+         lead.dot(part_->insertion_W) < -options_.guidance.loose_seat_distance;
 }
 
 void HapticTick::UpdateState() noexcept {

@@ -203,6 +203,9 @@ class HapticTick {
   void MoveFreeBodies() noexcept;
   void UpdateState() noexcept;
   [[nodiscard]] bool HasArrived() noexcept;
+  /** Was taken up in its place, and the hand leads it outwards: it may bounce there, and comes home
+   only with a hand that brings it. */
+  [[nodiscard]] bool IsDrawnOut() const noexcept;
   [[nodiscard]] spatial::Pose CalcSeatPose(double progress) const noexcept;
   void MoveIntoPlace(TickOutput* out) noexcept;
   [[nodiscard]] spatial::Wrench CalcCouplingWrench(const Tracked& tracked) const noexcept;

@@ -10,7 +10,6 @@ import {
   insertByMouse,
   launchBrowser,
   openPage,
-  takeOutByMouse,
   takePicture,
   waitForPicture,
   waitForPlacement,
@@ -89,11 +88,6 @@ describe("the hand", () => {
     await page.locator('[data-testid="button-redo"]:not([disabled]):not([aria-disabled="true"])').waitFor();
     await page.keyboard.press("Control+Shift+z");
     await waitForPlacement(page, last, "placed");
-    await takeOutByMouse(page, last, scene.occurrences[last].goal.p);
-    await takePicture(page, "taken_out");
-    await page.mouse.up();
-    await page.keyboard.press("r");
-    await waitForPlacement(page, last, "loose");
     assert.deepEqual(complaints, []);
     await page.context().close();
   }));

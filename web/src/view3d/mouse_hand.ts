@@ -33,7 +33,6 @@ const kHoldOnPx = 60;
 const kFastest = 0.4;
 const kSlowest = 0.12;
 const kCaptured = 3;
-const kMating = 4;
 /** A free part may be further behind: what is known of it is some time old [m]. */
 const kFreeLeash = 0.08;
 /** From this share of the way in outwards the hand may cross over to it. */
@@ -222,10 +221,6 @@ export class MouseHand {
   }
 
   private wantedPlace(hold: Hold, live: HandState | null, eye: Eye): Vec3 {
-    if (this.assists && isEngaged(hold, live)) {
-      hold.isCaught = true; // a shaft in its bore goes along it, wherever the pointer leads it
-      return pointAtLine(eye.rayTo(hold.free.p), hold.way!).p;
-    }
     const line = this.assists ? this.guide(hold, live) : null;
     if (line === null) {
       hold.isCaught = false;
@@ -253,16 +248,6 @@ export class MouseHand {
     const length = 2 * hold.part.radius;
     return { p: hold.sent.p, d, low: -length, high: length };
   }
-}
-
-function isEngaged(hold: Hold, live: HandState | null): boolean {
-  return (
-    hold.way !== null &&
-    live !== null &&
-    live.state === kMating &&
-    live.depth_m > 0 &&
-    Math.abs(dot(unit(toVec3(live.axis_W)), hold.way.d)) > 0.9
-  );
 }
 
 function offLine(p: Vec3, line: Line): number {
