@@ -23,7 +23,6 @@ class StraightHand final : public Operator {
 
   device::DeviceState Step(const OperatorInput& input) noexcept override {
     t_ = t_ < 0 ? 0 : t_ + input.dt;
-    pull_ = std::max(pull_, -input.F_H_D.f.z());
     device::DeviceState state;
     state.t_ns = input.t_ns;
     state.is_valid = true;
@@ -36,29 +35,23 @@ class StraightHand final : public Operator {
 
   [[nodiscard]] bool is_done() const { return t_ > kRest + kMove + 2 * kRest; }
 
-  /** The most that it was held back with [N]. */
-  [[nodiscard]] double pull() const { return pull_; }
-
  private:
   static constexpr double kRest = 0.4;  // [s]
   static constexpr double kMove = 2.0;  // [s]
   Vec3 p_from_;
   Vec3 p_to_;
   double t_{-1};
-  double pull_{0};
 };
 
 class TakeOutTest : public ::testing::Test {
  protected:
-  explicit TakeOutTest(std::shared_ptr<const Model> model = testing::PegInBlockModel())
-      : session_(std::move(model)) {
+  TakeOutTest() : session_(testing::PegInBlockModel()) {
     (void)RunLockstep(session_.MakeExecution(60));
     EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kPlaced);
   }
 
-  /** The next run goes on where this one is, with a hand that takes the peg out along `way`.
-   @returns the most that the hand was held back with along z [N]. */
-  double Pull(const Vec3& way, AssemblyRun* run) {
+  /** Goes on where the run is, with a hand that takes the peg out along `way`. */
+  void Pull(const Vec3& way, AssemblyRun* run) {
     Simulation& simulation = session_.simulation;
     SequenceStep step = StepOfPeg();
     step.kind = SequenceStep::Kind::kRemove;
@@ -69,7 +62,6 @@ class TakeOutTest : public ::testing::Test {
     Execution execution = run->MakeExecution(&hand, 10);
     execution.is_done = [&hand] { return hand.is_done(); };
     (void)RunLockstep(execution);
-    return hand.pull();
   }
 
   [[nodiscard]] const SequenceStep& StepOfPeg() const {
@@ -86,7 +78,7 @@ TEST_F(TakeOutTest, PegComesOutOfItsBoreAndItsStepIsToBeDoneAgain) {
   AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
   hands.Advance();
   const Pose before = pose();
-  (void)Pull(Vec3(0, 0, 60e-3), &hands);
+  Pull(Vec3(0, 0, 60e-3), &hands);
   EXPECT_GT(pose().p().z(), before.p().z() + 15e-3);  // it fell on the block
   EXPECT_LT(watch_.deepest, 0.2e-3);
   EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kLoose);
@@ -103,7 +95,7 @@ TEST_F(TakeOutTest, PegThatIsHeldAndLetGoIsWhereItWas) {
   AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
   hands.Advance();
   const Pose before = pose();
-  (void)Pull(Vec3(0, 0, 1e-3), &hands);
+  Pull(Vec3(0, 0, 1e-3), &hands);
   EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kPlaced);
   EXPECT_EQ((pose().p() - before.p()).norm(), 0);
 }
@@ -112,7 +104,7 @@ TEST_F(TakeOutTest, WallOfTheBoreHoldsThePegBackSideways) {
   AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
   hands.Advance();
   const Pose before = pose();
-  (void)Pull(Vec3(40e-3, 0, 0), &hands);
+  Pull(Vec3(40e-3, 0, 0), &hands);
   EXPECT_LT((pose().p() - before.p()).norm(), 1e-3);
   EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kPlaced);
 }
@@ -120,7 +112,7 @@ TEST_F(TakeOutTest, WallOfTheBoreHoldsThePegBackSideways) {
 TEST_F(TakeOutTest, PersonPutsItInAgain) {
   AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
   hands.Advance();
-  (void)Pull(Vec3(0, 30e-3, 60e-3), &hands);
+  Pull(Vec3(0, 30e-3, 60e-3), &hands);
   ASSERT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kLoose);
   AssemblyRun again(&session_.simulation, &session_.person, nullptr);
   again.Resume(hands.next_step());
