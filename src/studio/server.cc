@@ -606,6 +606,9 @@ class Server::Impl {
       return listening;
     }
     shared_->access = std::make_unique<Access>(options.names, port(), options.tls.has_value());
+    if (options.desk != nullptr) {
+      options.desk->SetParticipantLink("/#t=" + shared_->access->token(Role::kParticipant));
+    }
     Accept();
     Tick();
     thread_ = std::thread([this] { context_.run(); });

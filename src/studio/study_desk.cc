@@ -516,6 +516,7 @@ void StudyDesk::AddForExperimenter(Json* state) const {
   const Condition* condition = ConditionAtHand();
   Json& s = *state;
   s["participant"] = id_;
+  s["link"] = OrNull(participant_link_);
   s["is_resumed"] = is_resumed_;
   s["interruptions"] = session_.interruptions().size();
   s["protocol"] = protocol.id;

@@ -31,6 +31,9 @@ class StudyDesk {
   [[nodiscard]] static Result<std::unique_ptr<StudyDesk>> Open(study::StudyFolder folder,
                                                                Workbench* bench, Options options);
 
+  /** For the experimenter to pass on: from the page's "/" on. Before anybody has joined. */
+  void SetParticipantLink(std::string link) { participant_link_ = std::move(link); }
+
   /** Has the product opened; the session may begin once it is. */
   void Start();
 
@@ -81,6 +84,7 @@ class StudyDesk {
   study::Journal journal_;
   study::StudySession session_;
   std::string id_;
+  std::string participant_link_;
   bool is_resumed_{false};
   bool is_open_{false};  ///< The product is.
   std::string hold_;     ///< State of the held part; empty: none.

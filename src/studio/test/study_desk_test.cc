@@ -162,6 +162,14 @@ TEST_F(StudyDeskTest, EachLinkMayDoWhatIsItsOwn) {
   }
 }
 
+TEST_F(StudyDeskTest, ExperimenterAloneIsToldOfTheParticipantsLink) {
+  desk_->SetParticipantLink("/#t=secret");
+  EXPECT_EQ(desk_->MakeState(Role::kOperator, 0)["link"], "/#t=secret");
+  for (const Role role : {Role::kParticipant, Role::kViewer}) {
+    EXPECT_EQ(desk_->MakeState(role, 0).dump().find("secret"), std::string::npos);
+  }
+}
+
 TEST_F(StudyDeskTest, ConstraintsArePickedAndTheTrialIsDone) {  // W8: A1
   BeginTrials();
   ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
