@@ -106,7 +106,13 @@ void LiveRun::Take(std::size_t hand, const simulation::SequenceStep& step,
 
 void LiveRun::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
   const std::lock_guard lock(mutex_);
-  hands_[hand]->pointer().Move({MonotonicNs(), X_WH, is_gripping});
+  const PointerInput input{MonotonicNs(), X_WH, is_gripping};
+  if (tasks_.empty()) {
+    hands_[hand]->pointer().Move(input);
+    return;
+  }
+  // A hand that closed before the taking is prepared would take another part, or none.
+  tasks_.emplace_back([this, hand, input] { hands_[hand]->pointer().Move(input); });
 }
 
 LiveState LiveRun::state() const {

@@ -80,6 +80,7 @@ class WorkbenchTest : public ::testing::Test {
     ASSERT_TRUE(X_WH) << X_WH.error().ToString();
     X_WH_ = *X_WH;
     X_HB_ = X_WH_.Inverse() * X_WB_start_;
+    bench_.Move(hand_, X_WH_, true);  // as a client does that does not wait for the event
     ASSERT_TRUE(log_.Await(
         [&](const Json& event) {
           bench_.Move(hand_, X_WH_, true);
