@@ -546,7 +546,8 @@ void StudyDesk::AddForExperimenter(Json* state) const {
   }
   s["notes"] = Json::array();
   for (const study::Note& note : session_.notes()) {
-    s["notes"].push_back({{"text", note.text}, {"trial", note.trial + 1}});
+    s["notes"].push_back(
+        {{"text", note.text}, {"trial", note.trial + 1}, {"unix_ms", note.unix_ms}});
   }
   s["reason"] = session_.phase() == Phase::kPaused ? OrNull(last_abort_) : Json(nullptr);
 }

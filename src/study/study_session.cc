@@ -262,7 +262,7 @@ Result<void> StudySession::Apply(const StudyEvent& event) {
     case Kind::kAnswered:
       return ApplyAnswer(event);
     case Kind::kNote:
-      notes_.push_back({event.text, trial().value_or(0)});
+      notes_.push_back({event.text, trial().value_or(0), event.unix_ms});
       return {};
     case Kind::kAborted:
       if (now == Phase::kWaiting || now == Phase::kPaused || now == Phase::kDeclined ||

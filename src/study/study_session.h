@@ -86,7 +86,8 @@ struct GivenAnswer {
 
 struct Note {
   std::string text;
-  std::size_t trial{0};  ///< Index of the trial that was at hand.
+  std::size_t trial{0};     ///< Index of the trial that was at hand.
+  std::int64_t unix_ms{0};  ///< As StudyEvent's.
 };
 
 /** What is asked now. */

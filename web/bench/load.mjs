@@ -4,7 +4,7 @@
 // another one, which shows what the drawing alone takes of caches and cores. Figures are for docs/studio.md.
 import { performance } from "node:perf_hooks";
 import WebSocket from "ws";
-import { launchBrowser, openPage, startStudio, waitForPicture } from "../e2e/harness.mjs";
+import { launchBrowser, openPage, signIn, startStudio, waitForPicture } from "../e2e/harness.mjs";
 import { quantile } from "./quantile.mjs";
 
 const kRounds = 3;
@@ -26,13 +26,7 @@ class Hand {
   roundTripMs = [];
 
   static async join(studio) {
-    const token = new URL(studio.operator).hash.slice(3);
-    const reply = await fetch(`${studio.origin}/api/session`, {
-      method: "POST",
-      headers: { Origin: studio.origin, "Content-Type": "application/json" },
-      body: JSON.stringify({ token }),
-    });
-    const cookie = reply.headers.get("set-cookie").split(";")[0];
+    const { cookie } = await signIn(studio.operator);
     const hand = new Hand();
     hand.fetchScene = async () => (await fetch(`${studio.origin}/api/scene`, { headers: { Cookie: cookie } })).json();
     const url = `${studio.origin.replace("http", "ws")}/ws`;

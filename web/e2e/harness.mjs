@@ -24,17 +24,31 @@ export async function startStudio(args = []) {
     });
     child.on("exit", (code) => reject(new Error(`hvas studio ended with ${code}: ${said}`)));
   });
-  const [operator, viewer] = said.match(/http:\S+/g);
+  const links = said.match(/http:\S+/g);
+  const operator = links[0];
   const ended = new Promise((resolve) => child.removeAllListeners("exit").on("exit", resolve));
   return {
     operator,
-    viewer,
+    viewer: links.at(-1),
+    participant: links.length === 3 ? links[1] : null,  // of a study
     origin: new URL(operator).origin,
     stop: async () => {
       child.kill("SIGTERM");
       return ended;
     },
   };
+}
+
+/** With the token of a link, as its page does it; where, and the cookie that is worth as much. */
+export async function signIn(link) {
+  const { origin, hash } = new URL(link);
+  const answer = await fetch(`${origin}/api/session`, {
+    method: "POST",
+    headers: { "Content-Type": "application/json", Origin: origin },
+    body: JSON.stringify({ token: hash.slice("#t=".length) }),
+  });
+  assert.equal(answer.status, 200);
+  return { origin, cookie: answer.headers.get("set-cookie").split(";")[0] };
 }
 
 /** Runs a test with a studio, which ends with it. */

@@ -9,6 +9,7 @@ import {
   fetchScene,
   launchBrowser,
   openPage,
+  signIn,
   poseOf,
   stateOf,
   takeByMouse,
@@ -180,14 +181,7 @@ describe("what comes from elsewhere", () => {
   })));
 
   it("is refused by the server itself, with and without cookie", withStudio([kBushing], async (studio) => {
-    const token = new URL(studio.operator).hash.slice("#t=".length);
-    const session = await fetch(`${studio.origin}/api/session`, {
-      method: "POST",
-      headers: { "Content-Type": "application/json", Origin: studio.origin },
-      body: JSON.stringify({ token }),
-    });
-    assert.equal(session.status, 200);
-    const cookie = session.headers.get("set-cookie").split(";")[0];
+    const { cookie } = await signIn(studio.operator);
     const evil = "http://evil.example";
     const upload = (headers) =>
       fetch(`${studio.origin}/api/upload?name=a.step`, { method: "POST", headers, body: "x" }).then((r) => r.status);

@@ -2,12 +2,12 @@
 // three trials. Whoever is not looked at is there without a page: two pictures are too much for a slow machine.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
-import { findBarriers, launchBrowser, openPage, takePicture, waitForPicture, waitForState } from "./harness.mjs";
+import { findBarriers, launchBrowser, takePicture, waitForPicture, waitForState } from "./harness.mjs";
 import { withMockStudy } from "./study_mock.mjs";
+import { agree, clickPart, kPatient, openQuietPage, press, startTrial } from "./study_steps.mjs";
 
 const kShaft = 2;
 const kTablet = { width: 834, height: 1112 };
-const kPatient = 60_000;
 /** What a fit or a condition is called; none of it may ever be in a participant's page. */
 const kSecrets = /H7\/|\b(A1|B1|B2)\b|Clearance|Interference|µm|seed/;
 
@@ -17,22 +17,16 @@ before(async () => {
 });
 after(() => browser.close());
 
-async function openQuietPage(link, options = {}) {
-  const opened = await openPage(browser, link, { bypassCSP: true, colorScheme: "light", reducedMotion: "reduce", ...options });
-  opened.page.setDefaultTimeout(kPatient);
-  return opened;
-}
-
 /** The participant's page, and the experimenter without one. */
 async function openAsParticipant(study, options) {
-  const { page: person, complaints } = await openQuietPage(study.participant, options);
+  const { page: person, complaints } = await openQuietPage(browser, study.participant, options);
   await person.getByTestId("page-waiting").waitFor();
   return { person, complaints, desk: study.join(study.operator) };
 }
 
 /** The experimenter's page, and the participant without one. */
 async function openAsExperimenter(study) {
-  const { page: desk, complaints } = await openQuietPage(study.operator, { viewport: { width: 1440, height: 900 } });
+  const { page: desk, complaints } = await openQuietPage(browser, study.operator, { viewport: { width: 1440, height: 900 } });
   await desk.getByTestId("desk").waitFor();
   return { desk, complaints, person: study.join(study.participant) };
 }
@@ -60,16 +54,6 @@ async function assertTellsNothing(page) {
   assert.equal(await page.locator(panels).count(), 0);
 }
 
-/** Presses a button as soon as it can be pressed. */
-async function press(page, testId) {
-  await page.locator(`[data-testid="${testId}"]:not([aria-disabled="true"]):not(:disabled)`).click();
-}
-
-async function agree(person) {
-  await person.getByTestId("consent-agree").check();
-  await press(person, "consent-begin");
-}
-
 /** To before the first trial. */
 async function passTraining(desk, person) {
   await person.getByTestId("page-training").waitFor();
@@ -78,31 +62,21 @@ async function passTraining(desk, person) {
   await person.getByTestId("page-ready").waitFor();
 }
 
-async function startTrial(person) {
-  await press(person, "study-ready");
-  await person.getByTestId("task-time").waitFor();
-}
-
 /** In a trial by picking: wrong surfaces are refused, two right pairs end it. */
 async function pickSurfaces(person) {
-  const clickPart = async (occurrence) => {
-    await person.waitForFunction((id) => window.hvas.screen(id)?.isVisible, occurrence);
-    const at = await person.evaluate((id) => window.hvas.screen(id), occurrence);
-    await person.mouse.click(at.x, at.y);
-  };
   await person.getByText("Click a surface of the marked part.").waitFor();
   await person.waitForTimeout(1500);
   await takePicture(person, "study_picking");
-  await clickPart(0);
+  await clickPart(person, 0);
   await person.getByText("Now click the surface that it belongs to.").waitFor();
-  await clickPart(1);
+  await clickPart(person, 1);
   await person.getByText("These two do not belong together.").waitFor();
-  await clickPart(kShaft);
-  await clickPart(1);
+  await clickPart(person, kShaft);
+  await clickPart(person, 1);
   await person.getByText("Left to set: 1").waitFor();
   await takePicture(person, "study_picking_left");
-  await clickPart(kShaft);
-  await clickPart(1);
+  await clickPart(person, kShaft);
+  await clickPart(person, 1);
 }
 
 describe("a participant", () => {
@@ -271,7 +245,7 @@ describe("a viewer", () => {
   it("sees what the participant sees, and can do nothing", withMockStudy(async (study) => {
     const [desk, person] = [study.join(study.operator), study.join(study.participant)];
     await desk.do("begin");
-    const { page } = await openQuietPage(study.viewer);
+    const { page } = await openQuietPage(browser, study.viewer);
     await page.getByTestId("page-consent").waitFor();
     await page.getByText("You are watching").waitFor();
     assert.ok(await page.getByTestId("consent-agree").isDisabled());
@@ -340,7 +314,7 @@ describe("the experimenter", () => {
   }));
 
   it("has a link for the participant until there is one, and does not take the hand", withMockStudy(async (study) => {
-    const { page: desk } = await openQuietPage(study.operator);
+    const { page: desk } = await openQuietPage(browser, study.operator);
     await desk.getByTestId("participant-link").waitFor();
     assert.equal(await desk.getByTestId("participant-link").inputValue(), study.participant);
     await look(desk, "desk_alone");

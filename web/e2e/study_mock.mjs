@@ -1,57 +1,10 @@
 // The mock server with a tiny study, for a test: its links, somebody at the other end, and how to end it.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
-import WebSocket from "ws";
+import { StudyPeer } from "./study_peer.mjs";
 
 const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
 const kPage = process.env["HVAS_PAGE"] ?? "../build/web/dist";
-
-/** Somebody at another link, without a page: what a page would send, and what it would be sent. */
-class Other {
-  constructor(link) {
-    const { host, hash } = new URL(link);
-    this.socket = new WebSocket(`ws://${host}/ws`, { headers: { Cookie: `hvas=${hash.slice("#t=".length)}` } });
-    this.state = null;
-    this.heard = [];
-    this.answers = new Map();
-    this.socket.on("message", (data, isBinary) => !isBinary && this.hear(JSON.parse(data)));
-  }
-
-  hear(message) {
-    if (message.event !== undefined) {
-      this.heard.push(message);
-      this.state = message.event === "study" ? message : this.state;
-      return;
-    }
-    this.answers.get(message.id)?.(message);
-  }
-
-  async do(action, fields = {}) {
-    if (this.socket.readyState !== WebSocket.OPEN) {
-      await once(this.socket, "open");
-    }
-    const id = this.answers.size + 1;
-    const answer = new Promise((resolve) => this.answers.set(id, resolve));
-    this.socket.send(JSON.stringify({ id, command: "study", action, ...fields }));
-    const { ok, result, error } = await answer;
-    if (!ok) {
-      throw new Error(`${action}: ${error.message}`);
-    }
-    return result;
-  }
-
-  /** Until the study is so. */
-  async until(isSo, timeout = 60_000) {
-    const end = Date.now() + timeout;
-    while (this.state === null || !isSo(this.state)) {
-      if (Date.now() > end) {
-        throw new Error(`not so after ${timeout} ms: ${isSo}, but ${JSON.stringify(this.state)}`);
-      }
-      await new Promise((done) => setTimeout(done, 50));
-    }
-    return this.state;
-  }
-}
 
 async function startMockStudy() {
   const options = ["--port", "0", "--hvas", kProgram, "--dist", kPage, "--file", "../products/bushing.step", "--study"];
@@ -75,7 +28,7 @@ async function startMockStudy() {
     viewer,
     participant,
     join(link) {
-      others.push(new Other(link));
+      others.push(new StudyPeer(link));
       return others.at(-1);
     },
     /** Somebody does the trial that runs, by hand. */
@@ -83,7 +36,7 @@ async function startMockStudy() {
     /** All connections are lost, for some seconds. */
     cut: () => child.kill("SIGUSR2"),
     stop: async () => {
-      others.forEach(({ socket }) => socket.terminate());
+      await Promise.all(others.map((other) => other.leave()));
       child.kill("SIGTERM");
       await ended;
     },

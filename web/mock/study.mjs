@@ -203,7 +203,7 @@ export class MockStudy {
   }
 
   on_note({ text }) {
-    this.notes.push({ text, trial: (this.trial ?? 0) + 1 });
+    this.notes.push({ text, trial: (this.trial ?? 0) + 1, unix_ms: Date.now() });
   }
 
   on_abort({ reason }) {

@@ -205,6 +205,11 @@ describe("what is sent", () => {
     expect(server.sent).toHaveLength(2);
   });
 
+  it("is not held up by something else that is not answered yet", async () => {
+    expect(await Promise.all([study.ready(), study.abort("smoke"), study.note("alarm")])).toEqual([true, true, true]);
+    expect(study.isBusy.value).toBe(false);
+  });
+
   it("is answered with the state that follows", async () => {
     server.reply = { state: running };
     expect(await study.ready()).toBe(true);
@@ -233,15 +238,6 @@ describe("what is sent", () => {
     expect(study.leftToPick.value).toBe(1);
     study.take({ ...picking, trial: 4 });
     expect(study.leftToPick.value).toBeNull();
-  });
-});
-
-describe("notes", () => {
-  it("have the time at which this page heard of them, where it did", () => {
-    study.take({ ...watched, notes: [{ text: "old", trial: 1 }] });
-    expect(study.noteTimes.size).toBe(0);
-    study.take({ ...watched, notes: [{ text: "old", trial: 1 }, { text: "new", trial: 2 }] });
-    expect([...study.noteTimes.keys()]).toEqual([1]);
   });
 });
 

@@ -17,6 +17,7 @@
 namespace hvas::studio {
 namespace {
 
+constexpr std::int64_t kUnixMs = 1'700'000'000'000;
 constexpr const char* kProtocol = R"(
 format: hvas-study-1
 id: desk
@@ -68,6 +69,7 @@ class StudyDeskTest : public ::testing::Test {
     options.participant = "P01";
     options.product = "peg.step";
     options.has_person = has_person;
+    options.unix_ms = [] { return kUnixMs; };
     auto desk = StudyDesk::Open(std::move(*folder), &bench_, std::move(options));
     ASSERT_TRUE(desk) << desk.error().ToString();
     desk_ = std::move(*desk);
@@ -256,6 +258,7 @@ TEST_F(StudyDeskTest, TimesOutByTheTickClockAndAbortsCountForNothing) {
   EXPECT_TRUE(state["done"].empty());
   EXPECT_EQ(state["interruptions"], 1);
   EXPECT_EQ(state["notes"][0]["text"], "rang twice");
+  EXPECT_EQ(state["notes"][0]["unix_ms"], kUnixMs);
   Do(participant_, {{"action", "ready"}});
   PumpUntil("trial_begun");
   Do(experimenter_, {{"action", "next"}});

@@ -24,8 +24,9 @@ function isTask(state: StudyState | null): boolean {
 }
 
 export class StudyModel {
-  /** Something was sent and not answered yet: a second press counts for nothing. */
-  readonly isBusy = signal(false);
+  /** What was sent and is not answered yet: a second press of the same counts for nothing. */
+  private readonly pending = signal<ReadonlySet<Action["action"]>>(new Set());
+  readonly isBusy = computed(() => this.pending.value.size > 0);
   /** Constraints that are still to be picked; null: none was picked yet. */
   readonly leftToPick = signal<number | null>(null);
   readonly state = computed(() => this.store.study.value);
@@ -71,8 +72,6 @@ export class StudyModel {
     const liked = [this.chosenLanguage.value, ...this.spoken.map((tag) => tag.slice(0, 2).toLowerCase())];
     return liked.find((code) => code !== null && state.languages.includes(code)) ?? state.language;
   });
-  /** When this page was told of a note, by its number, on the wall clock. */
-  readonly noteTimes = new Map<number, number>();
   /** Of the scene before the trial. */
   private readonly epochBefore = signal<number | null>(null);
   private toldMs = 0;
@@ -89,11 +88,6 @@ export class StudyModel {
     const before = this.store.study.peek();
     if (before === null || !isTask(before) || !isTask(state) || before.trial !== state.trial) {
       this.leftToPick.value = null;
-    }
-    if (before?.view === "experimenter" && state.view === "experimenter") {
-      for (let k = before.notes.length; k < state.notes.length; k++) {
-        this.noteTimes.set(k, Date.now());
-      }
     }
     if (!isTask(state)) {
       this.epochBefore.value = this.store.scene.peek()?.epoch ?? null;
@@ -155,10 +149,11 @@ export class StudyModel {
 
   /** @return Whether it was done. */
   private async act(action: Action): Promise<boolean> {
-    if (this.isBusy.peek()) {
+    const { pending } = this;
+    if (pending.peek().has(action.action)) {
       return false;
     }
-    this.isBusy.value = true;
+    pending.value = new Set(pending.peek()).add(action.action);
     try {
       const reply = await this.commander.command<"study">({ command: "study", ...action } as StudyCommand);
       if (reply === null) {
@@ -168,7 +163,7 @@ export class StudyModel {
       this.leftToPick.value = reply.left ?? this.leftToPick.value;
       return action.action !== "pick" || reply.is_set === true;
     } finally {
-      this.isBusy.value = false;
+      pending.value = new Set([...pending.peek()].filter((each) => each !== action.action));
     }
   }
 }

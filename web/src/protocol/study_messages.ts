@@ -82,6 +82,8 @@ export interface StudyNote {
   text: string;
   /** That was at hand. */
   trial: number | null;
+  /** When it was written, on the server's wall clock. */
+  unix_ms: number;
 }
 
 export interface ExperimenterState extends Omit<ParticipantState, "view"> {

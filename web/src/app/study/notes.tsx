@@ -9,12 +9,10 @@ function timeOf(unixMs: number): string {
   return new Intl.DateTimeFormat(language.value, { timeStyle: "medium" }).format(new Date(unixMs));
 }
 
-function Note({ note, number }: { note: StudyNote; number: number }) {
-  const unixMs = studio.study.noteTimes.get(number);
-  const at = [
-    unixMs === undefined ? null : timeOf(unixMs),
-    note.trial === null ? null : t("study.trial", { n: note.trial }),
-  ].filter((each) => each !== null);
+function Note({ note }: { note: StudyNote }) {
+  const at = [timeOf(note.unix_ms), note.trial === null ? null : t("study.trial", { n: note.trial })].filter(
+    (each) => each !== null,
+  );
   return (
     <li>
       {note.text} <span class="quiet figures">{at.join(" · ")}</span>
@@ -47,7 +45,7 @@ export function Notes({ state }: { state: ExperimenterState }) {
         </button>
       </form>
       <ul class="desk-notes" data-testid="notes">
-        {state.notes.map((note, k) => <Note key={k} note={note} number={k} />).reverse()}
+        {state.notes.map((note, k) => <Note key={k} note={note} />).reverse()}
       </ul>
     </section>
   );

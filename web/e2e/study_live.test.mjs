@@ -1,0 +1,177 @@
+// A whole session of a study in the program itself: a person by the mouse, from the consent to the tables.
+import assert from "node:assert/strict";
+import { after, before, describe, it } from "node:test";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import {
+  clickFace,
+  distance,
+  fetchScene,
+  insertByMouse,
+  launchBrowser,
+  poseOf,
+  runProgram,
+  startStudio,
+  takeByMouse,
+  takePicture,
+  waitForPicture,
+} from "./harness.mjs";
+import { StudyPeer } from "./study_peer.mjs";
+import { agree, openQuietPage, press, startTrial } from "./study_steps.mjs";
+
+const kProtocol = `format: hvas-study-1
+id: by-hand
+title: {en: By the mouse}
+product: bushing
+part: shaft
+participants: 1
+languages: [en]
+consent: {en: You may stop at any time.}
+defaults: {fit: H7/g6, time_limit_s: 300}
+conditions:
+  - {id: picked, name: {en: Surfaces picked}, method: constraints_by_picking}
+  - {id: hybrid, name: {en: Everything felt}, method: hybrid}
+training: {minutes: 5, condition: hybrid}
+blocks:
+  - {id: timed, repetitions: 1, order: given}
+questions:
+  - {id: steady, kind: scale, text: "How steady was the force?", low: 1, high: 10}
+hidden: [condition]
+`;
+
+let browser;
+before(async () => {
+  browser = await launchBrowser();
+});
+after(() => browser.close());
+
+/** Turns the view up or down by dragging beside the parts. */
+async function turnView(page, dy) {
+  const x = 1150;
+  const y = dy < 0 ? 560 : 120;
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y + dy, { steps: 6 });
+  await page.mouse.up();
+  await page.waitForTimeout(700);
+}
+
+/** Turns the view, first from below and then from above, until one sees a face; clicks it. */
+async function findAndClickFace(page, occurrence, face) {
+  const isSeen = () => page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f) !== null, [occurrence, face]);
+  for (const dy of [...Array(6).fill(-60), ...Array(12).fill(60)]) {
+    if (await isSeen()) {
+      break;
+    }
+    await turnView(page, dy);
+  }
+  await clickFace(page, occurrence, face);
+}
+
+/** Drags a part in the plane of the screen until it looks as if it were at p_W; `isThere` may end it before. */
+async function dragPart(page, occurrence, p_W, isThere = () => false) {
+  const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  for (let k = 0; k < 8 && !(await isThere()); k++) {
+    const [from, to] = await page.evaluate(([o, p]) => [window.hvas.pose(o).p, p].map(window.hvas.project), [occurrence, p_W]);
+    at.x += to.x - from.x;
+    at.y += to.y - from.y;
+    await page.mouse.move(at.x, at.y, { steps: 4 });
+    await page.waitForTimeout(900);
+  }
+  await page.mouse.up();
+}
+
+/** Sets the constraints of a part one after the other, as they are listed. */
+async function pickConstraints(person, scene, occurrence) {
+  const mates = scene.mates.filter(({ b }) => b === occurrence);
+  assert.equal(mates.length, 2);
+  for (const { a, b, faces_a: facesA, faces_b: facesB } of mates) {
+    await findAndClickFace(person, b, facesB[0]);
+    await person.getByText("Now click the surface that it belongs to.").waitFor();
+    await findAndClickFace(person, a, facesA[0]);
+  }
+}
+
+/** Turns the view to what is seen from straight above, or on to what is seen from the side. */
+async function lookFromAbove(page) {
+  await turnView(page, 430);
+}
+async function lookFromTheSide(page) {
+  await lookFromAbove(page);
+  const height = await page.evaluate(() => document.querySelector("canvas").clientHeight);
+  await turnView(page, -height / 4);  // a turn is as long as the canvas is high
+}
+
+/** Nothing helps to see how far away it is: it is lifted and pushed down seen from the side, and led over its place
+ seen from above. */
+async function insertPart(page, occurrence, goal) {
+  const over = [goal[0], goal[1], goal[2] + 0.09];
+  const isDone = async () => (await page.getByTestId("task").count()) === 0;
+  await lookFromTheSide(page);
+  const { p } = await poseOf(page, occurrence);
+  await dragPart(page, occurrence, [p[0], p[1], over[2]]);
+  await takePicture(page, "study_live_lifted");
+  await lookFromAbove(page);
+  await dragPart(page, occurrence, over);
+  await takePicture(page, "study_live_over");
+  await lookFromTheSide(page);
+  await dragPart(page, occurrence, goal, isDone);
+}
+
+describe("a session with a person", () => {
+  it("goes from the consent to the tables, by the mouse alone", async () => {
+    const folder = mkdtempSync(join(tmpdir(), "hvas-e2e-"));
+    const protocol = join(folder, "by_hand.yaml");
+    const results = join(folder, "results");
+    writeFileSync(protocol, kProtocol);
+    const studio = await startStudio(["--study", protocol, "--participant", "P01", "-o", results]);
+    const desk = new StudyPeer(studio.operator);
+    try {
+      const { page: person, complaints } = await openQuietPage(browser, studio.participant);
+      await person.getByTestId("page-waiting").waitFor();
+      await desk.do("begin");
+      await agree(person);
+
+      await press(person, "study-ready");
+      await waitForPicture(person);
+      const scene = await fetchScene(person);
+      const { occurrence, goal } = scene.occurrences.map((o, k) => ({ ...o, occurrence: k })).find(({ placement }) => placement === "loose");
+      const before = await poseOf(person, occurrence);
+      await takeByMouse(person, occurrence);
+      await person.mouse.move(700, 400, { steps: 10 });
+      await person.waitForTimeout(1000);
+      assert.ok(distance(before, await poseOf(person, occurrence)) > 0.03, "the part follows the mouse");
+      await takePicture(person, "study_live_training");
+      await person.mouse.up();
+      await desk.do("next");
+
+      await startTrial(person);
+      await pickConstraints(person, scene, occurrence);
+      await person.getByRole("heading", { name: "Trial 2" }).waitFor();
+      await startTrial(person);
+      await insertPart(person, occurrence, goal.p);
+
+      await person.getByTestId("answer-8").check();
+      await press(person, "answer-send");
+      await person.getByTestId("page-done").waitFor();
+      assert.deepEqual(complaints, []);
+      await person.context().close();
+      const { done } = await desk.until((state) => state.phase === "done");
+      assert.deepEqual(done.map(({ condition, outcome }) => [condition, outcome]), [["picked", "done"], ["hybrid", "done"]]);
+      assert.ok(done.every(({ time_s: time }) => time > 1 && time < 300));
+      assert.ok(done[1].peak_force_n > 0, "its weight, at the least");
+    } finally {
+      await desk.leave();
+      assert.equal(await studio.stop(), 0, "it ends well when it is told to");
+    }
+
+    const table = join(folder, "trials.csv");
+    runProgram(["study", "export", results, "-o", table]);
+    const rows = readFileSync(table, "utf8").trim().split("\n").filter((line) => !line.startsWith("#"));
+    assert.equal(rows.length, 3, "a heading and two trials");
+    assert.match(runProgram(["replay", join(results, "records/P01/002.hvasrec"), "--verify"]), /bit for bit/);
+  });
+});

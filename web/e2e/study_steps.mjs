@@ -1,0 +1,31 @@
+// What participant and experimenter do in their pages, whatever server is behind them.
+import { openPage } from "./harness.mjs";
+
+export const kPatient = 60_000;
+
+export async function openQuietPage(browser, link, options = {}) {
+  const opened = await openPage(browser, link, { bypassCSP: true, colorScheme: "light", reducedMotion: "reduce", ...options });
+  opened.page.setDefaultTimeout(kPatient);
+  return opened;
+}
+
+/** Presses a button as soon as it can be pressed. */
+export async function press(page, testId) {
+  await page.locator(`[data-testid="${testId}"]:not([aria-disabled="true"]):not(:disabled)`).click();
+}
+
+export async function agree(person) {
+  await person.getByTestId("consent-agree").check();
+  await press(person, "consent-begin");
+}
+
+export async function startTrial(person) {
+  await press(person, "study-ready");
+  await person.getByTestId("task-time").waitFor();
+}
+
+export async function clickPart(page, occurrence) {
+  await page.waitForFunction((id) => window.hvas.screen(id)?.isVisible, occurrence);
+  const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
+  await page.mouse.click(at.x, at.y);
+}
