@@ -199,6 +199,25 @@ export async function takeByMouse(page, occurrence) {
   await waitForPlacement(page, occurrence, "held");
 }
 
+/** Selects a part that is in its place, and draws it out upwards; the button stays down. */
+export async function takeOutByMouse(page, occurrence, goal, height = 0.12) {
+  const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
+  await page.mouse.click(at.x, at.y);
+  await page.waitForFunction((id) => window.hvas.state().selected.includes(id), occurrence);
+  await page.waitForTimeout(500);  // or it would be a double click
+  await takeByMouse(page, occurrence);
+  const [low, high] = await page.evaluate(
+    ([[x, y, z], up]) => [window.hvas.project([x, y, z]), window.hvas.project([x, y, z + up])],
+    [goal, height],
+  );
+  const kSteps = 12;
+  for (let k = 1; k <= kSteps; k++) {
+    const share = k / kSteps;
+    await page.mouse.move(at.x + share * (high.x - low.x), at.y + share * (high.y - low.y), { steps: 3 });
+    await page.waitForTimeout(250);
+  }
+}
+
 /** Takes hold of a part with the mouse and moves it over its place and in, as far as it goes. */
 export async function insertByMouse(page, occurrence, goal, height = 0.12) {
   await takeByMouse(page, occurrence);

@@ -10,6 +10,8 @@ import {
   insertByMouse,
   launchBrowser,
   openPage,
+  poseOf,
+  takeOutByMouse,
   takePicture,
   waitForPicture,
   waitForPlacement,
@@ -112,6 +114,26 @@ describe("the hand", () => {
     await waitForPlacement(page, 1, "placed", 60_000);
     await waitForPlacement(page, 2, "placed", 60_000);
     await takePicture(page, "demo");
+    await page.context().close();
+  }));
+
+  it("draws a shaft out of its bore again with the mouse alone", withStudio([kBushing], async (studio) => {
+    const kShaft = 2;
+    const { page, complaints } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    await page.getByRole("button", { name: /Show me/ }).first().click();
+    await waitForPlacement(page, kShaft, "placed", 60_000);
+    await page.getByTestId("demo-runs").waitFor({ state: "detached" });
+    const { goal } = (await fetchScene(page)).occurrences[kShaft];
+    await takeOutByMouse(page, kShaft, goal.p);
+    await takePicture(page, "taken_out");
+    assert.ok((await poseOf(page, kShaft)).p[2] - goal.p[2] > 0.047, "it is longer than its bore is deep");
+    await page.mouse.up();
+    await page.keyboard.press("r");
+    await waitForPlacement(page, kShaft, "loose");
+    await page.keyboard.press("Control+z");
+    await waitForPlacement(page, kShaft, "placed");
+    assert.deepEqual(complaints, []);
     await page.context().close();
   }));
 

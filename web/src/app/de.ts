@@ -117,7 +117,7 @@ export const de: Record<MessageKey, string> = {
   "hint.free": "An seinen Platz bringen, grün gezeigt.",
   "hint.near": "Nahe an {into}. Ausrichten.",
   "hint.captured": "Von {into} eingefangen: es wird auf die Achse gezogen.",
-  "hint.mating": "In {into}, auf der Achse: weiter drücken oder herausziehen.",
+  "hint.mating": "Auf der Achse von {into}: weiter drücken oder herausziehen.",
   "hint.seated": "Sitzt. Es bleibt, wenn Sie loslassen.",
   "hint.caught": "Folgt dem Fügeweg",
   "hint.depth": "Fügetiefe",

@@ -117,7 +117,7 @@ export const en = {
   "hint.free": "Bring it to its place, shown in green.",
   "hint.near": "Close to {into}. Line it up.",
   "hint.captured": "Captured by {into}: it is drawn onto the axis.",
-  "hint.mating": "In {into}, on its axis: push on, or draw it out.",
+  "hint.mating": "On the axis of {into}: push on, or draw it out.",
   "hint.seated": "Seated. It stays when you let go.",
   "hint.caught": "Follows the way in",
   "hint.depth": "Insertion depth",
