@@ -1,5 +1,4 @@
-// MCAP (https://mcap.dev/spec): records of an opcode, their length and their content, one after the
-// other, without chunks; everything little-endian, texts behind their length.
+// What of a record goes into an MCAP file: channels of Foxglove's schemas, and one of our own.
 
 #include <algorithm>
 #include <array>
@@ -9,8 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/bytes.h"
-#include "evidence/output_file.h"
+#include "evidence/mcap_writer.h"
 #include "evidence/tables.h"
 
 namespace hvas::evidence {
@@ -19,91 +17,9 @@ namespace {
 using record::TickRecord;
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
-enum class Opcode : std::uint8_t {
-  kHeader = 0x01,
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kDataEnd = 0x0f,
-};
-
-/** Content of a record. */
-class Content {
- public:
-  template <typename T>
-  Content& Number(T value) {
-    writer_.Plain(&value, 1);
-    return *this;
-  }
-
-  Content& Text(std::string_view text) {
-    Number(static_cast<std::uint32_t>(text.size()));
-    return Raw(text);
-  }
-
-  Content& Raw(std::string_view text) {
-    writer_.Plain(text.data(), text.size());
-    return *this;
-  }
-
-  [[nodiscard]] std::string_view bytes() {
-    const auto& bytes = writer_.bytes();
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-  }
-
- private:
-  ByteWriter writer_;
-};
-
-class McapWriter {
- public:
-  explicit McapWriter(OutputFile* output) : output_(output) {
-    output_->Write(kMagic);
-    Write(Opcode::kHeader, Content().Text("").Text("hvas"));
-  }
-
-  /** Returns the channel's number. */
-  std::uint16_t AddChannel(std::string_view topic, std::string_view schema_name,
-                           const Json& schema) {
-    const std::uint16_t number = ++channels_;  // of both: 0 is no schema
-    Write(Opcode::kSchema,
-          Content().Number(number).Text(schema_name).Text("jsonschema").Text(schema.dump()));
-    Write(Opcode::kChannel, Content().Number(number).Number(number).Text(topic).Text("json").Number(
-                                std::uint32_t{0}));
-    return number;
-  }
-
-  void Add(std::uint16_t channel, std::int64_t t_ns, const Json& message) {
-    const auto t = static_cast<std::uint64_t>(t_ns);
-    Write(Opcode::kMessage, Content()
-                                .Number(channel)
-                                .Number(sequence_++)
-                                .Number(t)
-                                .Number(t)
-                                .Raw(message.dump(-1, ' ', false, Json::error_handler_t::replace)));
-  }
-
-  void Finish() {
-    Write(Opcode::kDataEnd, Content().Number(std::uint32_t{0}));  // without a checksum
-    Write(Opcode::kFooter,
-          Content().Number(std::uint64_t{0}).Number(std::uint64_t{0}).Number(std::uint32_t{0}));
-    output_->Write(kMagic);
-  }
-
- private:
-  void Write(Opcode opcode, Content& content) {
-    Content head;
-    head.Number(opcode).Number(static_cast<std::uint64_t>(content.bytes().size()));
-    output_->Write(head.bytes());
-    output_->Write(content.bytes());
-  }
-
-  OutputFile* output_;
-  std::uint16_t channels_{0};
-  std::uint32_t sequence_{0};
-};
+std::string Dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 Json NumberSchema(const char* description) {
   return {{"type", "number"}, {"description", description}};
@@ -197,22 +113,22 @@ Result<void> WriteMcap(record::Reader* reader, const Selection& selection,
   }
   const std::vector<std::string> paths = ReadPaths(*reader);
   McapWriter writer(&*output);
-  const Json any{{"type", "object"}};
-  const std::array<std::uint16_t, 2> hands{
-      writer.AddChannel("/hand0", "hvas.Tick", MakeTickSchema()),
-      writer.AddChannel("/hand1", "hvas.Tick", MakeTickSchema())};
+  const std::string any = Dump({{"type", "object"}});
+  const std::string tick_schema = Dump(MakeTickSchema());
+  const std::array<std::uint16_t, 2> hands{writer.AddChannel("/hand0", "hvas.Tick", tick_schema),
+                                           writer.AddChannel("/hand1", "hvas.Tick", tick_schema)};
   const std::uint16_t transforms = writer.AddChannel("/tf", "foxglove.FrameTransforms", any);
   const std::uint16_t log = writer.AddChannel("/events", "foxglove.Log", any);
   std::size_t next = 0;
   const auto add_events_until = [&](std::int64_t t_ns) {
     for (; next < events->size() && (*events)[next].t_ns <= t_ns; ++next) {
-      writer.Add(log, (*events)[next].t_ns, MakeLog((*events)[next], paths));
+      writer.Add(log, (*events)[next].t_ns, Dump(MakeLog((*events)[next], paths)));
     }
   };
   const Result<void> done = ForEachSelected(reader, selection, [&](const TickRecord& tick) {
     add_events_until(tick.t_ns);
-    writer.Add(hands[tick.hand == 0 ? 0 : 1], tick.t_ns, MakeTickMessage(tick, paths));
-    writer.Add(transforms, tick.t_ns, MakeTransforms(tick, paths));
+    writer.Add(hands[tick.hand == 0 ? 0 : 1], tick.t_ns, Dump(MakeTickMessage(tick, paths)));
+    writer.Add(transforms, tick.t_ns, Dump(MakeTransforms(tick, paths)));
   });
   add_events_until(selection.span.last_ns);
   writer.Finish();

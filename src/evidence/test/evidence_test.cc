@@ -2,70 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <map>
-#include <memory>
-#include <sstream>
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
-#include "base/test/temporary_folder.h"
 #include "evidence/picture.h"
 #include "evidence/summary.h"
 #include "evidence/tables.h"
-#include "record/recorder.h"
-#include "session/recorded_model.h"
-#include "session/session_recorder.h"
-#include "simulation/assembly_run.h"
-#include "simulation/executors.h"
-#include "simulation/simulated_person.h"
-#include "simulation/test/small_products.h"
+#include "evidence/test/evidence_fixture.h"
 
 namespace hvas::evidence {
 namespace {
 
 using nlohmann::json;
-
-std::string ReadAll(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-/** A peg that is put into its block, recorded once for all tests here. */
-class EvidenceTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<testing::TemporaryFolder>();
-    const auto model = simulation::testing::PegInBlockModel();
-    record::RecorderOptions options;
-    options.path = *folder_ / "session";
-    const auto recorder = record::Recorder::Create(options, session::MakeModelMeta(*model));
-    session::SessionRecorder sink(recorder->get(), *model);
-    simulation::Simulation simulation(model, haptics::TickOptions());
-    simulation::SimulatedPerson person({}, 1, simulation::StartOfHand(*model));
-    simulation::AssemblyRun run(&simulation, &person, &sink);
-    sink.Begin(&simulation);
-    (void)RunLockstep(run.MakeExecution(&person, 60));
-    (*recorder)->AddEvent({1'000'000'000, "safety", 1, R"({"hand":0,"reasons":["limited"]})"});
-    ASSERT_TRUE((*recorder)->Finish().has_value());
-  }
-
-  static void TearDownTestSuite() { folder_.reset(); }
-
-  record::Reader reader = *record::Reader::Open(*folder_ / "session");
-  const std::vector<record::TickRecord> ticks = *reader.ReadTicks({});
-  testing::TemporaryFolder out;
-
- private:
-  static std::unique_ptr<testing::TemporaryFolder> folder_;
-};
-
-std::unique_ptr<testing::TemporaryFolder> EvidenceTest::folder_;
+using testing::EvidenceTest;
+using testing::NumberAt;
+using testing::ReadAll;
 
 std::vector<std::string> Split(const std::string& line) {
   std::vector<std::string> cells(1);
@@ -136,59 +91,6 @@ TEST_F(EvidenceTest, Hdf5HasAColumnForEachNumberWithItsUnit) {
   EXPECT_GT(H5Lexists(file, "events/json", H5P_DEFAULT), 0);
   EXPECT_GT(H5Aexists(file, "seed"), 0);
   H5Fclose(file);
-}
-
-/** A number of a file, little-endian. */
-template <typename T>
-T NumberAt(const std::string& bytes, std::size_t at) {
-  T value{};
-  if (at + sizeof(value) <= bytes.size()) {
-    std::memcpy(&value, bytes.data() + at, sizeof(value));
-  }
-  return value;
-}
-
-// Written from the specification (https://mcap.dev/spec), as far as it is used.
-TEST_F(EvidenceTest, McapIsWholeAndItsMessagesAreInOrder) {
-  ASSERT_TRUE(WriteMcap(&reader, {{}, 10}, out / "x.mcap").has_value());
-  const std::string bytes = ReadAll(out / "x.mcap");
-  const std::string magic("\x89MCAP0\r\n", 8);
-  ASSERT_EQ(bytes.substr(0, 8), magic);
-  ASSERT_EQ(bytes.substr(bytes.size() - 8), magic);
-  std::map<int, std::string> topics;
-  std::map<std::string, std::size_t> counts;
-  std::string opcodes;
-  std::uint64_t last_ns = 0;
-  for (std::size_t at = 8; at < bytes.size() - 8;) {
-    const char opcode = bytes[at];
-    const auto size = NumberAt<std::uint64_t>(bytes, at + 1);
-    const std::string content = bytes.substr(at + 9, size);
-    ASSERT_EQ(content.size(), size);
-    at += 9 + size;
-    opcodes += opcode;
-    if (opcode == 0x04) {
-      const auto length = NumberAt<std::uint32_t>(content, 4);
-      topics[NumberAt<std::uint16_t>(content, 0)] = content.substr(8, length);
-    } else if (opcode == 0x05) {
-      const std::string& topic = topics.at(NumberAt<std::uint16_t>(content, 0));
-      ++counts[topic];
-      const auto t_ns = NumberAt<std::uint64_t>(content, 6);
-      EXPECT_GE(t_ns, last_ns);
-      last_ns = std::max(last_ns, t_ns);
-      const json message = json::parse(content.substr(22));
-      if (topic == "/hand0") {
-        const auto& tick = ticks[t_ns / 1'000'000];
-        ASSERT_EQ(message["felt_n"], tick.F_felt_W.f.norm());
-      } else if (topic == "/tf") {
-        ASSERT_EQ(message["transforms"][0]["child_frame_id"], "hand0");
-      }
-    }
-  }
-  EXPECT_EQ(opcodes.front(), 0x01);
-  EXPECT_EQ(opcodes.substr(opcodes.size() - 2), "\x0f\x02");
-  EXPECT_EQ(counts["/hand0"], (ticks.size() + 9) / 10);
-  EXPECT_EQ(counts["/tf"], counts["/hand0"]);
-  EXPECT_EQ(counts["/events"], reader.ReadEvents()->size());
 }
 
 TEST_F(EvidenceTest, WayAsGlbIsThatOfThePart) {
