@@ -254,8 +254,8 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
 }
 
 const Vec3& SimulatedPerson::MotionOf(const OperatorInput& input) const noexcept {
-  // A device lets the hand come on while the part stands: the eye tells.
-  return is_at_device_ && input.sees_part ? v_part_W_ : V_H_.v;
+  // A device, or a soft coupling, lets the hand come on while the part stands: the eye tells.
+  return input.sees_part && (is_at_device_ || !is_guided_) ? v_part_W_ : V_H_.v;
 }
 
 double SimulatedPerson::PushLimit() const noexcept {
@@ -520,6 +520,7 @@ HandReference SimulatedPerson::Intend(const OperatorInput& input) noexcept {
 }
 
 device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
+  Watch(input);
   Decide(input);
   MoveHand(input.F_H_D);
   device::DeviceState state;

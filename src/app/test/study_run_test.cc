@@ -65,6 +65,12 @@ TEST_F(StudyRunTest, FitsRunFromConsentToTheReport) {
     EXPECT_EQ(participant["phase"], "done");
     EXPECT_EQ(participant["trials_done"], 75);
   }
+  // What paper W found: by contact alone, through its soft coupling, it takes the longest by hand.
+  const auto& contact_alone = json["conditions"][1];
+  EXPECT_GE(contact_alone["done"], 8) << contact_alone.dump();
+  for (std::size_t i = 2; i < 6; ++i) {
+    EXPECT_GT(contact_alone["mean_time_s"], json["conditions"][i]["mean_time_s"]);
+  }
   const std::string report = ReadText(scratch_ / "fits" / "report.html");
   for (const char* part : {"Simulated.", "15.06", "49.78", "24.58", "26.73", "not printed", "H7/p6",
                            "F_z", "answer no questions"}) {
