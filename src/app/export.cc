@@ -22,6 +22,7 @@
 #include "base/atomic_file.h"
 #include "cad/export_step.h"
 #include "cad/glb.h"
+#include "cad/input_file.h"
 
 namespace hvas::app {
 namespace {
@@ -50,6 +51,9 @@ std::string FormatOf(const std::filesystem::path& file) {
 /** What can be known to fail before the work. */
 Result<void> Check(const ExportOptions& options, const std::string& format) {
   const std::string name = options.output.string();
+  if (const auto input = cad::CheckInputFile(options.load.file); !input) {
+    return Unexpected(input.error());
+  }
   if (IsRecord(options.load.file)) {
     if (!IsRecordFormat(format)) {
       return Fail(ErrorCode::kInvalid,

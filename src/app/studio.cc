@@ -22,6 +22,7 @@
 #include "app/study_protocol.h"
 #include "base/scratch_folder.h"
 #include "base/user_folder.h"
+#include "cad/input_file.h"
 #include "contact/shape_cache.h"
 #include "studio/certificate.h"
 #include "studio/server.h"
@@ -196,6 +197,11 @@ Result<std::unique_ptr<studio::StudyDesk>> OpenDesk(const StudioOptions& options
 }
 
 int RunStudio(const StudioOptions& options) {
+  if (!options.load.file.empty()) {
+    if (const auto input = cad::CheckInputFile(options.load.file); !input) {
+      return ReportFailure(input.error());
+    }
+  }
   BlockSignals();
   const auto uploads = ScratchFolder::Make();  // for what is sent to it; gone with this run
   if (!uploads) {
@@ -248,8 +254,7 @@ void AddStudio(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
       "studio", "Assemble a product by hand in a browser: see it, take hold of it, feel the fit");
   const auto options = std::make_shared<StudioOptions>();
-  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file to begin with")
-      ->check(CLI::ExistingFile);
+  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file to begin with");
   command->add_option("--port", options->port, "To listen at; any that is free")
       ->check(CLI::Range(1, 65535));
   CLI::Option* listen = command->add_option(

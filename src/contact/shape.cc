@@ -19,27 +19,27 @@ Result<void> Check(const ShapeSource& source) {
     return Fail(ErrorCode::kInvalid, message, "contact shape", "check the part's tessellation");
   };
   if (source.triangles.empty() || source.vertices.empty()) {
-    return fail("The mesh is empty.");
+    return fail("the mesh is empty");
   }
   if (source.triangle_face.size() != source.triangles.size()) {
-    return fail("Every triangle must name its face.");
+    return fail("every triangle must name its face");
   }
   if (source.faces.size() > kMaxFaces) {
-    return fail("The part has more than 65536 faces.");
+    return fail("the part has more than 65536 faces");
   }
   for (const Vec3& v : source.vertices) {
     if (!v.allFinite()) {
-      return fail("The mesh has a vertex that is not finite.");
+      return fail("the mesh has a vertex that is not finite");
     }
   }
   for (std::size_t i = 0; i < source.triangles.size(); ++i) {
     for (const std::uint32_t v : source.triangles[i]) {
       if (v >= source.vertices.size()) {
-        return fail("A triangle names a vertex that does not exist.");
+        return fail("a triangle names a vertex that does not exist");
       }
     }
     if (source.triangle_face[i] >= source.faces.size()) {
-      return fail("A triangle names a face that does not exist.");
+      return fail("a triangle names a face that does not exist");
     }
   }
   return {};
@@ -84,7 +84,7 @@ Result<void> Prepare(const ShapeSource& source, const ShapeOptions& options, Sha
   data->p_BC = data->box_B.centre();
   data->mesh = MakeMesh(source, data->p_BC);
   if (data->mesh.triangles.empty()) {
-    return Fail(ErrorCode::kInvalid, "The mesh has no triangle with an area.", "contact shape");
+    return Fail(ErrorCode::kInvalid, "the mesh has no triangle with an area", "contact shape");
   }
   for (const spatial::Surface& face : source.faces) {
     data->exact.faces.push_back(face);
@@ -100,7 +100,7 @@ Result<void> Prepare(const ShapeSource& source, const ShapeOptions& options, Sha
         "contact shape", "Choose a larger voxel, or none.");
   }
   const auto cancelled = [] {
-    return Fail(ErrorCode::kCancelled, "Preparing a part was stopped.", "contact shape");
+    return Fail(ErrorCode::kCancelled, "preparing a part was stopped", "contact shape");
   };
   if (options.stop.stop_requested()) {
     return cancelled();
@@ -129,8 +129,8 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
       return Unexpected(prepared.error());
     }
   } catch (const std::bad_alloc&) {
-    return Fail(ErrorCode::kOutOfResource, "There is not enough memory to prepare a part.",
-                "contact shape", "Close other programs, or choose a larger voxel.");
+    return Fail(ErrorCode::kOutOfResource, "there is not enough memory to prepare a part",
+                "contact shape", "close other programs, or choose a larger voxel");
   }
   return std::make_shared<const Shape>(std::move(data));
 }

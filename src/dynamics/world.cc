@@ -247,7 +247,7 @@ Result<BodyId> World::AddBody(std::span<const Vec3> vertices_B, const MassProper
   if (!IsValid(vertices_B, properties, frame, X_WB)) {
     return Fail(ErrorCode::kInvalid,
                 "A free body needs vertices, a finite pose, a positive mass "
-                "and a positive definite inertia.");
+                "and a positive definite inertia");
   }
   auto body = std::make_unique<Body>();
   body->X_BP = frame.X_BP;

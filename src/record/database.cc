@@ -10,28 +10,28 @@ Unexpected FailWith(sqlite3* database, int code, const std::string& path) {
   const std::string reason = database != nullptr ? sqlite3_errmsg(database) : sqlite3_errstr(code);
   switch (code & 0xff) {
     case SQLITE_NOTADB:
-      return Fail(ErrorCode::kUnreadable, "This is not a session record: " + reason + ".", path,
-                  "Name a file that HVAS recorded");
+      return Fail(ErrorCode::kUnreadable, "this is not a session record: " + reason, path,
+                  "name a file that HVAS recorded");
     case SQLITE_CORRUPT:
-      return Fail(ErrorCode::kUnreadable, "The record is damaged: " + reason + ".", path,
-                  "Restore the file from a copy");
+      return Fail(ErrorCode::kUnreadable, "the record is damaged: " + reason, path,
+                  "restore the file from a copy");
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
     case SQLITE_READONLY:
-      return Fail(ErrorCode::kNotFound, "The record cannot be opened or written: " + reason + ".",
-                  path, "Check that the folder exists and may be written");
+      return Fail(ErrorCode::kNotFound, "the record cannot be opened or written: " + reason, path,
+                  "check that the folder exists and may be written");
     case SQLITE_FULL:
-      return Fail(ErrorCode::kOutOfResource, "There is no room for more of the record.", path,
-                  "Free disk space or raise the record's size limit");
+      return Fail(ErrorCode::kOutOfResource, "there is no room for more of the record", path,
+                  "free disk space or raise the record's size limit");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return Fail(ErrorCode::kOutOfResource, "Another program holds the record: " + reason + ".",
-                  path, "Close it and try again");
+      return Fail(ErrorCode::kOutOfResource, "another program holds the record: " + reason, path,
+                  "close it and try again");
     case SQLITE_IOERR:
-      return Fail(ErrorCode::kOutOfResource, "The disk refused the record: " + reason + ".", path,
-                  "Check the disk and its free space");
+      return Fail(ErrorCode::kOutOfResource, "the disk refused the record: " + reason, path,
+                  "check the disk and its free space");
     default:
-      return Fail(ErrorCode::kInternal, "SQLite: " + reason + ".", path);
+      return Fail(ErrorCode::kInternal, "SQLite: " + reason, path);
   }
 }
 
@@ -148,7 +148,7 @@ Result<std::int64_t> Database::QueryInt(std::string_view sql) {
     return Unexpected(row.error());
   }
   if (!*row) {
-    return Fail(ErrorCode::kUnreadable, "The record lacks an entry.", path_);
+    return Fail(ErrorCode::kUnreadable, "the record lacks an entry", path_);
   }
   return statement->ReadInt(0);
 }

@@ -40,7 +40,7 @@ Result<void> ForEachRow(Statement* rows,
 Result<Reader> Reader::Open(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
-    return Fail(ErrorCode::kNotFound, "There is no such record.", path.string());
+    return Fail(ErrorCode::kNotFound, "there is no such record", path.string(), "check the path");
   }
   Result<Database> database = Database::Open(path, Database::Mode::kReadOnly);
   if (!database) {
@@ -62,8 +62,8 @@ Result<void> Reader::CheckKind() {
     return Unexpected(id.error());
   }
   if (*id != kApplicationId) {
-    return Fail(ErrorCode::kUnreadable, "This is not a session record.", path_.string(),
-                "Name a file that HVAS recorded");
+    return Fail(ErrorCode::kUnreadable, "this is not a session record", path_.string(),
+                "name a file that HVAS recorded");
   }
   const Result<std::int64_t> version = database_.QueryInt("SELECT version FROM schema_version");
   if (!version) {
@@ -71,9 +71,9 @@ Result<void> Reader::CheckKind() {
   }
   if (*version > kSchemaVersion) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("The record has layout {}, newer than {}, the newest known here.",
+                fmt::format("the record has layout {}, newer than {}, the newest known here",
                             *version, kSchemaVersion),
-                path_.string(), "Open it with the version of HVAS that wrote it");
+                path_.string(), "open it with the version of HVAS that wrote it");
   }
   schema_ = *version;
   return {};
@@ -101,8 +101,8 @@ Result<void> Reader::ReadMeta() {
 }
 
 Unexpected Reader::Damaged(const std::string& what) const {
-  return Fail(ErrorCode::kUnreadable, fmt::format("{} of the record is damaged.", what),
-              path_.string(), "Restore the file from a copy");
+  return Fail(ErrorCode::kUnreadable, fmt::format("{} of the record is damaged", what),
+              path_.string(), "restore the file from a copy");
 }
 
 Result<std::vector<std::byte>> Reader::UnpackChunk(const Statement& row) const {
@@ -274,7 +274,7 @@ Result<std::vector<std::byte>> Reader::ReadAttachment(const std::string& name) {
     }
   }
   if (!found) {
-    return Fail(ErrorCode::kNotFound, fmt::format("The record has no \"{}\".", name),
+    return Fail(ErrorCode::kNotFound, fmt::format("the record has no \"{}\"", name),
                 path_.string());
   }
   return std::move(*found);
@@ -335,8 +335,8 @@ Result<std::string> Reader::Verify() {
     return Unexpected(done.error());
   }
   if (hex && is_complete() && meta_.at(kMetaDigest) != *hex) {
-    return Fail(ErrorCode::kUnreadable, "The record is not the one that was written.",
-                path_.string(), "Restore the file from a copy");
+    return Fail(ErrorCode::kUnreadable, "the record is not the one that was written",
+                path_.string(), "restore the file from a copy");
   }
   return hex;
 }

@@ -79,8 +79,8 @@ Result<void> RemoveOldRecord(const std::filesystem::path& path) {
     }
   }
   if (!is_ours) {
-    return Fail(ErrorCode::kInvalid, "What is there is not a session record and is kept.",
-                path.string(), "Choose another name for the record");
+    return Fail(ErrorCode::kInvalid, "what is there is not a session record and is kept",
+                path.string(), "choose another name for the record");
   }
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
     std::filesystem::remove(path.string() + suffix, ignored);

@@ -65,8 +65,8 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
 Result<product::Product> LoadProduct(record::Reader* reader) {
   const auto bytes = reader->ReadAttachment(kProductAttachment);
   if (!bytes && bytes.error().code == ErrorCode::kNotFound) {
-    return Fail(ErrorCode::kUnsupported, "The record has no product in it, as older ones have not.",
-                reader->path().string(), "Record the session again");
+    return Fail(ErrorCode::kUnsupported, "the record has no product in it, as older ones have not",
+                reader->path().string(), "record the session again");
   }
   if (!bytes) {
     return Unexpected(bytes.error());
@@ -107,8 +107,8 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
   }
   if (!fields.refused().empty()) {
     return Fail(ErrorCode::kUnreadable,
-                "The model in the record has no good \"" + fields.refused() + "\".",
-                reader->path().string(), "Restore the file from a copy");
+                "the model in the record has no good \"" + fields.refused() + "\"",
+                reader->path().string(), "restore the file from a copy");
   }
   options.seed = json[kSeed].get<std::uint64_t>();
   auto compiled = simulation::Compile(std::make_shared<product::Product>(std::move(*product)),

@@ -115,7 +115,7 @@ class Replayer {
 
  private:
   void Refuse(const std::string& message) {
-    error_ = Error{ErrorCode::kUnreadable, message, {}, "Restore the file from a copy"};
+    error_ = Error{ErrorCode::kUnreadable, message, {}, "restore the file from a copy"};
   }
 
   /** The first beginning of a stretch from this command on; behind the last one: there is none. */
@@ -162,7 +162,7 @@ class Replayer {
   void Obey(const TickRecord& recorded) {
     for (; obeyed_ < recorded.commands; ++obeyed_, ++next_) {
       if (next_ >= commands_.size() || commands_[next_].number != obeyed_ + 1) {
-        Refuse(fmt::format("The record lacks command {} of the stretch from {:.3f} s on.",
+        Refuse(fmt::format("the record lacks command {} of the stretch from {:.3f} s on",
                            obeyed_ + 1, 1e-9 * static_cast<double>(start_ns_)));
         return;
       }
@@ -253,10 +253,10 @@ Result<ReplayReport> Replay(record::Reader* reader,
   if (commands->empty()) {
     return Fail(
         ErrorCode::kUnsupported,
-        fmt::format("The record is of layout {}, which does not have what reached the ticks "
-                    "besides their samples.",
+        fmt::format("the record is of layout {}, which does not have what reached the ticks "
+                    "besides their samples",
                     reader->schema()),
-        reader->path().string(), "Record the session again; export and report still work");
+        reader->path().string(), "record the session again; export and report still work");
   }
   const std::int64_t start_ns = MonotonicNs();
   Replayer replayer(model, options, std::move(*commands), reader->tick_count());

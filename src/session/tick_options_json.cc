@@ -265,7 +265,7 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   }
   if (!fields.refused().empty()) {
     return Fail(ErrorCode::kUnreadable,
-                fmt::format("The options of a hand have no good \"{}\".", fields.refused()));
+                fmt::format("the options of a hand have no good \"{}\"", fields.refused()));
   }
   return options;
 }

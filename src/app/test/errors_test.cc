@@ -29,6 +29,19 @@ void ExpectError(const std::vector<std::string>& arguments, const std::vector<st
   EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
 }
 
+TEST(MissingFileTest, IsWhatEachCommandNamesFirst) {
+  const TemporaryFolder folder;
+  const std::string record = (folder / "run.hvasrec").string();
+  const std::string table = (folder / "run.csv").string();
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"export", record, "-o", table},
+           {"replay", record},
+           {"report", record, "-o", (folder / "run.html").string()},
+           {"studio", record, "--no-open"}}) {
+    ExpectError(arguments, {record + ": there is no such", "(check the path)"});
+  }
+}
+
 class BadFileTest : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(BadFileTest, ErrorNamesTheFileAndWhatToDo) {
