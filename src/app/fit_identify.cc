@@ -1,6 +1,5 @@
 #include "app/fit_identify.h"
 
-#include <map>
 #include <memory>
 #include <string>
 
@@ -8,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/choice.h"
 #include "app/rendering_options.h"
 #include "app/report_failure.h"
 #include "simulation/identification.h"
@@ -118,15 +118,12 @@ void AddFitIdentify(CLI::App* fit, int* status) {
       ->capture_default_str();
   command->add_option("--looks", options->observer.looks, "Perceptions in one insertion")
       ->capture_default_str();
-  const std::map<std::string, ShownSizes> sizes{
-      {ToString(ShownSizes::kOnePair), ShownSizes::kOnePair},
-      {ToString(ShownSizes::kOfKind), ShownSizes::kOfKind},
-      {ToString(ShownSizes::kAny), ShownSizes::kAny}};
-  command
-      ->add_option("--sizes", options->sizes,
-                   "one-pair (as in the paper), of-kind (drawn until S has the sign of its kind), "
-                   "or any (drawn)")
-      ->transform(CLI::CheckedTransformer(sizes, CLI::ignore_case));
+  const Choices<ShownSizes> sizes{{ToString(ShownSizes::kOnePair), ShownSizes::kOnePair},
+                                  {ToString(ShownSizes::kOfKind), ShownSizes::kOfKind},
+                                  {ToString(ShownSizes::kAny), ShownSizes::kAny}};
+  AddChoice(command, "--sizes", &options->sizes, sizes,
+            "one-pair (as in the paper), of-kind (drawn until S has the sign of its kind), or any "
+            "(drawn)");
   AddForceMapOption(command, &options->map);
   command->add_flag("--json", *is_json, "Print one JSON document");
   command->footer(

@@ -1,6 +1,5 @@
 #include "app/study_power.h"
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/choice.h"
 #include "app/progress.h"
 #include "app/report_failure.h"
 #include "app/study_table.h"
@@ -224,11 +224,10 @@ void AddStudyPower(CLI::App* study, int* status) {
   const auto a = std::make_shared<PowerArguments>();
   AddDesignOptions(command, a.get());
   AddStudyTableOptions(command, &a->table);
-  const std::map<std::string, PowerTest> tests{{"friedman", PowerTest::kFriedman},
-                                               {"wilcoxon", PowerTest::kWilcoxon}};
-  command
-      ->add_option("--test", a->options.test, "friedman, or wilcoxon of two conditions; asymptotic")
-      ->transform(CLI::CheckedTransformer(tests))
+  const Choices<PowerTest> tests{{"friedman", PowerTest::kFriedman},
+                                 {"wilcoxon", PowerTest::kWilcoxon}};
+  AddChoice(command, "--test", &a->options.test, tests,
+            "friedman, or wilcoxon of two conditions; asymptotic")
       ->default_str("friedman");
   command->add_option("--alpha", a->options.alpha, "Level of all comparisons together")
       ->capture_default_str();

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/choice.h"
 #include "app/load_product.h"
 #include "app/page_file.h"
 #include "app/progress.h"
@@ -185,14 +186,13 @@ void AddRun(CLI::App* group, int* status) {
       ->capture_default_str();
   command->add_option("-o,--output", options->folder,
                       "The study's folder; when not given, the protocol's id");
-  const std::map<std::string, study::KeptRecords> records{{"none", study::KeptRecords::kNone},
-                                                          {"last", study::KeptRecords::kLast},
-                                                          {"all", study::KeptRecords::kAll}};
-  command
-      ->add_option("--records", options->records,
-                   "Sessions to keep: none, last (repetition of each condition) or all; about "
-                   "12 MB a minute. last, when not given")
-      ->transform(CLI::CheckedTransformer(records));
+  const Choices<study::KeptRecords> records{{"none", study::KeptRecords::kNone},
+                                            {"last", study::KeptRecords::kLast},
+                                            {"all", study::KeptRecords::kAll}};
+  AddChoice(command, "--records", &options->records, records,
+            "Sessions to keep: none, last (repetition of each condition) or all; about 12 MB a "
+            "minute")
+      ->default_str("last");
   command->add_option("--threads", options->threads, "Participants at a time; 0: one a core")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/choice.h"
 #include "app/csv_table.h"
 
 namespace hvas::app {
@@ -245,13 +245,10 @@ CLI::Option* AddStudyTableOptions(CLI::App* command, StudyTableOptions* table) {
                       "The column of values of a long table, if not value");
   command->add_option("--quantity", table->quantity, "What the values are: \"completion time\"");
   command->add_option("--unit", table->unit, "Of the values: s");
-  const std::map<std::string, study::TrialSummary> summaries{
-      {"mean", study::TrialSummary::kMean}, {"median", study::TrialSummary::kMedian}};
-  command
-      ->add_option("--trials", table->trials,
-                   "Which one number stands for the trials of a participant and condition: mean or "
-                   "median")
-      ->transform(CLI::CheckedTransformer(summaries))
+  const Choices<study::TrialSummary> summaries{{"mean", study::TrialSummary::kMean},
+                                               {"median", study::TrialSummary::kMedian}};
+  AddChoice(command, "--trials", &table->trials, summaries,
+            "Which one number stands for the trials of a participant and condition")
       ->default_str("mean");
   return file;
 }
