@@ -414,15 +414,29 @@ void Simulation::Give(const TickCommand& command, const SequenceStep& step) {
   commands_.TryPush(command);
 }
 
-SequenceStep Simulation::StepOf(OccurrenceId id) const {
+const SequenceStep* Simulation::FindStepOf(OccurrenceId id) const {
   for (const SequenceStep& step : model_->sequence.steps) {
     if (step.occurrence == id && step.kind == SequenceStep::Kind::kInsert) {
-      return step;
+      return &step;
     }
   }
-  SequenceStep step;
-  step.occurrence = id;
-  return step;
+  return nullptr;
+}
+
+OccurrenceId Simulation::FindNearest(const Vec3& p_WH, Placement placement) const {
+  OccurrenceId nearest;
+  double least = kReach;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (parts_[i].placement != placement) {
+      continue;
+    }
+    const double distance = (parts_[i].X_WB * model_->bodies[i].mass.p_BoBcm_B - p_WH).norm();
+    if (distance < least) {
+      least = distance;
+      nearest = OccurrenceId(i);
+    }
+  }
+  return nearest;
 }
 
 bool Simulation::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
@@ -447,23 +461,23 @@ void Simulation::TakeNearest(Hand* hand, const Vec3& p_WH) {
     Take(hand, *hand->prepared);
     return;
   }
-  OccurrenceId nearest;
-  double least = kReach;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    if (parts_[i].placement != Placement::kLoose) {
-      continue;
-    }
-    const double distance = (parts_[i].X_WB * model_->bodies[i].mass.p_BoBcm_B - p_WH).norm();
-    if (distance < least) {
-      least = distance;
-      nearest = OccurrenceId(i);
-    }
+  if (const OccurrenceId loose = FindNearest(p_WH, Placement::kLoose); loose.is_valid()) {
+    const SequenceStep* planned = FindStepOf(loose);
+    SequenceStep step;
+    step.occurrence = loose;
+    Take(hand, planned != nullptr ? *planned : step);
+    return;
   }
-  if (nearest.is_valid()) {
-    Take(hand, StepOf(nearest));
-  } else {
-    hand->is_waiting_for_grip_to_open = true;  // closed on nothing: open before the next try
+  const OccurrenceId placed =
+      hand->takes_out ? FindNearest(p_WH, Placement::kPlaced) : OccurrenceId();
+  // What was put into a fixture stays there.
+  if (const SequenceStep* planned = placed.is_valid() ? FindStepOf(placed) : nullptr) {
+    SequenceStep step = *planned;
+    step.kind = SequenceStep::Kind::kRemove;
+    Take(hand, step);
+    return;
   }
+  hand->is_waiting_for_grip_to_open = true;  // closed on nothing: open before the next try
 }
 
 void Simulation::Take(Hand* hand, const SequenceStep& step) {

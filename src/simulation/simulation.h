@@ -200,6 +200,10 @@ class Simulation {
    it has been open. */
   void AwaitOpenGrip(std::size_t hand) { hands_[hand].is_waiting_for_grip_to_open = true; }
 
+  /** Before the loops run: where this hand closes on no loose part, it takes the nearest one that
+   is in its place out again (X16). */
+  void LetTakeOut(std::size_t hand) { hands_[hand].takes_out = true; }
+
   /** Something is in this hand, or on its way into it. Physics thread. */
   [[nodiscard]] bool is_holding(std::size_t hand) const { return hands_[hand].held != nullptr; }
 
@@ -255,6 +259,7 @@ class Simulation {
     SequenceStep held_step;
     std::optional<SequenceStep> prepared;
     bool is_waiting_for_grip_to_open{false};
+    bool takes_out{false};
     std::int64_t next_energy_ns{0};
   };
 
@@ -273,7 +278,10 @@ class Simulation {
   void FillFrame(Frame* frame) const;
   void TakeNearest(Hand* hand, const Vec3& p_WH);
   void Take(Hand* hand, const SequenceStep& step);
-  [[nodiscard]] SequenceStep StepOf(product::OccurrenceId id) const;
+  /** By which it goes to its place; null where it has none. */
+  [[nodiscard]] const SequenceStep* FindStepOf(product::OccurrenceId id) const;
+  /** Within reach of a hand. */
+  [[nodiscard]] product::OccurrenceId FindNearest(const Vec3& p_WH, Placement placement) const;
   [[nodiscard]] bool CanTake(const SequenceStep& step, const Vec3& p_WH) const;
   [[nodiscard]] std::shared_ptr<haptics::HeldPart> MakeHeldPart(const SequenceStep& step) const;
   void AddMembers(const SequenceStep& step, haptics::HeldPart* held) const;

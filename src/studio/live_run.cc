@@ -62,6 +62,9 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     if (!hands_[i]->follows_pointer()) {
       simulation_.AwaitOpenGrip(i);
+      if (trial_ == nullptr) {
+        simulation_.LetTakeOut(i);
+      }
     }
   }
   if (recording_ != nullptr) {

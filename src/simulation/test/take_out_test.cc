@@ -52,13 +52,18 @@ class TakeOutTest : public ::testing::Test {
 
   /** Goes on where the run is, with a hand that takes the peg out along `way`. */
   void Pull(const Vec3& way, AssemblyRun* run) {
-    Simulation& simulation = session_.simulation;
     SequenceStep step = StepOfPeg();
     step.kind = SequenceStep::Kind::kRemove;
+    session_.simulation.Prepare(step);
+    PullWhatIsThere(way, run);
+  }
+
+  /** With a hand that closes where the peg is. */
+  void PullWhatIsThere(const Vec3& way, AssemblyRun* run) {
+    const Simulation& simulation = session_.simulation;
     const Vec3 p_WG =
         simulation.pose(OccurrenceId(kPeg)) * simulation.model().bodies[kPeg].mass.p_BoBcm_B;
     StraightHand hand(p_WG, p_WG + way);
-    simulation.Prepare(step);
     Execution execution = run->MakeExecution(&hand, 10);
     execution.is_done = [&hand] { return hand.is_done(); };
     (void)RunLockstep(execution);
@@ -89,6 +94,19 @@ TEST_F(TakeOutTest, PegComesOutOfItsBoreAndItsStepIsToBeDoneAgain) {
   };
   EXPECT_TRUE(seen(haptics::HoldState::kMating));
   EXPECT_FALSE(seen(haptics::HoldState::kSeated));  // it is not drawn back into its place
+}
+
+TEST_F(TakeOutTest, HandOfADeviceTakesOutWhatItClosesOn) {
+  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  hands.Advance();
+  const Pose before = pose();
+  PullWhatIsThere(Vec3(0, 0, 60e-3), &hands);  // nobody has said that it may
+  EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kPlaced);
+  EXPECT_EQ((pose().p() - before.p()).norm(), 0);
+  session_.simulation.LetTakeOut(0);
+  PullWhatIsThere(Vec3(0, 0, 60e-3), &hands);
+  EXPECT_EQ(session_.simulation.placement(OccurrenceId(kPeg)), Placement::kLoose);
+  EXPECT_GT(pose().p().z(), before.p().z() + 15e-3);
 }
 
 TEST_F(TakeOutTest, PegThatIsHeldAndLetGoIsWhereItWas) {
