@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "app/test/json_schema.h"
 #include "app/test/run_hvas.h"
 #include "base/test/temporary_folder.h"
 
@@ -25,6 +27,10 @@ class StudyRunTest : public ::testing::Test {
 TEST_F(StudyRunTest, XiaGivesTheSameAgainAndDeletesAParticipant) {
   const auto json = RunHvasJson({"study", "run", "xia-2011", "--simulated", "2", "--records",
                                  "none", "-o", Folder("one"), "--json"});
+  EXPECT_EQ(Validate(ReadSchema("study_summary"), json), std::vector<std::string>{});
+  EXPECT_EQ(Validate(ReadSchema("study_summary"),
+                     RunHvasJson({"study", "list", Folder("one"), "--json"})),
+            std::vector<std::string>{});
   EXPECT_NE(json["what"].get<std::string>().find("simulated"), std::string::npos);
   ASSERT_EQ(json["conditions"].size(), 3U);
   for (const auto& condition : json["conditions"]) {
