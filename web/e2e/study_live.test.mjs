@@ -69,12 +69,13 @@ async function findAndClickFace(page, occurrence, face) {
   await clickFace(page, occurrence, face);
 }
 
-/** Drags a part in the plane of the screen until it looks as if it were at p_W; `isThere` may end it before. */
-async function dragPart(page, occurrence, p_W, isThere = () => false) {
+/** Drags a part in the plane of the screen until it looks as if it were at p_W, or until `isThere`. */
+async function dragPart(page, occurrence, p_W, isThere = null) {
+  const tries = isThere === null ? 8 : 60;
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();
-  for (let k = 0; k < 8 && !(await isThere()); k++) {
+  for (let k = 0; k < tries && !(await isThere?.()); k++) {
     const [from, to] = await page.evaluate(([o, p]) => [window.hvas.pose(o).p, p].map(window.hvas.project), [occurrence, p_W]);
     at.x += to.x - from.x;
     at.y += to.y - from.y;
