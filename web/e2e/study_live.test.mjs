@@ -57,16 +57,26 @@ async function turnView(page, dy) {
   await page.waitForTimeout(700);
 }
 
-/** Turns the view, first from below and then from above, until one sees a face; clicks it. */
+/** Turns the view, first from below and then from above, until one sees a face; clicks it once the view rests. */
 async function findAndClickFace(page, occurrence, face) {
-  const isSeen = () => page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f) !== null, [occurrence, face]);
+  const find = () => page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f), [occurrence, face]);
   for (const dy of [...Array(6).fill(-60), ...Array(12).fill(60)]) {
-    if (await isSeen()) {
+    if ((await find()) !== null) {
       break;
     }
     await turnView(page, dy);
   }
+  let [before, now] = [null, await find()];
+  while (now !== null && (before === null || Math.hypot(now.x - before.x, now.y - before.y) > 1)) {
+    await page.waitForTimeout(400);
+    [before, now] = [now, await find()];
+  }
   await clickFace(page, occurrence, face);
+}
+
+/** Whether the page says so within a while. */
+async function says(page, text) {
+  return page.getByText(text).first().waitFor({ timeout: 5000 }).then(() => true, () => false);
 }
 
 /** Drags a part in the plane of the screen until it looks as if it were at p_W, or until `isThere`. */
@@ -85,14 +95,23 @@ async function dragPart(page, occurrence, p_W, isThere = null) {
   await page.mouse.up();
 }
 
-/** Sets the constraints of a part one after the other, as they are listed. */
+/** Sets the constraints of a part one after the other, as they are listed; a click that has missed is made again. */
 async function pickConstraints(person, scene, occurrence) {
   const mates = scene.mates.filter(({ b }) => b === occurrence);
   assert.equal(mates.length, 2);
-  for (const { a, b, faces_a: facesA, faces_b: facesB } of mates) {
-    await findAndClickFace(person, b, facesB[0]);
-    await person.getByText("Now click the surface that it belongs to.").waitFor();
-    await findAndClickFace(person, a, facesA[0]);
+  await person.getByText("Click a surface of the marked part.").waitFor();
+  for (const [k, { a, b, faces_a: facesA, faces_b: facesB }] of mates.entries()) {
+    const done = k === 0 ? "Left to set: 1" : "Trial 2";
+    for (let tries = 0; tries < 5; tries++) {
+      await findAndClickFace(person, b, facesB[0]);
+      if (!(await says(person, "Now click the surface that it belongs to."))) {
+        continue;
+      }
+      await findAndClickFace(person, a, facesA[0]);
+      if (await says(person, done)) {
+        break;
+      }
+    }
   }
 }
 
