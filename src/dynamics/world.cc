@@ -246,7 +246,7 @@ Result<BodyId> World::AddBody(std::span<const Vec3> vertices_B, const MassProper
   const PrincipalFrame frame = CalcPrincipalFrame(properties);
   if (!IsValid(vertices_B, properties, frame, X_WB)) {
     return Fail(ErrorCode::kInvalid,
-                "A free body needs vertices, a finite pose, a positive mass "
+                "a free body needs vertices, a finite pose, a positive mass "
                 "and a positive definite inertia");
   }
   auto body = std::make_unique<Body>();

@@ -597,6 +597,14 @@ Sequence PlanSequence(const SequenceInput& input) {
   return Planner(input).Plan();
 }
 
+const SequenceStep* FindInsertion(const Sequence& sequence, OccurrenceId id) {
+  const auto found =
+      std::find_if(sequence.steps.begin(), sequence.steps.end(), [id](const SequenceStep& step) {
+        return step.occurrence == id && step.kind == SequenceStep::Kind::kInsert;
+      });
+  return found == sequence.steps.end() ? nullptr : &*found;
+}
+
 Result<Sequence> Reorder(const product::Product& product, const Sequence& sequence,
                          const std::vector<std::string>& names) {
   Sequence result;

@@ -47,6 +47,10 @@ struct Sequence {
   std::vector<DrawnOverlap> overlaps;
 };
 
+/** The move by which a part goes to its place, alone or with what moves with it; null where it has
+ none: it is put into a fixture, or cannot be brought in. */
+[[nodiscard]] const SequenceStep* FindInsertion(const Sequence& sequence, product::OccurrenceId id);
+
 struct SequenceInput {
   const product::Product* product{nullptr};
   contact::Scene* scene{

@@ -414,15 +414,6 @@ void Simulation::Give(const TickCommand& command, const SequenceStep& step) {
   commands_.TryPush(command);
 }
 
-const SequenceStep* Simulation::FindStepOf(OccurrenceId id) const {
-  for (const SequenceStep& step : model_->sequence.steps) {
-    if (step.occurrence == id && step.kind == SequenceStep::Kind::kInsert) {
-      return &step;
-    }
-  }
-  return nullptr;
-}
-
 OccurrenceId Simulation::FindNearest(const Vec3& p_WH, Placement placement) const {
   OccurrenceId nearest;
   double least = kReach;
@@ -462,17 +453,16 @@ void Simulation::TakeNearest(Hand* hand, const Vec3& p_WH) {
     return;
   }
   if (const OccurrenceId loose = FindNearest(p_WH, Placement::kLoose); loose.is_valid()) {
-    const SequenceStep* planned = FindStepOf(loose);
+    const SequenceStep* insertion = FindInsertion(model_->sequence, loose);
     SequenceStep step;
     step.occurrence = loose;
-    Take(hand, planned != nullptr ? *planned : step);
+    Take(hand, insertion != nullptr ? *insertion : step);
     return;
   }
   const OccurrenceId placed =
       hand->takes_out ? FindNearest(p_WH, Placement::kPlaced) : OccurrenceId();
-  // What was put into a fixture stays there.
-  if (const SequenceStep* planned = placed.is_valid() ? FindStepOf(placed) : nullptr) {
-    SequenceStep step = *planned;
+  if (const SequenceStep* insertion = FindInsertion(model_->sequence, placed)) {
+    SequenceStep step = *insertion;
     step.kind = SequenceStep::Kind::kRemove;
     Take(hand, step);
     return;

@@ -278,8 +278,6 @@ class Simulation {
   void FillFrame(Frame* frame) const;
   void TakeNearest(Hand* hand, const Vec3& p_WH);
   void Take(Hand* hand, const SequenceStep& step);
-  /** By which it goes to its place; null where it has none. */
-  [[nodiscard]] const SequenceStep* FindStepOf(product::OccurrenceId id) const;
   /** Within reach of a hand. */
   [[nodiscard]] product::OccurrenceId FindNearest(const Vec3& p_WH, Placement placement) const;
   [[nodiscard]] bool CanTake(const SequenceStep& step, const Vec3& p_WH) const;

@@ -26,13 +26,11 @@ SequenceStep FindStep(const simulation::Model& model, const LiveState& state, Oc
     });
     return possible;
   }
-  for (const SequenceStep& step : steps) {
-    if (step.occurrence == id && step.kind == SequenceStep::Kind::kInsert) {
-      SequenceStep move = step;
-      const bool is_in_place = state.parts[id.index()].placement == Placement::kPlaced;
-      move.kind = is_in_place ? SequenceStep::Kind::kRemove : step.kind;
-      return move;
-    }
+  if (const SequenceStep* insertion = FindInsertion(model.sequence, id)) {
+    SequenceStep move = *insertion;
+    const bool is_in_place = state.parts[id.index()].placement == Placement::kPlaced;
+    move.kind = is_in_place ? SequenceStep::Kind::kRemove : move.kind;
+    return move;
   }
   SequenceStep step;
   step.occurrence = id;
