@@ -1,9 +1,55 @@
+# What most sources include of others' headers, compiled once for rooms and once for tests. A source must not rely on it:
+# the preset `clang` compiles each source by itself without it.
+option(HVAS_PRECOMPILED "Compile the headers of libraries once" OFF)
+if(HVAS_PRECOMPILED)
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cc CONTENT "int main() {}\n")
+  set(HVAS_PRECOMPILED_HEADERS
+      <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <numbers>
+      <numeric> <optional> <set> <span> <sstream> <string> <string_view> <thread> <unordered_map> <utility> <vector>
+      <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <nlohmann/json.hpp> <tl/expected.hpp>)
+  # A library and a program, because their code is not placed alike (-fPIC, -fPIE).
+  add_library(hvas_precompiled_rooms OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
+  add_executable(hvas_precompiled_tests EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
+  foreach(users rooms tests)
+    target_link_libraries(hvas_precompiled_${users} PRIVATE hvas_settings Eigen3::Eigen fmt::fmt)
+    target_precompile_headers(hvas_precompiled_${users} PRIVATE ${HVAS_PRECOMPILED_HEADERS})
+  endforeach()
+  target_link_libraries(hvas_precompiled_tests PRIVATE GTest::gtest)
+  target_precompile_headers(hvas_precompiled_tests PRIVATE <gtest/gtest.h>)
+endif()
+
+# hvas_precompiled(<target> rooms|tests): what a target takes its precompiled headers from.
+function(hvas_precompiled target users)
+  if(HVAS_PRECOMPILED)
+    target_precompile_headers(${target} REUSE_FROM hvas_precompiled_${users})
+  endif()
+endfunction()
+
 # hvas_library(<room> SOURCES a.cc ... [DEPS hvas::x ...] [PRIVATE_DEPS ...]): the library of a room, alias hvas::<room>.
 function(hvas_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   add_library(hvas_${name} STATIC ${ARG_SOURCES})
   add_library(hvas::${name} ALIAS hvas_${name})
   target_link_libraries(hvas_${name} PUBLIC hvas_settings ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
+  hvas_precompiled(hvas_${name} rooms)
+endfunction()
+
+# hvas_symbols_apart(<program>): leaves the debug information beside the program, in <program>.debug, where gdb and
+# addr2line find it; it is most of the program's size.
+function(hvas_symbols_apart name)
+  if(CMAKE_BUILD_TYPE STREQUAL RelWithDebInfo AND CMAKE_OBJCOPY)
+    add_custom_command(TARGET ${name} POST_BUILD
+      COMMAND ${CMAKE_OBJCOPY} --only-keep-debug $<TARGET_FILE:${name}> $<TARGET_FILE:${name}>.debug
+      COMMAND ${CMAKE_OBJCOPY} --strip-unneeded --add-gnu-debuglink=$<TARGET_FILE:${name}>.debug $<TARGET_FILE:${name}>
+      VERBATIM)
+  endif()
+endfunction()
+
+# hvas_compile_alone(a.cc ...): sources that are not joined with others of their target: those that hold nothing but
+# real-time code, so that tools/lint/rt_symbols.py can ask of each what it names, and those that have the same local names
+# by design, as the drivers have.
+function(hvas_compile_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 # hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s]): one GoogleTest program, one ctest entry.
@@ -14,6 +60,7 @@ function(hvas_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE HVAS_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  hvas_precompiled(${name} tests)
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()
@@ -24,5 +71,6 @@ function(hvas_test name)
     math(EXPR ARG_TIMEOUT "4 * ${ARG_TIMEOUT}")
   endif()
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+  get_filename_component(room ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS};room_${room}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

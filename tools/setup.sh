@@ -49,6 +49,7 @@ count_jobs() {
 # configure PRESET
 configure() {
   export CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1  # clones in other folders share what is compiled
+  export CCACHE_SLOPPINESS=pch_defines,time_macros  # or nothing that uses a precompiled header is kept
   local log
   if ! log=$(cd "$root" && cmake --preset "$1" 2>&1); then
     say "$log"

@@ -20,7 +20,7 @@ using pages::PlotRange;
 using pages::PlotSeries;
 using pages::PlotStyle;
 
-constexpr int kSteps = 200;
+constexpr int kCurveSteps = 200;
 
 /** The fits of all cards at once, at the clearances that `pick` says. */
 template <typename Pick>
@@ -192,7 +192,7 @@ Result<FitCurve> MakeFitCurve(const std::vector<FitCard>& cards,
   FitCurve curve;
   curve.cards = cards;
   curve.options = options;
-  curve.options.depths = kSteps;
+  curve.options.depths = kCurveSteps;
   Result<fits::Population> batch = DrawPopulation(cards, curve.options);
   if (!batch) {
     return Unexpected(batch.error());
@@ -211,7 +211,7 @@ Result<FitCurve> MakeFitCurve(const std::vector<FitCard>& cards,
   curve.release_ratio = p.friction_in > 0 ? p.friction_release / p.friction_in : 1;
   curve.work_most = most->CalcWork();
   const double way = most->end() - most->begin();
-  const double steps = step > 0 ? std::ceil(way / step - 1e-9) : kSteps;
+  const double steps = step > 0 ? std::ceil(way / step - 1e-9) : kCurveSteps;
   if (!(steps <= 1e6)) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("steps of {:g} mm make {:.0f} points", units::ToMm(step), steps), {},

@@ -25,7 +25,7 @@ using pages::PlotSeries;
 using pages::PlotStyle;
 
 constexpr double kSpeed = 0.01;  // Of the hand; the paper does not say [m/s].
-constexpr int kSteps = 500;
+constexpr int kPaperSteps = 500;
 
 /** How far the hand is off the axis in the clearance fit: up to and down from random values. */
 class WanderingHand {
@@ -81,8 +81,8 @@ Result<PaperCurve> MakeCurve(const char* experiment, fits::FitKind kind, std::ui
                    kind,
                    fits::CalcPaperFactor(kind, stroke->CalcForce(fits::kPaperRig.length).in),
                    {}};
-  for (int i = 0; i <= kSteps; ++i) {
-    const double share = static_cast<double>(i) / kSteps;
+  for (int i = 0; i <= kPaperSteps; ++i) {
+    const double share = static_cast<double>(i) / kPaperSteps;
     const double depth = fits::kPaperRig.length * share;
     // W(5): what presses sideways is the hand beyond the clearance.
     const double across =

@@ -7,23 +7,23 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json Json(const std::optional<double>& value) {
+ordered_json ToJson(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
-ordered_json Json(const statistics::Interval& interval) {
+ordered_json ToJson(const statistics::Interval& interval) {
   return {interval.low, interval.high};
 }
 
-ordered_json Json(const std::optional<statistics::Interval>& interval) {
-  return interval ? Json(*interval) : ordered_json(nullptr);
+ordered_json ToJson(const std::optional<statistics::Interval>& interval) {
+  return interval ? ToJson(*interval) : ordered_json(nullptr);
 }
 
-ordered_json Json(const statistics::Summary& s) {
+ordered_json ToJson(const statistics::Summary& s) {
   return {{"n", s.n},
           {"mean", s.mean},
-          {"mean_ci", Json(s.mean_ci)},
-          {"sd", Json(s.sd)},
+          {"mean_ci", ToJson(s.mean_ci)},
+          {"sd", ToJson(s.sd)},
           {"min", s.min},
           {"lower_quartile", s.lower_quartile},
           {"median", s.median},
@@ -31,50 +31,50 @@ ordered_json Json(const statistics::Summary& s) {
           {"max", s.max}};
 }
 
-ordered_json Json(const statistics::Share& share) {
+ordered_json ToJson(const statistics::Share& share) {
   return {{"right", share.right},
           {"trials", share.trials},
           {"share", share.share},
-          {"share_ci", Json(share.ci)},
-          {"chance_p", Json(share.chance_p)}};
+          {"share_ci", ToJson(share.ci)},
+          {"chance_p", ToJson(share.chance_p)}};
 }
 
-ordered_json Json(const statistics::Friedman& f) {
+ordered_json ToJson(const statistics::Friedman& f) {
   return {{"n", f.row_count},
           {"dof", f.condition_count - 1},
           {"mean_ranks", f.mean_ranks},
-          {"chi_square", Json(f.chi_square)},
-          {"p", Json(f.p)},
-          {"exact_p", Json(f.exact_p)},
-          {"kendall_w", Json(f.kendall_w)}};
+          {"chi_square", ToJson(f.chi_square)},
+          {"p", ToJson(f.p)},
+          {"exact_p", ToJson(f.exact_p)},
+          {"kendall_w", ToJson(f.kendall_w)}};
 }
 
-ordered_json Json(const study::Analysis& analysis, const study::PairResult& pair) {
+ordered_json ToJson(const study::Analysis& analysis, const study::PairResult& pair) {
   const statistics::Wilcoxon& w = pair.wilcoxon;
   ordered_json d_z = nullptr;
   if (pair.d_z) {
-    d_z = {{"value", pair.d_z->d_z}, {"ci", Json(pair.d_z->ci)}};
+    d_z = {{"value", pair.d_z->d_z}, {"ci", ToJson(pair.d_z->ci)}};
   }
   return {{"first", analysis.table.conditions[pair.first]},
           {"second", analysis.table.conditions[pair.second]},
-          {"difference", Json(pair.difference.summary)},
+          {"difference", ToJson(pair.difference.summary)},
           {"first_mean", pair.difference.first_mean},
           {"second_mean", pair.difference.second_mean},
-          {"difference_percent", Json(pair.difference.percent)},
+          {"difference_percent", ToJson(pair.difference.percent)},
           {"wilcoxon",
            {{"n", w.n},
             {"zeros", w.zero_count},
             {"positive_rank_sum", w.positive_rank_sum},
             {"negative_rank_sum", w.negative_rank_sum},
-            {"z", Json(w.z)},
-            {"p", Json(w.p)},
+            {"z", ToJson(w.z)},
+            {"p", ToJson(w.p)},
             {"bonferroni_p", pair.bonferroni_p},
             {"holm_p", pair.holm_p},
-            {"exact_p", Json(w.exact_p)},
-            {"exact_bonferroni_p", Json(pair.exact_bonferroni_p)},
-            {"exact_holm_p", Json(pair.exact_holm_p)}}},
-          {"rank_biserial", Json(w.rank_biserial)},
-          {"r", Json(w.r)},
+            {"exact_p", ToJson(w.exact_p)},
+            {"exact_bonferroni_p", ToJson(pair.exact_bonferroni_p)},
+            {"exact_holm_p", ToJson(pair.exact_holm_p)}}},
+          {"rank_biserial", ToJson(w.rank_biserial)},
+          {"r", ToJson(w.r)},
           {"d_z", d_z},
           {"is_different", pair.is_different}};
 }
@@ -120,15 +120,15 @@ ordered_json ToJson(const study::Analysis& analysis, const std::vector<std::stri
   }
   for (const study::ConditionResult& condition : analysis.conditions) {
     ordered_json entry{{"name", condition.name}};
-    entry.update(Json(condition.summary));
-    entry["right_answers"] = condition.share ? Json(*condition.share) : ordered_json(nullptr);
+    entry.update(ToJson(condition.summary));
+    entry["right_answers"] = condition.share ? ToJson(*condition.share) : ordered_json(nullptr);
     json["conditions"].push_back(std::move(entry));
   }
   if (analysis.friedman) {
-    json["friedman"] = Json(*analysis.friedman);
+    json["friedman"] = ToJson(*analysis.friedman);
   }
   for (const study::PairResult& pair : analysis.pairs) {
-    json["pairs"].push_back(Json(analysis, pair));
+    json["pairs"].push_back(ToJson(analysis, pair));
   }
   return json;
 }
@@ -138,15 +138,15 @@ ordered_json ToJson(const study::Identification& identification,
   ordered_json json{{"schema", "hvas-study-identification-1"},
                     {"participants", identification.participant_count},
                     {"confidence", identification.confidence},
-                    {"chance", Json(identification.chance)},
+                    {"chance", ToJson(identification.chance)},
                     {"names", identification.names},
                     {"counts", identification.confusion.counts},
-                    {"accuracy", Json(identification.confusion.accuracy)},
+                    {"accuracy", ToJson(identification.confusion.accuracy)},
                     {"recall", ordered_json::array()},
-                    {"kappa", Json(identification.confusion.kappa)},
+                    {"kappa", ToJson(identification.confusion.kappa)},
                     {"notes", notes}};
   for (const std::optional<statistics::Share>& recall : identification.confusion.recall) {
-    json["recall"].push_back(recall ? Json(*recall) : ordered_json(nullptr));
+    json["recall"].push_back(recall ? ToJson(*recall) : ordered_json(nullptr));
   }
   return json;
 }

@@ -33,6 +33,8 @@ constexpr double FromMm3(double volume_mm3) {
   return volume_mm3 * 1e-9;
 }
 
+inline constexpr double kTurn = 2 * std::numbers::pi;  ///< [rad]
+
 constexpr double FromDeg(double angle_deg) {
   return angle_deg * std::numbers::pi / 180.0;
 }

@@ -36,6 +36,7 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "cad/equal_shapes.h"
+#include "cad/limits.h"
 #include "cad/material.h"
 #include "cad/part_shape.h"
 #include "cad/product_tree.h"
@@ -53,7 +54,6 @@ using product::Product;
 using product::Subassembly;
 using product::SubassemblyId;
 
-constexpr std::size_t kMaxOccurrences = 1000000;
 constexpr double kScaleTolerance = 1e-6;
 
 using FaceEntities = NCollection_DataMap<TopoDS_Shape, std::uint64_t, TopTools_ShapeMapHasher>;

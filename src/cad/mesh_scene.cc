@@ -16,6 +16,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "cad/limits.h"
 #include "cad/material.h"
 #include "cad/product_tree.h"
 #include "cad/text_encoding.h"
@@ -34,7 +35,6 @@ using product::SubassemblyId;
 using Meshes = std::vector<std::uint32_t>;
 
 constexpr int kDeepestNode = 500;
-constexpr std::size_t kMaxOccurrences = 1000000;
 
 struct Affine {
   Mat3 A{Mat3::Identity()};

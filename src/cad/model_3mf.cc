@@ -5,12 +5,10 @@
 #include <cstddef>
 #include <utility>
 
+#include "cad/step_text.h"
+
 namespace hvas::cad {
 namespace {
-
-bool IsBlank(char c) {
-  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
 
 /** Character references and the five entities of XML; what is neither stays. */
 std::string Unescape(std::string_view text) {

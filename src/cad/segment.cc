@@ -27,7 +27,6 @@ constexpr std::size_t kUsualLevels = 3;
 // Seeds in vain before their smooth surroundings are skipped too, ever more of them.
 constexpr std::size_t kFailuresAtFull = 1000;
 constexpr std::size_t kMostSkipped = 2000;
-const double kSmoothCosine = std::cos(units::FromDeg(40));
 
 /** Marks up to `count` facets that are reached from one over smooth edges. */
 void SkipAround(const Facets& facets, std::uint32_t seed, std::size_t count,

@@ -17,8 +17,7 @@ using spatial::Surface;
 using spatial::SurfaceKind;
 
 const double kNormalCosine = std::cos(units::FromDeg(30));
-const double kSmoothCosine = std::cos(units::FromDeg(40));
-constexpr std::size_t kMaxFitPoints = 4000;
+constexpr std::size_t kMaxRefitPoints = 4000;
 
 bool IsFreeform(const Segment& segment) {
   return segment.surface.kind == SurfaceKind::kFreeform;
@@ -316,7 +315,7 @@ void Tidier::Refit(Segment* segment) const {
   }
   if (!segment->is_given_surface && points.size() > 3) {
     std::vector<Vec3> sample;
-    const std::size_t stride = 1 + points.size() / kMaxFitPoints;
+    const std::size_t stride = 1 + points.size() / kMaxRefitPoints;
     for (std::size_t i = 0; i < points.size(); i += stride) {
       sample.push_back(points[i]);
     }

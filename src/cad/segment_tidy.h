@@ -1,11 +1,16 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "base/units.h"
 #include "cad/segment.h"
 
 namespace hvas::cad {
+
+/** Triangles whose normals are nearer to each other than this may be of one curved face. */
+inline const double kSmoothCosine = std::cos(units::FromDeg(40));
 
 /** Finishes a first segmentation: joins neighbours on one surface, gives small leftovers to the
  surface that they lie on, dissolves scraps of curved surfaces amid a freeform face, and fits every

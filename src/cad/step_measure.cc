@@ -12,7 +12,7 @@ namespace {
 
 using Kind = StepValue::Kind;
 
-constexpr int kMaxDepth = 8;  // Of units by other units.
+constexpr int kMaxUnitDepth = 8;  // Of units by other units.
 
 struct Unit {
   double scale{1};
@@ -76,7 +76,7 @@ double PrefixScale(std::string_view prefix) {
 }
 
 std::optional<Unit> ReadUnit(const StepText& text, std::uint64_t id, int depth) {
-  if (depth > kMaxDepth) {
+  if (depth > kMaxUnitDepth) {
     return std::nullopt;
   }
   for (const StepRecord& record : text.Find(id)) {
@@ -137,8 +137,8 @@ double ReadUnitOf(const StepText& text, std::uint64_t representation, Quantity q
   return unit && unit->scale > 0 ? unit->scale : otherwise;
 }
 
-std::optional<Measure> ReadMeasure(const StepText& text, std::uint64_t id,
-                                   std::uint64_t representation) {
+std::optional<StepMeasure> ReadMeasure(const StepText& text, std::uint64_t id,
+                                       std::uint64_t representation) {
   const auto raw = ReadRaw(text, id);
   if (!raw) {
     return std::nullopt;
@@ -157,7 +157,7 @@ std::optional<Measure> ReadMeasure(const StepText& text, std::uint64_t id,
   if (!(std::abs(value) < kAbsurd)) {
     return std::nullopt;
   }
-  return Measure{value, unit->quantity, raw->name};
+  return StepMeasure{value, unit->quantity, raw->name};
 }
 
 }  // namespace hvas::cad

@@ -11,11 +11,9 @@
 namespace hvas::cad {
 namespace {
 
-constexpr int kMaxDepth = 32;  // Of lists in lists; files have five at most.
+using Kind = StepValue::Kind;
 
-bool IsBlank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\n';
-}
+constexpr int kMaxListDepth = 32;  // Of lists in lists; files have five at most.
 
 bool IsDigit(char c) {
   return c >= '0' && c <= '9';
@@ -66,7 +64,7 @@ class Cursor {
 
   /** "(a, b, c)". */
   bool TakeList(int depth, std::vector<StepValue>* values) {
-    if (depth > kMaxDepth || !Take('(')) {
+    if (depth > kMaxListDepth || !Take('(')) {
       return false;
     }
     if (Take(')')) {
@@ -134,7 +132,6 @@ class Cursor {
 };
 
 bool Cursor::TakeValue(int depth, StepValue* value) {
-  using Kind = StepValue::Kind;
   switch (const char c = Peek(); c) {
     case '$':
     case '*':
@@ -192,6 +189,12 @@ std::size_t FindEnd(std::string_view text, std::size_t begin) {
 }
 
 }  // namespace
+
+const StepRecord* FindRecord(const StepEntity& entity, std::string_view name) {
+  const auto record = std::find_if(entity.begin(), entity.end(),
+                                   [name](const StepRecord& r) { return r.name == name; });
+  return record == entity.end() ? nullptr : &*record;
+}
 
 StepEntity ParseStepEntity(std::string_view body) {
   Cursor cursor(body);

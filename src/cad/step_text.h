@@ -25,6 +25,14 @@ struct StepRecord {
 /** One record, or those of a complex instance in the file's order; none when it cannot be read. */
 using StepEntity = std::vector<StepRecord>;
 
+/** The record of that name; null where the entity has none. */
+[[nodiscard]] const StepRecord* FindRecord(const StepEntity& entity, std::string_view name);
+
+/** Whether a character separates the tokens of a text: space, tab, line feed, carriage return. */
+[[nodiscard]] constexpr bool IsBlank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
 [[nodiscard]] StepEntity ParseStepEntity(std::string_view body);
 
 /** The entities of a STEP text by number. Takes any bytes: what is no entity is left out, and of

@@ -24,7 +24,7 @@ const double kLargestTurnCosine = std::cos(units::FromDeg(48));
 const double kStripCosine = std::cos(units::FromDeg(25));
 const double kPatchCosine = std::cos(units::FromDeg(35));
 constexpr std::size_t kMaxRing = 40;
-constexpr std::size_t kMaxFitPoints = 1500;
+constexpr std::size_t kMaxGrowthPoints = 1500;
 constexpr double kGain = 1.05;           // By this much a less simple surface has to be larger.
 constexpr double kLeastBend = 6;         // Bend of a curved surface over its extent, in tolerances.
 constexpr double kLeastLooseTurn = 0.3;  // Of a loosely fitted one, to each side of its mean [rad].
@@ -169,12 +169,13 @@ void SurfaceGrower::CollectPoints(std::span<const std::uint32_t> members) {
  @returns The largest distance of those used. */
 double SurfaceGrower::Refit(std::span<const std::uint32_t> members, Surface* surface) {
   CollectPoints(members);
-  if (points_.size() > kMaxFitPoints) {
-    const double stride = static_cast<double>(points_.size()) / static_cast<double>(kMaxFitPoints);
-    for (std::size_t i = 0; i < kMaxFitPoints; ++i) {
+  if (points_.size() > kMaxGrowthPoints) {
+    const double stride =
+        static_cast<double>(points_.size()) / static_cast<double>(kMaxGrowthPoints);
+    for (std::size_t i = 0; i < kMaxGrowthPoints; ++i) {
       points_[i] = points_[static_cast<std::size_t>(static_cast<double>(i) * stride)];
     }
-    points_.resize(kMaxFitPoints);
+    points_.resize(kMaxGrowthPoints);
   }
   return RefineSurface(points_, std::max(CalcExtent(points_), tolerance_), surface);
 }

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "cad/limits.h"
 #include "cad/material.h"
 #include "cad/product_tree.h"
 #include "cad/step_measure.h"
@@ -32,15 +33,8 @@ using spatial::Pose;
 using Id = std::uint64_t;
 
 constexpr int kDeepest = 100;
-constexpr std::size_t kMaxOccurrences = 100000;
 
 /** What of an entity's type is looked for: the record of that name, or nothing. */
-const StepRecord* FindRecord(const StepEntity& entity, std::string_view name) {
-  const auto record = std::find_if(entity.begin(), entity.end(),
-                                   [name](const StepRecord& r) { return r.name == name; });
-  return record == entity.end() ? nullptr : &*record;
-}
-
 /** One use of a product definition in another. */
 struct Use {
   Id usage{0};  ///< NEXT_ASSEMBLY_USAGE_OCCURRENCE.

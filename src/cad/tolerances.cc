@@ -79,12 +79,6 @@ std::string TextAt(const StepRecord& record, std::size_t i) {
                                                                           : std::string();
 }
 
-const StepRecord* FindRecord(const StepEntity& entity, std::string_view name) {
-  const auto it = std::find_if(entity.begin(), entity.end(),
-                               [name](const StepRecord& record) { return record.name == name; });
-  return it == entity.end() ? nullptr : &*it;
-}
-
 void CollectRefs(const StepValue& value, std::vector<EntityId>* refs) {
   if (value.kind == Kind::kReference) {
     refs->push_back(value.reference);

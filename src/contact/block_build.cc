@@ -14,9 +14,6 @@ Vec3 GridPoint(int n, int side) {
   return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
 }
 
-constexpr double kSlack = 1 + 1e-9;
-const double kHalfDiagonal = std::sqrt(3.0) / 2;
-
 // A face stays listed where it is this much further away than the closest one, so that it is found
 // when that one is ignored or when the part as made differs from the drawing.
 constexpr double kFaceMarginVoxels = 0.25;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -9,7 +10,8 @@
 
 namespace hvas::contact {
 
-inline constexpr double kBandVoxels = 4.0;  ///< The distance that nodes hold, at most.
+inline const double kHalfDiagonal = std::sqrt(3.0) / 2;  ///< Of a cube, in sides.
+inline constexpr double kBandVoxels = 4.0;               ///< The distance that nodes hold, at most.
 
 /** Depth of the layer on both sides of the surface that is answered exactly [m]: a voxel, but
  deeper than parts are pressed into each other as far as two voxels reach. */

@@ -22,7 +22,6 @@ constexpr double kBlocksPerPatch =
     2.2;  // Blocks for each patch of surface as large as a block's side.
 constexpr double kSmallestVoxel = 20e-6;
 constexpr double kLargestVoxel = 2e-3;
-const double kHalfDiagonal = std::sqrt(3.0) / 2;
 
 using Index3 = std::array<int, 3>;
 

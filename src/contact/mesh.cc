@@ -10,7 +10,6 @@
 namespace hvas::contact {
 namespace {
 
-constexpr double kOnSurface = 1e-7;     // [m]
 constexpr double kWeldRelative = 1e-9;  // Of the diagonal.
 const double kCosSharpBetweenFaces = std::cos(8.0 * std::numbers::pi / 180.0);
 const double kCosSharpInFreeform = std::cos(30.0 * std::numbers::pi / 180.0);

@@ -8,6 +8,8 @@
 
 namespace hvas::contact {
 
+inline constexpr double kOnSurface = 1e-7;  ///< A point this near a face lies on it [m].
+
 /** Where on a triangle the closest point lies: the inside, edge k (from corner k to k + 1) or
  * corner k. */
 enum class TriangleFeature : std::uint8_t {

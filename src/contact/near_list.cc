@@ -9,7 +9,6 @@
 namespace hvas::contact {
 namespace {
 
-constexpr double kSlack = 1 + 1e-9;
 constexpr double kRounding = 1e-13;  // [m]
 
 }  // namespace

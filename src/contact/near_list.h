@@ -16,6 +16,9 @@ struct NearTriangle {
   double distance;
 };
 
+/** Bounds of distances are widened by this factor against rounding. */
+inline constexpr double kSlack = 1 + 1e-9;
+
 using NearList = std::vector<NearTriangle>;
 
 struct Nearest {

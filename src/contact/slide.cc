@@ -9,7 +9,6 @@ namespace {
 
 constexpr int kMaxSteps = 3;
 constexpr double kWorthwhile = 2e-8;  // [m]; a slide that can gain less is left out.
-constexpr double kOnSurface = 1e-7;   // [m]
 
 constexpr double kFaceReach = 3.0;  // In spacings.
 constexpr double kEdgeReach = 1.5;

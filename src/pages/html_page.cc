@@ -5,7 +5,7 @@
 namespace hvas::pages {
 namespace {
 
-constexpr const char* kStyle = R"(
+constexpr const char* kPageStyle = R"(
 :root{color-scheme:light dark;--page:#fff;--ink:#1d2126;--soft:#4a525b;--rule:#dfe3e8;--good:#1b7f3b;--bad:#b3261e;--tile:#f4f6f8}
 @media(prefers-color-scheme:dark){:root{--page:#15181c;--ink:#e8ebee;--soft:#aeb6bf;--rule:#2d333a;--good:#6fd08c;--bad:#ff8a80;--tile:#1e2329}}
 *{box-sizing:border-box}
@@ -64,7 +64,7 @@ std::string MakeHtmlPage(std::string_view title, std::string_view body,
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
       "name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>{}</title>"
       "<style>{}{}</style></head><body><main>{}</main></body></html>\n",
-      Escape(title), kStyle, extra_style, body);
+      Escape(title), kPageStyle, extra_style, body);
 }
 
 }  // namespace hvas::pages

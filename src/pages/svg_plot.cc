@@ -22,7 +22,7 @@ constexpr double kLetter = 7.4;  // Mean width of a letter of 13 px; enough for 
 constexpr double kLineHeight = 18;
 
 // Plain classes, no variables: they are read by what draws SVG outside of browsers, too.
-constexpr std::string_view kStyle =
+constexpr std::string_view kFigureStyle =
     ".page{fill:#fff}text{fill:#1d2126;font-family:system-ui,sans-serif;font-size:13px}"
     ".note{fill:#4a525b}.title{font-size:17px;font-weight:600}"
     ".panel{font-weight:600}.axis{stroke:#4a525b;fill:none}.grid{stroke:#dfe3e8}"
@@ -401,7 +401,7 @@ std::string ToSvg(const PlotFigure& figure) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
       "height=\"{1:.0f}\" role=\"img\">\n<title>{2}</title>\n{5}<style>{3}</style>\n"
       "<rect class=\"page\" width=\"100%\" height=\"100%\"/>\n{4}</svg>\n",
-      figure.width, y + kMargin, Escape(figure.title), kStyle, body,
+      figure.width, y + kMargin, Escape(figure.title), kFigureStyle, body,
       figure.description.empty() ? ""
                                  : fmt::format("<desc>{}</desc>\n", Escape(figure.description)));
 }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "base/units.h"
@@ -13,12 +12,11 @@
 namespace hvas::product {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kLeastCoverage = units::FromDeg(200);
 constexpr double kLargestGap = units::FromDeg(160);  // What 200 deg in one piece leave.
 constexpr double kLeastSum = units::FromDeg(60);     // Of several arcs.
 constexpr double kShortestArc = units::FromDeg(20);  // That guides; the tips of teeth do not.
-constexpr double kAngle = 1e-3;                      // Same direction or half angle [rad].
+constexpr double kSameDirection = 1e-3;              // Same direction or half angle [rad].
 
 using Arc = std::pair<double, double>;  // Start and length [rad].
 
@@ -60,7 +58,7 @@ AxisFace MeasureFace(const Part& part, std::uint32_t index, const Surface& surfa
     double low = 0;
     double high = 0;
     for (std::size_t k = 1; k < count; ++k) {
-      const double turn = std::remainder(angle[k] - angle[0], kTwoPi);
+      const double turn = std::remainder(angle[k] - angle[0], units::kTurn);
       low = std::min(low, turn);
       high = std::max(high, turn);
     }
@@ -71,7 +69,7 @@ AxisFace MeasureFace(const Part& part, std::uint32_t index, const Surface& surfa
 
 struct Coverage {
   double sum{0};  ///< Length of the union of arcs [rad].
-  double largest_gap{kTwoPi};
+  double largest_gap{units::kTurn};
 };
 
 /** The union of arcs as arcs that do not touch, by their start in [0, 2 pi); the last may go on
@@ -81,7 +79,7 @@ std::vector<Arc> MergeArcs(const std::vector<const AxisFace*>& faces) {
   std::vector<Arc> arcs;
   for (const AxisFace* face : faces) {
     for (const auto& [start, length] : face->arcs) {
-      arcs.emplace_back(start - kTwoPi * std::floor(start / kTwoPi), length);
+      arcs.emplace_back(start - units::kTurn * std::floor(start / units::kTurn), length);
     }
   }
   std::sort(arcs.begin(), arcs.end());
@@ -96,9 +94,10 @@ std::vector<Arc> MergeArcs(const std::vector<const AxisFace*>& faces) {
     }
   }
   // What reaches beyond a full turn covers the first ones.
-  while (merged.size() > 1 && end_of(merged.back()) - kTwoPi + kTouching >= merged.front().first) {
+  while (merged.size() > 1 &&
+         end_of(merged.back()) - units::kTurn + kTouching >= merged.front().first) {
     Arc& last = merged.back();
-    last.second = std::max(last.second, end_of(merged.front()) + kTwoPi - last.first);
+    last.second = std::max(last.second, end_of(merged.front()) + units::kTurn - last.first);
     merged.erase(merged.begin());
   }
   return merged;
@@ -117,10 +116,10 @@ Coverage CalcCoverage(const std::vector<const AxisFace*>& faces, double shortest
   coverage.largest_gap = 0;
   for (std::size_t i = 0; i < arcs.size(); ++i) {
     const Arc& next = arcs[(i + 1) % arcs.size()];
-    const double turn = i + 1 == arcs.size() ? kTwoPi : 0;
+    const double turn = i + 1 == arcs.size() ? units::kTurn : 0;
     const double gap = next.first + turn - arcs[i].first - arcs[i].second;
     coverage.largest_gap = std::max(coverage.largest_gap, gap);
-    coverage.sum += std::min(arcs[i].second, kTwoPi);
+    coverage.sum += std::min(arcs[i].second, units::kTurn);
   }
   return coverage;
 }
@@ -128,7 +127,7 @@ Coverage CalcCoverage(const std::vector<const AxisFace*>& faces, double shortest
 /** The smallest of the largest gaps at any station along the axis [rad]. */
 double CalcLeastGap(const std::vector<AxisFace>& faces) {
   constexpr std::size_t kMostFaces = 64;  // Beyond that it is a pattern of some kind, no bore.
-  double least = kTwoPi;
+  double least = units::kTurn;
   if (faces.size() > kMostFaces) {
     return least;
   }
@@ -161,7 +160,7 @@ bool IsSameSurface(const Surface& a, const Surface& b, const Box& box_b, double 
     return std::abs(a.radius - b.radius) < tolerance;
   }
   const double radius = (near - b.origin).norm() * std::tan(b.second);
-  return std::abs(a.second - b.second) < kAngle && a.axis.dot(b.axis) > 0 &&
+  return std::abs(a.second - b.second) < kSameDirection && a.axis.dot(b.axis) > 0 &&
          std::abs((near - a.origin).dot(a.axis) * std::tan(a.second) - radius) < tolerance;
 }
 
@@ -181,7 +180,7 @@ std::vector<AxisGroup> GroupFaces(const Part& part, SurfaceKind kind, double tol
     }
     const double key = kind == SurfaceKind::kCylinder ? surface.radius : surface.second;
     const double slack = tolerance + face.residual;
-    const double reach = kind == SurfaceKind::kCylinder ? 2 * slack : kAngle;
+    const double reach = kind == SurfaceKind::kCylinder ? 2 * slack : kSameDirection;
     std::size_t found = groups.size();
     for (auto it = by_key.lower_bound(key - reach); it != by_key.end() && it->first <= key + reach;
          ++it) {
@@ -280,7 +279,7 @@ std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double
       if (run.empty()) {
         return;
       }
-      const double gap = run.size() > 1 ? CalcLeastGap(run) : kTwoPi;
+      const double gap = run.size() > 1 ? CalcLeastGap(run) : units::kTurn;
       Feature feature = MakeFeature(part, group.surface, std::move(run));
       if (feature.coverage >= kLeastCoverage || gap <= kLargestGap) {
         found.push_back(std::move(feature));
@@ -312,7 +311,7 @@ Vec3 Canonical(const Vec3& axis) {
 }
 
 bool IsParallel(const Vec3& a, const Vec3& b) {
-  return a.cross(b).norm() < kAngle;
+  return a.cross(b).norm() < kSameDirection;
 }
 
 double DistanceToAxis(const Vec3& p, const Vec3& origin, const Vec3& axis) {

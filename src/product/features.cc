@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLength = 2e-6;          // Same point, radius or plane [m].
 constexpr double kRelativeLength = 1e-6;  // The same, of the part's size, for huge parts.
-constexpr double kAngle = 1e-3;           // A right angle [rad].
+constexpr double kRightAngle = 1e-3;      // A right angle [rad].
 constexpr double kPlaneAngle = 1e-4;      // Same plane, which is larger than a hole [rad].
 
 double Tolerance(const Part& part) {
@@ -118,7 +118,7 @@ std::optional<InnerConstraintKind> Relate(const Feature& a, const Feature& b, do
   const bool is_plane_a = a.kind == FeatureKind::kPlane;
   const bool is_plane_b = b.kind == FeatureKind::kPlane;
   const bool is_along = IsParallel(a.axis_B, b.axis_B);
-  const bool is_across = std::abs(a.axis_B.dot(b.axis_B)) < kAngle;
+  const bool is_across = std::abs(a.axis_B.dot(b.axis_B)) < kRightAngle;
   if (is_plane_a != is_plane_b) {  // The axis and the plane, not the axis and the normal.
     if (is_along) {
       return InnerConstraintKind::kPerpendicular;
@@ -150,7 +150,7 @@ class AxisIndex {
   std::optional<std::size_t> FindAndAdd(std::size_t i, std::size_t skip) {
     const Feature& feature = features_[i];
     const double key = Key(feature);
-    const double reach = tolerance_ + 4 * kAngle * feature.origin_B.norm();
+    const double reach = tolerance_ + 4 * kRightAngle * feature.origin_B.norm();
     std::optional<std::size_t> found;
     for (auto it = by_key_.lower_bound(key - reach);
          it != by_key_.end() && it->first <= key + reach; ++it) {

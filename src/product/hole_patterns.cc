@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "base/units.h"
 #include "product/axis_features.h"
 
 namespace hvas::product {
@@ -17,7 +17,6 @@ constexpr std::size_t kLeast = 3;  // Holes of a pattern.
 // perforated plate or the vias of a board are asked only whether they are one grid.
 constexpr std::size_t kMostForCircles = 400;
 constexpr std::size_t kMostForRows = 60;
-constexpr double kTwoPi = 2 * std::numbers::pi;
 
 using Vec2 = Eigen::Vector2d;
 
@@ -163,7 +162,7 @@ class PatternFinder {
     std::sort(angles.begin(), angles.end());
     std::vector<double> gaps;
     for (std::size_t i = 0; i < angles.size(); ++i) {
-      const double next = i + 1 < angles.size() ? angles[i + 1] : angles[0] + kTwoPi;
+      const double next = i + 1 < angles.size() ? angles[i + 1] : angles[0] + units::kTurn;
       gaps.push_back(next - angles[i]);
     }
     std::sort(gaps.begin(), gaps.end());
@@ -171,7 +170,7 @@ class PatternFinder {
     if (gaps.back() - gaps.front() < slack) {
       return true;
     }
-    const double turns = kTwoPi / gaps.front();
+    const double turns = units::kTurn / gaps.front();
     return is_axis && gaps[gaps.size() - 2] - gaps.front() < slack &&
            std::abs(turns - std::round(turns)) < slack * turns;
   }
@@ -251,7 +250,7 @@ class PatternFinder {
                                                      const std::vector<bool>& is_used) const {
     std::vector<std::size_t> polygon{a, b};
     Vec2 side = group_.spots[b].p - group_.spots[a].p;
-    const Eigen::Rotation2Dd turn(kTwoPi / static_cast<double>(k));
+    const Eigen::Rotation2Dd turn(units::kTurn / static_cast<double>(k));
     while (polygon.size() < k) {
       side = turn * side;
       const auto next = FindAt(group_.spots[polygon.back()].p + side);

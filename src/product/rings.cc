@@ -4,15 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <numeric>
 
+#include "base/units.h"
 #include "product/axis_features.h"
 
 namespace hvas::product {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr int kSectors = 24;
 constexpr double kLargestStep = 4;  // Ratio of radii of bores that follow each other.
 
@@ -98,7 +97,7 @@ void LookAtEnds(const FaceAdjacency& adjacency, Ring* ring) {
         continue;
       }
       const Vec3 local = R.transpose() * radial;
-      const double turn = std::atan2(local.y(), local.x()) / kTwoPi + 0.5;
+      const double turn = std::atan2(local.y(), local.x()) / units::kTurn + 0.5;
       Sector& sector =
           sectors[*end][static_cast<std::size_t>(std::min(kSectors - 1.0, kSectors * turn))];
       if (sector.edge == nullptr || (*end == 1 ? z > sector.z : z < sector.z)) {

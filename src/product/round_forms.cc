@@ -26,9 +26,9 @@ constexpr double kLeastShaftLength = 0.25;   // Of its diameter; shorter ones ar
 
 enum class EndState { kUnknown, kOpen, kClosed };
 
-class Reader {
+class RoundFormReader {
  public:
-  Reader(const Part& part, const RingSet& set, double tolerance)
+  RoundFormReader(const Part& part, const RingSet& set, double tolerance)
       : part_(part), set_(set), tolerance_(tolerance) {}
 
   void Read(RingChain chain) {
@@ -418,7 +418,7 @@ class Reader {
 
 std::vector<Form> FindRoundForms(const Part& part, const RingSet& set,
                                  const std::vector<RingChain>& chains, double tolerance) {
-  Reader reader(part, set, tolerance);
+  RoundFormReader reader(part, set, tolerance);
   for (const RingChain& chain : chains) {
     reader.Read(chain);
   }

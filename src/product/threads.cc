@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,7 +14,6 @@
 namespace hvas::product {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kLeastPitch = 0.04;    // Of the diameter (M64x3 has 0.047).
 constexpr double kLargestPitch = 0.4;   // Of the diameter (M1 has 0.25, wood screws up to 0.45).
 constexpr double kLeastTurns = 1.5;     // Of a helical face, or of all that have one pitch.
@@ -79,7 +77,7 @@ struct HelixSums {
     outer = std::max(outer, other.outer);
   }
 
-  [[nodiscard]] double pitch() const { return bb > 0 ? kTwoPi * std::abs(ab / bb) : 0; }
+  [[nodiscard]] double pitch() const { return bb > 0 ? units::kTurn * std::abs(ab / bb) : 0; }
 
   /** Whether the normals fit the pitch, and would not fit a surface of revolution (a = 0). */
   [[nodiscard]] bool IsHelical() const {
@@ -181,7 +179,7 @@ std::optional<HelixSums> FindRingThread(const Part& part, const Line& line) {
   if (!(up > 0) || std::abs(up - down) > 0.02 * up || up > kLargestPitch * 2 * all.outer) {
     return std::nullopt;
   }
-  all.ab = up / kTwoPi;  // So that pitch() tells it.
+  all.ab = up / units::kTurn;  // So that pitch() tells it.
   all.bb = 1;
   return all;
 }
@@ -257,7 +255,7 @@ std::vector<Hexagon> FindHexagons(const Part& part, const Line& line, double tol
     Hexagon hexagon{std::abs(flats[begin].distance), flats[begin].low, flats[begin].high,
                     flats[begin].distance < 0};
     for (std::size_t i = begin; i < end && is_even; ++i) {
-      const double sixths = 6 * (flats[i].angle - flats[begin].angle) / kTwoPi;
+      const double sixths = 6 * (flats[i].angle - flats[begin].angle) / units::kTurn;
       is_even = std::abs(sixths - std::round(sixths)) < 0.01;
       seen |= 1U << static_cast<unsigned>((std::lround(sixths) % 6 + 6) % 6);
       hexagon.low = std::min(hexagon.low, flats[i].low);

@@ -8,7 +8,7 @@ namespace hvas::simulation {
 namespace {
 
 constexpr double kGraspTime = 0.35;
-constexpr double kSettleTime = 0.25;
+constexpr double kHandSettleTime = 0.25;
 constexpr double kRestTime = 1.0;
 constexpr double kSlackTime = 0.08;  // in which the arm goes slack
 constexpr double kReleaseTime = 0.2;
@@ -416,6 +416,7 @@ void SimulatedPerson::BeginInsert() noexcept {
 }
 
 void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
+  Watch(input);
   dt_ = input.dt;
   t_s_ += dt_;
   phase_time_s_ += dt_;
@@ -472,7 +473,7 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       break;
     case Phase::kSettle:
       p_ref_ += (X_WH_.p() - p_ref_) * (dt_ / kSlackTime);
-      if (phase_time_s_ > kSettleTime) {
+      if (phase_time_s_ > kHandSettleTime) {
         phase_ = Phase::kRelease;
         phase_time_s_ = 0;
         is_gripping_ = false;
@@ -507,7 +508,6 @@ HandReference SimulatedPerson::Intend(const OperatorInput& input) noexcept {
   V_H_.w += (spatial::RotationBetween(X_WH_.q(), input.X_WH.q()) / input.dt - V_H_.w) * share;
   X_WH_ = input.X_WH;
   is_at_device_ = true;
-  Watch(input);
   Decide(input);
   const Quat& q_WD = input.workspace.X_WD.q();
   LearnLoad({q_WD * input.F_H_D.t, q_WD * input.F_H_D.f});
@@ -520,7 +520,6 @@ HandReference SimulatedPerson::Intend(const OperatorInput& input) noexcept {
 }
 
 device::DeviceState SimulatedPerson::Step(const OperatorInput& input) noexcept {
-  Watch(input);
   Decide(input);
   MoveHand(input.F_H_D);
   device::DeviceState state;

@@ -15,7 +15,7 @@ namespace {
 using statistics::Wilcoxon;
 
 /** More make tables of pairs that nobody reads, and are a mistake in the file as a rule. */
-constexpr std::size_t kMostConditions = 20;
+constexpr std::size_t kMostColumns = 20;
 
 Result<void> CheckOptions(const AnalysisOptions& options) {
   if (!(options.alpha > 0 && options.alpha < 0.5)) {
@@ -59,10 +59,10 @@ Result<void> CheckCell(const Table& table, const Row& row, std::size_t column,
 }
 
 Result<void> CheckTable(const Table& table, const AnalysisOptions& options) {
-  if (table.conditions.size() < 2 || table.conditions.size() > kMostConditions) {
+  if (table.conditions.size() < 2 || table.conditions.size() > kMostColumns) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("{} conditions cannot be compared", table.conditions.size()), "table",
-                fmt::format("give from 2 to {}, one a column", kMostConditions));
+                fmt::format("give from 2 to {}, one a column", kMostColumns));
   }
   if (std::set<std::string>(table.conditions.begin(), table.conditions.end()).size() <
       table.conditions.size()) {

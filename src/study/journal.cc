@@ -25,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Kind = StudyEvent::Kind;
 
-constexpr const char* kFormat = "hvas-study-journal-1";
+constexpr const char* kJournalFormat = "hvas-study-journal-1";
 
 template <typename E, std::size_t N>
 bool ReadWord(const Json& json, const std::array<std::string_view, N>& words, E* value) {
@@ -165,7 +165,7 @@ std::optional<Json> ParseLine(std::string_view line) {
 }
 
 Json MakeHeadJson(const JournalHead& head) {
-  return {{"format", kFormat},
+  return {{"format", kJournalFormat},
           {"participant", head.participant},
           {"protocol", head.protocol},
           {"seed", head.seed},
@@ -173,7 +173,7 @@ Json MakeHeadJson(const JournalHead& head) {
 }
 
 JournalHead ParseHead(const Json& json) {
-  if (json.at("format") != kFormat) {
+  if (json.at("format") != kJournalFormat) {
     throw Json::other_error::create(0, "format", nullptr);
   }
   return {json.at("participant").get<std::string>(), json.at("protocol").get<std::string>(),

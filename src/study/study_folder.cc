@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "hvas-study-folder-1";
+constexpr const char* kFolderFormat = "hvas-study-folder-1";
 constexpr const char* kHead = "study.json";
 
 /** What is made of all journals together, and so knows of each participant. */
@@ -85,7 +85,7 @@ Result<StudyFolder> StudyFolder::Create(const fs::path& folder, const Protocol& 
     }
   }
   const std::string ending = protocol.file.extension() == ".json" ? ".json" : ".yaml";
-  const Json head{{"format", kFormat},
+  const Json head{{"format", kFolderFormat},
                   {"study", protocol.id},
                   {"protocol", "protocol" + ending},
                   {"digest", protocol.digest},
@@ -108,7 +108,7 @@ Result<StudyFolder> StudyFolder::Open(const fs::path& folder) {
   }
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   const Json head = Json::parse(text, nullptr, false);
-  if (!head.is_object() || head.value("format", "") != kFormat || !head.contains("seed") ||
+  if (!head.is_object() || head.value("format", "") != kFolderFormat || !head.contains("seed") ||
       !head["seed"].is_number_integer()) {
     return Fail(ErrorCode::kUnreadable, "this is not what a study begins with",
                 (folder / kHead).string(), "restore the file from a copy");

@@ -13,7 +13,7 @@ namespace {
 using contact::NearList;
 
 constexpr double kMostNodes = 4e6;
-constexpr int kLeafNodes = 5;  // Along an axis: fewer are not worth a list of their own.
+constexpr int kListNodes = 5;  // Along an axis: fewer are not worth a list of their own.
 
 /** Pieces that are worth a thread each. */
 std::vector<NodeRange> SplitTwice(const Grid& grid) {
@@ -46,7 +46,7 @@ class FieldFiller {
     }
     NearList near;
     field_.search_.Filter(list, centre, radius + grid_.spacing, /*is_exact=*/false, &near);
-    if (range.longest() <= kLeafNodes) {
+    if (range.longest() <= kListNodes) {
       FillLeaf(range, {centre, contact::LeastOf(near).triangle, std::move(near)});
       return;
     }

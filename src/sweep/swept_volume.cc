@@ -21,7 +21,7 @@ using spatial::Pose;
 
 constexpr double kMostCells = 20e6;
 constexpr double kCellsAcross = 100;  // of the largest extent, when no resolution is given
-constexpr int kLeafNodes = 8;         // along an axis
+constexpr int kBrickNodes = 8;        // along an axis
 constexpr double kBandCells = 3;      // on both sides of the surface, where values are right
 constexpr double kStep = 0.5;         // of a cell, that points move between samples
 
@@ -89,7 +89,7 @@ class Sweeping {
       return Set(cell.range, band_);
     }
     cell.samples = std::move(near);
-    if (cell.range.longest() <= kLeafNodes) {
+    if (cell.range.longest() <= kBrickNodes) {
       leaves_.push_back(std::move(cell));
       return;
     }

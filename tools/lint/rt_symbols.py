@@ -73,17 +73,19 @@ def demangle(names):
 
 
 def find_objects(build):
-    """Object files of the rooms' libraries by room/file."""
+    """Object files of the rooms' libraries by room/library/file; most hold several sources."""
     objects = {}
     for path in sorted((build / "src").glob("*/CMakeFiles/hvas_*.dir/**/*.o")):
-        room, folder = path.relative_to(build / "src").parts[0], path.parent.name
-        inner = "" if folder.endswith(".dir") else f"{folder}/"
-        objects[f"{room}/{inner}{path.name.split('.')[0]}"] = path
+        room, _, library, *inner = path.relative_to(build / "src").parts[:-1]
+        folders = "/".join([room, library.removesuffix(".dir"), *inner])
+        objects[f"{folders}/{path.name.split('.')[0]}"] = path
     return objects
 
 
 def check_tick_only(objects):
     for name in TICK_ONLY:
+        room, file = name.split("/")
+        name = f"{room}/hvas_{room}/{file}"
         if name not in objects:
             yield f"{name}: no such object file; is the list in tools/lint/rt_symbols.py out of date?"
             continue

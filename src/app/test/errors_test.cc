@@ -139,12 +139,12 @@ TEST(UsageTest, HelpIsAnAnswerAndNamesTheExitStatus) {
 }
 
 TEST(AssembleErrorTest, RunThatIsStoppedSaysWhichPartsAreMissing) {
-  const nlohmann::json json =
+  const nlohmann::json run =
       testing::RunHvasJson({"assemble", ProductFile("bushing"), "--limit", "5"}, 2);
-  EXPECT_EQ(json["seated"], 1);
-  EXPECT_EQ(json["session_s"], 5.0);
-  ASSERT_EQ(json["parts"].size(), 3u);
-  for (const nlohmann::json& part : json["parts"]) {
+  EXPECT_EQ(run["seated"], 1);
+  EXPECT_EQ(run["session_s"], 5.0);
+  ASSERT_EQ(run["parts"].size(), 3u);
+  for (const nlohmann::json& part : run["parts"]) {
     EXPECT_EQ(part["seated"].get<bool>(), part["reason"] == "") << part.dump();
   }
   const Ran ran = RunHvas({"assemble", ProductFile("bushing"), "--limit", "5"});

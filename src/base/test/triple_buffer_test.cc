@@ -37,7 +37,7 @@ TEST(TripleBuffer, IsFilledInPlace) {
   EXPECT_EQ(buffer.value()[2], 3);
 }
 
-struct Message {
+struct LargeMessage {
   std::uint64_t number{0};
   std::array<std::uint64_t, 31> copies{};
 };
@@ -45,12 +45,12 @@ struct Message {
 // No value is torn, none is older than the one before, and the last one always arrives.
 TEST(TripleBufferThreads, NeverTearsNorGoesBack) {
   constexpr int kUpdates = 20000;
-  TripleBuffer<Message> buffer;
+  TripleBuffer<LargeMessage> buffer;
   std::atomic<bool> is_enough{false};
   std::uint64_t written = 0;
   std::thread writer([&] {
     while (!is_enough.load(std::memory_order_relaxed)) {
-      Message& message = buffer.back();
+      LargeMessage& message = buffer.back();
       message.number = ++written;
       message.copies.fill(written);
       buffer.Publish();
@@ -64,7 +64,7 @@ TEST(TripleBufferThreads, NeverTearsNorGoesBack) {
       continue;
     }
     ++updates;
-    const Message& message = buffer.value();
+    const LargeMessage& message = buffer.value();
     is_intact = is_intact && message.number > last;
     for (const std::uint64_t copy : message.copies) {
       is_intact = is_intact && copy == message.number;

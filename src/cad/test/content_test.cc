@@ -42,14 +42,12 @@ namespace {
 using hvas::testing::TemporaryFolder;
 using product::Part;
 using product::Product;
+using testing::CountCode;
 using testing::DocumentBuilder;
+using testing::kRed;
+using testing::kTeal;
 using testing::MakePlate;
 using testing::Translation;
-
-constexpr double kPi = std::numbers::pi;
-
-const Quantity_Color kRed(1, 0, 0, Quantity_TOC_sRGB);
-const Quantity_Color kTeal(0, 0.5, 0.5, Quantity_TOC_sRGB);
 
 /** A box with one corner cut out: no mirror image of it is a rotated copy. */
 TopoDS_Shape MakeNotchedBox() {
@@ -77,12 +75,6 @@ Product Build(DocumentBuilder* builder, Diagnostics* diagnostics, unsigned threa
   const Result<void> result = BuildProduct(builder->document(), options, {}, &product, diagnostics);
   EXPECT_TRUE(result.has_value()) << result.error().ToString();
   return product;
-}
-
-int CountCode(const Diagnostics& diagnostics, const std::string& code) {
-  return static_cast<int>(
-      std::count_if(diagnostics.items().begin(), diagnostics.items().end(),
-                    [&code](const Diagnostic& item) { return item.code == code; }));
 }
 
 TEST(EqualParts, WrittenInPlaceAreOnePartAtItsPoses) {
@@ -232,12 +224,13 @@ void ExpectMeasure(const TopoDS_Shape& solid, double volume) {
 
 TEST(MeasureSolid, GivesVolumeCentreAndInertiaOfSolidsAnywhere) {
   const std::vector<std::pair<TopoDS_Shape, double>> solids{
-      {MakePlate(), 60 * 40 * 10 - kPi * 25 * 10},
+      {MakePlate(), 60 * 40 * 10 - std::numbers::pi * 25 * 10},
       {MakeNotchedBox(), 60 * 40 * 20 - 10 * 7 * 3},
-      {BRepPrimAPI_MakeSphere(7).Shape(), 4 * kPi / 3 * 343},
-      {BRepPrimAPI_MakeTorus(9, 2).Shape(), 2 * kPi * kPi * 9 * 4},
-      {BRepPrimAPI_MakeCone(2, 6, 9).Shape(), kPi * 9 / 3 * (4 + 12 + 36)},
-      {BRepBuilderAPI_NurbsConvert(MakePlate()).Shape(), 60 * 40 * 10 - kPi * 25 * 10}};
+      {BRepPrimAPI_MakeSphere(7).Shape(), 4 * std::numbers::pi / 3 * 343},
+      {BRepPrimAPI_MakeTorus(9, 2).Shape(), 2 * std::numbers::pi * std::numbers::pi * 9 * 4},
+      {BRepPrimAPI_MakeCone(2, 6, 9).Shape(), std::numbers::pi * 9 / 3 * (4 + 12 + 36)},
+      {BRepBuilderAPI_NurbsConvert(MakePlate()).Shape(),
+       60 * 40 * 10 - std::numbers::pi * 25 * 10}};
   for (std::size_t i = 0; i < solids.size(); ++i) {
     SCOPED_TRACE(i);
     ExpectMeasure(solids[i].first, solids[i].second);
@@ -245,7 +238,7 @@ TEST(MeasureSolid, GivesVolumeCentreAndInertiaOfSolidsAnywhere) {
     ExpectMeasure(solids[i].first.Moved(MakeMotion(1.1, 30)), solids[i].second);
   }
   EXPECT_NEAR(MeasureSolid(MakePlate().Reversed(), gp_Pnt(1, 2, 3)).volume,
-              -(60 * 40 * 10 - kPi * 25 * 10), 1e-6);
+              -(60 * 40 * 10 - std::numbers::pi * 25 * 10), 1e-6);
 }
 
 TEST(ForEachIndex, DoesAllOnceAndHandsOnTheFirstFailure) {
@@ -268,7 +261,8 @@ TEST(ForEachIndex, DoesAllOnceAndHandsOnTheFirstFailure) {
 }
 
 /** Replaces every occurrence of a word in a file. */
-void Replace(const std::filesystem::path& file, const std::string& word, const std::string& by) {
+void ReplaceInFile(const std::filesystem::path& file, const std::string& word,
+                   const std::string& by) {
   std::stringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();
   std::string content = text.str();
@@ -285,7 +279,7 @@ std::string ReadNameBack(const std::string& bytes) {
   DocumentBuilder builder;
   builder.AddPart(MakePlate(), "PLACEHOLDER");
   builder.Write(folder / "a.step");
-  Replace(folder / "a.step", "PLACEHOLDER", bytes);
+  ReplaceInFile(folder / "a.step", "PLACEHOLDER", bytes);
   Diagnostics diagnostics;
   const auto product = ReadCad(folder / "a.step", {}, &diagnostics);
   EXPECT_TRUE(product.has_value());
@@ -335,8 +329,8 @@ TEST(Units, MayBeOfTheFilesOwnMaking) {
   DocumentBuilder builder;
   builder.AddPart(BRepPrimAPI_MakeBox(25.4, 25.4, 25.4).Shape(), "cube");
   builder.Write(folder / "cube.step", "INCH");
-  Replace(folder / "cube.step", "'INCH'", "'SPAN'");
-  Replace(folder / "cube.step", "WITH_UNIT(25.4,", "WITH_UNIT(228.6,");
+  ReplaceInFile(folder / "cube.step", "'INCH'", "'SPAN'");
+  ReplaceInFile(folder / "cube.step", "WITH_UNIT(25.4,", "WITH_UNIT(228.6,");
   Diagnostics diagnostics;
   const auto product = ReadCad(folder / "cube.step", {}, &diagnostics);
   ASSERT_TRUE(product.has_value());

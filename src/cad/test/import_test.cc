@@ -29,15 +29,14 @@ using product::FeatureKind;
 using product::Part;
 using product::Product;
 using spatial::SurfaceKind;
+using testing::CountCode;
 using testing::DocumentBuilder;
+using testing::kRed;
+using testing::kTeal;
 using testing::MakePlate;
 using testing::Translation;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kPlateVolume = (60 * 40 * 10 - kPi * 25 * 10) * 1e-9;  // [m^3]
-
-const Quantity_Color kRed(1, 0, 0, Quantity_TOC_sRGB);
-const Quantity_Color kTeal(0, 0.5, 0.5, Quantity_TOC_sRGB);
+constexpr double kPlateVolume = (60 * 40 * 10 - std::numbers::pi * 25 * 10) * 1e-9;  // [m^3]
 
 /** A plate and, in a subassembly, two of the same pin. */
 void WriteAssembly(const std::filesystem::path& file, const std::string& unit) {
@@ -73,12 +72,6 @@ Part ImportShape(const TopoDS_Shape& shape) {
   Product product = ImportOrDie(folder / "part.step", &diagnostics);
   EXPECT_EQ(product.parts.size(), 1u);
   return product.parts.empty() ? Part{} : product.parts.front();
-}
-
-int CountCode(const Diagnostics& diagnostics, const std::string& code) {
-  return static_cast<int>(
-      std::count_if(diagnostics.items().begin(), diagnostics.items().end(),
-                    [&code](const Diagnostic& item) { return item.code == code; }));
 }
 
 Vec3 AreaNormal(const Part& part, std::size_t triangle) {
@@ -166,7 +159,7 @@ TEST(ReadCad, GivesTheSameMassInEveryLengthUnit) {
     EXPECT_EQ(plate.material.name, "Aluminium");
     EXPECT_FALSE(plate.material.is_assumed);
     EXPECT_TRUE(pin.material.is_assumed);
-    EXPECT_NEAR(pin.mass.volume, kPi * 500e-9, 1e-9 * kPi * 500e-9);
+    EXPECT_NEAR(pin.mass.volume, std::numbers::pi * 500e-9, 1e-9 * std::numbers::pi * 500e-9);
     EXPECT_EQ(CountCode(diagnostics, "assumed-density"), 1);
     EXPECT_LT((product.occurrences.at(2).X_WB.p() - Vec3(0.120, 0.020, -0.005)).norm(), 1e-10);
   }
@@ -174,7 +167,7 @@ TEST(ReadCad, GivesTheSameMassInEveryLengthUnit) {
 
 TEST(ReadCad, GivesCentreAndInertiaOfACylinder) {
   const Part pin = ImportShape(BRepPrimAPI_MakeCylinder(5, 20).Shape());
-  const double m = 7850 * kPi * 500e-9;
+  const double m = 7850 * std::numbers::pi * 500e-9;
   const double along = 0.5 * m * 0.005 * 0.005;
   const double across = m * (3 * 0.005 * 0.005 + 0.020 * 0.020) / 12;
   EXPECT_LT((pin.mass.p_BoBcm_B - Vec3(0, 0, 0.010)).norm(), 1e-11);
@@ -190,7 +183,7 @@ TEST(ReadCad, OrientsEveryAnalyticSurfaceOutOfTheMaterial) {  // N2.
   });
   ASSERT_NE(hole, plate.faces.end());
   EXPECT_EQ(hole->surface.outward, -1);
-  EXPECT_NEAR(hole->area, 2 * kPi * 0.005 * 0.010, 1e-12);
+  EXPECT_NEAR(hole->area, 2 * std::numbers::pi * 0.005 * 0.010, 1e-12);
   EXPECT_FALSE(hole->is_recognised);
   for (const auto& [shape, kind] :
        {std::pair(BRepPrimAPI_MakeCylinder(5, 20).Shape(), SurfaceKind::kCylinder),
@@ -225,7 +218,7 @@ TEST(ReadCad, FindsTheHoleWithItsSpan) {  // Layer T of X2.
   ASSERT_EQ(plate.features.size(), 7u);
   const product::Feature& hole = plate.features.front();
   EXPECT_EQ(hole.kind, FeatureKind::kHole);
-  EXPECT_NEAR(hole.coverage, 2 * kPi, 1e-6);
+  EXPECT_NEAR(hole.coverage, 2 * std::numbers::pi, 1e-6);
   EXPECT_NEAR(hole.span_high - hole.span_low, 0.010, 1e-9);
   EXPECT_LT((hole.origin_B - Vec3(0.020, 0.020, 0.005)).norm(), 1e-9);
 }

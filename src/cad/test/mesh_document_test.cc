@@ -31,6 +31,7 @@ using hvas::testing::TemporaryFolder;
 using product::FeatureKind;
 using product::Part;
 using product::Product;
+using testing::CountCode;
 using testing::ProfilePoint;
 
 void WriteFile(const std::filesystem::path& path, const std::string& bytes) {
@@ -40,12 +41,6 @@ void WriteFile(const std::filesystem::path& path, const std::string& bytes) {
 Result<Product> Read(const std::filesystem::path& path, Diagnostics* diagnostics,
                      ImportOptions options = {}) {
   return ReadCad(path, options, diagnostics);
-}
-
-int CountCode(const Diagnostics& diagnostics, const std::string& code) {
-  return static_cast<int>(
-      std::count_if(diagnostics.items().begin(), diagnostics.items().end(),
-                    [&code](const Diagnostic& item) { return item.code == code; }));
 }
 
 /** A bush: outer diameter 20, bore 8, length 12 mm, by 24 segments. */

@@ -37,8 +37,6 @@ using product::Part;
 using spatial::SurfaceKind;
 using testing::ProfilePoint;
 
-constexpr double kPi = std::numbers::pi;
-
 Part Build(const TriangleSoup& soup, Diagnostics* diagnostics = nullptr) {
   Part part;
   part.name = "part";
@@ -115,7 +113,7 @@ TEST_P(TurnedPart, HasItsTwoCylindersItsConeAndItsPlanes) {
   EXPECT_NEAR(radii[0], 4e-3, 50e-9);
   EXPECT_NEAR(radii[1], 10e-3, 50e-9);
   const Face& cone = FaceOf(part, SurfaceKind::kCone);
-  EXPECT_NEAR(cone.surface.second, kPi / 4, 1e-4);
+  EXPECT_NEAR(cone.surface.second, std::numbers::pi / 4, 1e-4);
   EXPECT_LT((cone.surface.origin - SomePose() * Vec3(0, 0, 28e-3)).norm(), 1e-6);
   for (const Face& face : part.faces) {
     EXPECT_TRUE(face.is_recognised);
@@ -129,7 +127,8 @@ class Ball : public ::testing::TestWithParam<int> {};
 
 TEST_P(Ball, IsOneSphere) {
   std::vector<ProfilePoint> profile;
-  testing::AddArc({0, 0}, 6e-3, -kPi / 2, kPi / 2, GetParam() / 2, &profile);
+  testing::AddArc({0, 0}, 6e-3, -std::numbers::pi / 2, std::numbers::pi / 2, GetParam() / 2,
+                  &profile);
   TriangleSoup soup = testing::Revolve(profile, GetParam());
   testing::Move(SomePose(), &soup);
   testing::RoundToFloat(&soup);
@@ -145,7 +144,7 @@ class Ring : public ::testing::TestWithParam<int> {};
 
 TEST_P(Ring, IsOneTorus) {
   std::vector<ProfilePoint> profile;
-  testing::AddArc({20e-3, 0}, 4e-3, 0, 2 * kPi, GetParam(), &profile);
+  testing::AddArc({20e-3, 0}, 4e-3, 0, 2 * std::numbers::pi, GetParam(), &profile);
   profile.pop_back();
   TriangleSoup soup = testing::Revolve(profile, 2 * GetParam(), true);
   testing::Move(SomePose(), &soup);
@@ -210,7 +209,7 @@ TEST(Segment, KeepsAHexagonFlatAndAChamferedBarFlat) {
 
 TEST(Segment, TellsABallFromItsFlat) {
   std::vector<ProfilePoint> profile{{0, -4e-3}};
-  testing::AddArc({0, 0}, 5e-3, std::asin(-0.8), kPi / 2, 20, &profile);
+  testing::AddArc({0, 0}, 5e-3, std::asin(-0.8), std::numbers::pi / 2, 20, &profile);
   const Part part = Build(testing::Revolve(profile, 40));
   EXPECT_EQ(CountKinds(part), (Kinds{1, 0, 0, 1, 0, 0}));
 }

@@ -1,5 +1,6 @@
 #include "cad/test/step_fixture.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <BRepAlgoAPI_Cut.hxx>
@@ -106,6 +107,12 @@ TopoDS_Shape MakePlate() {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(60, 40, 10).Shape();
   const gp_Ax2 axis(gp_Pnt(20, 20, -5), gp::DZ());
   return BRepAlgoAPI_Cut(box, BRepPrimAPI_MakeCylinder(axis, 5, 20).Shape()).Shape();
+}
+
+int CountCode(const Diagnostics& diagnostics, std::string_view code) {
+  return static_cast<int>(
+      std::count_if(diagnostics.items().begin(), diagnostics.items().end(),
+                    [code](const Diagnostic& item) { return item.code == code; }));
 }
 
 TopLoc_Location Translation(double x_mm, double y_mm, double z_mm) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include <Quantity_Color.hxx>
 #include <TDF_Label.hxx>
@@ -10,8 +11,13 @@
 #include <TopoDS_Shape.hxx>
 #include <gp_Trsf.hxx>
 
+#include "base/diagnostics.h"
+
 /** Makes small STEP files and XCAF documents for tests, in millimetres. */
 namespace hvas::cad::testing {
+
+inline const Quantity_Color kRed(1, 0, 0, Quantity_TOC_sRGB);
+inline const Quantity_Color kTeal(0, 0.5, 0.5, Quantity_TOC_sRGB);
 
 class DocumentBuilder {
  public:
@@ -40,6 +46,9 @@ class DocumentBuilder {
 
 /** A 60 x 40 x 10 mm plate with a through hole of 10 mm diameter about (20, 20) along z. */
 [[nodiscard]] TopoDS_Shape MakePlate();
+
+/** How many diagnostics have this code. */
+[[nodiscard]] int CountCode(const Diagnostics& diagnostics, std::string_view code);
 
 [[nodiscard]] TopLoc_Location Translation(double x_mm, double y_mm, double z_mm);
 

@@ -108,7 +108,7 @@ Part ReadPart(const std::string& text, Diagnostics* diagnostics) {
   return product.parts[0];
 }
 
-std::string Replace(std::string text, const std::string& what, const std::string& by) {
+std::string WithReplaced(std::string text, const std::string& what, const std::string& by) {
   const std::size_t at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;
   return at == std::string::npos ? text : text.replace(at, what.size(), by);
@@ -200,16 +200,16 @@ TEST(Tolerances, FitsAreReadHoweverTheyAreWritten) {
                                       std::pair("LIMITS_AND_FITS('','G','6','')", "G6"),
                                       std::pair("LIMITS_AND_FITS('H7/g6','','','')", "H7/g6")}) {
     Diagnostics diagnostics;
-    const Part part =
-        ReadPart(Replace(MakeText(), "LIMITS_AND_FITS('G6','hole','','')", written), &diagnostics);
+    const Part part = ReadPart(
+        WithReplaced(MakeText(), "LIMITS_AND_FITS('G6','hole','','')", written), &diagnostics);
     EXPECT_EQ(part.dimensions.at(0).fit, code) << written;
   }
   Diagnostics diagnostics;
   const std::string note =
-      MakeText(Replace(kEntities, "(#33)", "(#33,#38)") +
+      MakeText(WithReplaced(kEntities, "(#33)", "(#33,#38)") +
                "#38=DESCRIPTIVE_REPRESENTATION_ITEM('dimensional note','h7');");
   EXPECT_EQ(ReadPart(note, &diagnostics).dimensions.at(1).fit, "h7");
-  const std::string thread = Replace(note, "'h7'", "'M8'");
+  const std::string thread = WithReplaced(note, "'h7'", "'M8'");
   EXPECT_EQ(ReadPart(thread, &diagnostics).dimensions.at(1).fit, std::nullopt);
 }
 
@@ -218,7 +218,7 @@ TEST(Tolerances, ADiameterInTheWrongUnitIsSetRightByItsCylinder) {
        {std::pair("0.3937", true), std::pair("0.01", true), std::pair("12.", false)}) {
     Diagnostics diagnostics;
     const Part part =
-        ReadPart(Replace(MakeText(), "(10.)", std::string("(") + written + ")"), &diagnostics);
+        ReadPart(WithReplaced(MakeText(), "(10.)", std::string("(") + written + ")"), &diagnostics);
     ASSERT_EQ(diagnostics.items().size(), 1u);
     EXPECT_EQ(diagnostics.items()[0].code, is_explained ? "dimension-unit" : "dimension-differs");
     EXPECT_NEAR(part.dimensions.at(0).nominal, is_explained ? 0.01 : 0.012, 1e-6);
@@ -227,7 +227,7 @@ TEST(Tolerances, ADiameterInTheWrongUnitIsSetRightByItsCylinder) {
 
 TEST(Tolerances, WhatStatesNoValueIsLeftOutAndNamed) {
   Diagnostics diagnostics;
-  const Part part = ReadPart(Replace(MakeText(), "#51=", "#151="), &diagnostics);
+  const Part part = ReadPart(WithReplaced(MakeText(), "#51=", "#151="), &diagnostics);
   EXPECT_TRUE(part.geometric_tolerances.empty());
   EXPECT_EQ(part.dimensions.size(), 3u);
   ASSERT_EQ(diagnostics.items().size(), 1u);
@@ -237,11 +237,11 @@ TEST(Tolerances, WhatStatesNoValueIsLeftOutAndNamed) {
 
 TEST(Tolerances, CirclesOfReferencesEnd) {
   std::string text =
-      Replace(MakeText(), "#93=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(2.54E+01),#90)",
-              "#93=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(2.54E+01),#91)");
-  text =
-      Replace(text, "#56=DATUM('',$,#80,.F.,'B')",
-              "#56=DATUM_SYSTEM('',$,#80,.F.,(#56,#52,#54,#56,#52,#56,#56,#56,#56,#56,#56,#56))");
+      WithReplaced(MakeText(), "#93=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(2.54E+01),#90)",
+                   "#93=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(2.54E+01),#91)");
+  text = WithReplaced(
+      text, "#56=DATUM('',$,#80,.F.,'B')",
+      "#56=DATUM_SYSTEM('',$,#80,.F.,(#56,#52,#54,#56,#52,#56,#56,#56,#56,#56,#56,#56))");
   Diagnostics diagnostics;
   EXPECT_EQ(ReadPart(text, &diagnostics).dimensions.size(), 3u);
 }
@@ -307,7 +307,7 @@ TEST(Tolerances, ReachTheFacesOfAnImportedPart) {
   for (std::size_t at = added.find('#'); at != std::string::npos; at = added.find('#', at + 1)) {
     added.insert(at + 1, "9000");
   }
-  added = Replace(added, "#900081,#90001)", "#900081,#" + cylinder + ")");
+  added = WithReplaced(added, "#900081,#90001)", "#900081,#" + cylinder + ")");
   text.insert(text.rfind("ENDSEC;"), added);
   std::ofstream(file) << text;
   Diagnostics diagnostics;

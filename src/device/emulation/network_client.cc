@@ -19,8 +19,8 @@ namespace {
 
 constexpr const char* kSecret = "an emulated secret";
 constexpr std::int64_t kHelloNs = 50'000'000;
-constexpr std::int64_t kSilentNs = 250'000'000;     // then HVAS is gone
-constexpr std::int64_t kWrenchLifeNs = 20'000'000;  // the protocol's rule
+constexpr std::int64_t kServerSilentNs = 250'000'000;  // then HVAS is gone
+constexpr std::int64_t kWrenchLifeNs = 20'000'000;     // the protocol's rule
 
 std::uint32_t CountOf(Condition condition) {
   return static_cast<std::uint32_t>(condition);
@@ -77,7 +77,7 @@ class NetworkClient final : public WireServer {
       session_ = 0;  // it starts anew when it has power again
       return;
     }
-    if (session_ != 0 && now_ns_ - heard_ns_ > kSilentNs) {
+    if (session_ != 0 && now_ns_ - heard_ns_ > kServerSilentNs) {
       End();
     }
     if (device_.fault() == Fault::kStalled) {

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "device/test/tick_time.h"
+
 namespace hvas::device {
 namespace {
 
-constexpr std::int64_t kTickNs = 1'000'000;
+using testing::kTickNs;
 
 DeviceProfile WithoutFriction() {
   DeviceProfile profile;

@@ -9,10 +9,9 @@
 
 #include "device/drivers/vendor_drivers.h"
 #include "device/emulation/library_emulator.h"
+#include "device/test/tick_time.h"
 
 namespace hvas::device::testing {
-
-inline constexpr std::int64_t kTickNs = 1'000'000;
 
 /** A driver, and the device that its emulator shows. */
 struct LibraryCase {

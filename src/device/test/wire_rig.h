@@ -8,10 +8,9 @@
 #include "base/random.h"
 #include "device/drivers/wire_drivers.h"
 #include "device/emulation/wire_emulator.h"
+#include "device/test/tick_time.h"
 
 namespace hvas::device::testing {
-
-inline constexpr std::int64_t kTickNs = 1'000'000;
 
 /** A driver and its emulator in virtual time, at 1 kHz. */
 class WireRig {

@@ -15,7 +15,6 @@
 namespace hvas::dynamics {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kDensity = 7850;  // Steel [kg/m3].
 constexpr double kGravity = 9.81;
 
@@ -45,11 +44,11 @@ Solid MakeBox(const Vec3& size) {
 Solid MakeCylinder(double radius, double height) {
   Solid solid;
   for (int i = 0; i < 96; ++i) {
-    const double angle = 2 * kPi * i / 96;
+    const double angle = 2 * std::numbers::pi * i / 96;
     solid.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
     solid.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), height);
   }
-  const double mass = kDensity * kPi * radius * radius * height;
+  const double mass = kDensity * std::numbers::pi * radius * radius * height;
   const double across = mass * (3 * radius * radius + height * height) / 12;
   solid.properties = {mass, {0, 0, height / 2}, Mat3::Zero()};
   solid.properties.I_BBcm_B.diagonal() = Vec3(across, across, mass * radius * radius / 2);

@@ -209,7 +209,7 @@ TEST(Population, CountsWhatExceedsThePressAndWhatYields) {
 
 #ifdef HVAS_HAS_AVX2_POPULATION
 /** Clearances of assemblies, room up to a multiple of kLanes filled as blocks have to. */
-std::vector<float> DrawClearances(int count) {
+std::vector<float> DrawPaddedClearances(int count) {
   Random random(4);
   std::vector<float> clearance_um(static_cast<std::size_t>(count + kLanes), kFarApart);
   for (int i = 0; i < count; ++i) {
@@ -259,7 +259,7 @@ TEST(Population, BothKernelsGiveTheSameBits) {
     return;  // Nothing to compare on this machine.
   }
   constexpr int kCount = 61;
-  const std::vector<float> clearance_um = DrawClearances(kCount);
+  const std::vector<float> clearance_um = DrawPaddedClearances(kCount);
   const std::vector<LandDepth> between{{-1, 0}, {0, 1}, {3, 0.37F}, {6, 1}};
   const LandView land{7, 3.15F, 12.5F, clearance_um.data(), between.data()};
   const std::vector<LandView> lands{land, {5, 1.6F, 7.5F, clearance_um.data(), between.data()}};
@@ -275,7 +275,7 @@ TEST(Population, BothKernelsTakeTheSameSizes) {
     return;  // Nothing to compare on this machine.
   }
   constexpr int kCount = 61;
-  const std::vector<float> hole_um = DrawClearances(kCount);
+  const std::vector<float> hole_um = DrawPaddedClearances(kCount);
   std::vector<float> shaft_um = hole_um;
   std::reverse(shaft_um.begin(), shaft_um.begin() + kCount);
 

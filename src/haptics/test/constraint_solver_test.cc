@@ -9,16 +9,19 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "haptics/test/values.h"
+#include "spatial/test/random_pose.h"
 
 namespace hvas::haptics {
 namespace {
 
+using spatial::RandomVector;
 using spatial::Skew;
 using spatial::Twist;
 using spatial::Wrench;
+using testing::kDt;
 
-constexpr double kDt = 1e-3;
-constexpr double kMass = 0.7;
+constexpr double kBodyMass = 0.7;
 constexpr double kGravity = 9.81;
 const Vec3 kInertia(2e-4, 3e-4, 4e-4);
 
@@ -26,13 +29,9 @@ Mat3 Inertia() {
   return kInertia.asDiagonal();
 }
 
-Vec3 DrawVector(Random* random, double size) {
-  return {random->Uniform(-size, size), random->Uniform(-size, size), random->Uniform(-size, size)};
-}
-
 Mat3 DrawPositive(Random* random, double size) {
   Mat3 A;
-  A << DrawVector(random, 1), DrawVector(random, 1), DrawVector(random, 1);
+  A << RandomVector(random, 1), RandomVector(random, 1), RandomVector(random, 1);
   return size * A * A.transpose();
 }
 
@@ -50,8 +49,8 @@ TEST(ConstraintSolver, FallsFreely) {
     double z = 0;
     const int steps = static_cast<int>(std::lround(1 / dt));
     for (int i = 0; i < steps; ++i) {
-      solver.Begin(kMass, Inertia(), Vec3::Zero(), V, dt);
-      solver.AddWrench({Vec3(2e-4, 0, 0), Vec3(0, 0, -kMass * kGravity)});
+      solver.Begin(kBodyMass, Inertia(), Vec3::Zero(), V, dt);
+      solver.AddWrench({Vec3(2e-4, 0, 0), Vec3(0, 0, -kBodyMass * kGravity)});
       V = solver.Solve(30);
       z += dt * V.v.z();
     }
@@ -69,13 +68,14 @@ TEST(ConstraintSolver, SpringStepIsImplicitEuler) {
     for (const double b : {0.0, 8.0, 1e4}) {
       const double x = 2e-3;
       const double v_0 = -0.4;
-      solver.Begin(kMass, Inertia(), Vec3::Zero(), {Vec3::Zero(), Vec3(v_0, 0, 0)}, kDt);
+      solver.Begin(kBodyMass, Inertia(), Vec3::Zero(), {Vec3::Zero(), Vec3(v_0, 0, 0)}, kDt);
       solver.AddPointSpring(Vec3::Zero(), Vec3(-k * x, 0, 0), k * Mat3::Identity());
       solver.AddPointDamper(Vec3::Zero(), Vec3::Zero(), b);
-      const double expected = (kMass * v_0 - kDt * k * x) / (kMass + kDt * b + kDt * kDt * k);
+      const double expected =
+          (kBodyMass * v_0 - kDt * k * x) / (kBodyMass + kDt * b + kDt * kDt * k);
       EXPECT_NEAR(solver.Solve(30).v.x(), expected, 1e-12 * std::abs(expected));
 
-      solver.Begin(kMass, Inertia(), Vec3::Zero(), {Vec3(0, v_0, 0), Vec3::Zero()}, kDt);
+      solver.Begin(kBodyMass, Inertia(), Vec3::Zero(), {Vec3(0, v_0, 0), Vec3::Zero()}, kDt);
       solver.AddAngularSpring(Vec3(0, -k * x, 0), k * Mat3::Identity());
       solver.AddAngularDamper(Vec3::Zero(), b);
       const double turn =
@@ -90,15 +90,15 @@ double CalcOscillatorError(double dt) {
   const double k = 1000;
   const double b = 8;
   const double x_0 = 5e-3;
-  const double decay = 0.5 * b / kMass;
-  const double omega = std::sqrt(k / kMass - decay * decay);
+  const double decay = 0.5 * b / kBodyMass;
+  const double omega = std::sqrt(k / kBodyMass - decay * decay);
   ConstraintSolver solver;
   Twist V;
   double x = x_0;
   double worst = 0;
   const int steps = static_cast<int>(std::lround(0.5 / dt));
   for (int i = 1; i <= steps; ++i) {
-    solver.Begin(kMass, Inertia(), Vec3(x, 0, 0), V, dt);
+    solver.Begin(kBodyMass, Inertia(), Vec3(x, 0, 0), V, dt);
     solver.AddPointSpring(Vec3(x, 0, 0), Vec3(-k * x, 0, 0), k * Mat3::Identity());
     solver.AddPointDamper(Vec3(x, 0, 0), Vec3::Zero(), b);
     V = solver.Solve(30);
@@ -129,11 +129,11 @@ TEST(ConstraintSolver, StaysStableAtAnyStiffness) {
     double x = 1e-3;
     double energy = 0.5 * k * x * x;
     for (int i = 0; i < 2000; ++i) {
-      solver.Begin(kMass, Inertia(), Vec3(x, 0, 0), V, kDt);
+      solver.Begin(kBodyMass, Inertia(), Vec3(x, 0, 0), V, kDt);
       solver.AddPointSpring(Vec3(x, 0, 0), Vec3(-k * x, 0, 0), k * Mat3::Identity());
       V = solver.Solve(30);
       x += kDt * V.v.x();
-      const double now = 0.5 * k * x * x + 0.5 * kMass * V.v.squaredNorm();
+      const double now = 0.5 * k * x * x + 0.5 * kBodyMass * V.v.squaredNorm();
       ASSERT_LE(now, energy * (1 + 1e-12));
       energy = now;
     }
@@ -147,15 +147,15 @@ TEST(ConstraintSolver, OffCentreSpringsAndDampersMatchTheirJacobians) {
   Random random(3);
   double worst = 0;
   for (int draw = 0; draw < 200; ++draw) {
-    const Vec3 p_WCm = DrawVector(&random, 0.5);
-    const Vec3 p_WQ = p_WCm + DrawVector(&random, 0.1);
-    const Vec3 f0 = DrawVector(&random, 10);
-    const Vec3 target = DrawVector(&random, 0.5);
+    const Vec3 p_WCm = RandomVector(&random, 0.5);
+    const Vec3 p_WQ = p_WCm + RandomVector(&random, 0.1);
+    const Vec3 f0 = RandomVector(&random, 10);
+    const Vec3 target = RandomVector(&random, 0.5);
     const Mat3 K = DrawPositive(&random, 1e5);
     const Mat3 K_rot = DrawPositive(&random, 10);
     const Mat3 I = DrawPositive(&random, 1e-3) + 1e-4 * Mat3::Identity();
     const double b = random.Uniform(0, 50);
-    const Twist V_0{DrawVector(&random, 1), DrawVector(&random, 1)};
+    const Twist V_0{RandomVector(&random, 1), RandomVector(&random, 1)};
     Eigen::Matrix<double, 3, 6> J;
     constexpr double kStep = 1e-6;
     for (int k = 0; k < 6; ++k) {
@@ -168,7 +168,7 @@ TEST(ConstraintSolver, OffCentreSpringsAndDampersMatchTheirJacobians) {
     }
     Mat6 M = Mat6::Zero();
     M.topLeftCorner<3, 3>() = I;
-    M.bottomRightCorner<3, 3>() = kMass * Mat3::Identity();
+    M.bottomRightCorner<3, 3>() = kBodyMass * Mat3::Identity();
     Mat6 A = M + J.transpose() * (kDt * b * Mat3::Identity() + kDt * kDt * K) * J;
     A.topLeftCorner<3, 3>() += kDt * kDt * K_rot;
     Vec6 rhs = M * Stack(V_0) + kDt * J.transpose() * (f0 + b * target);
@@ -176,7 +176,7 @@ TEST(ConstraintSolver, OffCentreSpringsAndDampersMatchTheirJacobians) {
     const Vec6 expected = A.fullPivLu().solve(rhs);
 
     ConstraintSolver solver;
-    solver.Begin(kMass, I, p_WCm, V_0, kDt);
+    solver.Begin(kBodyMass, I, p_WCm, V_0, kDt);
     solver.AddPointSpring(p_WQ, f0, K);
     solver.AddAngularSpring(target, K_rot);
     solver.AddPointDamper(p_WQ, target, b);
@@ -191,11 +191,11 @@ TEST(ConstraintSolver, OffCentreSpringsAndDampersMatchTheirJacobians) {
 TEST(ConstraintSolver, ForceOffTheCentreTurnsTheBody) {
   ConstraintSolver solver;
   const Vec3 p_WCm(0.1, 0.2, 0.3);
-  solver.Begin(kMass, Inertia(), p_WCm, {}, kDt);
+  solver.Begin(kBodyMass, Inertia(), p_WCm, {}, kDt);
   solver.AddPointSpring(p_WCm + Vec3(0.05, 0, 0), Vec3(0, 2, 0), Mat3::Zero());
   const Twist V = solver.Solve(30);
   EXPECT_NEAR((V.w - Vec3(0, 0, kDt * 0.1 / kInertia.z())).norm(), 0, 1e-15);
-  EXPECT_NEAR((V.v - Vec3(0, kDt * 2 / kMass, 0)).norm(), 0, 1e-15);
+  EXPECT_NEAR((V.v - Vec3(0, kDt * 2 / kBodyMass, 0)).norm(), 0, 1e-15);
 }
 
 /** A box on four corners of a plane through the origin, for small tilts. */
@@ -215,7 +215,7 @@ struct BoxOnPlane {
   }
 
   void Step(int iterations = 30) {
-    solver.Begin(kMass, R * Inertia() * R.transpose(), Vec3::Zero(), V, kDt);
+    solver.Begin(kBodyMass, R * Inertia() * R.transpose(), Vec3::Zero(), V, kDt);
     solver.AddWrench(load);
     const int patch = solver.AddPatch({0, ConstraintSolver::kWorld, friction});
     for (int i = 0; i < 4; ++i) {
@@ -244,7 +244,7 @@ TEST(ConstraintSolver, FourContactsCarryTheWeight) {
     double tolerance;  // Of one contact's share [N].
   };
 
-  const double weight = kMass * kGravity;
+  const double weight = kBodyMass * kGravity;
   for (const Case& c : {Case{2e-6, 30, 2e-4}, Case{2e-7, 300, 1e-3}}) {
     BoxOnPlane box;
     box.compliance = c.compliance;
@@ -286,7 +286,7 @@ TEST(ConstraintSolver, ContactsDoNotPull) {
   box.load.f = Vec3(0, 0, 3);
   box.Step();
   EXPECT_EQ(box.TotalNormalForce(), 0);
-  EXPECT_NEAR(box.V.v.z(), kDt * 3 / kMass, 1e-15);
+  EXPECT_NEAR(box.V.v.z(), kDt * 3 / kBodyMass, 1e-15);
 }
 
 // A gap is closed within the step, not overshot: the box stops at the surface.
@@ -308,7 +308,7 @@ Vec3 SlideDown(double slope, double heading, double friction) {
   BoxOnPlane box;
   box.friction = friction;
   box.R = (Eigen::AngleAxisd(slope, Vec3(-std::sin(heading), std::cos(heading), 0))).matrix();
-  box.load.f = Vec3(0, 0, -kMass * kGravity);
+  box.load.f = Vec3(0, 0, -kBodyMass * kGravity);
   for (int i = 0; i < 300; ++i) {
     box.Step();
   }
@@ -345,7 +345,7 @@ TEST(ConstraintSolver, BoundedRowSticksBelowItsBoundAndSlidesAbove) {
   const double bound = 5;
   for (const double push : {-4.99, -1.0, 0.0, 2.0, 4.99}) {
     ConstraintSolver solver;
-    solver.Begin(kMass, Inertia(), Vec3::Zero(), {}, kDt);
+    solver.Begin(kBodyMass, Inertia(), Vec3::Zero(), {}, kDt);
     solver.AddWrench({Vec3::Zero(), Vec3(0, 0, push)});
     const int row = solver.AddBoundedRow(J, {-bound, bound});
     EXPECT_NEAR(solver.Solve(30).v.z(), 0, 1e-18) << push;
@@ -353,11 +353,11 @@ TEST(ConstraintSolver, BoundedRowSticksBelowItsBoundAndSlidesAbove) {
   }
   for (const double push : {-9.0, -5.01, 5.01, 7.0}) {
     ConstraintSolver solver;
-    solver.Begin(kMass, Inertia(), Vec3::Zero(), {}, kDt);
+    solver.Begin(kBodyMass, Inertia(), Vec3::Zero(), {}, kDt);
     solver.AddWrench({Vec3::Zero(), Vec3(0, 0, push)});
     const int row = solver.AddBoundedRow(J, {-bound, bound});
     const double rest = push - std::copysign(bound, push);
-    EXPECT_NEAR(solver.Solve(30).v.z(), kDt * rest / kMass, 1e-15);
+    EXPECT_NEAR(solver.Solve(30).v.z(), kDt * rest / kBodyMass, 1e-15);
     EXPECT_EQ(solver.bounded_force(row), -std::copysign(bound, push));
   }
 }
@@ -370,11 +370,11 @@ TEST(ConstraintSolver, BoundedRowNeverReversesTheMotion) {
   double before = V.v.x();
   for (int i = 0; i < 10; ++i) {
     ConstraintSolver solver;
-    solver.Begin(kMass, Inertia(), Vec3::Zero(), V, kDt);
+    solver.Begin(kBodyMass, Inertia(), Vec3::Zero(), V, kDt);
     (void)solver.AddBoundedRow(J, {-2, 2});
     V = solver.Solve(30);
     EXPECT_GE(V.v.x(), 0);
-    EXPECT_NEAR(V.v.x(), std::max(0.0, before - kDt * 2 / kMass), 1e-15);
+    EXPECT_NEAR(V.v.x(), std::max(0.0, before - kDt * 2 / kBodyMass), 1e-15);
     before = V.v.x();
   }
   EXPECT_EQ(V.v.x(), 0);
@@ -393,7 +393,7 @@ struct RandomScene {
 
 Twist SolveTurned(const RandomScene& s, const Mat3& R, Vec3* total) {
   ConstraintSolver solver;
-  solver.Begin(kMass, R * s.I * R.transpose(), R * s.p_WCm, {R * s.V_0.w, R * s.V_0.v}, kDt);
+  solver.Begin(kBodyMass, R * s.I * R.transpose(), R * s.p_WCm, {R * s.V_0.w, R * s.V_0.v}, kDt);
   solver.AddPointSpring(R * s.p_WQ, R * s.f0, R * s.K * R.transpose());
   const int patch = solver.AddPatch({0, ConstraintSolver::kWorld, 0.3});
   for (int i = 0; i < 6; ++i) {
@@ -418,16 +418,16 @@ TEST(ConstraintSolver, DoesNotDependOnTheFrame) {
   for (int draw = 0; draw < 30; ++draw) {
     RandomScene s;
     s.I = DrawPositive(&random, 1e-3) + 2e-4 * Mat3::Identity();
-    s.p_WCm = DrawVector(&random, 0.2);
-    s.V_0 = {DrawVector(&random, 1), DrawVector(&random, 0.2) - Vec3(0, 0, 0.3)};
-    s.p_WQ = s.p_WCm + DrawVector(&random, 0.05);
-    s.f0 = DrawVector(&random, 5);
+    s.p_WCm = RandomVector(&random, 0.2);
+    s.V_0 = {RandomVector(&random, 1), RandomVector(&random, 0.2) - Vec3(0, 0, 0.3)};
+    s.p_WQ = s.p_WCm + RandomVector(&random, 0.05);
+    s.f0 = RandomVector(&random, 5);
     s.K = DrawPositive(&random, 1000);
     for (int i = 0; i < 6; ++i) {
-      s.points[i] = s.p_WCm + DrawVector(&random, 0.05);
-      s.normals[i] = (Vec3(0, 0, 1) + DrawVector(&random, 0.5)).normalized();
+      s.points[i] = s.p_WCm + RandomVector(&random, 0.05);
+      s.normals[i] = (Vec3(0, 0, 1) + RandomVector(&random, 0.5)).normalized();
     }
-    s.J << DrawVector(&random, 0.05), DrawVector(&random, 1);
+    s.J << RandomVector(&random, 0.05), RandomVector(&random, 1);
     const Mat3 R = Quat(random.Normal(), random.Normal(), random.Normal(), random.Normal())
                        .normalized()
                        .toRotationMatrix();
@@ -446,7 +446,7 @@ TEST(ConstraintSolver, DoesNotDependOnTheFrame) {
 // So many contacts and no more: further ones change nothing, and the count says so.
 TEST(ConstraintSolver, CapacityIsKept) {
   const auto solve = [](int contacts, ConstraintSolver* solver) {
-    solver->Begin(kMass, Inertia(), Vec3::Zero(), {Vec3::Zero(), Vec3(0, 0, -0.2)}, kDt);
+    solver->Begin(kBodyMass, Inertia(), Vec3::Zero(), {Vec3::Zero(), Vec3(0, 0, -0.2)}, kDt);
     const int patch = solver->AddPatch({0, ConstraintSolver::kWorld, 0.1});
     for (int i = 0; i < contacts; ++i) {
       const double a = 0.1 * i;
@@ -466,7 +466,7 @@ TEST(ConstraintSolver, CapacityIsKept) {
   EXPECT_EQ(V.w, V_over.w);
 
   ConstraintSolver solver;
-  solver.Begin(kMass, Inertia(), Vec3::Zero(), {}, kDt);
+  solver.Begin(kBodyMass, Inertia(), Vec3::Zero(), {}, kDt);
   for (int i = 0; i < ConstraintSolver::kMaxBoundedRows; ++i) {
     EXPECT_EQ(solver.AddBoundedRow(Vec6::Unit(i), {-1, 1}), i);
   }
@@ -484,7 +484,7 @@ TEST(ConstraintSolver, IsReusable) {
   Vec6 J;
   J << Vec3::Zero(), Vec3::UnitX();
   const auto step = [&J](ConstraintSolver* solver) {
-    solver->Begin(kMass, Inertia(), Vec3::Zero(), {Vec3(1, 0, 0), Vec3(0, 1, -1)}, kDt);
+    solver->Begin(kBodyMass, Inertia(), Vec3::Zero(), {Vec3(1, 0, 0), Vec3(0, 1, -1)}, kDt);
     const int patch = solver->AddPatch({0, ConstraintSolver::kWorld, 0.3});
     solver->AddContact({patch, Vec3(0.01, 0, 0), Vec3::UnitZ(), 0, 2e-6});
     (void)solver->AddBoundedRow(J, {-1, 1});

@@ -7,15 +7,17 @@
 
 #include <gtest/gtest.h>
 
+#include "haptics/test/values.h"
+
 namespace hvas::haptics {
 namespace {
 
 using device::DeviceProfile;
+using testing::kDt;
 
 static_assert(noexcept(ChooseCoupling(std::declval<const DeviceProfile&>(), 1, 1e-3)));
 
 constexpr double kGrip = 5;  // [N s/m]; the least damping of a hand that the rule counts on
-constexpr double kDt = 1e-3;
 
 // A device of which one limit binds at a time, by hand.
 TEST(CouplingRule, TakesTheLowestOfItsLimits) {

@@ -7,19 +7,21 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "haptics/test/values.h"
 
 namespace hvas::haptics {
 namespace {
 
-constexpr double kDt = 1e-3;
-constexpr double kMass = 0.5;
+using testing::kDt;
+
+constexpr double kShaftMass = 0.5;
 
 /** A part of half a kilogram on a vertical axis, pulled at by a force. */
 struct Slider {
   explicit Slider(ForceMapKind kind = ForceMapKind::kPublished) : rows(kind, device) {}
 
   FitForces Step(const FitLoad& load, double pull, double turn = 0) {
-    solver.Begin(kMass, 1e-3 * Mat3::Identity(), Vec3::Zero(), V, kDt);
+    solver.Begin(kShaftMass, 1e-3 * Mat3::Identity(), Vec3::Zero(), V, kDt);
     solver.AddWrench({Vec3(0, 0, turn), Vec3(0, 0, pull)});
     rows.Add(load, axis, &solver);
     V = solver.Solve(30);
@@ -59,7 +61,7 @@ TEST(FitRows, SticksUpToTheBreakawayForceAndNoFurther) {
         ASSERT_NEAR(-sign * forces.axial_true, sign > 0 ? load.out : load.in, 1.0);
       }
     }
-    EXPECT_GT(sign * slider.height, 0.4 * 0.01 * limit / kMass * 0.1 * 0.1);  // a t^2 / 2
+    EXPECT_GT(sign * slider.height, 0.4 * 0.01 * limit / kShaftMass * 0.1 * 0.1);  // a t^2 / 2
   }
 }
 
@@ -95,7 +97,7 @@ TEST(FitRows, NeverGiveEnergy) {
       const double before = slider.height;
       slider.Step(load, pull);
       given += pull * (slider.height - before);
-      ASSERT_LE(0.5 * kMass * slider.V.v.squaredNorm(), given + 1e-12) << run << " " << i;
+      ASSERT_LE(0.5 * kShaftMass * slider.V.v.squaredNorm(), given + 1e-12) << run << " " << i;
     }
   }
 }

@@ -10,6 +10,7 @@
 
 #include "haptics/force_map.h"
 #include "haptics/test/rig.h"
+#include "haptics/test/values.h"
 
 namespace hvas::haptics {
 namespace {
@@ -22,11 +23,11 @@ using testing::BlockRig;
 using testing::CalcDeepest;
 using testing::CalcLargestJump;
 using testing::kDt;
+using testing::kInf;
+using testing::kNan;
 using testing::Sample;
 using testing::ScriptedHand;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kBallRadius = 20e-3;
 
 const std::shared_ptr<const contact::Shape>& BallShape() {

@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "haptics/coupling_rule.h"
+#include "haptics/test/values.h"
 #include "haptics/test/wall_rig.h"
 
 namespace hvas::haptics {
@@ -17,11 +18,10 @@ using device::Fault;
 using testing::CalcReach;
 using testing::Grip;
 using testing::kGrips;
+using testing::kProfiles;
 using testing::MakeHand;
 using testing::SetTarget;
 using testing::WallRig;
-
-constexpr const char* kProfiles[] = {"touch", "touch_x", "sigma7", "inverse3", "virtuose"};
 
 /** Limits of a real device, with motors that stand anything: so that presses stay hard. */
 SafetyLimits MakeColdLimits(const DeviceProfile& profile) {

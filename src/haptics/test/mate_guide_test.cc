@@ -10,12 +10,14 @@
 #include "base/random.h"
 #include "haptics/test/rig.h"
 #include "mates/capture.h"
+#include "spatial/test/random_pose.h"
 
 namespace hvas::haptics {
 namespace {
 
 using product::MateKind;
 using spatial::Pose;
+using spatial::RandomVector;
 using testing::Above;
 using testing::kDt;
 using testing::kLength;
@@ -23,12 +25,8 @@ using testing::MakeAxisMate;
 using testing::MakeFit;
 using testing::MakeStopMate;
 
-constexpr double kMass = 0.5;
+constexpr double kPegMass = 0.5;
 const double kDegree = std::numbers::pi / 180;
-
-Vec3 DrawVector(Random* random, double size) {
-  return {random->Uniform(-size, size), random->Uniform(-size, size), random->Uniform(-size, size)};
-}
 
 Quat DrawRotation(Random* random) {
   return Quat(random->Normal(), random->Normal(), random->Normal(), random->Normal()).normalized();
@@ -40,7 +38,7 @@ Pose Tilted(const Vec3& turn, const Vec3& p) {
 
 HeldPart MakePart(std::vector<HeldMate> mates) {
   HeldPart part;
-  part.mass = kMass;
+  part.mass = kPegMass;
   part.mates = std::move(mates);
   return part;
 }
@@ -59,12 +57,12 @@ Vec6 CalcForce(MateGuide* guide, const HeldPart& part, const GuidanceOptions& op
                const Pose& X_WB) {
   constexpr double kInstant = 1e-9;
   ConstraintSolver solver;
-  solver.Begin(kMass, kMass * Mat3::Identity(), X_WB.p(), {}, kInstant);
+  solver.Begin(kPegMass, kPegMass * Mat3::Identity(), X_WB.p(), {}, kInstant);
   guide->AddSprings(part, options, &solver);
   const spatial::Twist V = solver.SolveUnconstrained();
   Vec6 out;
   out << V.w, V.v;
-  return kMass / kInstant * out;
+  return kPegMass / kInstant * out;
 }
 
 /** Stiffness that the solver gets, 6 x 6, found by probing its system matrix. */
@@ -73,7 +71,8 @@ Mat6 CalcStiffness(MateGuide* guide, const HeldPart& part, const GuidanceOptions
   constexpr double kLong = 1;
   const auto solve = [&](const Vec6& V_0) {
     ConstraintSolver solver;
-    solver.Begin(kMass, kMass * Mat3::Identity(), X_WB.p(), {V_0.head<3>(), V_0.tail<3>()}, kLong);
+    solver.Begin(kPegMass, kPegMass * Mat3::Identity(), X_WB.p(), {V_0.head<3>(), V_0.tail<3>()},
+                 kLong);
     guide->AddSprings(part, options, &solver);
     const spatial::Twist V = solver.SolveUnconstrained();
     Vec6 out;
@@ -83,9 +82,9 @@ Mat6 CalcStiffness(MateGuide* guide, const HeldPart& part, const GuidanceOptions
   const Vec6 rest = solve(Vec6::Zero());
   Mat6 inverse;
   for (int k = 0; k < 6; ++k) {
-    inverse.col(k) = (solve(Vec6::Unit(k)) - rest) / kMass;
+    inverse.col(k) = (solve(Vec6::Unit(k)) - rest) / kPegMass;
   }
-  return (inverse.inverse() - kMass * Mat6::Identity()) / (kLong * kLong);
+  return (inverse.inverse() - kPegMass * Mat6::Identity()) / (kLong * kLong);
 }
 
 // X(7), X(8): what guides is what was recognised, at any pose of both connectors.
@@ -103,11 +102,11 @@ TEST(CalcMateGeometry, AgreesWithRecognition) {
                       random.Uniform(-0.05, 0),
                       random.Uniform(0, 0.05),
                       1};
-      mate.X_WM = {DrawRotation(&random), DrawVector(&random, 1)};
-      mate.X_BN = {DrawRotation(&random), DrawVector(&random, 0.1)};
+      mate.X_WM = {DrawRotation(&random), RandomVector(&random, 1)};
+      mate.X_BN = {DrawRotation(&random), RandomVector(&random, 0.1)};
       const Quat flip = kind == MateKind::kFaceFace ? Quat(0, 1, 0, 0) : Quat::Identity();
-      const Quat q_MN = spatial::RotationFromVector(DrawVector(&random, 0.7)) * flip;
-      const Pose X_WB = mate.X_WM * Pose(q_MN, DrawVector(&random, 0.1)) * mate.X_BN.Inverse();
+      const Quat q_MN = spatial::RotationFromVector(RandomVector(&random, 0.7)) * flip;
+      const Pose X_WB = mate.X_WM * Pose(q_MN, RandomVector(&random, 0.1)) * mate.X_BN.Inverse();
       const MateGeometry g = CalcMateGeometry(mate, X_WB);
       const mates::MateDeviation deviation =
           mates::CalcDeviation(mate.capture, mate.X_WM, X_WB * mate.X_BN);
@@ -342,7 +341,7 @@ TEST(MateGuide, SphereSeatIsAPointThatTurnsFreely) {
   FullGuide full(MakePart({mate}));
   Random random(8);
   for (int draw = 0; draw < 20; ++draw) {
-    const Vec3 p = DrawVector(&random, 1e-3);
+    const Vec3 p = RandomVector(&random, 1e-3);
     const Pose X_WB(DrawRotation(&random), p);
     const Vec6 F = full.Force(X_WB);
     EXPECT_NEAR((F.tail<3>() + full.options.k_lin * p).norm(), 0, 1e-6 * full.options.k_lin * 1e-3);

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "haptics/coupling_rule.h"
 #include "haptics/passivity_controller.h"
+#include "haptics/test/values.h"
 #include "haptics/test/wall_rig.h"
 
 namespace hvas::haptics {
@@ -18,13 +19,12 @@ namespace {
 using device::DeviceProfile;
 using spatial::Wrench;
 using testing::CalcReach;
+using testing::kDt;
 using testing::kGrips;
+using testing::kNan;
+using testing::kProfiles;
 using testing::MakeHand;
 using testing::WallRig;
-
-constexpr double kDt = 1e-3;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kProfiles[] = {"touch", "touch_x", "sigma7", "inverse3", "virtuose"};
 
 static_assert(noexcept(std::declval<PassivityController&>().Limit(
     std::declval<const spatial::Pose&>(), std::declval<const Wrench&>(), 0, 0, 0)));

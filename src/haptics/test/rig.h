@@ -13,11 +13,11 @@
 #include "contact/test/parts.h"
 #include "fits/iso286.h"
 #include "haptics/haptic_tick.h"
+#include "haptics/test/values.h"
 
 /** The bushing rig of W7 and a hand that follows a script. */
 namespace hvas::haptics::testing {
 
-inline constexpr double kDt = 1e-3;
 inline constexpr double kShaftRadius = 20e-3;
 inline constexpr double kHubRadius = 40e-3;
 inline constexpr double kLength = 50e-3;

@@ -11,15 +11,16 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "haptics/test/values.h"
 
 namespace hvas::haptics {
 namespace {
 
 using spatial::Wrench;
+using testing::kDt;
+using testing::kInf;
+using testing::kNan;
 
-constexpr double kDt = 1e-3;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-12;
 
 static_assert(noexcept(std::declval<SafetyGate&>().Pass(std::declval<const Wrench&>(),

@@ -25,17 +25,17 @@ TEST(WorkspaceMapping, ScalesLengthsAndKeepsAngles) {
 
 TEST(WorkspaceMapping, VelocityIsTheDerivativeOfThePose) {
   const WorkspaceMapping mapping = MakeMapping();
-  constexpr double kDt = 1e-6;
+  constexpr double kStep = 1e-6;
   device::DeviceState now;
   now.X_DH = {spatial::RotationFromVector({0.5, 0.1, -0.2}), {0.05, -0.02, 0.01}};
   now.V_DH = {{0.7, -0.3, 0.2}, {0.1, 0.4, -0.2}};
   device::DeviceState later = now;
-  later.X_DH = spatial::Integrate(now.X_DH, now.V_DH, kDt);
+  later.X_DH = spatial::Integrate(now.X_DH, now.V_DH, kStep);
   const Hand hand = MapToScene(mapping, now);
   const Hand hand_later = MapToScene(mapping, later);
-  EXPECT_LT(((hand_later.X_WH.p() - hand.X_WH.p()) / kDt - hand.V_WH.v).norm(), 1e-8);
+  EXPECT_LT(((hand_later.X_WH.p() - hand.X_WH.p()) / kStep - hand.V_WH.v).norm(), 1e-8);
   EXPECT_LT(
-      (spatial::RotationBetween(hand.X_WH.q(), hand_later.X_WH.q()) / kDt - hand.V_WH.w).norm(),
+      (spatial::RotationBetween(hand.X_WH.q(), hand_later.X_WH.q()) / kStep - hand.V_WH.w).norm(),
       1e-6);
 }
 

@@ -4,13 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "haptics/test/values.h"
+
 namespace hvas::haptics {
 namespace {
 
 using device::DeviceState;
 using spatial::Pose;
-
-constexpr double kDt = 1e-3;
+using testing::kDt;
 
 DeviceState At(const Vec3& p, const Quat& q = Quat::Identity()) {
   DeviceState state;

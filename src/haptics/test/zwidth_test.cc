@@ -3,15 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "haptics/coupling_rule.h"
+#include "haptics/test/values.h"
 #include "haptics/test/wall_rig.h"
 
 namespace hvas::haptics {
 namespace {
 
 using testing::kGrips;
+using testing::kProfiles;
 using testing::Press;
 
-constexpr const char* kProfiles[] = {"touch", "touch_x", "sigma7", "inverse3", "virtuose"};
 constexpr double kStiffness[] = {0.25, 0.5, 1, 2, 4, 8, 16};  // of the device's maximum
 
 /** Up to where all walls without damping are stable, times the device's maximum; 0: none is. */

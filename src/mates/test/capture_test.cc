@@ -7,12 +7,14 @@
 
 #include "base/random.h"
 #include "base/units.h"
+#include "spatial/test/random_pose.h"
 
 namespace hvas::mates {
 namespace {
 
 using product::MateKind;
 using spatial::Pose;
+using spatial::RandomPose;
 
 // Paper W's rig (W7): a shaft for a bushing 50 mm deep. Origins at the middle of the engagement.
 constexpr CaptureMate kShaft{MateKind::kAxisHole, -25e-3, 25e-3, -25e-3, 35e-3, 0};
@@ -22,16 +24,10 @@ Pose Turned(double angle, const Vec3& p) {
   return {spatial::RotationFromVector(Vec3(angle, 0, 0)), p};
 }
 
-Pose DrawPose(Random* random) {
-  const Quat q(random->Normal(), random->Normal(), random->Normal(), random->Normal());
-  return {q.normalized(),
-          Vec3(random->Uniform(-1, 1), random->Uniform(-1, 1), random->Uniform(-1, 1))};
-}
-
 TEST(CalcDeviation, IsZeroInTheAssembledPose) {
   Random random(1);
   for (int draw = 0; draw < 100; ++draw) {
-    const Pose X_WM = DrawPose(&random);
+    const Pose X_WM = RandomPose(&random, 1);
     const MateDeviation axis = CalcDeviation(kShaft, X_WM, X_WM);
     EXPECT_LT(axis.angle + axis.distance + axis.gap, 1e-12);
     const MateDeviation face =
@@ -68,9 +64,9 @@ TEST(CalcDeviation, TiltedShaftIsMeasuredAtItsTip) {
 TEST(CalcDeviation, DoesNotDependOnTheWorldFrame) {
   Random random(5);
   for (int draw = 0; draw < 200; ++draw) {
-    const Pose X_AW = DrawPose(&random);
-    const Pose X_WM = DrawPose(&random);
-    const Pose X_WN = DrawPose(&random);
+    const Pose X_AW = RandomPose(&random, 1);
+    const Pose X_WM = RandomPose(&random, 1);
+    const Pose X_WN = RandomPose(&random, 1);
     for (const CaptureMate& mate : {kShaft, kFace}) {
       const MateDeviation in_w = CalcDeviation(mate, X_WM, X_WN);
       const MateDeviation in_a = CalcDeviation(mate, X_AW * X_WM, X_AW * X_WN);
@@ -146,8 +142,8 @@ TEST(Capture, ConeSeatsAreAxesAndSphereSeatsPoints) {
   Random random(9);
   const CaptureThresholds thresholds;
   for (int draw = 0; draw < 100; ++draw) {
-    const Pose X_WM = DrawPose(&random);
-    const Pose X_WN = DrawPose(&random);
+    const Pose X_WM = RandomPose(&random, 1);
+    const Pose X_WN = RandomPose(&random, 1);
     const MateDeviation as_shaft = CalcDeviation(kShaft, X_WM, X_WN);
     const MateDeviation as_cone = CalcDeviation(cone, X_WM, X_WN);
     EXPECT_EQ(as_shaft.angle, as_cone.angle);

@@ -62,22 +62,22 @@ TEST_P(JointFreedom, IsWhatTheMatesLeave) {
   EXPECT_EQ(joint.pattern_count, freedom.pattern) << freedom.what;
 }
 
-const Vec3 kNone(0, 0, 0);
+const Vec3 kNoOffset(0, 0, 0);
 const Vec3 kRight(15e-3, 0, 0);
 const Vec3 kLeft(-15e-3, 0, 0);
 const Vec3 kUp(0, 15e-3, 0);
 
 INSTANTIATE_TEST_SUITE_P(
     Counted, JointFreedom,
-    ::testing::Values(Freedom{"one axis", {kNone}, false, 1, 1, 0},
-                      Freedom{"an axis and a face", {kNone}, true, 0, 1, 0},
+    ::testing::Values(Freedom{"one axis", {kNoOffset}, false, 1, 1, 0},
+                      Freedom{"an axis and a face", {kNoOffset}, true, 0, 1, 0},
                       Freedom{"a face", {}, true, 2, 1, 0},
                       Freedom{"two dowels", {kRight, kLeft}, false, 1, 0, 2},
                       Freedom{"two dowels and a face", {kRight, kLeft}, true, 0, 0, 2},
                       Freedom{"a circle of three", {kRight, kLeft, kUp}, true, 0, 0, 3}));
 
 TEST(Joints, AreOneForEachPairInTheirOrder) {
-  Product product = MakePinned({kNone}, true);
+  Product product = MakePinned({kNoOffset}, true);
   AddPart(&product, "lid");
   AddRectangle(&product.parts[2], Vec3(0, 0, 0), Vec3::UnitZ(), 40e-3, 40e-3);
   AddRectangle(&product.parts[0], Vec3(0, 0, -10e-3), -Vec3::UnitZ(), 40e-3, 40e-3);

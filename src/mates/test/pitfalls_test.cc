@@ -27,8 +27,6 @@ using testing::AddRectangle;
 using testing::AddRoundFace;
 using testing::CountMates;
 
-constexpr double kPi = std::numbers::pi;
-
 Diagnostics InferInto(Product* product) {
   Diagnostics diagnostics;
   Infer(product, &diagnostics);
@@ -74,9 +72,13 @@ Part* AddRound(Product* product, const std::string& name, FeatureKind kind, doub
 
 TEST(PitfallA, AHoleInTwoHalvesAndAShaftInFourQuartersMakeOneMateWithItsFacingFaces) {
   Product product;
-  AddArcs(&product, "housing", 5e-3, {{0, kPi, -1}, {kPi, kPi, -1}}, 0, 20e-3);
+  AddArcs(&product, "housing", 5e-3,
+          {{0, std::numbers::pi, -1}, {std::numbers::pi, std::numbers::pi, -1}}, 0, 20e-3);
   AddArcs(&product, "shaft", 5e-3,
-          {{0, kPi / 2, 1}, {kPi / 2, kPi / 2, 1}, {kPi, kPi / 2, 1}, {1.5 * kPi, kPi / 2, 1}},
+          {{0, std::numbers::pi / 2, 1},
+           {std::numbers::pi / 2, std::numbers::pi / 2, 1},
+           {std::numbers::pi, std::numbers::pi / 2, 1},
+           {1.5 * std::numbers::pi, std::numbers::pi / 2, 1}},
           5e-3, 40e-3);
   AddInPlace(&product);
   InferInto(&product);
@@ -88,11 +90,12 @@ TEST(PitfallA, AHoleInTwoHalvesAndAShaftInFourQuartersMakeOneMateWithItsFacingFa
 
 TEST(PitfallB, AFilletAndTheEndsOfASlotAreNoHolesButASplitClampIs) {
   Product product;
-  AddArcs(&product, "fillet", 5e-3, {{0, kPi / 2, -1}}, 0, 20e-3);
-  AddArcs(&product, "slot end", 5e-3, {{0, kPi, -1}}, 0, 20e-3);
-  AddArcs(&product, "clamp", 5e-3, {{0.2, 2 * kPi - 0.4, -1}}, 0, 20e-3);
-  AddArcs(&product, "two jaws", 5e-3, {{-0.6, 1.2, -1}, {kPi - 0.6, 1.2, -1}}, 0, 20e-3);
-  AddArcs(&product, "shaft", 5e-3, {{0, 2 * kPi, 1}}, 0, 20e-3);
+  AddArcs(&product, "fillet", 5e-3, {{0, std::numbers::pi / 2, -1}}, 0, 20e-3);
+  AddArcs(&product, "slot end", 5e-3, {{0, std::numbers::pi, -1}}, 0, 20e-3);
+  AddArcs(&product, "clamp", 5e-3, {{0.2, 2 * std::numbers::pi - 0.4, -1}}, 0, 20e-3);
+  AddArcs(&product, "two jaws", 5e-3, {{-0.6, 1.2, -1}, {std::numbers::pi - 0.6, 1.2, -1}}, 0,
+          20e-3);
+  AddArcs(&product, "shaft", 5e-3, {{0, 2 * std::numbers::pi, 1}}, 0, 20e-3);
   AddInPlace(&product);
   InferInto(&product);
   ASSERT_EQ(CountMates(product, MateKind::kAxisHole), 2);
@@ -174,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(
 /** A hexagon of flats about z, outside (+1) or as a socket (-1). */
 void AddHexagon(Part* part, double across, double sense, double low, double high) {
   for (int i = 0; i < 6; ++i) {
-    const double angle = kPi / 3 * i;
+    const double angle = std::numbers::pi / 3 * i;
     const Vec3 n(std::cos(angle), std::sin(angle), 0);
     AddRectangle(part, Vec3(0.5 * across * n + Vec3(0, 0, 0.5 * (low + high))), sense * n,
                  0.5 * (high - low), 0.25 * across);

@@ -7,17 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "spatial/test/random_pose.h"
 
 namespace hvas::mates {
 namespace {
 
 using product::MateKind;
-
-Pose DrawPose(Random* random, double size = 0.5) {
-  const Quat q(random->Normal(), random->Normal(), random->Normal(), random->Normal());
-  return {q.normalized(),
-          size * Vec3(random->Uniform(-1, 1), random->Uniform(-1, 1), random->Uniform(-1, 1))};
-}
+using spatial::RandomPose;
 
 Pose DrawSmall(Random* random, double distance, double angle) {
   const auto draw = [&] {
@@ -103,7 +99,7 @@ TEST(CalcFreeTwists, CountsAreThoseOfTheJoints) {
   Random random(21);
   for (const Case& c : MakeCases()) {
     for (int draw = 0; draw < 20; ++draw) {
-      const Pose X_WB = DrawPose(&random);
+      const Pose X_WB = RandomPose(&random, 0.5);
       const FreeTwists free = CalcFreeTwists(MakeMates(c, X_WB), X_WB);
       EXPECT_EQ(free.translations, c.translations) << c.name;
       EXPECT_EQ(free.rotations, c.rotations) << c.name;
@@ -114,7 +110,7 @@ TEST(CalcFreeTwists, CountsAreThoseOfTheJoints) {
 TEST(CalcFreeTwists, MovingAlongThemKeepsTheMatesToSecondOrder) {
   Random random(22);
   for (const Case& c : MakeCases()) {
-    const Pose X_WB = DrawPose(&random);
+    const Pose X_WB = RandomPose(&random, 0.5);
     const std::vector<MateConstraint> mates = MakeMates(c, X_WB);
     const FreeTwists free = CalcFreeTwists(mates, X_WB);
     for (int k = 0; k < free.count(); ++k) {
@@ -130,7 +126,7 @@ TEST(CalcFreeTwists, MovingAlongThemKeepsTheMatesToSecondOrder) {
 
 TEST(CalcFreeTwists, AxisLeavesSlidingAndTurningAboutIt) {
   Random random(23);
-  const Pose X_WB = DrawPose(&random);
+  const Pose X_WB = RandomPose(&random, 0.5);
   const Vec3 p_B(0.01, 0.02, 0.03);
   const MateConstraint mate = MakeMate(MateKind::kAxisHole, X_WB, p_B, Vec3::UnitX());
   const FreeTwists free = CalcFreeTwists({&mate, 1}, X_WB);
@@ -149,12 +145,12 @@ TEST(Resolve, FulfilsEverySetFromRandomStarts) {
   Random random(31);
   for (const Case& c : MakeCases()) {
     for (int draw = 0; draw < 200; ++draw) {
-      const Pose X_WB = DrawPose(&random);
+      const Pose X_WB = RandomPose(&random, 0.5);
       const std::vector<MateConstraint> mates = MakeMates(c, X_WB);
       const Resolution near = Resolve(mates, X_WB * DrawSmall(&random, 5e-3, 0.17));
       EXPECT_TRUE(near.is_converged) << c.name << ' ' << near.residual;
       EXPECT_LE(near.iterations, 12) << c.name;
-      const Resolution far = Resolve(mates, DrawPose(&random));
+      const Resolution far = Resolve(mates, RandomPose(&random, 0.5));
       EXPECT_TRUE(far.is_converged) << c.name << " draw " << draw << ' ' << far.residual;
       if (c.translations + c.rotations == 0) {
         EXPECT_LT((near.X_WB.p() - X_WB.p()).norm(), 1e-9) << c.name;
@@ -167,8 +163,8 @@ TEST(Resolve, FulfilsEverySetFromRandomStarts) {
 TEST(Resolve, DoesNotDependOnTheWorldFrame) {
   Random random(32);
   for (const Case& c : MakeCases()) {
-    const Pose X_WB = DrawPose(&random);
-    const Pose X_AW = DrawPose(&random);
+    const Pose X_WB = RandomPose(&random, 0.5);
+    const Pose X_AW = RandomPose(&random, 0.5);
     const Pose X_WBStart = X_WB * DrawSmall(&random, 5e-3, 0.1);
     std::vector<MateConstraint> mates = MakeMates(c, X_WB);
     const Pose in_w = Resolve(mates, X_WBStart).X_WB;
@@ -185,9 +181,9 @@ TEST(Resolve, DoesNotDependOnTheWorldFrame) {
 TEST(Resolve, OneAxisEqualsThePapersClosedForm) {
   Random random(33);
   for (int draw = 0; draw < 200; ++draw) {
-    const Pose X_WBStart = DrawPose(&random);
+    const Pose X_WBStart = RandomPose(&random, 0.5);
     const MateConstraint mate =
-        MakeMate(MateKind::kAxisHole, DrawPose(&random), Vec3(0.01, -0.02, 0.03),
+        MakeMate(MateKind::kAxisHole, RandomPose(&random, 0.5), Vec3(0.01, -0.02, 0.03),
                  Vec3(0.3, 0.5, random.Uniform(-1, 1)).normalized());
     const Vec3 P_base = mate.X_WM.p();
     const Vec3 V_base = mate.X_WM.R().col(2);
@@ -232,7 +228,7 @@ TEST(ResolveToward, ReachesTheGoalWhereTheMatesAllowAndIsNearestOtherwise) {
   Random random(41);
   for (const Case& c : MakeCases()) {
     for (int draw = 0; draw < 50; ++draw) {
-      const Pose X_WB = DrawPose(&random);
+      const Pose X_WB = RandomPose(&random, 0.5);
       const std::vector<MateConstraint> mates = MakeMates(c, X_WB);
       const Pose X_WBStart = X_WB * DrawSmall(&random, 5e-3, 0.17);
       const Resolution exact = ResolveToward(mates, X_WBStart, X_WB);
@@ -261,9 +257,9 @@ TEST(MakeConstraint, TakesThePlacedSideIntoTheWorld) {
   Random random(51);
   product::Mate mate;
   mate.kind = MateKind::kAxisHole;
-  mate.a = {product::OccurrenceId(0), product::FeatureId(0), DrawPose(&random)};
-  mate.b = {product::OccurrenceId(1), product::FeatureId(0), DrawPose(&random)};
-  const Pose X_WP = DrawPose(&random);
+  mate.a = {product::OccurrenceId(0), product::FeatureId(0), RandomPose(&random, 0.5)};
+  mate.b = {product::OccurrenceId(1), product::FeatureId(0), RandomPose(&random, 0.5)};
+  const Pose X_WP = RandomPose(&random, 0.5);
   const MateConstraint holds_b = MakeConstraint(mate, product::OccurrenceId(1), X_WP);
   EXPECT_LT((holds_b.X_WM.p() - (X_WP * mate.a.X_BM).p()).norm(), 1e-15);
   EXPECT_LT((holds_b.X_BN.p() - mate.b.X_BM.p()).norm(), 1e-15);

@@ -8,6 +8,7 @@
 #include "mates/infer.h"
 #include "mates/surface_pairs.h"
 #include "mates/test/test_product.h"
+#include "spatial/test/random_pose.h"
 
 namespace hvas::mates {
 namespace {
@@ -18,21 +19,15 @@ using product::MateKind;
 using product::Part;
 using product::Product;
 using spatial::Pose;
+using spatial::RandomPose;
 using testing::AddCap;
 using testing::AddCone;
 using testing::AddCylinder;
 using testing::AddOccurrence;
 using testing::AddPart;
 
-constexpr double kPi = std::numbers::pi;
-
-Pose RandomPose(Random* random) {
-  return {Quat(random->Normal(), random->Normal(), random->Normal(), random->Normal()).normalized(),
-          Vec3(random->Uniform(-1, 1), random->Uniform(-1, 1), random->Uniform(-1, 1))};
-}
-
 /** A plate, top at z = 0, with a countersink of 90 degrees from r = 1.6 mm to 3.2 mm. */
-void AddCountersink(Product* product, double half_angle = kPi / 4) {
+void AddCountersink(Product* product, double half_angle = std::numbers::pi / 4) {
   Part* plate = AddPart(product, "plate");
   const double apex = -3.2e-3 / std::tan(half_angle);
   AddCone(plate, FeatureKind::kConeSeat, Vec3(0, 0, apex), Vec3::UnitZ(), half_angle,
@@ -42,14 +37,15 @@ void AddCountersink(Product* product, double half_angle = kPi / 4) {
 }
 
 /** A head of 90 degrees from r = 1.5 mm to 3 mm; its rim is at z = 0. */
-void AddHead(Product* product, double half_angle = kPi / 4) {
+void AddHead(Product* product, double half_angle = std::numbers::pi / 4) {
   Part* head = AddPart(product, "head");
   const double apex = -3e-3 / std::tan(half_angle);
   AddCone(head, FeatureKind::kTaper, Vec3(0, 0, apex), Vec3::UnitZ(), half_angle,
           1.5e-3 / std::tan(half_angle), -apex);
 }
 
-Product MakeCountersunk(const Pose& X_WA, const Pose& X_AB, double head_angle = kPi / 4) {
+Product MakeCountersunk(const Pose& X_WA, const Pose& X_AB,
+                        double head_angle = std::numbers::pi / 4) {
   Product product;
   AddCountersink(&product);
   AddHead(&product, head_angle);
@@ -64,7 +60,7 @@ Product MakeCountersunk(const Pose& X_WA, const Pose& X_AB, double head_angle = 
 TEST(ConeSeat, AHeadFlushInItsCountersinkSeatsInAnyFrame) {
   Random random(5);
   for (int draw = 0; draw < 20; ++draw) {
-    const Pose X_WA = RandomPose(&random);
+    const Pose X_WA = RandomPose(&random, 1);
     const Product product = MakeCountersunk(X_WA, Pose(Vec3(0, 0, -0.2e-3)));
     ASSERT_EQ(product.mates.size(), 1U);
     const Mate& mate = product.mates[0];
@@ -113,13 +109,13 @@ TEST_P(ConeSeatRejects, NoMate) {
 
 INSTANTIATE_TEST_SUITE_P(
     Limits, ConeSeatRejects,
-    ::testing::Values(Unseated{"lifted by 0.5 mm: 0.35 mm apart", Pose(Vec3(0, 0, 0.3e-3)),
-                               kPi / 4},
-                      Unseated{"sunk by 0.5 mm", Pose(Vec3(0, 0, -0.7e-3)), kPi / 4},
-                      Unseated{"beside the axis", Pose(Vec3(30e-6, 0, -0.2e-3)), kPi / 4},
-                      Unseated{"82 degrees in 90", Pose(Vec3(0, 0, -0.2e-3)), units::FromDeg(41)},
-                      Unseated{"upside down, a chamfer against a chamfer",
-                               Pose(Quat(0, 1, 0, 0), Vec3(0, 0, -2.6e-3)), kPi / 4}));
+    ::testing::Values(
+        Unseated{"lifted by 0.5 mm: 0.35 mm apart", Pose(Vec3(0, 0, 0.3e-3)), std::numbers::pi / 4},
+        Unseated{"sunk by 0.5 mm", Pose(Vec3(0, 0, -0.7e-3)), std::numbers::pi / 4},
+        Unseated{"beside the axis", Pose(Vec3(30e-6, 0, -0.2e-3)), std::numbers::pi / 4},
+        Unseated{"82 degrees in 90", Pose(Vec3(0, 0, -0.2e-3)), units::FromDeg(41)},
+        Unseated{"upside down, a chamfer against a chamfer",
+                 Pose(Quat(0, 1, 0, 0), Vec3(0, 0, -2.6e-3)), std::numbers::pi / 4}));
 
 // Pitfall l: the countersunk screw keeps its axis mate beside its seat; together they leave one
 // turn.
@@ -148,9 +144,9 @@ Product MakeBallJoint(const Pose& X_WA, const Pose& X_AB, double ball_radius, do
                       double ball_begin = 0) {
   Product product;
   Part* base = AddPart(&product, "base");
-  AddCap(base, FeatureKind::kSocket, Vec3::Zero(), 10e-3, socket_end, kPi);
+  AddCap(base, FeatureKind::kSocket, Vec3::Zero(), 10e-3, socket_end, std::numbers::pi);
   Part* ball = AddPart(&product, "ball");
-  AddCap(ball, FeatureKind::kBall, Vec3(0, 0, 5e-3), ball_radius, ball_begin, kPi);
+  AddCap(ball, FeatureKind::kBall, Vec3(0, 0, 5e-3), ball_radius, ball_begin, std::numbers::pi);
   AddOccurrence(&product, product::PartId(0), X_WA);
   AddOccurrence(&product, product::PartId(1), X_WA * X_AB * Pose(Vec3(0, 0, -5e-3)));
   Diagnostics diagnostics;
@@ -161,8 +157,8 @@ Product MakeBallJoint(const Pose& X_WA, const Pose& X_AB, double ball_radius, do
 TEST(SphereSeat, ABallInItsSocketSeatsInAnyFrame) {
   Random random(7);
   for (int draw = 0; draw < 5; ++draw) {
-    const Pose X_WA = RandomPose(&random);
-    const Product product = MakeBallJoint(X_WA, Pose(), 9.95e-3, kPi / 2);
+    const Pose X_WA = RandomPose(&random, 1);
+    const Product product = MakeBallJoint(X_WA, Pose(), 9.95e-3, std::numbers::pi / 2);
     ASSERT_EQ(product.mates.size(), 1U);
     const Mate& mate = product.mates[0];
     EXPECT_EQ(mate.kind, MateKind::kSphereSeat);
@@ -172,7 +168,8 @@ TEST(SphereSeat, ABallInItsSocketSeatsInAnyFrame) {
     // The way out of half a sphere is its axis.
     EXPECT_LT(((X_WA * mate.a.X_BM).R().col(2) - X_WA.R().col(2)).norm(), 1e-9);
     // Half of the sphere, by 512 directions.
-    EXPECT_NEAR(mate.overlap, 2 * kPi * 9.95e-3 * 9.95e-3, 0.01 * 4 * kPi * 1e-4);
+    EXPECT_NEAR(mate.overlap, 2 * std::numbers::pi * 9.95e-3 * 9.95e-3,
+                0.01 * 4 * std::numbers::pi * 1e-4);
     ASSERT_EQ(product.joints.size(), 1U);
     EXPECT_EQ(product.joints[0].free_translations, 0);
     EXPECT_EQ(product.joints[0].free_rotations, 3);
@@ -180,22 +177,26 @@ TEST(SphereSeat, ABallInItsSocketSeatsInAnyFrame) {
 }
 
 TEST(SphereSeat, OverlapFollowsTheSocketsReach) {
-  for (const double polar : {0.25 * kPi, 0.4 * kPi, 0.6 * kPi, 0.8 * kPi}) {
+  for (const double polar : {0.25 * std::numbers::pi, 0.4 * std::numbers::pi,
+                             0.6 * std::numbers::pi, 0.8 * std::numbers::pi}) {
     const Product product = MakeBallJoint(Pose(), Pose(), 10e-3, polar);
     ASSERT_EQ(product.mates.size(), 1U);
-    const double cap = 2 * kPi * 1e-4 * (std::cos(polar) + 1);  // Archimedes.
-    EXPECT_NEAR(product.mates[0].overlap, cap, 0.01 * 4 * kPi * 1e-4) << polar;
+    const double cap = 2 * std::numbers::pi * 1e-4 * (std::cos(polar) + 1);  // Archimedes.
+    EXPECT_NEAR(product.mates[0].overlap, cap, 0.01 * 4 * std::numbers::pi * 1e-4) << polar;
   }
 }
 
 TEST(SphereSeat, NoSeatWhereCentreSizeOrSideDiffer) {
-  EXPECT_TRUE(MakeBallJoint(Pose(), Pose(Vec3(25e-6, 0, 0)), 10e-3, kPi / 2).mates.empty());
-  EXPECT_TRUE(MakeBallJoint(Pose(), Pose(), 6.9e-3, kPi / 2).mates.empty());
-  EXPECT_TRUE(MakeBallJoint(Pose(), Pose(), 10.2e-3, kPi / 2).mates.empty());
+  EXPECT_TRUE(
+      MakeBallJoint(Pose(), Pose(Vec3(25e-6, 0, 0)), 10e-3, std::numbers::pi / 2).mates.empty());
+  EXPECT_TRUE(MakeBallJoint(Pose(), Pose(), 6.9e-3, std::numbers::pi / 2).mates.empty());
+  EXPECT_TRUE(MakeBallJoint(Pose(), Pose(), 10.2e-3, std::numbers::pi / 2).mates.empty());
   // A cap on top of the ball, and the socket below: concentric, but they do not face each other.
   Product product;
-  AddCap(AddPart(&product, "base"), FeatureKind::kSocket, Vec3::Zero(), 10e-3, 0.6 * kPi, kPi);
-  AddCap(AddPart(&product, "lid"), FeatureKind::kBall, Vec3::Zero(), 10e-3, 0, 0.4 * kPi);
+  AddCap(AddPart(&product, "base"), FeatureKind::kSocket, Vec3::Zero(), 10e-3,
+         0.6 * std::numbers::pi, std::numbers::pi);
+  AddCap(AddPart(&product, "lid"), FeatureKind::kBall, Vec3::Zero(), 10e-3, 0,
+         0.4 * std::numbers::pi);
   AddOccurrence(&product, product::PartId(0), Pose());
   AddOccurrence(&product, product::PartId(1), Pose());
   product.parts[0].box_B.Add(Vec3(0, 0, 10e-3));  // Their boxes meet.

@@ -29,8 +29,6 @@ using testing::AddPart;
 using testing::AddRectangle;
 using testing::AddRoundFace;
 
-constexpr double kPi = std::numbers::pi;
-
 /** A cylinder of `arcs` equal faces from `begin`, cut in `rings` along its length of 20 mm. */
 void AddCut(Product* product, FeatureKind kind, int arcs, int rings, double begin) {
   Part* part = AddPart(product, "part");
@@ -38,10 +36,10 @@ void AddCut(Product* product, FeatureKind kind, int arcs, int rings, double begi
   feature.kind = kind;
   feature.radius = 5e-3;
   feature.span_high = 20e-3;
-  feature.coverage = 2 * kPi;
+  feature.coverage = 2 * std::numbers::pi;
   for (int j = 0; j < rings; ++j) {
     for (int i = 0; i < arcs; ++i) {
-      const double sweep = 2 * kPi / arcs;
+      const double sweep = 2 * std::numbers::pi / arcs;
       feature.faces.push_back(AddRoundFace(part, 5e-3, 5e-3, 20e-3 * j / rings,
                                            20e-3 * (j + 1) / rings, begin + i * sweep, sweep));
     }
@@ -65,8 +63,9 @@ std::vector<SurfaceConstraint> FindOfCylinders(int arcs_a, int rings_a, int arcs
 // X2, layer J, counted by hand.
 TEST(FindSurfacePairs, FacesOfCylindersFaceEachOtherByTurnAndLength) {
   EXPECT_EQ(FindOfCylinders(1, 1, 1, 1, 0, 0).size(), 1U);
-  EXPECT_EQ(FindOfCylinders(2, 1, 2, 1, 0, 0).size(), 2U);        // Half on half.
-  EXPECT_EQ(FindOfCylinders(2, 1, 2, 1, kPi / 2, 0).size(), 4U);  // Turned: each on both.
+  EXPECT_EQ(FindOfCylinders(2, 1, 2, 1, 0, 0).size(), 2U);  // Half on half.
+  EXPECT_EQ(FindOfCylinders(2, 1, 2, 1, std::numbers::pi / 2, 0).size(),
+            4U);  // Turned: each on both.
   EXPECT_EQ(FindOfCylinders(2, 1, 4, 1, 0, 0).size(), 4U);
   EXPECT_EQ(FindOfCylinders(1, 4, 1, 1, 0, 0).size(), 4U);     // Rings.
   EXPECT_EQ(FindOfCylinders(1, 4, 1, 1, 0, 9e-3).size(), 3U);  // The first is not reached.
@@ -110,17 +109,20 @@ TEST(FindSurfacePairs, FacesOfPlanesFaceEachOtherWhereTheyOverlap) {
 }
 
 TEST(CalcSphereOverlap, IsTheSolidAngleThatBothCover) {
-  for (const double end : {0.3 * kPi, 0.5 * kPi, 0.9 * kPi}) {
+  for (const double end :
+       {0.3 * std::numbers::pi, 0.5 * std::numbers::pi, 0.9 * std::numbers::pi}) {
     Product product;
     AddCap(AddPart(&product, "socket"), FeatureKind::kSocket, Vec3::Zero(), 10e-3, 0, end);
-    AddCap(AddPart(&product, "ball"), FeatureKind::kBall, Vec3::Zero(), 9e-3, 0.2 * kPi, kPi);
+    AddCap(AddPart(&product, "ball"), FeatureKind::kBall, Vec3::Zero(), 9e-3,
+           0.2 * std::numbers::pi, std::numbers::pi);
     AddOccurrence(&product, PartId(0), Pose());
     AddOccurrence(&product, PartId(1), Pose());
     const Mate mate =
         BuildMate(product, MateKind::kSphereSeat, {OccurrenceId(0), FeatureId(0), Pose()},
                   {OccurrenceId(1), FeatureId(0), Pose()});
-    const double whole = 4 * kPi * 81e-6;
-    const double zone = 2 * kPi * 81e-6 * (std::cos(0.2 * kPi) - std::cos(end));
+    const double whole = 4 * std::numbers::pi * 81e-6;
+    const double zone =
+        2 * std::numbers::pi * 81e-6 * (std::cos(0.2 * std::numbers::pi) - std::cos(end));
     EXPECT_NEAR(CalcSphereOverlap(product, mate), zone, 0.01 * whole);
     EXPECT_EQ(FindSurfacePairs(product, mate).size(), 1U);
   }

@@ -9,8 +9,6 @@
 namespace hvas::product {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /** Appends a face whose triangles start at the part's last triangle so far. */
 Face& StartFace(Part* part, const Surface& surface) {
   Face face;
@@ -67,24 +65,24 @@ void AddSquare(Part* part, double x, double height, double side, double up) {
 
 TEST(BuildFeatures, MergesHalvesAndQuartersIntoOneHole) {
   Part part;
-  AddCylinder(&part, 0, 0.005, -1, 0, kPi, 0, 0.01);
-  AddCylinder(&part, 0, 0.005, -1, kPi, 0.5 * kPi, 0, 0.01);
-  AddCylinder(&part, 0, 0.005, -1, 1.5 * kPi, 0.5 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, -1, 0, std::numbers::pi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, -1, std::numbers::pi, 0.5 * std::numbers::pi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, -1, 1.5 * std::numbers::pi, 0.5 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 1u);
   const Feature& hole = part.features[0];
   EXPECT_EQ(hole.kind, FeatureKind::kHole);
   EXPECT_EQ(hole.faces.size(), 3u);
-  EXPECT_NEAR(hole.coverage, 2 * kPi, 1e-9);
+  EXPECT_NEAR(hole.coverage, 2 * std::numbers::pi, 1e-9);
   EXPECT_NEAR(hole.span_high - hole.span_low, 0.01, 1e-12);
   EXPECT_LT((hole.origin_B - Vec3(0, 0, 0.005)).norm(), 1e-12);
 }
 
 TEST(BuildFeatures, JoinsFacesThatTouchAlongTheAxisAndSplitsAtAGap) {
   Part part;
-  AddCylinder(&part, 0, 0.005, 1, 0, 2 * kPi, 0, 0.01);
-  AddCylinder(&part, 0, 0.005, 1, 0, 2 * kPi, 0.01, 0.03);
-  AddCylinder(&part, 0, 0.005, 1, 0, 2 * kPi, 0.031, 0.04);
+  AddCylinder(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0.01, 0.03);
+  AddCylinder(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0.031, 0.04);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 2u);
   EXPECT_NEAR(part.features[0].span_high - part.features[0].span_low, 0.03, 1e-12);
@@ -96,21 +94,21 @@ TEST(BuildFeatures, JoinsFacesThatTouchAlongTheAxisAndSplitsAtAGap) {
 
 TEST(BuildFeatures, KeepsHolesAndShaftsOfOneAxisApart) {
   Part part;
-  AddCylinder(&part, 0, 0.005, -1, 0, 2 * kPi, 0, 0.01);
-  AddCylinder(&part, 0, 0.005, 1, 0, 2 * kPi, 0, 0.01);
-  AddCylinder(&part, 0, 0.00501, 1, 0, 2 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddCylinder(&part, 0, 0.00501, 1, 0, 2 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   EXPECT_EQ(part.features.size(), 3u);
 }
 
 TEST(BuildFeatures, DropsFilletsAndKeepsABoreOpenedByASlit) {
   Part part;
-  AddCylinder(&part, 0, 0.005, 1, 0, 0.5 * kPi, 0, 0.01);  // A fillet.
-  AddCylinder(&part, 0.1, 0.005, -1, 0, kPi, 0, 0.01);     // One end of a slot.
-  AddCylinder(&part, 0.2, 0.005, -1, 0.1, 1.8 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, 1, 0, 0.5 * std::numbers::pi, 0, 0.01);  // A fillet.
+  AddCylinder(&part, 0.1, 0.005, -1, 0, std::numbers::pi, 0, 0.01);     // One end of a slot.
+  AddCylinder(&part, 0.2, 0.005, -1, 0.1, 1.8 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 1u);
-  EXPECT_NEAR(part.features[0].coverage, 1.8 * kPi, 1e-9);
+  EXPECT_NEAR(part.features[0].coverage, 1.8 * std::numbers::pi, 1e-9);
 }
 
 TEST(BuildFeatures, KeepsArcsThatHoldAPinTogetherAndDropsThoseThatDoNot) {
@@ -118,7 +116,8 @@ TEST(BuildFeatures, KeepsArcsThatHoldAPinTogetherAndDropsThoseThatDoNot) {
     Part part;
     double low = 0;
     for (const auto& [from_deg, sweep_deg] : arcs_deg) {
-      AddCylinder(&part, 0, 0.005, 1, from_deg * kPi / 180, sweep_deg * kPi / 180, low, low + 0.01);
+      AddCylinder(&part, 0, 0.005, 1, from_deg * std::numbers::pi / 180,
+                  sweep_deg * std::numbers::pi / 180, low, low + 0.01);
       low += gap;
     }
     BuildFeatures(&part);
@@ -138,8 +137,9 @@ TEST(BuildFeatures, KeepsArcsThatHoldAPinTogetherAndDropsThoseThatDoNot) {
 TEST(BuildFeatures, ABoreStandsBeforeTheBottomsOfItsSplines) {
   Part part;
   for (const double turn : {0.0, 0.5, 1.0, 1.5}) {
-    AddCylinder(&part, 0, 0.005, -1, turn * kPi, 0.25 * kPi, 0, 0.01);
-    AddCylinder(&part, 0, 0.006, -1, (turn + 0.25) * kPi, 0.25 * kPi, 0, 0.01);
+    AddCylinder(&part, 0, 0.005, -1, turn * std::numbers::pi, 0.25 * std::numbers::pi, 0, 0.01);
+    AddCylinder(&part, 0, 0.006, -1, (turn + 0.25) * std::numbers::pi, 0.25 * std::numbers::pi, 0,
+                0.01);
   }
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 1u);
@@ -169,18 +169,18 @@ void AddCone(Part* part, double half_angle, double outward, double from, double 
 
 TEST(BuildFeatures, MergesConesOfOneNappeAndSense) {
   Part part;
-  AddCone(&part, 0.5, -1, 0, kPi, 0.002, 0.004);
-  AddCone(&part, 0.5, -1, kPi, kPi, 0.002, 0.004);
-  AddCone(&part, 0.5, 1, 0, 2 * kPi, 0.001, 0.002);
-  AddCone(&part, 0.5, -1, 0, 2 * kPi, -0.004, -0.002);  // The other nappe.
-  AddCone(&part, 0.6, -1, 0, 2 * kPi, 0.002, 0.004);
-  AddCone(&part, 0.4, -1, 0, 0.5 * kPi, 0.002, 0.004);  // A quarter is no seat.
+  AddCone(&part, 0.5, -1, 0, std::numbers::pi, 0.002, 0.004);
+  AddCone(&part, 0.5, -1, std::numbers::pi, std::numbers::pi, 0.002, 0.004);
+  AddCone(&part, 0.5, 1, 0, 2 * std::numbers::pi, 0.001, 0.002);
+  AddCone(&part, 0.5, -1, 0, 2 * std::numbers::pi, -0.004, -0.002);  // The other nappe.
+  AddCone(&part, 0.6, -1, 0, 2 * std::numbers::pi, 0.002, 0.004);
+  AddCone(&part, 0.4, -1, 0, 0.5 * std::numbers::pi, 0.002, 0.004);  // A quarter is no seat.
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 4u);
   const Feature& seat = part.features[0];
   EXPECT_EQ(seat.kind, FeatureKind::kConeSeat);
   EXPECT_EQ(seat.faces.size(), 2u);
-  EXPECT_NEAR(seat.coverage, 2 * kPi, 1e-9);
+  EXPECT_NEAR(seat.coverage, 2 * std::numbers::pi, 1e-9);
   EXPECT_NEAR(seat.span_low, 0.002, 1e-12);
   EXPECT_NEAR(seat.span_high, 0.004, 1e-12);
   EXPECT_NEAR(seat.radius, 0.004 * std::tan(0.5), 1e-12);
@@ -195,9 +195,9 @@ TEST(BuildFeatures, MergesConesOfOneNappeAndSense) {
 
 TEST(BuildFeatures, OrdersHolesAndShaftsThenPlanesThenCones) {
   Part part;
-  AddCone(&part, 0.5, -1, 0, 2 * kPi, 0.002, 0.004);
+  AddCone(&part, 0.5, -1, 0, 2 * std::numbers::pi, 0.002, 0.004);
   AddSquare(&part, 0, 0.02, 0.01, 1);
-  AddCylinder(&part, 0, 0.005, -1, 0, 2 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 3u);
   EXPECT_EQ(part.features[0].kind, FeatureKind::kHole);
@@ -224,8 +224,8 @@ TEST(BuildFeatures, MergesPadsOfOnePlaneOnly) {
 TEST(BuildFeatures, TiesAHoleToThePlaneItIsDrilledInto) {
   Part part;
   AddSquare(&part, -0.05, 0, 0.1, -1);
-  AddCylinder(&part, 0, 0.005, -1, 0, 2 * kPi, 0, 0.01);
-  AddCylinder(&part, 0.03, 0.005, -1, 0, 2 * kPi, 0, 0.01);
+  AddCylinder(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddCylinder(&part, 0.03, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 3u);  // Holes first.
   EXPECT_EQ(part.features[2].kind, FeatureKind::kPlane);

@@ -10,11 +10,11 @@
 namespace hvas::record {
 namespace {
 
-constexpr std::size_t kTicks = 250;
+constexpr std::size_t kPackedTicks = 250;
 
 std::vector<std::byte> PackTicks(TickRecord (*make)(std::int64_t)) {
   std::vector<std::byte> packed;
-  for (std::size_t i = 0; i < kTicks; ++i) {
+  for (std::size_t i = 0; i < kPackedTicks; ++i) {
     std::array<std::byte, kPackedTickSize> bytes{};
     Pack(make(static_cast<std::int64_t>(i)), bytes);
     packed.insert(packed.end(), bytes.begin(), bytes.end());
@@ -48,9 +48,9 @@ TEST(Compression, BringsTicksBackBitForBit) {
   for (const auto make : {&MakeTick, &MakeMoving}) {
     const std::vector<std::byte> packed = PackTicks(make);
     const std::vector<std::byte> block = CompressTicks(packed, kPackedTickSize);
-    EXPECT_EQ(DecompressTicks(block, kPackedTickSize, kTicks), packed);
-    EXPECT_TRUE(DecompressTicks(block, kPackedTickSize, kTicks - 1).empty());
-    EXPECT_TRUE(DecompressTicks(block, kPackedTickSize, kTicks + 1).empty());
+    EXPECT_EQ(DecompressTicks(block, kPackedTickSize, kPackedTicks), packed);
+    EXPECT_TRUE(DecompressTicks(block, kPackedTickSize, kPackedTicks - 1).empty());
+    EXPECT_TRUE(DecompressTicks(block, kPackedTickSize, kPackedTicks + 1).empty());
   }
 }
 

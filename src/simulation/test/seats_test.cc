@@ -20,8 +20,8 @@ using spatial::Surface;
 using spatial::SurfaceKind;
 using testing::Session;
 
-constexpr double kLimit_s = 120;
-constexpr int kSegments = 64;
+constexpr double kSeatLimit_s = 120;
+constexpr int kSeatSegments = 64;
 
 /** A round plate with a hole of 3.4 mm that opens in a countersink of 90 degrees, and a screw whose
  head sits on it, 0.2 mm below the rim. */
@@ -40,14 +40,14 @@ Product CountersunkScrew() {
                                {{{12e-3, 6e-3}, {3.4e-3, 6e-3}}, PlaneAt(6e-3, 1)},
                                {{{3.4e-3, 6e-3}, {1.7e-3, 4.3e-3}}, cone(-1)},
                                {{{1.7e-3, 4.3e-3}, {1.7e-3, 0}}, CylinderZ(1.7e-3, -1)}},
-                              kSegments));
+                              kSeatSegments));
   const auto screw = testing::AddPart(
       &product, "countersunk screw",
       contact::testing::Lathe({{{{0, -6e-3}, {1.5e-3, -6e-3}}, PlaneAt(-6e-3, -1)},
                                {{{1.5e-3, -6e-3}, {1.5e-3, 4.1e-3}}, CylinderZ(1.5e-3, 1)},
                                {{{1.5e-3, 4.1e-3}, {3.2e-3, 5.8e-3}}, cone(1)},
                                {{{3.2e-3, 5.8e-3}, {0, 5.8e-3}}, PlaneAt(5.8e-3, 1)}},
-                              kSegments));
+                              kSeatSegments));
   testing::Place(&product, plate, "plate");
   testing::Place(&product, screw, "screw");
   testing::Complete(&product);
@@ -70,7 +70,7 @@ Product BallInSocket() {
                                {{{12e-3, 0}, {12e-3, kCentre}}, CylinderZ(12e-3, 1)},
                                {{{12e-3, kCentre}, {kRadius, kCentre}}, PlaneAt(kCentre, 1)},
                                {arc, socket}},
-                              kSegments));
+                              kSeatSegments));
   const auto ball =
       testing::AddPart(&product, "ball", contact::testing::Ball(kRadius - 20e-6, 20e-6));
   testing::Place(&product, base, "base");
@@ -94,7 +94,7 @@ void ExpectAssembles(Product product) {
   ASSERT_TRUE(model.has_value());
   for (const std::uint64_t seed : {1, 2}) {
     Session session(*model, seed);
-    (void)RunLockstep(session.MakeExecution(kLimit_s));
+    (void)RunLockstep(session.MakeExecution(kSeatLimit_s));
     ASSERT_TRUE(session.run.is_done());
     ASSERT_EQ(session.run.results().size(), 2U);
     for (const PartResult& part : session.run.results()) {

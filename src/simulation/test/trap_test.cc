@@ -15,9 +15,9 @@ namespace {
 using haptics::HoldState;
 using testing::Session;
 
-const product::OccurrenceId kPeg(1);
+const product::OccurrenceId kTrappedPeg(1);
 const product::OccurrenceId kClamp(2);
-constexpr double kLimit_s = 90;
+constexpr double kTrapLimit_s = 90;
 // How far the peg is in its bore when the collar meets the clamp.
 constexpr double kDepthAtClamp =
     testing::kBlockHeight - (testing::kClampHeight - testing::kCollarHeight);
@@ -43,7 +43,7 @@ class Guided final : public Sink {
   void OnTick(std::size_t, const device::DeviceState&,
               const haptics::TickOutput& out) noexcept override {
     const bool is_guided = out.state == HoldState::kCaptured || out.state == HoldState::kMating;
-    if (out.occurrence != kPeg || !is_guided) {
+    if (out.occurrence != kTrappedPeg || !is_guided) {
       return;
     }
     insertion = std::max(insertion, out.insertion_depth);
@@ -78,7 +78,7 @@ void Try(haptics::Condition condition, std::uint64_t seed, Trial* trial,
   habits.patience_s = 6;  // Long enough to press as hard as it will, and to search once.
   Session session(model, seed, options, habits);
   AssemblyRun run(&session.simulation, &session.person, &trial->guided);
-  (void)RunLockstep(run.MakeExecution(&session.person, kLimit_s));
+  (void)RunLockstep(run.MakeExecution(&session.person, kTrapLimit_s));
   EXPECT_TRUE(run.is_done());
   trial->results = run.results();
 }
@@ -90,7 +90,7 @@ TEST(TrapTest, GoesTogetherWhenTheClampComesLast) {  // The trap is in the order
   ASSERT_TRUE(model.has_value());
   EXPECT_EQ((*model)->sequence.steps.back().occurrence, kClamp);
   Session session(*model);
-  (void)RunLockstep(session.MakeExecution(kLimit_s));
+  (void)RunLockstep(session.MakeExecution(kTrapLimit_s));
   for (const PartResult& part : session.run.results()) {
     EXPECT_TRUE(part.is_seated) << part.reason;
   }
@@ -104,7 +104,7 @@ TEST(TrapTest, GuidedPegStopsAtAThirdPartAndTheHandFeelsIt) {  // N3
     ASSERT_EQ(trial.results.size(), 3U);
     EXPECT_TRUE(trial.results[1].is_seated) << "the clamp: " << trial.results[1].reason;
     const PartResult& peg = trial.results[2];
-    ASSERT_EQ(peg.occurrence, kPeg);
+    ASSERT_EQ(peg.occurrence, kTrappedPeg);
     EXPECT_FALSE(peg.is_seated);
     EXPECT_PRED_FORMAT2(::testing::IsSubstring, "trap/clamp stood in the way", peg.reason);
     // Guided, and in its bore to the depth at which the collar meets the clamp: to the compliance

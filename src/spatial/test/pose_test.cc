@@ -11,8 +11,6 @@
 namespace hvas::spatial {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double Difference(const Pose& X, const Pose& Y) {
   return std::max((X.p() - Y.p()).norm(), (X.R() - Y.R()).norm());
 }
@@ -66,8 +64,21 @@ TEST(Pose, StaysAUnitQuaternionOverAMillionProducts) {
 
 TEST(RotationVector, ComesBackFromItsRotation) {
   Random random(3);
-  const double angles[] = {0,   1e-300, 1e-16, 1e-12, 1e-9,       3e-9,       1e-8,       1e-6,
-                           0.1, 1,      2,     3,     kPi - 1e-6, kPi - 1e-9, kPi - 1e-12};
+  const double angles[] = {0,
+                           1e-300,
+                           1e-16,
+                           1e-12,
+                           1e-9,
+                           3e-9,
+                           1e-8,
+                           1e-6,
+                           0.1,
+                           1,
+                           2,
+                           3,
+                           std::numbers::pi - 1e-6,
+                           std::numbers::pi - 1e-9,
+                           std::numbers::pi - 1e-12};
   for (const double angle : angles) {
     for (int i = 0; i < 50; ++i) {
       const Vec3 theta_u = angle * RandomDirection(&random);
@@ -85,9 +96,9 @@ TEST(RotationVector, AtAHalfTurnIsPiAboutEitherEndOfTheAxis) {
   Random random(4);
   for (int i = 0; i < 100; ++i) {
     const Vec3 axis = RandomDirection(&random);
-    const Vec3 vector = RotationVector(RotationFromVector(kPi * axis));
-    EXPECT_NEAR(vector.norm(), kPi, 1e-12);
-    EXPECT_NEAR(std::abs(vector.dot(axis)), kPi, 1e-12);
+    const Vec3 vector = RotationVector(RotationFromVector(std::numbers::pi * axis));
+    EXPECT_NEAR(vector.norm(), std::numbers::pi, 1e-12);
+    EXPECT_NEAR(std::abs(vector.dot(axis)), std::numbers::pi, 1e-12);
   }
 }
 
@@ -97,7 +108,7 @@ TEST(RotationVector, IsTheSameForBothSignsOfTheQuaternionAndNeverLongerThanPi) {
     const Quat q = RandomRotation(&random);
     const Quat minus(-q.w(), -q.x(), -q.y(), -q.z());
     EXPECT_EQ(RotationVector(q), RotationVector(minus));
-    EXPECT_LE(RotationVector(q).norm(), kPi + 1e-15);
+    EXPECT_LE(RotationVector(q).norm(), std::numbers::pi + 1e-15);
     EXPECT_LT(
         (RotationFromVector(RotationVector(q)).toRotationMatrix() - q.toRotationMatrix()).norm(),
         1e-14);
@@ -180,7 +191,7 @@ TEST(RotationTaking, IsExactAtAndNearAHalfTurn) {
       const Vec3 b = -std::cos(tilt) * a + std::sin(tilt) * side;
       const Quat q = RotationTaking(a, b);
       EXPECT_LT((q * a - b).norm(), 3e-15);
-      EXPECT_NEAR(RotationVector(q).norm(), kPi - tilt, 1e-14);
+      EXPECT_NEAR(RotationVector(q).norm(), std::numbers::pi - tilt, 1e-14);
     }
   }
 }

@@ -13,7 +13,6 @@
 namespace hvas::spatial {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kAngle = 0.4;  // Half angle of the test cone [rad].
 
 // A surface in its own frame (axis z, origin 0) with a parametrisation of it, for brute force, and
@@ -44,27 +43,29 @@ std::vector<Case> Cases() {
        [](const Vec3& p) { return p.z() < 0; }},
       {"cylinder", Make(SurfaceKind::kCylinder, 0.7, 0),
        [](double u, double v) {
-         return Vec3(0.7 * std::cos(kPi * u), 0.7 * std::sin(kPi * u), 3 * v);
+         return Vec3(0.7 * std::cos(std::numbers::pi * u), 0.7 * std::sin(std::numbers::pi * u),
+                     3 * v);
        },
        [](const Vec3& p) { return RadiusOf(p) < 0.7; }},
       {"cone", Make(SurfaceKind::kCone, 0, kAngle),
        [](double u, double v) {
          const double z = 2 + 2 * v;  // The nappe that is used.
          const double r = z * std::tan(kAngle);
-         return Vec3(r * std::cos(kPi * u), r * std::sin(kPi * u), z);
+         return Vec3(r * std::cos(std::numbers::pi * u), r * std::sin(std::numbers::pi * u), z);
        },
        [](const Vec3& p) { return RadiusOf(p) < p.z() * std::tan(kAngle); }},
       {"sphere", Make(SurfaceKind::kSphere, 0.9, 0),
        [](double u, double v) {
-         const double polar = 0.5 * kPi * v;
-         return Vec3(0.9 * std::cos(polar) * std::cos(kPi * u),
-                     0.9 * std::cos(polar) * std::sin(kPi * u), 0.9 * std::sin(polar));
+         const double polar = 0.5 * std::numbers::pi * v;
+         return Vec3(0.9 * std::cos(polar) * std::cos(std::numbers::pi * u),
+                     0.9 * std::cos(polar) * std::sin(std::numbers::pi * u), 0.9 * std::sin(polar));
        },
        [](const Vec3& p) { return p.norm() < 0.9; }},
       {"torus", Make(SurfaceKind::kTorus, 0.8, 0.25),
        [](double u, double v) {
-         const double r = 0.8 + 0.25 * std::cos(kPi * v);
-         return Vec3(r * std::cos(kPi * u), r * std::sin(kPi * u), 0.25 * std::sin(kPi * v));
+         const double r = 0.8 + 0.25 * std::cos(std::numbers::pi * v);
+         return Vec3(r * std::cos(std::numbers::pi * u), r * std::sin(std::numbers::pi * u),
+                     0.25 * std::sin(std::numbers::pi * v));
        },
        [](const Vec3& p) { return std::hypot(RadiusOf(p) - 0.8, p.z()) < 0.25; }},
   };

@@ -16,8 +16,6 @@ namespace {
 using product::OccurrenceId;
 using spatial::Pose;
 
-constexpr double kPi = std::numbers::pi;
-
 /** Of two parts; one hand. */
 simulation::Frame FrameAt(OccurrenceId held, const Vec3& p_WB) {
   simulation::Frame frame;
@@ -57,13 +55,13 @@ TEST(PathLogTest, LongHoldsAreKeptWithFewerPoses) {
   PathLog log;
   constexpr int kFrames = 100'000;  // half an hour
   for (int i = 0; i <= kFrames; ++i) {
-    const double angle = 2 * kPi * i / kFrames;
+    const double angle = 2 * std::numbers::pi * i / kFrames;
     log.Add(FrameAt(OccurrenceId(1), Vec3(std::cos(angle), std::sin(angle), 0)));
   }
   const sweep::Path path = log.PathOf(OccurrenceId(1));
   EXPECT_LE(path.size(), PathLog::kMostPoses + 1);
   EXPECT_GT(path.size(), PathLog::kMostPoses / 4);
-  EXPECT_NEAR(sweep::CalcLength(path, Vec3::Zero()), 2 * kPi, 1e-4);
+  EXPECT_NEAR(sweep::CalcLength(path, Vec3::Zero()), 2 * std::numbers::pi, 1e-4);
 }
 
 TEST(PathLogTest, PartThatRestsInTheHandNeedsNoMemory) {

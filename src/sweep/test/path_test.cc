@@ -13,8 +13,6 @@ namespace {
 using spatial::Box;
 using spatial::Pose;
 
-constexpr double kPi = std::numbers::pi;
-
 Vec3 DrawVector(Random* random, double size) {
   return {random->Uniform(-size, size), random->Uniform(-size, size), random->Uniform(-size, size)};
 }
@@ -52,15 +50,16 @@ TEST(PathTest, RotationKeepsEveryPointAtItsDistanceFromTheAxis) {  // X13: about
   const Vec3 p_WQ(0.1, 0.2, 0);
   const Vec3 axis = Vec3(1, 2, 3).normalized();
   const Pose X_WB(Quat(0.8, 0.6, 0, 0), Vec3(0.05, 0, 0.1));
-  const Path path = MakeRotation(X_WB, p_WQ, axis, 1.75 * kPi);
+  const Path path = MakeRotation(X_WB, p_WQ, axis, 1.75 * std::numbers::pi);
   const Path fine = Resample(path, Box{Vec3::Zero(), Vec3::Constant(0.02)}, 1e-3);
   const auto distance_of = [&](const Pose& pose) { return axis.cross(pose.p() - p_WQ).norm(); };
   for (const Pose& pose : fine) {
     EXPECT_NEAR(distance_of(pose), distance_of(X_WB), 1e-12);
   }
-  const Vec3 end = p_WQ + spatial::RotationFromVector(Vec3(1.75 * kPi * axis)) * (X_WB.p() - p_WQ);
+  const Vec3 end =
+      p_WQ + spatial::RotationFromVector(Vec3(1.75 * std::numbers::pi * axis)) * (X_WB.p() - p_WQ);
   EXPECT_LT((fine.back().p() - end).norm(), 1e-12);
-  EXPECT_NEAR(CalcLength(fine, Vec3::Zero()), 1.75 * kPi * distance_of(X_WB), 1e-5);
+  EXPECT_NEAR(CalcLength(fine, Vec3::Zero()), 1.75 * std::numbers::pi * distance_of(X_WB), 1e-5);
 }
 
 TEST(PathTest, StepsMoveNoPointFurtherThanAsked) {

@@ -17,8 +17,6 @@ namespace {
 using contact::ShapeSource;
 using spatial::Pose;
 
-constexpr double kPi = std::numbers::pi;
-
 SweptVolume MustSweep(const ShapeSource& part, const Path& path, double resolution) {
   SweepOptions options;
   options.resolution = resolution;
@@ -72,7 +70,7 @@ TEST(SweptVolumeTest, BallMovedStraightIsACapsule) {
   constexpr double kRadius = 0.01;
   constexpr double kWay = 0.03;
   const Path path = MakeTranslation(Pose(), Vec3(0.6, 0, 0.8) * kWay);
-  const double volume = kPi * kRadius * kRadius * (kWay + 4.0 / 3 * kRadius);
+  const double volume = std::numbers::pi * kRadius * kRadius * (kWay + 4.0 / 3 * kRadius);
   const SweptVolume capsule = MustSweep(contact::testing::Ball(kRadius, 1e-5), path, 1e-3);
   EXPECT_NEAR(capsule.volume / volume, 1, 0.005);  // of which the ball's facets are 0.002
   EXPECT_EQ(testing::CalcEuler(capsule.mesh), 2);
@@ -86,8 +84,8 @@ Path TurnAboutZ(double angle) {
 TEST(SweptVolumeTest, ShaftTurnedAboutAParallelAxisFollowsPappus) {  // X13: rotation about an axis
   constexpr double kRadius = 0.008;
   constexpr double kLength = 0.02;
-  constexpr double kAngle = 1.5 * kPi;
-  const double area = kAngle * 0.03 * 2 * kRadius + kPi * kRadius * kRadius;
+  constexpr double kAngle = 1.5 * std::numbers::pi;
+  const double area = kAngle * 0.03 * 2 * kRadius + std::numbers::pi * kRadius * kRadius;
   const Convergence error =
       Converge(contact::testing::Shaft(kRadius, kLength), TurnAboutZ(kAngle), area * kLength, 2e-3);
   EXPECT_LT(error.fine, 0.005);
@@ -96,16 +94,16 @@ TEST(SweptVolumeTest, ShaftTurnedAboutAParallelAxisFollowsPappus) {  // X13: rot
 
 TEST(SweptVolumeTest, WholeTurnIsARingWithAHole) {
   const SweptVolume ring =
-      MustSweep(contact::testing::Shaft(0.008, 0.02), TurnAboutZ(2 * kPi), 1e-3);
+      MustSweep(contact::testing::Shaft(0.008, 0.02), TurnAboutZ(2 * std::numbers::pi), 1e-3);
   EXPECT_EQ(testing::CalcEuler(ring.mesh), 0);
-  const double volume = 2 * kPi * 0.03 * 0.016 * 0.02;  // Pappus
+  const double volume = 2 * std::numbers::pi * 0.03 * 0.016 * 0.02;  // Pappus
   EXPECT_NEAR(ring.volume / volume, 1, 0.01);
 }
 
 TEST(SweptVolumeTest, BlockTurnedAboutItsOwnAxisIsACylinder) {
-  const Path path = MakeRotation(Pose(), Vec3::Zero(), Vec3::UnitZ(), kPi);
+  const Path path = MakeRotation(Pose(), Vec3::Zero(), Vec3::UnitZ(), std::numbers::pi);
   const Vec3 half(0.012, 0.009, 0.01);
-  const double volume = kPi * (0.012 * 0.012 + 0.009 * 0.009) * 0.02;
+  const double volume = std::numbers::pi * (0.012 * 0.012 + 0.009 * 0.009) * 0.02;
   const Convergence error = Converge(contact::testing::Block(half), path, volume, 1e-3);
   EXPECT_LT(error.fine, 0.005);
   EXPECT_GT(error.order(), 1.5);
@@ -114,7 +112,7 @@ TEST(SweptVolumeTest, BlockTurnedAboutItsOwnAxisIsACylinder) {
 TEST(SweptVolumeTest, PartThatDoesNotMoveSweepsItself) {
   const SweptVolume itself = MustSweep(contact::testing::Bushing(0.01, 0.02, 0.03), {Pose()}, 1e-3);
   EXPECT_EQ(testing::CalcEuler(itself.mesh), 0);  // with its bore
-  EXPECT_NEAR(itself.volume / (kPi * (4e-4 - 1e-4) * 0.03), 1, 0.01);
+  EXPECT_NEAR(itself.volume / (std::numbers::pi * (4e-4 - 1e-4) * 0.03), 1, 0.01);
 }
 
 TEST(SweptVolumeTest, SteppedPartSweepsNothingBesideIt) {  // one piece, within the part's box
