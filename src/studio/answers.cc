@@ -1,6 +1,7 @@
 #include "studio/answers.h"
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include "studio/assets.h"
@@ -152,6 +153,22 @@ Result<Answer> AnswerApi(Workbench* workbench, std::string_view path, bool is_sh
     return AnswerRecording(&workbench->shelf(), path.substr(kRecording.size()));
   }
   return NothingHere(path);
+}
+
+std::string DecodePercent(std::string_view path) {
+  std::string decoded;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    unsigned value = 0;
+    const char* begin = path.data() + i + 1;
+    if (path[i] == '%' && i + 2 < path.size() &&
+        std::from_chars(begin, begin + 2, value, 16).ptr == begin + 2) {
+      decoded += static_cast<char>(value);
+      i += 2;
+    } else {
+      decoded += path[i];
+    }
+  }
+  return decoded;
 }
 
 std::string NameOfUpload(std::string_view target) {

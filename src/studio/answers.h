@@ -32,6 +32,9 @@ struct Answer {
 [[nodiscard]] Result<Answer> AnswerApi(Workbench* workbench, std::string_view path,
                                        bool is_shielded = false);
 
+/** A path of a URL with %xx as the bytes that they stand for; what is no such sequence stays. */
+[[nodiscard]] std::string DecodePercent(std::string_view path);
+
 /** How an uploaded file is called here: the last part of the name that a request's target gives it,
  of harmless letters, with its extension, which tells the format. */
 [[nodiscard]] std::string NameOfUpload(std::string_view target);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -41,5 +42,13 @@ struct Limits {
 [[nodiscard]] Result<double> NumberAt(const Json& object, const char* name, const Limits& limits,
                                       double missing);
 [[nodiscard]] Result<PickedFace> FaceAt(const Json& object, const char* name);
+
+/** What a file says, that anybody may have written: `missing` where the field is not there, is of
+ another type or, of a number, is not finite. */
+[[nodiscard]] std::string TextOr(const Json& object, const char* name, std::string missing);
+[[nodiscard]] bool FlagOr(const Json& object, const char* name, bool missing);
+[[nodiscard]] double NumberOr(const Json& object, const char* name, double missing);
+/** A whole number from 0 to 2^32 - 1. */
+[[nodiscard]] std::uint32_t IndexOr(const Json& object, const char* name, std::uint32_t missing);
 
 }  // namespace hvas::studio

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "record/reader.h"
+#include "studio/json_fields.h"
 #include "studio/recording.h"
 
 namespace hvas::studio {
@@ -65,16 +66,16 @@ Json DescribeFile(const std::string& id, const std::filesystem::path& file, std:
 class Results {
  public:
   void Add(const Json& dropped, const std::vector<std::string>& paths) {
-    const auto occurrence = dropped.value("occurrence", record::kNoOccurrence);
+    const auto occurrence = IndexOr(dropped, "occurrence", record::kNoOccurrence);
     Json& result = FindOrAdd(occurrence, paths);
     const Json& metrics = dropped.at("metrics");
     const auto add = [&](const char* key, const char* from, double unit) {
-      result[key] = result[key].get<double>() + unit * metrics.value(from, 0.0);
+      result[key] = result[key].get<double>() + unit * NumberOr(metrics, from, 0);
     };
     const auto keep_largest = [&](const char* key, const char* from) {
-      result[key] = std::max(result[key].get<double>(), metrics.value(from, 0.0));
+      result[key] = std::max(result[key].get<double>(), NumberOr(metrics, from, 0));
     };
-    result["is_seated"] = dropped.value("was_seated", false);
+    result["is_seated"] = FlagOr(dropped, "was_seated", false);
     add("time_s", "time_s", 1);
     add("path_m", "path_mm", 1e-3);
     add("collisions", "collisions", 1);
@@ -112,10 +113,18 @@ std::vector<std::string> PathsOf(const record::Meta& meta) {
   const Json parts = Json::parse(TextOf(meta, "model_json"), nullptr, false);
   if (parts.is_array()) {
     for (const Json& part : parts) {
-      paths.push_back(part.value("path", ""));
+      paths.push_back(TextOr(part, "path", ""));
     }
   }
   return paths;
+}
+
+/** Whether an item of the folder may be a record: a link could lead to any file, and whoever opens
+ a named pipe waits for ever. */
+bool IsRecordFile(const std::filesystem::directory_entry& item) {
+  std::error_code failed;
+  return item.path().extension() == kSuffix &&
+         item.symlink_status(failed).type() == std::filesystem::file_type::regular;
 }
 
 }  // namespace
@@ -145,7 +154,7 @@ Json RecordingShelf::List() {
   std::map<std::string, Entry> entries;
   std::error_code failed;
   for (const auto& item : std::filesystem::directory_iterator(folder_, failed)) {
-    if (item.path().extension() != kSuffix) {
+    if (!IsRecordFile(item)) {
       continue;
     }
     const std::string id = item.path().stem().string();
@@ -173,7 +182,7 @@ Json RecordingShelf::List() {
 Result<std::filesystem::path> RecordingShelf::Find(const std::string& id) const {
   std::error_code failed;
   for (const auto& item : std::filesystem::directory_iterator(folder_, failed)) {
-    if (item.path().extension() == kSuffix && item.path().stem() == id) {
+    if (IsRecordFile(item) && item.path().stem() == id) {
       return item.path();
     }
   }
@@ -207,7 +216,7 @@ Result<Json> RecordingShelf::Describe(const std::string& id) const {
     if (!one.is_object()) {
       continue;
     }
-    if (one.value("event", "") == "dropped" && one.contains("metrics")) {
+    if (TextOr(one, "event", "") == "dropped" && one.contains("metrics")) {
       results.Add(one, PathsOf(reader->meta()));
     }
     one["t_ns"] = event.t_ns;

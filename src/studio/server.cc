@@ -283,6 +283,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /** Who may not come in at all; then what is asked for. */
   void Route() {
     const auto& request = header_->get();
+    is_last_ = !request.keep_alive();
     const std::string_view origin = FieldOf(request, http::field::origin);
     const Access& access = *shared_->access;
     if (!access.AllowsHost(FieldOf(request, http::field::host))) {
@@ -337,7 +338,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       wire().expires_never();
       std::make_shared<SocketSession>(std::move(connection_), shared_, role)->Run(header_->get());
     } else if (method == http::verb::get) {
-      Reply(AnswerApi(shared_->workbench, path, shared_->hub.IsShielded(role)));
+      try {
+        Reply(AnswerApi(shared_->workbench, DecodePercent(path), shared_->hub.IsShielded(role)));
+      } catch (const std::exception& failed) {
+        Refuse(http::status::internal_server_error,
+               {ErrorCode::kInternal, failed.what(), std::string(path), "load the page again"});
+      }
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
     } else {
@@ -509,7 +515,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response.set("Cross-Origin-Resource-Policy", "same-origin");
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");
-    response.keep_alive(!is_refused_);
+    response.keep_alive(!is_refused_ && !is_last_);
     response.prepare_payload();
     const std::chrono::duration<double> long_enough(
         static_cast<double>(response.payload_size().value_or(0)) / kSlowest);
@@ -557,6 +563,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::optional<Header> header_;
   std::shared_ptr<const void> owner_;
   bool is_refused_{false};
+  bool is_last_{false};  ///< The client asked for the end of the connection after this answer.
 };
 
 }  // namespace
@@ -611,7 +618,7 @@ class Server::Impl {
     }
     Accept();
     Tick();
-    thread_ = std::thread([this] { context_.run(); });
+    thread_ = std::thread([this] { Run(); });
     return {};
   }
 
@@ -651,6 +658,17 @@ class Server::Impl {
                                : "choose another port with --port, or leave it out");
     }
     return {};
+  }
+
+  /** What goes wrong with one client is the end of its connection, of nothing else. */
+  void Run() {
+    while (!context_.stopped()) {
+      try {
+        context_.run();
+      } catch (const std::exception& failed) {
+        fmt::print(stderr, "warning: a client's request failed: {}\n", failed.what());
+      }
+    }
   }
 
   void Accept() {
