@@ -1,5 +1,7 @@
 #include "app/fit_arguments.h"
 
+#include <cmath>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -32,6 +34,27 @@ const CLI::Validator& NotNegative() {
                                                                     : text + " is not 0 or more";
       },
       "0 OR MORE");
+  return validator;
+}
+
+/** What there is to join parts at: nothing is colder than liquid nitrogen. */
+const CLI::Validator& Temperature() {
+  static const CLI::Validator validator(
+      [](const std::string& text) {
+        double value = 0;
+        if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) {
+          return text + " is no temperature";
+        }
+        if (value < fits::kAbsoluteZeroC) {
+          return text + " C is below absolute zero, -273.15 C";
+        }
+        if (value < fits::kNitrogenC) {
+          return text +
+                 " C is colder than liquid nitrogen, -196 C, which is the coldest to join with";
+        }
+        return value <= 1000 ? std::string() : text + " C is over 1000 C, where metals melt";
+      },
+      "C");
   return validator;
 }
 
@@ -102,6 +125,8 @@ Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
   p.shaft = fits::ToPressMaterial(**shaft);
   options.hub_material = std::string((*hub)->name);
   options.shaft_material = std::string((*shaft)->name);
+  options.hub_joining = fits::FindJoiningMaterial(**hub);
+  options.shaft_joining = fits::FindJoiningMaterial(**shaft);
   options.hub_c = a.hub_c;
   options.shaft_c = a.shaft_c;
   options.join_speed = units::FromMm(a.join_speed_mm_s);
@@ -226,8 +251,8 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
       ->capture_default_str();
   fit->add_option("--hub-temp", a->hub_c,
                   "To join at [C]; says what play there is, and if it sticks")
-      ->check(CLI::Range(-273.0, 2000.0));
-  fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(CLI::Range(-273.0, 2000.0));
+      ->check(Temperature());
+  fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(Temperature());
   fit->add_option("--join-speed", a->join_speed_mm_s, "Of joining by heat or cold [mm/s]")
       ->check(Positive())
       ->capture_default_str();

@@ -9,7 +9,6 @@
 
 #include "base/units.h"
 #include "fits/insertion.h"
-#include "fits/thermal_joining.h"
 #include "mates/make_fit.h"
 #include "product/names.h"
 
@@ -18,33 +17,92 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kMeltLimitC = 350;  // Hubs of steel are seldom heated further.
-
 ordered_json FiniteOrNull(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
 fits::ThermalJoint MakeThermalJoint(const FitCard& card) {
-  const fits::PressFitParameters& p = card.options.press;
-  return {p.joint_diameter, std::max(0.0, -card.limits->min_clearance), p.hub.thermal_expansion,
-          p.shaft.thermal_expansion, card.options.room_c};
+  const FitCardOptions& o = card.options;
+  return {o.press.joint_diameter,
+          std::max(0.0, -card.limits->min_clearance),
+          o.hub_joining.heating,
+          o.shaft_joining.cooling,
+          o.room_c,
+          o.hub_joining.cooling,
+          o.shaft_joining.heating};
 }
 
-constexpr double kDryIceC = -78;
-constexpr double kNitrogenC = -196;
-
+/** Ways to get the clearance of DIN 7190-1; nothing where a way would take more than there is. */
 struct JoiningTemperatures {
-  double hub_c;       // Heating the hub alone.
-  double shaft_c;     // Cooling the shaft alone.
-  double both_hub_c;  // Heating the hub with the shaft at kDryIceC.
+  double clearance;           // To be had [m].
+  double hub_c;               // Heating the hub alone.
+  double shaft_c;             // Cooling the shaft alone.
+  double nitrogen_clearance;  // With the shaft in liquid nitrogen and the hub as it is [m].
+  double dry_ice_hub_c;       // Heating the hub with the shaft at kDryIceC.
+  double nitrogen_hub_c;      // The same at kNitrogenC.
 };
 
 JoiningTemperatures CalcJoining(const FitCard& card) {
   const fits::ThermalJoint joint = MakeThermalJoint(card);
   const double clearance = fits::CalcJoiningClearance(joint.joint_diameter);
-  return {fits::CalcHubTemperature(joint, clearance, joint.room_c),
+  const auto hub_c = [&](double shaft_c) {
+    return std::max(joint.room_c, fits::CalcHubTemperature(joint, clearance, shaft_c));
+  };
+  return {clearance,
+          hub_c(joint.room_c),
           fits::CalcShaftTemperature(joint, clearance, joint.room_c),
-          fits::CalcHubTemperature(joint, clearance, kDryIceC)};
+          fits::CalcHotClearance(joint, joint.room_c, fits::kNitrogenC),
+          hub_c(fits::kDryIceC),
+          hub_c(fits::kNitrogenC)};
+}
+
+std::string JoiningText(const FitCard& card) {
+  const JoiningTemperatures joining = CalcJoining(card);
+  const fits::JoiningMaterial& hub = card.options.hub_joining;
+  const fits::JoiningMaterial& shaft = card.options.shaft_joining;
+  const auto heat = [&hub](double hub_c) {
+    return hub_c <= hub.hottest_c
+               ? fmt::format("heat the hub to {:.0f} C", std::ceil(hub_c))
+               : fmt::format("cannot be done: the hub would need {:.0f} C", std::ceil(hub_c));
+  };
+  std::string text = fmt::format(
+      "to join with {} um of play (hub {:g} um/m/K for heating, {}; shaft {:g} for cooling, {}):\n",
+      Um(joining.clearance), 1e6 * hub.heating, hub.source, 1e6 * shaft.cooling, shaft.source);
+  text += fmt::format("  by heat: {}, at most {:g} C ({})\n", heat(joining.hub_c), hub.hottest_c,
+                      hub.limit_source);
+  if (joining.shaft_c >= fits::kNitrogenC) {
+    text += fmt::format("  by cold: cool the shaft to {:.0f} C\n", std::floor(joining.shaft_c));
+  } else {
+    text +=
+        fmt::format("  by cold: cannot be done: in liquid nitrogen, {:g} C, the play is {} um\n",
+                    fits::kNitrogenC, Um(joining.nitrogen_clearance));
+  }
+  text += fmt::format("  by both: cool the shaft to {:g} C (dry ice), {}\n", fits::kDryIceC,
+                      heat(joining.dry_ice_hub_c));
+  return text + fmt::format("  by both: cool the shaft to {:g} C (liquid nitrogen), {}\n",
+                            fits::kNitrogenC, heat(joining.nitrogen_hub_c));
+}
+
+ordered_json JoiningJson(const FitCard& card) {
+  const JoiningTemperatures joining = CalcJoining(card);
+  const fits::JoiningMaterial& hub = card.options.hub_joining;
+  const fits::JoiningMaterial& shaft = card.options.shaft_joining;
+  const auto heat = [&hub](double hub_c) {
+    return hub_c <= hub.hottest_c ? ordered_json(hub_c) : ordered_json();
+  };
+  return {{"play_um", units::ToUm(joining.clearance)},
+          {"heat_hub_to_c", heat(joining.hub_c)},
+          {"cool_shaft_to_c",
+           joining.shaft_c >= fits::kNitrogenC ? ordered_json(joining.shaft_c) : ordered_json()},
+          {"with_dry_ice_heat_hub_to_c", heat(joining.dry_ice_hub_c)},
+          {"with_nitrogen_heat_hub_to_c", heat(joining.nitrogen_hub_c)},
+          {"play_in_nitrogen_um", units::ToUm(joining.nitrogen_clearance)},
+          {"hub_limit_c", hub.hottest_c},
+          {"hub_limit_source", hub.limit_source},
+          {"hub_heating_per_k", hub.heating},
+          {"hub_expansion_source", hub.source},
+          {"shaft_cooling_per_k", shaft.cooling},
+          {"shaft_expansion_source", shaft.source}};
 }
 
 bool HasJoining(const FitCard& card) {
@@ -76,10 +134,17 @@ HotJoint CalcHotJoint(const FitCard& card) {
   return hot;
 }
 
+bool IsHubTooHot(const FitCard& card) {
+  return card.options.hub_c.value_or(card.options.room_c) > card.options.hub_joining.hottest_c;
+}
+
 std::string HotJointText(const FitCard& card) {
   const HotJoint hot = CalcHotJoint(card);
   std::string text = fmt::format("hub at {:g} C, shaft at {:g} C: {} um of play", hot.hub_c,
                                  hot.shaft_c, Um(hot.clearance));
+  if (IsHubTooHot(card)) {
+    text += fmt::format("; above the hub's limit of {:g} C", card.options.hub_joining.hottest_c);
+  }
   if (!(hot.clearance > 0)) {
     return text + ", which does not go together\n";
   }
@@ -202,7 +267,6 @@ std::string LimitsText(const FitCard& card) {
 }
 
 std::string PressText(const FitCard& card) {
-  const fits::PressFitParameters& p = card.options.press;
   std::string text = card.JointText() + "\n";
   text += fmt::format("  {:<30} {:>12} {:>12} {:>12}\n", "interference", "least", "mean", "most");
   const auto row = [&](const char* name, auto value) {
@@ -234,14 +298,7 @@ std::string PressText(const FitCard& card) {
     text += "  the largest interference yields: its figures are those of an elastic joint\n";
   }
   if (card.limits->min_clearance < 0) {
-    const JoiningTemperatures joining = CalcJoining(card);
-    text += fmt::format(
-        "to join with {} um of play: heat the hub to {:.0f} C{}, or cool the shaft to {:.0f} C{},\n"
-        "  or cool the shaft to {:g} C (dry ice) and heat the hub to {:.0f} C\n",
-        Um(fits::CalcJoiningClearance(p.joint_diameter)), joining.hub_c,
-        joining.hub_c > kMeltLimitC ? " (more than steel should have)" : "", joining.shaft_c,
-        joining.shaft_c < kNitrogenC ? " (colder than liquid nitrogen)" : "", kDryIceC,
-        joining.both_hub_c);
+    text += JoiningText(card);
     if (HasJoining(card)) {
       text += HotJointText(card);
     }
@@ -324,14 +381,12 @@ ordered_json ToJson(const FitCard& card) {
     json["press"] = {
         {"least", ToJson(*card.least)}, {"mean", ToJson(*card.mean)}, {"most", ToJson(*card.most)}};
     if (card.limits->min_clearance < 0) {
-      const JoiningTemperatures joining = CalcJoining(card);
-      json["joining"] = {{"heat_hub_to_c", joining.hub_c},
-                         {"cool_shaft_to_c", joining.shaft_c},
-                         {"with_dry_ice_heat_hub_to_c", joining.both_hub_c}};
+      json["joining"] = JoiningJson(card);
       if (HasJoining(card)) {
         const HotJoint hot = CalcHotJoint(card);
         json["joining"]["asked"] = {{"hub_c", hot.hub_c},
                                     {"shaft_c", hot.shaft_c},
+                                    {"is_hub_too_hot", IsHubTooHot(card)},
                                     {"clearance_um", units::ToUm(hot.clearance)},
                                     {"sticking_depth_mm", FiniteOrNull(units::ToMm(hot.sticking))}};
       }

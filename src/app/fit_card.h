@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "fits/iso286.h"
 #include "fits/press_fit.h"
+#include "fits/thermal_joining.h"
 
 namespace hvas::app {
 
@@ -22,6 +23,7 @@ struct FitCardOptions {
   double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
   double chamfer_width{0};      ///< Of both parts together, radially [m].
   double room_c{20};
+  fits::JoiningMaterial hub_joining, shaft_joining;
   std::optional<double> hub_c,
       shaft_c;                        ///< Temperatures to join at; room_c where only one is given.
   double join_speed{0.02};            ///< Of the shaft then [m/s].

@@ -105,8 +105,7 @@ TEST(FitCommand, RefusalsSayWhatAFitLooksLike) {
 TEST(FitCommand, JoiningByHeatAndColdSaysThePlayAndWhetherItSticks) {
   const json slow = RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "150",
                                  "--shaft-temp", "-78", "--join-speed", "0.1"})["joining"]["asked"];
-  // 40 mm (12e-6 130 + 12e-6 98) - 42 um.
-  EXPECT_NEAR(slow["clearance_um"].get<double>(), 40e3 * 12e-6 * (130 + 98) - 42, 1e-6);
+  EXPECT_NEAR(slow["clearance_um"].get<double>(), 40e3 * (11e-6 * 130 + 8.5e-6 * 98) - 42, 1e-6);
   EXPECT_LT(slow["sticking_depth_mm"].get<double>(), 50);
   const json fast = RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "150",
                                  "--shaft-temp", "-78", "--join-speed", "100"})["joining"]["asked"];
@@ -115,6 +114,31 @@ TEST(FitCommand, JoiningByHeatAndColdSaysThePlayAndWhetherItSticks) {
               std::sqrt(1000), 1e-6);
   const Ran cold = RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "30"});
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "does not go together", cold.out);
+}
+
+// DIN 7190: steel 11e-6/K for heating, 8.5e-6/K for cooling. The play is 40 um on 42 um at most,
+// for which the shaft alone would have to be at -221 C.
+TEST(FitCommand, JoiningTakesNoMoreColdThanThereIsAndNoMoreHeatThanTheHubBears) {
+  const json steel = RunHvasJson({"fit", "40 H7/p6", "--length", "50"})["joining"];
+  EXPECT_NEAR(steel["heat_hub_to_c"].get<double>(), 20 + 82 / (40e3 * 11e-6), 1e-6);
+  EXPECT_TRUE(steel["cool_shaft_to_c"].is_null());
+  EXPECT_NEAR(steel["play_in_nitrogen_um"].get<double>(), 40e3 * 8.5e-6 * 216 - 42, 1e-6);
+  EXPECT_NEAR(steel["with_nitrogen_heat_hub_to_c"].get<double>(),
+              20 + (82 - 40e3 * 8.5e-6 * 216) / (40e3 * 11e-6), 1e-6);
+  EXPECT_EQ(steel["hub_limit_c"], 350);
+  const Ran text = RunHvas({"fit", "40 H7/p6", "--length", "50"});
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "by cold: cannot be done", text.out);
+  // A tempered hub bears 200 C, and 206 C are needed.
+  const json hard = RunHvasJson(
+      {"fit", "40 H7/p6", "--length", "50", "--hub-material", "16MnCr5", "--hub-temp", "210"});
+  EXPECT_TRUE(hard["joining"]["heat_hub_to_c"].is_null());
+  EXPECT_EQ(hard["joining"]["asked"]["is_hub_too_hot"], true);
+  // Little interference: cold alone does it.
+  EXPECT_NEAR(RunHvasJson({"fit", "40 H7/k6", "--length", "50"})["joining"]["cool_shaft_to_c"]
+                  .get<double>(),
+              20 - 58 / (40e3 * 8.5e-6), 1e-6);
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--shaft-temp", "-230"}, "liquid nitrogen");
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--shaft-temp", "-300"}, "absolute zero");
 }
 
 // W3: what people write for a diameter, and E8, which is a class and no power of ten.
