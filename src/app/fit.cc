@@ -18,6 +18,7 @@
 #include "app/fit_identify.h"
 #include "app/fit_jamming.h"
 #include "app/fit_paper.h"
+#include "app/fit_peg.h"
 #include "app/fit_population.h"
 #include "app/report_failure.h"
 #include "base/atomic_file.h"
@@ -194,7 +195,7 @@ int ShowFriction(bool is_json) {
 }
 
 int RunBatch(const BatchArguments& arguments, Result<void> (*add)(CsvTable*)) {
-  Result<CsvTable> table = CsvTable::Read(arguments.in);
+  Result<CsvTable> table = CsvTable::Read(arguments.in, CsvTable::kAnyDelimiter);
   if (!table) {
     return ReportFailure(table.error());
   }
@@ -203,7 +204,7 @@ int RunBatch(const BatchArguments& arguments, Result<void> (*add)(CsvTable*)) {
     error.where = arguments.in + ", " + error.where;
     return ReportFailure(error);
   }
-  if (arguments.out.empty()) {
+  if (arguments.out.empty() || arguments.out == "-") {
     fmt::print("{}", table->ToText());
     return 0;
   }
@@ -247,7 +248,8 @@ void AddBatch(CLI::App* fit, const char* name, const char* description, const ch
   CLI::App* command = fit->add_subcommand(name, description);
   command->add_option("--batch", arguments->in, "Table to read (CSV); - for the standard input")
       ->required();
-  command->add_option("-o,--output", arguments->out, "Table to write; the standard output without");
+  command->add_option("-o,--output", arguments->out,
+                      "Table to write; - or without: the standard output");
   command->footer(
       fmt::format("{}\nExample:\n  hvas fit {} --batch in.csv -o out.csv", columns, name));
   command->callback([arguments, add, status] { *status = RunBatch(*arguments, add); });
@@ -315,7 +317,9 @@ void AddFit(CLI::App* app, int* status) {
   AddBatch(
       fit, "peg", "Answers to a table of questions about a peg in a hole",
       "In: kind (two_point, two_point_depth, jamming, wedging, statics, chamfer, one_point), id, "
-      "inputs (as in \"D=40 d=39.9 l=10\"), output, unit. Out: value.",
+      "inputs (as in \"D=40 d=39.9 l=10 mm\"), output, unit. Out: value; empty, and a reason, "
+      "where no "
+      "peg has such inputs.",
       AddInsertions, status);
   AddSearch(fit, status);
   AddFitIdentify(fit, status);

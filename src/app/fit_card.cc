@@ -66,8 +66,9 @@ std::string JoiningText(const FitCard& card) {
                : fmt::format("cannot be done: the hub would need {:.0f} C", std::ceil(hub_c));
   };
   std::string text = fmt::format(
-      "to join with {} um of play (hub {:g} um/m/K for heating, {}; shaft {:g} for cooling, {}):\n",
-      Um(joining.clearance), 1e6 * hub.heating, hub.source, 1e6 * shaft.cooling, shaft.source);
+      "to join with {} um of play, alpha {:g}e-6/K of the hub (heated), {:g}e-6/K of the shaft "
+      "(cooled):\n",
+      Um(joining.clearance), 1e6 * hub.heating, 1e6 * shaft.cooling);
   text += fmt::format("  by heat: {}, at most {:g} C ({})\n", heat(joining.hub_c), hub.hottest_c,
                       hub.limit_source);
   if (joining.shaft_c >= fits::kNitrogenC) {
@@ -79,8 +80,11 @@ std::string JoiningText(const FitCard& card) {
   }
   text += fmt::format("  by both: cool the shaft to {:g} C (dry ice), {}\n", fits::kDryIceC,
                       heat(joining.dry_ice_hub_c));
-  return text + fmt::format("  by both: cool the shaft to {:g} C (liquid nitrogen), {}\n",
-                            fits::kNitrogenC, heat(joining.nitrogen_hub_c));
+  text += fmt::format("  by both: cool the shaft to {:g} C (liquid nitrogen), {}\n",
+                      fits::kNitrogenC, heat(joining.nitrogen_hub_c));
+  return text + (hub.source == shaft.source
+                     ? fmt::format("  alpha: {}\n", hub.source)
+                     : fmt::format("  alpha: {}; of the shaft: {}\n", hub.source, shaft.source));
 }
 
 ordered_json JoiningJson(const FitCard& card) {

@@ -433,6 +433,61 @@ TEST_F(FitTable, QuestionsAboutAPegInAHole) {
             "\"\"two_point\"\"\"\n");
 }
 
+// What no peg can have is refused with the reason; 30 mm in 20 gave a tilt of -43 degrees.
+TEST_F(FitTable, QuestionsAboutAPegThatCannotBeAreRefused) {
+  const auto refuse = [this](const std::string& question, const std::string& reason) {
+    const std::string out = Run("peg", "kind,id,inputs,output,unit\n" + question + "\n");
+    const std::string row = out.substr(out.find('\n') + 1);
+    EXPECT_TRUE(row.starts_with(question + ",,")) << row;
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, reason, row);
+  };
+  refuse("two_point,a,D=20 d=30 l=10,theta2,rad", "diameter d = 30 mm is not below the hole's D");
+  refuse("two_point,a,D=20 d=20 l=10,theta_m,rad", "not below");
+  refuse("two_point,a,D=20 d=-19 l=10,theta2,rad", "d is -19, but must be over 0");
+  refuse("two_point,a,D=20 d=19.9 l=-10,theta2,rad", "l is -10, but must be at least 0");
+  refuse("two_point,a,D=20 d=19.9 l=nan,theta2,rad", "l is no number");
+  refuse("two_point,a,D=20 d=19.9 l=1,theta2,rad", "no two-point contact: l is at least 1.9975");
+  refuse("two_point,a,D=20 d=19.9 l=10 furlong,theta2,rad", "in \"\"furlong\"\"");
+  refuse("two_point,a,D=20 d=19.9 l=10,theta2,kg", "has no unit");
+  refuse("two_point,a,D=20 d=19.9 theta=9 deg,l2,mm", "the largest is 5.73");
+  refuse("two_point,a,D=20 d=19.9 d=19 l=10,theta2,rad", "given twice");
+  refuse("two_point,a,D=20 d=19.9 q=1 l=10,theta2,rad", "no input q");
+  refuse("two_point_depth,b,R=10 r=11 theta=1 deg,h,mm", "radius r = 11 mm is not below");
+  refuse("two_point_depth,b,R=10 r=9.95 theta=30 deg,h,mm", "does not enter");
+  refuse("wedging,c,mu=-.3 r=10 l=5,wedging possible,bool", "mu is -.3, but must be at least 0");
+  refuse("jamming,c,mu=0 r=10 l=5,lambda,-", "without friction");
+  refuse("statics,d,mu=.3 r=10 l=20 f1=-3 f2=5,M,N mm", "f1 is -3");
+  refuse("chamfer,e,Kx=10 Kt=50000 Lg=50 r=10 mu=0.9 alpha=30 deg z=1,Fz,N", "tan alpha over mu");
+  refuse("one_point,f,Kx=10 Kt=50000 Lg=50 r=10 mu=0.1 eps0'=-1 theta0=0 l=10,f,N", "other side");
+}
+
+TEST_F(FitTable, QuestionsAboutAPegConvertUnits) {
+  EXPECT_EQ(Run("peg",
+                "kind;id;inputs;output;unit\n"
+                "two_point;a;D=2 cm d=19900 um l=10,0;theta2;deg\n"
+                "statics;d;mu=.3 r=10 l=20 f1=3 N f2=0.005 kN;M;N m\n"
+                "one_point;e;Kx=10 N/mm Kt=50 N m/rad Lg=50 r=10 mu=0.15 eps0'=0.5 theta0=0.01 "
+                "l=10;f;N\n"),
+            "kind;id;inputs;output;unit;value;reason\n"
+            "two_point;a;D=2 cm d=19900 um l=10,0;theta2;deg;0.5787850718;\n"
+            "statics;d;mu=.3 r=10 l=20 f1=3 N f2=0.005 kN;M;N m;0.106;\n"
+            "one_point;e;Kx=10 N/mm Kt=50 N m/rad Lg=50 r=10 mu=0.15 eps0'=0.5 theta0=0.01 "
+            "l=10;f;N;4.587155963;\n");
+}
+
+// Spreadsheets of half the world write ; between cells and 40,0 for a number.
+TEST_F(FitTable, TablesMayHaveSemicolonsAndDecimalCommas) {
+  EXPECT_EQ(Run("limits", "nominal_mm;class\n40,0;H7\n"),
+            "nominal_mm;class;kind;upper_um;lower_um;reason\n40,0;H7;hole;25;0;\n");
+  const std::string header =
+      "d_F_mm,D_hub_mm,U_eff_diametral_mm,L_mm,mu,E_hub_MPa,nu_hub,E_shaft_MPa,nu_shaft\n";
+  EXPECT_PRED_FORMAT2(
+      ::testing::IsSubstring, ",58.33333333,",
+      Run("press", header + "\"100,0\",150,\"0,1\",50,\"0,15\",210000,0.3,210000,0.3\n"));
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "L_mm is no number: \"\"fifty\"\"",
+                      Run("press", header + "100,150,0.1,fifty,0.15,210000,0.3,210000,0.3\n"));
+}
+
 TEST_F(FitTable, RefusesWhatIsNoTableAndNamesTheLine) {
   const auto refuse = [&](const std::string& table, const std::string& text) {
     ExpectRefusal({"fit", "limits", "--batch", folder_.Write("in.csv", table)}, text);
@@ -442,6 +497,7 @@ TEST_F(FitTable, RefusesWhatIsNoTableAndNamesTheLine) {
   refuse("nominal_mm,class\n40,H7,x\n", "in.csv:2");
   refuse("nominal_mm,class\n40,\"H7\n", "close each");
   ExpectRefusal({"fit", "limits", "--batch", folder_ / "none.csv"}, "none.csv");
+  ExpectRefusal({"fit", "limits", "--batch", folder_.path().string()}, "is a folder");
 }
 
 TEST(FitCommand, SearchFindsTheFitOfARange) {
