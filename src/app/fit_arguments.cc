@@ -6,9 +6,8 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "fits/friction.h"
+#include "fits/joint_friction.h"
 #include "fits/materials.h"
-#include "fits/paper_scales.h"
 #include "fits/thermal_joining.h"
 
 namespace hvas::app {
@@ -75,22 +74,19 @@ Result<const fits::Material*> FindNamed(const std::string& name) {
 void SetFriction(const FitArguments& a, const fits::Material& hub, const fits::Material& shaft,
                  FitCardOptions* options) {
   fits::PressFitParameters& p = options->press;
-  double friction = a.friction;
-  options->friction_source = "given";
-  if (friction < 0) {
-    const fits::FrictionEntry* entry =
-        fits::FindFrictionEntry(fits::SurfaceOf(hub.group), fits::SurfaceOf(shaft.group));
-    if (entry == nullptr) {
-      friction = fits::kPaperRig.friction;
-      options->friction_source = "assumed: this pair of materials is not in the table";
-    } else {
-      friction = a.is_oiled ? entry->kinetic_coefficient : entry->static_coefficient;
-      options->friction_source =
-          fmt::format("{}, DIN 7190-1", a.is_oiled ? "the pair's lower value" : "dry pair");
-    }
+  const bool is_shrunk = a.is_shrunk || a.hub_c || a.shaft_c;
+  fits::PressFriction friction = fits::FindPressFriction(hub, shaft, {is_shrunk, a.is_oiled});
+  if (a.friction >= 0) {
+    friction = {a.friction, a.friction, a.friction, "given"};
   }
-  p.friction_in = friction;
-  p.friction_release = p.friction_torque = a.friction_out >= 0 ? a.friction_out : friction;
+  if (a.friction_out >= 0) {
+    friction.release = friction.slip = a.friction_out;
+    friction.source += a.friction >= 0 ? "" : "; to hold as given";
+  }
+  p.friction_in = friction.in;
+  p.friction_release = p.friction_torque = friction.release;
+  options->friction_slip = friction.slip;
+  options->friction_source = friction.source;
 }
 
 Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
@@ -234,12 +230,17 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--material", a->material, "Of both parts [S355]");
   fit->add_option("--hub-material", a->hub_material, "Of the hub");
   fit->add_option("--shaft-material", a->shaft_material, "Of the shaft");
-  fit->add_option("--mu", a->friction,
-                  "Coefficient of friction; by the pair of materials without (hvas fit friction)")
+  fit->add_option(
+         "--mu", a->friction,
+         "Coefficient of friction; by the pair of materials without (hvas fit friction), the "
+         "high value to press in and the low one to hold")
       ->check(NotNegative());
-  fit->add_option("--mu-out", a->friction_out, "To start it back or turning; as --mu without")
+  fit->add_option("--mu-out", a->friction_out,
+                  "To hold: to start it back or turning; as --mu without")
       ->check(NotNegative());
-  fit->add_flag("--oiled", a->is_oiled, "The pair's lower coefficient: with mineral oil");
+  fit->add_flag("--oiled", a->is_oiled, "Friction with mineral oil, not dry");
+  fit->add_flag("--shrunk", a->is_shrunk,
+                "Friction of a joint by heat or cold, not pressed in; so --hub-temp, --shaft-temp");
   fit->add_option("--rz", a->rz_um, "Roughness Rz of both surfaces [um]")
       ->check(NotNegative())
       ->capture_default_str();

@@ -26,6 +26,7 @@ struct FitArguments {
   double friction{-1};      // Below 0: by the pair of materials.
   double friction_out{-1};  // Below 0: as friction.
   bool is_oiled{false};
+  bool is_shrunk{false};
   double rz_um{0};
   double hub_rz_um{-1}, shaft_rz_um{-1};
   std::string smoothing{"din2017"};

@@ -201,8 +201,10 @@ std::string FitCard::JointText() const {
   if (p.shaft_bore > 0) {
     text += fmt::format(" with a bore of {:g} mm", units::ToMm(p.shaft_bore));
   }
-  text += fmt::format(", mu {:g} ({}), Rz {:g} and {:g} um", p.friction_in, options.friction_source,
-                      units::ToUm(p.hub_roughness), units::ToUm(p.shaft_roughness));
+  text += fmt::format(
+      ", mu {:g} to press in, {:g} to hold, {:g} to slide out ({}), Rz {:g} and {:g} um",
+      p.friction_in, p.friction_release, options.friction_slip, options.friction_source,
+      units::ToUm(p.hub_roughness), units::ToUm(p.shaft_roughness));
   if (options.start > 0) {
     text += fmt::format(", from a depth of {:g} mm on", units::ToMm(options.start));
   }
@@ -249,6 +251,13 @@ Result<FitCard> MakeFitCard(const FitCardOptions& options) {
 
 namespace {
 
+/** What keeps it sliding out after it has broken loose, at full depth [N]. */
+double SlideOut(const FitCard& card, const fits::PressFit& press) {
+  const fits::PressFitParameters& p = card.options.press;
+  return card.options.friction_slip * std::numbers::pi * p.joint_diameter * p.length *
+         press.pressure;
+}
+
 std::string LimitsText(const FitCard& card) {
   const SizedFit& fit = card.options.fit;
   std::string text;
@@ -287,6 +296,7 @@ std::string PressText(const FitCard& card) {
   row("shaft narrows by, um", [](const PressFit& f) { return Um(f.shaft_contraction); });
   row("force to press in, N", [&](const PressFit& f) { return fixed(f.press_in_force, 1); });
   row("force to push out, N", [&](const PressFit& f) { return fixed(f.push_out_force, 1); });
+  row("force to slide on out, N", [&](const PressFit& f) { return fixed(SlideOut(card, f), 1); });
   row("torque, N m", [&](const PressFit& f) { return fixed(f.torque, 2); });
   row("hub bore, hoop, MPa",
       [&](const PressFit& f) { return fixed(units::ToMpa(f.hub_bore.hoop), 1); });
@@ -317,11 +327,12 @@ std::string PressText(const FitCard& card) {
   return text;
 }
 
-ordered_json ToJson(const fits::PressFit& f) {
+ordered_json ToJson(const FitCard& card, const fits::PressFit& f) {
   return {{"effective_interference_um", units::ToUm(f.effective_interference)},
           {"pressure_mpa", units::ToMpa(f.pressure)},
           {"press_in_force_n", f.press_in_force},
           {"push_out_force_n", f.push_out_force},
+          {"slide_out_force_n", SlideOut(card, f)},
           {"torque_nm", f.torque},
           {"hub_expansion_um", units::ToUm(f.hub_expansion)},
           {"shaft_contraction_um", units::ToUm(f.shaft_contraction)},
@@ -372,6 +383,7 @@ ordered_json ToJson(const FitCard& card) {
                      {"shaft_material", card.options.shaft_material},
                      {"mu", p.friction_in},
                      {"mu_out", p.friction_release},
+                     {"mu_slip", card.options.friction_slip},
                      {"mu_source", card.options.friction_source},
                      {"hub_rz_um", units::ToUm(p.hub_roughness)},
                      {"shaft_rz_um", units::ToUm(p.shaft_roughness)},
@@ -382,8 +394,9 @@ ordered_json ToJson(const FitCard& card) {
                        {"largest_tilt_deg", units::ToDeg(entry.largest_tilt)},
                        {"wedging_tilt_deg", FiniteOrNull(units::ToDeg(entry.wedging_tilt))}};
     }
-    json["press"] = {
-        {"least", ToJson(*card.least)}, {"mean", ToJson(*card.mean)}, {"most", ToJson(*card.most)}};
+    json["press"] = {{"least", ToJson(card, *card.least)},
+                     {"mean", ToJson(card, *card.mean)},
+                     {"most", ToJson(card, *card.most)}};
     if (card.limits->min_clearance < 0) {
       json["joining"] = JoiningJson(card);
       if (HasJoining(card)) {

@@ -18,7 +18,8 @@ struct FitCardOptions {
   SizedFit fit;
   fits::PressFitParameters press;  ///< Without interference, which comes from the limits.
   std::string hub_material, shaft_material;
-  std::string friction_source;  ///< Where the coefficient is from.
+  double friction_slip{0.15};   ///< nu_rl, while it slides out.
+  std::string friction_source;  ///< Where the coefficients are from.
   double start{0};              ///< Depth at which this fit begins to engage [m].
   double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
   double chamfer_width{0};      ///< Of both parts together, radially [m].

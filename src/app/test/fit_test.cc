@@ -33,15 +33,15 @@ void ExpectRefusal(const std::vector<std::string>& arguments, const std::string&
 
 // N4: the card of paper W's interference fit; 77,931.13 N at the largest interference.
 TEST(FitCommand, CardOfAPressFitHasTheClosedForms) {
-  const json card = RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--material",
-                                 "S355", "--smoothing", "none"});
+  const json card = RunHvasJson(
+      {"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--material", "S355", "--mu", "0.15"});
   EXPECT_EQ(card["kind"], "interference");
   EXPECT_NEAR(card["min_clearance_um"].get<double>(), -42, 1e-9);
   EXPECT_NEAR(card["max_clearance_um"].get<double>(), -1, 1e-9);
   EXPECT_NEAR(card["press"]["most"]["press_in_force_n"].get<double>(), 77931.13, 0.01);
   EXPECT_NEAR(card["press"]["mean"]["pressure_mpa"].get<double>(), 42.328, 1e-3);
   EXPECT_GT(card["press"]["most"]["margin_tresca"].get<double>(), 1);
-  const Ran text = RunHvas({"fit", "40 H7/p6", "--length", "50", "--smoothing", "none"});
+  const Ran text = RunHvas({"fit", "40 H7/p6", "--length", "50", "--mu", "0.15"});
   EXPECT_EQ(text.status, 0);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "77931.1", text.out);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "heat the hub to", text.out);
@@ -175,8 +175,8 @@ std::vector<std::vector<double>> ReadNumbers(const std::string& csv) {
 TEST(FitCommand, CurveEndsAtTheClosedFormWhateverTheStep) {
   const TemporaryFolder folder;
   for (const auto& [step, count] : {std::pair("0.01", 5001U), std::pair("1", 51U)}) {
-    ASSERT_EQ(RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--curve",
-                       folder / "curve.csv", "--step", step})
+    ASSERT_EQ(RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--mu", "0.15",
+                       "--curve", folder / "curve.csv", "--step", step})
                   .status,
               0);
     const auto rows = ReadNumbers(ReadText(folder / "curve.csv"));
@@ -303,7 +303,7 @@ TEST(FitCommand, JammingHasTheVerdictOfTheLoad) {
 TEST(FitCommand, MeasuredSizesMakeTheBatch) {
   const TemporaryFolder folder;
   const std::string sizes = folder.Write("sizes.csv", "hole_mm,shaft_mm\n40.010,40.020\n40.010,\n");
-  const json batch = RunHvasJson({"fit", "40 H7/k6", "--length", "50", "--smoothing", "none",
+  const json batch = RunHvasJson({"fit", "40 H7/k6", "--length", "50", "--mu", "0.15",
                                   "--population", "5000", "--sizes", sizes})["population"];
   EXPECT_NEAR(batch["fits"][0]["mean_clearance_um"].get<double>(), -10, 1e-6);
   EXPECT_NEAR(batch["force"].back()["mean_n"].get<double>(), 5 * 3711.01, 1);
@@ -317,7 +317,32 @@ TEST(FitCommand, FrictionSaysWhereEachCoefficientIsFrom) {
   EXPECT_GE(rows.size(), 40U);
   EXPECT_FALSE(rows[0]["source"].get<std::string>().empty());
   const Ran card = RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub-material", "EN-GJL-250"});
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "mu 0.16 (dry pair, DIN 7190-1)", card.out);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring,
+                      "mu 0.12 to press in, 0.12 to hold, 0.11 to slide out", card.out);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "steel / EN-GJL-250, longitudinal, dry", card.out);
+}
+
+// The torque of steel on bronze was that of 0.25, the top of a range for brass that is shrunk on.
+TEST(FitCommand, WhatHoldsHasTheLowFrictionAndWhatIsPressedInTheHighOne) {
+  const auto most = [](std::vector<std::string> more) {
+    std::vector<std::string> all{"fit", "40 H7/p6", "--length", "50", "--hub", "80"};
+    all.insert(all.end(), more.begin(), more.end());
+    return RunHvasJson(all)["press"]["most"];
+  };
+  // p = 82.6875 MPa of paper W's rig; pi D l p = 519 540.9 N.
+  const double normal_n = 77931.133 / 0.15;
+  const json steel = most({});
+  EXPECT_NEAR(steel["press_in_force_n"].get<double>(), 0.20 * normal_n, 0.1);
+  EXPECT_NEAR(steel["push_out_force_n"].get<double>(), 0.10 * normal_n, 0.1);
+  EXPECT_NEAR(steel["slide_out_force_n"].get<double>(), 0.08 * normal_n, 0.1);
+  EXPECT_NEAR(steel["torque_nm"].get<double>(), 0.10 * normal_n * 0.02, 0.01);
+  EXPECT_NEAR(most({"--oiled"})["torque_nm"].get<double>(), 0.07 * normal_n * 0.02, 0.01);
+  EXPECT_NEAR(most({"--shrunk"})["torque_nm"].get<double>(), 0.15 * normal_n * 0.02, 0.01);
+  EXPECT_NEAR(most({"--hub-temp", "210"})["torque_nm"].get<double>(), 0.15 * normal_n * 0.02, 0.01);
+  const json bronze = most({"--hub-material", "CuAl10Ni"});
+  EXPECT_NEAR(bronze["torque_nm"].get<double>() / (bronze["press_in_force_n"].get<double>() * 0.02),
+              0.07 / 0.10, 1e-9);
+  EXPECT_NEAR(bronze["torque_nm"].get<double>(), 448.2, 0.5);
 }
 
 // N5: how it gets in: the clearance and the chamfers beside the axis, and the tilts of the closed
