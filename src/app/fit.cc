@@ -21,6 +21,7 @@
 #include "app/fit_peg.h"
 #include "app/fit_population.h"
 #include "app/report_failure.h"
+#include "app/round_json.h"
 #include "base/atomic_file.h"
 #include "base/units.h"
 #include "fits/fit_search.h"
@@ -77,6 +78,9 @@ Result<Answer> MakeAnswer(const FitArguments& a) {
     return Unexpected(cards.error());
   }
   answer.cards = *std::move(cards);
+  if (Result<void> check = CheckEffects(a, answer.cards); !check) {
+    return Unexpected(check.error());
+  }
   const Result<FitPopulationOptions> options = MakePopulationOptions(a);
   if (!options) {
     return Unexpected(options.error());
@@ -127,6 +131,7 @@ nlohmann::ordered_json ToJson(const Answer& answer) {
   if (answer.jamming) {
     json["jamming"] = ToJson(*answer.jamming);
   }
+  RoundNumbers(&json);
   return json;
 }
 
@@ -234,6 +239,7 @@ int Search(const SearchArguments& a) {
     }
   }
   if (a.is_json) {
+    RoundNumbers(&json);
     fmt::print("{}\n", json.dump(2));
   } else if (found->empty()) {
     fmt::print("no fit of the {} basis has clearances within {:g} to {:g} um at {:g} mm\n", a.basis,
@@ -325,6 +331,16 @@ void AddFit(CLI::App* app, int* status) {
   AddFitIdentify(fit, status);
   AddPaper(fit, status);
   AddFriction(fit, status);
+  for (CLI::App* command : fit->get_subcommands([](CLI::App*) { return true; })) {
+    command->preparse_callback([fit, command](std::size_t) {
+      for (const CLI::Option* option : fit->get_options()) {
+        if (option->count() > 0) {
+          throw CLI::ValidationError(
+              option->get_name(), "has no effect before " + command->get_name() + "; leave it out");
+        }
+      }
+    });
+  }
   fit->callback([a, fit, status] {
     if (!fit->get_subcommands().empty()) {
       return;
@@ -333,7 +349,8 @@ void AddFit(CLI::App* app, int* status) {
       throw CLI::RequiredError("a fit, or one of limits, press, peg, search, paper, friction,");
     }
     a->has_population = fit->count("--population") > 0;
-    *status = PrintCard(*a);
+    const Result<void> check = CheckEffects(*fit);
+    *status = check ? PrintCard(*a) : ReportFailure(check.error());
   });
 }
 

@@ -1,9 +1,13 @@
 #include "app/fit_arguments.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/units.h"
 #include "fits/joint_friction.h"
@@ -56,6 +60,28 @@ const CLI::Validator& Temperature() {
       "C");
   return validator;
 }
+
+/** A whole number between 1 and some most, as "1000000" or "1e6". */
+CLI::Validator Count(std::int64_t most) {
+  return CLI::Validator(
+      [most](std::string& text) {
+        double value = 0;
+        const char* const end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        if (error != std::errc() || stop != end || value != std::floor(value) || !(value >= 1)) {
+          return text + " is not a whole number over 0";
+        }
+        if (!(value <= static_cast<double>(most))) {
+          return fmt::format("{} is over {}, the most there can be", text, most);
+        }
+        text = fmt::format("{}", static_cast<std::int64_t>(value));
+        return std::string();
+      },
+      fmt::format("1 TO {}", most));
+}
+
+constexpr std::int64_t kMostAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
+constexpr std::int64_t kMostThreads = 256;
 
 /** The value of the k-th fit in a list with one for each, or one for all. */
 double Pick(const std::vector<double>& list, std::size_t k, double otherwise) {
@@ -148,7 +174,7 @@ Result<void> CheckLists(const FitArguments& a) {
 void AddBatchArguments(CLI::App* fit, FitArguments* a) {
   const char* const group = "Populations";
   fit->add_option("--population", a->population.count, "Draw so many assemblies")
-      ->check(Positive())
+      ->transform(Count(kMostAssemblies))
       ->group(group);
   fit->add_option("--seed", a->population.seed, "Of everything that is drawn")
       ->capture_default_str()
@@ -176,7 +202,7 @@ void AddBatchArguments(CLI::App* fit, FitArguments* a) {
       ->group(group);
   fit->add_option("--threads", a->population.threads,
                   "To draw with; the figures are the same with any [all]")
-      ->check(Positive())
+      ->transform(Count(kMostThreads))
       ->group(group);
 }
 
@@ -260,6 +286,98 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_flag("--json", a->is_json, "Print one JSON document");
   AddBatchArguments(fit, a);
   AddPlotArguments(fit, a);
+}
+
+Result<void> CheckEffects(const CLI::App& fit) {
+  struct Need {
+    const char* option;
+    std::vector<const char*> one_of;
+  };
+
+  static const std::vector<const char*> kBatch{"--population", "--curve"};
+  static const std::vector<Need> kNeeds{{"--hub", {"--length"}},
+                                        {"--bore", {"--length"}},
+                                        {"--material", {"--length"}},
+                                        {"--hub-material", {"--length"}},
+                                        {"--shaft-material", {"--length"}},
+                                        {"--mu", {"--length"}},
+                                        {"--mu-out", {"--length"}},
+                                        {"--oiled", {"--length"}},
+                                        {"--shrunk", {"--length"}},
+                                        {"--rz", {"--length"}},
+                                        {"--hub-rz", {"--length"}},
+                                        {"--shaft-rz", {"--length"}},
+                                        {"--smoothing", {"--length"}},
+                                        {"--chamfer-width", {"--length"}},
+                                        {"--population", {"--length"}},
+                                        {"--curve", {"--length"}},
+                                        {"--jamming", {"--length"}},
+                                        {"--start", kBatch},
+                                        {"--chamfer", {"--curve"}},
+                                        {"--hub-temp", {"--length"}},
+                                        {"--shaft-temp", {"--length"}},
+                                        {"--hub-temp", {"--hub"}},
+                                        {"--join-speed", {"--hub-temp", "--shaft-temp"}},
+                                        {"--seed", kBatch},
+                                        {"--press-limit", kBatch},
+                                        {"--sizes-spread", kBatch},
+                                        {"--cp", kBatch},
+                                        {"--cpk", kBatch},
+                                        {"--sizes", kBatch},
+                                        {"--stations", kBatch},
+                                        {"--threads", kBatch},
+                                        {"--step", {"--curve"}},
+                                        {"--at", {"--jamming"}},
+                                        {"--load", {"--jamming"}}};
+  const auto has = [&fit](const char* name) { return fit.count(name) > 0; };
+  for (const Need& need : kNeeds) {
+    if (has(need.option) && std::none_of(need.one_of.begin(), need.one_of.end(), has)) {
+      const std::string needed = fmt::format("{}", fmt::join(need.one_of, " or "));
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("{} has no effect without {}", need.option, needed), {},
+                  fmt::format("give {}, or leave {} out", needed, need.option));
+    }
+  }
+  static const std::vector<std::pair<const char*, std::vector<const char*>>> kOverruled{
+      {"--oiled", {"--mu"}},
+      {"--shrunk", {"--mu"}},
+      {"--material", {"--hub-material", "--shaft-material"}},
+      {"--rz", {"--hub-rz", "--shaft-rz"}},
+      {"--sizes-spread", {"--sizes"}},
+      {"--sizes-spread", {"--cp"}},
+      {"--sizes-spread", {"--cpk"}}};
+  for (const auto& [option, others] : kOverruled) {
+    if (has(option) && std::all_of(others.begin(), others.end(), has)) {
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("{} has no effect beside {}", option, fmt::join(others, " and ")), {},
+                  "leave one of them out");
+    }
+  }
+  return {};
+}
+
+Result<void> CheckEffects(const FitArguments& arguments, const std::vector<FitCard>& cards) {
+  const auto any = [&cards](const auto& has) {
+    return std::any_of(cards.begin(), cards.end(), has);
+  };
+  const auto fail = [](const char* what, const char* remedy) {
+    return Fail(ErrorCode::kInvalid, what, {}, remedy);
+  };
+  if (!arguments.length_mm.empty() && !any([](const FitCard& c) { return c.limits.has_value(); })) {
+    return fail("--length has no effect on one class alone",
+                "give the classes of hole and shaft, as in \"40 H7/p6\"");
+  }
+  if ((arguments.hub_c || arguments.shaft_c) &&
+      !any([](const FitCard& c) { return c.limits && c.limits->min_clearance < 0; })) {
+    return fail("--hub-temp and --shaft-temp have no effect on a clearance fit",
+                "leave them out, or choose a fit with interference");
+  }
+  if (arguments.chamfer_width_mm > 0 &&
+      !any([](const FitCard& c) { return c.limits && c.limits->max_clearance > 0; })) {
+    return fail("--chamfer-width has no effect on an interference fit",
+                "leave it out; --chamfer is the angle that leads in");
+  }
+  return {};
 }
 
 Result<std::vector<FitCard>> MakeCards(const FitArguments& arguments) {

@@ -47,6 +47,15 @@ struct FitArguments {
 /** Adds them to the command. */
 void AddFitArguments(CLI::App* fit, FitArguments* arguments);
 
+/** Errors: kInvalid, naming an option that has no effect beside the others, and the one it needs.
+ */
+[[nodiscard]] Result<void> CheckEffects(const CLI::App& fit);
+
+/** The same for those whose effect depends on the fits: heat and cold need interference, chamfers
+ that widen the entry clearance, and a length both classes. */
+[[nodiscard]] Result<void> CheckEffects(const FitArguments& arguments,
+                                        const std::vector<FitCard>& cards);
+
 /** The cards that they ask for, one for each fit. */
 [[nodiscard]] Result<std::vector<FitCard>> MakeCards(const FitArguments& arguments);
 

@@ -47,6 +47,44 @@ TEST(FitCommand, CardOfAPressFitHasTheClosedForms) {
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "heat the hub to", text.out);
 }
 
+// Roughness is B(l) in a batch and not smoothing as well: 466 N were left of 2344 N.
+TEST(FitCommand, RoughnessCountsOnceInABatch) {
+  const auto mean_n = [](std::vector<std::string> more) {
+    std::vector<std::string> all{"fit", "40 H7/k6", "--length", "50",           "--rz",
+                                 "6.3", "--mu",     "0.15",     "--population", "200000"};
+    all.insert(all.end(), more.begin(), more.end());
+    return RunHvasJson(all)["population"]["force"].back()["mean_n"].get<double>();
+  };
+  // Sampling: sigma of about 4500 N over the root of 200 000.
+  EXPECT_NEAR(mean_n({}), 2344, 50);
+  EXPECT_EQ(mean_n({}), mean_n({"--smoothing", "none"}));
+  EXPECT_EQ(mean_n({}), mean_n({"--smoothing", "din2001"}));
+  // The band of a curve and its tight pair have as much.
+  const TemporaryFolder folder;
+  const auto last = [&](const char* smoothing) {
+    EXPECT_EQ(RunHvas({"fit", "40 H7/k6", "--length", "50", "--rz", "6.3", "--smoothing", smoothing,
+                       "--curve", folder / "curve.csv"})
+                  .status,
+              0);
+    const std::string csv = ReadText(folder / "curve.csv");
+    return csv.substr(csv.rfind('\n', csv.size() - 2));
+  };
+  const std::string even = last("none");
+  const std::string din = last("din2017");
+  const auto cell = [](const std::string& row, int index) {
+    std::istringstream in(row);
+    std::string text;
+    for (int i = 0; i <= index; ++i) {
+      std::getline(in, text, ',');
+    }
+    return text;
+  };
+  for (int i = 7; i < 15; ++i) {
+    EXPECT_EQ(cell(even, i), cell(din, i)) << i;
+  }
+  EXPECT_NE(cell(even, 5), cell(din, 5));  // The limits, taken as even, are smoothed.
+}
+
 TEST(FitCommand, CardTakesOneClassAndInches) {
   EXPECT_NEAR(RunHvasJson({"fit", "40 H7"})["hole"]["upper_um"].get<double>(), 25, 1e-9);
   EXPECT_NEAR(RunHvasJson({"fit", "1.5in H7/g6"})["nominal_mm"].get<double>(), 38.1, 1e-9);
@@ -101,18 +139,77 @@ TEST(FitCommand, RefusalsSayWhatAFitLooksLike) {
   ExpectRefusal({"fit"}, "a fit");
 }
 
+TEST(FitCommand, OptionsWithoutEffectAreRefused) {
+  const auto refuse = [](std::vector<std::string> more, const std::string& text) {
+    more.insert(more.begin(), "fit");
+    ExpectRefusal(more, text);
+  };
+  refuse({"40 H7/p6", "--hub", "80"}, "--hub has no effect without --length");
+  refuse({"40 H7/p6", "--length", "50", "--hub-temp", "200"},
+         "--hub-temp has no effect without --hub");
+  refuse({"40 H7/g6", "--length", "50", "--hub", "80", "--hub-temp", "200"}, "on a clearance fit");
+  refuse({"40 H7/g6", "--length", "50", "--load", "1,2,3"},
+         "--load has no effect without --jamming");
+  refuse({"40 H7/g6", "--length", "50", "--at", "3"}, "--at has no effect without --jamming");
+  refuse({"40 H7/p6", "--length", "50", "--step", "1"}, "--step has no effect without --curve");
+  refuse({"40 H7/p6", "--length", "50", "--join-speed", "1"}, "--hub-temp or --shaft-temp");
+  refuse({"40 H7/p6", "--length", "50", "--press-limit", "9"}, "without --population or --curve");
+  refuse({"40 H7/p6", "--length", "50", "--chamfer-width", "1"}, "on an interference fit");
+  refuse({"40 H7/p6", "--length", "50", "--mu", "0.1", "--oiled"},
+         "--oiled has no effect beside --mu");
+  refuse({"40 H7", "--length", "50"}, "--length has no effect on one class alone");
+  refuse({"40 H7/p6", "limits", "--batch", "in.csv"}, "fit: has no effect before limits");
+  refuse({"--length", "50", "friction"}, "--length: has no effect before friction");
+}
+
+TEST(FitCommand, CountsMayBeWrittenAsPowersAndNotWithoutEnd) {
+  const std::vector<std::string> fit{"fit", "40 H7/k6", "--length", "50", "--population"};
+  const auto with = [&fit](std::vector<std::string> more) {
+    more.insert(more.begin(), fit.begin(), fit.end());
+    return more;
+  };
+  EXPECT_EQ(RunHvasJson(with({"1e4"}))["population"]["count"], 10000);
+  ExpectRefusal(with({"1e12"}), "1e12 is over 100000000");
+  ExpectRefusal(with({"1.5"}), "1.5 is not a whole number");
+  ExpectRefusal(with({"100", "--threads", "100000"}), "100000 is over 256");
+  ExpectRefusal(with({"100", "--threads", "0"}), "0 is not a whole number over 0");
+}
+
+TEST(FitCommand, ErrorsAreInTheUnitThatWasTyped) {
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--hub", "40"},
+                "the hub's outer diameter is 40 mm, but must be over 40 mm");
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--bore", "45"}, "the shaft's bore is 45 mm");
+}
+
+// No 24.999999999999996 and no -0.0.
+TEST(FitCommand, NumbersAsJsonAreRoundedToWhatTheyMean) {
+  const Ran h7 = RunHvas({"fit", "40 H7/g6", "--length", "50", "--json"});
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "\"upper_um\": 25.0,", h7.out);
+  EXPECT_PRED_FORMAT2(::testing::IsNotSubstring, "-0.0", h7.out);
+  for (const char* fit : {"40 H7/p6", "17 H8/f7", "63 K7/h6", "0.7 H6/js5"}) {
+    const Ran ran = RunHvas({"fit", fit, "--length", "50", "--rz", "6.3", "--json"});
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_PRED_FORMAT2(::testing::IsNotSubstring, "00000", ran.out);
+    EXPECT_PRED_FORMAT2(::testing::IsNotSubstring, "99999", ran.out);
+    EXPECT_PRED_FORMAT2(::testing::IsNotSubstring, "-0.0,", ran.out);
+  }
+}
+
 // N4: heat, cold and both; the play at temperatures is that of the closed form.
 TEST(FitCommand, JoiningByHeatAndColdSaysThePlayAndWhetherItSticks) {
-  const json slow = RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "150",
-                                 "--shaft-temp", "-78", "--join-speed", "0.1"})["joining"]["asked"];
+  const json slow =
+      RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--hub-temp", "150",
+                   "--shaft-temp", "-78", "--join-speed", "0.1"})["joining"]["asked"];
   EXPECT_NEAR(slow["clearance_um"].get<double>(), 40e3 * (11e-6 * 130 + 8.5e-6 * 98) - 42, 1e-6);
   EXPECT_LT(slow["sticking_depth_mm"].get<double>(), 50);
-  const json fast = RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "150",
-                                 "--shaft-temp", "-78", "--join-speed", "100"})["joining"]["asked"];
+  const json fast =
+      RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--hub-temp", "150",
+                   "--shaft-temp", "-78", "--join-speed", "100"})["joining"]["asked"];
   // The depth grows with the root of the speed.
   EXPECT_NEAR(fast["sticking_depth_mm"].get<double>() / slow["sticking_depth_mm"].get<double>(),
               std::sqrt(1000), 1e-6);
-  const Ran cold = RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub-temp", "30"});
+  const Ran cold =
+      RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--hub-temp", "30"});
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "does not go together", cold.out);
 }
 
@@ -120,23 +217,23 @@ TEST(FitCommand, JoiningByHeatAndColdSaysThePlayAndWhetherItSticks) {
 // for which the shaft alone would have to be at -221 C.
 TEST(FitCommand, JoiningTakesNoMoreColdThanThereIsAndNoMoreHeatThanTheHubBears) {
   const json steel = RunHvasJson({"fit", "40 H7/p6", "--length", "50"})["joining"];
-  EXPECT_NEAR(steel["heat_hub_to_c"].get<double>(), 20 + 82 / (40e3 * 11e-6), 1e-6);
+  EXPECT_NEAR(steel["heat_hub_to_c"].get<double>(), 20 + 82 / (40e3 * 11e-6), 0.005);
   EXPECT_TRUE(steel["cool_shaft_to_c"].is_null());
   EXPECT_NEAR(steel["play_in_nitrogen_um"].get<double>(), 40e3 * 8.5e-6 * 216 - 42, 1e-6);
   EXPECT_NEAR(steel["with_nitrogen_heat_hub_to_c"].get<double>(),
-              20 + (82 - 40e3 * 8.5e-6 * 216) / (40e3 * 11e-6), 1e-6);
+              20 + (82 - 40e3 * 8.5e-6 * 216) / (40e3 * 11e-6), 0.005);
   EXPECT_EQ(steel["hub_limit_c"], 350);
   const Ran text = RunHvas({"fit", "40 H7/p6", "--length", "50"});
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "by cold: cannot be done", text.out);
   // A tempered hub bears 200 C, and 206 C are needed.
-  const json hard = RunHvasJson(
-      {"fit", "40 H7/p6", "--length", "50", "--hub-material", "16MnCr5", "--hub-temp", "210"});
+  const json hard = RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub-material", "16MnCr5",
+                                 "--hub", "80", "--hub-temp", "210"});
   EXPECT_TRUE(hard["joining"]["heat_hub_to_c"].is_null());
   EXPECT_EQ(hard["joining"]["asked"]["is_hub_too_hot"], true);
   // Little interference: cold alone does it.
   EXPECT_NEAR(RunHvasJson({"fit", "40 H7/k6", "--length", "50"})["joining"]["cool_shaft_to_c"]
                   .get<double>(),
-              20 - 58 / (40e3 * 8.5e-6), 1e-6);
+              20 - 58 / (40e3 * 8.5e-6), 0.005);
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--shaft-temp", "-230"}, "liquid nitrogen");
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--shaft-temp", "-300"}, "absolute zero");
 }
@@ -296,7 +393,7 @@ TEST(FitCommand, JammingHasTheVerdictOfTheLoad) {
   const json last = jam("2,1,10");
   EXPECT_EQ(last["is_sliding"], false);
   EXPECT_EQ(last["can_wedge"], false);
-  EXPECT_NEAR(last["lambda"].get<double>(), 10.0 / 3, 1e-9);
+  EXPECT_NEAR(last["lambda"].get<double>(), 10.0 / 3, 1e-8);
 }
 
 // W2: measured sizes in place of drawn ones.
@@ -341,7 +438,7 @@ TEST(FitCommand, WhatHoldsHasTheLowFrictionAndWhatIsPressedInTheHighOne) {
   EXPECT_NEAR(most({"--hub-temp", "210"})["torque_nm"].get<double>(), 0.15 * normal_n * 0.02, 0.01);
   const json bronze = most({"--hub-material", "CuAl10Ni"});
   EXPECT_NEAR(bronze["torque_nm"].get<double>() / (bronze["press_in_force_n"].get<double>() * 0.02),
-              0.07 / 0.10, 1e-9);
+              0.07 / 0.10, 1e-6);
   EXPECT_NEAR(bronze["torque_nm"].get<double>(), 448.2, 0.5);
 }
 
@@ -352,14 +449,14 @@ TEST(FitCommand, CardSaysHowTheShaftGetsIn) {
       {"fit", "40 H7/g6", "--length", "50", "--chamfer-width", "0.5", "--mu", "0.15"})["entry"];
   EXPECT_NEAR(entry["window_um"].get<double>(), 25 + 500, 1e-6);
   constexpr double kDegree = 0.017453292519943295;
-  EXPECT_NEAR(entry["largest_tilt_deg"].get<double>(), std::acos(40 / 40.05) / kDegree, 1e-9);
+  EXPECT_NEAR(entry["largest_tilt_deg"].get<double>(), std::acos(40 / 40.05) / kDegree, 1e-6);
   // The tilt t with 40.05 = 40 cos t + 6 sin t: two points touch at l = mu d.
   const double t = entry["wedging_tilt_deg"].get<double>() * kDegree;
-  EXPECT_NEAR(40 * std::cos(t) + 6 * std::sin(t), 40.05, 1e-9);
+  EXPECT_NEAR(40 * std::cos(t) + 6 * std::sin(t), 40.05, 1e-6);
   const json out =
       RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--mu", "0.1", "--mu-out", "0.2"});
   EXPECT_NEAR(out["press"]["most"]["push_out_force_n"].get<double>(),
-              2 * out["press"]["most"]["press_in_force_n"].get<double>(), 1e-6);
+              2 * out["press"]["most"]["press_in_force_n"].get<double>(), 0.002);
 }
 
 // The card as JSON is what its schema says, whatever was asked for.
@@ -370,7 +467,8 @@ TEST(FitCommand, JsonIsOfItsSchema) {
   const std::vector<std::vector<std::string>> commands{
       {"40 H7"},
       {"40 H7/g6"},
-      {"40 H7/p6", "--length", "50", "--hub-temp", "200", "--population", "1000"},
+      {"40 H7/p6", "--length", "50", "--hub", "80", "--hub-temp", "200", "--population", "1000",
+       "--rz", "4"},
       {"40 H7/k6", "35 H7/p6", "--length", "20", "--start", "0,30", "--population", "1000",
        "--press-limit", "9000"},
       {"40 H7/g6", "--length", "50", "--jamming", folder / "jam.svg"}};
