@@ -77,12 +77,27 @@ std::string Quoted(const std::string& cell) {
   return out;
 }
 
-bool NeedsQuotes(const std::string& cell) {
-  return cell.find_first_of(",\"\r\n") != std::string::npos ||
+bool NeedsQuotes(const std::string& cell, char delimiter) {
+  return cell.find_first_of("\"\r\n") != std::string::npos ||
+         cell.find(delimiter) != std::string::npos ||
          (!cell.empty() && (cell.front() == ' ' || cell.back() == ' '));
 }
 
 }  // namespace
+
+std::optional<double> ParseNumber(std::string_view text) {
+  std::string number(text);
+  const std::size_t comma = number.find(',');
+  if (comma != std::string::npos) {
+    number[comma] = '.';
+  }
+  const bool has_plus = number.size() > 1 && number[0] == '+' && number[1] != '-';
+  const char* const begin = number.data() + (has_plus ? 1 : 0);
+  const char* const stop = number.data() + number.size();
+  double value = 0;
+  const auto [end, error] = std::from_chars(begin, stop, value);
+  return error == std::errc() && end == stop ? std::optional(value) : std::nullopt;
+}
 
 Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimiter) {
   const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin
@@ -90,9 +105,12 @@ Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimite
   if (file == nullptr) {
     return Fail(ErrorCode::kNotFound, "cannot be read", path.string(), "check the path");
   }
+  if (std::error_code error; path != "-" && std::filesystem::is_directory(path, error)) {
+    return Fail(ErrorCode::kInvalid, "is a folder, not a table", path.string(),
+                "name a file in it (CSV)");
+  }
   csv_parser parser{};
   csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
-  csv_set_delim(&parser, static_cast<unsigned char>(delimiter));
   Parsed parsed;
   std::array<char, 1 << 16> buffer;
   bool is_good = true;
@@ -100,6 +118,14 @@ Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimite
   LineCounter lines(&parsed);
   while (is_good && (size = std::fread(buffer.data(), 1, buffer.size(), file.get())) > 0) {
     std::string_view rest(buffer.data(), size);
+    if (delimiter == kAnyDelimiter) {
+      const std::string_view first = rest.substr(0, rest.find('\n'));
+      delimiter =
+          first.find(';') != std::string_view::npos && first.find(',') == std::string_view::npos
+              ? ';'
+              : ',';
+    }
+    csv_set_delim(&parser, static_cast<unsigned char>(delimiter));
     while (is_good && !rest.empty()) {
       const std::string_view piece = rest.substr(0, std::min(rest.find('\n'), rest.size() - 1) + 1);
       is_good = csv_parse(&parser, piece.data(), piece.size(), TakeCell, TakeRow, &parsed) ==
@@ -121,6 +147,7 @@ Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimite
                 "begin it with the names of columns");
   }
   CsvTable table;
+  table.delimiter_ = delimiter;
   table.columns_ = std::move(parsed.rows.front());
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (table.columns_.front().starts_with(kByteOrderMark)) {
@@ -197,10 +224,12 @@ void CsvTable::Set(std::size_t row, std::string_view column, std::string value) 
 
 std::string CsvTable::ToText() const {
   std::string text;
-  const auto add = [&text](const std::vector<std::string>& cells) {
+  const auto add = [&text, this](const std::vector<std::string>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      text += i > 0 ? "," : "";
-      text += NeedsQuotes(cells[i]) ? Quoted(cells[i]) : cells[i];
+      if (i > 0) {
+        text += delimiter_;
+      }
+      text += NeedsQuotes(cells[i], delimiter_) ? Quoted(cells[i]) : cells[i];
     }
     text += "\n";
   };

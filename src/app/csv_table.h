@@ -10,9 +10,15 @@
 
 namespace hvas::app {
 
+/** The number that a text is, with a decimal point or comma; nothing else before or behind it. */
+[[nodiscard]] std::optional<double> ParseNumber(std::string_view text);
+
 /** A table of text with named columns, as spreadsheets exchange it (RFC 4180). */
 class CsvTable {
  public:
+  /** A delimiter to find out: ';' where the first line has that and no ',', or else ','. */
+  static constexpr char kAnyDelimiter = '\0';
+
   /** Reads a file; "-" is the standard input. Rows that end early are filled up with nothing.
    Errors: kNotFound (no such file), kInvalid (no header, quotes that do not close, a row with more
    cells than there are columns), with the line. */
@@ -38,12 +44,13 @@ class CsvTable {
   /** Sets a cell, adding the column if it is new. */
   void Set(std::size_t row, std::string_view column, std::string value);
 
-  /** With quotes where they are needed. */
+  /** With quotes where they are needed, and the delimiter that was read. */
   [[nodiscard]] std::string ToText() const;
 
  private:
   [[nodiscard]] std::size_t Find(std::string_view column) const;
 
+  char delimiter_{','};
   std::vector<std::string> columns_;
   std::vector<std::vector<std::string>> rows_;
   std::vector<std::size_t> lines_;

@@ -18,8 +18,10 @@
 #include "app/fit_identify.h"
 #include "app/fit_jamming.h"
 #include "app/fit_paper.h"
+#include "app/fit_peg.h"
 #include "app/fit_population.h"
 #include "app/report_failure.h"
+#include "app/round_json.h"
 #include "base/atomic_file.h"
 #include "base/units.h"
 #include "fits/fit_search.h"
@@ -76,6 +78,9 @@ Result<Answer> MakeAnswer(const FitArguments& a) {
     return Unexpected(cards.error());
   }
   answer.cards = *std::move(cards);
+  if (Result<void> check = CheckEffects(a, answer.cards); !check) {
+    return Unexpected(check.error());
+  }
   const Result<FitPopulationOptions> options = MakePopulationOptions(a);
   if (!options) {
     return Unexpected(options.error());
@@ -126,6 +131,7 @@ nlohmann::ordered_json ToJson(const Answer& answer) {
   if (answer.jamming) {
     json["jamming"] = ToJson(*answer.jamming);
   }
+  RoundNumbers(&json);
   return json;
 }
 
@@ -194,7 +200,7 @@ int ShowFriction(bool is_json) {
 }
 
 int RunBatch(const BatchArguments& arguments, Result<void> (*add)(CsvTable*)) {
-  Result<CsvTable> table = CsvTable::Read(arguments.in);
+  Result<CsvTable> table = CsvTable::Read(arguments.in, CsvTable::kAnyDelimiter);
   if (!table) {
     return ReportFailure(table.error());
   }
@@ -203,7 +209,7 @@ int RunBatch(const BatchArguments& arguments, Result<void> (*add)(CsvTable*)) {
     error.where = arguments.in + ", " + error.where;
     return ReportFailure(error);
   }
-  if (arguments.out.empty()) {
+  if (arguments.out.empty() || arguments.out == "-") {
     fmt::print("{}", table->ToText());
     return 0;
   }
@@ -233,6 +239,7 @@ int Search(const SearchArguments& a) {
     }
   }
   if (a.is_json) {
+    RoundNumbers(&json);
     fmt::print("{}\n", json.dump(2));
   } else if (found->empty()) {
     fmt::print("no fit of the {} basis has clearances within {:g} to {:g} um at {:g} mm\n", a.basis,
@@ -247,7 +254,8 @@ void AddBatch(CLI::App* fit, const char* name, const char* description, const ch
   CLI::App* command = fit->add_subcommand(name, description);
   command->add_option("--batch", arguments->in, "Table to read (CSV); - for the standard input")
       ->required();
-  command->add_option("-o,--output", arguments->out, "Table to write; the standard output without");
+  command->add_option("-o,--output", arguments->out,
+                      "Table to write; - or without: the standard output");
   command->footer(
       fmt::format("{}\nExample:\n  hvas fit {} --batch in.csv -o out.csv", columns, name));
   command->callback([arguments, add, status] { *status = RunBatch(*arguments, add); });
@@ -315,12 +323,24 @@ void AddFit(CLI::App* app, int* status) {
   AddBatch(
       fit, "peg", "Answers to a table of questions about a peg in a hole",
       "In: kind (two_point, two_point_depth, jamming, wedging, statics, chamfer, one_point), id, "
-      "inputs (as in \"D=40 d=39.9 l=10\"), output, unit. Out: value.",
+      "inputs (as in \"D=40 d=39.9 l=10 mm\"), output, unit. Out: value; empty, and a reason, "
+      "where no "
+      "peg has such inputs.",
       AddInsertions, status);
   AddSearch(fit, status);
   AddFitIdentify(fit, status);
   AddPaper(fit, status);
   AddFriction(fit, status);
+  for (CLI::App* command : fit->get_subcommands([](CLI::App*) { return true; })) {
+    command->preparse_callback([fit, command](std::size_t) {
+      for (const CLI::Option* option : fit->get_options()) {
+        if (option->count() > 0) {
+          throw CLI::ValidationError(
+              option->get_name(), "has no effect before " + command->get_name() + "; leave it out");
+        }
+      }
+    });
+  }
   fit->callback([a, fit, status] {
     if (!fit->get_subcommands().empty()) {
       return;
@@ -329,7 +349,8 @@ void AddFit(CLI::App* app, int* status) {
       throw CLI::RequiredError("a fit, or one of limits, press, peg, search, paper, friction,");
     }
     a->has_population = fit->count("--population") > 0;
-    *status = PrintCard(*a);
+    const Result<void> check = CheckEffects(*fit);
+    *status = check ? PrintCard(*a) : ReportFailure(check.error());
   });
 }
 

@@ -1,12 +1,17 @@
 #include "app/fit_arguments.h"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/units.h"
-#include "fits/friction.h"
+#include "fits/joint_friction.h"
 #include "fits/materials.h"
-#include "fits/paper_scales.h"
 #include "fits/thermal_joining.h"
 
 namespace hvas::app {
@@ -35,6 +40,49 @@ const CLI::Validator& NotNegative() {
   return validator;
 }
 
+/** What there is to join parts at: nothing is colder than liquid nitrogen. */
+const CLI::Validator& Temperature() {
+  static const CLI::Validator validator(
+      [](const std::string& text) {
+        double value = 0;
+        if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) {
+          return text + " is no temperature";
+        }
+        if (value < fits::kAbsoluteZeroC) {
+          return text + " C is below absolute zero, -273.15 C";
+        }
+        if (value < fits::kNitrogenC) {
+          return text +
+                 " C is colder than liquid nitrogen, -196 C, which is the coldest to join with";
+        }
+        return value <= 1000 ? std::string() : text + " C is over 1000 C, where metals melt";
+      },
+      "C");
+  return validator;
+}
+
+/** A whole number between 1 and some most, as "1000000" or "1e6". */
+CLI::Validator Count(std::int64_t most) {
+  return CLI::Validator(
+      [most](std::string& text) {
+        double value = 0;
+        const char* const end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        if (error != std::errc() || stop != end || value != std::floor(value) || !(value >= 1)) {
+          return text + " is not a whole number over 0";
+        }
+        if (!(value <= static_cast<double>(most))) {
+          return fmt::format("{} is over {}, the most there can be", text, most);
+        }
+        text = fmt::format("{}", static_cast<std::int64_t>(value));
+        return std::string();
+      },
+      fmt::format("1 TO {}", most));
+}
+
+constexpr std::int64_t kMostAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
+constexpr std::int64_t kMostThreads = 256;
+
 /** The value of the k-th fit in a list with one for each, or one for all. */
 double Pick(const std::vector<double>& list, std::size_t k, double otherwise) {
   return list.empty() ? otherwise : list[std::min(k, list.size() - 1)];
@@ -52,22 +100,19 @@ Result<const fits::Material*> FindNamed(const std::string& name) {
 void SetFriction(const FitArguments& a, const fits::Material& hub, const fits::Material& shaft,
                  FitCardOptions* options) {
   fits::PressFitParameters& p = options->press;
-  double friction = a.friction;
-  options->friction_source = "given";
-  if (friction < 0) {
-    const fits::FrictionEntry* entry =
-        fits::FindFrictionEntry(fits::SurfaceOf(hub.group), fits::SurfaceOf(shaft.group));
-    if (entry == nullptr) {
-      friction = fits::kPaperRig.friction;
-      options->friction_source = "assumed: this pair of materials is not in the table";
-    } else {
-      friction = a.is_oiled ? entry->kinetic_coefficient : entry->static_coefficient;
-      options->friction_source =
-          fmt::format("{}, DIN 7190-1", a.is_oiled ? "the pair's lower value" : "dry pair");
-    }
+  const bool is_shrunk = a.is_shrunk || a.hub_c || a.shaft_c;
+  fits::PressFriction friction = fits::FindPressFriction(hub, shaft, {is_shrunk, a.is_oiled});
+  if (a.friction >= 0) {
+    friction = {a.friction, a.friction, a.friction, "given"};
   }
-  p.friction_in = friction;
-  p.friction_release = p.friction_torque = a.friction_out >= 0 ? a.friction_out : friction;
+  if (a.friction_out >= 0) {
+    friction.release = friction.slip = a.friction_out;
+    friction.source += a.friction >= 0 ? "" : "; to hold as given";
+  }
+  p.friction_in = friction.in;
+  p.friction_release = p.friction_torque = friction.release;
+  options->friction_slip = friction.slip;
+  options->friction_source = friction.source;
 }
 
 Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
@@ -102,6 +147,8 @@ Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
   p.shaft = fits::ToPressMaterial(**shaft);
   options.hub_material = std::string((*hub)->name);
   options.shaft_material = std::string((*shaft)->name);
+  options.hub_joining = fits::FindJoiningMaterial(**hub);
+  options.shaft_joining = fits::FindJoiningMaterial(**shaft);
   options.hub_c = a.hub_c;
   options.shaft_c = a.shaft_c;
   options.join_speed = units::FromMm(a.join_speed_mm_s);
@@ -127,7 +174,7 @@ Result<void> CheckLists(const FitArguments& a) {
 void AddBatchArguments(CLI::App* fit, FitArguments* a) {
   const char* const group = "Populations";
   fit->add_option("--population", a->population.count, "Draw so many assemblies")
-      ->check(Positive())
+      ->transform(Count(kMostAssemblies))
       ->group(group);
   fit->add_option("--seed", a->population.seed, "Of everything that is drawn")
       ->capture_default_str()
@@ -155,7 +202,7 @@ void AddBatchArguments(CLI::App* fit, FitArguments* a) {
       ->group(group);
   fit->add_option("--threads", a->population.threads,
                   "To draw with; the figures are the same with any [all]")
-      ->check(Positive())
+      ->transform(Count(kMostThreads))
       ->group(group);
 }
 
@@ -209,12 +256,17 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--material", a->material, "Of both parts [S355]");
   fit->add_option("--hub-material", a->hub_material, "Of the hub");
   fit->add_option("--shaft-material", a->shaft_material, "Of the shaft");
-  fit->add_option("--mu", a->friction,
-                  "Coefficient of friction; by the pair of materials without (hvas fit friction)")
+  fit->add_option(
+         "--mu", a->friction,
+         "Coefficient of friction; by the pair of materials without (hvas fit friction), the "
+         "high value to press in and the low one to hold")
       ->check(NotNegative());
-  fit->add_option("--mu-out", a->friction_out, "To start it back or turning; as --mu without")
+  fit->add_option("--mu-out", a->friction_out,
+                  "To hold: to start it back or turning; as --mu without")
       ->check(NotNegative());
-  fit->add_flag("--oiled", a->is_oiled, "The pair's lower coefficient: with mineral oil");
+  fit->add_flag("--oiled", a->is_oiled, "Friction with mineral oil, not dry");
+  fit->add_flag("--shrunk", a->is_shrunk,
+                "Friction of a joint by heat or cold, not pressed in; so --hub-temp, --shaft-temp");
   fit->add_option("--rz", a->rz_um, "Roughness Rz of both surfaces [um]")
       ->check(NotNegative())
       ->capture_default_str();
@@ -226,14 +278,106 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
       ->capture_default_str();
   fit->add_option("--hub-temp", a->hub_c,
                   "To join at [C]; says what play there is, and if it sticks")
-      ->check(CLI::Range(-273.0, 2000.0));
-  fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(CLI::Range(-273.0, 2000.0));
+      ->check(Temperature());
+  fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(Temperature());
   fit->add_option("--join-speed", a->join_speed_mm_s, "Of joining by heat or cold [mm/s]")
       ->check(Positive())
       ->capture_default_str();
   fit->add_flag("--json", a->is_json, "Print one JSON document");
   AddBatchArguments(fit, a);
   AddPlotArguments(fit, a);
+}
+
+Result<void> CheckEffects(const CLI::App& fit) {
+  struct Need {
+    const char* option;
+    std::vector<const char*> one_of;
+  };
+
+  static const std::vector<const char*> kBatch{"--population", "--curve"};
+  static const std::vector<Need> kNeeds{{"--hub", {"--length"}},
+                                        {"--bore", {"--length"}},
+                                        {"--material", {"--length"}},
+                                        {"--hub-material", {"--length"}},
+                                        {"--shaft-material", {"--length"}},
+                                        {"--mu", {"--length"}},
+                                        {"--mu-out", {"--length"}},
+                                        {"--oiled", {"--length"}},
+                                        {"--shrunk", {"--length"}},
+                                        {"--rz", {"--length"}},
+                                        {"--hub-rz", {"--length"}},
+                                        {"--shaft-rz", {"--length"}},
+                                        {"--smoothing", {"--length"}},
+                                        {"--chamfer-width", {"--length"}},
+                                        {"--population", {"--length"}},
+                                        {"--curve", {"--length"}},
+                                        {"--jamming", {"--length"}},
+                                        {"--start", kBatch},
+                                        {"--chamfer", {"--curve"}},
+                                        {"--hub-temp", {"--length"}},
+                                        {"--shaft-temp", {"--length"}},
+                                        {"--hub-temp", {"--hub"}},
+                                        {"--join-speed", {"--hub-temp", "--shaft-temp"}},
+                                        {"--seed", kBatch},
+                                        {"--press-limit", kBatch},
+                                        {"--sizes-spread", kBatch},
+                                        {"--cp", kBatch},
+                                        {"--cpk", kBatch},
+                                        {"--sizes", kBatch},
+                                        {"--stations", kBatch},
+                                        {"--threads", kBatch},
+                                        {"--step", {"--curve"}},
+                                        {"--at", {"--jamming"}},
+                                        {"--load", {"--jamming"}}};
+  const auto has = [&fit](const char* name) { return fit.count(name) > 0; };
+  for (const Need& need : kNeeds) {
+    if (has(need.option) && std::none_of(need.one_of.begin(), need.one_of.end(), has)) {
+      const std::string needed = fmt::format("{}", fmt::join(need.one_of, " or "));
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("{} has no effect without {}", need.option, needed), {},
+                  fmt::format("give {}, or leave {} out", needed, need.option));
+    }
+  }
+  static const std::vector<std::pair<const char*, std::vector<const char*>>> kOverruled{
+      {"--oiled", {"--mu"}},
+      {"--shrunk", {"--mu"}},
+      {"--material", {"--hub-material", "--shaft-material"}},
+      {"--rz", {"--hub-rz", "--shaft-rz"}},
+      {"--sizes-spread", {"--sizes"}},
+      {"--sizes-spread", {"--cp"}},
+      {"--sizes-spread", {"--cpk"}}};
+  for (const auto& [option, others] : kOverruled) {
+    if (has(option) && std::all_of(others.begin(), others.end(), has)) {
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("{} has no effect beside {}", option, fmt::join(others, " and ")), {},
+                  "leave one of them out");
+    }
+  }
+  return {};
+}
+
+Result<void> CheckEffects(const FitArguments& arguments, const std::vector<FitCard>& cards) {
+  const auto any = [&cards](const auto& has) {
+    return std::any_of(cards.begin(), cards.end(), has);
+  };
+  const auto fail = [](const char* what, const char* remedy) {
+    return Fail(ErrorCode::kInvalid, what, {}, remedy);
+  };
+  if (!arguments.length_mm.empty() && !any([](const FitCard& c) { return c.limits.has_value(); })) {
+    return fail("--length has no effect on one class alone",
+                "give the classes of hole and shaft, as in \"40 H7/p6\"");
+  }
+  if ((arguments.hub_c || arguments.shaft_c) &&
+      !any([](const FitCard& c) { return c.limits && c.limits->min_clearance < 0; })) {
+    return fail("--hub-temp and --shaft-temp have no effect on a clearance fit",
+                "leave them out, or choose a fit with interference");
+  }
+  if (arguments.chamfer_width_mm > 0 &&
+      !any([](const FitCard& c) { return c.limits && c.limits->max_clearance > 0; })) {
+    return fail("--chamfer-width has no effect on an interference fit",
+                "leave it out; --chamfer is the angle that leads in");
+  }
+  return {};
 }
 
 Result<std::vector<FitCard>> MakeCards(const FitArguments& arguments) {

@@ -26,6 +26,7 @@ struct FitArguments {
   double friction{-1};      // Below 0: by the pair of materials.
   double friction_out{-1};  // Below 0: as friction.
   bool is_oiled{false};
+  bool is_shrunk{false};
   double rz_um{0};
   double hub_rz_um{-1}, shaft_rz_um{-1};
   std::string smoothing{"din2017"};
@@ -45,6 +46,15 @@ struct FitArguments {
 
 /** Adds them to the command. */
 void AddFitArguments(CLI::App* fit, FitArguments* arguments);
+
+/** Errors: kInvalid, naming an option that has no effect beside the others, and the one it needs.
+ */
+[[nodiscard]] Result<void> CheckEffects(const CLI::App& fit);
+
+/** The same for those whose effect depends on the fits: heat and cold need interference, chamfers
+ that widen the entry clearance, and a length both classes. */
+[[nodiscard]] Result<void> CheckEffects(const FitArguments& arguments,
+                                        const std::vector<FitCard>& cards);
 
 /** The cards that they ask for, one for each fit. */
 [[nodiscard]] Result<std::vector<FitCard>> MakeCards(const FitArguments& arguments);

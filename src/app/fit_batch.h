@@ -15,8 +15,4 @@ namespace hvas::app {
  shaft_governing_hoop_MPa, F_axial_N, T_Nmm, reason. Without mu no force and no torque. */
 [[nodiscard]] Result<void> AddPressFits(CsvTable* table);
 
-/** In: kind, id, inputs ("D=40 d=39.9 l=10"), output (which one), unit. Out: value, reason. An
- empty `inputs` takes those of the row above with the same id. */
-[[nodiscard]] Result<void> AddInsertions(CsvTable* table);
-
 }  // namespace hvas::app

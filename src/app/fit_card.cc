@@ -9,7 +9,6 @@
 
 #include "base/units.h"
 #include "fits/insertion.h"
-#include "fits/thermal_joining.h"
 #include "mates/make_fit.h"
 #include "product/names.h"
 
@@ -18,33 +17,96 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kMeltLimitC = 350;  // Hubs of steel are seldom heated further.
-
 ordered_json FiniteOrNull(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
 fits::ThermalJoint MakeThermalJoint(const FitCard& card) {
-  const fits::PressFitParameters& p = card.options.press;
-  return {p.joint_diameter, std::max(0.0, -card.limits->min_clearance), p.hub.thermal_expansion,
-          p.shaft.thermal_expansion, card.options.room_c};
+  const FitCardOptions& o = card.options;
+  return {o.press.joint_diameter,
+          std::max(0.0, -card.limits->min_clearance),
+          o.hub_joining.heating,
+          o.shaft_joining.cooling,
+          o.room_c,
+          o.hub_joining.cooling,
+          o.shaft_joining.heating};
 }
 
-constexpr double kDryIceC = -78;
-constexpr double kNitrogenC = -196;
-
+/** Ways to get the clearance of DIN 7190-1; nothing where a way would take more than there is. */
 struct JoiningTemperatures {
-  double hub_c;       // Heating the hub alone.
-  double shaft_c;     // Cooling the shaft alone.
-  double both_hub_c;  // Heating the hub with the shaft at kDryIceC.
+  double clearance;           // To be had [m].
+  double hub_c;               // Heating the hub alone.
+  double shaft_c;             // Cooling the shaft alone.
+  double nitrogen_clearance;  // With the shaft in liquid nitrogen and the hub as it is [m].
+  double dry_ice_hub_c;       // Heating the hub with the shaft at kDryIceC.
+  double nitrogen_hub_c;      // The same at kNitrogenC.
 };
 
 JoiningTemperatures CalcJoining(const FitCard& card) {
   const fits::ThermalJoint joint = MakeThermalJoint(card);
   const double clearance = fits::CalcJoiningClearance(joint.joint_diameter);
-  return {fits::CalcHubTemperature(joint, clearance, joint.room_c),
+  const auto hub_c = [&](double shaft_c) {
+    return std::max(joint.room_c, fits::CalcHubTemperature(joint, clearance, shaft_c));
+  };
+  return {clearance,
+          hub_c(joint.room_c),
           fits::CalcShaftTemperature(joint, clearance, joint.room_c),
-          fits::CalcHubTemperature(joint, clearance, kDryIceC)};
+          fits::CalcHotClearance(joint, joint.room_c, fits::kNitrogenC),
+          hub_c(fits::kDryIceC),
+          hub_c(fits::kNitrogenC)};
+}
+
+std::string JoiningText(const FitCard& card) {
+  const JoiningTemperatures joining = CalcJoining(card);
+  const fits::JoiningMaterial& hub = card.options.hub_joining;
+  const fits::JoiningMaterial& shaft = card.options.shaft_joining;
+  const auto heat = [&hub](double hub_c) {
+    return hub_c <= hub.hottest_c
+               ? fmt::format("heat the hub to {:.0f} C", std::ceil(hub_c))
+               : fmt::format("cannot be done: the hub would need {:.0f} C", std::ceil(hub_c));
+  };
+  std::string text = fmt::format(
+      "to join with {} um of play, alpha {:g}e-6/K of the hub (heated), {:g}e-6/K of the shaft "
+      "(cooled):\n",
+      Um(joining.clearance), 1e6 * hub.heating, 1e6 * shaft.cooling);
+  text += fmt::format("  by heat: {}, at most {:g} C ({})\n", heat(joining.hub_c), hub.hottest_c,
+                      hub.limit_source);
+  if (joining.shaft_c >= fits::kNitrogenC) {
+    text += fmt::format("  by cold: cool the shaft to {:.0f} C\n", std::floor(joining.shaft_c));
+  } else {
+    text +=
+        fmt::format("  by cold: cannot be done: in liquid nitrogen, {:g} C, the play is {} um\n",
+                    fits::kNitrogenC, Um(joining.nitrogen_clearance));
+  }
+  text += fmt::format("  by both: cool the shaft to {:g} C (dry ice), {}\n", fits::kDryIceC,
+                      heat(joining.dry_ice_hub_c));
+  text += fmt::format("  by both: cool the shaft to {:g} C (liquid nitrogen), {}\n",
+                      fits::kNitrogenC, heat(joining.nitrogen_hub_c));
+  return text + (hub.source == shaft.source
+                     ? fmt::format("  alpha: {}\n", hub.source)
+                     : fmt::format("  alpha: {}; of the shaft: {}\n", hub.source, shaft.source));
+}
+
+ordered_json JoiningJson(const FitCard& card) {
+  const JoiningTemperatures joining = CalcJoining(card);
+  const fits::JoiningMaterial& hub = card.options.hub_joining;
+  const fits::JoiningMaterial& shaft = card.options.shaft_joining;
+  const auto heat = [&hub](double hub_c) {
+    return hub_c <= hub.hottest_c ? ordered_json(hub_c) : ordered_json();
+  };
+  return {{"play_um", units::ToUm(joining.clearance)},
+          {"heat_hub_to_c", heat(joining.hub_c)},
+          {"cool_shaft_to_c",
+           joining.shaft_c >= fits::kNitrogenC ? ordered_json(joining.shaft_c) : ordered_json()},
+          {"with_dry_ice_heat_hub_to_c", heat(joining.dry_ice_hub_c)},
+          {"with_nitrogen_heat_hub_to_c", heat(joining.nitrogen_hub_c)},
+          {"play_in_nitrogen_um", units::ToUm(joining.nitrogen_clearance)},
+          {"hub_limit_c", hub.hottest_c},
+          {"hub_limit_source", hub.limit_source},
+          {"hub_heating_per_k", hub.heating},
+          {"hub_expansion_source", hub.source},
+          {"shaft_cooling_per_k", shaft.cooling},
+          {"shaft_expansion_source", shaft.source}};
 }
 
 bool HasJoining(const FitCard& card) {
@@ -76,10 +138,17 @@ HotJoint CalcHotJoint(const FitCard& card) {
   return hot;
 }
 
+bool IsHubTooHot(const FitCard& card) {
+  return card.options.hub_c.value_or(card.options.room_c) > card.options.hub_joining.hottest_c;
+}
+
 std::string HotJointText(const FitCard& card) {
   const HotJoint hot = CalcHotJoint(card);
   std::string text = fmt::format("hub at {:g} C, shaft at {:g} C: {} um of play", hot.hub_c,
                                  hot.shaft_c, Um(hot.clearance));
+  if (IsHubTooHot(card)) {
+    text += fmt::format("; above the hub's limit of {:g} C", card.options.hub_joining.hottest_c);
+  }
   if (!(hot.clearance > 0)) {
     return text + ", which does not go together\n";
   }
@@ -132,8 +201,10 @@ std::string FitCard::JointText() const {
   if (p.shaft_bore > 0) {
     text += fmt::format(" with a bore of {:g} mm", units::ToMm(p.shaft_bore));
   }
-  text += fmt::format(", mu {:g} ({}), Rz {:g} and {:g} um", p.friction_in, options.friction_source,
-                      units::ToUm(p.hub_roughness), units::ToUm(p.shaft_roughness));
+  text += fmt::format(
+      ", mu {:g} to press in, {:g} to hold, {:g} to slide out ({}), Rz {:g} and {:g} um",
+      p.friction_in, p.friction_release, options.friction_slip, options.friction_source,
+      units::ToUm(p.hub_roughness), units::ToUm(p.shaft_roughness));
   if (options.start > 0) {
     text += fmt::format(", from a depth of {:g} mm on", units::ToMm(options.start));
   }
@@ -180,6 +251,13 @@ Result<FitCard> MakeFitCard(const FitCardOptions& options) {
 
 namespace {
 
+/** What keeps it sliding out after it has broken loose, at full depth [N]. */
+double SlideOut(const FitCard& card, const fits::PressFit& press) {
+  const fits::PressFitParameters& p = card.options.press;
+  return card.options.friction_slip * std::numbers::pi * p.joint_diameter * p.length *
+         press.pressure;
+}
+
 std::string LimitsText(const FitCard& card) {
   const SizedFit& fit = card.options.fit;
   std::string text;
@@ -202,7 +280,6 @@ std::string LimitsText(const FitCard& card) {
 }
 
 std::string PressText(const FitCard& card) {
-  const fits::PressFitParameters& p = card.options.press;
   std::string text = card.JointText() + "\n";
   text += fmt::format("  {:<30} {:>12} {:>12} {:>12}\n", "interference", "least", "mean", "most");
   const auto row = [&](const char* name, auto value) {
@@ -219,6 +296,7 @@ std::string PressText(const FitCard& card) {
   row("shaft narrows by, um", [](const PressFit& f) { return Um(f.shaft_contraction); });
   row("force to press in, N", [&](const PressFit& f) { return fixed(f.press_in_force, 1); });
   row("force to push out, N", [&](const PressFit& f) { return fixed(f.push_out_force, 1); });
+  row("force to slide on out, N", [&](const PressFit& f) { return fixed(SlideOut(card, f), 1); });
   row("torque, N m", [&](const PressFit& f) { return fixed(f.torque, 2); });
   row("hub bore, hoop, MPa",
       [&](const PressFit& f) { return fixed(units::ToMpa(f.hub_bore.hoop), 1); });
@@ -234,14 +312,7 @@ std::string PressText(const FitCard& card) {
     text += "  the largest interference yields: its figures are those of an elastic joint\n";
   }
   if (card.limits->min_clearance < 0) {
-    const JoiningTemperatures joining = CalcJoining(card);
-    text += fmt::format(
-        "to join with {} um of play: heat the hub to {:.0f} C{}, or cool the shaft to {:.0f} C{},\n"
-        "  or cool the shaft to {:g} C (dry ice) and heat the hub to {:.0f} C\n",
-        Um(fits::CalcJoiningClearance(p.joint_diameter)), joining.hub_c,
-        joining.hub_c > kMeltLimitC ? " (more than steel should have)" : "", joining.shaft_c,
-        joining.shaft_c < kNitrogenC ? " (colder than liquid nitrogen)" : "", kDryIceC,
-        joining.both_hub_c);
+    text += JoiningText(card);
     if (HasJoining(card)) {
       text += HotJointText(card);
     }
@@ -256,11 +327,12 @@ std::string PressText(const FitCard& card) {
   return text;
 }
 
-ordered_json ToJson(const fits::PressFit& f) {
+ordered_json ToJson(const FitCard& card, const fits::PressFit& f) {
   return {{"effective_interference_um", units::ToUm(f.effective_interference)},
           {"pressure_mpa", units::ToMpa(f.pressure)},
           {"press_in_force_n", f.press_in_force},
           {"push_out_force_n", f.push_out_force},
+          {"slide_out_force_n", SlideOut(card, f)},
           {"torque_nm", f.torque},
           {"hub_expansion_um", units::ToUm(f.hub_expansion)},
           {"shaft_contraction_um", units::ToUm(f.shaft_contraction)},
@@ -311,6 +383,7 @@ ordered_json ToJson(const FitCard& card) {
                      {"shaft_material", card.options.shaft_material},
                      {"mu", p.friction_in},
                      {"mu_out", p.friction_release},
+                     {"mu_slip", card.options.friction_slip},
                      {"mu_source", card.options.friction_source},
                      {"hub_rz_um", units::ToUm(p.hub_roughness)},
                      {"shaft_rz_um", units::ToUm(p.shaft_roughness)},
@@ -321,17 +394,16 @@ ordered_json ToJson(const FitCard& card) {
                        {"largest_tilt_deg", units::ToDeg(entry.largest_tilt)},
                        {"wedging_tilt_deg", FiniteOrNull(units::ToDeg(entry.wedging_tilt))}};
     }
-    json["press"] = {
-        {"least", ToJson(*card.least)}, {"mean", ToJson(*card.mean)}, {"most", ToJson(*card.most)}};
+    json["press"] = {{"least", ToJson(card, *card.least)},
+                     {"mean", ToJson(card, *card.mean)},
+                     {"most", ToJson(card, *card.most)}};
     if (card.limits->min_clearance < 0) {
-      const JoiningTemperatures joining = CalcJoining(card);
-      json["joining"] = {{"heat_hub_to_c", joining.hub_c},
-                         {"cool_shaft_to_c", joining.shaft_c},
-                         {"with_dry_ice_heat_hub_to_c", joining.both_hub_c}};
+      json["joining"] = JoiningJson(card);
       if (HasJoining(card)) {
         const HotJoint hot = CalcHotJoint(card);
         json["joining"]["asked"] = {{"hub_c", hot.hub_c},
                                     {"shaft_c", hot.shaft_c},
+                                    {"is_hub_too_hot", IsHubTooHot(card)},
                                     {"clearance_um", units::ToUm(hot.clearance)},
                                     {"sticking_depth_mm", FiniteOrNull(units::ToMm(hot.sticking))}};
       }

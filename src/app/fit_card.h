@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "fits/iso286.h"
 #include "fits/press_fit.h"
+#include "fits/thermal_joining.h"
 
 namespace hvas::app {
 
@@ -17,11 +18,13 @@ struct FitCardOptions {
   SizedFit fit;
   fits::PressFitParameters press;  ///< Without interference, which comes from the limits.
   std::string hub_material, shaft_material;
-  std::string friction_source;  ///< Where the coefficient is from.
+  double friction_slip{0.15};   ///< nu_rl, while it slides out.
+  std::string friction_source;  ///< Where the coefficients are from.
   double start{0};              ///< Depth at which this fit begins to engage [m].
   double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
   double chamfer_width{0};      ///< Of both parts together, radially [m].
   double room_c{20};
+  fits::JoiningMaterial hub_joining, shaft_joining;
   std::optional<double> hub_c,
       shaft_c;                        ///< Temperatures to join at; room_c where only one is given.
   double join_speed{0.02};            ///< Of the shaft then [m/s].

@@ -50,6 +50,7 @@ Result<fits::PressStroke> MakeTightStroke(FitCurve* curve) {
   Random random(curve->options.seed);
   return MakeStroke(curve->cards, [&](std::size_t k, fits::StrokeLand* land) {
     const auto& quantiles = curve->batch.lands[k].clearance_curve;
+    land->press = WithDrawnRoughness(land->press);
     curve->pair_clearances.push_back(quantiles[quantiles.size() / 4]);
     land->clearances =
         fits::DrawClearances(curve->pair_clearances.back(),

@@ -41,25 +41,39 @@ Result<fits::SizeDistribution> MakeSpread(const fits::Limits& limits, double nom
   return fits::SizeDistribution::FromZone(limits);
 }
 
+bool HasRoughness(const std::vector<FitCard>& cards) {
+  return std::any_of(cards.begin(), cards.end(), [](const FitCard& card) {
+    return card.options.press.hub_roughness + card.options.press.shaft_roughness > 0;
+  });
+}
+
+constexpr const char* kDrawnRoughness =
+    "roughness is drawn along the joint (B(l)), and not smoothed as well";
+
 double Percent(double share) {
   return 100 * share;
 }
 
 }  // namespace
 
+fits::PressFitParameters WithDrawnRoughness(fits::PressFitParameters press) {
+  press.smoothing = fits::Smoothing::kNone;
+  return press;
+}
+
 Result<void> ReadSizes(const std::string& file, FitPopulationOptions* options) {
-  const Result<CsvTable> table = CsvTable::Read(file);
+  const Result<CsvTable> table = CsvTable::Read(file, CsvTable::kAnyDelimiter);
   if (!table) {
     return Unexpected(table.error());
   }
   for (std::size_t i = 0; i < table->row_count(); ++i) {
     for (const auto& [column, sizes] :
          {std::pair("hole_mm", &options->holes), std::pair("shaft_mm", &options->shafts)}) {
-      const std::optional<double> value_mm = table->GetNumber(i, column);
-      if (!value_mm) {
+      if (table->Get(i, column).empty()) {
         continue;
       }
-      if (!std::isfinite(*value_mm) || !(*value_mm > 0)) {
+      const std::optional<double> value_mm = ParseNumber(table->Get(i, column));
+      if (!value_mm || !std::isfinite(*value_mm) || !(*value_mm > 0)) {
         return Fail(ErrorCode::kInvalid,
                     fmt::format("{} is no diameter: \"{}\"", column, table->Get(i, column)),
                     fmt::format("{}, row {}", file, i + 1), "write diameters in millimetres");
@@ -96,7 +110,7 @@ Result<fits::Population> DrawPopulation(const std::vector<FitCard>& cards,
       return Unexpected((hole ? shaft : hole).error());
     }
     p.lands.push_back({*std::move(hole), *std::move(shaft), card.options.start, options.stations,
-                       card.options.press});
+                       WithDrawnRoughness(card.options.press)});
   }
   p.count = options.count;
   p.seed = options.seed;
@@ -140,6 +154,9 @@ std::string ToText(const fits::Population& batch, const std::vector<FitCard>& ca
                    const FitPopulationOptions& options) {
   std::string text = fmt::format("{} assemblies, {}, seed {}:\n  {}\n", batch.count,
                                  SpreadText(options), options.seed, SharesText(batch, options));
+  if (HasRoughness(cards)) {
+    text += fmt::format("  {}\n", kDrawnRoughness);
+  }
   text += fmt::format("  {:<24}", "clearance, um");
   for (const char* column : {"mean", "sigma", "0.1 %", "5 %", "50 %", "95 %", "99.9 %"}) {
     text += fmt::format(" {:>9}", column);
@@ -173,6 +190,9 @@ ordered_json ToJson(const fits::Population& batch, const std::vector<FitCard>& c
                     {"sizes", SpreadText(options)},
                     {"interference_share", batch.any_interference_share},
                     {"yield_share", batch.any_yield_share}};
+  if (HasRoughness(cards)) {
+    json["roughness"] = kDrawnRoughness;
+  }
   if (options.press_force > 0) {
     json["press_limit_n"] = options.press_force;
     json["over_press_share"] = batch.over_press_share;

@@ -37,6 +37,10 @@ struct FitPopulationOptions {
  Errors: kNotFound, kInvalid with the row. */
 [[nodiscard]] Result<void> ReadSizes(const std::string& file, FitPopulationOptions* options);
 
+/** Without smoothing: where the roughness is drawn along the joint as B(l), it is not taken off the
+ interference a second time (DIN 7190's G is for joints that are taken as even). */
+[[nodiscard]] fits::PressFitParameters WithDrawnRoughness(fits::PressFitParameters press);
+
 /** Puts pairs of parts together, each with all the fits at once. Errors: kInvalid where a card has
  no joint, or measured sizes go with several fits; those of populations. */
 [[nodiscard]] Result<fits::Population> DrawPopulation(const std::vector<FitCard>& cards,

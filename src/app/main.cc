@@ -1,4 +1,6 @@
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <string>
 
@@ -44,11 +46,25 @@ int Run(int argc, char** argv) {
   return status;
 }
 
+/** Writes out what is still in buffers, and tells where it cannot be written: a disk is full, as a
+ rule. A reader that has seen enough (a pipe that is closed) ends the program before.
+ @param status  Of the command; stands where writing fails after a failure. */
+int FlushOutput(int status) {
+  const bool had_error = std::ferror(stdout) != 0;
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !had_error) {
+    return status;
+  }
+  std::fprintf(stderr, "hvas: the standard output cannot be written%s%s; make room on the disk\n",
+               errno != 0 ? ": " : "", errno != 0 ? std::strerror(errno) : "");
+  return status != 0 ? status : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    return Run(argc, argv);
+    return FlushOutput(Run(argc, argv));
   } catch (const std::exception& exception) {
     std::fprintf(stderr, "hvas: %s\n", exception.what());  // Of memory, as a rule.
     return 1;

@@ -4,13 +4,19 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include <fmt/format.h>
+
+#include "base/units.h"
 
 namespace hvas::fits {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/** In which unit people state it. */
+enum class Told { kMm, kUm, kMpa, kPure };
 
 struct Bound {
   const char* name;
@@ -18,17 +24,32 @@ struct Bound {
   double low;
   double high;
   bool includes_low;
+  Told told;
 };
+
+std::string Tell(double value, Told told) {
+  switch (told) {
+    case Told::kMm:
+      return fmt::format("{:g} mm", units::ToMm(value));
+    case Told::kUm:
+      return fmt::format("{:g} um", units::ToUm(value));
+    case Told::kMpa:
+      return fmt::format("{:g} MPa", units::ToMpa(value));
+    case Told::kPure:
+      break;
+  }
+  return fmt::format("{:g}", value);
+}
 
 Result<void> CheckBounds(std::initializer_list<Bound> bounds) {
   for (const Bound& b : bounds) {
     const bool is_above = b.includes_low ? b.value >= b.low : b.value > b.low;
     if (!is_above || !(b.value < b.high)) {
       return Fail(ErrorCode::kInvalid,
-                  fmt::format("{} is {:g}, but must be {} {:g}{}", b.name, b.value,
-                              b.includes_low ? "at least" : "over", b.low,
-                              b.high < kInfinity ? fmt::format(" and below {:g}", b.high) : ""),
-                  "press fit", "check the sizes (metres) and materials of both parts");
+                  fmt::format("{} is {}, but must be {} {}{}", b.name, Tell(b.value, b.told),
+                              b.includes_low ? "at least" : "over", Tell(b.low, b.told),
+                              b.high < kInfinity ? " and below " + Tell(b.high, b.told) : ""),
+                  "press fit", "check the sizes and materials of both parts");
     }
   }
   return {};
@@ -40,19 +61,19 @@ Result<void> Check(const PressFitParameters& p) {
                 "give the sizes of both parts");
   }
   return CheckBounds(
-      {{"the joint's diameter", p.joint_diameter, 0, kInfinity, false},
-       {"the hub's outer diameter", p.hub_diameter, p.joint_diameter, kInfinity, false},
-       {"the shaft's bore", p.shaft_bore, 0, p.joint_diameter, true},
-       {"the joint's length", p.length, 0, kInfinity, false},
-       {"the hub's roughness", p.hub_roughness, 0, kInfinity, true},
-       {"the shaft's roughness", p.shaft_roughness, 0, kInfinity, true},
-       {"the hub's Young's modulus", p.hub.youngs_modulus, 0, kInfinity, false},
-       {"the shaft's Young's modulus", p.shaft.youngs_modulus, 0, kInfinity, false},
-       {"the hub's Poisson's ratio", p.hub.poisson_ratio, 0, 0.5001, true},
-       {"the shaft's Poisson's ratio", p.shaft.poisson_ratio, 0, 0.5001, true},
-       {"the friction when pressing in", p.friction_in, 0, kInfinity, true},
-       {"the friction at release", p.friction_release, 0, kInfinity, true},
-       {"the friction against turning", p.friction_torque, 0, kInfinity, true}});
+      {{"the joint's diameter", p.joint_diameter, 0, kInfinity, false, Told::kMm},
+       {"the hub's outer diameter", p.hub_diameter, p.joint_diameter, kInfinity, false, Told::kMm},
+       {"the shaft's bore", p.shaft_bore, 0, p.joint_diameter, true, Told::kMm},
+       {"the joint's length", p.length, 0, kInfinity, false, Told::kMm},
+       {"the hub's roughness", p.hub_roughness, 0, kInfinity, true, Told::kUm},
+       {"the shaft's roughness", p.shaft_roughness, 0, kInfinity, true, Told::kUm},
+       {"the hub's Young's modulus", p.hub.youngs_modulus, 0, kInfinity, false, Told::kMpa},
+       {"the shaft's Young's modulus", p.shaft.youngs_modulus, 0, kInfinity, false, Told::kMpa},
+       {"the hub's Poisson's ratio", p.hub.poisson_ratio, 0, 0.5001, true, Told::kPure},
+       {"the shaft's Poisson's ratio", p.shaft.poisson_ratio, 0, 0.5001, true, Told::kPure},
+       {"the friction when pressing in", p.friction_in, 0, kInfinity, true, Told::kPure},
+       {"the friction at release", p.friction_release, 0, kInfinity, true, Told::kPure},
+       {"the friction against turning", p.friction_torque, 0, kInfinity, true, Told::kPure}});
 }
 
 /** What both sides give way: diametral strain for each pascal. */

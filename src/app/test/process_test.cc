@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -48,6 +49,40 @@ bool EndsSoon(pid_t pid) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return false;
+}
+
+/** /dev/full takes nothing, as a disk without room. */
+class FullDiskTest : public ::testing::Test {
+ protected:
+  static void ExpectFailure(const std::vector<std::string>& arguments) {
+    const Ran ran = testing::RunHvasInto("/dev/full", arguments);
+    EXPECT_EQ(ran.status, 1) << arguments.front();
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "No space left on device", ran.err);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(FullDiskTest, OutputOfEveryCommandThatCannotBeWrittenIsAFailure) {
+  ExpectFailure({"fit", "40 H7/p6"});
+  ExpectFailure({"fit", "40 H7/p6", "--length", "50", "--json"});
+  ExpectFailure({"fit", "40 H7/k6", "--length", "50", "--population", "1000", "--stations", "200",
+                 "--json"});  // More than a buffer.
+  ExpectFailure({"fit", "search", "--nominal", "40", "--min", "5", "--max", "60"});
+  ExpectFailure(
+      {"fit", "limits", "--batch", folder_.Write("classes.csv", "nominal_mm,class\n40,H7\n")});
+  const std::string times =
+      folder_.Write("times.csv", "participant,a,b\n1,2,3\n2,3,5\n3,2,6\n4,1,3\n");
+  ExpectFailure({"study", "analyse", "--table", times, "--json"});
+  ExpectFailure({"inspect", ProductFile("bushing"), "--json"});
+  ExpectFailure({"mate", "list", ProductFile("bushing")});
+  ExpectFailure({"--help"});
+}
+
+TEST_F(FullDiskTest, FailureSaysItsOwnReasonFirst) {
+  const Ran ran = testing::RunHvasInto("/dev/full", {"fit", "H7/p6"});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "no size with a fit", ran.err);
 }
 
 class EndTest : public ::testing::TestWithParam<int> {};

@@ -57,16 +57,22 @@ std::string ReadText(const std::filesystem::path& file) {
   return text.str();
 }
 
-Ran RunHvas(const std::vector<std::string>& arguments) {
+Ran RunHvasInto(const std::string& output, const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
   Ran ran;
-  const pid_t child = Start(arguments, (folder / "out").string(), (folder / "err").string());
+  const pid_t child = Start(arguments, output, (folder / "err").string());
   int status = 0;
   if (child > 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status)) {
     ran.status = WEXITSTATUS(status);
   }
-  ran.out = ReadText(folder / "out");
   ran.err = ReadText(folder / "err");
+  return ran;
+}
+
+Ran RunHvas(const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  Ran ran = RunHvasInto((folder / "out").string(), arguments);
+  ran.out = ReadText(folder / "out");
   return ran;
 }
 

@@ -20,6 +20,9 @@ struct Ran {
 /** Runs `hvas` to its end. */
 [[nodiscard]] Ran RunHvas(const std::vector<std::string>& arguments);
 
+/** Runs `hvas` with its standard output going to a file or device; `out` stays empty. */
+[[nodiscard]] Ran RunHvasInto(const std::string& output, const std::vector<std::string>& arguments);
+
 /** Runs `hvas ... --json`, expects an exit status, and reads what it printed. */
 [[nodiscard]] nlohmann::json RunHvasJson(std::vector<std::string> arguments, int status = 0);
 

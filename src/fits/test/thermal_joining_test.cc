@@ -71,6 +71,57 @@ TEST(ThermalJoining, SticksAtOnceWithoutClearanceAndNeverWhereItLasts) {
               2 * CalcStickingDepth(steel, 220, 20, exchange), 1e-12);
 }
 
+// DIN 7190 by the WHZ sheet and Autodesk Inventor's table, heating / cooling in 1e-6/K.
+TEST(ThermalJoining, CoefficientsOfDinForHeatingAndForCooling) {
+  const auto expect = [](const char* name, double heating, double cooling) {
+    const JoiningMaterial m = FindJoiningMaterial(*FindMaterial(name)->material);
+    EXPECT_NEAR(m.heating, heating * 1e-6, 1e-12) << name;
+    EXPECT_NEAR(m.cooling, cooling * 1e-6, 1e-12) << name;
+    EXPECT_FALSE(m.source.empty());
+  };
+  expect("S355", 11, 8.5);
+  expect("42CrMo4", 11, 8.5);
+  expect("EN-GJL-250", 10, 8);
+  expect("AW-6061", 23, 18);
+  expect("CuSn8", 16, 14);
+  expect("CuAl10Ni", 16, 14);
+  expect("CuZn37", 18, 16);
+  expect("AZ91D", 26, 21);
+  expect("1.4301", 17, 0.77 * 17);
+  for (const Material& material : Materials()) {
+    const JoiningMaterial m = FindJoiningMaterial(material);
+    // Things shrink less for each kelvin the colder they are.
+    EXPECT_LT(m.cooling, m.heating) << material.name;
+    EXPECT_GE(m.hottest_c, 80) << material.name;
+    EXPECT_LE(m.hottest_c, 350) << material.name;
+  }
+}
+
+TEST(ThermalJoining, HubsAreHeatedNoFurtherThanTheirTempering) {
+  const auto hottest_c = [](const char* name) {
+    return FindJoiningMaterial(*FindMaterial(name)->material).hottest_c;
+  };
+  EXPECT_EQ(hottest_c("S355"), 350);
+  EXPECT_EQ(hottest_c("C45"), 300);
+  EXPECT_EQ(hottest_c("34CrNiMo6"), 200);
+  EXPECT_EQ(hottest_c("16MnCr5"), 200);
+  EXPECT_EQ(hottest_c("AW-6061"), 150);
+  EXPECT_EQ(hottest_c("POM-C"), 80);
+}
+
+TEST(ThermalJoining, EachSideTakesTheCoefficientOfItsOwnSideOfRoomTemperature) {
+  const ThermalJoint joint{0.04, 42e-6, 11e-6, 8.5e-6, 20};
+  EXPECT_NEAR(CalcHotClearance(joint, -80, 20), 0.04 * 8.5e-6 * -100 - 42e-6, 1e-15);
+  EXPECT_NEAR(CalcHotClearance(joint, 20, 120), 0.04 * 11e-6 * -100 - 42e-6, 1e-15);
+  for (const double hub_c : {-80.0, 20.0, 300.0}) {
+    for (const double clearance : {-300e-6, 40e-6}) {
+      const double shaft_c = CalcShaftTemperature(joint, clearance, hub_c);
+      EXPECT_NEAR(CalcHotClearance(joint, hub_c, shaft_c), clearance, 1e-15);
+      EXPECT_NEAR(CalcHubTemperature(joint, clearance, shaft_c), hub_c, 1e-9);
+    }
+  }
+}
+
 TEST(ThermalJoining, HeatOfEveryMaterialIsThatOfItsKind) {
   for (const Material& material : Materials()) {
     const double heat = SpecificHeatOf(material.group);
