@@ -36,6 +36,7 @@ struct FitArguments {
   double cp{0}, cpk{0};
   std::string sizes;
   std::optional<double> hub_c, shaft_c;
+  double room_c{20};
   double join_speed_mm_s{20};
   std::string curve, jamming;
   double step_mm{0};
