@@ -16,9 +16,7 @@
 #include "fits/thermal_joining.h"
 
 namespace hvas::app {
-namespace {
 
-/** In words; the ones of CLI11 name the largest number there is. */
 const CLI::Validator& Positive() {
   static const CLI::Validator validator(
       [](const std::string& text) {
@@ -40,6 +38,8 @@ const CLI::Validator& NotNegative() {
       "0 OR MORE");
   return validator;
 }
+
+namespace {
 
 /** What there is to join parts at: nothing is colder than liquid nitrogen. */
 const CLI::Validator& Temperature() {

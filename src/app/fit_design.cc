@@ -154,6 +154,9 @@ Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint) 
   if (!any) {
     return Unexpected(any.error());
   }
+  if (!any->front().most) {
+    return Fail(ErrorCode::kInvalid, "a joint needs a length", {}, "give --length over 0");
+  }
   const fits::PressFitParameters& press = any->front().options.press;
   const fits::PressFit& geometry = *any->front().most;
   FitDesign d;
@@ -196,19 +199,26 @@ void AddFitDesign(CLI::App* fit, int* status) {
   auto a = std::make_shared<DesignArguments>();
   CLI::App* design =
       fit->add_subcommand("design", "The interference, and fits, that hold a torque and a force");
-  design->add_option("--nominal", a->demand.nominal_mm, "Nominal diameter [mm]")->required();
-  design->add_option("--length", a->length_mm, "Of the joint [mm]")->required();
-  design->add_option("--torque", a->demand.torque, "To hold about the axis [N m]");
-  design->add_option("--axial", a->demand.axial, "To hold along it, at the same time [N]");
+  design->add_option("--nominal", a->demand.nominal_mm, "Nominal diameter [mm]")
+      ->required()
+      ->check(Positive());
+  design->add_option("--length", a->length_mm, "Of the joint [mm]")->required()->check(Positive());
+  design->add_option("--torque", a->demand.torque, "To hold about the axis [N m]")
+      ->check(NotNegative());
+  design->add_option("--axial", a->demand.axial, "To hold along it, at the same time [N]")
+      ->check(NotNegative());
   design->add_option("--safety", a->demand.safety, "Against slip")->capture_default_str();
-  design->add_option("--hub", a->hub_mm,
-                     "Outer diameter of the hub [mm]; twice the nominal without");
-  design->add_option("--bore", a->bore_mm, "Bore of a hollow shaft [mm]");
+  design
+      ->add_option("--hub", a->hub_mm, "Outer diameter of the hub [mm]; twice the nominal without")
+      ->check(Positive());
+  design->add_option("--bore", a->bore_mm, "Bore of a hollow shaft [mm]")->check(NotNegative());
   design->add_option("--material", a->joint.material, "Of both parts [S355]");
   design->add_option("--hub-material", a->joint.hub_material, "Of the hub");
   design->add_option("--shaft-material", a->joint.shaft_material, "Of the shaft");
-  design->add_option("--rz", a->joint.rz_um, "Roughness Rz of both surfaces [um]");
-  design->add_option("--mu", a->joint.friction, "Coefficient of friction; by the pair without");
+  design->add_option("--rz", a->joint.rz_um, "Roughness Rz of both surfaces [um]")
+      ->check(NotNegative());
+  design->add_option("--mu", a->joint.friction, "Coefficient of friction; by the pair without")
+      ->check(Positive());
   design->add_flag("--oiled", a->joint.is_oiled, "Friction with mineral oil, not dry");
   design->add_flag("--shrunk", a->joint.is_shrunk, "Joined by heat or cold, not pressed in");
   AddChoice(
