@@ -15,6 +15,7 @@
 #include "app/fit_batch.h"
 #include "app/fit_card.h"
 #include "app/fit_curve.h"
+#include "app/fit_design.h"
 #include "app/fit_identify.h"
 #include "app/fit_jamming.h"
 #include "app/fit_paper.h"
@@ -308,6 +309,8 @@ void AddFit(CLI::App* app, int* status) {
       "  hvas fit \"40 H7/p6\" \"35 H7/k6\" --length 20,30 --start 0,40 --hub 80 --cp 1.33 "
       "--population 1000000\n"
       "  hvas fit \"40 H7/g6\" --length 50 --jamming jam.svg --at 20 --load 5,20,100\n"
+      "  hvas fit \"40 H7/p6\" --length 50 --hub-material \"S355 Re=400 alpha=12\" --room 25\n"
+      "  hvas fit design --nominal 40 --length 50 --hub 80 --torque 200\n"
       "  hvas fit paper --curve figure8.svg\n"
       "  hvas fit limits --batch classes.csv -o limits.csv\n"
       "  hvas fit search --nominal 40 --min 5 --max 60");
@@ -331,6 +334,7 @@ void AddFit(CLI::App* app, int* status) {
   AddFitIdentify(fit, status);
   AddPaper(fit, status);
   AddFriction(fit, status);
+  AddFitDesign(fit, status);
   for (CLI::App* command : fit->get_subcommands([](CLI::App*) { return true; })) {
     command->preparse_callback([fit, command](std::size_t) {
       for (const CLI::Option* option : fit->get_options()) {
@@ -346,7 +350,8 @@ void AddFit(CLI::App* app, int* status) {
       return;
     }
     if (a->fits.empty()) {
-      throw CLI::RequiredError("a fit, or one of limits, press, peg, search, paper, friction,");
+      throw CLI::RequiredError(
+          "a fit, or one of limits, press, peg, search, design, paper, friction, materials,");
     }
     a->has_population = fit->count("--population") > 0;
     const Result<void> check = CheckEffects(*fit);

@@ -9,15 +9,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/csv_table.h"
 #include "base/units.h"
 #include "fits/joint_friction.h"
 #include "fits/materials.h"
 #include "fits/thermal_joining.h"
 
 namespace hvas::app {
-namespace {
 
-/** In words; the ones of CLI11 name the largest number there is. */
 const CLI::Validator& Positive() {
   static const CLI::Validator validator(
       [](const std::string& text) {
@@ -39,6 +38,8 @@ const CLI::Validator& NotNegative() {
       "0 OR MORE");
   return validator;
 }
+
+namespace {
 
 /** What there is to join parts at: nothing is colder than liquid nitrogen. */
 const CLI::Validator& Temperature() {
@@ -88,13 +89,87 @@ double Pick(const std::vector<double>& list, std::size_t k, double otherwise) {
   return list.empty() ? otherwise : list[std::min(k, list.size() - 1)];
 }
 
-Result<const fits::Material*> FindNamed(const std::string& name) {
-  const auto match = fits::FindMaterial(name);
-  if (!match) {
-    return Fail(ErrorCode::kNotFound, fmt::format("there is no material \"{}\"", name), {},
-                "name it as EN, DIN or AISI do: S355, 42CrMo4, 304, EN-GJL-250, CuSn8");
+/** A material as it is named, or as its values are given. */
+struct NamedMaterial {
+  fits::Material material;
+  std::string name;
+  fits::JoiningMaterial joining;
+};
+
+Unexpected NoMaterial(const std::string& what) {
+  return Fail(ErrorCode::kNotFound, what, {},
+              "name it as EN, DIN or AISI do (hvas fit materials has the list), and give values of "
+              "your own behind it or alone: \"S355 Re=400 alpha=12\", \"E=210 nu=0.3 Re=355\"");
+}
+
+/** Sets a value; E in GPa, Re and Rm in MPa, alpha and cold in 1e-6/K, rho in kg/m^3. */
+bool SetValue(std::string_view key, double value, NamedMaterial* named) {
+  fits::Material& m = named->material;
+  if (key == "E") {
+    m.youngs_modulus = units::FromGpa(value);
+  } else if (key == "nu") {
+    m.poisson_ratio = value;
+  } else if (key == "Re") {
+    m.yield_strength = units::FromMpa(value);
+  } else if (key == "Rm") {
+    m.tensile_strength = units::FromMpa(value);
+  } else if (key == "rho") {
+    m.density = value;
+  } else if (key == "alpha") {
+    m.thermal_expansion = named->joining.heating = 1e-6 * value;
+    named->joining.cooling = 0.77e-6 * value;
+    named->joining.source = "given; for cooling 0.77 of it unless cold is given";
+  } else if (key == "cold") {
+    named->joining.cooling = 1e-6 * value;
+  } else {
+    return false;
   }
-  return match->material;
+  return value > 0;
+}
+
+/** "S355", "S355 Re=400 alpha=12" or "E=210 nu=0.3 Re=355 alpha=11": a name, values, or both. */
+Result<NamedMaterial> FindNamed(const std::string& text) {
+  NamedMaterial named;
+  std::vector<std::string> values;
+  std::string base;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    at = end + 1;
+    if (word.find('=') != std::string::npos) {
+      values.push_back(word);
+    } else if (!word.empty()) {
+      base += (base.empty() ? "" : " ") + word;
+    }
+  }
+  if (!base.empty() || values.empty()) {
+    const auto match = fits::FindMaterial(base);
+    if (!match) {
+      return NoMaterial(fmt::format("there is no material \"{}\"", text));
+    }
+    named.material = *match->material;
+    named.name = std::string(match->material->name);
+  } else {
+    named.material = {"", "", 0, -1, 7850, 0, 0, 11e-6, ""};
+    named.name = "own";
+  }
+  named.joining = fits::FindJoiningMaterial(named.material);
+  for (const std::string& word : values) {
+    const std::size_t equals = word.find('=');
+    const std::optional<double> value = ParseNumber(std::string_view(word).substr(equals + 1));
+    if (!value || !std::isfinite(*value) ||
+        !SetValue(std::string_view(word).substr(0, equals), *value, &named)) {
+      return NoMaterial(
+          fmt::format("\"{}\" is no value over 0 of E [GPa], nu, Re, Rm [MPa], rho "
+                      "[kg/m3], alpha or cold [1e-6/K]",
+                      word));
+    }
+    named.name += " " + word;
+  }
+  if (!(named.material.youngs_modulus > 0) || !(named.material.poisson_ratio >= 0)) {
+    return NoMaterial(fmt::format("\"{}\" lacks E or nu", text));
+  }
+  return named;
 }
 
 void SetFriction(const FitArguments& a, const fits::Material& hub, const fits::Material& shaft,
@@ -136,25 +211,24 @@ Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
                 : a.smoothing == "din2001" ? fits::Smoothing::kDin2001
                                            : fits::Smoothing::kDin2017;
   const std::string both = a.material.empty() ? "S355" : a.material;
-  const Result<const fits::Material*> hub =
-      FindNamed(a.hub_material.empty() ? both : a.hub_material);
-  const Result<const fits::Material*> shaft =
-      FindNamed(a.shaft_material.empty() ? both : a.shaft_material);
+  const Result<NamedMaterial> hub = FindNamed(a.hub_material.empty() ? both : a.hub_material);
+  const Result<NamedMaterial> shaft = FindNamed(a.shaft_material.empty() ? both : a.shaft_material);
   if (!hub || !shaft) {
     return Unexpected((hub ? shaft : hub).error());
   }
-  p.hub = fits::ToPressMaterial(**hub);
-  p.shaft = fits::ToPressMaterial(**shaft);
-  options.hub_material = std::string((*hub)->name);
-  options.shaft_material = std::string((*shaft)->name);
-  options.hub_joining = fits::FindJoiningMaterial(**hub);
-  options.shaft_joining = fits::FindJoiningMaterial(**shaft);
+  p.hub = fits::ToPressMaterial(hub->material);
+  p.shaft = fits::ToPressMaterial(shaft->material);
+  options.hub_material = hub->name;
+  options.shaft_material = shaft->name;
+  options.hub_joining = hub->joining;
+  options.shaft_joining = shaft->joining;
+  options.room_c = a.room_c;
   options.hub_c = a.hub_c;
   options.shaft_c = a.shaft_c;
   options.join_speed = units::FromMm(a.join_speed_mm_s);
-  options.hub_heat = (*hub)->density * fits::SpecificHeatOf((*hub)->group);
-  options.shaft_heat = (*shaft)->density * fits::SpecificHeatOf((*shaft)->group);
-  SetFriction(a, **hub, **shaft, &options);
+  options.hub_heat = hub->material.density * fits::SpecificHeatOf(hub->material.group);
+  options.shaft_heat = shaft->material.density * fits::SpecificHeatOf(shaft->material.group);
+  SetFriction(a, hub->material, shaft->material, &options);
   return options;
 }
 
@@ -253,7 +327,10 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--chamfer-width", a->chamfer_width_mm,
                   "Of the chamfers of hole and shaft together, radially [mm]: widens the entry")
       ->check(NotNegative());
-  fit->add_option("--material", a->material, "Of both parts [S355]");
+  fit->add_option(
+      "--material", a->material,
+      "Of both parts [S355]; values of your own behind the name or alone: E=210 nu=0.3 Re=355 "
+      "alpha=11 (GPa, MPa, 1e-6/K)");
   fit->add_option("--hub-material", a->hub_material, "Of the hub");
   fit->add_option("--shaft-material", a->shaft_material, "Of the shaft");
   fit->add_option(
@@ -280,6 +357,10 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
                   "To join at [C]; says what play there is, and if it sticks")
       ->check(Temperature());
   fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(Temperature());
+  fit->add_option("--room", a->room_c,
+                  "Temperature at which the sizes hold, and of what is not heated or cooled [C]")
+      ->check(Temperature())
+      ->capture_default_str();
   fit->add_option("--join-speed", a->join_speed_mm_s, "Of joining by heat or cold [mm/s]")
       ->check(Positive())
       ->capture_default_str();
@@ -314,6 +395,7 @@ Result<void> CheckEffects(const CLI::App& fit) {
                                         {"--jamming", {"--length"}},
                                         {"--start", kBatch},
                                         {"--chamfer", {"--curve"}},
+                                        {"--room", {"--length"}},
                                         {"--hub-temp", {"--length"}},
                                         {"--shaft-temp", {"--length"}},
                                         {"--hub-temp", {"--hub"}},

@@ -11,7 +11,8 @@
 
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace hvas::app {
 
@@ -36,6 +37,7 @@ struct FitArguments {
   double cp{0}, cpk{0};
   std::string sizes;
   std::optional<double> hub_c, shaft_c;
+  double room_c{20};
   double join_speed_mm_s{20};
   std::string curve, jamming;
   double step_mm{0};
@@ -43,6 +45,11 @@ struct FitArguments {
   std::vector<double> load{0, 1, 0};  // N, N, N mm.
   bool is_json{false};
 };
+
+/** For options: numbers over 0, or of 0 or more. In words; the ones of CLI11 name the largest
+ number there is. */
+[[nodiscard]] const CLI::Validator& Positive();
+[[nodiscard]] const CLI::Validator& NotNegative();
 
 /** Adds them to the command. */
 void AddFitArguments(CLI::App* fit, FitArguments* arguments);

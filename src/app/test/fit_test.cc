@@ -238,6 +238,73 @@ TEST(FitCommand, JoiningTakesNoMoreColdThanThereIsAndNoMoreHeatThanTheHubBears) 
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--shaft-temp", "-300"}, "absolute zero");
 }
 
+// E = 105 GPa of both halves the pressure; Re = 400 MPa moves the margin.
+TEST(FitCommand, MaterialsMayHaveValuesOfTheirOwn) {
+  const auto card = [](const char* material, const char* room) {
+    return RunHvasJson({"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--mu", "0.15",
+                        "--material", material, "--room", room});
+  };
+  const json steel = card("S355", "20");
+  const json soft = card("E=105 nu=0.3 Re=355 alpha=22", "30");
+  EXPECT_NEAR(soft["press"]["most"]["pressure_mpa"].get<double>(),
+              0.5 * steel["press"]["most"]["pressure_mpa"].get<double>(), 1e-4);
+  EXPECT_NEAR(soft["joining"]["heat_hub_to_c"].get<double>(), 30 + 82 / (40e3 * 22e-6), 0.005);
+  const json strong = card("S355 Re=710", "20");
+  EXPECT_NEAR(strong["press"]["most"]["margin_tresca"].get<double>(),
+              2 * steel["press"]["most"]["margin_tresca"].get<double>(), 1e-6);
+  EXPECT_EQ(strong["joint"]["hub_material"], "S355JR Re=710");
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--material", "E=210"}, "lacks E or nu");
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--material", "S355 Re=-4"}, "Re=-4");
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--material", "S355 colour=4"}, "colour=4");
+}
+
+// PF1 of the dsoftcon manual: 70/140, L 60, 800 N m and 2.5 kN, nu 0.09, S 1.4 / 1.25 more: 34 MPa,
+// 30 um smoothed and 40 um in all with G = 10 um. The hub has E = 215 GPa there.
+TEST(FitCommand, DesignGoesFromTheLoadToTheInterferenceAndAFit) {
+  const json design = RunHvasJson({"fit",
+                                   "design",
+                                   "--nominal",
+                                   "70",
+                                   "--length",
+                                   "60",
+                                   "--hub",
+                                   "140",
+                                   "--torque",
+                                   "1000",
+                                   "--axial",
+                                   "3125",
+                                   "--safety",
+                                   "1.4",
+                                   "--mu",
+                                   "0.09",
+                                   "--rz",
+                                   "12.5",
+                                   "--hub-material",
+                                   "S355 E=215",
+                                   "--shaft-material",
+                                   "S355"});
+  EXPECT_NEAR(design["required_pressure_mpa"].get<double>(), 34, 0.2);
+  EXPECT_NEAR(design["required_interference_um"].get<double>(), 40, 0.5);
+  ASSERT_FALSE(design["proposals"].empty());
+  for (const json& fit : design["proposals"]) {
+    EXPECT_GE(fit["least_interference_um"].get<double>(),
+              design["required_interference_um"].get<double>());
+    EXPECT_GE(fit["margin_von_mises"].get<double>(), 1);
+    EXPECT_GE(fit["least_torque_nm"].get<double>(), 1.4 * 1000);
+  }
+  ExpectRefusal({"fit", "design", "--nominal", "40", "--length", "50"}, "--torque or --axial");
+  ExpectRefusal({"fit", "design", "--nominal", "40", "--length", "5", "--torque", "9000"},
+                "yields");
+}
+
+TEST(FitCommand, MaterialsAreListedWithWhatFitsTakeOfThem) {
+  const json materials = RunHvasJson({"fit", "materials"});
+  EXPECT_GE(materials.size(), 40U);
+  EXPECT_EQ(materials[1]["name"], "S355JR");
+  EXPECT_NEAR(materials[1]["cooling_per_k"].get<double>(), 8.5e-6, 1e-12);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "42CrMo4", RunHvas({"fit", "materials"}).out);
+}
+
 // W3: what people write for a diameter, and E8, which is a class and no power of ten.
 TEST(FitCommand, ReadsDiametersAsPeopleWriteThem) {
   const auto nominal_mm = [](const char* text) {
