@@ -85,7 +85,8 @@ export function launchBrowser() {
 }
 
 /** A page with a studio in it. `complaints`: what the browser has to say against it. `beforeLoad` gets the page
- before there is anything in it. */
+ before there is anything in it.
+ @param {import("playwright-core").Browser} browser  Of a known type, so that the linter sees steps that nobody waits for. */
 export async function openPage(browser, link, { beforeLoad = null, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
   const page = await context.newPage();

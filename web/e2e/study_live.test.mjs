@@ -8,7 +8,6 @@ import {
   clickFace,
   distance,
   fetchScene,
-  insertByMouse,
   launchBrowser,
   poseOf,
   runProgram,

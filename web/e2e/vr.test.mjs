@@ -8,7 +8,6 @@ import {
   launchBrowser,
   openPage,
   poseOf,
-  stateOf,
   takePicture,
   waitForPicture,
   waitForPlacement,

@@ -200,6 +200,18 @@ describe("the session", () => {
     expect(store.safety.value).toBeNull();
   });
 
+  it("shows why a file could not be opened, unless somebody has stopped it", async () => {
+    const { store } = await start();
+    const error = { code: "cancelled", message: "opening it was stopped", where: "a.step", remedy: "" };
+    FakeWorker.last.say({ event: "progress", stage: "read", fraction: 0.1, file: "a.step" });
+    FakeWorker.last.say({ event: "failed", error });
+    expect(store.loading.value).toBeNull();
+    expect(store.failure.value).toBeNull();
+    expect(store.log.value[0]).toMatchObject({ kind: "failed" });
+    FakeWorker.last.say({ event: "failed", error: { ...error, code: "invalid" } });
+    expect(store.failure.value?.code).toBe("invalid");
+  });
+
   it("answers each command once, and shows a refusal", async () => {
     const studio = await start();
     const answer = studio.command({ command: "take", hand: 0, occurrence: 1 });

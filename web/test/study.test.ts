@@ -99,18 +99,21 @@ describe("what is in sight", () => {
     expect(study.experimenter.value?.fit).toBe("H7/g6");
   });
 
-  it("has not begun before its clock runs, or where the time is hidden before its scene is there", () => {
+  it("has not begun before its scene is there and its clock runs, as far as the time is told", () => {
     const scene = (epoch: number) => (store.live.scene.value = { epoch, steps: [], occurrences: [] } as never);
     scene(4);
     study.take(told);
+    study.take(running);
+    expect(study.isLive.value, "the scene of the trial before is still seen").toBe(false);
     study.take({ ...running, elapsed_s: null });
+    scene(5);
     expect(study.isLive.value).toBe(false);
     study.take(running);
     expect(study.isLive.value).toBe(true);
     study.take(told);
     study.take({ ...running, elapsed_s: null, limit_s: null });
     expect(study.isLive.value).toBe(false);
-    scene(5);
+    scene(6);
     expect(study.isLive.value).toBe(true);
   });
 });

@@ -47,7 +47,7 @@ followCalm();
 calm.addEventListener("change", followCalm);
 effect(() => viewport.value?.rig.setReducedMotion(view.isCalm.value));
 effect(() => {
-  if (view.isSlow.value && !view.isFine.value) {
+  if (view.isSlow.value && view.quality.value === "auto") {
     studio.notify(t("notice.slow"));
   }
 });

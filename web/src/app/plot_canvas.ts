@@ -17,6 +17,7 @@ export interface Curve {
 
 /** Around the plot, as uPlot takes it: top, right, bottom, left [px]. */
 export const kPadding: uPlot.Padding = [6, 8, 0, 0];
+const kRight: uPlot.Axis.Side = 1;
 /** A press that moves less than this is a click [px]. */
 const kClickPx = 4;
 
@@ -32,7 +33,7 @@ export function makeAxis(scale: string, isBelow: boolean, side?: uPlot.Axis.Side
     size: isBelow ? 22 : 40,
     space: isBelow ? 60 : 16,
     gap: 4,
-    grid: { stroke: cssColor("--line"), width: 1, show: side !== 1 },
+    grid: { stroke: cssColor("--line"), width: 1, show: side !== kRight },
     ticks: { show: false },
     values: (_, all) => all.map((v) => number(v)),
     ...(side === undefined ? {} : { side }),

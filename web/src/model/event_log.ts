@@ -15,7 +15,7 @@ export const kRunsLength = 50;
 export interface WorkEvent {
   event: string;
   occurrence?: number | null;
-  state?: HoldState | number | string;
+  state?: number | string;
   was_seated?: boolean;
   metrics?: RunMetrics;
   reasons?: string[];

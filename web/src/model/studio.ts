@@ -210,7 +210,9 @@ export class Studio {
         break;
       case "failed":
         store.loading.value = null;
-        store.failure.value = event.error;
+        if (event.error.code !== "cancelled") {
+          store.failure.value = event.error;
+        }
         this.log({ kind: "failed", params: { text: event.error.message } });
         break;
       case "scene":

@@ -52,14 +52,15 @@ export class StudyModel {
     }
     return state.phase === "done" ? 1 : Math.min(1, Math.max(0, (state.trial - 1) / state.trials));
   });
-  /** The trial at hand has been laid out, and its clock runs. Where the time is hidden, its own scene tells. */
+  /** The trial at hand has been laid out on this page as well, and its clock runs; where the time is hidden, that is not
+   told. What is done before would be lost: the view begins anew with the trial's own scene. */
   readonly isLive = computed(() => {
     const state = this.state.value;
     if (state === null || !isTask(state)) {
       return false;
     }
     const hasNewScene = (this.store.scene.value?.epoch ?? null) !== this.epochBefore.value;
-    return state.limit_s === null ? hasNewScene : state.elapsed_s !== null;
+    return hasNewScene && (state.limit_s === null || state.elapsed_s !== null);
   });
   /** That the participant chose before the consent; null: none yet. */
   readonly chosenLanguage = signal<string | null>(null);

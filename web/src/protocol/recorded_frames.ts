@@ -126,7 +126,7 @@ export class RecordedFrames {
       next = key * kMomentsPerKey;
     }
     for (; next <= wanted; next++) {
-      yield this.bytes.slice(this.starts[next]!, this.starts[next + 1]!);
+      yield this.bytes.slice(this.starts[next], this.starts[next + 1]);
     }
   }
 }

@@ -20,6 +20,7 @@ import {
 import { kMaxContacts } from "../protocol/frame_store";
 import type { ContactPoint, HandState } from "../protocol/frames";
 import { toQuat, toVec3, type Pose } from "../model/math";
+import { Seen } from "../model/seen";
 import type { Palette } from "./palette";
 import type { PartShape } from "./part_shape";
 import { toMatrix } from "./parts";
@@ -127,6 +128,7 @@ export class FeelLayer {
   private readonly dots: InstancedMesh;
   private readonly axis: LineSegments<BufferGeometry, LineDashedMaterial>;
   private radius = 0.1;
+  private readonly seen = new Seen();
 
   constructor(private readonly scale: ArrowScale) {
     this.dots = new InstancedMesh(
@@ -175,8 +177,9 @@ export class FeelLayer {
     this.goal.root.visible = isShown && this.goal.root.children.length > 0;
   }
 
-  /** @param at  Where the arrows start: the centre of mass of the held part, in W. */
-  update(hand: HandState | null, contacts: readonly ContactPoint[], at: Vector3 | null, showsForces: boolean): void {
+  /** @param at  Where the arrows start: the centre of mass of the held part, in W.
+   @return Whether it looks otherwise than before. */
+  update(hand: HandState | null, contacts: readonly ContactPoint[], at: Vector3 | null, showsForces: boolean): boolean {
     this.updateArrows(hand, at, showsForces);
     this.updateContacts(showsForces ? contacts : []);
     this.updateAxis(hand);
@@ -188,6 +191,25 @@ export class FeelLayer {
       this.tracked.root.position.set(...pose.p);
       this.tracked.root.quaternion.copy(new Quaternion(pose.q[1], pose.q[2], pose.q[3], pose.q[0]));
     }
+    return this.seen.differs(hand === null ? [] : this.describe(hand, contacts, at, showsForces));
+  }
+
+  /** What is drawn of a hand, in lengths. */
+  private describe(hand: HandState, contacts: readonly ContactPoint[], at: Vector3 | null, showsForces: boolean): number[] {
+    const { perN, perNm } = this.scale.now;
+    return [
+      hand.state,
+      Number(showsForces),
+      ...(at?.toArray() ?? []),
+      ...hand.f_felt_W_n.map((v) => v * perN),
+      ...hand.t_felt_W_nm.map((v) => v * perNm),
+      ...hand.p_WT_m,
+      ...hand.q_WT,
+      ...hand.p_WD_m,
+      ...hand.p_WAxis_m,
+      ...hand.axis_W,
+      ...contacts.flatMap(({ p_WC_m: p, f_C_W_n: f }) => [...p, Math.hypot(...f) * perN]),
+    ];
   }
 
   private updateArrows(hand: HandState | null, at: Vector3 | null, showsForces: boolean): void {

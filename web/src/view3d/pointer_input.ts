@@ -126,6 +126,8 @@ export class PointerInput {
       case "none":
         this.hover(event);
         break;
+      case "taking":
+        break;
       case "press":
         if (gesture.takes && Math.hypot(x - gesture.x, y - gesture.y) > kClickPx && gesture.hit !== null) {
           this.gesture = { kind: "taking", x: gesture.x, y: gesture.y };

@@ -5,6 +5,7 @@ import { Group, Quaternion, Ray, Sphere, Vector3 } from "three";
 import { clearanceOf, type Box } from "../model/explode";
 import { Extrapolator } from "../model/extrapolate";
 import { toQuat, toVec3, type Pose } from "../model/math";
+import { Seen } from "../model/seen";
 import type { Store } from "../model/store";
 import type { ViewState } from "../model/view_state";
 import { kMaxHands, type FrameStore, type LiveState } from "../protocol/frame_store";
@@ -36,6 +37,7 @@ export class SceneView {
   private palette: Palette | null = null;
   private readonly versions = new Map<number, number>();
   private readonly poses = new Map<number, Pose>();
+  private readonly seen = new Map<number, Seen>();
   private readonly looks: PartLooks;
   private readonly extrapolators = new Map<number, Extrapolator>();
   private boxes = new Map<number, Box>();
@@ -194,6 +196,7 @@ export class SceneView {
   /** All of them are to be taken from the frames again. */
   forgetPoses(): void {
     this.versions.clear();
+    this.seen.clear();
     this.extrapolators.clear();
     this.generation = -1;
   }
@@ -217,6 +220,11 @@ export class SceneView {
 
   private place(occurrence: number, pose: Pose): void {
     this.poses.set(occurrence, pose);
+    const seen = this.seen.get(occurrence) ?? new Seen();
+    this.seen.set(occurrence, seen);
+    if (!seen.differs([...pose.p, ...pose.q])) {
+      return;
+    }
     if (!this.explode.isOn) {
       this.parts!.setPose(occurrence, pose);
     }
@@ -253,8 +261,8 @@ export class SceneView {
       }
       const contacts = live?.contacts.filter((contact) => contact.hand === k) ?? [];
       feel.setGoalShown(hand !== null && hand.state < 5 && isWhole);
-      feel.update(hand, contacts, hand === null ? null : this.centreOfMass(hand.occurrence), shows);
-      this.isDirty ||= hand !== null;
+      const centre = hand === null ? null : this.centreOfMass(hand.occurrence);
+      this.isDirty = feel.update(hand, contacts, centre, shows) || this.isDirty;
     });
   }
 

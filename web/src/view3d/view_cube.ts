@@ -64,15 +64,15 @@ export class ViewCube {
     const before = renderer.getViewport(new Vector4());
     this.aim(eye);
     renderer.clearDepth();
-    const { x, y } = corner(width, height);
+    const { x, y } = corner(width);
     renderer.setViewport(x, height - y - kPixels, kPixels, kPixels);
     renderer.render(this.scene, this.camera);
     renderer.setViewport(before);
   }
 
   /** The direction to look from when the pixel (from the top left) is clicked; null: beside the cube. */
-  pick(px: number, py: number, width: number, height: number): Vec3 | null {
-    const { x, y } = corner(width, height);
+  pick(px: number, py: number, width: number): Vec3 | null {
+    const { x, y } = corner(width);
     const at = new Vector2((2 * (px - x)) / kPixels - 1, 1 - (2 * (py - y)) / kPixels);
     if (Math.abs(at.x) > 1 || Math.abs(at.y) > 1) {
       return null;
@@ -96,7 +96,7 @@ export class ViewCube {
   }
 }
 
-function corner(width: number, _height: number): { x: number; y: number } {
+function corner(width: number): { x: number; y: number } {
   return { x: width - kPixels - kMargin, y: kMargin };
 }
 

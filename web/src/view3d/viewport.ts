@@ -138,7 +138,7 @@ export class Viewport {
   }
 
   pickCube(x: number, y: number): Vec3 | null {
-    return this.view.showsCube.peek() ? this.cube.pick(x, y, this.width, this.height) : null;
+    return this.view.showsCube.peek() ? this.cube.pick(x, y, this.width) : null;
   }
 
   refreshTheme(labels: CubeLabels): void {

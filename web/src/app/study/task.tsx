@@ -73,12 +73,13 @@ function TaskHint({ wasSet }: { wasSet: Signal<boolean | null> }) {
       fill.current.style.transform = `scaleX(${values.depthShare})`;
     }
   }, 60);
+  const isLive = studio.study.isLive.value;
   const isPicking = studio.study.isPicking.value;
-  const state = isPicking ? "empty" : (store.held.value[0]?.state ?? "empty");
+  const state = !isLive ? "loading" : isPicking ? "empty" : (store.held.value[0]?.state ?? "empty");
   return (
     <div class={`task-hint is-${state}`} ref={box} data-testid="task-hint" data-state={state}>
       <i class="task-dot" aria-hidden="true" />
-      <span role="status">{!studio.study.isLive.value ? t("study.loading") : isPicking ? pickHint(wasSet.value) : handHint()}</span>
+      <span role="status">{!isLive ? t("study.loading") : isPicking ? pickHint(wasSet.value) : handHint()}</span>
       <span class="task-depth" role="img" aria-label={t("hint.depth")}>
         <i ref={fill} />
       </span>
