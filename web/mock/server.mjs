@@ -1,6 +1,7 @@
 // A stand-in for the studio's server, to work on the page without it:
 //   npm run build && npm run mock -- --hvas ../build/dev/src/app/hvas --file ../products/gear_pump.step
-//   ... --study   a tiny study in place of the studio. SIGUSR1: somebody does the trial; SIGUSR2: all connections are lost
+//   ... --study   a tiny study in place of the studio. SIGUSR1: somebody puts the part half in, and wholly at the next one.
+//                 SIGUSR2: all connections are lost, until the next one.
 // It has the routes, headers and messages of docs/protocol.md, and a toy in place of the simulation.
 
 import { createServer } from "node:http";
@@ -53,8 +54,7 @@ let nextClient = 1;
 const clients = new Map();
 
 let study = null;
-const CUT_MS = 4000;
-let cutUntil = 0;
+let isCut = false;
 
 /** Without a study everybody is an operator. */
 function roleOf(request) {
@@ -88,7 +88,7 @@ function open(file) {
 
 const PART = 2;
 const LAY_OUT_MS = 500;
-const CALM_PACE = 0.3;
+let isHalting = false;
 
 /** All parts but one are in their places. */
 function layOut() {
@@ -236,7 +236,7 @@ const commands = {
 
 new WebSocketServer({ server, path: "/ws" }).on("connection", (socket, upgrade) => {
   const role = roleOf(upgrade);
-  if (role === undefined || performance.now() < cutUntil) {
+  if (role === undefined || isCut) {
     socket.close();
     return;
   }
@@ -315,11 +315,19 @@ setInterval(
     }),
   1000,
 );
-process.on("SIGUSR1", () => study?.isTask && simulation.startDemo(false, CALM_PACE));
-// As a network does that breaks down for a while.
+// Somebody puts the part half in; and then goes on.
+process.on("SIGUSR1", () => {
+  isHalting = study?.isTask === true && !simulation.demo;
+  if (isHalting) {
+    simulation.startDemo(false, () => isHalting);
+  }
+});
+// As a network does that breaks down; and then works again.
 process.on("SIGUSR2", () => {
-  cutUntil = performance.now() + CUT_MS;
-  clients.forEach((client) => client.socket.terminate());
+  isCut = !isCut;
+  if (isCut) {
+    clients.forEach((client) => client.socket.terminate());
+  }
 });
 if (options.file) {
   open(options.file);

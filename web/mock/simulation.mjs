@@ -19,6 +19,8 @@ const angle = (a, b) => 2 * Math.acos(Math.min(1, Math.abs(a.reduce((n, v, k) =>
 
 const FREE = 1, NEAR = 2, CAPTURED = 3, MATING = 4, SEATED = 5;
 const PERIOD = 1 / 60;
+/** Of the scripted person: corners of the way a second. */
+const PACE = 1.4;
 
 export class Simulation {
   constructor(scene, onEvent) {
@@ -211,12 +213,15 @@ export class Simulation {
   }
 
   /** A scripted person: lifts the expected part, carries it over its place and lowers it.
-   @param pace  Corners of its way a second. */
-  startDemo(isEndless, pace = 1.4) {
+   @param isHalting  Asked when the part is half in: whether they stop there for now. */
+  startDemo(isEndless, isHalting = () => false) {
     let phase = 0;
     let t = 0;
     let from = null;
     this.demo = () => {
+      if (this.state === MATING && this.hand.depth_m > 0.5 * this.length && isHalting()) {
+        return;
+      }
       t += PERIOD;
       if (phase === 0) {
         if (this.expected === null) {
@@ -236,7 +241,7 @@ export class Simulation {
         const goal = add(this.held.part.goal.p, rotate(this.held.part.goal.q, this.held.part.p_BoBcm_m));
         const high = Math.max(from.p[2], goal[2]) + 2 * this.length;
         const path = [from.p, [from.p[0], from.p[1], high], [goal[0], goal[1], high], add(goal, [0, 0, -0.004])];
-        const s = Math.min(2.999, t * pace);
+        const s = Math.min(2.999, t * PACE);
         const k = Math.floor(s);
         this.input = { p_WH_m: add(path[k], times(sub(path[k + 1], path[k]), s - k)), q_WH: this.held.part.goal.q };
         if (this.state !== SEATED) {
