@@ -1,4 +1,4 @@
-/** What a test that drives the page from outside may look at; nothing here changes anything. */
+/** What a test that drives the page from outside may look at or wait for; nothing here changes anything. */
 
 import { nowMs } from "../protocol/frame_store";
 import type { RoomHand } from "../view3d/vr/host";
@@ -13,11 +13,15 @@ interface Seen {
 export interface StudioHooks {
   readonly framesDrawn: number;
   state(): unknown;
+  /** On a clock that goes on as the server's frames come [ms]; 0 before the first one. */
+  readonly sessionMs: number;
+  /** Until the server has answered, and with it all that this page has sent before. */
+  hasAnswered(): Promise<void>;
   /** As it is drawn: position [m] and quaternion w, x, y, z in W. */
   pose(occurrence: number): unknown;
-  /** Of the middle of a part: client pixels, and whether it is what one sees there. */
+  /** Of the middle of a part, or of what of it no other part and no panel covers: client pixels. */
   screen(occurrence: number): Seen | null;
-  /** A client pixel at which one sees this face of a part, or null. */
+  /** A client pixel at which one sees this face of a part and can click it, or null. */
   screenOfFace(occurrence: number, face: number): Seen | null;
   /** For somebody in VR, in the room [m], Y up, the floor at 0: where the middle of a part is, how W stands
    there, where a button of a panel is, and both hands. */
@@ -42,6 +46,11 @@ declare global {
 function toClient(at: { x: number; y: number }): { x: number; y: number } {
   const box = viewport.value!.canvas.getBoundingClientRect();
   return { x: box.left + at.x, y: box.top + at.y };
+}
+
+/** No panel lies over the picture there. */
+function isOnPicture({ x, y }: { x: number; y: number }): boolean {
+  return document.elementFromPoint(x, y) === viewport.value!.canvas;
 }
 
 function world(): { p: number[]; q: number[]; scale: number } {
@@ -74,8 +83,9 @@ function screen(occurrence: number): Seen | null {
     for (let k = 0; k < (share === 0 ? 1 : 16); k++) {
       const angle = (k * Math.PI) / 8;
       const probe = { x: at.x + share * reach * Math.cos(angle), y: at.y + share * reach * Math.sin(angle) };
-      if (port.product.pick(port.rayAt(probe.x, probe.y))?.occurrence === occurrence) {
-        return { ...toClient(probe), isVisible: true };
+      const seen = toClient(probe);
+      if (isOnPicture(seen) && port.product.pick(port.rayAt(probe.x, probe.y))?.occurrence === occurrence) {
+        return { ...seen, isVisible: true };
       }
     }
   }
@@ -99,9 +109,10 @@ function screenOfFace(occurrence: number, face: number): Seen | null {
       middle.addScaledVector(corner.fromArray(shape.positions, 3 * (triangles[k + c] ?? 0)), 1 / 3);
     }
     const at = port.project(middle.applyMatrix4(matrix).toArray());
-    const hit = port.product.pick(port.rayAt(at.x, at.y));
+    const seen = toClient(at);
+    const hit = isOnPicture(seen) ? port.product.pick(port.rayAt(at.x, at.y)) : null;
     if (hit?.occurrence === occurrence && hit.face === face) {
-      return { ...toClient(at), isVisible: true };
+      return { ...seen, isVisible: true };
     }
   }
   return null;
@@ -137,11 +148,15 @@ export function exposeHooks(): void {
     get framesDrawn() {
       return viewport.value?.framesDrawn ?? 0;
     },
+    get sessionMs() {
+      return viewport.value?.live?.sentMs ?? 0;
+    },
+    hasAnswered: async () => void (await studio.command({ command: "status" })),
     state: () => ({
       link: store.link.value,
       role: store.role.value,
       hasLease: store.hasLease.value,
-      hasScene: viewport.value?.product.parts != null,
+      hasScene: viewport.value?.product.parts != null && viewport.value.product.scene === store.scene.value,
       epoch: store.scene.value?.epoch ?? null,
       step: store.step.value,
       held: store.held.value,
