@@ -47,6 +47,11 @@ export default defineConfig(
         "error",
         { allowForKnownSafeCalls: [{ from: "package", name: ["describe", "it", "before", "after"], package: "node:test" }] },
       ],
+      "no-restricted-globals": ["error", "setTimeout", "setInterval"],
+      "no-restricted-properties": [
+        "error",
+        { property: "waitForTimeout", message: "Wait for the condition that the time would stand for; see harness.mjs." },
+      ],
     },
   },
 );

@@ -6,12 +6,14 @@ import {
   fetchScene,
   launchBrowser,
   openPage,
+  passSession,
   poseOf,
+  shareStudio,
   stateOf,
-  takeByMouse,
   takePicture,
   waitForPicture,
   waitForPlacement,
+  waitForRest,
   waitForState,
   withStudio,
 } from "./harness.mjs";
@@ -25,17 +27,14 @@ before(async () => {
 });
 after(() => browser.close());
 
-/** Holds the shaft over the table, with somebody who looks on. */
-async function holdShaft(studio) {
-  const { page } = await openPage(browser, studio.operator);
-  await waitForPicture(page);
-  const { page: viewer } = await openPage(browser, studio.viewer);
-  await waitForPicture(viewer);
-  await takeByMouse(page, kShaft);
+/** The mouse takes hold of the shaft, which may be in the hand already, and holds it higher. */
+async function liftShaft(page) {
   const at = await page.evaluate((id) => window.hvas.screen(id), kShaft);
-  await page.mouse.move(at.x, at.y - 90, { steps: 10 });
-  await page.waitForTimeout(1500);
-  return { page, viewer };
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.move(at.x, at.y - 70, { steps: 4 });
+  await waitForPlacement(page, kShaft, "held");
+  await waitForRest(page, kShaft);
 }
 
 /** The hand moves the part again. */
@@ -44,10 +43,23 @@ async function goesOn(page) {
   const at = await page.evaluate((id) => window.hvas.screen(id), kShaft);
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();
-  await page.mouse.move(at.x - 70, at.y, { steps: 10 });
-  await page.waitForTimeout(1500);
-  assert.ok(distance(await poseOf(page, kShaft), before) > 0.01, "it goes on from there");
+  await page.mouse.move(at.x - 70, at.y, { steps: 4 });
+  assert.ok(distance(await waitForRest(page, kShaft), before) > 0.01, "it goes on from there");
   await page.mouse.up();
+}
+
+/** The page's main thread stands still until it is told to go on, as where it is busy with something else; its worker
+ does not. */
+async function freeze(page) {
+  const client = await page.context().newCDPSession(page);
+  await client.send("Debugger.enable");
+  const paused = new Promise((resolve) => client.once("Debugger.paused", resolve));
+  await client.send("Debugger.pause");
+  await paused;
+  return async () => {
+    await client.send("Debugger.resume");
+    await client.detach();
+  };
 }
 
 /** No force in the hand, the part where it was; the banner says why. */
@@ -57,33 +69,40 @@ async function findsForceTakenBack(viewer) {
   const state = await waitForState(viewer, ({ hands }) => hands.length > 0 && Math.hypot(...hands[0].f_felt_W_n) < 1e-3);
   assert.equal(state.held[0]?.occurrence, kShaft, "the part stays in the hand");
   const still = await poseOf(viewer, kShaft);
-  await viewer.waitForTimeout(700);
+  await passSession(viewer, 500);
   assert.ok(distance(await poseOf(viewer, kShaft), still) < 1e-4, "and where it is");
 }
 
 describe("a page that steers", () => {
-  it("stands still: the force goes, the part stays, and it goes on later", withStudio([kBushing], async (studio) => {
-    const { page, viewer } = await holdShaft(studio);
-    const stuck = page.evaluate(() => {
-      const end = performance.now() + 6000;
-      while (performance.now() < end) {
-        // As a page that is busy with something else.
-      }
-    });
+  const studio = shareStudio([kBushing]);
+  let page;
+  let viewer;  // somebody who looks on
+  before(async () => {
+    ({ page } = await openPage(browser, studio.operator));
+    ({ page: viewer } = await openPage(browser, studio.viewer));
+    await waitForPicture(page);
+    await waitForPicture(viewer);
+  });
+  after(async () => {
+    await page.context().close();
+    await viewer.context().close();
+  });
+
+  it("stands still: the force goes, the part stays, and it goes on later", async () => {
+    await liftShaft(page);
+    const goOn = await freeze(page);
     await findsForceTakenBack(viewer);
     await takePicture(viewer, "fault_stuck_viewer");
-    await stuck;
+    await goOn();
     await page.getByTestId("safety").waitFor();
     await takePicture(page, "fault_stuck_operator");
     await page.mouse.up();
     await goesOn(page);
     await waitForState(viewer, ({ safety }) => safety === null);
-    await page.context().close();
-    await viewer.context().close();
-  }));
+  });
 
-  it("is out of sight: the same, and it goes on when it comes back", withStudio([kBushing], async (studio) => {
-    const { page, viewer } = await holdShaft(studio);
+  it("is out of sight: the same, and it goes on when it comes back", async () => {
+    await liftShaft(page);
     const hide = (isHidden) =>
       page.evaluate((hidden) => {
         Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
@@ -94,12 +113,10 @@ describe("a page that steers", () => {
     await hide(false);
     await page.mouse.up();
     await goesOn(page);
-    await page.context().close();
-    await viewer.context().close();
-  }));
+  });
 
-  it("is loaded anew with a part in the hand: one goes on with it, or lets it go", withStudio([kBushing], async (studio) => {
-    const { page, viewer } = await holdShaft(studio);
+  it("is loaded anew with a part in the hand: one goes on with it, or lets it go", async () => {
+    await liftShaft(page);
     await page.mouse.up();
     await page.reload();
     await waitForPicture(page);
@@ -109,19 +126,14 @@ describe("a page that steers", () => {
     await goesOn(page);
     await page.keyboard.press("r");
     await waitForPlacement(page, kShaft, "loose");
-    await page.context().close();
-    await viewer.context().close();
-  }));
+  });
 
-  it("says that the connection is lost when the program ends", withStudio([kBushing], async (studio) => {
-    const { page } = await openPage(browser, studio.operator);
-    await waitForPicture(page);
+  it("says that the connection is lost when the program ends", async () => {
     await studio.stop();
     await waitForState(page, ({ link }) => link === "lost");
     await page.getByText(/connection is lost/i).first().waitFor();
     await takePicture(page, "fault_lost");
-    await page.context().close();
-  }));
+  });
 });
 
 describe("opening", () => {
@@ -145,7 +157,8 @@ describe("opening", () => {
     await page.getByTestId("drop-zone").click();
     await (await chooser).setFiles({ name: "large.step", mimeType: "model/step", buffer: Buffer.alloc(4_000_000, "x") });
     await page.getByTestId("loading").waitFor();
-    await page.waitForTimeout(1000);
+    const sent = page.getByTestId("loading").getByRole("progressbar");
+    await sent.and(page.locator(':not([aria-valuenow="0"])')).waitFor();  // some of it is on its way
     await takePicture(page, "upload");
     await page.getByTestId("cancel-open").click();
     await page.getByTestId("loading").waitFor({ state: "detached" });
@@ -164,7 +177,8 @@ describe("opening", () => {
     await (await chooser).setFiles("../products/frame_500.step");
     await page.getByTestId("cancel-open").click({ timeout: 20_000 });
     await page.getByTestId("loading").waitFor({ state: "detached" });
-    await page.waitForTimeout(3000);
+    await page.getByRole("log").filter({ hasText: "opening it was stopped" }).waitFor({ state: "attached" });  // the server's last word on this file
+    assert.equal(await page.getByTestId("failure").count(), 0, "nothing is complained about");
     assert.equal((await fetchScene(page)).epoch, epoch);
     assert.equal((await stateOf(page)).hasScene, true);
     await takePicture(page, "open_cancelled");

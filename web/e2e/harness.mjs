@@ -1,19 +1,34 @@
 // A studio of one's own for each test, and a browser that looks at it as a person would.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { copyFileSync, mkdirSync, mkdtempSync } from "node:fs";
+import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
+import { after, before } from "node:test";
 import { chromium } from "playwright-core";
 
 const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
 const kChromium = process.env["HVAS_CHROMIUM"] ?? "/usr/bin/chromium";
+const kAxe = readFileSync("node_modules/axe-core/axe.min.js", "utf8");
 mkdirSync(kPictures, { recursive: true });
 
-/** Starts `hvas studio`; its links, and how to end it. */
+const folders = [];
+process.on("exit", () => folders.forEach((folder) => rmSync(folder, { recursive: true, force: true })));
+
+/** An empty folder of one's own, which goes with the tests. */
+export function makeFolder() {
+  folders.push(mkdtempSync(join(tmpdir(), "hvas-e2e-")));
+  return folders.at(-1);
+}
+
+/** Starts `hvas studio`; its links, and how to end it. It keeps nothing with what its user keeps, and finds nothing there. */
 export async function startStudio(args = []) {
-  const child = spawn(kProgram, ["studio", "--no-open", ...args], { stdio: ["ignore", "pipe", "inherit"] });
+  const home = makeFolder();
+  const child = spawn(kProgram, ["studio", "--no-open", ...args], {
+    stdio: ["ignore", "pipe", "inherit"],
+    env: { ...process.env, XDG_DATA_HOME: home, XDG_STATE_HOME: home },
+  });
   let said = "";
   await new Promise((resolve, reject) => {
     child.stdout.on("data", (bytes) => {
@@ -63,6 +78,14 @@ export function withStudio(args, run) {
   };
 }
 
+/** For a group of tests that go on from one another: a studio that begins and ends with them. */
+export function shareStudio(args) {
+  const studio = {};
+  before(async () => Object.assign(studio, await startStudio(args)));
+  after(async () => assert.equal(await studio.stop(), 0, "it ends well when it is told to"));
+  return studio;
+}
+
 /** Runs `hvas` to its end; what it prints. */
 export function runProgram(args) {
   return execFileSync(kProgram, args, { encoding: "utf8", stdio: ["ignore", "pipe", "inherit"] });
@@ -70,26 +93,31 @@ export function runProgram(args) {
 
 /** A copy of a file in a folder of its own, with what belongs to it beside it. */
 export function copyToTemporary(files) {
-  const folder = mkdtempSync(join(tmpdir(), "hvas-e2e-"));
+  const folder = makeFolder();
   for (const file of files) {
     copyFileSync(file, join(folder, basename(file)));
   }
   return join(folder, basename(files[0]));
 }
 
+/** Without a graphics processor; smooth edges would make each picture take twice as long. */
 export function launchBrowser() {
-  return chromium.launch({
-    executablePath: kChromium,
-    args: ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
+  const kDrawing = ["--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--webgl-antialiasing-mode=none"];
+  return chromium.launch({ executablePath: kChromium, args: ["--no-sandbox", ...kDrawing] });
 }
 
 /** A page with a studio in it. `complaints`: what the browser has to say against it. `beforeLoad` gets the page
- before there is anything in it.
+ before there is anything in it. `isPlain`: set up as by the user of a slow machine, small, without shadows and without
+ motion that is not needed, for there is no graphics processor here. Tests that are about the picture have all of it.
  @param {import("playwright-core").Browser} browser  Of a known type, so that the linter sees steps that nobody waits for. */
-export async function openPage(browser, link, { beforeLoad = null, ...options } = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+export async function openPage(browser, link, { beforeLoad = null, isPlain = true, ...options } = {}) {
+  const viewport = isPlain ? { width: 1024, height: 640 } : { width: 1280, height: 720 };
+  const reducedMotion = isPlain ? "reduce" : "no-preference";
+  const context = await browser.newContext({ viewport, reducedMotion, ...options });
   const page = await context.newPage();
+  if (isPlain) {
+    await page.addInitScript(prefer, { quality: "low" });
+  }
   const complaints = [];
   page.on("pageerror", (error) => complaints.push(error.message));
   page.on("console", (message) => {
@@ -100,6 +128,14 @@ export async function openPage(browser, link, { beforeLoad = null, ...options } 
   await beforeLoad?.(page);
   await page.goto(link);
   return { page, complaints };
+}
+
+/** In the page, before anything else: what its user has set up before. */
+function prefer(preferences) {
+  const kKey = "hvas-studio";  // of app/preferences.ts
+  if (localStorage.getItem(kKey) === null) {
+    localStorage.setItem(kKey, JSON.stringify(preferences));
+  }
 }
 
 /** Until this much of a scene has been drawn. */
@@ -119,16 +155,17 @@ export function fetchScene(page) {
   return page.evaluate(async () => (await fetch("/api/scene")).json());
 }
 
-/** Until a part is there: "loose", "held", "placed". */
+/** Until the page has been told that a part is there ("loose", "held", "placed"), and the server says so as well. */
 export async function waitForPlacement(page, occurrence, placement, timeout = 30_000) {
   const end = Date.now() + timeout;
   let found = "";
   while (Date.now() < end) {
+    await waitForState(page, ({ placements }) => placements[occurrence] === placement, end - Date.now());
     found = (await fetchScene(page)).occurrences?.[occurrence].placement; // none while it is being changed
     if (found === placement) {
       return;
     }
-    await page.waitForTimeout(200);
+    await nextFrame(page);
   }
   throw new Error(`part ${occurrence} is ${found} and not ${placement} after ${timeout} ms`);
 }
@@ -147,10 +184,13 @@ export function dropFile(page, name, text) {
   );
 }
 
-/** What axe has against the page as it is; the page has to be opened with `bypassCSP`. */
+/** What axe has against the page as it is (WCAG 2.2 AA). */
 export async function findBarriers(page) {
-  await page.addScriptTag({ path: "node_modules/axe-core/axe.min.js" });
-  const found = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "wcag22aa"] }));
+  if (!(await page.evaluate(() => "axe" in window))) {
+    await page.evaluate(kAxe);  // as by the browser's own tools: the page's policy lets no script in
+  }
+  const kOptions = { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "wcag22aa"], resultTypes: ["violations"] };
+  const found = await page.evaluate((options) => window.axe.run(document, options), kOptions);
   return found.violations.map((v) => `${v.id}: ${v.nodes[0]?.html}`);
 }
 
@@ -158,23 +198,103 @@ export function stateOf(page) {
   return page.evaluate(() => window.hvas.state());
 }
 
-/** Until what the page knows is so; returns it. */
+/** Until what the page knows is so; returns it. It is asked once for each of its pictures. */
 export async function waitForState(page, isSo, timeout = 20_000) {
   const end = Date.now() + timeout;
-  let state;
-  while (Date.now() < end) {
-    state = await stateOf(page);
-    if (isSo(state)) {
-      return state;
+  let state = await stateOf(page);
+  while (!isSo(state)) {
+    if (Date.now() > end) {
+      throw new Error(`not so after ${timeout} ms: ${isSo}, but ${JSON.stringify(state)}`);
     }
-    await page.waitForTimeout(50);
+    await nextFrame(page);
+    state = await stateOf(page);
   }
-  throw new Error(`not so after ${timeout} ms: ${isSo}, but ${JSON.stringify(state)}`);
+  return state;
+}
+
+/** Until the page has had the time to draw so many pictures, whether it had anything to draw or not. What it has
+ heard of before is seen after two: the one that was under way, and one more. */
+export function nextFrame(page, count = 1) {
+  return page.evaluate(
+    (wanted) =>
+      new Promise((resolve) => {
+        let left = wanted;
+        const step = () => (left-- > 0 ? requestAnimationFrame(step) : resolve());
+        step();
+      }),
+    count,
+  );
+}
+
+/** Until no transition of the page's style is under way, and the picture has followed it. */
+export async function waitForCalm(page) {
+  await nextFrame(page, 2);
+  await page.evaluate(() => {
+    const ends = document.getAnimations().filter((each) => each.effect.getComputedTiming().endTime !== Infinity);
+    return Promise.allSettled(ends.map((each) => each.finished));
+  });
+  await nextFrame(page, 2);
+}
+
+/** Until the server has answered all that the page has sent it so far: what that has led to is known by then. */
+export function waitForAnswer(page) {
+  return page.evaluate(() => window.hvas.hasAnswered());
+}
+
+/** Until the session has gone on by so much [ms], by the clock of the frames that the page gets. */
+export async function passSession(page, ms) {
+  const from = await page.evaluate(() => window.hvas.sessionMs);
+  await page.waitForFunction((to) => window.hvas.sessionMs >= to, from + ms, { timeout: 30_000 });
+}
+
+/** A thing rests that is the same in so many pictures of the page, and for so long of the session [ms]: a hand that
+ has been told to move on does so within a few milliseconds. */
+const kStill = { frames: 4, sessionMs: 200, most: 1e-4 };
+
+/** Until what is read stays the same, but for `most` in each of its numbers; returns it. Null is nothing to wait for.
+ @param options.isOver  Whether it is of no interest any more: a session may end on the way. */
+export async function waitForStill(page, read, options = {}, timeout = 30_000) {
+  const { frames, sessionMs, most, isOver } = { ...kStill, ...options };
+  const end = Date.now() + timeout;
+  const look = async () => ({ seen: await read(), at: await page.evaluate(() => window.hvas.sessionMs) });
+  const numbers = (seen) => Object.values(seen).flat();
+  const isSame = (a, b) => numbers(a).every((v, k) => Math.abs(v - numbers(b)[k]) <= most);
+  let since = await look();
+  let now = since;
+  for (let count = 0; now.seen !== null && (count < frames || now.at - since.at < sessionMs); count++) {
+    if (await isOver?.()) {
+      break;
+    }
+    if (Date.now() > end) {
+      throw new Error(`${JSON.stringify(now.seen)} is not at rest after ${timeout} ms; it was ${JSON.stringify(since.seen)}`);
+    }
+    await nextFrame(page);
+    now = await look();
+    if (now.seen !== null && !isSame(now.seen, since.seen)) {
+      [since, count] = [now, -1];
+    }
+  }
+  return now.seen;
 }
 
 /** Of a part, as the page draws it, in W. */
 export function poseOf(page, occurrence) {
   return page.evaluate((id) => window.hvas.pose(id), occurrence);
+}
+
+/** Until a part lies, hangs or is held still; its pose. */
+export function waitForRest(page, occurrence, options = {}) {
+  return waitForStill(page, () => poseOf(page, occurrence), options);
+}
+
+/** Until the eye stands still: points beside each other are seen where they were, to a fraction of a pixel. */
+export function waitForView(page) {
+  const seen = () =>
+    page.evaluate(() => {
+      const points = [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]].map((p) => window.hvas.project(p));
+      return points.flatMap(({ x, y }) => [x, y]);
+    });
+  return waitForStill(page, seen, { frames: 3, sessionMs: 0, most: 0.05 });
 }
 
 /** Between the origins of two poses [m]. */
@@ -200,37 +320,32 @@ export async function takeByMouse(page, occurrence) {
   await waitForPlacement(page, occurrence, "held");
 }
 
+/** Moves the mouse to where a point of W is seen; it is told of on the way as well, as that of a person. */
+async function moveMouseTo(page, p_W) {
+  const to = await page.evaluate((p) => window.hvas.project(p), p_W);
+  await page.mouse.move(to.x, to.y, { steps: 6 });
+}
+
 /** Selects a part that is in its place, and draws it out upwards; the button stays down. */
 export async function takeOutByMouse(page, occurrence, goal, height = 0.12) {
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   await page.mouse.click(at.x, at.y);
   await page.waitForFunction((id) => window.hvas.state().selected.includes(id), occurrence);
-  await page.waitForTimeout(500);  // or it would be a double click
-  await takeByMouse(page, occurrence);
+  await takeByMouse(page, occurrence);  // a press of its own: the browser is told which one is the second of a double click
   const [low, high] = await page.evaluate(
     ([[x, y, z], up]) => [window.hvas.project([x, y, z]), window.hvas.project([x, y, z + up])],
     [goal, height],
   );
-  const kSteps = 12;
-  for (let k = 1; k <= kSteps; k++) {
-    const share = k / kSteps;
-    await page.mouse.move(at.x + share * (high.x - low.x), at.y + share * (high.y - low.y), { steps: 3 });
-    await page.waitForTimeout(250);
-  }
+  await page.mouse.move(at.x + high.x - low.x, at.y + high.y - low.y, { steps: 12 });
+  await waitForRest(page, occurrence);
 }
 
-/** Takes hold of a part with the mouse and moves it over its place and in, as far as it goes. */
+/** Takes hold of a part with the mouse and moves it over its place and in, as far as it goes; the button stays down. */
 export async function insertByMouse(page, occurrence, goal, height = 0.12) {
   await takeByMouse(page, occurrence);
-  const kSteps = 14;
-  for (let k = 0; k <= kSteps; k++) {
-    const above = height * (1 - k / (kSteps - 2));
-    const to = await page.evaluate(([x, y, z]) => window.hvas.project([x, y, z]), [
-      goal[0],
-      goal[1],
-      goal[2] + Math.max(-0.01, above),
-    ]);
-    await page.mouse.move(to.x, to.y, { steps: 3 });
-    await page.waitForTimeout(350);
-  }
+  await moveMouseTo(page, [goal[0], goal[1], goal[2] + height]);
+  await waitForRest(page, occurrence);
+  await moveMouseTo(page, [goal[0], goal[1], goal[2] - 0.01]);
+  // What is seated is let go after a while, and is in its place then.
+  await waitForState(page, ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed");
 }

@@ -7,13 +7,17 @@ import {
   fetchScene,
   findBarriers,
   launchBrowser,
+  nextFrame,
   openPage,
+  poseOf,
+  shareStudio,
   stateOf,
   takePicture,
+  waitForCalm,
   waitForPicture,
   waitForPlacement,
+  waitForRest,
   waitForState,
-  withStudio,
 } from "./harness.mjs";
 
 const kBushing = "../products/bushing.step";
@@ -25,8 +29,6 @@ before(async () => {
   browser = await launchBrowser();
 });
 after(() => browser.close());
-
-const poseOf = (page, occurrence) => page.evaluate((id) => window.hvas.pose(id), occurrence);
 
 function assertSamePose(a, b) {
   [...a.p, ...a.q].forEach((v, k) => assert.ok(Math.abs(v - [...b.p, ...b.q][k]) < 1e-6, `${JSON.stringify(a)} is not ${JSON.stringify(b)}`));
@@ -40,8 +42,7 @@ async function recordStep(page, occurrence) {
   await page.evaluate(() => document.activeElement?.blur());
   await page.keyboard.press("n");
   await waitForPlacement(page, occurrence, "placed", 90_000);
-  await page.waitForTimeout(700);
-  const after = await poseOf(page, occurrence);
+  const after = await waitForRest(page, occurrence);
   await page.getByTestId("rec").click();
   await page.getByTestId("open-last").waitFor({ timeout: 30_000 });
   return { before, after };
@@ -54,24 +55,32 @@ async function openLast(page) {
 }
 
 describe("a recording", () => {
-  it("plays as it was: any moment, forward and back, by keys, mouse and link", withStudio([kBushing], async (studio) => {
-    const { page, complaints } = await openPage(browser, studio.operator);
+  const studio = shareStudio([kBushing]);
+  let page;
+  let complaints;
+  let poses;
+  before(async () => {
+    ({ page, complaints } = await openPage(browser, studio.operator, { acceptDownloads: true }));
     await waitForPicture(page);
-    const { before, after } = await recordStep(page, kBushingPart);
+    poses = await recordStep(page, kBushingPart);
+  });
+  after(() => page.context().close());
+
+  it("plays as it was: any moment, forward and back, by keys, mouse and link", async () => {
     const opened = await openLast(page);
     assert.equal(opened.placements[kBushingPart], "loose");
     const kinds = opened.playback.marks.map((mark) => mark.kind);
     for (const kind of ["taken", "captured", "seated", "dropped"]) {
       assert.ok(kinds.includes(kind), `${kind} is marked: ${kinds}`);
     }
-    await page.waitForTimeout(500);
-    assertSamePose(await poseOf(page, kBushingPart), before);
+    await nextFrame(page, 2);
+    assertSamePose(await poseOf(page, kBushingPart), poses.before);
 
     await page.getByTestId("timeline").focus();
     await page.keyboard.press("End");
     await waitForState(page, (state) => state.placements[1] === "placed");
-    await page.waitForTimeout(500);
-    assertSamePose(await poseOf(page, kBushingPart), after);
+    await nextFrame(page, 2);
+    assertSamePose(await poseOf(page, kBushingPart), poses.after);
     await takePicture(page, "recording_end");
 
     await page.keyboard.press("Home");
@@ -86,8 +95,8 @@ describe("a recording", () => {
     await page.getByTestId("speed").selectOption("8");
     await page.getByTestId("button-play").click();
     await waitForState(page, (state) => !state.playback.isPlaying && state.placements[1] === "placed", 60_000);
-    await page.waitForTimeout(500);
-    assertSamePose(await poseOf(page, kBushingPart), after);
+    await nextFrame(page, 2);
+    assertSamePose(await poseOf(page, kBushingPart), poses.after);
 
     const box = await page.getByTestId("timeline").boundingBox();
     await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.3 * box.height);
@@ -104,31 +113,9 @@ describe("a recording", () => {
     const live = await waitForState(page, (state) => state.playback === null && state.placements[1] === "placed");
     assert.ok(live.hasLease);
     assert.deepEqual(complaints, []);
-    await page.context().close();
-  }));
+  });
 
-  it("of another product brings that product, and live work comes back after it", withStudio([kBushing], async (studio) => {
-    const { page } = await openPage(browser, studio.operator);
-    await waitForPicture(page);
-    await recordStep(page, kBushingPart);
-    await dropFile(page, "gear_pump.step", readFileSync(kPump, "utf8"));
-    const isPump = (state) => Object.keys(state.placements).length === 38;
-    await waitForState(page, isPump, 120_000);
-    await openLast(page);
-    await waitForState(page, (state) => Object.keys(state.placements).length === 3);
-    await takePicture(page, "recording_of_another");
-    await page.getByTestId("back-to-live").click();
-    await waitForState(page, isPump);
-    assert.equal((await fetchScene(page)).occurrences.length, 38);
-    await page.context().close();
-  }));
-});
-
-describe("the list of recordings", () => {
-  it("opens, downloads, compares and deletes them; axe finds nothing", withStudio([kBushing], async (studio) => {
-    const { page } = await openPage(browser, studio.operator, { bypassCSP: true, acceptDownloads: true });
-    await waitForPicture(page);
-    await recordStep(page, kBushingPart);
+  it("is in a list, which opens, downloads, compares and deletes; axe finds nothing", async () => {
     await page.keyboard.press("Control+z");
     await waitForPlacement(page, kBushingPart, "loose");
     await recordStep(page, kBushingPart);
@@ -150,7 +137,7 @@ describe("the list of recordings", () => {
     await page.getByTestId("compare-table").waitFor({ timeout: 30_000 });
     await page.getByTestId("compare-part").selectOption({ index: 1 });
     await page.getByRole("radio", { name: "Depth" }).click();
-    await page.waitForTimeout(500);
+    await waitForCalm(page);
     assert.match(await page.getByTestId("compare-table").innerText(), /%/);
     await takePicture(page, "compare");
     assert.deepEqual(await findBarriers(page), []);
@@ -162,6 +149,19 @@ describe("the list of recordings", () => {
       (left) => document.querySelectorAll('[data-testid="recordings"] tbody tr').length === left,
       count - 1,
     );
-    await page.context().close();
-  }));
+    await page.keyboard.press("Escape");
+  });
+
+  it("of another product brings that product, and live work comes back after it", async () => {
+    await dropFile(page, "gear_pump.step", readFileSync(kPump, "utf8"));
+    const isPump = (state) => Object.keys(state.placements).length === 38;
+    await waitForState(page, isPump, 120_000);
+    await page.getByTestId("open-recordings").click();
+    await page.getByTestId("recordings").getByRole("button", { name: /^Play/ }).click();  // there is no other one
+    await waitForState(page, (state) => Object.keys(state.placements).length === 3);
+    await takePicture(page, "recording_of_another");
+    await page.getByTestId("back-to-live").click();
+    await waitForState(page, isPump);
+    assert.equal((await fetchScene(page)).occurrences.length, 38);
+  });
 });

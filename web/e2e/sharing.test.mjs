@@ -9,13 +9,16 @@ import {
   fetchScene,
   launchBrowser,
   openPage,
-  signIn,
   poseOf,
+  shareStudio,
+  signIn,
   stateOf,
   takeByMouse,
   takePicture,
+  waitForAnswer,
   waitForPicture,
   waitForPlacement,
+  waitForRest,
   waitForState,
   withStudio,
 } from "./harness.mjs";
@@ -30,18 +33,24 @@ before(async () => {
 after(() => browser.close());
 
 describe("somebody who looks on", () => {
-  it("sees the part where the operator moves it, and cannot steer", withStudio([kBushing], async (studio) => {
+  const studio = shareStudio([kBushing]);
+  let viewer;
+  before(async () => {
+    ({ page: viewer } = await openPage(browser, studio.viewer));
+    await waitForPicture(viewer);
+  });
+  after(() => viewer.context().close());
+
+  it("sees the part where the operator moves it, and cannot steer", async () => {
     const { page: operator } = await openPage(browser, studio.operator);
     await waitForPicture(operator);
-    const { page: viewer } = await openPage(browser, studio.viewer);
-    await waitForPicture(viewer);
     assert.equal((await stateOf(viewer)).role, "viewer");
     const start = await poseOf(viewer, kShaft);
     await takeByMouse(operator, kShaft);
     const at = await operator.evaluate((id) => window.hvas.screen(id), kShaft);
-    await operator.mouse.move(at.x - 60, at.y - 120, { steps: 12 });
-    await operator.waitForTimeout(2000);
-    const [seen, led] = [await poseOf(viewer, kShaft), await poseOf(operator, kShaft)];
+    await operator.mouse.move(at.x - 60, at.y - 120, { steps: 6 });
+    const led = await waitForRest(operator, kShaft);
+    const seen = await waitForRest(viewer, kShaft);
     assert.ok(distance(seen, start) > 0.02, "the part has moved in the viewer's picture");
     assert.ok(distance(seen, led) < 1e-3, `both see it in one place: ${distance(seen, led)} m apart`);
     await takePicture(viewer, "viewer_follows");
@@ -53,18 +62,17 @@ describe("somebody who looks on", () => {
     });
     assert.equal(refused, 1);
     await viewer.keyboard.press("r");
-    await viewer.waitForTimeout(500);
+    await waitForAnswer(viewer);
     await waitForPlacement(operator, kShaft, "held");
     assert.equal(await viewer.getByTestId("hint-release").count(), 0);
     await operator.mouse.up();
+    await operator.keyboard.press("r");
+    await waitForPlacement(viewer, kShaft, "loose");
     await operator.context().close();
-    await viewer.context().close();
-  }));
+  });
 
-  it("cannot send commands or input by hand either", withStudio([kBushing], async (studio) => {
-    const { page } = await openPage(browser, studio.viewer);
-    await waitForPicture(page);
-    const error = await page.evaluate(async () => {
+  it("cannot send commands or input by hand either", async () => {
+    const error = await viewer.evaluate(async () => {
       const socket = new WebSocket(`ws://${location.host}/ws`);
       await new Promise((resolve) => (socket.onopen = resolve));
       socket.send(JSON.stringify({ id: 1, command: "take", hand: 0, occurrence: 2 }));
@@ -79,17 +87,24 @@ describe("somebody who looks on", () => {
     });
     assert.match(error.message, /only whoever steers/);
     assert.match(error.remedy, /looking on/);
-    await waitForPlacement(page, kShaft, "loose");
-    await page.context().close();
-  }));
+    await waitForAnswer(viewer);
+    await waitForPlacement(viewer, kShaft, "loose");
+  });
 });
 
 describe("two operators", () => {
-  it("hand over the control, with the part in the hand", withStudio([kBushing], async (studio) => {
-    const { page: first } = await openPage(browser, studio.operator);
+  const studio = shareStudio([kBushing]);
+  let first;
+  let second;
+  before(async () => {
+    ({ page: first } = await openPage(browser, studio.operator));
     await waitForPicture(first);
-    const { page: second } = await openPage(browser, studio.operator);
+    ({ page: second } = await openPage(browser, studio.operator));
     await waitForPicture(second);
+  });
+  after(() => first.context().close());
+
+  it("hand over the control, with the part in the hand", async () => {
     assert.equal((await stateOf(second)).hasLease, false);
     await takeByMouse(first, kShaft);
     await first.mouse.up();  // the part stays in the hand until it is let go
@@ -107,32 +122,21 @@ describe("two operators", () => {
     const at = await second.evaluate((id) => window.hvas.screen(id), kShaft);
     await second.mouse.move(at.x, at.y);
     await second.mouse.down();
-    // The page may draw slowly, and a hand that is not heard of stands still: so it is led until it has come there.
-    const hasMoved = async () => distance(await poseOf(second, kShaft), before) > 0.01;
-    for (let k = 0; k < 60 && !(await hasMoved()); k++) {
-      await second.mouse.move(at.x + 10 + (k % 2), at.y - 60, { steps: 5 });
-      await second.waitForTimeout(300);
-    }
-    assert.ok(await hasMoved(), "the second one goes on with it");
+    await second.mouse.move(at.x + 10, at.y - 60, { steps: 5 });
+    assert.ok(distance(await waitForRest(second, kShaft), before) > 0.01, "the second one goes on with it");
     await waitForPlacement(second, kShaft, "held");
     await takePicture(second, "lease_given");
     await second.mouse.up();
     await second.keyboard.press("r");
     await waitForPlacement(second, kShaft, "loose");
-    await first.context().close();
-    await second.context().close();
-  }));
+  });
 
-  it("find it free where the first has left", withStudio([kBushing], async (studio) => {
-    const { page: first } = await openPage(browser, studio.operator);
-    await waitForPicture(first);
-    const { page: second } = await openPage(browser, studio.operator);
-    await waitForPicture(second);
-    await first.context().close();
-    await second.getByTestId("hint-lease").click();
-    await waitForState(second, (state) => state.hasLease);
+  it("find it free where the other one has left", async () => {
+    assert.equal((await stateOf(first)).hasLease, false);
     await second.context().close();
-  }));
+    await first.getByTestId("hint-lease").click();
+    await waitForState(first, (state) => state.hasLease);
+  });
 });
 
 describe("what comes from elsewhere", () => {

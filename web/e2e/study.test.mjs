@@ -2,7 +2,16 @@
 // three trials. Whoever is not looked at is there without a page: two pictures are too much for a slow machine.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
-import { findBarriers, launchBrowser, takePicture, waitForPicture, waitForState } from "./harness.mjs";
+import {
+  findBarriers,
+  launchBrowser,
+  takePicture,
+  waitForAnswer,
+  waitForCalm,
+  waitForPicture,
+  waitForState,
+  waitForView,
+} from "./harness.mjs";
 import { withMockStudy } from "./study_mock.mjs";
 import { agree, clickPart, kPatient, openQuietPage, press, startTrial } from "./study_steps.mjs";
 
@@ -35,7 +44,7 @@ async function openAsExperimenter(study) {
 async function look(page, name) {
   for (const colorScheme of ["dark", "light"]) {
     await page.emulateMedia({ colorScheme });
-    await page.waitForTimeout(300);
+    await waitForCalm(page);
     assert.deepEqual(await findBarriers(page), [], `${name}, ${colorScheme}`);
     await takePicture(page, `study_${name}_${colorScheme}`);
   }
@@ -62,10 +71,15 @@ async function passTraining(desk, person) {
   await person.getByTestId("page-ready").waitFor();
 }
 
+/** Until the part is half in. */
+function waitForMating(person) {
+  return person.locator('[data-testid="task-hint"][data-state="mating"]').waitFor();
+}
+
 /** In a trial by picking: wrong surfaces are refused, two right pairs end it. */
 async function pickSurfaces(person) {
   await person.getByText("Click a surface of the marked part.").waitFor();
-  await person.waitForTimeout(1500);
+  await waitForView(person);
   await takePicture(person, "study_picking");
   await clickPart(person, 0);
   await person.getByText("Now click the surface that it belongs to.").waitFor();
@@ -105,12 +119,15 @@ describe("a participant", () => {
     await look(person, "ready");
     await startTrial(person);
     study.work();
-    await person.locator('[data-testid="task-hint"][data-state="mating"]').waitFor();
+    await waitForMating(person);
     await takePicture(person, "study_trial_mating");
     await assertTellsNothing(person);
+    study.work();
 
     await person.getByText("Trial 2", { exact: true }).waitFor();
     await startTrial(person);
+    study.work();
+    await waitForMating(person);
     study.work();
     await person.getByTestId("question-choice").waitFor();
     await look(person, "identify");
@@ -212,10 +229,12 @@ describe("a participant", () => {
     }
     const at = await person.evaluate((id) => window.hvas.screen(id), kShaft);
     await person.mouse.click(at.x, at.y, { button: "right" });
-    await person.waitForTimeout(300);
+    await waitForAnswer(person);
+    await waitForCalm(person);
     await assertTellsNothing(person);
     await person.keyboard.press("g");
     await waitForState(person, (state) => state.held.length === 1, kPatient);
+    await assertTellsNothing(person);
     const told = await person.evaluate(async () => {
       const scene = await (await fetch("/api/scene")).json();
       return { fits: scene.mates.map((mate) => mate.fit), seed: scene.seed ?? null };
@@ -231,6 +250,7 @@ describe("a participant", () => {
     study.cut();
     await person.getByTestId("study-lost").waitFor();
     await takePicture(person, "study_lost");
+    study.mend();
     await person.getByTestId("study-lost").waitFor({ state: "detached" });
     assert.ok(await person.getByTestId("consent-agree").isChecked(), "what was ticked stays so");
     await press(person, "consent-begin");
@@ -293,6 +313,7 @@ describe("the experimenter", () => {
     study.work();
     await desk.getByTestId("desk-hold").getByText("mating").waitFor();
     await takePicture(desk, "study_desk_mating");
+    study.work();
     await person.until((state) => state.phase === "ready" && state.trial === 2);
     await person.do("ready");
     await press(desk, "desk-not-done");
@@ -323,7 +344,8 @@ describe("the experimenter", () => {
     assert.equal(await desk.getByTestId("hint-lease").count(), 0);
     await desk.evaluate(() => document.activeElement?.blur());
     await desk.keyboard.press("d");
-    await desk.waitForTimeout(300);
+    await waitForAnswer(desk);
+    await waitForCalm(desk);
     assert.equal(await desk.getByTestId("demo-runs").count(), 0);
     await desk.context().close();
   }));

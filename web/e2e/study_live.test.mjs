@@ -1,20 +1,22 @@
 // A whole session of a study in the program itself: a person by the mouse, from the consent to the tables.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
-import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
   clickFace,
   distance,
   fetchScene,
   launchBrowser,
+  makeFolder,
   poseOf,
   runProgram,
   startStudio,
   takeByMouse,
   takePicture,
   waitForPicture,
+  waitForRest,
+  waitForView,
 } from "./harness.mjs";
 import { StudyPeer } from "./study_peer.mjs";
 import { agree, openQuietPage, press, startTrial } from "./study_steps.mjs";
@@ -47,13 +49,14 @@ after(() => browser.close());
 
 /** Turns the view up or down by dragging beside the parts. */
 async function turnView(page, dy) {
-  const x = 1150;
-  const y = dy < 0 ? 560 : 120;
+  const { width, height } = page.viewportSize();
+  const x = 0.92 * width;
+  const y = (dy < 0 ? 0.8 : 0.18) * height;
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x, y + dy, { steps: 6 });
   await page.mouse.up();
-  await page.waitForTimeout(700);
+  await waitForView(page);
 }
 
 /** Turns the view, first from below and then from above, until one sees a face; clicks it once the view rests. */
@@ -65,63 +68,54 @@ async function findAndClickFace(page, occurrence, face) {
     }
     await turnView(page, dy);
   }
-  let [before, now] = [null, await find()];
-  while (now !== null && (before === null || Math.hypot(now.x - before.x, now.y - before.y) > 1)) {
-    await page.waitForTimeout(400);
-    [before, now] = [now, await find()];
-  }
+  await waitForView(page);
   await clickFace(page, occurrence, face);
-}
-
-/** Whether the page says so within a while. */
-async function says(page, text) {
-  return page.getByText(text).first().waitFor({ timeout: 5000 }).then(() => true, () => false);
 }
 
 /** Drags a part in the plane of the screen until it looks as if it were at p_W, or until `isThere`. */
 async function dragPart(page, occurrence, p_W, isThere = null) {
-  const tries = isThere === null ? 8 : 60;
+  const kTries = 60;
+  const kThere = 2;  // [px]
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();
-  for (let k = 0; k < tries && !(await isThere?.()); k++) {
+  for (let k = 0; k < kTries && !(await isThere?.()); k++) {
     const [from, to] = await page.evaluate(([o, p]) => [window.hvas.pose(o).p, p].map(window.hvas.project), [occurrence, p_W]);
+    if (isThere === null && Math.hypot(to.x - from.x, to.y - from.y) < kThere) {
+      break;
+    }
     at.x += to.x - from.x;
     at.y += to.y - from.y;
     await page.mouse.move(at.x, at.y, { steps: 4 });
-    await page.waitForTimeout(900);
+    await waitForRest(page, occurrence, { isOver: isThere });
   }
   await page.mouse.up();
 }
 
-/** Sets the constraints of a part one after the other, as they are listed; a click that has missed is made again. */
+/** Sets the constraints of a part one after the other, as they are listed. */
 async function pickConstraints(person, scene, occurrence) {
   const mates = scene.mates.filter(({ b }) => b === occurrence);
   assert.equal(mates.length, 2);
   await person.getByText("Click a surface of the marked part.").waitFor();
   for (const [k, { a, b, faces_a: facesA, faces_b: facesB }] of mates.entries()) {
-    const done = k === 0 ? "Left to set: 1" : "Trial 2";
-    for (let tries = 0; tries < 5; tries++) {
-      await findAndClickFace(person, b, facesB[0]);
-      if (!(await says(person, "Now click the surface that it belongs to."))) {
-        continue;
-      }
-      await findAndClickFace(person, a, facesA[0]);
-      if (await says(person, done)) {
-        break;
-      }
-    }
+    await findAndClickFace(person, b, facesB[0]);
+    await person.getByText("Now click the surface that it belongs to.").waitFor();
+    await findAndClickFace(person, a, facesA[0]);
+    await person.getByText(k === 0 ? "Left to set: 1" : "Trial 2").first().waitFor();
   }
 }
 
 /** Turns the view to what is seen from straight above, or on to what is seen from the side. */
 async function lookFromAbove(page) {
-  await turnView(page, 430);
+  await turnView(page, 0.6 * (await heightOf(page)));
 }
 async function lookFromTheSide(page) {
   await lookFromAbove(page);
-  const height = await page.evaluate(() => document.querySelector("canvas").clientHeight);
-  await turnView(page, -height / 4);  // a turn is as long as the canvas is high
+  await turnView(page, -(await heightOf(page)) / 4);  // a turn is as long as the canvas is high
+}
+
+function heightOf(page) {
+  return page.evaluate(() => document.querySelector("canvas").clientHeight);
 }
 
 /** Nothing helps to see how far away it is: it is lifted and pushed down seen from the side, and led over its place
@@ -142,7 +136,7 @@ async function insertPart(page, occurrence, goal) {
 
 describe("a session with a person", () => {
   it("goes from the consent to the tables, by the mouse alone", async () => {
-    const folder = mkdtempSync(join(tmpdir(), "hvas-e2e-"));
+    const folder = makeFolder();
     const protocol = join(folder, "by_hand.yaml");
     const results = join(folder, "results");
     writeFileSync(protocol, kProtocol);
@@ -161,8 +155,7 @@ describe("a session with a person", () => {
       const before = await poseOf(person, occurrence);
       await takeByMouse(person, occurrence);
       await person.mouse.move(700, 400, { steps: 10 });
-      await person.waitForTimeout(1000);
-      assert.ok(distance(before, await poseOf(person, occurrence)) > 0.03, "the part follows the mouse");
+      assert.ok(distance(before, await waitForRest(person, occurrence)) > 0.03, "the part follows the mouse");
       await takePicture(person, "study_live_training");
       await person.mouse.up();
       await desk.do("next");

@@ -31,10 +31,11 @@ async function startMockStudy() {
       others.push(new StudyPeer(link));
       return others.at(-1);
     },
-    /** Somebody does the trial that runs, by hand. */
+    /** Somebody puts the part of the trial that runs half in, by hand; and when that has been seen, wholly. */
     work: () => child.kill("SIGUSR1"),
-    /** All connections are lost, for some seconds. */
+    /** All connections are lost; and none come about until they are mended. */
     cut: () => child.kill("SIGUSR2"),
+    mend: () => child.kill("SIGUSR2"),
     stop: async () => {
       await Promise.all(others.map((other) => other.leave()));
       child.kill("SIGTERM");

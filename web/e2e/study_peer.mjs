@@ -1,5 +1,5 @@
 // Somebody at the link of a study, without a page: a second picture is too much for a slow machine.
-import { once } from "node:events";
+import { EventEmitter, once } from "node:events";
 import WebSocket from "ws";
 import { signIn } from "./harness.mjs";
 
@@ -7,6 +7,7 @@ import { signIn } from "./harness.mjs";
 export class StudyPeer {
   #socket;
   #answers = new Map();
+  #news = new EventEmitter();
   state = null;
   heard = [];
 
@@ -29,7 +30,10 @@ export class StudyPeer {
   hear(message) {
     if (message.event !== undefined) {
       this.heard.push(message);
-      this.state = message.event === "study" ? message : this.state;
+      if (message.event === "study") {
+        this.state = message;
+        this.#news.emit("study");
+      }
       return;
     }
     this.#answers.get(message.id)?.(message);
@@ -49,12 +53,11 @@ export class StudyPeer {
 
   /** Until the study is so. */
   async until(isSo, timeout = 60_000) {
-    const end = Date.now() + timeout;
+    const late = AbortSignal.timeout(timeout);
     while (this.state === null || !isSo(this.state)) {
-      if (Date.now() > end) {
+      await once(this.#news, "study", { signal: late }).catch(() => {
         throw new Error(`not so after ${timeout} ms: ${isSo}, but ${JSON.stringify(this.state)}`);
-      }
-      await new Promise((done) => setTimeout(done, 50));
+      });
     }
     return this.state;
   }

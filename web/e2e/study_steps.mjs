@@ -4,7 +4,7 @@ import { openPage } from "./harness.mjs";
 export const kPatient = 60_000;
 
 export async function openQuietPage(browser, link, options = {}) {
-  const opened = await openPage(browser, link, { bypassCSP: true, colorScheme: "light", reducedMotion: "reduce", ...options });
+  const opened = await openPage(browser, link, { colorScheme: "light", ...options });
   opened.page.setDefaultTimeout(kPatient);
   return opened;
 }
@@ -19,9 +19,11 @@ export async function agree(person) {
   await press(person, "consent-begin");
 }
 
+/** Until the trial runs and its own scene is seen: the page says what to do then. */
 export async function startTrial(person) {
   await press(person, "study-ready");
   await person.getByTestId("task-time").waitFor();
+  await person.locator('[data-testid="task-hint"]:not([data-state="loading"])').waitFor();
 }
 
 export async function clickPart(page, occurrence) {

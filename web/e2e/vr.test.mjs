@@ -7,11 +7,14 @@ import {
   fetchScene,
   launchBrowser,
   openPage,
+  passSession,
   poseOf,
   takePicture,
   waitForPicture,
   waitForPlacement,
+  waitForRest,
   waitForState,
+  waitForView,
   withStudio,
 } from "./harness.mjs";
 import { compose, inverse, multiply, rotate } from "./poses.mjs";
@@ -186,8 +189,8 @@ describe("somebody in VR", () => {
     await enter(page);
     const lead = await grabPart(page, kShaft);
     const away = await lead.pose();
-    await lead.moveTo({ ...away, p: [away.p[0], away.p[1] + 0.1, away.p[2]] }, 10);
-    await page.waitForTimeout(800);
+    await lead.moveTo({ ...away, p: [away.p[0], away.p[1] + 0.1, away.p[2]] });
+    await waitForRest(page, kShaft);
     await page.evaluate(() => (window.headset.controllers.right.connected = false));
     await waitForState(page, ({ safety }) => safety !== null);
     const left = await poseOf(page, kShaft);
@@ -198,14 +201,13 @@ describe("somebody in VR", () => {
     await trigger(page, "right", 0);
     await page.evaluate(() => (window.headset.controllers.right.connected = true));
     await frames(page, 8);
-    await page.waitForTimeout(1000);
+    await passSession(page, 500);
     assert.ok(distance(await poseOf(page, kShaft), left) < 0.005, "no leap");
     await trigger(page, "right", 1);
     await frames(page, 3);
     const from = await lead.pose();
-    await lead.moveTo({ ...from, p: [from.p[0] - 0.15, from.p[1], from.p[2]] }, 10);
-    await page.waitForTimeout(800);
-    assert.ok(distance(await poseOf(page, kShaft), left) > 0.02, "it goes on");
+    await lead.moveTo({ ...from, p: [from.p[0] - 0.15, from.p[1], from.p[2]] });
+    assert.ok(distance(await waitForRest(page, kShaft), left) > 0.02, "it goes on");
     await trigger(page, "right", 0);
     await waitForPlacement(page, kShaft, "loose");
     await page.context().close();
@@ -273,7 +275,7 @@ describe("somebody in VR", () => {
     await takePicture(page, "vr_forces_off");
     await press(page, right, "leave");
     await waitForState(page, ({ isInVr }) => !isInVr);
-    await page.waitForTimeout(500);
+    await waitForView(page);
     const after = await page.evaluate(() => window.hvas.project([0, 0, 0]));
     assert.ok(Math.hypot(after.x - eye.x, after.y - eye.y) < 2, "the picture on the desk is as it was");
     await takePicture(page, "vr_left");
