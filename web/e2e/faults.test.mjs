@@ -4,6 +4,7 @@ import { after, before, describe, it } from "node:test";
 import {
   distance,
   fetchScene,
+  kSilentMs,
   launchBrowser,
   openPage,
   passSession,
@@ -69,7 +70,7 @@ async function findsForceTakenBack(viewer) {
   const state = await waitForState(viewer, ({ hands }) => hands.length > 0 && Math.hypot(...hands[0].f_felt_W_n) < 1e-3);
   assert.equal(state.held[0]?.occurrence, kShaft, "the part stays in the hand");
   const still = await poseOf(viewer, kShaft);
-  await passSession(viewer, 500);
+  await passSession(viewer, 2 * kSilentMs);
   assert.ok(distance(await poseOf(viewer, kShaft), still) < 1e-4, "and where it is");
 }
 

@@ -241,6 +241,9 @@ export function waitForAnswer(page) {
   return page.evaluate(() => window.hvas.hasAnswered());
 }
 
+/** After so long without an input the server takes the force away: PointerOperator::kSilentNs [ms]. */
+export const kSilentMs = 250;
+
 /** Until the session has gone on by so much [ms], by the clock of the frames that the page gets. */
 export async function passSession(page, ms) {
   const from = await page.evaluate(() => window.hvas.sessionMs);

@@ -5,6 +5,7 @@ import { after, before, describe, it } from "node:test";
 import {
   distance,
   fetchScene,
+  kSilentMs,
   launchBrowser,
   openPage,
   passSession,
@@ -201,7 +202,7 @@ describe("somebody in VR", () => {
     await trigger(page, "right", 0);
     await page.evaluate(() => (window.headset.controllers.right.connected = true));
     await frames(page, 8);
-    await passSession(page, 500);
+    await passSession(page, 2 * kSilentMs);
     assert.ok(distance(await poseOf(page, kShaft), left) < 0.005, "no leap");
     await trigger(page, "right", 1);
     await frames(page, 3);
