@@ -52,11 +52,11 @@ function(hvas_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s]): one GoogleTest program, one ctest entry.
-# Unit tests are fast and need no other room's data; label slower ones
+# hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s] [COST s]): one GoogleTest program, one ctest
+# entry. Those of the highest cost begin first, so that no long one is left to run alone. Unit tests are fast and need no other room's data; label slower ones
 # `e2e`, or `numeric` where they only compare figures, so that the sanitizer runs can leave them out.
 function(hvas_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;COST" "SOURCES;DEPS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE HVAS_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
@@ -71,6 +71,9 @@ function(hvas_test name)
     math(EXPR ARG_TIMEOUT "4 * ${ARG_TIMEOUT}")
   endif()
   add_test(NAME ${name} COMMAND ${name})
+  if(ARG_COST)
+    set_tests_properties(${name} PROPERTIES COST ${ARG_COST})
+  endif()
   get_filename_component(room ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS};room_${room}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

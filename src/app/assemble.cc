@@ -223,6 +223,10 @@ Result<std::unique_ptr<record::Recorder>> MakeRecorder(const Model& model,
   recorder.path = options.record;
   recorder.is_threaded = options.is_realtime;
   recorder.ring_ticks *= options.second_device.empty() ? 1 : 2;
+  recorder.replaces = options.is_record_replaced;
+  recorder.on_error = [](const Error& error) {
+    fmt::print(stderr, "\nhvas: {} (the assembly goes on)\n", error.ToString());
+  };
   return record::Recorder::Create(recorder, MakeMeta(model, options));
 }
 
@@ -258,7 +262,7 @@ Result<AssemblyOutcome> Assemble(const std::shared_ptr<const Model>& model,
       options.is_realtime ? simulation::RunRealtime(execution) : simulation::RunLockstep(execution);
   outcome.parts = run.results();
   if (const auto finished = (*recorder)->Finish(); !finished) {
-    return Unexpected(finished.error());
+    outcome.record_error = finished.error();
   }
   outcome.digest = (*recorder)->Digest();
   outcome.dropped_ticks = (*recorder)->dropped_ticks();
@@ -306,6 +310,12 @@ void AddDeviceOptions(CLI::App* command, AssembleOptions* options) {
 
 int RunAssemble(const AssembleOptions& options) {
   const bool is_watched = !options.load.is_quiet && IsWatched();
+  if (!options.record.empty()) {
+    const auto target = record::CheckTarget(options.record, options.is_record_replaced);
+    if (!target) {
+      return ReportFailure(target.error());
+    }
+  }
   Diagnostics diagnostics;
   const std::int64_t start_ns = MonotonicNs();
   const auto model = MakeModel(options, &diagnostics, is_watched);
@@ -332,6 +342,9 @@ int RunAssemble(const AssembleOptions& options) {
   } else {
     PrintAssemblyTable(**model, *outcome);
   }
+  if (outcome->record_error) {
+    return ReportFailure(*outcome->record_error);
+  }
   const bool is_complete = std::all_of(outcome->parts.begin(), outcome->parts.end(),
                                        [](const PartResult& part) { return part.is_seated; });
   return is_complete ? 0 : kNotAllSeated;
@@ -356,7 +369,10 @@ void AddAssemble(CLI::App* app, int* status) {
   AddDeviceOptions(command, options.get());
   command->add_flag("--realtime", options->is_realtime,
                     "Three threads at --rate, 100 and 30 Hz instead of virtual time");
-  command->add_option("--record", options->record, "Write the session to this file");
+  CLI::Option* record =
+      command->add_option("--record", options->record, "Write the session to this file");
+  command->add_flag("--force", options->is_record_replaced, "Replace a record that is there")
+      ->needs(record);
   command
       ->add_option("--limit", options->limit_s,
                    "Stop after this session time [s]; 0, when not given: 120 s a part")

@@ -25,8 +25,9 @@ struct AssembleOptions {
   std::string device;         ///< Address of the device in the hand; empty: none.
   std::string second_device;  ///< The same of the other hand, which is there only with one.
   simulation::RenderOptions render;
-  std::filesystem::path record;  ///< Empty: no file; the digest is made all the same.
-  double limit_s{0};             ///< Session time after which to stop; 0: none.
+  std::filesystem::path record;    ///< Empty: no file; the digest is made all the same.
+  bool is_record_replaced{false};  ///< A finished record that is there.
+  double limit_s{0};               ///< Session time after which to stop; 0: none.
   bool is_json{false};
 };
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 #include "simulation/model.h"
@@ -31,6 +33,7 @@ struct AssemblyOutcome {
   std::vector<DeviceInHand> devices;  ///< By hand; none, or one for each.
   std::string digest;
   std::uint64_t dropped_ticks{0};
+  std::optional<Error> record_error;  ///< Why the record was not written to its end.
 };
 
 /** "first hand", "second hand". */

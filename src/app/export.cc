@@ -115,14 +115,7 @@ Result<void> WriteJson(const ExportOptions& options, const Product& product,
                              "\n");
 }
 
-Result<void> Export(const ExportOptions& options) {
-  const std::string format = FormatOf(options.output);
-  if (const auto checked = Check(options, format); !checked) {
-    return checked;
-  }
-  if (IsRecord(options.load.file)) {
-    return ExportRecord(options.load.file, options.output, format, options.record);
-  }
+Result<void> ExportProduct(const ExportOptions& options, const std::string& format) {
   Diagnostics diagnostics;
   Result<Product> product = LoadProduct(options.load, &diagnostics);
   if (!product) {
@@ -144,6 +137,24 @@ Result<void> Export(const ExportOptions& options) {
                            : WriteStep(options, *product, motions);
 }
 
+/** @returns The exit status. */
+int RunExport(const ExportOptions& options) {
+  const std::string format = FormatOf(options.output);
+  Result<void> done = Check(options, format);
+  if (done && IsRecord(options.load.file)) {
+    const auto damage = ExportRecord(options.load.file, options.output, format, options.record);
+    if (damage && !damage->empty()) {
+      fmt::print(stderr, "hvas: {}: {}\n", options.load.file.string(), *damage);
+      return kDamagedRecord;
+    }
+    return damage ? 0 : ReportFailure(damage.error());
+  }
+  if (done) {
+    done = ExportProduct(options, format);
+  }
+  return done ? 0 : ReportFailure(done.error());
+}
+
 }  // namespace
 
 void AddExport(CLI::App* app, int* status) {
@@ -162,6 +173,7 @@ void AddExport(CLI::App* app, int* status) {
   AddRecordSelection(command, &options->record);
   AddLoadOptions(command, &options->load);
   command->footer(
+      "Exit status: 0; 2 when a record was exported that is not as it was written; 1 on an error.\n"
       "  .glb   glTF 2.0 in metres, Y up: the tree as nodes, a mesh for each part, colours of\n"
       "         faces, and with each vertex the index of its face (_FACE_ID)\n"
       "  .json  what hvas inspect --json prints\n"
@@ -182,10 +194,7 @@ void AddExport(CLI::App* app, int* status) {
       "hvas export pump.step -o run.glb --poses run.hvasrec\n"
       "  hvas export run.hvasrec -o run.csv --every 10 --from 20 --to 30\n"
       "  hvas export run.hvasrec -o run.mcap --every 20");
-  command->callback([options, status] {
-    const Result<void> done = Export(*options);
-    *status = done ? 0 : ReportFailure(done.error());
-  });
+  command->callback([options, status] { *status = RunExport(*options); });
 }
 
 }  // namespace hvas::app

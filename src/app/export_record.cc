@@ -54,8 +54,9 @@ bool IsRecordFormat(const std::string& ending) {
   return FindWriter(ending) != nullptr;
 }
 
-Result<void> ExportRecord(const std::filesystem::path& file, const std::filesystem::path& output,
-                          const std::string& ending, const RecordSelection& selection) {
+Result<std::string> ExportRecord(const std::filesystem::path& file,
+                                 const std::filesystem::path& output, const std::string& ending,
+                                 const RecordSelection& selection) {
   auto reader = record::Reader::Open(file);
   if (!reader) {
     return Unexpected(reader.error());
@@ -63,7 +64,11 @@ Result<void> ExportRecord(const std::filesystem::path& file, const std::filesyst
   evidence::Selection chosen;
   chosen.span = {std::llround(1e9 * selection.from_s), std::llround(1e9 * selection.to_s)};
   chosen.every = selection.every;
-  return FindWriter(ending)(&*reader, chosen, output);
+  if (const auto written = FindWriter(ending)(&*reader, chosen, output); !written) {
+    return Unexpected(written.error());
+  }
+  const auto verified = reader->Verify();
+  return verified ? std::string() : verified.error().message;
 }
 
 }  // namespace hvas::app

@@ -31,10 +31,11 @@ inline constexpr const char* kRecordFormats = ".csv, .json, .h5, .mcap or .glb";
 [[nodiscard]] bool IsRecordFormat(const std::string& ending);
 
 /** Writes a record by the ending of the output, one of the above. Errors: the reader's and the
- writer's. */
-[[nodiscard]] Result<void> ExportRecord(const std::filesystem::path& file,
-                                        const std::filesystem::path& output,
-                                        const std::string& ending,
-                                        const RecordSelection& selection);
+ writer's.
+ @returns What of the record is not as it was written; empty: nothing. */
+[[nodiscard]] Result<std::string> ExportRecord(const std::filesystem::path& file,
+                                               const std::filesystem::path& output,
+                                               const std::string& ending,
+                                               const RecordSelection& selection);
 
 }  // namespace hvas::app

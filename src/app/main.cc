@@ -18,6 +18,7 @@
 #include "app/report.h"
 #include "app/studio.h"
 #include "app/study.h"
+#include "device/force_withdrawal.h"
 
 namespace {
 
@@ -63,6 +64,7 @@ int FlushOutput(int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hvas::device::WithdrawForcesAtTheEnd();
   try {
     return FlushOutput(Run(argc, argv));
   } catch (const std::exception& exception) {

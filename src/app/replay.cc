@@ -23,6 +23,14 @@ using simulation::Model;
 
 constexpr int kDifferent = 2;
 
+/** What a replay has found out. */
+struct Outcome {
+  ReplayReport report;
+  std::string damage;  ///< What of the record is not as it was written; empty: nothing.
+
+  [[nodiscard]] bool is_exact() const { return damage.empty() && report.is_exact(); }
+};
+
 double Seconds(std::int64_t ns) {
   return 1e-9 * static_cast<double>(ns);
 }
@@ -43,10 +51,11 @@ nlohmann::ordered_json MakeOutcomeJson(const ReplayedPart::Outcome& outcome) {
           {"seated", outcome.is_seated}};
 }
 
-void PrintJson(const Model& model, const record::Reader& reader, const ReplayReport& report) {
+void PrintJson(const Model& model, const record::Reader& reader, const Outcome& outcome) {
+  const ReplayReport& report = outcome.report;
   nlohmann::ordered_json json{{"product", model.product->name},
                               {"complete", reader.is_complete()},
-                              {"exact", report.is_exact()},
+                              {"exact", outcome.is_exact()},
                               {"stretches", report.stretches},
                               {"ticks", report.ticks},
                               {"different_ticks", report.different_ticks},
@@ -57,6 +66,9 @@ void PrintJson(const Model& model, const record::Reader& reader, const ReplayRep
                               {"session_s", Seconds(report.session_ns)},
                               {"wall_s", Seconds(report.wall_ns)},
                               {"real_time_factor", SpeedOf(report)}};
+  if (!outcome.damage.empty()) {
+    json["damage"] = outcome.damage;
+  }
   if (report.first) {
     json["first_difference"] = {{"time_s", Seconds(report.first->t_ns)},
                                 {"hand", report.first->hand},
@@ -87,7 +99,8 @@ void PrintParts(const Model& model, const ReplayReport& report) {
   }
 }
 
-void PrintText(const Model& model, const record::Reader& reader, const ReplayReport& report) {
+void PrintText(const Model& model, const record::Reader& reader, const Outcome& outcome) {
+  const ReplayReport& report = outcome.report;
   fmt::print(
       "{}: {} ticks of {:.1f} s in {} stretch{} run again in {:.2f} s, {:.0f} times as fast\n",
       model.product->name, report.ticks, Seconds(report.session_ns), report.stretches,
@@ -95,8 +108,13 @@ void PrintText(const Model& model, const record::Reader& reader, const ReplayRep
   if (!reader.is_complete()) {
     fmt::print("The session was cut short, or goes on: this is what there is of it.\n");
   }
+  if (report.ticks == 0) {
+    fmt::print("The record has no tick that could be run again: nothing is shown by it.\n");
+    return;
+  }
   if (report.is_exact()) {
-    fmt::print("Every wrench and pose is the recorded one, bit for bit.\n");
+    fmt::print("Every wrench and pose {} is the recorded one, bit for bit.\n",
+               outcome.damage.empty() ? "of the session" : "that the record still has");
     return;
   }
   if (report.unreachable_ticks > 0) {
@@ -121,6 +139,13 @@ int RunReplay(const ReplayArguments& arguments) {
   if (!reader) {
     return ReportFailure(reader.error());
   }
+  Outcome outcome;
+  if (const auto verified = reader->Verify(); !verified) {
+    outcome.damage = verified.error().message;
+    if (!arguments.is_json) {
+      static_cast<void>(ReportFailure(verified.error()));
+    }
+  }
   const auto model = PrepareModel(&*reader, arguments.record);
   if (!model) {
     return ReportFailure(model.error());
@@ -131,16 +156,17 @@ int RunReplay(const ReplayArguments& arguments) {
   if (!arguments.record.is_quiet && IsWatched()) {
     options.progress = [](double fraction) { ShowProgress("replay", fraction); };
   }
-  const auto report = session::Replay(&*reader, *model, options);
+  auto report = session::Replay(&*reader, *model, options);
   if (!report) {
     return ReportFailure(report.error());
   }
+  outcome.report = std::move(*report);
   if (arguments.is_json) {
-    PrintJson(**model, *reader, *report);
+    PrintJson(**model, *reader, outcome);
   } else {
-    PrintText(**model, *reader, *report);
+    PrintText(**model, *reader, outcome);
   }
-  return arguments.is_verified && !report->is_exact() ? kDifferent : 0;
+  return arguments.is_verified && !outcome.is_exact() ? kDifferent : 0;
 }
 
 void AddReplay(CLI::App* app, int* status) {
@@ -149,7 +175,8 @@ void AddReplay(CLI::App* app, int* status) {
   const auto arguments = std::make_shared<ReplayArguments>();
   AddRecordOptions(command, &arguments->record);
   CLI::Option* verify = command->add_flag("--verify", arguments->is_verified,
-                                          "Exit with 2 unless every bit is the recorded one");
+                                          "Exit with 2 unless the record is as it was written and "
+                                          "every bit comes out again");
   AddConditionOption(command, &arguments->condition)
       ->description(
           "Render what was recorded under this condition instead: collision, constraint "
@@ -158,7 +185,9 @@ void AddReplay(CLI::App* app, int* status) {
   AddForceMapOption(command, &arguments->force_map)->excludes(verify);
   command->add_flag("--json", arguments->is_json, "Print one JSON document");
   command->footer(
-      "Exit status: 0; 2 when --verify found a difference, 1 on an error.\n"
+      "Exit status: 0; 2 when --verify found a difference, lost ticks, anything in the record "
+      "that\n"
+      "is not as it was written, or nothing to compare; 1 on an error.\n"
       "With another condition or force map the hand moves as it was recorded: it did not feel what "
       "is rendered now.\n"
       "Examples:\n"

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "app/page_file.h"
 #include "app/report_failure.h"
@@ -13,9 +14,10 @@
 namespace hvas::app {
 namespace {
 
-Result<void> WriteReport(const ReportOptions& options) {
+/** @returns what is damaged in the record; empty: nothing. */
+Result<std::string> WriteReport(const ReportOptions& options) {
   if (const auto checked = CheckPageFile(options.output, options.is_forced); !checked) {
-    return checked;
+    return Unexpected(checked.error());
   }
   auto reader = record::Reader::Open(options.record);
   if (!reader) {
@@ -25,14 +27,24 @@ Result<void> WriteReport(const ReportOptions& options) {
   if (!summary) {
     return Unexpected(summary.error());
   }
-  return WritePage(options.output, MakeReportPage(*summary));
+  if (const auto written = WritePage(options.output, MakeReportPage(*summary)); !written) {
+    return Unexpected(written.error());
+  }
+  return summary->damage;
 }
 
 }  // namespace
 
 int RunReport(const ReportOptions& options) {
-  const Result<void> done = WriteReport(options);
-  return done ? 0 : ReportFailure(done.error());
+  const Result<std::string> damage = WriteReport(options);
+  if (!damage) {
+    return ReportFailure(damage.error());
+  }
+  if (damage->empty()) {
+    return 0;
+  }
+  fmt::print(stderr, "hvas: {}: {}; the page says so\n", options.record.string(), *damage);
+  return kDamagedRecord;
 }
 
 void AddReport(CLI::App* app, int* status) {
@@ -47,6 +59,8 @@ void AddReport(CLI::App* app, int* status) {
       ->required();
   command->add_flag("--force", options->is_forced, "Replace a file that is there");
   command->footer(
+      "Exit status: 0; 2 when the record is not as it was written, which the page says, too; 1 on "
+      "an error.\n"
       "The page needs no network and no other file.\n"
       "Examples:\n"
       "  hvas report press.hvasrec -o press.html\n"

@@ -15,6 +15,7 @@
 #include "pages/html_page.h"
 #include "pages/svg_plot.h"
 #include "record/session_file.h"
+#include "session/json_values.h"
 
 namespace hvas::app {
 namespace {
@@ -111,6 +112,12 @@ std::string MakeHead(const Summary& summary) {
       seated == taken.size() ? fmt::format("<span class=\"good\">All {}</span>", seated)
                              : fmt::format("<span class=\"bad\">{}</span>", seated),
       taken.size(), summary.is_complete ? "" : "; the record was cut short, or still goes on");
+  if (!summary.damage.empty()) {
+    html += fmt::format(
+        "<p class=\"verdict\"><span class=\"bad\">This record is damaged</span>: {}. This page "
+        "tells of what could be read.</p>",
+        Escape(summary.damage));
+  }
   html += "<dl class=\"tiles\">";
   html += MakeTile("Time", FormatDuration(summary.duration));
   html += MakeTile("Hands", std::to_string(summary.hands.size()));
@@ -264,7 +271,7 @@ std::string MakeLoops(const Summary& summary) {
          fmt::format(
              "</tbody></table></div><p><small>Energy is accounted for with a device that "
              "shows forces, of the last stretch. Ticks that the record lacks: {}.</small></p>",
-             dropped.empty() ? "not known, as it was cut short" : dropped);
+             dropped.empty() ? "not known, as it was cut short" : Escape(dropped));
 }
 
 /** What an event says, in words. */
@@ -275,15 +282,16 @@ std::string Explain(const record::Event& event) {
   }
   if (event.kind == "safety") {
     std::string text;
-    for (const auto& reason : json.value("reasons", nlohmann::json::array())) {
+    const auto* reasons = session::FieldOf(json, "reasons");
+    for (const auto& reason : reasons != nullptr ? *reasons : nlohmann::json::array()) {
       text += (text.empty() ? "" : "; ") + (reason.is_string() ? reason.get<std::string>() : "");
     }
     return text;
   }
   if (event.kind == "device") {
-    return json.value("condition", std::string());
+    return session::TextOr(json, "condition", "");
   }
-  return fmt::format("the tick leaves out level {}", json.value("level", 0));
+  return fmt::format("the tick leaves out level {}", session::IndexOr(json, "level", 0));
 }
 
 std::string MakeIncidents(const Summary& summary) {
@@ -321,8 +329,8 @@ std::string MakeSource(const Summary& summary) {
   return fmt::format(
       "<h2>About this session</h2><p>Condition {}; force map {}; seed {}; device in the first "
       "hand: "
-      "{}{}.</p><p class=\"soft\"><small>Digest {}: the record runs again bit for bit (hvas replay "
-      "--verify).</small></p>",
+      "{}{}.</p><p class=\"soft\"><small>Digest {}. Whether the record runs again bit for bit is "
+      "told by hvas replay --verify.</small></p>",
       Escape(MetaOf(summary, "condition")), Escape(MetaOf(summary, "force_map")),
       Escape(MetaOf(summary, "seed")), device("device"),
       summary.hands.size() < 2 ? "" : ", in the second: " + device("second_device"),

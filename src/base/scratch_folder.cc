@@ -1,37 +1,90 @@
 #include "base/scratch_folder.h"
 
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
 #include <stdlib.h>
 
 namespace hvas {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPrefix = "hvas-";
+constexpr std::string_view kRandom = "XXXXXX";  // for mkdtemp, which puts letters of its own there
+// A younger folder may be of a process that has not locked it yet.
+constexpr std::chrono::minutes kYoungest{1};
+
+/** The folder, locked; -1 where it is not ours, or its owner is alive. */
+int Lock(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+
+  struct stat status {};
+
+  if (descriptor >= 0 && (::fstat(descriptor, &status) != 0 || status.st_uid != ::geteuid() ||
+                          ::flock(descriptor, LOCK_EX | LOCK_NB) != 0)) {
+    ::close(descriptor);
+    return -1;
+  }
+  return descriptor;
+}
+
+void RemoveOrphans(const fs::path& parent) {
+  std::error_code failed;
+  const auto now = fs::file_time_type::clock::now();
+  for (fs::directory_iterator at(parent, failed), end; !failed && at != end; at.increment(failed)) {
+    const std::string name = at->path().filename().string();
+    std::error_code ignored;
+    if (!name.starts_with(kPrefix) || name.size() != kPrefix.size() + kRandom.size() ||
+        now - fs::last_write_time(at->path(), ignored) < kYoungest || ignored) {
+      continue;
+    }
+    if (const int descriptor = Lock(at->path()); descriptor >= 0) {
+      fs::remove_all(at->path(), ignored);
+      ::close(descriptor);
+    }
+  }
+}
+
+}  // namespace
 
 Result<ScratchFolder> ScratchFolder::Make() {
   std::error_code failure;
-  std::string name = (std::filesystem::temp_directory_path(failure) / "hvas-XXXXXX").string();
-  // mkdtemp puts letters of its own for the six X.
+  const fs::path parent = fs::temp_directory_path(failure);
+  std::string name = (parent / kPrefix).string() + std::string(kRandom);
   if (failure || ::mkdtemp(name.data()) == nullptr) {
     return Fail(ErrorCode::kOutOfResource, "no temporary folder can be made", name,
                 "make room in the temporary folder, or set TMPDIR to another one");
   }
-  return ScratchFolder(std::filesystem::path(name));
+  ScratchFolder folder(name, Lock(name));
+  RemoveOrphans(parent);
+  return folder;
 }
 
-ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept : path_(std::move(other.path_)) {
-  other.path_.clear();
-}
+ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept
+    : path_(std::exchange(other.path_, {})), lock_(std::exchange(other.lock_, -1)) {}
 
 ScratchFolder& ScratchFolder::operator=(ScratchFolder&& other) noexcept {
   std::swap(path_, other.path_);
+  std::swap(lock_, other.lock_);
   return *this;
 }
 
 ScratchFolder::~ScratchFolder() {
   if (!path_.empty()) {
     std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    fs::remove_all(path_, ignored);
+  }
+  if (lock_ >= 0) {
+    ::close(lock_);
   }
 }
 

@@ -8,7 +8,8 @@
 namespace hvas {
 
 /** A folder of one's own under the system's temporary one, which nobody else may enter; it goes,
- with all that is in it, with its owner. */
+ with all that is in it, with its owner. Those of processes that were killed go when the next one is
+ made. */
 class ScratchFolder {
  public:
   /** Errors (kOutOfResource): no such folder can be made. */
@@ -21,9 +22,10 @@ class ScratchFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  ScratchFolder(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
 
   std::filesystem::path path_;  ///< Empty: there is none any more.
+  int lock_{-1};                ///< Descriptor of the folder, by whose lock others see the owner.
 };
 
 }  // namespace hvas

@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "device/force_withdrawal.h"
+
 namespace hvas::device {
+
+Device::~Device() {
+  ForgetDevice(this);
+}
 
 const char* ToString(Condition condition) noexcept {
   switch (condition) {

@@ -83,7 +83,7 @@ class Device {
   Device() = default;
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
-  virtual ~Device() = default;
+  virtual ~Device();
 
   [[nodiscard]] virtual const DeviceInfo& info() const noexcept = 0;
 

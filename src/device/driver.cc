@@ -7,6 +7,7 @@
 
 #include "device/drivers/vendor_drivers.h"
 #include "device/drivers/wire_drivers.h"
+#include "device/force_withdrawal.h"
 
 namespace hvas::device {
 
@@ -24,7 +25,11 @@ Result<std::unique_ptr<Device>> OpenDevice(const std::string& address,
   const std::string rest = colon == std::string::npos ? "" : address.substr(colon + 1);
   for (const Driver* driver : Drivers()) {
     if (driver->name() == name) {
-      return driver->Open(rest, surroundings);
+      auto device = driver->Open(rest, surroundings);
+      if (device) {
+        NoteOpenDevice(device->get());
+      }
+      return device;
     }
   }
   std::vector<std::string_view> names;

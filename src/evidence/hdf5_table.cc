@@ -193,6 +193,8 @@ Result<void> WriteHdf5(record::Reader* reader, const Selection& selection,
   if (!output) {
     return Unexpected(output.error());
   }
+  // What a full disk did not take must not be tried again when the program ends: that crashes.
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   {
     Writer writer(output->working_path());

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "haptics/haptic_tick.h"
-#include "session/recorded_model.h"
 
 namespace hvas::evidence {
 namespace {
@@ -86,9 +85,10 @@ Result<std::vector<Hold>> FindHolds(record::Reader* reader, const record::Reader
   return holds;
 }
 
-std::function<Vec3(std::uint32_t occurrence)> MakeCentres(record::Reader* reader) {
+std::function<Vec3(std::uint32_t occurrence)> MakeCentres(
+    const std::optional<product::Product>& product) {
   std::vector<Vec3> centres;
-  if (const auto product = session::LoadProduct(reader)) {
+  if (product) {
     for (const product::Occurrence& occurrence : product->occurrences) {
       centres.push_back(product->part_of(occurrence.id).mass.p_BoBcm_B);
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "evidence/session_data.h"
@@ -34,7 +35,8 @@ inline constexpr double kPointGap = 0.5e-3;  // [m]
     record::Reader* reader, const record::Reader::Span& span,
     const std::function<Vec3(std::uint32_t occurrence)>& p_BQ);
 
-/** Centres of mass of a record's parts, by occurrence; origins where it has no product. */
-[[nodiscard]] std::function<Vec3(std::uint32_t occurrence)> MakeCentres(record::Reader* reader);
+/** Centres of mass of a product's parts, by occurrence; origins where there is no product. */
+[[nodiscard]] std::function<Vec3(std::uint32_t occurrence)> MakeCentres(
+    const std::optional<product::Product>& product);
 
 }  // namespace hvas::evidence

@@ -12,6 +12,7 @@
 #include "evidence/holds.h"
 #include "evidence/output_file.h"
 #include "evidence/tables.h"
+#include "session/recorded_model.h"
 
 namespace hvas::evidence {
 namespace {
@@ -96,7 +97,11 @@ class PathGlb {
 
 Result<void> WritePathGlb(record::Reader* reader, const Selection& selection,
                           const std::filesystem::path& file) {
-  const auto holds = FindHolds(reader, selection.span, MakeCentres(reader));
+  const auto product = session::FindProduct(reader);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  const auto holds = FindHolds(reader, selection.span, MakeCentres(*product));
   if (!holds) {
     return Unexpected(holds.error());
   }

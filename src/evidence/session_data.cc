@@ -1,9 +1,12 @@
 #include "evidence/session_data.h"
 
 #include <array>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "session/json_values.h"
 
 namespace hvas::evidence {
 namespace {
@@ -87,9 +90,9 @@ std::span<const Column> TickColumns() {
 
 Result<void> ForEachSelected(record::Reader* reader, const Selection& selection,
                              const std::function<void(const record::TickRecord&)>& visit) {
-  std::array<std::int64_t, 256> counts{};  // by hand
+  std::array<std::int64_t, std::numeric_limits<std::uint8_t>::max() + 1> counts{};  // by hand
   return reader->ForEachTick(selection.span, [&](const TickRecord& tick) {
-    if (counts.at(tick.hand)++ % selection.every == 0) {
+    if (counts[tick.hand]++ % selection.every == 0) {
       visit(tick);
     }
     return true;
@@ -104,7 +107,7 @@ std::vector<std::string> ReadPaths(const record::Reader& reader) {
   }
   const auto parts = nlohmann::json::parse(found->second, nullptr, false);
   for (const auto& part : parts) {
-    paths.push_back(part.is_object() ? part.value("path", std::string()) : std::string());
+    paths.push_back(session::TextOr(part, "path", ""));
   }
   return paths;
 }

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "session/json_values.h"
 #include "session/recorded_model.h"
 #include "simulation/fit_of_mate.h"
 
@@ -105,12 +106,13 @@ Result<void> ReadEvents(record::Reader* reader, Summary* summary) {
   for (record::Event& event : *events) {
     if (event.kind == "energy") {
       const auto json = nlohmann::json::parse(event.json, nullptr, false);
-      const std::size_t hand = json.is_object() ? json.value("hand", std::size_t{0}) : 2;
-      if (hand < summary->hands.size() && json.contains("force")) {
+      const auto* force = session::FieldOf(json, "force");
+      const std::size_t hand = session::IndexOr(json, "hand", 0);
+      if (force != nullptr && hand < summary->hands.size()) {
         // The newest account counts: it is kept from the beginning of its stretch.
         HandSummary& of = summary->hands[hand];
-        of.energy_in = json["force"].value("in_j", 0.0);
-        of.energy_out = json["force"].value("out_j", 0.0);
+        of.energy_in = session::NumberOr(*force, "in_j", 0);
+        of.energy_out = session::NumberOr(*force, "out_j", 0);
         of.has_energy = true;
       }
     } else if (event.kind == "safety" || event.kind == "device" || event.kind == "effort" ||
@@ -149,20 +151,33 @@ Result<Summary> Summarise(record::Reader* reader) {
   summary.meta = reader->meta();
   summary.is_complete = reader->is_complete();
   summary.paths = ReadPaths(*reader);
+  if (const auto verified = reader->Verify(); !verified) {
+    summary.damage = verified.error().message;
+  }
+  record::Reader::Span sound;
   Result<void> done = ReadHands(reader, &summary);
+  if (!done && !summary.damage.empty()) {
+    // Ticks before the chunk that cannot be read; hands share the time of a tick.
+    sound.last_ns = std::llround(1e9 * summary.duration) - 1;
+    done = {};
+  }
   if (done) {
     done = ReadEvents(reader, &summary);
   }
   if (!done) {
     return Unexpected(done.error());
   }
-  auto holds = FindHolds(reader, {}, MakeCentres(reader));
+  auto product = session::FindProduct(reader);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  summary.product = std::move(*product);
+  auto holds = FindHolds(reader, sound, MakeCentres(summary.product));
   if (!holds) {
     return Unexpected(holds.error());
   }
   summary.holds = std::move(*holds);
-  if (auto product = session::LoadProduct(reader)) {
-    summary.product = std::move(*product);
+  if (summary.product) {
     DrawFits(&summary);
   }
   return summary;

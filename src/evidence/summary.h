@@ -46,6 +46,7 @@ struct FitSummary {
 struct Summary {
   record::Meta meta;
   bool is_complete{false};
+  std::string damage;              ///< What is not as it was written, first of all; empty: nothing.
   double duration{0};              ///< [s]
   std::vector<std::string> paths;  ///< By occurrence.
   std::vector<Hold> holds;
@@ -55,7 +56,8 @@ struct Summary {
   std::optional<product::Product> product;  ///< None in records of before schema 3.
 };
 
-/** Reads all of a record. Errors: the reader's. */
+/** Reads all of a record; of a damaged one, what is sound before the damage.
+ Errors: the reader's, when nothing can be told: the product or the events cannot be read. */
 [[nodiscard]] Result<Summary> Summarise(record::Reader* reader);
 
 }  // namespace hvas::evidence

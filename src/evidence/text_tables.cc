@@ -41,7 +41,8 @@ Result<std::string> MakeHead(record::Reader* reader) {
     if (event.occurrence != record::kNoOccurrence) {
       item["occurrence"] = event.occurrence;
     }
-    item["details"] = Json::parse(event.json.empty() ? "{}" : event.json, nullptr, false);
+    Json details = Json::parse(event.json.empty() ? "{}" : event.json, nullptr, false);
+    item["details"] = details.is_discarded() ? Json(event.json) : std::move(details);
     list.push_back(std::move(item));
   }
   const Json head{{"format", "hvas-session-1"},    {"complete", reader->is_complete()},

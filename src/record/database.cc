@@ -1,5 +1,10 @@
 #include "record/database.h"
 
+#include <cctype>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
 #include <sqlite3.h>
 
 namespace hvas::record {
@@ -33,6 +38,19 @@ Unexpected FailWith(sqlite3* database, int code, const std::string& path) {
     default:
       return Fail(ErrorCode::kInternal, "SQLite: " + reason, path);
   }
+}
+
+/** A name under which SQLite neither locks nor looks for a journal. */
+std::string MakeUri(const std::filesystem::path& path) {
+  std::string uri = "file:";
+  for (const char c : std::filesystem::absolute(path).string()) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' || c == '_') {
+      uri += c;
+    } else {
+      uri += fmt::format("%{:02x}", static_cast<unsigned char>(c));
+    }
+  }
+  return uri + "?immutable=1";
 }
 
 }  // namespace
@@ -106,17 +124,61 @@ void Database::Closer::operator()(sqlite3* database) const {
   sqlite3_close_v2(database);
 }
 
-Result<Database> Database::Open(const std::filesystem::path& path, Mode mode) {
-  const int flags =
-      SQLITE_OPEN_NOMUTEX |
-      (mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+Result<Database> Database::OpenName(const std::string& name, int flags, std::string path) {
   sqlite3* raw = nullptr;
-  const int code = sqlite3_open_v2(path.c_str(), &raw, flags, nullptr);
-  Database database(raw, path.string());
+  const int code = sqlite3_open_v2(name.c_str(), &raw, flags | SQLITE_OPEN_NOMUTEX, nullptr);
+  Database database(raw, std::move(path));
   if (code != SQLITE_OK) {
-    return FailWith(raw, code, path.string());
+    return FailWith(raw, code, database.path_);
   }
   sqlite3_busy_timeout(raw, 1000);
+  return database;
+}
+
+Result<Database> Database::Open(const std::filesystem::path& path, Mode mode) {
+  if (mode == Mode::kCreate) {
+    return OpenName(path.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, path.string());
+  }
+  auto database = OpenName(path.string(), SQLITE_OPEN_READONLY, path.string());
+  if (!database) {
+    return database;
+  }
+  // The first access tells whether the files beside it, that a journal needs, can be made.
+  const auto accessed = database->QueryInt("SELECT count(*) FROM sqlite_master");
+  if (!accessed && accessed.error().code == ErrorCode::kNotFound) {
+    return OpenUnwritable(path);
+  }
+  return database;
+}
+
+Result<Database> Database::OpenUnwritable(const std::filesystem::path& path) {
+  std::error_code failed;
+  const std::filesystem::path journal = path.string() + "-wal";
+  const auto journal_bytes = std::filesystem::file_size(journal, failed);
+  if (failed || journal_bytes == 0) {
+    // Nobody writes: the file alone is everything.
+    return OpenName(MakeUri(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, path.string());
+  }
+  auto folder = ScratchFolder::Make();
+  if (!folder) {
+    return Unexpected(folder.error());
+  }
+  const std::filesystem::path copy = folder->path() / "record";
+  std::filesystem::copy_file(path, copy, failed);
+  if (!failed) {
+    std::filesystem::copy_file(journal, copy.string() + "-wal", failed);
+  }
+  if (failed) {
+    return Fail(ErrorCode::kOutOfResource,
+                "the record's journal is in a folder that may not be written, and there is no room "
+                "for a copy: " +
+                    failed.message(),
+                path.string(), "copy both files to a folder of your own");
+  }
+  auto database = OpenName(copy.string(), SQLITE_OPEN_READONLY, path.string());
+  if (database) {
+    database->copy_ = std::move(*folder);
+  }
   return database;
 }
 

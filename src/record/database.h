@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "base/result.h"
+#include "base/scratch_folder.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -54,6 +56,8 @@ class Database {
  public:
   enum class Mode { kReadOnly, kCreate };
 
+  /** Read-only also where the folder may not be written, in which a killed writer can have left a
+   journal: a journal is then read from a copy in a temporary folder. */
   static Result<Database> Open(const std::filesystem::path& path, Mode mode);
 
   Result<void> Execute(const std::string& sql);
@@ -68,6 +72,10 @@ class Database {
 
   Database(sqlite3* database, std::string path) : database_(database), path_(std::move(path)) {}
 
+  static Result<Database> OpenName(const std::string& name, int flags, std::string path);
+  static Result<Database> OpenUnwritable(const std::filesystem::path& path);
+
+  std::optional<ScratchFolder> copy_;  // Outlives the connection.
   std::unique_ptr<sqlite3, Closer> database_;
   std::string path_;
 };

@@ -9,8 +9,8 @@
 namespace hvas::record {
 
 /** 1: ticks of one hand. 2: ticks of both, with all that the device told. 3: compressed, with
- commands, attachments and frames. */
-inline constexpr std::int64_t kSchemaVersion = 3;
+ commands, attachments and frames. 4: with seals. */
+inline constexpr std::int64_t kSchemaVersion = 4;
 
 /** Bytes of a tick in a file: its fields in order, little-endian, without gaps. */
 inline constexpr std::size_t kPackedTickSize = 454;

@@ -8,6 +8,7 @@
 #include "base/digest.h"
 #include "record/compression.h"
 #include "record/packing.h"
+#include "record/seal_check.h"
 #include "record/session_digest.h"
 
 namespace hvas::record {
@@ -75,11 +76,16 @@ Result<void> Reader::CheckKind() {
                             *version, kSchemaVersion),
                 path_.string(), "open it with the version of HVAS that wrote it");
   }
+  if (*version < 1) {
+    return Fail(ErrorCode::kUnreadable, fmt::format("there is no layout {}", *version),
+                path_.string(), "restore the file from a copy");
+  }
   schema_ = *version;
   return {};
 }
 
 Result<void> Reader::ReadMeta() {
+  meta_.clear();
   Result<Statement> rows = database_.Prepare("SELECT key, value FROM meta");
   if (!rows) {
     return Unexpected(rows.error());
@@ -325,9 +331,14 @@ Result<std::string> Reader::Verify() {
   if (done) {
     done = ReadMeta();
   }
+  if (done && schema_ >= 4) {
+    done = CheckSeals(&database_, path_);
+  }
   Result<std::string> hex = done ? CalcDigest() : Unexpected(done.error());
-  done = ForEachFrame({}, [](const Frame&) { return true; });
-  if (done) {
+  if (hex) {
+    done = ForEachFrame({}, [](const Frame&) { return true; });
+  }
+  if (hex && done) {
     done = CheckAttachments();
   }
   static_cast<void>(database_.Execute("COMMIT"));
@@ -335,7 +346,9 @@ Result<std::string> Reader::Verify() {
     return Unexpected(done.error());
   }
   if (hex && is_complete() && meta_.at(kMetaDigest) != *hex) {
-    return Fail(ErrorCode::kUnreadable, "the record is not the one that was written",
+    return Fail(ErrorCode::kUnreadable,
+                "the record is not as it was written: its ticks, events and commands have another "
+                "digest",
                 path_.string(), "restore the file from a copy");
   }
   return hex;

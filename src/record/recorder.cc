@@ -26,7 +26,8 @@ using Item = std::variant<Event, Command, Frame, Attachment>;
 // Takes what is added to the digest and, while the disk is well, to the file.
 class Sink {
  public:
-  explicit Sink(std::optional<SessionFile> file) : file_(std::move(file)) {}
+  Sink(std::optional<SessionFile> file, std::function<void(const Error&)> on_error)
+      : file_(std::move(file)), on_error_(std::move(on_error)) {}
 
   void Add(const TickRecord& tick) {
     std::array<std::byte, kPackedTickSize> bytes{};
@@ -80,13 +81,17 @@ class Sink {
   }
 
   void Note(const Result<void>& done) {
-    if (!done) {
+    if (!done && !error_) {
       error_ = done.error();
+      if (on_error_) {
+        on_error_(*error_);
+      }
     }
   }
 
   SessionDigest digest_;
   std::optional<SessionFile> file_;
+  std::function<void(const Error&)> on_error_;
   std::optional<Error> error_;
 };
 
@@ -94,7 +99,7 @@ class Sink {
 
 struct Recorder::Impl {
   Impl(std::optional<SessionFile> file, const RecorderOptions& options)
-      : sink(std::move(file)),
+      : sink(std::move(file), options.on_error),
         is_threaded(options.is_threaded),
         waiting_frame_bytes(options.waiting_frame_bytes) {
     if (is_threaded) {
@@ -197,8 +202,11 @@ Result<std::unique_ptr<Recorder>> Recorder::Create(const RecorderOptions& option
   if (!options.path.empty()) {
     Meta whole = meta;
     whole[kMetaStarted] = std::to_string(WallClockNs());
-    Result<SessionFile> created =
-        SessionFile::Create({options.path, options.max_file_bytes, options.is_threaded}, whole);
+    Result<SessionFile> created = SessionFile::Create({.path = options.path,
+                                                       .max_bytes = options.max_file_bytes,
+                                                       .outlives_power = options.is_threaded,
+                                                       .replaces = options.replaces},
+                                                      whole);
     if (!created) {
       return Unexpected(created.error());
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,11 @@ struct RecorderOptions {
   /** Bytes of frames that may wait for it; further ones are counted and lost. */
   std::size_t waiting_frame_bytes{std::size_t{64} << 20};
   std::int64_t max_file_bytes{0};  ///< The file stops growing here; 0: no limit.
+  bool replaces{false};            ///< A finished record that is there.
+  /** Called once, as soon as it is found that nothing can be written any more: the session goes on
+   without a record. From any thread that adds or from the one that writes; may be null, must not
+   throw or call the recorder. */
+  std::function<void(const Error&)> on_error{};
 };
 
 /** Writes a session to an SQLite file as it happens.
@@ -33,7 +39,8 @@ struct RecorderOptions {
 class Recorder {
  public:
   /** Errors: kNotFound when the folder does not exist or may not be written, kInvalid when there is
-   another kind of file, kOutOfResource when the disk is full. */
+   another kind of file, a record that may not be replaced or one that is being written,
+   kOutOfResource when the disk is full. */
   static Result<std::unique_ptr<Recorder>> Create(const RecorderOptions& options, const Meta& meta);
 
   /** Finishes, if Finish() was not called. */

@@ -1,8 +1,8 @@
 #include "record/session_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -16,6 +16,10 @@ namespace {
 
 constexpr std::int64_t kCommitPeriodNs = kNsPerSecond / 2;
 constexpr std::int64_t kPageSize = 4096;
+// How often the journal's content is moved into the file itself: often enough that a file without
+// its journal has nearly all, and seldom enough that a run in virtual time does not wait for the
+// disk.
+constexpr std::int64_t kMovePeriodNs = 2 * kNsPerSecond / 5;
 
 constexpr const char* kSchema = R"(
 CREATE TABLE schema_version (version INTEGER NOT NULL);
@@ -50,6 +54,16 @@ CREATE TABLE attachment (
   name TEXT PRIMARY KEY,
   checksum INTEGER NOT NULL,
   bytes BLOB NOT NULL);
+CREATE TABLE seal (
+  id INTEGER PRIMARY KEY,
+  t_ns INTEGER NOT NULL,
+  is_last INTEGER NOT NULL,
+  chunks INTEGER NOT NULL, chunk_hash INTEGER NOT NULL,
+  events INTEGER NOT NULL, event_hash INTEGER NOT NULL,
+  commands INTEGER NOT NULL, command_hash INTEGER NOT NULL,
+  frames INTEGER NOT NULL, frame_hash INTEGER NOT NULL,
+  entries TEXT NOT NULL,
+  hash INTEGER NOT NULL);
 )";
 
 constexpr const char* kInsertMeta = "INSERT OR REPLACE INTO meta VALUES (?, ?)";
@@ -62,31 +76,9 @@ constexpr const char* kInsertCommand =
 constexpr const char* kInsertFrame = "INSERT INTO frame (t_ns, checksum, bytes) VALUES (?, ?, ?)";
 constexpr const char* kInsertAttachment =
     "INSERT OR REPLACE INTO attachment (name, checksum, bytes) VALUES (?, ?, ?)";
-
-// A record, or an empty file, may be replaced; anything else is somebody's work.
-Result<void> RemoveOldRecord(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  if (!std::filesystem::exists(status)) {
-    return {};
-  }
-  bool is_ours = false;
-  if (std::filesystem::is_regular_file(status)) {
-    is_ours = std::filesystem::file_size(path, ignored) == 0;
-    if (!is_ours) {
-      Result<Database> old = Database::Open(path, Database::Mode::kReadOnly);
-      is_ours = old && old->QueryInt("PRAGMA application_id").value_or(0) == kApplicationId;
-    }
-  }
-  if (!is_ours) {
-    return Fail(ErrorCode::kInvalid, "what is there is not a session record and is kept",
-                path.string(), "choose another name for the record");
-  }
-  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
-    std::filesystem::remove(path.string() + suffix, ignored);
-  }
-  return {};
-}
+constexpr const char* kInsertSeal =
+    "INSERT INTO seal (t_ns, is_last, chunks, chunk_hash, events, event_hash, commands, "
+    "command_hash, frames, frame_hash, entries, hash) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 
 Result<void> CreateSchema(Database* database, const SessionFileOptions& options) {
   std::string sql = fmt::format(
@@ -105,15 +97,15 @@ Result<void> CreateSchema(Database* database, const SessionFileOptions& options)
 }  // namespace
 
 Result<SessionFile> SessionFile::Create(const SessionFileOptions& options, const Meta& meta) {
-  Result<void> done = RemoveOldRecord(options.path);
-  if (!done) {
-    return Unexpected(done.error());
+  Result<WriteClaim> claim = WriteClaim::Make(options.path, options.replaces);
+  if (!claim) {
+    return Unexpected(claim.error());
   }
   Result<Database> database = Database::Open(options.path, Database::Mode::kCreate);
   if (!database) {
     return Unexpected(database.error());
   }
-  done = CreateSchema(&*database, options);
+  Result<void> done = CreateSchema(&*database, options);
   if (!done) {
     return Unexpected(done.error());
   }
@@ -121,7 +113,7 @@ Result<SessionFile> SessionFile::Create(const SessionFileOptions& options, const
   if (!statements) {
     return Unexpected(statements.error());
   }
-  SessionFile file(std::move(*database), std::move(*statements));
+  SessionFile file(std::move(*claim), std::move(*database), std::move(*statements));
   file.chunk_.reserve(kChunkTicks * kPackedTickSize);
   done = file.AddMeta(meta);
   if (done) {
@@ -135,21 +127,22 @@ Result<SessionFile> SessionFile::Create(const SessionFileOptions& options, const
 
 Result<SessionFile::Statements> SessionFile::Prepare(Database* database) {
   std::vector<Statement> made;
-  for (const char* sql :
-       {kInsertMeta, kInsertChunk, kInsertEvent, kInsertCommand, kInsertFrame, kInsertAttachment}) {
+  for (const char* sql : {kInsertMeta, kInsertChunk, kInsertEvent, kInsertCommand, kInsertFrame,
+                          kInsertAttachment, kInsertSeal}) {
     Result<Statement> statement = database->Prepare(sql);
     if (!statement) {
       return Unexpected(statement.error());
     }
     made.push_back(std::move(*statement));
   }
-  return Statements{std::move(made[0]), std::move(made[1]), std::move(made[2]),
-                    std::move(made[3]), std::move(made[4]), std::move(made[5])};
+  return Statements{std::move(made[0]), std::move(made[1]), std::move(made[2]), std::move(made[3]),
+                    std::move(made[4]), std::move(made[5]), std::move(made[6])};
 }
 
 Result<void> SessionFile::AddMeta(const Meta& meta) {
   Result<void> done = BeginIfNeeded(0);
   for (auto it = meta.begin(); done && it != meta.end(); ++it) {
+    ledger_.SetMeta(it->first, it->second);
     done = statements_.meta.Bind(1, it->first).Bind(2, it->second).Run();
   }
   return done;
@@ -174,8 +167,9 @@ Result<void> SessionFile::Add(std::int64_t t_ns, std::span<const std::byte> pack
 
 Result<void> SessionFile::Add(const Event& event) {
   Statement& statement = statements_.event;
-  statement.Bind(1, event.t_ns).Bind(2, event.kind).Bind(4, event.json);
-  statement.Bind(5, static_cast<std::int64_t>(CalcChecksum(event)));
+  const auto checksum = static_cast<std::int64_t>(CalcChecksum(event));
+  ledger_.Add(RowTable::kEvent, std::array{checksum});
+  statement.Bind(1, event.t_ns).Bind(2, event.kind).Bind(4, event.json).Bind(5, checksum);
   if (event.occurrence == kNoOccurrence) {
     statement.BindNull(3);
   } else {
@@ -185,28 +179,30 @@ Result<void> SessionFile::Add(const Event& event) {
 }
 
 Result<void> SessionFile::Add(const Command& command) {
+  const auto checksum = static_cast<std::int64_t>(CalcChecksum(command));
+  ledger_.Add(RowTable::kCommand, std::array{checksum});
   statements_.command.Bind(1, command.t_ns)
       .Bind(2, command.number)
       .Bind(3, command.kind)
       .Bind(4, command.json)
-      .Bind(5, static_cast<std::int64_t>(CalcChecksum(command)));
+      .Bind(5, checksum);
   return Insert(command.t_ns, &statements_.command);
 }
 
 Result<void> SessionFile::Add(const Frame& frame) {
   const std::span<const std::byte> bytes(frame.bytes);
-  statements_.frame.Bind(1, frame.t_ns)
-      .Bind(2, static_cast<std::int64_t>(Checksum64(bytes)))
-      .Bind(3, bytes);
+  const auto checksum = static_cast<std::int64_t>(Checksum64(bytes));
+  ledger_.Add(RowTable::kFrame, std::array{frame.t_ns, checksum});
+  statements_.frame.Bind(1, frame.t_ns).Bind(2, checksum).Bind(3, bytes);
   return Insert(frame.t_ns, &statements_.frame);
 }
 
 Result<void> SessionFile::Add(const Attachment& attachment) {
   const std::vector<std::byte> block = Compress(attachment.bytes);
   const std::span<const std::byte> bytes(block);
-  statements_.attachment.Bind(1, attachment.name)
-      .Bind(2, static_cast<std::int64_t>(Checksum64(bytes)))
-      .Bind(3, bytes);
+  const auto checksum = static_cast<std::int64_t>(Checksum64(bytes));
+  ledger_.SetAttachment(attachment.name, checksum);
+  statements_.attachment.Bind(1, attachment.name).Bind(2, checksum).Bind(3, bytes);
   return Insert(transaction_start_ns_.value_or(0), &statements_.attachment);
 }
 
@@ -224,10 +220,13 @@ Result<void> SessionFile::WriteChunk() {
   }
   const std::vector<std::byte> block = CompressTicks(chunk_, kPackedTickSize);
   const std::span<const std::byte> bytes(block);
+  const auto checksum = static_cast<std::int64_t>(Checksum64(bytes));
+  ledger_.Add(RowTable::kChunk,
+              std::array{chunk_first_ns_, chunk_last_ns_, chunk_ticks_, checksum});
   Result<void> done = statements_.chunk.Bind(1, chunk_first_ns_)
                           .Bind(2, chunk_last_ns_)
                           .Bind(3, chunk_ticks_)
-                          .Bind(4, static_cast<std::int64_t>(Checksum64(bytes)))
+                          .Bind(4, checksum)
                           .Bind(5, bytes)
                           .Run();
   chunk_.clear();
@@ -249,22 +248,61 @@ Result<void> SessionFile::CommitIfDue(std::int64_t t_ns) {
              : Result<void>();
 }
 
-Result<void> SessionFile::Commit() {
-  if (!transaction_start_ns_.has_value()) {
-    return {};
+Result<void> SessionFile::WriteSeal(bool is_last) {
+  Seal seal;
+  seal.t_ns = chunk_last_ns_;
+  seal.is_last = is_last;
+  Statement& statement = statements_.seal;
+  statement.Bind(1, seal.t_ns).Bind(2, std::int64_t{is_last ? 1 : 0});
+  int column = 3;
+  for (const RowTable table : kRowTables) {
+    const Ledger::Rows& rows = ledger_.rows(table);
+    seal.rows[static_cast<std::size_t>(table)] = rows;
+    statement.Bind(column++, rows.count);
+    statement.Bind(column++, rows.hash);
   }
-  Result<void> done = WriteChunk();
+  std::string entries = PackEntries(ledger_);
+  if (entries != sealed_entries_) {
+    seal.entries = entries;
+    sealed_entries_ = std::move(entries);
+  }
+  last_seal_ = CalcHash(seal, last_seal_);
+  return statement.Bind(column, seal.entries).Bind(column + 1, last_seal_).Run();
+}
+
+Result<void> SessionFile::Commit(bool is_last) {
+  if (!transaction_start_ns_.has_value()) {
+    return claim_.CheckStillThere();
+  }
+  Result<void> done = claim_.CheckStillThere();
+  if (done) {
+    done = WriteChunk();
+  }
+  if (done) {
+    done = WriteSeal(is_last);
+  }
   if (!done) {
     return done;
   }
   transaction_start_ns_.reset();
-  return database_.Execute("COMMIT");
+  done = database_.Execute("COMMIT");
+  return done ? MoveIntoFile() : done;
+}
+
+Result<void> SessionFile::MoveIntoFile() {
+  const std::int64_t now_ns = MonotonicNs();
+  if (moved_ns_ != 0 && now_ns - moved_ns_ < kMovePeriodNs) {
+    return {};
+  }
+  moved_ns_ = now_ns;
+  // As far as no reader is in the way; the rest stays in the journal.
+  return database_.Execute("PRAGMA wal_checkpoint(PASSIVE)");
 }
 
 Result<void> SessionFile::Close(const Meta& meta) {
   Result<void> done = AddMeta(meta);
   if (done) {
-    done = Commit();
+    done = Commit(true);
   }
   if (done) {
     // All is on the disk by now; while somebody reads, it just stays in two files.

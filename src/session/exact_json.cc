@@ -119,9 +119,17 @@ void JsonFields::operator()(const char* name, Quat& value) {
 }
 
 void JsonFields::operator()(const char* name, spatial::Pose& value) {
+  constexpr double kUnitSlack = 1e-6;
   std::array<double, 7> v{};
-  if (Numbers(name, &v)) {
-    value = {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
+  if (!Numbers(name, &v)) {
+    return;
+  }
+  const Quat q(v[3], v[4], v[5], v[6]);
+  const Vec3 p(v[0], v[1], v[2]);
+  if (p.allFinite() && std::abs(q.norm() - 1) < kUnitSlack) {
+    value = {q, p};
+  } else {
+    Refuse(name);
   }
 }
 

@@ -81,6 +81,17 @@ Result<product::Product> LoadProduct(record::Reader* reader) {
   return product;
 }
 
+Result<std::optional<product::Product>> FindProduct(record::Reader* reader) {
+  if (reader->schema() < 3) {
+    return std::nullopt;
+  }
+  auto product = LoadProduct(reader);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  return std::optional(std::move(*product));
+}
+
 Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reader,
                                                            simulation::CompileOptions options,
                                                            Diagnostics* diagnostics) {

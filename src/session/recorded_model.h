@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/diagnostics.h"
@@ -24,6 +25,9 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder);
 
 /** Errors: kUnsupported for a record without a product, or with one of another format. */
 [[nodiscard]] Result<product::Product> LoadProduct(record::Reader* reader);
+
+/** As LoadProduct(); none for a record of before schema 3, which has no product in it. */
+[[nodiscard]] Result<std::optional<product::Product>> FindProduct(record::Reader* reader);
 
 /** A record's model, compiled anew.
  @param options  How; the seed is that of the record.

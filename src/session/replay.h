@@ -55,7 +55,10 @@ struct ReplayReport {
   std::int64_t session_ns{0};         ///< That was run again.
   std::int64_t wall_ns{0};            ///< That it took.
 
-  [[nodiscard]] bool is_exact() const { return different_ticks == 0 && unreachable_ticks == 0; }
+  /** All ticks came out again bit for bit, and there were some. */
+  [[nodiscard]] bool is_exact() const {
+    return ticks > 0 && different_ticks == 0 && unreachable_ticks == 0;
+  }
 };
 
 /** Feeds a record's samples and commands through the same program again, tick by tick, and compares

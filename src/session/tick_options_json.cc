@@ -1,6 +1,7 @@
 #include "session/tick_options_json.h"
 
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -37,6 +38,43 @@ class JsonMaker {
 
  private:
   Json* object_;
+};
+
+/** Finds the first field that no tick can work with. */
+class UnsoundField {
+ public:
+  void operator()(const char* name, const double& value) { NoteUnless(!std::isnan(value), name); }
+  void operator()(const char* name, const Vec3& value) { NoteUnless(!value.hasNaN(), name); }
+  void operator()(const char* name, const Quat& value) {
+    NoteUnless(value.coeffs().allFinite(), name);
+  }
+  void operator()(const char* /*name*/, const spatial::Pose& /*value*/) {}
+  void operator()(const char* /*name*/, const bool& /*value*/) {}
+  void operator()(const char* /*name*/, const std::string& /*value*/) {}
+  template <typename E, std::size_t N>
+  void operator()(const char* /*name*/, const E& /*value*/,
+                  const std::array<const char*, N>& /*names*/) {}
+
+  [[nodiscard]] UnsoundField Inner(const char* name) const {
+    UnsoundField inner;
+    inner.path_ = path_ + name + ".";
+    return inner;
+  }
+
+  void Take(const UnsoundField& inner) { found_ = found_.empty() ? inner.found_ : found_; }
+
+  /** Empty: there is none. */
+  [[nodiscard]] const std::string& found() const { return found_; }
+
+ private:
+  void NoteUnless(bool is_sound, const char* name) {
+    if (!is_sound && found_.empty()) {
+      found_ = path_ + name;
+    }
+  }
+
+  std::string path_;
+  std::string found_;
 };
 
 /** Visits all fields of each kind of options. Every struct is taken apart into all of its members:
@@ -234,6 +272,15 @@ struct AllFields {
   }
 };
 
+std::string FindUnsound(haptics::TickOptions* options) {
+  constexpr double kShortestTick = 1e-5;  // [s]
+  constexpr double kLongestTick = 0.1;
+  UnsoundField unsound;
+  AllFields::Visit(unsound, *options);
+  const bool has_period = options->dt >= kShortestTick && options->dt <= kLongestTick;
+  return unsound.found().empty() && !has_period ? "dt_s" : unsound.found();
+}
+
 constexpr const char* kLimits = "limits";
 constexpr const char* kRendersFits = "renders_fits";  // Only where they are not.
 
@@ -263,9 +310,10 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   if (fields.has(kRendersFits)) {
     fields(kRendersFits, options.renders_fits);
   }
-  if (!fields.refused().empty()) {
+  const std::string refused = fields.refused().empty() ? FindUnsound(&options) : fields.refused();
+  if (!refused.empty()) {
     return Fail(ErrorCode::kUnreadable,
-                fmt::format("the options of a hand have no good \"{}\"", fields.refused()));
+                fmt::format("the options of a hand have no good \"{}\"", refused));
   }
   return options;
 }

@@ -1,6 +1,5 @@
 #include "studio/json_fields.h"
 
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -17,14 +16,6 @@ constexpr std::size_t kMostFields = 64;  // of a command, those of its objects a
 Unexpected Wrong(const char* name, const char* wanted) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" must be {}", name, wanted), "command",
               "load the page again");
-}
-
-const Json* FieldOf(const Json& object, const char* name) {
-  if (!object.is_object()) {
-    return nullptr;
-  }
-  const auto found = object.find(name);
-  return found != object.end() ? &*found : nullptr;
 }
 
 }  // namespace
@@ -126,32 +117,6 @@ Result<PickedFace> FaceAt(const Json& object, const char* name) {
     return Wrong(name, "a face, as {\"occurrence\": 0, \"face\": 3}");
   }
   return PickedFace{product::OccurrenceId(*occurrence), product::FaceId(*face)};
-}
-
-std::string TextOr(const Json& object, const char* name, std::string missing) {
-  const Json* field = FieldOf(object, name);
-  return field != nullptr && field->is_string() ? field->get<std::string>() : std::move(missing);
-}
-
-bool FlagOr(const Json& object, const char* name, bool missing) {
-  const Json* field = FieldOf(object, name);
-  return field != nullptr && field->is_boolean() ? field->get<bool>() : missing;
-}
-
-double NumberOr(const Json& object, const char* name, double missing) {
-  const Json* field = FieldOf(object, name);
-  const double number = field != nullptr && field->is_number() ? field->get<double>() : missing;
-  return std::isfinite(number) ? number : missing;
-}
-
-std::uint32_t IndexOr(const Json& object, const char* name, std::uint32_t missing) {
-  const Json* field = FieldOf(object, name);
-  if (field == nullptr || !field->is_number_unsigned()) {
-    return missing;
-  }
-  const auto number = field->get<std::uint64_t>();
-  return number <= std::numeric_limits<std::uint32_t>::max() ? static_cast<std::uint32_t>(number)
-                                                             : missing;
 }
 
 }  // namespace hvas::studio

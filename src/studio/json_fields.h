@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "session/json_values.h"
 #include "studio/measure.h"
 
 namespace hvas::studio {
@@ -43,12 +44,10 @@ struct Limits {
                                       double missing);
 [[nodiscard]] Result<PickedFace> FaceAt(const Json& object, const char* name);
 
-/** What a file says, that anybody may have written: `missing` where the field is not there, is of
- another type or, of a number, is not finite. */
-[[nodiscard]] std::string TextOr(const Json& object, const char* name, std::string missing);
-[[nodiscard]] bool FlagOr(const Json& object, const char* name, bool missing);
-[[nodiscard]] double NumberOr(const Json& object, const char* name, double missing);
-/** A whole number from 0 to 2^32 - 1. */
-[[nodiscard]] std::uint32_t IndexOr(const Json& object, const char* name, std::uint32_t missing);
+using session::FieldOf;
+using session::FlagOr;
+using session::IndexOr;
+using session::NumberOr;
+using session::TextOr;
 
 }  // namespace hvas::studio

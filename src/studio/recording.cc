@@ -35,11 +35,13 @@ Recording::Recording(std::unique_ptr<record::Recorder> recorder,
 Result<std::shared_ptr<Recording>> Recording::Start(const std::filesystem::path& file,
                                                     const std::string& name,
                                                     std::shared_ptr<const OpenScene> scene,
-                                                    const nlohmann::ordered_json& scene_json) {
+                                                    const nlohmann::ordered_json& scene_json,
+                                                    std::function<void()> on_failed) {
   record::RecorderOptions options;
   options.path = file;
   options.is_threaded = true;
   options.ring_ticks *= 2;  // of two hands
+  options.on_error = [on_failed = std::move(on_failed)](const Error&) { on_failed(); };
   record::Meta meta = session::MakeModelMeta(*scene->model);
   meta[kNameMeta] = name;
   auto recorder = record::Recorder::Create(options, meta);

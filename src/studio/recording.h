@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -27,11 +28,13 @@ class Recording final : public simulation::Sink {
  public:
   /** @param file  Its stem is the recording's id.
    @param scene_json  As GET /api/scene has it.
+   @param on_failed  Called once, on another thread, when nothing can be written any more.
    Errors: those of record::Recorder::Create. */
   static Result<std::shared_ptr<Recording>> Start(const std::filesystem::path& file,
                                                   const std::string& name,
                                                   std::shared_ptr<const OpenScene> scene,
-                                                  const nlohmann::ordered_json& scene_json);
+                                                  const nlohmann::ordered_json& scene_json,
+                                                  std::function<void()> on_failed);
 
   /** A run begins: before its loops do, and after it was restored. */
   void Begin(simulation::Simulation* simulation);
@@ -49,6 +52,9 @@ class Recording final : public simulation::Sink {
   /** Ends the file. A run may go on with this as its sink; nothing is written any more.
    Errors: what the disk has said. */
   [[nodiscard]] Result<void> Stop();
+
+  /** Whether nothing can be written any more. */
+  [[nodiscard]] bool has_failed() const { return recorder_->error().has_value(); }
 
   [[nodiscard]] const OpenScene* scene() const { return scene_.get(); }
 

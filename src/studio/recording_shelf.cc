@@ -135,7 +135,9 @@ Result<std::filesystem::path> RecordingShelf::MakePath(const std::string& produc
                 "start the studio with --recordings FOLDER");
   }
   std::error_code failed;
-  std::filesystem::create_directories(folder_, failed);
+  if (std::filesystem::create_directories(folder_, failed)) {
+    std::filesystem::permissions(folder_, std::filesystem::perms::owner_all, failed);
+  }
   if (failed) {
     return Fail(ErrorCode::kOutOfResource, failed.message(), folder_.string(),
                 "start the studio with --recordings FOLDER");

@@ -570,7 +570,8 @@ void Workbench::DoStartRecording(const std::filesystem::path& file, const std::s
     return;  // somebody was faster
   }
   const std::string called = name.empty() ? scene->model->product->name : name;
-  auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state));
+  auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state),
+                                  [this] { Post([this] { EndFailedRecording(); }); });
   if (!started) {
     Tell({{"event", "failed"}, {"file", file.string()}, {"error", ToJson(started.error())}});
     return;
@@ -607,6 +608,17 @@ void Workbench::FinishRecording() {
     Tell({{"event", "failed"}, {"file", "recording"}, {"error", ToJson(stopped.error())}});
   }
   TellOfRecording(ended->Describe());
+}
+
+void Workbench::EndFailedRecording() {
+  std::shared_ptr<Recording> recording;
+  {
+    const std::lock_guard lock(mutex_);
+    recording = recording_;
+  }
+  if (recording != nullptr && recording->has_failed()) {
+    FinishRecording();
+  }
 }
 
 void Workbench::TellOfRecording(Json recording) const {

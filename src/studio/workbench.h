@@ -155,6 +155,8 @@ class Workbench {
   void DoStartRecording(const std::filesystem::path& file, const std::string& name);
   void TellOfRecording(Json recording) const;
   void FinishRecording();
+  /** Finishes the recording of now if it has failed, so that all clients learn of it. */
+  void EndFailedRecording();
   /** Errors: somebody is at work. */
   [[nodiscard]] Result<void> CheckHands() const;
   void RestartWithHands();

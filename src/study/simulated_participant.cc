@@ -143,6 +143,7 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
   if (!record.empty()) {
     record::RecorderOptions options;
     options.path = record;
+    options.replaces = true;  // of a trial that was broken off
     record::Meta meta = session::MakeModelMeta(model);
     meta["condition"] = condition.id;
     meta["simulated"] = "a simulated participant of a study";

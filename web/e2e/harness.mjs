@@ -316,6 +316,7 @@ export async function clickFace(page, occurrence, face) {
 
 /** Presses on a part and drags it a little: it is in the hand then. */
 export async function takeByMouse(page, occurrence) {
+  await waitForView(page);  // a part is pressed where it is seen when the button goes down
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();

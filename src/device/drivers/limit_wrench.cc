@@ -1,5 +1,7 @@
 #include "device/drivers/limit_wrench.h"
 
+#include "device/force_withdrawal.h"
+
 namespace hvas::device {
 namespace {
 
@@ -13,7 +15,7 @@ void LimitNorm(double limit, Vec3* v) noexcept {
 }  // namespace
 
 spatial::Wrench LimitWrench(const spatial::Wrench& F, const DeviceProfile& profile) noexcept {
-  if (!F.f.allFinite() || !F.t.allFinite()) {
+  if (!F.f.allFinite() || !F.t.allFinite() || AreForcesWithdrawn()) {
     return {};
   }
   spatial::Wrench limited = F;

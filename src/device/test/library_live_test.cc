@@ -1,8 +1,19 @@
 // The drivers and the vendors' threads at once, in real time (N6, N8). No claim is about how long.
 
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
 #include <thread>
 
+#include "device/force_withdrawal.h"
 #include "device/test/library_rig.h"
 
 namespace hvas::device {
@@ -82,6 +93,93 @@ TEST_P(LibraryLiveTest, TwoDevicesOfADriverWorkAtOnce) {
   EXPECT_TRUE(TickUntil(**left_device, Condition::kReady));
   other.join();
   EXPECT_TRUE(TickUntil(**left_device, Condition::kReady));
+}
+
+/** How the process that has a device in somebody's hand can come to its end. */
+enum class End { kTerminate, kTick, kAbort, kSegmentationFault, kInterrupt, kTermination };
+
+void Come(End end) {
+  switch (end) {
+    case End::kTerminate:
+      std::thread([] { throw std::runtime_error("of a thread that catches nothing"); }).join();
+      break;
+    case End::kTick:
+      std::terminate();  // as where a tick that is noexcept throws
+    case End::kAbort:
+      std::abort();
+    case End::kSegmentationFault:
+      static_cast<void>(std::raise(SIGSEGV));
+      break;
+    case End::kInterrupt:
+      static_cast<void>(std::raise(SIGINT));
+      break;
+    case End::kTermination:
+      static_cast<void>(std::raise(SIGTERM));
+      break;
+  }
+}
+
+/** Runs a process with force on the hand to its end, and returns the force that its device was
+ given last [N]; NaN when there was none before. The haptic thread goes on or stands still. */
+double ForceAfter(const LibraryCase& which, End end, bool has_loop) {
+  struct Shared {
+    std::atomic<double> before{0};
+    std::atomic<double> last{0};
+  };
+
+  void* memory =
+      ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  auto* shared = new (memory) Shared;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    WithdrawForcesAtTheEnd();
+    const auto emulator = StartLive(which);
+    auto device = OpenDevice(emulator->address(), emulator->surroundings());
+    if (!device || !TickUntil(**device, Condition::kReady)) {
+      ::_exit(1);
+    }
+    const auto force = [&] { return emulator->device().truth().command.f.norm(); };
+    const auto tick = [&] {
+      static_cast<void>((*device)->Read());
+      (*device)->Write({Vec3::Zero(), Vec3(0.5, 0, 0)});
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    for (int k = 0; k < kMostTicks && force() < 0.4; ++k) {
+      tick();
+    }
+    shared->before = force();
+    std::thread([&] {  // whoever looks at the motors from outside
+      for (;;) {
+        shared->last = force();
+      }
+    })
+        .detach();
+    if (has_loop) {
+      std::thread([&] {
+        for (;;) {
+          tick();
+        }
+      }).detach();
+    }
+    Come(end);
+    ::_exit(2);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status)) << "it ends as it would have";
+  const double last = shared->before > 0.4 ? shared->last.load() : std::nan("");
+  ::munmap(memory, sizeof(Shared));
+  return last;
+}
+
+TEST_P(LibraryLiveTest, NoEndOfTheProcessLeavesAForceOnTheHand) {
+  for (const End end : {End::kTerminate, End::kTick, End::kAbort, End::kSegmentationFault,
+                        End::kInterrupt, End::kTermination}) {
+    for (const bool has_loop : {true, false}) {
+      EXPECT_EQ(ForceAfter(*GetParam(), end, has_loop), 0)
+          << static_cast<int>(end) << (has_loop ? ", with" : ", without") << " a haptic loop";
+    }
+  }
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST_F(EvidenceTest, WayAsGlbIsThatOfThePart) {
   ASSERT_EQ(NumberAt<std::uint32_t>(bytes, 8), bytes.size());
   const auto json_size = NumberAt<std::uint32_t>(bytes, 12);
   const json document = json::parse(bytes.substr(20, json_size));
-  const auto holds = FindHolds(&reader, {}, MakeCentres(&reader));
+  const auto holds = FindHolds(&reader, {}, MakeCentres(session::LoadProduct(&reader).value()));
   ASSERT_EQ(holds->size(), 1u);
   const Hold& hold = holds->front();
   ASSERT_EQ(document["nodes"].size(), 2u);
@@ -114,7 +114,7 @@ TEST_F(EvidenceTest, WayAsGlbIsThatOfThePart) {
 }
 
 TEST_F(EvidenceTest, HoldIsWhatItsTicksSay) {
-  const auto holds = FindHolds(&reader, {}, MakeCentres(&reader));
+  const auto holds = FindHolds(&reader, {}, MakeCentres(session::LoadProduct(&reader).value()));
   ASSERT_EQ(holds->size(), 1u);
   const Hold& hold = holds->front();
   EXPECT_TRUE(hold.is_seated);

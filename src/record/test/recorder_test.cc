@@ -348,10 +348,10 @@ TEST(RecorderError, DoesNotOverwriteWhatIsNotARecord) {
   EXPECT_FALSE(Recorder::Create({std::filesystem::temp_directory_path()}, {}).has_value());
 }
 
-TEST(Recorder, ReplacesAnOlderRecord) {
+TEST(Recorder, ReplacesAnOlderRecordWhenAskedTo) {
   const TemporaryFile file("replaced.hvas");
-  Fill(MakeRecorder({file.path()}).get(), 700);
-  Fill(MakeRecorder({file.path()}).get(), 20);
+  Fill(MakeRecorder({.path = file.path()}).get(), 700);
+  Fill(MakeRecorder({.path = file.path(), .replaces = true}).get(), 20);
   EXPECT_EQ(Reader::Open(file.path())->tick_count(), 20);
 }
 

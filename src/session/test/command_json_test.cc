@@ -107,7 +107,7 @@ haptics::TickOptions MakeOptions() {
   options.limits->turn_buzz.window = numbers();
   options.controls_passivity = true;
   options.p_HG = numbers.Vector();
-  options.dt = numbers();
+  options.dt = 1e-3 * (1.5 + numbers());
   return options;
 }
 
@@ -141,6 +141,25 @@ TEST(TickOptionsJson, SaysWhereFitsAreNotRenderedAndReadsOlderOnesThatDoNotSay) 
   EXPECT_TRUE(ParseTickOptions(MakeTickOptionsJson(options))->renders_fits);
   options.renders_fits = false;
   EXPECT_FALSE(ParseTickOptions(MakeTickOptionsJson(options))->renders_fits);
+}
+
+TEST(TickOptionsJson, RefusesWhatNoTickCanWorkWith) {
+  const Json sound = MakeTickOptionsJson({});
+  for (const auto& [field, value] : std::initializer_list<std::pair<const char*, Json>>{
+           {"/dt_s", 0},
+           {"/dt_s", -1e-3},
+           {"/dt_s", "nan"},
+           {"/dt_s", "inf"},
+           {"/dt_s", 1e300},
+           {"/max_virtual_mass_kg", "nan"},
+           {"/workspace/mapping/X_WD", {0, 0, 0, 0, 0, 0, 0}},
+           {"/workspace/mapping/X_WD", {0, 0, "inf", 1, 0, 0, 0}},
+           {"/gravity_W_m_per_s2", {0, "nan", 0}}}) {
+    Json json = sound;
+    ASSERT_TRUE(json.contains(Json::json_pointer(field))) << field;
+    json[Json::json_pointer(field)] = value;
+    EXPECT_FALSE(ParseTickOptions(json).has_value()) << field << " = " << value;
+  }
 }
 
 TEST(TickOptionsJson, NamesAFieldThatIsMissing) {

@@ -207,5 +207,74 @@ TEST_F(ReplayTest, MissingCommandIsNamed) {
   EXPECT_EQ(report.error().where, file.string());
 }
 
+/** All paths to values that are no objects or arrays. */
+void ListLeaves(const Json& json, const Json::json_pointer& at,
+                std::vector<Json::json_pointer>* leaves) {
+  if (json.is_object()) {
+    for (const auto& [key, value] : json.items()) {
+      ListLeaves(value, at / key, leaves);
+    }
+  } else if (json.is_array()) {
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      ListLeaves(json[i], at / i, leaves);
+    }
+  } else {
+    leaves->push_back(at);
+  }
+}
+
+/** Sums up to what a forger makes: every hash is right, and one value of one command is not. */
+void Forge(const std::filesystem::path& from, const std::filesystem::path& to,
+           const std::vector<record::Command>& commands) {
+  auto reader = record::Reader::Open(from);
+  const auto recorder = MakeRecorder(to);
+  const std::vector<std::string> names = reader->ListAttachments().value();
+  for (const std::string& name : names) {
+    recorder->AddAttachment({name, reader->ReadAttachment(name).value()});
+  }
+  for (const record::Command& command : commands) {
+    recorder->AddCommand(command);
+  }
+  int ticks = 0;
+  ASSERT_TRUE(reader->ForEachTick({}, [&](const record::TickRecord& tick) {
+    return recorder->AddTick(tick) && ++ticks < 50;
+  }));
+  ASSERT_TRUE(recorder->Finish().has_value());
+}
+
+TEST_F(ReplayTest, NoValueOfACommandEndsTheProgram) {
+  RecordStretches(file);
+  const auto commands = record::Reader::Open(file)->ReadCommands().value();
+  ASSERT_GE(commands.size(), 2u);
+  const std::vector<Json> kValues{nullptr, "x", "nan", "inf", -1, 1e308, 0,
+                                  18446744073709551615ull, Json::array()};
+  auto reader = record::Reader::Open(file);
+  Diagnostics diagnostics;
+  const auto model = LoadModel(&*reader, simulation::testing::FastOptions(), &diagnostics);
+  ASSERT_TRUE(model.has_value());
+  int refused = 0;
+  int tried = 0;
+  for (const std::size_t which : {0, 1}) {
+    const Json sound = Json::parse(commands[which].json);
+    std::vector<Json::json_pointer> leaves;
+    ListLeaves(sound, Json::json_pointer(), &leaves);
+    for (const Json::json_pointer& leaf : leaves) {
+      auto forged = commands;
+      Json json = sound;
+      json[leaf] = kValues[static_cast<std::size_t>(tried) % kValues.size()];
+      forged[which].json = json.dump();
+      SCOPED_TRACE(leaf.to_string() + " = " + json[leaf].dump());
+      const auto copy = folder / std::to_string(++tried);
+      Forge(file, copy, forged);
+      auto record = record::Reader::Open(copy);
+      ASSERT_TRUE(record.has_value());
+      const auto report = Replay(&*record, *model, {});
+      refused += report ? 0 : 1;
+    }
+  }
+  EXPECT_GT(tried, 50);
+  EXPECT_GT(refused, tried / 4);
+}
+
 }  // namespace
 }  // namespace hvas::session

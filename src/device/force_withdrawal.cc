@@ -1,0 +1,99 @@
+#include "device/force_withdrawal.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <exception>
+#include <thread>
+
+#include "device/device.h"
+
+namespace hvas::device {
+namespace {
+
+// More than one person has hands, for tests that open many.
+constexpr std::size_t kMostDevices = 64;
+// Many periods of the slowest loop that hands a wrench on, 1 kHz, for a machine that is busy.
+constexpr std::chrono::milliseconds kHandOn{100};
+
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): the end of the process is
+// global.
+std::array<std::atomic<Device*>, kMostDevices> open_devices{};
+std::atomic<bool> is_withdrawn{false};
+std::terminate_handler terminate_before = nullptr;
+
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
+
+[[noreturn]] void OnTerminate() {
+  WithdrawForces();
+  if (terminate_before != nullptr) {
+    terminate_before();
+  }
+  std::abort();
+}
+
+/** The handler is reset by then: raised again, the signal does what it does. */
+void OnSignal(int signal) {
+  WithdrawForces();
+  static_cast<void>(std::raise(signal));
+}
+
+}  // namespace
+
+bool AreForcesWithdrawn() noexcept {
+  return is_withdrawn.load(std::memory_order_relaxed);
+}
+
+void WithdrawForces() noexcept {
+  const bool has_devices = std::any_of(open_devices.begin(), open_devices.end(),
+                                       [](const auto& slot) { return slot.load() != nullptr; });
+  if (is_withdrawn.exchange(true) || !has_devices) {
+    return;
+  }
+  // A haptic thread that is alive writes zero by itself; then this thread may write without it.
+  std::this_thread::sleep_for(kHandOn);
+  for (const std::atomic<Device*>& slot : open_devices) {
+    if (Device* const device = slot.load(); device != nullptr) {
+      device->Write({});
+    }
+  }
+  std::this_thread::sleep_for(kHandOn);
+}
+
+void WithdrawForcesAtTheEnd() {
+  terminate_before = std::set_terminate(&OnTerminate);
+
+  struct sigaction action {};
+
+  action.sa_handler = &OnSignal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int signal :
+       {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+    struct sigaction present {};
+
+    if (::sigaction(signal, nullptr, &present) == 0 && present.sa_handler == SIG_DFL) {
+      ::sigaction(signal, &action, nullptr);
+    }
+  }
+}
+
+void NoteOpenDevice(Device* device) noexcept {
+  for (std::atomic<Device*>& slot : open_devices) {
+    Device* none = nullptr;
+    if (slot.compare_exchange_strong(none, device)) {
+      return;
+    }
+  }
+}
+
+void ForgetDevice(const Device* device) noexcept {
+  for (std::atomic<Device*>& slot : open_devices) {
+    if (slot.load() == device) {
+      slot.store(nullptr);
+    }
+  }
+}
+
+}  // namespace hvas::device

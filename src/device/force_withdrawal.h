@@ -1,0 +1,24 @@
+#pragma once
+
+/** The end of a process must not leave a force on anybody's hand: whoever renders to a device is
+ gone, and a device may hold what it was told last. */
+namespace hvas::device {
+
+class Device;
+
+/** From now on LimitWrench() lets no force of this process through, and every open device is given
+ zero. For a process that ends at once: nothing brings forces back. Waits for as long as the haptic
+ threads and those of vendors need to hand it on. */
+void WithdrawForces() noexcept;
+
+[[nodiscard]] bool AreForcesWithdrawn() noexcept;
+
+/** Withdraws forces before the process ends by std::terminate or by a signal that is not handled
+ otherwise, and then lets it end as it would have. To be called once, by main(). */
+void WithdrawForcesAtTheEnd();
+
+/** Open devices, of which WithdrawForces() knows. */
+void NoteOpenDevice(Device* device) noexcept;
+void ForgetDevice(const Device* device) noexcept;
+
+}  // namespace hvas::device

@@ -1,0 +1,152 @@
+#include "record/write_claim.h"
+
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+
+#include "record/database.h"
+#include "record/session_file.h"
+
+namespace hvas::record {
+namespace {
+
+constexpr mode_t kOwnerOnly = S_IRUSR | S_IWUSR;
+
+bool IsRecord(const std::filesystem::path& path) {
+  Result<Database> database = Database::Open(path, Database::Mode::kReadOnly);
+  return database && database->QueryInt("PRAGMA application_id").value_or(0) == kApplicationId;
+}
+
+/** Whether another program, or another recorder of this one, has the lock. A file system that has
+ no locks is written to without. */
+bool IsLockedByOthers(int descriptor) {
+  return ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
+Unexpected FailAsWritten(const std::filesystem::path& path) {
+  return Fail(ErrorCode::kInvalid, "another session is being recorded to this file", path.string(),
+              "choose another name for the record, or end that session");
+}
+
+/** Closes a descriptor at the end. */
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  ~Descriptor() {
+    if (number_ >= 0) {
+      ::close(number_);
+    }
+  }
+
+  [[nodiscard]] int number() const { return number_; }
+
+  [[nodiscard]] int Release() { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
+
+/** Removes what is at the path, unless somebody writes to it. Who reads it can read on. */
+Result<void> RemoveUnwritten(const std::filesystem::path& path) {
+  const Descriptor old(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (old.number() < 0) {
+    return {};
+  }
+  if (IsLockedByOthers(old.number())) {
+    return FailAsWritten(path);
+  }
+  for (const char* suffix : {"-wal", "-shm", "-journal", ""}) {
+    ::unlink((path.string() + suffix).c_str());
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> CheckTarget(const std::filesystem::path& path, bool replaces) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  if (!std::filesystem::exists(status)) {
+    return {};
+  }
+  if (!std::filesystem::is_regular_file(status) ||
+      (std::filesystem::file_size(path, ignored) > 0 && !IsRecord(path))) {
+    return Fail(ErrorCode::kInvalid, "what is there is not a session record and is kept",
+                path.string(), "choose another name for the record");
+  }
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.number() >= 0 && IsLockedByOthers(file.number())) {
+    return FailAsWritten(path);
+  }
+  if (std::filesystem::file_size(path, ignored) > 0 && !replaces) {
+    return Fail(ErrorCode::kInvalid, "there is a record of another session", path.string(),
+                "choose another name for the record, or replace it with --force");
+  }
+  return {};
+}
+
+Result<WriteClaim> WriteClaim::Make(const std::filesystem::path& path, bool replaces) {
+  if (const Result<void> checked = CheckTarget(path, replaces); !checked) {
+    return Unexpected(checked.error());
+  }
+  if (const Result<void> removed = RemoveUnwritten(path); !removed) {
+    return Unexpected(removed.error());
+  }
+  Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly));
+  if (file.number() < 0) {
+    const int cause = errno;
+    return cause == EEXIST
+               ? FailAsWritten(path)
+               : Fail(cause == ENOSPC ? ErrorCode::kOutOfResource : ErrorCode::kNotFound,
+                      std::string("the record cannot be made: ") + std::strerror(cause),
+                      path.string(), "check that the folder exists and may be written");
+  }
+  const bool is_taken = IsLockedByOthers(file.number());
+  WriteClaim claim(path, file.Release());
+  if (is_taken || !claim.CheckStillThere()) {  // somebody else made the same file at this moment
+    return FailAsWritten(path);
+  }
+  return claim;
+}
+
+WriteClaim::WriteClaim(WriteClaim&& other) noexcept
+    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+WriteClaim& WriteClaim::operator=(WriteClaim&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+WriteClaim::~WriteClaim() {
+  if (descriptor_ >= 0) {
+    ::close(descriptor_);
+  }
+}
+
+Result<void> WriteClaim::CheckStillThere() const {
+  struct stat made {};
+
+  struct stat found {};
+
+  const bool is_there = ::fstat(descriptor_, &made) == 0 && ::stat(path_.c_str(), &found) == 0 &&
+                        made.st_dev == found.st_dev && made.st_ino == found.st_ino;
+  if (!is_there) {
+    return Fail(ErrorCode::kNotFound, "the record was removed or replaced while it was written",
+                path_.string(), "record the rest of the session to another file");
+  }
+  return {};
+}
+
+}  // namespace hvas::record
