@@ -44,13 +44,19 @@ class JsonMaker {
 class UnsoundField {
  public:
   void operator()(const char* name, const double& value) { NoteUnless(!std::isnan(value), name); }
+
   void operator()(const char* name, const Vec3& value) { NoteUnless(!value.hasNaN(), name); }
+
   void operator()(const char* name, const Quat& value) {
     NoteUnless(value.coeffs().allFinite(), name);
   }
+
   void operator()(const char* /*name*/, const spatial::Pose& /*value*/) {}
+
   void operator()(const char* /*name*/, const bool& /*value*/) {}
+
   void operator()(const char* /*name*/, const std::string& /*value*/) {}
+
   template <typename E, std::size_t N>
   void operator()(const char* /*name*/, const E& /*value*/,
                   const std::array<const char*, N>& /*names*/) {}

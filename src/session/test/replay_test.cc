@@ -236,9 +236,8 @@ void Forge(const std::filesystem::path& from, const std::filesystem::path& to,
     recorder->AddCommand(command);
   }
   int ticks = 0;
-  ASSERT_TRUE(reader->ForEachTick({}, [&](const record::TickRecord& tick) {
-    return recorder->AddTick(tick) && ++ticks < 50;
-  }));
+  ASSERT_TRUE(reader->ForEachTick(
+      {}, [&](const record::TickRecord& tick) { return recorder->AddTick(tick) && ++ticks < 50; }));
   ASSERT_TRUE(recorder->Finish().has_value());
 }
 
@@ -246,8 +245,8 @@ TEST_F(ReplayTest, NoValueOfACommandEndsTheProgram) {
   RecordStretches(file);
   const auto commands = record::Reader::Open(file)->ReadCommands().value();
   ASSERT_GE(commands.size(), 2u);
-  const std::vector<Json> kValues{nullptr, "x", "nan", "inf", -1, 1e308, 0,
-                                  18446744073709551615ull, Json::array()};
+  const std::vector<Json> kValues{
+      nullptr, "x", "nan", "inf", -1, 1e308, 0, 18446744073709551615ull, Json::array()};
   auto reader = record::Reader::Open(file);
   Diagnostics diagnostics;
   const auto model = LoadModel(&*reader, simulation::testing::FastOptions(), &diagnostics);
