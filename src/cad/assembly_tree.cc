@@ -36,9 +36,9 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "cad/equal_shapes.h"
-#include "cad/limits.h"
 #include "cad/material.h"
 #include "cad/part_shape.h"
+#include "cad/placed_parts.h"
 #include "cad/product_tree.h"
 #include "cad/xcaf_labels.h"
 #include "product/features.h"
@@ -146,8 +146,10 @@ std::string TreeBuilder::ClaimPath(SubassemblyId parent, const std::string& name
 
 void TreeBuilder::Visit(const TDF_Label& definition, const TDF_Label& instance,
                         SubassemblyId parent, const gp_Trsf& X_WP) {
-  if (product_->occurrences.size() > kMaxOccurrences) {
+  if (product_->occurrences.size() > options_.max_parts) {
     is_too_large_ = true;
+  }
+  if (is_too_large_) {
     return;
   }
   if (XCAFDoc_ShapeTool::IsAssembly(definition)) {
@@ -497,9 +499,7 @@ Result<void> TreeBuilder::Build() {
     }
   }
   if (is_too_large_) {
-    return Fail(ErrorCode::kUnsupported,
-                fmt::format("the product has more than {} parts", kMaxOccurrences),
-                product_->source, "open one of its subassemblies");
+    return TooManyParts(options_.max_parts, product_->source);
   }
   BuildParts();
   if (product_->occurrences.empty()) {
