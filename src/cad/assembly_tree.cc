@@ -122,7 +122,6 @@ class TreeBuilder {
   std::vector<PartSource> sources_;                     // One for each of product_->parts.
   std::map<std::string, std::optional<PartId>> known_;  // By entry, scale and colour.
   std::vector<Siblings> siblings_;                      // One for each subassembly.
-  bool is_too_large_{false};
 };
 
 SubassemblyId TreeBuilder::AddSubassembly(SubassemblyId parent, const std::string& name) {
@@ -147,9 +146,6 @@ std::string TreeBuilder::ClaimPath(SubassemblyId parent, const std::string& name
 void TreeBuilder::Visit(const TDF_Label& definition, const TDF_Label& instance,
                         SubassemblyId parent, const gp_Trsf& X_WP) {
   if (product_->occurrences.size() > options_.max_parts) {
-    is_too_large_ = true;
-  }
-  if (is_too_large_) {
     return;
   }
   if (XCAFDoc_ShapeTool::IsAssembly(definition)) {
@@ -498,7 +494,7 @@ Result<void> TreeBuilder::Build() {
       Visit(label, label, root, gp_Trsf());
     }
   }
-  if (is_too_large_) {
+  if (product_->occurrences.size() > options_.max_parts) {
     return TooManyParts(options_.max_parts, product_->source);
   }
   BuildParts();

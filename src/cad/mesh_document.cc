@@ -40,8 +40,8 @@ Result<void> Read3mfModel(const std::filesystem::path& file, const ImportOptions
       unpacked > most) {
     return TooManyBytes("unpacked it takes", static_cast<double>(unpacked), most, name);
   }
-  const auto is_model = [](std::string_view name) {
-    std::string lower(name);
+  const auto is_model = [](std::string_view entry) {
+    std::string lower(entry);
     std::transform(lower.begin(), lower.end(), lower.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return lower.rfind("3d/", 0) == 0 && lower.find('/', 3) == std::string::npos &&

@@ -48,7 +48,9 @@ void Limit(int what, std::uint64_t value) {
 
 void LimitMemory(std::uint64_t bytes) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // They reserve terabytes.
-  Limit(RLIMIT_AS, bytes);
+  if (bytes > 0) {
+    Limit(RLIMIT_AS, bytes);
+  }
 #else
   static_cast<void>(bytes);
 #endif
