@@ -23,6 +23,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,10 @@ std::string ReadFile(const fs::path& path) {
 }
 
 void WriteFile(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  if (!(stream << bytes << std::flush)) {
+    throw std::runtime_error("cannot write " + path.string());
+  }
 }
 
 /** Coarse: this is about damage, not about meshes. */

@@ -277,8 +277,11 @@ std::string MakeStretchedGltf(std::size_t count) {
 }
 
 std::string MakeManyObjectsObj(std::size_t count) {
-  return "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\n" +
-         Repeat("o a\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", count);
+  std::string text = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    text += fmt::format("o a{}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", i);
+  }
+  return text;
 }
 
 std::string MakeManySolidsStl(std::size_t count) {
