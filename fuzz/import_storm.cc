@@ -2,31 +2,42 @@
 // own, as the program does it; whatever kills or stops that process is then given to the program's
 // own import, which has to come back with a product or an error.
 //
-//   import_storm COUNT FILE...
+//   import_storm [--limits] COUNT FILE...
 //
 // COUNT damaged copies of each FILE. Exit status 1 when the program's own import fails to answer,
 // or when a refusal says nothing.
+//
+// With --limits each copy is opened as the program opens a file, mates included, in a process of its
+// own; the most memory that this process and the reading one had together, and the longest time, are
+// printed. Exit status 1 also when one went beyond the limits that files have by default.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "base/diagnostics.h"
 #include "base/test/temporary_folder.h"
+#include "base/work_watch.h"
 #include "cad/import.h"
 #include "cad/read_cad.h"
 #include "fuzz/mutate.h"
+#include "mates/infer.h"
 
 namespace {
 
@@ -51,7 +62,10 @@ std::string ReadFile(const fs::path& path) {
 }
 
 void WriteFile(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  if (!(stream << bytes << std::flush)) {
+    throw std::runtime_error("cannot write " + path.string());
+  }
 }
 
 /** Coarse: this is about damage, not about meshes. */
@@ -123,6 +137,94 @@ Tally Storm(const fs::path& seed, long count, const fs::path& folder) {
   return tally;
 }
 
+/** What opening a file took. */
+struct Cost {
+  double memory_mib{0};  ///< The most of the reading process, and of the one that started it.
+  double time_s{0};
+};
+
+/** In the child: opens the file as the program does, and ends with what came of it. */
+[[noreturn]] void OpenAndExit(const fs::path& file, int costs) {
+  hvas::Diagnostics diagnostics;
+  hvas::WorkWatch watch{hvas::WorkLimits()};
+  auto product = hvas::cad::Import(file, {}, &diagnostics);
+  hvas::Error error = product ? hvas::Error() : product.error();
+  if (product) {
+    if (const auto inferred = hvas::mates::Infer(&*product, &diagnostics, &watch); !inferred) {
+      error = inferred.error();
+    }
+  }
+  rusage own{};
+  rusage reader{};
+  getrusage(RUSAGE_SELF, &own);
+  getrusage(RUSAGE_CHILDREN, &reader);
+  const std::array<long, 2> peaks{own.ru_maxrss, reader.ru_maxrss};  // [KiB]
+  const bool is_told = write(costs, peaks.data(), sizeof(peaks)) == sizeof(peaks);
+  const bool is_good = product && error.message.empty();
+  const bool says_enough = is_good || (!error.message.empty() && !error.where.empty());
+  _exit(!is_told || !says_enough ? kSilent : is_good ? kOpened : kRefused);
+}
+
+/** @returns the status of the child; -1 when it died. */
+int OpenInChild(const fs::path& file, Cost* cost) {
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0) {
+    return -1;
+  }
+  const std::int64_t begin_ns = hvas::MonotonicNs();
+  const pid_t child = fork();
+  if (child == 0) {
+    OpenAndExit(file, ends[1]);
+  }
+  close(ends[1]);
+  std::array<long, 2> peaks{};
+  const bool is_told = read(ends[0], peaks.data(), sizeof(peaks)) == sizeof(peaks);
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  cost->time_s = 1e-9 * static_cast<double>(hvas::MonotonicNs() - begin_ns);
+  cost->memory_mib = static_cast<double>(peaks[0] + peaks[1]) / 1024;
+  return is_told && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+bool StormWithin(const fs::path& seed, long count, const fs::path& folder) {
+  const std::string bytes = ReadFile(seed);
+  const fs::path file = folder / ("damaged" + seed.extension().string());
+  hvas::Random random(1);
+  Tally tally;
+  Cost most;
+  for (long i = 0; i < count; ++i) {
+    WriteFile(file, hvas::fuzz::Mutate(bytes, &random));
+    Cost cost;
+    const int status = OpenInChild(file, &cost);
+    tally.opened += status == kOpened ? 1 : 0;
+    tally.refused += status == kRefused ? 1 : 0;
+    tally.silent += status == kSilent ? 1 : 0;
+    tally.killed += status == -1 ? 1 : 0;
+    most.memory_mib = std::max(most.memory_mib, cost.memory_mib);
+    most.time_s = std::max(most.time_s, cost.time_s);
+  }
+  fmt::print("{:<24} {:>7} {:>7} {:>7} {:>7} {:>9.0f} {:>9.1f}\n", seed.filename().string(), count,
+             tally.opened, tally.refused, tally.silent + tally.killed, most.memory_mib,
+             most.time_s);
+  std::fflush(stdout);
+  constexpr double kEnd = 2;  // To end a process that is over its limit, and to tell [s].
+  const double allowed_mib = static_cast<double>(hvas::DefaultMemoryLimit()) / (1 << 20);
+  return tally.silent + tally.killed == 0 && most.memory_mib <= allowed_mib &&
+         most.time_s <= hvas::WorkLimits().time + kEnd;
+}
+
+int RunWithin(long count, const std::vector<fs::path>& seeds) {
+  const hvas::testing::TemporaryFolder folder;
+  bool is_good = true;
+  fmt::print("{:<24} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9}\n", "file", "copies", "opened", "refused",
+             "silent", "most_mib", "longest_s");
+  for (const fs::path& seed : seeds) {
+    is_good = StormWithin(seed, count, folder.path()) && is_good;
+  }
+  return is_good ? 0 : 1;
+}
+
 int Run(long count, const std::vector<fs::path>& seeds) {
   const hvas::testing::TemporaryFolder folder;
   bool is_good = true;
@@ -141,12 +243,18 @@ int Run(long count, const std::vector<fs::path>& seeds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    fmt::print(stderr, "usage: {} COUNT FILE...   COUNT damaged copies of each file\n", argv[0]);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const bool is_within = !words.empty() && words.front() == "--limits";
+  words.erase(words.begin(), words.begin() + (is_within ? 1 : 0));
+  if (words.size() < 2) {
+    fmt::print(stderr, "usage: {} [--limits] COUNT FILE...   COUNT damaged copies of each file\n",
+               argv[0]);
     return 1;
   }
   try {
-    return Run(std::strtol(argv[1], nullptr, 10), {argv + 2, argv + argc});
+    const long count = std::strtol(words.front().c_str(), nullptr, 10);
+    const std::vector<fs::path> seeds(words.begin() + 1, words.end());
+    return is_within ? RunWithin(count, seeds) : Run(count, seeds);
   } catch (const std::exception& exception) {
     fmt::print(stderr, "{}\n", exception.what());
     return 1;

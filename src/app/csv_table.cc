@@ -10,6 +10,8 @@
 #include <csv.h>
 #include <fmt/format.h>
 
+#include "base/regular_file.h"
+
 namespace hvas::app {
 namespace {
 
@@ -100,14 +102,13 @@ std::optional<double> ParseNumber(std::string_view text) {
 }
 
 Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimiter) {
+  if (const auto checked = path == "-" ? Result<void>() : CheckRegularFile(path); !checked) {
+    return Unexpected(checked.error());
+  }
   const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin
                                                                : std::fopen(path.c_str(), "rb"));
   if (file == nullptr) {
-    return Fail(ErrorCode::kNotFound, "cannot be read", path.string(), "check the path");
-  }
-  if (std::error_code error; path != "-" && std::filesystem::is_directory(path, error)) {
-    return Fail(ErrorCode::kInvalid, "is a folder, not a table", path.string(),
-                "name a file in it (CSV)");
+    return Fail(ErrorCode::kUnreadable, "cannot be read", path.string(), "check its permissions");
   }
   csv_parser parser{};
   csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);

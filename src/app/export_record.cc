@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
+#include "base/regular_file.h"
 #include "evidence/tables.h"
 
 namespace hvas::app {
@@ -45,9 +45,7 @@ void AddRecordSelection(CLI::App* command, RecordSelection* selection) {
 
 bool IsRecord(const std::filesystem::path& file) {
   constexpr std::string_view kMagic = "SQLite format 3";
-  std::array<char, kMagic.size()> begin{};
-  std::ifstream(file, std::ios::binary).read(begin.data(), begin.size());
-  return std::string_view(begin.data(), begin.size()) == kMagic;
+  return ReadFileHead(file, kMagic.size()) == kMagic;
 }
 
 bool IsRecordFormat(const std::string& ending) {

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -27,11 +26,12 @@ Result<void> KeepLists(const std::filesystem::path& file, nlohmann::ordered_json
   if (!std::filesystem::exists(file)) {
     return {};
   }
-  if (const auto old = mates::ReadSideFile(file); !old) {
-    return Unexpected(old.error());
+  const auto text = mates::ReadSideText(file);
+  if (const auto read = text ? mates::ParseSideFile(*text, file) : Unexpected(text.error());
+      !read) {
+    return Unexpected(read.error());
   }
-  std::ifstream stream(file, std::ios::binary);
-  const auto old = nlohmann::ordered_json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  const auto old = nlohmann::ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
   for (const char* list : {"mates", "removed"}) {
     if (old.is_object() && old.contains(list)) {
       (*document)[list] = old[list];

@@ -11,6 +11,7 @@
 #include "app/progress.h"
 #include "base/file_cache.h"
 #include "base/units.h"
+#include "base/work_watch.h"
 #include "cad/import.h"
 #include "mates/assignments.h"
 #include "mates/infer.h"
@@ -51,21 +52,29 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options) {
   AddUnitOption(command, &options->length_unit);
   command
       ->add_option("--time-limit", options->time_limit,
-                   "Longest time for reading the file, in seconds")
+                   "Longest time for opening the file with all that belongs to it, in seconds")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
       ->add_option("--memory-limit", options->memory_limit,
-                   "Most memory for reading the file, as 4GB; three quarters of the machine's "
-                   "when not given")
+                   "Most memory for opening the file, as 8GB; when not given 4GB, or three "
+                   "quarters of the machine's where that is less")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
+  command
+      ->add_option("--max-parts", options->max_parts,
+                   "Most parts that the file may place, copies counted")
+      ->check(CLI::Range(1, static_cast<int>(cad::kLargestMaxParts)))
+      ->capture_default_str();
 }
 
 std::optional<std::filesystem::path> CacheDirectory(const LoadOptions& options) {
   return options.is_cache_used ? FileCache::DefaultDirectory() : std::nullopt;
 }
 
-Result<product::Product> LoadInferred(const LoadOptions& options, Diagnostics* diagnostics) {
+namespace {
+
+Result<product::Product> LoadInferredWithin(const LoadOptions& options, WorkWatch* watch,
+                                            Diagnostics* diagnostics) {
   cad::ImportControl control;
   control.limits.time = options.time_limit;
   control.limits.memory = options.memory_limit;
@@ -77,26 +86,47 @@ Result<product::Product> LoadInferred(const LoadOptions& options, Diagnostics* d
   }
   cad::ImportOptions import;
   import.length_unit = options.length_unit;
+  import.max_parts = static_cast<std::size_t>(options.max_parts);
   auto product = cad::Import(options.file, import, diagnostics, control);
   if (!product) {
     return product;
   }
-  mates::Infer(&*product, diagnostics);
+  if (const auto inferred = mates::Infer(&*product, diagnostics, watch); !inferred) {
+    return Unexpected(inferred.error());
+  }
   return product;
 }
 
+WorkWatch Watch(const LoadOptions& options) {
+  return WorkWatch({options.time_limit, options.memory_limit}, options.stop);
+}
+
+}  // namespace
+
+Result<product::Product> LoadInferred(const LoadOptions& options, Diagnostics* diagnostics) {
+  WorkWatch watch = Watch(options);
+  return LoadInferredWithin(options, &watch, diagnostics);
+}
+
 Result<product::Product> LoadProduct(const LoadOptions& options, Diagnostics* diagnostics) {
-  auto product = LoadInferred(options, diagnostics);
+  WorkWatch watch = Watch(options);
+  auto product = LoadInferredWithin(options, &watch, diagnostics);
   if (!product) {
     return product;
   }
   const std::filesystem::path side_file = mates::FindAssignmentFile(options.file);
-  if (std::filesystem::exists(side_file)) {
-    if (const auto applied = mates::ApplyAssignments(side_file, &*product); !applied) {
+  std::error_code error;
+  // A link that leads nowhere is a mistake to be told, not a side file that is not there.
+  if (std::filesystem::exists(std::filesystem::symlink_status(side_file, error))) {
+    if (const auto applied = mates::ApplyAssignments(side_file, &*product, &watch); !applied) {
       return Unexpected(applied.error());
     }
   } else {
-    mates::AssignStatedFits(&*product);
+    mates::AssignStatedFits(&*product, &watch);
+    if (!watch.MayGoOn()) {
+      return Unexpected(
+          watch.Explain("assigning the stated fits", options.file.filename().string()));
+    }
   }
   for (const std::string& fit : options.fits) {
     if (const auto assigned = mates::AssignFit(&*product, fit); !assigned) {

@@ -9,6 +9,7 @@
 
 #include "base/diagnostics.h"
 #include "base/result.h"
+#include "base/work_watch.h"
 #include "cad/import.h"
 #include "product/product.h"
 
@@ -21,18 +22,20 @@ namespace hvas::app {
 /** What every command that opens a CAD file asks for. */
 struct LoadOptions {
   std::filesystem::path file;
-  std::vector<std::string> fits;  ///< "AXIS=FIT", as given to --fit.
-  bool is_strict{false};          ///< Warnings are errors.
-  bool is_quiet{false};           ///< No progress on stderr.
-  bool is_cache_used{true};       ///< Keeps and takes what was read and prepared on disk.
-  double length_unit{1e-3};       ///< Of files that state none [m].
-  double time_limit{600};         ///< For reading the file [s].
-  std::uint64_t memory_limit{0};  ///< For reading the file [bytes]; 0: three quarters of all.
-  cad::ProgressFn progress;       ///< Null: on the terminal, where there is one.
-  std::stop_token stop;           ///< Ends the reading.
+  std::vector<std::string> fits;         ///< "AXIS=FIT", as given to --fit.
+  bool is_strict{false};                 ///< Warnings are errors.
+  bool is_quiet{false};                  ///< No progress on stderr.
+  bool is_cache_used{true};              ///< Keeps and takes what was read and prepared on disk.
+  double length_unit{1e-3};              ///< Of files that state none [m].
+  double time_limit{WorkLimits().time};  ///< For opening the file [s].
+  std::uint64_t memory_limit{0};         ///< For the same [bytes]; 0: DefaultMemoryLimit().
+  int max_parts{cad::kDefaultMaxParts};  ///< That the file may place.
+  cad::ProgressFn progress;              ///< Null: on the terminal, where there is one.
+  std::stop_token stop;                  ///< Ends the reading.
 };
 
-/** Adds --strict, --quiet, --no-cache, --unit, --time-limit and --memory-limit to a command. */
+/** Adds --strict, --quiet, --no-cache, --unit, --time-limit, --memory-limit and --max-parts to a
+ command. */
 void AddLoadOptions(CLI::App* command, LoadOptions* options);
 
 /** The directory for what is kept between runs; none where the user wants none. */

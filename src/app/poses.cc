@@ -196,8 +196,7 @@ Result<std::map<std::uint32_t, OccurrenceId>> MatchParts(const record::Meta& met
 Result<cad::PartMotions> ApplyPoses(const std::filesystem::path& file, Product* product) {
   const Result<cad::MappedFile> bytes = cad::MappedFile::Open(file);
   if (!bytes) {
-    return Fail(ErrorCode::kNotFound, "the file of poses cannot be read", file.string(),
-                "check the name given to --poses");
+    return Unexpected(bytes.error());
   }
   const std::string_view text(reinterpret_cast<const char*>(bytes->bytes().data()),
                               bytes->bytes().size());

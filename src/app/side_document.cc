@@ -1,7 +1,6 @@
 #include "app/side_document.h"
 
-#include <fstream>
-#include <sstream>
+#include <string>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -17,17 +16,14 @@ Result<SideDocument> SideDocument::Open(const std::filesystem::path& file) {
     document.json_["format"] = mates::kSideFileFormat;
     return document;
   }
-  Result<mates::SideFile> contents = mates::ReadSideFile(file);
+  const Result<std::string> text = mates::ReadSideText(file);
+  Result<mates::SideFile> contents =
+      text ? mates::ParseSideFile(*text, file) : Unexpected(text.error());
   if (!contents) {
     return Unexpected(contents.error());
   }
   document.contents_ = *std::move(contents);
-  std::ifstream stream(file, std::ios::binary);
-  document.json_ = ordered_json::parse(stream, nullptr, /*allow_exceptions=*/false);
-  if (!document.json_.is_object()) {
-    return Fail(ErrorCode::kUnreadable, "the file has changed meanwhile", file.string(),
-                "try again");
-  }
+  document.json_ = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
   document.json_["format"] = mates::kSideFileFormat;
   return document;
 }

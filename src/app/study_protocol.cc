@@ -39,6 +39,9 @@ Result<study::Protocol> FindProtocol(const std::string& name_or_file) {
   if (is_name && fs::is_regular_file(shipped, failed)) {
     return study::ReadProtocol(shipped);
   }
+  if (fs::exists(name_or_file, failed)) {
+    return study::ReadProtocol(name_or_file);  // Says what it is instead of a file.
+  }
   return Fail(ErrorCode::kNotFound, "there is no such protocol", name_or_file,
               fmt::format("give a file, or one of: {}", fmt::join(ListShipped(), ", ")));
 }

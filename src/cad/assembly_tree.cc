@@ -36,9 +36,9 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "cad/equal_shapes.h"
-#include "cad/limits.h"
 #include "cad/material.h"
 #include "cad/part_shape.h"
+#include "cad/placed_parts.h"
 #include "cad/product_tree.h"
 #include "cad/xcaf_labels.h"
 #include "product/features.h"
@@ -122,7 +122,6 @@ class TreeBuilder {
   std::vector<PartSource> sources_;                     // One for each of product_->parts.
   std::map<std::string, std::optional<PartId>> known_;  // By entry, scale and colour.
   std::vector<Siblings> siblings_;                      // One for each subassembly.
-  bool is_too_large_{false};
 };
 
 SubassemblyId TreeBuilder::AddSubassembly(SubassemblyId parent, const std::string& name) {
@@ -146,8 +145,7 @@ std::string TreeBuilder::ClaimPath(SubassemblyId parent, const std::string& name
 
 void TreeBuilder::Visit(const TDF_Label& definition, const TDF_Label& instance,
                         SubassemblyId parent, const gp_Trsf& X_WP) {
-  if (product_->occurrences.size() > kMaxOccurrences) {
-    is_too_large_ = true;
+  if (product_->occurrences.size() > options_.max_parts) {
     return;
   }
   if (XCAFDoc_ShapeTool::IsAssembly(definition)) {
@@ -496,10 +494,8 @@ Result<void> TreeBuilder::Build() {
       Visit(label, label, root, gp_Trsf());
     }
   }
-  if (is_too_large_) {
-    return Fail(ErrorCode::kUnsupported,
-                fmt::format("the product has more than {} parts", kMaxOccurrences),
-                product_->source, "open one of its subassemblies");
+  if (product_->occurrences.size() > options_.max_parts) {
+    return TooManyParts(options_.max_parts, product_->source);
   }
   BuildParts();
   if (product_->occurrences.empty()) {

@@ -82,7 +82,7 @@ Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportCon
   const auto limit_ns = static_cast<std::int64_t>(control.limits.time * kNsPerSecond);
   call.deadline_ns = MonotonicNs() + limit_ns;
   call.part_limit_ns = limit_ns;
-  call.memory = control.limits.memory;
+  call.memory = control.limits.memory > 0 ? control.limits.memory : DefaultMemoryLimit();
   call.stop = control.stop;
   call.progress = control.progress;
   WorkerRun run = RunWorker(call);

@@ -36,7 +36,9 @@ class Attempts {
     call_.program = std::move(worker);
     call_.deadline_ns = MonotonicNs() + std::llround(1e9 * time);
     call_.part_limit_ns = std::llround(1e9 * part_time);
-    call_.memory = limits.memory;
+    const std::uint64_t memory = limits.memory > 0 ? limits.memory : DefaultMemoryLimit();
+    call_.memory = ShareOfReader(memory);
+    options_.max_bytes = ShareOfProduct(memory);
     call_.stop = control.stop;
     call_.progress = control.progress;
   }
@@ -79,6 +81,10 @@ std::vector<std::string> Attempts::Arguments() const {
                                      fmt::format("{}", options_.length_unit),
                                      "--max-triangles",
                                      fmt::format("{}", options_.max_triangles),
+                                     "--max-parts",
+                                     fmt::format("{}", options_.max_parts),
+                                     "--max-bytes",
+                                     fmt::format("{}", options_.max_bytes),
                                      "--threads",
                                      fmt::format("{}", options_.threads)};
   if (!options_.with_tolerances) {

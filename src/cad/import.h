@@ -11,6 +11,8 @@
 
 #include "base/diagnostics.h"
 #include "base/result.h"
+#include "base/work_watch.h"
+#include "cad/limits.h"
 #include "product/product.h"
 
 namespace hvas::cad {
@@ -33,14 +35,16 @@ struct ImportOptions {
   double length_unit{1e-3};           ///< Of files that state none (OBJ, STL) [m].
   bool with_tolerances{true};         ///< Reads dimensions, tolerances and fits.
   std::vector<std::uint32_t> skipped_parts;  ///< Left out, by their numbers as PartFn gets them.
+  std::size_t max_parts{kDefaultMaxParts};   ///< That the file may place, copies counted.
   unsigned threads{0};  ///< That work at parts at a time; 0: one a core; 1: alone, also in a part.
+  std::uint64_t max_bytes{std::uint64_t{1} << 30U};  ///< Of what is made of the file.
 };
 
 /** What an import may take. */
 struct ImportLimits {
-  double time{600};         ///< All attempts together [s].
-  double part_time{0};      ///< One part, or the tolerances [s]; 0: a fifth of `time`.
-  std::uint64_t memory{0};  ///< Address space [bytes]; 0: three quarters of the machine's memory.
+  double time{WorkLimits().time};  ///< All attempts together [s].
+  double part_time{0};             ///< One part, or the tolerances [s]; 0: a fifth of `time`.
+  std::uint64_t memory{0};  ///< [bytes]; 0: DefaultMemoryLimit(). A quarter is for the product.
 };
 
 struct ImportControl {

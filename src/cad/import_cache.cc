@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // To be raised whenever entries are named or written differently.
-constexpr std::int64_t kVersion = 1;
+constexpr std::int64_t kVersion = 2;
 constexpr const char* kExtension = ".hvasproduct";
 constexpr std::size_t kKeyLength = 32;
 
@@ -36,8 +36,9 @@ std::string KeyOf(const fs::path& worker, const fs::path& file, const ImportOpti
   // Whoever adds an option has to add it here, to the arguments of the process (import.cc), and to
   // what the process makes of them (worker_import.cc).
   const auto& [relative_deflection, min_deflection, max_angle, max_triangles, length_unit,
-               with_tolerances, skipped_parts, threads] = options;
-  static_cast<void>(threads);  // The result does not depend on it.
+               with_tolerances, skipped_parts, max_parts, threads, max_bytes] = options;
+  static_cast<void>(threads);    // The result does not depend on it.
+  static_cast<void>(max_bytes);  // Nor on this one, where there is a result.
   Digest digest;
   digest.AddInt(kVersion);
   digest.AddInt(product::kProductFormat);
@@ -46,6 +47,7 @@ std::string KeyOf(const fs::path& worker, const fs::path& file, const ImportOpti
   digest.AddDouble(min_deflection);
   digest.AddDouble(max_angle);
   digest.AddInt(static_cast<std::int64_t>(max_triangles));
+  digest.AddInt(static_cast<std::int64_t>(max_parts));
   digest.AddInt(with_tolerances ? 1 : 0);
   digest.AddInt(static_cast<std::int64_t>(skipped_parts.size()));
   for (const std::uint32_t part : skipped_parts) {

@@ -8,9 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
-
 #include "base/digest.h"
+#include "base/regular_file.h"
 
 namespace hvas::cad {
 
@@ -35,12 +34,8 @@ Result<MappedFile> MappedFile::Open(int descriptor) {
 }
 
 Result<MappedFile> MappedFile::Open(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  auto file = Open(descriptor);
-  if (descriptor >= 0) {
-    ::close(descriptor);
-  }
-  return file;
+  const auto file = RegularFile::Open(path);
+  return file ? Open(file->descriptor()) : Unexpected(file.error());
 }
 
 MappedFile::MappedFile(MappedFile&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
@@ -57,37 +52,37 @@ MappedFile::~MappedFile() {
 }
 
 Result<fs::path> CheckInputFile(const fs::path& file) {
+  const auto opened = RegularFile::Open(file);
   std::error_code error;
+  if (!opened) {
+    Error refused = opened.error();
+    if (refused.code != ErrorCode::kNotFound && !fs::is_regular_file(file, error)) {
+      refused.remedy = kFormats;
+    }
+    return Unexpected(std::move(refused));
+  }
+  if (opened->size() == 0) {
+    return Fail(ErrorCode::kUnreadable, "the file is empty", file.string(), kFormats);
+  }
   fs::path path = fs::canonical(file, error);
   if (error) {
     return Fail(ErrorCode::kNotFound, "there is no such file", file.string(), "check the path");
-  }
-  if (!fs::is_regular_file(path, error)) {
-    return Fail(ErrorCode::kUnreadable, "this is not a file", file.string(), kFormats);
-  }
-  if (::access(path.c_str(), R_OK) != 0) {
-    return Fail(ErrorCode::kUnreadable, "the file cannot be opened", file.string(),
-                "check its permissions");
-  }
-  if (fs::file_size(path, error) == 0 || error) {
-    return Fail(ErrorCode::kUnreadable, "the file is empty", file.string(), kFormats);
   }
   return path;
 }
 
 std::string DigestOf(const fs::path& path) {
   // Not mapped: somebody may be writing a new export over it.
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) {
+  const auto file = RegularFile::Open(path);
+  if (!file) {
     return {};
   }
   Digest digest;
   std::vector<std::byte> block(1 << 18);
   ssize_t size = 0;
-  while ((size = ::read(descriptor, block.data(), block.size())) > 0) {
+  while ((size = ::read(file->descriptor(), block.data(), block.size())) > 0) {
     digest.AddBytes(std::span(block).first(static_cast<std::size_t>(size)));
   }
-  ::close(descriptor);
   return size == 0 ? digest.Hex() : std::string();
 }
 

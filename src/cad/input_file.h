@@ -15,6 +15,7 @@ class MappedFile {
   /** The bytes behind an open file, which may be closed afterwards.
    Errors: kUnreadable, without saying which file. */
   [[nodiscard]] static Result<MappedFile> Open(int descriptor);
+  /** The bytes of a regular file. Errors: those of RegularFile::Open(). */
   [[nodiscard]] static Result<MappedFile> Open(const std::filesystem::path& path);
 
   MappedFile() = default;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,9 +14,11 @@
 
 #include "base/units.h"
 #include "cad/confined_io.h"
+#include "cad/gltf_nodes.h"
 #include "cad/input_file.h"
 #include "cad/mesh_scene.h"
 #include "cad/model_3mf.h"
+#include "cad/placed_parts.h"
 #include "cad/zip_entry.h"
 
 namespace hvas::cad {
@@ -23,51 +26,66 @@ namespace {
 
 using product::Product;
 
-/** Unit and names of a 3MF file, which assimp passes over. @returns false where the archive holds
- no model that can be read: assimp ends the process then. */
-bool Read3mfModel(const std::filesystem::path& file, SceneConventions* conventions,
-                  Diagnostics* diagnostics) {
-  constexpr std::size_t kLargestModel = std::size_t{1} << 31;
+constexpr std::uint64_t kUnpackedShare = 2;  // XML takes several times its size while it is read.
+
+/** Unit and names of a 3MF file, which assimp passes over. Errors: kUnsupported (too large when it
+ is unpacked, or too many parts), kUnreadable (no model that can be read: assimp ends the process
+ then). */
+Result<void> Read3mfModel(const std::filesystem::path& file, const ImportOptions& options,
+                          SceneConventions* conventions, Diagnostics* diagnostics) {
+  const std::string name = file.filename().string();
+  const std::uint64_t most = options.max_bytes / kUnpackedShare;
   const auto archive = MappedFile::Open(file);
-  const auto is_model = [](std::string_view name) {
-    std::string lower(name);
+  if (const std::uint64_t unpacked = archive ? SumUnpackedSizes(archive->bytes()) : 0;
+      unpacked > most) {
+    return TooManyBytes("unpacked it takes", static_cast<double>(unpacked), most, name);
+  }
+  const auto is_model = [](std::string_view entry) {
+    std::string lower(entry);
     std::transform(lower.begin(), lower.end(), lower.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return lower.rfind("3d/", 0) == 0 && lower.find('/', 3) == std::string::npos &&
            lower.size() > 6 && lower.compare(lower.size() - 6, 6, ".model") == 0;
   };
-  const auto xml = archive ? ReadZipEntry(archive->bytes(), is_model, kLargestModel)
-                           : std::optional<std::string>();
+  const auto xml =
+      archive ? ReadZipEntry(archive->bytes(), is_model, most) : std::optional<std::string>();
   if (!xml) {
-    return false;
+    return Fail(ErrorCode::kUnreadable,
+                "the 3MF file could not be read: the archive is damaged, or holds no model", name,
+                "export it again");
   }
   const Model3mf model = ParseModel3mf(*xml);
+  if (const auto checked = CheckPlaced(model.placed, options.max_parts, name); !checked) {
+    return checked;
+  }
   conventions->length_unit = model.length_unit;
   if (!model.is_unit_known) {
-    diagnostics->Warn("assumed-unit", file.filename().string(),
+    diagnostics->Warn("assumed-unit", name,
                       "the file names a unit that 3MF does not have; millimetres are assumed",
                       "export it again in millimetres");
   }
-  for (const auto& [id, name] : model.names) {
-    conventions->names.emplace(fmt::format("Object_{}", id), name);
+  for (const auto& [id, given] : model.names) {
+    conventions->names.emplace(fmt::format("Object_{}", id), given);
   }
-  return true;
+  return {};
 }
 
-/** Empty for a file that is too damaged to be shown to assimp. */
-std::optional<SceneConventions> FindConventions(const std::filesystem::path& file,
-                                                MeshFormat format, const ImportOptions& options,
-                                                Diagnostics* diagnostics) {
+/** An error for a file that is too damaged, or places too much, to be shown to assimp. */
+Result<SceneConventions> FindConventions(const std::filesystem::path& file, MeshFormat format,
+                                         const ImportOptions& options, Diagnostics* diagnostics) {
   SceneConventions conventions;
   conventions.format = format;
+  Result<void> checked;
   switch (format) {
     case MeshFormat::kGltf:
       conventions.is_y_up = true;
+      if (const auto bytes = MappedFile::Open(file)) {
+        checked = CheckPlaced(CountGltfNodes(bytes->bytes()), options.max_parts,
+                              file.filename().string());
+      }
       break;
     case MeshFormat::k3mf:
-      if (!Read3mfModel(file, &conventions, diagnostics)) {
-        return std::nullopt;
-      }
+      checked = Read3mfModel(file, options, &conventions, diagnostics);
       break;
     case MeshFormat::kStl:
     case MeshFormat::kObj:
@@ -78,7 +96,7 @@ std::optional<SceneConventions> FindConventions(const std::filesystem::path& fil
                         "say which unit it is: --unit mm, cm, m, in or ft");
       break;
   }
-  return conventions;
+  return checked ? Result<SceneConventions>(std::move(conventions)) : Unexpected(checked.error());
 }
 
 void TellFiles(const ConfinedIo::Log& log, const std::filesystem::path& file,
@@ -134,12 +152,11 @@ Result<Product> ReadMeshFile(const std::filesystem::path& file, MeshFormat forma
     watch.progress("read", 0);
   }
   const std::string name = file.filename().string();
-  const std::optional<SceneConventions> conventions =
-      FindConventions(file, format, options, diagnostics);
-  ConfinedIo::Log log;
+  const Result<SceneConventions> conventions = FindConventions(file, format, options, diagnostics);
   if (!conventions) {
-    return NotRead(name, format, "the archive is damaged, or holds no model", log);
+    return Unexpected(conventions.error());
   }
+  ConfinedIo::Log log;
   Assimp::Importer importer;
   importer.SetIOHandler(new ConfinedIo(file, &log));  // The importer owns it.
   const aiScene* scene =
@@ -151,7 +168,11 @@ Result<Product> ReadMeshFile(const std::filesystem::path& file, MeshFormat forma
   product.name = file.stem().string();
   product.source = name;
   TellFiles(log, file, watch, diagnostics);
-  BuildSceneProduct(*scene, *conventions, options, watch, &product, diagnostics);
+  if (const auto built =
+          BuildSceneProduct(*scene, *conventions, options, watch, &product, diagnostics);
+      !built) {
+    return Unexpected(built.error());
+  }
   if (product.occurrences.empty()) {
     return Fail(ErrorCode::kUnreadable, "there is no triangle in it", name,
                 "export the surfaces of the parts as triangles");

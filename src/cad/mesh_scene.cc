@@ -16,8 +16,8 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include "cad/limits.h"
 #include "cad/material.h"
+#include "cad/placed_parts.h"
 #include "cad/product_tree.h"
 #include "cad/text_encoding.h"
 #include "cad/triangle_part.h"
@@ -35,6 +35,8 @@ using product::SubassemblyId;
 using Meshes = std::vector<std::uint32_t>;
 
 constexpr int kDeepestNode = 500;
+// In a product, once to touch and once to look at, with the vertices that it shares with others.
+constexpr double kBytesPerTriangle = 60;
 
 struct Affine {
   Mat3 A{Mat3::Identity()};
@@ -88,7 +90,7 @@ class SceneBuilder {
         diagnostics_(diagnostics),
         tree_(product) {}
 
-  void Build();
+  [[nodiscard]] Result<void> Build();
 
  private:
   /** A part yet to be built. */
@@ -129,6 +131,8 @@ class SceneBuilder {
   std::vector<Source> sources_;  // One for each part.
   std::map<std::pair<Meshes, std::array<std::int64_t, 9>>, PartId> known_;
   std::unordered_map<const aiNode*, bool> has_geometry_;
+  double triangles_{0};  // Of all parts.
+  bool is_too_large_{false};
 };
 
 std::string SceneBuilder::NameOf(const aiString& name, const std::string& fallback) const {
@@ -167,7 +171,7 @@ bool SceneBuilder::HasGeometry(const aiNode& node, int depth) {
 
 void SceneBuilder::VisitNode(const aiNode& node, SubassemblyId parent, const Affine& X_WP,
                              int depth) {
-  if (depth > kDeepestNode || !HasGeometry(node, depth)) {
+  if (depth > kDeepestNode || is_too_large_ || !HasGeometry(node, depth)) {
     return;
   }
   const Affine X_WN = X_WP * ToAffine(node.mTransformation, conventions_.length_unit);
@@ -239,8 +243,11 @@ void SceneBuilder::BuildBodies() {
 
 void SceneBuilder::AddLeaf(const Meshes& meshes, const std::string& name, SubassemblyId parent,
                            const Affine& X_WN) {
-  if (product_->occurrences.size() >= kMaxOccurrences || !X_WN.A.allFinite() ||
-      !X_WN.t.allFinite()) {
+  if (product_->occurrences.size() == options_.max_parts) {
+    is_too_large_ = true;
+    return;
+  }
+  if (!X_WN.A.allFinite() || !X_WN.t.allFinite()) {
     diagnostics_->Warn("unusable-node", name, "its place cannot be used; left out",
                        "export the file again");
     return;
@@ -266,6 +273,9 @@ PartId SceneBuilder::FindPart(const Meshes& meshes, const std::string& name, con
     part.name = name;
     product_->parts.push_back(std::move(part));
     sources_.push_back({meshes, is_rigid ? Mat3::Identity() : stretch});
+    for (const std::uint32_t mesh : meshes) {
+      triangles_ += scene_.mMeshes[mesh]->mNumFaces;
+    }
     if (!is_rigid) {
       diagnostics_->Note("baked-scale", name,
                          fmt::format("an instance is {}; it became a part of its own",
@@ -368,7 +378,7 @@ void SceneBuilder::BuildPart(const Source& source, Part* part) {
   }
 }
 
-void SceneBuilder::Build() {
+Result<void> SceneBuilder::Build() {
   Affine X_WF;
   if (conventions_.is_y_up) {
     X_WF.A << 1, 0, 0, 0, 0, -1, 0, 1, 0;
@@ -380,6 +390,14 @@ void SceneBuilder::Build() {
   } else {
     VisitChildren(*scene_.mRootNode, SubassemblyId(0),
                   X_WF * ToAffine(scene_.mRootNode->mTransformation, conventions_.length_unit), 0);
+  }
+  if (is_too_large_) {
+    return TooManyParts(options_.max_parts, product_->source);
+  }
+  if (const double bytes = kBytesPerTriangle * triangles_;
+      bytes > static_cast<double>(options_.max_bytes)) {
+    return TooManyBytes("the triangles of its parts take", bytes, options_.max_bytes,
+                        product_->source);
   }
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     if (watch_.progress) {
@@ -395,14 +413,15 @@ void SceneBuilder::Build() {
     }
   }
   tree_.Finish();
+  return {};
 }
 
 }  // namespace
 
-void BuildSceneProduct(const aiScene& scene, const SceneConventions& conventions,
-                       const ImportOptions& options, const ReadWatch& watch,
-                       product::Product* product, Diagnostics* diagnostics) {
-  SceneBuilder(scene, conventions, options, watch, product, diagnostics).Build();
+Result<void> BuildSceneProduct(const aiScene& scene, const SceneConventions& conventions,
+                               const ImportOptions& options, const ReadWatch& watch,
+                               product::Product* product, Diagnostics* diagnostics) {
+  return SceneBuilder(scene, conventions, options, watch, product, diagnostics).Build();
 }
 
 }  // namespace hvas::cad

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
+#include "base/result.h"
 #include "cad/mesh_format.h"
 #include "cad/read_cad.h"
 #include "product/product.h"
@@ -20,9 +21,11 @@ struct SceneConventions {
   std::map<std::string, std::string> names;  ///< Better names, by those in the scene.
 };
 
-/** Fills a product, which has its name and source, from a scene. */
-void BuildSceneProduct(const aiScene& scene, const SceneConventions& conventions,
-                       const ImportOptions& options, const ReadWatch& watch,
-                       product::Product* product, Diagnostics* diagnostics);
+/** Fills a product, which has its name and source, from a scene. Errors: kUnsupported (more parts
+ or triangles than options allow). */
+[[nodiscard]] Result<void> BuildSceneProduct(const aiScene& scene,
+                                             const SceneConventions& conventions,
+                                             const ImportOptions& options, const ReadWatch& watch,
+                                             product::Product* product, Diagnostics* diagnostics);
 
 }  // namespace hvas::cad

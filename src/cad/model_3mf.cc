@@ -1,10 +1,14 @@
 #include "cad/model_3mf.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
+#include "cad/placed_parts.h"
 #include "cad/step_text.h"
 
 namespace hvas::cad {
@@ -53,54 +57,81 @@ std::optional<std::string> FindAttribute(std::string_view tag, std::string_view 
   return std::nullopt;
 }
 
-/** The text of the next start tag of this name from `at` on, which moves behind it. */
-std::string_view NextTag(std::string_view xml, std::string_view name, std::size_t* at) {
-  while ((*at = xml.find(name, *at)) != std::string_view::npos) {
-    const std::size_t begin = *at + name.size();
-    const std::size_t end = xml.find('>', begin);
-    const bool is_tag = *at > 0 && xml[*at - 1] == '<' && begin < xml.size() &&
-                        (IsBlank(xml[begin]) || xml[begin] == '>');
-    *at = begin;
-    if (is_tag && end != std::string_view::npos) {
-      *at = end;
-      return xml.substr(begin, end - begin);
-    }
-  }
-  *at = xml.size();
-  return {};
+/** The text of the tag that begins at `at`, without its brackets; `at` moves behind it. */
+std::string_view TakeTag(std::string_view xml, std::size_t* at) {
+  const std::size_t begin = *at + 1;
+  const std::size_t end = std::min(xml.find('>', begin), xml.size());
+  *at = end;
+  return xml.substr(begin, end - begin);
 }
 
-}  // namespace
+/** What follows the name of a start tag; nothing where it has another name. */
+std::optional<std::string_view> AfterName(std::string_view tag, std::string_view name) {
+  const bool is_it =
+      tag.starts_with(name) &&
+      (tag.size() == name.size() || IsBlank(tag[name.size()]) || tag[name.size()] == '/');
+  return is_it ? std::optional(tag.substr(name.size())) : std::nullopt;
+}
 
-Model3mf ParseModel3mf(std::string_view xml) {
+std::optional<int> FindNumber(std::string_view tag, std::string_view name) {
+  const auto text = FindAttribute(tag, name);
+  int number = 0;
+  const bool is_number =
+      text && std::from_chars(text->data(), text->data() + text->size(), number).ec == std::errc();
+  return is_number ? std::optional(number) : std::nullopt;
+}
+
+/** The unit that the tag of the model names. */
+void TakeUnit(std::string_view tag, Model3mf* model) {
   constexpr std::array<std::pair<std::string_view, double>, 6> kUnits{{{"micron", 1e-6},
                                                                        {"millimeter", 1e-3},
                                                                        {"centimeter", 1e-2},
                                                                        {"inch", 0.0254},
                                                                        {"foot", 0.3048},
                                                                        {"meter", 1}}};
+  const auto unit = FindAttribute(tag, "unit");
+  model->is_unit_known = !unit;
+  for (const auto& [name, metres] : kUnits) {
+    if (unit == name) {
+      model->length_unit = metres;
+      model->is_unit_known = true;
+    }
+  }
+}
+
+}  // namespace
+
+Model3mf ParseModel3mf(std::string_view xml) {
   Model3mf model;
-  std::size_t at = 0;
-  if (const auto unit = FindAttribute(NextTag(xml, "model", &at), "unit")) {
-    model.is_unit_known = false;
-    for (const auto& [name, metres] : kUnits) {
-      if (*unit == name) {
-        model.length_unit = metres;
-        model.is_unit_known = true;
+  // In one pass, as the components belong to the object that they stand in.
+  Uses uses;
+  std::vector<std::uint64_t> items;
+  std::optional<int> object;
+  bool is_model_found = false;
+  for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
+    const std::string_view tag = TakeTag(xml, &at);
+    if (const auto of_model = AfterName(tag, "model"); of_model && !is_model_found) {
+      is_model_found = true;
+      TakeUnit(*of_model, &model);
+    }
+    if (const auto rest = AfterName(tag, "object")) {
+      const auto name = FindAttribute(*rest, "name");
+      object = FindNumber(*rest, "id");
+      if (object && name && !name->empty()) {
+        model.names.try_emplace(*object, *name);
+      }
+    } else if (const auto of_component = AfterName(tag, "component")) {
+      const auto used = FindNumber(*of_component, "objectid");
+      if (object && used) {
+        uses[static_cast<std::uint64_t>(*object)].push_back(static_cast<std::uint64_t>(*used));
+      }
+    } else if (const auto of_item = AfterName(tag, "item")) {
+      if (const auto used = FindNumber(*of_item, "objectid")) {
+        items.push_back(static_cast<std::uint64_t>(*used));
       }
     }
   }
-  at = 0;
-  for (std::string_view tag = NextTag(xml, "object", &at); !tag.empty();
-       tag = NextTag(xml, "object", &at)) {
-    const auto id = FindAttribute(tag, "id");
-    const auto name = FindAttribute(tag, "name");
-    int number = 0;
-    if (id && name && !name->empty() &&
-        std::from_chars(id->data(), id->data() + id->size(), number).ec == std::errc()) {
-      model.names.try_emplace(number, *name);
-    }
-  }
+  model.placed = CountPlaced(uses, items);
   return model;
 }
 

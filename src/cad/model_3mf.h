@@ -12,6 +12,7 @@ struct Model3mf {
   double length_unit{1e-3};          ///< [m]
   bool is_unit_known{true};          ///< False where the file names one that does not exist.
   std::map<int, std::string> names;  ///< Of objects, by their ids; those that have one.
+  double placed{0};                  ///< Objects that its build places, with their components.
 };
 
 [[nodiscard]] Model3mf ParseModel3mf(std::string_view xml);

@@ -1,14 +1,11 @@
 #include "cad/read_cad.h"
 
 #include <algorithm>
-#include <array>
 #include <exception>
-#include <fstream>
 #include <mutex>
 #include <new>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include <Standard_Failure.hxx>
@@ -16,6 +13,7 @@
 #include <TDocStd_Document.hxx>
 #include <fmt/format.h>
 
+#include "base/regular_file.h"
 #include "base/units.h"
 #include "cad/assembly_tree.h"
 #include "cad/input_file.h"
@@ -41,16 +39,7 @@ void CheckSize(const Product& product, Diagnostics* diagnostics) {
 
 /** The bytes of a file; empty where they cannot be had. */
 std::string ReadText(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) {
-    return {};
-  }
-  std::string text(size, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(size));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
+  return ReadRegularFile(file).value_or(std::string());
 }
 
 /** The text of a file that states tolerances; empty where it states none, or cannot be had. */
@@ -77,8 +66,8 @@ Result<Product> ReadSolids(const std::filesystem::path& file, const ImportOption
                            const ReadWatch& watch, Diagnostics* diagnostics) {
   std::string tolerance_text = options.with_tolerances ? ReadToleranceText(file) : std::string();
   FaceEntityFn entity_of;
-  const auto document =
-      ReadStepDocument(file, watch, diagnostics, tolerance_text.empty() ? nullptr : &entity_of);
+  const auto document = ReadStepDocument(file, options.max_parts, watch, diagnostics,
+                                         tolerance_text.empty() ? nullptr : &entity_of);
   if (!document) {
     return Unexpected(document.error());
   }
@@ -113,8 +102,9 @@ Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions&
                          const ReadWatch& watch, Diagnostics* diagnostics) {
   Diagnostics of_solids;
   Result<Product> solids = ReadSolids(file, options, watch, &of_solids);
-  std::string text = solids ? std::string() : ReadText(file);
-  if (solids || !MayHoldTessellation(text)) {
+  const bool is_over = solids || solids.error().code == ErrorCode::kUnsupported;
+  std::string text = is_over ? std::string() : ReadText(file);
+  if (is_over || !MayHoldTessellation(text)) {
     for (const Diagnostic& item : of_solids.items()) {
       diagnostics->Add(item);
     }
@@ -137,18 +127,11 @@ Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions&
   return product;
 }
 
-/** The first bytes of a file. */
-std::string ReadHead(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::array<char, 4096> head{};
-  stream.read(head.data(), head.size());
-  return {head.data(), static_cast<std::size_t>(stream.gcount())};
-}
-
 /** The one place where formats are told apart: by content, whatever the file is called. */
 Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOptions& options,
                               const ReadWatch& watch, Diagnostics* diagnostics) {
-  const std::string head = ReadHead(file);
+  constexpr std::size_t kHead = 4096;
+  const std::string head = ReadFileHead(file, kHead).value_or(std::string());
   if (head.find("ISO-10303-21") != std::string::npos) {
     return ReadStep(file, options, watch, diagnostics);
   }

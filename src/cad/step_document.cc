@@ -1,10 +1,9 @@
 #include "cad/step_document.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <memory>
-#include <sstream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,8 +16,11 @@
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <STEPConstruct_ExternRefs.hxx>
 #include <STEPControl_Reader.hxx>
+#include <StepBasic_ProductDefinition.hxx>
 #include <StepData_StepModel.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepShape_FaceSurface.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TDocStd_Document.hxx>
@@ -30,7 +32,10 @@
 #include <XCAFApp_Application.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
+#include <fmt/format.h>
 
+#include "base/regular_file.h"
+#include "cad/placed_parts.h"
 #include "cad/text_encoding.h"
 
 namespace hvas::cad {
@@ -68,10 +73,35 @@ void InitialiseOnce() {
 /** Tells OpenCASCADE what the bytes in strings are: it decodes anything as UTF-8, and spoils what
  is not. As Latin-1 they come through as they are, for CleanName to see to. */
 void SetEncoding(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  Interface_Static::SetCVal("read.step.codepage", IsUtf8(text.view()) ? "UTF8" : "iso8859-1");
+  const std::string text = ReadRegularFile(file).value_or(std::string());
+  Interface_Static::SetCVal("read.step.codepage", IsUtf8(text) ? "UTF8" : "iso8859-1");
+}
+
+/** How many parts and subassemblies the file places. To be known before the transfer, which goes
+ through all of them. */
+double CountPlacedProducts(const STEPCAFControl_Reader& reader) {
+  const Handle(StepData_StepModel) model = reader.Reader().StepModel();
+  Uses uses;
+  std::set<std::uint64_t> used;
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const auto usage = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(i));
+    if (!usage.IsNull() && !usage->RelatingProductDefinition().IsNull() &&
+        !usage->RelatedProductDefinition().IsNull()) {
+      const auto number = [&model](const Handle(Standard_Transient) & entity) {
+        return static_cast<std::uint64_t>(model->Number(entity));
+      };
+      uses[number(usage->RelatingProductDefinition())].push_back(
+          number(usage->RelatedProductDefinition()));
+      used.insert(number(usage->RelatedProductDefinition()));
+    }
+  }
+  std::vector<std::uint64_t> roots;
+  for (const auto& [user, list] : uses) {
+    if (used.count(user) == 0) {
+      roots.push_back(user);
+    }
+  }
+  return CountPlaced(uses, roots);
 }
 
 void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagnostics) {
@@ -110,6 +140,26 @@ std::vector<std::filesystem::path> ListReferredFiles(const STEPCAFControl_Reader
   return paths;
 }
 
+/** OpenCASCADE waits for ever for a pipe that the file names as one of its parts. */
+Result<void> CheckReferredFiles(const STEPCAFControl_Reader& reader,
+                                const std::filesystem::path& file) {
+  STEPConstruct_ExternRefs references(reader.Reader().WS());
+  references.LoadExternRefs();
+  for (int i = 1; i <= references.NbExternRefs(); ++i) {
+    const char* name = references.FileName(i);
+    if (name == nullptr || *name == '\0') {
+      continue;
+    }
+    const auto checked = CheckRegularFile(file.parent_path() / name);
+    if (!checked && checked.error().code != ErrorCode::kNotFound) {
+      return Fail(ErrorCode::kUnreadable,
+                  fmt::format("it refers to {}: {}", name, checked.error().message),
+                  file.filename().string(), checked.error().remedy);
+    }
+  }
+  return {};
+}
+
 /** The entities of all faces that were transferred, by the shape under the face: its place and
  sense change in assemblies and when solids are turned. */
 FaceEntityFn IndexFaces(const STEPCAFControl_Reader& reader) {
@@ -143,7 +193,8 @@ FaceEntityFn IndexFaces(const STEPCAFControl_Reader& reader) {
 }  // namespace
 
 Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& file,
-                                                  const ReadWatch& watch, Diagnostics* diagnostics,
+                                                  std::size_t max_parts, const ReadWatch& watch,
+                                                  Diagnostics* diagnostics,
                                                   FaceEntityFn* entity_of) {
   InitialiseOnce();
   SetEncoding(file);
@@ -162,6 +213,12 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
     return Fail(ErrorCode::kUnreadable, "the STEP file is damaged", name,
                 "export it again from the CAD system");
+  }
+  if (const auto checked = CheckPlaced(CountPlacedProducts(reader), max_parts, name); !checked) {
+    return Unexpected(checked.error());
+  }
+  if (const auto checked = CheckReferredFiles(reader, file); !checked) {
+    return Unexpected(checked.error());
   }
   Handle(TDocStd_Document) document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);

@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
-#include "cad/limits.h"
 #include "cad/material.h"
+#include "cad/placed_parts.h"
 #include "cad/product_tree.h"
 #include "cad/step_measure.h"
 #include "cad/step_surface.h"
@@ -407,7 +407,7 @@ Pose TessellationReader::PoseOf(const Use& use) const {
 
 void TessellationReader::Visit(Id definition, const std::string& name, SubassemblyId parent,
                                const Pose& X_WP, int depth, ProductTree* tree) {
-  if (depth > kDeepest || product_->occurrences.size() >= kMaxOccurrences) {
+  if (depth > kDeepest || product_->occurrences.size() > options_.max_parts) {
     return;
   }
   if (const std::optional<PartId> part = FindPart(definition)) {
@@ -439,9 +439,23 @@ Result<void> TessellationReader::Read() {
     const std::string name = NameOf(roots.front());
     product_->name = name.empty() ? product_->name : name;
   }
+  Uses uses;
+  for (const auto& [user, list] : uses_) {
+    for (const Use& use : list) {
+      uses[user].push_back(use.child);
+    }
+  }
+  if (const auto checked =
+          CheckPlaced(CountPlaced(uses, roots), options_.max_parts, product_->source);
+      !checked) {
+    return checked;
+  }
   ProductTree tree(product_);
   for (const Id root : roots) {
     Visit(root, NameOf(root), SubassemblyId(0), {}, roots.size() > 1 ? 1 : 0, &tree);
+  }
+  if (product_->occurrences.size() > options_.max_parts) {
+    return TooManyParts(options_.max_parts, product_->source);
   }
   if (product_->occurrences.empty()) {  // Shapes that no product claims.
     if (const std::optional<PartId> part = FindPart(0)) {

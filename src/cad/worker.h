@@ -35,7 +35,7 @@ struct WorkerCall {
   std::vector<std::string> arguments;  ///< Without the program's name.
   std::int64_t deadline_ns{0};         ///< On the monotonic clock.
   std::int64_t part_limit_ns{0};       ///< For one part, and for the tolerances.
-  std::uint64_t memory{0};             ///< Address space [bytes]; 0: three quarters of the machine.
+  std::uint64_t memory{0};             ///< Address space [bytes].
   std::stop_token stop;
   ProgressFn progress;
 };

@@ -14,6 +14,7 @@
 #include <TDocStd_Document.hxx>
 #include <fmt/format.h>
 
+#include "cad/limits.h"
 #include "cad/move_components.h"
 #include "cad/step_document.h"
 #include "cad/worker.h"
@@ -83,7 +84,8 @@ int WorkerExportStep(const std::vector<std::string>& arguments) {
   std::string problem;
   try {
     Diagnostics ignored;  // Reading it for the product has told them.
-    const auto document = ReadStepDocument(file, {TellStage, {}, nullptr}, &ignored);
+    const auto document = ReadStepDocument(file, kLargestMaxParts, {TellStage, {}, nullptr},
+                                           &ignored);  // Reading it has checked.
     problem = !document               ? document.error().message
               : arguments.size() == 3 ? Move(*document, file.stem().string(), arguments[2])
                                       : "";

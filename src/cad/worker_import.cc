@@ -8,6 +8,7 @@
 
 #include "cad/import_result.h"
 #include "cad/input_file.h"
+#include "cad/placed_parts.h"
 #include "cad/read_cad.h"
 #include "cad/worker.h"
 #include "cad/worker_io.h"
@@ -45,6 +46,10 @@ std::optional<ImportOptions> ParseOptions(const std::vector<std::string>& words)
       is_good = Parse(words[i], &options.length_unit);
     } else if (name == "--max-triangles") {
       is_good = Parse(words[i], &options.max_triangles);
+    } else if (name == "--max-parts") {
+      is_good = Parse(words[i], &options.max_parts);
+    } else if (name == "--max-bytes") {
+      is_good = Parse(words[i], &options.max_bytes);
     } else if (name == "--threads") {
       is_good = Parse(words[i], &options.threads);
     } else if (name == "--skip-part") {
@@ -76,7 +81,13 @@ int WorkerImport(const std::vector<std::string>& arguments) {
     result.referred_files.push_back(
         {path.lexically_relative(file.parent_path()).string(), DigestOf(path)});
   }
-  return HandOver(Serialise(result));
+  std::vector<std::byte> bytes = Serialise(result);
+  if (bytes.size() > options->max_bytes) {
+    result.product = TooManyBytes("the product takes", static_cast<double>(bytes.size()),
+                                  options->max_bytes, file.filename().string());
+    bytes = Serialise(result);
+  }
+  return HandOver(bytes);
 }
 
 }  // namespace hvas::cad

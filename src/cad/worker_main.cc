@@ -48,11 +48,9 @@ void Limit(int what, std::uint64_t value) {
 
 void LimitMemory(std::uint64_t bytes) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // They reserve terabytes.
-  if (bytes == 0) {
-    const auto pages = static_cast<std::uint64_t>(std::max(::sysconf(_SC_PHYS_PAGES), 0L));
-    bytes = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) / 4 * 3;
+  if (bytes > 0) {
+    Limit(RLIMIT_AS, bytes);
   }
-  Limit(RLIMIT_AS, bytes);
 #else
   static_cast<void>(bytes);
 #endif

@@ -94,14 +94,12 @@ std::optional<std::string> ReadEntry(const Bytes& bytes, std::size_t entry, std:
   return is_whole ? std::move(content) : std::nullopt;
 }
 
-}  // namespace
-
-std::optional<std::string> ReadZipEntry(std::span<const std::byte> archive,
-                                        const std::function<bool(std::string_view name)>& pleases,
-                                        std::size_t limit) {
-  const Bytes bytes(archive);
+/** Visits the entries of the directory, by their places in the bytes, until a visit returns true.
+ */
+template <typename Visit>
+void VisitEntries(const Bytes& bytes, const Visit& visit) {
   if (bytes.size() < kEndSize) {
-    return std::nullopt;
+    return;
   }
   std::size_t end = bytes.size() - kEndSize;
   const std::size_t first = end - std::min(end, kMaxComment);
@@ -112,12 +110,38 @@ std::optional<std::string> ReadZipEntry(std::span<const std::byte> archive,
   std::size_t entry = bytes.Number(end + 16, 4);
   for (std::uint32_t i = 0; i < count && bytes.Number(entry, 4) == kEntrySignature; ++i) {
     const std::uint32_t name_size = bytes.Number(entry + 28, 2);
-    if (pleases(bytes.Text(entry + kEntrySize, name_size))) {
-      return ReadEntry(bytes, entry, limit);
+    if (visit(entry, bytes.Text(entry + kEntrySize, name_size))) {
+      return;
     }
     entry += kEntrySize + name_size + bytes.Number(entry + 30, 2) + bytes.Number(entry + 32, 2);
   }
-  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> ReadZipEntry(std::span<const std::byte> archive,
+                                        const std::function<bool(std::string_view name)>& pleases,
+                                        std::size_t limit) {
+  const Bytes bytes(archive);
+  std::optional<std::string> content;
+  VisitEntries(bytes, [&](std::size_t entry, std::string_view name) {
+    const bool is_it = pleases(name);
+    if (is_it) {
+      content = ReadEntry(bytes, entry, limit);
+    }
+    return is_it;
+  });
+  return content;
+}
+
+std::uint64_t SumUnpackedSizes(std::span<const std::byte> archive) {
+  const Bytes bytes(archive);
+  std::uint64_t sum = 0;
+  VisitEntries(bytes, [&](std::size_t entry, std::string_view /*name*/) {
+    sum += bytes.Number(entry + 24, 4);
+    return false;
+  });
+  return sum;
 }
 
 }  // namespace hvas::cad

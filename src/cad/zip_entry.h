@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -14,5 +15,9 @@ namespace hvas::cad {
 [[nodiscard]] std::optional<std::string> ReadZipEntry(
     std::span<const std::byte> archive, const std::function<bool(std::string_view name)>& pleases,
     std::size_t limit);
+
+/** What all entries of a ZIP archive take when they are unpacked, as its directory has it [bytes];
+ libraries unpack no more of an entry than this says. Takes any bytes. */
+[[nodiscard]] std::uint64_t SumUnpackedSizes(std::span<const std::byte> archive);
 
 }  // namespace hvas::cad

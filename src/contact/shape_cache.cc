@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "base/digest.h"
+#include "base/regular_file.h"
 #include "contact/shape_io.h"
 
 namespace hvas::contact {
@@ -78,21 +78,6 @@ std::string KeyOf(const ShapeSource& source, const ShapeOptions& options) {
   return digest.Hex();
 }
 
-std::optional<std::vector<std::byte>> ReadFile(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) {
-    return std::nullopt;
-  }
-  const std::streamoff size = file.tellg();
-  if (size < 0) {
-    return std::nullopt;
-  }
-  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(bytes.data()), size);
-  return file ? std::optional(std::move(bytes)) : std::nullopt;
-}
-
 }  // namespace
 
 ShapeCache::ShapeCache(fs::path directory, std::uintmax_t capacity)
@@ -123,11 +108,11 @@ std::optional<Error> ShapeCache::TakeProblem() {
 }
 
 std::shared_ptr<const Shape> ShapeCache::Load(const std::string& key) const {
-  const auto file = ReadFile(files_.PathOf(key));
+  const auto file = ReadRegularFile(files_.PathOf(key));
   if (!file || file->size() < sizeof(Header)) {
     return nullptr;
   }
-  const auto bytes = std::span(*file).subspan(sizeof(Header));
+  const auto bytes = std::as_bytes(std::span(*file)).subspan(sizeof(Header));
   const Header expected = HeaderOf(key, bytes);
   if (std::memcmp(file->data(), &expected, sizeof(Header)) != 0) {
     return nullptr;

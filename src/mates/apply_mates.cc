@@ -56,9 +56,13 @@ Result<Mate> MakeAdded(const Product& product, const AddedMate& added) {
   return mate;
 }
 
-Result<void> RemoveAll(const SideFile& file, Product* product, MateChanges* changes) {
+Result<void> RemoveAll(const SideFile& file, Product* product, MateChanges* changes,
+                       WorkWatch* watch) {
   // First all are found, so that numbers and keys mean what they meant before.
   for (const RemovedMate& removed : file.removed) {
+    if (!MayGoOn(watch)) {
+      return Unexpected(watch->Explain("removing mates", removed.where));
+    }
     const auto mate = std::find_if(product->mates.begin(), product->mates.end(),
                                    [&](const Mate& m) { return m.key == removed.mate; });
     if (mate == product->mates.end()) {
@@ -69,6 +73,9 @@ Result<void> RemoveAll(const SideFile& file, Product* product, MateChanges* chan
     changes->removed.push_back(*mate);
   }
   for (const Mate& mate : changes->removed) {
+    if (!MayGoOn(watch)) {
+      return Unexpected(watch->Explain("removing mates", file.path.string()));
+    }
     if (const Result<Mate> removed = RemoveMate(product, mate.key); !removed) {
       return Fail(ErrorCode::kInvalid, fmt::format("mate \"{}\" is removed twice", mate.key),
                   file.path.string(), "keep one of the entries");
@@ -81,7 +88,6 @@ Result<void> RemoveAll(const SideFile& file, Product* product, MateChanges* chan
 
 Result<OccurrenceId> FindOccurrence(const Product& product, std::string_view name) {
   std::vector<const Occurrence*> found;
-  std::vector<std::string> names;
   for (const Occurrence& occurrence : product.occurrences) {
     if (occurrence.path == name) {
       return occurrence.id;
@@ -89,10 +95,13 @@ Result<OccurrenceId> FindOccurrence(const Product& product, std::string_view nam
     if (IsCalled(product, occurrence.id, name)) {
       found.push_back(&occurrence);
     }
-    names.push_back(occurrence.name);
-    names.push_back(occurrence.path);
   }
   if (found.empty()) {
+    std::vector<std::string> names;
+    for (const Occurrence& occurrence : product.occurrences) {
+      names.push_back(occurrence.name);
+      names.push_back(occurrence.path);
+    }
     const std::string nearest = FindNearest(name, names);
     return Fail(
         ErrorCode::kNotFound, fmt::format("no occurrence is called \"{}\"", name), product.source,
@@ -107,16 +116,19 @@ Result<OccurrenceId> FindOccurrence(const Product& product, std::string_view nam
   return found.front()->id;
 }
 
-Result<MateChanges> ApplyMates(const SideFile& file, Product* product) {
+Result<MateChanges> ApplyMates(const SideFile& file, Product* product, WorkWatch* watch) {
   MateChanges changes;
   if (file.removed.empty() && file.added.empty()) {
     return changes;
   }
   Product changed = *product;
-  if (const auto removed = RemoveAll(file, &changed, &changes); !removed) {
+  if (const auto removed = RemoveAll(file, &changed, &changes, watch); !removed) {
     return Unexpected(removed.error());
   }
   for (const AddedMate& added : file.added) {
+    if (!MayGoOn(watch)) {
+      return Unexpected(watch->Explain("adding mates", added.where));
+    }
     Result<Mate> mate = MakeAdded(changed, added);
     if (!mate) {
       return Unexpected(mate.error());

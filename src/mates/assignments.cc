@@ -204,7 +204,8 @@ bool IsCalled(const Product& product, product::OccurrenceId id, std::string_view
           path[path.size() - name.size() - 1] == '/' && !name.empty());
 }
 
-Result<int> ApplyFits(const SideFile& file, const MateChanges& changes, Product* product) {
+Result<int> ApplyFits(const SideFile& file, const MateChanges& changes, Product* product,
+                      WorkWatch* watch) {
   const std::string reason = "stated in " + file.path.filename().string();
   std::vector<Mate> mates = product->mates;  // Changed whole, or not at all.
   std::vector<bool> is_changed(mates.size(), false);
@@ -224,6 +225,9 @@ Result<int> ApplyFits(const SideFile& file, const MateChanges& changes, Product*
     is_changed[changes.added[i].index()] = true;
   }
   for (const FitEntry& entry : file.fits) {
+    if (!MayGoOn(watch)) {
+      return Unexpected(watch->Explain("assigning the fits", entry.where));
+    }
     bool is_found = std::any_of(changes.removed.begin(), changes.removed.end(),
                                 [&](const Mate& mate) { return Matches(*product, mate, entry); });
     // A removed mate has no number any more: it is another's now.
@@ -241,18 +245,21 @@ Result<int> ApplyFits(const SideFile& file, const MateChanges& changes, Product*
       return FailToFind(*product, entry);
     }
   }
+  if (!MayGoOn(watch)) {
+    return Unexpected(watch->Explain("assigning the fits", file.path.string()));
+  }
   product->mates = std::move(mates);
   return static_cast<int>(std::count(is_changed.begin(), is_changed.end(), true));
 }
 
-Result<MateChanges> ApplySideFile(const SideFile& file, Product* product) {
+Result<MateChanges> ApplySideFile(const SideFile& file, Product* product, WorkWatch* watch) {
   Product changed = *product;
-  Result<MateChanges> changes = ApplyMates(file, &changed);
+  Result<MateChanges> changes = ApplyMates(file, &changed, watch);
   if (!changes) {
     return changes;
   }
-  AssignStatedFits(&changed);
-  const Result<int> count = ApplyFits(file, *changes, &changed);
+  AssignStatedFits(&changed, watch);
+  const Result<int> count = ApplyFits(file, *changes, &changed, watch);
   if (!count) {
     return Unexpected(count.error());
   }
@@ -261,12 +268,13 @@ Result<MateChanges> ApplySideFile(const SideFile& file, Product* product) {
   return changes;
 }
 
-Result<MateChanges> ApplyAssignments(const std::filesystem::path& file, Product* product) {
+Result<MateChanges> ApplyAssignments(const std::filesystem::path& file, Product* product,
+                                     WorkWatch* watch) {
   const Result<SideFile> side_file = ReadSideFile(file);
   if (!side_file) {
     return Unexpected(side_file.error());
   }
-  return ApplySideFile(*side_file, product);
+  return ApplySideFile(*side_file, product, watch);
 }
 
 Result<void> AssignFit(Product* product, std::string_view assignment) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "base/work_watch.h"
 #include "mates/side_file.h"
 #include "product/product.h"
 
@@ -31,7 +32,8 @@ struct MateChanges {
 /** Takes out the mates that a side file removes and adds those that it adds; ids and joints follow.
  A mate to be added that is there already becomes the user's. Errors name the file, the line, the
  entry and a remedy; then nothing is changed. @pre product has its inferred mates. */
-[[nodiscard]] Result<MateChanges> ApplyMates(const SideFile& file, product::Product* product);
+[[nodiscard]] Result<MateChanges> ApplyMates(const SideFile& file, product::Product* product,
+                                             WorkWatch* watch = nullptr);
 
 /** Sets the fits and conditions that a side file states. An entry by names applies to all axis-hole
  mates between occurrences of these names whose hole or shaft has the diameter within 1 % (any, when
@@ -44,16 +46,18 @@ struct MateChanges {
  as drawn, and the code is that one class.
  @returns how many mates got a fit or conditions. */
 [[nodiscard]] Result<int> ApplyFits(const SideFile& file, const MateChanges& changes,
-                                    product::Product* product);
+                                    product::Product* product, WorkWatch* watch = nullptr);
 
 /** All that a product gets from its files: mates removed and added, the fits that the CAD file
  states (see AssignStatedFits), and over them those of the side file. All of it, or an error and
- nothing. */
-[[nodiscard]] Result<MateChanges> ApplySideFile(const SideFile& file, product::Product* product);
+ nothing; an error also when the watch ends it. */
+[[nodiscard]] Result<MateChanges> ApplySideFile(const SideFile& file, product::Product* product,
+                                                WorkWatch* watch = nullptr);
 
 /** Reads a side file, and the same. */
 [[nodiscard]] Result<MateChanges> ApplyAssignments(const std::filesystem::path& file,
-                                                   product::Product* product);
+                                                   product::Product* product,
+                                                   WorkWatch* watch = nullptr);
 
 /** Sets fits from the command line: "AXIS=H7/p6", with AXIS a mate ("m12" or its key), "all", or
  the name or path of an occurrence with the hole or the shaft. "all" and names leave threads as they

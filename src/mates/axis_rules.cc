@@ -34,8 +34,9 @@ const PlacedAxisHit* ChooseTightest(const std::vector<const PlacedAxisHit*>& gro
 
 }  // namespace
 
-AxisRules::AxisRules(const InferenceLimits& limits, const std::vector<PlacedAxisHit>& hits)
-    : limits_(limits), hits_(hits), cos_angle_(std::cos(limits.angle)) {
+AxisRules::AxisRules(const InferenceLimits& limits, const std::vector<PlacedAxisHit>& hits,
+                     WorkWatch* watch)
+    : limits_(limits), hits_(hits), watch_(watch), cos_angle_(std::cos(limits.angle)) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     hits_of_hole_[{hits[i].hole_occurrence, hits[i].hole}].push_back(i);
     hits_of_shaft_[{hits[i].shaft_occurrence, hits[i].shaft}].push_back(i);
@@ -57,6 +58,9 @@ bool AxisRules::HasPartBetween(const PlacedAxisHit& hit) const {
   }
   double filled = 0;
   for (const std::size_t i : hits_of_hole_.at({hit.hole_occurrence, hit.hole})) {
+    if (!MayGoOn(watch_)) {
+      return false;
+    }
     const PlacedAxisHit& outer = hits_[i];
     if (outer.shaft_occurrence == hit.shaft_occurrence || std::abs(outer.play()) >= difference) {
       continue;
@@ -95,7 +99,7 @@ bool AxisRules::IsLoosePassage(const PlacedAxisHit& hit) const {
 std::vector<const PlacedAxisHit*> AxisRules::ChooseWorking(std::size_t begin,
                                                            std::size_t end) const {
   std::vector<std::vector<const PlacedAxisHit*>> groups;
-  for (std::size_t i = begin; i < end; ++i) {
+  for (std::size_t i = begin; i < end && MayGoOn(watch_); ++i) {
     const PlacedAxisHit& hit = hits_[i];
     if (HasPartBetween(hit) || IsLoosePassage(hit)) {
       continue;
@@ -124,9 +128,10 @@ bool AxisRules::IsUnbolted(const PlacedHoleHit& holes) const {
     return true;
   }
   return std::none_of(in_a->second.begin(), in_a->second.end(), [&](std::size_t i) {
-    return std::any_of(in_b->second.begin(), in_b->second.end(), [&](std::size_t j) {
-      return hits_[i].shaft_occurrence == hits_[j].shaft_occurrence;
-    });
+    return MayGoOn(watch_) &&
+           std::any_of(in_b->second.begin(), in_b->second.end(), [&](std::size_t j) {
+             return hits_[i].shaft_occurrence == hits_[j].shaft_occurrence;
+           });
   });
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/work_watch.h"
 #include "mates/limits.h"
 #include "product/product.h"
 
@@ -40,8 +41,10 @@ struct PlacedHoleHit {
 /** Chooses among what engages, knowing all parts of the product. */
 class AxisRules {
  public:
-  /** Hits in the order of their pairs of parts; both must outlive this. */
-  AxisRules(const InferenceLimits& limits, const std::vector<PlacedAxisHit>& hits);
+  /** Hits in the order of their pairs of parts; all must outlive this. Choices are of no use once
+   the watch has ended them. */
+  AxisRules(const InferenceLimits& limits, const std::vector<PlacedAxisHit>& hits,
+            WorkWatch* watch = nullptr);
 
   /** Of the hits [begin, end), which belong to one pair of parts, the working one of each axis:
    none where a third part (a bushing) lies between, nor for a wide passage around a shaft that
@@ -62,6 +65,7 @@ class AxisRules {
 
   InferenceLimits limits_;
   const std::vector<PlacedAxisHit>& hits_;
+  WorkWatch* watch_;
   double cos_angle_{1};
   std::map<Key, std::vector<std::size_t>> hits_of_hole_;
   std::map<Key, std::vector<std::size_t>> hits_of_shaft_;

@@ -64,8 +64,27 @@ void ReportOverlaps(const Product& product, const std::vector<DrawnOddity>& oddi
   }
 }
 
+void ReportDuplicates(const Product& product, const std::vector<OccurrenceId>& original_of,
+                      Diagnostics* diagnostics) {
+  std::map<OccurrenceId, int> counts;
+  for (const OccurrenceId original : original_of) {
+    if (original.is_valid()) {
+      ++counts[original];
+    }
+  }
+  for (const auto& [original, count] : counts) {
+    diagnostics->Warn(
+        "duplicate-part", PathOf(product, original),
+        count == 1 ? "a copy of it is drawn at the very same place; the copy gets no mates"
+                   : fmt::format("{} copies of it are drawn at the very same place; they get "
+                                 "no mates",
+                                 count),
+        "delete the copies in the CAD program");
+  }
+}
+
 void ReportLoose(const Product& product, const std::vector<DrawnOddity>& oddities,
-                 Diagnostics* diagnostics) {
+                 const std::vector<OccurrenceId>& original_of, Diagnostics* diagnostics) {
   std::vector<bool> has_mate(product.occurrences.size(), false);
   for (const Mate& mate : product.mates) {
     has_mate[mate.a.occurrence.index()] = true;
@@ -81,7 +100,8 @@ void ReportLoose(const Product& product, const std::vector<DrawnOddity>& odditie
     }
   }
   for (const Occurrence& occurrence : product.occurrences) {
-    if (has_mate[occurrence.id.index()] || product.occurrences.size() < 2) {
+    if (has_mate[occurrence.id.index()] || original_of[occurrence.id.index()].is_valid() ||
+        product.occurrences.size() < 2) {
       continue;
     }
     std::string message = "touches no other part along a plane, in a hole or in a seat";
@@ -98,10 +118,11 @@ void ReportLoose(const Product& product, const std::vector<DrawnOddity>& odditie
 }  // namespace
 
 void ReportOddities(const Product& product, const std::vector<DrawnOddity>& oddities,
-                    Diagnostics* diagnostics) {
+                    const std::vector<OccurrenceId>& original_of, Diagnostics* diagnostics) {
   ReportInterference(product, diagnostics);
   ReportOverlaps(product, oddities, diagnostics);
-  ReportLoose(product, oddities, diagnostics);
+  ReportDuplicates(product, original_of, diagnostics);
+  ReportLoose(product, oddities, original_of, diagnostics);
 }
 
 }  // namespace hvas::mates

@@ -19,6 +19,7 @@
 #include "mates/mate_key.h"
 #include "mates/pair_search.h"
 #include "mates/propose_fit.h"
+#include "mates/same_place.h"
 #include "mates/surface_pairs.h"
 
 namespace hvas::mates {
@@ -51,19 +52,21 @@ struct PlaneGroup {
 
 class Inference {
  public:
-  Inference(Product* product, const InferenceLimits& limits)
+  Inference(Product* product, const InferenceLimits& limits, WorkWatch* watch)
       : product_(product),
         limits_(limits),
+        watch_(watch),
         cos_angle_(std::cos(limits.angle)),
-        fasteners_(ClassifyOccurrences(*product)) {}
+        fasteners_(ClassifyOccurrences(*product)),
+        original_of_(FindOriginals(*product)) {}
 
   std::vector<DrawnOddity> Run() {
     FindPairs();
     product_->mates.clear();
     product_->alignments.clear();
-    const AxisRules rules(limits_, axis_hits_);
+    const AxisRules rules(limits_, axis_hits_, watch_);
     std::vector<DrawnOddity> oddities;
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    for (std::size_t i = 0; i < pairs_.size() && MayGoOn(watch_); ++i) {
       const Pair& pair = pairs_[i];
       const std::size_t end = i + 1 < pairs_.size() ? pairs_[i + 1].first_axis : axis_hits_.size();
       const std::vector<const PlacedAxisHit*> working = rules.ChooseWorking(pair.first_axis, end);
@@ -80,6 +83,9 @@ class Inference {
     Finish();
     return oddities;
   }
+
+  /** As FindOriginals() has it. */
+  [[nodiscard]] const std::vector<OccurrenceId>& original_of() const { return original_of_; }
 
  private:
   [[nodiscard]] const Pose& PoseOf(OccurrenceId id) const {
@@ -103,13 +109,23 @@ class Inference {
     std::vector<spatial::Box> boxes;
     double largest = 0;
     for (const product::Occurrence& occurrence : product_->occurrences) {
-      boxes.push_back(spatial::Transform(occurrence.X_WB, product_->part_of(occurrence.id).box_B));
+      const bool is_copy = original_of_[occurrence.id.index()].is_valid();
+      boxes.push_back(
+          is_copy ? spatial::Box()
+                  : spatial::Transform(occurrence.X_WB, product_->part_of(occurrence.id).box_B));
       largest = std::max(largest, SizeOf(occurrence.id));
     }
-    PairSearch search(*product_, limits_);
-    for (const auto& [i, j] : FindBoxPairs(boxes, limits_.near_gap * CalcLengthScale(largest))) {
-      Pair pair{OccurrenceId(i), OccurrenceId(j), search.Find(OccurrenceId(i), OccurrenceId(j)),
-                axis_hits_.size()};
+    PairSearch search(*product_, limits_, watch_);
+    for (const auto& [i, j] :
+         FindBoxPairs(boxes, limits_.near_gap * CalcLengthScale(largest), watch_)) {
+      if (!MayGoOn(watch_)) {
+        return;
+      }
+      const PairHits& hits = search.Find(OccurrenceId(i), OccurrenceId(j));
+      if (hits.is_empty()) {
+        continue;
+      }
+      Pair pair{OccurrenceId(i), OccurrenceId(j), hits, axis_hits_.size()};
       for (const AxisHit& hit : pair.hits.axes) {
         axis_hits_.push_back(Place(pair, hit));
       }
@@ -142,7 +158,7 @@ class Inference {
   void Add(MateKind kind, OccurrenceId a, FeatureId feature_a, OccurrenceId b,
            FeatureId feature_b) {
     Mate mate = BuildMate(*product_, kind, SideOf(a, feature_a), SideOf(b, feature_b));
-    mate.surfaces = FindSurfacePairs(*product_, mate);
+    mate.surfaces = FindSurfacePairs(*product_, mate, watch_);
     product_->mates.push_back(std::move(mate));
   }
 
@@ -158,7 +174,7 @@ class Inference {
           continue;  // Concentric, but the socket is on the other side.
         }
       }
-      mate.surfaces = FindSurfacePairs(*product_, mate);
+      mate.surfaces = FindSurfacePairs(*product_, mate, watch_);
       product_->mates.push_back(std::move(mate));
     }
   }
@@ -167,6 +183,9 @@ class Inference {
     const double gap = limits_.plane_gap * ScaleOf(pair);
     std::vector<PlaneGroup> groups;
     for (const PlaneHit& hit : pair.hits.planes) {
+      if (!MayGoOn(watch_)) {
+        break;
+      }
       const auto found = std::find_if(groups.begin(), groups.end(), [&](const PlaneGroup& group) {
         const Vec3& nhat = FeatureOf(pair.a, group.largest->a).axis_B;
         return nhat.dot(FeatureOf(pair.a, hit.a).axis_B) >= cos_angle_ &&
@@ -194,7 +213,7 @@ class Inference {
       for (const PlaneHit* hit : group.hits) {
         features.emplace_back(hit->a, hit->b);
       }
-      mate.surfaces = FindSurfacePairs(*product_, mate, features);
+      mate.surfaces = FindSurfacePairs(*product_, mate, features, watch_);
       product_->mates.push_back(std::move(mate));
     }
   }
@@ -209,6 +228,9 @@ class Inference {
       known.emplace_back(X_AW * hit->origin_W, X_AW.q() * hit->axis_W);
     }
     for (const HoleHit& hit : pair.hits.holes) {
+      if (!MayGoOn(watch_)) {
+        return;
+      }
       const Feature& hole = FeatureOf(pair.a, hit.a);
       const double limit = limits_.axis_distance * ScaleOf(pair);
       const bool is_known = std::any_of(known.begin(), known.end(), [&](const auto& axis) {
@@ -267,13 +289,15 @@ class Inference {
             fasteners_[mate.b.occurrence.index()], &mate);
     }
     AssignKeys(product_);
-    BuildJoints(product_);
+    BuildJoints(product_, watch_);
   }
 
   Product* product_;
   InferenceLimits limits_;
+  WorkWatch* watch_;
   double cos_angle_{1};
   std::vector<FastenerKind> fasteners_;
+  std::vector<OccurrenceId> original_of_;
   std::vector<Pair> pairs_;
   std::vector<PlacedAxisHit> axis_hits_;
 };
@@ -281,8 +305,18 @@ class Inference {
 }  // namespace
 
 void Infer(Product* product, Diagnostics* diagnostics, const InferenceLimits& limits) {
-  const std::vector<DrawnOddity> oddities = Inference(product, limits).Run();
-  ReportOddities(*product, oddities, diagnostics);
+  (void)Infer(product, diagnostics, nullptr, limits);  // Without a watch nothing ends it.
+}
+
+Result<void> Infer(Product* product, Diagnostics* diagnostics, WorkWatch* watch,
+                   const InferenceLimits& limits) {
+  Inference inference(product, limits, watch);
+  const std::vector<DrawnOddity> oddities = inference.Run();
+  if (!MayGoOn(watch)) {
+    return Unexpected(watch->Explain("finding the mates", product->source));
+  }
+  ReportOddities(*product, oddities, inference.original_of(), diagnostics);
+  return {};
 }
 
 Linkage CalcLinkage(const Product& product) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "base/diagnostics.h"
+#include "base/result.h"
+#include "base/work_watch.h"
 #include "mates/limits.h"
 #include "product/product.h"
 
@@ -15,10 +17,16 @@ namespace hvas::mates {
  between, nor for a wide passage around a shaft that another part guides. Face-face: opposing planes
  that touch over an area; one mate for each pair of parts and plane. Both connectors of a mate
  coincide exactly in the drawn pose, whatever play the drawing has, so the drawn pose fulfils all
- mates at once. Nothing is moved.
+ mates at once. Nothing is moved. Copies of a part at the very same place get no mates.
 
- Notes parts without a mate ("no-mate") and drawn interference ("drawn-interference"). */
+ Tells parts without a mate ("no-mate"), copies ("duplicate-part") and drawn interference
+ ("drawn-interference"). */
 void Infer(product::Product* product, Diagnostics* diagnostics, const InferenceLimits& limits = {});
+
+/** The same for files that may be hostile. Fails (kOutOfResource, kCancelled) when the watch ends
+ it; what the product has for mates then is of no use. */
+[[nodiscard]] Result<void> Infer(product::Product* product, Diagnostics* diagnostics,
+                                 WorkWatch* watch, const InferenceLimits& limits = {});
 
 /** How the mates tie a product together. */
 struct Linkage {

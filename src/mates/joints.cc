@@ -34,11 +34,11 @@ bool IsSamePattern(const Mate& a, const Mate& b) {
 }
 
 /** Size of the largest set of equal parallel axes; 0 where no two are equal. */
-int CountPattern(const Product& product, const std::vector<MateId>& mates) {
+int CountPattern(const Product& product, const std::vector<MateId>& mates, WorkWatch* watch) {
   int most = 0;
   for (const MateId first : mates) {
     const Mate& mate = product.mates[first.index()];
-    if (mate.kind != MateKind::kAxisHole) {
+    if (mate.kind != MateKind::kAxisHole || !MayGoOn(watch)) {
       continue;
     }
     const auto equal = std::count_if(mates.begin(), mates.end(), [&](MateId id) {
@@ -52,17 +52,20 @@ int CountPattern(const Product& product, const std::vector<MateId>& mates) {
 
 }  // namespace
 
-void BuildJoints(Product* product) {
+void BuildJoints(Product* product, WorkWatch* watch) {
   std::map<std::pair<OccurrenceId, OccurrenceId>, std::vector<MateId>> pairs;
   for (const Mate& mate : product->mates) {
     pairs[std::minmax(mate.a.occurrence, mate.b.occurrence)].push_back(mate.id);
   }
   product->joints.clear();
   for (auto& [pair, mates] : pairs) {
+    if (!MayGoOn(watch)) {
+      return;
+    }
     Joint joint;
     joint.a = pair.first;
     joint.b = pair.second;
-    joint.pattern_count = CountPattern(*product, mates);
+    joint.pattern_count = CountPattern(*product, mates, watch);
     const Pose& X_WA = product->occurrences[joint.a.index()].X_WB;
     std::vector<MateConstraint> constraints;
     for (const MateId id : mates) {

@@ -1,6 +1,8 @@
 #include "mates/located_json.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <set>
 #include <utility>
@@ -14,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kDeepest = 32;
+constexpr std::size_t kLongestShown = 40;
 constexpr std::size_t kMostKeys = 1000;  // Ordered objects are searched key by key.
 
 int CountLines(std::string_view text, std::size_t byte) {
@@ -49,6 +52,9 @@ class LineScanner {
       } else if (c == ':') {
         is_value_next_ = true;
       } else if (is_value_next_ && c > ' ') {
+        if (const auto number = CheckNumber(); !number) {
+          return Unexpected(number.error());
+        }
         Note();
       }
       ++at_;
@@ -71,6 +77,21 @@ class LineScanner {
     }
     const Level& level = levels_.back();
     return level.pointer + "/" + (level.is_object ? level.key : std::to_string(level.index));
+  }
+
+  /** What begins here, if it is a number, is one that a double can hold. */
+  [[nodiscard]] Result<void> CheckNumber() const {
+    constexpr std::string_view kOfNumbers = "+-.0123456789eE";
+    const std::string_view rest = text_.substr(at_);
+    const std::string word(rest.substr(0, rest.find_first_not_of(kOfNumbers)));
+    if (!std::isfinite(std::strtod(word.c_str(), nullptr))) {
+      return Fail(
+          ErrorCode::kInvalid,
+          fmt::format("\"{}\" is {}, which is beyond all numbers", Here(),
+                      word.size() > kLongestShown ? word.substr(0, kLongestShown) + "..." : word),
+          fmt::format("{}:{}", file_, line_), "write a number of a size that can be meant");
+    }
+    return {};
   }
 
   void Note() {

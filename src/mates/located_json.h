@@ -20,7 +20,8 @@ struct LocatedJson {
 };
 
 /** Reads JSON that people write. On top of what JSON forbids, a key that stands twice in one object
- is an error (kInvalid), and so are nesting deeper than 32 and objects of more than 1000 keys.
+ is an error (kInvalid), and so are numbers that no double holds, nesting deeper than 32 and objects
+ of more than 1000 keys.
  Error::where is "FILE:LINE".
  @param file  Only for the messages. */
 [[nodiscard]] Result<LocatedJson> ParseLocatedJson(std::string_view text, const std::string& file);

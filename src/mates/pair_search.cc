@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mates/build_mate.h"
+#include "mates/same_place.h"
 
 namespace hvas::mates {
 namespace {
@@ -18,8 +19,6 @@ using product::Pose;
 using product::Product;
 using spatial::Box;
 
-constexpr double kSamePose = 1e-9;            // [m], and as a part of the rotation.
-constexpr double kPoseGrid = 1e-6;            // [m]
 constexpr double kAlignedGap = 2e-3;          // Between the ends of holes in line [m].
 constexpr double kSphereInterference = 0.01;  // Part of the radius.
 constexpr double kAlignedShare = 0.1;         // Of the shorter hole, that may lie in the other.
@@ -84,17 +83,6 @@ Pose PlaneFrame(const Feature& plane) {
   return {spatial::FrameFromZ(plane.axis_B), plane.origin_B};
 }
 
-bool IsSamePose(const Pose& X, const Pose& Y) {
-  const double turn =
-      std::min((X.q().coeffs() - Y.q().coeffs()).norm(), (X.q().coeffs() + Y.q().coeffs()).norm());
-  return turn < kSamePose && (X.p() - Y.p()).norm() < kSamePose;
-}
-
-std::int64_t Cell(double value) {
-  const double steps = value / kPoseGrid;
-  return std::abs(steps) < 9e15 ? std::llround(steps) : 0;
-}
-
 }  // namespace
 
 /** What a search of one pair needs at hand. */
@@ -115,9 +103,10 @@ std::size_t PairSearch::PairKeyHash::operator()(const PairKey& key) const noexce
   return static_cast<std::size_t>(hash);
 }
 
-PairSearch::PairSearch(const Product& product, const InferenceLimits& limits)
+PairSearch::PairSearch(const Product& product, const InferenceLimits& limits, WorkWatch* watch)
     : product_(product),
       limits_(limits),
+      watch_(watch),
       cos_angle_(std::cos(limits.angle)),
       parts_(product.parts.size()) {}
 
@@ -152,8 +141,8 @@ const PairHits& PairSearch::Find(product::OccurrenceId a, product::OccurrenceId 
     Search(occurrence_a.part, occurrence_b.part, X_AB, &last_);
     return last_;
   }
-  const PairKey key{occurrence_a.part.value(), occurrence_b.part.value(), Cell(X_AB.p().x()),
-                    Cell(X_AB.p().y()), Cell(X_AB.p().z())};
+  const PairKey key{occurrence_a.part.value(), occurrence_b.part.value(), PlaceCell(X_AB.p().x()),
+                    PlaceCell(X_AB.p().y()), PlaceCell(X_AB.p().z())};
   std::vector<Known>& known = known_[key];
   for (const Known& entry : known) {
     if (IsSamePose(entry.X_AB, X_AB)) {
@@ -209,6 +198,9 @@ void PairSearch::Search(PartId id_a, PartId id_b, const Pose& X_AB, PairHits* hi
     }
   }
   for (const SearchFeature* feature_a : features_a) {
+    if (!MayGoOn(watch_)) {
+      return;
+    }
     const Box box = feature_a->box.Expanded(margin);
     for (const MovedFeature& feature_b : features_b) {
       if (box.Overlaps(feature_b.box)) {
@@ -333,6 +325,9 @@ void PairSearch::TestPair(const Context& context, const SearchFeature& a, const 
 void PairSearch::TestHoles(const Context& context, const std::vector<const SearchFeature*>& of_a,
                            const std::vector<MovedFeature>& of_b, PairHits* hits) const {
   for (const SearchFeature* a : of_a) {
+    if (!MayGoOn(watch_)) {
+      return;
+    }
     const Box box = a->box.Expanded(kAlignedGap * context.scale);
     for (const MovedFeature& b : of_b) {
       const Feature& hole_a = *a->feature;
@@ -388,7 +383,7 @@ void PairSearch::TestPlanes(const Context& context, const SearchFeature& a, cons
                                             : Flatten(context.a, plane_a, X_PA);
   const std::vector<Triangle2>& fine =
       is_a_finer ? FlattenOnce(context.part_a, a) : FlattenOnce(context.part_b, *b.own);
-  const Overlap overlap = CalcOverlap(SelectNear(fine, coarse), coarse);
+  const Overlap overlap = CalcOverlap(SelectNear(fine, coarse), coarse, watch_);
   const double least = std::max(limits_.area_ratio * std::min(plane_a.area, plane_b.area),
                                 limits_.area * context.scale * context.scale);
   if (overlap.area <= least) {
@@ -410,7 +405,7 @@ void PairSearch::TestPlanes(const Context& context, const SearchFeature& a, cons
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(const std::vector<Box>& boxes,
-                                                              double margin) {
+                                                              double margin, WorkWatch* watch) {
   Box all;
   Vec3 sum = Vec3::Zero();
   std::vector<std::size_t> order;
@@ -431,7 +426,7 @@ std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(const std::vector<
     return boxes[i].low[axis] < boxes[j].low[axis];
   });
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  for (std::size_t i = 0; i < order.size() && MayGoOn(watch); ++i) {
     const Box box = boxes[order[i]].Expanded(margin);
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const Box& other = boxes[order[j]];

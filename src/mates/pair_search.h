@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/work_watch.h"
 #include "mates/limits.h"
 #include "mates/plane_overlap.h"
 #include "product/product.h"
@@ -54,15 +55,22 @@ struct PairHits {
   std::vector<PlaneHit> planes;         ///< That touch.
   std::optional<PlaneHit> nearest;      ///< The planes with the largest area that nearly touch.
   std::optional<PlaneHit> overlapping;  ///< The same of those that lie inside each other.
+
+  [[nodiscard]] bool is_empty() const {
+    return axes.empty() && holes.empty() && seats.empty() && planes.empty() && !nearest &&
+           !overlapping;
+  }
 };
 
 /** Searches pairs of occurrences. Pairs of the same two parts that lie equally to each other
  (within 1 nm), as in all instances of a subassembly, are looked at once; the answer is exactly that
- of the first, in the frame of the first part. */
+ of the first, in the frame of the first part. Answers are incomplete once the watch has ended it.
+ */
 class PairSearch {
  public:
   /** @pre product outlives this and does not change. */
-  PairSearch(const product::Product& product, const InferenceLimits& limits);
+  PairSearch(const product::Product& product, const InferenceLimits& limits,
+             WorkWatch* watch = nullptr);
 
   /** The answer stays valid until the next call. */
   [[nodiscard]] const PairHits& Find(product::OccurrenceId a, product::OccurrenceId b);
@@ -121,6 +129,7 @@ class PairSearch {
 
   const product::Product& product_;
   InferenceLimits limits_;
+  WorkWatch* watch_;
   double cos_angle_{1};
   std::size_t searched_{0};
   std::vector<SearchPart> parts_;
@@ -130,8 +139,9 @@ class PairSearch {
 };
 
 /** All pairs of boxes that come within `margin` of each other, in ascending order, by a sweep along
- the axis on which the boxes are shortest against the whole. Empty boxes pair with nothing. */
+ the axis on which the boxes are shortest against the whole. Empty boxes pair with nothing. Ends
+ early when the watch says so. */
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(
-    const std::vector<spatial::Box>& boxes, double margin);
+    const std::vector<spatial::Box>& boxes, double margin, WorkWatch* watch = nullptr);
 
 }  // namespace hvas::mates

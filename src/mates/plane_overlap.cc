@@ -99,7 +99,8 @@ void AddCommon(const Triangle2& a, const Triangle2& b, double* area, Vec2* momen
 
 }  // namespace
 
-Overlap CalcOverlap(const std::vector<Triangle2>& a, const std::vector<Triangle2>& b) {
+Overlap CalcOverlap(const std::vector<Triangle2>& a, const std::vector<Triangle2>& b,
+                    WorkWatch* watch) {
   const std::vector<Sorted> sorted_a = SortByX(a);
   const std::vector<Sorted> sorted_b = SortByX(b);
   double area = 0;
@@ -107,6 +108,9 @@ Overlap CalcOverlap(const std::vector<Triangle2>& a, const std::vector<Triangle2
   std::vector<std::size_t> active;  // Of b, those that the sweep has not left behind.
   std::size_t next_b = 0;
   for (const Sorted& s : sorted_a) {
+    if (!MayGoOn(watch)) {
+      break;
+    }
     while (next_b < sorted_b.size() && sorted_b[next_b].low.x() <= s.high.x()) {
       active.push_back(next_b++);
     }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "base/work_watch.h"
+
 namespace hvas::mates {
 
 using Vec2 = Eigen::Vector2d;
@@ -17,8 +19,10 @@ struct Overlap {
 };
 
 /** Exact up to rounding, when the triangles within each set do not overlap each other. Either
- orientation. Sweeps over x, so its cost goes with the number of triangle pairs that meet. */
-[[nodiscard]] Overlap CalcOverlap(const std::vector<Triangle2>& a, const std::vector<Triangle2>& b);
+ orientation. Sweeps over x, so its cost goes with the number of triangle pairs that meet; what it
+ gives when the watch ends it is of no use. */
+[[nodiscard]] Overlap CalcOverlap(const std::vector<Triangle2>& a, const std::vector<Triangle2>& b,
+                                  WorkWatch* watch = nullptr);
 
 /** Those of `triangles` whose boxes meet the box of all of `others`. */
 [[nodiscard]] std::vector<Triangle2> SelectNear(const std::vector<Triangle2>& triangles,

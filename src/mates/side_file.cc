@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/regular_file.h"
 #include "base/units.h"
 #include "mates/located_json.h"
 
@@ -20,7 +19,7 @@ namespace {
 using nlohmann::ordered_json;
 using Type = SideFileType;
 
-constexpr std::uintmax_t kLargestFile = 16'000'000;  // [bytes]
+constexpr std::size_t kLargestFile = 16'000'000;  // [bytes]
 
 constexpr std::array<std::string_view, 2> kFormats{"hvas-assignments-1", kSideFileFormat};
 constexpr std::array<std::string_view, 4> kMateKinds{"axis_hole", "face_face", "cone_seat",
@@ -336,21 +335,13 @@ std::filesystem::path FindAssignmentFile(const std::filesystem::path& product_fi
   return file.replace_extension(".hvas.json");
 }
 
+Result<std::string> ReadSideText(const std::filesystem::path& file) {
+  return ReadRegularFile(file, kLargestFile);
+}
+
 Result<SideFile> ReadSideFile(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) {
-    return Fail(ErrorCode::kNotFound, "the fits cannot be read", file.string(),
-                "check the path and its permissions");
-  }
-  if (size > kLargestFile) {
-    return Fail(ErrorCode::kUnsupported, "the file is larger than 16 MB", file.string(),
-                "keep only what is about this product's mates");
-  }
-  std::stringstream text;
-  text << stream.rdbuf();
-  return ParseSideFile(text.str(), file);
+  const Result<std::string> text = ReadSideText(file);
+  return text ? ParseSideFile(*text, file) : Unexpected(text.error());
 }
 
 Result<SideFile> ParseSideFile(std::string_view text, const std::filesystem::path& file) {
@@ -406,6 +397,9 @@ std::string FindNearest(std::string_view word, const std::vector<std::string>& c
   std::size_t least = 1 + word.size() / 3;  // Edits that a slip may have made.
   std::string nearest;
   for (const std::string& candidate : candidates) {
+    if (std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size()) > least) {
+      continue;  // So many edits at least.
+    }
     // Levenshtein's distance, a row at a time.
     std::vector<std::size_t> row(candidate.size() + 1);
     std::iota(row.begin(), row.end(), 0U);

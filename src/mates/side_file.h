@@ -79,6 +79,9 @@ struct SideFile {
 /** Where a CAD file's side file stands: "pump.step" has "pump.hvas.json" beside it. */
 [[nodiscard]] std::filesystem::path FindAssignmentFile(const std::filesystem::path& product_file);
 
+/** The text of a side file. Errors: those of ReadRegularFile(). */
+[[nodiscard]] Result<std::string> ReadSideText(const std::filesystem::path& file);
+
 /** Reads a side file, of this format or of "hvas-assignments-1". Errors name the file, the line,
  the entry and a remedy: a key that is not known, is there twice, has a value of another type or out
  of its range, or is missing. */

@@ -28,10 +28,13 @@ Coverage CoverageOf(const std::string& code) {
 
 /** The first dimension on a connector's faces that states a fit of that coverage. */
 const Dimension* FindStated(const Product& product, const product::Connector& connector,
-                            Coverage coverage) {
+                            Coverage coverage, WorkWatch* watch) {
   const Part& part = product.part_of(connector.occurrence);
   const Feature& feature = part.features[connector.feature.index()];
   for (const Dimension& dimension : part.dimensions) {
+    if (!MayGoOn(watch)) {
+      break;
+    }
     const bool is_on_feature = std::any_of(
         dimension.faces.begin(), dimension.faces.end(), [&feature](product::FaceId face) {
           return std::find(feature.faces.begin(), feature.faces.end(), face) != feature.faces.end();
@@ -53,14 +56,14 @@ std::optional<Fit> MakeFit(const std::string& code, const Dimension& dimension,
   return fit ? std::optional(*fit) : std::nullopt;
 }
 
-std::optional<Fit> FindFit(const Product& product, const Mate& mate) {
+std::optional<Fit> FindFit(const Product& product, const Mate& mate, WorkWatch* watch) {
   for (const product::Connector& connector : {mate.a, mate.b}) {
-    if (const Dimension* both = FindStated(product, connector, Coverage::kBoth)) {
+    if (const Dimension* both = FindStated(product, connector, Coverage::kBoth, watch)) {
       return MakeFit(*both->fit, *both, both->entity);
     }
   }
-  const Dimension* hole = FindStated(product, mate.a, Coverage::kHole);
-  const Dimension* shaft = FindStated(product, mate.b, Coverage::kShaft);
+  const Dimension* hole = FindStated(product, mate.a, Coverage::kHole, watch);
+  const Dimension* shaft = FindStated(product, mate.b, Coverage::kShaft, watch);
   if (hole == nullptr || shaft == nullptr) {
     return std::nullopt;
   }
@@ -69,13 +72,13 @@ std::optional<Fit> FindFit(const Product& product, const Mate& mate) {
 
 }  // namespace
 
-int AssignStatedFits(Product* product) {
+int AssignStatedFits(Product* product, WorkWatch* watch) {
   int count = 0;
   for (Mate& mate : product->mates) {
     if (mate.kind != product::MateKind::kAxisHole) {
       continue;
     }
-    if (std::optional<Fit> fit = FindFit(*product, mate)) {
+    if (std::optional<Fit> fit = FindFit(*product, mate, watch)) {
       mate.fit = std::move(fit);
       ++count;
     }

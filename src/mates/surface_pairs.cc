@@ -198,7 +198,7 @@ std::vector<FaceId> SelectFacesNear(const Side& side, const std::vector<FaceId>&
 }
 
 void AddPlanePairs(const Side& a, const std::vector<FaceId>& faces_a, const Side& b,
-                   const std::vector<FaceId>& faces_b, double area,
+                   const std::vector<FaceId>& faces_b, double area, WorkWatch* watch,
                    std::vector<SurfaceConstraint>* pairs) {
   if (faces_a.size() == 1 && faces_b.size() == 1) {
     pairs->push_back({SurfaceConstraintKind::kCoplanar, faces_a[0], faces_b[0]});
@@ -213,12 +213,12 @@ void AddPlanePairs(const Side& a, const std::vector<FaceId>& faces_a, const Side
   }
   for (const FaceId id_a : near_a) {
     const FlatFace flat_a = Flatten(a, id_a);
-    for (std::size_t k = 0; k < near_b.size(); ++k) {
+    for (std::size_t k = 0; k < near_b.size() && MayGoOn(watch); ++k) {
       const FlatFace& other = flat_b[k];
       const bool can_meet = (flat_a.low.array() <= other.high.array()).all() &&
                             (other.low.array() <= flat_a.high.array()).all();
       if (can_meet && CalcOverlap(SelectNear(flat_a.triangles, other.triangles),
-                                  SelectNear(other.triangles, flat_a.triangles))
+                                  SelectNear(other.triangles, flat_a.triangles), watch)
                               .area > kLeastShare * area) {
         pairs->push_back({SurfaceConstraintKind::kCoplanar, id_a, near_b[k]});
       }
@@ -229,7 +229,8 @@ void AddPlanePairs(const Side& a, const std::vector<FaceId>& faces_a, const Side
 template <typename Reach>
 void AddPairs(const Side& a, const std::vector<FaceId>& faces_a, const Side& b,
               const std::vector<FaceId>& faces_b, SurfaceConstraintKind kind,
-              Reach (*calc)(const Side&, FaceId), std::vector<SurfaceConstraint>* pairs) {
+              Reach (*calc)(const Side&, FaceId), WorkWatch* watch,
+              std::vector<SurfaceConstraint>* pairs) {
   if (faces_a.size() == 1 && faces_b.size() == 1) {
     pairs->push_back({kind, faces_a[0], faces_b[0]});
     return;
@@ -240,6 +241,9 @@ void AddPairs(const Side& a, const std::vector<FaceId>& faces_a, const Side& b,
     reach_b.push_back(calc(b, id));
   }
   for (const FaceId id_a : faces_a) {
+    if (!MayGoOn(watch)) {
+      return;
+    }
     const Reach reach_a = calc(a, id_a);
     for (std::size_t k = 0; k < faces_b.size(); ++k) {
       if (Meet(reach_a, reach_b[k])) {
@@ -252,7 +256,8 @@ void AddPairs(const Side& a, const std::vector<FaceId>& faces_a, const Side& b,
 }  // namespace
 
 std::vector<SurfaceConstraint> FindSurfacePairs(const Product& product, const Mate& mate,
-                                                const std::vector<FeaturePair>& features) {
+                                                const std::vector<FeaturePair>& features,
+                                                WorkWatch* watch) {
   const Side a = MakeSide(product, mate.a, false);
   const Side b = MakeSide(product, mate.b, mate.kind == MateKind::kFaceFace);
   std::vector<SurfaceConstraint> pairs;
@@ -261,25 +266,28 @@ std::vector<SurfaceConstraint> FindSurfacePairs(const Product& product, const Ma
     const std::vector<FaceId>& faces_b = b.part.features[feature_b.index()].faces;
     switch (mate.kind) {
       case MateKind::kAxisHole:
-        AddPairs(a, faces_a, b, faces_b, SurfaceConstraintKind::kCoaxial, &CalcAxialReach, &pairs);
+        AddPairs(a, faces_a, b, faces_b, SurfaceConstraintKind::kCoaxial, &CalcAxialReach, watch,
+                 &pairs);
         break;
       case MateKind::kConeSeat:
-        AddPairs(a, faces_a, b, faces_b, SurfaceConstraintKind::kSameCone, &CalcAxialReach, &pairs);
+        AddPairs(a, faces_a, b, faces_b, SurfaceConstraintKind::kSameCone, &CalcAxialReach, watch,
+                 &pairs);
         break;
       case MateKind::kSphereSeat:
-        AddPairs(a, faces_a, b, faces_b, SurfaceConstraintKind::kConcentric, &CalcDirections,
+        AddPairs(a, faces_a, b, faces_b, SurfaceConstraintKind::kConcentric, &CalcDirections, watch,
                  &pairs);
         break;
       case MateKind::kFaceFace:
-        AddPlanePairs(a, faces_a, b, faces_b, mate.overlap, &pairs);
+        AddPlanePairs(a, faces_a, b, faces_b, mate.overlap, watch, &pairs);
         break;
     }
   }
   return pairs;
 }
 
-std::vector<SurfaceConstraint> FindSurfacePairs(const Product& product, const Mate& mate) {
-  return FindSurfacePairs(product, mate, {{mate.a.feature, mate.b.feature}});
+std::vector<SurfaceConstraint> FindSurfacePairs(const Product& product, const Mate& mate,
+                                                WorkWatch* watch) {
+  return FindSurfacePairs(product, mate, {{mate.a.feature, mate.b.feature}}, watch);
 }
 
 PlaneOverlap CalcPlaneOverlap(const Product& product, const Mate& mate) {

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/work_watch.h"
 #include "product/product.h"
 
 namespace hvas::mates {
@@ -12,14 +13,15 @@ using FeaturePair = std::pair<product::FeatureId, product::FeatureId>;
 
 /** Breaks a mate down to its faces (X2, layer J): those pairs of faces of the features which face
  each other when the mate is fulfilled. Around an axis they share part of the length and of the
- turn, on a plane an area, around a centre a direction. In the order of the features' faces. */
+ turn, on a plane an area, around a centre a direction. In the order of the features' faces. Ends
+ early when the watch says so. */
 [[nodiscard]] std::vector<product::SurfaceConstraint> FindSurfacePairs(
     const product::Product& product, const product::Mate& mate,
-    const std::vector<FeaturePair>& features);
+    const std::vector<FeaturePair>& features, WorkWatch* watch = nullptr);
 
 /** The same for the mate's own two features. */
 [[nodiscard]] std::vector<product::SurfaceConstraint> FindSurfacePairs(
-    const product::Product& product, const product::Mate& mate);
+    const product::Product& product, const product::Mate& mate, WorkWatch* watch = nullptr);
 
 /** What two planes have in common. */
 struct PlaneOverlap {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/digest.h"
+#include "base/regular_file.h"
 #include "record/compression.h"
 #include "record/packing.h"
 #include "record/seal_check.h"
@@ -39,9 +40,8 @@ Result<void> ForEachRow(Statement* rows,
 }  // namespace
 
 Result<Reader> Reader::Open(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    return Fail(ErrorCode::kNotFound, "there is no such record", path.string(), "check the path");
+  if (const auto checked = CheckRegularFile(path); !checked) {
+    return Unexpected(checked.error());
   }
   Result<Database> database = Database::Open(path, Database::Mode::kReadOnly);
   if (!database) {

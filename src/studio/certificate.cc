@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -25,6 +23,7 @@
 #include <openssl/x509v3.h>
 
 #include "base/atomic_file.h"
+#include "base/regular_file.h"
 #include "base/user_folder.h"
 
 namespace hvas::studio {
@@ -78,11 +77,6 @@ X509Ptr ReadCertificate(std::string_view pem) {
 
 Key ReadKey(std::string_view pem) {
   return Key(PEM_read_bio_PrivateKey(MakeBio(pem).get(), nullptr, RefusePassword, nullptr));
-}
-
-std::string ReadAll(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 bool HasName(X509* certificate, const std::string& name) {
@@ -185,7 +179,7 @@ Result<std::optional<SelfSigned>> FindKept(const fs::path& file,
     return Fail(ErrorCode::kInvalid, "others than you can read this key", file.string(),
                 fmt::format("delete it for a new one, or: chmod 600 '{}'", file.string()));
   }
-  const std::string pem = ReadAll(file);
+  const std::string pem = ReadRegularFile(file).value_or(std::string());
   const X509Ptr certificate = ReadCertificate(pem);
   const Key key = ReadKey(pem);
   if (certificate == nullptr || key == nullptr ||
@@ -288,7 +282,11 @@ Result<SelfSigned> KeepCertificate(const fs::path& folder, const std::vector<std
 }
 
 Result<std::string> CalcFingerprint(const fs::path& certificate) {
-  const X509Ptr read = ReadCertificate(ReadAll(certificate));
+  const Result<std::string> text = ReadRegularFile(certificate);
+  if (!text) {
+    return Unexpected(text.error());
+  }
+  const X509Ptr read = ReadCertificate(*text);
   if (read == nullptr) {
     return Fail(ErrorCode::kUnreadable, "there is no certificate in PEM in this file",
                 certificate.string(), "give the file that begins with -----BEGIN CERTIFICATE-----");

@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/digest.h"
+#include "base/regular_file.h"
 #include "base/write_all.h"
 
 namespace hvas::study {
@@ -55,6 +56,15 @@ Json MakeResultJson(const TrialResult& result) {
   return json;
 }
 
+/** Throws where an int cannot hold it. */
+int ParseInt(const Json& json) {
+  const double number = json.get<double>();
+  if (!json.is_number_integer() || std::abs(number) > std::numeric_limits<int>::max()) {
+    throw Json::other_error::create(0, "integer", nullptr);
+  }
+  return json.get<int>();
+}
+
 TrialResult ParseResult(const Json& json) {
   TrialResult result;
   if (!ReadWord(json.at("outcome"), kOutcomes, &result.outcome)) {
@@ -63,7 +73,7 @@ TrialResult ParseResult(const Json& json) {
   if (json.contains("time_s")) {
     result.time = json.at("time_s").get<double>();
   }
-  result.collisions = json.at("collisions").get<int>();
+  result.collisions = ParseInt(json.at("collisions"));
   result.peak_felt = json.at("peak_felt_n").get<double>();
   result.peak_true = json.at("peak_true_n").get<double>();
   result.insertion = json.at("insertion_m").get<double>();
@@ -84,7 +94,7 @@ Json MakeValueJson(const AnswerValue& value) {
 
 AnswerValue ParseValue(const Json& json) {
   if (json.is_number_integer()) {
-    return json.get<int>();
+    return ParseInt(json);
   }
   return json.is_string() ? AnswerValue(json.get<std::string>()) : AnswerValue();
 }
@@ -195,12 +205,11 @@ Unexpected DiskFailed(const std::filesystem::path& file, int error) {
 }  // namespace
 
 Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    return Fail(ErrorCode::kNotFound, "the journal cannot be read", file.string(),
-                "check the name of the participant");
+  const Result<std::string> read = ReadRegularFile(file);
+  if (!read) {
+    return Unexpected(read.error());
   }
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::string& bytes = *read;
   ReadOnlyJournal journal;
   int number = 0;
   for (std::size_t at = 0; at < bytes.size();) {

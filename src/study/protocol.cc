@@ -1,14 +1,13 @@
 #include "study/protocol.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/digest.h"
+#include "base/regular_file.h"
 #include "base/units.h"
 #include "fits/iso286.h"
 #include "study/yaml_fields.h"
@@ -17,7 +16,8 @@ namespace hvas::study {
 namespace {
 
 constexpr std::size_t kMostConditions = 26;
-constexpr int kMostTrials = 5000;  // Of one participant.
+constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]
+constexpr int kMostTrials = 5000;                    // Of one participant.
 constexpr double kMostSeconds = 86400;
 constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};
 constexpr std::array<std::string_view, 3> kHidden{"condition", "time", "progress"};
@@ -420,13 +420,8 @@ Result<Protocol> ParseProtocol(const std::string& text, const std::filesystem::p
 }
 
 Result<Protocol> ReadProtocol(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    return Fail(ErrorCode::kNotFound, "the protocol cannot be read", file.string(),
-                "check the name");
-  }
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  return ParseProtocol(text, file);
+  const Result<std::string> text = ReadRegularFile(file, kLargestProtocol);
+  return text ? ParseProtocol(*text, file) : Unexpected(text.error());
 }
 
 }  // namespace hvas::study

@@ -1,8 +1,6 @@
 #include "study/study_folder.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -10,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/regular_file.h"
 #include "base/units.h"
 
 namespace hvas::study {
@@ -101,24 +100,30 @@ Result<StudyFolder> StudyFolder::Create(const fs::path& folder, const Protocol& 
 }
 
 Result<StudyFolder> StudyFolder::Open(const fs::path& folder) {
-  std::ifstream stream(folder / kHead, std::ios::binary);
-  if (!stream) {
+  const Result<std::string> text = ReadRegularFile(folder / kHead);
+  if (!text && text.error().code == ErrorCode::kNotFound) {
     return Fail(ErrorCode::kNotFound, "there is no study in this folder", folder.string(),
                 "name the folder that `hvas study run` or the studio wrote with -o");
   }
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const Json head = Json::parse(text, nullptr, false);
-  if (!head.is_object() || head.value("format", "") != kFolderFormat || !head.contains("seed") ||
-      !head["seed"].is_number_integer()) {
+  if (!text) {
+    return Unexpected(text.error());
+  }
+  const Json head = Json::parse(*text, nullptr, false);
+  const auto text_of = [&head](const char* key) {
+    const auto found = head.is_object() ? head.find(key) : head.end();
+    return found != head.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  if (text_of("format") != kFolderFormat || !head.contains("seed") ||
+      !head["seed"].is_number_unsigned()) {
     return Fail(ErrorCode::kUnreadable, "this is not what a study begins with",
                 (folder / kHead).string(), "restore the file from a copy");
   }
-  const fs::path copy = folder / fs::path(head.value("protocol", "")).filename();
+  const fs::path copy = folder / fs::path(text_of("protocol")).filename();
   auto protocol = ReadProtocol(copy);
   if (!protocol) {
     return Unexpected(protocol.error());
   }
-  if (protocol->digest != head.value("digest", "")) {
+  if (protocol->digest != text_of("digest")) {
     return Fail(ErrorCode::kUnreadable, "this is not the protocol that the study began with",
                 copy.string(), "restore the file from a copy; a changed protocol is another study");
   }

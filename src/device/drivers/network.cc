@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/regular_file.h"
 #include "device/drivers/wire_drivers.h"
 
 namespace hvas::device {
@@ -49,12 +48,11 @@ Result<network::PacketKey> LoadKey(const std::filesystem::path& file) {
     return Fail(ErrorCode::kInvalid, "others can read this key, so it is no secret", file.string(),
                 fmt::format("make a new one that only you can read: chmod 600 {}", file.string()));
   }
-  std::ifstream stream(file, std::ios::binary);
-  std::string secret(std::istreambuf_iterator<char>(stream), {});
-  if (!stream) {
-    return Fail(ErrorCode::kUnreadable, "you may not read this key", file.string(),
-                "give a key that belongs to you");
+  const Result<std::string> read = ReadRegularFile(file);
+  if (!read) {
+    return Unexpected(read.error());
   }
+  std::string secret = *read;
   while (!secret.empty() && (secret.back() == '\n' || secret.back() == '\r')) {
     secret.pop_back();
   }

@@ -1,7 +1,11 @@
 #include "mates/infer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -297,6 +301,92 @@ TEST(Infer, GridOfAThousandPlatesAndPinsIsCompleteAndFast) {
   EXPECT_EQ(linkage.components, kSide * kSide);
   EXPECT_EQ(linkage.largest_component, 2);
   EXPECT_LT(seconds, 5.0);  // 0.02 s optimised; wide for sanitizers.
+}
+
+std::vector<std::string> KeysOf(const Product& product) {
+  std::vector<std::string> keys;
+  for (const Mate& mate : product.mates) {
+    keys.push_back(mate.key);
+  }
+  return keys;
+}
+
+TEST(Infer, CopiesAtOnePlaceAreToldOnceAndCostNoPairs) {
+  const auto build = [](int copies, bool are_parts) {
+    Product product;
+    AddPlate(&product);
+    AddPin(&product, 4.995e-3)->shape_hash = "pin";
+    AddOccurrence(&product, product::PartId(0), Pose());
+    const Pose X_WB(Vec3(0, 0, -8e-3));
+    AddOccurrence(&product, product::PartId(1), X_WB);
+    for (int i = 0; i < copies; ++i) {
+      if (are_parts) {
+        AddPin(&product, 4.995e-3)->shape_hash = "pin";
+      }
+      AddOccurrence(&product, product::PartId(product.parts.size() - 1), X_WB);
+    }
+    return product;
+  };
+  Product alone = build(0, false);
+  Diagnostics diagnostics;
+  Infer(&alone, &diagnostics);
+  // As many pairs as these have take gigabytes.
+  for (const auto& [copies, are_parts] : {std::pair(20000, false), std::pair(300, true)}) {
+    Product product = build(copies, are_parts);
+    Diagnostics told;
+    Infer(&product, &told);
+    EXPECT_EQ(KeysOf(product), KeysOf(alone));
+    ASSERT_EQ(told.items().size(), diagnostics.items().size() + 1);
+    const auto item = std::find_if(told.items().begin(), told.items().end(),
+                                   [](const auto& d) { return d.code == "duplicate-part"; });
+    ASSERT_NE(item, told.items().end());
+    EXPECT_EQ(item->entity, "pin#2");
+    EXPECT_NE(item->message.find(std::to_string(copies) + " copies"), std::string::npos);
+    EXPECT_EQ(item->severity, Severity::kWarning);
+  }
+}
+
+TEST(Infer, CopiesThatDifferInPlaceTurnOrShapeAreNone) {
+  const Quat turned = spatial::RotationFromVector(Vec3(0, 0, 1e-6));
+  for (int k = 0; k < 3; ++k) {
+    Product product;
+    AddPlate(&product);
+    AddPin(&product, 4.995e-3);
+    AddPin(&product, 4.994e-3);
+    AddOccurrence(&product, product::PartId(0), Pose());
+    AddOccurrence(&product, product::PartId(1), Pose(Vec3(0, 0, -8e-3)));
+    AddOccurrence(&product, product::PartId(k == 2 ? 2 : 1),
+                  Pose(k == 1 ? turned : Quat::Identity(), Vec3(k == 0 ? 1e-7 : 0, 0, -8e-3)));
+    Diagnostics diagnostics;
+    Infer(&product, &diagnostics);
+    EXPECT_EQ(CountMates(product, MateKind::kAxisHole), 2) << k;
+    for (const Diagnostic& item : diagnostics.items()) {
+      EXPECT_NE(item.code, "duplicate-part") << k;
+    }
+  }
+}
+
+TEST(Infer, WatchThatEndsItNamesTheFileTheWorkAndTheOption) {
+  // Each pair of these lies otherwise, so that nothing is known from another pair.
+  Product product;
+  product.source = "many.gltf";
+  AddPlate(&product);
+  Random random(5);
+  for (int i = 0; i < 3000; ++i) {
+    AddOccurrence(&product, product::PartId(0),
+                  Pose(Vec3(1e-3 * random.Uniform(-1, 1), 1e-3 * random.Uniform(-1, 1), 0)));
+  }
+  for (const WorkLimits& limits : {WorkLimits{0.05, 0}, WorkLimits{1e6, 50'000'000}}) {
+    WorkWatch watch(limits);
+    Diagnostics diagnostics;
+    const auto inferred = Infer(&product, &diagnostics, &watch);
+    ASSERT_FALSE(inferred.has_value());
+    EXPECT_EQ(inferred.error().code, ErrorCode::kOutOfResource);
+    EXPECT_EQ(inferred.error().where, "many.gltf");
+    EXPECT_NE(inferred.error().message.find("finding the mates"), std::string::npos);
+    EXPECT_NE(inferred.error().remedy.find(limits.memory == 0 ? "--time-limit" : "--memory-limit"),
+              std::string::npos);
+  }
 }
 
 }  // namespace

@@ -1,8 +1,14 @@
 #include "mates/side_file.h"
 
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/test/odd_files.h"
+#include "base/test/temporary_folder.h"
 #include "mates/located_json.h"
 
 namespace hvas::mates {
@@ -72,6 +78,74 @@ TEST(SideFile, FormatPutsAnEntryOnALineAndKeepsOrderAndUnicode) {
   expected.replace(expected.find("\\u00fc"), 6, "ü");
   EXPECT_EQ(FormatSideFile(document), expected);
   EXPECT_EQ(nlohmann::ordered_json::parse(FormatSideFile(document)), document);
+}
+
+TEST(LocatedJson, NumbersBeyondAllAreNamedWithPathLineAndRemedy) {
+  for (const char* number : {"1e999999", "-1e400", "1e309", "123456789e999"}) {
+    const auto json = ParseLocatedJson(
+        fmt::format("{{\"fits\": [\n{{}},\n{{\"friction\":\n {}}}]}}", number), "f");
+    ASSERT_FALSE(json.has_value()) << number;
+    EXPECT_EQ(json.error().where, "f:4");
+    EXPECT_NE(json.error().message.find("/fits/1/friction"), std::string::npos);
+    EXPECT_NE(json.error().message.find(number), std::string::npos);
+    EXPECT_FALSE(json.error().remedy.empty());
+  }
+  EXPECT_TRUE(ParseLocatedJson("[1e308, -1E-400, 99999999999999999999999, 0.0]", "f").has_value());
+}
+
+TEST(SideFile, EveryNumberIsCheckedForTypeAndRange) {
+  // What each key may not be, in any object of the file.
+  const std::vector<std::string> never{"1e999999", "-1e999999", "true", "null", "\"1\"",
+                                       "[1]",      "{}",        "-1",   "1e30"};
+  for (const SideFileObject object : {SideFileObject::kFit, SideFileObject::kSide}) {
+    for (const SideFileKey& key : KeysOf(object)) {
+      if (key.type != SideFileType::kNumber && key.type != SideFileType::kIndex) {
+        continue;
+      }
+      std::vector<std::string> wrong = never;
+      if (key.type == SideFileType::kIndex) {
+        wrong.insert(wrong.end(), {"1.5", "4294967295", "18446744073709551615",
+                                   "99999999999999999999", "-9223372036854775808"});
+      }
+      if (key.is_low_excluded) {
+        wrong.emplace_back("0");
+      }
+      for (const std::string& value : wrong) {
+        if (value == "-1" && key.low < -1) {
+          continue;
+        }
+        const std::string pair = fmt::format("\"{}\": {}", key.name, value);
+        const std::string text =
+            object == SideFileObject::kFit
+                ? fmt::format("{{\"format\": \"{}\", \"fits\": [\n{{\"mate\": \"m1\", {}}}]}}",
+                              kSideFileFormat, pair)
+                : fmt::format(
+                      "{{\"format\": \"{}\", \"mates\": [\n{{\"a\": {{\"occurrence\": "
+                      "\"x\", {}}}, \"b\": {{\"occurrence\": \"y\", \"face\": 1}}}}]}}",
+                      kSideFileFormat, pair);
+        const auto read = ParseSideFile(text, "x.hvas.json");
+        ASSERT_FALSE(read.has_value()) << pair;
+        EXPECT_EQ(read.error().where.find("x.hvas.json:2"), 0U) << read.error().ToString();
+        EXPECT_NE(read.error().message.find(key.name), std::string::npos);
+        EXPECT_FALSE(read.error().remedy.empty()) << pair;
+      }
+    }
+  }
+}
+
+TEST(SideFile, WhatIsNoFileIsRefusedByItsKind) {
+  const hvas::testing::TemporaryFolder folder;
+  for (const auto& odd : hvas::testing::MakeOddFiles(folder.path(), "x.hvas.json")) {
+    const auto read = ReadSideFile(odd.path);
+    ASSERT_FALSE(read.has_value()) << odd.kind;
+    EXPECT_EQ(read.error().where, odd.path.string());
+    EXPECT_NE(read.error().message.find(odd.kind), std::string::npos) << read.error().ToString();
+  }
+}
+
+TEST(SideFile, LongWordIsComparedWithNothing) {
+  const std::string word(1'000'000, 'x');
+  EXPECT_EQ(FindNearest(word, std::vector<std::string>(10'000, std::string(100, 'x'))), "");
 }
 
 TEST(SideFile, NearestWordIsAtMostAFewSlipsAway) {

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "base/result.h"
+
+namespace hvas {
+
+/** A regular file that is open for reading; closed with the object. */
+class RegularFile {
+ public:
+  /** Opens what a user names as a file. A folder, pipe, socket or device is refused and never
+   waited for, nor touched: opening one can hang the program, or do something to the machine.
+   Errors: kNotFound, kUnreadable; each says which file, why not, and what to do. */
+  [[nodiscard]] static Result<RegularFile> Open(const std::filesystem::path& path);
+
+  RegularFile(RegularFile&& other) noexcept;
+  RegularFile& operator=(RegularFile&& other) noexcept;
+  RegularFile(const RegularFile&) = delete;
+  RegularFile& operator=(const RegularFile&) = delete;
+  ~RegularFile();
+
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+  /** When it was opened [bytes]. */
+  [[nodiscard]] std::uintmax_t size() const { return size_; }
+
+ private:
+  RegularFile(int descriptor, std::uintmax_t size) : descriptor_(descriptor), size_(size) {}
+
+  int descriptor_{-1};
+  std::uintmax_t size_{0};
+};
+
+/** Whether what other libraries are to open by its name is a regular file that can be read. Errors
+ as RegularFile::Open(). */
+[[nodiscard]] Result<void> CheckRegularFile(const std::filesystem::path& path);
+
+/** The bytes of a regular file from its beginning, `most` of them where there are more. Errors as
+ RegularFile::Open(), and kUnreadable when the disk fails. */
+[[nodiscard]] Result<std::string> ReadFileHead(const std::filesystem::path& path, std::size_t most);
+
+/** All bytes of a regular file. Errors as ReadFileHead(), and kUnsupported when there are more than
+ `largest`. */
+[[nodiscard]] Result<std::string> ReadRegularFile(
+    const std::filesystem::path& path,
+    std::size_t largest = std::numeric_limits<std::size_t>::max() / 2);
+
+}  // namespace hvas

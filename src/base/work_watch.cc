@@ -1,0 +1,92 @@
+#include "base/work_watch.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include "base/clock.h"
+
+namespace hvas {
+namespace {
+
+constexpr std::int64_t kBetweenLooksNs = 5'000'000;
+constexpr double kLongest = 1e6;  // [s]
+
+/** Memory of this process that is in use [bytes]; 0 where the system does not tell. */
+std::uint64_t ReadMemoryInUse() {
+  const int descriptor = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    return 0;
+  }
+  char text[128] = {};
+  const ssize_t size = ::read(descriptor, text, sizeof(text) - 1);
+  ::close(descriptor);
+  unsigned long all = 0;
+  unsigned long resident = 0;
+  const bool is_read = size > 0 && std::sscanf(text, "%lu %lu", &all, &resident) == 2;
+  return is_read ? std::uint64_t{resident} * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))
+                 : 0;
+}
+
+}  // namespace
+
+std::uint64_t DefaultMemoryLimit() {
+  const auto pages = static_cast<std::uint64_t>(std::max(::sysconf(_SC_PHYS_PAGES), 0L));
+  const std::uint64_t machine = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return std::min(std::uint64_t{4} << 30U, machine / 4 * 3);
+}
+
+WorkWatch::WorkWatch(const WorkLimits& limits, std::stop_token stop)
+    : limits_(limits),
+      stop_(std::move(stop)),
+      deadline_ns_(MonotonicNs() + std::llround(1e9 * std::clamp(limits.time, 0.0, kLongest))),
+      memory_before_(ReadMemoryInUse()) {
+  if (limits_.memory == 0) {
+    limits_.memory = DefaultMemoryLimit();
+  }
+}
+
+bool WorkWatch::MayGoOn() {
+  if (reason_ != Reason::kNone) {
+    return false;
+  }
+  const std::int64_t now_ns = MonotonicNs();
+  if (now_ns > deadline_ns_) {
+    reason_ = Reason::kTime;
+  } else if (now_ns >= next_look_ns_) {
+    next_look_ns_ = now_ns + kBetweenLooksNs;
+    if (stop_.stop_requested()) {
+      reason_ = Reason::kStop;
+    } else if (ReadMemoryInUse() > memory_before_ + limits_.memory) {
+      reason_ = Reason::kMemory;
+    }
+  }
+  return reason_ == Reason::kNone;
+}
+
+Error WorkWatch::Explain(std::string_view work, std::string where) const {
+  switch (reason_) {
+    case Reason::kStop:
+      return {ErrorCode::kCancelled, fmt::format("{} was stopped", work), std::move(where), ""};
+    case Reason::kMemory:
+      return {ErrorCode::kOutOfResource,
+              fmt::format("{} needed more than {:.3g} GiB of memory, which is the limit", work,
+                          static_cast<double>(limits_.memory) / (1U << 30U)),
+              std::move(where), "allow more with --memory-limit, or export it in parts"};
+    case Reason::kTime:
+    case Reason::kNone:
+      break;
+  }
+  return {ErrorCode::kOutOfResource,
+          fmt::format("{} took longer than the {:g} s that opening a file may take", work,
+                      limits_.time),
+          std::move(where), "allow more with --time-limit, or export it in parts"};
+}
+
+}  // namespace hvas

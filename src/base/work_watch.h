@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace hvas {
+
+/** What all the work on one file may take, in this process and in those that it starts. */
+struct WorkLimits {
+  double time{120};         ///< [s]
+  std::uint64_t memory{0};  ///< [bytes]; 0: DefaultMemoryLimit().
+};
+
+/** 4 GiB, or three quarters of the machine's memory where that is less [bytes]. */
+[[nodiscard]] std::uint64_t DefaultMemoryLimit();
+
+/** Keeps loops whose length a file decides within the limits: they ask MayGoOn() in every turn, and
+ are left when it says no; then the work fails with Explain(). For one thread. */
+class WorkWatch {
+ public:
+  /** The work begins now. What this process holds in memory already does not count. */
+  explicit WorkWatch(const WorkLimits& limits, std::stop_token stop = {});
+
+  /** False from the moment on when a limit is reached or a stop is asked for. Costs some 30 ns, and
+   a look at the memory now and then. */
+  [[nodiscard]] bool MayGoOn();
+
+  /** @param work  What was being done: "finding the mates". @param where  The file.
+   @pre MayGoOn() has said no. */
+  [[nodiscard]] Error Explain(std::string_view work, std::string where) const;
+
+ private:
+  enum class Reason { kNone, kTime, kMemory, kStop };
+
+  WorkLimits limits_;
+  std::stop_token stop_;
+  std::int64_t deadline_ns_;
+  std::int64_t next_look_ns_{0};  // At the memory.
+  std::uint64_t memory_before_;
+  Reason reason_{Reason::kNone};
+};
+
+/** The same, where work without limits has no watch. */
+[[nodiscard]] inline bool MayGoOn(WorkWatch* watch) {
+  return watch == nullptr || watch->MayGoOn();
+}
+
+}  // namespace hvas
