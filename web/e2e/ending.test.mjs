@@ -6,29 +6,10 @@ import { request } from "node:http";
 import { connect as connectTcp } from "node:net";
 import { describe, it } from "node:test";
 import { join } from "node:path";
-import WebSocket from "ws";
-import { makeFolder, runProgram, signIn, startStudio } from "./harness.mjs";
+import { connect, makeFolder, runProgram, signIn, startStudio } from "./harness.mjs";
 
 const kBushing = "../products/bushing.step";
 const kMostMs = 5000;
-
-/** A client that sends commands, and waits for an event. */
-async function enter({ origin, cookie }) {
-  const socket = new WebSocket(`${origin.replace("http", "ws")}/ws`, { headers: { Origin: origin, Cookie: cookie } });
-  await once(socket, "open");
-  const until = (name) =>
-    new Promise((resolve) => {
-      const look = (data, isBinary) => {
-        const told = isBinary ? {} : JSON.parse(data);
-        if (told.event === name) {
-          socket.off("message", look);
-          resolve(told);
-        }
-      };
-      socket.on("message", look);
-    });
-  return { socket, until, send: (command) => socket.send(JSON.stringify({ id: 1, ...command })) };
-}
 
 /** Ends it while something is under way, and says with which status. */
 async function endWhile(args, begin) {
@@ -49,9 +30,9 @@ describe("SIGTERM", () => {
 
   it("ends it while clients read nothing", async () => {
     const status = await endWhile([kBushing], async (studio, session) => {
-      const { until, send } = await enter(session);
-      await until("scene");
-      send({ command: "next" });
+      const client = await connect(session);
+      await client.hasOpened();
+      await client.send({ command: "next" });
       const { port } = new URL(session.origin);
       const deaf = await Promise.all(
         [0, 1, 2].map(async () => {
@@ -65,7 +46,7 @@ describe("SIGTERM", () => {
           return socket;
         }),
       );
-      await until("status");
+      await client.find((each) => each.event === "roles" && each.clients.length === 4);
       return () => deaf.forEach((each) => each.destroy());
     });
     assert.equal(status, 0);
@@ -73,8 +54,8 @@ describe("SIGTERM", () => {
 
   it("ends it while a file is being read", async () => {
     await endWhile(["../products/frame_500.step", "--no-cache"], async (studio, session) => {
-      const { until } = await enter(session);
-      await until("progress");
+      const client = await connect(session);
+      await client.find((each) => each.event === "progress");
     });
   });
 
@@ -82,13 +63,12 @@ describe("SIGTERM", () => {
     const folder = makeFolder();
     let id = "";
     const status = await endWhile([kBushing, "--recordings", folder], async (studio, session) => {
-      const { until, send } = await enter(session);
-      await until("scene");
-      await until("step");
-      send({ command: "record", on: true });
-      ({ id } = await until("recording"));
-      send({ command: "next" });
-      await until("taken");
+      const client = await connect(session);
+      await client.find((each) => each.event === "step" && each.index > 0);
+      await client.send({ command: "record", on: true });
+      ({ id } = await client.find((each) => each.event === "recording" && each.on));
+      await client.send({ command: "next" });
+      await client.find((each) => each.event === "taken");
     });
     assert.equal(status, 0);
     assert.match(runProgram(["replay", "--verify", join(folder, `${id}.hvasrec`)]), /./);
@@ -114,10 +94,8 @@ describe("SIGTERM", () => {
 
   it("ends it while it makes the model of a large product", async () => {
     await endWhile(["../products/frame_500.step"], async (studio, session) => {
-      const { until } = await enter(session);
-      for (let stage = ""; !/shape|mate|sequence/i.test(stage); ) {
-        ({ stage } = await until("progress"));
-      }
+      const client = await connect(session);
+      await client.find((each) => each.event === "progress" && /shape|order/.test(each.stage));
     });
   });
 });

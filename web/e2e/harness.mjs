@@ -6,6 +6,7 @@ import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { after, before } from "node:test";
 import { chromium } from "playwright-core";
+import WebSocket from "ws";
 
 const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
@@ -73,6 +74,41 @@ export async function signIn(link) {
   assert.equal(answer.status, 200);
   cookies.set(link, answer.headers.get("set-cookie").split(";")[0]);
   return { origin, cookie: cookies.get(link) };
+}
+
+/** A client without a page: what it is told, from the beginning, and commands. */
+export async function connect({ origin, cookie }) {
+  const socket = new WebSocket(`${origin.replace("http", "ws")}/ws`, { headers: { Origin: origin, Cookie: cookie } });
+  const told = [];
+  const waiting = new Set();
+  socket.on("message", (data, isBinary) => {
+    if (!isBinary) {
+      told.push(JSON.parse(data));
+      waiting.forEach((look) => look());
+    }
+  });
+  await new Promise((resolve, reject) => socket.on("open", resolve).on("error", reject));
+  socket.off("error", socket.listeners("error")[0]).on("error", () => {});  // the studio may end before it
+  const find = (fits) =>
+    new Promise((resolve) => {
+      const look = () => {
+        const found = told.find(fits);
+        if (found !== undefined) {
+          waiting.delete(look);
+          resolve(found);
+        }
+      };
+      waiting.add(look);
+      look();
+    });
+  let id = 0;
+  const send = (command) => {
+    socket.send(JSON.stringify({ id: ++id, ...command }));
+    const own = id;
+    return find((each) => each.id === own);
+  };
+  const hasOpened = () => find((each) => each.event === "scene" || each.has_scene === true);
+  return { find, send, hasOpened };
 }
 
 /** Pages of one link are the same browser for the studio, whatever they are for the test. */

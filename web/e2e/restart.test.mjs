@@ -1,8 +1,9 @@
 // The studio ends without a word, and is started again: the work goes on, and nobody has to do anything for it.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
-import WebSocket from "ws";
 import {
+  connect,
   fetchScene,
   launchBrowser,
   makeFolder,
@@ -15,43 +16,9 @@ import {
   waitForPlacement,
   waitForState,
 } from "./harness.mjs";
-import { readFileSync } from "node:fs";
 
 const kBushing = "../products/bushing.step";
 const kBushingPart = 1;
-
-/** A client without a page: what it is told, and commands. */
-async function connect({ origin, cookie }) {
-  const socket = new WebSocket(`${origin.replace("http", "ws")}/ws`, { headers: { Origin: origin, Cookie: cookie } });
-  const told = [];
-  const waiting = new Set();
-  socket.on("message", (data, isBinary) => {
-    if (!isBinary) {
-      told.push(JSON.parse(data));
-      waiting.forEach((look) => look());
-    }
-  });
-  await new Promise((resolve, reject) => socket.on("open", resolve).on("error", reject));
-  const find = (fits) =>
-    new Promise((resolve) => {
-      const look = () => {
-        const found = told.find(fits);
-        if (found !== undefined) {
-          waiting.delete(look);
-          resolve(found);
-        }
-      };
-      waiting.add(look);
-      look();
-    });
-  let id = 0;
-  const send = (command) => {
-    socket.send(JSON.stringify({ id: ++id, ...command }));
-    const own = id;
-    return find((each) => each.id === own);
-  };
-  return { find, send, told, close: () => socket.close() };
-}
 
 async function sceneOf({ origin, cookie }) {
   const answer = await fetch(`${origin}/api/scene`, { headers: { Cookie: cookie } });
@@ -65,7 +32,7 @@ describe("a studio that was killed", () => {
     const first = await startStudio([kBushing], { home });
     const session = await signIn(first.operator);
     const client = await connect(session);
-    await client.find((each) => each.event === "scene");
+    await client.hasOpened();
     await client.send({ command: "assign_fit", mate: 0, fit: "H7/h6" });
     await client.find((each) => each.event === "scene" && each.why !== null);
     await client.send({ command: "next" });
@@ -101,7 +68,7 @@ describe("a studio that was killed", () => {
     assert.notEqual(third.operator, first.operator);
     const anew = await signIn(third.operator);
     const newcomer = await connect(anew);
-    await newcomer.find((each) => each.event === "scene" || each.has_scene === true);
+    await newcomer.hasOpened();
     const fresh = await sceneOf(anew);
     assert.equal(fresh.occurrences[kBushingPart].placement, "loose");
     assert.notEqual(fresh.mates[0].fit.code, "H7/h6");
