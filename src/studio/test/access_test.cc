@@ -21,7 +21,7 @@ std::string HeaderWith(const std::string& value) {
 }
 
 /** What a browser sends as its cookie after this Set-Cookie. */
-std::string HeaderOf(const std::string& set_cookie) {
+std::string CookieIn(const std::string& set_cookie) {
   return set_cookie.substr(0, set_cookie.find(';'));
 }
 
@@ -29,7 +29,7 @@ std::string HeaderOf(const std::string& set_cookie) {
 std::string ComeBy(Access* access, const std::string& token, const std::string& cookie = "") {
   const auto admission = access->Admit(token, cookie);
   EXPECT_TRUE(admission.has_value());
-  return admission ? HeaderOf(admission->set_cookie) : "";
+  return admission ? CookieIn(admission->set_cookie) : "";
 }
 
 std::string ValueOf(const std::string& header) {

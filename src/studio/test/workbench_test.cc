@@ -539,7 +539,8 @@ TEST_F(WorkbenchTest, RecordingsHaveNamesOfTheirOwnAndOthersWhenTheyAreGiven) {
   EXPECT_EQ(name_of(ids[0]), "Erster Versuch, H7/p6 \u00e4");
   EXPECT_EQ(std::filesystem::last_write_time(*file), written) << "the record stays as it was";
   bool is_listed = false;
-  for (const Json& entry : bench_.shelf().List()["recordings"]) {
+  const Json list = bench_.shelf().List();
+  for (const Json& entry : list["recordings"]) {
     is_listed = is_listed || (entry["id"] == ids[0] && entry["name"] == name_of(ids[0]));
   }
   EXPECT_TRUE(is_listed);
