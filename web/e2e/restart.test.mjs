@@ -33,7 +33,7 @@ describe("a studio that was killed", () => {
     const session = await signIn(first.operator);
     const client = await connect(session);
     await client.hasOpened();
-    await client.send({ command: "assign_fit", mate: 0, fit: "H7/h6" });
+    await client.send({ command: "assign_fit", mate: 0, fit: "H7/f7" });
     await client.find((each) => each.event === "scene" && each.why !== null);
     await client.send({ command: "next" });
     await client.find((each) => each.event === "demo" && !each.on);
@@ -54,7 +54,7 @@ describe("a studio that was killed", () => {
       next_step,
     });
     assert.deepEqual(state(now), state(before));
-    assert.equal(now.mates[0].fit.code, "H7/h6");
+    assert.equal(now.mates[0].fit.code, "H7/f7");
     assert.notEqual(now.epoch, before.epoch, "pages know it from the scene before");
     const stranger = await fetch(`${second.origin}/api/session`, {
       method: "POST",
@@ -71,7 +71,7 @@ describe("a studio that was killed", () => {
     await newcomer.hasOpened();
     const fresh = await sceneOf(anew);
     assert.equal(fresh.occurrences[kBushingPart].placement, "loose");
-    assert.notEqual(fresh.mates[0].fit.code, "H7/h6");
+    assert.notEqual(fresh.mates[0].fit.code, "H7/f7");
     assert.equal(await third.stop(), 0);
   });
 
