@@ -7,15 +7,19 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/end_watch.h"
 #include "app/load_product.h"
 #include "app/report_failure.h"
 #include "app/shipped_files.h"
@@ -25,6 +29,8 @@
 #include "cad/input_file.h"
 #include "contact/shape_cache.h"
 #include "studio/certificate.h"
+#include "studio/kept_folder.h"
+#include "studio/kept_work.h"
 #include "studio/server.h"
 #include "studio/study_desk.h"
 #include "studio/workbench.h"
@@ -42,6 +48,8 @@ struct StudioOptions {
   std::uint64_t seed{1};
   double rate_hz{1000};
   bool opens_browser{true};
+  bool is_fresh{false};          ///< Nothing of the work before is gone on with.
+  bool new_links{false};         ///< Nor its links.
   std::string study;             ///< A protocol; empty: none.
   std::string participant;       ///< "P01"
   std::filesystem::path folder;  ///< Of the study; empty: the protocol's id.
@@ -69,6 +77,8 @@ studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
     bench.recordings_folder = *data / "recordings";
   }
   bench.scenes.seed = options.seed;
+  constexpr std::uint32_t kBelowRecordings = 0x3FFFFFFF;  // which begin above it, in the page
+  bench.scenes.last_epoch = static_cast<std::uint32_t>(std::time(nullptr)) & kBelowRecordings;
   bench.rate_hz = options.rate_hz;
   if (const auto directory = CacheDirectory(options.load)) {
     bench.scenes.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
@@ -97,24 +107,57 @@ void OpenBrowser(const std::string& link) {
   }
 }
 
-/** Until the user or the system ends the program. */
-void WaitForEnd() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  int signal = 0;
-  sigwait(&signals, &signal);
+std::filesystem::path FullPath(const std::filesystem::path& file) {
+  std::error_code failed;
+  return std::filesystem::weakly_canonical(file, failed);
 }
 
-/** In all threads, which inherit it: WaitForEnd takes them. */
-void BlockSignals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
+/** What an earlier start has kept of the same: a product, a session of a study, or no file at all.
+ @param scratch  Where nothing can be kept. */
+Result<studio::KeptFolder> TakeFolder(const StudioOptions& options,
+                                      const std::filesystem::path& scratch) {
+  std::string subject = options.load.file.empty() ? "" : FullPath(options.load.file).string();
+  if (!options.study.empty()) {
+    subject = fmt::format("study {} {} {}", options.study, FullPath(options.folder).string(),
+                          options.participant);
+  }
+  if (const auto state = FindUserFolder("XDG_STATE_HOME", ".local/state")) {
+    auto folder = studio::KeptFolder::Take(*state / "studio", subject);
+    if (folder) {
+      return folder;
+    }
+    fmt::print(stderr, "warning: a later start cannot go on from this one: {}\n",
+               folder.error().ToString());
+  }
+  return studio::KeptFolder::Take(scratch, subject);
+}
+
+/** The work to go on with; none where another product is asked for than it was of. */
+std::optional<studio::KeptWork> FindWork(const StudioOptions& options,
+                                         const studio::KeptFolder& folder) {
+  if (!options.study.empty()) {
+    return std::nullopt;  // it has a journal of its own
+  }
+  auto work = studio::LoadWork(folder.work_file());
+  const bool is_same =
+      work && (options.load.file.empty() || FullPath(work->file) == FullPath(options.load.file));
+  if (!work && work.error().code != ErrorCode::kNotFound) {
+    fmt::print(stderr, "warning: the work begins anew: {}\n", work.error().ToString());
+  }
+  if (!is_same || options.is_fresh) {
+    studio::SetWorkAside(folder.work_file());
+    return std::nullopt;
+  }
+  return std::move(*work);
+}
+
+/** Addresses by which others could reach this machine. */
+std::vector<std::string> ListReachable() {
+  auto names = studio::ListNamesOf("0.0.0.0").value_or(std::vector<std::string>());
+  std::erase_if(names, [](const std::string& name) {
+    return name.find_first_not_of("0123456789.") != std::string::npos;
+  });
+  return names;
 }
 
 /** Everything that a server for other machines needs besides. @returns what to print of its
@@ -202,15 +245,28 @@ int RunStudio(const StudioOptions& options) {
       return ReportFailure(input.error());
     }
   }
-  BlockSignals();
-  const auto uploads = ScratchFolder::Make();  // for what is sent to it; gone with this run
-  if (!uploads) {
-    return ReportFailure(uploads.error());
+  EndWatch end;
+  std::signal(SIGPIPE, SIG_IGN);
+  const auto scratch = ScratchFolder::Make();
+  const auto folder = scratch ? TakeFolder(options, scratch->path())
+                              : Result<studio::KeptFolder>(Unexpected(scratch.error()));
+  if (!folder) {
+    return ReportFailure(folder.error());
   }
-  studio::Workbench workbench(MakeWorkbench(options));
+  if (options.new_links) {
+    std::error_code ignored;
+    std::filesystem::remove(folder->access_file(), ignored);
+  }
+  const auto work = FindWork(options, *folder);
+  folder->RemoveUploadsBut(work ? work->file : "");
+  studio::WorkbenchOptions bench = MakeWorkbench(options);
+  bench.work_file = options.study.empty() ? folder->work_file() : std::filesystem::path();
+  studio::Workbench workbench(std::move(bench));
   studio::ServerOptions served;
   served.port = options.port;
-  served.upload_folder = uploads->path();
+  served.upload_folder = folder->uploads();
+  served.access_file = folder->access_file();
+  served.reachable = ListReachable();
   std::string about_certificate;
   if (!options.listen.empty()) {
     auto prepared = PrepareForOthers(options, &served);
@@ -232,17 +288,27 @@ int RunStudio(const StudioOptions& options) {
   if (*desk != nullptr) {
     (*desk)->Start();
   }
+  if (server.has_kept_links()) {
+    fmt::print("These are the links of the start before, and pages that are open come back.\n");
+  }
+  if (work) {
+    fmt::print("It goes on with {} where that was; --fresh begins anew.\n", work->name);
+  }
   fmt::print("{}Ctrl+C ends it.\n", about_certificate);
   std::fflush(stdout);
-  if (!options.load.file.empty()) {
+  if (work) {
+    workbench.Resume(*work);
+  } else if (!options.load.file.empty()) {
     workbench.Open(options.load.file, options.load.file.filename().string());
   }
   if (options.opens_browser) {
     OpenBrowser(
         server.LinkFor(studio::Role::kOperator, served.tls ? served.names.front() : "127.0.0.1"));
   }
-  WaitForEnd();
+  end.Wait();
   fmt::print("\n");
+  std::fflush(stdout);
+  workbench.SetForcesOff(true);  // whatever else takes its time
   workbench.Stop();
   server.Stop();
   return 0;
@@ -270,6 +336,10 @@ void AddStudio(CLI::App* app, int* status) {
                          ->needs(certificate);
   certificate->needs(key);
   command->add_flag("!--no-open", options->opens_browser, "Do not open a browser");
+  command->add_flag("--fresh", options->is_fresh,
+                    "Begin with all parts on the table, not where the work on it has ended");
+  command->add_flag("--new-links", options->new_links,
+                    "Make new links, and let nobody in by those of the start before");
   command->add_option("--recordings", options->recordings,
                       "Folder of what is recorded; ~/.local/share/hvas/recordings");
   CLI::Option* study = command->add_option(
@@ -289,8 +359,11 @@ void AddStudio(CLI::App* app, int* status) {
       ->capture_default_str();
   AddLoadOptions(command, &options->load);
   command->footer(
-      "The address has a secret in it: whoever has the first link steers, whoever has the second\n"
-      "looks on. Only programs on this machine can reach it, but with --listen; then everything "
+      "The address has a secret in it: the browser that opens the first link first steers, and\n"
+      "whoever has the second looks on. The next start for the same product has the same links, "
+      "and\n"
+      "goes on where the work was, however the program has ended. Only programs on this machine "
+      "can reach it, but with --listen; then everything "
       "is\n"
       "encrypted, and the fingerprint that is printed is to be compared with the browser's.\n"
       "A headset on a cable needs no --listen: `adb reverse tcp:8080 tcp:8080`, and in its "

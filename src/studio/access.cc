@@ -4,16 +4,33 @@
 #include <array>
 #include <cctype>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
+
+#include "base/atomic_file.h"
+#include "studio/json_fields.h"
+#include "studio/kept_folder.h"
 
 namespace hvas::studio {
 namespace {
 
 constexpr std::string_view kAlphabet =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
+constexpr std::size_t kTokenLength = 32;
+constexpr std::uint32_t kAccessVersion = 1;
+constexpr std::uint32_t kHighestPort = 65535;
+
+bool IsToken(std::string_view text) {
+  return text.size() == kTokenLength && text.find_first_not_of(kAlphabet) == std::string_view::npos;
+}
+
+bool HasArray(const Json& object, const char* name) {
+  return object.is_object() && object.contains(name) && object[name].is_array();
+}
 
 bool IsPort(std::string_view text) {
   constexpr std::size_t kMostDigits = 5;
@@ -52,8 +69,14 @@ const char* ToString(Role role) {
   return "viewer";
 }
 
+std::optional<Role> ParseRole(std::string_view name) {
+  const auto found = std::find_if(kRoles.begin(), kRoles.end(),
+                                  [name](Role role) { return name == ToString(role); });
+  return found != kRoles.end() ? std::optional(*found) : std::nullopt;
+}
+
 std::string MakeToken() {
-  std::array<unsigned char, 32> bytes{};
+  std::array<unsigned char, kTokenLength> bytes{};
   if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
     throw std::runtime_error("the system gives no random numbers");
   }
@@ -105,7 +128,7 @@ std::optional<std::string> FindCookie(std::string_view cookie_header, std::strin
   return std::nullopt;
 }
 
-Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls)
+Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, KeptAccess kept)
     : hosts_{"127.0.0.1", "localhost", "::1"},
       cookie_name_(fmt::format("hvas_session_{}", port)),
       port_(port),
@@ -115,6 +138,14 @@ Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls)
   }
   for (const std::string& host : hosts_) {
     origins_.push_back(OriginOf(host));
+  }
+  if (kept.port == port && kept.links.size() >= kRoles.size()) {
+    known_ = std::move(kept);
+    return;
+  }
+  known_.port = port;
+  for (const Role role : kRoles) {
+    AddLink(role);
   }
 }
 
@@ -138,29 +169,155 @@ bool Access::AllowsOrigin(std::string_view origin) const {
   return std::find(origins_.begin(), origins_.end(), origin) != origins_.end();
 }
 
-std::optional<Role> Access::FindRole(std::string_view secret,
-                                     const std::array<std::string, kRoles.size()>& secrets) {
+KeptAccess::Browser* Access::FindBrowser(std::string_view secret) {
   // All are compared every time.
+  KeptAccess::Browser* found = nullptr;
+  for (KeptAccess::Browser& browser : known_.browsers) {
+    found = IsSameSecret(secret, browser.secret) ? &browser : found;
+  }
+  return found;
+}
+
+std::string Access::AddLink(Role role) {
+  auto& links = known_.links;
+  if (links.size() >= kMostLinks) {
+    links.erase(links.begin() + kRoles.size());
+  }
+  links.push_back({MakeToken(), role, ""});
+  return links.back().token;
+}
+
+KeptAccess::Browser* Access::AddBrowser() {
+  auto& browsers = known_.browsers;
+  if (browsers.size() >= kMostBrowsers) {
+    // Whoever looks on comes in again by the same link.
+    const auto oldest = std::find_if(browsers.begin(), browsers.end(),
+                                     [](const auto& one) { return !IsForOne(one.role); });
+    browsers.erase(oldest == browsers.end() ? browsers.begin() : oldest);
+  }
+  browsers.push_back({MakeToken(), Role::kViewer});
+  return &browsers.back();
+}
+
+Result<Access::Admission> Access::Admit(std::string_view token, std::string_view cookie_header) {
+  const std::lock_guard lock(mutex_);
+  KeptAccess::Link* link = nullptr;
+  for (KeptAccess::Link& one : known_.links) {
+    link = IsSameSecret(token, one.token) ? &one : link;
+  }
+  if (link == nullptr) {
+    return Fail(ErrorCode::kNotFound, "this link is not known", "",
+                "open the link that the program has printed, or ask whoever steers for one");
+  }
+  KeptAccess::Browser* browser = FindBrowser(FindCookie(cookie_header, cookie_name_).value_or(""));
+  const bool is_owner = browser != nullptr && IsSameSecret(link->browser, browser->secret);
+  if (IsForOne(link->role) && !link->browser.empty() && !is_owner) {
+    return Fail(ErrorCode::kInvalid, "this link has let another browser in already", "",
+                "ask whoever steers for one of your own (\"Share\"), or start the studio again "
+                "with --new-links");
+  }
+  browser = browser != nullptr ? browser : AddBrowser();
+  browser->role = link->role;
+  link->browser = IsForOne(link->role) ? browser->secret : "";
+  constexpr int kKeptFor = 30 * 24 * 3600;  // [s]
+  return Admission{link->role,
+                   fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
+                               cookie_name_, browser->secret, kKeptFor, is_tls_ ? "; Secure" : "")};
+}
+
+std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
+  const std::string secret = FindCookie(cookie_header, cookie_name_).value_or("");
+  const std::lock_guard lock(mutex_);
   std::optional<Role> role;
-  for (const Role one : kRoles) {
-    if (IsSameSecret(secret, secrets[static_cast<std::size_t>(one)])) {
-      role = one;
-    }
+  for (const KeptAccess::Browser& browser : known_.browsers) {
+    role = IsSameSecret(secret, browser.secret) ? std::optional(browser.role) : role;
   }
   return role;
 }
 
-std::optional<Role> Access::RoleOfToken(std::string_view token) const {
-  return FindRole(token, tokens_);
+std::string Access::token(Role role) const {
+  const std::lock_guard lock(mutex_);
+  return known_.links[static_cast<std::size_t>(role)].token;
 }
 
-std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
-  return FindRole(FindCookie(cookie_header, cookie_name_).value_or(""), sessions_);
+std::string Access::Invite(Role role) {
+  if (!IsForOne(role)) {
+    return token(role);
+  }
+  const std::lock_guard lock(mutex_);
+  return AddLink(role);
 }
 
-std::string Access::SetCookie(Role role) const {
-  return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}", cookie_name_,
-                     sessions_[static_cast<std::size_t>(role)], is_tls_ ? "; Secure" : "");
+std::string Access::FindFresh(Role role) {
+  const std::lock_guard lock(mutex_);
+  const auto fresh =
+      std::find_if(known_.links.begin(), known_.links.end(),
+                   [role](const auto& link) { return link.role == role && link.browser.empty(); });
+  return fresh != known_.links.end() ? fresh->token : AddLink(role);
+}
+
+KeptAccess Access::Keep() const {
+  const std::lock_guard lock(mutex_);
+  return known_;
+}
+
+Result<KeptAccess> LoadAccess(const std::filesystem::path& file) {
+  const auto text = ReadKeptFile(file);
+  if (!text) {
+    return Unexpected(text.error());
+  }
+  const Json json = Json::parse(*text, nullptr, false);
+  const auto unreadable = [&file] {
+    return Fail(ErrorCode::kUnreadable, "this is not what a studio keeps of its links",
+                file.string(), "delete the file: the studio makes new links");
+  };
+  const std::uint32_t port = IndexOr(json, "port", 0);
+  if (IndexOr(json, "version", 0) != kAccessVersion || port > kHighestPort ||
+      !HasArray(json, "links") || !HasArray(json, "browsers")) {
+    return unreadable();
+  }
+  KeptAccess kept;
+  kept.port = static_cast<std::uint16_t>(port);
+  for (const Json& browser : json["browsers"]) {
+    const auto role = ParseRole(TextOr(browser, "role", ""));
+    kept.browsers.push_back({TextOr(browser, "secret", ""), role.value_or(Role::kViewer)});
+    if (!role || !IsToken(kept.browsers.back().secret)) {
+      return unreadable();
+    }
+  }
+  for (const Json& link : json["links"]) {
+    const auto role = ParseRole(TextOr(link, "role", ""));
+    kept.links.push_back(
+        {TextOr(link, "token", ""), role.value_or(Role::kViewer), TextOr(link, "browser", "")});
+    const KeptAccess::Link& read = kept.links.back();
+    if (!role || !IsToken(read.token) || !(read.browser.empty() || IsToken(read.browser))) {
+      return unreadable();
+    }
+  }
+  for (const Role role : kRoles) {
+    const auto at = static_cast<std::size_t>(role);
+    if (at >= kept.links.size() || kept.links[at].role != role) {
+      return unreadable();
+    }
+  }
+  return kept;
+}
+
+Result<void> SaveAccess(const std::filesystem::path& file, const KeptAccess& access) {
+  Json links = Json::array();
+  for (const KeptAccess::Link& link : access.links) {
+    links.push_back(
+        {{"token", link.token}, {"role", ToString(link.role)}, {"browser", link.browser}});
+  }
+  Json browsers = Json::array();
+  for (const KeptAccess::Browser& browser : access.browsers) {
+    browsers.push_back({{"secret", browser.secret}, {"role", ToString(browser.role)}});
+  }
+  const Json json{{"version", kAccessVersion},
+                  {"port", access.port},
+                  {"links", std::move(links)},
+                  {"browsers", std::move(browsers)}};
+  return WriteAtomically(file, json.dump(1), FileReaders::kOwner);
 }
 
 }  // namespace hvas::studio

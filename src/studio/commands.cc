@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
-#include "mates/assignments.h"
-#include "mates/user_mate.h"
+#include "studio/edit.h"
 #include "studio/event_json.h"
 #include "studio/hub.h"
 #include "studio/json_fields.h"
@@ -38,10 +37,11 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       {"devices", {Right::kAnybody, &Hub::DoDevices}},
       {"use", {Right::kLease, &Hub::DoUse}},
       {"record", {Right::kLease, &Hub::DoRecord}},
+      {"rename_recording", {Right::kLease, &Hub::DoRenameRecording}},
       {"delete_recording", {Right::kLease, &Hub::DoDeleteRecording}},
-      {"assign_fit", {Right::kLease, &Hub::DoAssignFit}},
-      {"add_mate", {Right::kLease, &Hub::DoAddMate}},
-      {"remove_mate", {Right::kLease, &Hub::DoRemoveMate}},
+      {"assign_fit", {Right::kLease, &Hub::DoEdit}},
+      {"add_mate", {Right::kLease, &Hub::DoEdit}},
+      {"remove_mate", {Right::kLease, &Hub::DoEdit}},
       {"measure", {Right::kAnybody, &Hub::DoMeasure}},
       {"path", {Right::kAnybody, &Hub::DoPath}},
       {"lease", {Right::kAnybody, &Hub::DoLease}},
@@ -163,54 +163,23 @@ Result<Json> Hub::DoRecord(const Json& command) {
                      : workbench_->StopRecording());
 }
 
+Result<Json> Hub::DoRenameRecording(const Json& command) {
+  const auto id = TextAt(command, "id");
+  const auto name = TextAt(command, "name");
+  if (!id || !name) {
+    return Unexpected(!id ? id.error() : name.error());
+  }
+  return Done(workbench_->RenameRecording(*id, *name));
+}
+
 Result<Json> Hub::DoDeleteRecording(const Json& command) {
   const auto id = TextAt(command, "id");
   return id ? Done(workbench_->DeleteRecording(*id)) : Result<Json>(Unexpected(id.error()));
 }
 
-Result<Json> Hub::DoAssignFit(const Json& command) {
-  const auto mate = IndexAt(command, "mate");
-  const auto fit = TextAt(command, "fit");
-  if (!mate || !fit) {
-    return Unexpected(!mate ? mate.error() : fit.error());
-  }
-  const std::string assignment = fmt::format("m{}={}", *mate, *fit);
-  return Done(workbench_->Change(
-      fmt::format("fit {}", assignment),
-      [assignment](product::Product* product) { return mates::AssignFit(product, assignment); }));
-}
-
-Result<Json> Hub::DoAddMate(const Json& command) {
-  const auto a = FaceAt(command, "a");
-  const auto b = FaceAt(command, "b");
-  if (!a || !b) {
-    return Unexpected(!a ? a.error() : b.error());
-  }
-  const std::string fit = TextAt(command, "fit").value_or("");
-  const auto add = [a = *a, b = *b, fit](product::Product* product) -> Result<void> {
-    auto mate = mates::MakeMate(*product, {a.occurrence, a.face, {}}, {b.occurrence, b.face, {}});
-    if (!mate) {
-      return Unexpected(mate.error());
-    }
-    const product::MateId id = mate->id.index() < product->mates.size()
-                                   ? mate->id
-                                   : mates::AddMate(product, std::move(*mate));
-    return fit.empty() ? Result<void>()
-                       : mates::AssignFit(product, fmt::format("m{}={}", id.value(), fit));
-  };
-  return Done(workbench_->Change("add mate", add));
-}
-
-Result<Json> Hub::DoRemoveMate(const Json& command) {
-  const auto mate = IndexAt(command, "mate");
-  if (!mate) {
-    return Unexpected(mate.error());
-  }
-  const std::string name = fmt::format("m{}", *mate);
-  return Done(workbench_->Change("remove mate", [name](product::Product* product) -> Result<void> {
-    const auto removed = mates::RemoveMate(product, name);
-    return removed ? Result<void>() : Result<void>(Unexpected(removed.error()));
-  }));
+Result<Json> Hub::DoEdit(const Json& command) {
+  const auto edit = MakeEdit(command);
+  return edit ? Done(workbench_->Change(*edit)) : Result<Json>(Unexpected(edit.error()));
 }
 
 Result<Json> Hub::DoMeasure(const Json& command) {
@@ -268,7 +237,7 @@ Result<Json> Hub::DoLease(const Caller& caller, const Json& command) {
   if (!action || !hands) {
     return Unexpected(!action ? action.error() : hands.error());
   }
-  if (*action == "request" && caller.role != Role::kViewer) {
+  if (*action == "request" && caller.role == Role::kOperator) {
     return RequestLease(caller, *hands);
   }
   const std::vector<std::size_t> own = HandsOf(caller.id);
@@ -289,7 +258,7 @@ Result<Json> Hub::DoLease(const Caller& caller, const Json& command) {
     return Json::object();
   }
   return Fail(ErrorCode::kInvalid, "this cannot be done with the lease now", *action,
-              caller.role == Role::kViewer ? "this link is for looking on" : "");
+              caller.role == Role::kOperator ? "" : "this link is for looking on");
 }
 
 Result<Json> Hub::DoStatus() {

@@ -146,9 +146,10 @@ Result<void> Hub::CheckStudy(const Caller& caller, const std::string& name) cons
   if (desk_ == nullptr) {
     return {};
   }
-  constexpr std::array kShielded{"study", "take", "release", "forces", "lease", "status"};
-  constexpr std::array kExperimenters{"study",  "release", "forces", "lease",
-                                      "status", "devices", "use",    "measure"};
+  // Not "lease": the hand is the participant's.
+  constexpr std::array kShielded{"study", "take", "release", "forces", "status"};
+  constexpr std::array kExperimenters{"study",   "release", "forces", "status",
+                                      "devices", "use",     "measure"};
   const auto has = [&](const auto& names) {
     return std::any_of(names.begin(), names.end(), [&](const char* one) { return name == one; });
   };

@@ -138,10 +138,9 @@ class Hub {
   Result<Json> DoDevices();
   Result<Json> DoUse(const Json& command);
   Result<Json> DoRecord(const Json& command);
+  Result<Json> DoRenameRecording(const Json& command);
   Result<Json> DoDeleteRecording(const Json& command);
-  Result<Json> DoAssignFit(const Json& command);
-  Result<Json> DoAddMate(const Json& command);
-  Result<Json> DoRemoveMate(const Json& command);
+  Result<Json> DoEdit(const Json& command);
   Result<Json> DoMeasure(const Json& command);
   Result<Json> DoPath(const Caller& caller, const Json& command);
   Result<Json> DoLease(const Caller& caller, const Json& command);

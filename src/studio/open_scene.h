@@ -2,8 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
 #include "simulation/model.h"
@@ -18,6 +22,11 @@ struct OpenScene {
   Diagnostics diagnostics;
   std::shared_ptr<const std::string> glb;
   std::string glb_hash;
+  std::filesystem::path file;  ///< That was opened.
+  std::string name;            ///< As people call the file.
+  std::string digest;          ///< CalcProductDigest of it as it was opened.
+  /** Commands that have changed the product since, in their order. */
+  std::vector<nlohmann::ordered_json> edits;
 };
 
 /** Of each hand: the largest force since it was asked for last [N]. */

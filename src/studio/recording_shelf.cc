@@ -4,6 +4,7 @@
 #include <chrono>
 #include <ctime>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -11,8 +12,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "base/atomic_file.h"
 #include "record/reader.h"
 #include "studio/json_fields.h"
+#include "studio/kept_folder.h"
 #include "studio/recording.h"
 
 namespace hvas::studio {
@@ -21,6 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSuffix = ".hvasrec";
+constexpr const char* kNamesFile = "names.json";
 constexpr std::int64_t kNsPerMs = 1'000'000;
 
 /** Letters, digits and dashes. */
@@ -169,10 +173,15 @@ Json RecordingShelf::List() {
     entries[id] = std::move(entry);
   }
   entries_ = std::move(entries);
+  const auto names = ReadNames();
   std::vector<Json> list;
   for (const auto& [id, entry] : entries_) {
     if (!entry.description.is_null()) {
       list.push_back(entry.description);
+      const auto given = names.find(id);
+      if (given != names.end()) {
+        list.back()["name"] = given->second;
+      }
     }
   }
   std::sort(list.begin(), list.end(), [](const Json& a, const Json& b) {
@@ -207,6 +216,10 @@ Result<Json> RecordingShelf::Describe(const std::string& id) const {
   }
   std::error_code failed;
   Json json = DescribeFile(id, reader->path(), std::filesystem::file_size(reader->path(), failed));
+  const auto names = ReadNames();
+  if (const auto given = names.find(id); given != names.end()) {
+    json["name"] = given->second;
+  }
   const std::string route = "/api/recording/" + id;
   json["scene"] = route + "/scene";
   json["glb"] = route + "/model.glb";
@@ -263,9 +276,64 @@ Result<void> RecordingShelf::Delete(const std::string& id) {
   for (const char* suffix : {"-wal", "-shm", ""}) {
     std::filesystem::remove(file->string() + suffix, failed);
   }
+  const std::lock_guard lock(mutex_);
+  auto names = ReadNames();
+  if (names.erase(id) > 0) {
+    (void)WriteNames(names);  // a name of nothing harms nobody
+  }
   return failed ? Result<void>(Fail(ErrorCode::kOutOfResource, failed.message(), file->string(),
                                     "delete the file by hand"))
                 : Result<void>();
+}
+
+Result<void> RecordingShelf::Rename(const std::string& id, const std::string& name) {
+  constexpr std::size_t kLongestName = 200;  // [bytes]
+  if (name.find_first_not_of(' ') == std::string::npos || name.size() > kLongestName) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("a name has 1 to {} bytes, and not only spaces", kLongestName), name,
+                "choose another name");
+  }
+  if (const auto file = Find(id); !file) {
+    return Unexpected(file.error());
+  }
+  const std::lock_guard lock(mutex_);
+  auto names = ReadNames();
+  names[id] = name;
+  return WriteNames(names);
+}
+
+std::string RecordingShelf::MakeName(const std::string& product) {
+  std::set<std::string> taken;
+  const Json list = List();
+  for (const Json& entry : list["recordings"]) {
+    taken.insert(entry["name"].get<std::string>());
+  }
+  std::string name;
+  for (int i = 1; name.empty() || taken.count(name) > 0; ++i) {
+    name = fmt::format("{} {}", product, i);
+  }
+  return name;
+}
+
+std::map<std::string, std::string> RecordingShelf::ReadNames() const {
+  std::map<std::string, std::string> names;
+  const auto text = ReadKeptFile(folder_ / kNamesFile);
+  const Json json = text ? Json::parse(*text, nullptr, false) : Json();
+  if (json.is_object()) {
+    for (const auto& [id, name] : json.items()) {
+      if (name.is_string()) {
+        names[id] = name.get<std::string>();
+      }
+    }
+  }
+  return names;
+}
+
+Result<void> RecordingShelf::WriteNames(const std::map<std::string, std::string>& names) const {
+  const Json json(names);
+  return WriteAtomically(folder_ / kNamesFile,
+                         json.dump(1, ' ', false, Json::error_handler_t::replace),
+                         FileReaders::kOwner);
 }
 
 }  // namespace hvas::studio

@@ -39,8 +39,18 @@ class RecordingShelf {
 
   [[nodiscard]] Result<void> Delete(const std::string& id);
 
+  /** What people call it from now on; the record itself, which may be evidence, stays as it was.
+   Errors: kNotFound; kInvalid for an empty name; those of WriteAtomically. */
+  [[nodiscard]] Result<void> Rename(const std::string& id, const std::string& name);
+
+  /** For a new one of a product: its name, with the first number behind it that none has yet. */
+  [[nodiscard]] std::string MakeName(const std::string& product);
+
  private:
   [[nodiscard]] Result<record::Reader> Open(const std::string& id) const;
+  /** Those that Rename has given, by id. */
+  [[nodiscard]] std::map<std::string, std::string> ReadNames() const;
+  [[nodiscard]] Result<void> WriteNames(const std::map<std::string, std::string>& names) const;
 
   /** As of a file that has not changed since. */
   struct Entry {

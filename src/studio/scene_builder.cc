@@ -1,12 +1,15 @@
 #include "studio/scene_builder.h"
 
+#include <system_error>
 #include <utility>
 
 #include "base/digest.h"
 #include "cad/glb.h"
+#include "studio/kept_work.h"
 
 namespace hvas::studio {
 
+using Json = nlohmann::ordered_json;
 using SharedScene = std::shared_ptr<const OpenScene>;
 
 Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const std::string& name,
@@ -17,6 +20,7 @@ Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const 
   if (!product) {
     return Unexpected(product.error());
   }
+  scene->digest = CalcProductDigest(*product);
   auto model = Compile(std::move(*product), name, progress, &scene->diagnostics);
   if (!model) {
     return Unexpected(model.error());
@@ -30,6 +34,9 @@ Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const 
   }
   Digest digest;
   digest.AddText(*glb);
+  std::error_code failed;
+  scene->file = std::filesystem::absolute(file, failed);
+  scene->name = name;
   scene->model = *model;
   scene->glb_hash = digest.Hex();
   scene->glb = std::make_shared<const std::string>(std::move(*glb));
@@ -43,16 +50,34 @@ SharedScene SceneBuilder::Again(const OpenScene& before) {
   return scene;
 }
 
-Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const std::string& what,
-                                         const ChangeFn& change, const cad::ProgressFn& progress) {
+Result<SharedScene> SceneBuilder::MakeEdits(const OpenScene& opened, const std::vector<Json>& edits,
+                                            const cad::ProgressFn& progress) {
+  auto change = MakeChangeOf(edits);
+  if (!change) {
+    return Unexpected(change.error());
+  }
+  const auto made = Change(opened, {"edits", nullptr, std::move(*change)}, progress);
+  if (!made) {
+    return made;
+  }
+  auto scene = std::make_shared<OpenScene>(**made);
+  scene->edits = edits;
+  return scene;
+}
+
+Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const Edit& edit,
+                                         const cad::ProgressFn& progress) {
   product::Product product = *before.model->product;
-  if (auto changed = change(&product); !changed) {
+  if (auto changed = edit.change(&product); !changed) {
     return Unexpected(changed.error());
   }
   auto scene = std::make_shared<OpenScene>(before);
-  auto model = Compile(std::move(product), what, progress, &scene->diagnostics);
+  auto model = Compile(std::move(product), edit.what, progress, &scene->diagnostics);
   if (!model) {
     return Unexpected(model.error());
+  }
+  if (!edit.command.is_null()) {
+    scene->edits.push_back(edit.command);
   }
   scene->model = *model;
   scene->epoch = ++last_epoch_;

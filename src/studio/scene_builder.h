@@ -11,6 +11,7 @@
 #include "cad/import.h"
 #include "contact/shape_cache.h"
 #include "product/product.h"
+#include "studio/edit.h"
 #include "studio/open_scene.h"
 
 namespace hvas::studio {
@@ -20,9 +21,6 @@ using LoadFn = std::function<Result<product::Product>(
     const std::filesystem::path& file, const cad::ProgressFn& progress, std::stop_token stop,
     Diagnostics* diagnostics)>;
 
-/** A change of a product. */
-using ChangeFn = std::function<Result<void>(product::Product*)>;
-
 /** Makes scenes of files and of changes. One thread's. */
 class SceneBuilder {
  public:
@@ -30,9 +28,12 @@ class SceneBuilder {
     LoadFn load;
     std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
     std::uint64_t seed{1};
+    /** Epochs begin behind it: pages of a program's start before know theirs from these. */
+    std::uint32_t last_epoch{0};
   };
 
-  explicit SceneBuilder(Options options) : options_(std::move(options)) {}
+  explicit SceneBuilder(Options options)
+      : options_(std::move(options)), last_epoch_(options_.last_epoch) {}
 
   /** @param name  As people call the file.
    Errors: of the file; kUnsupported where nothing of it has a mass; kCancelled. */
@@ -41,13 +42,17 @@ class SceneBuilder {
                                                               const cad::ProgressFn& progress,
                                                               const std::stop_token& stop);
 
+  /** What was opened, after edits as of OpenScene. Errors: of the first that cannot be made. */
+  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> MakeEdits(
+      const OpenScene& opened, const std::vector<nlohmann::ordered_json>& edits,
+      const cad::ProgressFn& progress);
+
   /** The same, as a scene of its own. */
   [[nodiscard]] std::shared_ptr<const OpenScene> Again(const OpenScene& before);
 
   /** The same product after a change; its pictures stay. Errors: of the change. */
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> Change(const OpenScene& before,
-                                                                const std::string& what,
-                                                                const ChangeFn& change,
+                                                                const Edit& edit,
                                                                 const cad::ProgressFn& progress);
 
  private:
@@ -56,7 +61,7 @@ class SceneBuilder {
       Diagnostics* diagnostics) const;
 
   Options options_;
-  std::uint32_t last_epoch_{0};
+  std::uint32_t last_epoch_;
 };
 
 }  // namespace hvas::studio

@@ -21,6 +21,7 @@
 #include "studio/answers.h"
 #include "studio/connection.h"
 #include "studio/event_json.h"
+#include "studio/json_fields.h"
 #include "studio/tls.h"
 
 namespace hvas::studio {
@@ -73,7 +74,26 @@ struct Shared {
   std::unique_ptr<Access> access;
   std::unique_ptr<asio::ssl::context> tls;  ///< Null: nothing is encrypted.
   std::shared_ptr<Guests> guests{std::make_shared<Guests>()};
-  std::uint32_t next_upload{0};
+
+  /** After a change of who may come in. What cannot be written is told of once. */
+  void KeepAccess() {
+    if (options.access_file.empty()) {
+      return;
+    }
+    const auto saved = SaveAccess(options.access_file, access->Keep());
+    if (!saved && std::exchange(can_keep_access, false)) {
+      fmt::print(stderr, "warning: the next start makes new links: {}\n", saved.error().ToString());
+    }
+  }
+
+  /** A link that nobody has used yet, for the experimenter to pass on. */
+  void TellOfParticipantLink() {
+    if (options.desk != nullptr) {
+      options.desk->SetParticipantLink("/#t=" + access->FindFresh(Role::kParticipant));
+    }
+  }
+
+  bool can_keep_access{true};
 };
 
 /** A client's WebSocket. Text is kept until it is sent; frames are few, by the hub's credit. */
@@ -304,7 +324,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const std::string_view target = ToView(request.target());
     const std::string_view path = target.substr(0, target.find('?'));
     if (request.method() == http::verb::post && path == "/api/session") {
-      return ReadToken();
+      return ReadJson(&HttpSession::ExchangeToken);
     }
     if (request.method() == http::verb::get && !path.starts_with("/api/") && path != "/ws") {
       const auto accepted = FieldOf(request, http::field::accept_encoding);
@@ -346,6 +366,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       }
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
+    } else if (path == "/api/link" && method == http::verb::post) {
+      if (role != Role::kOperator) {
+        Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for looking on", "",
+                                         "ask whoever steers for a link"});
+      } else {
+        ReadJson(&HttpSession::MakeLink);
+      }
     } else {
       Refuse(http::status::not_found,
              {ErrorCode::kNotFound, "there is nothing here", std::string(path), ""});
@@ -363,39 +390,65 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     return true;
   }
 
-  void ReadToken() {
+  using JsonHandler = void (HttpSession::*)(const Json& body);
+
+  void ReadJson(JsonHandler handler) {
     if (!IsShort(kMostBody)) {
       return;
     }
     auto parser = std::make_shared<http::request_parser<http::string_body>>(std::move(*header_));
     parser->body_limit(kMostBody);
     http::async_read(connection_, buffer_, *parser,
-                     [self = shared_from_this(), parser](error_code error, std::size_t) {
+                     [self = shared_from_this(), parser, handler](error_code error, std::size_t) {
                        if (error) {
                          self->RefuseBody(error);
                        } else {
-                         self->ExchangeToken(parser->get().body());
+                         self->cookie_ = FieldOf(parser->get(), http::field::cookie);
+                         (*self.*handler)(Json::parse(parser->get().body(), nullptr,
+                                                      /*allow_exceptions=*/false));
                        }
                      });
   }
 
-  void ExchangeToken(const std::string& body) {
-    const Json json = Json::parse(body, nullptr, /*allow_exceptions=*/false);
-    const std::string token =
-        json.is_object() && json.contains("token") && json["token"].is_string()
-            ? json["token"].get<std::string>()
-            : "";
-    const auto role = shared_->access->RoleOfToken(token);
-    if (!role) {
-      return Refuse(http::status::unauthorized,
-                    {ErrorCode::kInvalid, "this token is not known", "",
-                     "open the link that the program printed; each start has another one"});
+  void ExchangeToken(const Json& body) {
+    const auto admission = shared_->access->Admit(TextOr(body, "token", ""), cookie_);
+    if (!admission) {
+      return Refuse(http::status::unauthorized, admission.error());
+    }
+    shared_->KeepAccess();
+    if (admission->role == Role::kParticipant) {
+      shared_->TellOfParticipantLink();
     }
     http::response<http::string_body> response(http::status::ok, 11);
-    response.set(http::field::set_cookie, shared_->access->SetCookie(*role));
+    response.set(http::field::set_cookie, admission->set_cookie);
     response.set(http::field::content_type, "application/json");
-    response.body() = Json{{"role", ToString(*role)}}.dump();
+    response.body() = Json{{"role", ToString(admission->role)}}.dump();
     Send(std::move(response));
+  }
+
+  /** For somebody else: its token, and where it can be opened. */
+  void MakeLink(const Json& body) {
+    const auto role = ParseRole(TextOr(body, "role", ""));
+    if (!role || (*role == Role::kParticipant && shared_->options.desk == nullptr)) {
+      return Refuse(http::status::bad_request,
+                    {ErrorCode::kInvalid, "there is no such role", "role",
+                     "ask for a link of an operator or a viewer"});
+    }
+    const Access& access = *shared_->access;
+    const ServerOptions& options = shared_->options;
+    Json origins = Json::array();
+    for (const std::string& name :
+         options.tls ? options.names : std::vector<std::string>{"127.0.0.1"}) {
+      origins.push_back(access.OriginOf(name));
+    }
+    const std::string token = shared_->access->Invite(*role);
+    shared_->KeepAccess();
+    SendJson(http::status::ok, {{"token", token},
+                                {"role", ToString(*role)},
+                                {"is_for_one", IsForOne(*role)},
+                                {"origins", std::move(origins)},
+                                {"is_local", asio::ip::make_address(options.address).is_loopback()},
+                                {"reachable", options.reachable}});
   }
 
   void ReadUpload(Role role) {
@@ -407,8 +460,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return;
     }
     const std::string name = NameOfUpload(ToView(header_->get().target()));
-    const std::filesystem::path folder =
-        shared_->options.upload_folder / std::to_string(++shared_->next_upload);
+    const std::filesystem::path folder = shared_->options.upload_folder / MakeToken();
     std::error_code failed;
     std::filesystem::create_directory(folder, failed);
     const std::filesystem::path file = folder / name;
@@ -562,6 +614,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   beast::flat_buffer buffer_{kMostHeader + (64 << 10)};
   std::optional<Header> header_;
   std::shared_ptr<const void> owner_;
+  std::string cookie_;  ///< Of the request whose body was read.
   bool is_refused_{false};
   bool is_last_{false};  ///< The client asked for the end of the connection after this answer.
 };
@@ -609,13 +662,18 @@ class Server::Impl {
       }
       shared_->tls = std::move(*tls);
     }
-    if (const auto listening = Listen({address, options.port}); !listening) {
-      return listening;
+    KeptAccess kept = FindKeptAccess();
+    const bool wants_kept_port = options.port == 0 && kept.port != 0;
+    if (!wants_kept_port || !Listen({address, kept.port})) {  // another program may have it now
+      if (const auto listening = Listen({address, options.port}); !listening) {
+        return listening;
+      }
     }
-    shared_->access = std::make_unique<Access>(options.names, port(), options.tls.has_value());
-    if (options.desk != nullptr) {
-      options.desk->SetParticipantLink("/#t=" + shared_->access->token(Role::kParticipant));
-    }
+    has_kept_links_ = kept.port == port();
+    shared_->access =
+        std::make_unique<Access>(options.names, port(), options.tls.has_value(), std::move(kept));
+    shared_->KeepAccess();
+    shared_->TellOfParticipantLink();
     Accept();
     Tick();
     thread_ = std::thread([this] { Run(); });
@@ -630,6 +688,8 @@ class Server::Impl {
     shared_->hub.Forget();
   }
 
+  [[nodiscard]] bool has_kept_links() const { return has_kept_links_; }
+
   [[nodiscard]] std::uint16_t port() const {
     error_code ignored;
     return acceptor_.local_endpoint(ignored).port();
@@ -640,8 +700,19 @@ class Server::Impl {
   }
 
  private:
+  /** Of the start before; nothing where there was none, or it cannot be used. */
+  [[nodiscard]] KeptAccess FindKeptAccess() const {
+    const auto& file = shared_->options.access_file;
+    auto kept = file.empty() ? KeptAccess() : LoadAccess(file);
+    if (!kept && kept.error().code != ErrorCode::kNotFound) {
+      fmt::print(stderr, "warning: new links are made: {}\n", kept.error().ToString());
+    }
+    return kept ? std::move(*kept) : KeptAccess();
+  }
+
   Result<void> Listen(const tcp::endpoint& wanted) {
     error_code error;
+    acceptor_.close(error);
     acceptor_.open(wanted.protocol(), error);
     if (!error) {
       acceptor_.set_option(asio::socket_base::reuse_address(true), error);
@@ -710,6 +781,7 @@ class Server::Impl {
   asio::steady_timer timer_;
   asio::steady_timer pause_;
   std::atomic<bool> has_frame_{false};
+  bool has_kept_links_{false};
   std::thread thread_;
 };
 
@@ -728,6 +800,10 @@ void Server::Stop() {
 
 std::uint16_t Server::port() const {
   return impl_->port();
+}
+
+bool Server::has_kept_links() const {
+  return impl_->has_kept_links();
 }
 
 std::string Server::LinkFor(Role role, std::string_view host) const {

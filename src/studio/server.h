@@ -22,6 +22,8 @@ struct ServerOptions {
   std::uint16_t port{0};                 ///< 0: any that is free.
   std::optional<TlsFiles> tls;           ///< None: it speaks http.
   std::filesystem::path upload_folder;   ///< Exists, and is this process's own.
+  std::filesystem::path access_file;     ///< Of KeptAccess; empty: nothing is kept of it.
+  std::vector<std::string> reachable;    ///< Addresses that it could listen on for others.
   std::vector<std::string> names;        ///< Hosts besides the loopback's that it answers to.
   std::uint64_t most_upload{256 << 20};  ///< [bytes]
   /** With whoever is connected and says nothing: a handshake, a header, an answer that is not read,
@@ -38,15 +40,19 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /** Binds and begins to answer. Errors: kOutOfResource when the port is taken or the address is
-   another machine's, kInvalid for an address that is none or would be spoken with unencrypted,
-   kUnreadable for a certificate or a key that cannot be used. */
+  /** Binds and begins to answer, at the port that was kept where none is asked for. Errors:
+   kOutOfResource when the port is taken or the address is another machine's, kInvalid for an
+   address that is none or would be spoken with unencrypted, kUnreadable for a certificate or a key
+   that cannot be used. */
   [[nodiscard]] Result<void> Start();
 
   /** Lets everybody go. @pre the workbench has stopped: it tells nobody any more. */
   void Stop();
 
   [[nodiscard]] std::uint16_t port() const;
+
+  /** The links of the start before are good again. */
+  [[nodiscard]] bool has_kept_links() const;
 
   /** The address to open, with the token of a role in its fragment, which no server ever sees. */
   [[nodiscard]] std::string LinkFor(Role role, std::string_view host = "127.0.0.1") const;

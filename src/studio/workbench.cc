@@ -48,6 +48,17 @@ LiveState MakeStart(const simulation::Model& model) {
   return state;
 }
 
+/** @param begun  With parts where a work that was kept had them, or none of them. */
+Json MakeResumedEvent(const SceneNow& begun) {
+  const auto& parts = begun.state.parts;
+  return {{"event", "resumed"},
+          {"is_resumed", !parts.empty()},
+          {"seated",
+           std::count_if(parts.begin(), parts.end(),
+                         [](const auto& part) { return part.placement == Placement::kPlaced; })},
+          {"edits", begun.scene->edits.size()}};
+}
+
 /** Nothing where a part can be taken. */
 std::optional<Error> ExplainGone(Placement placement, const std::string& name) {
   switch (placement) {
@@ -102,17 +113,30 @@ Workbench::~Workbench() {
 }
 
 void Workbench::Stop() {
-  sweeper_.Stop();
   worker_.RequestStop();
-  Cancel();  // after it: nothing else begins
+  Cancel();           // after it: nothing else begins
+  FinishRecording();  // before all that may take long
+  EndRun();
+  sweeper_.Stop();
   worker_.Stop();
-  std::shared_ptr<LiveRun> run;
+  EndRun();  // that the worker had just begun
+  FinishRecording();
+  if (!std::exchange(has_stopped_, true)) {
+    keeper_.Stop();
+    DoKeepWork();
+  }
+}
+
+void Workbench::EndRun() {
+  std::shared_ptr<LiveRun> ended;
   {
     const std::lock_guard lock(mutex_);
-    run = std::exchange(run_, nullptr);
+    if (run_ != nullptr) {
+      resting_ = run_->state();
+    }
+    ended = std::exchange(run_, nullptr);
   }
-  run.reset();
-  FinishRecording();
+  ended.reset();  // its threads end here, outside the lock that they may wait for
 }
 
 void Workbench::Post(std::function<void()> job) {
@@ -134,12 +158,20 @@ void Workbench::Tell(Json event) const {
 }
 
 void Workbench::Open(const std::filesystem::path& file, const std::string& name) {
+  PostOpen([this, file, name] { DoOpen(file, name, nullptr); });
+}
+
+void Workbench::Resume(const KeptWork& work) {
+  PostOpen([this, work] { DoOpen(work.file, work.name, &work); });
+}
+
+void Workbench::PostOpen(std::function<void()> job) {
   {
     const std::lock_guard lock(mutex_);
     opening_.request_stop();  // what is being opened gives way to what comes after it
     opening_ = {};
   }
-  Post([this, file, name] { DoOpen(file, name); });
+  Post(std::move(job));
 }
 
 void Workbench::Cancel() {
@@ -147,7 +179,8 @@ void Workbench::Cancel() {
   opening_.request_stop();
 }
 
-void Workbench::DoOpen(const std::filesystem::path& file, const std::string& name) {
+void Workbench::DoOpen(const std::filesystem::path& file, const std::string& name,
+                       const KeptWork* kept) {
   std::stop_token stop;
   {
     const std::lock_guard lock(mutex_);
@@ -164,9 +197,75 @@ void Workbench::DoOpen(const std::filesystem::path& file, const std::string& nam
     return;
   }
   history_.Clear();
-  Show(*scene, {}, false);
+  const SceneNow begun = kept != nullptr ? GoOnFrom(*kept, *scene) : SceneNow{*scene, {}};
+  {
+    const std::lock_guard lock(mutex_);
+    failure_ = nullptr;
+    resumed_ = kept != nullptr ? MakeResumedEvent(begun) : Json(nullptr);
+  }
+  if (kept != nullptr && begun.state.parts.empty()) {
+    SetWorkAside(options_.work_file);
+  }
+  Show(begun.scene, begun.state, false);
   paths_.Clear();  // of the product before: its last frame has come
   TellOfHistory();
+  if (kept != nullptr) {
+    Tell(MakeResumedEvent(begun));
+  }
+}
+
+SceneNow Workbench::GoOnFrom(const KeptWork& kept, const std::shared_ptr<const OpenScene>& opened) {
+  if (opened->digest != kept.digest || opened->model->bodies.size() != kept.state.parts.size()) {
+    return {opened, {}};
+  }
+  SceneNow begun{opened, kept.state};
+  if (!kept.edits.empty()) {
+    auto edited = builder_.MakeEdits(*opened, kept.edits, TellProgressOf(kept.name));
+    if (!edited) {
+      return {opened, {}};
+    }
+    begun.scene = std::move(*edited);
+  }
+  const std::size_t steps = begun.scene->model->sequence.steps.size();
+  begun.state.next_step = std::min(begun.state.next_step, steps);
+  return begun;
+}
+
+void Workbench::KeepWork() {
+  if (!options_.work_file.empty()) {
+    (void)keeper_.TryPost([this](const std::stop_token&) { DoKeepWork(); }, 1);
+  }
+}
+
+void Workbench::DoKeepWork() {
+  const SceneNow now = LookAtRest();
+  if (options_.work_file.empty() || now.scene == nullptr || trial() != nullptr) {
+    return;
+  }
+  const auto saved = SaveWork(options_.work_file, MakeKeptWork(now));
+  if (!saved && std::exchange(can_keep_work_, false)) {
+    Tell({{"event", "failed"}, {"file", now.scene->name}, {"error", ToJson(saved.error())}});
+  }
+  can_keep_work_ = saved.has_value();
+}
+
+SceneNow Workbench::LookAtRest() const {
+  const std::lock_guard lock(mutex_);
+  SceneNow now{scene_, run_ != nullptr ? run_->state() : resting_};
+  for (std::size_t i = 0; i < now.state.parts.size(); ++i) {
+    simulation::PartState& part = now.state.parts[i];
+    if (part.placement != Placement::kHeld) {
+      continue;
+    }
+    part = {Placement::kLoose, scene_->model->bodies[i].X_WB_start};
+    for (const auto& before : before_take_) {
+      if (before && before->scene == scene_ &&
+          before->state.parts[i].placement != Placement::kHeld) {
+        part = before->state.parts[i];
+      }
+    }
+  }
+  return now;
 }
 
 cad::ProgressFn Workbench::TellProgressOf(const std::string& name) const {
@@ -176,7 +275,7 @@ cad::ProgressFn Workbench::TellProgressOf(const std::string& name) const {
 }
 
 void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state,
-                     bool has_person) {
+                     bool has_person, const std::string& why) {
   LiveOptions live;
   live.has_person = has_person;
   live.hands = rack_.setups();
@@ -200,7 +299,10 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
     FinishRecording();  // a record is of one scene
   }
   is_demo_ = has_person;  // not before: what the run before told last was still its own
-  live.recording = recording_;
+  {
+    const std::lock_guard lock(mutex_);
+    live.recording = recording_;
+  }
   auto run = std::make_shared<LiveRun>(scene->model, state, live, MakeListeners(scene, live));
   run->StopForces(forces_off_);
   {
@@ -208,12 +310,15 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
     run_ = run;
   }
   if (is_new) {
-    Tell({{"event", "scene"}, {"epoch", scene->epoch}});
+    Tell({{"event", "scene"},
+          {"epoch", scene->epoch},
+          {"why", why.empty() ? Json(nullptr) : Json(why)}});
   } else {
     TellOfPlacements();
   }
   TellOfStep(*scene, run->state().next_step);
   TellOfHands();
+  KeepWork();
 }
 
 void Workbench::Restart(bool has_person) {
@@ -241,6 +346,7 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
   };
   listeners.on_placement = [this](OccurrenceId id, Placement placement) {
     Tell({{"event", "placement"}, {"occurrence", id.value()}, {"placement", ToString(placement)}});
+    KeepWork();
   };
   listeners.on_step = [this, scene, has_person = live.has_person](std::size_t step) {
     HandleStep(*scene, step, has_person);
@@ -282,6 +388,7 @@ void Workbench::HandleHold(const OpenScene& scene, const simulation::SimulationE
   {
     const std::lock_guard lock(mutex_);
     before = std::exchange(before_take_[event.hand], std::nullopt);
+    resumed_ = nullptr;
     if (event.kind == Kind::kTaken && run_ != nullptr) {
       before_take_[event.hand] = SceneNow{scene_, run_->state_before_take()};
     }
@@ -311,6 +418,7 @@ void Workbench::TellOfStep(const OpenScene& scene, std::size_t step) const {
 
 void Workbench::HandleStep(const OpenScene& scene, std::size_t step, bool has_person) {
   TellOfStep(scene, step);
+  KeepWork();
   const auto& steps = scene.model->sequence.steps;
   const bool is_finished = step >= steps.size();
   // What stands in a fixture was nobody's work: it ends no demo of one step.
@@ -517,9 +625,9 @@ Result<void> Workbench::GoTo(History::Direction direction) {
     possible = history_.Check(direction);
   }
   if (possible) {
-    Post([this, direction] {
+    Post([this, is_undo = direction == History::Direction::kUndo, direction] {
       if (const auto then = history_.Go(direction, Look())) {  // else somebody was faster
-        Show(then->scene, then->state, false);
+        Show(then->scene, then->state, false, is_undo ? "undone" : "done again");
         TellOfHistory();
       }
     });
@@ -569,7 +677,7 @@ void Workbench::DoStartRecording(const std::filesystem::path& file, const std::s
   if (!recording().is_null()) {
     return;  // somebody was faster
   }
-  const std::string called = name.empty() ? scene->model->product->name : name;
+  const std::string called = name.empty() ? shelf_.MakeName(scene->model->product->name) : name;
   auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state),
                                   [this] { Post([this] { EndFailedRecording(); }); });
   if (!started) {
@@ -632,6 +740,14 @@ Json Workbench::recording() const {
   return recording_ != nullptr ? recording_->Describe() : Json(nullptr);
 }
 
+Result<void> Workbench::RenameRecording(const std::string& id, const std::string& name) {
+  auto renamed = shelf_.Rename(id, name);
+  if (renamed) {
+    Tell({{"event", "recordings"}});
+  }
+  return renamed;
+}
+
 Result<void> Workbench::DeleteRecording(const std::string& id) {
   if (const Json now = recording(); !now.is_null() && now["id"] == id) {
     return Fail(ErrorCode::kInvalid, "this is being recorded", id, "end that first");
@@ -643,30 +759,30 @@ Result<void> Workbench::DeleteRecording(const std::string& id) {
   return deleted;
 }
 
-Result<void> Workbench::Change(const std::string& what, const ChangeFn& change) {
+Result<void> Workbench::Change(const Edit& edit) {
   if (auto idle = CheckIdle(); !idle) {
     return idle;
   }
   // Tried here first, so that whoever asks learns at once what is wrong with it.
   product::Product trial = *scene()->model->product;
-  auto changed = change(&trial);
+  auto changed = edit.change(&trial);
   if (changed) {
-    Post([this, what, change] { DoChange(what, change); });
+    Post([this, edit] { DoChange(edit); });
   }
   return changed;
 }
 
-void Workbench::DoChange(const std::string& what, const ChangeFn& change) {
+void Workbench::DoChange(const Edit& edit) {
   const auto [before, state] = Look();
-  const auto after = builder_.Change(*before, what, change, TellProgressOf(what));
+  const auto after = builder_.Change(*before, edit, TellProgressOf(edit.what));
   if (!after) {
-    Tell({{"event", "failed"}, {"file", what}, {"error", ToJson(after.error())}});
+    Tell({{"event", "failed"}, {"file", edit.what}, {"error", ToJson(after.error())}});
     return;
   }
-  Remember(Look(), what);
+  Remember(Look(), edit.what);
   // In another order, what is in its place already is passed over when its turn comes.
   const bool has_same_order = HasSameOrder(before->model->sequence, (*after)->model->sequence);
-  Show(*after, {state.parts, has_same_order ? state.next_step : 0}, false);
+  Show(*after, {state.parts, has_same_order ? state.next_step : 0}, false, edit.what);
 }
 
 std::shared_ptr<const OpenScene> Workbench::scene() const {
@@ -701,6 +817,9 @@ std::vector<Json> Workbench::NewsForLatecomer() const {
   const std::lock_guard lock(mutex_);
   if (scene_ == nullptr && !failure_.is_null()) {
     news.push_back(failure_);
+  }
+  if (!resumed_.is_null()) {
+    news.push_back(resumed_);
   }
   return news;
 }

@@ -18,6 +18,7 @@
 #include "base/result.h"
 #include "studio/hand_rack.h"
 #include "studio/history.h"
+#include "studio/kept_work.h"
 #include "studio/live_run.h"
 #include "studio/live_trial.h"
 #include "studio/paths.h"
@@ -32,6 +33,7 @@ using Json = nlohmann::ordered_json;
 struct WorkbenchOptions {
   SceneBuilder::Options scenes;
   std::filesystem::path recordings_folder;  ///< Empty: nothing can be recorded.
+  std::filesystem::path work_file;          ///< Of KeptWork, as it goes on; empty: it is not kept.
   double rate_hz{1000};
 };
 
@@ -56,6 +58,9 @@ class Workbench {
 
   /** @param name  As people call it. */
   void Open(const std::filesystem::path& file, const std::string& name);
+  /** The product of a work that was kept, as far as it had come; where it is not the same product
+   any more, it is opened anew. Told of by the event "resumed". */
+  void Resume(const KeptWork& work);
   void Cancel();
 
   /** For hands that follow a pointer. @returns where the hand goes to. */
@@ -91,6 +96,8 @@ class Workbench {
 
   [[nodiscard]] RecordingShelf& shelf() { return shelf_; }
 
+  [[nodiscard]] Result<void> RenameRecording(const std::string& id, const std::string& name);
+
   /** Not what is being recorded. */
   [[nodiscard]] Result<void> DeleteRecording(const std::string& id);
 
@@ -107,7 +114,7 @@ class Workbench {
   [[nodiscard]] std::vector<product::MateId> trial_constraints() const;
 
   /** A change of the product: compiles a model of it aside and swaps it in. */
-  [[nodiscard]] Result<void> Change(const std::string& what, const ChangeFn& change);
+  [[nodiscard]] Result<void> Change(const Edit& edit);
 
   /** Null while nothing is open. */
   [[nodiscard]] std::shared_ptr<const OpenScene> scene() const;
@@ -130,8 +137,20 @@ class Workbench {
 
  private:
   void Post(std::function<void()> job);
-  void DoOpen(const std::filesystem::path& file, const std::string& name);
-  void DoChange(const std::string& what, const ChangeFn& change);
+  void PostOpen(std::function<void()> job);
+  /** @param kept  To go on from; null: nothing. */
+  void DoOpen(const std::filesystem::path& file, const std::string& name, const KeptWork* kept);
+  /** What was kept of a scene that has been opened; where there is nothing to go on from, the scene
+   as it is. */
+  [[nodiscard]] SceneNow GoOnFrom(const KeptWork& kept,
+                                  const std::shared_ptr<const OpenScene>& opened);
+  void DoChange(const Edit& edit);
+  /** Soon: what it has come to by then. */
+  void KeepWork();
+  void DoKeepWork();
+  /** As of KeptWork: a part in a hand is where it was before. */
+  [[nodiscard]] SceneNow LookAtRest() const;
+  void EndRun();
   void DoBeginTrial(const LiveTrial::Plan& plan);
   void DoEndTrial();
   /** A scene with the part's fit; compiled once. */
@@ -139,7 +158,9 @@ class Workbench {
       const LiveTrial::Plan& plan);
   [[nodiscard]] Result<void> GoTo(History::Direction direction);
   [[nodiscard]] cad::ProgressFn TellProgressOf(const std::string& name) const;
-  void Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state, bool has_person);
+  /** @param why  It is another scene than before, in words; empty: it was opened. */
+  void Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state, bool has_person,
+            const std::string& why = "");
   void Restart(bool has_person);
   [[nodiscard]] LiveListeners MakeListeners(const std::shared_ptr<const OpenScene>& scene,
                                             const LiveOptions& live);
@@ -171,12 +192,14 @@ class Workbench {
   std::atomic<bool> forces_off_{false};
   std::atomic<bool> is_demo_{false};
   std::atomic<bool> ends_demo_after_step_{false};
+  bool has_stopped_{false};
   SceneBuilder builder_;  ///< The worker's own.
 
   mutable std::mutex mutex_;  ///< Of what follows.
   std::shared_ptr<const OpenScene> scene_;
   std::shared_ptr<LiveRun> run_;
   Json failure_;       ///< Of the last file that could not be opened; null: none.
+  Json resumed_;       ///< The event, until the work has gone on from there; null: none.
   LiveState resting_;  ///< While one run has ended and the next has not begun.
   std::array<std::optional<SceneNow>, HandRack::kMostHands> before_take_;  ///< By hand.
   LiveFrame frame_;
@@ -195,7 +218,9 @@ class Workbench {
   Sweeper sweeper_;
   RecordingShelf shelf_;
 
-  JobThread worker_;  ///< The last member: the first that ends.
+  bool can_keep_work_{true};  ///< As far as the disk has said; the keeper's own.
+  JobThread keeper_;          ///< Of the work, on disk.
+  JobThread worker_;          ///< The last member: the first that ends.
 };
 
 }  // namespace hvas::studio

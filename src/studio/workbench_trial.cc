@@ -62,7 +62,7 @@ Result<std::shared_ptr<const OpenScene>> Workbench::FindTrialScene(const LiveTri
     const auto assign = [&](product::Product* product) {
       return plan.condition.fit.empty() ? Result<void>() : mates::AssignFit(product, assignment);
     };
-    auto changed = builder_.Change(*scene(), "trial", assign, nullptr);
+    auto changed = builder_.Change(*scene(), {"trial", nullptr, assign}, nullptr);
     if (!changed) {
       return changed;
     }

@@ -116,6 +116,30 @@ describe("a page that steers", () => {
     await goesOn(page);
   });
 
+  it("says what is the matter above every panel", async () => {
+    await page.evaluate(() => document.activeElement?.blur());
+    for (const key of ["x", "u"]) {  // section, workshop
+      await page.keyboard.press(key);
+    }
+    await page.getByTestId("bench-panel").waitFor();
+    await page.getByTestId("forces-off").click();
+    const banner = page.getByTestId("forces-are-off");
+    await banner.waitFor();
+    await takePicture(page, "fault_above_panels");
+    const isOnTop = await banner.evaluate((element) => {
+      const { left, right, top, bottom } = element.getBoundingClientRect();
+      return [0.05, 0.5, 0.95].every((share) =>
+        element.contains(document.elementFromPoint(left + share * (right - left), (top + bottom) / 2)),
+      );
+    });
+    assert.ok(isOnTop, "no panel covers it");
+    await banner.getByRole("button").click();
+    await banner.waitFor({ state: "detached" });
+    for (const key of ["x", "u"]) {
+      await page.keyboard.press(key);
+    }
+  });
+
   it("is loaded anew with a part in the hand: one goes on with it, or lets it go", async () => {
     await liftShaft(page);
     await page.mouse.up();

@@ -6,6 +6,7 @@ import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { after, before } from "node:test";
 import { chromium } from "playwright-core";
+import WebSocket from "ws";
 
 const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
@@ -22,9 +23,12 @@ export function makeFolder() {
   return folders.at(-1);
 }
 
-/** Starts `hvas studio`; its links, and how to end it. It keeps nothing with what its user keeps, and finds nothing there. */
-export async function startStudio(args = []) {
-  const home = makeFolder();
+/** By link: the cookie of the browser that came by it first. It lets in no other. */
+const cookies = new Map();
+
+/** Starts `hvas studio`; its links, and how to end it. It keeps nothing with what its user keeps, and finds nothing there
+ but what an earlier one with the same `home` has left. */
+export async function startStudio(args = [], { home = makeFolder() } = {}) {
   const child = spawn(kProgram, ["studio", "--no-open", ...args], {
     stdio: ["ignore", "pipe", "inherit"],
     env: { ...process.env, XDG_DATA_HOME: home, XDG_STATE_HOME: home },
@@ -39,16 +43,20 @@ export async function startStudio(args = []) {
     });
     child.on("exit", (code) => reject(new Error(`hvas studio ended with ${code}: ${said}`)));
   });
-  const links = said.match(/http:\S+/g);
+  const links = said.match(/https?:\S+/g);
   const operator = links[0];
   const ended = new Promise((resolve) => child.removeAllListeners("exit").on("exit", resolve));
   return {
     operator,
     viewer: links.at(-1),
-    participant: links.length === 3 ? links[1] : null,  // of a study
+    participant: /participant's: (\S+)/.exec(said)?.[1] ?? null,  // of a study
     origin: new URL(operator).origin,
     stop: async () => {
       child.kill("SIGTERM");
+      return ended;
+    },
+    kill: async () => {
+      child.kill("SIGKILL");
       return ended;
     },
   };
@@ -57,13 +65,60 @@ export async function startStudio(args = []) {
 /** With the token of a link, as its page does it; where, and the cookie that is worth as much. */
 export async function signIn(link) {
   const { origin, hash } = new URL(link);
+  const known = cookies.get(link);
   const answer = await fetch(`${origin}/api/session`, {
     method: "POST",
-    headers: { "Content-Type": "application/json", Origin: origin },
+    headers: { "Content-Type": "application/json", Origin: origin, ...(known === undefined ? {} : { Cookie: known }) },
     body: JSON.stringify({ token: hash.slice("#t=".length) }),
   });
   assert.equal(answer.status, 200);
-  return { origin, cookie: answer.headers.get("set-cookie").split(";")[0] };
+  cookies.set(link, answer.headers.get("set-cookie").split(";")[0]);
+  return { origin, cookie: cookies.get(link) };
+}
+
+/** A client without a page: what it is told, from the beginning, and commands. */
+export async function connect({ origin, cookie }) {
+  const socket = new WebSocket(`${origin.replace("http", "ws")}/ws`, { headers: { Origin: origin, Cookie: cookie } });
+  const told = [];
+  const waiting = new Set();
+  socket.on("message", (data, isBinary) => {
+    if (!isBinary) {
+      told.push(JSON.parse(data));
+      waiting.forEach((look) => look());
+    }
+  });
+  await new Promise((resolve, reject) => socket.on("open", resolve).on("error", reject));
+  socket.off("error", socket.listeners("error")[0]).on("error", () => {});  // the studio may end before it
+  const find = (fits) =>
+    new Promise((resolve) => {
+      const look = () => {
+        const found = told.find(fits);
+        if (found !== undefined) {
+          waiting.delete(look);
+          resolve(found);
+        }
+      };
+      waiting.add(look);
+      look();
+    });
+  let id = 0;
+  const send = (command) => {
+    socket.send(JSON.stringify({ id: ++id, ...command }));
+    const own = id;
+    return find((each) => each.id === own);
+  };
+  const hasOpened = () => find((each) => each.event === "scene" || each.has_scene === true);
+  return { find, send, hasOpened };
+}
+
+/** Pages of one link are the same browser for the studio, whatever they are for the test. */
+async function shareCookie(context, link) {
+  const { origin, hash } = new URL(link);
+  if (/^#t=[^&]+$/.test(hash)) {
+    const { cookie } = await signIn(link);
+    const [name, value] = cookie.split("=");
+    await context.addCookies([{ name, value, url: origin, httpOnly: true, sameSite: "Strict" }]);
+  }
 }
 
 /** Runs a test with a studio, which ends with it. */
@@ -109,8 +164,9 @@ export function launchBrowser() {
 /** A page with a studio in it. `complaints`: what the browser has to say against it. `beforeLoad` gets the page
  before there is anything in it. `isPlain`: set up as by the user of a slow machine, small, without shadows and without
  motion that is not needed, for there is no graphics processor here. Tests that are about the picture have all of it.
+ A stranger has not been there before: it comes by the link alone.
  @param {import("playwright-core").Browser} browser  Of a known type, so that the linter sees steps that nobody waits for. */
-export async function openPage(browser, link, { beforeLoad = null, isPlain = true, ...options } = {}) {
+export async function openPage(browser, link, { beforeLoad = null, isPlain = true, isStranger = false, ...options } = {}) {
   const viewport = isPlain ? { width: 1024, height: 640 } : { width: 1280, height: 720 };
   const reducedMotion = isPlain ? "reduce" : "no-preference";
   const context = await browser.newContext({ viewport, reducedMotion, ...options });
@@ -126,6 +182,9 @@ export async function openPage(browser, link, { beforeLoad = null, isPlain = tru
     }
   });
   await beforeLoad?.(page);
+  if (!isStranger) {
+    await shareCookie(context, link);
+  }
   await page.goto(link);
   return { page, complaints };
 }

@@ -103,11 +103,27 @@ describe("a recording", () => {
     const middle = await waitForState(page, ({ playback }) => Math.abs(playback.timeS / playback.durationS - 0.4) < 0.02);
     await takePicture(page, "recording_middle");
     await page.getByTestId("button-share").click();
-    const other = await openPage(browser, page.url(), { storageState: await page.context().storageState() });
+    await page.waitForFunction(() => /#t=/.test(document.querySelector('[data-testid="share-link"]')?.value ?? ""));
+    const other = await openPage(browser, await page.getByTestId("share-link").inputValue(), { isStranger: true });
+    await page.keyboard.press("Escape");
     await other.page.getByTestId("playing").waitFor({ timeout: 30_000 });
     const shared = await waitForState(other.page, (state) => state.playback !== null && state.hasScene);
     assert.ok(Math.abs(shared.playback.timeS - middle.playback.timeS) < 2e-3, "the link leads to the moment");
     await other.page.context().close();
+
+    // Dragging begins on the mark of an event as well as beside it; a click there goes to its moment.
+    const marked = middle.playback.marks.find(({ kind }) => kind === "captured");
+    const mark = page.locator(".mark.is-captured").first();
+    const at = await mark.boundingBox();
+    await page.mouse.click(at.x + at.width / 2, at.y + at.height / 2);
+    await waitForState(page, ({ playback }) => Math.abs(playback.timeS - marked.timeS) < 1e-6);
+    await page.mouse.move(at.x + at.width / 2, at.y + at.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 0.8 * box.width, at.y + 5, { steps: 5 });
+    await waitForState(page, ({ playback }) => Math.abs(playback.timeS / playback.durationS - 0.8) < 0.02);
+    await page.mouse.move(box.x + 0.2 * box.width, at.y + 5, { steps: 5 });
+    await waitForState(page, ({ playback }) => Math.abs(playback.timeS / playback.durationS - 0.2) < 0.02);
+    await page.mouse.up();
 
     await page.getByTestId("back-to-live").click();
     const live = await waitForState(page, (state) => state.playback === null && state.placements[1] === "placed");
@@ -125,6 +141,17 @@ describe("a recording", () => {
     const count = await rows.count();
     await takePicture(page, "recordings");
     assert.deepEqual(await findBarriers(page), []);
+
+    const names = await rows.getByRole("rowheader").allInnerTexts();
+    assert.equal(new Set(names).size, count, `each has a name of its own: ${names}`);
+    await rows.first().getByRole("button", { name: /^Rename/ }).click();
+    await page.getByTestId("recording-name").fill("Schräg angesetzt");
+    await takePicture(page, "recording_rename");
+    await page.keyboard.press("Enter");
+    await rows.first().getByRole("button", { name: "Schräg angesetzt", exact: true }).waitFor();
+    await page.evaluate(() => fetch("/api/recordings").then((r) => r.json())).then(({ recordings }) =>
+      assert.equal(recordings[0].name, "Schräg angesetzt"),
+    );
 
     const [download] = await Promise.all([page.waitForEvent("download"), rows.first().getByRole("link").click()]);
     assert.match(download.suggestedFilename(), /\.hvasrec$/);

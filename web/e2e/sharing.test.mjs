@@ -3,10 +3,12 @@ import assert from "node:assert/strict";
 import { once } from "node:events";
 import { createServer } from "node:http";
 import { after, before, describe, it } from "node:test";
+import decodeQR from "qr/decode.js";
 import WebSocket from "ws";
 import {
   distance,
   fetchScene,
+  findBarriers,
   launchBrowser,
   openPage,
   poseOf,
@@ -16,10 +18,12 @@ import {
   takeByMouse,
   takePicture,
   waitForAnswer,
+  waitForCalm,
   waitForPicture,
   waitForPlacement,
   waitForRest,
   waitForState,
+  waitForView,
   withStudio,
 } from "./harness.mjs";
 
@@ -137,6 +141,111 @@ describe("two operators", () => {
     await first.getByTestId("hint-lease").click();
     await waitForState(first, (state) => state.hasLease);
   });
+});
+
+describe("a link for others", () => {
+  const studio = shareStudio([kBushing]);
+  let page;
+  before(async () => {
+    ({ page } = await openPage(browser, studio.operator));
+    await waitForPicture(page);
+  });
+  after(() => page.context().close());
+
+  async function share(guest) {
+    if ((await page.getByTestId("share").count()) === 0) {
+      await page.getByTestId("button-share").click();
+    }
+    await page.getByTestId(`share-${guest}`).click();
+    await page.getByTestId(`share-${guest}`).and(page.locator('[aria-checked="true"]')).waitFor();
+    await page.waitForFunction(() => /#t=/.test(document.querySelector('[data-testid="share-link"]')?.value ?? ""));
+    return page.getByTestId("share-link").inputValue();
+  }
+
+  it("is made for whoever is to look on, and shows them the same view", async () => {
+    await page.evaluate(() => document.activeElement?.blur());
+    await page.keyboard.press("5");  // from above
+    await waitForCalm(page);
+    await page.getByTestId("button-share").click();
+    const link = await share("viewer");
+    assert.match(await page.getByTestId("share-local").innerText(), /this machine only[^]*hvas studio --listen \d/);
+    assert.equal(await page.getByTestId("share-qr").count(), 0, "nobody is to scan what leads nowhere");
+    await takePicture(page, "share_viewer");
+    assert.deepEqual(await findBarriers(page), []);
+    for (let k = 0; k < 2; k++) {  // it may be passed on
+      const guest = await openPage(browser, link, { isStranger: true });
+      await waitForPicture(guest.page);
+      assert.equal((await stateOf(guest.page)).role, "viewer");
+      assert.equal(new URL(guest.page.url()).hash.includes("t="), false, "the secret is not in the address bar");
+      assert.match(new URL(guest.page.url()).hash, /^#view&/);
+      const at = (each) => each.evaluate(() => window.hvas.project([0, 0, 0.05]).x / innerWidth);
+      await waitForView(guest.page);
+      assert.ok(Math.abs((await at(guest.page)) - (await at(page))) < 0.02, "the eye stands where this one does");
+      await guest.page.context().close();
+    }
+  });
+
+  it("is made for whoever is to help, and lets in one browser", async () => {
+    const link = await share("operator");
+    await takePicture(page, "share_operator");
+    const helper = await openPage(browser, link, { isStranger: true });
+    await waitForPicture(helper.page);
+    assert.equal((await stateOf(helper.page)).role, "operator");
+    await helper.page.reload();
+    await waitForPicture(helper.page);
+    const late = await openPage(browser, link, { isStranger: true });
+    await late.page.getByText(/has let another browser in/).waitFor();
+    await takePicture(late.page, "share_spent");
+    await page.getByTestId("share-again").click();
+    await page.waitForFunction((old) => document.querySelector('[data-testid="share-link"]')?.value !== old, link);
+    const next = await openPage(browser, await page.getByTestId("share-link").inputValue(), { isStranger: true });
+    await waitForPicture(next.page);
+    for (const each of [helper, late, next]) {
+      await each.page.context().close();
+    }
+  });
+
+  it("made by somebody who looks on lets nobody in", async () => {
+    const guest = await openPage(browser, studio.viewer);
+    await waitForPicture(guest.page);
+    await guest.page.getByTestId("button-share").click();
+    await guest.page.getByTestId("share-link").waitFor();
+    assert.match(await guest.page.getByTestId("share-link").inputValue(), /\/#view&/);
+    assert.match(await guest.page.getByTestId("share").innerText(), /already/);
+    await guest.page.context().close();
+  });
+});
+
+describe("a link of a studio that others can reach", () => {
+  it("has their address, and a code that a camera reads", withStudio(["--listen", "0.0.0.0"], async (studio) => {
+    const here = new URL(studio.operator);
+    here.hostname = "127.0.0.1";  // whatever the others are
+    const { page } = await openPage(browser, here.href, { ignoreHTTPSErrors: true, isStranger: true });
+    await page.getByTestId("empty").waitFor();
+    await page.getByTestId("button-share").click();
+    await page.getByTestId("share-qr").waitFor();
+    assert.equal(await page.getByTestId("share-local").count(), 0);
+    await takePicture(page, "share_qr");
+    assert.deepEqual(await findBarriers(page), []);
+    const origins = page.getByTestId("share-origin");
+    if ((await origins.count()) > 0) {
+      const all = await origins.getByRole("option").allInnerTexts();
+      await origins.selectOption(all.at(-1));
+    }
+    const link = await page.getByTestId("share-link").inputValue();
+    const { data, info } = await page.getByTestId("share-qr").evaluate(async (svg) => {
+      const size = 600;
+      const canvas = new OffscreenCanvas(size, size);
+      const picture = new Image(size, size);
+      picture.src = `data:image/svg+xml,${encodeURIComponent(new XMLSerializer().serializeToString(svg))}`;
+      await picture.decode();
+      const context = canvas.getContext("2d");
+      context.drawImage(picture, 0, 0, size, size);
+      return { data: [...context.getImageData(0, 0, size, size).data], info: { width: size, height: size } };
+    });
+    assert.equal(decodeQR({ ...info, data: Uint8Array.from(data) }), link);
+    await page.context().close();
+  }));
 });
 
 describe("what comes from elsewhere", () => {

@@ -83,6 +83,10 @@ export class Recorder {
     }
   }
 
+  rename(id, name) {
+    this.done.get(id).entry.name = name;
+  }
+
   list() {
     return [...this.done.values()].map((each) => each.entry);
   }

@@ -149,6 +149,9 @@ const server = createServer((request, response) => {
     const found = recorder.answer(id, what);
     const error = { code: "not_found", message: `There is no recording ${id}.`, where: id, remedy: "Choose another one." };
     reply(response, found ? 200 : 404, found?.[1] ?? JSON.stringify({ error }), found?.[0]);
+  } else if (pathname === "/api/link") {
+    const link = { token: "viewer", role: "viewer", is_for_one: false, is_local: false, reachable: [] };
+    request.resume().on("end", () => reply(response, 200, JSON.stringify({ ...link, origins: [`http://${request.headers.host}`] })));
   } else if (pathname === "/api/upload") {
     request.resume().on("end", () => reply(response, 200, JSON.stringify({ upload: "1" })));
   } else {
@@ -215,6 +218,10 @@ const commands = {
   devices: () => hands.search(),
   use: ({ hand, device, scale }) => hands.use(hand, device, scale),
   record: ({ on, name }) => (on ? recorder.start(world, simulation, name) : recorder.stop()),
+  rename_recording({ id, name }) {
+    recorder.rename(id, name);
+    broadcast({ event: "recordings" });
+  },
   delete_recording({ id }) {
     recorder.done.delete(id);
     broadcast({ event: "recordings" });

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import {
+  commonPaths,
   depthOverTime,
   differencePercent,
   findHold,
@@ -127,8 +128,16 @@ describe("the table", () => {
   });
 
   it("sums what adds up and takes the greatest of the forces", () => {
-    expect(totalOf(first)).toEqual({ time_s: 5, path_m: 1, peak_true_n: 50, peak_felt_n: 4, collisions: 2 });
-    expect(totalOf(detail([], [])).peak_true_n).toBe(0);
+    expect(totalOf(first, new Set(["a", "b"]))).toEqual({ time_s: 5, path_m: 1, peak_true_n: 50, peak_felt_n: 4, collisions: 2 });
+    expect(totalOf(detail([], []), new Set()).peak_true_n).toBe(0);
+  });
+
+  it("compares the parts that all recordings have, and no others", () => {
+    const common = commonPaths([first, second]);
+    expect([...common]).toEqual(["b"]);
+    expect([totalOf(first, common).time_s, totalOf(second, common).time_s]).toEqual([3, 6]);
+    expect([...commonPaths([first])]).toEqual(["a", "b"]);
+    expect(commonPaths([first, detail([], [])]).size).toBe(0);
   });
 
   it("tells differences from the first in per cent", () => {

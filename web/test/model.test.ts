@@ -1,8 +1,9 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { t } from "../src/app/i18n";
 import { makeHint } from "../src/model/hints";
 import { Studio } from "../src/model/studio";
 import { buildTree, filterTree, groupAround } from "../src/model/tree";
-import { decodeView, encodeView, type SharedView } from "../src/model/view_link";
+import { decodeView, encodeView, takeToken, withToken, type SharedView } from "../src/model/view_link";
 import { isolate, makeViewState, select, setHidden } from "../src/model/view_state";
 import type { Scene } from "../src/protocol/messages";
 import { makePart } from "./toy_part";
@@ -93,10 +94,16 @@ describe("the view", () => {
       section: { axis: 2, offset: -0.25, isFlipped: true },
     };
     expect(decodeView(`#${encodeView(shared)}`)).toEqual(shared);
+    const { token, rest } = takeToken(`#${withToken("ab-_9", encodeView(shared))}`);
+    expect(token).toBe("ab-_9");
+    expect(decodeView(rest)).toEqual(shared);
   });
 
   it("takes nothing from fragments that are not its own", () => {
     expect(decodeView("#t=secret")).toBeNull();
+    expect(takeToken("#t=secret")).toEqual({ token: "secret", rest: "" });
+    expect(takeToken("#view&eye=1,2,3&to=0,0,0")).toEqual({ token: null, rest: "view&eye=1,2,3&to=0,0,0" });
+    expect(takeToken("")).toEqual({ token: null, rest: "" });
     expect(decodeView("#view&eye=1,2&to=0,0,0")).toBeNull();
     expect(decodeView("#view&eye=1,2,3&to=0,0,0&cut=9,4,1")?.section).toBeNull();
   });
@@ -111,7 +118,18 @@ describe("hints", () => {
 
   it("follow the state of what is held", () => {
     const held = { occurrence: 1, state: "mating", mate: null } as const;
-    expect(makeHint({ ...base, held })).toMatchObject({ key: "hint.mating", params: { part: "shaft" } });
+    expect(makeHint({ ...base, held })).toMatchObject({ key: "hint.matingPlace", params: { part: "shaft" } });
+  });
+
+  it("have no gap where it is not known what the part is near to", () => {
+    const mate = { id: 4, a: 0, b: 1 } as Scene["mates"][number];
+    for (const state of ["free", "near", "captured", "mating", "seated"] as const) {
+      for (const scenes of [scene, { ...scene, mates: [mate] }]) {
+        const hint = makeHint({ ...base, scene: scenes, held: { occurrence: 1, state, mate: 4 } });
+        const text = t(hint.key, hint.params);
+        expect(text, state).not.toMatch(/ \.|\{| ,|\s:/);
+      }
+    }
   });
 
   it("tell a viewer that he watches, and everyone when all is done", () => {
@@ -135,7 +153,11 @@ class FakeWorker {
   }
 
   say(message: unknown): void {
-    this.onmessage({ data: { type: "text", text: JSON.stringify(message) } });
+    this.reply({ type: "text", text: JSON.stringify(message) });
+  }
+
+  reply(data: unknown): void {
+    this.onmessage({ data });
   }
 }
 
@@ -207,9 +229,50 @@ describe("the session", () => {
     FakeWorker.last.say({ event: "failed", error });
     expect(store.loading.value).toBeNull();
     expect(store.failure.value).toBeNull();
-    expect(store.log.value[0]).toMatchObject({ kind: "failed" });
+    expect(store.log.value[0]).toMatchObject({ kind: "stopped" });
     FakeWorker.last.say({ event: "failed", error: { ...error, code: "invalid" } });
     expect(store.failure.value?.code).toBe("invalid");
+    expect(store.log.value[0]).toMatchObject({ kind: "failed" });
+  });
+
+  it("tells a change of the product from one that was opened", async () => {
+    const { store } = await start();
+    FakeWorker.last.say({ event: "scene", epoch: 8, why: "fit m0=H7/g6" });
+    expect(store.log.value[0]).toMatchObject({ kind: "changed", params: { what: "fit m0=H7/g6" } });
+    FakeWorker.last.say({ event: "scene", epoch: 9, why: null });
+    expect(store.log.value[0]).toMatchObject({ kind: "opened" });
+    FakeWorker.last.say({ event: "resumed", is_resumed: true, seated: 3, edits: 1 });
+    expect(store.log.value[0]).toMatchObject({ kind: "resumed", params: { isResumed: 1, seated: 3, edits: 1 } });
+  });
+
+  it("counts limits of the force beside the log, and alarms in one entry", async () => {
+    const { store } = await start();
+    const before = store.log.value.length;
+    for (let k = 0; k < 70; k++) {
+      FakeWorker.last.say({ event: "safety", reasons: k % 2 === 0 ? ["too large"] : ["too large", "too sudden"], gate_actions: 1 << 4 });
+    }
+    expect(store.log.value.length).toBe(before);
+    expect([...store.limits.value]).toEqual([["too large", 70], ["too sudden", 35]]);
+    for (let k = 0; k < 3; k++) {
+      FakeWorker.last.say({ event: "safety", reasons: ["client silent"], gate_actions: 1 << 7 });
+    }
+    FakeWorker.last.say({ event: "safety", reasons: ["kicked"], gate_actions: 1 << 12 });
+    expect(store.log.value.slice(0, 2)).toMatchObject([{ params: { text: "kicked" } }, { params: { text: "client silent" }, count: 3 }]);
+    expect(store.log.value.length).toBe(before + 2);
+    expect(store.limits.value.size).toBe(2);
+  });
+
+  it("says that it is not let in any more where the server has other links, and comes back where it has the same", async () => {
+    const { store } = await start();
+    const error = { code: "invalid", message: "nobody knows you here", where: "", remedy: "open the link" };
+    FakeWorker.last.reply({ type: "closed" });
+    expect(store.link.value).toBe("lost");
+    vi.stubGlobal("fetch", () => Promise.resolve(new Response(JSON.stringify({ error }), { status: 401 })));
+    FakeWorker.last.reply({ type: "closed" });
+    await vi.waitFor(() => expect(store.link.value).toBe("denied"));
+    expect(store.denial.value?.remedy).toBe("open the link");
+    FakeWorker.last.reply({ type: "open" });
+    expect(store.link.value).toBe("open");
   });
 
   it("answers each command once, and shows a refusal", async () => {

@@ -10,6 +10,7 @@ const LAYERS = ["protocol", "model", "view3d", "app"];
 const PACKAGES = {
   preact: ["app"],
   "preact/hooks": ["app"],
+  qr: ["app"],
   uplot: ["app"],
   "uplot/dist/uPlot.min.css": ["app"],
   three: ["view3d"],

@@ -1,10 +1,15 @@
 #include "studio/access.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "base/test/temporary_folder.h"
 
 namespace hvas::studio {
 namespace {
@@ -15,11 +20,20 @@ std::string HeaderWith(const std::string& value) {
   return "hvas_session_" + std::to_string(kPort) + "=" + value;
 }
 
-/** What stands between '=' and the first ';' of a Set-Cookie. */
-std::string SessionOf(const Access& access, Role role) {
-  const std::string cookie = access.SetCookie(role);
-  const std::size_t start = cookie.find('=') + 1;
-  return cookie.substr(start, cookie.find(';') - start);
+/** What a browser sends as its cookie after this Set-Cookie. */
+std::string CookieIn(const std::string& set_cookie) {
+  return set_cookie.substr(0, set_cookie.find(';'));
+}
+
+/** The Cookie header of a browser that has come by a link. */
+std::string ComeBy(Access* access, const std::string& token, const std::string& cookie = "") {
+  const auto admission = access->Admit(token, cookie);
+  EXPECT_TRUE(admission.has_value());
+  return admission ? CookieIn(admission->set_cookie) : "";
+}
+
+std::string ValueOf(const std::string& header) {
+  return header.substr(header.find('=') + 1);
 }
 
 TEST(AccessTest, TokenHas32LettersOf64) {  // N11: 192 random bits
@@ -191,66 +205,205 @@ TEST(AccessTest, OriginAtTheSchemesOwnPortHasNone) {  // as browsers write it
 }
 
 TEST(AccessTest, TokenGivesItsRole) {
+  for (const Role role : kRoles) {
+    Access access({}, kPort, false);
+    EXPECT_EQ(access.Admit(access.token(role), "")->role, role);
+    for (const std::string& wrong :
+         {std::string(), access.token(role).substr(1), access.token(role) + "A", MakeToken()}) {
+      EXPECT_EQ(access.Admit(wrong, "").error().code, ErrorCode::kNotFound) << wrong;
+    }
+  }
   const Access access({}, kPort, false);
   EXPECT_NE(access.token(Role::kOperator), access.token(Role::kViewer));
-  EXPECT_EQ(access.RoleOfToken(access.token(Role::kOperator)), Role::kOperator);
-  EXPECT_EQ(access.RoleOfToken(access.token(Role::kViewer)), Role::kViewer);
-  EXPECT_EQ(access.RoleOfToken(""), std::nullopt);
-  EXPECT_EQ(access.RoleOfToken(access.token(Role::kOperator).substr(1)), std::nullopt);
-  EXPECT_EQ(access.RoleOfToken(access.token(Role::kOperator) + "A"), std::nullopt);
-  EXPECT_EQ(access.RoleOfToken(MakeToken()), std::nullopt);
+}
+
+TEST(AccessTest, LinkToSteerLetsOneBrowserIn) {
+  for (const Role role : {Role::kOperator, Role::kParticipant}) {
+    Access access({}, kPort, false);
+    const std::string token = access.token(role);
+    const std::string first = ComeBy(&access, token);
+    const std::string viewer = ComeBy(&access, access.token(Role::kViewer));
+    for (const std::string& other : {std::string(), viewer, HeaderWith(MakeToken())}) {
+      const auto again = access.Admit(token, other);
+      ASSERT_FALSE(again.has_value()) << other;
+      EXPECT_EQ(again.error().code, ErrorCode::kInvalid);
+      EXPECT_NE(again.error().remedy, "");
+    }
+    EXPECT_EQ(access.Admit(token, first)->role, role) << "the same browser comes again";
+    EXPECT_EQ(ComeBy(&access, token, first), first);
+  }
+}
+
+TEST(AccessTest, LinkToLookOnIsForWhoeverHasIt) {
+  Access access({}, kPort, false);
+  const std::string one = ComeBy(&access, access.token(Role::kViewer));
+  const std::string other = ComeBy(&access, access.token(Role::kViewer));
+  EXPECT_NE(one, other);
+  EXPECT_EQ(access.RoleOfCookie(one), Role::kViewer);
+  EXPECT_EQ(access.RoleOfCookie(other), Role::kViewer);
+  EXPECT_EQ(access.Invite(Role::kViewer), access.token(Role::kViewer));
+}
+
+TEST(AccessTest, EachInvitationLetsOneMoreBrowserIn) {
+  Access access({}, kPort, false);
+  const std::string first = access.Invite(Role::kOperator);
+  const std::string second = access.Invite(Role::kOperator);
+  EXPECT_NE(first, second);
+  EXPECT_EQ(access.RoleOfCookie(ComeBy(&access, first)), Role::kOperator);
+  EXPECT_FALSE(access.Admit(first, "").has_value());
+  EXPECT_EQ(access.RoleOfCookie(ComeBy(&access, second)), Role::kOperator);
+}
+
+TEST(AccessTest, FreshLinkIsAnotherOneOnceSomebodyHasComeByIt) {
+  Access access({}, kPort, false);
+  const std::string fresh = access.FindFresh(Role::kParticipant);
+  EXPECT_EQ(access.FindFresh(Role::kParticipant), fresh);
+  ComeBy(&access, fresh);
+  EXPECT_NE(access.FindFresh(Role::kParticipant), fresh);
+}
+
+TEST(AccessTest, BrowserThatHasLookedOnSteersAgainByItsOwnLink) {
+  Access access({}, kPort, false);
+  const std::string token = access.token(Role::kOperator);
+  const std::string cookie = ComeBy(&access, token);
+  EXPECT_EQ(ComeBy(&access, access.token(Role::kViewer), cookie), cookie);
+  EXPECT_EQ(access.RoleOfCookie(cookie), Role::kViewer);
+  ComeBy(&access, token, cookie);
+  EXPECT_EQ(access.RoleOfCookie(cookie), Role::kOperator);
+}
+
+TEST(AccessTest, ManyWhoLookOnDriveNobodyOutWhoSteers) {
+  Access access({}, kPort, false);
+  const std::string steers = ComeBy(&access, access.token(Role::kOperator));
+  for (std::size_t i = 0; i < 3 * Access::kMostBrowsers; ++i) {
+    ComeBy(&access, access.token(Role::kViewer));
+    (void)access.Invite(Role::kOperator);
+  }
+  EXPECT_EQ(access.RoleOfCookie(steers), Role::kOperator);
+  EXPECT_EQ(ComeBy(&access, access.token(Role::kOperator), steers), steers);
+  EXPECT_LE(access.Keep().browsers.size(), Access::kMostBrowsers);
+  EXPECT_LE(access.Keep().links.size(), Access::kMostLinks);
 }
 
 TEST(AccessTest, CookieGivesItsRole) {
-  const Access access({}, kPort, false);
-  for (const Role role : {Role::kOperator, Role::kViewer}) {
-    const std::string session = SessionOf(access, role);
+  for (const Role role : kRoles) {
+    Access access({}, kPort, false);
+    const std::string session = ValueOf(ComeBy(&access, access.token(role)));
     EXPECT_EQ(access.RoleOfCookie(HeaderWith(session)), role);
     EXPECT_EQ(access.RoleOfCookie("theme=dark; " + HeaderWith(session) + "; x=y"), role);
     EXPECT_EQ(access.RoleOfCookie("x" + HeaderWith(session)), std::nullopt);
     EXPECT_EQ(access.RoleOfCookie(HeaderWith(session + "A")), std::nullopt);
     EXPECT_EQ(access.RoleOfCookie(session), std::nullopt);
+    EXPECT_EQ(access.RoleOfCookie(""), std::nullopt);
+    EXPECT_EQ(access.RoleOfCookie(HeaderWith("")), std::nullopt);
   }
-  EXPECT_EQ(access.RoleOfCookie(""), std::nullopt);
-  EXPECT_EQ(access.RoleOfCookie(HeaderWith("")), std::nullopt);
 }
 
 TEST(AccessTest, TokenIsNoSession) {  // a link that was looked over a shoulder once is not a cookie
-  const Access access({}, kPort, false);
+  Access access({}, kPort, false);
   for (const Role role : {Role::kOperator, Role::kViewer}) {
     EXPECT_EQ(access.RoleOfCookie(HeaderWith(access.token(role))), std::nullopt);
-    EXPECT_EQ(access.RoleOfToken(SessionOf(access, role)), std::nullopt);
+    const std::string session = ValueOf(ComeBy(&access, access.token(role)));
+    EXPECT_FALSE(access.Admit(session, "").has_value());
   }
 }
 
 TEST(AccessTest, SecretsOfOneServerAreNoneOfAnother) {
-  const Access one({}, kPort, false);
-  const Access other({}, kPort, false);
-  EXPECT_EQ(other.RoleOfToken(one.token(Role::kOperator)), std::nullopt);
-  EXPECT_EQ(other.RoleOfCookie(HeaderWith(SessionOf(one, Role::kOperator))), std::nullopt);
+  Access one({}, kPort, false);
+  Access other({}, kPort, false);
+  EXPECT_FALSE(other.Admit(one.token(Role::kOperator), "").has_value());
+  EXPECT_EQ(other.RoleOfCookie(ComeBy(&one, one.token(Role::kOperator))), std::nullopt);
 }
 
 TEST(AccessTest, CookiesOfTwoServersOnOneHostDoNotMeet) {  // browsers tell no ports apart
-  const Access one({}, kPort, false);
-  const Access other({}, kPort + 1, false);
+  Access one({}, kPort, false);
+  Access other({}, kPort + 1, false);
   EXPECT_NE(one.cookie_name(), other.cookie_name());
-  const auto pair_of = [](const Access& access, Role role) {
-    const std::string cookie = access.SetCookie(role);
-    return cookie.substr(0, cookie.find(';'));
-  };
-  const std::string both = pair_of(one, Role::kOperator) + "; " + pair_of(other, Role::kViewer);
+  const std::string both =
+      ComeBy(&one, one.token(Role::kOperator)) + "; " + ComeBy(&other, other.token(Role::kViewer));
   EXPECT_EQ(one.RoleOfCookie(both), Role::kOperator);
   EXPECT_EQ(other.RoleOfCookie(both), Role::kViewer);
 }
 
 TEST(AccessTest, CookieIsOutOfReachOfScriptsAndOtherSites) {
-  const std::string plain = Access({}, kPort, false).SetCookie(Role::kOperator);
+  Access access({}, kPort, false);
+  const std::string plain = access.Admit(access.token(Role::kOperator), "")->set_cookie;
   EXPECT_NE(plain.find("; HttpOnly"), std::string::npos);
   EXPECT_NE(plain.find("; SameSite=Strict"), std::string::npos);
   EXPECT_NE(plain.find("; Path=/"), std::string::npos);
   EXPECT_EQ(plain.find("Domain"), std::string::npos);
   EXPECT_EQ(plain.find("; Secure"), std::string::npos);
-  EXPECT_NE(Access({}, kPort, true).SetCookie(Role::kOperator).find("; Secure"), std::string::npos);
+  Access safe({}, kPort, true);
+  EXPECT_NE(safe.Admit(safe.token(Role::kOperator), "")->set_cookie.find("; Secure"),
+            std::string::npos);
+}
+
+class KeptAccessTest : public ::testing::Test {
+ protected:
+  hvas::testing::TemporaryFolder folder_;
+  const std::filesystem::path file_{folder_ / "access.json"};
+};
+
+TEST_F(KeptAccessTest, NextStartKnowsLinksAndBrowsersOfTheOneBefore) {
+  Access before({}, kPort, false);
+  const std::string steers = ComeBy(&before, before.token(Role::kOperator));
+  const std::string looks_on = ComeBy(&before, before.token(Role::kViewer));
+  const std::string unused = before.Invite(Role::kOperator);
+  ASSERT_TRUE(SaveAccess(file_, before.Keep()));
+
+  const auto kept = LoadAccess(file_);
+  ASSERT_TRUE(kept.has_value()) << kept.error().ToString();
+  Access after({}, kPort, false, *kept);
+  EXPECT_EQ(after.token(Role::kOperator), before.token(Role::kOperator));
+  EXPECT_EQ(after.RoleOfCookie(steers), Role::kOperator);
+  EXPECT_EQ(after.RoleOfCookie(looks_on), Role::kViewer);
+  EXPECT_EQ(ComeBy(&after, after.token(Role::kOperator), steers), steers);
+  EXPECT_FALSE(after.Admit(after.token(Role::kOperator), "").has_value());
+  EXPECT_EQ(after.RoleOfCookie(ComeBy(&after, unused)), Role::kOperator);
+}
+
+TEST_F(KeptAccessTest, CountsAtItsOwnPortOnly) {
+  Access before({}, kPort, false);
+  Access after({}, kPort + 1, false, before.Keep());
+  EXPECT_NE(after.token(Role::kOperator), before.token(Role::kOperator));
+  EXPECT_EQ(after.Keep().port, kPort + 1);
+}
+
+TEST_F(KeptAccessTest, FileIsNobodyElses) {
+  const Access access({}, kPort, false);
+  ASSERT_TRUE(SaveAccess(file_, access.Keep()));
+  using std::filesystem::perms;
+  EXPECT_EQ(std::filesystem::status(file_).permissions(), perms::owner_read | perms::owner_write);
+  std::filesystem::permissions(file_, perms::group_read, std::filesystem::perm_options::add);
+  EXPECT_EQ(LoadAccess(file_).error().code, ErrorCode::kInvalid);
+}
+
+TEST_F(KeptAccessTest, DamagedFilesAreRefused) {
+  Access access({}, kPort, false);
+  ComeBy(&access, access.token(Role::kOperator));
+  ASSERT_TRUE(SaveAccess(file_, access.Keep()));
+  const nlohmann::json good = nlohmann::json::parse(std::ifstream(file_));
+  const auto with = [&good](const char* pointer, const nlohmann::json& value) {
+    nlohmann::json bad = good;
+    bad[nlohmann::json::json_pointer(pointer)] = value;
+    return bad;
+  };
+  for (const nlohmann::json& bad :
+       {nlohmann::json(), nlohmann::json::array(), nlohmann::json::object(), with("/version", 2),
+        with("/port", 65536), with("/port", -1), with("/port", 1e300), with("/links", 5),
+        with("/links", nlohmann::json::array()), with("/links/0/token", "short"),
+        with("/links/0/token", 5), with("/links/0/role", "viewer"), with("/links/0/role", "king"),
+        with("/links/0/browser", "x"), with("/browsers", {{"secret", 5}}),
+        with("/browsers/0/secret", ""), with("/browsers/0/role", nlohmann::json())}) {
+    std::ofstream(file_) << bad.dump();
+    const auto read = LoadAccess(file_);
+    ASSERT_FALSE(read.has_value()) << bad;
+    EXPECT_EQ(read.error().code, ErrorCode::kUnreadable) << bad;
+  }
+  std::filesystem::remove(file_);
+  EXPECT_EQ(LoadAccess(file_).error().code, ErrorCode::kNotFound);
+  std::filesystem::create_directory(file_);
+  EXPECT_EQ(LoadAccess(file_).error().code, ErrorCode::kInvalid);
 }
 
 }  // namespace

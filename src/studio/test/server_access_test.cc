@@ -102,6 +102,38 @@ TEST_F(ServerTest, TokenIsExchangedForACookieOfItsRole) {
   }
 }
 
+TEST_F(ServerTest, LinkToSteerIsExchangedOnce) {
+  const std::string cookie = CookieOf(Role::kOperator);
+  const Reply again = GiveToken(TokenOf(Role::kOperator));
+  EXPECT_EQ(again.status, 401);
+  EXPECT_EQ(again.headers.count("set-cookie"), 0u);
+  EXPECT_NE(Json::parse(again.body)["error"]["remedy"], "");
+  const std::string body = Json{{"token", TokenOf(Role::kOperator)}}.dump();
+  EXPECT_EQ(Post("/api/session", body, {{"Cookie", cookie}}).status, 200) << "its own browser";
+  EXPECT_EQ(GiveToken(TokenOf(Role::kViewer)).status, 200);
+  EXPECT_EQ(GiveToken(TokenOf(Role::kViewer)).status, 200) << "for whoever has it";
+}
+
+TEST_F(ServerTest, WhoeverSteersMakesLinksForOthers) {
+  const auto ask = [this](Role asks, const Json& body) {
+    return Post("/api/link", body.dump(), {{"Cookie", CookieOf(asks)}});
+  };
+  for (const char* role : {"operator", "viewer"}) {
+    const Reply made = ask(Role::kOperator, {{"role", role}});
+    ASSERT_EQ(made.status, 200);
+    const Json link = Json::parse(made.body);
+    EXPECT_EQ(link["is_local"], true);
+    EXPECT_EQ(link["origins"], Json::array({origin()}));
+    EXPECT_EQ(Json::parse(GiveToken(link["token"]).body)["role"], role);
+  }
+  EXPECT_EQ(ask(Role::kViewer, {{"role", "viewer"}}).status, 403);
+  for (const Json& wrong : {Json(), Json{{"role", "king"}}, Json{{"role", 5}}, Json::array(),
+                            Json{{"role", "participant"}}}) {  // there is no study
+    EXPECT_EQ(ask(Role::kOperator, wrong).status, 400) << wrong;
+  }
+  EXPECT_EQ(Post("/api/link", "{}").status, 401);
+}
+
 TEST_F(ServerTest, WrongTokensAreRefused) {
   EXPECT_EQ(GiveToken("").status, 401);
   EXPECT_EQ(GiveToken(MakeToken()).status, 401);

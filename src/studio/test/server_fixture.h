@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -87,10 +88,14 @@ class ServerTest : public ::testing::Test {
     return Post("/api/session", Json{{"token", token}}.dump());
   }
 
-  /** As the Cookie header of a client of a role. */
+  /** As the Cookie header of a browser that has come by the link of a role. */
   std::string CookieOf(Role role) {
-    const std::string given = GiveToken(TokenOf(role)).headers["set-cookie"];
-    return given.substr(0, given.find(';'));
+    std::string& cookie = cookies_[role];
+    if (cookie.empty()) {
+      const std::string given = GiveToken(TokenOf(role)).headers["set-cookie"];
+      cookie = given.substr(0, given.find(';'));
+    }
+    return cookie;
   }
 
   [[nodiscard]] std::string CookieName() const {
@@ -160,6 +165,7 @@ class ServerTest : public ::testing::Test {
   std::filesystem::path trusted_;
   std::unique_ptr<Workbench> bench_;
   std::unique_ptr<Server> server_;
+  std::map<Role, std::string> cookies_;
   bool started_{false};
 };
 

@@ -115,7 +115,8 @@ TEST_F(ServerTest, UploadIsOpenedByItsId) {
       client.get(),
       {{"id", 2}, {"command", "open"}, {"upload", Json::parse(reply.body)["upload"]}})["ok"]);
   EXPECT_FALSE(AwaitEvent(client.get(), "scene").is_null());
-  std::ifstream kept(folder_ / "1" / "part.stp");
+  const std::filesystem::path own = std::filesystem::directory_iterator(folder_)->path();
+  std::ifstream kept(own / "part.stp");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(kept), {}), bytes);
 }
 

@@ -140,6 +140,41 @@ TEST_F(ServerTest, StopsWithClientsConnected) {
   EXPECT_TRUE(uploading.IsClosed());
 }
 
+TEST_F(ServerTest, NextStartHasTheSameAddressAndKnowsWhoHasComeIn) {
+  const auto serve = [this](Workbench* bench) {
+    ServerOptions options;
+    options.upload_folder = folder_;
+    options.access_file = temporary_ / "access.json";
+    return std::make_unique<Server>(bench, std::vector<Example>(), options);
+  };
+  End();
+  Workbench bench(testing::SmallBench());
+  server_ = serve(&bench);
+  ASSERT_TRUE(server_->Start());
+  EXPECT_FALSE(server_->has_kept_links());
+  const std::string link = server_->LinkFor(Role::kOperator);
+  const std::string cookie = CookieOf(Role::kOperator);
+  server_.reset();  // what is kept does not wait for the end: it was written as they came in
+
+  server_ = serve(&bench);
+  ASSERT_TRUE(server_->Start());
+  EXPECT_TRUE(server_->has_kept_links());
+  EXPECT_EQ(server_->LinkFor(Role::kOperator), link);
+  EXPECT_EQ(Get("/api/scene", {{"Cookie", cookie}}).status, 404) << "nothing is open, but let in";
+  const std::string token = Json{{"token", TokenOf(Role::kOperator)}}.dump();
+  EXPECT_EQ(Post("/api/session", token, {{"Cookie", cookie}}).status, 200);
+  EXPECT_EQ(GiveToken(TokenOf(Role::kOperator)).status, 401) << "another browser";
+
+  const auto other = serve(&bench);  // the port is taken
+  ASSERT_TRUE(other->Start());
+  EXPECT_FALSE(other->has_kept_links());
+  EXPECT_NE(other->port(), server_->port());
+  other->Stop();
+  server_->Stop();
+  server_.reset();
+  bench.Stop();
+}
+
 TEST_F(ServerTest, PortThatIsTakenIsAnError) {
   Workbench bench(testing::SmallBench());
   ServerOptions options;

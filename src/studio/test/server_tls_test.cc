@@ -36,7 +36,7 @@ class TlsServerTest : public ServerTest {
 TEST_F(TlsServerTest, PageCookieSceneAndSocketComeEncrypted) {  // N11: headsets need https
   EXPECT_EQ(server_->LinkFor(Role::kOperator).substr(0, 18), "https://127.0.0.1:");
   EXPECT_EQ(Get("/").status, 200);
-  const Reply given = GiveToken(TokenOf(Role::kOperator));
+  const Reply given = GiveToken(TokenOf(Role::kViewer));
   EXPECT_EQ(given.status, 200);
   EXPECT_NE(given.headers.at("set-cookie").find("; Secure"), std::string::npos);
   const auto client = JoinAndOpen();

@@ -150,6 +150,43 @@ class StudyDeskTest : public ::testing::Test {
   std::int64_t now_ns_{1'000'000'000};
 };
 
+TEST_F(StudyDeskTest, NobodyGivesTheParticipantsHandAwayOrTakesIt) {
+  Join();
+  FakeLink other_link;
+  const std::string other = *hub_.Join(Role::kOperator, &other_link);
+  const auto lease = [this](const std::string& id, FakeLink* link, Json command) {
+    command["command"] = "lease";
+    command["id"] = 7;
+    link->texts.clear();
+    hub_.OnText(id, command.dump(), 1'000'000'000);
+    for (const std::string& text : link->texts) {
+      const Json json = Json::parse(text);
+      if (json.value("id", 0) == 7) {
+        return json["ok"].get<bool>();
+      }
+    }
+    return true;
+  };
+  for (const Json& command :
+       {Json{{"action", "give"}, {"to", other}}, Json{{"action", "give"}, {"to", experimenter_}},
+        Json{{"action", "release"}}, Json{{"action", "request"}},
+        Json{{"action", "give"}, {"to", other}, {"hand", 0}}}) {
+    EXPECT_FALSE(lease(participant_, &participant_link_, command)) << command;
+    EXPECT_FALSE(lease(experimenter_, &experimenter_link_, command)) << command;
+  }
+  EXPECT_EQ(Json::parse(other_link.texts.front())["event"], "hello");
+  FakeLink late_link;
+  (void)*hub_.Join(Role::kOperator, &late_link);
+  for (const std::string& text : late_link.texts) {
+    const Json json = Json::parse(text);
+    if (json["event"] == "roles") {
+      for (const Json& client : json["clients"]) {
+        EXPECT_EQ(client["has_lease"], client["id"] == participant_);
+      }
+    }
+  }
+}
+
 TEST_F(StudyDeskTest, EachLinkMayDoWhatIsItsOwn) {
   Join();
   EXPECT_NE(Do(participant_, {{"action", "begin"}}), "consent");

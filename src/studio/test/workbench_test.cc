@@ -327,21 +327,21 @@ TEST_F(WorkbenchTest, ChangeOfTheProductIsCompiledAndUndone) {
   OpenPeg();
   const auto before = bench_.scene();
   ASSERT_FALSE(before->model->product->mates.empty());
-  EXPECT_FALSE(bench_.Change("nothing", [](product::Product*) -> Result<void> {
-    return Fail(ErrorCode::kInvalid, "no", "", "");
-  }));
+  EXPECT_FALSE(bench_.Change({"nothing", nullptr, [](product::Product*) -> Result<void> {
+                                return Fail(ErrorCode::kInvalid, "no", "", "");
+                              }}));
   std::size_t start = log_.size();
-  ASSERT_TRUE(bench_.Change("change", [](product::Product* product) -> Result<void> {
-    product->name = "changed";
-    return {};
-  }));
-  ASSERT_TRUE(log_.Await("scene", start));
+  ASSERT_TRUE(bench_.Change({"change", nullptr, [](product::Product* product) -> Result<void> {
+                               product->name = "changed";
+                               return {};
+                             }}));
+  EXPECT_EQ((*log_.Await("scene", start))["why"], "change");
   EXPECT_EQ(bench_.scene()->model->product->name, "changed");
   EXPECT_EQ(before->model->product->name, "rig");  // a model is compiled, never edited
   ASSERT_TRUE(AwaitTrue([&] { return bench_.state().parts.size() == 2; }));
   start = log_.size();
   ASSERT_TRUE(bench_.Undo());
-  ASSERT_TRUE(log_.Await("scene", start));
+  EXPECT_EQ((*log_.Await("scene", start))["why"], "undone");
   EXPECT_EQ(bench_.scene(), before);
 }
 
@@ -503,13 +503,54 @@ TEST_F(WorkbenchTest, ChangeOfTheProductEndsTheRecording) {
   ASSERT_TRUE(bench_.StartRecording(""));
   ASSERT_TRUE(log_.Await("recording"));
   const std::size_t start = log_.size();
-  ASSERT_TRUE(bench_.Change("change", [](product::Product*) -> Result<void> { return {}; }));
+  ASSERT_TRUE(
+      bench_.Change({"change", nullptr, [](product::Product*) -> Result<void> { return {}; }}));
   const auto ended = log_.Await("recording", start);
   ASSERT_TRUE(ended);
   EXPECT_EQ((*ended)["on"], false);
   const auto described = bench_.shelf().Describe((*ended)["id"]);
   ASSERT_TRUE(described);
   EXPECT_EQ((*described)["is_complete"], true);
+}
+
+TEST_F(WorkbenchTest, RecordingsHaveNamesOfTheirOwnAndOthersWhenTheyAreGiven) {
+  OpenPeg();
+  std::vector<std::string> ids;
+  for (int i = 0; i < 2; ++i) {
+    const std::size_t start = log_.size();
+    ASSERT_TRUE(bench_.StartRecording(""));
+    ASSERT_TRUE(
+        log_.Await([](const Json& e) { return e["event"] == "recording" && e["on"]; }, start));
+    ASSERT_TRUE(bench_.StopRecording());
+    const auto ended =
+        log_.Await([](const Json& e) { return e["event"] == "recording" && !e["on"]; }, start);
+    ASSERT_TRUE(ended);
+    ids.push_back((*ended)["id"]);
+  }
+  const auto name_of = [this](const std::string& id) -> std::string {
+    const auto described = bench_.shelf().Describe(id);
+    return described ? (*described)["name"] : "";
+  };
+  EXPECT_NE(name_of(ids[0]), name_of(ids[1]));
+  const auto file = bench_.shelf().Find(ids[0]);
+  ASSERT_TRUE(file);
+  const auto written = std::filesystem::last_write_time(*file);
+  ASSERT_TRUE(bench_.RenameRecording(ids[0], "Erster Versuch, H7/p6 \u00e4"));
+  EXPECT_EQ(name_of(ids[0]), "Erster Versuch, H7/p6 \u00e4");
+  EXPECT_EQ(std::filesystem::last_write_time(*file), written) << "the record stays as it was";
+  bool is_listed = false;
+  const Json list = bench_.shelf().List();
+  for (const Json& entry : list["recordings"]) {
+    is_listed = is_listed || (entry["id"] == ids[0] && entry["name"] == name_of(ids[0]));
+  }
+  EXPECT_TRUE(is_listed);
+  for (const std::string& bad : {std::string(), std::string("  "), std::string(300, 'x')}) {
+    EXPECT_FALSE(bench_.RenameRecording(ids[0], bad)) << bad;
+  }
+  EXPECT_FALSE(bench_.RenameRecording("../none", "x"));
+  for (const std::string& id : ids) {
+    EXPECT_TRUE(bench_.DeleteRecording(id));
+  }
 }
 
 TEST_F(WorkbenchTest, RecordingsAreFoundByTheirIdAlone) {
@@ -550,7 +591,7 @@ TEST(WorkbenchStopTest, WhatHasNotBegunIsDropped) {
     ++changes;
     return {};
   };
-  ASSERT_TRUE(bench.Change("behind it", change));  // is tried at once
+  ASSERT_TRUE(bench.Change({"behind it", nullptr, change}));  // is tried at once
   bench.Stop();
   EXPECT_EQ(changes, 1);
 }

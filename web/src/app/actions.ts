@@ -4,7 +4,7 @@ import { clearPicks, isolate, select, setHidden, showAll, toggleGhost, type Tool
 import type { PathKind } from "../model/part_path";
 import type { ViewName } from "../view3d/camera_rig";
 import { canSteer, paths, store, studio, ui, view, viewport } from "./app_state";
-import { chooseFile, copyLink, saveRuns, saveScreenshot } from "./exports";
+import { chooseFile, saveRuns, saveScreenshot } from "./exports";
 import { t } from "./i18n";
 import type { MessageKey } from "./en";
 import { action, toggle, type Action } from "./action";
@@ -72,7 +72,7 @@ function giveLease(): void {
 const fileActions: Action[] = [
   action("open", "action.open", chooseFile, { keys: ["ctrl+o"], isEnabled: canSteer }),
   action("screenshot", "action.screenshot", () => void saveScreenshot(), { startsGroup: true, isEnabled: hasScene }),
-  action("share", "action.share", () => void copyLink(), { isEnabled: hasScene }),
+  action("share", "action.share", () => (ui.overlay.value = { kind: "share" }), { isEnabled: () => store.link.value === "open" }),
   action("runs", "action.runs", saveRuns, { isEnabled: () => store.runs.value.length > 0 }),
   ...fileTimeActions,
 ];

@@ -15,7 +15,7 @@ import { sizeOf, Splitter } from "./splitter";
 import { StatusBar } from "./status_bar";
 import { Timeline } from "./timeline";
 import { ToolRail } from "./tool_rail";
-import { ViewPanels } from "./view_panels";
+import { FloatRow, ViewPanels } from "./view_panels";
 import { ViewportHost } from "./viewport_host";
 
 /** A file that is dragged onto the page is opened. */
@@ -79,7 +79,10 @@ export function App() {
         ) : null}
         <div class="centre">
           <ViewportHost />
-          <Banners />
+          <div class="top-stack">
+            <Banners />
+            <FloatRow />
+          </div>
           {hasScene ? <ToolRail /> : isStudy ? null : <EmptyState />}
           <ViewPanels />
           <HintBar />

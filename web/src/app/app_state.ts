@@ -22,6 +22,7 @@ export type Overlay =
   | { kind: "recordings" }
   | { kind: "devices" }
   | { kind: "views" }
+  | { kind: "share" }
   | { kind: "menu"; x: number; y: number; occurrence: number | null };
 
 export type BottomTab = "events" | "runs" | "rates" | "compare";

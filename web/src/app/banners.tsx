@@ -10,6 +10,12 @@ import { backToLive } from "./time_source";
 
 const kNoticeMs = 5000;
 
+/** Why the studio lets this page in no more, or never has. */
+export function denialText(): string {
+  const { denial } = store;
+  return denial.value === null ? t("empty.denied") : `${denial.value.message}: ${denial.value.remedy}.`;
+}
+
 export function Banners() {
   const safety = store.safety.value;
   const asked = store.leaseAsked.value;
@@ -19,6 +25,11 @@ export function Banners() {
       {store.link.value === "lost" ? (
         <div class="banner is-bad" role="alert">
           <Icon name="warn" /> {t("banner.lost")}
+        </div>
+      ) : null}
+      {store.link.value === "denied" && store.scene.value !== null ? (
+        <div class="banner is-bad" role="alert" data-testid="denied">
+          <Icon name="lock" /> {denialText()}
         </div>
       ) : null}
       {safety !== null ? (

@@ -1,6 +1,6 @@
 /** What each part cost in each recording, and how much more or less than in the first one. */
 
-import { differencePercent, kMetrics, partRows, totalOf, type Metric, type Metrics } from "../model/compare";
+import { commonPaths, differencePercent, kMetrics, partRows, totalOf, type Metric, type Metrics } from "../model/compare";
 import type { RecordedRun } from "../model/playback";
 import { ui } from "./app_state";
 import { Dash } from "./compare";
@@ -59,10 +59,22 @@ function save(runs: readonly RecordedRun[]): void {
   saveTable([head, ...rows], "comparison");
 }
 
+/** Totals of different sets of parts say nothing of each other. */
+function DifferentSets({ common, counts }: { common: number; counts: readonly number[] }) {
+  return counts.every((count) => count === common) ? null : (
+    <p class="note" role="note" data-testid="compare-sets">
+      {common === 0 ? t("compare.nothingCommon") : t("compare.setsDiffer", { counts: counts.join(", ") })}
+    </p>
+  );
+}
+
 export function CompareTable({ runs }: { runs: readonly RecordedRun[] }) {
   const details = runs.map((run) => run.detail);
+  const common = commonPaths(details);
+  const rows = partRows(details);
   return (
     <div class="table-room" tabIndex={0} role="region" aria-label={t("compare.table")}>
+      <DifferentSets common={common.size} counts={details.map((detail) => new Set(detail.results.map((each) => each.path)).size)} />
       <table class="table is-compare" data-testid="compare-table">
         <thead>
           <tr>
@@ -96,8 +108,13 @@ export function CompareTable({ runs }: { runs: readonly RecordedRun[] }) {
           </tr>
         </thead>
         <tbody>
-          <Row name={t("compare.total")} cells={details.map(totalOf)} />
-          {partRows(details).map(({ path, cells }) => (
+          {common.size === 0 ? null : (
+            <Row
+              name={common.size === rows.length ? t("compare.total") : t("compare.totalCommon", { n: common.size })}
+              cells={details.map((detail) => totalOf(detail, common))}
+            />
+          )}
+          {rows.map(({ path, cells }) => (
             <Row key={path} name={path.split("/").at(-1) ?? path} cells={cells} />
           ))}
         </tbody>

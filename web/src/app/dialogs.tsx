@@ -160,6 +160,8 @@ export function Overlays() {
       return <Lazy key="recordings" load={() => import("./recordings_dialog")} />;
     case "views":
       return <Lazy key="views" load={() => import("./views_dialog")} />;
+    case "share":
+      return <Lazy key="share" load={() => import("./share_dialog")} />;
     case "devices":
       return <Lazy key="devices" load={() => import("./devices_dialog")} />;
     case "menu":

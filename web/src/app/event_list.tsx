@@ -1,12 +1,14 @@
 import type { Told } from "../model/event_log";
 import type { HoldState } from "../protocol/messages";
 import { store } from "./app_state";
-import { duration, language, t } from "./i18n";
+import { duration, language, number, t } from "./i18n";
 import { seek } from "./time_source";
 
 export function logText(entry: Told): string {
   const p = entry.params;
   switch (entry.kind) {
+    case "resumed":
+      return t(p["isResumed"] ? "log.resumed" : "log.notResumed", p);
     case "dropped":
       return t(p["seated"] ? "log.droppedSeated" : "log.dropped", p);
     case "forces":
@@ -22,7 +24,26 @@ export function logText(entry: Told): string {
   }
 }
 
+/** Limits of the force come in the course of the work, by the dozen: how often each of them. */
+function Limits() {
+  const limits = [...store.limits.value];
+  return limits.length === 0 ? null : (
+    <p class="limit-counts" data-testid="limits">
+      {t("log.limits", { text: limits.map(([reason, count]) => `${reason} ${number(count)}×`).join(" · ") })}
+    </p>
+  );
+}
+
 export function EventList() {
+  return (
+    <>
+      <Limits />
+      <Events />
+    </>
+  );
+}
+
+function Events() {
   const log = store.log.value;
   if (log.length === 0) {
     return <p class="quiet">{t("log.empty")}</p>;
@@ -44,7 +65,10 @@ export function EventList() {
               {duration(entry.timeS)}
             </button>
           )}
-          <span>{logText(entry)}</span>
+          <span>
+            {logText(entry)}
+            {entry.count === undefined ? null : ` (${number(entry.count)}×)`}
+          </span>
         </li>
       ))}
     </ol>

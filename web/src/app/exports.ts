@@ -77,19 +77,14 @@ export function savePlot(): void {
   saveTable([["time_s", ...kTraceFields], ...rows], "plot");
 }
 
-export async function copyLink(): Promise<void> {
+/** What stands for this view, and of a recording for its moment, in a link; "" while there is none. */
+export function shownFragment(): string {
   const shared = viewport.value?.sharedView();
   if (shared === undefined) {
-    return;
+    return "";
   }
   const playback = studio.recordings.playback.peek();
   const moment =
     playback === null ? "" : encodeMoment({ recording: playback.run.detail.id, timeS: playback.timeS });
-  history.replaceState(null, "", `#${encodeView(shared)}${moment}`);
-  try {
-    await navigator.clipboard.writeText(location.href);
-    studio.notify(t("notice.copied"));
-  } catch {
-    studio.notify(t("notice.copyFailed"));
-  }
+  return `${encodeView(shared)}${moment}`;
 }

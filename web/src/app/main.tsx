@@ -1,6 +1,6 @@
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { decodeMoment, decodeView } from "../model/view_link";
+import { decodeMoment, decodeView, takeToken } from "../model/view_link";
 import { followTraces, store, studio, view, viewport } from "./app_state";
 import { language, t } from "./i18n";
 import { listenToKeys } from "./keyboard";
@@ -16,18 +16,13 @@ import "./styles/panels.css";
 import "./styles/view.css";
 import "./styles/time.css";
 
-/** The token of the link leaves the address bar before anything else can read it there. */
-function takeToken(): string | null {
-  const match = /^#t=([\w-]+)/.exec(location.hash);
-  if (match !== null) {
-    history.replaceState(null, "", location.pathname);
-  }
-  return match?.[1] ?? null;
+const { token, rest } = takeToken(location.hash);
+if (token !== null) {
+  // It leaves the address bar before anything else can read it there.
+  history.replaceState(null, "", rest === "" ? location.pathname : `#${rest}`);
 }
-
-const token = takeToken();
-const shared = decodeView(location.hash);
-const moment = decodeMoment(location.hash);
+const shared = decodeView(rest);
+const moment = decodeMoment(rest);
 keepPreferences();
 followTraces();
 followTheme();

@@ -1,6 +1,7 @@
 /** Before there is a product: the empty screen, and what is being opened. */
 
 import { canSteer, store, studio } from "./app_state";
+import { denialText } from "./banners";
 import { chooseFile } from "./exports";
 import { number, t } from "./i18n";
 import type { MessageKey } from "./en";
@@ -18,7 +19,7 @@ export function EmptyState() {
     return (
       <div class="empty" role="alert">
         <Icon name="lock" size={40} />
-        <p class="empty-lead">{t("empty.denied")}</p>
+        <p class="empty-lead">{denialText()}</p>
       </div>
     );
   }

@@ -1,6 +1,6 @@
 /** The recordings that the server keeps. */
 
-import { useSignal } from "@preact/signals";
+import { useSignal, type Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { RecordingEntry } from "../protocol/recording_messages";
 import { canSteer, store, studio, ui } from "./app_state";
@@ -62,8 +62,51 @@ function DeleteButton({ entry }: { entry: RecordingEntry }) {
   );
 }
 
+/** The name leads to the recording, or is being changed. */
+function Name({ entry, isNaming }: { entry: RecordingEntry; isNaming: Signal<boolean> }) {
+  const text = useSignal(entry.name);
+  if (!isNaming.value) {
+    return (
+      <button type="button" class="link-button" onClick={() => show(entry.id)}>
+        {entry.name}
+      </button>
+    );
+  }
+  const save = async (event: Event) => {
+    event.preventDefault();
+    const name = text.value.trim();
+    if (name === "" || name === entry.name || (await studio.recordings.rename(entry.id, name))) {
+      isNaming.value = false;
+    }
+  };
+  const onKeyDown = (event: KeyboardEvent) => {
+    if (event.key === "Escape") {
+      event.preventDefault();
+      event.stopPropagation();
+      isNaming.value = false;
+    }
+  };
+  return (
+    <form class="rename" onSubmit={(event) => void save(event)}>
+      <input
+        value={text.value}
+        maxLength={100}
+        aria-label={t("recs.newName", { name: entry.name })}
+        data-testid="recording-name"
+        autofocus
+        onInput={(event) => (text.value = event.currentTarget.value)}
+        onKeyDown={onKeyDown}
+      />
+      <button type="submit" class="small-button is-main">
+        {t("recs.save")}
+      </button>
+    </form>
+  );
+}
+
 function Row({ entry }: { entry: RecordingEntry }) {
   const isChosen = ui.compared.value.includes(entry.id);
+  const isNaming = useSignal(false);
   return (
     <tr data-testid={`recording-${entry.id}`}>
       <td>
@@ -75,9 +118,7 @@ function Row({ entry }: { entry: RecordingEntry }) {
         />
       </td>
       <th scope="row">
-        <button type="button" class="link-button" onClick={() => show(entry.id)}>
-          {entry.name}
-        </button>
+        <Name entry={entry} isNaming={isNaming} />
         {entry.is_complete ? null : <span class="badge is-next">{t("recs.incomplete")}</span>}
       </th>
       <td>{entry.product}</td>
@@ -87,6 +128,16 @@ function Row({ entry }: { entry: RecordingEntry }) {
       <td class="row-buttons">
         <button type="button" class="icon-button" aria-label={t("recs.playWhat", { name: entry.name })} title={t("recs.play")} onClick={() => show(entry.id)}>
           <Icon name="play" />
+        </button>
+        <button
+          type="button"
+          class="icon-button"
+          aria-label={t("recs.renameWhat", { name: entry.name })}
+          title={t("recs.rename")}
+          disabled={!canSteer() && studio.recordings.playback.value === null}
+          onClick={() => (isNaming.value = true)}
+        >
+          <Icon name="pen" />
         </button>
         <a
           class="icon-button"

@@ -17,6 +17,8 @@ const kDrawMs = 30;
 const kMarksMs = 1000;
 /** An event this near to the thumb is told with the time, as a share of the line. */
 const kNear = 0.006;
+/** A press that moves less than this is a click [px]. */
+const kClickPx = 3;
 
 export function markText(mark: Mark): string {
   return mark.told === null ? t("mark.contact") : logText(mark.told);
@@ -154,14 +156,45 @@ function Track({ marks }: { marks: readonly Mark[] }) {
   };
   useLive(place, kDrawMs);
   useLive(tell, 250);
+  /** Where it was pressed; a press on a mark that does not move on is for the mark's own moment. */
+  const pressedAt = useRef<number | null>(null);
   const drag = (event: PointerEvent) => {
     const box = slider.current!.getBoundingClientRect();
     const { beginS, endS } = plotClock();
     seek(beginS + Math.min(1, Math.max(0, (event.clientX - box.left) / box.width)) * (endS - beginS));
     place();
   };
+  const onPress = (event: PointerEvent) => {
+    if (event.button !== 0) {
+      return;
+    }
+    slider.current!.setPointerCapture(event.pointerId);
+    slider.current!.focus();
+    event.preventDefault();
+    const mark = (event.target as HTMLElement).dataset["timeS"];
+    if (mark === undefined) {
+      drag(event);
+    } else {
+      pressedAt.current = event.clientX;
+      seek(Number(mark));
+      place();
+    }
+  };
+  const onMove = (event: PointerEvent) => {
+    const isOnMark = pressedAt.current !== null && Math.abs(event.clientX - pressedAt.current) < kClickPx;
+    if (!isOnMark && slider.current!.hasPointerCapture(event.pointerId)) {
+      pressedAt.current = null;
+      drag(event);
+    }
+  };
   return (
-    <div class="track">
+    <div
+      class="track"
+      onPointerDown={onPress}
+      onPointerMove={onMove}
+      onPointerUp={() => (pressedAt.current = null)}
+      onPointerCancel={() => (pressedAt.current = null)}
+    >
       <div
         class="track-slider"
         role="slider"
@@ -172,11 +205,6 @@ function Track({ marks }: { marks: readonly Mark[] }) {
         aria-valuenow={0}
         ref={slider}
         data-testid="timeline"
-        onPointerDown={(event) => {
-          event.currentTarget.setPointerCapture(event.pointerId);
-          drag(event);
-        }}
-        onPointerMove={(event) => event.currentTarget.hasPointerCapture(event.pointerId) && drag(event)}
         onKeyDown={(event) => {
           if (moveBy(event)) {
             event.preventDefault();
@@ -212,7 +240,8 @@ function Marks({ marks }: { marks: readonly Mark[] }) {
               style={{ left: `${100 * shareOf(mark.timeS)}%` }}
               title={text}
               aria-label={text}
-              onClick={() => seek(mark.timeS)}
+              data-time-s={mark.timeS}
+              onClick={(event) => event.detail === 0 && seek(mark.timeS)}
             />
           );
         })}

@@ -227,6 +227,18 @@ function Legend() {
   );
 }
 
+/** Above the picture, below what must not be missed. */
+export function FloatRow() {
+  return store.scene.value === null ? null : (
+    <div class="float-row">
+      <SectionPanel />
+      <ExplodePanel />
+      <ApartPanel />
+      <WorkshopPanel />
+    </div>
+  );
+}
+
 export function ViewPanels() {
   if (store.scene.value === null) {
     return null;
@@ -234,12 +246,6 @@ export function ViewPanels() {
   const tool = view.tool.value;
   return (
     <>
-      <div class="float-row">
-        <SectionPanel />
-        <ExplodePanel />
-        <ApartPanel />
-        <WorkshopPanel />
-      </div>
       {tool === "measure" ? <MeasurePanel /> : null}
       {tool === "mate" ? <MatePanel /> : null}
       {tool !== "mate" && tool !== "measure" ? <PathPanel /> : null}

@@ -136,9 +136,16 @@ export function partRows(details: readonly RecordingDetail[]): PartRow[] {
   }));
 }
 
-/** Of a whole recording: times, paths and collisions together, and the greatest of the forces. */
-export function totalOf(detail: RecordingDetail): Metrics {
-  const of = (metric: Metric) => detail.results.map((result) => result[metric]);
+/** Parts that every one of the recordings has: only they can be compared as a whole. */
+export function commonPaths(details: readonly RecordingDetail[]): ReadonlySet<string> {
+  const rows = partRows(details).filter(({ cells }) => cells.every((cell) => cell !== null));
+  return new Set(rows.map(({ path }) => path));
+}
+
+/** Of some parts of a recording: times, paths and collisions together, and the greatest of the forces. */
+export function totalOf(detail: RecordingDetail, paths: ReadonlySet<string>): Metrics {
+  const results = detail.results.filter((result) => paths.has(result.path));
+  const of = (metric: Metric) => results.map((result) => result[metric]);
   const sum = (metric: Metric) => of(metric).reduce((total, value) => total + value, 0);
   return {
     time_s: sum("time_s"),

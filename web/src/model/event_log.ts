@@ -1,8 +1,8 @@
 /** Events of the work in the form in which they are told, whether they come now or from a recording. */
 
-import type { HoldState, RunMetrics } from "../protocol/messages";
+import type { HoldState, RunMetrics, ServerError } from "../protocol/messages";
 import { holdStateOf } from "./hints";
-import type { LogKind, Run } from "./store";
+import type { LimitCounts, LogEntry, LogKind, Run } from "./store";
 
 /** Bits of haptics::GateAction that a user has to know of: not finite, model late, client silent, device
  lost, buzz, kick. The others limit the force in the course of the work. */
@@ -22,6 +22,12 @@ export interface WorkEvent {
   gate_actions?: number;
   off?: boolean;
   on?: boolean;
+  file?: string;
+  error?: ServerError;
+  why?: string | null;
+  is_resumed?: boolean;
+  seated?: number;
+  edits?: number;
 }
 
 export interface Told {
@@ -44,16 +50,47 @@ export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): 
     case "dropped":
       return { kind: "dropped", params: { part, seated: event.was_seated ? 1 : 0 } };
     case "safety":
-      return event.reasons === undefined || event.reasons.length === 0
+      return event.reasons === undefined || event.reasons.length === 0 || !isAlarm(event)
         ? null
-        : { kind: isAlarm(event) ? "safety" : "limit", params: { text: event.reasons.join(", ") } };
+        : { kind: "safety", params: { text: event.reasons.join(", ") } };
     case "forces":
       return { kind: "forces", params: { off: event.off ? 1 : 0 } };
     case "demo":
       return { kind: "demo", params: { on: event.on ? 1 : 0 } };
+    case "failed":
+      return event.error?.code === "cancelled"
+        ? { kind: "stopped", params: { file: event.file ?? "" } }
+        : { kind: "failed", params: { text: event.error?.message ?? "" } };
+    case "scene":
+      return event.why ? { kind: "changed", params: { what: event.why } } : { kind: "opened", params: {} };
+    case "resumed": {
+      const { seated = 0, edits = 0 } = event;
+      return { kind: "resumed", params: { isResumed: event.is_resumed ? 1 : 0, seated, edits } };
+    }
     default:
       return null;
   }
+}
+
+/** With the limits of the force that an event tells of; the same where it tells of none. */
+export function countLimits(counts: LimitCounts, event: WorkEvent): LimitCounts {
+  if (event.event !== "safety" || isAlarm(event) || !event.reasons?.length) {
+    return counts;
+  }
+  const next = new Map(counts);
+  for (const reason of event.reasons) {
+    next.set(reason, (next.get(reason) ?? 0) + 1);
+  }
+  return next;
+}
+
+/** The newest first. An alarm that has been before is counted, in one entry. */
+export function addToLog(log: readonly LogEntry[], entry: LogEntry): readonly LogEntry[] {
+  const before =
+    entry.kind === "safety" ? log.find((each) => each.kind === "safety" && each.params["text"] === entry.params["text"]) : undefined;
+  const others = before === undefined ? log : log.filter((each) => each !== before);
+  const count = (before?.count ?? 1) + 1;
+  return [before === undefined ? entry : { ...entry, count }, ...others].slice(0, kLogLength);
 }
 
 /** What a hold of a part came to; null for other events. */

@@ -10,6 +10,9 @@ export type HintKey =
   | "hint.done"
   | "hint.free"
   | "hint.near"
+  | "hint.nearPlace"
+  | "hint.capturedPlace"
+  | "hint.matingPlace"
   | "hint.captured"
   | "hint.mating"
   | "hint.seated";
@@ -47,10 +50,12 @@ export function makeHint({ scene, held, expected, isDone, canSteer }: HintInput)
       params: { part: "", into: "", expected: expectedName },
     };
   }
+  const { state } = held;
   const mate = held.mate === null ? undefined : scene.mates.find((m) => m.id === held.mate);
   const other = mate === undefined ? null : mate.a === held.occurrence ? mate.b : mate.a;
   return {
-    key: `hint.${held.state}`,
+    // Near a mate it may not be said which.
+    key: other === null && (state === "near" || state === "captured" || state === "mating") ? `hint.${state}Place` : `hint.${state}`,
     state: held.state,
     params: {
       part: nameOf(scene, held.occurrence),

@@ -5,10 +5,10 @@ import type { LiveState } from "../protocol/frame_store";
 import type { Placement, Scene } from "../protocol/messages";
 import { FrameCursor, type RecordedFrames } from "../protocol/recorded_frames";
 import type { RecordedEvent, RecordingDetail } from "../protocol/recording_messages";
-import { kLogLength, kRunsLength, runOf, tell } from "./event_log";
+import { addToLog, countLimits, kRunsLength, runOf, tell } from "./event_log";
 import { isSameHeld, summarize } from "./held";
 import { recordedMarks, type Mark } from "./marks";
-import type { HeldSummary, LogEntry, Run, StepCount, Work } from "./store";
+import type { HeldSummary, LimitCounts, LogEntry, Run, StepCount, Work } from "./store";
 import type { Trace } from "./trace";
 
 export const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8] as const;
@@ -28,6 +28,7 @@ interface Then {
   step: StepCount;
   runs: readonly Run[];
   log: readonly LogEntry[];
+  limits: LimitCounts;
 }
 
 export class Playback implements Work {
@@ -47,6 +48,7 @@ export class Playback implements Work {
   readonly step = computed(() => this.then.value.step);
   readonly runs = computed(() => this.then.value.runs);
   readonly log = computed(() => this.then.value.log);
+  readonly limits = computed(() => this.then.value.limits);
   private atS = 0;
   private lastMs: number | null = null;
 
@@ -129,7 +131,8 @@ export class Playback implements Work {
     const placements = new Map(scene.occurrences.map((o) => [o.id, o.placement]));
     let step: StepCount = { index: scene.next_step, total: scene.steps.length };
     const runs: Run[] = [];
-    const log: LogEntry[] = [];
+    let log: readonly LogEntry[] = [];
+    let limits: LimitCounts = new Map();
     for (const event of this.events.slice(0, passed)) {
       if (event.event === "placement" && event.occurrence !== undefined && event.placement !== undefined) {
         placements.set(event.occurrence, event.placement);
@@ -141,10 +144,11 @@ export class Playback implements Work {
       if (run !== null) {
         runs.unshift(run);
       }
+      limits = countLimits(limits, event);
       if (told !== null) {
-        log.unshift({ at: new Date(this.startedMs + event.t_ns / 1e6), timeS: event.t_ns / 1e9, ...told });
+        log = addToLog(log, { at: new Date(this.startedMs + event.t_ns / 1e6), timeS: event.t_ns / 1e9, ...told });
       }
     }
-    return { placements, step, runs: runs.slice(0, kRunsLength), log: log.slice(0, kLogLength) };
+    return { placements, step, runs: runs.slice(0, kRunsLength), log, limits };
   }
 }

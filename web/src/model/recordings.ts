@@ -129,6 +129,17 @@ export class Recordings {
     });
   }
 
+  /** @return Whether it has the name now. */
+  async rename(id: string, name: string): Promise<boolean> {
+    if ((await this.studio.command({ command: "rename_recording", id, name })) === null) {
+      return false;
+    }
+    const renamed = (entry: RecordingEntry) => (entry.id === id ? { ...entry, name } : entry);
+    this.store.recordings.value = this.store.recordings.peek()?.map(renamed) ?? null;
+    this.runs.delete(id);
+    return true;
+  }
+
   async remove(id: string): Promise<void> {
     if ((await this.studio.command({ command: "delete_recording", id })) === null) {
       return;

@@ -1,21 +1,49 @@
-/** The token of the link for the session's cookie. */
+/** The token of the link for the session's cookie, and links for others. */
 
-import type { Role } from "../protocol/messages";
+import type { Role, ServerError } from "../protocol/messages";
 
-export type Admission = { isDenied: true } | { isDenied: false; role: Role | null };
+export type Admission = { isDenied: true; error: ServerError | null } | { isDenied: false; role: Role | null };
+
+/** A link that lets somebody else in. */
+export interface Invitation {
+  token: string;
+  role: Role;
+  /** The first browser that comes by it, and no other. */
+  is_for_one: boolean;
+  /** Where the studio can be reached, from anywhere or from this machine alone. */
+  origins: string[];
+  is_local: boolean;
+  /** Addresses at which it could listen for others. */
+  reachable: string[];
+}
+
+/** What a refusal says; null where it says nothing. */
+export async function readError(answer: Response): Promise<ServerError | null> {
+  const body = (await answer.json().catch(() => null)) as { error?: ServerError } | null;
+  return body?.error ?? null;
+}
+
+function post(route: string, body: object): Promise<Response | null> {
+  return fetch(route, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(body),
+  }).catch(() => null);
+}
 
 /** Without a token, or without an answer, the cookie of an earlier visit may do. */
 export async function exchangeToken(token: string | null): Promise<Admission> {
-  if (token === null) {
-    return { isDenied: false, role: null };
-  }
-  const answer = await fetch("/api/session", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({ token }),
-  }).catch(() => null);
+  const answer = token === null ? null : await post("/api/session", { token });
   if (answer === null) {
     return { isDenied: false, role: null };
   }
-  return answer.ok ? { isDenied: false, role: ((await answer.json()) as { role: Role }).role } : { isDenied: true };
+  return answer.ok
+    ? { isDenied: false, role: ((await answer.json()) as { role: Role }).role }
+    : { isDenied: true, error: await readError(answer) };
+}
+
+/** Null where the server makes none. */
+export async function invite(role: Role): Promise<Invitation | null> {
+  const answer = await post("/api/link", { role });
+  return answer?.ok ? ((await answer.json()) as Invitation) : null;
 }

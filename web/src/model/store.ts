@@ -40,11 +40,13 @@ export type LogKind =
   | "dropped"
   | "state"
   | "safety"
-  | "limit"
   | "forces"
   | "step"
   | "failed"
+  | "stopped"
   | "opened"
+  | "changed"
+  | "resumed"
   | "demo"
   | "recording";
 
@@ -54,7 +56,12 @@ export interface LogEntry {
   timeS?: number;
   kind: LogKind;
   params: Record<string, string | number>;
+  /** Of an alarm that has come again: how often. */
+  count?: number;
 }
+
+/** How often the force was limited, by reason: in the course of the work that comes by the dozen. */
+export type LimitCounts = ReadonlyMap<string, number>;
 
 export interface Loading {
   stage: string;
@@ -81,6 +88,7 @@ export interface Work {
   readonly step: ReadonlySignal<StepCount | null>;
   readonly runs: ReadonlySignal<readonly Run[]>;
   readonly log: ReadonlySignal<readonly LogEntry[]>;
+  readonly limits: ReadonlySignal<LimitCounts>;
 }
 
 /** What the server records now. */
@@ -99,6 +107,7 @@ function makeLiveWork() {
     step: signal<StepCount | null>(null),
     runs: signal<readonly Run[]>([]),
     log: signal<readonly LogEntry[]>([]),
+    limits: signal<LimitCounts>(new Map()),
   } satisfies Work;
 }
 
@@ -120,6 +129,8 @@ export function makeStore() {
   const isWatchingOver = computed(() => study.value?.view === "experimenter");
   return {
     link,
+    /** Why this page is not let in, as far as the server has said it. */
+    denial: signal<ServerError | null>(null),
     role: signal<Role>("viewer"),
     /** The server has said which role this page has. */
     isGreeted: signal(false),
@@ -140,6 +151,7 @@ export function makeStore() {
     step,
     runs: shown("runs"),
     log: shown("log"),
+    limits: shown("limits"),
     /** What each hand is; none before the server has said it. */
     hands: signal<readonly HandSetup[]>([]),
     /** What is the matter with a hand's device, and what to do about it. */

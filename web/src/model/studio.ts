@@ -4,13 +4,13 @@ import { batch } from "@preact/signals";
 import { CommandError, Connection } from "../protocol/connection";
 import type { LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
-import type { Client, Command, CommandResults, Role, Scene, ServerEvent } from "../protocol/messages";
+import type { Client, Command, CommandResults, Role, Scene, ServerError, ServerEvent } from "../protocol/messages";
 import { CollisionCounter } from "./collisions";
-import { isAlarm, kAlarms, kLogLength, kRunsLength, runOf, tell, type Told } from "./event_log";
+import { addToLog, countLimits, isAlarm, kAlarms, kRunsLength, runOf, tell, type Told } from "./event_log";
 import { withTrouble } from "./hands";
 import { isSameHeld, summarize } from "./held";
 import { Recordings } from "./recordings";
-import { exchangeToken } from "./session";
+import { exchangeToken, readError } from "./session";
 import { makeStore } from "./store";
 import { StudyModel } from "./study";
 import { asServerError, uploadFile } from "./upload";
@@ -32,8 +32,7 @@ export class Studio {
   async start(token: string | null): Promise<void> {
     const admission = await exchangeToken(token);
     if (admission.isDenied) {
-      this.store.link.value = "denied";
-      return;
+      return this.deny(admission.error);
     }
     if (admission.role !== null) {
       this.greet(admission.role);
@@ -130,13 +129,17 @@ export class Studio {
   /** A socket that never opened may have been refused: only a plain request tells why. */
   private async noteRefusal(): Promise<void> {
     const answer = await fetch("/api/scene").catch(() => null);
-    if (answer?.status === 401 || answer?.status === 403) {
-      this.store.link.value = "denied";
+    if ((answer?.status === 401 || answer?.status === 403) && this.store.link.value !== "open") {
+      this.deny(await readError(answer));
     }
   }
 
+  private deny(error: ServerError | null): void {
+    [this.store.denial.value, this.store.link.value] = [error, "denied"];
+  }
+
   private onClosed(): void {
-    if (this.store.link.value === "starting") {
+    if (this.store.link.value !== "open") {
       void this.noteRefusal();
     }
     batch(() => {
@@ -172,7 +175,7 @@ export class Studio {
   private log(told: Told | null): void {
     const { log } = this.store.live;
     if (told !== null) {
-      log.value = [{ at: new Date(), ...told }, ...log.value].slice(0, kLogLength);
+      log.value = addToLog(log.value, { at: new Date(), ...told });
     }
   }
 
@@ -185,6 +188,7 @@ export class Studio {
 
   private apply(event: ServerEvent): void {
     const store = this.store;
+    this.log(tell(event, this.nameOf));
     switch (event.event) {
       case "hello":
         this.greet(event.role);
@@ -213,10 +217,8 @@ export class Studio {
         if (event.error.code !== "cancelled") {
           store.failure.value = event.error;
         }
-        this.log({ kind: "failed", params: { text: event.error.message } });
         break;
       case "scene":
-        this.log({ kind: "opened", params: {} });
         void this.fetchScene();
         break;
       case "forces":
@@ -224,14 +226,13 @@ export class Studio {
         if (!event.off) {
           store.safety.value = null;
         }
-        this.log(tell(event, this.nameOf));
         break;
       case "safety":
         if (isAlarm(event)) {
           store.safety.value = { reasons: event.reasons };
           this.alarmedAt = performance.now();
         }
-        this.log(tell(event, this.nameOf));
+        store.live.limits.value = countLimits(store.live.limits.value, event);
         break;
       case "roles":
         store.clients.value = event.clients;
@@ -245,7 +246,6 @@ export class Studio {
         break;
       case "demo":
         store.demo.value = event.on;
-        this.log(tell(event, this.nameOf));
         break;
       case "status":
         store.status.value = event;
@@ -313,6 +313,5 @@ export class Studio {
         // One that is only told, or an event of a newer server.
         break;
     }
-    this.log(tell(event, this.nameOf));
   }
 }

@@ -88,6 +88,17 @@ export function encodeMoment(moment: Moment): string {
   return `&rec=${encodeURIComponent(moment.recording)}&at=${Number(moment.timeS.toFixed(3))}`;
 }
 
+/** The fragment of a link that lets somebody in, and shows what the other fragment stands for. */
+export function withToken(token: string, fragment: string): string {
+  return `t=${token}${fragment === "" ? "" : `&${fragment}`}`;
+}
+
+/** The token of a fragment, and what is left without it. */
+export function takeToken(fragment: string): { token: string | null; rest: string } {
+  const match = /^#?t=([\w-]+)(?:&(.*))?$/.exec(fragment);
+  return match === null ? { token: null, rest: fragment.replace(/^#/, "") } : { token: match[1] ?? null, rest: match[2] ?? "" };
+}
+
 /** Of the fragment of a view; null when it has none. */
 export function decodeMoment(fragment: string): Moment | null {
   const fields = new URLSearchParams(fragment.replace(/^#/, ""));

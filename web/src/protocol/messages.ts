@@ -167,6 +167,7 @@ export type Command =
   | { command: "devices" }
   | { command: "use"; hand: number; device: string; scale?: number }
   | { command: "record"; on: boolean; name?: string }
+  | { command: "rename_recording"; id: string; name: string }
   | { command: "delete_recording"; id: string }
   | StudyCommand;
 
@@ -193,6 +194,7 @@ export interface CommandResults {
   devices: DeviceList;
   use: Nothing;
   record: Nothing;
+  rename_recording: Nothing;
   delete_recording: Nothing;
   study: StudyReply;
 }
@@ -249,8 +251,11 @@ export type ServerEvent =
       demo: boolean;
     }
   | { event: "progress"; stage: string; fraction: number; file: string }
-  | { event: "failed"; error: ServerError }
-  | { event: "scene"; epoch: number }
+  | { event: "failed"; file?: string; error: ServerError }
+  /** `why` it is another one than before; null: it was opened. */
+  | { event: "scene"; epoch: number; why?: string | null }
+  /** The work of the program's start before goes on, or cannot. */
+  | { event: "resumed"; is_resumed: boolean; seated: number; edits: number }
   | { event: "placement"; occurrence: number; placement: Placement }
   | { event: "taken"; hand: number; occurrence: number; state: HoldState | number }
   | { event: "state"; hand: number; occurrence?: number; state: HoldState | number }

@@ -1,0 +1,58 @@
+#include "app/end_watch.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <string_view>
+
+namespace hvas::app {
+namespace {
+
+sigset_t EndSignals() {
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  ::sigaddset(&signals, SIGINT);
+  ::sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+}  // namespace
+
+EndWatch::EndWatch(std::chrono::milliseconds patience) {
+  const sigset_t signals = EndSignals();
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  thread_ = std::thread([this, patience] { Watch(patience); });
+}
+
+EndWatch::~EndWatch() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  changed_.notify_all();
+  ::pthread_kill(thread_.native_handle(), SIGTERM);  // where no other has come
+  thread_.join();
+}
+
+void EndWatch::Wait() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return is_told_; });
+}
+
+void EndWatch::Watch(std::chrono::milliseconds patience) {
+  const sigset_t signals = EndSignals();
+  int signal = 0;
+  ::sigwait(&signals, &signal);
+  std::unique_lock lock(mutex_);
+  is_told_ = true;
+  changed_.notify_all();
+  if (!changed_.wait_for(lock, patience, [this] { return is_over_; })) {
+    constexpr std::string_view kWord =
+        "hvas: it does not end by itself, and is ended. What was done is on disk.\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kWord.data(), kWord.size());
+    ::_exit(1);
+  }
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace hvas::app {
+
+/** Takes SIGINT and SIGTERM for a program that ends in order, and ends it where that takes too
+ long, whatever it is doing. */
+class EndWatch {
+ public:
+  /** What the system gives a program, and then some. */
+  static constexpr std::chrono::milliseconds kPatience{4000};
+
+  /** Before any other thread begins: they inherit that the signals are not for them.
+   @param patience  From the signal until this has to be gone; else the program ends at once, with
+   exit status 1 and a word on standard error. */
+  explicit EndWatch(std::chrono::milliseconds patience = kPatience);
+  ~EndWatch();
+  EndWatch(const EndWatch&) = delete;
+  EndWatch& operator=(const EndWatch&) = delete;
+
+  /** Until the user or the system ends the program. */
+  void Wait();
+
+ private:
+  void Watch(std::chrono::milliseconds patience);
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_told_{false};  ///< To end.
+  bool is_over_{false};
+  std::thread thread_;
+};
+
+}  // namespace hvas::app
