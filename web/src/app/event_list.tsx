@@ -1,14 +1,16 @@
 import type { Told } from "../model/event_log";
 import type { HoldState } from "../protocol/messages";
 import { store } from "./app_state";
-import { duration, language, t } from "./i18n";
+import { duration, figures, language, t } from "./i18n";
 import { seek } from "./time_source";
 
 export function logText(entry: Told): string {
   const p = entry.params;
   switch (entry.kind) {
     case "dropped":
-      return t(p["seated"] ? "log.droppedSeated" : "log.dropped", p);
+      return p["missing_mm"] === undefined
+        ? t(p["seated"] ? "log.droppedSeated" : "log.dropped", p)
+        : t("log.droppedClose", { ...p, distance: `${figures(Number(p["missing_mm"]), 2)} mm` });
     case "forces":
       return t(p["off"] ? "log.forcesOff" : "log.forcesOn");
     case "demo":
