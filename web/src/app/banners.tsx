@@ -21,6 +21,11 @@ export function Banners() {
           <Icon name="warn" /> {t("banner.lost")}
         </div>
       ) : null}
+      {store.isSilent.value && store.link.value === "open" ? (
+        <div class="banner is-bad" role="alert" data-testid="silent">
+          <Icon name="warn" /> {t("banner.silent")}
+        </div>
+      ) : null}
       {safety !== null ? (
         <div class="banner is-bad" role="alert" data-testid="safety">
           <Icon name="warn" />

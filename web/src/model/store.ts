@@ -120,6 +120,8 @@ export function makeStore() {
   const isWatchingOver = computed(() => study.value?.view === "experimenter");
   return {
     link,
+    /** The server has said nothing for a second, though it should have. */
+    isSilent: signal(false),
     role: signal<Role>("viewer"),
     /** The server has said which role this page has. */
     isGreeted: signal(false),
