@@ -104,19 +104,21 @@ void HapticTick::Take(const HeldPart* part) noexcept {
   F_pushed_ = {};
 }
 
-spatial::Pose HapticTick::Drop() noexcept {
-  const bool was_in_place = is_in_place();
-  spatial::Pose X_WB = was_in_place ? part_->X_WB_goal : X_WD_;
-  MoveInScene(X_WB);
+LetGo HapticTick::Drop() noexcept {
+  LetGo drop;
+  drop.is_in_place = is_in_place() || CanFinish();
+  drop.X_WB = drop.is_in_place ? part_->X_WB_goal : X_WD_;
+  drop.to_place = drop.is_in_place ? 0 : CalcRemainder().d_W.norm();
+  MoveInScene(drop.X_WB);
   ShowInScene(true);
-  if (part_->falls_when_dropped && !was_in_place && !is_stuck_) {
+  if (part_->falls_when_dropped && !drop.is_in_place && !is_stuck_) {
     SetLooseForAll(part_->body, true);
-    bodies_.WakeFirst(part_->body, X_WB, V_D_);
+    bodies_.WakeFirst(part_->body, drop.X_WB, V_D_);
   }
   part_ = nullptr;
   leaves_place_ = false;
   state_ = HoldState::kEmpty;
-  return X_WB;
+  return drop;
 }
 
 void HapticTick::MoveInScene(const spatial::Pose& X_WB) noexcept {
@@ -500,21 +502,32 @@ void HapticTick::MeasureDepth(TickOutput* out) noexcept {
   }
 }
 
+HapticTick::Remainder HapticTick::CalcRemainder() const noexcept {
+  return {X_WD_ * part_->p_BoBcm_B - part_->X_WB_goal * part_->p_BoBcm_B,
+          spatial::RotationBetween(X_WD_.q(), part_->X_WB_goal.q()).norm()};
+}
+
 bool HapticTick::HasArrived() noexcept {
   const GuidanceOptions& guidance = options_.guidance;
-  const bool is_guided = guide_.captured_count() > 0;
-  const bool needs_guide = !part_->mates.empty() && options_.condition != Condition::kCollision;
-  if (part_->lacks_partners || (needs_guide && !is_guided)) {
+  if (part_->lacks_partners) {
     return false;
   }
-  const Vec3 d = X_WD_ * part_->p_BoBcm_B - part_->X_WB_goal * part_->p_BoBcm_B;
-  const double angle = spatial::RotationBetween(X_WD_.q(), part_->X_WB_goal.q()).norm();
+  const auto [d, angle] = CalcRemainder();
   leaves_place_ = leaves_place_ && d.norm() < kLeaveFactor * guidance.loose_seat_distance &&
                   angle < kLeaveFactor * guidance.seat_angle;
   if (leaves_place_ || IsDrawnOut()) {
     return false;
   }
   if (d.norm() > guidance.loose_seat_distance || angle > guidance.seat_angle) {
+    return false;
+  }
+  X_WD_seat_start_ = X_WD_;
+  if (d.norm() <= guidance.seat_distance) {
+    return true;  // wherever the hand is by now
+  }
+  const bool is_guided = guide_.captured_count() > 0;
+  const bool needs_guide = !part_->mates.empty() && options_.condition != Condition::kCollision;
+  if (needs_guide && !is_guided) {
     return false;
   }
   // Along the way in, and across an axis, a part is home or it is not; where only planes or nothing
@@ -524,8 +537,11 @@ bool HapticTick::HasArrived() noexcept {
   if (is_guided && tight > guidance.seat_distance) {
     return false;
   }
-  X_WD_seat_start_ = X_WD_;
-  if (options_.condition == Condition::kConstraint || d.norm() <= guidance.seat_distance) {
+  return IsWayHomeFree();
+}
+
+bool HapticTick::IsWayHomeFree() noexcept {
+  if (options_.condition == Condition::kConstraint) {
     return true;
   }
   constexpr double kSamples[] = {0.25, 0.5, 0.75};
@@ -535,6 +551,18 @@ bool HapticTick::HasArrived() noexcept {
     }
   }
   return true;
+}
+
+bool HapticTick::CanFinish() noexcept {
+  if (part_->lacks_partners || is_stuck_ || IsDrawnOut()) {
+    return false;
+  }
+  const auto [d, angle] = CalcRemainder();
+  if (d.norm() > options_.guidance.finish_distance || angle > options_.guidance.seat_angle) {
+    return false;
+  }
+  X_WD_seat_start_ = X_WD_;
+  return IsWayHomeFree();
 }
 
 bool HapticTick::IsDrawnOut() const noexcept {
@@ -548,7 +576,7 @@ void HapticTick::UpdateState() noexcept {
   if (HasArrived()) {
     state_ = HoldState::kSeated;
     seat_progress_ = 0;
-    const double to_go = (X_WD_ * part_->p_BoBcm_B - part_->X_WB_goal * part_->p_BoBcm_B).norm();
+    const double to_go = CalcRemainder().d_W.norm();
     passivity_.AddCredit(0.5 * options_.coupling.k_lin * to_go * to_go /
                          options_.workspace.mapping.scale);
     X_WD_seat_start_ = X_WD_;

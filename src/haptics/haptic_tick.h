@@ -79,6 +79,13 @@ struct TickOutput {
   TickContext context;  ///< As it was given.
 };
 
+/** How a part was let go. */
+struct LetGo {
+  spatial::Pose X_WB;  ///< Its exact place where it is in place.
+  bool is_in_place{false};
+  double to_place{0};  ///< How far its centre of mass is from its place [m].
+};
+
 /** The haptic tick of one hand: X(1), X(2) coupling, contact on the displayed part (X7), guidance
  (X8..X10), fit (W5, W8, W9), weight and friction (X11), one force map (N4), gate (N6).
 
@@ -120,9 +127,10 @@ class HapticTick {
     return state_ == HoldState::kSeated || leaves_place_;
   }
 
-  /** Lets go. Returns the part's pose: its exact place when it is in place. There it is in the
-   scene again; it falls, unless it is in its place or its fits hold it. RT-safe. */
-  spatial::Pose Drop() noexcept;
+  /** Lets go: the part is in the scene again, and falls, unless it is in its place or its fits hold
+   it. One that is close to its place may be moved there (GuidanceOptions::finish_distance).
+   RT-safe. */
+  LetGo Drop() noexcept;
 
   /** From the next tick on. RT-safe. */
   void SetEffort(const Effort& effort) noexcept { effort_ = effort; }
@@ -203,6 +211,18 @@ class HapticTick {
   void MoveFreeBodies() noexcept;
   void UpdateState() noexcept;
   [[nodiscard]] bool HasArrived() noexcept;
+
+  /** How far the displayed part is from its place. */
+  struct Remainder {
+    Vec3 d_W;      ///< From where its centre of mass belongs to the centre of mass [m].
+    double angle;  ///< [rad]
+  };
+
+  [[nodiscard]] Remainder CalcRemainder() const noexcept;
+  /** Nothing is on the straight way from here into its place. */
+  [[nodiscard]] bool IsWayHomeFree() noexcept;
+  /** Close to its place, nothing in between, and no fit that would have to be overcome. */
+  [[nodiscard]] bool CanFinish() noexcept;
   /** Was taken up in its place, and the hand leads it outwards: it may bounce there, and comes home
    only with a hand that brings it. */
   [[nodiscard]] bool IsDrawnOut() const noexcept;

@@ -73,6 +73,15 @@ bool ReplacesContact(const HeldMate& mate) noexcept {
          (mate.capture.kind == MateKind::kFaceFace && !mate.is_stop);
 }
 
+/** Where the hand wants the part, but no further in than its place: whoever pushes on a part that
+ is there does not want it to come out. */
+spatial::Pose WithoutOvershoot(const HeldPart& part, const spatial::Pose& X_WT) noexcept {
+  const Vec3& p_BoBcm_B = part.p_BoBcm_B;
+  const Vec3 ahead_W = X_WT * p_BoBcm_B - part.X_WB_goal * p_BoBcm_B;
+  const double overshoot = std::max(0.0, ahead_W.dot(part.insertion_W));
+  return {X_WT.q(), X_WT.p() - overshoot * part.insertion_W};
+}
+
 }  // namespace
 
 MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) noexcept {
@@ -128,6 +137,7 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
   captured_count_ = 0;
   insertion_depth_ = 0;
   axis_ = nullptr;
+  const spatial::Pose X_WWish = WithoutOvershoot(part, X_WT);
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count; ++i) {
     const HeldMate& mate = part.mates[i];
@@ -143,7 +153,7 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
     if (!state.is_captured || g.engaged <= 0) {
       state.is_captured =
           mates::IsCaptured(kind, now, state.is_captured, options.capture) &&
-          mates::CalcCaptureRatio(kind, deviation(X_WT), options.capture) < kHandRatio;
+          mates::CalcCaptureRatio(kind, deviation(X_WWish), options.capture) < kHandRatio;
     }
     is_near_ = is_near_ || mates::CalcCaptureRatio(kind, now, options.capture) < kNearRatio;
     const double direction = state.is_captured ? 1.0 : -1.0;

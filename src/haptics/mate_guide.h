@@ -40,7 +40,8 @@ class MateGuide {
   /** All mates of a part that is in its place hold it there from the first tick on. */
   void StartInPlace() noexcept;
 
-  /** Captures and releases for the part at X_WB (displayed) while the hand wants X_WT. */
+  /** Captures and releases for the part at X_WB (displayed) while the hand wants X_WT. How far it
+   wants the part beyond its place, along the way in, does not matter. */
   void Update(const HeldPart& part, const GuidanceOptions& options, const spatial::Pose& X_WB,
               const spatial::Pose& X_WT, double dt) noexcept;
 

@@ -52,6 +52,9 @@ struct GuidanceOptions {
   double seat_angle{0.06};           ///< [rad]
   double loose_seat_distance{3e-3};  ///< For a part without any mate [m].
   double seat_time{0.12};            ///< Of the last, exact, movement into place [s].
+  /** A part that is let go so near to its place, and can be moved there, is in it [m]. 0: it stays
+   where it was let go. */
+  double finish_distance{0};
 };
 
 struct ContactOptions {

@@ -134,7 +134,8 @@ struct AllFields {
   template <typename F>
   static void Visit(F& f, haptics::GuidanceOptions& value) {
     auto& [capture, ramp_time, k_lin, k_rot, max_force, max_torque, attraction_force,
-           attraction_torque, seat_distance, seat_angle, loose_seat_distance, seat_time] = value;
+           attraction_torque, seat_distance, seat_angle, loose_seat_distance, seat_time,
+           finish_distance] = value;
     VisitInner(f, "capture", capture);
     f("ramp_time_s", ramp_time);
     f("k_lin_n_per_m", k_lin);
@@ -288,7 +289,8 @@ std::string FindUnsound(haptics::TickOptions* options) {
 }
 
 constexpr const char* kLimits = "limits";
-constexpr const char* kRendersFits = "renders_fits";  // Only where they are not.
+constexpr const char* kRendersFits = "renders_fits";          // Only where they are not.
+constexpr const char* kFinishDistance = "finish_distance_m";  // Only where parts are moved home.
 
 }  // namespace
 
@@ -303,6 +305,9 @@ Json MakeTickOptionsJson(const haptics::TickOptions& options) {
   if (!copy.renders_fits) {
     maker(kRendersFits, copy.renders_fits);
   }
+  if (copy.guidance.finish_distance > 0) {
+    maker(kFinishDistance, copy.guidance.finish_distance);
+  }
   return json;
 }
 
@@ -315,6 +320,9 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   }
   if (fields.has(kRendersFits)) {
     fields(kRendersFits, options.renders_fits);
+  }
+  if (fields.has(kFinishDistance)) {
+    fields(kFinishDistance, options.guidance.finish_distance);
   }
   const std::string refused = fields.refused().empty() ? FindUnsound(&options) : fields.refused();
   if (!refused.empty()) {

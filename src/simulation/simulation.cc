@@ -231,16 +231,16 @@ haptics::TickOutput Simulation::RunTick(Hand* hand, const device::DeviceState& d
   haptics::HapticTick& haptic = hand->haptic;
   if (haptic.held() != nullptr && device.is_valid && !device.is_gripping) {
     const haptics::HeldPart& part = *haptic.held();
-    const bool was_in_place = haptic.is_in_place();
-    const spatial::Pose X_WB = haptic.Drop();
+    const haptics::LetGo let_go = haptic.Drop();
     SimulationEvent event;
     event.t_ns = device.t_ns;
     event.kind = SimulationEvent::Kind::kDropped;
     event.hand = hand->index;
     event.occurrence = part.occurrence;
     event.state = haptics::HoldState::kEmpty;
-    event.X_WB = X_WB;
-    event.was_seated = was_in_place;
+    event.X_WB = let_go.X_WB;
+    event.was_seated = let_go.is_in_place;
+    event.to_place = let_go.to_place;
     event.metrics = hand->metrics;
     events_.TryPush(event);
   }

@@ -54,7 +54,8 @@ struct SimulationEvent {
   product::OccurrenceId occurrence;
   haptics::HoldState state{haptics::HoldState::kEmpty};
   spatial::Pose X_WB;                                      ///< kDropped: where the part was let go.
-  bool was_seated{false};                                  ///< kDropped: it was in its place.
+  bool was_seated{false};                                  ///< kDropped: it is in its place.
+  double to_place{0};                                      ///< kDropped: that far from there [m].
   HoldMetrics metrics;                                     ///< kDropped: of the whole hold.
   std::uint32_t gate_actions{0};                           ///< kSafety: those that are new.
   device::Condition condition{device::Condition::kReady};  ///< kDevice

@@ -95,6 +95,7 @@ Json ToJson(const SimulationEvent& event) {
     case SimulationEvent::Kind::kDropped:
       json["event"] = "dropped";
       json["was_seated"] = event.was_seated;
+      json["to_place_mm"] = units::ToMm(event.to_place);
       json["metrics"] = MetricsOf(event);
       return json;
     case SimulationEvent::Kind::kSafety:

@@ -90,7 +90,8 @@ Json MakeHistograms(const simulation::LoopStatus& status) {
 
 }  // namespace
 
-std::string MakeFrames(const LiveFrame& live, std::uint32_t seq, std::vector<spatial::Pose>* told) {
+std::string MakeFrames(const LiveFrame& live, std::int64_t t_ns, std::uint32_t seq,
+                       std::vector<spatial::Pose>* told) {
   const simulation::Frame& frame = live.frame;
   const std::vector<protocol::BodyPose> moved = ListMoved(frame, told);
   std::vector<protocol::HandState> hands;
@@ -106,9 +107,9 @@ std::string MakeFrames(const LiveFrame& live, std::uint32_t seq, std::vector<spa
     }
   }
   std::string bytes;
-  AppendFrame<protocol::BodyPose>(moved, seq, live.epoch, frame.t_ns, &bytes);
-  AppendFrame<protocol::HandState>(hands, seq, live.epoch, frame.t_ns, &bytes);
-  AppendFrame<protocol::ContactPoint>(contacts, seq, live.epoch, frame.t_ns, &bytes);
+  AppendFrame<protocol::BodyPose>(moved, seq, live.epoch, t_ns, &bytes);
+  AppendFrame<protocol::HandState>(hands, seq, live.epoch, t_ns, &bytes);
+  AppendFrame<protocol::ContactPoint>(contacts, seq, live.epoch, t_ns, &bytes);
   return bytes;
 }
 

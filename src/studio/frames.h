@@ -10,8 +10,9 @@
 namespace hvas::studio {
 
 /** The message with what has changed since a client was told last; empty when that is nothing.
+ @param t_ns  What its frames have for their time.
  @param told  The poses that the client has, brought up to date; empty: it has none. */
-[[nodiscard]] std::string MakeFrames(const LiveFrame& frame, std::uint32_t seq,
+[[nodiscard]] std::string MakeFrames(const LiveFrame& frame, std::int64_t t_ns, std::uint32_t seq,
                                      std::vector<spatial::Pose>* told);
 
 /** Where an input wants the hand. @pre it came through ReadClientFrames. */

@@ -320,7 +320,7 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
     client->X_WB.clear();
   }
   std::string bytes = MakeFrames(IsShielded(client->role) ? WithoutTruth(frame) : frame,
-                                 client->sent_seq + 1, &client->X_WB);
+                                 frame.clock_ns, client->sent_seq + 1, &client->X_WB);
   if (bytes.empty()) {
     return;
   }

@@ -3,6 +3,8 @@
 namespace hvas::studio {
 namespace {
 
+constexpr double kFinishDistance = 3e-3;  // [m]; what is let go so near to its place goes there
+
 /** Whoever moves the hand may be gone: it is given no force then, and the part stays. */
 void AddClientLimits(haptics::SafetyLimits* limits) {
   limits->client_hold = 1e-9 * static_cast<double>(PointerOperator::kSilentNs);
@@ -49,6 +51,8 @@ LiveHand::LiveHand(const HandSetup& setup, const HandPurpose& purpose,
   tick_options_ = MakeOptions(setup, purpose, goes_through_device, model);
   if (purpose.trial != nullptr) {
     purpose.trial->Adjust(goes_through_device, &tick_options_);
+  } else {
+    tick_options_.guidance.finish_distance = kFinishDistance;
   }
   if (purpose.has_person) {
     person_ = std::make_unique<simulation::SimulatedPerson>(

@@ -55,7 +55,8 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
       trial_(options.trial),
       hands_(MakeHands(options, *model)),
       simulation_(MakeSimulation(std::move(model), hands_)),
-      assembly_(&simulation_, PersonsOf(hands_), this) {
+      assembly_(&simulation_, PersonsOf(hands_), this),
+      begin_ns_(MonotonicNs()) {
   if (!start.parts.empty()) {
     simulation_.Restore(start.parts);
   }
@@ -93,7 +94,8 @@ void LiveRun::Run(const LiveOptions& options) {
   execution.frame_ns = kFrameNs;
   execution.status = &status_;
   execution.on_frame = [this](const simulation::Frame& frame) {
-    listeners_.on_frame(frame, TakePeaks(&peak_felt_));
+    listeners_.on_frame(frame, begin_ns_.load(std::memory_order_relaxed) + frame.t_ns,
+                        TakePeaks(&peak_felt_));
   };
   (void)simulation::RunRealtime(execution);
 }
@@ -145,6 +147,7 @@ void LiveRun::OnTick(std::size_t hand, const device::DeviceState& device,
   if (trial_ != nullptr) {
     trial_->OnTick(hand, device, out);
   }
+  begin_ns_.store(MonotonicNs() - device.t_ns, std::memory_order_relaxed);
   const double felt = out.F_H_W.f.norm();
   if (felt > peak_felt_[hand].load(std::memory_order_relaxed)) {
     peak_felt_[hand].store(felt, std::memory_order_relaxed);

@@ -32,7 +32,7 @@ struct LiveListeners {
   std::function<void(product::OccurrenceId, simulation::Placement)> on_placement;
   std::function<void(std::size_t step)> on_step;
   /** Publish thread. */
-  std::function<void(const simulation::Frame&, const PeakForces&)> on_frame;
+  std::function<void(const simulation::Frame&, std::int64_t clock_ns, const PeakForces&)> on_frame;
 };
 
 struct LiveOptions {
@@ -93,6 +93,9 @@ class LiveRun final : private simulation::Sink {
   simulation::AssemblyRun assembly_;
   TripleBuffer<simulation::LoopStatus> status_;
   std::array<std::atomic<double>, 2> peak_felt_{};
+  /** When session time was 0, as its newest tick has it, by MonotonicNs(): what the loop has missed
+   is no session time. */
+  std::atomic<std::int64_t> begin_ns_;
   std::atomic<bool> is_stopping_{false};
 
   mutable std::mutex mutex_;  ///< Of what follows; never taken by the haptic thread.

@@ -37,6 +37,7 @@ struct LiveFrame {
   std::uint32_t epoch{0};
   std::uint64_t serial{0};  ///< Another one for each frame.
   simulation::Frame frame;
+  std::int64_t clock_ns{0};            ///< When its tick ran, by MonotonicNs().
   PeakForces peak_felt{};              ///< Since the last one [N].
   std::array<double, 2> hand_speed{};  ///< By hand, since the last one [m/s].
 };

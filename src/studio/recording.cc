@@ -82,10 +82,9 @@ void Recording::AddFrame(const LiveFrame& frame) {
   if (!is_on_) {
     return;
   }
-  LiveFrame in_session = frame;
-  in_session.frame.t_ns += start_ns_;
-  const std::string bytes = MakeFrames(in_session, ++frame_count_, &shown_);
-  recorder_->AddFrame({in_session.frame.t_ns, BytesOf(bytes)});
+  const std::int64_t t_ns = start_ns_ + frame.frame.t_ns;
+  const std::string bytes = MakeFrames(frame, t_ns, ++frame_count_, &shown_);
+  recorder_->AddFrame({t_ns, BytesOf(bytes)});
 }
 
 void Recording::AddTold(const nlohmann::ordered_json& event) {

@@ -352,12 +352,13 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
     HandleStep(*scene, step, has_person);
   };
   listeners.on_frame = [this, epoch = scene->epoch, recording = live.recording](
-                           const simulation::Frame& frame, const PeakForces& peak_felt) {
+                           const simulation::Frame& frame, std::int64_t clock_ns,
+                           const PeakForces& peak_felt) {
     LiveFrame shown;
     {
       const std::lock_guard lock(mutex_);
       const auto speed = SpeedsBetween(frame_.frame, frame);
-      frame_ = {epoch, frame_.serial + 1, frame, peak_felt, speed};
+      frame_ = {epoch, frame_.serial + 1, frame, clock_ns, peak_felt, speed};
       shown = recording != nullptr ? frame_ : LiveFrame();
     }
     if (recording != nullptr) {

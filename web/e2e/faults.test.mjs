@@ -161,6 +161,44 @@ describe("a page that steers", () => {
   });
 });
 
+describe("a server that stands still", () => {
+  /** Until the picture is so old [ms]. */
+  const ages = (page, ms) => waitForState(page, ({ ageMs }) => ageMs > ms);
+
+  it("is said after a second, and the age of the picture is right when it goes on", withStudio([kBushing], async (studio) => {
+    const { page, complaints } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    await waitForState(page, ({ ageMs }) => ageMs < 400);
+    for (const stallMs of [700, 2500]) {
+      studio.freeze();
+      await ages(page, stallMs);
+      if (stallMs > 1000) {
+        await page.getByTestId("silent").waitFor();
+        assert.equal(await page.getByTestId("link").getAttribute("data-link"), "silent");
+        await takePicture(page, "fault_silent");
+      }
+      studio.thaw();
+      await waitForState(page, ({ isSilent, ageMs }) => !isSilent && ageMs < 400);
+    }
+    await page.getByTestId("silent").waitFor({ state: "detached" });
+    assert.equal(await page.getByTestId("link").getAttribute("data-link"), "open");
+    assert.match(await page.getByTestId("age").textContent(), / ms$/);
+    assert.deepEqual(complaints, []);
+    await page.context().close();
+  }));
+
+  it("is said where nothing is open, too", withStudio([], async (studio) => {
+    const { page } = await openPage(browser, studio.operator);
+    await page.getByTestId("drop-zone").waitFor();
+    await waitForState(page, ({ link }) => link === "open");
+    studio.freeze();
+    await page.getByTestId("silent").waitFor();
+    studio.thaw();
+    await page.getByTestId("silent").waitFor({ state: "detached" });
+    await page.context().close();
+  }));
+});
+
 describe("opening", () => {
   /** Bytes go slowly, so that there is time to think better of it. */
   async function slowDown(page, bytesPerSecond) {

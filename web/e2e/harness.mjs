@@ -51,6 +51,9 @@ export async function startStudio(args = [], { home = makeFolder() } = {}) {
     viewer: links.at(-1),
     participant: /participant's: (\S+)/.exec(said)?.[1] ?? null,  // of a study
     origin: new URL(operator).origin,
+    /** It stands still, as on a machine that has no time for it; then it goes on. */
+    freeze: () => child.kill("SIGSTOP"),
+    thaw: () => child.kill("SIGCONT"),
     stop: async () => {
       child.kill("SIGTERM");
       return ended;

@@ -93,6 +93,64 @@ describe("a mate", () => {
     await page.context().close();
   }));
 
+  it("keeps its card whatever becomes of its fit, and the fits of others", withStudio(["../products/gear_pump.step"], async (studio) => {
+    const { page, complaints } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    const fitsOf = async () => (await fetchScene(page)).mates.filter((m) => m.fit).map((m) => [m.key, m.fit.code]);
+    const { mates } = await fetchScene(page);
+    // A bushing that is pressed into one part, and in which another one runs.
+    const pressed = mates.find((m) => m.fit?.kind === "interference" && mates.some((n) => n.fit?.kind === "clearance" && n.a === m.b));
+    const before = await fitsOf();
+    const card = page.getByTestId("fit-card");
+    await page.getByTestId(`part-${pressed.b}`).click();
+    await card.waitFor();
+    await page.getByTestId("fit-mate").selectOption(pressed.key);
+    const told = await page.getByTestId("fit-mate").evaluate((select) => select.selectedOptions[0].text);
+    for (const code of ["H7/g6", "H11/c11", pressed.fit.code]) {
+      const { epoch } = await fetchScene(page);
+      await page.getByTestId("fit-input").fill(code);
+      await page.getByTestId("fit-apply").click();
+      await epochAfter(page, epoch);
+      await card.getByRole("heading", { name: code }).waitFor();
+      assert.equal(await page.getByTestId("fit-mate").inputValue(), pressed.key);
+      await takePicture(page, `fit_card_${code.replace("/", "_")}`);
+    }
+    assert.equal(await page.getByTestId("fit-mate").evaluate((select) => select.selectedOptions[0].text), told);
+    assert.deepEqual(await fitsOf(), before, "all as it was");
+    // Of a mate that is chosen in the list, the card is its own.
+    const running = mates.find((m) => m.fit?.kind === "clearance" && m.a === pressed.b);
+    await page.getByTestId(`mate-${running.id}`).click();
+    await page.locator(`[data-testid="fit-card"][data-mate="${running.id}"]`).waitFor();
+    assert.deepEqual(complaints, []);
+    await page.context().close();
+  }));
+
+  it("with a fit that there is not is refused, and what was picked stays", withStudio([kBushing], async (studio) => {
+    const { page } = await openPage(browser, studio.operator);
+    await waitForPicture(page);
+    const { mates, epoch } = await fetchScene(page);
+    const shaft = mates.find((m) => m.kind === "axis_hole" && m.b === kShaft);
+    await page.keyboard.press("c");
+    await clickFace(page, kShaft, shaft.faces_b[0]);
+    await page.getByTestId("part-0").waitFor();
+    const seen = await page.evaluate(
+      (faces) => faces.find(([o, f]) => window.hvas.screenOfFace(o, f) !== null),
+      mates.filter((m) => m.kind === "axis_hole").map((m) => [m.a, m.faces_a[0]]),
+    );
+    await clickFace(page, ...seen);
+    const picked = await page.getByTestId("mate-panel").locator(".picked").textContent();
+    await page.getByTestId("mate-fit").fill("H7");
+    assert.equal(await page.getByTestId("mate-create").isDisabled(), true);
+    await page.getByTestId("mate-fit").fill("H7/zz99");
+    await page.getByTestId("mate-create").click();
+    await page.getByTestId("notice").waitFor();
+    await takePicture(page, "mate_bad_fit");
+    assert.equal(await page.getByTestId("mate-panel").locator(".picked").textContent(), picked);
+    assert.equal(await page.getByTestId("mate-fit").inputValue(), "H7/zz99");
+    assert.equal((await fetchScene(page)).epoch, epoch);
+    await page.context().close();
+  }));
+
   it("changes its fit in the inspector", withStudio([kBushing], async (studio) => {
     const { page } = await openPage(browser, studio.operator);
     await waitForPicture(page);

@@ -1,5 +1,5 @@
 import { readFileSync } from "node:fs";
-import { describe, expect, it } from "vitest";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { makeCreditFrame, makeInputFrame, splitFrames } from "../src/protocol/decoder";
 import { FrameStore } from "../src/protocol/frame_store";
 import {
@@ -122,5 +122,65 @@ describe("the store", () => {
     const reader = new FrameStore(writer.buffer);
     writer.ingest(golden("hands").buffer as ArrayBuffer, 0);
     expect(reader.read()?.hands[0]?.hand).toBe(1);
+  });
+});
+
+describe("the age of what is shown", () => {
+  /** When this page's clock began, for the server's [ms]. */
+  const kApart = 5e6;
+  let now = 0;
+  beforeEach(() => {
+    now = 1000;
+    vi.spyOn(performance, "now").mockImplementation(() => now);
+  });
+  afterEach(() => vi.restoreAllMocks());
+
+  /** A frame of the server's time, which this page receives so much later. */
+  function take(store: FrameStore, serverMs: number, lateMs: number): number {
+    const frame = golden("poses");
+    frame.setBigInt64(24, BigInt(Math.round(1e6 * serverMs)), true);
+    now = kApart + serverMs + lateMs;
+    store.ingest(frame.buffer as ArrayBuffer, performance.timeOrigin + now);
+    return store.read()?.ageMs ?? NaN;
+  }
+
+  /** Frames for so long, 60 a second, each late by 2 to 3 ms; the age after the last. */
+  function stream(store: FrameStore, fromMs: number, forMs: number): number {
+    let age = 0;
+    for (let t = 0; t <= forMs; t += 16) {
+      age = take(store, fromMs + t, 2 + (t % 5) / 5);
+    }
+    return age;
+  }
+
+  it("is that of a frame which waited on its way, and of a server that says nothing", () => {
+    const store = new FrameStore();
+    expect(stream(store, 1000, 2000)).toBeLessThan(2);
+    expect(take(store, 3020, 250)).toBeGreaterThan(240);
+    now += 700;
+    expect(store.read()?.ageMs).toBeGreaterThan(940);
+  });
+
+  it("is right at once after a stall of any length", () => {
+    for (const stallMs of [100, 900, 1500, 20_000, 3_600_000]) {
+      const store = new FrameStore();
+      stream(store, 1000, 2000);
+      expect(stream(store, 3000 + stallMs, 160), `${stallMs}`).toBeLessThan(3);
+    }
+  });
+
+  it("is right soon where one of the clocks has stood still meanwhile, or begins anew", () => {
+    for (const lostMs of [1500, 60_000, -500_000]) {
+      const store = new FrameStore();
+      stream(store, 600_000, 2000);
+      const before = now;
+      const frame = golden("poses");
+      for (let k = 0; k < 20; k++) {
+        now = before + Math.abs(lostMs) + 16 * k;
+        frame.setBigInt64(24, BigInt(Math.round(1e6 * (602_010 + 16 * k + Math.min(0, lostMs)))), true);
+        store.ingest(frame.buffer as ArrayBuffer, performance.timeOrigin + now);
+      }
+      expect(store.read()?.ageMs, `${lostMs}`).toBeLessThan(3);
+    }
   });
 });

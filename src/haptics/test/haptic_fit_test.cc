@@ -367,7 +367,7 @@ TEST(Insertion, PassesThroughItsStatesToTheExactPose) {
   EXPECT_LT(CalcDeepest(hand.samples), 50e-6);
   // The shaft on the shoulder, to the bit.
   EXPECT_EQ(hand.last().X_WD.p(), rig.part.X_WB_goal.p());
-  const Pose X_WB = rig.tick->Drop();
+  const Pose X_WB = rig.tick->Drop().X_WB;
   EXPECT_EQ(X_WB.p(), rig.part.X_WB_goal.p());
   EXPECT_EQ(X_WB.q().coeffs(), rig.part.X_WB_goal.q().coeffs());
   // The empty hand's force fades by the gate.

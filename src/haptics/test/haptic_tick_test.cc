@@ -271,7 +271,7 @@ TEST(HapticTick, DropLeavesThePartWhereItIs) {
   BlockRig rig(BallShape(), 0.26, Pose(Vec3(0, 0, 0.3)));
   rig.hand->MoveSoftly(Vec3(0.05, 0, 0), 2);
   const TickOutput held = rig.hand->last();
-  const Pose X_WB = rig.tick->Drop();
+  const Pose X_WB = rig.tick->Drop().X_WB;
   EXPECT_EQ(X_WB.p(), held.X_WD.p());
   double before = held.F_H_W.f.norm();
   ASSERT_GT(before, 1);

@@ -28,14 +28,22 @@ class Listener {
     };
     listeners.on_placement = [](product::OccurrenceId, simulation::Placement) {};
     listeners.on_step = [](std::size_t) {};
-    listeners.on_frame = [this](const simulation::Frame& frame, const PeakForces&) {
+    listeners.on_frame = [this](const simulation::Frame& frame, std::int64_t clock_ns,
+                                const PeakForces&) {
       const std::lock_guard lock(mutex_);
+      has_true_clock_ = has_true_clock_ && clock_ns >= start_ns_ && clock_ns <= MonotonicNs();
       frame_ = frame;
     };
     return listeners;
   }
 
   [[nodiscard]] device::Condition condition() const { return condition_; }
+
+  /** All frames were computed since the listener began, and before they came. */
+  [[nodiscard]] bool has_true_clock() const {
+    const std::lock_guard lock(mutex_);
+    return has_true_clock_;
+  }
 
   [[nodiscard]] simulation::Frame frame() const {
     const std::lock_guard lock(mutex_);
@@ -44,7 +52,9 @@ class Listener {
 
  private:
   std::atomic<device::Condition> condition_{device::Condition::kReady};
+  const std::int64_t start_ns_{MonotonicNs()};
   mutable std::mutex mutex_;
+  bool has_true_clock_{true};
   simulation::Frame frame_;
 };
 
@@ -117,6 +127,7 @@ TEST_F(LiveRunTest, DeviceGoesFromOneRunToTheNext) {
     const simulation::Frame frame = listener_.frame();
     return !frame.ticks.empty() && (frame.ticks[0].X_WH.p() - p_WH).norm() < 2e-3;
   }));
+  EXPECT_TRUE(listener_.has_true_clock());
 }
 
 }  // namespace

@@ -218,6 +218,7 @@ TEST_F(WorkbenchTest, PartIsTakenMovedAlongItsAxisAndSeated) {
   const auto dropped = log_.Await("dropped", start);
   ASSERT_TRUE(dropped);
   EXPECT_EQ((*dropped)["was_seated"], true);
+  EXPECT_EQ((*dropped)["to_place_mm"], 0);
   EXPECT_EQ((*dropped)["occurrence"], kPeg);
   EXPECT_GT((*dropped)["metrics"]["time_s"], 1);
   EXPECT_GT((*dropped)["metrics"]["path_mm"], 50);

@@ -1,16 +1,17 @@
-import { findAction, isEnabled, keyLabel, runAction } from "./actions";
+import { findAction, isEnabled, runAction } from "./actions";
 import { Icon, type IconName } from "./icons";
+import { shownKey } from "./key";
 
 export function ActionButton({ id, icon, label }: { id: string; icon: IconName; label?: string }) {
   const found = findAction(id);
   const name = found.label();
-  const keys = found.keys?.[0];
+  const keys = shownKey(found);
   return (
     <button
       type="button"
       class={label === undefined ? "icon-button" : "text-button"}
       aria-label={label === undefined ? name : undefined}
-      title={keys ? `${name} (${keyLabel(keys)})` : name}
+      title={keys === null ? name : `${name} (${keys})`}
       aria-pressed={found.isOn?.()}
       disabled={!isEnabled(found)}
       data-testid={`button-${id}`}

@@ -8,6 +8,7 @@ import { chooseFile, saveRuns, saveScreenshot } from "./exports";
 import { t } from "./i18n";
 import type { MessageKey } from "./en";
 import { action, toggle, type Action } from "./action";
+import { forcesOff, kStopKey, takeChosen } from "./hand_actions";
 import { fileTimeActions, simulateTimeActions, timeActions } from "./time_actions";
 import { enterVr } from "./vr_entry";
 
@@ -33,21 +34,6 @@ export function setTool(name: Tool): void {
 
 function standardView(name: ViewName, label: MessageKey, key: string): Action {
   return action(`view-${name}`, label, () => viewport.value?.lookFrom(name), { keys: [key], isEnabled: hasScene });
-}
-
-/** Always works, whoever has control: no force any more, at once. */
-export function forcesOff(): void {
-  void studio.command({ command: "forces", off: true });
-  viewport.value?.hand.releaseAll();
-}
-
-export function takeChosen(): void {
-  const wanted = view.hovered.value ?? chosen()[0];
-  if (wanted === undefined) {
-    studio.notify(t("notice.notHeld"));
-  } else {
-    void viewport.value?.hand.take(wanted);
-  }
 }
 
 /** Nobody takes the hand of a study's participant. */
@@ -206,7 +192,7 @@ const simulateActions: Action[] = [
     isEnabled: () => steers() && !store.demo.value,
   }),
   action("reset", "action.reset", () => void studio.command({ command: "reset" }), { isEnabled: steers }),
-  action("forces-off", "action.forcesOff", forcesOff, { startsGroup: true, keys: ["escape"] }),
+  action("forces-off", "action.forcesOff", forcesOff, { startsGroup: true, keys: [kStopKey] }),
   action("forces-on", "action.forcesOn", () => void studio.command({ command: "forces", off: false }), {
     isEnabled: () => canSteer() && store.forcesOff.value,
   }),
@@ -227,6 +213,7 @@ const simulateActions: Action[] = [
 const helpActions: Action[] = [
   action("palette", "action.palette", () => (ui.overlay.value = { kind: "palette" }), { keys: ["ctrl+k"] }),
   action("shortcuts", "action.shortcuts", () => (ui.overlay.value = { kind: "shortcuts" }), { keys: ["?"] }),
+  toggle("single-keys", "action.singleKeys", view.hasSingleKeys),
 ];
 
 function showPath(kind: PathKind): void {
@@ -295,13 +282,4 @@ export function runAction(a: Action): void {
   if (isEnabled(a)) {
     a.run();
   }
-}
-
-/** "ctrl+z" as people read it. */
-export function keyLabel(keys: string): string {
-  const names: Record<string, string> = { escape: "Esc", ctrl: "Ctrl", shift: "Shift", " ": t("keys.space") };
-  return keys
-    .split("+")
-    .map((key) => names[key] ?? key.toUpperCase())
-    .join(" ");
 }

@@ -50,6 +50,8 @@ export const ui = {
   /** Recordings that are laid side by side. */
   compared: signal<readonly string[]>([]),
   isInVr: signal(false),
+  /** What is searched in the tree. */
+  treeSearch: signal(""),
   /** Asks the tree's search field to take the focus. */
   findRequest: signal(0),
 };

@@ -32,6 +32,11 @@ export function Banners() {
           <Icon name="lock" /> {denialText()}
         </div>
       ) : null}
+      {store.isSilent.value && store.link.value === "open" ? (
+        <div class="banner is-bad" role="alert" data-testid="silent">
+          <Icon name="warn" /> {t("banner.silent")}
+        </div>
+      ) : null}
       {safety !== null ? (
         <div class="banner is-bad" role="alert" data-testid="safety">
           <Icon name="warn" />

@@ -1,7 +1,8 @@
 /** The mates of what is selected, or of the step at hand, with their state. */
 
 import type { Mate } from "../protocol/messages";
-import { select } from "../model/view_state";
+import { mateKey } from "../model/fit_mates";
+import { chooseCardMate, select } from "../model/view_state";
 import { canSteer, store, studio, view } from "./app_state";
 import { t } from "./i18n";
 import { Icon } from "./icons";
@@ -46,13 +47,16 @@ export function ConstraintList() {
         {mates.slice(0, kShown).map((mate) => {
           const state = stateOf(mate);
           return (
-            <li key={mate.key || mate.id} class={`constraint is-${state}`}>
+            <li key={mateKey(mate)} class={`constraint is-${state}`}>
               <button
                 type="button"
                 class="constraint-name"
                 title={mate.evidence}
                 data-testid={`mate-${mate.id}`}
-                onClick={() => select(view, [mate.a, mate.b], false)}
+                onClick={() => {
+                  select(view, [mate.a, mate.b], false);
+                  chooseCardMate(view, [mate.a, mate.b], mateKey(mate));
+                }}
               >
                 <i class="state-dot" role="img" aria-label={t(`mates.${state}`)} />
                 <span class="constraint-text">

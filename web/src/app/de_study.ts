@@ -53,7 +53,7 @@ export const deStudy: Record<keyof typeof enStudy, string> = {
   "study.help.turn": "Mit der rechten Taste oder mit Umschalt am Teil ziehen: Es dreht sich. Q und E drehen auch, die Pfeiltasten bewegen es.",
   "study.help.fine": "Mit Alt geht es fein.",
   "study.help.look": "Neben den Teilen ziehen: Sie schauen herum.",
-  "study.help.stop": "Esc oder die rote Taste nimmt sofort alle Kraft weg.",
+  "study.help.stop": "Esc, F8 oder die rote Taste nimmt sofort alle Kraft weg.",
   "study.help.device": "Führen Sie den Griff des Geräts an das markierte Teil und drücken Sie seine Taste.",
   "study.help.release": "Lassen Sie die Taste los, um das Teil abzulegen.",
   "study.help.pickFaces": "Klicken Sie auf eine Fläche des markierten Teils und dann auf die Fläche, zu der sie gehört.",

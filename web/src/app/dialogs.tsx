@@ -2,11 +2,12 @@
 
 import { useSignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
-import { actions, findAction, isEnabled, keyLabel, menus, runAction } from "./actions";
+import { actions, findAction, isEnabled, menus, runAction } from "./actions";
 import { store, ui, view } from "./app_state";
 import { Dialog, DialogHead } from "./dialog";
 import { t } from "./i18n";
 import { Icon } from "./icons";
+import { Key, shownKey } from "./key";
 import { Lazy } from "./lazy";
 import { MenuList, useOutside } from "./menu";
 
@@ -73,7 +74,7 @@ function Palette() {
           >
             <span>{a.label()}</span>
             {a.isOn?.() ? <Icon name="check" size={14} /> : null}
-            {a.keys?.[0] ? <kbd>{keyLabel(a.keys[0])}</kbd> : null}
+            <Key of={a} />
           </div>
         ))}
         {found.length === 0 ? <p class="quiet">{t("palette.none")}</p> : null}
@@ -92,12 +93,24 @@ const kMouse = [
   ["shortcuts.arrows", "shortcuts.arrowsDoes"],
   ["shortcuts.fine", "shortcuts.fineDoes"],
   ["shortcuts.orbit", "shortcuts.orbitDoes"],
+  ["shortcuts.enter", "shortcuts.enterDoes"],
+  ["shortcuts.look", "shortcuts.lookDoes"],
+  ["shortcuts.esc", "shortcuts.escDoes"],
 ] as const;
 
 function Shortcuts() {
   return (
     <Dialog title={t("shortcuts.title")} kind="shortcuts" onClose={close}>
       <DialogHead title={t("shortcuts.title")} onClose={close} />
+      <label class="shortcut-switch">
+        <input
+          type="checkbox"
+          checked={view.hasSingleKeys.value}
+          data-testid="single-keys"
+          onChange={(event) => (view.hasSingleKeys.value = event.currentTarget.checked)}
+        />
+        {t("shortcuts.single")}
+      </label>
       <div class="shortcut-columns">
         <section>
           <h3>{t("shortcuts.mouse")}</h3>
@@ -106,14 +119,14 @@ function Shortcuts() {
           </dl>
         </section>
         {menus.map((menu) => {
-          const withKeys = menu.actions.filter((a) => a.keys !== undefined);
+          const withKeys = menu.actions.filter((a) => shownKey(a) !== null);
           return withKeys.length === 0 ? null : (
             <section key={menu.id}>
               <h3>{t(menu.id)}</h3>
               <dl class="shortcut-list">
                 {withKeys.map((a) => [
                   <dt key={a.id}>
-                    <kbd>{keyLabel(a.keys?.[0] ?? "")}</kbd>
+                    <Key of={a} />
                   </dt>,
                   <dd key={`${a.id}=`}>{a.label()}</dd>,
                 ])}

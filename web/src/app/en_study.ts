@@ -51,7 +51,7 @@ export const enStudy = {
   "study.help.turn": "Drag the part with the right button, or with Shift: it turns. Q and E turn it too, and the arrow keys move it.",
   "study.help.fine": "Hold Alt for fine motion.",
   "study.help.look": "Drag beside the parts to look around.",
-  "study.help.stop": "Esc or the red button takes all force away at once.",
+  "study.help.stop": "Esc, F8 or the red button takes all force away at once.",
   "study.help.device": "Bring the handle of the device to the marked part and press its button.",
   "study.help.release": "Let the button go to put the part down.",
   "study.help.pickFaces": "Click a surface of the marked part, then the surface that it belongs to.",

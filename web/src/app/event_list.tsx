@@ -1,7 +1,7 @@
 import type { Told } from "../model/event_log";
 import type { HoldState } from "../protocol/messages";
 import { store } from "./app_state";
-import { duration, language, number, t } from "./i18n";
+import { duration, figures, language, number, t } from "./i18n";
 import { seek } from "./time_source";
 
 export function logText(entry: Told): string {
@@ -10,7 +10,9 @@ export function logText(entry: Told): string {
     case "resumed":
       return t(p["isResumed"] ? "log.resumed" : "log.notResumed", p);
     case "dropped":
-      return t(p["seated"] ? "log.droppedSeated" : "log.dropped", p);
+      return p["missing_mm"] === undefined
+        ? t(p["seated"] ? "log.droppedSeated" : "log.dropped", p)
+        : t("log.droppedClose", { ...p, distance: `${figures(Number(p["missing_mm"]), 2)} mm` });
     case "forces":
       return t(p["off"] ? "log.forcesOff" : "log.forcesOn");
     case "demo":

@@ -1,26 +1,55 @@
 /** The fit of the part that is inspected: limits, the size that was drawn, and its forces. */
 
 import { useSignal } from "@preact/signals";
-import { useRef } from "preact/hooks";
+import { useEffect, useRef } from "preact/hooks";
+import { firstMate, isFitCode, mateKey, matesWithFit } from "../model/fit_mates";
 import { liveNumbers } from "../model/hints";
-import type { Fit, Mate, Occurrence } from "../protocol/messages";
-import { canSteer, store, studio } from "./app_state";
+import { chooseCardMate, chosenCardMate } from "../model/view_state";
+import type { Fit, Mate } from "../protocol/messages";
+import { canSteer, store, studio, view } from "./app_state";
 import { figures, number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
 
 const kCommonFits = ["H7/g6", "H7/h6", "H7/k6", "H7/n6", "H7/p6", "H7/s6", "H8/f7", "H11/c11"];
 
-/** The mate that holds now; else the tightest one that the part has. */
-function chooseMate(part: Occurrence): Mate | null {
-  const mates = (store.scene.value?.mates ?? []).filter((m) => m.a === part.id || m.b === part.id);
-  const active = store.heldBy.value.get(part.id)?.mate;
-  const axes = mates.filter((m) => m.kind === "axis_hole");
-  const tightness = (m: Mate) => m.fit?.clearance_actual_um ?? Infinity;
+const nameOf = (occurrence: number) => store.occurrences.value.get(occurrence)?.name ?? "";
+
+/** "Shaft in Bushing". */
+const mateText = (mate: Mate) => t("fit.of", { inner: nameOf(mate.b), outer: nameOf(mate.a) });
+
+/** Which of the mates of these parts the card is about: the one that was chosen, for as long as it is there. */
+function useCardMate(parts: readonly number[], mates: readonly Mate[]): Mate | null {
+  const guiding = store.held.value.find((each) => parts.includes(each.occurrence))?.mate ?? null;
+  const chosen = chosenCardMate(view, parts);
+  const mate = mates.find((each) => mateKey(each) === chosen) ?? firstMate(mates, guiding);
+  const key = mate === null ? null : mateKey(mate);
+  useEffect(() => {
+    if (key !== null && key !== chosen) {
+      chooseCardMate(view, parts, key);
+    }
+  }, [key, chosen]);
+  return mate;
+}
+
+function MateChoice({ parts, mates, mate }: { parts: readonly number[]; mates: readonly Mate[]; mate: Mate }) {
+  if (mates.length === 1) {
+    return <p data-testid="fit-mate">{mateText(mate)}</p>;
+  }
   return (
-    mates.find((m) => m.id === active && m.fit !== null) ??
-    axes.filter((m) => m.fit !== null).sort((a, b) => tightness(a) - tightness(b))[0] ??
-    axes[0] ??
-    null
+    <select
+      class="mate-choice"
+      aria-label={t("fit.mate")}
+      data-testid="fit-mate"
+      value={mateKey(mate)}
+      onChange={(event) => chooseCardMate(view, parts, event.currentTarget.value)}
+    >
+      {mates.map((each) => (
+        <option key={mateKey(each)} value={mateKey(each)}>
+          {mateText(each)}
+          {each.fit === null ? "" : ` · ${each.fit.code}`}
+        </option>
+      ))}
+    </select>
   );
 }
 
@@ -36,13 +65,14 @@ function limits(fit: Fit): { label: string; text: string; actual: string } {
   };
 }
 
-function FitForces({ part }: { part: number }) {
+function FitForces({ parts }: { parts: readonly number[] }) {
   const axialTrue = useRef<HTMLElement>(null);
   const axialFelt = useRef<HTMLElement>(null);
   const felt = useRef<HTMLElement>(null);
   const ratio = useRef<HTMLElement>(null);
   useLive((live) => {
-    const hand = holdingHand(live, part);
+    const held = store.held.peek().find((each) => parts.includes(each.occurrence));
+    const hand = held === undefined ? null : holdingHand(live, held.occurrence);
     const newtons = (value: number | undefined) => (value === undefined ? "–" : `${value < 1e-3 ? 0 : figures(value)} N`);
     const values = hand === null ? null : liveNumbers(hand);
     setText(axialTrue.current, newtons(hand?.axial_true_n));
@@ -67,7 +97,8 @@ function FitForces({ part }: { part: number }) {
 
 function FitChoice({ mate }: { mate: Mate }) {
   const wanted = useSignal(mate.fit?.code ?? "");
-  const isSound = /^[A-Za-z]{1,2}\d{1,2}\/[A-Za-z]{1,2}\d{1,2}$/.test(wanted.value.trim());
+  const isSound = isFitCode(wanted.value);
+  useEffect(() => void (wanted.value = mate.fit?.code ?? ""), [mate.fit?.code]);
   const apply = (event: Event) => {
     event.preventDefault();
     if (isSound) {
@@ -80,6 +111,7 @@ function FitChoice({ mate }: { mate: Mate }) {
         list="common-fits"
         value={wanted.value}
         aria-label={t("fit.choose")}
+        aria-invalid={!isSound && wanted.value.trim() !== ""}
         title={t("fit.bad")}
         placeholder="H7/g6"
         data-testid="fit-input"
@@ -102,34 +134,37 @@ function FitChoice({ mate }: { mate: Mate }) {
   );
 }
 
-export function FitCard({ part }: { part: Occurrence }) {
-  const mate = chooseMate(part);
+/** @param parts  One part, or two that have a mate with each other. */
+export function FitCard({ parts }: { parts: readonly number[] }) {
+  const mates = matesWithFit(store.scene.value?.mates ?? [], parts);
+  const mate = useCardMate(parts, mates);
   if (mate === null) {
     return null;
   }
   const { fit } = mate;
-  const other = store.occurrences.value.get(mate.a === part.id ? mate.b : mate.a);
   const told = fit === null ? null : limits(fit);
   return (
     <section class="card-group" aria-labelledby="fit-title">
       <h2 id="fit-title">{t("fit.title")}</h2>
-      <div class="card">
+      <div class="card" data-testid="fit-card" data-mate={mate.id}>
+        <MateChoice parts={parts} mates={mates} mate={mate} />
         <h3>
           {fit === null ? t("fit.none") : `${fit.code} · ${t(`fit.${fit.kind}`)}`}
           {fit?.is_proposed ? <span class="badge">{t("fit.proposed")}</span> : null}
         </h3>
-        <p class="quiet" title={fit?.reason}>
-          {fit !== null ? `⌀ ${number(fit.diameter_mm)} mm · ` : ""}
-          {t("fit.with", { name: other?.name ?? "" })}
-        </p>
+        {fit === null ? null : (
+          <p class="quiet" title={fit.reason}>
+            ⌀ {number(fit.diameter_mm)} mm
+          </p>
+        )}
         <dl class="facts">
           {told !== null ? <dt>{told.label}</dt> : null}
           {told !== null ? <dd>{told.text}</dd> : null}
           {told !== null ? <dt>{t("fit.actual", { seed: store.scene.value?.seed ?? "" })}</dt> : null}
           {told !== null ? <dd>{told.actual}</dd> : null}
-          <FitForces part={part.id} />
+          <FitForces parts={parts} />
         </dl>
-        {canSteer() && mate.kind === "axis_hole" ? <FitChoice mate={mate} key={mate.id} /> : null}
+        {canSteer() && mate.kind === "axis_hole" ? <FitChoice mate={mate} key={mateKey(mate)} /> : null}
       </div>
     </section>
   );

@@ -1,9 +1,11 @@
 import { ActionButton } from "./action_button";
-import { findAction, forcesOff, runAction } from "./actions";
+import { findAction, runAction } from "./actions";
 import { canSteer, store, studio, ui } from "./app_state";
 import { deviceName } from "./device_name";
+import { forcesOff } from "./hand_actions";
 import { number, t } from "./i18n";
 import { Icon } from "./icons";
+import { shownKey } from "./key";
 import { MenuBar } from "./menu";
 
 function Chips() {
@@ -45,7 +47,7 @@ export function ForcesButton() {
       {t("action.forcesOn")}
     </button>
   ) : (
-    <button type="button" class="forces-button" data-testid="forces-off" title="Esc" onClick={forcesOff}>
+    <button type="button" class="forces-button" data-testid="forces-off" title={shownKey(findAction("forces-off")) ?? undefined} onClick={forcesOff}>
       <Icon name="stop" />
       {t("action.forcesOff")}
     </button>

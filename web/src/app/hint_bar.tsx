@@ -5,6 +5,7 @@ import { liveNumbers, makeHint } from "../model/hints";
 import { canSteer, store, studio, ui, view, viewport } from "./app_state";
 import { findAction, isEnabled, runAction } from "./actions";
 import { number, t } from "./i18n";
+import { Key } from "./key";
 import { holdingHand, setText, useLive } from "./live";
 
 export function HintBar() {
@@ -53,7 +54,7 @@ export function HintBar() {
       </div>
       {mayLetGo ? (
         <button type="button" class="hint-button" data-testid="hint-release" onClick={() => runAction(findAction("release"))}>
-          <kbd>R</kbd> {t("action.release")}
+          <Key of={findAction("release")} /> {t("action.release")}
         </button>
       ) : null}
       {!store.hasLease.value && ui.overlay.value === null && mayAsk && store.link.value === "open" ? (

@@ -62,6 +62,7 @@ export function inspected(): Occurrence | null {
 export function Inspector() {
   const part = inspected();
   const count = view.selected.value.length;
+  const parts = part !== null ? [part.id] : count === 2 ? view.selected.value : [];
   return (
     <aside class="inspector" aria-label={t("inspect.title")}>
       {part !== null ? (
@@ -72,7 +73,7 @@ export function Inspector() {
           {count > 1 ? null : <p class="quiet">{t("inspect.nothingHelp")}</p>}
         </section>
       )}
-      {part !== null ? <FitCard part={part} key={`fit${part.id}`} /> : null}
+      {parts.length > 0 ? <FitCard parts={parts} key={`fit${parts.join()}`} /> : null}
       <StepsCard />
       <SummaryCard />
       <Procedure />

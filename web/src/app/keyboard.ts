@@ -1,10 +1,17 @@
-/** Keys: the shortcuts of the actions, and those that move what is in the hand. */
+/** Keys: the shortcuts of the actions, those that move what is in the hand, and those of the picture. */
 
-import { actions, forcesOff, runAction } from "./actions";
+import { actions, findAction, runAction } from "./actions";
+import { focusPicture, forcesOff, kStopKey, takeNext } from "./hand_actions";
+import { isCharacterKey } from "./key";
 import { clearPicks, select } from "../model/view_state";
-import { store, studio, ui, view, viewport } from "./app_state";
+import { paths, store, studio, ui, view, viewport } from "./app_state";
 
 const kNudgePx = 6;
+/** What an arrow key turns the view by where nothing is in the hand [rad], and Page Up brings it nearer. */
+const kLookStep = Math.PI / 24;
+const kNearer = 0.85;
+/** Less is no force that anybody would feel [N]. */
+const kLeastForce = 0.02;
 
 const byKey = new Map(actions.flatMap((a) => (a.keys ?? []).map((key) => [key, a] as const)));
 
@@ -12,15 +19,28 @@ function isTyping(target: EventTarget | null): boolean {
   return target instanceof HTMLElement && (target.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName));
 }
 
-/** Keys that a focused control needs for itself. */
+/** Within what has arrow keys of its own that it cannot do without. */
+function ownsArrows(target: EventTarget | null): boolean {
+  const kOwners = "dialog,[role=menu],[role=listbox],[role=slider],[role=separator],[role=tablist]";
+  return isTyping(target) || (target instanceof HTMLElement && target.closest(kOwners) !== null);
+}
+
+/** Keys of commands that a focused control needs for itself. */
 function belongsToControl(event: KeyboardEvent): boolean {
-  const target = event.target;
-  if (!(target instanceof HTMLElement)) {
-    return false;
-  }
-  const moves = /^(Arrow|Page|Home|End|Enter$| $)/.test(event.key);
-  const owner = moves ? "[role=tree],[role=menu],[role=tablist],button" : "[role=menu],[role=listbox]";
-  return target.closest(owner) !== null;
+  const presses = /^(Enter$| $)/.test(event.key);
+  const owner = presses ? "button,[role=tree],[role=menu],[role=listbox]" : "[role=menu],[role=listbox]";
+  return event.target instanceof HTMLElement && event.target.closest(owner) !== null;
+}
+
+const isOnPicture = () => document.activeElement === viewport.value?.canvas;
+const isParticipant = () => studio.study.isParticipantView.value;
+
+/** Any force, on any hand. */
+function forceActs(): boolean {
+  const hands = studio.liveFrames?.read()?.hands;
+  return hands === undefined
+    ? store.live.held.value.length > 0
+    : hands.some((hand) => Math.hypot(...hand.f_felt_W_n) > kLeastForce);
 }
 
 /** What an arrow key moves the held part by [m]. */
@@ -74,31 +94,99 @@ function moveHeld(event: KeyboardEvent): boolean {
   }
 }
 
-/** Away with what is open or half done; where anything moves by itself or is held, the force as well. */
-function escape(): void {
-  const isOpen = ui.overlay.value !== null;
-  ui.overlay.value = null;
-  if (store.live.held.value.length > 0 || store.demo.value) {
-    forcesOff();
-  } else if (!isOpen) {
-    if (view.picked.value.length > 0 || view.tool.value !== "hand") {
+interface Closer {
+  isOpen: () => boolean;
+  close: () => void;
+}
+
+const flag = (signal: { value: boolean }): Closer => ({ isOpen: () => signal.value, close: () => (signal.value = false) });
+
+/** What Escape closes, one at a time: what stands before all else, a search, a panel, a tool, the selection. */
+const kClosers: readonly Closer[] = [
+  { isOpen: () => ui.overlay.value !== null, close: () => (ui.overlay.value = null) },
+  {
+    isOpen: () => ui.treeSearch.value !== "" || isTyping(document.activeElement),
+    close: () => {
+      ui.treeSearch.value = "";
+      focusPicture();
+    },
+  },
+  { isOpen: () => paths.shown.value !== null, close: () => paths.hide() },
+  flag(view.showsWorkshop),
+  { isOpen: () => view.apart.value !== null, close: () => (view.apart.value = null) },
+  { isOpen: () => view.explode.value > 0, close: () => (view.explode.value = 0) },
+  { isOpen: () => view.section.value !== null, close: () => (view.section.value = null) },
+  {
+    isOpen: () => view.picked.value.length > 0 || view.tool.value !== "hand",
+    close: () => {
       clearPicks(view);
       view.tool.value = "hand";
-    } else if (view.selected.value.length > 0) {
-      select(view, [], false);
-    } else {
-      forcesOff();
-    }
+    },
+  },
+  { isOpen: () => view.selected.value.length > 0, close: () => select(view, [], false) },
+];
+
+/** May this key move what is in the hand, wherever the focus is? */
+function mayMove(event: KeyboardEvent): boolean {
+  const isFree = !event.ctrlKey && !event.metaKey && ui.overlay.value === null && !ownsArrows(event.target);
+  if (isParticipant()) {
+    return isFree && studio.study.isTask.value;
+  }
+  return isFree && (view.hasSingleKeys.value || !isCharacterKey(event.key) || isOnPicture());
+}
+
+/** Before whatever has the focus: the stop, and what moves the part in the hand. */
+function onKeyFirst(event: KeyboardEvent): void {
+  const isEscape = event.key === "Escape" && (isParticipant() || forceActs());
+  if (event.key.toLowerCase() === kStopKey || isEscape) {
+    forcesOff();
+  } else if (!mayMove(event) || !moveHeld(event)) {
+    return;
+  }
+  event.preventDefault();
+  event.stopPropagation();
+}
+
+/** With the focus on the picture and nothing in the hand, arrows look around; Enter takes and lets go. */
+function onPictureKey(event: KeyboardEvent): boolean {
+  const rig = viewport.value?.rig;
+  if (rig === undefined || !isOnPicture() || event.ctrlKey || event.metaKey || event.altKey) {
+    return false;
+  }
+  switch (event.key) {
+    case "Enter":
+      if (store.held.value.some((held) => held.hand === view.hand.value)) {
+        runAction(findAction("release"));
+      } else {
+        takeNext();
+      }
+      return true;
+    case "ArrowLeft":
+      rig.turn(-kLookStep, 0);
+      return true;
+    case "ArrowRight":
+      rig.turn(kLookStep, 0);
+      return true;
+    case "ArrowUp":
+      rig.turn(0, -kLookStep);
+      return true;
+    case "ArrowDown":
+      rig.turn(0, kLookStep);
+      return true;
+    case "PageUp":
+      rig.approach(kNearer);
+      return true;
+    case "PageDown":
+      rig.approach(1 / kNearer);
+      return true;
+    default:
+      return false;
   }
 }
 
 /** In a study there is the hand, and the way out; no view, tool or help that others did not have. */
 function onParticipantKey(event: KeyboardEvent): void {
   const { isPicking, isTask, state } = studio.study;
-  if (event.key === "Escape") {
-    forcesOff();
-    return;
-  }
   const isOther = event.ctrlKey || event.metaKey || event.defaultPrevented || belongsToControl(event);
   if (!isTask.value || isOther || isTyping(event.target)) {
     return;
@@ -109,31 +197,33 @@ function onParticipantKey(event: KeyboardEvent): void {
     void viewport.value?.hand.take(wanted);
   } else if (key === "r" && store.held.value.length > 0) {
     viewport.value?.hand.release();
-  } else if (moveHeld(event)) {
-    event.preventDefault();
   }
 }
 
 function onKey(event: KeyboardEvent): void {
-  if (studio.study.isParticipantView.value) {
+  if (event.defaultPrevented) {
+    return;
+  }
+  if (isParticipant()) {
     onParticipantKey(event);
     return;
   }
   if (event.key === "Escape") {
-    escape();
+    kClosers.find((closer) => closer.isOpen())?.close();
     return;
   }
-  if (isTyping(event.target) || event.defaultPrevented) {
+  if (isTyping(event.target)) {
     return;
   }
-  if (!belongsToControl(event) && ui.overlay.value === null && moveHeld(event)) {
+  if (onPictureKey(event)) {
     event.preventDefault();
     return;
   }
   const prefix = (event.ctrlKey || event.metaKey ? "ctrl+" : "") + (event.ctrlKey && event.shiftKey ? "shift+" : "");
   const found = byKey.get(prefix + event.key.toLowerCase());
   const isPlain = prefix === "";
-  if (found === undefined || event.altKey || (isPlain && belongsToControl(event) && event.key !== "?")) {
+  const isOff = isPlain && isCharacterKey(event.key) && !view.hasSingleKeys.value;
+  if (found === undefined || isOff || event.altKey || (isPlain && belongsToControl(event) && event.key !== "?")) {
     return;
   }
   event.preventDefault();
@@ -141,5 +231,6 @@ function onKey(event: KeyboardEvent): void {
 }
 
 export function listenToKeys(): void {
+  addEventListener("keydown", onKeyFirst, { capture: true });
   addEventListener("keydown", onKey);
 }

@@ -3,7 +3,8 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { LiveState } from "../protocol/frame_store";
 import type { HandState } from "../protocol/frames";
-import { view, viewport } from "./app_state";
+import { store, view, viewport } from "./app_state";
+import { number } from "./i18n";
 
 /** Ten times a second is as fast as people read. */
 const kReadMs = 100;
@@ -28,6 +29,14 @@ export function holdingHand(live: LiveState | null, wanted: number | null = null
   const holding = live?.hands.filter((h) => h.state > 0) ?? [];
   const ofWanted = wanted === null ? undefined : holding.find((h) => h.occurrence === wanted);
   return ofWanted ?? holding.find((h) => h.hand === view.hand.peek()) ?? holding[0] ?? null;
+}
+
+/** How old the newest state is that is drawn; a recording is as old as it is. */
+export function ageText(live: LiveState | null): string {
+  if (live === null || live.sentMs === 0 || store.replay.peek() !== null) {
+    return "–";
+  }
+  return live.ageMs < 1000 ? `${number(live.ageMs, 1)} ms` : `${number(live.ageMs / 1000, 1)} s`;
 }
 
 /** Writes only what has changed: the page is not laid out anew for nothing. */

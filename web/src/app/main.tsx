@@ -1,7 +1,8 @@
-import { effect } from "@preact/signals";
+import { effect, untracked } from "@preact/signals";
 import { render } from "preact";
 import { decodeMoment, decodeView, takeToken } from "../model/view_link";
 import { followTraces, store, studio, view, viewport } from "./app_state";
+import { logText } from "./event_list";
 import { language, t } from "./i18n";
 import { listenToKeys } from "./keyboard";
 import { keepPreferences } from "./preferences";
@@ -41,6 +42,12 @@ const followCalm = () => (view.isCalm.value = calm.matches);
 followCalm();
 calm.addEventListener("change", followCalm);
 effect(() => viewport.value?.rig.setReducedMotion(view.isCalm.value));
+effect(() => {
+  const last = store.live.log.value[0];
+  if (last?.params["missing_mm"] !== undefined) {
+    untracked(() => studio.notify(logText(last), true));
+  }
+});
 effect(() => {
   if (view.isSlow.value && view.quality.value === "auto") {
     studio.notify(t("notice.slow"));

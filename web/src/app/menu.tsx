@@ -2,9 +2,10 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Action } from "./action";
-import { isEnabled, keyLabel, menus, runAction } from "./actions";
+import { isEnabled, menus, runAction } from "./actions";
 import { t } from "./i18n";
 import { Icon } from "./icons";
+import { Key } from "./key";
 
 export interface MenuListProps {
   actions: readonly Action[];
@@ -59,7 +60,7 @@ export function MenuList({ actions, label, onClose, x, y }: MenuListProps) {
         >
           <span class="menu-check">{a.isOn?.() ? <Icon name="check" size={14} /> : null}</span>
           <span class="menu-label">{a.label()}</span>
-          {a.keys?.[0] ? <kbd>{keyLabel(a.keys[0])}</kbd> : null}
+          <Key of={a} />
         </button>
       ))}
     </div>

@@ -4,9 +4,11 @@ import { useComputed, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { buildTree, filterTree, type TreeNode } from "../model/tree";
 import { select, setHidden } from "../model/view_state";
+import { findAction } from "./actions";
 import { store, ui, view, viewport } from "./app_state";
 import { t, tn } from "./i18n";
 import { Icon } from "./icons";
+import { Key } from "./key";
 
 interface Row {
   node: TreeNode;
@@ -138,7 +140,7 @@ function walk(key: string, rows: readonly Row[], at: number): { to?: number; tog
 
 export function ModelTree() {
   const scene = store.scene.value;
-  const text = useSignal("");
+  const text = ui.treeSearch;
   const closed = useSignal<ReadonlySet<string>>(new Set());
   const active = useSignal<string | null>(null);
   const search = useRef<HTMLInputElement>(null);
@@ -189,7 +191,7 @@ export function ModelTree() {
           data-testid="tree-search"
           onInput={(event) => (text.value = event.currentTarget.value)}
         />
-        <kbd>/</kbd>
+        <Key of={findAction("find")} />
       </div>
       <div
         class="tree"

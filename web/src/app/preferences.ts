@@ -50,6 +50,7 @@ const kPreferences: Record<string, Preference> = {
   theme: keep(view.theme, oneOf("dark", "light", "system")),
   language: keep(language, oneOf("en", "de")),
   muted: keep(view.isMuted, isFlag),
+  singleKeys: keep(view.hasSingleKeys, isFlag),
   quality: keep(view.quality, oneOf("low", "auto", "high")),
   assists: keep(view.assists, isFlag),
   seated: keep(view.isSeated, isFlag),

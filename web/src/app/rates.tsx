@@ -4,7 +4,7 @@ import { useRef } from "preact/hooks";
 import { makeBars } from "../model/histogram";
 import { store } from "./app_state";
 import { number, t } from "./i18n";
-import { setText, useLive } from "./live";
+import { ageText, setText, useLive } from "./live";
 
 const kBarWidth = 10;
 const kHeight = 60;
@@ -59,7 +59,7 @@ function Histogram({ title, edgesUs, counts }: { title: string; edgesUs: readonl
 
 export function Rates() {
   const age = useRef<HTMLElement>(null);
-  useLive((live) => setText(age.current, live === null || live.ageMs > 2000 ? "–" : `${number(live.ageMs, 1)} ms`), 400);
+  useLive((live) => setText(age.current, ageText(live)), 400);
   const status = store.status.value;
   if (status === null) {
     return <p class="quiet">{t("rates.none")}</p>;

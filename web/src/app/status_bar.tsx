@@ -2,7 +2,8 @@ import { useRef } from "preact/hooks";
 import { findAction, runAction } from "./actions";
 import { store, studio, viewport } from "./app_state";
 import { catalogues, language, languageNames, number, t, tn, type Language } from "./i18n";
-import { setText, useLive } from "./live";
+import { Key } from "./key";
+import { ageText, setText, useLive } from "./live";
 
 /** kB/s since the last look. */
 function makeMeter(): (bytes: number, now: number) => number {
@@ -26,11 +27,9 @@ export function StatusBar() {
     const rate = meter.current(studio.liveFrames?.bytesReceived ?? 0, performance.now());
     setText(fps.current, t("status.fps", { n: viewport.value?.meter.framesPerSecond || "–" }));
     setText(stream.current, t("status.stream", { n: number(rate, 0) }));
-    // While nothing moves nothing is sent, and a recording is as old as it is: then there is no age to speak of.
-    const isOld = live === null || live.ageMs > 2000 || store.replay.value !== null;
-    setText(age.current, t("status.age", { n: isOld ? "–" : number(live.ageMs, 1) }));
+    setText(age.current, t("status.age", { age: ageText(live) }));
   }, 400);
-  const link = store.link.value;
+  const link = store.link.value === "open" && store.isSilent.value ? "silent" : store.link.value;
   const scene = store.scene.value;
   const viewers = store.clients.value.length - 1;
   return (
@@ -60,7 +59,7 @@ export function StatusBar() {
         ))}
       </select>
       <button type="button" class="status-button" data-testid="open-shortcuts" onClick={() => runAction(findAction("shortcuts"))}>
-        <kbd>?</kbd> {t("status.shortcuts")}
+        <Key of={findAction("shortcuts")} /> {t("status.shortcuts")}
       </button>
     </footer>
   );

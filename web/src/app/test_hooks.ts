@@ -154,6 +154,7 @@ export function exposeHooks(): void {
     hasAnswered: async () => void (await studio.command({ command: "status" })),
     state: () => ({
       link: store.link.value,
+      isSilent: store.isSilent.value,
       role: store.role.value,
       hasLease: store.hasLease.value,
       hasScene: viewport.value?.product.parts != null && viewport.value.product.scene === store.scene.value,

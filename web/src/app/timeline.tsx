@@ -5,11 +5,12 @@ import { useEffect, useRef } from "preact/hooks";
 import { liveMarks, type Mark } from "../model/marks";
 import { kSpeeds, type Playback } from "../model/playback";
 import { ActionButton } from "./action_button";
-import { findAction, isEnabled, keyLabel, runAction } from "./actions";
+import { findAction, isEnabled, runAction } from "./actions";
 import { liveTraces, store, studio, ui } from "./app_state";
 import { logText } from "./event_list";
 import { duration, number, t } from "./i18n";
 import { Icon } from "./icons";
+import { shownKey } from "./key";
 import { setText, useLive } from "./live";
 import { backToLive, openRecording, plotClock, seek, shownSpan } from "./time_source";
 
@@ -33,13 +34,14 @@ function RecordButton() {
     setText(label.current, now === null ? t("time.rec") : duration((performance.now() - now.sinceMs) / 1e3));
   }, 100);
   const found = findAction("record");
+  const keys = shownKey(found);
   return (
     <button
       type="button"
       class={`rec-button ${isOn ? "is-on" : ""}`}
       aria-pressed={isOn}
       aria-label={found.label()}
-      title={`${found.label()} (${keyLabel(found.keys?.[0] ?? "")})`}
+      title={keys === null ? found.label() : `${found.label()} (${keys})`}
       disabled={!isEnabled(found)}
       data-testid="rec"
       onClick={() => runAction(found)}

@@ -2,6 +2,7 @@
 
 import { useSignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
+import { isFitCode } from "../model/fit_mates";
 import { clearPicks } from "../model/view_state";
 import type { FaceOf } from "../protocol/messages";
 import { canSteer, store, studio, view, viewport } from "./app_state";
@@ -125,17 +126,21 @@ function MeasurePanel() {
 function MatePanel() {
   const fit = useSignal("");
   const [a, b] = view.picked.value;
-  const create = (event: Event) => {
+  const wanted = fit.value.trim();
+  const isSound = wanted === "" || isFitCode(wanted);
+  const create = async (event: Event) => {
     event.preventDefault();
-    if (a !== undefined && b !== undefined) {
-      const wanted = fit.value.trim();
-      void studio.command({ command: "add_mate", a, b, ...(wanted === "" ? {} : { fit: wanted }) });
+    if (a === undefined || b === undefined || !isSound) {
+      return;
+    }
+    const answer = await studio.command({ command: "add_mate", a, b, ...(wanted === "" ? {} : { fit: wanted }) });
+    if (answer !== null) {
       clearPicks(view);
       view.tool.value = "hand";
     }
   };
   return (
-    <form class="float-card" onSubmit={create} data-testid="mate-panel">
+    <form class="float-card" onSubmit={(event) => void create(event)} data-testid="mate-panel">
       <h2>{t("mate.title")}</h2>
       <p class="quiet">{a === undefined ? t("mate.pick") : b === undefined ? t("mate.pickSecond") : ""}</p>
       <ol class="picked">
@@ -144,13 +149,20 @@ function MatePanel() {
       </ol>
       <label>
         {t("mate.fit")}
-        <input value={fit.value} placeholder="H7/g6" data-testid="mate-fit" onInput={(event) => (fit.value = event.currentTarget.value)} />
+        <input
+          value={fit.value}
+          placeholder="H7/g6"
+          title={t("fit.bad")}
+          aria-invalid={!isSound}
+          data-testid="mate-fit"
+          onInput={(event) => (fit.value = event.currentTarget.value)}
+        />
       </label>
       <p class="card-buttons">
         <button type="button" class="small-button" onClick={() => clearPicks(view)}>
           {t("mate.again")}
         </button>
-        <button type="submit" class="small-button is-main" disabled={b === undefined || !canSteer()} data-testid="mate-create">
+        <button type="submit" class="small-button is-main" disabled={b === undefined || !isSound || !canSteer()} data-testid="mate-create">
           {t("mate.create")}
         </button>
       </p>

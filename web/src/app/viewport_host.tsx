@@ -16,6 +16,8 @@ const element = (() => {
 
 function makeViewport(): Viewport {
   const made = new Viewport(element(), studio, view);
+  made.canvas.tabIndex = 0;
+  made.canvas.setAttribute("role", "application");
   made.pointer.onContextMenu = (x, y, hit) => {
     if (studio.study.isParticipantView.value) {
       return;

@@ -2,7 +2,8 @@
 
 import { makeHint } from "../model/hints";
 import type { VrHost, VrStatus } from "../view3d/vr/host";
-import { findAction, forcesOff, runAction } from "./actions";
+import { findAction, runAction } from "./actions";
+import { forcesOff } from "./hand_actions";
 import { canSteer, store, studio, ui, viewport } from "./app_state";
 import { number, t } from "./i18n";
 import { stepTitle } from "./procedure";

@@ -8,6 +8,8 @@ import type { LimitCounts, LogEntry, LogKind, Run } from "./store";
  lost, buzz, kick. The others limit the force in the course of the work. */
 export const kAlarms = 0b1_1001_1100_0001;
 
+const kCloseMm = 10;
+
 export const kLogLength = 200;
 export const kRunsLength = 50;
 
@@ -17,6 +19,7 @@ export interface WorkEvent {
   occurrence?: number | null;
   state?: number | string;
   was_seated?: boolean;
+  to_place_mm?: number;
   metrics?: RunMetrics;
   reasons?: string[];
   gate_actions?: number;
@@ -39,6 +42,12 @@ export function isAlarm(event: { gate_actions?: number }): boolean {
   return ((event.gate_actions ?? 0) & kAlarms) !== 0;
 }
 
+/** How far a part is from its place that was let go close to it, for it may look as if it were there. */
+function missing(event: WorkEvent): { missing_mm?: number } {
+  const mm = event.to_place_mm ?? Infinity;
+  return event.was_seated === true || mm > kCloseMm ? {} : { missing_mm: mm };
+}
+
 /** Null where the event is nothing to tell. */
 export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): Told | null {
   const part = event.occurrence == null ? "" : nameOf(event.occurrence);
@@ -48,7 +57,7 @@ export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): 
     case "state":
       return part === "" ? null : { kind: "state", params: { part, state: holdStateOf(event.state as HoldState) } };
     case "dropped":
-      return { kind: "dropped", params: { part, seated: event.was_seated ? 1 : 0 } };
+      return { kind: "dropped", params: { part, seated: event.was_seated ? 1 : 0, ...missing(event) } };
     case "safety":
       return event.reasons === undefined || event.reasons.length === 0 || !isAlarm(event)
         ? null

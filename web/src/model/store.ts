@@ -131,6 +131,8 @@ export function makeStore() {
     link,
     /** Why this page is not let in, as far as the server has said it. */
     denial: signal<ServerError | null>(null),
+    /** The server has said nothing for a second, though it should have. */
+    isSilent: signal(false),
     role: signal<Role>("viewer"),
     /** The server has said which role this page has. */
     isGreeted: signal(false),

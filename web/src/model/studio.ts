@@ -42,6 +42,7 @@ export class Studio {
     this.connection = new Connection(url.href, {
       onOpen: () => (this.store.link.value = "open"),
       onClosed: () => this.onClosed(),
+      onSilence: (isSilent) => (this.store.isSilent.value = isSilent),
       onEvent: (event) => this.onEvent(event),
     });
   }

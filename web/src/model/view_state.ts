@@ -21,6 +21,8 @@ export function makeViewState() {
     selectMode: signal<SelectMode>("part"),
     selected: signal<readonly number[]>([]),
     selectedFace: signal<FaceOf | null>(null),
+    /** Of what is selected (ids in their order, with commas) the mate whose card is shown, by its key. */
+    cardMates: signal<ReadonlyMap<string, string>>(new Map()),
     hovered: signal<number | null>(null),
     hidden: signal<ReadonlySet<number>>(new Set()),
     ghosted: signal<ReadonlySet<number>>(new Set()),
@@ -60,6 +62,8 @@ export function makeViewState() {
     /** What Q and E turn it by [rad]. */
     keyTurn: signal((5 * Math.PI) / 180),
     isMuted: signal(false),
+    /** Commands may have a single letter, digit or sign for their key (WCAG 2.1.4). */
+    hasSingleKeys: signal(true),
     theme: signal<ThemeChoice>("system"),
     /** As it is drawn now. */
     isDark: signal(true),
@@ -128,4 +132,17 @@ export function showAll(view: ViewState): void {
 export function clearPicks(view: ViewState): void {
   view.picked.value = [];
   view.measurement.value = null;
+}
+
+/** The card of these parts is about this mate until another one is chosen. */
+export function chooseCardMate(view: ViewState, parts: readonly number[], key: string): void {
+  view.cardMates.value = new Map(view.cardMates.value).set(selectionKey(parts), key);
+}
+
+export function chosenCardMate(view: ViewState, parts: readonly number[]): string | null {
+  return view.cardMates.value.get(selectionKey(parts)) ?? null;
+}
+
+function selectionKey(parts: readonly number[]): string {
+  return [...parts].sort((a, b) => a - b).join();
 }

@@ -9,6 +9,8 @@ import type { FromWorker, ToWorker } from "./worker_messages";
 export interface ConnectionHandlers {
   onOpen(): void;
   onClosed(): void;
+  /** The server says nothing any more, or speaks again. */
+  onSilence(isSilent: boolean): void;
   onEvent(event: ServerEvent): void;
 }
 
@@ -76,6 +78,9 @@ export class Connection {
         break;
       case "text":
         this.receiveText(message.text);
+        break;
+      case "silence":
+        this.handlers.onSilence(message.isSilent);
         break;
       case "frames": {
         const last = this.store.ingest(message.data, message.receivedMs);

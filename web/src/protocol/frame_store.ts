@@ -25,6 +25,11 @@ export const kSampleSlots = 2048;
 /** Of a sample: hand, time [s], then what `sampleOf` says. */
 export const kSampleFloats = 16;
 
+/** After so long without a frame, what is known of the server's clock counts no more [ms]. */
+const kSilenceMs = 1000;
+/** Between the speeds of two clocks, at most. */
+const kDrift = 1e-4;
+
 const kPoseFloats = 7;
 const Control = {
   lock: 0,
@@ -228,13 +233,15 @@ export class FrameStore {
     this.versions.fill(0);
   }
 
-  /** The least difference ever seen between the clocks is the one of a frame that did not wait. */
+  /** The least difference seen between the clocks is the one of a frame that did not wait. It may creep up slowly, for
+   two clocks never run at quite the same speed; after a silence it is found anew, for one of them may have stood still. */
   private tellTime(serverMs: number, receivedMs: number): void {
     const offset = receivedMs - serverMs;
     const known = this.clock[Clock.offset] ?? 0;
-    const isFirst = this.clock[Clock.server] === 0 || serverMs < (this.clock[Clock.server] ?? 0);
-    // It may creep up slowly: two clocks never run at quite the same speed.
-    this.clock[Clock.offset] = isFirst ? offset : Math.min(offset, known + 1e-4 * (receivedMs - this.receivedMs));
+    const elapsedMs = receivedMs - this.receivedMs;
+    const serverBefore = this.clock[Clock.server] ?? 0;
+    const isNew = serverBefore === 0 || serverMs < serverBefore || elapsedMs > kSilenceMs;
+    this.clock[Clock.offset] = isNew ? offset : Math.min(offset, known + kDrift * elapsedMs);
     this.clock[Clock.server] = serverMs;
     this.clock[Clock.received] = receivedMs;
   }

@@ -265,6 +265,8 @@ export type ServerEvent =
       occurrence: number;
       state: HoldState | number;
       was_seated: boolean;
+      /** How far it is from its place; 0 in it. */
+      to_place_mm?: number;
       /** Not for participants of a study. */
       metrics?: RunMetrics;
     }

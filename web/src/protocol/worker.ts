@@ -2,6 +2,7 @@
 
 import { makeCreditFrame } from "./decoder";
 import { FrameStore, nowMs } from "./frame_store";
+import { SilenceWatch } from "./silence";
 import type { FromWorker, ToWorker } from "./worker_messages";
 
 declare const self: DedicatedWorkerGlobalScope;
@@ -10,6 +11,9 @@ declare const self: DedicatedWorkerGlobalScope;
 const kRepeatMs = 16;
 const kRepeatForMs = 700;
 const kRetryMs = [250, 500, 1000, 2000, 4000];
+const kLookMs = 50;
+/** The least that the server answers; nobody waits for the answer. */
+const kQuestion = JSON.stringify({ id: 0, command: "status" });
 
 let socket: WebSocket | null = null;
 let store: FrameStore | null = null;
@@ -19,9 +23,16 @@ let failures = 0;
 let input: ArrayBuffer | null = null;
 let inputAt = 0;
 let sentAt = 0;
+const silence = new SilenceWatch();
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, transfer);
+}
+
+function tellOfSilenceOver(isOver: boolean): void {
+  if (isOver) {
+    tell({ type: "silence", isSilent: false });
+  }
 }
 
 function connect(): void {
@@ -33,10 +44,12 @@ function connect(): void {
   };
   socket.onclose = () => {
     input = null;
+    tellOfSilenceOver(silence.stop());
     tell({ type: "closed" });
     setTimeout(connect, kRetryMs[Math.min(failures++, kRetryMs.length - 1)]);
   };
   socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
+    tellOfSilenceOver(silence.hear(nowMs()));
     if (typeof event.data === "string") {
       tell({ type: "text", text: event.data });
     } else {
@@ -74,6 +87,18 @@ function repeatInput(): void {
   }
 }
 
+function lookForSilence(): void {
+  switch (silence.look(nowMs())) {
+    case "ask":
+      send(kQuestion);
+      break;
+    case "tell":
+      tell({ type: "silence", isSilent: true });
+      break;
+    default:
+  }
+}
+
 self.onmessage = (event: MessageEvent<ToWorker>) => {
   const message = event.data;
   switch (message.type) {
@@ -83,6 +108,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       store = message.store === null ? null : new FrameStore(message.store);
       connect();
       setInterval(repeatInput, kRepeatMs);
+      setInterval(lookForSilence, kLookMs);
       break;
     case "text":
       send(message.text);

@@ -14,4 +14,6 @@ export type FromWorker =
   | { type: "open" }
   | { type: "closed" }
   | { type: "text"; text: string }
+  /** The server says nothing any more, or speaks again. */
+  | { type: "silence"; isSilent: boolean }
   | { type: "frames"; data: ArrayBuffer; receivedMs: number };

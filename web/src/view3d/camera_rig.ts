@@ -141,6 +141,20 @@ export class CameraRig {
     this.lookFrom(direction.toArray(), points, isSmooth);
   }
 
+  /** Around what is looked at [rad]. */
+  turn(aside: number, down: number): void {
+    void this.controls.rotate(aside, down, true);
+  }
+
+  /** @param share  Of the distance, or of what is seen. */
+  approach(share: number): void {
+    if (this.isParallel) {
+      void this.controls.zoomTo(this.parallel.zoom / share, true);
+    } else {
+      void this.controls.dollyTo(this.controls.distance * share, true);
+    }
+  }
+
   pose(): { eye: Vec3; target: Vec3 } {
     const eye = this.controls.getPosition(new Vector3());
     const target = this.controls.getTarget(new Vector3());

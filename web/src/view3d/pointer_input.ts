@@ -72,6 +72,7 @@ export class PointerInput {
     if (!event.isPrimary) {
       return;
     }
+    this.viewport.canvas.focus({ preventScroll: true });
     const { view, hand } = this.viewport;
     const hit = this.pick();
     if (hit !== null) {
