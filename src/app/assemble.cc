@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "app/assemble_report.h"
+#include "app/json_flag.h"
 #include "app/load_product.h"
 #include "app/progress.h"
 #include "app/rendering_options.h"
@@ -383,7 +384,7 @@ void AddAssemble(CLI::App* app, int* status) {
         const bool is_time = code == std::errc() && rest == end && limit_s >= 0 && limit_s <= 1e9;
         return is_time ? std::string() : "must be a time in seconds, 0 or more";
       });
-  command->add_flag("--json", options->is_json, "Print one JSON document");
+  AddJsonFlag(command, &options->is_json, "assemble");
   AddLoadOptions(command, &options->load);
   command->footer(
       "Exit status: 0 when every part is in its place, 2 when one is not, 1 on an error.\n"

@@ -7,6 +7,7 @@
 
 #include "app/latency_json.h"
 #include "app/text_layout.h"
+#include "app/text_table.h"
 #include "base/units.h"
 #include "simulation/shapes.h"
 
@@ -91,47 +92,52 @@ nlohmann::ordered_json ToJson(const DeviceInHand& device) {
 }
 
 void PrintParts(const Model& model, const AssemblyOutcome& outcome) {
-  constexpr const char* kHead = "{:>4}  {} {:>7} {:>7} {:>10} {:>7} {:>5} {:>8} {:>10}\n";
-  constexpr std::size_t kNameWidth = 44;
-  fmt::print(kHead, "#", PadTo("part", kNameWidth), "time", "path", "true force", "felt", "mates",
-             "error", "turn error");
-  fmt::print(kHead, "", PadTo("", kNameWidth), "s", "m", "N", "N", "", "um", "urad");
+  TextTable table({"  #", "part", "time\ns", "path\nm", "true\nN", "felt\nN", "mates", "error\num",
+                   "turned\nurad"},
+                  2);
   for (std::size_t i = 0; i < outcome.parts.size(); ++i) {
     const PartResult& part = outcome.parts[i];
-    const std::string name = PadTo(PathOf(model, part.occurrence), kNameWidth);
+    const std::string number = fmt::format("{:>3}", i + 1);
+    const std::string name = PathOf(model, part.occurrence);
     if (!part.is_seated) {
-      fmt::print("{:>4}  {} NOT IN PLACE: {}\n", i + 1, name, part.reason);
+      table.Add({number, name}, "NOT IN PLACE: " + part.reason);
       continue;
     }
-    fmt::print("{:>4}  {} {:>7.2f} {:>7.3f} {:>10.2f} {:>7.2f} {:>5} {:>8.1e} {:>10.1e}  {}\n",
-               i + 1, name, part.time, part.path, part.peak_true, part.peak_felt, part.mates,
-               units::ToUm(part.pose_error), 1e6 * part.pose_error_angle,
-               part.time == 0 ? "in the fixture" : part.note);
+    table.Add({number, name, fmt::format("{:.2f}", part.time), fmt::format("{:.3f}", part.path),
+               fmt::format("{:.2f}", part.peak_true), fmt::format("{:.2f}", part.peak_felt),
+               fmt::format("{}", part.mates), fmt::format("{:.1e}", units::ToUm(part.pose_error)),
+               fmt::format("{:.1e}", 1e6 * part.pose_error_angle)},
+              part.time == 0 ? "in the fixture" : part.note);
   }
+  fmt::print("{}", table.ToText());
 }
 
 void PrintTicks(const Model& model, const ExecutionReport& run) {
-  fmt::print(
+  std::string text = fmt::format(
       "tick compute: median {:.1f}, p99 {:.1f}, p99.9 {:.1f}, max {:.1f} us ({} ticks, {})\n",
       ToUs(run.compute.Quantile(0.5)), ToUs(run.compute.Quantile(0.99)),
       ToUs(run.compute.Quantile(0.999)), ToUs(run.compute.max_ns()), run.ticks, run.scheduling);
   if (run.slowest.begin() != run.slowest.end()) {
     const simulation::SlowTick& slowest = *run.slowest.begin();
-    fmt::print("slowest tick: at {:.3f} s, {} with {}; {} points tested, {} contacts\n",
-               ToS(slowest.t_ns), haptics::ToString(slowest.state),
-               PathOf(model, slowest.occurrence), slowest.points_tested, slowest.contact_count);
+    text += fmt::format("slowest tick: at {:.3f} s, {} with {}; {} points tested, {} contacts\n",
+                        ToS(slowest.t_ns), haptics::ToString(slowest.state),
+                        PathOf(model, slowest.occurrence), slowest.points_tested,
+                        slowest.contact_count);
   }
+  fmt::print("{}", Fold(text));
 }
 
 void PrintDevices(const AssemblyOutcome& outcome) {
   for (std::size_t hand = 0; hand < outcome.devices.size(); ++hand) {
     const DeviceInHand& device = outcome.devices[hand];
-    fmt::print("in the {}: {}{} ({})", outcome.hands == 1 ? "hand" : NameOfHand(hand),
-               device.is_emulated ? "EMULATED " : "", device.model, device.address);
+    std::string text = fmt::format("in the {}: {}{} ({})",
+                                   outcome.hands == 1 ? "hand" : NameOfHand(hand),
+                                   device.is_emulated ? "EMULATED " : "", device.model,
+                                   device.address);
     if (outcome.hands > 1) {
-      fmt::print("; parts put in place: {}", CountSeatedBy(outcome, hand));
+      text += fmt::format("; parts put in place: {}", CountSeatedBy(outcome, hand));
     }
-    fmt::print("\n");
+    fmt::print("{}", Fold(text));
   }
 }
 
@@ -184,7 +190,7 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
 void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
   PrintParts(model, outcome);
   const ExecutionReport& run = outcome.execution;
-  fmt::print(
+  std::string text = fmt::format(
       "\n{}: {} of {} parts in place after {:.1f} s of work; prepared in {:.1f} s (contact shapes: "
       "{:.1f} MB), computed in {:.1f} s ({:.1f} x real time",
       model.product->source, CountSeated(outcome), outcome.parts.size(), ToS(run.session_ns),
@@ -192,17 +198,20 @@ void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
       1e-6 * static_cast<double>(simulation::CalcShapeMemory(model).total()), ToS(run.wall_ns),
       Ratio(run, run.wall_ns));
   if (!outcome.is_realtime) {
-    fmt::print("; {:.1f} s of processor time, {:.1f} x", ToS(run.cpu_ns), Ratio(run, run.cpu_ns));
+    text += fmt::format("; {:.1f} s of processor time, {:.1f} x", ToS(run.cpu_ns),
+                        Ratio(run, run.cpu_ns));
   }
-  fmt::print(")\n");
+  fmt::print("{}", Fold(text + ")\n"));
   PrintTicks(model, run);
   if (outcome.is_realtime) {
     fmt::print(
-        "realtime: {:.1f} ticks per second; wake-up median {:.1f}, p99 {:.1f}, max {:.1f} us; {} "
-        "late wake-ups, {} overruns, {} ticks not recorded\n",
-        static_cast<double>(run.ticks) / ToS(run.wall_ns), ToUs(run.wake_up.Quantile(0.5)),
-        ToUs(run.wake_up.Quantile(0.99)), ToUs(run.wake_up.max_ns()), run.late_wake_ups,
-        run.overruns, outcome.dropped_ticks);
+        "{}", Fold(fmt::format(
+                  "realtime: {:.1f} ticks per second; wake-up median {:.1f}, p99 {:.1f}, max {:.1f} "
+                  "us; {} late wake-ups, {} overruns, {} ticks not recorded\n",
+                  static_cast<double>(run.ticks) / ToS(run.wall_ns),
+                  ToUs(run.wake_up.Quantile(0.5)), ToUs(run.wake_up.Quantile(0.99)),
+                  ToUs(run.wake_up.max_ns()), run.late_wake_ups, run.overruns,
+                  outcome.dropped_ticks)));
   }
   PrintDevices(outcome);
   fmt::print("digest {}\n", outcome.digest);

@@ -13,6 +13,7 @@
 #include "app/devices_report.h"
 #include "app/latency_json.h"
 #include "app/report_failure.h"
+#include "app/text_layout.h"
 #include "base/clock.h"
 #include "base/histogram.h"
 #include "base/triple_buffer.h"
@@ -95,15 +96,17 @@ void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
 
 void PrintState(const TrialState& state, const device::Device& device, double t_s) {
   const Vec3 p_mm = 1e3 * state.device.X_DH.p();
-  fmt::print("{:6.1f} s  at {:7.2f} {:7.2f} {:7.2f} mm  given {:5.2f} N  {}", t_s, p_mm.x(),
-             p_mm.y(), p_mm.z(), state.F_H_D.f.norm(), device::ToString(state.device.condition));
+  std::string text =
+      fmt::format("{:6.1f} s  at {:7.2f} {:7.2f} {:7.2f} mm  given {:5.2f} N  {}", t_s, p_mm.x(),
+                  p_mm.y(), p_mm.z(), state.F_H_D.f.norm(),
+                  device::ToString(state.device.condition));
   for (const haptics::GateAction action : haptics::ListNewActions(0, state.gate_actions)) {
-    fmt::print("; {}", haptics::ToString(action));
+    text += fmt::format("; {}", haptics::ToString(action));
   }
   if (state.device.condition != device::Condition::kReady) {
-    fmt::print("; {}", device.Explain(state.device));
+    text += fmt::format("; {}", device.Explain(state.device));
   }
-  fmt::print("\n");
+  fmt::print("{}", Fold(text));
   std::fflush(stdout);
 }
 
@@ -150,7 +153,7 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
   is_stopping = true;
   loop.join();
   simulation::ReleaseRealtime();
-  fmt::print("{}\n", grant.ToString());
+  fmt::print("{}", Fold(grant.ToString()));
   PrintLatencyHistogram("wake-up after the deadline", wake_up);
   PrintLatencyHistogram("reading, computing and writing", work);
   return 0;

@@ -10,6 +10,7 @@
 
 #include "app/device_trial.h"
 #include "app/devices_report.h"
+#include "app/json_flag.h"
 #include "app/progress.h"
 #include "app/text_layout.h"
 
@@ -66,7 +67,7 @@ void AddDevices(CLI::App* app, int* status) {
   const auto options = std::make_shared<DevicesOptions>();
   command->add_flag("--probe", options->is_probe,
                     "Start each device that is there, without force, and let it go again");
-  command->add_flag("--json", options->is_json, "Print one JSON document");
+  AddJsonFlag(command, &options->is_json, "devices");
   command->add_option(
       "--try", options->trial.address,
       "Feel a horizontal floor with the device of this address, and see its samples");

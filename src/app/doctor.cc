@@ -11,8 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/doctor_checks.h"
+#include "app/json_flag.h"
 #include "app/latency_json.h"
 #include "app/progress.h"
+#include "app/terminal.h"
 #include "app/text_layout.h"
 #include "base/clock.h"
 #include "base/histogram.h"
@@ -87,28 +89,35 @@ void PrintJson(const std::vector<DoctorCheck>& checks, const Measured& measured,
 void PrintText(const std::vector<DoctorCheck>& checks, const Measured& measured,
                const DoctorOptions& options) {
   for (const DoctorCheck& check : checks) {
-    fmt::print("{}  {} {}\n", check.is_good ? "good" : "LOOK", PadTo(check.name, 28), check.value);
+    const std::string line =
+        Fold(fmt::format("      {} {}", PadTo(check.name, 28), check.value)).substr(4);
+    fmt::print("{}{}", check.is_good ? Painted("good", Style::kGood) : Painted("LOOK", Style::kBad),
+               line);
     if (!check.is_good) {
       fmt::print("{}", Wrap(check.remedy, 8));
     }
   }
-  fmt::print("\nA thread that wakes up {:.0f} times a second, for {:.3g} s: {}.\n", options.rate_hz,
-             options.seconds, measured.grant.ToString());
+  fmt::print("\n{}", Fold(fmt::format("A thread that wakes up {:.0f} times a second, for {:.3g} s: "
+                                      "{}.\n",
+                                      options.rate_hz, options.seconds,
+                                      measured.grant.ToString())));
   PrintLatencyHistogram("wake-up after the deadline", measured.wake_up);
-  fmt::print("{} of {} came more than a period late, {} periods were passed over.\n", measured.late,
-             measured.wake_up.count(), measured.missed);
-  fmt::print("{}", IsPunctual(measured, options.rate_hz)
-                       ? "This machine wakes a loop of this rate in time.\n"
-                       : "This machine does not always wake a loop of this rate in time: a device "
-                         "is given less force meanwhile, never more.\n");
+  fmt::print(
+      "{}",
+      Fold(fmt::format("{} of {} came more than a period late, {} periods were passed over.\n{}",
+                       measured.late, measured.wake_up.count(), measured.missed,
+                       IsPunctual(measured, options.rate_hz)
+                           ? "This machine wakes a loop of this rate in time.\n"
+                           : "This machine does not always wake a loop of this rate in time: a "
+                             "device is given less force meanwhile, never more.\n")));
 }
 
 int RunDoctor(const DoctorOptions& options) {
-  if (IsWatched() && !options.is_json) {
-    fmt::print(stderr, "measuring for {:.3g} s ...\r", options.seconds);
-  }
   const std::vector<DoctorCheck> checks = CheckMachine("/");
-  const Measured measured = MeasureWakeUps(options);
+  const Measured measured = [&options] {
+    const Busy busy(fmt::format("measuring for {:.3g} s", options.seconds));
+    return MeasureWakeUps(options);
+  }();
   if (options.is_json) {
     PrintJson(checks, measured, options);
   } else {
@@ -129,7 +138,7 @@ void AddDoctor(CLI::App* app, int* status) {
   command->add_option("--rate", options->rate_hz, "Of the loop [Hz]")
       ->check(CLI::Range(100.0, 8000.0))
       ->capture_default_str();
-  command->add_flag("--json", options->is_json, "Print one JSON document");
+  AddJsonFlag(command, &options->is_json, "doctor");
   command->footer(
       "Exit status: 0 when 999 of 1000 wake-ups come within half a period and none a period late,\n"
       "2 otherwise, 1 on an error.\n"

@@ -21,12 +21,16 @@
 #include "app/fit_paper.h"
 #include "app/fit_peg.h"
 #include "app/fit_population.h"
+#include "app/json_flag.h"
+#include "app/progress.h"
 #include "app/report_failure.h"
 #include "app/round_json.h"
+#include "app/text_layout.h"
 #include "base/atomic_file.h"
 #include "base/units.h"
 #include "fits/fit_search.h"
 #include "fits/friction.h"
+#include "mates/side_file.h"
 
 namespace hvas::app {
 namespace {
@@ -41,6 +45,7 @@ struct SearchArguments {
   double min_um{0};
   double max_um{0};
   std::string basis{"hole"};
+  std::optional<LengthUnit> unit;
   bool is_json{false};
 };
 
@@ -88,6 +93,7 @@ Result<Answer> MakeAnswer(const FitArguments& a) {
   }
   answer.options = *options;
   if (a.has_population) {
+    const Busy busy(fmt::format("drawing {} assemblies", options->count));
     Result<fits::Population> population = DrawPopulation(answer.cards, *options);
     if (!population) {
       return Unexpected(population.error());
@@ -95,6 +101,7 @@ Result<Answer> MakeAnswer(const FitArguments& a) {
     answer.population = *std::move(population);
   }
   if (!a.curve.empty()) {
+    const Busy busy(fmt::format("drawing {} assemblies for the curve", options->count));
     const Result<FitCurve> curve = MakeFitCurve(answer.cards, *options, units::FromMm(a.step_mm));
     if (!curve) {
       return Unexpected(curve.error());
@@ -191,8 +198,8 @@ int ShowFriction(bool is_json) {
     }
     const std::string range = row.low == row.high ? fmt::format("{:.2f}", row.low)
                                                   : fmt::format("{:.2f}-{:.2f}", row.low, row.high);
-    fmt::print("{:<28} {:<12} {:<9} {}\n{:29}{}; {}\n", row.pair, row.symbol, range, row.condition,
-               "", row.source, row.status);
+    fmt::print("{:<28} {:<12} {:<9} {}\n{}", row.pair, row.symbol, range, row.condition,
+               Wrap(fmt::format("{}; {}", row.source, row.status), 4));
   }
   if (is_json) {
     fmt::print("{}\n", json.dump(2));
@@ -226,6 +233,7 @@ int Search(const SearchArguments& a) {
     return ReportFailure(found.error());
   }
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  const LengthText lengths(a.unit.value_or(LengthUnit::kMillimetre));
   for (const fits::FoundFit& f : *found) {
     const double low_um = units::ToUm(f.limits.min_clearance);
     const double high_um = units::ToUm(f.limits.max_clearance);
@@ -235,7 +243,9 @@ int Search(const SearchArguments& a) {
                       {"min_clearance_um", low_um},
                       {"max_clearance_um", high_um}});
     } else {
-      fmt::print("{:<10} {:>+8.1f} to {:>+8.1f} um{}\n", f.fit.ToString(), low_um, high_um,
+      fmt::print("{:<10} {:>8} to {:>8} {}{}\n", f.fit.ToString(),
+                 lengths.SignedSmall(f.limits.min_clearance),
+                 lengths.SignedSmall(f.limits.max_clearance), lengths.small_unit(),
                  f.is_common ? "  common" : "");
     }
   }
@@ -265,13 +275,16 @@ void AddBatch(CLI::App* fit, const char* name, const char* description, const ch
 void AddSearch(CLI::App* fit, int* status) {
   auto arguments = std::make_shared<SearchArguments>();
   CLI::App* search = fit->add_subcommand("search", "Standard fits with clearances in a range");
-  search->add_option("--nominal", arguments->nominal_mm, "Nominal diameter [mm]")->required();
+  search->add_option("--nominal", arguments->nominal_mm, "Nominal diameter [mm], or as in 1.5in")
+      ->required()
+      ->transform(Millimetres());
   search->add_option("--min", arguments->min_um, "Least clearance [um]; negative: interference")
       ->required();
   search->add_option("--max", arguments->max_um, "Largest clearance [um]")->required();
   search->add_option("--basis", arguments->basis, "hole (H) or shaft (h)")
       ->check(CLI::IsMember({"hole", "shaft"}));
-  search->add_flag("--json", arguments->is_json, "Print one JSON document");
+  AddUnitOption(search, &arguments->unit);
+  AddJsonFlag(search, &arguments->is_json, "fit_search");
   search->footer("Example:\n  hvas fit search --nominal 40 --min 5 --max 60");
   search->callback([arguments, status] { *status = Search(*arguments); });
 }
@@ -290,8 +303,21 @@ void AddFriction(CLI::App* fit, int* status) {
   auto is_json = std::make_shared<bool>(false);
   CLI::App* friction =
       fit->add_subcommand("friction", "Coefficients of friction with their sources");
-  friction->add_flag("--json", *is_json, "Print one JSON document");
+  AddJsonFlag(friction, is_json.get(), "fit_friction");
   friction->callback([is_json, status] { *status = ShowFriction(*is_json); });
+}
+
+/** Throws where a word can only be a command that is misspelt. */
+void CheckCommandWord(const CLI::App& fit, const std::string& word) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : fit.get_subcommands([](const CLI::App*) { return true; })) {
+    commands.push_back(command->get_name());
+  }
+  const std::string nearest = mates::FindNearest(word, commands);
+  if (!nearest.empty() && !ParseSizedFit(word)) {
+    throw CLI::ValidationError(fmt::format(
+        "there is no command \"{}\", and it is no fit; \"{}\" may be meant", word, nearest));
+  }
 }
 
 }  // namespace
@@ -302,14 +328,13 @@ void AddFit(CLI::App* app, int* status) {
   AddFitArguments(fit, a.get());
   fit->footer(
       "Examples:\n"
-      "  hvas fit \"40 H7/g6\"\n"
-      "  hvas fit \"40 H7/p6\" --length 50 --hub 80 --material S355 --curve force.svg\n"
-      "  hvas fit \"40 H7/k6\" --length 50 --rz 6.3 --population 1000000 --press-limit 20000 "
-      "--json\n"
-      "  hvas fit \"40 H7/p6\" \"35 H7/k6\" --length 20,30 --start 0,40 --hub 80 --cp 1.33 "
-      "--population 1000000\n"
-      "  hvas fit \"40 H7/g6\" --length 50 --jamming jam.svg --at 20 --load 5,20,100\n"
-      "  hvas fit \"40 H7/p6\" --length 50 --hub-material \"S355 Re=400 alpha=12\" --room 25\n"
+      "  hvas fit 40 H7/g6\n"
+      "  hvas fit 1.5in RC4\n"
+      "  hvas fit 40 H7/p6 --length 50 --hub 80 --material S355 --curve force.svg\n"
+      "  hvas fit 40 H7/k6 --length 50 --rz 6.3 --population 1e6 --press-limit 20000\n"
+      "  hvas fit 40 H7/p6 35 H7/k6 --length 20,30 --start 0,40 --population 1e6\n"
+      "  hvas fit 40 H7/g6 --length 50 --jamming jam.svg --at 20 --load 5,20,100\n"
+      "  hvas fit 40 H7/p6 --length 50 --hub-material \"S355 Re=400\" --room 25\n"
       "  hvas fit design --nominal 40 --length 50 --hub 80 --torque 200\n"
       "  hvas fit paper --curve figure8.svg\n"
       "  hvas fit limits --batch classes.csv -o limits.csv\n"
@@ -325,10 +350,10 @@ void AddFit(CLI::App* app, int* status) {
       AddPressFits, status);
   AddBatch(
       fit, "peg", "Answers to a table of questions about a peg in a hole",
-      "In: kind (two_point, two_point_depth, jamming, wedging, statics, chamfer, one_point), id, "
-      "inputs (as in \"D=40 d=39.9 l=10 mm\"), output, unit. Out: value; empty, and a reason, "
-      "where no "
-      "peg has such inputs.",
+      "In: kind (two_point, two_point_depth, jamming, jamming_point, wedging, statics, chamfer, "
+      "one_point), id, inputs (as in \"D=40 d=39.9 l=10 mm\"), output, unit. Out: value; empty, and a "
+      "reason, where no peg has such inputs. Whether a load jams: jamming_point with Fx, Fz, M, l, "
+      "r, mu; output slides. The tilt that wedges: wedging with D, d, mu; output theta_w.",
       AddInsertions, status);
   AddSearch(fit, status);
   AddFitIdentify(fit, status);
@@ -353,9 +378,11 @@ void AddFit(CLI::App* app, int* status) {
       throw CLI::RequiredError(
           "a fit, or one of limits, press, peg, search, design, paper, friction, materials,");
     }
+    a->fits = JoinFitWords(a->fits);
+    CheckCommandWord(*fit, a->fits.front());
     a->has_population = fit->count("--population") > 0;
     const Result<void> check = CheckEffects(*fit);
-    *status = check ? PrintCard(*a) : ReportFailure(check.error());
+    *status = check ? PrintCard(*a) : ReportMisuse(check.error());
   });
 }
 

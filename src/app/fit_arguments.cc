@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/choice.h"
 #include "app/csv_table.h"
+#include "app/json_flag.h"
 #include "base/units.h"
 #include "fits/joint_friction.h"
 #include "fits/materials.h"
@@ -37,6 +39,27 @@ const CLI::Validator& NotNegative() {
       },
       "0 OR MORE");
   return validator;
+}
+
+const CLI::Validator& Millimetres() {
+  static const CLI::Validator validator(
+      [](std::string& text) {
+        std::string_view rest = text;
+        const std::optional<double> length = TakeLength(&rest);
+        if (length && rest.empty()) {
+          text = fmt::format("{}", units::ToMm(*length));
+        }
+        return std::string();  // What is no length the option itself refuses.
+      },
+      "");
+  return validator;
+}
+
+void AddUnitOption(CLI::App* command, std::optional<LengthUnit>* unit) {
+  AddChoice(command, "--unit", unit,
+            Choices<LengthUnit>{{"mm", LengthUnit::kMillimetre}, {"in", LengthUnit::kInch}},
+            "Answer in millimetres and micrometres, or in inches and thousandths of one; as the "
+            "fit is typed, when not given");
 }
 
 namespace {
@@ -223,6 +246,7 @@ Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
   options.hub_joining = hub->joining;
   options.shaft_joining = shaft->joining;
   options.room_c = a.room_c;
+  options.unit = a.unit.value_or(fit->unit);
   options.hub_c = a.hub_c;
   options.shaft_c = a.shaft_c;
   options.join_speed = units::FromMm(a.join_speed_mm_s);
@@ -304,17 +328,19 @@ void AddPlotArguments(CLI::App* fit, FitArguments* a) {
 }  // namespace
 
 void AddFitArguments(CLI::App* fit, FitArguments* a) {
-  fit->add_option(
-      "fit", a->fits,
-      "Diameter and classes: \"40 H7/p6\", \"40 H7\", \"1.5in H7/g6\"; several are fits "
-      "of one pair of parts");
+  fit->add_option("fit", a->fits,
+                  "Diameter and classes: 40 H7/p6, 40 H7, 1.5in H7/g6, 1.5in RC4; several are fits of one "
+                  "pair of parts");
   const auto add_list = [fit](const char* name, std::vector<double>* list, const char* text) {
-    return fit->add_option(name, *list, text)->delimiter(',')->allow_extra_args(false);
+    return fit->add_option(name, *list, text)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->transform(Millimetres());
   };
   add_list(
       "--length", &a->length_mm,
-      "Of the joint [mm]; with it the press fit is calculated. With several fits one for each, "
-      "with commas, or one for all; so --hub, --bore, --start")
+      "Of the joint [mm], or as in 2in; with it the press fit is calculated. With several fits "
+      "one for each, with commas, or one for all; so --hub, --bore, --start")
       ->check(Positive());
   add_list("--hub", &a->hub_mm, "Outer diameter of the hub [mm]; twice the nominal without")
       ->check(Positive());
@@ -326,7 +352,8 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
       ->check(Positive());
   fit->add_option("--chamfer-width", a->chamfer_width_mm,
                   "Of the chamfers of hole and shaft together, radially [mm]: widens the entry")
-      ->check(NotNegative());
+      ->check(NotNegative())
+      ->transform(Millimetres());
   fit->add_option(
       "--material", a->material,
       "Of both parts [S355]; values of your own behind the name or alone: E=210 nu=0.3 Re=355 "
@@ -364,7 +391,8 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--join-speed", a->join_speed_mm_s, "Of joining by heat or cold [mm/s]")
       ->check(Positive())
       ->capture_default_str();
-  fit->add_flag("--json", a->is_json, "Print one JSON document");
+  AddUnitOption(fit, &a->unit);
+  AddJsonFlag(fit, &a->is_json, "fit");
   AddBatchArguments(fit, a);
   AddPlotArguments(fit, a);
 }

@@ -43,6 +43,7 @@ struct FitArguments {
   double step_mm{0};
   double at_mm{0};
   std::vector<double> load{0, 1, 0};  // N, N, N mm.
+  std::optional<LengthUnit> unit;  // Of the answer; that of the fits without.
   bool is_json{false};
 };
 
@@ -50,6 +51,12 @@ struct FitArguments {
  number there is. */
 [[nodiscard]] const CLI::Validator& Positive();
 [[nodiscard]] const CLI::Validator& NotNegative();
+
+/** For options in millimetres: what is typed with another unit ("2in") becomes millimetres. */
+[[nodiscard]] const CLI::Validator& Millimetres();
+
+/** --unit, of the answer. */
+void AddUnitOption(CLI::App* command, std::optional<LengthUnit>* unit);
 
 /** Adds them to the command. */
 void AddFitArguments(CLI::App* fit, FitArguments* arguments);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/text_layout.h"
 #include "base/units.h"
 #include "fits/insertion.h"
 #include "mates/make_fit.h"
@@ -57,6 +58,7 @@ JoiningTemperatures CalcJoining(const FitCard& card) {
 }
 
 std::string JoiningText(const FitCard& card) {
+  const LengthText lengths(card.options.unit);
   const JoiningTemperatures joining = CalcJoining(card);
   const fits::JoiningMaterial& hub = card.options.hub_joining;
   const fits::JoiningMaterial& shaft = card.options.shaft_joining;
@@ -66,17 +68,18 @@ std::string JoiningText(const FitCard& card) {
                : fmt::format("cannot be done: the hub would need {:.0f} C", std::ceil(hub_c));
   };
   std::string text = fmt::format(
-      "to join with {} um of play, alpha {:g}e-6/K of the hub (heated), {:g}e-6/K of the shaft "
+      "to join with {} {} of play, alpha {:g}e-6/K of the hub (heated), {:g}e-6/K of the shaft "
       "(cooled):\n",
-      Um(joining.clearance), 1e6 * hub.heating, 1e6 * shaft.cooling);
+      lengths.Small(joining.clearance), lengths.small_unit(), 1e6 * hub.heating, 1e6 * shaft.cooling);
   text += fmt::format("  by heat: {}, at most {:g} C ({})\n", heat(joining.hub_c), hub.hottest_c,
                       hub.limit_source);
   if (joining.shaft_c >= fits::kNitrogenC) {
     text += fmt::format("  by cold: cool the shaft to {:.0f} C\n", std::floor(joining.shaft_c));
   } else {
     text +=
-        fmt::format("  by cold: cannot be done: in liquid nitrogen, {:g} C, the play is {} um\n",
-                    fits::kNitrogenC, Um(joining.nitrogen_clearance));
+        fmt::format("  by cold: cannot be done: in liquid nitrogen, {:g} C, the play is {} {}\n",
+                    fits::kNitrogenC, lengths.Small(joining.nitrogen_clearance),
+                    lengths.small_unit());
   }
   text += fmt::format("  by both: cool the shaft to {:g} C (dry ice), {}\n", fits::kDryIceC,
                       heat(joining.dry_ice_hub_c));
@@ -143,33 +146,68 @@ bool IsHubTooHot(const FitCard& card) {
 }
 
 std::string HotJointText(const FitCard& card) {
+  const LengthText lengths(card.options.unit);
   const HotJoint hot = CalcHotJoint(card);
-  std::string text = fmt::format("hub at {:g} C, shaft at {:g} C: {} um of play", hot.hub_c,
-                                 hot.shaft_c, Um(hot.clearance));
+  std::string text = fmt::format("hub at {:g} C, shaft at {:g} C: {} {} of play", hot.hub_c,
+                                 hot.shaft_c, lengths.Small(hot.clearance), lengths.small_unit());
   if (IsHubTooHot(card)) {
     text += fmt::format("; above the hub's limit of {:g} C", card.options.hub_joining.hottest_c);
   }
   if (!(hot.clearance > 0)) {
     return text + ", which does not go together\n";
   }
-  return text + (hot.sticking < card.options.press.length
-                     ? fmt::format("; at {:g} mm/s it sticks at a depth of {:.1f} mm\n",
-                                   units::ToMm(card.options.join_speed), units::ToMm(hot.sticking))
-                     : fmt::format("; at {:g} mm/s it is in before it sticks\n",
-                                   units::ToMm(card.options.join_speed)));
+  return text + fmt::format("; at {}/s it {}\n", lengths.Size(card.options.join_speed),
+                            hot.sticking < card.options.press.length
+                                ? fmt::format("sticks at a depth of {:.3g} {}",
+                                              hot.sticking * lengths.sizes_per_metre(),
+                                              lengths.size_unit())
+                                : "is in before it sticks");
 }
 
-/** How a shaft with the largest clearance gets in. */
+/** How a shaft gets in. */
 struct Entry {
   double window;  // Beside the axis, upright, radial [m].
   double largest_tilt, wedging_tilt;
 };
 
-Entry CalcEntry(const FitCard& card) {
+/** @param clearance  Of the diameters, >= 0: the least one is the worst case. */
+Entry CalcEntry(const FitCard& card, double clearance) {
   const fits::PressFitParameters& p = card.options.press;
-  const fits::PegInHole pair{p.joint_diameter + card.limits->max_clearance, p.joint_diameter};
+  const fits::PegInHole pair{p.joint_diameter + clearance, p.joint_diameter};
   return {fits::CalcEntryWindow(pair, card.options.chamfer_width, 0), fits::CalcLargestTilt(pair),
-          fits::CalcWedgingTilt(pair, p.friction_in)};
+          std::max(0.0, fits::CalcWedgingTilt(pair, p.friction_in))};
+}
+
+double LeastClearance(const FitCard& card) {
+  return std::max(0.0, card.limits->min_clearance);
+}
+
+ordered_json EntryJson(const FitCard& card) {
+  const auto json = [](const Entry& entry) {
+    return ordered_json{{"window_um", units::ToUm(entry.window)},
+                        {"largest_tilt_deg", units::ToDeg(entry.largest_tilt)},
+                        {"wedging_tilt_deg", FiniteOrNull(units::ToDeg(entry.wedging_tilt))}};
+  };
+  ordered_json entry = json(CalcEntry(card, LeastClearance(card)));
+  entry["with_largest_clearance"] = json(CalcEntry(card, card.limits->max_clearance));
+  return entry;
+}
+
+std::string EntryText(const FitCard& card) {
+  const LengthText lengths(card.options.unit);
+  const Entry worst = CalcEntry(card, LeastClearance(card));
+  const Entry best = CalcEntry(card, card.limits->max_clearance);
+  return fmt::format(
+             "to enter, with the least to the largest clearance: upright within {} to {} {} beside "
+             "the axis,\n  tilted below {:.2f} to {:.2f} deg\n",
+             lengths.Small(worst.window), lengths.Small(best.window), lengths.small_unit(),
+             units::ToDeg(worst.largest_tilt), units::ToDeg(best.largest_tilt)) +
+         (card.limits->min_clearance > 0
+              ? fmt::format("  in the worst case, the least clearance, nothing wedges below {:.3f} "
+                            "deg\n",
+                            units::ToDeg(worst.wedging_tilt))
+              : std::string("  in the worst case there is no clearance, and it wedges at any "
+                            "tilt\n"));
 }
 
 Result<fits::PressFit> PressAt(const FitCard& card, double clearance) {
@@ -180,33 +218,25 @@ Result<fits::PressFit> PressAt(const FitCard& card, double clearance) {
 
 }  // namespace
 
-std::string Um(double length) {
-  return fmt::format("{:g}", std::round(units::ToUm(length) * 1e3) / 1e3 + 0.0);
-}
-
-std::string SignedUm(double length) {
-  const std::string text = Um(length);
-  return length > 0 && text != "0" ? "+" + text : text;
-}
-
 std::string FitCard::Title() const {
-  return fmt::format("{:g} mm {}", units::ToMm(options.fit.nominal), options.fit.ClassText());
+  return LengthText(options.unit).Size(options.fit.nominal) + " " + options.fit.ClassText();
 }
 
 std::string FitCard::JointText() const {
   const fits::PressFitParameters& p = options.press;
+  const LengthText lengths(options.unit);
   std::string text =
-      fmt::format("joint {:g} mm long, hub {:g} mm {}, shaft {}", units::ToMm(p.length),
-                  units::ToMm(p.hub_diameter), options.hub_material, options.shaft_material);
+      fmt::format("joint {} long, hub {} {}, shaft {}", lengths.Size(p.length),
+                  lengths.Size(p.hub_diameter), options.hub_material, options.shaft_material);
   if (p.shaft_bore > 0) {
-    text += fmt::format(" with a bore of {:g} mm", units::ToMm(p.shaft_bore));
+    text += fmt::format(" with a bore of {}", lengths.Size(p.shaft_bore));
   }
   text += fmt::format(
-      ", mu {:g} to press in, {:g} to hold, {:g} to slide out ({}), Rz {:g} and {:g} um",
+      ", mu {:g} to press in, {:g} to hold, {:g} to slide out ({}), Rz {} and {} {}",
       p.friction_in, p.friction_release, options.friction_slip, options.friction_source,
-      units::ToUm(p.hub_roughness), units::ToUm(p.shaft_roughness));
+      lengths.Small(p.hub_roughness), lengths.Small(p.shaft_roughness), lengths.small_unit());
   if (options.start > 0) {
-    text += fmt::format(", from a depth of {:g} mm on", units::ToMm(options.start));
+    text += fmt::format(", from a depth of {} on", lengths.Size(options.start));
   }
   if (options.lead_in_angle > 0) {
     text += fmt::format(", chamfer {:g} deg from the axis", units::ToDeg(options.lead_in_angle));
@@ -228,10 +258,15 @@ Result<FitCard> MakeFitCard(const FitCardOptions& options) {
       *limits = *found;
     }
   }
-  if (!fit.hole || !fit.shaft) {
+  if (fit.ansi) {
+    card.limits = fit.ansi->limits;
+    card.hole = card.limits->hole;
+    card.shaft = card.limits->shaft;
+  } else if (fit.hole && fit.shaft) {
+    card.limits = *fits::CalcFitLimits({*fit.hole, *fit.shaft}, fit.nominal);
+  } else {
     return card;
   }
-  card.limits = *fits::CalcFitLimits({*fit.hole, *fit.shaft}, fit.nominal);
   if (!(options.press.length > 0)) {
     return card;
   }
@@ -258,42 +293,76 @@ double SlideOut(const FitCard& card, const fits::PressFit& press) {
          press.pressure;
 }
 
+/** Of the ABC system in a fit of ANSI B4.1; empty where a side has none. */
+std::string HoleClass(const SizedFit& fit) {
+  return fit.ansi ? std::string(fit.ansi->hole) : fit.hole ? fit.hole->ToString() : "";
+}
+
+std::string ShaftClass(const SizedFit& fit) {
+  return fit.ansi ? std::string(fit.ansi->shaft) : fit.shaft ? fit.shaft->ToString() : "";
+}
+
 std::string LimitsText(const FitCard& card) {
   const SizedFit& fit = card.options.fit;
+  const LengthText lengths(card.options.unit);
   std::string text;
-  const auto side = [&](const char* name, const auto& tolerance, const auto& limits) {
+  const auto side = [&](const char* name, const std::string& tolerance, const auto& limits) {
     if (limits) {
-      text += fmt::format("  {:<6} {:<6} {:>8} / {:>8} um   {:.4f} to {:.4f} mm\n", name,
-                          tolerance->ToString(), SignedUm(limits->upper), SignedUm(limits->lower),
-                          units::ToMm(fit.nominal + limits->lower),
-                          units::ToMm(fit.nominal + limits->upper));
+      text += fmt::format("  {:<6} {:<6} {:>8} / {:>8} {}   {} to {} {}\n", name, tolerance,
+                          lengths.SignedSmall(limits->upper),
+                          lengths.SignedSmall(limits->lower), lengths.small_unit(),
+                          lengths.Exact(fit.nominal + limits->lower),
+                          lengths.Exact(fit.nominal + limits->upper), lengths.size_unit());
     }
   };
-  side("hole", fit.hole, card.hole);
-  side("shaft", fit.shaft, card.shaft);
+  side("hole", HoleClass(fit), card.hole);
+  side("shaft", ShaftClass(fit), card.shaft);
   if (card.limits) {
-    text += fmt::format("  clearance of the diameters {} to {} um: {} fit\n",
-                        SignedUm(card.limits->min_clearance), SignedUm(card.limits->max_clearance),
+    text += fmt::format("  clearance of the diameters {} to {} {}: {} fit\n",
+                        lengths.SignedSmall(card.limits->min_clearance),
+                        lengths.SignedSmall(card.limits->max_clearance), lengths.small_unit(),
                         ToString(mates::ToKind(card.limits->kind)));
   }
   return text;
 }
 
+/** What the most that there is does to the material. */
+std::string StrengthText(const FitCard& card) {
+  const fits::PressFit& most = *card.most;
+  std::string text;
+  if (most.is_hub_brittle && fits::IsFracturing(most)) {
+    text += fmt::format(
+        "  the hub is brittle, and its hoop stress comes nearer to its tensile strength than a "
+        "safety of {:g} allows\n",
+        fits::kBrittleSafety);
+  }
+  if (most.pressure > most.shaft_limit.von_mises ||
+      (!most.is_hub_brittle && most.pressure > most.hub_limit.von_mises)) {
+    text += "  the largest interference yields: its figures are those of an elastic joint\n";
+  }
+  return text;
+}
+
 std::string PressText(const FitCard& card) {
+  const LengthText lengths(card.options.unit);
+  const std::string small = lengths.small_unit();
   std::string text = card.JointText() + "\n";
-  text += fmt::format("  {:<30} {:>12} {:>12} {:>12}\n", "interference", "least", "mean", "most");
-  const auto row = [&](const char* name, auto value) {
-    text += fmt::format("  {:<30} {:>12} {:>12} {:>12}\n", name, value(*card.least),
+  text += fmt::format("  {:<32} {:>12} {:>12} {:>12}\n", "interference", "least", "mean", "most");
+  const auto row = [&](const std::string& name, auto value) {
+    text += fmt::format("  {:<32} {:>12} {:>12} {:>12}\n", name, value(*card.least),
                         value(*card.mean), value(*card.most));
   };
   using fits::PressFit;
   const auto fixed = [](double value, int digits) {
     return std::isfinite(value) ? fmt::format("{:.{}f}", value + 0.0, digits) : std::string("-");
   };
-  row("effective, um", [](const PressFit& f) { return Um(f.effective_interference); });
+  row("effective, " + small,
+      [&](const PressFit& f) { return lengths.Small(f.effective_interference); });
   row("pressure, MPa", [&](const PressFit& f) { return fixed(units::ToMpa(f.pressure), 2); });
-  row("hub widens by, um", [](const PressFit& f) { return Um(f.hub_expansion); });
-  row("shaft narrows by, um", [](const PressFit& f) { return Um(f.shaft_contraction); });
+  row("hub widens by, " + small,
+      [&](const PressFit& f) { return lengths.Small(f.hub_expansion); });
+  row("shaft narrows by, " + small,
+      [&](const PressFit& f) { return lengths.Small(f.shaft_contraction); });
   row("force to press in, N", [&](const PressFit& f) { return fixed(f.press_in_force, 1); });
   row("force to push out, N", [&](const PressFit& f) { return fixed(f.push_out_force, 1); });
   row("force to slide on out, N", [&](const PressFit& f) { return fixed(SlideOut(card, f), 1); });
@@ -306,25 +375,22 @@ std::string PressText(const FitCard& card) {
       [&](const PressFit& f) { return fixed(units::ToMpa(f.hub_bore.tresca()), 1); });
   row("shaft, hoop, MPa",
       [&](const PressFit& f) { return fixed(units::ToMpa(f.shaft_governing.hoop), 1); });
-  row("margin by von Mises", [&](const PressFit& f) { return fixed(f.margin_von_mises(), 2); });
-  row("margin by Tresca", [&](const PressFit& f) { return fixed(f.margin_tresca(), 2); });
-  if (card.most->margin_von_mises() < 1) {
-    text += "  the largest interference yields: its figures are those of an elastic joint\n";
+  if (card.most->is_hub_brittle) {
+    row(fmt::format("hub, fracture, margin (to be {:g})", fits::kBrittleSafety),
+        [&](const PressFit& f) { return fixed(f.margin_hub(), 2); });
+    row("shaft, yield, margin", [&](const PressFit& f) { return fixed(f.margin_shaft(), 2); });
+  } else {
+    row("margin by von Mises", [&](const PressFit& f) { return fixed(f.margin_von_mises(), 2); });
+    row("margin by Tresca", [&](const PressFit& f) { return fixed(f.margin_tresca(), 2); });
   }
+  text += StrengthText(card);
   if (card.limits->min_clearance < 0) {
     text += JoiningText(card);
     if (HasJoining(card)) {
       text += HotJointText(card);
     }
   }
-  if (card.limits->max_clearance > 0) {
-    const Entry entry = CalcEntry(card);
-    text += fmt::format(
-        "with the largest clearance: upright it enters within {} um beside the axis, tilted below "
-        "{:.2f} deg;\n  below {:.3f} deg nothing wedges\n",
-        Um(entry.window), units::ToDeg(entry.largest_tilt), units::ToDeg(entry.wedging_tilt));
-  }
-  return text;
+  return card.limits->max_clearance > 0 ? text + EntryText(card) : text;
 }
 
 ordered_json ToJson(const FitCard& card, const fits::PressFit& f) {
@@ -352,21 +418,24 @@ std::string ToText(const FitCard& card) {
   if (card.most) {
     text += PressText(card);
   }
-  return text;
+  return Fold(text);
 }
 
 ordered_json ToJson(const FitCard& card) {
   const SizedFit& fit = card.options.fit;
   ordered_json json{{"nominal_mm", units::ToMm(fit.nominal)}};
-  const auto side = [&](const char* name, const auto& tolerance, const auto& limits) {
+  if (fit.ansi) {
+    json["ansi_b41"] = fit.ansi->name;
+  }
+  const auto side = [&](const char* name, const std::string& tolerance, const auto& limits) {
     if (limits) {
-      json[name] = {{"class", tolerance->ToString()},
+      json[name] = {{"class", tolerance},
                     {"upper_um", units::ToUm(limits->upper)},
                     {"lower_um", units::ToUm(limits->lower)}};
     }
   };
-  side("hole", fit.hole, card.hole);
-  side("shaft", fit.shaft, card.shaft);
+  side("hole", HoleClass(fit), card.hole);
+  side("shaft", ShaftClass(fit), card.shaft);
   if (card.limits) {
     json["kind"] = ToString(mates::ToKind(card.limits->kind));
     json["min_clearance_um"] = units::ToUm(card.limits->min_clearance);
@@ -381,6 +450,7 @@ ordered_json ToJson(const FitCard& card) {
                      {"chamfer_deg", units::ToDeg(card.options.lead_in_angle)},
                      {"hub_material", card.options.hub_material},
                      {"shaft_material", card.options.shaft_material},
+                     {"is_hub_brittle", card.most->is_hub_brittle},
                      {"mu", p.friction_in},
                      {"mu_out", p.friction_release},
                      {"mu_slip", card.options.friction_slip},
@@ -389,10 +459,7 @@ ordered_json ToJson(const FitCard& card) {
                      {"shaft_rz_um", units::ToUm(p.shaft_roughness)},
                      {"smoothing_loss_um", units::ToUm(card.most->smoothing_loss)}};
     if (card.limits->max_clearance > 0) {
-      const Entry entry = CalcEntry(card);
-      json["entry"] = {{"window_um", units::ToUm(entry.window)},
-                       {"largest_tilt_deg", units::ToDeg(entry.largest_tilt)},
-                       {"wedging_tilt_deg", FiniteOrNull(units::ToDeg(entry.wedging_tilt))}};
+      json["entry"] = EntryJson(card);
     }
     json["press"] = {{"least", ToJson(card, *card.least)},
                      {"mean", ToJson(card, *card.mean)},

@@ -24,6 +24,7 @@ struct FitCardOptions {
   double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
   double chamfer_width{0};      ///< Of both parts together, radially [m].
   double room_c{20};
+  LengthUnit unit{LengthUnit::kMillimetre};  ///< Of the answer.
   fits::JoiningMaterial hub_joining, shaft_joining;
   std::optional<double> hub_c,
       shaft_c;                        ///< Temperatures to join at; room_c where only one is given.
@@ -51,11 +52,5 @@ struct FitCard {
 
 [[nodiscard]] std::string ToText(const FitCard& card);
 [[nodiscard]] nlohmann::ordered_json ToJson(const FitCard& card);
-
-/** Micrometres to three digits; zero has no sign. */
-[[nodiscard]] std::string Um(double length);
-
-/** The same, with a plus sign where it is positive. */
-[[nodiscard]] std::string SignedUm(double length);
 
 }  // namespace hvas::app

@@ -9,8 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/choice.h"
+#include "app/json_flag.h"
+#include "app/length_text.h"
 #include "app/report_failure.h"
 #include "app/round_json.h"
+#include "app/text_layout.h"
+#include "app/text_table.h"
 #include "base/units.h"
 #include "fits/materials.h"
 #include "fits/thermal_joining.h"
@@ -39,25 +43,33 @@ FitArguments WithFit(const FitArguments& joint, const FitDemand& demand, const s
 }
 
 std::string ToText(const FitDesign& d) {
+  const LengthText lengths(d.unit);
   std::string text = fmt::format(
-      "{:g} N m and {:g} N at once with a safety of {:g} take {:.2f} MPa, {} um of interference at "
-      "least;\nit yields at {:.2f} MPa, {} um (von Mises)\n",
+      "{:g} N m and {:g} N at once with a safety of {:g} take {:.2f} MPa, {} {} of interference at "
+      "least;\n{} {:.2f} MPa, {} {}\n",
       d.demand.torque, d.demand.axial, d.demand.safety, units::ToMpa(d.required_pressure),
-      Um(d.required_interference), units::ToMpa(d.largest_pressure), Um(d.largest_interference));
+      lengths.Small(d.required_interference), lengths.small_unit(),
+      d.is_hub_brittle
+          ? fmt::format("the brittle hub bears with a safety of {:g}", fits::kBrittleSafety)
+          : std::string("it yields (von Mises) at"),
+      units::ToMpa(d.largest_pressure), lengths.Small(d.largest_interference),
+      lengths.small_unit());
   if (d.proposals.empty()) {
-    return text +
-           "no standard fit lies between; a longer joint, or one with a thicker hub, takes less\n";
+    return Fold(text + "no standard fit lies between; a longer joint, or one with a thicker hub, "
+                       "takes less\n");
   }
   text += d.proposals.front().JointText() + "\n";
-  text += fmt::format("  {:<12}{:>22}{:>18}{:>20}{:>12}\n", "fit", "interference, um", "holds, N m",
-                      "to press in, N", "margin");
+  TextTable table({"fit", std::string("interference, ") + lengths.small_unit(), "holds, N m",
+                   "to press in, N", "margin"});
   for (const FitCard& card : d.proposals) {
-    text += fmt::format(
-        "  {:<12}{:>22}{:>18.1f}{:>20.0f}{:>12.2f}\n", card.options.fit.ClassText(),
-        fmt::format("{} to {}", Um(-card.limits->max_clearance), Um(-card.limits->min_clearance)),
-        card.least->torque, card.most->press_in_force, card.most->margin_von_mises());
+    table.Add({card.options.fit.ClassText(),
+               fmt::format("{} to {}", lengths.Small(-card.limits->max_clearance),
+                           lengths.Small(-card.limits->min_clearance)),
+               fmt::format("{:.1f}", card.least->torque),
+               fmt::format("{:.0f}", card.most->press_in_force),
+               fmt::format("{:.2f}", card.most->margin_von_mises())});
   }
-  return text;
+  return Fold(text) + table.ToText(2);
 }
 
 ordered_json ToJson(const FitDesign& d) {
@@ -70,6 +82,7 @@ ordered_json ToJson(const FitDesign& d) {
                     {"required_interference_um", units::ToUm(d.required_interference)},
                     {"largest_pressure_mpa", units::ToMpa(d.largest_pressure)},
                     {"largest_interference_um", units::ToUm(d.largest_interference)},
+                    {"is_hub_brittle", d.is_hub_brittle},
                     {"proposals", ordered_json::array()}};
   for (const FitCard& card : d.proposals) {
     json["proposals"].push_back(
@@ -106,42 +119,42 @@ int RunDesign(DesignArguments a) {
   return 0;
 }
 
-int ShowMaterials(bool is_json) {
+ordered_json MaterialsJson() {
   ordered_json json = ordered_json::array();
-  if (!is_json) {
-    fmt::print("{:<22}{:<22}{:>8}{:>7}{:>9}{:>9}{:>9}{:>17}{:>9}\n", "material", "group", "E, GPa",
-               "nu", "kg/m3", "Re, MPa", "Rm, MPa", "alpha, 1e-6/K", "up to, C");
-  }
   for (const fits::Material& m : fits::Materials()) {
     const fits::JoiningMaterial joining = fits::FindJoiningMaterial(m);
-    if (is_json) {
-      json.push_back({{"name", m.name},
-                      {"group", m.group},
-                      {"youngs_modulus_mpa", units::ToMpa(m.youngs_modulus)},
-                      {"poisson_ratio", m.poisson_ratio},
-                      {"density_kg_m3", m.density},
-                      {"yield_strength_mpa", units::ToMpa(m.yield_strength)},
-                      {"tensile_strength_mpa", units::ToMpa(m.tensile_strength)},
-                      {"heating_per_k", joining.heating},
-                      {"cooling_per_k", joining.cooling},
-                      {"expansion_source", joining.source},
-                      {"hottest_c", joining.hottest_c},
-                      {"note", m.note}});
-      continue;
-    }
-    fmt::print("{:<22}{:<22}{:>8g}{:>7g}{:>9g}{:>9g}{:>9g}{:>17}{:>9g}\n", m.name, m.group,
-               units::ToMpa(m.youngs_modulus) / 1e3, m.poisson_ratio, m.density,
-               units::ToMpa(m.yield_strength), units::ToMpa(m.tensile_strength),
+    json.push_back({{"name", m.name},
+                    {"group", m.group},
+                    {"youngs_modulus_mpa", units::ToMpa(m.youngs_modulus)},
+                    {"poisson_ratio", m.poisson_ratio},
+                    {"density_kg_m3", m.density},
+                    {"yield_strength_mpa", units::ToMpa(m.yield_strength)},
+                    {"tensile_strength_mpa", units::ToMpa(m.tensile_strength)},
+                    {"heating_per_k", joining.heating},
+                    {"cooling_per_k", joining.cooling},
+                    {"expansion_source", joining.source},
+                    {"hottest_c", joining.hottest_c},
+                    {"note", m.note}});
+  }
+  RoundNumbers(&json);
+  return json;
+}
+
+std::string MaterialsText() {
+  TextTable table({"material", "E\nGPa", "nu\n", "rho\nkg/m3", "Re\nMPa", "Rm\nMPa",
+                   "alpha\n1e-6/K", "up to\nC"});
+  for (const fits::Material& m : fits::Materials()) {
+    const fits::JoiningMaterial joining = fits::FindJoiningMaterial(m);
+    table.Add({std::string(m.name), fmt::format("{:g}", units::ToMpa(m.youngs_modulus) / 1e3),
+               fmt::format("{:g}", m.poisson_ratio), fmt::format("{:g}", m.density),
+               fmt::format("{:g}", units::ToMpa(m.yield_strength)),
+               fmt::format("{:g}", units::ToMpa(m.tensile_strength)),
                fmt::format("{:.1f} / {:.1f}", 1e6 * joining.heating, 1e6 * joining.cooling),
-               joining.hottest_c);
+               fmt::format("{:g}", joining.hottest_c)});
   }
-  if (is_json) {
-    RoundNumbers(&json);
-    fmt::print("{}\n", json.dump(2));
-  } else {
-    fmt::print("alpha: when heated / when cooled, to join; up to: of a hub that is heated\n");
-  }
-  return 0;
+  return table.ToText() +
+         Fold("alpha: when heated / when cooled, to join; up to: of a hub that is heated. --json "
+              "has groups, sources and notes.\n");
 }
 
 }  // namespace
@@ -163,7 +176,9 @@ Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint) 
   d.demand = demand;
   d.required_pressure =
       fits::CalcRequiredPressure(press, demand.axial, demand.torque, demand.safety);
-  d.largest_pressure = std::min(geometry.hub_limit.von_mises, geometry.shaft_limit.von_mises);
+  d.largest_pressure = fits::CalcLargestPressure(geometry);
+  d.is_hub_brittle = geometry.is_hub_brittle;
+  d.unit = joint.unit.value_or(LengthUnit::kMillimetre);
   const Result<double> least = fits::CalcInterferenceFor(d.required_pressure, press);
   const Result<double> most = fits::CalcInterferenceFor(d.largest_pressure, press);
   if (!least || !most) {
@@ -173,8 +188,10 @@ Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint) 
   d.largest_interference = *most;
   if (!(d.required_pressure < d.largest_pressure)) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("to hold that takes {:.1f} MPa, and the joint yields at {:.1f} MPa",
-                            units::ToMpa(d.required_pressure), units::ToMpa(d.largest_pressure)),
+                fmt::format("to hold that takes {:.1f} MPa, and the joint {} {:.1f} MPa",
+                            units::ToMpa(d.required_pressure),
+                            d.is_hub_brittle ? "with its brittle hub bears" : "yields at",
+                            units::ToMpa(d.largest_pressure)),
                 {}, "make the joint longer or the hub thicker, or choose a stronger material");
   }
   const auto found = fits::FindFits(press.joint_diameter, -d.largest_interference,
@@ -199,10 +216,14 @@ void AddFitDesign(CLI::App* fit, int* status) {
   auto a = std::make_shared<DesignArguments>();
   CLI::App* design =
       fit->add_subcommand("design", "The interference, and fits, that hold a torque and a force");
-  design->add_option("--nominal", a->demand.nominal_mm, "Nominal diameter [mm]")
+  design->add_option("--nominal", a->demand.nominal_mm, "Nominal diameter [mm], or as in 1.5in")
       ->required()
-      ->check(Positive());
-  design->add_option("--length", a->length_mm, "Of the joint [mm]")->required()->check(Positive());
+      ->check(Positive())
+      ->transform(Millimetres());
+  design->add_option("--length", a->length_mm, "Of the joint [mm]")
+      ->required()
+      ->check(Positive())
+      ->transform(Millimetres());
   design->add_option("--torque", a->demand.torque, "To hold about the axis [N m]")
       ->check(NotNegative());
   design->add_option("--axial", a->demand.axial, "To hold along it, at the same time [N]")
@@ -210,8 +231,11 @@ void AddFitDesign(CLI::App* fit, int* status) {
   design->add_option("--safety", a->demand.safety, "Against slip")->capture_default_str();
   design
       ->add_option("--hub", a->hub_mm, "Outer diameter of the hub [mm]; twice the nominal without")
-      ->check(Positive());
-  design->add_option("--bore", a->bore_mm, "Bore of a hollow shaft [mm]")->check(NotNegative());
+      ->check(Positive())
+      ->transform(Millimetres());
+  design->add_option("--bore", a->bore_mm, "Bore of a hollow shaft [mm]")
+      ->check(NotNegative())
+      ->transform(Millimetres());
   design->add_option("--material", a->joint.material, "Of both parts [S355]");
   design->add_option("--hub-material", a->joint.hub_material, "Of the hub");
   design->add_option("--shaft-material", a->joint.shaft_material, "Of the shaft");
@@ -225,7 +249,8 @@ void AddFitDesign(CLI::App* fit, int* status) {
       design, "--basis", &a->demand.basis,
       Choices<fits::FitBasis>{{"hole", fits::FitBasis::kHole}, {"shaft", fits::FitBasis::kShaft}},
       "hole (H) or shaft (h)");
-  design->add_flag("--json", a->is_json, "Print one JSON document");
+  AddUnitOption(design, &a->joint.unit);
+  AddJsonFlag(design, &a->is_json, "fit_design");
   design->footer(
       "Example:\n  hvas fit design --nominal 40 --length 50 --hub 80 --rz 6.3 --torque 200");
   design->callback([a, status] { *status = RunDesign(*a); });
@@ -233,8 +258,11 @@ void AddFitDesign(CLI::App* fit, int* status) {
   auto is_json = std::make_shared<bool>(false);
   CLI::App* materials =
       fit->add_subcommand("materials", "The materials, with what fits take of them");
-  materials->add_flag("--json", *is_json, "Print one JSON document");
-  materials->callback([is_json, status] { *status = ShowMaterials(*is_json); });
+  AddJsonFlag(materials, is_json.get(), "fit_materials");
+  materials->callback([is_json, status] {
+    fmt::print("{}", *is_json ? MaterialsJson().dump(2) + "\n" : MaterialsText());
+    *status = 0;
+  });
 }
 
 }  // namespace hvas::app

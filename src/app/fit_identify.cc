@@ -8,8 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/choice.h"
+#include "app/json_flag.h"
+#include "app/progress.h"
 #include "app/rendering_options.h"
 #include "app/report_failure.h"
+#include "app/text_layout.h"
+#include "app/text_table.h"
 #include "simulation/identification.h"
 
 namespace hvas::app {
@@ -72,23 +76,30 @@ nlohmann::ordered_json ToJson(const IdentificationOptions& options, const Identi
 }
 
 void PrintText(const IdentificationOptions& options, const Identification& result) {
-  fmt::print("{}\n{} insertions of each fit, force map: {}, sizes: {}\n\n", kWhat, options.trials,
-             haptics::ToString(options.map), ToString(options.sizes));
-  fmt::print("{:<7}{:>8}{:>16}{:>8}{:>8}{:>8}{:>16}{:>22}\n", "shown", "right", "95 %", "g6", "p6",
-             "k6", "felt at end", "paper W's people");
+  fmt::print("{}",
+             Fold(fmt::format("{}\n{} insertions of each fit, force map: {}, sizes: {}\n\n", kWhat,
+                              options.trials, haptics::ToString(options.map),
+                              ToString(options.sizes))));
+  TextTable table({"shown\n", "right\n%", "95 %\nof right", "as g6\n", "as p6\n", "as k6\n",
+                   "felt at end\nN", "right in\npaper W, %"});
   for (int fit = 0; fit < kShownFits; ++fit) {
     const auto i = static_cast<std::size_t>(fit);
     const auto interval = simulation::CalcShareInterval(result.counts[i][i], options.trials);
-    fmt::print(
-        "{:<7}{:>6.1f} %{:>7.1f} to {:>4.1f}{:>8}{:>8}{:>8}{:>7.2f} +- {:.2f} N{:>18.1f} %\n",
-        kShownFitNames[i], 100 * result.CalcShare(fit), 100 * interval.low, 100 * interval.high,
-        result.counts[i][0], result.counts[i][1], result.counts[i][2], result.mean_felt[i],
-        result.sigma_felt[i], 100 * PaperShare(i));
+    table.Add({kShownFitNames[i], fmt::format("{:.1f}", 100 * result.CalcShare(fit)),
+               fmt::format("{:.1f} to {:.1f}", 100 * interval.low, 100 * interval.high),
+               fmt::format("{}", result.counts[i][0]), fmt::format("{}", result.counts[i][1]),
+               fmt::format("{}", result.counts[i][2]),
+               fmt::format("{:.2f} +- {:.2f}", result.mean_felt[i], result.sigma_felt[i]),
+               fmt::format("{:.1f}", 100 * PaperShare(i))});
   }
+  fmt::print("{}", table.ToText());
 }
 
 int Run(const IdentificationOptions& options, bool is_json) {
-  const auto result = simulation::Identify(options);
+  const auto result = [&options] {
+    const Busy busy("inserting and answering");
+    return simulation::Identify(options);
+  }();
   if (!result) {
     return ReportFailure(result.error());
   }
@@ -125,7 +136,7 @@ void AddFitIdentify(CLI::App* fit, int* status) {
             "one-pair (as in the paper), of-kind (drawn until S has the sign of its kind), or any "
             "(drawn)");
   AddForceMapOption(command, &options->map);
-  command->add_flag("--json", *is_json, "Print one JSON document");
+  AddJsonFlag(command, is_json.get(), "fit_identify");
   command->footer(
       "Shows paper W's three fits blind and lets an observer answer with the nearest of three\n"
       "learned curves of felt force over depth. What it cannot tell apart, people will not "

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/length_text.h"
+#include "app/text_layout.h"
 #include "base/units.h"
 #include "pages/svg_plot.h"
 
@@ -30,6 +32,11 @@ double Friction(const FitJamming& j) {
 /** Where the load is in the diagram. */
 fits::DiagramPoint PlaceOf(const FitJamming& j) {
   return {j.load.f_x / j.load.f_z, j.load.m / (Radius(j) * j.load.f_z)};
+}
+
+/** Below this tilt nothing wedges, whatever the sizes within their limits are [rad]. */
+double SafeTilt(const FitJamming& j) {
+  return std::max(0.0, fits::CalcWedgingTilt(j.worst_pair, Friction(j)));
 }
 
 std::string Verdict(const FitJamming& j) {
@@ -101,12 +108,11 @@ PlotPanel MakeWedgingPanel(const FitJamming& j) {
        PlotStyle::kDashed,
        3,
        {{0, largest_deg}, {units::ToMm(length), largest_deg}}},
-      {fmt::format("below {:.3g} deg nothing wedges",
-                   units::ToDeg(fits::CalcWedgingTilt(j.pair, Friction(j)))),
+      {fmt::format("below {:.3g} deg nothing wedges, with the least clearance either",
+                   units::ToDeg(SafeTilt(j))),
        PlotStyle::kDashed,
        2,
-       {{0, units::ToDeg(fits::CalcWedgingTilt(j.pair, Friction(j)))},
-        {units::ToMm(length), units::ToDeg(fits::CalcWedgingTilt(j.pair, Friction(j)))}}},
+       {{0, units::ToDeg(SafeTilt(j))}, {units::ToMm(length), units::ToDeg(SafeTilt(j))}}},
       {"this depth",
        PlotStyle::kMarks,
        j.can_wedge ? 1 : 0,
@@ -131,7 +137,12 @@ Result<FitJamming> MakeFitJamming(const FitCard& card, double l, const fits::Peg
     return fail(ErrorCode::kUnsupported, "a fit without clearance cannot tilt, so it cannot jam",
                 "choose a clearance or transition fit, such as H7/g6");
   }
-  FitJamming j{card, {card.options.fit.nominal + clearance, card.options.fit.nominal}, l, load};
+  const double nominal = card.options.fit.nominal;
+  FitJamming j{card,
+               {nominal + clearance, nominal},
+               {nominal + std::max(0.0, card.limits->min_clearance), nominal},
+               l,
+               load};
   j.l = l > 0 ? l : 0.5 * card.options.press.length;
   const double least = fits::CalcLeastTwoPointLength(j.pair);
   if (!(j.l >= least) || !(j.l <= card.options.press.length)) {
@@ -154,12 +165,15 @@ Result<FitJamming> MakeFitJamming(const FitCard& card, double l, const fits::Peg
 }
 
 std::string ToText(const FitJamming& j) {
-  return fmt::format(
-      "jamming at l = {:g} mm with F_x {:g} N, F_z {:g} N, M {:g} N mm, clearance {} um, mu {:g}:\n"
-      "  {}; both sides touch at a tilt of {:.4f} deg; lambda {:.4g}\n",
-      units::ToMm(j.l), j.load.f_x, j.load.f_z, 1e3 * j.load.m,
-      Um(j.pair.hole_diameter - j.pair.peg_diameter), Friction(j), Verdict(j),
-      units::ToDeg(fits::CalcTwoPointTilt(j.pair, j.l)), j.lambda);
+  const LengthText lengths(j.card.options.unit);
+  return Fold(fmt::format(
+      "jamming at l = {} with F_x {:g} N, F_z {:g} N, M {:g} N mm, clearance {} {}, mu {:g}:\n"
+      "  {}; both sides touch at a tilt of {:.4f} deg; lambda {:.4g}\n"
+      "  in the worst case, the least clearance, nothing wedges below {:.4f} deg\n",
+      lengths.Size(j.l), j.load.f_x, j.load.f_z, 1e3 * j.load.m,
+      lengths.Small(j.pair.hole_diameter - j.pair.peg_diameter), lengths.small_unit(), Friction(j),
+      Verdict(j), units::ToDeg(fits::CalcTwoPointTilt(j.pair, j.l)), j.lambda,
+      units::ToDeg(SafeTilt(j))));
 }
 
 nlohmann::ordered_json ToJson(const FitJamming& j) {
@@ -176,17 +190,18 @@ nlohmann::ordered_json ToJson(const FitJamming& j) {
           {"can_wedge", j.can_wedge},
           {"two_point_tilt_deg", units::ToDeg(fits::CalcTwoPointTilt(j.pair, j.l))},
           {"largest_tilt_deg", units::ToDeg(fits::CalcLargestTilt(j.pair))},
-          {"wedging_tilt_deg", units::ToDeg(fits::CalcWedgingTilt(j.pair, Friction(j)))}};
+          {"wedging_tilt_deg", units::ToDeg(SafeTilt(j))}};
 }
 
 std::string ToSvg(const FitJamming& j) {
+  const LengthText lengths(j.card.options.unit);
   PlotFigure figure;
   figure.title = j.card.Title() + ": jamming and wedging";
   figure.notes = {
-      fmt::format("Clearance of the diameters {} um, mu {:g}. Load at the middle of the tip: F_x "
+      fmt::format("Clearance of the diameters {} {}, mu {:g}. Load at the middle of the tip: F_x "
                   "{:g} N, F_z {:g} N, M {:g} N mm: {}.",
-                  Um(j.pair.hole_diameter - j.pair.peg_diameter), Friction(j), j.load.f_x,
-                  j.load.f_z, 1e3 * j.load.m, Verdict(j))};
+                  lengths.Small(j.pair.hole_diameter - j.pair.peg_diameter), lengths.small_unit(),
+                  Friction(j), j.load.f_x, j.load.f_z, 1e3 * j.load.m, Verdict(j))};
   figure.panels = {MakeJammingPanel(j), MakeWedgingPanel(j)};
   return ToSvg(figure);
 }

@@ -14,6 +14,7 @@ namespace hvas::app {
 struct FitJamming {
   FitCard card;
   fits::PegInHole pair;  ///< With the mean clearance, or half of the largest in a transition fit.
+  fits::PegInHole worst_pair;  ///< With the least clearance, which wedges first.
   double l{0};           ///< From the tip's corner to the rim, along the shaft [m].
   fits::PegLoad load;    ///< At the middle of the tip.
   double lambda{0};

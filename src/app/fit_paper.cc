@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
+#include "app/text_table.h"
 #include "base/units.h"
 #include "fits/paper_scales.h"
 #include "fits/press_stroke.h"
@@ -122,8 +123,7 @@ Result<std::vector<PaperCurve>> MakePaperCurves(std::uint64_t seed) {
 }
 
 std::string ToText(const std::vector<PaperCurve>& curves) {
-  std::string text = fmt::format("{:<34} {:>14} {:>16}  {}\n", "axial force, largest", "shown, N",
-                                 "true, N", "factor");
+  TextTable table({"axial force, largest", "shown, N", "true, N", "factor"});
   for (const PaperCurve& curve : curves) {
     double shown = 0;
     double true_force = 0;
@@ -131,10 +131,10 @@ std::string ToText(const std::vector<PaperCurve>& curves) {
       shown = std::max(shown, p.shown);
       true_force = std::max(true_force, p.true_force);
     }
-    text += fmt::format("{:<34} {:>14.3f} {:>16.3f}  {}\n", Name(curve), shown, true_force,
-                        FactorText(curve));
+    table.Add({Name(curve), fmt::format("{:.3f}", shown), fmt::format("{:.3f}", true_force),
+               FactorText(curve)});
   }
-  return text;
+  return table.ToText();
 }
 
 std::string ToCsv(const std::vector<PaperCurve>& curves) {

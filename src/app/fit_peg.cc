@@ -276,15 +276,42 @@ std::optional<Reply> AnswerTwoPoint(const Question& q) {
   return std::nullopt;
 }
 
-std::optional<Reply> AnswerJamming(const Question& q) {
+std::optional<Reply> AnswerWedging(const Question& q) {
   if (Begins(q.output, "wedging")) {
     const double d = 2 * q.in("r");
     return Reply{fits::CanWedge({d, d}, q.in("l"), q.in("mu")) ? 1.0 : 0.0};
   }
-  const double lambda = fits::CalcLambda(q.in("l"), q.in("r"), q.in("mu"));
+  if (Begins(q.output, "theta_w")) {  // Of the least clearance it is the worst case.
+    return Reply{fits::CalcWedgingTilt({q.in("D"), q.in("d")}, q.in("mu")), Kind::kAngle};
+  }
+  return std::nullopt;
+}
+
+/** Whether a load moves the peg on, and where it is in the diagram. */
+std::optional<Reply> AnswerJammingPoint(const Question& q) {
+  const double f_z = q.in("Fz");
+  if (Begins(q.output, "slides") || Begins(q.output, "jams")) {
+    const bool is_sliding =
+        fits::IsSliding({q.in("Fx"), f_z, q.in("M")}, q.in("l"), q.in("r"), q.in("mu"));
+    return Reply{is_sliding == Begins(q.output, "slides") ? 1.0 : 0.0};
+  }
+  if (Begins(q.output, "Fx/Fz")) {
+    return Reply{q.in("Fx") / f_z};
+  }
+  if (Begins(q.output, "M/(r")) {
+    return Reply{q.in("M") / (q.in("r") * f_z)};
+  }
+  return std::nullopt;
+}
+
+std::optional<Reply> AnswerJamming(const Question& q) {
   if (!(q.in("mu") > 0)) {
     q.in.Refuse("without friction nothing jams; give mu over 0");
   }
+  if (q.kind == "jamming_point" || Begins(q.output, "slides")) {
+    return AnswerJammingPoint(q);
+  }
+  const double lambda = fits::CalcLambda(q.in("l"), q.in("r"), q.in("mu"));
   if (Begins(q.output, "lambda")) {
     return Reply{lambda};
   }
@@ -295,11 +322,6 @@ std::optional<Reply> AnswerJamming(const Question& q) {
           fmt::format("{}({:.6g};{:.6g})", text.empty() ? "" : " ", p.f_x_over_f_z, p.m_over_r_f_z);
     }
     return Reply{0, Kind::kPure, text};
-  }
-  if (Begins(q.output, "slides")) {
-    const bool slides =
-        fits::IsSliding({q.in("Fx"), q.in("Fz"), q.in("M")}, q.in("l"), q.in("r"), q.in("mu"));
-    return Reply{slides ? 1.0 : 0.0};
   }
   return std::nullopt;
 }
@@ -356,7 +378,10 @@ std::optional<Reply> AnswerOne(const Question& q) {
   if (q.kind == "two_point" || q.kind == "two_point_depth") {
     return AnswerTwoPoint(q);
   }
-  if (q.kind == "jamming" || q.kind == "wedging") {
+  if (q.kind == "wedging") {
+    return AnswerWedging(q);
+  }
+  if (q.kind == "jamming" || q.kind == "jamming_point") {
     return AnswerJamming(q);
   }
   if (q.kind == "statics") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -10,6 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/csv_table.h"
+#include "app/length_text.h"
+#include "app/text_layout.h"
+#include "app/text_table.h"
 #include "base/units.h"
 
 namespace hvas::app {
@@ -157,30 +161,33 @@ std::string ToText(const fits::Population& batch, const std::vector<FitCard>& ca
   if (HasRoughness(cards)) {
     text += fmt::format("  {}\n", kDrawnRoughness);
   }
-  text += fmt::format("  {:<24}", "clearance, um");
-  for (const char* column : {"mean", "sigma", "0.1 %", "5 %", "50 %", "95 %", "99.9 %"}) {
-    text += fmt::format(" {:>9}", column);
-  }
-  text += "\n";
+  const LengthText lengths(cards.front().options.unit);
+  TextTable clearances({std::string("clearance, ") + lengths.small_unit(), "mean", "sigma", "0.1 %",
+                        "5 %", "50 %", "95 %", "99.9 %"});
   for (std::size_t k = 0; k < cards.size(); ++k) {
     const fits::LandStatistics& land = batch.lands[k];
-    text += fmt::format("  {:<24} {:>9.2f} {:>9.2f}", cards[k].Title(),
-                        units::ToUm(land.mean_clearance), units::ToUm(land.sigma_clearance));
-    for (const double quantile : land.clearance_quantiles) {
-      text += fmt::format(" {:>9.2f}", units::ToUm(quantile));
-    }
-    text += "\n";
+    const auto told = [&lengths](double clearance) {
+      return fmt::format("{:.2f}", lengths.smalls_per_metre() * clearance + 0.0);
+    };
+    std::vector<std::string> cells{cards[k].Title(), told(land.mean_clearance),
+                                   told(land.sigma_clearance)};
+    std::transform(land.clearance_quantiles.begin(), land.clearance_quantiles.end(),
+                   std::back_inserter(cells), told);
+    clearances.Add(std::move(cells));
   }
-  text += fmt::format("  {:>9} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "depth, mm", "mean, N",
-                      "0.1 %, N", "5 %, N", "50 %, N", "95 %, N", "99.9 %, N");
+  text += clearances.ToText(2);
+  TextTable forces({std::string("force, N\ndepth, ") + lengths.size_unit(), "\nmean", "\n0.1 %",
+                    "\n5 %", "\n50 %", "\n95 %", "\n99.9 %"},
+                   0);
   for (const fits::ForceBand& band : batch.bands) {
-    text += fmt::format("  {:>9.3f} {:>11.1f}", units::ToMm(band.depth), band.mean);
+    std::vector<std::string> cells{fmt::format("{:.3f}", lengths.sizes_per_metre() * band.depth),
+                                   fmt::format("{:.1f}", band.mean)};
     for (const double quantile : band.quantiles) {
-      text += fmt::format(" {:>11.1f}", quantile);
+      cells.push_back(fmt::format("{:.1f}", quantile));
     }
-    text += "\n";
+    forces.Add(std::move(cells));
   }
-  return text;
+  return Fold(text) + forces.ToText(2);
 }
 
 ordered_json ToJson(const fits::Population& batch, const std::vector<FitCard>& cards,

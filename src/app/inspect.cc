@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/first_assignments.h"
+#include "app/json_flag.h"
 #include "app/product_json.h"
 #include "app/product_text.h"
 #include "app/report_failure.h"
@@ -96,8 +97,7 @@ void AddInspect(CLI::App* app, int* status) {
   const auto options = std::make_shared<InspectOptions>();
   SelectionOptions& selection = options->selection;
   command->add_option("file", options->load.file, "CAD file")->required();
-  command->add_flag("--json", options->is_json,
-                    "Print one JSON document (data/schemas/inspect.schema.json)");
+  AddJsonFlag(command, &options->is_json, "inspect");
   command
       ->add_option("--only", selection.only,
                    fmt::format("Sections, joined by commas: {}", fmt::join(kSectionNames, ", ")))

@@ -15,11 +15,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/json_flag.h"
 #include "app/load_product.h"
 #include "app/product_json.h"
 #include "app/product_text.h"
 #include "app/report_failure.h"
 #include "app/side_document.h"
+#include "app/text_layout.h"
 #include "mates/assignments.h"
 #include "mates/user_mate.h"
 #include "product/names.h"
@@ -289,7 +291,7 @@ Result<void> List(const MateOptions& options) {
     PrintMate(opened->product, mate, /*with_evidence=*/false);
   }
   for (const Mate& mate : opened->changes.removed) {
-    fmt::print("removed {}\n", Describe(opened->product, mate));
+    fmt::print("{}", Fold("removed " + Describe(opened->product, mate)));
   }
   fmt::print("{} mates, {} by the user; {} removed\n", opened->product.mates.size(),
              opened->changes.added.size(), opened->changes.removed.size());
@@ -352,7 +354,7 @@ void AddMate(CLI::App* app, int* status) {
   options = std::make_shared<MateOptions>();
   CLI::App* list =
       AddCommand(mate, "list", "List the mates, and those that are removed", options, status, List);
-  list->add_flag("--json", options->is_json, "Print one JSON document");
+  AddJsonFlag(list, &options->is_json, "mate_list");
   AddLoadOptions(list, &options->load);
   list->footer("Example:\n  hvas mate list pump.step --json | jq '.mates[].key'");
 }

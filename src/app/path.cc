@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/json_flag.h"
 #include "app/load_product.h"
 #include "app/progress.h"
 #include "app/recorded_path.h"
@@ -271,7 +272,7 @@ void AddPath(CLI::App* app, int* status) {
       ->needs(swept);
   command->add_option("-o,--output", options->output, "File to write")->required();
   command->add_flag("--force", options->is_forced, "Replace a file that is there");
-  command->add_flag("--json", options->is_json, "Print length, volume and box as JSON");
+  AddJsonFlag(command, &options->is_json, "path");
   AddLoadOptions(command, &options->load);
   command->footer(
       "  .csv   a pose a line: time, centre of mass, origin and rotation of the part [s, m]\n"

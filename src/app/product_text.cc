@@ -12,7 +12,9 @@
 #include <fmt/format.h>
 
 #include "app/product_json.h"
+#include "app/terminal.h"
 #include "app/text_layout.h"
+#include "app/text_table.h"
 #include "base/units.h"
 #include "mates/infer.h"
 #include "product/names.h"
@@ -75,8 +77,8 @@ class TreePrinter {
   void PrintLine(std::size_t indent, std::string_view name, int count) {
     if (limit_.Next()) {
       const std::string times = count > 1 ? fmt::format(" x {}", count) : "";
-      const std::size_t used = std::min(indent, kColumns / 2);
-      fmt::print("{}{}{}\n", std::string(used, ' '), Shorten(name, kColumns - used - times.size()),
+      const std::size_t used = std::min(indent, Columns() / 2);
+      fmt::print("{}{}{}\n", std::string(used, ' '), Shorten(name, Columns() - used - times.size()),
                  times);
     }
   }
@@ -115,9 +117,9 @@ class TreePrinter {
 };
 
 void PrintParts(const Product& product, const Selection& selection, bool is_all) {
-  fmt::print("\nParts (? assumed)\n{:>5} {:>4} {:>13} {:>11} {:>10} {:>6} {:>9} {:>8}  {}\n", "id",
-             "uses", "volume_mm3", "mass_g", "kg_per_m3", "faces", "triangles", "features",
-             "name, material");
+  TextTable table({"id", "name, material", "uses", "mm3", "g", "kg/m3", "faces", "triangles",
+                   "features"},
+                  2);
   ListLimit limit(is_all);
   for (const Part& part : product.parts) {
     if (!selection.Has(part.id) || !limit.Next()) {
@@ -128,14 +130,17 @@ void PrintParts(const Product& product, const Selection& selection, bool is_all)
                       [&part](const product::Occurrence& o) { return o.part == part.id; });
     const product::Material& material = part.material;
     const std::string made_of = material.name.empty() ? material.standard : material.name;
-    fmt::print("{:>5} {:>4} {:>13.1f} {:>11.3f} {:>9.0f}{} {:>6} {:>9} {:>8}  {}\n",
-               fmt::format("p{}", part.id.value()), uses, units::ToMm3(part.mass.volume),
-               1e3 * part.mass.mass, material.density, material.is_assumed ? "?" : " ",
-               part.faces.size(), part.mesh.triangles.size(), part.features.size(),
-               Shorten(fmt::format("{}{}{}{}", part.name, made_of.empty() ? "" : ", ", made_of,
-                                   part.has_brep ? "" : " (triangles only)"),
-                       25));
+    table.Add({fmt::format("p{}", part.id.value()),
+               fmt::format("{}{}{}{}", part.name, made_of.empty() ? "" : ", ", made_of,
+                           part.has_brep ? "" : " (triangles only)"),
+               fmt::format("{}", uses), fmt::format("{:.1f}", units::ToMm3(part.mass.volume)),
+               fmt::format("{:.3f}", 1e3 * part.mass.mass),
+               fmt::format("{:.0f}{}", material.density, material.is_assumed ? "?" : " "),
+               fmt::format("{}", part.faces.size()),
+               fmt::format("{}", part.mesh.triangles.size()),
+               fmt::format("{}", part.features.size())});
   }
+  fmt::print("\nParts (? assumed)\n{}", table.ToText(2));
   limit.PrintRest();
 }
 
@@ -220,7 +225,7 @@ void PrintFeatures(const Product& product, const Selection& selection, bool is_a
     if (!selection.Has(part.id) || (part.features.empty() && part.forms.empty()) || !limit.Next()) {
       continue;
     }
-    fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()), Shorten(part.name, 90));
+    fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()), Shorten(part.name, Columns() - 7));
     Counted counted;
     for (std::size_t i = 0; i < part.forms.size(); ++i) {
       counted.Add("form: " + DescribeForm(part.forms[i]), std::to_string(i));
@@ -237,8 +242,9 @@ void PrintFeatures(const Product& product, const Selection& selection, bool is_a
 }
 
 void PrintFaces(const Product& product, const Selection& selection, bool is_all) {
-  fmt::print("\nFaces\n{:>5} {:>5}  {:<9} {:>11} {:>13} {:>12}  {}\n", "part", "face", "kind",
-             "radius_mm", "area_mm2", "residual_mm", "centre_mm, feature");
+  TextTable table({"part", "face", "kind, feature", "radius\nmm", "area\nmm2", "residual\nmm",
+                   "centre\nmm"},
+                  3);
   ListLimit limit(is_all);
   for (const Part& part : product.parts) {
     if (!selection.Has(part.id)) {
@@ -257,12 +263,16 @@ void PrintFaces(const Product& product, const Selection& selection, bool is_all)
         }
       }
       const Vec3 centre = 0.5 * (face.box_B.low + face.box_B.high);
-      fmt::print("{:>5} {:>5}  {:<9} {:>11.4f} {:>13.3f} {:>12.2g}  {:.2f} {:.2f} {:.2f}{}\n",
-                 fmt::format("p{}", part.id.value()), i, Plain(face.surface.kind),
-                 ToMm(face.surface.radius), ToMm2(face.area), ToMm(face.residual), ToMm(centre.x()),
-                 ToMm(centre.y()), ToMm(centre.z()), feature);
+      table.Add({fmt::format("p{}", part.id.value()), fmt::format("{}", i),
+                 Plain(face.surface.kind) + feature,
+                 fmt::format("{:.4f}", ToMm(face.surface.radius)),
+                 fmt::format("{:.3f}", ToMm2(face.area)),
+                 fmt::format("{:.2g}", ToMm(face.residual)),
+                 fmt::format("{:.2f} {:.2f} {:.2f}", ToMm(centre.x()), ToMm(centre.y()),
+                             ToMm(centre.z()))});
     }
   }
+  fmt::print("\nFaces\n{}", table.ToText(2));
   limit.PrintRest();
 }
 
@@ -335,8 +345,9 @@ void PrintJoints(const Product& product, const Selection& selection, bool is_all
         !limit.Next()) {
       continue;
     }
+    const std::size_t width = (Columns() - 14) / 2;
     fmt::print("  {} t {} r  {} - {}\n", joint.free_translations, joint.free_rotations,
-               PathOf(product, joint.a, 41), PathOf(product, joint.b, 41));
+               PathOf(product, joint.a, width), PathOf(product, joint.b, width));
     fmt::print("{}", Wrap(fmt::format("{}{}", List(joint.mates, "m"),
                                       joint.pattern_count > 1
                                           ? fmt::format("; a pattern of {}", joint.pattern_count)
@@ -348,9 +359,10 @@ void PrintJoints(const Product& product, const Selection& selection, bool is_all
   for (const product::Alignment& alignment : product.alignments) {
     if ((selection.Has(alignment.a.occurrence) || selection.Has(alignment.b.occurrence)) &&
         hints.Next()) {
-      fmt::print("  in line    {} - {}: holes with nothing through both\n",
-                 PathOf(product, alignment.a.occurrence, 27),
-                 PathOf(product, alignment.b.occurrence, 27));
+      const std::size_t width = (Columns() - 16) / 2;
+      fmt::print("  in line    {} - {}\n             holes with nothing through both\n",
+                 PathOf(product, alignment.a.occurrence, width),
+                 PathOf(product, alignment.b.occurrence, width));
     }
   }
   hints.PrintRest();
@@ -418,7 +430,7 @@ void PrintTolerances(const Product& product, const Selection& selection, bool is
     if (!selection.Has(part.id) || part.dimensions.size() + part.geometric_tolerances.size() == 0) {
       continue;
     }
-    fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()), Shorten(part.name, 90));
+    fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()), Shorten(part.name, Columns() - 7));
     for (const product::Dimension& dimension : part.dimensions) {
       if (limit.Next()) {
         fmt::print("{}", Wrap(DescribeDimension(dimension), 6));
@@ -470,7 +482,7 @@ std::string CountMates(const Product& product) {
 void PrintSummary(const Product& product, const Diagnostics& diagnostics) {
   const mates::Linkage linkage = mates::CalcLinkage(product);
   const Vec3 size = product.box_W.size();
-  fmt::print("\n{}: {} parts ({} different) in {} levels\n", Shorten(product.source, kColumns / 2),
+  fmt::print("\n{}: {} parts ({} different) in {} levels\n", Shorten(product.source, Columns() / 2),
              product.occurrences.size(), product.parts.size(), product.depth());
   fmt::print("{:.0f} mm3, {:.4g} kg, {:.1f} x {:.1f} x {:.1f} mm\n", units::ToMm3(product.volume()),
              product.mass(), ToMm(size.x()), ToMm(size.y()), ToMm(size.z()));
@@ -485,10 +497,11 @@ void PrintSummary(const Product& product, const Diagnostics& diagnostics) {
 }  // namespace
 
 void PrintMate(const Product& product, const Mate& mate, bool with_evidence) {
+  const std::size_t width = (Columns() - 34) / 2;
   fmt::print("{:>6} {:<10} {:<11} {} <- {}\n", fmt::format("m{}", mate.id.value()), mate.key,
-             Plain(mate.kind), PathOf(product, mate.a.occurrence, 33),
-             PathOf(product, mate.b.occurrence, 33));
-  fmt::print("{}", Wrap(DescribeMate(mate, with_evidence), 18));
+             Plain(mate.kind), PathOf(product, mate.a.occurrence, width),
+             PathOf(product, mate.b.occurrence, width));
+  fmt::print("{}", Wrap(DescribeMate(mate, with_evidence), 7));
 }
 
 void PrintText(const Product& product, const Diagnostics& diagnostics, const Selection& selection,

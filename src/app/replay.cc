@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/json_flag.h"
 #include "app/progress.h"
 #include "app/rendering_options.h"
 #include "app/report_failure.h"
@@ -183,7 +184,7 @@ void AddReplay(CLI::App* app, int* status) {
           "or hybrid")
       ->excludes(verify);
   AddForceMapOption(command, &arguments->force_map)->excludes(verify);
-  command->add_flag("--json", arguments->is_json, "Print one JSON document");
+  AddJsonFlag(command, &arguments->is_json, "replay");
   command->footer(
       "Exit status: 0; 2 when --verify found a difference, lost ticks, anything in the record "
       "that\n"

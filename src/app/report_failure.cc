@@ -4,11 +4,26 @@
 
 #include <fmt/format.h>
 
+#include "app/terminal.h"
+
 namespace hvas::app {
 
+namespace {
+
+void PrintError(const Error& error) {
+  fmt::print(stderr, "{} {}\n", Painted("hvas:", Style::kBad, stderr), error.ToString());
+}
+
+}  // namespace
+
 int ReportFailure(const Error& error) {
-  fmt::print(stderr, "hvas: {}\n", error.ToString());
+  PrintError(error);
   return 1;
+}
+
+int ReportMisuse(const Error& error) {
+  PrintError(error);
+  return kMisused;
 }
 
 }  // namespace hvas::app

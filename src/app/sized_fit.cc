@@ -12,8 +12,8 @@ namespace {
 
 Unexpected NoFit(std::string_view text) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no size with a fit", text), {},
-              "write the nominal diameter in mm and the classes, as in \"40 H7/p6\", \"40 H7\" or "
-              "\"1.5in H7/g6\"");
+              "write the nominal diameter in mm and the classes, as in \"40 H7/p6\", \"40 H7\", "
+              "\"1.5in H7/g6\" or \"1.5in RC4\"");
 }
 
 bool IsDigit(char c) {
@@ -78,13 +78,16 @@ double TakeDenominator(std::string_view* text) {
 }  // namespace
 
 std::string SizedFit::ClassText() const {
+  if (ansi) {
+    return ansi->name;
+  }
   if (hole && shaft) {
     return fits::FitClass{*hole, *shaft}.ToString();
   }
   return hole ? hole->ToString() : shaft ? shaft->ToString() : "";
 }
 
-std::optional<double> TakeLength(std::string_view* text) {
+std::optional<double> TakeLength(std::string_view* text, LengthUnit* unit) {
   std::string_view rest = *text;
   SkipBlanks(&rest);
   // Both signs of diameter, and the letters that stand in for them.
@@ -113,20 +116,47 @@ std::optional<double> TakeLength(std::string_view* text) {
   }
   SkipBlanks(&rest);
   *text = rest;
+  if (unit != nullptr) {
+    *unit = is_inch ? LengthUnit::kInch : LengthUnit::kMillimetre;
+  }
   return is_inch ? value * units::kMetresPerInch : units::FromMm(value);
+}
+
+std::vector<std::string> JoinFitWords(const std::vector<std::string>& words) {
+  const auto begins_with_length = [](std::string_view text) { return TakeLength(&text).has_value(); };
+  const auto has_class = [](std::string_view text) { return TakeLength(&text) && !text.empty(); };
+  std::vector<std::string> fits;
+  for (const std::string& word : words) {
+    const bool is_next =
+        fits.empty() || (begins_with_length(word) && has_class(fits.back())) || has_class(word);
+    if (is_next) {
+      fits.push_back(word);
+    } else {
+      fits.back() += " " + word;
+    }
+  }
+  return fits;
 }
 
 Result<SizedFit> ParseSizedFit(std::string_view text) {
   std::string_view rest = text;
-  const std::optional<double> nominal = TakeLength(&rest);
+  SizedFit sized;
+  const std::optional<double> nominal = TakeLength(&rest, &sized.unit);
   while (rest.ends_with(' ')) {
     rest.remove_suffix(1);
   }
   if (!nominal || !std::isfinite(*nominal) || rest.empty()) {
     return NoFit(text);
   }
-  SizedFit sized;
   sized.nominal = *nominal;
+  if (fits::IsAnsiFit(rest)) {
+    Result<fits::AnsiFit> fit = fits::FindAnsiFit(rest, *nominal);
+    if (!fit) {
+      return Unexpected(fit.error());
+    }
+    sized.ansi = *std::move(fit);
+    return sized;
+  }
   if (rest.find_first_of("/- ") != std::string_view::npos) {
     const Result<fits::FitClass> fit = fits::ParseFit(rest);
     if (!fit) {

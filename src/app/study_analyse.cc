@@ -7,11 +7,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/json_flag.h"
 #include "app/page_file.h"
 #include "app/report_failure.h"
 #include "app/study_json.h"
 #include "app/study_table.h"
 #include "app/text_layout.h"
+#include "app/text_table.h"
 #include "pages/html_page.h"
 #include "study/analysis_page.h"
 
@@ -38,73 +40,55 @@ std::string FormatP(const std::optional<double>& p) {
   return p ? study::FormatP(*p) : "-";
 }
 
-/** The first column, as wide as the pairs that stand in it need. */
-class NameColumn {
- public:
-  explicit NameColumn(const std::vector<std::string>& names, bool has_pairs) {
-    constexpr std::size_t kLeast = 18;
-    constexpr std::size_t kMost = 50;
-    std::vector<std::size_t> widths{0, 0};
-    for (const std::string& name : names) {
-      widths.push_back(CalcWidth(name));
-    }
-    std::sort(widths.rbegin(), widths.rend());
-    const std::size_t pair = widths[0] + widths[1] + CalcWidth(" - ");
-    width_ = std::clamp(has_pairs ? pair : widths[0], kLeast, kMost);
-  }
-
-  [[nodiscard]] std::string operator()(const std::string& name) const {
-    return PadTo(Shorten(name, width_), width_);
-  }
-
- private:
-  std::size_t width_;
-};
-
-void PrintConditions(const study::Analysis& analysis, const NameColumn& name) {
-  const std::string level = fmt::format("{:g} % of mean", 100 * (1 - analysis.options.alpha));
-  fmt::print("{}{:>4}{:>9}{:>20}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}\n", name(""), "n", "mean", level,
-             "SD", "least", "quart.", "median", "quart.", "largest");
+void PrintConditions(const study::Analysis& analysis) {
+  const std::string level = fmt::format("{:g} %", 100 * (1 - analysis.options.alpha));
+  TextTable table({"condition\n", "n\n", "mean\n", level + "\nof mean", "SD\n", "least\n",
+                   "lower\nquartile", "median\n", "upper\nquartile", "largest\n"});
   for (const study::ConditionResult& condition : analysis.conditions) {
     const statistics::Summary& s = condition.summary;
-    fmt::print("{}{:>4}{:>9}{:>20}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}\n", name(condition.name), s.n,
-               Format(s.mean), Format(s.mean_ci), Format(s.sd), Format(s.min),
-               Format(s.lower_quartile), Format(s.median), Format(s.upper_quartile), Format(s.max));
+    table.Add({condition.name, fmt::format("{}", s.n), Format(s.mean), Format(s.mean_ci),
+               Format(s.sd), Format(s.min), Format(s.lower_quartile), Format(s.median),
+               Format(s.upper_quartile), Format(s.max)});
   }
+  fmt::print("{}", table.ToText());
   if (!analysis.options.of) {
     return;
   }
-  fmt::print("\n{}{:>7}{:>8}{:>9}{:>20}{:>24}\n", name("right answers"), "right", "trials", "share",
-             fmt::format("{:g} % of share", 100 * (1 - analysis.options.alpha)),
-             fmt::format("p against {:.3g} %", 100 * analysis.chance));
+  TextTable shares({"right answers\n", "right\n", "trials\n", "share\n%", level + " of share\n%",
+                    fmt::format("p against\n{:.3g} %", 100 * analysis.chance)});
   for (const study::ConditionResult& condition : analysis.conditions) {
     const statistics::Share& share = *condition.share;
-    fmt::print("{}{:>7}{:>8}{:>7.1f} %{:>20}{:>24}\n", name(condition.name), share.right,
-               share.trials, 100 * share.share,
-               fmt::format("{:.1f} to {:.1f} %", 100 * share.ci.low, 100 * share.ci.high),
-               FormatP(share.chance_p));
+    shares.Add({condition.name, fmt::format("{}", share.right), fmt::format("{}", share.trials),
+                fmt::format("{:.1f}", 100 * share.share),
+                fmt::format("{:.1f} to {:.1f}", 100 * share.ci.low, 100 * share.ci.high),
+                FormatP(share.chance_p)});
   }
+  fmt::print("\n{}", shares.ToText());
 }
 
 std::string PairName(const study::Analysis& analysis, const study::PairResult& pair) {
   return analysis.table.conditions[pair.first] + " - " + analysis.table.conditions[pair.second];
 }
 
-void PrintPairs(const study::Analysis& analysis, const NameColumn& name) {
-  fmt::print("\n{}{:>4}{:>6}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}  {}\n", name("Wilcoxon"), "n",
-             "zero", "Z", "p", "Bonferr.", "Holm", "exact p", "Bonferr.", "Holm", "difference");
+void PrintPairs(const study::Analysis& analysis) {
+  TextTable tests({"Wilcoxon\n", "n\n", "zero\n", "Z\n", "p\n", "p by\nBonferroni", "p by\nHolm",
+                   "exact\np", "exact by\nBonferroni", "exact by\nHolm"});
   for (const study::PairResult& pair : analysis.pairs) {
     const statistics::Wilcoxon& w = pair.wilcoxon;
-    fmt::print("{}{:>4}{:>6}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}  {}\n",
-               name(PairName(analysis, pair)), w.n, w.zero_count, Format(w.z), FormatP(w.p),
-               FormatP(pair.bonferroni_p), FormatP(pair.holm_p), FormatP(w.exact_p),
-               FormatP(pair.exact_bonferroni_p), FormatP(pair.exact_holm_p),
-               study::TellPair(analysis, pair));
+    tests.Add({PairName(analysis, pair), fmt::format("{}", w.n), fmt::format("{}", w.zero_count),
+               Format(w.z), FormatP(w.p), FormatP(pair.bonferroni_p), FormatP(pair.holm_p),
+               FormatP(w.exact_p), FormatP(pair.exact_bonferroni_p), FormatP(pair.exact_holm_p)},
+              study::TellPair(analysis, pair));
+  }
+  TextTable variants({"Wilcoxon, variants\n", "with continuity\np", "Pratt\nZ", "Pratt\np"});
+  for (const study::PairResult& pair : analysis.pairs) {
+    const statistics::Wilcoxon& w = pair.wilcoxon;
+    variants.Add({PairName(analysis, pair), FormatP(w.continuity_p), Format(w.pratt_z),
+                  FormatP(w.pratt_p)});
   }
   const std::string level = fmt::format("{:g} %", 100 * (1 - analysis.options.alpha));
-  fmt::print("\n{}{:>9}{:>20}{:>9}{:>9}{:>9}{:>20}{:>10}{:>9}\n", name("second - first"), "mean",
-             level + " of mean", "median", "per cent", "d_z", level + " of d_z", "biserial",
-             "Z/rt(n)");
+  TextTable effects({"second - first\n", "mean\n", level + "\nof mean", "median\n", "per\ncent",
+                     "d_z\n", level + "\nof d_z", "biserial\n", "Z/rt(n)\n"});
   for (const study::PairResult& pair : analysis.pairs) {
     const statistics::Summary& s = pair.difference.summary;
     std::optional<double> d_z;
@@ -113,11 +97,11 @@ void PrintPairs(const study::Analysis& analysis, const NameColumn& name) {
       d_z = pair.d_z->d_z;
       d_z_ci = pair.d_z->ci;
     }
-    fmt::print("{}{:>9}{:>20}{:>9}{:>9}{:>9}{:>20}{:>10}{:>9}\n", name(PairName(analysis, pair)),
-               Format(s.mean), Format(s.mean_ci), Format(s.median), Format(pair.difference.percent),
-               Format(d_z), Format(d_z_ci), Format(pair.wilcoxon.rank_biserial),
-               Format(pair.wilcoxon.r));
+    effects.Add({PairName(analysis, pair), Format(s.mean), Format(s.mean_ci), Format(s.median),
+                 Format(pair.difference.percent), Format(d_z), Format(d_z_ci),
+                 Format(pair.wilcoxon.rank_biserial), Format(pair.wilcoxon.r)});
   }
+  fmt::print("\n{}\n{}\n{}", tests.ToText(), variants.ToText(), effects.ToText());
 }
 
 void PrintParagraphs(const std::vector<std::string>& texts) {
@@ -128,16 +112,16 @@ void PrintParagraphs(const std::vector<std::string>& texts) {
 
 void PrintText(const study::Analysis& analysis, const std::vector<std::string>& notes) {
   const study::Table& table = analysis.table;
-  fmt::print("{}{}, {} participants, {} conditions\n\n", table.quantity,
-             table.unit.empty() ? "" : fmt::format(" [{}]", table.unit), table.rows.size(),
-             table.conditions.size());
-  const NameColumn name(table.conditions, true);
-  PrintConditions(analysis, name);
+  fmt::print("{}\n", Fold(fmt::format(
+                         "{}{}, {} participants, {} conditions\n", table.quantity,
+                         table.unit.empty() ? "" : fmt::format(" [{}]", table.unit),
+                         table.rows.size(), table.conditions.size())));
+  PrintConditions(analysis);
   const std::string told = study::TellFriedman(analysis);
   if (!told.empty()) {
     fmt::print("\n{}", Wrap(told, 0));
   }
-  PrintPairs(analysis, name);
+  PrintPairs(analysis);
   fmt::print("\n");
   PrintParagraphs(notes);
   PrintParagraphs(analysis.notes);
@@ -146,35 +130,42 @@ void PrintText(const study::Analysis& analysis, const std::vector<std::string>& 
 
 void PrintText(const study::Identification& identification) {
   const statistics::Confusion& confusion = identification.confusion;
-  const NameColumn name(identification.names, false);
-  fmt::print("{} answers of {} participants\n\n{}", confusion.accuracy.trials,
-             identification.participant_count, name("shown \\ answered"));
+  std::vector<std::string> heads{"shown \\ answered\n"};
   for (const std::string& answered : identification.names) {
-    fmt::print("{:>12}", Shorten(answered, 11));
+    heads.push_back(Shorten(answered, 11) + "\n");
   }
-  fmt::print("{:>10}{:>20}\n", "right",
-             fmt::format("{:g} % of share", 100 * identification.confidence));
-  const auto tell = [](const statistics::Share& share) {
-    return fmt::format("{:>8.1f} %{:>20}", 100 * share.share,
-                       fmt::format("{:.1f} to {:.1f} %", 100 * share.ci.low, 100 * share.ci.high));
+  heads.emplace_back("right\n%");
+  heads.push_back(fmt::format("{:g} %\nof share, %", 100 * identification.confidence));
+  TextTable table(heads);
+  const auto tell = [](const statistics::Share& share, std::vector<std::string>* cells) {
+    cells->push_back(fmt::format("{:.1f}", 100 * share.share));
+    cells->push_back(fmt::format("{:.1f} to {:.1f}", 100 * share.ci.low, 100 * share.ci.high));
   };
   for (std::size_t i = 0; i < identification.names.size(); ++i) {
-    fmt::print("{}", name(identification.names[i]));
+    std::vector<std::string> cells{identification.names[i]};
     for (const std::int64_t count : confusion.counts[i]) {
-      fmt::print("{:>12}", count);
+      cells.push_back(fmt::format("{}", count));
     }
-    fmt::print("{}\n", confusion.recall[i] ? tell(*confusion.recall[i]) : "");
+    if (confusion.recall[i]) {
+      tell(*confusion.recall[i], &cells);
+    }
+    table.Add(std::move(cells));
   }
-  fmt::print("{}{:>{}}{}\n\nCohen's kappa {}", name("all"), "", 12 * identification.names.size(),
-             tell(confusion.accuracy),
-             confusion.kappa ? fmt::format("{:.4f}", *confusion.kappa) : "is not defined");
+  std::vector<std::string> all{"all"};
+  all.resize(1 + identification.names.size());
+  tell(confusion.accuracy, &all);
+  table.Add(std::move(all));
+  std::string text = fmt::format("{} answers of {} participants\n\n{}\nCohen's kappa {}",
+                                 confusion.accuracy.trials, identification.participant_count,
+                                 table.ToText(),
+                                 confusion.kappa ? fmt::format("{:.4f}", *confusion.kappa)
+                                                 : std::string("is not defined"));
   if (identification.chance) {
-    fmt::print("; p against chance ({:.3g} %) {}", 100 * *identification.chance,
-               FormatP(confusion.accuracy.chance_p));
+    text += fmt::format("; p against chance ({:.3g} %) {}", 100 * *identification.chance,
+                        FormatP(confusion.accuracy.chance_p));
   }
-  fmt::print(
-      "\nIntervals of Clopper and Pearson; all answers are taken as independent, also those of "
-      "one\nparticipant.\n");
+  fmt::print("{}", Fold(text + "\nIntervals of Clopper and Pearson; all answers are taken as "
+                               "independent, also those of one participant.\n"));
 }
 
 Result<void> Show(const AnalyseArguments& a, const nlohmann::ordered_json& json,
@@ -250,7 +241,7 @@ void AddStudyAnalyse(CLI::App* study, int* status) {
           "--lower-is-better", [a] { a->options.direction = study::Direction::kLowerIsBetter; },
           "The same, for times and errors")
       ->excludes(higher);
-  command->add_flag("--json", a->is_json, "Print one JSON document");
+  AddJsonFlag(command, &a->is_json, "study_analysis or study_identification");
   command->add_option("-o,--output", a->output, "Write a page with figures, too: .html or .pdf");
   command->add_flag("--force", a->is_forced, "Replace a file that is there");
   command->footer(

@@ -46,7 +46,9 @@ ordered_json ToJson(const statistics::Friedman& f) {
           {"chi_square", ToJson(f.chi_square)},
           {"p", ToJson(f.p)},
           {"exact_p", ToJson(f.exact_p)},
-          {"kendall_w", ToJson(f.kendall_w)}};
+          {"kendall_w", ToJson(f.kendall_w)},
+          {"iman_davenport_f", ToJson(f.iman_davenport_f)},
+          {"iman_davenport_p", ToJson(f.iman_davenport_p)}};
 }
 
 ordered_json ToJson(const study::Analysis& analysis, const study::PairResult& pair) {
@@ -68,6 +70,9 @@ ordered_json ToJson(const study::Analysis& analysis, const study::PairResult& pa
             {"negative_rank_sum", w.negative_rank_sum},
             {"z", ToJson(w.z)},
             {"p", ToJson(w.p)},
+            {"continuity_p", ToJson(w.continuity_p)},
+            {"pratt_z", ToJson(w.pratt_z)},
+            {"pratt_p", ToJson(w.pratt_p)},
             {"bonferroni_p", pair.bonferroni_p},
             {"holm_p", pair.holm_p},
             {"exact_p", ToJson(w.exact_p)},

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/choice.h"
+#include "app/json_flag.h"
 #include "app/progress.h"
 #include "app/report_failure.h"
 #include "app/study_table.h"
@@ -116,10 +117,12 @@ nlohmann::ordered_json ToJson(const PowerArguments& a, const Design& design,
 }
 
 void PrintText(const PowerArguments& a, const Design& design, const PowerResult& result) {
-  fmt::print(
-      "{} test of {} conditions at level {:.4g}: {} simulated studies of each size, seed {}\n\n",
-      a.options.test == PowerTest::kFriedman ? "Friedman" : "Wilcoxon",
-      statistics::CountConditions(design), a.options.alpha, a.options.runs, a.options.seed);
+  fmt::print("{}\n", Fold(fmt::format(
+                         "{} test of {} conditions at level {:.4g}: {} simulated studies of each "
+                         "size, seed {}\n",
+                         a.options.test == PowerTest::kFriedman ? "Friedman" : "Wilcoxon",
+                         statistics::CountConditions(design), a.options.alpha, a.options.runs,
+                         a.options.seed)));
   fmt::print("{:>12}{:>9}{:>14}{:>18}\n", "participants", "power", "Monte Carlo", "95 % of power");
   for (const PowerPoint& point : result.points) {
     fmt::print("{:>12}{:>9.4f}{:>14}{:>18}\n", point.participants, point.power.share,
@@ -244,7 +247,7 @@ void AddStudyPower(CLI::App* study, int* status) {
   command->add_option("--runs", a->options.runs, "Simulated studies of each size")
       ->capture_default_str();
   command->add_option("--seed", a->options.seed, "Of the simulated people")->capture_default_str();
-  command->add_flag("--json", a->is_json, "Print one JSON document");
+  AddJsonFlag(command, &a->is_json, "study_power");
   command->footer(
       "The table is a pilot study, as `hvas study analyse` reads it: its complete participants "
       "are\n"

@@ -14,12 +14,14 @@
 #include <nlohmann/json.hpp>
 
 #include "app/choice.h"
+#include "app/json_flag.h"
 #include "app/load_product.h"
 #include "app/page_file.h"
 #include "app/progress.h"
 #include "app/report_failure.h"
 #include "app/study_protocol.h"
 #include "app/text_layout.h"
+#include "app/text_table.h"
 #include "base/atomic_file.h"
 #include "base/clock.h"
 #include "study/study_folder.h"
@@ -83,18 +85,18 @@ void PrintSummary(const StudyFolder& folder, const std::vector<Participant>& par
   const bool is_simulated = std::any_of(participants.begin(), participants.end(),
                                         [](const auto& p) { return p.is_simulated; });
   if (is_simulated) {
-    fmt::print("{}\n", kSimulated);
+    fmt::print("{}", Fold(kSimulated));
   }
-  fmt::print("\n{:<14}{:>8}{:>8}{:>18}{:>18}{:>16}\n", "condition", "trials", "done",
-             "mean of done [s]", "mean of all* [s]", "published [s]");
+  TextTable table({"condition\n", "trials\n", "done\n", "mean of\ndone, s", "mean of\nall*, s",
+                   "published\ns"});
   for (const study::ConditionTimes& times : study::SummariseTimes(protocol, participants)) {
     const study::Condition& condition = protocol.conditions[times.condition];
-    fmt::print("{:<14}{:>8}{:>8}{:>18}{:>18}{:>16}\n", condition.id, times.trials, times.done,
+    table.Add({condition.id, fmt::format("{}", times.trials), fmt::format("{}", times.done),
                times.done > 0 ? fmt::format("{:.2f}", times.mean) : "-",
                times.trials > 0 ? fmt::format("{:.2f}", times.restricted_mean) : "-",
-               condition.published_mean ? fmt::format("{:.2f}", *condition.published_mean) : "-");
+               condition.published_mean ? fmt::format("{:.2f}", *condition.published_mean) : "-"});
   }
-  fmt::print("* those that were not done with their time limit\n");
+  fmt::print("\n{}* those that were not done with their time limit\n", table.ToText());
 }
 
 Result<void> WriteStudyPage(const StudyFolder& folder, const std::vector<Participant>& participants,
@@ -155,7 +157,11 @@ Result<void> RunSimulated(const RunOptions& options) {
   if (!participants) {
     return Unexpected(participants.error());
   }
-  if (const auto written = WriteResults(*folder, *participants); !written) {
+  const Result<void> written = [&] {
+    const Busy busy("writing the report");
+    return WriteResults(*folder, *participants);
+  }();
+  if (!written) {
     return written;
   }
   const double wall_s = 1e-9 * static_cast<double>(MonotonicNs() - start_ns);
@@ -196,7 +202,7 @@ void AddRun(CLI::App* group, int* status) {
   command->add_option("--threads", options->threads, "Participants at a time; 0: one a core")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-  command->add_flag("--json", options->is_json, "Print one JSON document");
+  AddJsonFlag(command, &options->is_json, "study_summary");
   AddLoadOptions(command, &options->load);
   command->footer(
       "With people a study is run in the studio: `hvas studio --study PROTOCOL --participant "
@@ -223,20 +229,23 @@ std::size_t CountRows(const study::Block& block) {
 }
 
 void PrintCheck(const Protocol& protocol) {
-  fmt::print("{}: {}\n{} conditions, {} trials each of {} participants\n", protocol.id,
-             protocol.title.en, protocol.conditions.size(), protocol.CountTrials(),
-             protocol.participants);
+  std::string text =
+      fmt::format("{}: {}\n{} conditions, {} trials each of {} participants\n", protocol.id,
+                  protocol.title.en, protocol.conditions.size(), protocol.CountTrials(),
+                  protocol.participants);
   for (const study::Block& block : protocol.blocks) {
     const std::size_t rows = CountRows(block);
-    fmt::print("  block {}: {} conditions x {}, order {}", block.id, block.conditions.size(),
-               block.repetitions, study::kOrders[static_cast<std::size_t>(block.order)]);
+    text += fmt::format("  block {}: {} conditions x {}, order {}", block.id,
+                        block.conditions.size(), block.repetitions,
+                        study::kOrders[static_cast<std::size_t>(block.order)]);
     if (rows > 1) {
       const bool is_whole = static_cast<std::size_t>(protocol.participants) % rows == 0;
-      fmt::print(", balanced with every {} participants{}", rows,
-                 is_whole ? "" : fmt::format(": {} are not", protocol.participants));
+      text += fmt::format(", balanced with every {} participants{}", rows,
+                          is_whole ? "" : fmt::format(": {} are not", protocol.participants));
     }
-    fmt::print("\n");
+    text += "\n";
   }
+  fmt::print("{}", Fold(text));
 }
 
 void AddCheck(CLI::App* group, int* status) {
@@ -278,14 +287,14 @@ Result<Opened> OpenAll(const std::filesystem::path& path) {
 }
 
 void PrintList(const Opened& study) {
-  fmt::print("{:<12}{:<12}{:<12}{:>8}{:>15}\n", "participant", "", "phase", "trials",
-             "interruptions");
+  TextTable table({"participant", "", "phase", "trials", "interruptions"}, 3);
   for (const Participant& p : study.participants) {
-    fmt::print("{:<12}{:<12}{:<12}{:>8}{:>15}\n", p.id, p.is_simulated ? "simulated" : "",
-               study::ToString(p.session->phase()),
+    table.Add({p.id, p.is_simulated ? "simulated" : "",
+               std::string(study::ToString(p.session->phase())),
                fmt::format("{}/{}", p.session->done().size(), p.session->schedule().size()),
-               p.session->interruptions().size());
+               fmt::format("{}", p.session->interruptions().size())});
   }
+  fmt::print("{}", table.ToText());
 }
 
 void AddList(CLI::App* group, int* status) {
@@ -294,7 +303,7 @@ void AddList(CLI::App* group, int* status) {
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto is_json = std::make_shared<bool>(false);
   command->add_option("folder", *folder, "The study's folder")->required();
-  command->add_flag("--json", *is_json, "Print one JSON document");
+  AddJsonFlag(command, is_json.get(), "study_summary");
   command->footer("Example:\n  hvas study list xia-2011");
   command->callback([folder, is_json, status] {
     const auto study = OpenAll(*folder);
@@ -387,6 +396,7 @@ void AddReport(CLI::App* group, int* status) {
     Result<void> done = CheckPageFile(*output, *is_forced);
     if (done) {
       const auto study = OpenAll(*folder);
+      const Busy busy("writing the report");
       done = study ? WriteStudyPage(study->folder, study->participants, *output)
                    : Result<void>(Unexpected(study.error()));
     }

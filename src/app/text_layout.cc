@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "app/terminal.h"
+
 namespace hvas::app {
 namespace {
 
@@ -82,27 +84,56 @@ std::string PadTo(std::string_view text, std::size_t width) {
   return padded;
 }
 
-std::string Wrap(std::string_view text, std::size_t indent) {
-  std::string lines(indent, ' ');
-  std::size_t column = indent;
+namespace {
+
+/** Appends words, the first line from the column that it is at, further ones from `indent`. */
+void AppendWrapped(std::string_view text, std::size_t column, std::size_t indent,
+                   std::string* lines) {
+  const std::size_t columns = Columns();
   bool is_first = true;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find(' '), text.size());
-    const std::string word = Shorten(text.substr(0, end), kColumns - indent);
+    const std::string word = Shorten(text.substr(0, end), columns - indent);
     text.remove_prefix(std::min(end + 1, text.size()));
     const std::size_t width = CalcWidth(word);
-    if (!is_first && column + 1 + width > kColumns) {
-      lines += "\n" + std::string(indent, ' ');
+    if (!is_first && column + 1 + width > columns) {
+      *lines += "\n" + std::string(indent, ' ');
       column = indent;
     } else if (!is_first) {
-      lines += ' ';
+      *lines += ' ';
       ++column;
     }
-    lines += word;
+    *lines += word;
     column += width;
     is_first = false;
   }
-  return lines + "\n";
+  *lines += '\n';
+}
+
+}  // namespace
+
+std::string Wrap(std::string_view text, std::size_t indent) {
+  std::string lines(indent, ' ');
+  AppendWrapped(text, indent, indent, &lines);
+  return lines;
+}
+
+std::string Fold(std::string_view text) {
+  std::string folded;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (CalcWidth(line) <= Columns()) {
+      folded += line;
+      folded += '\n';
+      continue;
+    }
+    const std::size_t indent = std::min(line.find_first_not_of(' '), Columns() / 2);
+    folded.append(indent, ' ');
+    AppendWrapped(line.substr(indent), indent, indent + 2, &folded);
+  }
+  return folded;
 }
 
 void ListLimit::PrintRest() const {

@@ -7,8 +7,6 @@
 /** Text in columns, of names in any script. */
 namespace hvas::app {
 
-inline constexpr std::size_t kColumns = 100;
-
 /** Columns that a UTF-8 text takes on a terminal: East Asian wide letters take two. */
 [[nodiscard]] std::size_t CalcWidth(std::string_view text);
 
@@ -18,8 +16,12 @@ inline constexpr std::size_t kColumns = 100;
 /** The same, filled up with spaces. */
 [[nodiscard]] std::string PadTo(std::string_view text, std::size_t width);
 
-/** Words in lines of kColumns, each begun with `indent` spaces; ends with a newline. */
+/** Words in lines of Columns(), each begun with `indent` spaces; ends with a newline. */
 [[nodiscard]] std::string Wrap(std::string_view text, std::size_t indent);
+
+/** The text with each line that is wider than Columns() broken between words; what follows is
+ indented by two more than the line. */
+[[nodiscard]] std::string Fold(std::string_view text);
 
 /** A long list that says when it does not show everything. */
 class ListLimit {

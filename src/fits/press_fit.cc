@@ -120,6 +120,10 @@ ElasticLimit ShaftLimit(const PressFitParameters& p) {
   return {limit, limit};
 }
 
+bool IsBrittle(const PressMaterial& m) {
+  return !(m.yield_strength > 0) && m.tensile_strength > 0;
+}
+
 double Margin(double limit, double pressure) {
   return pressure > 0 ? limit / pressure : kInfinity;
 }
@@ -139,8 +143,9 @@ double SmoothingFactor(Smoothing edition) noexcept {
 }
 
 PressMaterial ToPressMaterial(const Material& material) noexcept {
-  return {material.youngs_modulus, material.poisson_ratio, material.yield_strength,
-          material.tensile_strength, material.thermal_expansion};
+  const double yield = material.group == "grey iron" ? 0 : material.yield_strength;
+  return {material.youngs_modulus, material.poisson_ratio, yield, material.tensile_strength,
+          material.thermal_expansion};
 }
 
 double RingStress::von_mises() const noexcept {
@@ -157,6 +162,23 @@ double PressFit::margin_von_mises() const noexcept {
 
 double PressFit::margin_tresca() const noexcept {
   return Margin(std::min(hub_limit.tresca, shaft_limit.tresca), pressure);
+}
+
+double PressFit::margin_hub() const noexcept {
+  return Margin(hub_limit.von_mises, pressure);
+}
+
+double PressFit::margin_shaft() const noexcept {
+  return Margin(shaft_limit.von_mises, pressure);
+}
+
+bool IsFracturing(const PressFit& fit) noexcept {
+  return fit.is_hub_brittle && fit.margin_hub() < kBrittleSafety;
+}
+
+double CalcLargestPressure(const PressFit& fit) noexcept {
+  return std::min(fit.hub_limit.von_mises / (fit.is_hub_brittle ? kBrittleSafety : 1),
+                  fit.shaft_limit.von_mises);
 }
 
 Result<PressFit> CalcPressFit(const PressFitParameters& parameters) {
@@ -179,6 +201,7 @@ Result<PressFit> CalcPressFit(const PressFitParameters& parameters) {
   fit.shaft_governing = qi2 > 0 ? RingStress{-2 * fit.pressure / (1 - qi2), 0} : fit.shaft_surface;
   fit.hub_limit = HubLimit(p);
   fit.shaft_limit = ShaftLimit(p);
+  fit.is_hub_brittle = IsBrittle(p.hub);
   const double normal_force = std::numbers::pi * p.joint_diameter * p.length * fit.pressure;
   fit.press_in_force = p.friction_in * normal_force;
   fit.push_out_force = p.friction_release * normal_force;

@@ -3,6 +3,7 @@
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -31,6 +32,10 @@ double CalcNormalQuantile(double p) {
 
 double CalcChiSquareUpper(double x, double dof) {
   return math::cdf(math::complement(math::chi_squared_distribution<double, Policy>(dof), x));
+}
+
+double CalcFisherUpper(double x, double dof1, double dof2) {
+  return math::cdf(math::complement(math::fisher_f_distribution<double, Policy>(dof1, dof2), x));
 }
 
 double CalcStudentQuantile(double p, double dof) {

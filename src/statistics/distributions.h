@@ -14,6 +14,9 @@ namespace hvas::statistics {
 /** P(X >= x) of chi-square. @pre x >= 0, dof > 0. */
 [[nodiscard]] double CalcChiSquareUpper(double x, double dof);
 
+/** P(X >= x) of Fisher's F. @pre x >= 0, dof1, dof2 > 0. */
+[[nodiscard]] double CalcFisherUpper(double x, double dof1, double dof2);
+
 /** The t that the share p is below. @pre 0 < p < 1, dof > 0. */
 [[nodiscard]] double CalcStudentQuantile(double p, double dof);
 

@@ -137,6 +137,10 @@ double CalcExactWilcoxon(const Sums& ranks, int positive) {
   return std::min(p, 1.0);
 }
 
+double CalcTwoSided(double z) {
+  return std::min(1.0, 2 * CalcNormalUpper(std::abs(z)));
+}
+
 Result<void> CheckRows(std::span<const std::vector<double>> rows) {
   if (rows.size() < 2 || rows[0].size() < 2) {
     return Fail(
@@ -212,6 +216,12 @@ Result<Friedman> TestFriedman(std::span<const std::vector<double>> rows, Exact e
     result.chi_square = 12 * squares / scale;
     result.p = CalcChiSquareUpper(*result.chi_square, k - 1);
     result.kendall_w = *result.chi_square / (n * (k - 1));
+    const double rest = n * (k - 1) - *result.chi_square;
+    if (rest > 1e-9 * n) {
+      result.iman_davenport_f = (n - 1) * *result.chi_square / rest;
+      result.iman_davenport_p =
+          CalcFisherUpper(*result.iman_davenport_f, k - 1, (k - 1) * (n - 1));
+    }
     if (exact == Exact::kYes) {
       result.exact_p = CalcExactFriedman(ranks, sums);
     }
@@ -250,8 +260,22 @@ Result<Wilcoxon> TestWilcoxon(std::span<const double> first, std::span<const dou
   }
   const auto n = static_cast<double>(result.n);
   const double variance = n * (n + 1) * (2 * n + 1) / 24 - mid.tie_sum / 48;
-  result.z = (result.positive_rank_sum - 0.25 * n * (n + 1)) / std::sqrt(variance);
-  result.p = std::min(1.0, 2 * CalcNormalUpper(std::abs(*result.z)));
+  const double distance = result.positive_rank_sum - 0.25 * n * (n + 1);
+  result.z = distance / std::sqrt(variance);
+  result.p = CalcTwoSided(*result.z);
+  result.continuity_p = CalcTwoSided(std::max(0.0, std::abs(distance) - 0.5) / std::sqrt(variance));
+  // Pratt's ranks are larger by the zeros; the sums, means and variances follow from that.
+  const auto zeros = static_cast<double>(result.zero_count);
+  const auto all = n + zeros;
+  const auto positive_count =
+      static_cast<double>(std::count(is_positive.begin(), is_positive.end(), true));
+  const double pratt_sum = result.positive_rank_sum + zeros * positive_count;
+  const double pratt_variance = (all * (all + 1) * (2 * all + 1) -
+                                 zeros * (zeros + 1) * (2 * zeros + 1)) / 24 -
+                                mid.tie_sum / 48;
+  result.pratt_z = (pratt_sum - 0.25 * (all * (all + 1) - zeros * (zeros + 1))) /
+                   std::sqrt(pratt_variance);
+  result.pratt_p = CalcTwoSided(*result.pratt_z);
   if (exact == Exact::kYes && result.n <= kMostExactPairs) {
     result.exact_p = CalcExactWilcoxon(doubled, positive);
   }

@@ -31,6 +31,11 @@ struct Friedman {
   std::optional<double> chi_square;
   std::optional<double> p;
   std::optional<double> kendall_w;
+  /** F = (n - 1) chi-square / (n (k - 1) - chi-square) with k - 1 and (k - 1) (n - 1) degrees of
+   freedom: Iman and Davenport, Communications in Statistics A9, 1980. None where all rows agree, too,
+   and F has no bound. */
+  std::optional<double> iman_davenport_f;
+  std::optional<double> iman_davenport_p;
   /** By all permutations of ranks within rows. None where there are too many to go through:
    without ties three conditions go up to 125 rows, four to 26, five to 9. */
   std::optional<double> exact_p;
@@ -52,6 +57,13 @@ struct Wilcoxon {
    both sides. None where all differences are zero. */
   std::optional<double> z;  ///< Above zero where positive differences weigh more.
   std::optional<double> p;
+  /** The same p with the distance from the mean one half smaller, as other programs have it. */
+  std::optional<double> continuity_p;
+  /** Zero differences kept while ranks are given, and left out of the sums: Pratt, J. Am. Stat.
+   Assoc. 54, 1959; the moments after Cureton, J. Am. Stat. Assoc. 62, 1967. No correction for
+   continuity. */
+  std::optional<double> pratt_z;
+  std::optional<double> pratt_p;
   /** By all 2^n signs, both sides; up to kMostExactPairs. */
   std::optional<double> exact_p;
   /** Matched-pairs rank biserial correlation, -1 to 1: the difference of the rank sums over their

@@ -19,12 +19,16 @@ std::string TellFriedman(const Analysis& analysis) {
   // The exact test stands where there is one: the other is its approximation.
   const double p = friedman.exact_p.value_or(*friedman.p);
   return fmt::format(
-      "{}: Friedman chi-square {:.4f} with {} degrees of freedom, p {}{}, Kendall's W {:.3f}, {} "
+      "{}: Friedman chi-square {:.4f} with {} degrees of freedom, p {}{}, {}Kendall's W {:.3f}, {} "
       "participants.",
       p <= analysis.options.alpha ? "The conditions differ"
                                   : "No difference of the conditions is shown",
       *friedman.chi_square, friedman.condition_count - 1, FormatP(*friedman.p),
       friedman.exact_p ? fmt::format(" (exact {})", FormatP(*friedman.exact_p)) : "",
+      friedman.iman_davenport_f
+          ? fmt::format("Iman and Davenport's F {:.4f} (p {}), ", *friedman.iman_davenport_f,
+                        FormatP(*friedman.iman_davenport_p))
+          : "",
       *friedman.kendall_w, friedman.row_count);
 }
 

@@ -66,8 +66,15 @@ class Validator {
       }
     };
     if (keyword == "$ref") {
-      const std::string pointer = argument.get<std::string>().substr(1);  // After '#'.
-      Append(Check(root_.at(json::json_pointer(pointer)), value, at), errors);
+      const auto reference = argument.get<std::string>();
+      const std::size_t hash = reference.find('#');
+      const json::json_pointer pointer(reference.substr(hash + 1));
+      if (hash == 0) {
+        Append(Check(root_.at(pointer), value, at), errors);
+      } else {
+        const json other = ReadSchema(reference.substr(0, reference.find('.')));
+        Append(Validator(other).Check(other.at(pointer), value, at), errors);
+      }
     } else if (keyword == "type") {
       bool is_good = false;
       for (const json& type : argument.is_array() ? argument : json::array({argument})) {

@@ -1,13 +1,17 @@
 #include "app/test/run_hvas.h"
 
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <spawn.h>
 #include <stdlib.h>
 
@@ -20,8 +24,11 @@ namespace {
 
 using hvas::testing::TemporaryFolder;
 
-/** Prepared parts are shared by the runs of one test program, and with nothing else. */
+/** Prepared parts are shared by the runs of one test program, and with nothing else; the terminal
+ of who runs the tests does not matter. */
 void UseOwnCache() {
+  ::unsetenv("COLUMNS");
+  ::unsetenv("NO_COLOR");
   static const TemporaryFolder folder;
   ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
 }
@@ -84,6 +91,60 @@ nlohmann::json RunHvasJson(std::vector<std::string> arguments, int status) {
   nlohmann::json json = nlohmann::json::parse(ran.out, nullptr, false);
   EXPECT_FALSE(json.is_discarded()) << ran.out;
   return json;
+}
+
+Ran RunHvasAtTerminal(unsigned short columns, const std::vector<std::string>& arguments,
+                      bool no_color) {
+  UseOwnCache();
+  std::vector<std::string> words{HVAS_BINARY};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) {
+    argv.push_back(word.data());
+  }
+  argv.push_back(nullptr);
+  winsize size{};
+  size.ws_row = 50;
+  size.ws_col = columns;
+  int terminal = -1;
+  const pid_t child = ::forkpty(&terminal, nullptr, nullptr, &size);
+  if (child == 0) {
+    ::setenv("TERM", "xterm-256color", 1);
+    ::unsetenv("COLUMNS");
+    ::setenv("NO_COLOR", no_color ? "1" : "", 1);
+    ::execv(HVAS_BINARY, argv.data());
+    ::_exit(127);
+  }
+  Ran ran;
+  std::array<char, 4096> buffer{};
+  for (ssize_t got = 0; child > 0 && (got = ::read(terminal, buffer.data(), buffer.size())) > 0;) {
+    ran.out.append(buffer.data(), static_cast<std::size_t>(got));
+  }
+  ::close(terminal);
+  int status = 0;
+  if (child > 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status)) {
+    ran.status = WEXITSTATUS(status);
+  }
+  return ran;
+}
+
+std::string WithoutControls(const std::string& text) {
+  static const std::regex controls("\033\\[[0-9;]*[A-Za-z]");
+  const std::string plain = std::regex_replace(text, controls, "");
+  std::string lines;
+  std::string line;
+  for (const char c : plain) {
+    if (c == '\n') {
+      lines += line + "\n";
+      line.clear();
+    } else if (c == '\r') {
+      lines += line.empty() ? "" : line + "\n";
+      line.clear();
+    } else {
+      line += c;
+    }
+  }
+  return lines + line;
 }
 
 pid_t StartHvas(const std::vector<std::string>& arguments) {

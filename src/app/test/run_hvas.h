@@ -23,6 +23,15 @@ struct Ran {
 /** Runs `hvas` with its standard output going to a file or device; `out` stays empty. */
 [[nodiscard]] Ran RunHvasInto(const std::string& output, const std::vector<std::string>& arguments);
 
+/** Runs `hvas` at a terminal of so many columns; `out` has all that it shows.
+ @param no_color  Whether NO_COLOR is set. */
+[[nodiscard]] Ran RunHvasAtTerminal(unsigned short columns, const std::vector<std::string>& arguments,
+                                    bool no_color = false);
+
+/** A text without what colours it and moves the cursor; of a line that is written over and over, the
+ last of each. */
+[[nodiscard]] std::string WithoutControls(const std::string& text);
+
 /** Runs `hvas ... --json`, expects an exit status, and reads what it printed. */
 [[nodiscard]] nlohmann::json RunHvasJson(std::vector<std::string> arguments, int status = 0);
 

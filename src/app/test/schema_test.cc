@@ -1,10 +1,18 @@
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
 #include <set>
+#include <sstream>
 
+#include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
+#include "app/command_line.h"
+#include "app/command_tree.h"
 #include "app/test/json_schema.h"
 #include "app/test/run_hvas.h"
+#include "base/test/temporary_folder.h"
 #include "mates/side_file.h"
 
 namespace hvas::app {
@@ -137,6 +145,136 @@ TEST(InspectSchema, RealOutputIsValidAndHasEverySection) {
       EXPECT_FALSE(document[section].empty()) << section;
     }
   }
+}
+
+/** A command of the tree, and what to run of it. */
+struct JsonRun {
+  std::vector<std::string> arguments;
+  std::string schema;
+  int status{0};
+};
+
+/** At least one run for each command with --json, by its name. */
+class JsonRuns {
+ public:
+  JsonRuns() {
+    const std::string record = (folder_ / "run.hvasrec").string();
+    const std::string way = (folder_ / "way.csv").string();
+    const std::string swept = (folder_ / "swept.stl").string();
+    const std::string study = (folder_ / "study").string();
+    const std::string answers =
+        folder_.Write("answers.csv",
+                      "participant,shown,answered\n1,H7/g6,H7/g6\n1,H7/p6,H7/g6\n2,H7/g6,H7/g6\n"
+                      "2,H7/p6,H7/p6\n")
+            .string();
+    const std::string results = HVAS_SOURCE_DIR "/data/studies/identification-2016.csv";
+    const std::string bushing = ProductFile("bushing");
+    Add({"assemble", bushing, "--record", record}, "assemble");
+    Add({"assemble", bushing, "--limit", "5"}, "assemble", 2);
+    Add({"replay", record}, "replay");
+    Add({"inspect", bushing}, "inspect");
+    Add({"mate", "list", bushing}, "mate_list");
+    Add({"path", bushing, "--part", "shaft", "--record", record, "-o", way}, "path");
+    Add({"path", bushing, "--part", "shaft", "--translate", "0,0,20", "--swept", "-o", swept},
+        "path");
+    Add({"devices"}, "devices");
+    Add({"doctor", "--seconds", "0.2"}, "doctor", kAnyStatus);
+    Add({"fit", "40", "H7"}, "fit");
+    Add({"fit", "40", "H7/p6", "--length", "50", "--hub", "80", "--hub-temp", "200"}, "fit");
+    Add({"fit", "40", "H7/g6", "35", "H7/k6", "--length", "50", "--population", "2000"}, "fit");
+    Add({"fit", "40", "H7/g6", "--length", "50", "--jamming", (folder_ / "jam.svg").string()},
+        "fit");
+    Add({"fit", "40", "H7/p6", "--length", "50", "--hub-material", "GJL-250"}, "fit");
+    Add({"fit", "search", "--nominal", "40", "--min", "5", "--max", "60"}, "fit_search");
+    Add({"fit", "search", "--nominal", "40", "--min", "5", "--max", "6"}, "fit_search");
+    Add({"fit", "identify", "--trials", "30"}, "fit_identify");
+    Add({"fit", "friction"}, "fit_friction");
+    Add({"fit", "materials"}, "fit_materials");
+    Add({"fit", "design", "--nominal", "40", "--length", "50", "--torque", "200"}, "fit_design");
+    Add({"fit", "design", "--nominal", "40", "--length", "50", "--torque", "50", "--hub-material",
+         "GJL-250", "--hub", "100"},
+        "fit_design");
+    Add({"study", "analyse", "--table", results, "--of", "15"}, "study_analysis");
+    Add({"study", "analyse", "--table", answers}, "study_identification");
+    Add({"study", "power", "--means", "0,1", "--sd", "1", "--test", "wilcoxon", "--runs", "200"},
+        "study_power");
+    Add({"study", "run", "fit-2016", "--simulated", "1", "-o", study}, "study_summary");
+    Add({"study", "list", study}, "study_summary");
+  }
+
+  static constexpr int kAnyStatus = -1;
+
+  [[nodiscard]] const std::vector<JsonRun>& runs() const { return runs_; }
+
+ private:
+  void Add(std::vector<std::string> arguments, std::string schema, int status = 0) {
+    arguments.emplace_back("--json");
+    runs_.push_back({std::move(arguments), std::move(schema), status});
+  }
+
+  hvas::testing::TemporaryFolder folder_;
+  std::vector<JsonRun> runs_;
+};
+
+/** Numbers that say less than they seem to: a zero with a sign. */
+void ExpectNoNegativeZero(const json& value, const std::string& at) {
+  if (value.is_number_float() && value.get<double>() == 0) {
+    EXPECT_FALSE(std::signbit(value.get<double>())) << at;
+  }
+  if (value.is_structured()) {
+    for (const auto& [key, item] : value.items()) {
+      ExpectNoNegativeZero(item, at + "/" + key);
+    }
+  }
+}
+
+/** Names of the schemas that --json of a command promises; none where it has no such option. */
+std::vector<std::string> PromisedSchemas(const CommandHelp& command) {
+  std::vector<std::string> schemas;
+  for (const OptionHelp& option : command.options) {
+    if (option.names != std::vector<std::string>{"--json"}) {
+      continue;
+    }
+    std::istringstream words(option.description);
+    for (std::string word; words >> word;) {
+      const std::string name = word.substr(0, word.find('.'));
+      if (std::filesystem::exists(std::string(HVAS_SOURCE_DIR "/data/schemas/") + name +
+                                  ".schema.json")) {
+        schemas.push_back(name);
+      }
+    }
+    EXPECT_FALSE(schemas.empty()) << command.name << " --json names no schema";
+  }
+  return schemas;
+}
+
+TEST(JsonSchemas, EveryCommandWithJsonPromisesOneAndKeepsIt) {
+  const JsonRuns all;
+  std::map<std::string, std::set<std::string>> promised;
+  int status = 0;
+  const CommandHelp root = Describe(*MakeCommandLine(&status));
+  for (const CommandHelp* command : ListCommands(root)) {
+    for (const std::string& schema : PromisedSchemas(*command)) {
+      promised[command->name].insert(schema);
+    }
+  }
+  std::map<std::string, std::set<std::string>> kept;
+  for (const JsonRun& run : all.runs()) {
+    std::string name = "hvas " + run.arguments[0];
+    const std::string deeper = name + " " + run.arguments[1];
+    name = promised.contains(deeper) ? deeper : name;
+    SCOPED_TRACE(name + ", " + run.arguments[1]);
+    const testing::Ran ran = testing::RunHvas(run.arguments);
+    if (run.status != JsonRuns::kAnyStatus) {
+      EXPECT_EQ(ran.status, run.status) << ran.err;
+    }
+    const json document = json::parse(ran.out, nullptr, false);
+    ASSERT_FALSE(document.is_discarded()) << ran.out << ran.err;
+    EXPECT_EQ(Validate(ReadSchema(run.schema), document), std::vector<std::string>{});
+    ExpectNoNegativeZero(document, "");
+    kept[name].insert(run.schema);
+  }
+  EXPECT_EQ(kept, promised) << "each command with --json, and each of its schemas, needs a run here";
 }
 
 TEST(InspectSchema, MistakesAreFound) {

@@ -61,13 +61,15 @@ double OrNan(const std::optional<double>& value) {
 std::vector<double> CalcFigures(const Rows& rows) {
   const std::size_t k = rows[0].size();
   const auto friedman = TestFriedman(rows, Exact::kNo);  // R has no exact one.
-  std::vector<double> figures{OrNan(friedman->chi_square), OrNan(friedman->p)};
+  std::vector<double> figures{OrNan(friedman->chi_square), OrNan(friedman->p),
+                              OrNan(friedman->iman_davenport_f), OrNan(friedman->iman_davenport_p)};
   std::vector<double> p;
   for (std::size_t i = 0; i < k; ++i) {
     for (std::size_t j = i + 1; j < k; ++j) {
       const auto wilcoxon = TestWilcoxon(ColumnOf(rows, i), ColumnOf(rows, j));
       figures.insert(figures.end(),
-                     {wilcoxon->positive_rank_sum, OrNan(wilcoxon->p), OrNan(wilcoxon->exact_p)});
+                     {wilcoxon->positive_rank_sum, OrNan(wilcoxon->p),
+                      OrNan(wilcoxon->continuity_p), OrNan(wilcoxon->exact_p)});
       p.push_back(wilcoxon->p.value_or(1));
     }
   }

@@ -65,6 +65,81 @@ TEST(Wilcoxon, GivesThePublishedPsOfPaperW) {
   }
 }
 
+/** Pratt's test by its definition: mid ranks of all |d|, zeros too, then the moments of the sum of
+ signed ranks of what is not zero. */
+double CalcPrattZ(const std::vector<double>& differences) {
+  std::vector<double> sizes;
+  for (const double difference : differences) {
+    sizes.push_back(std::abs(difference));
+  }
+  const std::vector<double> ranks = CalcMidRanks(sizes).ranks;
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    if (differences[i] != 0) {
+      sum += differences[i] > 0 ? ranks[i] : -ranks[i];
+      squares += ranks[i] * ranks[i];
+    }
+  }
+  return sum / std::sqrt(squares);  // Of signs that are fair: mean 0, variance the squares.
+}
+
+TEST(Friedman, ImanAndDavenportsFIsKnownOfPaperWsTable) {
+  std::vector<std::vector<double>> rows;
+  for (const auto& row : kPaperCounts) {
+    rows.emplace_back(row.begin(), row.end());
+  }
+  const auto result = TestFriedman(rows);
+  ASSERT_TRUE(result);
+  EXPECT_NEAR(*result->iman_davenport_f, 5.7315, 5e-5);
+  EXPECT_NEAR(*result->iman_davenport_p, 0.008195, 5e-7);
+  // Full agreement leaves nothing to divide by.
+  const auto agreed = TestFriedman(std::vector<std::vector<double>>(5, {1, 2, 3}));
+  EXPECT_FALSE(agreed->iman_davenport_f);
+  EXPECT_FALSE(agreed->iman_davenport_p);
+}
+
+TEST(Wilcoxon, VariantsAreKnownOfPaperWsTable) {
+  const std::array<std::array<std::size_t, 2>, 3> pairs{{{0, 1}, {0, 2}, {1, 2}}};
+  const std::array<double, 3> continuity{0.01015, 0.00786, 0.52581};
+  const std::array<double, 3> pratt{0.00851, 0.00721, 0.54785};
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto result = TestWilcoxon(PaperColumn(pairs[i][0]), PaperColumn(pairs[i][1]));
+    ASSERT_TRUE(result);
+    EXPECT_NEAR(*result->continuity_p, continuity[i], 5e-6) << i;
+    EXPECT_NEAR(*result->pratt_p, pratt[i], 5e-6) << i;
+  }
+}
+
+TEST(Wilcoxon, PrattsZIsThatOfItsDefinition) {
+  Random random(20260303);
+  int with_zeros = 0;
+  for (int draw = 0; draw < 200; ++draw) {
+    SCOPED_TRACE(::testing::Message() << "draw " << draw);
+    const auto n = static_cast<std::size_t>(random.Uniform(2, 40));
+    std::vector<double> first(n);
+    std::vector<double> second(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      first[i] = std::floor(random.Uniform(0, 9));
+      second[i] = std::floor(random.Uniform(0, 10));
+    }
+    const auto result = TestWilcoxon(first, second);
+    ASSERT_TRUE(result);
+    if (result->n == 0) {
+      EXPECT_FALSE(result->pratt_z);
+      EXPECT_FALSE(result->continuity_p);
+      continue;
+    }
+    EXPECT_NEAR(*result->pratt_z, CalcPrattZ(*CalcDifferences(first, second)), 1e-12);
+    EXPECT_GE(*result->continuity_p, *result->p);
+    with_zeros += result->zero_count > 0 ? 1 : 0;
+    if (result->zero_count == 0) {
+      EXPECT_NEAR(*result->pratt_p, *result->p, 1e-12);
+    }
+  }
+  EXPECT_GT(with_zeros, 100);
+}
+
 TEST(MidRanks, ShareRanksAmongTies) {
   const MidRanks mid = CalcMidRanks(std::vector<double>{5, 1, 5, 3, 5});
   EXPECT_EQ(mid.ranks, (std::vector<double>{4, 1, 4, 2, 4}));

@@ -29,13 +29,19 @@ for (line in readLines(commandArgs(trailingOnly = TRUE)[1])) {
   k <- numbers[2]
   values <- matrix(numbers[-(1:2)], n, k, byrow = TRUE)
   friedman <- suppressWarnings(friedman.test(values))
-  out <- say(c(friedman$statistic, friedman$p.value))
+  q <- unname(friedman$statistic)
+  f <- NA  # Iman and Davenport's
+  if (!is.na(q) && n * (k - 1) - q > 1e-9 * n) f <- (n - 1) * q / (n * (k - 1) - q)
+  out <- say(c(q, friedman$p.value, f, pf(f, k - 1, (k - 1) * (n - 1), lower.tail = FALSE)))
   p <- c()
   for (i in seq_len(k - 1)) for (j in (i + 1):k) {
     test <- suppressWarnings(wilcox.test(values[, j], values[, i], paired = TRUE, exact = FALSE,
                                          correct = FALSE))
+    continuous <- suppressWarnings(wilcox.test(values[, j], values[, i], paired = TRUE, exact = FALSE,
+                                               correct = TRUE))
     p <- c(p, test$p.value)
-    out <- paste(out, say(c(test$statistic, test$p.value)), exact_wilcoxon(values[, j] - values[, i]))
+    out <- paste(out, say(c(test$statistic, test$p.value, continuous$p.value)),
+                 exact_wilcoxon(values[, j] - values[, i]))
   }
   p[is.na(p)] <- 1  # no difference was seen
   out <- paste(out, say(p.adjust(p, "bonferroni")), say(p.adjust(p, "holm")))

@@ -1,0 +1,203 @@
+#include "app/command_line.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/assemble.h"
+#include "app/command_tree.h"
+#include "app/completion.h"
+#include "app/devices.h"
+#include "app/doctor.h"
+#include "app/export.h"
+#include "app/fit.h"
+#include "app/inspect.h"
+#include "app/licences.h"
+#include "app/manual.h"
+#include "app/mate.h"
+#include "app/path.h"
+#include "app/replay.h"
+#include "app/report.h"
+#include "app/report_failure.h"
+#include "app/studio.h"
+#include "app/study.h"
+#include "app/terminal.h"
+#include "app/text_layout.h"
+#include "mates/side_file.h"
+
+namespace hvas::app {
+namespace {
+
+constexpr std::array<ExitStatus, 4> kStatuses{{
+    {"0", "It is done; of hvas assemble: every part is in its place."},
+    {"1", "Something failed: a file that is missing, damaged or not to be written, a fit that "
+          "does not exist. The message names it and says what to do."},
+    {"2", "It is done, and the answer is no: a part is not in its place (hvas assemble), the run "
+          "differs from the record (hvas replay --verify), or the machine is late (hvas doctor)."},
+    {"64", "The command line is wrong: an unknown command or option, a value out of range, "
+           "options that do not go together. Nothing was done."},
+}};
+
+/** The name of a command with those of its parents, and a blank behind. */
+std::string CommandPath(const CLI::App* app) {
+  return app == nullptr ? "" : CommandPath(app->get_parent()) + app->get_name() + " ";
+}
+
+class HelpFormatter : public CLI::FormatterBase {
+ public:
+  std::string make_help(const CLI::App* app, std::string /*name*/,
+                        CLI::AppFormatMode /*mode*/) const override {
+    return ToHelp(Describe(*app, CommandPath(app->get_parent())));
+  }
+};
+
+/** The command that was reached before something was wrong. */
+const CLI::App& FindReached(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  return parsed.empty() ? app : FindReached(*parsed.back());
+}
+
+/** The first word that nothing takes; empty where there is none. */
+std::string FindUnknown(const CLI::App& command) {
+  const auto words = command.remaining();
+  const auto word =
+      std::find_if(words.begin(), words.end(), [](const std::string& w) { return w != "--"; });
+  return word == words.end() ? "" : word->substr(0, word->find('='));
+}
+
+std::string DescribeUnknown(const CommandHelp& command, const std::string& word) {
+  const bool is_option = word.starts_with('-');
+  std::vector<std::string> candidates;
+  for (const CommandHelp& below : command.commands) {
+    if (!is_option) {
+      candidates.push_back(below.LastName());
+    }
+  }
+  for (const OptionHelp& option : command.options) {
+    if (is_option && !option.is_argument) {
+      candidates.insert(candidates.end(), option.names.begin(), option.names.end());
+    }
+  }
+  if (!is_option && candidates.empty()) {
+    return fmt::format("\"{}\" is one argument too many", word);
+  }
+  const std::string nearest = mates::FindNearest(word, candidates);
+  return fmt::format("there is no {} \"{}\"{}", is_option ? "option" : "command", word,
+                     nearest.empty() ? "" : fmt::format("; \"{}\" may be meant", nearest));
+}
+
+/** In other words than those of CLI11, where these say little. */
+std::string Rephrase(const std::string& what) {
+  constexpr std::string_view kConversion = "Could not convert: ";
+  if (const std::size_t at = what.find(kConversion); at != std::string::npos) {
+    const std::string rest = what.substr(at + kConversion.size());
+    const std::size_t equals = rest.find(" = ");
+    if (equals != std::string::npos) {
+      return fmt::format("{} takes a number, not \"{}\"", rest.substr(0, equals),
+                         rest.substr(equals + 3));
+    }
+  }
+  constexpr std::string_view kRequired = " is required";
+  if (what.ends_with(kRequired)) {
+    const std::string name = what.substr(0, what.size() - kRequired.size());
+    return (name == "A subcommand" ? "a command" : name) + " is missing";
+  }
+  return what;
+}
+
+int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& reached = FindReached(app);
+  const std::string name = CommandPath(&reached);
+  const std::string unknown = FindUnknown(reached);
+  const std::string what =
+      unknown.empty() ? Rephrase(error.what())
+                      : DescribeUnknown(Describe(reached, CommandPath(reached.get_parent())), unknown);
+  fmt::print(stderr, "{} {}\n{}--help tells what there is.\n",
+             Painted(name.substr(0, name.size() - 1) + ":", Style::kBad, stderr), what, name);
+  return kMisused;
+}
+
+void SetGroups(CLI::App* app) {
+  static const std::vector<std::pair<const char*, std::vector<const char*>>> kGroups{
+      {"Look into a CAD file", {"inspect", "mate", "export", "path"}},
+      {"Put it together", {"studio", "assemble", "replay", "report"}},
+      {"Calculate fits", {"fit"}},
+      {"Experiment with people", {"study"}},
+      {"This machine", {"devices", "doctor"}},
+      {"This program", {"completion", "man", "licences"}}};
+  for (const auto& [group, commands] : kGroups) {
+    for (const char* command : commands) {
+      app->get_subcommand(command)->group(group);
+    }
+  }
+}
+
+}  // namespace
+
+const char* Version() {
+  return HVAS_VERSION;
+}
+
+std::span<const ExitStatus> ExitStatuses() {
+  return kStatuses;
+}
+
+std::unique_ptr<CLI::App> MakeCommandLine(int* status) {
+  auto app = std::make_unique<CLI::App>("Assemble CAD products by hand, and feel it", "hvas");
+  app->formatter(std::make_shared<HelpFormatter>());
+  app->set_help_flag("-h,--help", "Say what there is, and end");
+  app->set_version_flag("--version", fmt::format("hvas {}", Version()), "Say the version, and end");
+  app->require_subcommand(1);
+  AddInspect(app.get(), status);
+  AddMate(app.get(), status);
+  AddExport(app.get(), status);
+  AddPath(app.get(), status);
+  AddStudio(app.get(), status);
+  AddAssemble(app.get(), status);
+  AddReplay(app.get(), status);
+  AddReport(app.get(), status);
+  AddFit(app.get(), status);
+  AddStudy(app.get(), status);
+  AddDevices(app.get(), status);
+  AddDoctor(app.get(), status);
+  AddCompletion(app.get(), status);
+  AddManual(app.get(), status);
+  AddLicences(app.get(), status);
+  SetGroups(app.get());
+  app->footer(
+      "To begin with:\n"
+      "  hvas inspect pump.step              what is in the file, and how it fits\n"
+      "  hvas studio pump.step               put it together by hand, in a browser\n"
+      "  hvas assemble pump.step             let the simulated person do it\n"
+      "  hvas fit 40 H7/p6 --length 50       limits, pressure, force, stresses\n"
+      "hvas COMMAND --help has the options and examples of each.");
+  return app;
+}
+
+int RunCommandLine(int argc, char** argv) {
+  int status = 0;
+  const auto app = MakeCommandLine(&status);
+  if (argc <= 1) {
+    fmt::print("{}", app->help());
+    return 0;
+  }
+  try {
+    app->parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app->help());
+  } catch (const CLI::CallForVersion& version) {
+    fmt::print("{}\n", version.what());
+  } catch (const CLI::ParseError& error) {
+    return ReportParseError(*app, error);
+  }
+  return status;
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,289 @@
+// What the program says of itself: overview, help, mistakes in the command line, manual and completion.
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+#include <gtest/gtest.h>
+
+#include "app/command_line.h"
+#include "app/command_tree.h"
+#include "app/completion.h"
+#include "app/manual.h"
+#include "app/test/run_hvas.h"
+#include "app/text_layout.h"
+#include "base/test/temporary_folder.h"
+
+namespace hvas::app {
+namespace {
+
+using hvas::testing::TemporaryFolder;
+using testing::Ran;
+using testing::ReadText;
+using testing::RunHvas;
+using testing::RunHvasAtTerminal;
+
+bool Has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+CommandHelp DescribeProgram() {
+  int status = 0;
+  return Describe(*MakeCommandLine(&status));
+}
+
+
+TEST(Overview, IsWhatTheProgramAloneShows) {
+  const Ran alone = RunHvas({});
+  EXPECT_EQ(alone.status, 0);
+  EXPECT_EQ(alone.err, "");
+  EXPECT_EQ(alone.out, RunHvas({"--help"}).out);
+  EXPECT_LE(std::count(alone.out.begin(), alone.out.end(), '\n'), 50) << alone.out;
+  for (const CommandHelp& command : DescribeProgram().commands) {
+    EXPECT_TRUE(Has(alone.out, "\n  " + command.LastName() + " ")) << command.name;
+    EXPECT_NE(command.group, "Subcommands") << command.name << " stands in no group";
+  }
+  EXPECT_TRUE(Has(alone.out, "hvas inspect pump.step"));
+}
+
+TEST(Overview, VersionIsThatOfTheProject) {
+  const Ran ran = RunHvas({"--version"});
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.out, std::string("hvas ") + Version() + "\n");
+}
+
+TEST(Help, OfEveryCommandFitsTheColumnsThatThereAre) {
+  const CommandHelp root = DescribeProgram();
+  for (const int columns : {50, 80, 132}) {
+    ::setenv("COLUMNS", std::to_string(columns).c_str(), 1);
+    for (const CommandHelp* command : ListCommands(root)) {
+      std::istringstream lines(ToHelp(*command));
+      for (std::string line; std::getline(lines, line);) {
+        EXPECT_LE(CalcWidth(line), static_cast<std::size_t>(columns)) << command->name << line;
+      }
+    }
+  }
+  ::unsetenv("COLUMNS");
+}
+
+TEST(Help, OfEveryCommandSaysWhatItIsAndHasNoRawTypes) {
+  for (const CommandHelp* command : ListCommands(DescribeProgram())) {
+    SCOPED_TRACE(command->name);
+    EXPECT_FALSE(command->description.empty());
+    std::set<std::string> names;
+    for (const OptionHelp& option : command->options) {
+      EXPECT_FALSE(option.description.empty()) << option.Left();
+      for (const std::string& name : option.names) {
+        EXPECT_TRUE(names.insert(name).second) << name << " is there twice";
+      }
+    }
+    const std::string text = ToHelp(*command);
+    for (const char* raw : {"FLOAT", "UINT", "INT ", "REQUIRED", "{", "Needs:", "Excludes:"}) {
+      // A pose file's braces in the help of export are no type.
+      EXPECT_TRUE(!Has(text, raw) || command->name == "hvas export") << raw << "\n" << text;
+    }
+  }
+}
+
+TEST(Usage, UnknownWordsAreNamedWithTheNearest) {
+  struct Case {
+    std::vector<std::string> arguments;
+    std::vector<std::string> texts;
+  };
+
+  for (const Case& c : std::vector<Case>{
+           {{"inspekt"}, {"hvas: ", "command \"inspekt\"", "\"inspect\" may be meant"}},
+           {{"paint"}, {"command \"paint\""}},
+           {{"study", "powr"}, {"hvas study: ", "\"powr\"", "\"power\" may be meant"}},
+           {{"fit", "desing"}, {"\"desing\"", "\"design\" may be meant"}},
+           {{"fit", "40 H7/p6", "--lenght", "50"}, {"hvas fit: ", "\"--length\" may be meant"}},
+           {{"fit", "40 H7/p6", "--lenght=50"}, {"\"--lenght\"", "\"--length\" may be meant"}},
+           {{"doctor", "now"}, {"\"now\" is one argument too many"}},
+           {{"assemble", "a.step", "b.step"}, {"\"b.step\" is one argument too many"}},
+           {{"mate", "ad", "a.step"}, {"hvas mate: ", "\"add\" may be meant"}}}) {
+    const Ran ran = RunHvas(c.arguments);
+    SCOPED_TRACE(ran.err);
+    EXPECT_EQ(ran.status, 64);
+    EXPECT_EQ(ran.out, "");
+    for (const std::string& text : c.texts) {
+      EXPECT_TRUE(Has(ran.err, text)) << text;
+    }
+    EXPECT_TRUE(Has(ran.err, "--help"));
+  }
+}
+
+TEST(Usage, MisuseHasAnExitStatusOfItsOwn) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"inspect"},
+        {"study"},
+        {"fit"},
+        {"doctor", "--seconds", "x"},
+        {"doctor", "--seconds", "1e99"},
+        {"devices", "--rate", "1"},
+        {"fit", "40 H7/p6", "--hub", "80"},
+        {"fit", "40 H7/p6", "--length", "0"},
+        {"fit", "40 H7/p6", "--length", "50", "--smoothing", "some"},
+        {"fit", "--length", "50", "limits", "--batch", "x.csv"},
+        {"fit", "40 H7/p6", "--length", "50", "--population", "1e99"},
+        {"completion", "tcsh"},
+        {"licences", "zlip"}}) {
+    const Ran ran = RunHvas(arguments);
+    SCOPED_TRACE(ran.err);
+    EXPECT_EQ(ran.status, 64);
+    EXPECT_EQ(ran.out, "");
+    EXPECT_FALSE(ran.err.empty());
+  }
+  EXPECT_EQ(RunHvas({"inspect", "there is none.step"}).status, 1);
+}
+
+TEST(Usage, NumbersAndMissingWordsAreToldPlainly) {
+  EXPECT_TRUE(Has(RunHvas({"doctor", "--seconds", "soon"}).err,
+                  "--seconds takes a number, not \"soon\""));
+  EXPECT_TRUE(Has(RunHvas({"study"}).err, "a command is missing"));
+  EXPECT_TRUE(Has(RunHvas({"assemble"}).err, "file is missing"));
+}
+
+TEST(Fit, NeedsNoQuotes) {
+  const auto out = [](std::vector<std::string> words) {
+    words.insert(words.begin(), "fit");
+    const Ran ran = RunHvas(words);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return ran.out;
+  };
+  EXPECT_EQ(out({"40", "H7/p6"}), out({"40 H7/p6"}));
+  EXPECT_EQ(out({"40", "H7", "p6"}), out({"40 H7/p6"}));
+  EXPECT_EQ(out({"40", "H7"}), out({"40 H7"}));
+  EXPECT_EQ(out({"40", "--length", "50", "H7/p6"}), out({"40 H7/p6", "--length", "50"}));
+  EXPECT_EQ(out({"40", "H7/p6", "35", "H7/k6"}), out({"40 H7/p6", "35 H7/k6"}));
+  EXPECT_EQ(out({"40H7/p6", "35", "H7/k6"}), out({"40 H7/p6", "35 H7/k6"}));
+  EXPECT_EQ(out({"1", "1/2", "in", "H7/g6"}), out({"1 1/2 in H7/g6"}));
+}
+
+TEST(Colour, IsOnATerminalOnlyAndNobodyWhoRefusesItGetsIt) {
+  EXPECT_TRUE(Has(RunHvasAtTerminal(80, {"--help"}).out, "\033["));
+  EXPECT_FALSE(Has(RunHvasAtTerminal(80, {"--help"}, true).out, "\033["));
+  EXPECT_FALSE(Has(RunHvas({"--help"}).out, "\033["));
+  EXPECT_TRUE(Has(RunHvasAtTerminal(80, {"paint"}).out, "\033["));
+  EXPECT_FALSE(Has(RunHvas({"paint"}).err, "\033["));
+}
+
+/** What bash offers for words, the last of which is not finished. */
+std::string Complete(const std::string& words) {
+  const TemporaryFolder folder;
+  const auto script = folder.Write("hvas.bash", MakeBashCompletion(DescribeProgram()));
+  const auto run = folder.Write("run.bash", "source '" + script.string() + "'\n" +
+                                                "COMP_WORDS=(" + words + ")\n" +
+                                                "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n" +
+                                                "_hvas\necho \"${COMPREPLY[*]}\"\n");
+  const std::string out = (folder / "out").string();
+  const std::string command = "bash '" + run.string() + "' > '" + out + "' 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  return ReadText(out);
+}
+
+TEST(Completion, OffersCommandsOptionsAndTheirWords) {
+  EXPECT_EQ(Complete("hvas insp"), "inspect\n");
+  EXPECT_EQ(Complete("hvas fit des"), "design\n");
+  EXPECT_EQ(Complete("hvas fit 40 --hub-m"), "--hub-material\n");
+  EXPECT_EQ(Complete("hvas fit design --hub-m"), "--hub-material\n");
+  EXPECT_EQ(Complete("hvas fit --smoothing din2"), "din2001 din2017\n");
+  EXPECT_EQ(Complete("hvas fit design --basis ''"), "hole shaft\n");
+  EXPECT_EQ(Complete("hvas completion ''"), "bash zsh fish -h --help\n");
+  EXPECT_EQ(Complete("hvas fit --length ''"), "\n") << "a number";
+  EXPECT_EQ(Complete("hvas study analyse --pow"), "\n") << "of another command";
+}
+
+TEST(Completion, HasEveryCommandAndOptionInEveryShell) {
+  const CommandHelp root = DescribeProgram();
+  const std::string bash = MakeBashCompletion(root);
+  const std::string zsh = MakeZshCompletion(root);
+  const std::string fish = MakeFishCompletion(root);
+  for (const CommandHelp* command : ListCommands(root)) {
+    for (const OptionHelp& option : command->options) {
+      for (const std::string& name : option.names) {
+        if (!name.starts_with("--")) {
+          continue;
+        }
+        EXPECT_TRUE(Has(bash, name)) << name;
+        EXPECT_TRUE(Has(zsh, "'" + name + ":")) << name;
+        EXPECT_TRUE(Has(fish, " -l " + name.substr(2) + " ")) << name;
+      }
+    }
+    EXPECT_TRUE(Has(fish, "'__hvas_is_at " + command->name + "'")) << command->name;
+  }
+}
+
+TEST(Completion, IsPrintedForEachShell) {
+  const CommandHelp root = DescribeProgram();
+  EXPECT_EQ(RunHvas({"completion", "bash"}).out, MakeBashCompletion(root));
+  EXPECT_EQ(RunHvas({"completion", "zsh"}).out, MakeZshCompletion(root));
+  EXPECT_EQ(RunHvas({"completion", "fish"}).out, MakeFishCompletion(root));
+}
+
+TEST(Manual, HasEveryCommandOptionAndExitStatus) {
+  const CommandHelp root = DescribeProgram();
+  const Ran ran = RunHvas({"man"});
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.out, MakeManual(root, Version()));
+  std::string plain = ran.out;
+  plain.erase(std::remove(plain.begin(), plain.end(), '\\'), plain.end());
+  for (const CommandHelp* command : ListCommands(root)) {
+    EXPECT_TRUE(Has(plain, command->Usage())) << command->name;
+    for (const OptionHelp& option : command->options) {
+      EXPECT_TRUE(Has(plain, ".B " + option.Left() + "\n")) << option.Left();
+    }
+  }
+  for (const ExitStatus& row : ExitStatuses()) {
+    EXPECT_TRUE(Has(plain, std::string(".B ") + row.status + "\n"));
+  }
+}
+
+TEST(Manual, IsSetWithoutWarnings) {
+  if (std::system("command -v groff > /dev/null") != 0) {
+    GTEST_SKIP() << "there is no groff";
+  }
+  const TemporaryFolder folder;
+  const auto page = folder.Write("hvas.1", RunHvas({"man"}).out);
+  const std::string warnings = (folder / "warnings").string();
+  const std::string set = "groff -man -Tutf8 -ww -rLL=78n '" + page.string() + "' > '" +
+                          (folder / "out").string() + "' 2> '" + warnings + "'";
+  EXPECT_EQ(std::system(set.c_str()), 0);
+  EXPECT_EQ(ReadText(warnings), "");
+}
+
+TEST(Installed, DocumentsAreWhereShellsAndManLookForThem) {
+  const TemporaryFolder folder;
+  const std::string install = std::string("cmake --install '") + HVAS_BUILD_DIR + "' --prefix '" +
+                              folder.path().string() + "' --component documents > /dev/null";
+  ASSERT_EQ(std::system(install.c_str()), 0);
+  const CommandHelp root = DescribeProgram();
+  const auto share = folder / "share";
+  EXPECT_EQ(ReadText(share / "man/man1/hvas.1"), MakeManual(root, Version()));
+  EXPECT_EQ(ReadText(share / "bash-completion/completions/hvas"), MakeBashCompletion(root));
+  EXPECT_EQ(ReadText(share / "zsh/site-functions/_hvas"), MakeZshCompletion(root));
+  EXPECT_EQ(ReadText(share / "fish/vendor_completions.d/hvas.fish"), MakeFishCompletion(root));
+  EXPECT_FALSE(ReadText(share / "doc/hvas/THIRD-PARTY.md").empty());
+  EXPECT_FALSE(ReadText(share / "hvas/schemas/fit.schema.json").empty());
+}
+
+TEST(Licences, AreInTheProgramWithTheirTexts) {
+  const std::string all = RunHvas({"licences"}).out;
+  for (const char* text : {"Permission is hereby granted, free of charge",
+                           "GNU LESSER GENERAL PUBLIC LICENSE", "Mozilla Public License",
+                           "Boost Software License", "three", "OpenCASCADE"}) {
+    EXPECT_TRUE(Has(all, text)) << text;
+  }
+  const std::string list = RunHvas({"licences", "--list"}).out;
+  EXPECT_TRUE(Has(list, "preact"));
+  EXPECT_TRUE(Has(list, "Eigen"));
+  const Ran one = RunHvas({"licences", "ZLIB"});
+  EXPECT_EQ(one.status, 0);
+  EXPECT_TRUE(Has(one.out, "Jean-loup Gailly"));
+  EXPECT_FALSE(Has(one.out, "Mozilla"));
+  EXPECT_TRUE(Has(RunHvas({"licences", "zlip"}).err, "\"zlib\" may be meant"));
+}
+
+}  // namespace
+}  // namespace hvas::app
