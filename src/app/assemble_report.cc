@@ -130,10 +130,9 @@ void PrintTicks(const Model& model, const ExecutionReport& run) {
 void PrintDevices(const AssemblyOutcome& outcome) {
   for (std::size_t hand = 0; hand < outcome.devices.size(); ++hand) {
     const DeviceInHand& device = outcome.devices[hand];
-    std::string text = fmt::format("in the {}: {}{} ({})",
-                                   outcome.hands == 1 ? "hand" : NameOfHand(hand),
-                                   device.is_emulated ? "EMULATED " : "", device.model,
-                                   device.address);
+    std::string text =
+        fmt::format("in the {}: {}{} ({})", outcome.hands == 1 ? "hand" : NameOfHand(hand),
+                    device.is_emulated ? "EMULATED " : "", device.model, device.address);
     if (outcome.hands > 1) {
       text += fmt::format("; parts put in place: {}", CountSeatedBy(outcome, hand));
     }
@@ -205,13 +204,13 @@ void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
   PrintTicks(model, run);
   if (outcome.is_realtime) {
     fmt::print(
-        "{}", Fold(fmt::format(
-                  "realtime: {:.1f} ticks per second; wake-up median {:.1f}, p99 {:.1f}, max {:.1f} "
-                  "us; {} late wake-ups, {} overruns, {} ticks not recorded\n",
-                  static_cast<double>(run.ticks) / ToS(run.wall_ns),
-                  ToUs(run.wake_up.Quantile(0.5)), ToUs(run.wake_up.Quantile(0.99)),
-                  ToUs(run.wake_up.max_ns()), run.late_wake_ups, run.overruns,
-                  outcome.dropped_ticks)));
+        "{}",
+        Fold(fmt::format(
+            "realtime: {:.1f} ticks per second; wake-up median {:.1f}, p99 {:.1f}, max {:.1f} "
+            "us; {} late wake-ups, {} overruns, {} ticks not recorded\n",
+            static_cast<double>(run.ticks) / ToS(run.wall_ns), ToUs(run.wake_up.Quantile(0.5)),
+            ToUs(run.wake_up.Quantile(0.99)), ToUs(run.wake_up.max_ns()), run.late_wake_ups,
+            run.overruns, outcome.dropped_ticks)));
   }
   PrintDevices(outcome);
   fmt::print("digest {}\n", outcome.digest);

@@ -37,12 +37,15 @@ namespace {
 
 constexpr std::array<ExitStatus, 4> kStatuses{{
     {"0", "It is done; of hvas assemble: every part is in its place."},
-    {"1", "Something failed: a file that is missing, damaged or not to be written, a fit that "
-          "does not exist. The message names it and says what to do."},
-    {"2", "It is done, and the answer is no: a part is not in its place (hvas assemble), the run "
-          "differs from the record (hvas replay --verify), or the machine is late (hvas doctor)."},
-    {"64", "The command line is wrong: an unknown command or option, a value out of range, "
-           "options that do not go together. Nothing was done."},
+    {"1",
+     "Something failed: a file that is missing, damaged or not to be written, a fit that "
+     "does not exist. The message names it and says what to do."},
+    {"2",
+     "It is done, and the answer is no: a part is not in its place (hvas assemble), the run "
+     "differs from the record (hvas replay --verify), or the machine is late (hvas doctor)."},
+    {"64",
+     "The command line is wrong: an unknown command or option, a value out of range, "
+     "options that do not go together. Nothing was done."},
 }};
 
 /** The name of a command with those of its parents, and a blank behind. */
@@ -117,8 +120,9 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
   const std::string name = CommandPath(&reached);
   const std::string unknown = FindUnknown(reached);
   const std::string what =
-      unknown.empty() ? Rephrase(error.what())
-                      : DescribeUnknown(Describe(reached, CommandPath(reached.get_parent())), unknown);
+      unknown.empty()
+          ? Rephrase(error.what())
+          : DescribeUnknown(Describe(reached, CommandPath(reached.get_parent())), unknown);
   fmt::print(stderr, "{} {}\n{}--help tells what there is.\n",
              Painted(name.substr(0, name.size() - 1) + ":", Style::kBad, stderr), what, name);
   return kMisused;

@@ -29,7 +29,8 @@ std::vector<std::string> FindChoices(const std::string& type) {
   if (begin == std::string::npos || end == std::string::npos || end < begin) {
     return {};
   }
-  std::vector<std::string> choices = CLI::detail::split(type.substr(begin + 1, end - begin - 1), ',');
+  std::vector<std::string> choices =
+      CLI::detail::split(type.substr(begin + 1, end - begin - 1), ',');
   for (std::string& choice : choices) {
     choice = CLI::detail::trim_copy(choice.substr(0, choice.find("->")));
   }
@@ -46,8 +47,8 @@ void DescribeType(const CLI::Option& option, OptionHelp* help, std::vector<std::
   const std::string base = type.substr(0, colon);
   const std::string check = colon == std::string::npos ? "" : type.substr(colon + 1);
   help->choices = FindChoices(type);
-  const bool is_number = base.starts_with("FLOAT") || base.starts_with("INT") ||
-                         base.starts_with("UINT");
+  const bool is_number =
+      base.starts_with("FLOAT") || base.starts_with("INT") || base.starts_with("UINT");
   help->value = is_number ? "NUMBER" : base.empty() ? "TEXT" : base;
   if (!help->choices.empty()) {
     help->value = "WORD";
@@ -105,8 +106,8 @@ OptionHelp DescribeOption(const CLI::Option& option, const std::string& group) {
   }
   help.description = option.get_description();
   if (!notes.empty()) {
-    help.description += fmt::format("{}[{}]", help.description.empty() ? "" : " ",
-                                    fmt::join(notes, "; "));
+    help.description +=
+        fmt::format("{}[{}]", help.description.empty() ? "" : " ", fmt::join(notes, "; "));
   }
   return help;
 }

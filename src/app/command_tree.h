@@ -29,10 +29,10 @@ struct OptionHelp {
 struct CommandHelp {
   std::string name;  ///< "hvas fit design".
   std::string description;
-  std::string group;                   ///< Of the command among its neighbours.
-  std::string footer;                  ///< Exit status and examples, in lines.
-  std::vector<OptionHelp> options;     ///< Arguments first.
-  std::vector<CommandHelp> commands;   ///< Below it.
+  std::string group;                  ///< Of the command among its neighbours.
+  std::string footer;                 ///< Exit status and examples, in lines.
+  std::vector<OptionHelp> options;    ///< Arguments first.
+  std::vector<CommandHelp> commands;  ///< Below it.
   bool needs_command{false};
 
   [[nodiscard]] std::string LastName() const;

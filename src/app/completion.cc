@@ -51,7 +51,8 @@ std::string CommandPatterns(const std::vector<const CommandHelp*>& commands) {
 
 /** The same of the options of all commands that `selects`. */
 template <typename Selects>
-std::string OptionPatterns(const std::vector<const CommandHelp*>& commands, const Selects& selects) {
+std::string OptionPatterns(const std::vector<const CommandHelp*>& commands,
+                           const Selects& selects) {
   std::vector<std::string> patterns;
   for (const CommandHelp* command : commands) {
     for (const OptionHelp& option : command->options) {
@@ -252,11 +253,11 @@ void AddCompletion(CLI::App* app, int* status) {
   const auto make = std::make_shared<Make>(nullptr);
   CLI::App* command =
       app->add_subcommand("completion", "Print a script that completes commands in a shell");
-  AddChoice(command, "shell", make.get(),
-            Choices<Make>{{"bash", MakeBashCompletion},
-                          {"zsh", MakeZshCompletion},
-                          {"fish", MakeFishCompletion}},
-            "The shell")
+  AddChoice(
+      command, "shell", make.get(),
+      Choices<Make>{
+          {"bash", MakeBashCompletion}, {"zsh", MakeZshCompletion}, {"fish", MakeFishCompletion}},
+      "The shell")
       ->required();
   command->footer(
       "An installed hvas has the scripts where shells look for them. By hand:\n"

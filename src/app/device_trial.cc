@@ -96,10 +96,9 @@ void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
 
 void PrintState(const TrialState& state, const device::Device& device, double t_s) {
   const Vec3 p_mm = 1e3 * state.device.X_DH.p();
-  std::string text =
-      fmt::format("{:6.1f} s  at {:7.2f} {:7.2f} {:7.2f} mm  given {:5.2f} N  {}", t_s, p_mm.x(),
-                  p_mm.y(), p_mm.z(), state.F_H_D.f.norm(),
-                  device::ToString(state.device.condition));
+  std::string text = fmt::format("{:6.1f} s  at {:7.2f} {:7.2f} {:7.2f} mm  given {:5.2f} N  {}",
+                                 t_s, p_mm.x(), p_mm.y(), p_mm.z(), state.F_H_D.f.norm(),
+                                 device::ToString(state.device.condition));
   for (const haptics::GateAction action : haptics::ListNewActions(0, state.gate_actions)) {
     text += fmt::format("; {}", haptics::ToString(action));
   }

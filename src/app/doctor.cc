@@ -97,14 +97,13 @@ void PrintText(const std::vector<DoctorCheck>& checks, const Measured& measured,
       fmt::print("{}", Wrap(check.remedy, 8));
     }
   }
-  fmt::print("\n{}", Fold(fmt::format("A thread that wakes up {:.0f} times a second, for {:.3g} s: "
-                                      "{}.\n",
-                                      options.rate_hz, options.seconds,
-                                      measured.grant.ToString())));
+  fmt::print("\n{}",
+             Fold(fmt::format("A thread that wakes up {:.0f} times a second, for {:.3g} s: "
+                              "{}.\n",
+                              options.rate_hz, options.seconds, measured.grant.ToString())));
   PrintLatencyHistogram("wake-up after the deadline", measured.wake_up);
-  fmt::print(
-      "{}",
-      Fold(fmt::format("{} of {} came more than a period late, {} periods were passed over.\n{}",
+  fmt::print("{}", Fold(fmt::format(
+                       "{} of {} came more than a period late, {} periods were passed over.\n{}",
                        measured.late, measured.wake_up.count(), measured.missed,
                        IsPunctual(measured, options.rate_hz)
                            ? "This machine wakes a loop of this rate in time.\n"

@@ -6,6 +6,8 @@
 
 #include <string_view>
 
+#include "device/force_withdrawal.h"
+
 namespace hvas::app {
 namespace {
 
@@ -51,6 +53,7 @@ void EndWatch::Watch(std::chrono::milliseconds patience) {
     constexpr std::string_view kWord =
         "hvas: it does not end by itself, and is ended. What was done is on disk.\n";
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kWord.data(), kWord.size());
+    device::WithdrawForces();
     ::_exit(1);
   }
 }

@@ -351,7 +351,8 @@ void AddFit(CLI::App* app, int* status) {
   AddBatch(
       fit, "peg", "Answers to a table of questions about a peg in a hole",
       "In: kind (two_point, two_point_depth, jamming, jamming_point, wedging, statics, chamfer, "
-      "one_point), id, inputs (as in \"D=40 d=39.9 l=10 mm\"), output, unit. Out: value; empty, and a "
+      "one_point), id, inputs (as in \"D=40 d=39.9 l=10 mm\"), output, unit. Out: value; empty, "
+      "and a "
       "reason, where no peg has such inputs. Whether a load jams: jamming_point with Fx, Fz, M, l, "
       "r, mu; output slides. The tilt that wedges: wedging with D, d, mu; output theta_w.",
       AddInsertions, status);

@@ -328,9 +328,10 @@ void AddPlotArguments(CLI::App* fit, FitArguments* a) {
 }  // namespace
 
 void AddFitArguments(CLI::App* fit, FitArguments* a) {
-  fit->add_option("fit", a->fits,
-                  "Diameter and classes: 40 H7/p6, 40 H7, 1.5in H7/g6, 1.5in RC4; several are fits of one "
-                  "pair of parts");
+  fit->add_option(
+      "fit", a->fits,
+      "Diameter and classes: 40 H7/p6, 40 H7, 1.5in H7/g6, 1.5in RC4; several are fits of one "
+      "pair of parts");
   const auto add_list = [fit](const char* name, std::vector<double>* list, const char* text) {
     return fit->add_option(name, *list, text)
         ->delimiter(',')

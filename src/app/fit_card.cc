@@ -70,16 +70,16 @@ std::string JoiningText(const FitCard& card) {
   std::string text = fmt::format(
       "to join with {} {} of play, alpha {:g}e-6/K of the hub (heated), {:g}e-6/K of the shaft "
       "(cooled):\n",
-      lengths.Small(joining.clearance), lengths.small_unit(), 1e6 * hub.heating, 1e6 * shaft.cooling);
+      lengths.Small(joining.clearance), lengths.small_unit(), 1e6 * hub.heating,
+      1e6 * shaft.cooling);
   text += fmt::format("  by heat: {}, at most {:g} C ({})\n", heat(joining.hub_c), hub.hottest_c,
                       hub.limit_source);
   if (joining.shaft_c >= fits::kNitrogenC) {
     text += fmt::format("  by cold: cool the shaft to {:.0f} C\n", std::floor(joining.shaft_c));
   } else {
-    text +=
-        fmt::format("  by cold: cannot be done: in liquid nitrogen, {:g} C, the play is {} {}\n",
-                    fits::kNitrogenC, lengths.Small(joining.nitrogen_clearance),
-                    lengths.small_unit());
+    text += fmt::format(
+        "  by cold: cannot be done: in liquid nitrogen, {:g} C, the play is {} {}\n",
+        fits::kNitrogenC, lengths.Small(joining.nitrogen_clearance), lengths.small_unit());
   }
   text += fmt::format("  by both: cool the shaft to {:g} C (dry ice), {}\n", fits::kDryIceC,
                       heat(joining.dry_ice_hub_c));
@@ -156,12 +156,12 @@ std::string HotJointText(const FitCard& card) {
   if (!(hot.clearance > 0)) {
     return text + ", which does not go together\n";
   }
-  return text + fmt::format("; at {}/s it {}\n", lengths.Size(card.options.join_speed),
-                            hot.sticking < card.options.press.length
-                                ? fmt::format("sticks at a depth of {:.3g} {}",
-                                              hot.sticking * lengths.sizes_per_metre(),
-                                              lengths.size_unit())
-                                : "is in before it sticks");
+  return text + fmt::format(
+                    "; at {}/s it {}\n", lengths.Size(card.options.join_speed),
+                    hot.sticking < card.options.press.length
+                        ? fmt::format("sticks at a depth of {:.3g} {}",
+                                      hot.sticking * lengths.sizes_per_metre(), lengths.size_unit())
+                        : "is in before it sticks");
 }
 
 /** How a shaft gets in. */
@@ -232,8 +232,8 @@ std::string FitCard::JointText() const {
     text += fmt::format(" with a bore of {}", lengths.Size(p.shaft_bore));
   }
   text += fmt::format(
-      ", mu {:g} to press in, {:g} to hold, {:g} to slide out ({}), Rz {} and {} {}",
-      p.friction_in, p.friction_release, options.friction_slip, options.friction_source,
+      ", mu {:g} to press in, {:g} to hold, {:g} to slide out ({}), Rz {} and {} {}", p.friction_in,
+      p.friction_release, options.friction_slip, options.friction_source,
       lengths.Small(p.hub_roughness), lengths.Small(p.shaft_roughness), lengths.small_unit());
   if (options.start > 0) {
     text += fmt::format(", from a depth of {} on", lengths.Size(options.start));
@@ -309,9 +309,8 @@ std::string LimitsText(const FitCard& card) {
   const auto side = [&](const char* name, const std::string& tolerance, const auto& limits) {
     if (limits) {
       text += fmt::format("  {:<6} {:<6} {:>8} / {:>8} {}   {} to {} {}\n", name, tolerance,
-                          lengths.SignedSmall(limits->upper),
-                          lengths.SignedSmall(limits->lower), lengths.small_unit(),
-                          lengths.Exact(fit.nominal + limits->lower),
+                          lengths.SignedSmall(limits->upper), lengths.SignedSmall(limits->lower),
+                          lengths.small_unit(), lengths.Exact(fit.nominal + limits->lower),
                           lengths.Exact(fit.nominal + limits->upper), lengths.size_unit());
     }
   };
@@ -359,8 +358,7 @@ std::string PressText(const FitCard& card) {
   row("effective, " + small,
       [&](const PressFit& f) { return lengths.Small(f.effective_interference); });
   row("pressure, MPa", [&](const PressFit& f) { return fixed(units::ToMpa(f.pressure), 2); });
-  row("hub widens by, " + small,
-      [&](const PressFit& f) { return lengths.Small(f.hub_expansion); });
+  row("hub widens by, " + small, [&](const PressFit& f) { return lengths.Small(f.hub_expansion); });
   row("shaft narrows by, " + small,
       [&](const PressFit& f) { return lengths.Small(f.shaft_contraction); });
   row("force to press in, N", [&](const PressFit& f) { return fixed(f.press_in_force, 1); });

@@ -254,11 +254,10 @@ std::string ToSvg(const FitCurve& curve) {
   for (const FitCard& card : curve.cards) {
     figure.title += (figure.title.empty() ? "" : " and ") + card.Title();
     const LengthText lengths(card.options.unit);
-    figure.notes.push_back(fmt::format("{}: clearance of the diameters {} to {} {}; {}.",
-                                       card.Title(),
-                                       lengths.SignedSmall(card.limits->min_clearance),
-                                       lengths.SignedSmall(card.limits->max_clearance),
-                                       lengths.small_unit(), card.JointText()));
+    figure.notes.push_back(fmt::format(
+        "{}: clearance of the diameters {} to {} {}; {}.", card.Title(),
+        lengths.SignedSmall(card.limits->min_clearance),
+        lengths.SignedSmall(card.limits->max_clearance), lengths.small_unit(), card.JointText()));
   }
   figure.notes.push_back(fmt::format("{} assemblies, {}, seed {}: {}.", curve.batch.count,
                                      SpreadText(curve.options), curve.options.seed,

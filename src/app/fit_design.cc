@@ -55,8 +55,9 @@ std::string ToText(const FitDesign& d) {
       units::ToMpa(d.largest_pressure), lengths.Small(d.largest_interference),
       lengths.small_unit());
   if (d.proposals.empty()) {
-    return Fold(text + "no standard fit lies between; a longer joint, or one with a thicker hub, "
-                       "takes less\n");
+    return Fold(text +
+                "no standard fit lies between; a longer joint, or one with a thicker hub, "
+                "takes less\n");
   }
   text += d.proposals.front().JointText() + "\n";
   TextTable table({"fit", std::string("interference, ") + lengths.small_unit(), "holds, N m",
@@ -153,8 +154,9 @@ std::string MaterialsText() {
                fmt::format("{:g}", joining.hottest_c)});
   }
   return table.ToText() +
-         Fold("alpha: when heated / when cooled, to join; up to: of a hub that is heated. --json "
-              "has groups, sources and notes.\n");
+         Fold(
+             "alpha: when heated / when cooled, to join; up to: of a hub that is heated. --json "
+             "has groups, sources and notes.\n");
 }
 
 }  // namespace

@@ -76,10 +76,9 @@ nlohmann::ordered_json ToJson(const IdentificationOptions& options, const Identi
 }
 
 void PrintText(const IdentificationOptions& options, const Identification& result) {
-  fmt::print("{}",
-             Fold(fmt::format("{}\n{} insertions of each fit, force map: {}, sizes: {}\n\n", kWhat,
-                              options.trials, haptics::ToString(options.map),
-                              ToString(options.sizes))));
+  fmt::print("{}", Fold(fmt::format("{}\n{} insertions of each fit, force map: {}, sizes: {}\n\n",
+                                    kWhat, options.trials, haptics::ToString(options.map),
+                                    ToString(options.sizes))));
   TextTable table({"shown\n", "right\n%", "95 %\nof right", "as g6\n", "as p6\n", "as k6\n",
                    "felt at end\nN", "right in\npaper W, %"});
   for (int fit = 0; fit < kShownFits; ++fit) {

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "base/random.h"
 #include "app/text_table.h"
+#include "base/random.h"
 #include "base/units.h"
 #include "fits/paper_scales.h"
 #include "fits/press_stroke.h"

@@ -25,10 +25,10 @@ nlohmann::ordered_json MakeLatencyJson(const LatencyHistogram& histogram) {
 }
 
 void PrintLatencyHistogram(const std::string& title, const LatencyHistogram& histogram) {
-  fmt::print("{}", Fold(fmt::format(
-                       "{}: median {:.1f}, p99 {:.1f}, p99.9 {:.1f}, max {:.1f} us\n", title,
-                       ToUs(histogram.Quantile(0.5)), ToUs(histogram.Quantile(0.99)),
-                       ToUs(histogram.Quantile(0.999)), ToUs(histogram.max_ns()))));
+  fmt::print("{}",
+             Fold(fmt::format("{}: median {:.1f}, p99 {:.1f}, p99.9 {:.1f}, max {:.1f} us\n", title,
+                              ToUs(histogram.Quantile(0.5)), ToUs(histogram.Quantile(0.99)),
+                              ToUs(histogram.Quantile(0.999)), ToUs(histogram.max_ns()))));
   std::uint64_t below = 0;
   for (std::int64_t end_us = 1; below < histogram.count(); end_us *= 2) {
     const std::uint64_t up_to = histogram.CountUpTo(1000 * end_us);

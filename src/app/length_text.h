@@ -22,7 +22,9 @@ class LengthText {
   [[nodiscard]] std::string SignedSmall(double length) const;
 
   [[nodiscard]] const char* size_unit() const { return is_inch_ ? "in" : "mm"; }
+
   [[nodiscard]] const char* small_unit() const { return is_inch_ ? "thou" : "um"; }
+
   /** How many units a metre is. */
   [[nodiscard]] double sizes_per_metre() const;
   [[nodiscard]] double smalls_per_metre() const;

@@ -47,7 +47,8 @@ std::vector<Licensed> ListLicensed() {
   constexpr std::string_view kHead = "\n### ";
   std::vector<Licensed> list;
   const std::string_view all = AllTerms();
-  for (std::size_t at = all.find(kHead); at != std::string_view::npos; at = all.find(kHead, at + 1)) {
+  for (std::size_t at = all.find(kHead); at != std::string_view::npos;
+       at = all.find(kHead, at + 1)) {
     const std::size_t begin = at + kHead.size();
     const std::size_t end = std::min(all.find("\n##", begin), all.size());
     const std::string_view text = all.substr(begin, end - begin);
@@ -92,7 +93,8 @@ std::string ListText() {
     table.Add({one.name, one.version, one.terms.substr(0, one.terms.find_last_of('.'))});
   }
   return "hvas is under the Apache License 2.0. In it is the work of others:\n\n" +
-         table.ToText(2) + "\nhvas licences NAME prints the terms of one, hvas licences those of all.\n";
+         table.ToText(2) +
+         "\nhvas licences NAME prints the terms of one, hvas licences those of all.\n";
 }
 
 int ShowLicences(const std::string& name, bool is_list) {
@@ -113,7 +115,9 @@ int ShowLicences(const std::string& name, bool is_list) {
     }
   }
   const std::string nearest = mates::FindNearest(name, names);
-  return ReportMisuse({ErrorCode::kNotFound, fmt::format("there is no \"{}\" in hvas", name), {},
+  return ReportMisuse({ErrorCode::kNotFound,
+                       fmt::format("there is no \"{}\" in hvas", name),
+                       {},
                        nearest.empty() ? "hvas licences --list says what there is"
                                        : fmt::format("\"{}\" may be meant", nearest)});
 }

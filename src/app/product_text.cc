@@ -117,9 +117,8 @@ class TreePrinter {
 };
 
 void PrintParts(const Product& product, const Selection& selection, bool is_all) {
-  TextTable table({"id", "name, material", "uses", "mm3", "g", "kg/m3", "faces", "triangles",
-                   "features"},
-                  2);
+  TextTable table(
+      {"id", "name, material", "uses", "mm3", "g", "kg/m3", "faces", "triangles", "features"}, 2);
   ListLimit limit(is_all);
   for (const Part& part : product.parts) {
     if (!selection.Has(part.id) || !limit.Next()) {
@@ -136,8 +135,7 @@ void PrintParts(const Product& product, const Selection& selection, bool is_all)
                fmt::format("{}", uses), fmt::format("{:.1f}", units::ToMm3(part.mass.volume)),
                fmt::format("{:.3f}", 1e3 * part.mass.mass),
                fmt::format("{:.0f}{}", material.density, material.is_assumed ? "?" : " "),
-               fmt::format("{}", part.faces.size()),
-               fmt::format("{}", part.mesh.triangles.size()),
+               fmt::format("{}", part.faces.size()), fmt::format("{}", part.mesh.triangles.size()),
                fmt::format("{}", part.features.size())});
   }
   fmt::print("\nParts (? assumed)\n{}", table.ToText(2));
@@ -225,7 +223,8 @@ void PrintFeatures(const Product& product, const Selection& selection, bool is_a
     if (!selection.Has(part.id) || (part.features.empty() && part.forms.empty()) || !limit.Next()) {
       continue;
     }
-    fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()), Shorten(part.name, Columns() - 7));
+    fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()),
+               Shorten(part.name, Columns() - 7));
     Counted counted;
     for (std::size_t i = 0; i < part.forms.size(); ++i) {
       counted.Add("form: " + DescribeForm(part.forms[i]), std::to_string(i));
@@ -242,9 +241,9 @@ void PrintFeatures(const Product& product, const Selection& selection, bool is_a
 }
 
 void PrintFaces(const Product& product, const Selection& selection, bool is_all) {
-  TextTable table({"part", "face", "kind, feature", "radius\nmm", "area\nmm2", "residual\nmm",
-                   "centre\nmm"},
-                  3);
+  TextTable table(
+      {"part", "face", "kind, feature", "radius\nmm", "area\nmm2", "residual\nmm", "centre\nmm"},
+      3);
   ListLimit limit(is_all);
   for (const Part& part : product.parts) {
     if (!selection.Has(part.id)) {
@@ -263,13 +262,12 @@ void PrintFaces(const Product& product, const Selection& selection, bool is_all)
         }
       }
       const Vec3 centre = 0.5 * (face.box_B.low + face.box_B.high);
-      table.Add({fmt::format("p{}", part.id.value()), fmt::format("{}", i),
-                 Plain(face.surface.kind) + feature,
-                 fmt::format("{:.4f}", ToMm(face.surface.radius)),
-                 fmt::format("{:.3f}", ToMm2(face.area)),
-                 fmt::format("{:.2g}", ToMm(face.residual)),
-                 fmt::format("{:.2f} {:.2f} {:.2f}", ToMm(centre.x()), ToMm(centre.y()),
-                             ToMm(centre.z()))});
+      table.Add(
+          {fmt::format("p{}", part.id.value()), fmt::format("{}", i),
+           Plain(face.surface.kind) + feature, fmt::format("{:.4f}", ToMm(face.surface.radius)),
+           fmt::format("{:.3f}", ToMm2(face.area)), fmt::format("{:.2g}", ToMm(face.residual)),
+           fmt::format("{:.2f} {:.2f} {:.2f}", ToMm(centre.x()), ToMm(centre.y()),
+                       ToMm(centre.z()))});
     }
   }
   fmt::print("\nFaces\n{}", table.ToText(2));
@@ -430,7 +428,8 @@ void PrintTolerances(const Product& product, const Selection& selection, bool is
     if (!selection.Has(part.id) || part.dimensions.size() + part.geometric_tolerances.size() == 0) {
       continue;
     }
-    fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()), Shorten(part.name, Columns() - 7));
+    fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()),
+               Shorten(part.name, Columns() - 7));
     for (const product::Dimension& dimension : part.dimensions) {
       if (limit.Next()) {
         fmt::print("{}", Wrap(DescribeDimension(dimension), 6));

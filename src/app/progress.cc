@@ -36,8 +36,7 @@ void ShowProgress(std::string_view stage, double fraction) {
     last_stage = stage;
     last_ns = now_ns;
     constexpr std::size_t kPercent = 7;
-    fmt::print(stderr, "\r\033[K{} {:.0f} %", Shorten(stage, Columns() - kPercent),
-               100 * fraction);
+    fmt::print(stderr, "\r\033[K{} {:.0f} %", Shorten(stage, Columns() - kPercent), 100 * fraction);
   } else {
     return;
   }

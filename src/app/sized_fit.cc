@@ -123,7 +123,9 @@ std::optional<double> TakeLength(std::string_view* text, LengthUnit* unit) {
 }
 
 std::vector<std::string> JoinFitWords(const std::vector<std::string>& words) {
-  const auto begins_with_length = [](std::string_view text) { return TakeLength(&text).has_value(); };
+  const auto begins_with_length = [](std::string_view text) {
+    return TakeLength(&text).has_value();
+  };
   const auto has_class = [](std::string_view text) { return TakeLength(&text) && !text.empty(); };
   std::vector<std::string> fits;
   for (const std::string& word : words) {

@@ -28,8 +28,7 @@ struct SizedFit {
  "mm", "in", "inch" or a double quote; a decimal comma; fractions of inches ("1 1/2 in", "3/8 in");
  a diameter sign in front. No length: nothing.
  @param unit  Gets the unit that is stated. */
-[[nodiscard]] std::optional<double> TakeLength(std::string_view* text,
-                                                LengthUnit* unit = nullptr);
+[[nodiscard]] std::optional<double> TakeLength(std::string_view* text, LengthUnit* unit = nullptr);
 
 /** Words of a command line as fits: "40", "H7/p6" is one, "40 H7/p6", "35 H7/k6" are two, and
  "40", "H7", "p6", "1", "1/2", "in", "H7/g6" are two as well. A length begins a fit where the one

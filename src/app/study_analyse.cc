@@ -83,8 +83,8 @@ void PrintPairs(const study::Analysis& analysis) {
   TextTable variants({"Wilcoxon, variants\n", "with continuity\np", "Pratt\nZ", "Pratt\np"});
   for (const study::PairResult& pair : analysis.pairs) {
     const statistics::Wilcoxon& w = pair.wilcoxon;
-    variants.Add({PairName(analysis, pair), FormatP(w.continuity_p), Format(w.pratt_z),
-                  FormatP(w.pratt_p)});
+    variants.Add(
+        {PairName(analysis, pair), FormatP(w.continuity_p), Format(w.pratt_z), FormatP(w.pratt_p)});
   }
   const std::string level = fmt::format("{:g} %", 100 * (1 - analysis.options.alpha));
   TextTable effects({"second - first\n", "mean\n", level + "\nof mean", "median\n", "per\ncent",
@@ -112,10 +112,9 @@ void PrintParagraphs(const std::vector<std::string>& texts) {
 
 void PrintText(const study::Analysis& analysis, const std::vector<std::string>& notes) {
   const study::Table& table = analysis.table;
-  fmt::print("{}\n", Fold(fmt::format(
-                         "{}{}, {} participants, {} conditions\n", table.quantity,
-                         table.unit.empty() ? "" : fmt::format(" [{}]", table.unit),
-                         table.rows.size(), table.conditions.size())));
+  fmt::print("{}\n", Fold(fmt::format("{}{}, {} participants, {} conditions\n", table.quantity,
+                                      table.unit.empty() ? "" : fmt::format(" [{}]", table.unit),
+                                      table.rows.size(), table.conditions.size())));
   PrintConditions(analysis);
   const std::string told = study::TellFriedman(analysis);
   if (!told.empty()) {
@@ -155,11 +154,10 @@ void PrintText(const study::Identification& identification) {
   all.resize(1 + identification.names.size());
   tell(confusion.accuracy, &all);
   table.Add(std::move(all));
-  std::string text = fmt::format("{} answers of {} participants\n\n{}\nCohen's kappa {}",
-                                 confusion.accuracy.trials, identification.participant_count,
-                                 table.ToText(),
-                                 confusion.kappa ? fmt::format("{:.4f}", *confusion.kappa)
-                                                 : std::string("is not defined"));
+  std::string text = fmt::format(
+      "{} answers of {} participants\n\n{}\nCohen's kappa {}", confusion.accuracy.trials,
+      identification.participant_count, table.ToText(),
+      confusion.kappa ? fmt::format("{:.4f}", *confusion.kappa) : std::string("is not defined"));
   if (identification.chance) {
     text += fmt::format("; p against chance ({:.3g} %) {}", 100 * *identification.chance,
                         FormatP(confusion.accuracy.chance_p));

@@ -229,15 +229,14 @@ std::size_t CountRows(const study::Block& block) {
 }
 
 void PrintCheck(const Protocol& protocol) {
-  std::string text =
-      fmt::format("{}: {}\n{} conditions, {} trials each of {} participants\n", protocol.id,
-                  protocol.title.en, protocol.conditions.size(), protocol.CountTrials(),
-                  protocol.participants);
+  std::string text = fmt::format("{}: {}\n{} conditions, {} trials each of {} participants\n",
+                                 protocol.id, protocol.title.en, protocol.conditions.size(),
+                                 protocol.CountTrials(), protocol.participants);
   for (const study::Block& block : protocol.blocks) {
     const std::size_t rows = CountRows(block);
-    text += fmt::format("  block {}: {} conditions x {}, order {}", block.id,
-                        block.conditions.size(), block.repetitions,
-                        study::kOrders[static_cast<std::size_t>(block.order)]);
+    text +=
+        fmt::format("  block {}: {} conditions x {}, order {}", block.id, block.conditions.size(),
+                    block.repetitions, study::kOrders[static_cast<std::size_t>(block.order)]);
     if (rows > 1) {
       const bool is_whole = static_cast<std::size_t>(protocol.participants) % rows == 0;
       text += fmt::format(", balanced with every {} participants{}", rows,

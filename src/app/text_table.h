@@ -7,8 +7,8 @@
 namespace hvas::app {
 
 /** A table for a terminal: columns that begin at the left, the last of them with names, and columns
- of figures. Each is as wide as what stands in it. Where the terminal is too narrow, names lose their
- beginning; where that is not enough, the rest of the figures follows below, beside the names
+ of figures. Each is as wide as what stands in it. Where the terminal is too narrow, names lose
+ their beginning; where that is not enough, the rest of the figures follows below, beside the names
  again. */
 class TextTable {
  public:

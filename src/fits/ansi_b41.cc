@@ -92,6 +92,7 @@ constexpr std::array<Table, 5> kForceTables{{
      {1.3, 1.7, 2.0, 2.3, 2.5, 3.0, 3.3, 4.0, 5.0, 6.2, 7.2},
      {0.9, 1.2, 1.4, 1.6, 1.8, 2.2, 2.5, 3.0, 4.0, 5.0, 6.0}},
 }};
+
 // clang-format on
 
 /** "RC4" for "rc 4" and "RC-4". */
@@ -132,7 +133,8 @@ Result<AnsiFit> FindAnsiFit(std::string_view text, double nominal) {
   const Table* const usual = FindTable(kTables, name);
   const Table* const table = usual != nullptr ? usual : FindTable(kForceTables, name);
   if (table == nullptr) {
-    return Fail(ErrorCode::kNotFound, fmt::format("there is no table of ANSI B4.1 for {}", name), {},
+    return Fail(ErrorCode::kNotFound, fmt::format("there is no table of ANSI B4.1 for {}", name),
+                {},
                 "there are RC1 to RC9, LN1 to LN3 and FN1 to FN5; give the classes of hole and "
                 "shaft for others, as in 1.5in H7/h6");
   }

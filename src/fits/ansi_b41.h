@@ -8,10 +8,10 @@
 #include "fits/iso286.h"
 
 /** Fits in inches after ANSI B4.1-1967: running and sliding fits RC 1 to RC 9, interference
- locational fits LN 1 to LN 3 and force fits FN 1 to FN 5. The figures are those of public tables that
- quote the standard, which is out of print; each was checked by the limits of clearance that these
- tables state beside it. The locational fits LC and LT are not there: no complete table of them could
- be checked so. */
+ locational fits LN 1 to LN 3 and force fits FN 1 to FN 5. The figures are those of public tables
+ that quote the standard, which is out of print; each was checked by the limits of clearance that
+ these tables state beside it. The locational fits LC and LT are not there: no complete table of
+ them could be checked so. */
 namespace hvas::fits {
 
 struct AnsiFit {

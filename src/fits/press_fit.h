@@ -29,8 +29,8 @@ struct PressMaterial {
   double thermal_expansion{11e-6};  ///< alpha [1/K].
 };
 
-/** Without a yield strength where the group is brittle, as of grey iron, whose stated one is a proof
- stress. */
+/** Without a yield strength where the group is brittle, as of grey iron, whose stated one is a
+ proof stress. */
 [[nodiscard]] PressMaterial ToPressMaterial(const Material& material) noexcept;
 
 /** A hub A outside, a shaft I inside, joined at the diameter D_F. */
@@ -76,7 +76,7 @@ struct PressFit {
   RingStress hub_bore;
   RingStress shaft_surface;    ///< Equals the inside of a solid shaft.
   RingStress shaft_governing;  ///< At the bore of a hollow shaft, anywhere in a solid one.
-  ElasticLimit hub_limit;  ///< Of a brittle hub: where its hoop stress is its tensile strength.
+  ElasticLimit hub_limit;      ///< Of a brittle hub: where its hoop stress is its tensile strength.
   ElasticLimit shaft_limit;
   bool is_hub_brittle{false};
   double press_in_force{0};  ///< F_e, at full depth [N].
@@ -99,8 +99,8 @@ inline constexpr double kBrittleSafety = 3;
 /** Whether a brittle hub has less than this safety. */
 [[nodiscard]] bool IsFracturing(const PressFit& fit) noexcept;
 
-/** The largest pressure that a joint is to have [Pa]: both sides elastic by von Mises, a brittle hub
- with its safety. */
+/** The largest pressure that a joint is to have [Pa]: both sides elastic by von Mises, a brittle
+ hub with its safety. */
 [[nodiscard]] double CalcLargestPressure(const PressFit& fit) noexcept;
 
 /** Lame's ring:

@@ -1,4 +1,7 @@
-// What the program says of itself: overview, help, mistakes in the command line, manual and completion.
+// What the program says of itself: overview, help, mistakes in the command line, manual and
+// completion.
+
+#include "app/command_line.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,7 +11,6 @@
 #include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
-#include "app/command_line.h"
 #include "app/command_tree.h"
 #include "app/completion.h"
 #include "app/manual.h"
@@ -33,7 +35,6 @@ CommandHelp DescribeProgram() {
   int status = 0;
   return Describe(*MakeCommandLine(&status));
 }
-
 
 TEST(Overview, IsWhatTheProgramAloneShows) {
   const Ran alone = RunHvas({});
@@ -139,8 +140,8 @@ TEST(Usage, MisuseHasAnExitStatusOfItsOwn) {
 }
 
 TEST(Usage, NumbersAndMissingWordsAreToldPlainly) {
-  EXPECT_TRUE(Has(RunHvas({"doctor", "--seconds", "soon"}).err,
-                  "--seconds takes a number, not \"soon\""));
+  EXPECT_TRUE(
+      Has(RunHvas({"doctor", "--seconds", "soon"}).err, "--seconds takes a number, not \"soon\""));
   EXPECT_TRUE(Has(RunHvas({"study"}).err, "a command is missing"));
   EXPECT_TRUE(Has(RunHvas({"assemble"}).err, "file is missing"));
 }
@@ -173,10 +174,10 @@ TEST(Colour, IsOnATerminalOnlyAndNobodyWhoRefusesItGetsIt) {
 std::string Complete(const std::string& words) {
   const TemporaryFolder folder;
   const auto script = folder.Write("hvas.bash", MakeBashCompletion(DescribeProgram()));
-  const auto run = folder.Write("run.bash", "source '" + script.string() + "'\n" +
-                                                "COMP_WORDS=(" + words + ")\n" +
-                                                "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n" +
-                                                "_hvas\necho \"${COMPREPLY[*]}\"\n");
+  const auto run =
+      folder.Write("run.bash", "source '" + script.string() + "'\n" + "COMP_WORDS=(" + words +
+                                   ")\n" + "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n" +
+                                   "_hvas\necho \"${COMPREPLY[*]}\"\n");
   const std::string out = (folder / "out").string();
   const std::string command = "bash '" + run.string() + "' > '" + out + "' 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0);
@@ -270,9 +271,9 @@ TEST(Installed, DocumentsAreWhereShellsAndManLookForThem) {
 
 TEST(Licences, AreInTheProgramWithTheirTexts) {
   const std::string all = RunHvas({"licences"}).out;
-  for (const char* text : {"Permission is hereby granted, free of charge",
-                           "GNU LESSER GENERAL PUBLIC LICENSE", "Mozilla Public License",
-                           "Boost Software License", "three", "OpenCASCADE"}) {
+  for (const char* text :
+       {"Permission is hereby granted, free of charge", "GNU LESSER GENERAL PUBLIC LICENSE",
+        "Mozilla Public License", "Boost Software License", "three", "OpenCASCADE"}) {
     EXPECT_TRUE(Has(all, text)) << text;
   }
   const std::string list = RunHvas({"licences", "--list"}).out;

@@ -541,8 +541,8 @@ TEST(FitCommand, CardSaysHowTheShaftGetsIn) {
 TEST(FitCommand, WedgingLineOfADiagramIsThatOfTheLeastClearance) {
   const TemporaryFolder folder;
   const std::string svg = (folder / "jam.svg").string();
-  const json jamming = RunHvasJson({"fit", "40 H7/g6", "--length", "50", "--mu", "0.15",
-                                    "--jamming", svg})["jamming"];
+  const json jamming = RunHvasJson(
+      {"fit", "40 H7/g6", "--length", "50", "--mu", "0.15", "--jamming", svg})["jamming"];
   const double t = jamming["wedging_tilt_deg"].get<double>() * 0.017453292519943295;
   EXPECT_NEAR(40 * std::cos(t) + 6 * std::sin(t), 40.009, 1e-6);
 }
@@ -558,9 +558,8 @@ TEST(FitCommand, BrittleHubHasTheMarginOfItsHoopStress) {
               1e-4);
   const Ran text = RunHvas(joint);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "the hub is brittle", text.out);
-  const json design =
-      RunHvasJson({"fit", "design", "--nominal", "40", "--length", "50", "--hub", "80", "--torque",
-                   "50", "--hub-material", "GJL-250"});
+  const json design = RunHvasJson({"fit", "design", "--nominal", "40", "--length", "50", "--hub",
+                                   "80", "--torque", "50", "--hub-material", "GJL-250"});
   EXPECT_EQ(design["is_hub_brittle"], true);
   EXPECT_NEAR(design["largest_pressure_mpa"].get<double>(), 50, 1e-3);
   for (const json& proposal : design["proposals"]) {
@@ -718,7 +717,8 @@ TEST_F(FitTable, QuestionsAboutAPegThatCannotBeAreRefused) {
   refuse("wedging,c,mu=-.3 r=10 l=5,wedging possible,bool", "mu is -.3, but must be at least 0");
   refuse("jamming,c,mu=0 r=10 l=5,lambda,-", "without friction");
   refuse("jamming_point,c,mu=.3 r=10 l=5 Fx=1 M=0,slides,bool", "Fz is missing");
-  refuse("jamming_point,c,mu=.3 r=10 l=5 Fx=1 Fz=-2 M=0,slides,bool", "Fz is -2, but must be over 0");
+  refuse("jamming_point,c,mu=.3 r=10 l=5 Fx=1 Fz=-2 M=0,slides,bool",
+         "Fz is -2, but must be over 0");
   refuse("statics,d,mu=.3 r=10 l=20 f1=-3 f2=5,M,N mm", "f1 is -3");
   refuse("chamfer,e,Kx=10 Kt=50000 Lg=50 r=10 mu=0.9 alpha=30 deg z=1,Fz,N", "tan alpha over mu");
   refuse("one_point,f,Kx=10 Kt=50000 Lg=50 r=10 mu=0.1 eps0'=-1 theta0=0 l=10,f,N", "other side");
@@ -743,19 +743,41 @@ TEST_F(FitTable, LoadsJamOrSlide) {
   const std::string at = "mu=.3 r=10 l=20 Fz=10 ";
   EXPECT_EQ(Run("peg",
                 "kind,id,inputs,output,unit\n"
-                "jamming_point,a," + at + "Fx=0 M=300,slides,bool\n"
-                "jamming_point,b," + at + "Fx=0 M=360,slides,bool\n"
-                "jamming_point,c," + at + "Fx=20 M=-100,slides,bool\n"
-                "jamming_point,d," + at + "Fx=20 M=100,slides,bool\n"
-                "jamming_point,e," + at + "Fx=20 N M=0.1 Nm,jams,bool\n"
-                "jamming_point,f," + at + "Fx=20 M=100,M/(rFz),-\n"),
+                "jamming_point,a," +
+                    at +
+                    "Fx=0 M=300,slides,bool\n"
+                    "jamming_point,b," +
+                    at +
+                    "Fx=0 M=360,slides,bool\n"
+                    "jamming_point,c," +
+                    at +
+                    "Fx=20 M=-100,slides,bool\n"
+                    "jamming_point,d," +
+                    at +
+                    "Fx=20 M=100,slides,bool\n"
+                    "jamming_point,e," +
+                    at +
+                    "Fx=20 N M=0.1 Nm,jams,bool\n"
+                    "jamming_point,f," +
+                    at + "Fx=20 M=100,M/(rFz),-\n"),
             "kind,id,inputs,output,unit,value,reason\n"
-            "jamming_point,a," + at + "Fx=0 M=300,slides,bool,1,\n"
-            "jamming_point,b," + at + "Fx=0 M=360,slides,bool,0,\n"
-            "jamming_point,c," + at + "Fx=20 M=-100,slides,bool,1,\n"
-            "jamming_point,d," + at + "Fx=20 M=100,slides,bool,0,\n"
-            "jamming_point,e," + at + "Fx=20 N M=0.1 Nm,jams,bool,1,\n"
-            "jamming_point,f," + at + "Fx=20 M=100,M/(rFz),-,1,\n");
+            "jamming_point,a," +
+                at +
+                "Fx=0 M=300,slides,bool,1,\n"
+                "jamming_point,b," +
+                at +
+                "Fx=0 M=360,slides,bool,0,\n"
+                "jamming_point,c," +
+                at +
+                "Fx=20 M=-100,slides,bool,1,\n"
+                "jamming_point,d," +
+                at +
+                "Fx=20 M=100,slides,bool,0,\n"
+                "jamming_point,e," +
+                at +
+                "Fx=20 N M=0.1 Nm,jams,bool,1,\n"
+                "jamming_point,f," +
+                at + "Fx=20 M=100,M/(rFz),-,1,\n");
   // The tilt that wedges: 40.009 = 40 cos t + 6 sin t.
   EXPECT_PRED_FORMAT2(
       ::testing::IsSubstring, ",0.08",

@@ -25,11 +25,12 @@ struct Ran {
 
 /** Runs `hvas` at a terminal of so many columns; `out` has all that it shows.
  @param no_color  Whether NO_COLOR is set. */
-[[nodiscard]] Ran RunHvasAtTerminal(unsigned short columns, const std::vector<std::string>& arguments,
+[[nodiscard]] Ran RunHvasAtTerminal(unsigned short columns,
+                                    const std::vector<std::string>& arguments,
                                     bool no_color = false);
 
-/** A text without what colours it and moves the cursor; of a line that is written over and over, the
- last of each. */
+/** A text without what colours it and moves the cursor; of a line that is written over and over,
+ the last of each. */
 [[nodiscard]] std::string WithoutControls(const std::string& text);
 
 /** Runs `hvas ... --json`, expects an exit status, and reads what it printed. */

@@ -163,9 +163,10 @@ class JsonRuns {
     const std::string swept = (folder_ / "swept.stl").string();
     const std::string study = (folder_ / "study").string();
     const std::string answers =
-        folder_.Write("answers.csv",
-                      "participant,shown,answered\n1,H7/g6,H7/g6\n1,H7/p6,H7/g6\n2,H7/g6,H7/g6\n"
-                      "2,H7/p6,H7/p6\n")
+        folder_
+            .Write("answers.csv",
+                   "participant,shown,answered\n1,H7/g6,H7/g6\n1,H7/p6,H7/g6\n2,H7/g6,H7/g6\n"
+                   "2,H7/p6,H7/p6\n")
             .string();
     const std::string results = HVAS_SOURCE_DIR "/data/studies/identification-2016.csv";
     const std::string bushing = ProductFile("bushing");
@@ -274,7 +275,8 @@ TEST(JsonSchemas, EveryCommandWithJsonPromisesOneAndKeepsIt) {
     ExpectNoNegativeZero(document, "");
     kept[name].insert(run.schema);
   }
-  EXPECT_EQ(kept, promised) << "each command with --json, and each of its schemas, needs a run here";
+  EXPECT_EQ(kept, promised)
+      << "each command with --json, and each of its schemas, needs a run here";
 }
 
 TEST(InspectSchema, MistakesAreFound) {

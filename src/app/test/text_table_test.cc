@@ -18,7 +18,9 @@ class WithColumns {
   explicit WithColumns(std::size_t columns) {
     ::setenv("COLUMNS", std::to_string(columns).c_str(), 1);
   }
+
   ~WithColumns() { ::unsetenv("COLUMNS"); }
+
   WithColumns(const WithColumns&) = delete;
   WithColumns& operator=(const WithColumns&) = delete;
 };
@@ -107,8 +109,7 @@ TEST(Fold, BreaksLongLinesAndKeepsAllWords) {
     ASSERT_TRUE(b >> y);
     EXPECT_EQ(x, y);
   }
-  EXPECT_EQ(folded,
-            "  one two three four five six seven\n    eight nine ten\nshort\n");
+  EXPECT_EQ(folded, "  one two three four five six seven\n    eight nine ten\nshort\n");
 }
 
 }  // namespace

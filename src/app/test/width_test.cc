@@ -44,7 +44,8 @@ TEST(Width, OfFitsIs80) {
       {"40", "H7/p6", "--length", "50", "--hub-material", "GJL-250", "--bore", "12", "--rz", "6.3"},
       {"40", "H7/g6", "--length", "50", "--unit", "in", "--chamfer-width", "0.5"},
       {"1.5in", "H7/k6", "--length", "2in", "--rz", "6.3", "--population", "5000"},
-      {"40", "H7/p6", "35", "H7/k6", "--length", "20,30", "--start", "0,40", "--population", "5000"},
+      {"40", "H7/p6", "35", "H7/k6", "--length", "20,30", "--start", "0,40", "--population",
+       "5000"},
       {"limits", "--help"},
       {"search", "--nominal", "40", "--min", "5", "--max", "60"},
       {"search", "--nominal", "1.5in", "--min", "5", "--max", "60", "--unit", "in"},
@@ -79,7 +80,8 @@ TEST(Width, OfAssemblyAndReplayIs80) {
   ExpectWithin80({"assemble", ProductFile("bushing"), "--limit", "5"});
   ExpectWithin80({"replay", record});
   const std::string way = (folder / "way.csv").string();
-  ExpectWithin80({"path", ProductFile("bushing"), "--part", "shaft", "--record", record, "-o", way});
+  ExpectWithin80(
+      {"path", ProductFile("bushing"), "--part", "shaft", "--record", record, "-o", way});
 }
 
 TEST(Width, OfStudiesIs80) {
@@ -89,8 +91,8 @@ TEST(Width, OfStudiesIs80) {
                                     "participant,shown,answered\n1,H7/g6,H7/g6\n1,H7/p6,H7/g6\n"
                                     "2,H7/g6,H7/g6\n2,H7/p6,H7/p6\n");
   ExpectWithin80({"study", "analyse", "--table", answers.string()});
-  ExpectWithin80({"study", "power", "--means", "0,1", "--sd", "1", "--test", "wilcoxon", "--runs",
-                  "200"});
+  ExpectWithin80(
+      {"study", "power", "--means", "0,1", "--sd", "1", "--test", "wilcoxon", "--runs", "200"});
   ExpectWithin80({"study", "check", "xia-2011"});
 }
 

@@ -67,6 +67,7 @@ const std::vector<Printed> kPrinted{
     {"FN5", kForceEnds, {-1.3, -1.7, -2.0, -2.3, -2.5, -3.0, -3.3, -4.0, -5.0, -6.2, -7.2},
      {-0.3, -0.5, -0.5, -0.6, -0.8, -1.0, -1.3, -1.4, -2.4, -3.2, -4.2}},
 };
+
 // clang-format on
 
 TEST(AnsiB41, GivesTheClearancesThatAreTabulatedBesideTheLimits) {
@@ -122,8 +123,8 @@ TEST(AnsiB41, WhatIsNotTabulatedIsRefusedWithTheReason) {
   EXPECT_EQ(FindAnsiFit("LC5", FromInch(1)).error().code, ErrorCode::kNotFound);
   EXPECT_EQ(FindAnsiFit("RC10", FromInch(1)).error().code, ErrorCode::kNotFound);
   for (const auto& [name, inches] :
-       {std::pair("RC4", 20.0), std::pair("FN2", 3.2), std::pair("FN3", 0.9),
-        std::pair("RC4", 0.0), std::pair("RC4", -1.0)}) {
+       {std::pair("RC4", 20.0), std::pair("FN2", 3.2), std::pair("FN3", 0.9), std::pair("RC4", 0.0),
+        std::pair("RC4", -1.0)}) {
     const auto fit = FindAnsiFit(name, FromInch(inches));
     ASSERT_FALSE(fit) << name << inches;
     EXPECT_EQ(fit.error().code, ErrorCode::kUnsupported);
