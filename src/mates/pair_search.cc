@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mates/build_mate.h"
 #include "mates/same_place.h"
@@ -425,7 +426,9 @@ std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(const std::vector<
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
     return boxes[i].low[axis] < boxes[j].low[axis];
   });
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  // By the first of each pair, so that no step takes long that the watch does not see.
+  std::vector<std::vector<std::uint32_t>> partners(boxes.size());
+  std::size_t count = 0;
   for (std::size_t i = 0; i < order.size() && MayGoOn(watch); ++i) {
     const Box box = boxes[order[i]].Expanded(margin);
     for (std::size_t j = i + 1; j < order.size(); ++j) {
@@ -434,11 +437,21 @@ std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(const std::vector<
         break;
       }
       if (box.Overlaps(other)) {
-        pairs.emplace_back(std::min(order[i], order[j]), std::max(order[i], order[j]));
+        partners[std::min(order[i], order[j])].push_back(
+            static_cast<std::uint32_t>(std::max(order[i], order[j])));
+        ++count;
       }
     }
   }
-  std::sort(pairs.begin(), pairs.end());
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  pairs.reserve(count);
+  for (std::size_t i = 0; i < partners.size() && MayGoOn(watch); ++i) {
+    std::vector<std::uint32_t> own = std::move(partners[i]);
+    std::sort(own.begin(), own.end());
+    for (const std::uint32_t j : own) {
+      pairs.emplace_back(i, j);
+    }
+  }
   return pairs;
 }
 
