@@ -15,6 +15,7 @@ import {
   waitForPlacement,
   waitForRest,
   waitForState,
+  waitForStill,
   withStudio,
 } from "./harness.mjs";
 
@@ -60,11 +61,12 @@ const between = (from, to) => ({ x: to.x - from.x, y: to.y - from.y });
 /** Takes the part whose turn it is, and brings it to where its place is seen, and on by the way in until it sits. */
 async function insertByKeys(page, step, goal) {
   const kTries = 40;
+  const kPatience = 120_000;
   await page.keyboard.press("Enter");
   await waitForPlacement(page, step.occurrence, "held");
   const isOver = async () => (await stateOf(page)).placements[step.occurrence] === "placed";
   for (let count = 0; count < kTries; count++) {
-    await waitForRest(page, step.occurrence, { isOver });
+    await waitForStill(page, () => poseOf(page, step.occurrence), { isOver }, kPatience);
     const { placements, held } = await stateOf(page);
     if (placements[step.occurrence] === "placed") {
       return;
@@ -130,6 +132,8 @@ describe("Escape", () => {
     await page.keyboard.press("x");
     await page.getByTestId(`part-${kShaft}`).click();
     await page.keyboard.press("g");
+    await waitForPlacement(page, kShaft, "held");
+    await pressTimes(page, "ArrowUp", 10);  // off the table, so that its weight is felt
     await waitForState(page, ({ hands }) => hands.length > 0 && Math.hypot(...hands[0].f_felt_W_n) > 0.1);
     await page.keyboard.press("Escape");
     await waitForState(page, ({ forcesOff }) => forcesOff);
