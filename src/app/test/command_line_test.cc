@@ -87,6 +87,15 @@ TEST(Help, OfEveryCommandSaysWhatItIsAndHasNoRawTypes) {
   }
 }
 
+TEST(Help, OfFlagsHasNoValue) {
+  const std::string text = RunHvas({"fit", "--help"}).out;
+  EXPECT_TRUE(Has(text, "  --json  ")) << text;
+  EXPECT_TRUE(Has(text, "  --hub NUMBER ")) << text;
+  EXPECT_TRUE(Has(text, "  --smoothing WORD "));
+  EXPECT_TRUE(Has(text, "  --material TEXT "));
+  EXPECT_TRUE(Has(text, "  FIT ... "));
+}
+
 TEST(Usage, UnknownWordsAreNamedWithTheNearest) {
   struct Case {
     std::vector<std::string> arguments;
