@@ -39,7 +39,7 @@ std::vector<std::string> FindChoices(const std::string& type) {
 
 /** CLI11 joins the type and what checks it: "FLOAT:OVER 0", "INT:INT in [1 - 256]". */
 void DescribeType(const CLI::Option& option, OptionHelp* help, std::vector<std::string>* notes) {
-  if (option.get_type_size() == 0) {
+  if (option.get_expected_max() == 0) {  // A flag.
     return;
   }
   const std::string type = option.get_type_name();
@@ -57,11 +57,11 @@ void DescribeType(const CLI::Option& option, OptionHelp* help, std::vector<std::
     std::string range = check.substr(in + 4, check.find(']', in) - in - 4);
     range.replace(range.find(" - "), 3, " to ");
     notes->push_back(range);
-  } else if (!check.empty()) {
+  } else if (!check.empty() && check != "C") {  // Its description has the unit.
     std::string text = check;
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    notes->push_back(text == "c" ? "C" : text);
+    notes->push_back(text);
   }
 }
 
@@ -92,7 +92,7 @@ OptionHelp DescribeOption(const CLI::Option& option, const std::string& group) {
   }
   std::vector<std::string> notes;
   DescribeType(option, &help, &notes);
-  if (!option.get_default_str().empty() && option.get_type_size() != 0) {
+  if (!option.get_default_str().empty() && option.get_expected_max() != 0) {
     notes.push_back(fmt::format("without it {}", option.get_default_str()));
   }
   if (const auto needs = option.get_needs(); !needs.empty()) {

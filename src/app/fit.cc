@@ -198,7 +198,9 @@ int ShowFriction(bool is_json) {
     }
     const std::string range = row.low == row.high ? fmt::format("{:.2f}", row.low)
                                                   : fmt::format("{:.2f}-{:.2f}", row.low, row.high);
-    fmt::print("{:<28} {:<12} {:<9} {}\n{}", row.pair, row.symbol, range, row.condition,
+    fmt::print("{}{}",
+               Fold(fmt::format("{:<28} {:<13} {:<9} {}", row.pair, row.symbol, range,
+                                row.condition)),
                Wrap(fmt::format("{}; {}", row.source, row.status), 4));
   }
   if (is_json) {

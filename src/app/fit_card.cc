@@ -199,7 +199,7 @@ std::string EntryText(const FitCard& card) {
   const Entry best = CalcEntry(card, card.limits->max_clearance);
   return fmt::format(
              "to enter, with the least to the largest clearance: upright within {} to {} {} beside "
-             "the axis,\n  tilted below {:.2f} to {:.2f} deg\n",
+             "the axis, tilted below {:.2f} to {:.2f} deg\n",
              lengths.Small(worst.window), lengths.Small(best.window), lengths.small_unit(),
              units::ToDeg(worst.largest_tilt), units::ToDeg(best.largest_tilt)) +
          (card.limits->min_clearance > 0

@@ -27,7 +27,7 @@ Json ToMmJson(const Vec3& v) {
 }
 
 Json ToJson(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
+  return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // Zero has no sign.
 }
 
 Json ToJson(const product::Color& color) {

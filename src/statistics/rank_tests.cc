@@ -219,8 +219,7 @@ Result<Friedman> TestFriedman(std::span<const std::vector<double>> rows, Exact e
     const double rest = n * (k - 1) - *result.chi_square;
     if (rest > 1e-9 * n) {
       result.iman_davenport_f = (n - 1) * *result.chi_square / rest;
-      result.iman_davenport_p =
-          CalcFisherUpper(*result.iman_davenport_f, k - 1, (k - 1) * (n - 1));
+      result.iman_davenport_p = CalcFisherUpper(*result.iman_davenport_f, k - 1, (k - 1) * (n - 1));
     }
     if (exact == Exact::kYes) {
       result.exact_p = CalcExactFriedman(ranks, sums);
@@ -270,11 +269,11 @@ Result<Wilcoxon> TestWilcoxon(std::span<const double> first, std::span<const dou
   const auto positive_count =
       static_cast<double>(std::count(is_positive.begin(), is_positive.end(), true));
   const double pratt_sum = result.positive_rank_sum + zeros * positive_count;
-  const double pratt_variance = (all * (all + 1) * (2 * all + 1) -
-                                 zeros * (zeros + 1) * (2 * zeros + 1)) / 24 -
-                                mid.tie_sum / 48;
-  result.pratt_z = (pratt_sum - 0.25 * (all * (all + 1) - zeros * (zeros + 1))) /
-                   std::sqrt(pratt_variance);
+  const double pratt_variance =
+      (all * (all + 1) * (2 * all + 1) - zeros * (zeros + 1) * (2 * zeros + 1)) / 24 -
+      mid.tie_sum / 48;
+  result.pratt_z =
+      (pratt_sum - 0.25 * (all * (all + 1) - zeros * (zeros + 1))) / std::sqrt(pratt_variance);
   result.pratt_p = CalcTwoSided(*result.pratt_z);
   if (exact == Exact::kYes && result.n <= kMostExactPairs) {
     result.exact_p = CalcExactWilcoxon(doubled, positive);

@@ -32,8 +32,8 @@ struct Friedman {
   std::optional<double> p;
   std::optional<double> kendall_w;
   /** F = (n - 1) chi-square / (n (k - 1) - chi-square) with k - 1 and (k - 1) (n - 1) degrees of
-   freedom: Iman and Davenport, Communications in Statistics A9, 1980. None where all rows agree, too,
-   and F has no bound. */
+   freedom: Iman and Davenport, Communications in Statistics A9, 1980. None where all rows agree,
+   too, and F has no bound. */
   std::optional<double> iman_davenport_f;
   std::optional<double> iman_davenport_p;
   /** By all permutations of ranks within rows. None where there are too many to go through:

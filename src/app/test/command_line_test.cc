@@ -42,7 +42,8 @@ TEST(Overview, IsWhatTheProgramAloneShows) {
   EXPECT_EQ(alone.err, "");
   EXPECT_EQ(alone.out, RunHvas({"--help"}).out);
   EXPECT_LE(std::count(alone.out.begin(), alone.out.end(), '\n'), 50) << alone.out;
-  for (const CommandHelp& command : DescribeProgram().commands) {
+  const CommandHelp root = DescribeProgram();
+  for (const CommandHelp& command : root.commands) {
     EXPECT_TRUE(Has(alone.out, "\n  " + command.LastName() + " ")) << command.name;
     EXPECT_NE(command.group, "Subcommands") << command.name << " stands in no group";
   }
@@ -70,7 +71,8 @@ TEST(Help, OfEveryCommandFitsTheColumnsThatThereAre) {
 }
 
 TEST(Help, OfEveryCommandSaysWhatItIsAndHasNoRawTypes) {
-  for (const CommandHelp* command : ListCommands(DescribeProgram())) {
+  const CommandHelp root = DescribeProgram();
+  for (const CommandHelp* command : ListCommands(root)) {
     SCOPED_TRACE(command->name);
     EXPECT_FALSE(command->description.empty());
     std::set<std::string> names;
@@ -86,6 +88,15 @@ TEST(Help, OfEveryCommandSaysWhatItIsAndHasNoRawTypes) {
       EXPECT_TRUE(!Has(text, raw) || command->name == "hvas export") << raw << "\n" << text;
     }
   }
+}
+
+TEST(Help, OfFlagsHasNoValue) {
+  const std::string text = RunHvas({"fit", "--help"}).out;
+  EXPECT_TRUE(Has(text, "  --json  ")) << text;
+  EXPECT_TRUE(Has(text, "  --hub NUMBER ")) << text;
+  EXPECT_TRUE(Has(text, "  --smoothing WORD "));
+  EXPECT_TRUE(Has(text, "  --material TEXT "));
+  EXPECT_TRUE(Has(text, "  FIT ... "));
 }
 
 TEST(Usage, UnknownWordsAreNamedWithTheNearest) {
@@ -140,8 +151,8 @@ TEST(Usage, MisuseHasAnExitStatusOfItsOwn) {
 }
 
 TEST(Usage, NumbersAndMissingWordsAreToldPlainly) {
-  EXPECT_TRUE(
-      Has(RunHvas({"doctor", "--seconds", "soon"}).err, "--seconds takes a number, not \"soon\""));
+  EXPECT_TRUE(Has(RunHvas({"fit", "identify", "--weber", "some"}).err,
+                  "--weber takes a number, not \"some\""));
   EXPECT_TRUE(Has(RunHvas({"study"}).err, "a command is missing"));
   EXPECT_TRUE(Has(RunHvas({"assemble"}).err, "file is missing"));
 }

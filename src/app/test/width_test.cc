@@ -73,12 +73,11 @@ TEST(Width, OfProductsIs80) {
   }
 }
 
-TEST(Width, OfAssemblyAndReplayIs80) {
+TEST(Width, OfAssemblyAndPathIs80) {
   const TemporaryFolder folder;
   const std::string record = (folder / "run.hvasrec").string();
   ExpectWithin80({"assemble", ProductFile("bushing"), "--record", record});
   ExpectWithin80({"assemble", ProductFile("bushing"), "--limit", "5"});
-  ExpectWithin80({"replay", record});
   const std::string way = (folder / "way.csv").string();
   ExpectWithin80(
       {"path", ProductFile("bushing"), "--part", "shaft", "--record", record, "-o", way});

@@ -53,7 +53,7 @@ TEST(ScratchFolderTest, OfAKilledProcessGoesWhenTheNextIsMade) {
 
 TEST(ScratchFolderTest, OfALivingProcessAndOfOthersStay) {
   const auto mine = ScratchFolder::Make();
-  const fs::path other = mine->path().parent_path() / "hvas-of-others";
+  const fs::path other = mine->path().parent_path() / "hvas-others-abcdef";
   fs::create_directory(other);
   MakeOld(mine->path());
   MakeOld(other);

@@ -160,6 +160,20 @@ TEST(PressFit, BrittleHubIsLimitedByItsHoopStress) {
   EXPECT_NEAR(units::ToMpa(fit.hub_limit.tresca), 150, 1e-9);
 }
 
+// Its stated yield is a proof stress: grey iron breaks.
+TEST(PressFit, GreyIronIsBrittleAndKeepsItsSafety) {
+  const PressMaterial iron = ToPressMaterial(*FindMaterial("GJL-250")->material);
+  EXPECT_EQ(iron.yield_strength, 0);
+  PressFitParameters p = MakeFit(60, 120, 0, 60, 45, 0.14, 110, 0.28);
+  p.hub = iron;
+  const PressFit fit = *CalcPressFit(p);
+  EXPECT_TRUE(fit.is_hub_brittle);
+  EXPECT_NEAR(units::ToMpa(fit.hub_limit.von_mises), 250 * (1 - 0.25) / (1 + 0.25), 1e-9);
+  EXPECT_NEAR(units::ToMpa(CalcLargestPressure(fit)), 150 / kBrittleSafety, 1e-9);
+  EXPECT_EQ(IsFracturing(fit), fit.margin_hub() < kBrittleSafety);
+  EXPECT_GT(ToPressMaterial(*FindMaterial("S355")->material).yield_strength, 0);
+}
+
 // A load that the joint just carries needs the pressure that it has.
 TEST(PressFit, RequiredPressureMatchesForceAndTorqueAlone) {
   const PressFitParameters p = MakeFit(70, 140, 0, 84, 60, 0.09, 215);

@@ -67,9 +67,8 @@ std::vector<double> CalcFigures(const Rows& rows) {
   for (std::size_t i = 0; i < k; ++i) {
     for (std::size_t j = i + 1; j < k; ++j) {
       const auto wilcoxon = TestWilcoxon(ColumnOf(rows, i), ColumnOf(rows, j));
-      figures.insert(figures.end(),
-                     {wilcoxon->positive_rank_sum, OrNan(wilcoxon->p),
-                      OrNan(wilcoxon->continuity_p), OrNan(wilcoxon->exact_p)});
+      figures.insert(figures.end(), {wilcoxon->positive_rank_sum, OrNan(wilcoxon->p),
+                                     OrNan(wilcoxon->continuity_p), OrNan(wilcoxon->exact_p)});
       p.push_back(wilcoxon->p.value_or(1));
     }
   }
