@@ -437,11 +437,12 @@ TEST(AssembleWithTwoDevices, TableSaysWhatWasInWhichHand) {
                       ran.out);
 }
 
-void ExpectRefused(const std::vector<std::string>& options, const std::string& error) {
+void ExpectRefused(const std::vector<std::string>& options, const std::string& error,
+                   int status = 1) {
   std::vector<std::string> arguments{"assemble", ProductFile("bushing"), "-q"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const Ran ran = RunHvas(arguments);
-  EXPECT_EQ(ran.status, 1);
+  EXPECT_EQ(ran.status, status);
   EXPECT_EQ(ran.out, "");
   EXPECT_EQ(ran.err, error);
 }
@@ -462,7 +463,9 @@ TEST(AssembleWithDevice, WhatCannotBeOpenedIsNamedWithTheRemedy) {
   ExpectRefused({"--device", "emulated:haply", "--second-device", "haply"},
                 "hvas: haply: a real device needs the real-time loop (add --realtime)\n");
   ExpectRefused({"--second-device", "emulated:haply"},
-                "--second-device requires --device\nRun with --help for more information.\n");
+                "hvas assemble: --second-device requires --device\n"
+                "hvas assemble --help tells what there is.\n",
+                64);
 }
 
 TEST(AssembleWithDevice, LibraryThatIsMissingIsNamedWithTheRemedy) {
