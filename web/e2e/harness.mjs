@@ -415,3 +415,22 @@ export async function insertByMouse(page, occurrence, goal, height = 0.12) {
   // What is seated is let go after a while, and is in its place then.
   await waitForState(page, ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed");
 }
+
+/** Goes on with Tab until the focus is there; a selector. */
+export async function tabTo(page, selector) {
+  for (let count = 0; count < 120; count++) {
+    if (await page.evaluate((wanted) => document.activeElement?.matches(wanted) === true, selector)) {
+      return;
+    }
+    await page.keyboard.press("Tab");
+  }
+  throw new Error(`Tab does not lead to ${selector}`);
+}
+
+export const tabToPicture = (page) => tabTo(page, "canvas[role=application]");
+
+export async function pressTimes(page, key, count) {
+  for (let k = 0; k < count; k++) {
+    await page.keyboard.press(key);
+  }
+}

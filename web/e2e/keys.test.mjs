@@ -1,26 +1,25 @@
-// The keyboard alone: what Escape and the stop do, where keys go, and a whole product put together.
+// Keys: what Escape and the stop do, and where keys go.
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import {
   distance,
-  fetchScene,
   findBarriers,
   launchBrowser,
   openPage,
-  poseOf,
+  pressTimes,
   stateOf,
+  tabTo,
+  tabToPicture,
   takePicture,
   waitForCalm,
   waitForPicture,
   waitForPlacement,
   waitForRest,
   waitForState,
-  waitForStill,
   withStudio,
 } from "./harness.mjs";
 
 const kBushing = "../products/bushing.step";
-const kPump = "../products/gear_pump.step";
 const [kSleeve, kShaft] = [1, 2];
 
 let browser;
@@ -28,65 +27,6 @@ before(async () => {
   browser = await launchBrowser();
 });
 after(() => browser.close());
-
-/** Goes on with Tab until the focus is there; a selector. */
-async function tabTo(page, selector) {
-  for (let count = 0; count < 120; count++) {
-    if (await page.evaluate((wanted) => document.activeElement?.matches(wanted) === true, selector)) {
-      return;
-    }
-    await page.keyboard.press("Tab");
-  }
-  throw new Error(`Tab does not lead to ${selector}`);
-}
-
-const tabToPicture = (page) => tabTo(page, "canvas[role=application]");
-
-async function pressTimes(page, key, count) {
-  for (let k = 0; k < count; k++) {
-    await page.keyboard.press(key);
-  }
-}
-
-/** Arrow keys for so many pixels of the screen, a step being six of them. */
-async function pressArrows(page, { x, y }) {
-  const kStepPx = 6;
-  await pressTimes(page, x > 0 ? "ArrowRight" : "ArrowLeft", Math.round(Math.abs(x) / kStepPx));
-  await pressTimes(page, y > 0 ? "ArrowDown" : "ArrowUp", Math.round(Math.abs(y) / kStepPx));
-}
-
-const project = (page, p) => page.evaluate((at) => window.hvas.project(at), p);
-const between = (from, to) => ({ x: to.x - from.x, y: to.y - from.y });
-
-/** Takes the part whose turn it is, and brings it to where its place is seen, and on by the way in until it sits. */
-async function insertByKeys(page, step, goal) {
-  const kTries = 40;
-  const kPatience = 120_000;
-  await page.keyboard.press("Enter");
-  await waitForPlacement(page, step.occurrence, "held");
-  const isOver = async () => (await stateOf(page)).placements[step.occurrence] === "placed";
-  for (let count = 0; count < kTries; count++) {
-    await waitForStill(page, () => poseOf(page, step.occurrence), { isOver }, kPatience);
-    const { placements, held } = await stateOf(page);
-    if (placements[step.occurrence] === "placed") {
-      return;
-    }
-    if (held[0]?.state === "seated") {
-      await waitForPlacement(page, step.occurrence, "placed");
-      return;
-    }
-    const [at, there] = [await project(page, (await poseOf(page, step.occurrence)).p), await project(page, goal)];
-    const missing = between(at, there);
-    if (Math.hypot(missing.x, missing.y) > 12) {
-      await pressArrows(page, missing);
-    } else {
-      const kOn = 0.02;
-      const on = await project(page, goal.map((v, k) => v + kOn * step.way_in[k]));
-      await pressArrows(page, between(there, on));
-    }
-  }
-  throw new Error(`part ${step.occurrence} is not in its place: ${JSON.stringify(await stateOf(page))}`);
-}
 
 describe("Escape", () => {
   it("closes search, panel, tool and selection, in this order and one at a time", withStudio([kBushing], async (studio) => {
@@ -204,26 +144,6 @@ describe("keys", () => {
     await waitForState(page, ({ forcesOff }) => forcesOff);
     await page.keyboard.press("Control+k");
     await page.getByTestId("palette-input").waitFor();
-    await page.context().close();
-  }));
-});
-
-describe("the whole gear pump", () => {
-  it("is put together by keys alone", withStudio([kPump], async (studio) => {
-    const { page, complaints } = await openPage(browser, studio.operator);
-    await waitForPicture(page);
-    const scene = await fetchScene(page);
-    await tabToPicture(page);
-    await waitForCalm(page);
-    assert.deepEqual(await findBarriers(page), []);
-    await takePicture(page, "keys_begin");
-    for (const step of scene.steps.filter(({ kind }) => kind === "insert")) {
-      await insertByKeys(page, step, scene.occurrences[step.occurrence].goal.p);
-    }
-    await takePicture(page, "keys_done");
-    const { occurrences } = await fetchScene(page);
-    assert.deepEqual(occurrences.filter((o) => o.placement !== "placed").map((o) => o.name), []);
-    assert.deepEqual(complaints, []);
     await page.context().close();
   }));
 });
