@@ -198,10 +198,10 @@ int ShowFriction(bool is_json) {
     }
     const std::string range = row.low == row.high ? fmt::format("{:.2f}", row.low)
                                                   : fmt::format("{:.2f}-{:.2f}", row.low, row.high);
-    fmt::print("{}{}",
-               Fold(fmt::format("{:<28} {:<13} {:<9} {}", row.pair, row.symbol, range,
-                                row.condition)),
-               Wrap(fmt::format("{}; {}", row.source, row.status), 4));
+    fmt::print(
+        "{}{}",
+        Fold(fmt::format("{:<28} {:<13} {:<9} {}", row.pair, row.symbol, range, row.condition)),
+        Wrap(fmt::format("{}; {}", row.source, row.status), 4));
   }
   if (is_json) {
     fmt::print("{}\n", json.dump(2));

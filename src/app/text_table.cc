@@ -122,7 +122,9 @@ std::string TextTable::ToText(std::size_t indent) const {
       text += line;
     };
     for (std::size_t k = 0; k < height; ++k) {
-      const auto has_head = [&](std::size_t i) { return k < heads[i].size() && !heads[i][k].empty(); };
+      const auto has_head = [&](std::size_t i) {
+        return k < heads[i].size() && !heads[i][k].empty();
+      };
       bool is_empty = true;
       for (std::size_t i = 0; i < block.end; ++i) {
         is_empty = is_empty && !((i < left_ || i >= block.begin) && has_head(i));

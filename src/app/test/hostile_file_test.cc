@@ -109,8 +109,8 @@ TEST(GreedyFileTest, ThousandsOfPartsAtOnePlaceAreOpenedWhenTheyAreAllowed) {
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "many.gltf: it places more than 16384 parts",
                       refused.err);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--max-parts", refused.err);
-  const auto json = testing::RunHvasJson(
-      {"inspect", file, "--max-parts", "20000", "--only", "diagnostics"});
+  const auto json =
+      testing::RunHvasJson({"inspect", file, "--max-parts", "20000", "--only", "diagnostics"});
   const auto& diagnostics = json["diagnostics"];
   const auto duplicate = std::find_if(diagnostics.begin(), diagnostics.end(), [](const auto& item) {
     return item["code"] == "duplicate-part";
