@@ -145,6 +145,7 @@ describe("a session with a person", () => {
     try {
       const { page: person, complaints } = await openQuietPage(browser, studio.participant);
       await person.getByTestId("page-waiting").waitFor();
+      await desk.until((state) => state.is_open);
       await desk.do("begin");
       await agree(person);
 
