@@ -114,7 +114,9 @@ OptionHelp DescribeOption(const CLI::Option& option, const std::string& group) {
 
 void AddOptions(const CLI::App& app, const std::string& group, CommandHelp* help) {
   for (const CLI::Option* option : app.get_options([](const CLI::Option*) { return true; })) {
-    if (!option->get_group().empty()) {
+    // A group has a help of its own, which is that of its command.
+    const bool is_help_of_group = !group.empty() && option == app.get_help_ptr();
+    if (!option->get_group().empty() && !is_help_of_group) {
       help->options.push_back(DescribeOption(*option, group));
     }
   }

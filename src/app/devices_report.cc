@@ -225,7 +225,7 @@ std::string AddressOf(const DeviceInfo& info) {
 std::string DescribeDevice(const DeviceInfo& info) {
   std::string text = Labelled(info.is_emulated ? "EMULATED" : "DEVICE",
                               info.model + (info.serial.empty() ? "" : ", serial " + info.serial));
-  text += Labelled("address", AddressOf(info));
+  text += fmt::format("    {:<14}{}\n", "address", AddressOf(info));  // whole, to be copied
   if (!info.version.empty()) {
     text += Labelled("software", info.version);
   }

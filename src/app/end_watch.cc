@@ -23,7 +23,7 @@ sigset_t EndSignals() {
 
 EndWatch::EndWatch(std::chrono::milliseconds patience) {
   const sigset_t signals = EndSignals();
-  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  ::pthread_sigmask(SIG_BLOCK, &signals, &before_);
   thread_ = std::thread([this, patience] { Watch(patience); });
 }
 
@@ -35,6 +35,12 @@ EndWatch::~EndWatch() {
   changed_.notify_all();
   ::pthread_kill(thread_.native_handle(), SIGTERM);  // where no other has come
   thread_.join();
+  // What has come besides was for this end, too.
+  const sigset_t signals = EndSignals();
+  constexpr timespec kNow{};
+  while (::sigtimedwait(&signals, nullptr, &kNow) > 0) {
+  }
+  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 void EndWatch::Wait() {

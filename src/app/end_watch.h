@@ -1,5 +1,7 @@
 #pragma once
 
+#include <signal.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -28,6 +30,7 @@ class EndWatch {
  private:
   void Watch(std::chrono::milliseconds patience);
 
+  sigset_t before_{};  ///< Signals that were not for this thread before.
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_told_{false};  ///< To end.

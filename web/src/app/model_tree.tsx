@@ -1,7 +1,7 @@
 /** The product as a tree: an ARIA tree that the keyboard walks. */
 
 import { useComputed, useSignal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { buildTree, filterTree, type TreeNode } from "../model/tree";
 import { select, setHidden } from "../model/view_state";
 import { findAction } from "./actions";
@@ -148,7 +148,8 @@ export function ModelTree() {
   const nodes = useComputed(() => (store.scene.value === null ? [] : buildTree(store.scene.value)));
   const rows = useComputed(() => flatten(filterTree(nodes.value, text.value), closed.value, text.value.trim() !== ""));
   const request = ui.findRequest.value;
-  useEffect(() => {
+  // Before anything else is typed: what follows "/" belongs to the search.
+  useLayoutEffect(() => {
     if (request > 0) {
       search.current?.focus();
     }

@@ -72,11 +72,12 @@ function Name({ entry, isNaming }: { entry: RecordingEntry; isNaming: Signal<boo
       </button>
     );
   }
-  const save = async (event: Event) => {
+  const save = (event: Event) => {
     event.preventDefault();
     const name = text.value.trim();
-    if (name === "" || name === entry.name || (await studio.recordings.rename(entry.id, name))) {
-      isNaming.value = false;
+    isNaming.value = false;
+    if (name !== "" && name !== entry.name) {
+      void studio.recordings.rename(entry.id, name);  // a refusal is told below the list
     }
   };
   const onKeyDown = (event: KeyboardEvent) => {
@@ -87,7 +88,7 @@ function Name({ entry, isNaming }: { entry: RecordingEntry; isNaming: Signal<boo
     }
   };
   return (
-    <form class="rename" onSubmit={(event) => void save(event)}>
+    <form class="rename" onSubmit={save}>
       <input
         value={text.value}
         maxLength={100}
