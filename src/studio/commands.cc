@@ -164,7 +164,7 @@ Result<Json> Hub::DoRecord(const Json& command) {
 }
 
 Result<Json> Hub::DoRenameRecording(const Json& command) {
-  const auto id = TextAt(command, "id");
+  const auto id = TextAt(command, "recording");
   const auto name = TextAt(command, "name");
   if (!id || !name) {
     return Unexpected(!id ? id.error() : name.error());
@@ -173,7 +173,7 @@ Result<Json> Hub::DoRenameRecording(const Json& command) {
 }
 
 Result<Json> Hub::DoDeleteRecording(const Json& command) {
-  const auto id = TextAt(command, "id");
+  const auto id = TextAt(command, "recording");
   return id ? Done(workbench_->DeleteRecording(*id)) : Result<Json>(Unexpected(id.error()));
 }
 

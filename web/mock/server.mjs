@@ -218,11 +218,11 @@ const commands = {
   devices: () => hands.search(),
   use: ({ hand, device, scale }) => hands.use(hand, device, scale),
   record: ({ on, name }) => (on ? recorder.start(world, simulation, name) : recorder.stop()),
-  rename_recording({ id, name }) {
+  rename_recording({ recording: id, name }) {
     recorder.rename(id, name);
     broadcast({ event: "recordings" });
   },
-  delete_recording({ id }) {
+  delete_recording({ recording: id }) {
     recorder.done.delete(id);
     broadcast({ event: "recordings" });
   },

@@ -96,7 +96,7 @@ describe("the recordings", () => {
     await recordings.fetchList();
     await recordings.open("r1");
     await recordings.remove("r1");
-    expect(studio.command).toHaveBeenCalledWith({ command: "delete_recording", id: "r1" });
+    expect(studio.command).toHaveBeenCalledWith({ command: "delete_recording", recording: "r1" });
     expect(store.recordings.value?.map((each) => each.id)).toEqual(["r0"]);
     expect(recordings.playback.value).toBeNull();
     studio.command.mockResolvedValueOnce(null as never);

@@ -131,7 +131,7 @@ export class Recordings {
 
   /** @return Whether it has the name now. */
   async rename(id: string, name: string): Promise<boolean> {
-    if ((await this.studio.command({ command: "rename_recording", id, name })) === null) {
+    if ((await this.studio.command({ command: "rename_recording", recording: id, name })) === null) {
       return false;
     }
     const renamed = (entry: RecordingEntry) => (entry.id === id ? { ...entry, name } : entry);
@@ -141,7 +141,7 @@ export class Recordings {
   }
 
   async remove(id: string): Promise<void> {
-    if ((await this.studio.command({ command: "delete_recording", id })) === null) {
+    if ((await this.studio.command({ command: "delete_recording", recording: id })) === null) {
       return;
     }
     this.runs.delete(id);

@@ -45,9 +45,9 @@ export class Connection {
   }
 
   /** Sends a command; the promise is its answer. */
-  send<K extends Command["command"]>(command: Extract<Command, { command: K }>): Promise<CommandResults[K]> {
+  send<K extends Command["command"]>(command: Extract<Command, { command: K; id?: never }>): Promise<CommandResults[K]> {
     const id = this.nextId++;
-    this.post({ type: "text", text: JSON.stringify({ id, ...command }) });
+    this.post({ type: "text", text: JSON.stringify({ ...command, id }) });
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve: (result) => resolve(result as CommandResults[K]), reject });
     });

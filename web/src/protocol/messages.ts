@@ -145,6 +145,7 @@ export interface PathSwept {
   error_mm: number;
 }
 
+/** What a client asks for. None has an "id" of its own: by that of the message the answer is known. */
 export type Command =
   | { command: "open"; example?: string; upload?: string }
   | { command: "cancel" }
@@ -167,8 +168,8 @@ export type Command =
   | { command: "devices" }
   | { command: "use"; hand: number; device: string; scale?: number }
   | { command: "record"; on: boolean; name?: string }
-  | { command: "rename_recording"; id: string; name: string }
-  | { command: "delete_recording"; id: string }
+  | { command: "rename_recording"; recording: string; name: string }
+  | { command: "delete_recording"; recording: string }
   | StudyCommand;
 
 type Nothing = Record<string, never>;
