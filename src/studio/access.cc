@@ -271,7 +271,7 @@ Result<KeptAccess> LoadAccess(const std::filesystem::path& file) {
     return Fail(ErrorCode::kUnreadable, "this is not what a studio keeps of its links",
                 file.string(), "delete the file: the studio makes new links");
   };
-  const std::uint32_t port = IndexOr(json, "port", 0);
+  const std::uint32_t port = IndexOr(json, "port", kHighestPort + 1);
   if (IndexOr(json, "version", 0) != kAccessVersion || port > kHighestPort ||
       !HasArray(json, "links") || !HasArray(json, "browsers")) {
     return unreadable();

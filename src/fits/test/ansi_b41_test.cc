@@ -83,7 +83,7 @@ TEST(AnsiB41, GivesTheClearancesThatAreTabulatedBesideTheLimits) {
       ++checked;
     }
   }
-  EXPECT_EQ(checked, 179U);
+  EXPECT_EQ(checked, 181U);
 }
 
 TEST(AnsiB41, GrowsWithTheSizeAndHasEachToleranceOverZero) {

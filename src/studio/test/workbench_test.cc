@@ -388,8 +388,8 @@ TEST_F(WorkbenchTest, EmulatedDeviceInsertsThePegByThePointer) {  // N3
   const std::size_t start = log_.size();
   ASSERT_TRUE(bench_.UseDevice(0, kAddress, 0));
   ASSERT_TRUE(AwaitDevice(0, kAddress, start));
+  EXPECT_TRUE(AwaitTrue([this] { return bench_.hands()[0]["condition"] == "ready"; }));
   const Json hand = bench_.hands()[0];
-  EXPECT_EQ(hand["condition"], "ready");
   EXPECT_EQ(hand["device"]["is_emulated"], true);
   EXPECT_GT(hand["device"]["max_force_n"], 1);
   EXPECT_GT(hand["device"]["scale"], 0);
