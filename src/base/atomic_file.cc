@@ -11,6 +11,7 @@
 
 #include <fcntl.h>
 
+#include "base/descriptor.h"
 #include "base/write_all.h"
 
 namespace hvas {
@@ -64,16 +65,16 @@ Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view
                 "choose another name");
   }
   std::string name = target.string() + ".XXXXXX";  // mkstemp puts letters of its own for the six X.
-  const int descriptor = ::mkstemp(name.data());
-  if (descriptor < 0) {
+  Descriptor made(::mkstemp(name.data()));
+  if (!made.is_open()) {
     return FailWith(errno, file);
   }
-  int failure = WriteAll(descriptor, std::as_bytes(std::span(bytes)));
+  int failure = WriteAll(made.value(), std::as_bytes(std::span(bytes)));
   if (failure == 0 &&
-      (::fchmod(descriptor, ModeFor(target, readers)) != 0 || ::fsync(descriptor) != 0)) {
+      (::fchmod(made.value(), ModeFor(target, readers)) != 0 || ::fsync(made.value()) != 0)) {
     failure = errno;
   }
-  if (::close(descriptor) != 0 && failure == 0) {
+  if (!made.Close() && failure == 0) {
     failure = errno;
   }
   if (failure == 0 && ::rename(name.c_str(), target.c_str()) != 0) {

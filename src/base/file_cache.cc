@@ -16,6 +16,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include "base/descriptor.h"
 #include "base/user_folder.h"
 #include "base/write_all.h"
 
@@ -51,22 +52,22 @@ class SignalShield {
 
 bool WriteNew(const fs::path& path, std::initializer_list<std::span<const std::byte>> pieces) {
   constexpr mode_t kMode = S_IRUSR | S_IWUSR;
-  int descriptor = ::open(path.parent_path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
-  const bool is_nameless = descriptor >= 0;
+  Descriptor file(::open(path.parent_path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode));
+  const bool is_nameless = file.is_open();
   if (!is_nameless) {  // Not every file system knows files without a name.
-    descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+    file = Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode));
   }
-  if (descriptor < 0) {
+  if (!file.is_open()) {
     return false;
   }
-  bool is_written = std::all_of(pieces.begin(), pieces.end(), [descriptor](const auto piece) {
-    return WriteAll(descriptor, piece) == 0;
+  bool is_written = std::all_of(pieces.begin(), pieces.end(), [&file](const auto piece) {
+    return WriteAll(file.value(), piece) == 0;
   });
   if (is_written && is_nameless) {
-    is_written = ::linkat(AT_FDCWD, fmt::format("/proc/self/fd/{}", descriptor).c_str(), AT_FDCWD,
+    is_written = ::linkat(AT_FDCWD, fmt::format("/proc/self/fd/{}", file.value()).c_str(), AT_FDCWD,
                           path.c_str(), AT_SYMLINK_FOLLOW) == 0;
   }
-  return ::close(descriptor) == 0 && is_written;
+  return file.Close() && is_written;
 }
 
 }  // namespace

@@ -81,12 +81,8 @@ Result<RegularFile> RegularFile::Open(const std::filesystem::path& path) {
     return FailForKind(status.st_mode, path);
   }
   // What stands there may have become something else since then.
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (descriptor < 0) {
-    return FailToOpen(errno, path);
-  }
-  RegularFile file(descriptor, 0);
-  if (::fstat(descriptor, &status) != 0) {
+  RegularFile file(Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)));
+  if (!file.file_.is_open() || ::fstat(file.descriptor(), &status) != 0) {
     return FailToOpen(errno, path);
   }
   if (!S_ISREG(status.st_mode)) {
@@ -94,21 +90,6 @@ Result<RegularFile> RegularFile::Open(const std::filesystem::path& path) {
   }
   file.size_ = static_cast<std::uintmax_t>(status.st_size);
   return file;
-}
-
-RegularFile::RegularFile(RegularFile&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), size_(other.size_) {}
-
-RegularFile& RegularFile::operator=(RegularFile&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  std::swap(size_, other.size_);
-  return *this;
-}
-
-RegularFile::~RegularFile() {
-  if (descriptor_ >= 0) {
-    ::close(descriptor_);
-  }
 }
 
 Result<void> CheckRegularFile(const std::filesystem::path& path) {

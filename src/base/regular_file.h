@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <utility>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 
 namespace hvas {
@@ -18,21 +20,15 @@ class RegularFile {
    Errors: kNotFound, kUnreadable; each says which file, why not, and what to do. */
   [[nodiscard]] static Result<RegularFile> Open(const std::filesystem::path& path);
 
-  RegularFile(RegularFile&& other) noexcept;
-  RegularFile& operator=(RegularFile&& other) noexcept;
-  RegularFile(const RegularFile&) = delete;
-  RegularFile& operator=(const RegularFile&) = delete;
-  ~RegularFile();
-
-  [[nodiscard]] int descriptor() const { return descriptor_; }
+  [[nodiscard]] int descriptor() const { return file_.value(); }
 
   /** When it was opened [bytes]. */
   [[nodiscard]] std::uintmax_t size() const { return size_; }
 
  private:
-  RegularFile(int descriptor, std::uintmax_t size) : descriptor_(descriptor), size_(size) {}
+  explicit RegularFile(Descriptor file) : file_(std::move(file)) {}
 
-  int descriptor_{-1};
+  Descriptor file_;
   std::uintmax_t size_{0};
 };
 

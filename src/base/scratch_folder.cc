@@ -1,6 +1,5 @@
 #include "base/scratch_folder.h"
 
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -23,18 +22,15 @@ constexpr std::string_view kRandom = "XXXXXX";  // for mkdtemp, which puts lette
 // A younger folder may be of a process that has not locked it yet.
 constexpr std::chrono::minutes kYoungest{1};
 
-/** The folder, locked; -1 where it is not ours, or its owner is alive. */
-int Lock(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+/** The folder, locked; closed where it is not this user's, or its owner is alive. */
+Descriptor Lock(const fs::path& path) {
+  Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
 
   struct stat status {};
 
-  if (descriptor >= 0 && (::fstat(descriptor, &status) != 0 || status.st_uid != ::geteuid() ||
-                          ::flock(descriptor, LOCK_EX | LOCK_NB) != 0)) {
-    ::close(descriptor);
-    return -1;
-  }
-  return descriptor;
+  const bool is_ours = folder.is_open() && ::fstat(folder.value(), &status) == 0 &&
+                       status.st_uid == ::geteuid() && TryLock(folder) == 0;
+  return is_ours ? std::move(folder) : Descriptor();
 }
 
 void RemoveOrphans(const fs::path& parent) {
@@ -47,9 +43,8 @@ void RemoveOrphans(const fs::path& parent) {
         now - fs::last_write_time(at->path(), ignored) < kYoungest || ignored) {
       continue;
     }
-    if (const int descriptor = Lock(at->path()); descriptor >= 0) {
+    if (const Descriptor orphan = Lock(at->path()); orphan.is_open()) {
       fs::remove_all(at->path(), ignored);
-      ::close(descriptor);
     }
   }
 }
@@ -70,7 +65,7 @@ Result<ScratchFolder> ScratchFolder::Make() {
 }
 
 ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept
-    : path_(std::exchange(other.path_, {})), lock_(std::exchange(other.lock_, -1)) {}
+    : path_(std::exchange(other.path_, {})), lock_(std::move(other.lock_)) {}
 
 ScratchFolder& ScratchFolder::operator=(ScratchFolder&& other) noexcept {
   std::swap(path_, other.path_);
@@ -82,9 +77,6 @@ ScratchFolder::~ScratchFolder() {
   if (!path_.empty()) {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
-  }
-  if (lock_ >= 0) {
-    ::close(lock_);
   }
 }
 

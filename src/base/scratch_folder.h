@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 
 namespace hvas {
@@ -22,10 +23,11 @@ class ScratchFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  ScratchFolder(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
+  ScratchFolder(std::filesystem::path path, Descriptor lock)
+      : path_(std::move(path)), lock_(std::move(lock)) {}
 
   std::filesystem::path path_;  ///< Empty: there is none any more.
-  int lock_{-1};                ///< Descriptor of the folder, by whose lock others see the owner.
+  Descriptor lock_;             ///< The folder; others see by its lock that the owner is alive.
 };
 
 }  // namespace hvas

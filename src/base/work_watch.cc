@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
+#include "base/descriptor.h"
 
 namespace hvas {
 namespace {
@@ -20,13 +21,9 @@ constexpr double kLongest = 1e6;  // [s]
 
 /** Memory of this process that is in use [bytes]; 0 where the system does not tell. */
 std::uint64_t ReadMemoryInUse() {
-  const int descriptor = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) {
-    return 0;
-  }
+  const Descriptor file(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC));
   char text[128] = {};
-  const ssize_t size = ::read(descriptor, text, sizeof(text) - 1);
-  ::close(descriptor);
+  const ssize_t size = ::read(file.value(), text, sizeof(text) - 1);
   unsigned long all = 0;
   unsigned long resident = 0;
   const bool is_read = size > 0 && std::sscanf(text, "%lu %lu", &all, &resident) == 2;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
+#include "base/descriptor.h"
 #include "cad/worker.h"
 
 namespace hvas::cad {
@@ -22,7 +23,7 @@ constexpr double kNsPerSecond = 1e9;
 class MotionFile {
  public:
   explicit MotionFile(const PartMotions& motions)
-      : descriptor_(::memfd_create("hvas-motions", MFD_CLOEXEC)) {
+      : memory_(::memfd_create("hvas-motions", MFD_CLOEXEC)) {
     std::ofstream stream(name());
     for (const auto& [path, X_W] : motions) {
       const Quat& q = X_W.q();
@@ -32,17 +33,12 @@ class MotionFile {
     }
   }
 
-  ~MotionFile() { ::close(descriptor_); }
-
-  MotionFile(const MotionFile&) = delete;
-  MotionFile& operator=(const MotionFile&) = delete;
-
   [[nodiscard]] std::string name() const {
-    return fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_);
+    return fmt::format("/proc/{}/fd/{}", ::getpid(), memory_.value());
   }
 
  private:
-  int descriptor_;
+  Descriptor memory_;
 };
 
 Unexpected Explain(const WorkerRun& run, const std::string& name) {

@@ -21,6 +21,7 @@
 #include <spawn.h>
 
 #include "base/clock.h"
+#include "base/descriptor.h"
 
 extern char** environ;
 
@@ -32,34 +33,11 @@ namespace fs = std::filesystem;
 constexpr int kPollMs = 20;  // How late a request to stop may be noticed.
 constexpr std::size_t kLongestLine = 4096;
 
-/** An open file that is closed with the object, at a number that leaves room for the worker's. */
-class Descriptor {
- public:
-  Descriptor() = default;
-
-  explicit Descriptor(int low) {
-    if (low >= 0) {
-      value_ = ::fcntl(low, F_DUPFD_CLOEXEC, kOutputDescriptor + 1);
-      ::close(low);
-    }
-  }
-
-  ~Descriptor() { Close(); }
-
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  void Close() {
-    if (value_ >= 0) {
-      ::close(std::exchange(value_, -1));
-    }
-  }
-
-  [[nodiscard]] int value() const { return value_; }
-
- private:
-  int value_{-1};
-};
+/** The same open file at a number that leaves room for the worker's; closed when there is none. */
+Descriptor AboveNumbersOfWorker(const Descriptor& file) {
+  return Descriptor(file.is_open() ? ::fcntl(file.value(), F_DUPFD_CLOEXEC, kOutputDescriptor + 1)
+                                   : -1);
+}
 
 /** Takes the worker's lines apart; what is no such line is passed over. */
 class Listener {
@@ -286,13 +264,14 @@ std::string WorkerRun::Describe() const {
 WorkerRun RunWorker(const WorkerCall& call) {
   WorkerRun run;
   int ends[2] = {-1, -1};
-  const Descriptor output(::memfd_create("hvas-cad", MFD_CLOEXEC));
-  if (output.value() < 0 || ::pipe2(ends, O_CLOEXEC) != 0) {
+  const Descriptor output =
+      AboveNumbersOfWorker(Descriptor(::memfd_create("hvas-cad", MFD_CLOEXEC)));
+  if (!output.is_open() || ::pipe2(ends, O_CLOEXEC) != 0) {
     run.status = errno;
     return run;
   }
   const Descriptor from_worker(ends[0]);
-  Descriptor to_us(ends[1]);
+  Descriptor to_us = AboveNumbersOfWorker(Descriptor(ends[1]));
   WorkerCall limited = call;
   limited.arguments.insert(limited.arguments.end(),
                            {"--parent", std::to_string(::getpid()), "--memory-limit",

@@ -1,6 +1,5 @@
 #include "record/write_claim.h"
 
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,8 +25,8 @@ bool IsRecord(const std::filesystem::path& path) {
 
 /** Whether another program, or another recorder of this one, has the lock. A file system that has
  no locks is written to without. */
-bool IsLockedByOthers(int descriptor) {
-  return ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+bool IsLockedByOthers(const Descriptor& file) {
+  return TryLock(file) == EWOULDBLOCK;
 }
 
 Unexpected FailAsWritten(const std::filesystem::path& path) {
@@ -35,35 +34,13 @@ Unexpected FailAsWritten(const std::filesystem::path& path) {
               "choose another name for the record, or end that session");
 }
 
-/** Closes a descriptor at the end. */
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  ~Descriptor() {
-    if (number_ >= 0) {
-      ::close(number_);
-    }
-  }
-
-  [[nodiscard]] int number() const { return number_; }
-
-  [[nodiscard]] int Release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
-
 /** Removes what is at the path, unless somebody writes to it. Who reads it can read on. */
 Result<void> RemoveUnwritten(const std::filesystem::path& path) {
   const Descriptor old(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (old.number() < 0) {
+  if (!old.is_open()) {
     return {};
   }
-  if (IsLockedByOthers(old.number())) {
+  if (IsLockedByOthers(old)) {
     return FailAsWritten(path);
   }
   for (const char* suffix : {"-wal", "-shm", "-journal", ""}) {
@@ -86,7 +63,7 @@ Result<void> CheckTarget(const std::filesystem::path& path, bool replaces) {
                 path.string(), "choose another name for the record");
   }
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.number() >= 0 && IsLockedByOthers(file.number())) {
+  if (file.is_open() && IsLockedByOthers(file)) {
     return FailAsWritten(path);
   }
   if (std::filesystem::file_size(path, ignored) > 0 && !replaces) {
@@ -104,7 +81,7 @@ Result<WriteClaim> WriteClaim::Make(const std::filesystem::path& path, bool repl
     return Unexpected(removed.error());
   }
   Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly));
-  if (file.number() < 0) {
+  if (!file.is_open()) {
     const int cause = errno;
     return cause == EEXIST
                ? FailAsWritten(path)
@@ -112,27 +89,12 @@ Result<WriteClaim> WriteClaim::Make(const std::filesystem::path& path, bool repl
                       std::string("the record cannot be made: ") + std::strerror(cause),
                       path.string(), "check that the folder exists and may be written");
   }
-  const bool is_taken = IsLockedByOthers(file.number());
-  WriteClaim claim(path, file.Release());
+  const bool is_taken = IsLockedByOthers(file);
+  WriteClaim claim(path, std::move(file));
   if (is_taken || !claim.CheckStillThere()) {  // somebody else made the same file at this moment
     return FailAsWritten(path);
   }
   return claim;
-}
-
-WriteClaim::WriteClaim(WriteClaim&& other) noexcept
-    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-WriteClaim& WriteClaim::operator=(WriteClaim&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
-}
-
-WriteClaim::~WriteClaim() {
-  if (descriptor_ >= 0) {
-    ::close(descriptor_);
-  }
 }
 
 Result<void> WriteClaim::CheckStillThere() const {
@@ -140,7 +102,7 @@ Result<void> WriteClaim::CheckStillThere() const {
 
   struct stat found {};
 
-  const bool is_there = ::fstat(descriptor_, &made) == 0 && ::stat(path_.c_str(), &found) == 0 &&
+  const bool is_there = ::fstat(file_.value(), &made) == 0 && ::stat(path_.c_str(), &found) == 0 &&
                         made.st_dev == found.st_dev && made.st_ino == found.st_ino;
   if (!is_there) {
     return Fail(ErrorCode::kNotFound, "the record was removed or replaced while it was written",

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <utility>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 
 namespace hvas::record {
@@ -19,19 +21,15 @@ class WriteClaim {
    Errors: as CheckTarget(), and kNotFound where no file can be made. */
   [[nodiscard]] static Result<WriteClaim> Make(const std::filesystem::path& path, bool replaces);
 
-  WriteClaim(WriteClaim&& other) noexcept;
-  WriteClaim& operator=(WriteClaim&& other) noexcept;
-  ~WriteClaim();
-
   /** Errors: kNotFound when the path no longer leads to the file that was made. */
   [[nodiscard]] Result<void> CheckStillThere() const;
 
  private:
-  WriteClaim(std::filesystem::path path, int descriptor)
-      : path_(std::move(path)), descriptor_(descriptor) {}
+  WriteClaim(std::filesystem::path path, Descriptor file)
+      : path_(std::move(path)), file_(std::move(file)) {}
 
   std::filesystem::path path_;
-  int descriptor_;
+  Descriptor file_;
 };
 
 }  // namespace hvas::record

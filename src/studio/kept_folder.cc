@@ -1,10 +1,7 @@
 #include "studio/kept_folder.h"
 
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -13,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/digest.h"
+#include "base/regular_file.h"
 
 namespace hvas::studio {
 namespace {
@@ -25,18 +23,14 @@ Unexpected CannotKeep(const fs::path& file, int error) {
               "make room there, or set XDG_STATE_HOME to another folder");
 }
 
-/** A descriptor that has the lock; -1 when another program has it. */
-Result<int> TryLock(const fs::path& file) {
-  const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (lock < 0) {
-    return CannotKeep(file, errno);
+/** The locked file; closed when another program has it. */
+Result<Descriptor> LockFile(const fs::path& path) {
+  Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  const int error = file.is_open() ? TryLock(file) : errno;
+  if (error == EWOULDBLOCK) {
+    return Descriptor();
   }
-  if (::flock(lock, LOCK_EX | LOCK_NB) == 0) {
-    return lock;
-  }
-  const int error = errno;
-  ::close(lock);
-  return error == EWOULDBLOCK ? Result<int>(-1) : Result<int>(CannotKeep(file, error));
+  return error == 0 ? Result<Descriptor>(std::move(file)) : CannotKeep(path, error);
 }
 
 Result<void> MakeOwnFolder(const fs::path& folder) {
@@ -50,32 +44,23 @@ Result<void> MakeOwnFolder(const fs::path& folder) {
 
 }  // namespace
 
-Result<std::string> ReadKeptFile(const fs::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  if (descriptor < 0) {
+Result<std::string> ReadKeptFile(const fs::path& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (!file.is_open()) {
     return Fail(errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kInvalid,
-                "cannot be read: " + std::generic_category().message(errno), file.string(),
+                "cannot be read: " + std::generic_category().message(errno), path.string(),
                 "delete the file");
   }
-  constexpr off_t kLargest = 64 << 20;
 
   struct stat status {};
 
-  const bool is_own = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
-                      (status.st_mode & (S_IRWXG | S_IRWXO)) == 0 && status.st_size <= kLargest;
-  std::string text;
-  std::array<char, 1 << 16> some{};
-  ssize_t got = is_own ? 1 : 0;
-  while (got > 0) {
-    got = ::read(descriptor, some.data(), some.size());
-    text.append(some.data(), got > 0 ? static_cast<std::size_t>(got) : 0);
+  if (::fstat(file.value(), &status) != 0 || !S_ISREG(status.st_mode) ||
+      (status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    return Fail(ErrorCode::kInvalid, "this is no file of this user's alone", path.string(),
+                fmt::format("delete it, or: chmod 600 '{}'", path.string()));
   }
-  ::close(descriptor);
-  if (!is_own || got < 0) {
-    return Fail(ErrorCode::kInvalid, "this is no file of this user's alone", file.string(),
-                fmt::format("delete it, or: chmod 600 '{}'", file.string()));
-  }
-  return text;
+  constexpr std::size_t kLargest = std::size_t{64} << 20U;
+  return ReadRegularFile(path, kLargest);
 }
 
 Result<KeptFolder> KeptFolder::Take(const fs::path& parent, std::string_view subject) {
@@ -92,30 +77,15 @@ Result<KeptFolder> KeptFolder::Take(const fs::path& parent, std::string_view sub
     }
     std::error_code ignored;
     fs::permissions(path, fs::perms::owner_all, ignored);
-    const auto lock = TryLock(path / "lock");
+    auto lock = LockFile(path / "lock");
     if (!lock) {
       return Unexpected(lock.error());
     }
-    if (*lock >= 0) {
-      return KeptFolder(std::move(path), *lock);
+    if (lock->is_open()) {
+      return KeptFolder(std::move(path), std::move(*lock));
     }
   }
   return CannotKeep(parent, EBUSY);
-}
-
-KeptFolder::KeptFolder(KeptFolder&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
-
-KeptFolder& KeptFolder::operator=(KeptFolder&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(lock_, other.lock_);
-  return *this;
-}
-
-KeptFolder::~KeptFolder() {
-  if (lock_ >= 0) {
-    ::close(lock_);
-  }
 }
 
 void KeptFolder::RemoveUploadsBut(const fs::path& file) const {

@@ -3,14 +3,17 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 
 namespace hvas::studio {
 
 /** A small file of this user's that a studio has kept.
- Errors: kNotFound when there is none; kInvalid when it is no plain file or others can read it. */
-[[nodiscard]] Result<std::string> ReadKeptFile(const std::filesystem::path& file);
+ Errors: kNotFound when there is none; kInvalid when it is no plain file or others can read it; and
+ as ReadRegularFile(). */
+[[nodiscard]] Result<std::string> ReadKeptFile(const std::filesystem::path& path);
 
 /** Where a studio keeps what the next start goes on with: one folder for each subject, that nobody
  else can enter, and that one program has at a time, however it ends. */
@@ -23,27 +26,22 @@ class KeptFolder {
   [[nodiscard]] static Result<KeptFolder> Take(const std::filesystem::path& parent,
                                                std::string_view subject);
 
-  KeptFolder(KeptFolder&& other) noexcept;
-  KeptFolder& operator=(KeptFolder&& other) noexcept;
-  KeptFolder(const KeptFolder&) = delete;
-  KeptFolder& operator=(const KeptFolder&) = delete;
-  ~KeptFolder();
-
   [[nodiscard]] std::filesystem::path access_file() const { return path_ / "access.json"; }
 
   [[nodiscard]] std::filesystem::path work_file() const { return path_ / "work.json"; }
 
-  /** Of files that were sent to it; each lies in a folder of its own. */
+  /** The folder of files that were sent to it; each lies in a folder of its own. */
   [[nodiscard]] std::filesystem::path uploads() const { return path_ / "uploads"; }
 
   /** Removes all uploads but one, which may be none of them. */
   void RemoveUploadsBut(const std::filesystem::path& file) const;
 
  private:
-  KeptFolder(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
+  KeptFolder(std::filesystem::path path, Descriptor lock)
+      : path_(std::move(path)), lock_(std::move(lock)) {}
 
   std::filesystem::path path_;
-  int lock_{-1};  ///< Descriptor of a locked file; the system lets go of it with the program.
+  Descriptor lock_;  ///< A locked file; the system unlocks it when the program ends.
 };
 
 }  // namespace hvas::studio

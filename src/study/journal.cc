@@ -1,6 +1,5 @@
 #include "study/journal.h"
 
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -243,13 +242,13 @@ Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
 Result<Journal> Journal::Open(const std::filesystem::path& file, const JournalHead& head,
                               bool is_synced) {
   // Nobody else's business: what people did and said.
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (descriptor < 0) {
+  Journal journal(file, Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)),
+                  is_synced);
+  const int descriptor = journal.file_.value();
+  if (!journal.file_.is_open()) {
     return DiskFailed(file, errno);
   }
-  Journal journal(descriptor, is_synced);
-  journal.file_ = file;
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+  if (TryLock(journal.file_) != 0) {
     return Fail(ErrorCode::kInvalid, "another program is at this participant's session",
                 file.string(), "end that one first");
   }
@@ -276,29 +275,16 @@ Result<Journal> Journal::Open(const std::filesystem::path& file, const JournalHe
   return journal;
 }
 
-Journal::Journal(Journal&& other) noexcept
-    : file_(std::move(other.file_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      is_synced_(other.is_synced_),
-      size_(other.size_),
-      events_(std::move(other.events_)) {}
-
-Journal::~Journal() {
-  if (descriptor_ >= 0) {
-    ::close(descriptor_);
-  }
-}
-
 Result<void> Journal::Write(const std::string& line) {
-  int error = WriteAll(descriptor_, std::as_bytes(std::span(line.data(), line.size())));
-  if (error == 0 && is_synced_ && ::fdatasync(descriptor_) != 0) {
+  int error = WriteAll(file_.value(), std::as_bytes(std::span(line.data(), line.size())));
+  if (error == 0 && is_synced_ && ::fdatasync(file_.value()) != 0) {
     error = errno;
   }
   if (error != 0) {
     // What is half there must not be in front of the next line.
-    static_cast<void>(::ftruncate(descriptor_, size_));
-    static_cast<void>(::lseek(descriptor_, size_, SEEK_SET));
-    return DiskFailed(file_, error);
+    static_cast<void>(::ftruncate(file_.value(), size_));
+    static_cast<void>(::lseek(file_.value(), size_, SEEK_SET));
+    return DiskFailed(path_, error);
   }
   size_ += static_cast<std::int64_t>(line.size());
   return {};

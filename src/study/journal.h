@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 #include "study/study_session.h"
 
@@ -32,10 +33,6 @@ class Journal {
   [[nodiscard]] static Result<Journal> Open(const std::filesystem::path& file,
                                             const JournalHead& head, bool is_synced = true);
 
-  Journal(Journal&& other) noexcept;
-  Journal& operator=(Journal&&) = delete;
-  ~Journal();
-
   /** All so far. */
   [[nodiscard]] const std::vector<StudyEvent>& events() const { return events_; }
 
@@ -43,12 +40,13 @@ class Journal {
   [[nodiscard]] Result<void> Append(const StudyEvent& event);
 
  private:
-  Journal(int descriptor, bool is_synced) : descriptor_(descriptor), is_synced_(is_synced) {}
+  Journal(std::filesystem::path path, Descriptor file, bool is_synced)
+      : path_(std::move(path)), file_(std::move(file)), is_synced_(is_synced) {}
 
   [[nodiscard]] Result<void> Write(const std::string& line);
 
-  std::filesystem::path file_;
-  int descriptor_;
+  std::filesystem::path path_;
+  Descriptor file_;
   bool is_synced_;
   std::int64_t size_{0};
   std::vector<StudyEvent> events_;

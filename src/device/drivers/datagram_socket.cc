@@ -1,11 +1,9 @@
 #include "device/drivers/datagram_socket.h"
 
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
-#include <utility>
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -39,10 +37,11 @@ Result<DatagramSocket> DatagramSocket::Bind(const std::string& host, std::uint16
   if (!endpoint) {
     return Unexpected(endpoint.error());
   }
-  DatagramSocket socket(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  DatagramSocket socket(
+      Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)));
   const sockaddr_in address = ToSystem(*endpoint);
-  if (::bind(socket.descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) !=
-      0) {
+  if (::bind(socket.socket_.value(), reinterpret_cast<const sockaddr*>(&address),
+             sizeof(address)) != 0) {
     const int reason = errno;
     const std::string where = fmt::format("UDP {}:{}", host, port);
     if (reason == EADDRINUSE) {
@@ -57,19 +56,10 @@ Result<DatagramSocket> DatagramSocket::Bind(const std::string& host, std::uint16
   return socket;
 }
 
-DatagramSocket::DatagramSocket(DatagramSocket&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-DatagramSocket::~DatagramSocket() {
-  if (descriptor_ >= 0) {
-    ::close(descriptor_);
-  }
-}
-
 std::uint16_t DatagramSocket::port() const {
   sockaddr_in address{};
   socklen_t size = sizeof(address);
-  ::getsockname(descriptor_, reinterpret_cast<sockaddr*>(&address), &size);
+  ::getsockname(socket_.value(), reinterpret_cast<sockaddr*>(&address), &size);
   return ntohs(address.sin_port);
 }
 
@@ -77,7 +67,7 @@ std::optional<std::span<const std::byte>> DatagramSocket::Receive(std::span<std:
                                                                   Endpoint* sender) noexcept {
   sockaddr_in address{};
   socklen_t size = sizeof(address);
-  const ssize_t count = ::recvfrom(descriptor_, buffer.data(), buffer.size(), 0,
+  const ssize_t count = ::recvfrom(socket_.value(), buffer.data(), buffer.size(), 0,
                                    reinterpret_cast<sockaddr*>(&address), &size);
   if (count < 0) {
     return std::nullopt;
@@ -88,12 +78,12 @@ std::optional<std::span<const std::byte>> DatagramSocket::Receive(std::span<std:
 
 void DatagramSocket::Send(std::span<const std::byte> bytes, const Endpoint& receiver) noexcept {
   const sockaddr_in address = ToSystem(receiver);
-  ::sendto(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL,
+  ::sendto(socket_.value(), bytes.data(), bytes.size(), MSG_NOSIGNAL,
            reinterpret_cast<const sockaddr*>(&address), sizeof(address));
 }
 
 void DatagramSocket::WaitFor(int timeout_ms) const {
-  pollfd waiting{descriptor_, POLLIN, 0};
+  pollfd waiting{socket_.value(), POLLIN, 0};
   ::poll(&waiting, 1, timeout_ms);
 }
 

@@ -5,7 +5,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 
 namespace hvas::device {
@@ -27,10 +29,6 @@ class DatagramSocket {
   /** Errors: kInvalid (no such address here), kOutOfResource (port in use). Port 0: any. */
   static Result<DatagramSocket> Bind(const std::string& host, std::uint16_t port);
 
-  DatagramSocket(DatagramSocket&& other) noexcept;
-  DatagramSocket& operator=(DatagramSocket&&) = delete;
-  ~DatagramSocket();
-
   [[nodiscard]] std::uint16_t port() const;
 
   /** The next datagram, cut to the buffer; none when nothing is there. RT-safe. */
@@ -43,9 +41,9 @@ class DatagramSocket {
   void WaitFor(int timeout_ms) const;
 
  private:
-  explicit DatagramSocket(int descriptor) : descriptor_(descriptor) {}
+  explicit DatagramSocket(Descriptor socket) : socket_(std::move(socket)) {}
 
-  int descriptor_;
+  Descriptor socket_;
 };
 
 }  // namespace hvas::device

@@ -30,20 +30,6 @@ bool MakeAddress(const char* path, sockaddr_un* address) noexcept {
 
 }  // namespace
 
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
-  if (this != &other) {
-    Close();
-    value_ = std::exchange(other.value_, -1);
-  }
-  return *this;
-}
-
-void Descriptor::Close() noexcept {
-  if (value_ >= 0) {
-    ::close(std::exchange(value_, -1));
-  }
-}
-
 Descriptor TryConnect(const char* path, int type) noexcept {
   sockaddr_un address;
   if (!MakeAddress(path, &address)) {

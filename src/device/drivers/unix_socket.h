@@ -4,34 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <utility>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 
 namespace hvas::device {
-
-/** A file descriptor that is closed with its owner. */
-class Descriptor {
- public:
-  Descriptor() = default;
-
-  explicit Descriptor(int value) : value_(value) {}
-
-  Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
-
-  Descriptor& operator=(Descriptor&& other) noexcept;
-
-  ~Descriptor() { Close(); }
-
-  void Close() noexcept;
-
-  [[nodiscard]] int value() const noexcept { return value_; }
-
-  [[nodiscard]] bool is_open() const noexcept { return value_ >= 0; }
-
- private:
-  int value_{-1};
-};
 
 /** Connects to the UNIX socket of a service, for calls that do not wait. RT-safe.
  @param type  SOCK_STREAM or SOCK_SEQPACKET.
