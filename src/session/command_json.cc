@@ -77,11 +77,7 @@ std::string MakeBeginningJson(const Beginning& beginning) {
   for (const haptics::TickOptions& options : beginning.hands) {
     hands.push_back(MakeTickOptionsJson(options));
   }
-  Json parts = Json::array();
-  for (const PartState& part : beginning.parts) {
-    parts.push_back(MakePartJson(part));
-  }
-  return Json{{"hands", std::move(hands)}, {"parts", std::move(parts)}}.dump();
+  return Json{{"hands", std::move(hands)}, {"parts", MakePartsJson(beginning.parts)}}.dump();
 }
 
 Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count) {
@@ -97,14 +93,14 @@ Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count
     }
     beginning.hands.push_back(std::move(*options));
   }
-  for (const Json& part : fields.Array("parts")) {
-    JsonFields inner(part);
-    ReadPart(&inner, &beginning.parts.emplace_back());
-    fields.Take(inner);
-  }
+  auto parts = ParseParts(fields.Array("parts"));
   if (!fields.refused().empty()) {
     return Refuse(kWhat, fields.refused());
   }
+  if (!parts) {
+    return Unexpected(parts.error());
+  }
+  beginning.parts = std::move(*parts);
   if (beginning.hands.empty() || beginning.hands.size() > kMostHands) {
     return Refuse(kWhat, "hands");
   }
@@ -112,6 +108,26 @@ Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count
     return Refuse(kWhat, "parts");
   }
   return beginning;
+}
+
+Json MakePartsJson(const std::vector<PartState>& parts) {
+  Json json = Json::array();
+  for (const PartState& part : parts) {
+    json.push_back(MakePartJson(part));
+  }
+  return json;
+}
+
+Result<std::vector<PartState>> ParseParts(const Json& json) {
+  std::vector<PartState> parts;
+  for (const Json& part : json) {
+    JsonFields fields(part);
+    ReadPart(&fields, &parts.emplace_back());
+    if (!fields.refused().empty()) {
+      return Refuse(fmt::format("Part {}", parts.size() - 1), fields.refused());
+    }
+  }
+  return parts;
 }
 
 record::Command MakeCommand(const GivenCommand& given, const std::vector<PartState>& before) {

@@ -27,6 +27,10 @@ struct Beginning {
 /** @param part_count  Of the model. */
 [[nodiscard]] Result<Beginning> ParseBeginning(const std::string& json, std::size_t part_count);
 
+/** Where all parts are, by OccurrenceId. */
+[[nodiscard]] Json MakePartsJson(const std::vector<simulation::PartState>& parts);
+[[nodiscard]] Result<std::vector<simulation::PartState>> ParseParts(const Json& json);
+
 /** A command as it goes into a record.
  @param before  The parts as the command before it, or the beginning, had them. */
 [[nodiscard]] record::Command MakeCommand(const simulation::GivenCommand& given,
