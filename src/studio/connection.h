@@ -1,4 +1,4 @@
-// For server.cc alone: Boost.Beast takes long to compile.
+// For the sources of the server alone: Boost.Beast takes long to compile.
 #pragma once
 
 #include <cstdint>

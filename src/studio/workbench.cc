@@ -16,18 +16,6 @@ using product::OccurrenceId;
 using simulation::Placement;
 using simulation::SequenceStep;
 
-Error DemoAtWork() {
-  return {ErrorCode::kInvalid, "the simulated person is at work", "", "end the demo first"};
-}
-
-Error NothingOpen() {
-  return {ErrorCode::kNotFound, "no product is open", "", "open a file or an example first"};
-}
-
-const std::string& NameOf(const simulation::Model& model, OccurrenceId id) {
-  return model.product->occurrences[id.index()].name;
-}
-
 Json MakeStepEvent(const OpenScene& scene, std::size_t step) {
   return {{"event", "step"}, {"index", step}, {"total", scene.model->sequence.steps.size()}};
 }
@@ -59,19 +47,6 @@ Json MakeResumedEvent(const SceneNow& begun) {
           {"edits", begun.scene->edits.size()}};
 }
 
-/** Nothing where a part can be taken. */
-std::optional<Error> ExplainGone(Placement placement, const std::string& name) {
-  switch (placement) {
-    case Placement::kPlaced:
-      return Error{ErrorCode::kInvalid, "the part stands in its fixture", name,
-                   "take the other parts to it"};
-    case Placement::kHeld:
-      return Error{ErrorCode::kInvalid, "the part is in a hand already", name, "let it go first"};
-    default:
-      return std::nullopt;
-  }
-}
-
 std::array<double, 2> SpeedsBetween(const simulation::Frame& before,
                                     const simulation::Frame& after) {
   std::array<double, 2> speeds{};
@@ -82,25 +57,6 @@ std::array<double, 2> SpeedsBetween(const simulation::Frame& before,
     }
   }
   return speeds;
-}
-
-/** For the list of what can be undone; null for what changed nothing. */
-const char* WhatWasDone(const SceneNow& before, const simulation::SimulationEvent& dropped) {
-  const bool was_placed =
-      before.state.parts[dropped.occurrence.index()].placement == Placement::kPlaced;
-  if (dropped.was_seated) {
-    return was_placed ? nullptr : "insert";
-  }
-  return was_placed ? "take out" : "move";
-}
-
-bool IsHolding(const LiveRun& run) {
-  for (std::size_t hand = 0; hand < run.hand_count(); ++hand) {
-    if (run.is_holding(hand)) {
-      return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace
@@ -161,10 +117,6 @@ void Workbench::Open(const std::filesystem::path& file, const std::string& name)
   PostOpen([this, file, name] { DoOpen(file, name, nullptr); });
 }
 
-void Workbench::Resume(const KeptWork& work) {
-  PostOpen([this, work] { DoOpen(work.file, work.name, &work); });
-}
-
 void Workbench::PostOpen(std::function<void()> job) {
   {
     const std::lock_guard lock(mutex_);
@@ -212,60 +164,6 @@ void Workbench::DoOpen(const std::filesystem::path& file, const std::string& nam
   if (kept != nullptr) {
     Tell(MakeResumedEvent(begun));
   }
-}
-
-SceneNow Workbench::GoOnFrom(const KeptWork& kept, const std::shared_ptr<const OpenScene>& opened) {
-  if (opened->digest != kept.digest || opened->model->bodies.size() != kept.state.parts.size()) {
-    return {opened, {}};
-  }
-  SceneNow begun{opened, kept.state};
-  if (!kept.edits.empty()) {
-    auto edited = builder_.MakeEdits(*opened, kept.edits, TellProgressOf(kept.name));
-    if (!edited) {
-      return {opened, {}};
-    }
-    begun.scene = std::move(*edited);
-  }
-  const std::size_t steps = begun.scene->model->sequence.steps.size();
-  begun.state.next_step = std::min(begun.state.next_step, steps);
-  return begun;
-}
-
-void Workbench::KeepWork() {
-  if (!options_.work_file.empty()) {
-    (void)keeper_.TryPost([this](const std::stop_token&) { DoKeepWork(); }, 1);
-  }
-}
-
-void Workbench::DoKeepWork() {
-  const SceneNow now = LookAtRest();
-  if (options_.work_file.empty() || now.scene == nullptr || trial() != nullptr) {
-    return;
-  }
-  const auto saved = SaveWork(options_.work_file, MakeKeptWork(now));
-  if (!saved && std::exchange(can_keep_work_, false)) {
-    Tell({{"event", "failed"}, {"file", now.scene->name}, {"error", ToJson(saved.error())}});
-  }
-  can_keep_work_ = saved.has_value();
-}
-
-SceneNow Workbench::LookAtRest() const {
-  const std::lock_guard lock(mutex_);
-  SceneNow now{scene_, run_ != nullptr ? run_->state() : resting_};
-  for (std::size_t i = 0; i < now.state.parts.size(); ++i) {
-    simulation::PartState& part = now.state.parts[i];
-    if (part.placement != Placement::kHeld) {
-      continue;
-    }
-    part = {Placement::kLoose, scene_->model->bodies[i].X_WB_start};
-    for (const auto& before : before_take_) {
-      if (before && before->scene == scene_ &&
-          before->state.parts[i].placement != Placement::kHeld) {
-        part = before->state.parts[i];
-      }
-    }
-  }
-  return now;
 }
 
 cad::ProgressFn Workbench::TellProgressOf(const std::string& name) const {
@@ -380,39 +278,6 @@ void Workbench::HandleEvent(const OpenScene& scene, const simulation::Simulation
   }
 }
 
-void Workbench::HandleHold(const OpenScene& scene, const simulation::SimulationEvent& event) {
-  using Kind = simulation::SimulationEvent::Kind;
-  if (is_demo_ || (event.kind != Kind::kTaken && event.kind != Kind::kDropped)) {
-    return;
-  }
-  std::optional<SceneNow> before;
-  {
-    const std::lock_guard lock(mutex_);
-    before = std::exchange(before_take_[event.hand], std::nullopt);
-    resumed_ = nullptr;
-    if (event.kind == Kind::kTaken && run_ != nullptr) {
-      before_take_[event.hand] = SceneNow{scene_, run_->state_before_take()};
-    }
-  }
-  const char* what = event.kind == Kind::kDropped && before ? WhatWasDone(*before, event) : nullptr;
-  if (what != nullptr) {
-    Remember(std::move(*before),
-             fmt::format("{} {}", what, NameOf(*scene.model, event.occurrence)));
-  }
-}
-
-void Workbench::HandleDevice(const simulation::SimulationEvent& event) {
-  if (event.kind != simulation::SimulationEvent::Kind::kDevice) {
-    return;
-  }
-  const std::string text = rack_.SetState(event.hand, event.condition, event.vendor_code);
-  Tell({{"event", "device"},
-        {"hand", event.hand},
-        {"condition", device::ToString(event.condition)},
-        {"text", text}});
-  TellOfHands();
-}
-
 void Workbench::TellOfStep(const OpenScene& scene, std::size_t step) const {
   Tell(MakeStepEvent(scene, step));
 }
@@ -432,159 +297,6 @@ void Workbench::HandleStep(const OpenScene& scene, std::size_t step, bool has_pe
 void Workbench::Remember(SceneNow before, const std::string& what) {
   history_.Remember(std::move(before), what);
   TellOfHistory();
-}
-
-Result<void> Workbench::CheckIdle() const {
-  const std::lock_guard lock(mutex_);
-  if (scene_ == nullptr) {
-    return Unexpected(NothingOpen());
-  }
-  if (is_demo_) {
-    return Unexpected(DemoAtWork());
-  }
-  if (run_ != nullptr && IsHolding(*run_)) {
-    return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
-  }
-  return {};
-}
-
-Result<std::shared_ptr<LiveRun>> Workbench::RunForHand(std::size_t hand) const {
-  const std::lock_guard lock(mutex_);
-  if (scene_ == nullptr) {
-    return Unexpected(NothingOpen());
-  }
-  if (is_demo_) {
-    return Unexpected(DemoAtWork());
-  }
-  if (run_ == nullptr) {
-    return Fail(ErrorCode::kInvalid, "the product is just being changed", "", "try again");
-  }
-  if (hand >= run_->hand_count()) {
-    return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
-                "ask for two hands first");
-  }
-  if (!run_->hand(hand).follows_pointer()) {
-    return Fail(ErrorCode::kInvalid, "a device is in this hand", fmt::format("hand {}", hand),
-                "take the part with it, or give the hand back to the pointer");
-  }
-  return run_;
-}
-
-Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
-  const auto run = RunForHand(hand);
-  if (!run) {
-    return Unexpected(run.error());
-  }
-  const simulation::Model& model = (*run)->model();
-  if (id.index() >= model.bodies.size()) {
-    return Fail(ErrorCode::kNotFound, "there is no such part", fmt::format("o{}", id.value()), "");
-  }
-  if ((*run)->is_holding(hand)) {
-    return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
-  }
-  const LiveState state = (*run)->state();
-  const SequenceStep step = FindStep(model, state, id);
-  const simulation::PartState& part = state.parts[step.occurrence.index()];
-  const auto gone = ExplainGone(part.placement, NameOf(model, id));
-  const bool is_there = step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
-  if (gone && (!is_there || part.placement == Placement::kHeld)) {
-    return Unexpected(*gone);
-  }
-  // Upright: what the hand turns, the part turns with it.
-  const spatial::Pose X_WH(part.X_WB * simulation::CombineMass(model, step).p_BoBcm_B);
-  (*run)->Take(hand, step, X_WH);
-  return X_WH;
-}
-
-void Workbench::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
-  if (const auto run = RunForHand(hand)) {
-    (*run)->Move(hand, X_WH, is_gripping);
-  }
-}
-
-Result<void> Workbench::Release(std::size_t hand) {
-  const auto run = RunForHand(hand);
-  if (!run) {
-    return Unexpected(run.error());
-  }
-  const auto& hands = frame().frame.ticks;
-  (*run)->Move(hand, hand < hands.size() ? hands[hand].X_WH : spatial::Pose(), false);
-  return {};
-}
-
-Result<void> Workbench::SetHandCount(std::size_t count) {
-  if (count != 1 && count != HandRack::kMostHands) {
-    return Fail(ErrorCode::kInvalid, "there are one or two hands", "count", "");
-  }
-  auto idle = CheckHands();
-  if (idle) {
-    Post([this, count] {
-      if (rack_.count() != count) {
-        rack_.SetCount(count);
-        RestartWithHands();
-      }
-    });
-  }
-  return idle;
-}
-
-Result<void> Workbench::UseDevice(std::size_t hand, const std::string& address, double scale) {
-  auto idle = CheckHands();
-  if (idle) {
-    Post([this, hand, address, scale] {
-      if (const auto used = rack_.Use(hand, address, scale); !used) {
-        Tell({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
-        return;
-      }
-      RestartWithHands();
-    });
-  }
-  return idle;
-}
-
-Result<void> Workbench::CheckHands() const {
-  auto idle = CheckIdle();
-  return scene() == nullptr ? Result<void>() : idle;
-}
-
-void Workbench::RestartWithHands() {
-  if (scene() != nullptr) {
-    Restart(false);
-  } else {
-    TellOfHands();
-  }
-}
-
-void Workbench::SearchDevices() {
-  if (device_search_.Begin()) {
-    Post([this] {
-      device_search_.Run();
-      Json event = devices();
-      event["event"] = "devices";
-      Tell(std::move(event));
-    });
-  }
-}
-
-Json Workbench::devices() const {
-  return device_search_.Describe();
-}
-
-Json Workbench::hands() const {
-  std::shared_ptr<LiveRun> run;
-  {
-    const std::lock_guard lock(mutex_);
-    run = run_;
-  }
-  std::vector<const haptics::TickOptions*> options;
-  for (std::size_t i = 0; run != nullptr && i < run->hand_count(); ++i) {
-    options.push_back(&run->hand(i).tick_options());
-  }
-  return rack_.Describe(options);
-}
-
-void Workbench::TellOfHands() const {
-  Tell({{"event", "hands"}, {"hands", hands()}});
 }
 
 void Workbench::SetForcesOff(bool is_off) {
@@ -653,111 +365,6 @@ Result<void> Workbench::Reset() {
     });
   }
   return idle;
-}
-
-Result<void> Workbench::StartRecording(const std::string& name) {
-  if (auto idle = CheckIdle(); !idle) {
-    return idle;
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    if (recording_ != nullptr) {
-      return Fail(ErrorCode::kInvalid, "this is being recorded already", "", "end that first");
-    }
-  }
-  const auto file = shelf_.MakePath(scene()->model->product->name);
-  if (!file) {
-    return Unexpected(file.error());
-  }
-  Post([this, file = *file, name] { DoStartRecording(file, name); });
-  return {};
-}
-
-void Workbench::DoStartRecording(const std::filesystem::path& file, const std::string& name) {
-  const auto [scene, state] = Look();
-  if (!recording().is_null()) {
-    return;  // somebody was faster
-  }
-  const std::string called = name.empty() ? shelf_.MakeName(scene->model->product->name) : name;
-  auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state),
-                                  [this] { Post([this] { EndFailedRecording(); }); });
-  if (!started) {
-    Tell({{"event", "failed"}, {"file", file.string()}, {"error", ToJson(started.error())}});
-    return;
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    recording_ = *started;
-  }
-  Restart(false);  // a record begins with how the hands are set up and where all parts are
-  TellOfRecording((*started)->Describe());
-}
-
-Result<void> Workbench::StopRecording() {
-  {
-    const std::lock_guard lock(mutex_);
-    if (recording_ == nullptr) {
-      return Fail(ErrorCode::kInvalid, "nothing is being recorded", "", "");
-    }
-  }
-  Post([this] { FinishRecording(); });
-  return {};
-}
-
-void Workbench::FinishRecording() {
-  std::shared_ptr<Recording> ended;
-  {
-    const std::lock_guard lock(mutex_);
-    ended = std::exchange(recording_, nullptr);
-  }
-  if (ended == nullptr) {
-    return;
-  }
-  if (const auto stopped = ended->Stop(); !stopped) {
-    Tell({{"event", "failed"}, {"file", "recording"}, {"error", ToJson(stopped.error())}});
-  }
-  TellOfRecording(ended->Describe());
-}
-
-void Workbench::EndFailedRecording() {
-  std::shared_ptr<Recording> recording;
-  {
-    const std::lock_guard lock(mutex_);
-    recording = recording_;
-  }
-  if (recording != nullptr && recording->has_failed()) {
-    FinishRecording();
-  }
-}
-
-void Workbench::TellOfRecording(Json recording) const {
-  recording["event"] = "recording";
-  Tell(std::move(recording));
-  Tell({{"event", "recordings"}});
-}
-
-Json Workbench::recording() const {
-  const std::lock_guard lock(mutex_);
-  return recording_ != nullptr ? recording_->Describe() : Json(nullptr);
-}
-
-Result<void> Workbench::RenameRecording(const std::string& id, const std::string& name) {
-  auto renamed = shelf_.Rename(id, name);
-  if (renamed) {
-    Tell({{"event", "recordings"}});
-  }
-  return renamed;
-}
-
-Result<void> Workbench::DeleteRecording(const std::string& id) {
-  if (const Json now = recording(); !now.is_null() && now["id"] == id) {
-    return Fail(ErrorCode::kInvalid, "this is being recorded", id, "end that first");
-  }
-  auto deleted = shelf_.Delete(id);
-  if (deleted) {
-    Tell({{"event", "recordings"}});
-  }
-  return deleted;
 }
 
 Result<void> Workbench::Change(const Edit& edit) {

@@ -1,0 +1,443 @@
+#include "studio/http_session.h"
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <fmt/format.h>
+
+#include "studio/answers.h"
+#include "studio/event_json.h"
+#include "studio/json_fields.h"
+#include "studio/socket_session.h"
+
+namespace hvas::studio {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = asio::ip::tcp;
+using beast::error_code;
+
+constexpr std::size_t kMostHeader = 8 << 10;
+constexpr std::size_t kMostBody = 4 << 10;  // of what is no upload
+constexpr double kSlowest = 128 << 10;      // that an answer may be read with [bytes/s]
+constexpr std::chrono::seconds kUploadTime(300);
+constexpr std::chrono::seconds kLinger(5);  // for what was sent in vain
+
+constexpr std::string_view kContentSecurity =
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' "
+    "data: blob:; connect-src 'self'; worker-src 'self'; font-src 'self'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'";
+
+std::string_view ToView(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+beast::string_view ToBeast(std::string_view text) {
+  return {text.data(), text.size()};
+}
+
+template <typename Fields>
+std::string_view FieldOf(const Fields& fields, http::field name) {
+  return ToView(fields[name]);
+}
+
+/** One connection's requests, one after the other. */
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  HttpSession(tcp::socket socket, std::shared_ptr<ServerShared> shared)
+      : connection_(std::move(socket), shared->guests), shared_(std::move(shared)) {}
+
+  void Run() {
+    if (!connection_.is_in()) {
+      return;
+    }
+    error_code ignored;
+    wire().socket().set_option(tcp::no_delay(true), ignored);
+    if (shared_->tls == nullptr) {
+      ReadHeader();
+    } else {
+      BeginTls();
+    }
+  }
+
+ private:
+  using Header = http::request_parser<http::empty_body>;
+
+  beast::tcp_stream& wire() { return connection_.next_layer(); }
+
+  /** A browser that was given http:// is told where to go; all others begin with a handshake. */
+  void BeginTls() {
+    wire().expires_after(shared_->options.patience);
+    beast::async_detect_ssl(wire(), buffer_,
+                            [self = shared_from_this()](error_code error, bool is_tls) {
+                              if (error) {
+                                return;
+                              }
+                              if (is_tls) {
+                                self->ShakeHands();
+                              } else {
+                                self->ReadHeader();
+                              }
+                            });
+  }
+
+  void ShakeHands() {
+    connection_.BeginTls(shared_->tls.get())
+        .async_handshake(asio::ssl::stream_base::server, buffer_.data(),
+                         [self = shared_from_this()](error_code error, std::size_t used) {
+                           if (!error) {
+                             self->buffer_.consume(used);
+                             self->ReadHeader();
+                           }
+                         });
+  }
+
+  void ReadHeader() {
+    header_.emplace();
+    header_->header_limit(kMostHeader);
+    header_->body_limit(std::numeric_limits<std::uint64_t>::max());  // each route has its own
+    wire().expires_after(shared_->options.patience);
+    http::async_read_header(
+        connection_, buffer_, *header_, [self = shared_from_this()](error_code error, std::size_t) {
+          if (!error) {
+            self->Route();
+          } else if (error == http::error::header_limit) {
+            self->Refuse(http::status::request_header_fields_too_large,
+                         {ErrorCode::kInvalid, "the header is too long", "", ""});
+          }
+        });
+  }
+
+  /** Who may not come in at all; then what is asked for. */
+  void Route() {
+    const auto& request = header_->get();
+    is_last_ = !request.keep_alive();
+    const std::string_view origin = FieldOf(request, http::field::origin);
+    const Access& access = *shared_->access;
+    if (!access.AllowsHost(FieldOf(request, http::field::host))) {
+      return Refuse(http::status::forbidden,
+                    {ErrorCode::kInvalid, "this server does not answer to that host name", "Host",
+                     "open the address that it printed"});
+    }
+    if (shared_->tls != nullptr && !connection_.is_tls()) {
+      return SendToTls();
+    }
+    const bool is_change = request.method() != http::verb::get;
+    const bool is_upgrade = websocket::is_upgrade(request);
+    if ((is_change || is_upgrade || !origin.empty()) && !access.AllowsOrigin(origin)) {
+      return Refuse(http::status::forbidden,
+                    {ErrorCode::kInvalid, "a page from elsewhere may not speak with this server",
+                     "Origin", "open the address that it printed"});
+    }
+    const std::string_view target = ToView(request.target());
+    const std::string_view path = target.substr(0, target.find('?'));
+    if (request.method() == http::verb::post && path == "/api/session") {
+      return ReadJson(&HttpSession::ExchangeToken);
+    }
+    if (request.method() == http::verb::get && !path.starts_with("/api/") && path != "/ws") {
+      const auto accepted = FieldOf(request, http::field::accept_encoding);
+      return Reply(AnswerAsset(path, accepted));
+    }
+    const auto role = access.RoleOfCookie(FieldOf(request, http::field::cookie));
+    if (!role) {
+      return Refuse(http::status::unauthorized,
+                    {ErrorCode::kInvalid, "nobody knows you here", "",
+                     "open the link that the program printed, with its token"});
+    }
+    connection_.SetKnown();
+    RouteKnown(*role, path, is_upgrade);
+  }
+
+  /** The same page by https. The secret stays behind its #, in the browser. @pre Host is allowed.
+   */
+  void SendToTls() {
+    const std::string page = fmt::format("https://{}/", FieldOf(header_->get(), http::field::host));
+    http::response<http::string_body> response(http::status::temporary_redirect, 11);
+    response.set(http::field::location, page);
+    response.set(http::field::content_type, "text/plain; charset=utf-8");
+    response.body() = fmt::format("This studio speaks https only: open {}\n", page);
+    is_refused_ = true;
+    Send(std::move(response));
+  }
+
+  void RouteKnown(Role role, std::string_view path, bool is_upgrade) {
+    const http::verb method = header_->get().method();
+    if (path == "/ws" && is_upgrade) {
+      wire().expires_never();
+      StartSocketSession(std::move(connection_), shared_, role, header_->get());
+    } else if (method == http::verb::get) {
+      try {
+        Reply(AnswerApi(shared_->workbench, DecodePercent(path), shared_->hub.IsShielded(role)));
+      } catch (const std::exception& failed) {
+        Refuse(http::status::internal_server_error,
+               {ErrorCode::kInternal, failed.what(), std::string(path), "load the page again"});
+      }
+    } else if (path == "/api/upload" && method == http::verb::post) {
+      ReadUpload(role);
+    } else if (path == "/api/link" && method == http::verb::post) {
+      if (role != Role::kOperator) {
+        Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for looking on", "",
+                                         "ask whoever steers for a link"});
+      } else {
+        ReadJson(&HttpSession::MakeLink);
+      }
+    } else {
+      Refuse(http::status::not_found,
+             {ErrorCode::kNotFound, "there is nothing here", std::string(path), ""});
+    }
+  }
+
+  /** Whether a body is as long as is said beforehand, and that no longer than this; if not, says
+   so. One that comes in chunks is counted by its parser. */
+  bool IsShort(std::uint64_t most) {
+    const auto length = header_->content_length();
+    if (length && *length > most) {
+      RefuseBody(http::error::body_limit);
+      return false;
+    }
+    return true;
+  }
+
+  using JsonHandler = void (HttpSession::*)(const Json& body);
+
+  void ReadJson(JsonHandler handler) {
+    if (!IsShort(kMostBody)) {
+      return;
+    }
+    auto parser = std::make_shared<http::request_parser<http::string_body>>(std::move(*header_));
+    parser->body_limit(kMostBody);
+    http::async_read(connection_, buffer_, *parser,
+                     [self = shared_from_this(), parser, handler](error_code error, std::size_t) {
+                       if (error) {
+                         self->RefuseBody(error);
+                       } else {
+                         self->cookie_ = FieldOf(parser->get(), http::field::cookie);
+                         (*self.*handler)(Json::parse(parser->get().body(), nullptr,
+                                                      /*allow_exceptions=*/false));
+                       }
+                     });
+  }
+
+  void ExchangeToken(const Json& body) {
+    const auto admission = shared_->access->Admit(TextOr(body, "token", ""), cookie_);
+    if (!admission) {
+      return Refuse(http::status::unauthorized, admission.error());
+    }
+    shared_->KeepAccess();
+    if (admission->role == Role::kParticipant) {
+      shared_->TellOfParticipantLink();
+    }
+    http::response<http::string_body> response(http::status::ok, 11);
+    response.set(http::field::set_cookie, admission->set_cookie);
+    response.set(http::field::content_type, "application/json");
+    response.body() = Json{{"role", ToString(admission->role)}}.dump();
+    Send(std::move(response));
+  }
+
+  /** For somebody else: its token, and where it can be opened. */
+  void MakeLink(const Json& body) {
+    const auto role = ParseRole(TextOr(body, "role", ""));
+    if (!role || (*role == Role::kParticipant && shared_->options.desk == nullptr)) {
+      return Refuse(http::status::bad_request,
+                    {ErrorCode::kInvalid, "there is no such role", "role",
+                     "ask for a link of an operator or a viewer"});
+    }
+    const Access& access = *shared_->access;
+    const ServerOptions& options = shared_->options;
+    Json origins = Json::array();
+    for (const std::string& name :
+         options.tls ? options.names : std::vector<std::string>{"127.0.0.1"}) {
+      origins.push_back(access.OriginOf(name));
+    }
+    const std::string token = shared_->access->Invite(*role);
+    shared_->KeepAccess();
+    SendJson(http::status::ok, {{"token", token},
+                                {"role", ToString(*role)},
+                                {"is_for_one", IsForOne(*role)},
+                                {"origins", std::move(origins)},
+                                {"is_local", asio::ip::make_address(options.address).is_loopback()},
+                                {"reachable", options.reachable}});
+  }
+
+  void ReadUpload(Role role) {
+    if (role != Role::kOperator) {
+      return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for looking on",
+                                              "", "ask for a link to steer"});
+    }
+    if (!IsShort(shared_->options.most_upload)) {
+      return;
+    }
+    const std::string name = NameOfUpload(ToView(header_->get().target()));
+    const std::filesystem::path folder = shared_->options.upload_folder / MakeToken();
+    std::error_code failed;
+    std::filesystem::create_directory(folder, failed);
+    const std::filesystem::path file = folder / name;
+    auto parser = std::make_shared<http::request_parser<http::file_body>>(std::move(*header_));
+    parser->body_limit(shared_->options.most_upload);
+    error_code error;
+    parser->get().body().open(file.c_str(), beast::file_mode::write_new, error);
+    if (failed || error) {
+      return Refuse(
+          http::status::insufficient_storage,
+          {ErrorCode::kOutOfResource, "the file cannot be kept", name, "make room on the disk"});
+    }
+    wire().expires_after(kUploadTime);
+    http::async_read(
+        connection_, buffer_, *parser,
+        [self = shared_from_this(), parser, folder, file, name](error_code read, std::size_t) {
+          parser->get().body().close();
+          if (read) {
+            std::error_code ignored;
+            std::filesystem::remove_all(folder, ignored);
+            return self->RefuseBody(read);
+          }
+          self->SendJson(http::status::ok, {{"upload", self->shared_->hub.AddUpload(file, name)}});
+        });
+  }
+
+  void RefuseBody(error_code error) {
+    if (error == http::error::body_limit) {
+      Refuse(http::status::payload_too_large,
+             {ErrorCode::kOutOfResource, "this is larger than may be sent", "",
+              "open the file with `hvas studio FILE`"});
+    } else {
+      Refuse(http::status::bad_request,
+             {ErrorCode::kInvalid, "the request broke off", "", "try again"});
+    }
+  }
+
+  void Reply(Result<Answer> answer) {
+    if (!answer) {
+      const bool is_missing = answer.error().code == ErrorCode::kNotFound;
+      return Refuse(is_missing ? http::status::not_found : http::status::internal_server_error,
+                    answer.error());
+    }
+    if (answer->file) {
+      return SendFile(*answer->file, answer->type);
+    }
+    http::response<http::span_body<const char>> response(http::status::ok, 11);
+    response.set(http::field::content_type, answer->type);
+    const std::string etag = fmt::format("\"{}\"", answer->etag);
+    if (answer->etag.empty()) {
+      response.set(http::field::cache_control, "no-store");
+    } else {
+      response.set(http::field::etag, etag);
+      response.set(http::field::vary, "Accept-Encoding");
+      response.set(http::field::cache_control,
+                   answer->is_immutable ? "private, max-age=31536000, immutable" : "no-cache");
+    }
+    if (!answer->encoding.empty()) {
+      response.set(http::field::content_encoding, answer->encoding);
+    }
+    if (!answer->etag.empty() && FieldOf(header_->get(), http::field::if_none_match) == etag) {
+      response.result(http::status::not_modified);
+    } else {
+      response.body() = {answer->bytes.data(), answer->bytes.size()};
+    }
+    owner_ = std::move(answer->owner);
+    Send(std::move(response));
+  }
+
+  /** For saving: it may be large. */
+  void SendFile(const std::filesystem::path& file, const std::string& type) {
+    http::response<http::file_body> response(http::status::ok, 11);
+    error_code failed;
+    response.body().open(file.c_str(), boost::beast::file_mode::scan, failed);
+    if (failed) {
+      return Refuse(http::status::not_found,
+                    {ErrorCode::kNotFound, failed.message(), file.filename().string(), ""});
+    }
+    response.set(http::field::content_type, type);
+    response.set(http::field::content_disposition,
+                 fmt::format("attachment; filename=\"{}\"", file.filename().string()));
+    Send(std::move(response));
+  }
+
+  void SendJson(http::status status, const Json& json) {
+    http::response<http::string_body> response(status, 11);
+    response.set(http::field::content_type, "application/json");
+    response.set(http::field::cache_control, "no-store");
+    response.body() = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    Send(std::move(response));
+  }
+
+  /** Says why not, and ends the connection: what may follow in it is not read. */
+  void Refuse(http::status status, const Error& error) {
+    is_refused_ = true;
+    SendJson(status, {{"error", ToJson(error)}});
+  }
+
+  template <typename Body>
+  void Send(http::response<Body> response) {
+    response.set("Content-Security-Policy", ToBeast(kContentSecurity));
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.set("Cross-Origin-Embedder-Policy", "require-corp");
+    response.set("Cross-Origin-Resource-Policy", "same-origin");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Referrer-Policy", "no-referrer");
+    response.keep_alive(!is_refused_ && !is_last_);
+    response.prepare_payload();
+    const std::chrono::duration<double> long_enough(
+        static_cast<double>(response.payload_size().value_or(0)) / kSlowest);
+    wire().expires_after(shared_->options.patience +
+                         std::chrono::duration_cast<std::chrono::milliseconds>(long_enough));
+    auto kept = std::make_shared<http::response<Body>>(std::move(response));
+    http::async_write(connection_, *kept,
+                      [self = shared_from_this(), kept](error_code error, std::size_t) {
+                        self->owner_.reset();
+                        if (error) {
+                          return;
+                        }
+                        if (kept->keep_alive()) {
+                          self->ReadHeader();
+                        } else {
+                          self->End();
+                        }
+                      });
+  }
+
+  /** What still comes is read and thrown away for a while: were it not, the system would end the
+   connection at once, and with it the answer that is on its way. */
+  void End() {
+    wire().expires_after(kLinger);
+    if (!connection_.is_tls()) {
+      error_code ignored;
+      wire().socket().shutdown(tcp::socket::shutdown_send, ignored);
+    }
+    buffer_.clear();
+    ThrowAway();
+  }
+
+  void ThrowAway() {
+    connection_.async_read_some(buffer_.prepare(kMostHeader),
+                                [self = shared_from_this()](error_code error, std::size_t) {
+                                  if (!error) {
+                                    self->ThrowAway();
+                                  }
+                                });
+  }
+
+  Connection connection_;
+  std::shared_ptr<ServerShared> shared_;
+  beast::flat_buffer buffer_{kMostHeader + (64 << 10)};
+  std::optional<Header> header_;
+  std::shared_ptr<const void> owner_;
+  std::string cookie_;  ///< Of the request whose body was read.
+  bool is_refused_{false};
+  bool is_last_{false};  ///< The client asked for the end of the connection after this answer.
+};
+
+}  // namespace
+
+void StartHttpSession(tcp::socket socket, std::shared_ptr<ServerShared> shared) {
+  std::make_shared<HttpSession>(std::move(socket), std::move(shared))->Run();
+}
+
+}  // namespace hvas::studio

@@ -1,0 +1,51 @@
+// For the sources of the server alone: Boost.Beast takes long to compile.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/ssl/context.hpp>
+#include <fmt/format.h>
+
+#include "studio/connection.h"
+#include "studio/server.h"
+
+namespace hvas::studio {
+
+/** All that the sessions share; one thread's. */
+struct ServerShared {
+  ServerShared(Workbench* bench, std::vector<Example> examples, const ServerOptions& given)
+      : workbench(bench), hub(bench, std::move(examples)), options(given) {
+    hub.RunStudy(given.desk);
+  }
+
+  Workbench* workbench;
+  Hub hub;
+  ServerOptions options;
+  std::unique_ptr<Access> access;
+  std::unique_ptr<boost::asio::ssl::context> tls;  ///< Null: nothing is encrypted.
+  std::shared_ptr<Guests> guests{std::make_shared<Guests>()};
+
+  /** After a change of who may come in. What cannot be written is told of once. */
+  void KeepAccess() {
+    if (options.access_file.empty()) {
+      return;
+    }
+    const auto saved = SaveAccess(options.access_file, access->Keep());
+    if (!saved && std::exchange(can_keep_access, false)) {
+      fmt::print(stderr, "warning: the next start makes new links: {}\n", saved.error().ToString());
+    }
+  }
+
+  /** A link that nobody has used yet, for the experimenter to pass on. */
+  void TellOfParticipantLink() {
+    if (options.desk != nullptr) {
+      options.desk->SetParticipantLink("/#t=" + access->FindFresh(Role::kParticipant));
+    }
+  }
+
+  bool can_keep_access{true};
+};
+
+}  // namespace hvas::studio

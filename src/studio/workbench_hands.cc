@@ -1,0 +1,250 @@
+// The hands on the workbench: what they follow, and what they take and let go.
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "studio/event_json.h"
+#include "studio/next_step.h"
+#include "studio/workbench.h"
+
+namespace hvas::studio {
+namespace {
+
+using product::OccurrenceId;
+using simulation::Placement;
+using simulation::SequenceStep;
+
+Error DemoAtWork() {
+  return {ErrorCode::kInvalid, "the simulated person is at work", "", "end the demo first"};
+}
+
+Error NothingOpen() {
+  return {ErrorCode::kNotFound, "no product is open", "", "open a file or an example first"};
+}
+
+const std::string& NameOf(const simulation::Model& model, OccurrenceId id) {
+  return model.product->occurrences[id.index()].name;
+}
+
+/** Nothing where a part can be taken. */
+std::optional<Error> ExplainGone(Placement placement, const std::string& name) {
+  switch (placement) {
+    case Placement::kPlaced:
+      return Error{ErrorCode::kInvalid, "the part stands in its fixture", name,
+                   "take the other parts to it"};
+    case Placement::kHeld:
+      return Error{ErrorCode::kInvalid, "the part is in a hand already", name, "let it go first"};
+    default:
+      return std::nullopt;
+  }
+}
+
+/** For the list of what can be undone; null for what changed nothing. */
+const char* WhatWasDone(const SceneNow& before, const simulation::SimulationEvent& dropped) {
+  const bool was_placed =
+      before.state.parts[dropped.occurrence.index()].placement == Placement::kPlaced;
+  if (dropped.was_seated) {
+    return was_placed ? nullptr : "insert";
+  }
+  return was_placed ? "take out" : "move";
+}
+
+bool IsHolding(const LiveRun& run) {
+  for (std::size_t hand = 0; hand < run.hand_count(); ++hand) {
+    if (run.is_holding(hand)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Result<void> Workbench::CheckIdle() const {
+  const std::lock_guard lock(mutex_);
+  if (scene_ == nullptr) {
+    return Unexpected(NothingOpen());
+  }
+  if (is_demo_) {
+    return Unexpected(DemoAtWork());
+  }
+  if (run_ != nullptr && IsHolding(*run_)) {
+    return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
+  }
+  return {};
+}
+
+Result<std::shared_ptr<LiveRun>> Workbench::RunForHand(std::size_t hand) const {
+  const std::lock_guard lock(mutex_);
+  if (scene_ == nullptr) {
+    return Unexpected(NothingOpen());
+  }
+  if (is_demo_) {
+    return Unexpected(DemoAtWork());
+  }
+  if (run_ == nullptr) {
+    return Fail(ErrorCode::kInvalid, "the product is just being changed", "", "try again");
+  }
+  if (hand >= run_->hand_count()) {
+    return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
+                "ask for two hands first");
+  }
+  if (!run_->hand(hand).follows_pointer()) {
+    return Fail(ErrorCode::kInvalid, "a device is in this hand", fmt::format("hand {}", hand),
+                "take the part with it, or give the hand back to the pointer");
+  }
+  return run_;
+}
+
+Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
+  const auto run = RunForHand(hand);
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  const simulation::Model& model = (*run)->model();
+  if (id.index() >= model.bodies.size()) {
+    return Fail(ErrorCode::kNotFound, "there is no such part", fmt::format("o{}", id.value()), "");
+  }
+  if ((*run)->is_holding(hand)) {
+    return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
+  }
+  const LiveState state = (*run)->state();
+  const SequenceStep step = FindStep(model, state, id);
+  const simulation::PartState& part = state.parts[step.occurrence.index()];
+  const auto gone = ExplainGone(part.placement, NameOf(model, id));
+  const bool is_there = step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
+  if (gone && (!is_there || part.placement == Placement::kHeld)) {
+    return Unexpected(*gone);
+  }
+  // Upright: what the hand turns, the part turns with it.
+  const spatial::Pose X_WH(part.X_WB * simulation::CombineMass(model, step).p_BoBcm_B);
+  (*run)->Take(hand, step, X_WH);
+  return X_WH;
+}
+
+void Workbench::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
+  if (const auto run = RunForHand(hand)) {
+    (*run)->Move(hand, X_WH, is_gripping);
+  }
+}
+
+Result<void> Workbench::Release(std::size_t hand) {
+  const auto run = RunForHand(hand);
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  const auto& hands = frame().frame.ticks;
+  (*run)->Move(hand, hand < hands.size() ? hands[hand].X_WH : spatial::Pose(), false);
+  return {};
+}
+
+Result<void> Workbench::SetHandCount(std::size_t count) {
+  if (count != 1 && count != HandRack::kMostHands) {
+    return Fail(ErrorCode::kInvalid, "there are one or two hands", "count", "");
+  }
+  auto idle = CheckHands();
+  if (idle) {
+    Post([this, count] {
+      if (rack_.count() != count) {
+        rack_.SetCount(count);
+        RestartWithHands();
+      }
+    });
+  }
+  return idle;
+}
+
+Result<void> Workbench::UseDevice(std::size_t hand, const std::string& address, double scale) {
+  auto idle = CheckHands();
+  if (idle) {
+    Post([this, hand, address, scale] {
+      if (const auto used = rack_.Use(hand, address, scale); !used) {
+        Tell({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
+        return;
+      }
+      RestartWithHands();
+    });
+  }
+  return idle;
+}
+
+Result<void> Workbench::CheckHands() const {
+  auto idle = CheckIdle();
+  return scene() == nullptr ? Result<void>() : idle;
+}
+
+void Workbench::RestartWithHands() {
+  if (scene() != nullptr) {
+    Restart(false);
+  } else {
+    TellOfHands();
+  }
+}
+
+void Workbench::SearchDevices() {
+  if (device_search_.Begin()) {
+    Post([this] {
+      device_search_.Run();
+      Json event = devices();
+      event["event"] = "devices";
+      Tell(std::move(event));
+    });
+  }
+}
+
+Json Workbench::devices() const {
+  return device_search_.Describe();
+}
+
+Json Workbench::hands() const {
+  std::shared_ptr<LiveRun> run;
+  {
+    const std::lock_guard lock(mutex_);
+    run = run_;
+  }
+  std::vector<const haptics::TickOptions*> options;
+  for (std::size_t i = 0; run != nullptr && i < run->hand_count(); ++i) {
+    options.push_back(&run->hand(i).tick_options());
+  }
+  return rack_.Describe(options);
+}
+
+void Workbench::TellOfHands() const {
+  Tell({{"event", "hands"}, {"hands", hands()}});
+}
+
+void Workbench::HandleHold(const OpenScene& scene, const simulation::SimulationEvent& event) {
+  using Kind = simulation::SimulationEvent::Kind;
+  if (is_demo_ || (event.kind != Kind::kTaken && event.kind != Kind::kDropped)) {
+    return;
+  }
+  std::optional<SceneNow> before;
+  {
+    const std::lock_guard lock(mutex_);
+    before = std::exchange(before_take_[event.hand], std::nullopt);
+    resumed_ = nullptr;
+    if (event.kind == Kind::kTaken && run_ != nullptr) {
+      before_take_[event.hand] = SceneNow{scene_, run_->state_before_take()};
+    }
+  }
+  const char* what = event.kind == Kind::kDropped && before ? WhatWasDone(*before, event) : nullptr;
+  if (what != nullptr) {
+    Remember(std::move(*before),
+             fmt::format("{} {}", what, NameOf(*scene.model, event.occurrence)));
+  }
+}
+
+void Workbench::HandleDevice(const simulation::SimulationEvent& event) {
+  if (event.kind != simulation::SimulationEvent::Kind::kDevice) {
+    return;
+  }
+  const std::string text = rack_.SetState(event.hand, event.condition, event.vendor_code);
+  Tell({{"event", "device"},
+        {"hand", event.hand},
+        {"condition", device::ToString(event.condition)},
+        {"text", text}});
+  TellOfHands();
+}
+
+}  // namespace hvas::studio

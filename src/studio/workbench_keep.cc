@@ -1,0 +1,71 @@
+// The work on the workbench that is kept for the next start of the studio.
+
+#include <algorithm>
+#include <utility>
+
+#include "studio/event_json.h"
+#include "studio/workbench.h"
+
+namespace hvas::studio {
+
+using simulation::Placement;
+
+void Workbench::Resume(const KeptWork& work) {
+  PostOpen([this, work] { DoOpen(work.file, work.name, &work); });
+}
+
+SceneNow Workbench::GoOnFrom(const KeptWork& kept, const std::shared_ptr<const OpenScene>& opened) {
+  if (opened->digest != kept.digest || opened->model->bodies.size() != kept.state.parts.size()) {
+    return {opened, {}};
+  }
+  SceneNow begun{opened, kept.state};
+  if (!kept.edits.empty()) {
+    auto edited = builder_.MakeEdits(*opened, kept.edits, TellProgressOf(kept.name));
+    if (!edited) {
+      return {opened, {}};
+    }
+    begun.scene = std::move(*edited);
+  }
+  const std::size_t steps = begun.scene->model->sequence.steps.size();
+  begun.state.next_step = std::min(begun.state.next_step, steps);
+  return begun;
+}
+
+void Workbench::KeepWork() {
+  if (!options_.work_file.empty()) {
+    (void)keeper_.TryPost([this](const std::stop_token&) { DoKeepWork(); }, 1);
+  }
+}
+
+void Workbench::DoKeepWork() {
+  const SceneNow now = LookAtRest();
+  if (options_.work_file.empty() || now.scene == nullptr || trial() != nullptr) {
+    return;
+  }
+  const auto saved = SaveWork(options_.work_file, MakeKeptWork(now));
+  if (!saved && std::exchange(can_keep_work_, false)) {
+    Tell({{"event", "failed"}, {"file", now.scene->name}, {"error", ToJson(saved.error())}});
+  }
+  can_keep_work_ = saved.has_value();
+}
+
+SceneNow Workbench::LookAtRest() const {
+  const std::lock_guard lock(mutex_);
+  SceneNow now{scene_, run_ != nullptr ? run_->state() : resting_};
+  for (std::size_t i = 0; i < now.state.parts.size(); ++i) {
+    simulation::PartState& part = now.state.parts[i];
+    if (part.placement != Placement::kHeld) {
+      continue;
+    }
+    part = {Placement::kLoose, scene_->model->bodies[i].X_WB_start};
+    for (const auto& before : before_take_) {
+      if (before && before->scene == scene_ &&
+          before->state.parts[i].placement != Placement::kHeld) {
+        part = before->state.parts[i];
+      }
+    }
+  }
+  return now;
+}
+
+}  // namespace hvas::studio
