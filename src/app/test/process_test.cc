@@ -1,17 +1,16 @@
 #include <signal.h>
 #include <sys/wait.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "app/test/run_hvas.h"
+#include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
 
 namespace hvas::app {
@@ -23,32 +22,22 @@ using testing::ProductFile;
 using testing::Ran;
 using testing::RunHvas;
 
-/** The process that another has started, once it has; 0 after ten seconds without one. */
+/** The process that another has started, once it has; 0 when it never does. */
 pid_t ChildOf(pid_t parent) {
   const std::string pid = std::to_string(parent);
-  for (int i = 0; i < 1000; ++i) {
-    std::ifstream children("/proc/" + pid + "/task/" + pid + "/children");
-    pid_t child = 0;
-    if (children >> child) {
-      return child;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return 0;
+  pid_t child = 0;
+  const auto has_child = [&] {
+    return static_cast<bool>(std::ifstream("/proc/" + pid + "/task/" + pid + "/children") >> child);
+  };
+  return hvas::testing::AwaitTrue(has_child) ? child : 0;
 }
 
-/** Whether a process is gone within a second; one that waits to be reaped is. */
-bool EndsSoon(pid_t pid) {
-  for (int i = 0; i < 100; ++i) {
-    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-    std::string word;
-    std::string state;
-    if (!(stat >> word >> word >> state) || state == "Z" || state == "X") {
-      return true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return false;
+/** Whether a process is gone; one that waits to be reaped is. */
+bool IsGone(pid_t pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string word;
+  std::string state;
+  return !(stat >> word >> word >> state) || state == "Z" || state == "X";
 }
 
 /** /dev/full takes nothing, as a disk without room. */
@@ -96,7 +85,7 @@ TEST_P(EndTest, ProgramThatIsEndedWhileItReadsLeavesNoProcess) {
   int status = 0;
   ::waitpid(hvas, &status, 0);
   EXPECT_TRUE(WIFSIGNALED(status)) << "it had ended before";
-  EXPECT_TRUE(EndsSoon(reader));
+  EXPECT_TRUE(hvas::testing::AwaitTrue([&] { return IsGone(reader); }));
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, EndTest, ::testing::Values(SIGINT, SIGKILL),

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "base/clock.h"
+#include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
 #include "cad/import.h"
 #include "cad/import_cache.h"
@@ -73,16 +75,11 @@ class ProcessTest : public ::testing::Test {
   }
 
   [[nodiscard]] bool AreGone() const {
-    for (const pid_t pid : Started()) {
-      // A killed process that nobody waits for may take a moment, and stay as a zombie.
-      for (int i = 0; i < 100 && IsAlive(pid); ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      }
-      if (IsAlive(pid)) {
-        return false;
-      }
-    }
-    return !Started().empty();
+    const std::vector<pid_t> pids = Started();
+    // A killed process that nobody waits for may take a moment, and stay as a zombie.
+    return !pids.empty() && std::all_of(pids.begin(), pids.end(), [](pid_t pid) {
+      return hvas::testing::AwaitTrue([&] { return !IsAlive(pid); });
+    });
   }
 
   static bool IsAlive(pid_t pid) {

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/test/await_true.h"
 #include "device/force_withdrawal.h"
 #include "device/test/library_rig.h"
 
@@ -63,10 +64,7 @@ TEST_P(LibraryLiveTest, ADeviceThatIsUnpluggedIsTakenUpAgainOffTheHapticThread) 
   EXPECT_TRUE(TickUntil(**device, Condition::kReady));
   device->reset();
   const auto force = [&] { return emulator->device().truth().command.f.norm(); };
-  for (int k = 0; k < kMostTicks && force() > 0; ++k) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  EXPECT_EQ(force(), 0);
+  EXPECT_TRUE(hvas::testing::AwaitTrue([&] { return force() == 0; }));
 }
 
 TEST_P(LibraryLiveTest, ADeviceCanBeClosedWhileItIsGone) {

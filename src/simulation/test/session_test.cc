@@ -44,7 +44,7 @@ TEST(SessionTest, PegGoesIntoItsBlockExactly) {  // N10, X9
   }
 }
 
-TEST(SessionTest, ForceNeverJumpsAndNothingSinksIn) {  // issue A, N6
+TEST(SessionTest, ForceNeverJumpsAndNothingSinksIn) {  // N6
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     Session session(PegInBlockModel(), seed);
     (void)RunLockstep(session.MakeExecution(kLimit_s));

@@ -1,12 +1,11 @@
 #include "studio/live_run.h"
 
-#include <chrono>
 #include <memory>
-#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "base/clock.h"
+#include "base/test/await_true.h"
 #include "simulation/test/small_products.h"
 
 namespace hvas::studio {
@@ -73,15 +72,10 @@ class LiveRunTest : public ::testing::Test {
 
   /** Moves the hand to a place until something holds, for a minute at most. */
   bool MoveUntil(const Vec3& p_WH, const std::function<bool()>& holds) {
-    constexpr int kTries = 6000;
-    for (int i = 0; i < kTries; ++i) {
+    return hvas::testing::AwaitTrue([&] {
       run_->Move(0, Pose(p_WH), true);
-      if (holds()) {
-        return true;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
+      return holds();
+    });
   }
 
   [[nodiscard]] double force() const {

@@ -8,12 +8,12 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
 #include "studio/server.h"
 #include "studio/test/raw_client.h"
@@ -88,7 +88,7 @@ class ServerTest : public ::testing::Test {
     return Post("/api/session", Json{{"token", token}}.dump());
   }
 
-  /** As the Cookie header of a browser that has come by the link of a role. */
+  /** The Cookie header of a browser that has come by the link of a role. */
   std::string CookieOf(Role role) {
     std::string& cookie = cookies_[role];
     if (cookie.empty()) {
@@ -152,11 +152,7 @@ class ServerTest : public ::testing::Test {
 
   /** What was kept is thrown away after the answer: waits for it. */
   [[nodiscard]] bool BecomesEmpty() const {
-    constexpr int kTries = 500;
-    for (int i = 0; i < kTries && CountFiles() > 0; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return CountFiles() == 0;
+    return hvas::testing::AwaitTrue([this] { return CountFiles() == 0; });
   }
 
   hvas::testing::TemporaryFolder temporary_;

@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "base/test/await_true.h"
 #include "studio/test/server_fixture.h"
 
 namespace hvas::studio {
@@ -90,10 +91,7 @@ TEST_F(ServerTest, UploadThatBreaksOffLeavesNothing) {
     client.Send("POST /api/upload?name=a.stp HTTP/1.1\r\nHost: " + host() +
                 "\r\nOrigin: " + origin() + "\r\nCookie: " + CookieOf(Role::kOperator) +
                 "\r\nContent-Length: 9000\r\n\r\n" + std::string(4000, 'x'));
-    for (int i = 0; i < 500 && CountFiles() == 0; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    EXPECT_GT(CountFiles(), 0u);
+    EXPECT_TRUE(hvas::testing::AwaitTrue([this] { return CountFiles() > 0; }));
   }
   EXPECT_TRUE(BecomesEmpty()) << CountFiles();
 }

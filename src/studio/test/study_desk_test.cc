@@ -3,13 +3,12 @@
 
 #include "studio/study_desk.h"
 
-#include <chrono>
 #include <string>
-#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "base/scratch_folder.h"
+#include "base/test/await_true.h"
 #include "studio/hub.h"
 #include "studio/scene_json.h"
 #include "studio/test/small_bench.h"
@@ -118,9 +117,8 @@ class StudyDeskTest : public ::testing::Test {
 
   /** Of the trial on the bench [s]. */
   void AwaitElapsed(double seconds) {
-    for (int i = 0; i < 6000 && bench_.trial()->watch().elapsed_s() < seconds; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
+    ASSERT_TRUE(
+        hvas::testing::AwaitTrue([&] { return bench_.trial()->watch().elapsed_s() >= seconds; }));
   }
 
   std::string Phase() {

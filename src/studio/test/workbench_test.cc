@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/test/await_true.h"
 #include "device/driver.h"
 #include "record/reader.h"
 #include "session/replay.h"
@@ -18,6 +19,7 @@
 namespace hvas::studio {
 namespace {
 
+using hvas::testing::AwaitTrue;
 using product::OccurrenceId;
 using simulation::Placement;
 using spatial::Pose;
@@ -50,17 +52,6 @@ class WorkbenchTest : public ::testing::Test {
 
   bool AwaitPlacement(std::size_t i, Placement wanted) const {
     return AwaitTrue([&] { return PlacementOf(i) == wanted; });
-  }
-
-  static bool AwaitTrue(const std::function<bool()>& holds) {
-    constexpr int kTries = 3000;
-    for (int n = 0; n < kTries; ++n) {
-      if (holds()) {
-        return true;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
   }
 
   std::optional<Json> AwaitPlacementEvent(const std::string& placement, std::size_t start) {
