@@ -1,11 +1,12 @@
 // What makes the work easier, and that everybody can use it: in each of its states the page has nothing
 // that axe finds (WCAG 2.2 AA).
 import assert from "node:assert/strict";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import {
+  browser,
   findBarriers,
-  launchBrowser,
   openPage,
+  shareBrowser,
   takePicture,
   waitForCalm,
   waitForPicture,
@@ -16,11 +17,7 @@ import {
 
 const kBushing = "../products/bushing.step";
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 /** A key that opens something and closes it again; what is seen then. */
 const toggle = (key, seen) => ({

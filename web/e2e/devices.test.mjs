@@ -1,10 +1,11 @@
 // Two hands, and devices in them (N8 of the requirements, docs/studio.md).
 import assert from "node:assert/strict";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import {
+  browser,
   findBarriers,
-  launchBrowser,
   openPage,
+  shareBrowser,
   stateOf,
   takeByMouse,
   takePicture,
@@ -20,11 +21,7 @@ const kBushing = "../products/bushing.step";
 const kBushingPart = 1;
 const kShaft = 2;
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 async function openDevices(page) {
   await page.getByTestId("menu.simulate").click();

@@ -14,13 +14,17 @@ const kMostMs = 5000;
 /** Ends it while something is under way, and says with which status. */
 async function endWhile(args, begin) {
   const studio = await startStudio(args);
-  const leave = await begin(studio, await signIn(studio.operator));
-  const from = performance.now();
-  const status = await studio.stop();
-  const ms = performance.now() - from;
-  leave?.();
-  assert.ok(ms < kMostMs, `it took ${ms} ms`);
-  return status;
+  try {
+    const leave = await begin(studio, await signIn(studio.operator));
+    const from = performance.now();
+    const status = await studio.stop();
+    const ms = performance.now() - from;
+    leave?.();
+    assert.ok(ms < kMostMs, `it took ${ms} ms`);
+    return status;
+  } finally {
+    await studio.kill();
+  }
 }
 
 describe("SIGTERM", () => {

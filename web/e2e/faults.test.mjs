@@ -2,13 +2,14 @@
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import {
+  browser,
   distance,
   fetchScene,
   kSilentMs,
-  launchBrowser,
   openPage,
   passSession,
   poseOf,
+  shareBrowser,
   shareStudio,
   stateOf,
   takePicture,
@@ -22,11 +23,7 @@ import {
 const kBushing = "../products/bushing.step";
 const kShaft = 2;
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 /** The mouse takes hold of the shaft, which may be in the hand already, and holds it higher. */
 async function liftShaft(page) {

@@ -1,7 +1,7 @@
 // A studio of one's own for each test, and a browser that looks at it as a person would.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { after, before } from "node:test";
@@ -11,6 +11,7 @@ import WebSocket from "ws";
 const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
 const kChromium = process.env["HVAS_CHROMIUM"] ?? "/usr/bin/chromium";
+const kPatienceMs = 120_000;  // for what happens at once where nothing is wrong
 const kAxe = readFileSync("node_modules/axe-core/axe.min.js", "utf8");
 mkdirSync(kPictures, { recursive: true });
 
@@ -65,6 +66,21 @@ export async function startStudio(args = [], { home = makeFolder() } = {}) {
   };
 }
 
+/** Waits until what a studio with this home keeps on disk for its next start fits: it is written soon after what is told. */
+export async function waitForKept(home, fits) {
+  const end = Date.now() + kPatienceMs;
+  const folder = join(home, "hvas", "studio");
+  const isKept = () => readdirSync(folder).some((each) => {
+    const file = join(folder, each, "work.json");
+    return existsSync(file) && fits(JSON.parse(readFileSync(file, "utf8")));
+  });
+  while (!isKept()) {
+    assert.ok(Date.now() < end, `nothing that fits is kept in ${folder}: ${fits}`);
+    // eslint-disable-next-line no-restricted-globals -- Between looks at a condition, not in place of one.
+    await new Promise((resolve) => setTimeout(resolve, 10));
+  }
+}
+
 /** With the token of a link, as its page does it; where, and the cookie that is worth as much. */
 export async function signIn(link) {
   const { origin, hash } = new URL(link);
@@ -93,7 +109,9 @@ export async function connect({ origin, cookie }) {
   await new Promise((resolve, reject) => socket.on("open", resolve).on("error", reject));
   socket.off("error", socket.listeners("error")[0]).on("error", () => {});  // the studio may end before it
   const find = (fits) =>
-    new Promise((resolve) => {
+    new Promise((resolve, reject) => {
+      const giveUp = () => reject(new Error(`never told: ${fits}; but: ${told.map((each) => each.event ?? each.id).join(" ")}`));
+      AbortSignal.timeout(kPatienceMs).addEventListener("abort", giveUp);
       const look = () => {
         const found = told.find(fits);
         if (found !== undefined) {
@@ -124,16 +142,29 @@ async function shareCookie(context, link) {
   }
 }
 
-/** Runs a test with a studio, which ends with it. */
-export function withStudio(args, run) {
+/** Runs a test with a function that starts studios; those that have not ended by its end, as it failed, are killed. */
+export function withStudios(run) {
   return async () => {
-    const studio = await startStudio(args);
+    const studios = [];
+    const start = async (...args) => {
+      studios.push(await startStudio(...args));
+      return studios.at(-1);
+    };
     try {
-      await run(studio);
+      await run(start);
     } finally {
-      assert.equal(await studio.stop(), 0, "it ends well when it is told to");
+      await Promise.all(studios.map((studio) => studio.kill()));
     }
   };
+}
+
+/** Runs a test with a studio, which ends with it. */
+export function withStudio(args, run) {
+  return withStudios(async (start) => {
+    const studio = await start(args);
+    await run(studio);
+    assert.equal(await studio.stop(), 0, "it ends well when it is told to");
+  });
 }
 
 /** For a group of tests that go on from one another: a studio that begins and ends with them. */
@@ -162,6 +193,17 @@ export function copyToTemporary(files) {
 export function launchBrowser() {
   const kDrawing = ["--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--webgl-antialiasing-mode=none"];
   return chromium.launch({ executablePath: kChromium, args: ["--no-sandbox", ...kDrawing] });
+}
+
+/** The browser of a file of tests that calls shareBrowser(). @type {import("playwright-core").Browser} */
+export let browser;
+
+/** Begins a browser before the tests of a file, and ends it with them. */
+export function shareBrowser() {
+  before(async () => {
+    browser = await launchBrowser();
+  });
+  after(() => browser.close());
 }
 
 /** A page with a studio in it. `complaints`: what the browser has to say against it. `beforeLoad` gets the page

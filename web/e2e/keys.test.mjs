@@ -1,12 +1,13 @@
 // Keys: what Escape and the stop do, and where keys go.
 import assert from "node:assert/strict";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import {
+  browser,
   distance,
   findBarriers,
-  launchBrowser,
   openPage,
   pressTimes,
+  shareBrowser,
   stateOf,
   tabTo,
   tabToPicture,
@@ -22,11 +23,7 @@ import {
 const kBushing = "../products/bushing.step";
 const [kSleeve, kShaft] = [1, 2];
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 describe("Escape", () => {
   it("closes search, panel, tool and selection, in this order and one at a time", withStudio([kBushing], async (studio) => {

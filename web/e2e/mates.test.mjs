@@ -1,13 +1,14 @@
 // Mates and fits defined, changed and removed in the 3D view (X8, X12).
 import assert from "node:assert/strict";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import {
+  browser,
   clickFace,
   copyToTemporary,
   fetchScene,
-  launchBrowser,
   openPage,
   runProgram,
+  shareBrowser,
   takePicture,
   waitForPicture,
   waitForState,
@@ -17,11 +18,7 @@ import {
 const kBushing = "../products/bushing.step";
 const [kSleeve, kShaft] = [1, 2];
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 /** A mate of the product with its number out of it, as if inference had not found it. */
 function removeMate(kind, a, b) {

@@ -3,13 +3,14 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
 import {
+  browser,
   dropFile,
   fetchScene,
   findBarriers,
-  launchBrowser,
   nextFrame,
   openPage,
   poseOf,
+  shareBrowser,
   shareStudio,
   stateOf,
   takePicture,
@@ -24,11 +25,7 @@ const kBushing = "../products/bushing.step";
 const kPump = "../products/gear_pump.step";
 const kBushingPart = 1;
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 function assertSamePose(a, b) {
   [...a.p, ...a.q].forEach((v, k) => assert.ok(Math.abs(v - [...b.p, ...b.q][k]) < 1e-6, `${JSON.stringify(a)} is not ${JSON.stringify(b)}`));

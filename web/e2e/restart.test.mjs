@@ -1,20 +1,22 @@
 // The studio ends without a word, and is started again: the work goes on, and nobody has to do anything for it.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import {
+  browser,
   connect,
   fetchScene,
-  launchBrowser,
   makeFolder,
   openPage,
+  shareBrowser,
   signIn,
-  startStudio,
   stateOf,
   takePicture,
+  waitForKept,
   waitForPicture,
   waitForPlacement,
   waitForState,
+  withStudios,
 } from "./harness.mjs";
 
 const kBushing = "../products/bushing.step";
@@ -27,9 +29,9 @@ async function sceneOf({ origin, cookie }) {
 }
 
 describe("a studio that was killed", () => {
-  it("has the same address, knows whoever was in, and goes on with parts, mates and fixture", async () => {
+  it("has the same address, knows whoever was in, and goes on with parts, mates and fixture", withStudios(async (start) => {
     const home = makeFolder();
-    const first = await startStudio([kBushing], { home });
+    const first = await start([kBushing], { home });
     const session = await signIn(first.operator);
     const client = await connect(session);
     await client.hasOpened();
@@ -39,9 +41,10 @@ describe("a studio that was killed", () => {
     await client.find((each) => each.event === "demo" && !each.on);
     const before = await sceneOf(session);
     assert.equal(before.occurrences[kBushingPart].placement, "placed");
+    await waitForKept(home, (work) => work.parts[kBushingPart].placement === "placed" && work.next_step === before.next_step);
     await first.kill();
 
-    const second = await startStudio([kBushing], { home });
+    const second = await start([kBushing], { home });
     assert.equal(second.operator, first.operator);
     assert.equal(second.viewer, first.viewer);
     const again = await connect(session);
@@ -64,7 +67,7 @@ describe("a studio that was killed", () => {
     assert.equal(stranger.status, 401, "the link has let a browser in, and lets in no other");
     assert.equal(await second.stop(), 0);
 
-    const third = await startStudio([kBushing, "--fresh", "--new-links"], { home });
+    const third = await start([kBushing, "--fresh", "--new-links"], { home });
     assert.notEqual(third.operator, first.operator);
     const anew = await signIn(third.operator);
     const newcomer = await connect(anew);
@@ -73,11 +76,11 @@ describe("a studio that was killed", () => {
     assert.equal(fresh.occurrences[kBushingPart].placement, "loose");
     assert.notEqual(fresh.mates[0].fit.code, "H7/f7");
     assert.equal(await third.stop(), 0);
-  });
+  }));
 
-  it("goes on with a file that was sent to it", async () => {
+  it("goes on with a file that was sent to it", withStudios(async (start) => {
     const home = makeFolder();
-    const first = await startStudio([], { home });
+    const first = await start([], { home });
     const session = await signIn(first.operator);
     const client = await connect(session);
     const sent = await fetch(`${first.origin}/api/upload?name=mine.step`, {
@@ -89,40 +92,39 @@ describe("a studio that was killed", () => {
     await client.send({ command: "open", upload });
     await client.find((each) => each.event === "step" && each.index > 0);
     const before = await sceneOf(session);
+    await waitForKept(home, (work) => work.name === "mine.step");
     await first.kill();
-    const second = await startStudio([], { home });
+    const second = await start([], { home });
     const again = await connect(session);
     await again.find((each) => each.event === "resumed" && each.is_resumed);
     assert.equal((await sceneOf(session)).name, before.name);
     assert.equal(await second.stop(), 0);
-  });
+  }));
 });
 
 describe("a page", () => {
-  let browser;
-  before(async () => {
-    browser = await launchBrowser();
-  });
-  after(() => browser.close());
+  shareBrowser();
 
-  it("comes back by itself, with the part in its place", async () => {
+  it("comes back by itself, with the part in its place", withStudios(async (start) => {
     const home = makeFolder();
-    const first = await startStudio([kBushing], { home });
+    const first = await start([kBushing], { home });
     const { page } = await openPage(browser, first.operator);
     await waitForPicture(page);
     await page.evaluate(() => document.activeElement?.blur());
     await page.keyboard.press("n");
     await waitForPlacement(page, kBushingPart, "placed", 90_000);
     await waitForState(page, ({ demo }) => !demo, 60_000);
+    await waitForKept(home, (work) => work.parts[kBushingPart].placement === "placed");
     await first.kill();
     await waitForState(page, ({ link }) => link === "lost");
     await page.getByText(/trying again/i).first().waitFor();
     await takePicture(page, "restart_lost");
 
-    const second = await startStudio([kBushing], { home });
+    const { epoch: epochBefore } = await stateOf(page);
+    const second = await start([kBushing], { home });
     const { epoch } = await waitForState(
       page,
-      ({ link, hasScene, placements }) => link === "open" && hasScene && placements[kBushingPart] === "placed",
+      ({ link, placements, epoch: now }) => link === "open" && now !== epochBefore && placements[kBushingPart] === "placed",
       60_000,
     );
     assert.equal(epoch, (await fetchScene(page)).epoch);
@@ -133,11 +135,11 @@ describe("a page", () => {
     await waitForPlacement(page, 2, "placed", 90_000);
     assert.equal(await second.stop(), 0);
 
-    const third = await startStudio([kBushing, "--new-links", "--port", new URL(first.origin).port], { home });
+    const third = await start([kBushing, "--new-links", "--port", new URL(first.origin).port], { home });
     await page.getByTestId("denied").waitFor({ timeout: 30_000 });
     await takePicture(page, "restart_denied");
     assert.equal((await stateOf(page)).link, "denied");
     assert.equal(await third.stop(), 0);
     await page.context().close();
-  });
+  }));
 });

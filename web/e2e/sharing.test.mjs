@@ -6,12 +6,13 @@ import { after, before, describe, it } from "node:test";
 import decodeQR from "qr/decode.js";
 import WebSocket from "ws";
 import {
+  browser,
   distance,
   fetchScene,
   findBarriers,
-  launchBrowser,
   openPage,
   poseOf,
+  shareBrowser,
   shareStudio,
   signIn,
   stateOf,
@@ -30,11 +31,7 @@ import {
 const kBushing = "../products/bushing.step";
 const kShaft = 2;
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 describe("somebody who looks on", () => {
   const studio = shareStudio([kBushing]);

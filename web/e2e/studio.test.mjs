@@ -4,13 +4,14 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { readFileSync } from "node:fs";
 import {
+  browser,
   dropFile,
   fetchScene,
   findBarriers,
   insertByMouse,
-  launchBrowser,
   openPage,
   poseOf,
+  shareBrowser,
   shareStudio,
   takeOutByMouse,
   takePicture,
@@ -24,11 +25,7 @@ import {
 const kBushing = "../products/bushing.step";
 const kPump = "../products/gear_pump.step";
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 describe("the page", () => {
   it("shows the pump, hides the token, and the browser has nothing against it", withStudio([kPump], async (studio) => {

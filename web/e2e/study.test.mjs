@@ -1,10 +1,11 @@
 // A session of a study, as the participant and as the experimenter sees it (docs/studio.md), with the mock's study of
 // three trials. Whoever is not looked at is there without a page: two pictures are too much for a slow machine.
 import assert from "node:assert/strict";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import {
+  browser,
   findBarriers,
-  launchBrowser,
+  shareBrowser,
   takePicture,
   waitForAnswer,
   waitForCalm,
@@ -20,11 +21,7 @@ const kTablet = { width: 834, height: 1112 };
 /** What a fit or a condition is called; none of it may ever be in a participant's page. */
 const kSecrets = /H7\/|\b(A1|B1|B2)\b|Clearance|Interference|µm|seed/;
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 /** The participant's page, and the experimenter without one. */
 async function openAsParticipant(study, options) {

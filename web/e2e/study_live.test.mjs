@@ -1,16 +1,17 @@
 // A whole session of a study in the program itself: a person by the mouse, from the consent to the tables.
 import assert from "node:assert/strict";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
+  browser,
   clickFace,
   distance,
   fetchScene,
-  launchBrowser,
   makeFolder,
   poseOf,
   runProgram,
+  shareBrowser,
   startStudio,
   takeByMouse,
   takePicture,
@@ -41,11 +42,7 @@ questions:
 hidden: [condition]
 `;
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 /** Turns the view up or down by dragging beside the parts. */
 async function turnView(page, dy) {

@@ -1,15 +1,16 @@
 // VR with an emulated headset: the page knows nothing of it. (X9, X16, N2)
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import {
+  browser,
   distance,
   fetchScene,
   kSilentMs,
-  launchBrowser,
   openPage,
   passSession,
   poseOf,
+  shareBrowser,
   takePicture,
   waitForPicture,
   waitForPlacement,
@@ -23,11 +24,7 @@ import { compose, inverse, multiply, rotate } from "./poses.mjs";
 const kBushing = "../products/bushing.step";
 const [kSleeve, kShaft] = [1, 2];
 
-let browser;
-before(async () => {
-  browser = await launchBrowser();
-});
-after(() => browser.close());
+shareBrowser();
 
 /** In the page, before anything else: a headset on a head at 1.6 m, and a book of what vibrates. */
 function installHeadset() {
