@@ -14,7 +14,7 @@
 namespace hvas::app {
 namespace {
 
-/** In single quotes, as POSIX shells take it. */
+/** The text in single quotes, as POSIX shells take it. */
 std::string Quoted(std::string_view text) {
   std::string quoted = "'";
   for (const char c : text) {
@@ -94,6 +94,24 @@ std::string Described(const std::string& word, const std::string& text) {
   return Quoted(word + ":" + Brief(text));
 }
 
+/** Every option whose values are known: "command --option", quoted, with its values. */
+std::vector<std::pair<std::string, std::string>> ListChoices(
+    const std::vector<const CommandHelp*>& commands) {
+  std::vector<std::pair<std::string, std::string>> choices;
+  for (const CommandHelp* command : commands) {
+    for (const OptionHelp& option : command->options) {
+      if (option.is_argument || option.choices.empty()) {
+        continue;
+      }
+      for (const std::string& name : option.names) {
+        choices.emplace_back(Quoted(command->name + " " + name),
+                             fmt::format("{}", fmt::join(option.choices, " ")));
+      }
+    }
+  }
+  return choices;
+}
+
 }  // namespace
 
 std::string MakeBashCompletion(const CommandHelp& root) {
@@ -111,16 +129,8 @@ std::string MakeBashCompletion(const CommandHelp& root) {
       "  COMPREPLY=()\n"
       "  case \"$command $previous\" in\n",
       CommandPatterns(commands));
-  for (const CommandHelp* command : commands) {
-    for (const OptionHelp& option : command->options) {
-      if (option.is_argument || option.choices.empty()) {
-        continue;
-      }
-      for (const std::string& name : option.names) {
-        text += fmt::format("    {}) words={} ;;\n", Quoted(command->name + " " + name),
-                            Quoted(fmt::format("{}", fmt::join(option.choices, " "))));
-      }
-    }
+  for (const auto& [option, choices] : ListChoices(commands)) {
+    text += fmt::format("    {}) words={} ;;\n", option, Quoted(choices));
   }
   text += fmt::format(
       "    {}) compopt +o default 2>/dev/null; return ;;\n"
@@ -155,16 +165,8 @@ std::string MakeZshCompletion(const CommandHelp& root) {
       "  done\n"
       "  case \"$command $previous\" in\n",
       CommandPatterns(commands));
-  for (const CommandHelp* command : commands) {
-    for (const OptionHelp& option : command->options) {
-      if (option.is_argument || option.choices.empty()) {
-        continue;
-      }
-      for (const std::string& name : option.names) {
-        text += fmt::format("    ({}) compadd -- {}; return ;;\n",
-                            Quoted(command->name + " " + name), fmt::join(option.choices, " "));
-      }
-    }
+  for (const auto& [option, choices] : ListChoices(commands)) {
+    text += fmt::format("    ({}) compadd -- {}; return ;;\n", option, choices);
   }
   text += fmt::format(
       "    ({}) _message number; return ;;\n"

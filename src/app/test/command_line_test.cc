@@ -4,6 +4,7 @@
 #include "app/command_line.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <set>
 #include <sstream>
@@ -181,31 +182,91 @@ TEST(Colour, IsOnATerminalOnlyAndNobodyWhoRefusesItGetsIt) {
   EXPECT_FALSE(Has(RunHvas({"paint"}).err, "\033["));
 }
 
-/** What bash offers for words, the last of which is not finished. */
-std::string Complete(const std::string& words) {
+/** Runs a script by a shell. @returns the lines that it printed, without their order and those that
+ are empty. */
+std::set<std::string> RunShell(const std::string& shell, const std::string& script) {
   const TemporaryFolder folder;
-  const auto script = folder.Write("hvas.bash", MakeBashCompletion(DescribeProgram()));
-  const auto run =
-      folder.Write("run.bash", "source '" + script.string() + "'\n" + "COMP_WORDS=(" + words +
-                                   ")\n" + "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n" +
-                                   "_hvas\necho \"${COMPREPLY[*]}\"\n");
   const std::string out = (folder / "out").string();
-  const std::string command = "bash '" + run.string() + "' > '" + out + "' 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0);
-  return ReadText(out);
+  const std::string command =
+      shell + " '" + folder.Write("script", script).string() + "' > '" + out + "' 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << ReadText(out);
+  std::istringstream text(ReadText(out));
+  std::set<std::string> lines;
+  for (std::string line; std::getline(text, line);) {
+    lines.insert(line);
+  }
+  lines.erase("");
+  return lines;
 }
 
-TEST(Completion, OffersCommandsOptionsAndTheirWords) {
-  EXPECT_EQ(Complete("hvas insp"), "inspect\n");
-  EXPECT_EQ(Complete("hvas fit des"), "design\n");
-  EXPECT_EQ(Complete("hvas fit 40 --hub-m"), "--hub-material\n");
-  EXPECT_EQ(Complete("hvas fit design --hub-m"), "--hub-material\n");
-  EXPECT_EQ(Complete("hvas fit --smoothing din2"), "din2001 din2017\n");
-  EXPECT_EQ(Complete("hvas fit design --basis ''"), "hole shaft\n");
-  EXPECT_EQ(Complete("hvas completion ''"), "bash zsh fish -h --help\n");
-  EXPECT_EQ(Complete("hvas fit --length ''"), "\n") << "a number";
-  EXPECT_EQ(Complete("hvas study analyse --pow"), "\n") << "of another command";
+using Words = std::vector<std::string>;
+
+/** What a shell offers for the last of these words, which is not finished. */
+using Complete = std::set<std::string> (*)(const Words& words);
+
+std::string Quote(const Words& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += " '" + word + "'";
+  }
+  return text;
 }
+
+std::set<std::string> CompleteByBash(const Words& words) {
+  return RunShell("bash", MakeBashCompletion(DescribeProgram()) + "COMP_WORDS=(" + Quote(words) +
+                              ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_hvas\n"
+                              "printf '%s\\n' \"${COMPREPLY[@]}\"\n");
+}
+
+/** The functions of zsh's own that offer something print it instead, where it fits the word. */
+std::set<std::string> CompleteByZsh(const Words& words) {
+  return RunShell("zsh -f",
+                  "print_offers() { print -l -- ${(M)@:#$words[CURRENT]*} }\n"
+                  "compadd() { shift; print_offers \"$@\" }\n"
+                  "_describe() { local offers=(\"${(@P)2}\"); print_offers \"${(@)offers%%:*}\" }\n"
+                  "_files() { }\n_message() { }\n"
+                  "words=(" +
+                      Quote(words) + ")\nCURRENT=$#words\n" + MakeZshCompletion(DescribeProgram()));
+}
+
+std::set<std::string> CompleteByFish(const Words& words) {
+  std::string line;
+  for (const std::string& word : words) {
+    line += (line.empty() ? "" : " ") + word;
+  }
+  // An offer is followed by its description, after a tab.
+  return RunShell("HOME=/nonexistent fish --no-config", MakeFishCompletion(DescribeProgram()) +
+                                                            "complete -C '" + line +
+                                                            "' | string replace -r '\\t.*' ''; true\n");
+}
+
+class CompletionTest : public ::testing::TestWithParam<Complete> {};
+
+TEST_P(CompletionTest, OffersCommandsOptionsAndTheirWords) {
+  using Offers = std::set<std::string>;
+  const Complete complete = GetParam();
+  EXPECT_EQ(complete({"hvas", "insp"}), Offers{"inspect"});
+  EXPECT_EQ(complete({"hvas", "fit", "des"}), Offers{"design"});
+  EXPECT_EQ(complete({"hvas", "fit", "40", "--hub-m"}), Offers{"--hub-material"});
+  EXPECT_EQ(complete({"hvas", "fit", "design", "--hub-m"}), Offers{"--hub-material"});
+  EXPECT_EQ(complete({"hvas", "fit", "--smoothing", "din2"}), (Offers{"din2001", "din2017"}));
+  EXPECT_EQ(complete({"hvas", "fit", "design", "--basis", ""}), (Offers{"hole", "shaft"}));
+  const Offers shells = complete({"hvas", "completion", ""});
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    EXPECT_TRUE(shells.contains(shell)) << shell;
+  }
+  EXPECT_EQ(complete({"hvas", "fit", "--length", ""}), Offers{}) << "a number";
+  EXPECT_EQ(complete({"hvas", "study", "analyse", "--pow"}), Offers{}) << "of another command";
+}
+
+std::string NameOfShell(const ::testing::TestParamInfo<Complete>& parameter) {
+  constexpr std::array<const char*, 3> kNames{"Bash", "Zsh", "Fish"};
+  return kNames.at(parameter.index);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shells, CompletionTest,
+                         ::testing::Values(&CompleteByBash, &CompleteByZsh, &CompleteByFish),
+                         &NameOfShell);
 
 TEST(Completion, HasEveryCommandAndOptionInEveryShell) {
   const CommandHelp root = DescribeProgram();
@@ -253,9 +314,6 @@ TEST(Manual, HasEveryCommandOptionAndExitStatus) {
 }
 
 TEST(Manual, IsSetWithoutWarnings) {
-  if (std::system("command -v groff > /dev/null") != 0) {
-    GTEST_SKIP() << "there is no groff";
-  }
   const TemporaryFolder folder;
   const auto page = folder.Write("hvas.1", RunHvas({"man"}).out);
   const std::string warnings = (folder / "warnings").string();

@@ -15,25 +15,10 @@ namespace hvas::app {
 namespace {
 
 using hvas::testing::TemporaryFolder;
+using testing::ExpectRefusal;
 using testing::ProductFile;
 using testing::Ran;
 using testing::RunHvas;
-
-/** No success, nothing on stdout, and an error that has all these texts. */
-void ExpectRefusal(const std::vector<std::string>& arguments,
-                   const std::vector<std::string>& texts) {
-  const Ran ran = RunHvas(arguments);
-  std::string command = "hvas";
-  for (const std::string& argument : arguments) {
-    command += " " + argument;
-  }
-  SCOPED_TRACE(command);
-  EXPECT_GT(ran.status, 0);
-  EXPECT_EQ(ran.out, "");
-  for (const std::string& text : texts) {
-    EXPECT_PRED_FORMAT2(::testing::IsSubstring, text, ran.err);
-  }
-}
 
 /** A command with the file that it is given, which stands where FILE does. */
 using Arguments = std::vector<std::string>;
@@ -45,7 +30,7 @@ TEST(OddFileTest, EveryCommandNamesWhatIsNoFileAndWaitsForNothing) {
   const std::string product = ProductFile("bushing");
 
   struct Case {
-    std::string name;  // Of the file.
+    std::string name;  // The file's.
     Arguments arguments;
   };
 

@@ -34,16 +34,46 @@ void UseOwnCache() {
   ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
 }
 
+/** The arguments of `hvas` as the system takes them. */
+class CommandWords {
+ public:
+  explicit CommandWords(const std::vector<std::string>& arguments) : words_{HVAS_BINARY} {
+    words_.insert(words_.end(), arguments.begin(), arguments.end());
+    for (std::string& word : words_) {
+      argv_.push_back(word.data());
+    }
+    argv_.push_back(nullptr);
+  }
+
+  CommandWords(const CommandWords&) = delete;
+  CommandWords& operator=(const CommandWords&) = delete;
+
+  [[nodiscard]] char* const* argv() const { return argv_.data(); }
+
+  [[nodiscard]] std::string Join() const {
+    std::string line;
+    for (const std::string& word : words_) {
+      line += (line.empty() ? "" : " ") + word;
+    }
+    return line;
+  }
+
+ private:
+  std::vector<std::string> words_;
+  std::vector<char*> argv_;
+};
+
+/** @returns the exit status; -1 when a signal ended it, or it never began. */
+int AwaitExit(pid_t child) {
+  int status = 0;
+  const bool has_exited = child > 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status);
+  return has_exited ? WEXITSTATUS(status) : -1;
+}
+
 pid_t Start(const std::vector<std::string>& arguments, const std::string& out,
             const std::string& err) {
   UseOwnCache();
-  std::vector<std::string> words{HVAS_BINARY};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) {
-    argv.push_back(word.data());
-  }
-  argv.push_back(nullptr);
+  const CommandWords command(arguments);
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   const int flags = O_WRONLY | O_CREAT | O_TRUNC;
@@ -58,7 +88,8 @@ pid_t Start(const std::vector<std::string>& arguments, const std::string& out,
   ::posix_spawnattr_setsigdefault(&attributes, &interrupt);
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   pid_t child = -1;
-  const int error = ::posix_spawn(&child, HVAS_BINARY, &actions, &attributes, argv.data(), environ);
+  const int error =
+      ::posix_spawn(&child, HVAS_BINARY, &actions, &attributes, command.argv(), environ);
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   EXPECT_EQ(error, 0) << "cannot start " << HVAS_BINARY;
@@ -77,11 +108,7 @@ std::string ReadText(const std::filesystem::path& file) {
 Ran RunHvasInto(const std::string& output, const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
   Ran ran;
-  const pid_t child = Start(arguments, output, (folder / "err").string());
-  int status = 0;
-  if (child > 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status)) {
-    ran.status = WEXITSTATUS(status);
-  }
+  ran.status = AwaitExit(Start(arguments, output, (folder / "err").string()));
   ran.err = ReadText(folder / "err");
   return ran;
 }
@@ -106,13 +133,7 @@ nlohmann::json RunHvasJson(std::vector<std::string> arguments, int status) {
 Ran RunHvasAtTerminal(unsigned short columns, const std::vector<std::string>& arguments,
                       bool no_color) {
   UseOwnCache();
-  std::vector<std::string> words{HVAS_BINARY};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) {
-    argv.push_back(word.data());
-  }
-  argv.push_back(nullptr);
+  const CommandWords command(arguments);
   winsize size{};
   size.ws_row = 50;
   size.ws_col = columns;
@@ -122,7 +143,7 @@ Ran RunHvasAtTerminal(unsigned short columns, const std::vector<std::string>& ar
     ::setenv("TERM", "xterm-256color", 1);
     ::unsetenv("COLUMNS");
     ::setenv("NO_COLOR", no_color ? "1" : "", 1);
-    ::execv(HVAS_BINARY, argv.data());
+    ::execv(HVAS_BINARY, command.argv());
     ::_exit(127);
   }
   Ran ran;
@@ -131,9 +152,18 @@ Ran RunHvasAtTerminal(unsigned short columns, const std::vector<std::string>& ar
     ran.out.append(buffer.data(), static_cast<std::size_t>(got));
   }
   ::close(terminal);
-  int status = 0;
-  if (child > 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status)) {
-    ran.status = WEXITSTATUS(status);
+  ran.status = AwaitExit(child);
+  return ran;
+}
+
+Ran ExpectRefusal(const std::vector<std::string>& arguments,
+                  const std::vector<std::string>& texts) {
+  SCOPED_TRACE(CommandWords(arguments).Join());
+  Ran ran = RunHvas(arguments);
+  EXPECT_TRUE(ran.status == 1 || ran.status == 64) << ran.status;
+  EXPECT_EQ(ran.out, "");
+  for (const std::string& text : texts) {
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, text, ran.err);
   }
   return ran;
 }

@@ -36,6 +36,10 @@ struct Ran {
 /** Runs `hvas ... --json`, expects an exit status, and reads what it printed. */
 [[nodiscard]] nlohmann::json RunHvasJson(std::vector<std::string> arguments, int status = 0);
 
+/** Expects that `hvas` refuses to work: exit status 1 or 64, nothing on standard output, and all
+ these texts on standard error. */
+Ran ExpectRefusal(const std::vector<std::string>& arguments, const std::vector<std::string>& texts);
+
 /** Starts `hvas` with its output thrown away. */
 [[nodiscard]] pid_t StartHvas(const std::vector<std::string>& arguments);
 

@@ -77,6 +77,34 @@ void ExpectSameKeys(const json& schema, const json& object, SideFileObject kind)
   }
 }
 
+/** Pointers to the objects of a schema that name properties and do not say whether others may be
+ there. */
+void ListOpenObjects(const json& schema, const std::string& at, std::vector<std::string>* open) {
+  if (schema.is_object() && schema.contains("properties") &&
+      schema.value("type", json()) == "object" && !schema.contains("additionalProperties") &&
+      !schema.contains("unevaluatedProperties")) {
+    open->push_back(at);
+  }
+  if (schema.is_structured()) {
+    for (const auto& [key, inner] : schema.items()) {
+      ListOpenObjects(inner, at + "/" + key, open);
+    }
+  }
+}
+
+TEST(Schemas, EveryObjectSaysWhetherItMayHaveOtherProperties) {
+  const std::filesystem::path folder(HVAS_SOURCE_DIR "/data/schemas");
+  int count = 0;
+  for (const auto& item : std::filesystem::directory_iterator(folder)) {
+    const json schema = json::parse(testing::ReadText(item.path()));
+    std::vector<std::string> open;
+    ListOpenObjects(schema, "", &open);
+    EXPECT_EQ(open, std::vector<std::string>{}) << item.path();
+    ++count;
+  }
+  EXPECT_GT(count, 20);
+}
+
 TEST(SideFileSchema, HasTheKeysTypesAndRangesOfTheReader) {
   const json schema = ReadSchema("assignments");
   ExpectSameKeys(schema, schema, SideFileObject::kDocument);
@@ -154,7 +182,7 @@ struct JsonRun {
   int status{0};
 };
 
-/** At least one run for each command with --json, by its name. */
+/** The runs of each command with --json, by its name: at least one. */
 class JsonRuns {
  public:
   JsonRuns() {

@@ -81,7 +81,7 @@ double CalcPrattZ(const std::vector<double>& differences) {
       squares += ranks[i] * ranks[i];
     }
   }
-  return sum / std::sqrt(squares);  // Of signs that are fair: mean 0, variance the squares.
+  return sum / std::sqrt(squares);  // Fair signs have mean 0 and the squares as variance.
 }
 
 TEST(Friedman, ImanAndDavenportsFIsKnownOfPaperWsTable) {
