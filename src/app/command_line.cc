@@ -41,8 +41,9 @@ constexpr std::array<ExitStatus, 4> kStatuses{{
      "Something failed: a file that is missing, damaged or not to be written, a fit that "
      "does not exist. The message names it and says what to do."},
     {"2",
-     "It is done, and the answer is no: a part is not in its place (hvas assemble), the run "
-     "differs from the record (hvas replay --verify), or the machine is late (hvas doctor)."},
+     "It is done, and the answer is no: a part is not in its place (hvas assemble), a record is "
+     "not as it was written (hvas report, export and replay), the run differs from the record "
+     "(hvas replay --verify), or the machine is late (hvas doctor)."},
     {"64",
      "The command line is wrong: an unknown command or option, a value out of range, "
      "options that do not go together. Nothing was done."},
@@ -96,7 +97,7 @@ std::string DescribeUnknown(const CommandHelp& command, const std::string& word)
                      nearest.empty() ? "" : fmt::format("; \"{}\" may be meant", nearest));
 }
 
-/** In other words than those of CLI11, where these say little. */
+/** Says it in other words than CLI11, where those say little. */
 std::string Rephrase(const std::string& what) {
   constexpr std::string_view kConversion = "Could not convert: ";
   if (const std::size_t at = what.find(kConversion); at != std::string::npos) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -142,7 +143,13 @@ int RunExport(const ExportOptions& options) {
   const std::string format = FormatOf(options.output);
   Result<void> done = Check(options, format);
   if (done && IsRecord(options.load.file)) {
-    const auto damage = ExportRecord(options.load.file, options.output, format, options.record);
+    const auto damage = [&] {
+      std::optional<Busy> busy;
+      if (!options.load.is_quiet) {
+        busy.emplace("reading the record and writing what it holds");
+      }
+      return ExportRecord(options.load.file, options.output, format, options.record);
+    }();
     if (damage && !damage->empty()) {
       fmt::print(stderr, "hvas: {}: {}\n", options.load.file.string(), *damage);
       return kDamagedRecord;

@@ -1,7 +1,10 @@
 #include "app/replay.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <string>
+#include <tuple>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -12,6 +15,7 @@
 #include "app/rendering_options.h"
 #include "app/report_failure.h"
 #include "app/text_layout.h"
+#include "app/text_table.h"
 #include "base/units.h"
 #include "session/replay.h"
 
@@ -87,48 +91,53 @@ void PrintJson(const Model& model, const record::Reader& reader, const Outcome& 
 }
 
 void PrintParts(const Model& model, const ReplayReport& report) {
-  constexpr std::size_t kNameWidth = 36;
-  const auto bounded = [](const ReplayedPart::Outcome& outcome) {
-    return fmt::format("{:7.2f} N {:7.2f} N {:7.2f} mm {}", outcome.peak_true, outcome.peak_felt,
-                       units::ToMm(outcome.depth), outcome.is_seated ? "in " : "out");
+  TextTable table({"part", "true, recorded\nN", "replayed\nN", "felt, recorded\nN", "replayed\nN",
+                   "depth, recorded\nmm", "replayed\nmm", "in place\nrecorded", "\nreplayed"});
+  const auto both = [](double recorded, double replayed) {
+    return std::array{fmt::format("{:.2f}", recorded), fmt::format("{:.2f}", replayed)};
   };
-  fmt::print("\n{} {:>33}   {:>33}\n", PadTo("part: peak true, felt, depth, place", kNameWidth),
-             "recorded", "replayed");
+  const auto place = [](const ReplayedPart::Outcome& outcome) {
+    return std::string(outcome.is_seated ? "yes" : "no");
+  };
   for (const ReplayedPart& part : report.parts) {
-    fmt::print("{} {}   {}\n", PadTo(Shorten(PathOf(model, part), kNameWidth), kNameWidth),
-               bounded(part.recorded), bounded(part.replayed));
+    const auto& [before, after] = std::tie(part.recorded, part.replayed);
+    const auto peak = both(before.peak_true, after.peak_true);
+    const auto felt = both(before.peak_felt, after.peak_felt);
+    const auto depth = both(units::ToMm(before.depth), units::ToMm(after.depth));
+    table.Add({PathOf(model, part), peak[0], peak[1], felt[0], felt[1], depth[0], depth[1],
+               place(before), place(after)});
   }
+  fmt::print("\n{}", table.ToText());
 }
 
 void PrintText(const Model& model, const record::Reader& reader, const Outcome& outcome) {
   const ReplayReport& report = outcome.report;
-  fmt::print(
+  std::string text = fmt::format(
       "{}: {} ticks of {:.1f} s in {} stretch{} run again in {:.2f} s, {:.0f} times as fast\n",
       model.product->name, report.ticks, Seconds(report.session_ns), report.stretches,
       report.stretches == 1 ? "" : "es", Seconds(report.wall_ns), SpeedOf(report));
   if (!reader.is_complete()) {
-    fmt::print("The session was cut short, or goes on: this is what there is of it.\n");
+    text += "The session was cut short, or goes on: this is what there is of it.\n";
   }
   if (report.ticks == 0) {
-    fmt::print("The record has no tick that could be run again: nothing is shown by it.\n");
-    return;
-  }
-  if (report.is_exact()) {
-    fmt::print("Every wrench and pose {} is the recorded one, bit for bit.\n",
-               outcome.damage.empty() ? "of the session" : "that the record still has");
-    return;
-  }
-  if (report.unreachable_ticks > 0) {
-    fmt::print("{} ticks could not be run again: the record lacks ticks before them.\n",
-               report.unreachable_ticks);
+    text += "The record has no tick that could be run again: nothing is shown by it.\n";
+  } else if (report.is_exact()) {
+    text += fmt::format("Every wrench and pose {} is the recorded one, bit for bit.\n",
+                        outcome.damage.empty() ? "of the session" : "that the record still has");
+  } else if (report.unreachable_ticks > 0) {
+    text += fmt::format("{} ticks could not be run again: the record lacks ticks before them.\n",
+                        report.unreachable_ticks);
   }
   if (report.first) {
-    fmt::print("{} of them differ, the first one at {:.3f} s (hand {}): {}.\n",
-               report.different_ticks, Seconds(report.first->t_ns), report.first->hand,
-               report.first->field);
-    fmt::print("Felt force: {:.3g} N apart at most, {:.3g} N rms; parts: {:.3g} mm at most.\n",
-               report.largest_felt_difference, report.rms_felt_difference,
-               units::ToMm(report.largest_way));
+    text += fmt::format(
+        "{} of them differ, the first one at {:.3f} s (hand {}): {}.\n"
+        "Felt force: {:.3g} N apart at most, {:.3g} N rms; parts: {:.3g} mm at most.\n",
+        report.different_ticks, Seconds(report.first->t_ns), report.first->hand,
+        report.first->field, report.largest_felt_difference, report.rms_felt_difference,
+        units::ToMm(report.largest_way));
+  }
+  fmt::print("{}", Fold(text));
+  if (report.first) {
     PrintParts(model, report);
   }
 }
@@ -158,6 +167,9 @@ int RunReplay(const ReplayArguments& arguments) {
     options.progress = [](double fraction) { ShowProgress("replay", fraction); };
   }
   auto report = session::Replay(&*reader, *model, options);
+  if (options.progress != nullptr) {
+    ShowProgress("", 1);
+  }
   if (!report) {
     return ReportFailure(report.error());
   }

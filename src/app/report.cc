@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/page_file.h"
+#include "app/progress.h"
 #include "app/report_failure.h"
 #include "app/report_page.h"
 #include "evidence/summary.h"
@@ -23,6 +24,7 @@ Result<std::string> WriteReport(const ReportOptions& options) {
   if (!reader) {
     return Unexpected(reader.error());
   }
+  const Busy busy("reading the record and drawing its page");
   const auto summary = evidence::Summarise(&*reader);
   if (!summary) {
     return Unexpected(summary.error());
