@@ -16,7 +16,7 @@ struct OptionHelp {
   std::vector<std::string> names;    ///< "-o", "--output"; of an argument its name, in capitals.
   std::string value;                 ///< "NUMBER", "TEXT", "FILE"; empty where it takes none.
   std::vector<std::string> choices;  ///< All words that it takes, where these are few.
-  std::string description;           ///< With default, range and what it needs, in brackets.
+  std::string description;           ///< Ends with default, range and what it needs, in brackets.
   std::string group;
   bool is_argument{false};
   bool is_required{false};
@@ -29,7 +29,7 @@ struct OptionHelp {
 struct CommandHelp {
   std::string name;  ///< "hvas fit design".
   std::string description;
-  std::string group;                  ///< Of the command among its neighbours.
+  std::string group;                  ///< The heading under which its neighbours and it are listed.
   std::string footer;                 ///< Exit status and examples, in lines.
   std::vector<OptionHelp> options;    ///< Arguments first.
   std::vector<CommandHelp> commands;  ///< Below it.

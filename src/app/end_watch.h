@@ -24,7 +24,7 @@ class EndWatch {
   EndWatch(const EndWatch&) = delete;
   EndWatch& operator=(const EndWatch&) = delete;
 
-  /** Until the user or the system ends the program. */
+  /** Waits until the user or the system ends the program. */
   void Wait();
 
  private:
@@ -33,7 +33,7 @@ class EndWatch {
   sigset_t before_{};  ///< Signals that were not for this thread before.
   std::mutex mutex_;
   std::condition_variable changed_;
-  bool is_told_{false};  ///< To end.
+  bool is_told_{false};  ///< It was told to end.
   bool is_over_{false};
   std::thread thread_;
 };

@@ -43,7 +43,7 @@ struct FitArguments {
   double step_mm{0};
   double at_mm{0};
   std::vector<double> load{0, 1, 0};  // N, N, N mm.
-  std::optional<LengthUnit> unit;     // Of the answer; that of the fits without.
+  std::optional<LengthUnit> unit;     // The unit of the answer; none: that of the fits.
   bool is_json{false};
 };
 

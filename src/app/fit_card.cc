@@ -293,7 +293,7 @@ double SlideOut(const FitCard& card, const fits::PressFit& press) {
          press.pressure;
 }
 
-/** Of the ABC system in a fit of ANSI B4.1; empty where a side has none. */
+/** The class of the ABC system in a fit of ANSI B4.1; empty where a side has none. */
 std::string HoleClass(const SizedFit& fit) {
   return fit.ansi ? std::string(fit.ansi->hole) : fit.hole ? fit.hole->ToString() : "";
 }

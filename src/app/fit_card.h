@@ -24,7 +24,7 @@ struct FitCardOptions {
   double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
   double chamfer_width{0};      ///< Of both parts together, radially [m].
   double room_c{20};
-  LengthUnit unit{LengthUnit::kMillimetre};  ///< Of the answer.
+  LengthUnit unit{LengthUnit::kMillimetre};  ///< The unit of the answer.
   fits::JoiningMaterial hub_joining, shaft_joining;
   std::optional<double> hub_c,
       shaft_c;                        ///< Temperatures to join at; room_c where only one is given.

@@ -30,7 +30,7 @@ struct FitDesign {
   double required_pressure{0}, largest_pressure{0};          ///< [Pa]
   double required_interference{0}, largest_interference{0};  ///< Diametral, before smoothing [m].
   bool is_hub_brittle{false};  ///< Then the largest pressure has kBrittleSafety against fracture.
-  LengthUnit unit{LengthUnit::kMillimetre};  ///< Of the answer.
+  LengthUnit unit{LengthUnit::kMillimetre};  ///< The unit of the answer.
   std::vector<FitCard> proposals;  ///< Common ones first, then the widest tolerances; a few.
 };
 

@@ -14,9 +14,9 @@ namespace hvas::app {
 struct FitJamming {
   FitCard card;
   fits::PegInHole pair;  ///< With the mean clearance, or half of the largest in a transition fit.
-  fits::PegInHole worst_pair;  ///< With the least clearance, which wedges first.
-  double l{0};                 ///< From the tip's corner to the rim, along the shaft [m].
-  fits::PegLoad load;          ///< At the middle of the tip.
+  fits::PegInHole worst_pair;  ///< The pair with the least clearance, which wedges first.
+  double l{0};         ///< The distance from the tip's corner to the rim, along the shaft [m].
+  fits::PegLoad load;  ///< Acts at the middle of the tip.
   double lambda{0};
   bool is_sliding{false};
   bool can_wedge{false};

@@ -281,7 +281,7 @@ std::optional<Reply> AnswerWedging(const Question& q) {
     const double d = 2 * q.in("r");
     return Reply{fits::CanWedge({d, d}, q.in("l"), q.in("mu")) ? 1.0 : 0.0};
   }
-  if (Begins(q.output, "theta_w")) {  // Of the least clearance it is the worst case.
+  if (Begins(q.output, "theta_w")) {  // The worst case is the one of the least clearance.
     return Reply{fits::CalcWedgingTilt({q.in("D"), q.in("d")}, q.in("mu")), Kind::kAngle};
   }
   return std::nullopt;

@@ -26,7 +26,7 @@ struct LoadOptions {
   bool is_strict{false};                 ///< Warnings are errors.
   bool is_quiet{false};                  ///< No progress on stderr.
   bool is_cache_used{true};              ///< Keeps and takes what was read and prepared on disk.
-  double length_unit{1e-3};              ///< Of files that state none [m].
+  double length_unit{1e-3};              ///< The unit of files that state none [m].
   double time_limit{WorkLimits().time};  ///< For opening the file [s].
   std::uint64_t memory_limit{0};         ///< For the same [bytes]; 0: DefaultMemoryLimit().
   int max_parts{cad::kDefaultMaxParts};  ///< That the file may place.

@@ -17,7 +17,7 @@ struct SizedFit {
   double nominal{0};  ///< [m]
   std::optional<fits::ToleranceClass> hole;
   std::optional<fits::ToleranceClass> shaft;
-  std::optional<fits::AnsiFit> ansi;         ///< In place of the classes.
+  std::optional<fits::AnsiFit> ansi;         ///< Stands in place of the classes.
   LengthUnit unit{LengthUnit::kMillimetre};  ///< That the diameter is stated in.
 
   /** "H7/p6", "H7", "g6" or "RC4". */

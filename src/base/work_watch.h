@@ -39,7 +39,7 @@ class WorkWatch {
   WorkLimits limits_;
   std::stop_token stop_;
   std::int64_t deadline_ns_;
-  std::int64_t next_look_ns_{0};  // At the memory.
+  std::int64_t next_look_ns_{0};  // When the memory is looked at again.
   std::uint64_t memory_before_;
   Reason reason_{Reason::kNone};
 };

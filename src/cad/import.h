@@ -37,7 +37,7 @@ struct ImportOptions {
   std::vector<std::uint32_t> skipped_parts;  ///< Left out, by their numbers as PartFn gets them.
   std::size_t max_parts{kDefaultMaxParts};   ///< That the file may place, copies counted.
   unsigned threads{0};  ///< That work at parts at a time; 0: one a core; 1: alone, also in a part.
-  std::uint64_t max_bytes{std::uint64_t{1} << 30U};  ///< Of what is made of the file.
+  std::uint64_t max_bytes{std::uint64_t{1} << 30U};  ///< The most that may be made of the file.
 };
 
 /** What an import may take. */

@@ -35,7 +35,8 @@ using product::SubassemblyId;
 using Meshes = std::vector<std::uint32_t>;
 
 constexpr int kDeepestNode = 500;
-// In a product, once to touch and once to look at, with the vertices that it shares with others.
+// A triangle is in a product twice, to touch and to look at, with vertices that it shares with
+// others.
 constexpr double kBytesPerTriangle = 60;
 
 struct Affine {
@@ -131,7 +132,7 @@ class SceneBuilder {
   std::vector<Source> sources_;  // One for each part.
   std::map<std::pair<Meshes, std::array<std::int64_t, 9>>, PartId> known_;
   std::unordered_map<const aiNode*, bool> has_geometry_;
-  double triangles_{0};  // Of all parts.
+  double triangles_{0};  // All parts' together.
   bool is_too_large_{false};
 };
 

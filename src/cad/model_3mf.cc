@@ -103,7 +103,7 @@ void TakeUnit(std::string_view tag, Model3mf* model) {
 
 Model3mf ParseModel3mf(std::string_view xml) {
   Model3mf model;
-  // In one pass, as the components belong to the object that they stand in.
+  // One pass does, as the components belong to the object that they stand in.
   Uses uses;
   std::vector<std::uint64_t> items;
   std::optional<int> object;

@@ -28,7 +28,7 @@ double CountPlaced(const Uses& uses, const std::vector<std::uint64_t>& roots) {
   };
   double total = 0;
   for (const std::uint64_t root : roots) {
-    // By hand and not by recursion: a chain may be longer than the stack.
+    // This is no recursion: a chain may be longer than the stack.
     std::vector<Step> path;
     if (known.count(root) == 0) {
       path.push_back(begin(root));

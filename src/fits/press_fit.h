@@ -76,7 +76,7 @@ struct PressFit {
   RingStress hub_bore;
   RingStress shaft_surface;    ///< Equals the inside of a solid shaft.
   RingStress shaft_governing;  ///< At the bore of a hollow shaft, anywhere in a solid one.
-  ElasticLimit hub_limit;      ///< Of a brittle hub: where its hoop stress is its tensile strength.
+  ElasticLimit hub_limit;      ///< Where the hoop stress of a brittle hub is its tensile strength.
   ElasticLimit shaft_limit;
   bool is_hub_brittle{false};
   double press_in_force{0};  ///< F_e, at full depth [N].

@@ -214,7 +214,7 @@ class HapticTick {
 
   /** How far the displayed part is from its place. */
   struct Remainder {
-    Vec3 d_W;      ///< From where its centre of mass belongs to the centre of mass [m].
+    Vec3 d_W;      ///< The centre of mass, from where it belongs [m].
     double angle;  ///< [rad]
   };
 

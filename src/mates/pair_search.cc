@@ -426,7 +426,7 @@ std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(const std::vector<
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
     return boxes[i].low[axis] < boxes[j].low[axis];
   });
-  // By the first of each pair, so that no step takes long that the watch does not see.
+  // Pairs are sorted by their first, so that no step takes long that the watch does not see.
   std::vector<std::vector<std::uint32_t>> partners(boxes.size());
   std::size_t count = 0;
   for (std::size_t i = 0; i < order.size() && MayGoOn(watch); ++i) {

@@ -63,8 +63,8 @@ struct Seal {
   std::int64_t t_ns{0};  ///< Session time of the newest tick before it.
   bool is_last{false};   ///< The recorder came to its end.
   std::array<Ledger::Rows, kRowTables.size()> rows{};
-  std::string entries;   ///< As PackEntries() gives it; empty: as at the seal before.
-  std::int64_t hash{0};  ///< Of all that, and of the hash of the seal before.
+  std::string entries;   ///< What PackEntries() gives; empty: as at the seal before.
+  std::int64_t hash{0};  ///< The hash of all that, and of the hash of the seal before.
 };
 
 /** The hash that belongs to a seal.

@@ -15,7 +15,7 @@ namespace {
 struct TableQuery {
   RowTable table;
   const char* columns;  ///< The row's time, then the numbers that the ledger's Add() takes.
-  int count;            ///< Of these numbers.
+  int count;            ///< How many of these numbers there are.
 };
 
 constexpr std::array kQueries{
@@ -178,7 +178,7 @@ class SealCheck {
   Database* database_;
   std::string path_;
   std::vector<Seal> seals_;
-  std::string entries_;  ///< Of the last seal that has them.
+  std::string entries_;  ///< Those of the last seal that has them.
 };
 
 }  // namespace

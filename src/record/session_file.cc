@@ -295,7 +295,7 @@ Result<void> SessionFile::MoveIntoFile() {
     return {};
   }
   moved_ns_ = now_ns;
-  // As far as no reader is in the way; the rest stays in the journal.
+  // This moves as much as no reader is in the way of; the rest stays in the journal.
   return database_.Execute("PRAGMA wal_checkpoint(PASSIVE)");
 }
 

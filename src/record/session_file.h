@@ -90,9 +90,9 @@ class SessionFile {
   Database database_;
   Statements statements_;
   Ledger ledger_;
-  std::string sealed_entries_;  // As the last seal that has them.
+  std::string sealed_entries_;  // Those of the last seal that has them.
   std::int64_t last_seal_{0};
-  std::int64_t moved_ns_{0};  // By the machine's clock.
+  std::int64_t moved_ns_{0};  // On the machine's clock.
   std::vector<std::byte> chunk_;
   std::int64_t chunk_ticks_{0};
   std::int64_t chunk_first_ns_{0};

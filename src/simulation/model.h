@@ -53,7 +53,7 @@ struct Model {
   std::vector<std::vector<product::MateId>> mates_of;  ///< By OccurrenceId.
   Sequence sequence;
   double table_z{0};            ///< [m]
-  Vec3 centre_W{Vec3::Zero()};  ///< Of the product.
+  Vec3 centre_W{Vec3::Zero()};  ///< The product's.
   double transfer_radius{0};    ///< A part carried this far from the centre meets nothing [m].
   std::uint64_t seed{1};
 };

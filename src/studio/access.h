@@ -111,13 +111,13 @@ class Access {
    may run on one. */
   [[nodiscard]] const std::string& cookie_name() const { return cookie_name_; }
 
-  /** Of the link that the program prints. */
+  /** The token of the link that the program prints. */
   [[nodiscard]] std::string token(Role role) const;
 
-  /** Of a link that lets one more browser in. */
+  /** The token of a link that lets one more browser in. */
   [[nodiscard]] std::string Invite(Role role);
 
-  /** Of a link that lets one more browser in: the same until one has come by it. */
+  /** The token of a link that lets one more browser in: the same until one has come by it. */
   [[nodiscard]] std::string FindFresh(Role role);
 
   /** For the next start. */
@@ -133,7 +133,7 @@ class Access {
   std::string cookie_name_;
   std::uint16_t port_;
   bool is_tls_;
-  mutable std::mutex mutex_;  ///< Of what follows.
+  mutable std::mutex mutex_;  ///< Protects what follows.
   KeptAccess known_;          ///< The first links are those that are printed, by role.
 };
 

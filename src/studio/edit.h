@@ -21,8 +21,8 @@ struct Edit {
   ChangeFn change;
 };
 
-/** Of the commands assign_fit, add_mate and remove_mate. Errors (kInvalid): it is none of them, or
- lacks a field. */
+/** The edit that a command assign_fit, add_mate or remove_mate asks for. Errors (kInvalid): it is
+ none of them, or lacks a field. */
 [[nodiscard]] Result<Edit> MakeEdit(const nlohmann::ordered_json& command);
 
 /** Many of them, one after the other. Errors: of the first that is no edit. */

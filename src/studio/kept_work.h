@@ -12,14 +12,14 @@ namespace hvas::studio {
 
 /** How far the work on a product has come: what a later start of the studio goes on from. */
 struct KeptWork {
-  std::filesystem::path file;                 ///< Of the product.
-  std::string name;                           ///< As people call it.
+  std::filesystem::path file;                 ///< The product's.
+  std::string name;                           ///< What people call it.
   std::string digest;                         ///< CalcProductDigest of what was opened.
   std::vector<nlohmann::ordered_json> edits;  ///< Commands, in the order in which they were given.
   LiveState state;
 };
 
-/** Of parts, meshes, mates and fits: what edits and places of parts refer to. */
+/** The digest of parts, meshes, mates and fits: of all that edits and places of parts refer to. */
 [[nodiscard]] std::string CalcProductDigest(const product::Product& product);
 
 /** @pre now.scene is not null. */

@@ -23,7 +23,7 @@ struct OpenScene {
   std::shared_ptr<const std::string> glb;
   std::string glb_hash;
   std::filesystem::path file;  ///< That was opened.
-  std::string name;            ///< As people call the file.
+  std::string name;            ///< What people call the file.
   std::string digest;          ///< CalcProductDigest of it as it was opened.
   /** Commands that have changed the product since, in their order. */
   std::vector<nlohmann::ordered_json> edits;

@@ -22,7 +22,7 @@ struct ServerOptions {
   std::uint16_t port{0};                 ///< 0: any that is free.
   std::optional<TlsFiles> tls;           ///< None: it speaks http.
   std::filesystem::path upload_folder;   ///< Exists, and is this process's own.
-  std::filesystem::path access_file;     ///< Of KeptAccess; empty: nothing is kept of it.
+  std::filesystem::path access_file;     ///< Keeps KeptAccess; empty: nothing is kept of it.
   std::vector<std::string> reachable;    ///< Addresses that it could listen on for others.
   std::vector<std::string> names;        ///< Hosts besides the loopback's that it answers to.
   std::uint64_t most_upload{256 << 20};  ///< [bytes]

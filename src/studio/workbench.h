@@ -33,7 +33,7 @@ using Json = nlohmann::ordered_json;
 struct WorkbenchOptions {
   SceneBuilder::Options scenes;
   std::filesystem::path recordings_folder;  ///< Empty: nothing can be recorded.
-  std::filesystem::path work_file;          ///< Of KeptWork, as it goes on; empty: it is not kept.
+  std::filesystem::path work_file;  ///< Keeps KeptWork, as it goes on; empty: it is not kept.
   double rate_hz{1000};
 };
 
@@ -195,7 +195,7 @@ class Workbench {
   bool has_stopped_{false};
   SceneBuilder builder_;  ///< The worker's own.
 
-  mutable std::mutex mutex_;  ///< Of what follows.
+  mutable std::mutex mutex_;  ///< Protects what follows.
   std::shared_ptr<const OpenScene> scene_;
   std::shared_ptr<LiveRun> run_;
   Json failure_;       ///< Of the last file that could not be opened; null: none.
@@ -218,8 +218,8 @@ class Workbench {
   Sweeper sweeper_;
   RecordingShelf shelf_;
 
-  bool can_keep_work_{true};  ///< As far as the disk has said; the keeper's own.
-  JobThread keeper_;          ///< Of the work, on disk.
+  bool can_keep_work_{true};  ///< False once the disk has refused; the keeper's own.
+  JobThread keeper_;          ///< Writes the work to disk.
   JobThread worker_;          ///< The last member: the first that ends.
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostConditions = 26;
 constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]
-constexpr int kMostTrials = 5000;                    // Of one participant.
+constexpr int kMostTrials = 5000;                    // for one participant
 constexpr double kMostSeconds = 86400;
 constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};
 constexpr std::array<std::string_view, 3> kHidden{"condition", "time", "progress"};

@@ -14,7 +14,7 @@ namespace hvas::testing {
 
 /** What can stand where a file should and is none. */
 struct OddFile {
-  std::string kind;  ///< As error messages call it.
+  std::string kind;  ///< What error messages call it.
   std::filesystem::path path;
 };
 
@@ -33,7 +33,7 @@ inline std::vector<OddFile> MakeOddFiles(const std::filesystem::path& folder,
   fs::create_directory(place("a folder"));
   const fs::path pipe = place("a pipe");
   ::mkfifo(pipe.c_str(), S_IRUSR | S_IWUSR);
-  // By a relative name: an address of a socket is short.
+  // The name is relative, as an address of a socket is short.
   const fs::path socket = place("a socket");
   const fs::path before = fs::current_path();
   fs::current_path(socket.parent_path());

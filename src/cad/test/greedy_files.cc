@@ -35,7 +35,8 @@ void AppendBytes(T value, std::string* bytes) {
   bytes->append(raw.data(), raw.size());
 }
 
-/** By pieces, so that a bomb is not there as a whole; `fill` bytes of 'x' follow the data. */
+/** Writes by pieces, so that a bomb is never in memory as a whole; `fill` bytes of 'x' follow the
+ * data. */
 std::pair<std::string, std::uint32_t> Deflate(const std::string& data, std::size_t fill) {
   z_stream stream{};
   if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY) !=
@@ -153,7 +154,7 @@ std::string Base64(const std::string& bytes) {
   constexpr const char* kLetters =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
-  for (std::size_t i = 0; i + 2 < bytes.size(); i += 3) {  // Of a size that 3 divides.
+  for (std::size_t i = 0; i + 2 < bytes.size(); i += 3) {  // The size is a multiple of 3.
     unsigned value = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       value = value << 8U | static_cast<unsigned char>(bytes[i + k]);

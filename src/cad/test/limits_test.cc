@@ -43,7 +43,7 @@ std::string MakeBoxStep(const TemporaryFolder& folder) {
  */
 struct Reading {
   std::size_t parts{0};  ///< Occurrences; 0 where it was refused.
-  std::string error;     ///< As a user sees it.
+  std::string error;     ///< What a user sees of it.
   double reader_mib{0};
   double own_mib{0};
 };

@@ -22,7 +22,7 @@ double ToThou(double length) {
  an inch; negative is interference. They are read from another column than the limits. */
 struct PrintedClearance {
   const char* name;
-  std::vector<double> ends;  // Of the ranges [in].
+  std::vector<double> ends;  // The ends of the ranges [in].
   std::vector<double> least;
   std::vector<double> largest;
 };

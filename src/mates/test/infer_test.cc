@@ -330,7 +330,7 @@ TEST(Infer, CopiesAtOnePlaceAreToldOnceAndCostNoPairs) {
   Product alone = build(0, false);
   Diagnostics diagnostics;
   Infer(&alone, &diagnostics);
-  // As many pairs as these have take gigabytes.
+  // So many pairs take gigabytes.
   for (const auto& [copies, are_parts] : {std::pair(20000, false), std::pair(300, true)}) {
     Product product = build(copies, are_parts);
     Diagnostics told;

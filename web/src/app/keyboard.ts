@@ -147,7 +147,7 @@ function onKeyFirst(event: KeyboardEvent): void {
   event.stopPropagation();
 }
 
-/** With the focus on the picture and nothing in the hand, arrows look around; Enter takes and lets go. */
+/** The keys while the picture has the focus and nothing is in the hand: arrows look around; Enter takes and lets go. */
 function onPictureKey(event: KeyboardEvent): boolean {
   const rig = viewport.value?.rig;
   if (rig === undefined || !isOnPicture() || event.ctrlKey || event.metaKey || event.altKey) {
@@ -184,7 +184,7 @@ function onPictureKey(event: KeyboardEvent): boolean {
   }
 }
 
-/** In a study there is the hand, and the way out; no view, tool or help that others did not have. */
+/** The keys of a study: the hand, and the way out; no view, tool or help that others did not have. */
 function onParticipantKey(event: KeyboardEvent): void {
   const { isPicking, isTask, state } = studio.study;
   const isOther = event.ctrlKey || event.metaKey || event.defaultPrevented || belongsToControl(event);

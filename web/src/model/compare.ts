@@ -142,7 +142,7 @@ export function commonPaths(details: readonly RecordingDetail[]): ReadonlySet<st
   return new Set(rows.map(({ path }) => path));
 }
 
-/** Of some parts of a recording: times, paths and collisions together, and the greatest of the forces. */
+/** The figures of some parts of a recording: times, paths and collisions together, and the greatest of the forces. */
 export function totalOf(detail: RecordingDetail, paths: ReadonlySet<string>): Metrics {
   const results = detail.results.filter((result) => paths.has(result.path));
   const of = (metric: Metric) => results.map((result) => result[metric]);

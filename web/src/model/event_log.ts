@@ -81,7 +81,7 @@ export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): 
   }
 }
 
-/** With the limits of the force that an event tells of; the same where it tells of none. */
+/** The hand with the limits of the force that an event tells of; the same where it tells of none. */
 export function countLimits(counts: LimitCounts, event: WorkEvent): LimitCounts {
   if (event.event !== "safety" || isAlarm(event) || !event.reasons?.length) {
     return counts;

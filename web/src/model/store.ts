@@ -56,7 +56,7 @@ export interface LogEntry {
   timeS?: number;
   kind: LogKind;
   params: Record<string, string | number>;
-  /** Of an alarm that has come again: how often. */
+  /** How often an alarm has come again. */
   count?: number;
 }
 

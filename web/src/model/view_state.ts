@@ -21,7 +21,7 @@ export function makeViewState() {
     selectMode: signal<SelectMode>("part"),
     selected: signal<readonly number[]>([]),
     selectedFace: signal<FaceOf | null>(null),
-    /** Of what is selected (ids in their order, with commas) the mate whose card is shown, by its key. */
+    /** The mate whose card is shown, by its key, for what is selected (ids in their order, with commas). */
     cardMates: signal<ReadonlyMap<string, string>>(new Map()),
     hovered: signal<number | null>(null),
     hidden: signal<ReadonlySet<number>>(new Set()),

@@ -25,7 +25,7 @@ export const kSampleSlots = 2048;
 /** Of a sample: hand, time [s], then what `sampleOf` says. */
 export const kSampleFloats = 16;
 
-/** After so long without a frame, what is known of the server's clock counts no more [ms]. */
+/** How long what is known of the server's clock counts without a frame [ms]. */
 const kSilenceMs = 1000;
 /** Between the speeds of two clocks, at most. */
 const kDrift = 1e-4;

@@ -1,6 +1,6 @@
 /** Notices that the server says nothing any more, though the connection is there. Times are in ms, on any clock. */
 
-/** After so long without a word it is asked for one. */
+/** How long the other side may be silent until it is asked for a word. */
 const kQuietMs = 500;
 /** After so long it is silent. */
 export const kSilentMs = 1000;
