@@ -8,6 +8,7 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
 option(HVAS_WERROR "Treat warnings as errors" OFF)
 set(HVAS_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=")
+set(HVAS_SANITIZE_NOT "" CACHE STRING "Checks of these sanitizers to leave out, as in -fno-sanitize=")
 
 find_program(HVAS_CCACHE ccache)
 if(HVAS_CCACHE)
@@ -31,6 +32,9 @@ if(HVAS_WERROR)
 endif()
 if(HVAS_SANITIZE)
   add_compile_options(-fsanitize=${HVAS_SANITIZE} -fno-omit-frame-pointer)
+  if(HVAS_SANITIZE_NOT)
+    add_compile_options(-fno-sanitize=${HVAS_SANITIZE_NOT})  # In vain before -fsanitize.
+  endif()
   add_link_options(-fsanitize=${HVAS_SANITIZE})
 endif()
 
