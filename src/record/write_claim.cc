@@ -34,6 +34,12 @@ Unexpected FailAsWritten(const std::filesystem::path& path) {
               "choose another name for the record, or end that session");
 }
 
+Unexpected FailToMake(int cause, const std::filesystem::path& path) {
+  return Fail(cause == ENOSPC ? ErrorCode::kOutOfResource : ErrorCode::kNotFound,
+              std::string("the record cannot be made: ") + std::strerror(cause), path.string(),
+              "check that the folder exists and may be written");
+}
+
 /** Removes what is at the path, unless somebody writes to it. Who reads it can read on. */
 Result<void> RemoveUnwritten(const std::filesystem::path& path) {
   const Descriptor old(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
@@ -44,7 +50,9 @@ Result<void> RemoveUnwritten(const std::filesystem::path& path) {
     return FailAsWritten(path);
   }
   for (const char* suffix : {"-wal", "-shm", "-journal", ""}) {
-    ::unlink((path.string() + suffix).c_str());
+    if (::unlink((path.string() + suffix).c_str()) != 0 && errno != ENOENT) {
+      return FailToMake(errno, path);
+    }
   }
   return {};
 }
@@ -82,12 +90,7 @@ Result<WriteClaim> WriteClaim::Make(const std::filesystem::path& path, bool repl
   }
   Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly));
   if (!file.is_open()) {
-    const int cause = errno;
-    return cause == EEXIST
-               ? FailAsWritten(path)
-               : Fail(cause == ENOSPC ? ErrorCode::kOutOfResource : ErrorCode::kNotFound,
-                      std::string("the record cannot be made: ") + std::strerror(cause),
-                      path.string(), "check that the folder exists and may be written");
+    return errno == EEXIST ? FailAsWritten(path) : FailToMake(errno, path);
   }
   const bool is_taken = IsLockedByOthers(file);
   WriteClaim claim(path, std::move(file));

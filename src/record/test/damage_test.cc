@@ -222,6 +222,30 @@ TEST(RecorderFile, IsNotReplacedUnlessAskedForAndNeverWhileItIsWritten) {
   ASSERT_TRUE(asked.has_value()) << asked.error().ToString();
 }
 
+TEST(RecorderFile, ThatCannotBeReplacedIsKeptAndTheReasonIsTold) {
+  namespace fs = std::filesystem;
+  const TemporaryFile file("kept.hvas");
+  {
+    const auto first = Recorder::Create({file.path()}, {});
+    (*first)->AddTick(MakeTick(0));
+    ASSERT_TRUE((*first)->Finish().has_value());
+  }
+  const fs::path folder = file.path().parent_path();
+  fs::permissions(folder, fs::perms(0555));
+  fs::permissions(file.path(), fs::perms(0644));
+  const auto replace = [&file] {
+    if (::geteuid() == 0 && ::setuid(65534) != 0) {  // Everything is allowed to root.
+      std::exit(2);
+    }
+    const auto second = Recorder::Create({.path = file.path(), .replaces = true}, {});
+    std::fputs(second ? "replaced" : second.error().message.c_str(), stderr);
+    std::exit(0);
+  };
+  EXPECT_EXIT(replace(), ::testing::ExitedWithCode(0), "cannot be made: Permission denied");
+  fs::permissions(folder, fs::perms(0700));
+  EXPECT_TRUE(Reader::Open(file.path())->Verify().has_value());
+}
+
 TEST(RecorderFile, OfTwoThatBeginAtOnceOnlyOneIsWritten) {
   for (int round = 0; round < 20; ++round) {
     const TemporaryFile file("both.hvas");

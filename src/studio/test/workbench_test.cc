@@ -505,6 +505,27 @@ TEST_F(WorkbenchTest, ChangeOfTheProductEndsTheRecording) {
   EXPECT_EQ((*described)["is_complete"], true);
 }
 
+TEST_F(WorkbenchTest, RecordingThatVanishesIsToldOfAndWorkGoesOn) {
+  OpenPeg();
+  const std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.StartRecording(""));
+  const auto begun = log_.Await("recording", start);
+  ASSERT_TRUE(begun);
+  const auto file = bench_.shelf().Find((*begun)["id"]);
+  ASSERT_TRUE(file);
+  std::filesystem::remove(*file);
+  const auto failed = log_.Await("failed", start);
+  ASSERT_TRUE(failed);
+  EXPECT_EQ((*failed)["file"], "recording");
+  const std::string message = (*failed)["error"]["message"];
+  EXPECT_NE(message.find("removed or replaced"), std::string::npos) << message;
+  ASSERT_TRUE(log_.Await(
+      [](const Json& e) { return e["event"] == "recording" && e["on"] == false; }, start));
+  EXPECT_TRUE(bench_.recording().is_null());
+  TakePeg();
+  EXPECT_FALSE(HasFatalFailure());
+}
+
 TEST_F(WorkbenchTest, RecordingsHaveNamesOfTheirOwnAndOthersWhenTheyAreGiven) {
   OpenPeg();
   std::vector<std::string> ids;
