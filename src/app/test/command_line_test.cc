@@ -235,9 +235,9 @@ std::set<std::string> CompleteByFish(const Words& words) {
     line += (line.empty() ? "" : " ") + word;
   }
   // An offer is followed by its description, after a tab.
-  return RunShell("HOME=/nonexistent fish --no-config", MakeFishCompletion(DescribeProgram()) +
-                                                            "complete -C '" + line +
-                                                            "' | string replace -r '\\t.*' ''; true\n");
+  return RunShell("HOME=/nonexistent fish --no-config",
+                  MakeFishCompletion(DescribeProgram()) + "complete -C '" + line +
+                      "' | string replace -r '\\t.*' ''; true\n");
 }
 
 class CompletionTest : public ::testing::TestWithParam<Complete> {};
