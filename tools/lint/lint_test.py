@@ -9,6 +9,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import codes  # noqa: E402
 import layers  # noqa: E402
 import rt_symbols  # noqa: E402
 
@@ -76,6 +77,32 @@ class Layers(unittest.TestCase):
     def test_circle_in_the_table_is_caught(self):
         self.write("docs/architecture.md", TABLE.replace("| results | - |", "| results | top |"))
         self.assertRaises(ValueError, self.problems)
+
+
+class Codes(unittest.TestCase):
+    ROWS = {"X9", "N4"}
+    SPANS = {"X": range(1, 16)}
+    REFERENCES = "| ISO 286-1:2010 | fits |\n| Whitney, J. Dynamic Systems 104, 1982 | jamming |\n"
+
+    def strays(self, name, text):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / name
+            path.write_text(text)
+            return list(codes.find_strays(path, self.ROWS, self.SPANS, self.REFERENCES))
+
+    def test_what_stands_in_the_tables_passes(self):
+        text = "/** Exact (X9), by X(3); fits of ISO 286-1; Whitney,\n J. Dyn. Syst. 104 (1982). */ int N7 = 40; // N4\n"
+        self.assertEqual(self.strays("a.h", text), [])
+
+    def test_code_equation_standard_and_paper_that_lead_nowhere_are_caught_with_their_line(self):
+        text = "// X9\n// X8, then X(16)\nint a;  // DIN 912\n/* Nobody and\n Noone, J. Nothing 3, 1999 */\n"
+        found = self.strays("a.cc", text)
+        self.assertEqual([line for line, _ in found], [2, 2, 3, 4])
+        for (_, fault), what in zip(found, ["X8", "X(16)", "DIN 912", "Noone, J. Nothing 3, 1999"]):
+            self.assertIn(what, fault)
+
+    def test_what_a_document_quotes_is_no_citation(self):
+        self.assertEqual(self.strays("a.md", "`N9` is a class; N4 is a requirement"), [])
 
 
 # A tick that allocates only behind a local function in another file, and a clean one.

@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Checks that codes of requirements, equations and citations in sources and documents lead somewhere.
+
+A code as X9, W12 or N4 has to be a row of docs/requirements.md; an equation as X(9) or W(7) has to be
+within the numbers that docs/references.md gives for that paper; a standard (ISO 286-1) and a paper
+(Whitney, J. Dyn. Syst. 104, 1982) have to stand there. Prints each line that offends; exit status 1
+when there is one.
+"""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+
+CODE = re.compile(r"(?<![\w-])([XWN])([1-9]\d?)(?![\w(-])")
+EQUATION = re.compile(r"\b([XW])\((\d{1,2})\)")
+STANDARD = re.compile(r"\b(ISO|DIN|ANSI|IEC|RFC|VDI|EN)[ -]((?:[A-Z]{1,2}[ -])?[A-Z]?\d[\d.]*)")
+# The first author, and the year behind at most a journal and its volume.
+PAPER = re.compile(r"\b([A-Z][a-z\u00e9\u00e1]+)(?:, [A-Z]\w+)*(?:\sand\s+[A-Z]\w+| et al\.?)?,\s[^;:()]{0,60}?(?:[,(] ?|\s)((?:19|20)\d\d)\b(?!-)")
+# Where codes are told of: comments of sources, and documents but for what they quote in backticks.
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+QUOTED = re.compile(r"`[^`]*`")
+ROW = re.compile(r"^\| ([XWN]\d+) \|")
+SPAN = re.compile(r"^\| ([XW]) \|.*\| (\d+) to (\d+) \|")
+
+
+def read_rows(requirements):
+    return {match.group(1) for line in requirements.read_text().splitlines() if (match := ROW.match(line))}
+
+
+def read_spans(references):
+    """Numbers of the equations of each paper that has a letter."""
+    spans = {}
+    for line in references.read_text().splitlines():
+        if match := SPAN.match(line):
+            spans[match.group(1)] = range(int(match.group(2)), int(match.group(3)) + 1)
+    return spans
+
+
+def find_strays(path, rows, spans, references):
+    """Line and fault of each code and citation that leads nowhere."""
+    text = path.read_text(errors="replace")
+    if path.suffix == ".md":
+        passages = [(0, QUOTED.sub(lambda quote: " " * len(quote.group()), text))]
+    else:
+        passages = [(match.start(), match.group()) for match in COMMENT.finditer(text)]
+    for start, passage in passages:
+        checks = (
+            (CODE, "docs/requirements.md", lambda m: m.group() in rows),
+            (EQUATION, "docs/references.md", lambda m: int(m.group(2)) in spans.get(m.group(1), ())),
+            (STANDARD, "docs/references.md", lambda m: f"{m.group(1)} {m.group(2).rstrip('.')}" in references),
+            (PAPER, "docs/references.md", lambda m: re.search(rf"{m.group(1)}\b.*{m.group(2)}", references)),
+        )
+        for pattern, where, leads_there in checks:
+            for match in pattern.finditer(passage):
+                if not leads_there(match):
+                    line = text.count("\n", 0, start + match.start()) + 1
+                    yield line, f"{' '.join(match.group().split())} does not stand in {where}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
+    root = parser.parse_args().root
+    rows, spans = read_rows(root / "docs/requirements.md"), read_spans(root / "docs/references.md")
+    references = (root / "docs/references.md").read_text()
+    if not rows or not spans:
+        sys.exit("codes: docs/requirements.md or docs/references.md has no table")
+    globs = ["src/*.h", "src/*.cc", "products/*.h", "products/*.cc", "bench/*.cc", "docs/*.md", "README.md"]
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *globs]
+    names = subprocess.run(command, check=True, capture_output=True, text=True, cwd=root).stdout.split("\n")
+    count = 0
+    for name in filter(None, names):
+        if (root / name).is_file() and name != "docs/references.md":
+            for number, what in find_strays(root / name, rows, spans, references):
+                print(f"{name}:{number}: {what}")
+                count += 1
+    print(f"codes: {len(rows)} requirements, {sum(map(len, spans.values()))} equations, {count} strays")
+    sys.exit(1 if count else 0)
+
+
+if __name__ == "__main__":
+    main()
