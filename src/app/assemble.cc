@@ -52,6 +52,7 @@ Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
   }
   simulation::CompileOptions compile;
   compile.seed = options.seed;
+  compile.first_parts = options.order;
   if (const auto directory = CacheDirectory(options.load)) {
     compile.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
   }
@@ -68,16 +69,7 @@ Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
   if (const auto strict = CheckStrict(options.load, *diagnostics); !strict) {
     return Unexpected(strict.error());
   }
-  if (options.order.empty()) {
-    return model;
-  }
-  auto sequence = simulation::Reorder(*(*model)->product, (*model)->sequence, options.order);
-  if (!sequence) {
-    return Unexpected(sequence.error());
-  }
-  auto reordered = std::make_shared<Model>(**model);
-  reordered->sequence = std::move(*sequence);
-  return std::shared_ptr<const Model>(std::move(reordered));
+  return model;
 }
 
 record::Meta MakeMeta(const Model& model, const AssembleOptions& options) {

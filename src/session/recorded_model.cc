@@ -122,20 +122,16 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
                 reader->path().string(), "restore the file from a copy");
   }
   options.seed = json[kSeed].get<std::uint64_t>();
-  auto compiled = simulation::Compile(std::make_shared<product::Product>(std::move(*product)),
-                                      options, diagnostics);
-  if (!compiled) {
-    return compiled;
-  }
-  auto model = std::make_shared<simulation::Model>(**compiled);
-  model->sequence.steps = std::move(*steps);
-  if (CalcFingerprint(*model) != fingerprint) {
+  options.steps = std::move(*steps);
+  auto model = simulation::Compile(std::make_shared<product::Product>(std::move(*product)), options,
+                                   diagnostics);
+  if (model && CalcFingerprint(**model) != fingerprint) {
     diagnostics->Warn("model-differs", reader->path().string(),
                       "this version of HVAS prepares the product in another way than the one that "
                       "recorded it, so its ticks can come out otherwise",
                       "replay it with the version that recorded it");
   }
-  return std::shared_ptr<const simulation::Model>(std::move(model));
+  return model;
 }
 
 }  // namespace hvas::session

@@ -148,6 +148,22 @@ Result<void> LayOut(Model* model) {
   return {};
 }
 
+/** The order that was asked for, in place of the one that was found. */
+Result<void> PutInOrder(const CompileOptions& options, Model* model) {
+  if (!options.steps.empty()) {
+    model->sequence.steps = options.steps;
+  }
+  if (options.first_parts.empty()) {
+    return {};
+  }
+  auto sequence = Reorder(*model->product, model->sequence, options.first_parts);
+  if (!sequence) {
+    return Unexpected(sequence.error());
+  }
+  model->sequence = std::move(*sequence);
+  return {};
+}
+
 }  // namespace
 
 dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& step) {
@@ -295,6 +311,9 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   report("layout", 0);
   if (const auto laid_out = LayOut(model.get()); !laid_out) {
     return Unexpected(laid_out.error());
+  }
+  if (const auto ordered = PutInOrder(options, model.get()); !ordered) {
+    return Unexpected(ordered.error());
   }
   report("ready", 1);
   return std::shared_ptr<const Model>(std::move(model));

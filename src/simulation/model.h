@@ -39,6 +39,12 @@ struct ModelMate {
 
 struct CompileOptions {
   std::uint64_t seed{1};  ///< Draws the actual sizes of the fits.
+  /** Parts that come first, as Reorder() takes them; the others follow in the order that is found.
+   */
+  std::vector<std::string> first_parts;
+  /** The whole order of assembly, as a record keeps it, in place of the one that is found; empty:
+   that one. */
+  std::vector<SequenceStep> steps;
   contact::ShapeOptions shape;
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
   int threads{2};
@@ -59,7 +65,7 @@ struct Model {
 };
 
 /** Builds shapes, fits, the order of assembly and the layout of the parts on the table.
- Errors: kInvalid when the product has no parts or a shape cannot be built. */
+ Errors: kInvalid when the product has no parts or a shape cannot be built; those of Reorder(). */
 Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
                                              const CompileOptions& options,
                                              Diagnostics* diagnostics);

@@ -97,10 +97,12 @@ TEST(RecordedModelTest, IsMadeAgainFromTheFileAlone) {
   simulation::CompileOptions options = simulation::testing::FastOptions();
   options.seed = 77;
   Diagnostics diagnostics;
+  options.steps = PegInBlockModel()->sequence.steps;
+  ASSERT_EQ(options.steps.size(), 2u);
+  std::swap(options.steps[0], options.steps[1]);  // as somebody ordered
   const auto compiled = simulation::Compile(PegInBlockModel()->product, options, &diagnostics);
-  auto model = std::make_shared<simulation::Model>(**compiled);
-  ASSERT_EQ(model->sequence.steps.size(), 2u);
-  std::swap(model->sequence.steps[0], model->sequence.steps[1]);  // as somebody ordered
+  ASSERT_TRUE(compiled.has_value());
+  const simulation::Model* model = compiled->get();
   const auto recorder = MakeRecorder(file);
   AttachModel(*model, recorder.get());
   ASSERT_TRUE(recorder->Finish().has_value());

@@ -25,11 +25,9 @@ constexpr double kDepthAtClamp =
 /** A product with the clamp in its place before the peg. */
 std::shared_ptr<const Model> ClampFirst(product::Product product) {
   Diagnostics diagnostics;
-  auto made =
-      std::make_shared<Model>(**Compile(std::make_shared<product::Product>(std::move(product)),
-                                        testing::FastOptions(), &diagnostics));
-  made->sequence = *Reorder(*made->product, made->sequence, {"clamp", "peg"});
-  return made;
+  CompileOptions options = testing::FastOptions();
+  options.first_parts = {"clamp", "peg"};
+  return *Compile(std::make_shared<product::Product>(std::move(product)), options, &diagnostics);
 }
 
 const std::shared_ptr<const Model>& TrapModel() {
