@@ -174,6 +174,7 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
     json["late_wake_ups"] = run.late_wake_ups;
     json["overruns"] = run.overruns;
     json["dropped_ticks"] = outcome.dropped_ticks;
+    json["lost_events"] = run.lost_events;
   } else {
     json["cpu_s"] = ToS(run.cpu_ns);
     json["cpu_real_time_factor"] = Ratio(run, run.cpu_ns);
@@ -207,10 +208,10 @@ void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
         "{}",
         Fold(fmt::format(
             "realtime: {:.1f} ticks per second; wake-up median {:.1f}, p99 {:.1f}, max {:.1f} "
-            "us; {} late wake-ups, {} overruns, {} ticks not recorded\n",
+            "us; {} late wake-ups, {} overruns, {} ticks not recorded, {} events lost\n",
             static_cast<double>(run.ticks) / ToS(run.wall_ns), ToUs(run.wake_up.Quantile(0.5)),
             ToUs(run.wake_up.Quantile(0.99)), ToUs(run.wake_up.max_ns()), run.late_wake_ups,
-            run.overruns, outcome.dropped_ticks)));
+            run.overruns, outcome.dropped_ticks, run.lost_events)));
   }
   PrintDevices(outcome);
   fmt::print("digest {}\n", outcome.digest);

@@ -23,12 +23,15 @@ class Ring {  // NOLINT(clang-analyzer-optin.performance.Padding): each side has
   Ring(const Ring&) = delete;
   Ring& operator=(const Ring&) = delete;
 
-  /** Writer: appends a value, or counts a drop and returns false when the ring is full. */
-  bool TryPush(const T& value) noexcept(noexcept(std::declval<T&>() = value)) {
+  /** Writer: appends a value, or counts a drop and returns false when the ring is full.
+   @param reserve  How many values more the ring must have room for, or it counts as full: room that
+   is kept for values that must not be lost. */
+  bool TryPush(const T& value,
+               std::size_t reserve = 0) noexcept(noexcept(std::declval<T&>() = value)) {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
-    if (tail - head_seen_ > mask_) {
+    if (tail - head_seen_ + reserve > mask_) {
       head_seen_ = head_.load(std::memory_order_acquire);
-      if (tail - head_seen_ > mask_) {
+      if (tail - head_seen_ + reserve > mask_) {
         dropped_.fetch_add(1, std::memory_order_relaxed);
         return false;
       }

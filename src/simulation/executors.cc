@@ -153,8 +153,8 @@ class StatusTeller {
     now_.is_memory_locked = grant.is_memory_locked;
   }
 
-  void Tell(const ExecutionReport& report, std::int64_t late_ns, std::int64_t compute_ns,
-            int effort_level) noexcept {
+  void Tell(const ExecutionReport& report, const Simulation& simulation, std::int64_t late_ns,
+            std::int64_t compute_ns, int effort_level) noexcept {
     if (status_ == nullptr) {
       return;
     }
@@ -166,6 +166,7 @@ class StatusTeller {
     now_.ticks = report.ticks;
     now_.late_wake_ups = report.late_wake_ups;
     now_.overruns = report.overruns;
+    now_.lost_events = simulation.lost_events();
     now_.effort_level = effort_level;
     status_->Write(now_);
     now_.wake_up = {};
@@ -234,6 +235,7 @@ ExecutionReport RunLockstep(const Execution& given) {
   }
   FinishFlight(execution);
   report.wall_ns = MonotonicNs() - start_ns;
+  report.lost_events = execution.simulation->lost_events();
   report.cpu_ns = ThreadCpuNs() - start_cpu_ns;
   report.session_ns = loop.t_ns();
   report.scheduling = "virtual time";
@@ -258,7 +260,7 @@ ExecutionReport RunRealtime(const Execution& given) {
       const std::int64_t late_ns = pacer.Wait();
       report.wake_up.Add(late_ns);
       report.late_wake_ups += late_ns > period_ns ? 1 : 0;
-      status.Tell(report, late_ns, loop.Tick(late_ns), loop.effort_level());
+      status.Tell(report, *execution.simulation, late_ns, loop.Tick(late_ns), loop.effort_level());
       t_ns.store(loop.t_ns(), std::memory_order_relaxed);
     }
     report.missed_periods = pacer.missed();
@@ -289,6 +291,7 @@ ExecutionReport RunRealtime(const Execution& given) {
   FinishFlight(execution);
   report.scheduling = report.grant.ToString();
   report.wall_ns = MonotonicNs() - start_ns;
+  report.lost_events = execution.simulation->lost_events();
   report.session_ns = t_ns;
   return report;
 }

@@ -52,6 +52,7 @@ struct ExecutionReport {
   std::uint64_t late_wake_ups{0};   ///< Started more than a period after the deadline.
   std::uint64_t overruns{0};        ///< Compute alone took longer than a period.
   std::uint64_t missed_periods{0};  ///< Realtime only: passed over after a stall.
+  std::uint64_t lost_events{0};     ///< Simulation::lost_events().
   LatencyHistogram frame_age;       ///< Realtime only: of what is published, in session time.
   /** Realtime only: ticks by what had to be left out (kEffortLevels). */
   std::array<std::uint64_t, kEffortLevels.size()> ticks_at_level{};
@@ -66,6 +67,7 @@ struct LoopStatus {
   std::uint64_t ticks{0};  ///< In all.
   std::uint64_t late_wake_ups{0};
   std::uint64_t overruns{0};
+  std::uint64_t lost_events{0};
   int effort_level{0};
   bool is_fifo{false};  ///< As in RealtimeGrant.
   bool is_memory_locked{false};

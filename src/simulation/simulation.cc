@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/check.h"
 #include "fits/paper_scales.h"
 #include "mates/resolve.h"
 #include "simulation/fit_of_mate.h"
@@ -15,8 +16,10 @@ namespace {
 using product::MateKind;
 using product::OccurrenceId;
 
-constexpr double kReach = 0.03;      // [m] from a part's centre of mass, to take it up
-constexpr double kApproach = 0.01;   // [m] before its place, where a part's mates are resolved from
+constexpr double kReach = 0.03;     // [m] from a part's centre of mass, to take it up
+constexpr double kApproach = 0.01;  // [m] before its place, where a part's mates are resolved from
+// Of the ring of events: a taking and a letting go of each of two hands.
+constexpr std::size_t kRoomForOwnership = 4;
 constexpr double kStopCosine = 0.5;  // a plane facing the way in ends it; one along it guides
 
 double PaperFactorOf(const product::Mate& mate) {
@@ -81,6 +84,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOp
 }
 
 void Simulation::Restore(const std::vector<PartState>& parts) {
+  HVAS_DEMAND(parts.size() == model_->bodies.size());
   parts_ = parts;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     PartState& part = parts_[i];
@@ -104,6 +108,17 @@ void Simulation::SetEffortLevel(int level) noexcept {
   }
 }
 
+/** There is always room for it: a hand has at most one taking and one letting go on the way, as
+ physics gives it the next part only when it has seen both. */
+void Simulation::PushOwnership(const SimulationEvent& event) noexcept {
+  events_.TryPush(event);
+}
+
+/** @returns false where nothing but the room for ownership is left. */
+bool Simulation::TryPushTelemetry(const SimulationEvent& event) noexcept {
+  return events_.TryPush(event, kRoomForOwnership);
+}
+
 void Simulation::Obey(const TickCommand& command, std::int64_t t_ns) noexcept {
   if (command.kind == TickCommand::Kind::kTake) {
     Hand& hand = hands_[command.hand];
@@ -120,7 +135,7 @@ void Simulation::Obey(const TickCommand& command, std::int64_t t_ns) noexcept {
     event.state = haptics::HoldState::kFree;
     event.X_WB = command.X_WB;
     event.metrics = hand.metrics;
-    events_.TryPush(event);
+    PushOwnership(event);
   } else {
     for (Hand& hand : hands_) {
       hand.haptic.SetLoose(command.body, false);
@@ -209,20 +224,24 @@ void Simulation::TellOfSafety(Hand* hand, const device::DeviceState& device,
   }
   if (event.gate_actions != 0) {
     event.kind = SimulationEvent::Kind::kSafety;
-    events_.TryPush(event);
+    if (!TryPushTelemetry(event)) {
+      lost_events_.fetch_add(1, std::memory_order_relaxed);
+    }
   }
   if (effort_level_ != told_effort_level_) {
-    told_effort_level_ = effort_level_;
     event.kind = SimulationEvent::Kind::kEffort;
     event.effort_level = effort_level_;
-    events_.TryPush(event);
+    if (TryPushTelemetry(event)) {  // Else it is said again in the next tick.
+      told_effort_level_ = effort_level_;
+    }
   }
   if (device.condition != hand->last_condition) {
-    hand->last_condition = device.condition;
     event.kind = SimulationEvent::Kind::kDevice;
     event.condition = device.condition;
     event.vendor_code = device.vendor_code;
-    events_.TryPush(event);
+    if (TryPushTelemetry(event)) {
+      hand->last_condition = device.condition;
+    }
   }
 }
 
@@ -242,12 +261,11 @@ haptics::TickOutput Simulation::RunTick(Hand* hand, const device::DeviceState& d
     event.was_seated = let_go.is_in_place;
     event.to_place = let_go.to_place;
     event.metrics = hand->metrics;
-    events_.TryPush(event);
+    PushOwnership(event);
   }
   haptics::TickOutput out = haptic.Tick(device, context);
   Measure(hand, device.t_ns, out);
   if (out.state != hand->last_state) {
-    hand->last_state = out.state;
     SimulationEvent event;
     event.t_ns = device.t_ns;
     event.hand = hand->index;
@@ -255,7 +273,9 @@ haptics::TickOutput Simulation::RunTick(Hand* hand, const device::DeviceState& d
     event.state = out.state;
     event.X_WB = out.X_WD;
     event.metrics = hand->metrics;
-    events_.TryPush(event);
+    if (TryPushTelemetry(event)) {
+      hand->last_state = out.state;
+    }
   }
   TellOfSafety(hand, device, out);
   Report report{device.t_ns, device.is_gripping && device.is_valid, out, {}, 0};
@@ -294,6 +314,7 @@ void Simulation::Measure(Hand* hand, std::int64_t t_ns, const haptics::TickOutpu
 }
 
 void Simulation::PhysicsStep(Sink* sink) {
+  PassCommands();
   SimulationEvent event;
   while (events_.TryPop(&event)) {
     HandleEvent(event);
@@ -411,7 +432,14 @@ void Simulation::Give(const TickCommand& command, const SequenceStep& step) {
     tell_of_command_({given_commands_, physics_t_ns_.load(std::memory_order_relaxed), command.kind,
                       command.hand, step, parts_});
   }
-  commands_.TryPush(command);
+  waiting_commands_.push_back(command);
+  PassCommands();
+}
+
+void Simulation::PassCommands() {
+  while (!waiting_commands_.empty() && commands_.TryPush(waiting_commands_.front())) {
+    waiting_commands_.pop_front();
+  }
 }
 
 OccurrenceId Simulation::FindNearest(const Vec3& p_WH, Placement placement) const {

@@ -154,6 +154,12 @@ class Simulation {
     tell_of_command_ = std::move(tell);
   }
 
+  /** Any thread: how many events of the safety gate were never told of, as physics had not taken
+   those before them. All others arrive, or are said again until they do. RT-safe. */
+  [[nodiscard]] std::uint64_t lost_events() const noexcept {
+    return lost_events_.load(std::memory_order_relaxed);
+  }
+
   /** Haptic thread: how many commands the ticks have obeyed. RT-safe. */
   [[nodiscard]] std::uint32_t obeyed_commands() const noexcept { return obeyed_commands_; }
 
@@ -270,6 +276,9 @@ class Simulation {
                               const haptics::TickContext& context) noexcept;
   void Obey(const TickCommand& command, std::int64_t t_ns) noexcept;
   void Give(const TickCommand& command, const SequenceStep& step);
+  void PassCommands();
+  void PushOwnership(const SimulationEvent& event) noexcept;
+  [[nodiscard]] bool TryPushTelemetry(const SimulationEvent& event) noexcept;
   void TellOfSafety(Hand* hand, const device::DeviceState& device,
                     const haptics::TickOutput& out) noexcept;
   static void Measure(Hand* hand, std::int64_t t_ns, const haptics::TickOutput& out) noexcept;
@@ -305,12 +314,14 @@ class Simulation {
 
   Ring<TickCommand> commands_;
   Ring<SimulationEvent> events_;
+  std::atomic<std::uint64_t> lost_events_{0};
   TripleBuffer<Frame> frames_;
 
   // The physics thread's own.
   std::vector<PartState> parts_;
   std::function<void(const GivenCommand&)> tell_of_command_;
   std::uint32_t given_commands_{0};
+  std::deque<TickCommand> waiting_commands_;  ///< For room in the ring.
 };
 
 }  // namespace hvas::simulation

@@ -144,6 +144,7 @@ Json MakeStatus(const simulation::LoopStatus& status) {
           {"wake_up_p99_us", us(status.wake_up.Quantile(kP99))},
           {"late_ticks", status.late_wake_ups},
           {"overruns", status.overruns},
+          {"lost_events", status.lost_events},
           {"effort_level", status.effort_level},
           {"scheduling", scheduling},
           {"is_memory_locked", status.is_memory_locked},

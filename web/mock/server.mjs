@@ -316,6 +316,7 @@ setInterval(
       scheduling: "SCHED_FIFO",
       physics_hz: 100,
       late_ticks: 0,
+      lost_events: 0,
       clients: clients.size,
       effort_level: 0,
       ...rates(simulation?.hand),

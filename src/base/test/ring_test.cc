@@ -40,6 +40,23 @@ TEST(Ring, RefusesAndCountsWhenFullAndKeepsTheOld) {
   EXPECT_TRUE(ring.TryPush(99));
 }
 
+TEST(Ring, KeepsRoomForWhatMustNotBeLost) {
+  constexpr std::size_t kReserve = 3;
+  Ring<int> ring(8);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(ring.TryPush(i, kReserve), i < 5);
+  }
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(ring.TryPush(100 + i));
+  }
+  EXPECT_FALSE(ring.TryPush(103));
+  int value = 0;
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_TRUE(ring.TryPop(&value));
+    EXPECT_EQ(ring.TryPush(200, kReserve), i == 3);
+  }
+}
+
 struct Message {
   std::uint64_t number{0};
   std::array<std::uint64_t, 15> copies{};

@@ -1,5 +1,6 @@
 // Two hands in one scene: X3, X4, X7, N8.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -114,6 +115,43 @@ double CalcMismatch(const TwoHands& hands) {
   const double f_0 = hands.out[0].F_felt_W.f.x();
   const double f_1 = hands.out[1].F_felt_W.f.x();
   return std::abs(f_0 + f_1) / std::max(std::abs(f_0), std::abs(f_1));
+}
+
+// X4: the haptic loop goes on while physics gets no time, and says more than there is room for.
+TEST(TwoHandsTest, PhysicsThatStandsStillForHalfAMinuteMissesNoPart) {
+  TwoHands hands(Blocks());
+  hands.TakeBlocksUp();
+  hands.events.events.clear();
+  for (int i = 0; i < 30'000; ++i) {
+    for (std::size_t hand = 0; hand < 2; ++hand) {
+      DeviceState& state = hands.states[hand];
+      state.t_ns += 1'000'000;
+      state.V_DH.v = Vec3::Zero();
+      state.is_gripping = i < 10'000;
+      state.condition = i % 2 == 0 ? device::Condition::kLost : device::Condition::kReady;
+      hands.out[hand] = hands.simulation.HapticTick(hand, state);
+    }
+  }
+  hands.Run(0.1);
+  const auto& events = hands.events.events;
+  for (std::size_t hand = 0; hand < 2; ++hand) {
+    SCOPED_TRACE(hand);
+    EXPECT_FALSE(hands.simulation.is_holding(hand));
+    const auto of_hand = [hand](SimulationEvent::Kind kind) {
+      return [hand, kind](const SimulationEvent& e) { return e.hand == hand && e.kind == kind; };
+    };
+    EXPECT_EQ(std::count_if(events.begin(), events.end(), of_hand(SimulationEvent::Kind::kDropped)),
+              1);
+    const auto told =
+        std::find_if(events.rbegin(), events.rend(), of_hand(SimulationEvent::Kind::kDevice));
+    ASSERT_NE(told, events.rend());
+    EXPECT_EQ(told->condition, device::Condition::kReady) << "the last one is said again";
+  }
+  hands.Run(1.0);  // until what was let go of lies on the table
+  hands.Take(0, kFirst);
+  hands.Take(1, kSecond);
+  EXPECT_EQ(hands.simulation.placement(kFirst), Placement::kHeld);
+  EXPECT_EQ(hands.simulation.placement(kSecond), Placement::kHeld);
 }
 
 TEST(TwoHandsTest, PartsPushAgainstEachOtherWithOneForce) {  // X7

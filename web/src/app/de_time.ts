@@ -48,6 +48,7 @@ export const deTime: Record<keyof typeof enTime, string> = {
   "rates.tick": "Haptik-Takt",
   "rates.physics": "Physik-Takt",
   "rates.late": "Späte Takte",
+  "rates.lostEvents": "Verlorene Ereignisse",
   "rates.computeP99": "Rechenzeit, p99",
   "rates.wakeUpP99": "Aufwachen, p99",
   "rates.scheduling": "Scheduling",

@@ -46,6 +46,7 @@ export const enTime = {
   "rates.tick": "Haptic rate",
   "rates.physics": "Physics rate",
   "rates.late": "Late ticks",
+  "rates.lostEvents": "Lost events",
   "rates.computeP99": "Compute, p99",
   "rates.wakeUpP99": "Wake-up, p99",
   "rates.scheduling": "Scheduling",

@@ -231,6 +231,7 @@ export interface ServerStatus {
   scheduling: string;
   physics_hz: number;
   late_ticks: number;
+  lost_events: number;
   clients: number;
   effort_level: number;
   histograms?: Histograms;
