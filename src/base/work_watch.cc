@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include "base/check.h"
 #include "base/clock.h"
 #include "base/descriptor.h"
 
@@ -68,6 +69,7 @@ bool WorkWatch::MayGoOn() {
 }
 
 Error WorkWatch::Explain(std::string_view work, std::string where) const {
+  HVAS_DEMAND(reason_ != Reason::kNone);
   switch (reason_) {
     case Reason::kStop:
       return {ErrorCode::kCancelled, fmt::format("{} was stopped", work), std::move(where), ""};

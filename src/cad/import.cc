@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/check.h"
 #include "base/clock.h"
 #include "cad/import_cache.h"
 #include "cad/import_result.h"
@@ -197,6 +198,7 @@ Result<Product> Finish(ImportResult result, const ImportControl& control,
 
 Result<Product> Import(const std::filesystem::path& file, const ImportOptions& options,
                        Diagnostics* diagnostics, const ImportControl& control) {
+  HVAS_DEMAND(diagnostics != nullptr);
   auto path = CheckInputFile(file);
   if (!path) {
     return Unexpected(path.error());

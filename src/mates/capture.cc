@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/check.h"
 #include "mates/mate_kind.h"
 
 namespace hvas::mates {
@@ -12,6 +13,7 @@ using product::MateKind;
 using spatial::Pose;
 
 CaptureMate MakeCaptureMate(const product::Mate& mate, product::OccurrenceId held) {
+  HVAS_DEMAND(mate.a.occurrence == held || mate.b.occurrence == held);
   const bool holds_shaft = mate.b.occurrence == held;
   CaptureMate capture;
   capture.kind = mate.kind;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.h"
 #include "mates/mate_kind.h"
 
 namespace hvas::mates {
@@ -287,6 +288,7 @@ Pose Prealign(std::span<const MateConstraint> mates, const Pose& X_WBStart) {
 
 MateConstraint MakeConstraint(const product::Mate& mate, product::OccurrenceId held,
                               const Pose& X_WP) noexcept {
+  HVAS_ASSERT(mate.a.occurrence == held || mate.b.occurrence == held);
   const bool holds_b = mate.b.occurrence == held;
   const product::Connector& placed_side = holds_b ? mate.a : mate.b;
   const product::Connector& held_side = holds_b ? mate.b : mate.a;

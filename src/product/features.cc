@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/check.h"
 #include "product/axis_features.h"
 #include "product/face_adjacency.h"
 #include "product/forms.h"
@@ -220,6 +221,7 @@ void AddInnerConstraints(Part* part, double tolerance) {
 }  // namespace
 
 void BuildFeatures(Part* part) {
+  HVAS_DEMAND(part != nullptr);
   part->features.clear();
   part->forms.clear();
   part->inner_constraints.clear();

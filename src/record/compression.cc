@@ -2,6 +2,8 @@
 
 #include <zstd.h>
 
+#include "base/check.h"
+
 namespace hvas::record {
 namespace {
 
@@ -41,6 +43,7 @@ std::vector<std::byte> Decompress(std::span<const std::byte> block, std::size_t 
 }
 
 std::vector<std::byte> CompressTicks(std::span<const std::byte> packed, std::size_t tick_size) {
+  HVAS_DEMAND(tick_size > 0 && packed.size() % tick_size == 0);
   // Byte by byte of all ticks in a row: sign, exponent and first digits of a number hardly ever
   // change within a millisecond.
   return Compress(Transpose(packed, tick_size));

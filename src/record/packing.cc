@@ -3,6 +3,8 @@
 #include <bit>
 #include <cstring>
 
+#include "base/check.h"
+
 namespace hvas::record {
 namespace {
 
@@ -126,6 +128,7 @@ void Pack(const TickRecord& tick, std::span<std::byte, kPackedTickSize> bytes) n
 }
 
 TickRecord Unpack(std::span<const std::byte> bytes, std::int64_t schema) noexcept {
+  HVAS_DEMAND(bytes.size() >= PackedTickSize(schema));
   ByteReader reader(bytes.data());
   TickRecord tick;
   std::array<FlatPose, 3> poses{};

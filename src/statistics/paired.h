@@ -9,7 +9,7 @@ namespace hvas::statistics {
 
 /** Second minus first, pair by pair. */
 struct PairedDifference {
-  Summary summary;  ///< Of the differences.
+  Summary summary;  ///< The differences'.
   double first_mean{0};
   double second_mean{0};
   /** The mean difference in per cent of the first mean, as paper X tells of times: 9.4 s is -25.4 %
@@ -25,7 +25,7 @@ struct PairedDifference {
 /** The mean difference in units of its standard deviation, Cohen's d_z. */
 struct StandardizedDifference {
   double d_z{0};
-  Interval ci;  ///< From the non-central t distribution, by inversion.
+  Interval ci;  ///< Follows from the non-central t distribution, by inversion.
 };
 
 /** None for fewer than two differences and where all are equal. Errors: as Summarise. */

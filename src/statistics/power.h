@@ -17,13 +17,14 @@ namespace hvas::statistics {
 struct NormalDesign {
   std::vector<double> means;
   std::vector<double> sds;  ///< One each, above zero.
-  double correlation{0.5};  ///< Between two conditions of one participant, [0, 1).
+  double correlation{0.5};  ///< Correlation between two conditions of one participant, [0, 1).
 };
 
 /** Times as they are as a rule, skew: the same of the logarithm. */
 struct LogNormalDesign {
   std::vector<double> medians;  ///< Above zero.
-  std::vector<double> log_sds;  ///< Of the natural logarithm: 0.3 is about 30 %.
+  std::vector<double>
+      log_sds;  ///< Standard deviations of the natural logarithm: 0.3 is about 30 %.
   double correlation{0.5};
 };
 
@@ -41,8 +42,8 @@ struct PilotDesign {
 using Design = std::variant<NormalDesign, LogNormalDesign, CountDesign, PilotDesign>;
 
 enum class PowerTest {
-  kFriedman,  ///< By chi-square.
-  kWilcoxon,  ///< By the normal approximation; two conditions.
+  kFriedman,  ///< Friedman's test by chi-square.
+  kWilcoxon,  ///< Wilcoxon's test by the normal approximation; two conditions.
 };
 
 struct PowerOptions {

@@ -11,7 +11,7 @@ namespace hvas::statistics {
 
 /** Ranks from 1; what is tied has the mean of its ranks. */
 struct MidRanks {
-  std::vector<double> ranks;  ///< In the order of the values.
+  std::vector<double> ranks;  ///< Ordered as the values are.
   double tie_sum{0};          ///< Sum of t^3 - t over groups of t tied values.
 };
 
@@ -25,7 +25,7 @@ enum class Exact { kNo, kYes };
 struct Friedman {
   std::size_t row_count{0};
   std::size_t condition_count{0};
-  std::vector<double> mean_ranks;  ///< Of each condition; 1 is the smallest value.
+  std::vector<double> mean_ranks;  ///< Each condition's; 1 is the smallest value.
   /** Chi-square with condition_count - 1 degrees of freedom, its p and Kendall's W from 0 to 1.
    None where every row is one tie. */
   std::optional<double> chi_square;
@@ -36,7 +36,7 @@ struct Friedman {
    too, and F has no bound. */
   std::optional<double> iman_davenport_f;
   std::optional<double> iman_davenport_p;
-  /** By all permutations of ranks within rows. None where there are too many to go through:
+  /** p by all permutations of ranks within rows. None where there are too many to go through:
    without ties three conditions go up to 125 rows, four to 26, five to 9. */
   std::optional<double> exact_p;
 };
@@ -57,14 +57,14 @@ struct Wilcoxon {
    both sides. None where all differences are zero. */
   std::optional<double> z;  ///< Above zero where positive differences weigh more.
   std::optional<double> p;
-  /** The same p with the distance from the mean one half smaller, as other programs have it. */
+  /** p with the distance from the mean one half smaller, as other programs have it. */
   std::optional<double> continuity_p;
   /** Zero differences kept while ranks are given, and left out of the sums: Pratt, J. Am. Stat.
    Assoc. 54, 1959; the moments after Cureton, J. Am. Stat. Assoc. 62, 1967. No correction for
    continuity. */
   std::optional<double> pratt_z;
   std::optional<double> pratt_p;
-  /** By all 2^n signs, both sides; up to kMostExactPairs. */
+  /** p by all 2^n signs, both sides; up to kMostExactPairs. */
   std::optional<double> exact_p;
   /** Matched-pairs rank biserial correlation, -1 to 1: the difference of the rank sums over their
    sum (Kerby, Comprehensive Psychology 3, 2014). */

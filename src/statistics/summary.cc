@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/check.h"
 #include "statistics/distributions.h"
 #include "statistics/samples.h"
 
@@ -54,6 +55,7 @@ Result<Summary> Summarise(std::span<const double> values, double confidence) {
 }
 
 double CalcQuantile(std::span<const double> sorted, double p) {
+  HVAS_DEMAND(!sorted.empty() && 0 <= p && p <= 1);
   const double at = p * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);

@@ -10,7 +10,7 @@
  what goes in. Nothing here gives NaN: what the data do not define is none or an error. */
 namespace hvas::statistics {
 
-/** From here to there. */
+/** A range of values, both ends included. */
 struct Interval {
   double low{0};
   double high{0};
@@ -23,8 +23,8 @@ struct Interval {
 struct Summary {
   std::size_t n{0};
   double mean{0};
-  std::optional<double> sd;         ///< With n - 1; none for n = 1.
-  std::optional<Interval> mean_ci;  ///< By Student's t; none for n = 1.
+  std::optional<double> sd;         ///< Divides by n - 1; none for n = 1.
+  std::optional<Interval> mean_ci;  ///< Follows from Student's t; none for n = 1.
   double min{0};
   double lower_quartile{0};  ///< Quartiles of type 7 of Hyndman and Fan.
   double median{0};

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/check.h"
+
 namespace hvas::studio {
 namespace {
 
@@ -92,6 +94,7 @@ std::size_t HandRack::count() const {
 }
 
 void HandRack::SetCount(std::size_t count) {
+  HVAS_DEMAND(count == 1 || count == kMostHands);
   std::vector<Slot> closed;  // outside the lock
   const std::lock_guard lock(mutex_);
   while (slots_.size() > count) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/atomic_file.h"
+#include "base/check.h"
 #include "base/digest.h"
 #include "session/command_json.h"
 #include "studio/json_fields.h"
@@ -46,6 +47,7 @@ std::string CalcProductDigest(const product::Product& product) {
 }
 
 KeptWork MakeKeptWork(const SceneNow& now) {
+  HVAS_DEMAND(now.scene != nullptr);
   return {now.scene->file, now.scene->name, now.scene->digest, now.scene->edits, now.state};
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/check.h"
 #include "base/random.h"
 
 namespace hvas::study {
@@ -100,6 +101,7 @@ std::vector<std::size_t> OrderOf(const Block& block, Orders* orders) {
 }  // namespace
 
 std::vector<std::vector<std::size_t>> MakeSquare(std::size_t count, bool is_balanced) {
+  HVAS_DEMAND(count >= 1);
   // 0, 1, n-1, 2, n-2 ...: the differences of neighbours are all different.
   std::vector<std::size_t> first = Count(count);
   if (is_balanced) {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/check.h"
 #include "base/parallel.h"
 
 namespace hvas::sweep {
@@ -84,6 +85,7 @@ class FieldFiller {
 PartField::PartField(const contact::ShapeSource& part, double spacing, double band,
                      unsigned threads)
     : mesh_(contact::MakeMesh(part, Vec3::Zero())), search_(mesh_), band_(band) {
+  HVAS_DEMAND(!part.triangles.empty());
   for (const Vec3& vertex : part.vertices) {
     box_.Add(vertex);
   }

@@ -32,7 +32,7 @@ struct Header {
   PacketType type{PacketType::kHello};
   std::uint64_t session{0};   ///< 0 in a hello.
   std::uint64_t sequence{0};  ///< Counts from 1 in each session and direction.
-  std::int64_t t_ns{0};       ///< On the sender's clock.
+  std::int64_t t_ns{0};       ///< Time of the sender's clock.
 };
 
 /** A device says what it is. */
@@ -45,7 +45,7 @@ struct Hello {
   std::array<char, 32> model{};
   std::array<char, 32> serial{};
   std::array<char, 16> version{};
-  std::array<double, 15> limits{};  ///< As ProfileOf takes them.
+  std::array<double, 15> limits{};  ///< What ProfileOf takes.
 };
 
 enum HelloFlag : std::uint32_t {
@@ -73,24 +73,24 @@ struct StatePacket {
   double grip{0};
   std::uint32_t buttons{0};
   std::int32_t vendor_code{0};
-  std::uint32_t condition{0};  ///< As Condition counts.
+  std::uint32_t condition{0};  ///< A value of Condition.
   std::uint32_t reserved{0};
   std::uint64_t wrench_count{0};     ///< That arrived in this session.
-  std::uint64_t wrench_sequence{0};  ///< Of the one that the motors show; 0: none yet.
+  std::uint64_t wrench_sequence{0};  ///< Sequence of the wrench that the motors show; 0: none yet.
   std::int64_t wrench_t_ns{0};       ///< That it carried, on HVAS's clock.
 };
 
 struct WrenchPacket {
   std::array<double, 3> t{};        ///< [N m]
   std::array<double, 3> f{};        ///< [N]
-  std::uint64_t state_sequence{0};  ///< Of the newest state that HVAS has.
+  std::uint64_t state_sequence{0};  ///< Sequence of the newest state that HVAS has.
 };
 
 /** The secret of both sides: HMAC-SHA-256 (RFC 2104, FIPS 180-4) cut to 16 bytes. Works on plain
  memory, as OpenSSL's own HMAC allocates for each packet. */
 class PacketKey {
  public:
-  /** Not RT-safe. @pre at least kMinKey bytes. */
+  /** Not RT-safe. A secret of fewer than kMinKey bytes can be guessed. */
   explicit PacketKey(std::string_view secret);
 
   using Tag = std::array<std::byte, kTagSize>;
@@ -125,9 +125,9 @@ class Packet {
 enum class Refusal : std::uint8_t {
   kNone,
   kMalformed,       ///< Not of this protocol, cut off, or too long.
-  kOtherVersion,    ///< Of another version of it.
+  kOtherVersion,    ///< It has another version.
   kForged,          ///< Its tag is not that of the key: another key, or changed on the way.
-  kForeignSession,  ///< Of a session that is not this one.
+  kForeignSession,  ///< It belongs to another session.
   kReplayed,        ///< It was here before.
   kLate,            ///< A newer one was here before.
 };
@@ -171,7 +171,7 @@ class SequenceWindow {
 
 /** Not RT-safe. */
 [[nodiscard]] DeviceInfo InfoOf(const Hello& hello, const std::string& address);
-/** For whoever writes the device's side in C++. Not RT-safe. */
+/** Serves those who write the device's side in C++. Not RT-safe. */
 [[nodiscard]] Hello HelloOf(const DeviceInfo& info, std::uint64_t nonce);
 
 [[nodiscard]] DeviceState StateOf(const StatePacket& packet) noexcept;
