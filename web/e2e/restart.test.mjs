@@ -124,7 +124,8 @@ describe("a page", () => {
     const second = await start([kBushing], { home });
     const { epoch } = await waitForState(
       page,
-      ({ link, placements, epoch: now }) => link === "open" && now !== epochBefore && placements[kBushingPart] === "placed",
+      ({ link, hasScene, placements, epoch: now }) =>
+        link === "open" && hasScene && now !== null && now !== epochBefore && placements[kBushingPart] === "placed",
       60_000,
     );
     assert.equal(epoch, (await fetchScene(page)).epoch);

@@ -19,7 +19,7 @@ class TemporaryFolder {
 
   /** Writes a file there, byte for byte; makes the folders before it. */
   std::filesystem::path Write(const std::string& name, const std::string& text) const {
-    const std::filesystem::path file = path() / name;
+    std::filesystem::path file = path() / name;
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << text;
     return file;
