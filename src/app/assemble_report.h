@@ -14,7 +14,7 @@ namespace hvas::app {
 
 /** The device that was in the hand of a run. */
 struct DeviceInHand {
-  std::string address;  ///< As it was asked for; empty: none.
+  std::string address;  ///< What was asked for; empty: none.
   std::string model;
   std::string profile;  ///< Id of the one that it is rendered by; may be empty.
   bool is_emulated{false};
@@ -30,7 +30,7 @@ struct AssemblyOutcome {
   bool is_realtime{false};
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   std::size_t hands{1};
-  std::vector<DeviceInHand> devices;  ///< By hand; none, or one for each.
+  std::vector<DeviceInHand> devices;  ///< One for each hand, or none.
   std::string digest;
   std::uint64_t dropped_ticks{0};
   std::optional<Error> record_error;  ///< Why the record was not written to its end.

@@ -44,7 +44,7 @@ class CsvTable {
   /** Sets a cell, adding the column if it is new. */
   void Set(std::size_t row, std::string_view column, std::string value);
 
-  /** With quotes where they are needed, and the delimiter that was read. */
+  /** Writes quotes where they are needed, and the delimiter that was read. */
   [[nodiscard]] std::string ToText() const;
 
  private:

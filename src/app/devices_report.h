@@ -15,7 +15,7 @@ namespace hvas::app {
 [[nodiscard]] std::string DescribeProbe(const std::vector<device::ProbeReport>& reports,
                                         bool has_opened);
 
-/** The same by data/schemas/devices.schema.json. */
+/** The report as JSON by data/schemas/devices.schema.json. */
 [[nodiscard]] nlohmann::ordered_json MakeProbeJson(const std::vector<device::ProbeReport>& reports,
                                                    bool has_opened);
 

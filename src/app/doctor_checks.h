@@ -9,7 +9,7 @@ namespace hvas::app {
 /** One thing that decides whether a loop of 1 kHz keeps its promise on this machine. */
 struct DoctorCheck {
   std::string name;
-  std::string value;  ///< As found; "unknown" where the system does not tell.
+  std::string value;  ///< What was found; "unknown" where the system does not tell.
   bool is_good{true};
   std::string remedy;  ///< What to change and how; empty when it is good.
 };

@@ -16,7 +16,7 @@ class EndWatch {
   /** What the system gives a program, and then some. */
   static constexpr std::chrono::milliseconds kPatience{4000};
 
-  /** Before any other thread begins: they inherit that the signals are not for them.
+  /** Has to be made before any other thread begins: they inherit that the signals are not for them.
    @param patience  From the signal until this has to be gone; else the program ends at once, with
    exit status 1 and a word on standard error. */
   explicit EndWatch(std::chrono::milliseconds patience = kPatience);

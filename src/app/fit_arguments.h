@@ -47,12 +47,13 @@ struct FitArguments {
   bool is_json{false};
 };
 
-/** For options: numbers over 0, or of 0 or more. In words; the ones of CLI11 name the largest
- number there is. */
+/** Validators of options: numbers over 0, or of 0 or more. In words; the ones of CLI11 name the
+ largest number there is. */
 [[nodiscard]] const CLI::Validator& Positive();
 [[nodiscard]] const CLI::Validator& NotNegative();
 
-/** For options in millimetres: what is typed with another unit ("2in") becomes millimetres. */
+/** Transforms options in millimetres: what is typed with another unit ("2in") becomes millimetres.
+ */
 [[nodiscard]] const CLI::Validator& Millimetres();
 
 /** --unit, of the answer. */
@@ -65,7 +66,7 @@ void AddFitArguments(CLI::App* fit, FitArguments* arguments);
  */
 [[nodiscard]] Result<void> CheckEffects(const CLI::App& fit);
 
-/** The same for those whose effect depends on the fits: heat and cold need interference, chamfers
+/** Refuses those whose effect depends on the fits: heat and cold need interference, chamfers
  that widen the entry clearance, and a length both classes. */
 [[nodiscard]] Result<void> CheckEffects(const FitArguments& arguments,
                                         const std::vector<FitCard>& cards);
@@ -73,7 +74,7 @@ void AddFitArguments(CLI::App* fit, FitArguments* arguments);
 /** The cards that they ask for, one for each fit. */
 [[nodiscard]] Result<std::vector<FitCard>> MakeCards(const FitArguments& arguments);
 
-/** With the sizes of a file, if they name one. */
+/** Adds the sizes of a file, where the arguments name one. */
 [[nodiscard]] Result<FitPopulationOptions> MakePopulationOptions(const FitArguments& arguments);
 
 [[nodiscard]] fits::PegLoad MakeLoad(const FitArguments& arguments);

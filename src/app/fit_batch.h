@@ -6,10 +6,10 @@
  place; its results are empty and the column `reason` says why. */
 namespace hvas::app {
 
-/** In: nominal_mm, class. Out: kind (hole or shaft), upper_um, lower_um, reason. */
+/** Columns in: nominal_mm, class. Out: kind (hole or shaft), upper_um, lower_um, reason. */
 [[nodiscard]] Result<void> AddLimits(CsvTable* table);
 
-/** In: d_F_mm, D_hub_mm, d_bore_shaft_mm, U_eff_diametral_mm, L_mm, mu, E_hub_MPa, nu_hub,
+/** Columns in: d_F_mm, D_hub_mm, d_bore_shaft_mm, U_eff_diametral_mm, L_mm, mu, E_hub_MPa, nu_hub,
  E_shaft_MPa, nu_shaft. Out: p_MPa, hub_diam_expansion_mm, shaft_diam_contraction_mm,
  hub_bore_hoop_MPa, hub_bore_vonMises_planestress_MPa, hub_bore_Tresca_MPa,
  shaft_governing_hoop_MPa, F_axial_N, T_Nmm, reason. Without mu no force and no torque. */

@@ -16,20 +16,20 @@ namespace hvas::app {
 /** What a card is about. */
 struct FitCardOptions {
   SizedFit fit;
-  fits::PressFitParameters press;  ///< Without interference, which comes from the limits.
+  fits::PressFitParameters press;  ///< Lacks the interference, which comes from the limits.
   std::string hub_material, shaft_material;
   double friction_slip{0.15};   ///< nu_rl, while it slides out.
   std::string friction_source;  ///< Where the coefficients are from.
   double start{0};              ///< Depth at which this fit begins to engage [m].
-  double lead_in_angle{0};      ///< Of the chamfer, from the axis [rad]; 0: none.
-  double chamfer_width{0};      ///< Of both parts together, radially [m].
+  double lead_in_angle{0};      ///< Angle of the chamfer from the axis [rad]; 0: none.
+  double chamfer_width{0};      ///< Width of both parts together, radially [m].
   double room_c{20};
   LengthUnit unit{LengthUnit::kMillimetre};  ///< The unit of the answer.
   fits::JoiningMaterial hub_joining, shaft_joining;
   std::optional<double> hub_c,
       shaft_c;                        ///< Temperatures to join at; room_c where only one is given.
-  double join_speed{0.02};            ///< Of the shaft then [m/s].
-  double hub_heat{0}, shaft_heat{0};  ///< Of a volume [J/(m3 K)].
+  double join_speed{0.02};            ///< Speed of the shaft while it is joined [m/s].
+  double hub_heat{0}, shaft_heat{0};  ///< Heat capacities of a volume [J/(m3 K)].
 };
 
 /** A fit's limits, and with a length what it takes to press it together. */

@@ -34,9 +34,9 @@ struct FitDesign {
   std::vector<FitCard> proposals;  ///< Common ones first, then the widest tolerances; a few.
 };
 
-/** From p = S sqrt(F^2 + (2 T / D_F)^2) / (pi D_F l_F nu) (DIN 7190-1) to U, and to ISO 286's fits
- whose least interference is at least that, and whose largest leaves both parts elastic (von Mises),
- and a brittle hub with its safety against fracture.
+/** Goes from p = S sqrt(F^2 + (2 T / D_F)^2) / (pi D_F l_F nu) (DIN 7190-1) to U, and to ISO 286's
+ fits whose least interference is at least that, and whose largest leaves both parts elastic (von
+ Mises), and a brittle hub with its safety against fracture.
  @param joint  Its sizes, materials, roughness and friction; the fits in it do not matter.
  Errors: kInvalid for a demand out of range, kUnsupported where the joint would yield. */
 [[nodiscard]] Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint);

@@ -13,7 +13,7 @@ namespace hvas::app {
 /** Whether a shaft on its way in jams or wedges: the diagrams, and where it is in them (N5). */
 struct FitJamming {
   FitCard card;
-  fits::PegInHole pair;  ///< With the mean clearance, or half of the largest in a transition fit.
+  fits::PegInHole pair;  ///< Has the mean clearance, or half of the largest in a transition fit.
   fits::PegInHole worst_pair;  ///< The pair with the least clearance, which wedges first.
   double l{0};         ///< The distance from the tip's corner to the rim, along the shaft [m].
   fits::PegLoad load;  ///< Acts at the middle of the tip.

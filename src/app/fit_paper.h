@@ -16,7 +16,7 @@ struct PaperCurve {
     double depth{0};       ///< [m]
     double time{0};        ///< [s]
     double true_force{0};  ///< [N]
-    double shown{0};       ///< By the paper's factor [N].
+    double shown{0};       ///< What the paper's factor makes of it [N].
   };
 
   std::string experiment;  ///< "B1", ...

@@ -17,7 +17,7 @@ enum class SizeSpread : std::uint8_t {
   kPaper,       ///< Paper W: whole micrometres, normal, sigma a sixth of the zone, cut off.
   kCapability,  ///< Normal, by C_p and C_pk.
   kUniform,
-  kMeasured,  ///< From a table.
+  kMeasured,  ///< Measured sizes, from a table.
 };
 
 struct FitPopulationOptions {
@@ -37,8 +37,8 @@ struct FitPopulationOptions {
  Errors: kNotFound, kInvalid with the row. */
 [[nodiscard]] Result<void> ReadSizes(const std::string& file, FitPopulationOptions* options);
 
-/** Without smoothing: where the roughness is drawn along the joint as B(l), it is not taken off the
- interference a second time (DIN 7190's G is for joints that are taken as even). */
+/** The pair without smoothing: where the roughness is drawn along the joint as B(l), it is not
+ taken off the interference a second time (DIN 7190's G is for joints that are taken as even). */
 [[nodiscard]] fits::PressFitParameters WithDrawnRoughness(fits::PressFitParameters press);
 
 /** Puts pairs of parts together, each with all the fits at once. Errors: kInvalid where a card has

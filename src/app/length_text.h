@@ -18,7 +18,7 @@ class LengthText {
   [[nodiscard]] std::string Exact(double length) const;
   /** "12.5", of um or thou. */
   [[nodiscard]] std::string Small(double length) const;
-  /** The same, with a plus sign where it is positive. */
+  /** Text with a plus sign where the length is positive. */
   [[nodiscard]] std::string SignedSmall(double length) const;
 
   [[nodiscard]] const char* size_unit() const { return is_inch_ ? "in" : "mm"; }

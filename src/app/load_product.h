@@ -27,8 +27,9 @@ struct LoadOptions {
   bool is_quiet{false};                  ///< No progress on stderr.
   bool is_cache_used{true};              ///< Keeps and takes what was read and prepared on disk.
   double length_unit{1e-3};              ///< The unit of files that state none [m].
-  double time_limit{WorkLimits().time};  ///< For opening the file [s].
-  std::uint64_t memory_limit{0};         ///< For the same [bytes]; 0: DefaultMemoryLimit().
+  double time_limit{WorkLimits().time};  ///< The longest that opening the file may take [s].
+  std::uint64_t memory_limit{
+      0};  ///< The most memory that it may take [bytes]; 0: DefaultMemoryLimit().
   int max_parts{cad::kDefaultMaxParts};  ///< That the file may place.
   cad::ProgressFn progress;              ///< Null: on the terminal, where there is one.
   std::stop_token stop;                  ///< Ends the reading.
@@ -52,8 +53,9 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options);
 [[nodiscard]] Result<product::Product> LoadProduct(const LoadOptions& options,
                                                    Diagnostics* diagnostics);
 
-/** With --strict, and when there are warnings: prints them on stderr and fails (kInvalid), so that
- the command can end with exit status 1. To be called again after steps that warn. */
+/** Ends what --strict was asked of when there are warnings: prints them on stderr and fails
+ (kInvalid), so that the command can end with exit status 1. To be called again after steps that
+ warn. */
 [[nodiscard]] Result<void> CheckStrict(const LoadOptions& options, const Diagnostics& diagnostics);
 
 }  // namespace hvas::app

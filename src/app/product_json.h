@@ -12,7 +12,7 @@
 
 namespace hvas::app {
 
-/** Of the JSON that ToJson makes: data/schemas/inspect.schema.json. */
+/** The schema of the JSON that ToJson makes: data/schemas/inspect.schema.json. */
 inline constexpr std::string_view kInspectFormat = "hvas-inspect-2";
 
 struct ToleranceCounts {

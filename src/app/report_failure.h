@@ -13,7 +13,7 @@ int ReportFailure(const Error& error);
 /** The exit status where the command line is wrong, as sysexits(3) has it: EX_USAGE. */
 inline constexpr int kMisused = 64;
 
-/** The same of an error in what was asked for, which the words alone show. @returns kMisused. */
+/** Tells of an error in what was asked for, which the words alone show. @returns kMisused. */
 int ReportMisuse(const Error& error);
 
 }  // namespace hvas::app

@@ -31,7 +31,7 @@ struct SelectionOptions {
   std::vector<std::string> parts;        ///< Names, or numbers as in "p3".
   std::vector<std::string> occurrences;  ///< Names, paths or ends of them, also of subassemblies.
   std::vector<std::string> mates;        ///< "m12", or keys.
-  std::vector<std::string> kinds;        ///< Of mates: "axis-hole", ...
+  std::vector<std::string> kinds;        ///< Kinds of mates: "axis-hole", ...
 };
 
 /** What of a product is to be shown. */

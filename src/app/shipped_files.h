@@ -8,7 +8,7 @@ namespace hvas::app {
  sources. */
 [[nodiscard]] std::filesystem::path ProductsFolder();
 
-/** The same of study protocols. */
+/** The folder of study protocols that are shipped. */
 [[nodiscard]] std::filesystem::path StudiesFolder();
 
 }  // namespace hvas::app

@@ -17,11 +17,12 @@ namespace hvas::app {
 
 /** How a table of results is to be read. */
 struct StudyTableOptions {
-  std::filesystem::path file;        ///< "-" is the standard input.
-  std::string delimiter{","};        ///< One character, or "tab".
-  std::vector<std::string> columns;  ///< Of a wide table, the conditions; all others without.
-  std::string value;                 ///< Of a long table, the column of values; "value" without.
-  std::string quantity;              ///< What the values are; by the table without.
+  std::filesystem::path file;  ///< "-" is the standard input.
+  std::string delimiter{","};  ///< One character, or "tab".
+  std::vector<std::string>
+      columns;           ///< Columns of a wide table that are conditions; none: all but the first.
+  std::string value;     ///< Column of values of a long table; empty: "value".
+  std::string quantity;  ///< What the values are; by the table without.
   std::string unit;
   study::TrialSummary trials{study::TrialSummary::kMean};
 };

@@ -13,7 +13,7 @@ namespace hvas::app {
 /** The end of a text, after "..", where it is wider than that; control characters become '?'. */
 [[nodiscard]] std::string Shorten(std::string_view text, std::size_t width);
 
-/** The same, filled up with spaces. */
+/** Shortens as Shorten() does, and fills up with spaces. */
 [[nodiscard]] std::string PadTo(std::string_view text, std::size_t width);
 
 /** Words in lines of Columns(), each begun with `indent` spaces; ends with a newline. */

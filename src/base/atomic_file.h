@@ -9,7 +9,8 @@ namespace hvas {
 
 /** Who may read a file that is written. */
 enum class FileReaders {
-  kAsBefore,  ///< As a file that is replaced; a new one as the user's mask has it.
+  kAsBefore,  ///< Those of a file that is replaced; for a new one, those that the user's mask
+              ///< allows.
   kOwner,     ///< Nobody else, at no moment.
 };
 

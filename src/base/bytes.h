@@ -94,7 +94,7 @@ class ByteReader {
     return block;
   }
 
-  /** For values that fit the bytes but not their meaning. */
+  /** Marks values that fit the bytes but not their meaning as a failure. */
   void Fail() { has_failed_ = true; }
 
   [[nodiscard]] bool has_failed() const { return has_failed_; }

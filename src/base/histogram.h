@@ -50,7 +50,7 @@ class LatencyHistogram {
     return max_ns();
   }
 
-  /** Of the values, those that are no longer than this, and those in its bucket. */
+  /** Counts the values that are no longer than this, and those in its bucket. */
   [[nodiscard]] std::uint64_t CountUpTo(std::int64_t duration_ns) const noexcept {
     const std::size_t last =
         BucketOf(static_cast<std::uint64_t>(std::max<std::int64_t>(duration_ns, 0)));

@@ -31,7 +31,7 @@ class JobThread {
   /** No job begins after it. */
   void RequestStop();
 
-  /** The same, and waits for the job that has begun; what waits is forgotten. */
+  /** Stops as RequestStop() does, and waits for the job that has begun; what waits is forgotten. */
   void Stop();
 
  private:

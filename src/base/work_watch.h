@@ -44,7 +44,7 @@ class WorkWatch {
   Reason reason_{Reason::kNone};
 };
 
-/** The same, where work without limits has no watch. */
+/** Whether work may go on that has no watch where it has no limits. */
 [[nodiscard]] inline bool MayGoOn(WorkWatch* watch) {
   return watch == nullptr || watch->MayGoOn();
 }

@@ -16,7 +16,7 @@ class ConfinedIo : public Assimp::IOSystem {
   struct Log {
     std::vector<std::filesystem::path> read;     ///< Absolute.
     std::vector<std::filesystem::path> missing;  ///< Absolute.
-    std::vector<std::string> refused;            ///< As asked for.
+    std::vector<std::string> refused;            ///< Names that were asked for.
   };
 
   /** @param file  The file to be read, absolute and without links; its folder is the limit. */

@@ -12,7 +12,7 @@ namespace hvas::cad {
 /** Which shape another one is, moved. */
 struct EqualShape {
   std::size_t base{0};  ///< The first shape of this form; the shape's own index where it is that.
-  spatial::Pose X_SB;   ///< From the base's coordinates to the shape's [m].
+  spatial::Pose X_SB;   ///< Takes the base's coordinates to the shape's [m].
 };
 
 /** Finds shapes that are rigid copies of earlier ones, as programs write them that do not share

@@ -26,24 +26,24 @@ struct Lists {
 struct FacetLink {
   std::uint32_t facet{0};  ///< The other one.
   double length{0};        ///< [m]
-  double cosine{1};        ///< Of the angle between the normals.
+  double cosine{1};        ///< Cosine of the angle between the normals.
 };
 
 /** Flat pieces of a mesh: neighbouring triangles in one plane. A facet of a tessellated cylinder is
  one strip, a flat face is one facet. */
 struct Facets {
-  Lists triangles;  ///< Of each facet.
-  Lists vertices;   ///< Of each facet, each once, rising.
-  /** Of each facet, rising: the vertices at which its rim bends. Those along a straight line or
+  Lists triangles;  ///< Each facet's triangles.
+  Lists vertices;   ///< Each facet's vertices, each once, rising.
+  /** Each facet's vertices, rising, at which its rim bends. Those along a straight line or
    inside may be there only because a program divided the triangles. The whole rim where it bends
    at fewer than three. */
   Lists corners;
-  std::vector<std::uint32_t> facet;  ///< Of each triangle; kNoTriangle for one left out.
+  std::vector<std::uint32_t> facet;  ///< Each triangle's facet; kNoTriangle for one left out.
   std::vector<Vec3> normal;          ///< Unit; zero for a sliver.
   std::vector<Vec3> centre;          ///< Centroid [m].
   std::vector<double> area;          ///< [m^2]
   std::vector<std::uint32_t> link_begin;
-  std::vector<FacetLink> links;  ///< Of each facet, by the other's number.
+  std::vector<FacetLink> links;  ///< Each facet's links, by the other's number.
 
   [[nodiscard]] std::size_t size() const { return normal.size(); }
 

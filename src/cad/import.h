@@ -28,12 +28,12 @@ using PartFn = std::function<void(std::uint32_t number, std::string_view name)>;
 struct ImportOptions {
   /** How finely parts are meshed. A part's chord deflection is relative to its own size, because
    files come a thousand times too large or too small. */
-  double relative_deflection{4e-5};   ///< Of the diagonal of the part's box.
-  double min_deflection{2e-6};        ///< No finer than this [m].
-  double max_angle{0.2};              ///< Between the normals of neighbouring triangles [rad].
-  std::size_t max_triangles{200000};  ///< A part with more is meshed again, coarser.
-  double length_unit{1e-3};           ///< Of files that state none (OBJ, STL) [m].
-  bool with_tolerances{true};         ///< Reads dimensions, tolerances and fits.
+  double relative_deflection{4e-5};  ///< Part of the diagonal of the part's box.
+  double min_deflection{2e-6};       ///< No finer than this [m].
+  double max_angle{0.2};  ///< Largest angle between the normals of neighbouring triangles [rad].
+  std::size_t max_triangles{200000};         ///< A part with more is meshed again, coarser.
+  double length_unit{1e-3};                  ///< Unit of files that state none (OBJ, STL) [m].
+  bool with_tolerances{true};                ///< Reads dimensions, tolerances and fits.
   std::vector<std::uint32_t> skipped_parts;  ///< Left out, by their numbers as PartFn gets them.
   std::size_t max_parts{kDefaultMaxParts};   ///< That the file may place, copies counted.
   unsigned threads{0};  ///< That work at parts at a time; 0: one a core; 1: alone, also in a part.

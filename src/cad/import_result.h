@@ -15,8 +15,8 @@ namespace hvas::cad {
 
 /** A file that the imported one refers to. */
 struct ReferredFile {
-  std::string path;    ///< From the folder of the imported file.
-  std::string digest;  ///< Of its bytes; empty where it cannot be read.
+  std::string path;    ///< Path from the folder of the imported file.
+  std::string digest;  ///< Digest of its bytes; empty where it cannot be read.
 };
 
 /** What the reading process hands over. */
@@ -26,7 +26,7 @@ struct ImportResult {
   std::vector<ReferredFile> referred_files;
 };
 
-/** As bytes with a checksum. */
+/** The result as bytes with a checksum. */
 [[nodiscard]] std::vector<std::byte> Serialise(const ImportResult& result);
 
 /** Takes any bytes; none for those that Serialise did not make, or another version of it. */

@@ -16,7 +16,7 @@ namespace hvas::cad {
 /** A material as a file states it. */
 struct StatedMaterial {
   std::string name;
-  double density{0};  ///< In whatever unit; 0 where there is none.
+  double density{0};  ///< Any unit; 0 where there is none.
 };
 
 /** The material of a part, from what the file states: by its name in fits::Materials(); else by its

@@ -11,7 +11,7 @@ namespace hvas::cad {
 struct Model3mf {
   double length_unit{1e-3};          ///< [m]
   bool is_unit_known{true};          ///< False where the file names one that does not exist.
-  std::map<int, std::string> names;  ///< Of objects, by their ids; those that have one.
+  std::map<int, std::string> names;  ///< Names of objects that have one, by their ids.
   double placed{0};                  ///< Objects that its build places, with their components.
 };
 

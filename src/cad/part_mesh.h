@@ -14,7 +14,7 @@ namespace hvas::cad {
 /** How finely a shape was meshed. */
 struct MeshLevel {
   double deflection{0};  ///< Largest distance of a chord from its curve [m].
-  double angle{0};       ///< Between the normals of neighbouring triangles [rad].
+  double angle{0};       ///< Largest angle between the normals of neighbouring triangles [rad].
 };
 
 /** Meshes a shape in place for the eye: to a thousandth of `diagonal` [m], which is its size, or

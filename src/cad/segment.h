@@ -15,7 +15,7 @@ struct Segment {
   std::vector<std::uint32_t> corners;    ///< Vertices that it was fitted to; rising.
   std::uint32_t given{kNoTriangle};      ///< The face of the file it is part of, if any.
   bool is_given_surface{false};          ///< The file states the surface itself.
-  double tolerance{0};                   ///< With which it was found [m].
+  double tolerance{0};                   ///< The tolerance with which it was found [m].
 };
 
 /** Parts the triangles of a mesh into faces: planes, cylinders, cones, spheres, tori, and freeform

@@ -14,7 +14,7 @@ struct SolidMeasure {
   double volume{0};                ///< Negative where the boundary is inside out [mm^3].
   Vec3 first{Vec3::Zero()};        ///< Integral of the position from the point [mm^4].
   Mat3 inertia{Mat3::Zero()};      ///< About the point, at density 1 [mm^5].
-  std::vector<double> face_areas;  ///< In the order of TopExp_Explorer [mm^2].
+  std::vector<double> face_areas;  ///< Areas in the order of TopExp_Explorer [mm^2].
 
   void Add(const SolidMeasure& other);
   void Negate();

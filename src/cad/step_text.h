@@ -14,11 +14,11 @@ struct StepValue {
   double number{0};
   std::uint64_t reference{0};
   std::string text;              ///< The string, the enumeration without dots, or the type's name.
-  std::vector<StepValue> items;  ///< Of a list, or of a typed value.
+  std::vector<StepValue> items;  ///< Items of a list, or of a typed value.
 };
 
 struct StepRecord {
-  std::string name;  ///< In capitals, as in the file.
+  std::string name;  ///< Name in capitals, as the file has it.
   std::vector<StepValue> values;
 };
 
@@ -41,7 +41,7 @@ class StepText {
  public:
   struct Statement {
     std::uint64_t id{0};
-    std::string_view body;  ///< Between '=' and ';'.
+    std::string_view body;  ///< What stands between '=' and ';'.
   };
 
   explicit StepText(std::string text);

@@ -14,7 +14,7 @@ namespace hvas::cad {
  Shift-JIS. */
 [[nodiscard]] std::string CleanName(std::u16string_view name);
 
-/** The same from bytes of an unknown encoding: UTF-8 where they are that; else Shift-JIS where they
+/** UTF-8 from bytes of an unknown encoding: UTF-8 where they are that; else Shift-JIS where they
  are that and have lead bytes that Latin text does not use (0x81..0x9F); else Windows-1252, which
  has Latin-1 in it. */
 [[nodiscard]] std::string CleanName(std::string_view name);

@@ -26,15 +26,16 @@ struct TriangleSoup {
 
   std::vector<Vec3> vertices;  ///< [m]
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> face;  ///< Of each triangle, index into `faces`; empty: not known.
+  std::vector<std::uint32_t> face;  ///< Each triangle's index into `faces`; empty: not known.
   std::vector<GivenFace> faces;
 };
 
 /** A piece of a mesh whose triangles hang together by their edges. */
 struct MeshShell {
   bool is_closed{false};
-  double volume{0};  ///< By the divergence theorem; negative for the inside of a cavity [m^3].
-  double area{0};    ///< [m^2]
+  double volume{
+      0};  ///< Follows from the divergence theorem; negative for the inside of a cavity [m^3].
+  double area{0};  ///< [m^2]
   spatial::Box box;
 };
 
@@ -53,13 +54,13 @@ struct MeshDefects {
 struct WeldedMesh {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> source;  ///< Of each triangle: its place in the soup.
+  std::vector<std::uint32_t> source;                    ///< Each triangle's place in the soup.
   std::vector<std::array<std::uint32_t, 3>> neighbour;  ///< Across edge k, k + 1; or kNoTriangle.
   std::vector<Vec3> normal;          ///< Unit; zero where there is no area to tell.
   std::vector<double> area;          ///< [m^2]
-  std::vector<std::uint32_t> shell;  ///< Of each triangle.
+  std::vector<std::uint32_t> shell;  ///< Each triangle's shell.
   std::vector<MeshShell> shells;
-  double diagonal{0};    ///< Of the box of all [m].
+  double diagonal{0};    ///< Diagonal of the box of all [m].
   double resolution{0};  ///< Points nearer than half of this are one; its numbers' noise [m].
   MeshDefects defects;
 };

@@ -32,9 +32,9 @@ inline constexpr int kWorkerNoOutput = 74;
 
 struct WorkerCall {
   std::filesystem::path program;
-  std::vector<std::string> arguments;  ///< Without the program's name.
-  std::int64_t deadline_ns{0};         ///< On the monotonic clock.
-  std::int64_t part_limit_ns{0};       ///< For one part, and for the tolerances.
+  std::vector<std::string> arguments;  ///< All words but the program's name.
+  std::int64_t deadline_ns{0};         ///< Time of the monotonic clock.
+  std::int64_t part_limit_ns{0};       ///< The longest that one part, or the tolerances, may take.
   std::uint64_t memory{0};             ///< Address space [bytes].
   std::stop_token stop;
   ProgressFn progress;
@@ -47,8 +47,8 @@ enum class WorkerFate {
   kTimeUp,
   kPartTimeUp,  ///< The stage or part that is named took too long.
   kNoMemory,
-  kCrashed,  ///< By a signal.
-  kFailed,   ///< With an exit status that says no more.
+  kCrashed,  ///< A signal ended it.
+  kFailed,   ///< It ended with an exit status that says no more.
 };
 
 /** How a worker ended, and at what. */
@@ -59,7 +59,7 @@ struct WorkerRun {
   std::string stage;  ///< The last one that it told of.
   std::optional<std::uint32_t> part;
   std::string part_name;
-  MappedFile output;  ///< Of one that finished.
+  MappedFile output;  ///< What one that finished has written.
 
   /** What happened, for people: "crashed (segmentation fault)". */
   [[nodiscard]] std::string Describe() const;

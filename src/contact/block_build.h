@@ -10,7 +10,7 @@
 
 namespace hvas::contact {
 
-inline const double kHalfDiagonal = std::sqrt(3.0) / 2;  ///< Of a cube, in sides.
+inline const double kHalfDiagonal = std::sqrt(3.0) / 2;  ///< Half the diagonal of a cube, in sides.
 inline constexpr double kBandVoxels = 4.0;               ///< The distance that nodes hold, at most.
 
 /** Depth of the layer on both sides of the surface that is answered exactly [m]: a voxel, but
@@ -22,7 +22,7 @@ inline constexpr double kBandVoxels = 4.0;               ///< The distance that 
 
 struct Zone {
   std::uint32_t code{zone::kFar};
-  NearList list;  ///< For zone::kList, with the distances from the zone's centre.
+  NearList list;  ///< What zone::kList has, with the distances from the zone's centre.
 };
 
 /** A block of the field before it is laid down. */
@@ -42,7 +42,7 @@ class BlockBuilder {
  public:
   BlockBuilder(const Shape::Data& data, const NearSearch& search);
 
-  /** From block->origin and block->list, which is cleared. */
+  /** Starts from block->origin and block->list, which is cleared. */
   void Build(Block* block);
 
  private:

@@ -18,7 +18,7 @@ struct Shell;
  deviation of the diameter. */
 struct FaceOffset {
   double uniform{0};
-  /** For faces of revolution: added to `uniform`, at equal steps of height from `begin` to `end`,
+  /** What faces of revolution add to `uniform`, at equal steps of height from `begin` to `end`,
    linear between, constant beyond. None, or at least two. Heights count along the surface's axis
    from its origin [m]. */
   std::vector<double> stations;
@@ -71,7 +71,7 @@ class FaceOffsets {
   /** How far sample i of one of the shape's shells lies from where it is drawn. RT-safe. */
   [[nodiscard]] Vec3 ShiftOf(const Shell& shell, std::uint32_t i) const noexcept;
 
-  /** Of all offsets and shifts of samples, the largest [m]. */
+  /** The largest of all offsets and shifts of samples [m]. */
   [[nodiscard]] double largest() const noexcept { return largest_; }
 
   /** How far the part as made may reach beyond the part as drawn [m]. */

@@ -12,8 +12,8 @@ namespace hvas::contact {
  is no use. */
 void BuildField(const ShapeOptions& options, Shape::Data* data);
 
-/** For each face the largest distance between its mesh and its surface; faces whose surface does
- not fit the mesh become freeform, faces oriented the wrong way are turned round. */
+/** Finds for each face the largest distance between its mesh and its surface; faces whose surface
+ does not fit the mesh become freeform, faces oriented the wrong way are turned round. */
 void CheckFaces(const Mesh& mesh, ExactTable* exact);
 
 }  // namespace hvas::contact

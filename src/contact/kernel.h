@@ -18,7 +18,7 @@ struct FieldView {
    block, kTopFace less its number. */
   const std::int32_t* top{nullptr};
   const std::int16_t* nodes{nullptr};  ///< 9^3 a block, in units of quantum.
-  const float* slack{nullptr};         ///< Of each block: bound of the interpolation's error.
+  const float* slack{nullptr};         ///< Each block's bound of the interpolation's error.
   int blocks[3]{0, 0, 0};
   float origin[3]{0, 0, 0};
   float voxel{0};
@@ -51,7 +51,7 @@ struct ShellView {
   const float* y{nullptr};
   const float* z{nullptr};
   const std::uint8_t* leaf_count{nullptr};
-  const std::uint8_t* order{nullptr};  ///< Of each leaf, its eight lanes, most telling ones first.
+  const std::uint8_t* order{nullptr};  ///< Each leaf's eight lanes, most telling ones first.
   std::uint32_t node_count{0};
 };
 
@@ -68,7 +68,7 @@ struct FaceForm {
   float along{0};
   float minor{0};
   float outward{1};
-  double cosine{1};  ///< Of a cone's half angle, as the next.
+  double cosine{1};  ///< Cosine of a cone's half angle; the next is its sine.
   double sine{0};
   Kind kind{Kind::kNone};  ///< None: single precision is not good enough, or no such surface.
 };
@@ -95,7 +95,7 @@ struct ListFaces {
   };
 
   std::uint16_t faces[kMost]{};
-  std::uint16_t begin[kMost]{};  ///< Of each face's entries in the list.
+  std::uint16_t begin[kMost]{};  ///< First of each face's entries in the list.
   std::uint8_t count{0};         ///< 0: too many to name; the list is one.
   Kind kind{Kind::kMixed};
 };
@@ -103,7 +103,7 @@ struct ListFaces {
 /** Which faces decide where. */
 struct FaceView {
   const std::uint32_t* zones{nullptr};  ///< Codes as in `zone`, by block.
-  const FaceForm* forms{nullptr};       ///< Of each face.
+  const FaceForm* forms{nullptr};       ///< Each face's form.
   const ListFaces* lists{nullptr};      ///< Null: what several faces decide is left unscreened.
 };
 
@@ -119,8 +119,8 @@ inline constexpr std::uint32_t kNoList = 0xffffffffU;
 /** A point that may be nearer than the margin. */
 struct Hit {
   std::uint32_t point;
-  float distance;                   ///< Of the face, else interpolated.
-  float gradient[3];                ///< Of the face, else interpolated and not unit.
+  float distance;     ///< The face's distance, else the interpolated one.
+  float gradient[3];  ///< The face's gradient, else the interpolated one, which is not unit.
   std::uint32_t face{kUnscreened};  ///< The one analytic face that decides, where there is one.
   std::uint32_t list{kNoList};      ///< It does so among these.
 };
@@ -140,7 +140,7 @@ struct LeafBuffer {
   bool is_truncated{false};
 };
 
-/** Of every `stride`-th leaf, the `points` first ones in the leaf's order. */
+/** Selects of every `stride`-th leaf the `points` first ones in the leaf's order. */
 struct LeafChoice {
   const std::uint32_t* leaves{nullptr};
   std::uint32_t count{0};

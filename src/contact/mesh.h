@@ -55,14 +55,15 @@ struct ShortVec3 {
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> face;  ///< Of each triangle.
+  std::vector<std::uint32_t> face;  ///< Each triangle's face.
   std::vector<ShortVec3> normals;   ///< Unit, of each triangle; zero where it has no area.
   std::vector<std::array<std::uint32_t, 3>>
       neighbour;  ///< Triangle across edge k; kNoFace if none.
   std::vector<std::array<EdgeKind, 3>> edge_kind;
   std::vector<VertexKind> vertex_kind;
   std::vector<ShortVec3> vertex_normals;  ///< Angle-weighted pseudonormals, not unit.
-  std::vector<std::array<std::uint32_t, 2>> vertex_faces;  ///< For kOnEdge: the two faces.
+  std::vector<std::array<std::uint32_t, 2>>
+      vertex_faces;  ///< The two faces of a vertex of kOnEdge.
   std::vector<std::uint8_t> is_vertex_open;
   bool is_closed{true};
 

@@ -56,7 +56,7 @@ class NearSearch {
   [[nodiscard]] bool CanBeClosest(std::uint32_t triangle, const TrianglePoint& point, const Vec3& c,
                                   double radius, double limit) const;
 
-  /** The same with the sign of the distance: negative inside. */
+  /** The distance with its sign: negative inside. */
   [[nodiscard]] Nearest FindSigned(const NearList& list, const Vec3& p, double offset,
                                    std::uint32_t hint) const;
 

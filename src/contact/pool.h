@@ -18,8 +18,8 @@ struct Contact;
  lie on no area of their own; they count for little, but for all where nothing else touches. */
 class ContactLayer {
  public:
-  static constexpr double kFaceArea = 1;     ///< Of samples inside a face; a unit of its own.
-  static constexpr double kEdgeArea = 0.01;  ///< Of samples on edges and corners.
+  static constexpr double kFaceArea = 1;     ///< Area of samples inside a face; a unit of its own.
+  static constexpr double kEdgeArea = 0.01;  ///< Area of samples on edges and corners.
 
   /** RT-safe. */
   void Add(double area, double depth, const Vec3& nhat, const Vec3& p) noexcept {
@@ -38,7 +38,7 @@ class ContactLayer {
     torque_ += R_WS * in_S.torque_ + p_WS.cross(force);
   }
 
-  /** On the held part, torque about p_WQ. Zero when nothing is in contact. RT-safe.
+  /** The wrench on the held part, torque about p_WQ. Zero when nothing is in contact. RT-safe.
    @param stiffness  K [N/m]. */
   [[nodiscard]] spatial::Wrench CalcWrench(double stiffness, const Vec3& p_WQ) const noexcept;
 
@@ -50,7 +50,7 @@ class ContactLayer {
 
 /** Wrench and stiffness of springs at given contacts. Vectors are (rotation, translation). */
 struct PooledWrench {
-  spatial::Wrench F_W;   ///< On the held part, torque about p_WQ.
+  spatial::Wrench F_W;   ///< Wrench on the held part, torque about p_WQ.
   Mat6 K{Mat6::Zero()};  ///< -dF/dx for x = (rotation vector about p_WQ, translation of it), W.
 };
 

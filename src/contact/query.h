@@ -57,7 +57,7 @@ struct Placed {
         R_WC(X_WB.R()),
         p_WC(X_WB.p() + R_WC * s.data().p_BC) {}
 
-  /** Of the part as made. */
+  /** Distance of the part as made. */
   [[nodiscard]] Vec3 half() const { return 0.5 * shape->box_B.size() + Vec3::Constant(growth()); }
 
   [[nodiscard]] double growth() const { return offsets != nullptr ? offsets->growth() : 0; }
@@ -140,7 +140,7 @@ class BodyQuery {
  happen to be. RT-safe. */
 void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
            RawContact* contact) noexcept;
-/** The same over the ground, a plane in the sampled shape's frame. */
+/** Finds contacts over the ground, a plane in the sampled shape's frame. */
 void SlideOnPlane(const Placed& sampled, const Shell& shell, const spatial::Surface& plane,
                   RawContact* contact) noexcept;
 

@@ -15,7 +15,7 @@ struct RawContact {
   Vec3 p{Vec3::Zero()};         ///< The sample, in the frame of the shape it belongs to.
   Vec3 gradient{Vec3::Zero()};  ///< Unit, out of the other shape, in that shape's frame.
   std::uint32_t body{0};
-  std::uint32_t point{0};  ///< Of the shell it came from.
+  std::uint32_t point{0};  ///< Index in the shell that it came from.
   std::uint32_t held_face{0};
   std::uint32_t scene_face{0};
   bool is_reverse{false};  ///< The sample is the scene body's, the field the held shape's.

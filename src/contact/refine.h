@@ -38,14 +38,14 @@ struct FaceFilter {
 [[nodiscard]] Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
                              const FaceFilter& filter) noexcept;
 
-/** The same for the faces as made; without offsets as `Refine`. The nominal part's distance is
+/** Refines by the faces as made; without offsets as `Refine`. The nominal part's distance is
  taken at p less the shift of the faces near it (`SolveShift`), which is exact for planes and to
  |s|^2 / 2R for others. RT-safe. */
 [[nodiscard]] Refined RefineActual(const Shape::Data& shape, const FaceOffsets* offsets,
                                    const Vec3& p, const Hit& field,
                                    const FaceFilter& filter) noexcept;
 
-/** The same where no interpolated value is at hand: outside, where nothing better is known.
+/** Refines where no interpolated value is at hand: outside, where nothing better is known.
  RT-safe. */
 [[nodiscard]] inline Refined RefineAlone(const Shape::Data& shape, const FaceOffsets* offsets,
                                          const Vec3& p, const FaceFilter& filter) noexcept {

@@ -20,7 +20,8 @@ using BodyId = Id<struct ContactBodyTag>;
 
 /** One contact point between the held shape H and a scene body S, or the ground. */
 struct Contact {
-  Vec3 p_WC{Vec3::Zero()};     ///< On the held part's surface (or the projected scene edge) [m].
+  Vec3 p_WC{
+      Vec3::Zero()};  ///< Point of the held part's surface (or of the projected scene edge) [m].
   Vec3 nhat_W{Vec3::UnitZ()};  ///< Unit, out of S: moving H along it separates.
   double distance{0};          ///< Signed gap [m]; negative is penetration.
   BodyId body;                 ///< Invalid for the ground.
@@ -52,8 +53,8 @@ struct QueryOptions {
   /** The held part's faces as made; null: those of `self`, and if there is none, as drawn. */
   const FaceOffsets* held_offsets{nullptr};
   BodyId self;  ///< This body of the scene is the held one itself: skipped.
-  std::optional<BrokenEdges> broken_edges{};  ///< Without: edges are as drawn.
-  /** At most about so many points are tested. Where more are near, each pair of parts has its
+  std::optional<BrokenEdges> broken_edges{};  ///< None: edges are as drawn.
+  /** How many points are tested, at most and about. Where more are near, each pair of parts has its
    share, and what it has more of is thinned out evenly: fewer points then stand for a contact. */
   std::uint32_t point_budget{kDefaultPointBudget};
 
@@ -116,7 +117,7 @@ class Scene {
   [[nodiscard]] const Shape& shape(BodyId body) const noexcept;
   [[nodiscard]] std::size_t size() const noexcept;
 
-  /** From now on answers without vector instructions, with the same results: to test and measure.
+  /** Answers without vector instructions from now on, with the same results: to test and measure.
    */
   void UseScalarKernel() noexcept;
 

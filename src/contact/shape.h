@@ -21,13 +21,13 @@ inline constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max
 struct ShapeSource {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> triangle_face;  ///< For each triangle, an index into faces.
+  std::vector<std::uint32_t> triangle_face;  ///< Each triangle's index into faces.
   std::vector<spatial::Surface> faces;
 };
 
 struct ShapeOptions {
   double voxel{0};          ///< Edge of a cell of the distance field [m]; 0: chosen from the part.
-  double point_spacing{0};  ///< Of samples on freeform faces [m]; 0: chosen.
+  double point_spacing{0};  ///< Spacing of samples on freeform faces [m]; 0: chosen.
   unsigned threads{0};      ///< That build one shape; 0: one a core. No matter for the shape.
   std::stop_token stop;     ///< Ends the building when a stop is asked for.
 };

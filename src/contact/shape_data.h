@@ -46,8 +46,8 @@ struct ExactTable {
   std::vector<std::uint32_t> listed;
   std::uint32_t distance_bits{0};
   double distance_unit{0};
-  std::vector<ListFaces> list_faces;  ///< Of each list; by Complete, as the next.
-  std::vector<FaceForm> forms;        ///< Of each face.
+  std::vector<ListFaces> list_faces;  ///< Each list's faces; Complete fills them and the next.
+  std::vector<FaceForm> forms;        ///< Each face's form.
 
   [[nodiscard]] ListedTriangle Listed(std::size_t i) const noexcept {
     const std::uint32_t entry = listed[i];
@@ -92,8 +92,8 @@ struct Shell {
   std::vector<float> x, y, z;
   std::vector<std::uint8_t> leaf_count;
   std::vector<SampleFaces> faces;
-  std::vector<float> facing;  ///< Of each point: least cosine of its normal against a contact's.
-  std::vector<std::uint8_t> order;  ///< Of each leaf, its lanes, most telling first; by Complete.
+  std::vector<float> facing;  ///< Each point's least cosine of its normal against a contact's.
+  std::vector<std::uint8_t> order;  ///< Each leaf's lanes, most telling first; Complete fills them.
   std::size_t point_count{0};
 
   void Bind() {

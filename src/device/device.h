@@ -37,7 +37,7 @@ struct DeviceState {
    before: it is the last one again. */
   std::int64_t sample_ns{0};
   spatial::Pose X_DH;
-  spatial::Twist V_DH;       ///< Of H in D, expressed in D.
+  spatial::Twist V_DH;       ///< Twist of H in D, expressed in D.
   bool is_gripping{false};   ///< The button or grip that holds a part.
   bool is_valid{true};       ///< False where the device has no pose: the wrench decays to zero.
   bool is_clutching{false};  ///< The button that moves the workspace instead of the part.
@@ -63,11 +63,11 @@ struct Capabilities {
 };
 
 struct DeviceInfo {
-  std::string driver;   ///< As in the list of drivers.
+  std::string driver;   ///< Name in the list of drivers.
   std::string address;  ///< That opens this one again, with or without the driver's name before it.
   std::string model;
   std::string serial;
-  std::string version;  ///< Of the vendor's software.
+  std::string version;  ///< Version of the vendor's software.
   bool is_emulated{false};
   Capabilities capabilities;
   DeviceProfile profile;     ///< What the device tells about itself, and what is known otherwise.

@@ -17,7 +17,7 @@ namespace hvas::device {
 struct Surroundings {
   /** Folders that are searched for vendors' libraries before all others. */
   std::vector<std::filesystem::path> library_folders;
-  std::filesystem::path root{"/"};  ///< Under which dev, sys, run, etc and var are.
+  std::filesystem::path root{"/"};  ///< Folder under which dev, sys, run, etc and var are.
   const Clock* clock{&SystemClock()};
 };
 
@@ -35,7 +35,7 @@ struct ProbeReport {
   std::string title;
   std::vector<Finding> looked_for;
   std::vector<DeviceInfo> devices;  ///< That could be started.
-  std::vector<Error> problems;      ///< For each that could not: exact reason, where, and remedy.
+  std::vector<Error> problems;  ///< One for each that could not: exact reason, where, and remedy.
 };
 
 /** What a driver is called, and how its addresses are written, with an example. */

@@ -6,7 +6,7 @@ namespace hvas::device {
 
 class Device;
 
-/** From now on LimitWrench() lets no force of this process through, and every open device is given
+/** Lets LimitWrench() pass no force of this process from now on, and every open device is given
  zero. For a process that ends at once: nothing brings forces back. Waits for as long as the haptic
  threads and those of vendors need to hand it on. */
 void WithdrawForces() noexcept;

@@ -15,7 +15,7 @@ namespace hvas::device {
  tells at run time; the rest comes from data/devices. */
 struct DeviceProfile {
   std::string id;                       ///< Key, as `touch`; empty for the simulated device.
-  std::string name;                     ///< As a person calls it.
+  std::string name;                     ///< What a person calls it.
   double max_force{7.9};                ///< Peak [N].
   double continuous_force{1.75};        ///< That the motors stand for ever [N].
   double max_torque{0.4};               ///< Peak [N m]; 0 for three actuated axes.
@@ -29,14 +29,14 @@ struct DeviceProfile {
   /** The device's base frame D in the user's U: x to the right, y away, z up. */
   Quat q_UD{Quat::Identity()};
   Vec3 workspace{0.16, 0.12, 0.12};  ///< Edges of the usable box, centred at D's origin [m].
-  double rate_hz{1000};              ///< Of its servo.
+  double rate_hz{1000};              ///< Rate of its servo.
   double mass{0.1};                  ///< Felt at the handle [kg].
-  double inertia{2e-4};              ///< The same, about the handle's point [kg m^2].
-  double damping{0.3};               ///< Of the mechanism alone [N s/m].
+  double inertia{2e-4};              ///< Inertia about the handle's point [kg m^2].
+  double damping{0.3};               ///< Damping of the mechanism alone [N s/m].
   double rotational_damping{5e-4};   ///< [N m s/rad]
   double friction{0.06};             ///< Coulomb's, of the mechanism [N].
   double rotational_friction{1e-3};  ///< [N m]
-  double delay{1e-3};                ///< From a sample to the force that answers it [s].
+  double delay{1e-3};                ///< Time from a sample to the force that answers it [s].
 };
 
 /** Where a figure of a profile is from. */
@@ -60,13 +60,14 @@ Result<SourcedProfile> ParseProfile(std::string_view json, const std::string& wh
 /** All profiles that HVAS brings along, by id. */
 [[nodiscard]] const std::vector<SourcedProfile>& KnownProfiles();
 
-/** By id, or by what a device of this driver calls itself; null where nothing is known. */
+/** Finds a profile by id, or by what a device of this driver calls itself; null where nothing is
+ * known. */
 [[nodiscard]] const SourcedProfile* FindProfile(std::string_view id);
 [[nodiscard]] const SourcedProfile* FindProfileOfModel(std::string_view driver,
                                                        std::string_view model);
 
-/** Of a driver's devices, the one with this id, or the first one when `id` is empty; null where
- there is none. */
+/** Finds among a driver's devices the one with this id, or the first one when `id` is empty; null
+ where there is none. */
 [[nodiscard]] const SourcedProfile* FindProfileOfDriver(std::string_view driver,
                                                         std::string_view id = {});
 

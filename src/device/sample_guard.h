@@ -13,9 +13,9 @@ class SampleGuard {
   /** A hand reaches 3 m/s and 30 rad/s in the fastest reaches; beyond that it is not the hand. */
   static constexpr double kMaxSpeed = 5;      ///< [m/s]
   static constexpr double kMaxTurnRate = 60;  ///< [rad/s]
-  /** Without a new sample for so long a device is stale. */
+  /** How long a device may be without a new sample until it is stale. */
   static constexpr std::int64_t kStaleNs = 3'500'000;
-  /** After an implausible sample it has to be plausible for so long to be believed again. */
+  /** How long it has to be plausible after an implausible sample to be believed again. */
   static constexpr std::int64_t kSettleNs = 50'000'000;
 
   /** @param resolution  A jump of a few of the device's own steps is none [m], [rad]. */

@@ -12,7 +12,7 @@ namespace hvas::dynamics {
 
 using BodyId = Id<struct DynamicsBodyTag>;
 
-/** Of a rigid body B with its centre of mass Bcm. */
+/** Mass properties of a rigid body B with its centre of mass Bcm. */
 struct MassProperties {
   double mass{0};                ///< [kg], > 0.
   Vec3 p_BoBcm_B{Vec3::Zero()};  ///< [m]
@@ -64,7 +64,7 @@ class World {
 
   /** Bit for bit what was set until the body moves. */
   [[nodiscard]] const spatial::Pose& pose(BodyId body) const;
-  /** Of Bo, in W. */
+  /** Velocity of Bo, in W. */
   [[nodiscard]] spatial::Twist CalcVelocity(BodyId body) const;
   [[nodiscard]] bool is_kinematic(BodyId body) const;
   /** True for a body at rest that nothing disturbs; a kinematic one is asleep between moves. */

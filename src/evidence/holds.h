@@ -20,7 +20,7 @@ struct Hold {
   double peak_felt{0};         ///< [N]
   double insertion{0};         ///< Longest that a mate's shaft was in its hole [m].
   double deepest{0};           ///< Deepest penetration, >= 0 [m].
-  double path{0};              ///< Of the point that is followed [m].
+  double path{0};              ///< Length of the way of the point that is followed [m].
   std::int64_t contact_ns{0};  ///< That something pressed.
   int collisions{0};           ///< How often contact began, after a tenth of a second without.
   std::vector<Vec3> points;    ///< Its way in the world, wherever it has moved on by kPointGap [m].

@@ -19,7 +19,7 @@ class McapWriter {
   /** @param output  Outlives this; nothing else writes to it. */
   explicit McapWriter(OutputFile* output);
 
-  /** Of JSON messages. @returns the channel's number. */
+  /** Adds a channel of JSON messages. @returns its number. */
   std::uint16_t AddChannel(std::string_view topic, std::string_view schema_name,
                            std::string_view json_schema);
 
@@ -41,7 +41,7 @@ class McapWriter {
   struct Chunk {
     std::string records;
     Span span;
-    /** By channel: time, and place among the records. */
+    /** Time and place among the records of each channel's messages. */
     std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> messages;
   };
 

@@ -15,7 +15,7 @@ namespace hvas::evidence {
 
 /** A number of each tick, SI. */
 struct Column {
-  const char* name;  ///< With its unit.
+  const char* name;  ///< Ends with its unit.
   const char* unit;
   const char* description;
   double (*get)(const record::TickRecord&);
@@ -27,7 +27,7 @@ struct Column {
 /** Which ticks are taken. */
 struct Selection {
   record::Reader::Span span;
-  std::int64_t every{1};  ///< Of each hand only every so many-th, >= 1.
+  std::int64_t every{1};  ///< Takes only every so many-th tick of each hand, >= 1.
 };
 
 /** Visits the ticks of a selection, in their order. */

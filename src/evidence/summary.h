@@ -23,8 +23,8 @@ struct ForceBin {
 /** What happened in one hand. */
 struct HandSummary {
   std::int64_t ticks{0};
-  double period{0};             ///< Between its ticks [s].
-  std::vector<ForceBin> bins;   ///< Over the whole session.
+  double period{0};             ///< Time between its ticks [s].
+  std::vector<ForceBin> bins;   ///< They span the whole session.
   double energy_in{0};          ///< That the hand put into the device, by forces [J].
   double energy_out{0};         ///< That it was given [J].
   bool has_energy{false};       ///< Passivity was controlled, and so it was accounted for.
@@ -34,12 +34,12 @@ struct HandSummary {
 
 /** A fit of the product, and the sizes that were drawn for this session. */
 struct FitSummary {
-  std::string name;     ///< Of the shaft and the hole.
+  std::string name;     ///< Name of the shaft and the hole.
   std::string code;     ///< ISO 286.
   double nominal{0};    ///< Diameter [m].
   double hole{0};       ///< Actual diameter [m].
   double shaft{0};      ///< [m]
-  double max_force{0};  ///< To press it in to its end [N].
+  double max_force{0};  ///< Presses it in to its end [N].
 };
 
 /** A recorded session, for people. */
@@ -48,10 +48,10 @@ struct Summary {
   bool is_complete{false};
   std::string damage;              ///< What is not as it was written, first of all; empty: nothing.
   double duration{0};              ///< [s]
-  std::vector<std::string> paths;  ///< By occurrence.
+  std::vector<std::string> paths;  ///< One for each occurrence.
   std::vector<Hold> holds;
   std::vector<HandSummary> hands;
-  std::vector<record::Event> incidents;  ///< Of safety, device, effort and flight.
+  std::vector<record::Event> incidents;  ///< Events of safety, device, effort and flight.
   std::vector<FitSummary> fits;
   std::optional<product::Product> product;  ///< None in records of before schema 3.
 };

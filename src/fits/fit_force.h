@@ -34,9 +34,9 @@ struct FitForceParameters {
   double roughness{6.3e-6};  ///< Rz, mean of both surfaces [m], >= 0; B is within half of it.
   Smoothing smoothing{Smoothing::kNone};
   FitFriction friction;
-  double lead_in_angle{0};  ///< Of the chamfer that leads in, from the axis [rad]; 0: none.
+  double lead_in_angle{0};  ///< Angle of the chamfer that leads in, from the axis [rad]; 0: none.
   int stations{20};         ///< N, the intervals of B along L, >= 1.
-  std::uint64_t seed{0};    ///< Of B's random values.
+  std::uint64_t seed{0};    ///< Seed of B's random values.
 };
 
 /** Clearance, forces and stiffness of one pair of parts over its depth.

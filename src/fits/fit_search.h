@@ -12,7 +12,7 @@ struct FoundFit {
   FitClass fit;
   FitLimits limits;
   bool is_common{false};  ///< Both classes are in common use.
-  double unused{0};       ///< Of the range asked for, what the fit's clearances leave free [m].
+  double unused{0};       ///< What the fit's clearances leave free of the range asked for [m].
 };
 
 /** Which basis the fits are taken from. */

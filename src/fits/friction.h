@@ -14,7 +14,7 @@ struct FrictionLaw {
   double kinetic_coefficient{0.15};
   double stribeck_speed{1e-3};  ///< v_s [m/s]
   double viscous{0};            ///< [s/m]
-  double stiffness{1e6};        ///< Of the bristles of one contact [N/m].
+  double stiffness{1e6};        ///< Stiffness of the bristles of one contact [N/m].
 
   /** mu(v) = mu_k + (mu_s - mu_k) exp(-(v / v_s)^2) + viscous v, v >= 0 [m/s]. RT-safe. */
   [[nodiscard]] double CalcCoefficient(double v) const noexcept;

@@ -12,7 +12,7 @@ namespace hvas::fits {
 /** A tolerance class such as "H7": capitals for holes, small letters for shafts. */
 struct ToleranceClass {
   std::string letters;  ///< "H", "js", "zc", ...
-  int grade{7};         ///< Of the standard tolerance: 1 to 18; 0 is IT0, -1 is IT01.
+  int grade{7};         ///< Grade of the standard tolerance: 1 to 18; 0 is IT0, -1 is IT01.
 
   [[nodiscard]] bool is_hole() const { return letters.front() >= 'A' && letters.front() <= 'Z'; }
 

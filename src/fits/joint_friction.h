@@ -8,8 +8,9 @@ namespace hvas::fits {
 
 /** How a joint comes together, which decides what holds it (DIN 7190-1, 5.2 and 5.3). */
 struct JoiningWay {
-  bool is_shrunk{false};  ///< By heat or cold: a transverse fit; else pressed in, longitudinal.
-  bool is_oiled{false};   ///< With mineral oil; else dry.
+  bool is_shrunk{
+      false};  ///< Joined by heat or cold: a transverse fit; else pressed in, longitudinal.
+  bool is_oiled{false};  ///< Oiled with mineral oil; else dry.
 };
 
 /** Coefficients of an interference fit on the safe side: what is to hold has the low values, what

@@ -26,7 +26,7 @@ struct Material {
 
 /** A material meant by a name. */
 struct MaterialMatch {
-  const Material* material{nullptr};  ///< In Materials().
+  const Material* material{nullptr};  ///< One of Materials().
   bool is_stand_in{false};  ///< The table has only something like it: a plastic for a plastic.
 };
 

@@ -16,12 +16,12 @@ struct PaperScale {
   std::string_view fit;     ///< The fit of the paper's experiment.
   std::string_view symbol;  ///< "k_r", "k_s"; empty for the clearance fit, shown as it is.
   double largest_shown{0};  ///< The upper end of the axial force in figure 8 [N].
-  double true_force{0};     ///< At full depth, for which the factor is [N].
+  double true_force{0};     ///< Force at full depth, for which the factor is [N].
   double factor{1};         ///< largest_shown / true_force; 1 for the clearance fit.
 };
 
-/** Of the paper's rig: H7/p6 at its mean interference of 21.5 um (39,893.3 N), H7/k6 with hole and
- shaft of one size and roughness alone (2,329 N in the mean of many). RT-safe. */
+/** The scale of the paper's rig: H7/p6 at its mean interference of 21.5 um (39,893.3 N), H7/k6 with
+ hole and shaft of one size and roughness alone (2,329 N in the mean of many). RT-safe. */
 [[nodiscard]] const PaperScale& FindPaperScale(FitKind kind) noexcept;
 
 /** The factor that shows another pair's force at full depth [N] at the upper end of its range; that

@@ -23,8 +23,8 @@ struct PopulationLand {
 };
 
 struct PopulationParameters {
-  std::vector<PopulationLand> lands;  ///< At least one; they go in together.
-  std::int64_t count{1'000'000};      ///< Of assemblies, > 0.
+  std::vector<PopulationLand> lands;  ///< One or more; they go in together.
+  std::int64_t count{1'000'000};      ///< Number of assemblies, > 0.
   std::uint64_t seed{0};
   int threads{1};
   double press_force{std::numeric_limits<double>::infinity()};  ///< What the press can do [N].
@@ -47,16 +47,16 @@ struct LandStatistics {
   double mean_clearance{0};  ///< [m]
   double sigma_clearance{0};
   std::array<double, kBandShares.size()> clearance_quantiles{};
-  std::vector<double> clearance_curve;  ///< At the shares 0, 1/200, .. 1; the ends by 1/400.
-  double interference_share{0};         ///< Of assemblies with interference.
+  std::vector<double> clearance_curve;  ///< Values at the shares 0, 1/200, .. 1; the ends by 1/400.
+  double interference_share{0};         ///< Share of assemblies with interference.
   double yield_share{0};  ///< Whose pressure exceeds the least elastic limit (von Mises).
 };
 
 struct Population {
   std::int64_t count{0};
   std::vector<LandStatistics> lands;
-  std::vector<ForceBand> bands;      ///< From depth 0 to the end.
-  double any_interference_share{0};  ///< Of assemblies, in any land.
+  std::vector<ForceBand> bands;      ///< Bands from depth 0 to the end.
+  double any_interference_share{0};  ///< Share of assemblies with interference in any land.
   double over_press_share{0};        ///< Whose force exceeds the press somewhere.
   double any_yield_share{0};
 };

@@ -11,18 +11,18 @@ inline constexpr int kMaxStations = 256;
 
 /** Where a depth of the common grid lies on a land. */
 struct LandDepth {
-  std::int32_t interval;  ///< Between this station and the next; -1 above the land.
-  float part;             ///< Of the interval, 0 to 1.
+  std::int32_t interval;  ///< The interval between this station and the next; -1 above the land.
+  float part;             ///< Part of the interval, 0 to 1.
 };
 
 struct LandView {
   std::int32_t stations;     ///< Intervals of B, 1 to kMaxStations.
   float half_roughness_um;   ///< Rz / 2.
-  float force_per_interval;  ///< Of a micrometre of radial interference over an interval [N].
+  float force_per_interval;  ///< Force of a micrometre of radial interference over an interval [N].
   /** Radial, of each assembly; negative is interference. Beyond the last assembly of a block, up to
    a multiple of kLanes, kFarApart. */
   const float* mean_clearance_um;
-  const LandDepth* depths;  ///< As many as the grid has.
+  const LandDepth* depths;  ///< One for each depth of the grid.
 };
 
 inline constexpr int kForceBins = 2048;
@@ -31,19 +31,19 @@ inline constexpr float kFarApart = 1e6F;
 /** The sizes of a land's parts in a block. */
 struct SizeBlock {
   const float* hole_um;   ///< Deviations from the middle of what is possible.
-  const float* shaft_um;  ///< The same.
+  const float* shaft_um;  ///< Deviations of the shafts.
   std::int32_t assembly_count;
-  float middle_um;    ///< Of the clearances of the diameters that are possible.
+  float middle_um;    ///< Middle of the clearances of the diameters that are possible.
   float loss_um;      ///< What smoothing adds to each.
   float yield_um;     ///< Interference after smoothing beyond which a part yields.
-  float lowest_um;    ///< Of the clearances, from the middle.
+  float lowest_um;    ///< Lowest of the clearances, from the middle.
   float bins_per_um;  ///< No clearance makes kForceBins or more; 0 where only one is possible.
   // Results.
-  float* mean_clearance_um;  ///< As LandView has it.
+  float* mean_clearance_um;  ///< Ordered as in LandView.
   std::uint16_t* bins;       ///< 0 at the lowest clearance, else 1 to kForceBins.
   std::uint8_t* marks;       ///< kInterferes and kYields are added.
-  double sum_um;             ///< Of clearances, from the middle.
-  double sum_um2;            ///< Of their squares.
+  double sum_um;             ///< Sum of clearances, from the middle.
+  double sum_um2;            ///< Sum of their squares.
   std::int32_t interferences;
   std::int32_t yields;
 };
@@ -56,9 +56,10 @@ struct PopulationBlock {
   std::int32_t land_count;
   std::int32_t depth_count;
   std::int32_t assembly_count;  ///< Room for a multiple of kLanes is everywhere.
-  std::uint64_t seed;           ///< Of this block.
+  std::uint64_t seed;           ///< Seed of this block.
   float press_force;            ///< [N]
-  /** Of each depth: no force makes kForceBins or more, rounding included. 0 where none is possible.
+  /** Each depth's scale: no force makes kForceBins or more, rounding included. 0 where none is
+   * possible.
    */
   const float* bins_per_newton;
   // Results.

@@ -13,7 +13,7 @@ namespace hvas::fits {
 
 /** How much of the interference the roughness takes: G = k (Rz_A + Rz_I). */
 enum class Smoothing {
-  kNone,     ///< As paper W: none.
+  kNone,     ///< None, as in paper W.
   kDin2001,  ///< k = 0.8, DIN 7190:2001.
   kDin2017,  ///< k = 0.4, DIN 7190-1:2017.
 };
@@ -29,8 +29,8 @@ struct PressMaterial {
   double thermal_expansion{11e-6};  ///< alpha [1/K].
 };
 
-/** Without a yield strength where the group is brittle, as of grey iron, whose stated one is a
- proof stress. */
+/** Strength, without a yield strength where the group is brittle, as of grey iron, whose stated one
+ is a proof stress. */
 [[nodiscard]] PressMaterial ToPressMaterial(const Material& material) noexcept;
 
 /** A hub A outside, a shaft I inside, joined at the diameter D_F. */
@@ -75,7 +75,7 @@ struct PressFit {
   double shaft_contraction{0};  ///< Diametral, of the shaft's outside [m]; the two make U_w.
   RingStress hub_bore;
   RingStress shaft_surface;    ///< Equals the inside of a solid shaft.
-  RingStress shaft_governing;  ///< At the bore of a hollow shaft, anywhere in a solid one.
+  RingStress shaft_governing;  ///< Stress at the bore of a hollow shaft, anywhere in a solid one.
   ElasticLimit hub_limit;      ///< Where the hoop stress of a brittle hub is its tensile strength.
   ElasticLimit shaft_limit;
   bool is_hub_brittle{false};
@@ -88,7 +88,7 @@ struct PressFit {
   [[nodiscard]] double margin_von_mises() const noexcept;
   [[nodiscard]] double margin_tresca() const noexcept;
 
-  /** The same of one side by von Mises; of a brittle hub against fracture. */
+  /** The margin of one side by von Mises; of a brittle hub against fracture. */
   [[nodiscard]] double margin_hub() const noexcept;
   [[nodiscard]] double margin_shaft() const noexcept;
 };

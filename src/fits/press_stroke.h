@@ -14,8 +14,8 @@ namespace hvas::fits {
 struct StrokeLand {
   PressFitParameters press;  ///< `interference` counts where no clearances are given.
   double start{0};           ///< Depth of the shaft at which the land's edge is at the mouth [m].
-  /** Of the chamfer that leads in, from the axis [rad], 0 < angle < pi / 2; 0: a sharp edge, that
-   is none. */
+  /** Angle of the chamfer that leads in, from the axis [rad], 0 < angle < pi / 2; 0: a sharp edge,
+   that is none. */
   double lead_in_angle{0};
   /** S at equal steps from the mouth inwards, the ends included: radial, before smoothing, negative
    is interference [m]. Linear between. Empty: even. */
@@ -30,8 +30,8 @@ struct StrokeLand {
 /** Forces at a depth, >= 0 as a rule [N]. */
 struct StrokeForce {
   double normal{0};   ///< The pressure over the engaged surface, without the chamfers'.
-  double in{0};       ///< To keep pressing in.
-  double release{0};  ///< To start pulling out.
+  double in{0};       ///< Keeps pressing in.
+  double release{0};  ///< Starts pulling out.
 };
 
 /** Forces over depth, exact: no steps in depth. With n(z) the interference of a land at the depth z

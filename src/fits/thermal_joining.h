@@ -18,8 +18,8 @@ struct JoiningMaterial {
   double cooling{
       8.5e-6};            ///< alpha, mean from room temperature down to liquid nitrogen [1/K], > 0.
   double hottest_c{200};  ///< Hotter than this a hub loses strength or hardness [C].
-  std::string_view source;        ///< Of the coefficients.
-  std::string_view limit_source;  ///< Of `hottest_c`, and why.
+  std::string_view source;        ///< Source of the coefficients.
+  std::string_view limit_source;  ///< Source of `hottest_c`, and why.
 };
 
 /** The values of a material of the table: coefficients for heating and for cooling of DIN 7190
@@ -36,8 +36,8 @@ struct ThermalJoint {
   double hub_expansion{11e-6};     ///< alpha_A, heating [1/K], > 0.
   double shaft_expansion{8.5e-6};  ///< alpha_I, cooling [1/K], > 0.
   double room_c{20};
-  double hub_contraction{8.5e-6};  ///< Of the hub below room temperature [1/K], > 0.
-  double shaft_heating{11e-6};     ///< Of the shaft above room temperature [1/K], > 0.
+  double hub_contraction{8.5e-6};  ///< Expansion of the hub below room temperature [1/K], > 0.
+  double shaft_heating{11e-6};     ///< Expansion of the shaft above room temperature [1/K], > 0.
 };
 
 /** The clearance that DIN 7190-1 asks for while joining: S_f = D_F / 1000 [m]. */
@@ -63,8 +63,9 @@ struct ThermalJoint {
 struct HeatExchange {
   double hub_capacity{0};    ///< Mass times specific heat [J/K], > 0.
   double shaft_capacity{0};  ///< [J/K], > 0.
-  double conductance{0};     ///< Of the joint, for each square metre engaged [W/(m2 K)], > 0.
-  double speed{0};           ///< Of insertion [m/s], > 0.
+  double conductance{
+      0};           ///< Conductance of the joint, for each square metre engaged [W/(m2 K)], > 0.
+  double speed{0};  ///< Speed of insertion [m/s], > 0.
 };
 
 /** Specific heat of a material's group in Materials(), handbook values near 100 C [J/(kg K)]: steel

@@ -24,8 +24,8 @@ namespace hvas::mates {
 
 /** What a side file did. */
 struct MateChanges {
-  std::vector<product::Mate> removed;  ///< As they were, with the ids they had.
-  std::vector<product::MateId> added;  ///< In the order of SideFile::added.
+  std::vector<product::Mate> removed;  ///< Mates as they were, with the ids they had.
+  std::vector<product::MateId> added;  ///< Ordered as SideFile::added.
   int fits{0};                         ///< Mates that got a fit or conditions.
 };
 

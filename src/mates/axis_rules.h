@@ -17,13 +17,13 @@ struct PlacedAxisHit {
   product::OccurrenceId shaft_occurrence;
   product::FeatureId hole;
   product::FeatureId shaft;
-  Vec3 origin_W;  ///< Of the hole.
+  Vec3 origin_W;  ///< Origin of the hole.
   Vec3 axis_W;
   double hole_radius{0};
   double shaft_radius{0};
   double low{0};  ///< Engaged interval along the axis from the origin [m].
   double high{0};
-  double scale{1};  ///< Of lengths, for this pair of parts.
+  double scale{1};  ///< Scale of lengths, for this pair of parts.
 
   [[nodiscard]] double length() const { return high - low; }
 
@@ -46,9 +46,9 @@ class AxisRules {
   AxisRules(const InferenceLimits& limits, const std::vector<PlacedAxisHit>& hits,
             WorkWatch* watch = nullptr);
 
-  /** Of the hits [begin, end), which belong to one pair of parts, the working one of each axis:
-   none where a third part (a bushing) lies between, nor for a wide passage around a shaft that
-   another part guides; the tightest of the long engagements. */
+  /** Keeps of the hits [begin, end), which belong to one pair of parts, the working one of each
+   axis: none where a third part (a bushing) lies between, nor for a wide passage around a shaft
+   that another part guides; the tightest of the long engagements. */
   [[nodiscard]] std::vector<const PlacedAxisHit*> ChooseWorking(std::size_t begin,
                                                                 std::size_t end) const;
 

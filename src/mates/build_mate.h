@@ -18,9 +18,9 @@ struct AxialSpans {
   double first_low{0}, first_high{0};
   double second_low{0}, second_high{0};
   double low{0}, high{0};  ///< What they share; high < low where they share nothing.
-  double shift{0};         ///< Of the second one's origin along the axis.
+  double shift{0};         ///< Shift of the second one's origin along the axis.
   double axis_distance{
-      0};  ///< Of the second axis from the first, in the middle of what they share.
+      0};  ///< Offset of the second axis from the first, in the middle of what they share.
 
   [[nodiscard]] double length() const { return high - low; }
 };

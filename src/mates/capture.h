@@ -23,9 +23,9 @@ struct CaptureMate {
 
 /** Distances between the sides of a mate, all >= 0. */
 struct MateDeviation {
-  double angle{0};     ///< Of the axes, or of one normal and the other's opposite: X(7) [rad].
-  double distance{0};  ///< Of the axes where they meet, X(8), or between the planes [m].
-  double gap{0};       ///< Between the spans along the axis, 0 when they overlap; or in the plane,
+  double angle{0};  ///< Angle of the axes, or of one normal and the other's opposite: X(7) [rad].
+  double distance{0};  ///< Distance of the axes where they meet, X(8), or of the planes [m].
+  double gap{0};       ///< Gap of the spans along the axis, 0 when they overlap; or in the plane,
                        ///< 0 while the face's centre is within the reach of the other's [m].
 };
 
@@ -42,7 +42,7 @@ struct MateDeviation {
 struct CaptureThresholds {
   double angle{0.17453292519943295};  ///< 10 deg [rad].
   double axis_distance{5e-3};         ///< Also of centres [m].
-  double axial_gap{30e-3};            ///< Before the shaft's end; the papers set no limit [m].
+  double axial_gap{30e-3};            ///< Gap before the shaft's end; the papers set no limit [m].
   double face_distance{3e-3};         ///< [m]
   double in_plane_gap{5e-3};          ///< [m]
   double release_ratio{1.5};  ///< A captured mate is released beyond this multiple of them, >= 1.

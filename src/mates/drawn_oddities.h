@@ -12,7 +12,7 @@ struct DrawnOddity {
   product::OccurrenceId a;
   product::OccurrenceId b;
   double gap{0};   ///< [m]; negative: drawn into each other.
-  double area{0};  ///< Of the faces' overlap [m^2].
+  double area{0};  ///< Area of the faces' overlap [m^2].
 };
 
 /** Tells what is odd about the drawn pose. Nothing is moved to mend it.

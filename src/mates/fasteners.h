@@ -7,8 +7,9 @@
 
 namespace hvas::mates {
 
-/** By shape: six equal flats at 60 degrees around a cylinder. Around a hole: a nut, where no shaft
- of the part is on that axis. Around a shaft, outside it (a hexagon head) or as a socket: a screw.
+/** Recognises it by its shape: six equal flats at 60 degrees around a cylinder. Around a hole: a
+ nut, where no shaft of the part is on that axis. Around a shaft, outside it (a hexagon head) or as
+ a socket: a screw.
  */
 [[nodiscard]] FastenerKind ClassifyShape(const product::Part& part);
 

@@ -23,8 +23,8 @@ namespace hvas::mates {
  ("drawn-interference"). */
 void Infer(product::Product* product, Diagnostics* diagnostics, const InferenceLimits& limits = {});
 
-/** The same for files that may be hostile. Fails (kOutOfResource, kCancelled) when the watch ends
- it; what the product has for mates then is of no use. */
+/** Infers the mates of files that may be hostile. Fails (kOutOfResource, kCancelled) when the watch
+ ends it; what the product has for mates then is of no use. */
 [[nodiscard]] Result<void> Infer(product::Product* product, Diagnostics* diagnostics,
                                  WorkWatch* watch, const InferenceLimits& limits = {});
 

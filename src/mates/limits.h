@@ -8,18 +8,18 @@ namespace hvas::mates {
  they scale with the smaller part of the pair, so a model drawn in wrong units still has its mates.
  */
 struct InferenceLimits {
-  double angle{1.745329252e-3};      ///< Of axes and normals from parallel (0.1 deg) [rad].
-  double axis_distance{20e-6};       ///< Between two axes or centres taken as one [m].
-  double radius_difference{0.6e-3};  ///< Of hole and shaft, socket and ball [m], or the next
-                                     ///< one, if more.
-  double radius_ratio{0.3};          ///< The same as a part of the radius.
+  double angle{1.745329252e-3};  ///< Deviation of axes and normals from parallel (0.1 deg) [rad].
+  double axis_distance{20e-6};   ///< Distance of two axes or centres that are taken as one [m].
+  double radius_difference{0.6e-3};  ///< Difference of hole and shaft, socket and ball [m], or the
+                                     ///< next one, if more.
+  double radius_ratio{0.3};          ///< That difference as a part of the radius.
   double axial_overlap{50e-6};       ///< Least engaged length [m].
   double coverage{3.4906585};        ///< Least turn that one face of a hole covers (200 deg) [rad].
-  double plane_gap{10e-6};           ///< Between faces that touch, also as overlap [m].
+  double plane_gap{10e-6};           ///< Gap of faces that touch, also as overlap [m].
   double area_ratio{0.01};           ///< Least overlap as a part of the smaller face.
   double area{0.05e-6};              ///< Least overlap [m^2].
-  double cone_angle{1.745329252e-2};  ///< Between the half angles of two cones (1 deg) [rad].
-  double cone_gap{0.25e-3};           ///< Between cones, normal to them, also as overlap [m].
+  double cone_angle{1.745329252e-2};  ///< Difference of the half angles of two cones (1 deg) [rad].
+  double cone_gap{0.25e-3};           ///< Gap of cones, normal to them, also as overlap [m].
   double near_gap{0.12e-3};  ///< Faces that nearly touch, or overlap, are reported this far [m].
   bool reuse_equal_pairs{true};  ///< Look only once at pairs of equal parts that lie equally.
 };

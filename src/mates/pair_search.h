@@ -43,9 +43,9 @@ struct SeatHit {
 struct PlaneHit {
   product::FeatureId a;
   product::FeatureId b;
-  double area{0};                 ///< [m^2]
-  double gap{0};                  ///< At the centroid [m]; negative: each inside the other part.
-  Vec3 centroid_A{Vec3::Zero()};  ///< In the first part's frame.
+  double area{0};  ///< [m^2]
+  double gap{0};   ///< Gap at the centroid [m]; negative: each inside the other part.
+  Vec3 centroid_A{Vec3::Zero()};  ///< Coordinates in the first part's frame.
 };
 
 struct PairHits {
@@ -54,7 +54,7 @@ struct PairHits {
   std::vector<SeatHit> seats;
   std::vector<PlaneHit> planes;         ///< That touch.
   std::optional<PlaneHit> nearest;      ///< The planes with the largest area that nearly touch.
-  std::optional<PlaneHit> overlapping;  ///< The same of those that lie inside each other.
+  std::optional<PlaneHit> overlapping;  ///< The hit of those that lie inside each other.
 
   [[nodiscard]] bool is_empty() const {
     return axes.empty() && holes.empty() && seats.empty() && planes.empty() && !nearest &&

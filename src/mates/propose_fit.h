@@ -10,8 +10,8 @@ using product::FastenerKind;
 
 /** What a proposal rests on: the drawn radii and the names. */
 struct FitEvidence {
-  double hole_radius{0};   ///< As drawn [m].
-  double shaft_radius{0};  ///< As drawn [m].
+  double hole_radius{0};   ///< Drawn radius [m].
+  double shaft_radius{0};  ///< Drawn radius [m].
   FastenerKind hole_part{FastenerKind::kNone};
   FastenerKind shaft_part{FastenerKind::kNone};
   bool nut_on_shaft{false};  ///< A nut sits on the same shaft: other holes are through holes.

@@ -40,7 +40,7 @@ struct MateConstraint {
 struct FreeTwists {
   int translations{0};
   int rotations{0};            ///< Turns, screws included.
-  std::array<Twist, 6> basis;  ///< Of B about its origin, in W; `count()` of them.
+  std::array<Twist, 6> basis;  ///< Motions of B about its origin, in W; `count()` of them.
   Vec3 p_WR{Vec3::Zero()};     ///< Mean of the held connectors (of axes, if any).
   double length{0};            ///< Characteristic length L [m].
 
@@ -55,7 +55,7 @@ struct FreeTwists {
 
 struct Resolution {
   Pose X_WB;
-  double residual{0};  ///< As CalcResidual [m].
+  double residual{0};  ///< What CalcResidual gives [m].
   int iterations{0};
   bool is_converged{false};  ///< residual < 1e-10 m; false where the mates contradict each other.
 };

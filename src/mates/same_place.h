@@ -13,9 +13,9 @@ namespace hvas::mates {
 /** The micrometre that a coordinate lies in, for tables of poses. */
 [[nodiscard]] std::int64_t PlaceCell(double value);
 
-/** For each occurrence the earlier one, if any, that has the same shape at the same place: files
- hold copies that somebody pasted and forgot. An original is never a copy itself. Takes time with
- the number of occurrences, however many lie at one place. */
+/** Finds for each occurrence the earlier one, if any, that has the same shape at the same place:
+ files hold copies that somebody pasted and forgot. An original is never a copy itself. Takes time
+ with the number of occurrences, however many lie at one place. */
 [[nodiscard]] std::vector<product::OccurrenceId> FindOriginals(const product::Product& product);
 
 }  // namespace hvas::mates

@@ -29,11 +29,11 @@ struct SideFileKey {
   std::string_view name;
   SideFileType type{SideFileType::kText};
   bool is_required{false};
-  double low{0};  ///< Of numbers.
+  double low{0};  ///< Lowest of numbers.
   double high{0};
   bool is_low_excluded{false};
-  bool may_be_empty{false};                   ///< Of texts.
-  std::span<const std::string_view> choices;  ///< Of texts; any when empty.
+  bool may_be_empty{false};                   ///< Whether a text may be empty.
+  std::span<const std::string_view> choices;  ///< What a text may be; any when empty.
 };
 
 [[nodiscard]] std::span<const SideFileKey> KeysOf(SideFileObject object);
@@ -42,8 +42,8 @@ struct SideFileKey {
 struct FitEntry {
   std::string mate;                ///< A key or "m12"; empty: by hole and shaft.
   std::string hole;                ///< An occurrence's name, path or end of path.
-  std::string shaft;               ///< The same.
-  std::optional<double> diameter;  ///< Of hole or shaft [m].
+  std::string shaft;               ///< Occurrence and feature of the shaft.
+  std::optional<double> diameter;  ///< Diameter of hole or shaft [m].
   std::string fit;                 ///< "H7/g6", "H7", "g6", "thread", or empty.
   product::FitConditions conditions;
   std::string where;  ///< "FILE:LINE, fit 3".
@@ -59,7 +59,7 @@ struct SideEntry {
 struct AddedMate {
   std::optional<product::MateKind> kind;  ///< Found from the surfaces where it is not said.
   SideEntry a, b;
-  std::string fit;  ///< As in FitEntry.
+  std::string fit;  ///< What FitEntry::fit is.
   std::string where;
 };
 
@@ -87,7 +87,7 @@ struct SideFile {
  of its range, or is missing. */
 [[nodiscard]] Result<SideFile> ReadSideFile(const std::filesystem::path& file);
 
-/** The same of a text; `file` is for the messages. */
+/** Parses a text; `file` is for the messages. */
 [[nodiscard]] Result<SideFile> ParseSideFile(std::string_view text,
                                              const std::filesystem::path& file);
 

@@ -19,7 +19,7 @@ using FeaturePair = std::pair<product::FeatureId, product::FeatureId>;
     const product::Product& product, const product::Mate& mate,
     const std::vector<FeaturePair>& features, WorkWatch* watch = nullptr);
 
-/** The same for the mate's own two features. */
+/** Finds the pairs of the mate's own two features. */
 [[nodiscard]] std::vector<product::SurfaceConstraint> FindSurfacePairs(
     const product::Product& product, const product::Mate& mate, WorkWatch* watch = nullptr);
 
@@ -29,7 +29,7 @@ struct PlaneOverlap {
   Vec3 p_MQ{Vec3::Zero()};  ///< Its centroid, in the frame of Mate::a.
 };
 
-/** Of the planes of a face-face mate when it is fulfilled. */
+/** Overlap of the planes of a face-face mate when it is fulfilled. */
 [[nodiscard]] PlaneOverlap CalcPlaneOverlap(const product::Product& product,
                                             const product::Mate& mate);
 

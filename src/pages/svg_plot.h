@@ -24,10 +24,10 @@ enum class PlotStyle : std::uint8_t {
   kDashed,
   kThin,
   kArea,       ///< The points go round it.
-  kFaintArea,  ///< The same, fainter.
+  kFaintArea,  ///< A fainter area.
   kMarks,      ///< A ring at each point.
   kDots,       ///< A filled dot at each point.
-  kSolid,      ///< As kArea, and opaque.
+  kSolid,      ///< An opaque area.
 };
 
 /** What is drawn in one colour under one name; without a name it is not in the legend. Points that
@@ -43,7 +43,7 @@ struct PlotSeries {
 struct PlotText {
   PlotPoint at;
   std::string text;
-  bool is_on_solid{false};  ///< On kSolid: in the colour of the page.
+  bool is_on_solid{false};  ///< It stands on kSolid, in the colour of the page.
 };
 
 /** Axes with series. Labels carry their units. */
@@ -51,13 +51,13 @@ struct PlotPanel {
   std::string title;
   std::string x_label;
   std::string y_label;
-  std::string right_label;  ///< Of a second scale on the right; empty: none.
+  std::string right_label;  ///< Label of a second scale on the right; empty: none.
   double right_factor{1};   ///< What one of y is on the right, > 0.
   std::vector<PlotSeries> series;
   std::optional<PlotRange> x;          ///< All points without.
   std::optional<PlotRange> y;          ///< All points and zero without.
   std::vector<std::string> x_names{};  ///< What stands at x = 0, 1, ..., instead of numbers.
-  std::vector<std::string> y_names{};  ///< The same of y; counted downwards.
+  std::vector<std::string> y_names{};  ///< Names along y, counted downwards.
   std::vector<PlotText> texts{};
 };
 

@@ -6,7 +6,7 @@
 
 namespace hvas::product {
 
-/** Of the two directions of a line the one whose largest component is positive. */
+/** The one of a line's two directions whose largest component is positive. */
 [[nodiscard]] Vec3 Canonical(const Vec3& axis);
 
 /** Within 1 mrad, either way round. */

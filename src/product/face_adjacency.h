@@ -19,15 +19,15 @@ enum class EdgeSense {
 struct FaceEdge {
   FaceId other;  ///< Invalid for kOpen.
   EdgeSense sense{EdgeSense::kOpen};
-  double angle{0};  ///< Between the outward normals, positive for convex [rad].
-  Vec3 start, end;  ///< In B; the face is on the left as seen from outside [m].
-  Vec3 conormal;    ///< In the face, at a right angle to the segment, out of the face; unit.
+  double angle{0};  ///< Angle between the outward normals, positive for convex [rad].
+  Vec3 start, end;  ///< Points in B; the face is on the left as seen from outside [m].
+  Vec3 conormal;    ///< Lies in the face, at a right angle to the segment, out of the face; unit.
 };
 
 /** All that a face has in common with one other face. */
 struct FaceNeighbour {
   FaceId face;
-  double length{0};  ///< Of all common segments [m].
+  double length{0};  ///< Length of all common segments [m].
   double convex{0}, concave{0}, tangent{0};
   double angle{0};  ///< Mean over the length [rad].
 
@@ -48,7 +48,7 @@ class FaceAdjacency {
                                      first_edge_[face.index() + 1] - first_edge_[face.index()]);
   }
 
-  /** By the neighbour's id; open borders are left out. */
+  /** Neighbours by their id; open borders are left out. */
   [[nodiscard]] std::span<const FaceNeighbour> neighbours(FaceId face) const {
     return std::span(neighbours_)
         .subspan(first_neighbour_[face.index()],

@@ -37,7 +37,7 @@ struct Color {
 };
 
 struct Material {
-  std::string name;                ///< As the file calls it; empty where it names none.
+  std::string name;                ///< What the file calls it; empty where it names none.
   double density{7850};            ///< [kg/m^3]
   bool is_assumed{true};           ///< True where the file gave no density, or an absurd one.
   std::string standard;            ///< Its row in fits::Materials(), which the rest is from.
@@ -57,7 +57,7 @@ struct MassProperties {
 
 /** Layer J, with its polygons (layer M) as a range of Part::mesh.triangles. */
 struct Face {
-  Surface surface;            ///< In B. Recognised also where the file has a B-spline.
+  Surface surface;            ///< Stands in B. It is recognised also where the file has a B-spline.
   bool is_recognised{false};  ///< True where the file's surface was not analytic itself.
   double area{0};             ///< [m^2]
   Box box_B;
@@ -65,14 +65,15 @@ struct Face {
   std::uint32_t triangle_count{0};
   std::optional<Color> color;
   std::uint64_t entity{0};  ///< Number in the STEP file; 0 where that is not known.
-  double residual{0};       ///< Of a surface fitted to triangles or splines: largest distance [m].
-  std::uint32_t first_display_triangle{0};  ///< In Part::display_mesh.
+  double residual{
+      0};  ///< Largest distance of a surface that was fitted to triangles or splines [m].
+  std::uint32_t first_display_triangle{0};  ///< Index into Part::display_mesh.
   std::uint32_t display_triangle_count{0};
 };
 
 /** Triangles of a part, outward orientation, grouped by face. Vertices are not shared by faces. */
 struct Mesh {
-  std::vector<Vec3> vertices;                           ///< In B [m].
+  std::vector<Vec3> vertices;                           ///< Coordinates in B [m].
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into vertices.
 };
 
@@ -103,13 +104,13 @@ enum class ThreadKind {
 struct Feature {
   FeatureKind kind{FeatureKind::kPlane};
   std::vector<FaceId> faces;
-  Vec3 origin_B{Vec3::Zero()};  ///< On the axis (any point), on the plane (area centroid); cone:
+  Vec3 origin_B{Vec3::Zero()};  ///< A point of the axis, or the plane's area centroid; cone:
                                 ///< its apex; sphere: its centre.
   Vec3 axis_B{Vec3::UnitZ()};   ///< Axis direction; plane: outward normal; cone: from the apex into
                                 ///< the nappe in use.
-  double radius{0};             ///< Of cylinder or sphere; cone: the largest in use; plane: 0 [m].
-  double half_angle{0};         ///< Of a cone [rad].
-  double span_low{0};           ///< Extent along axis_B relative to origin_B [m]; 0 for planes.
+  double radius{0};      ///< Radius of cylinder or sphere; cone: the largest in use; plane: 0 [m].
+  double half_angle{0};  ///< Half angle of a cone [rad].
+  double span_low{0};    ///< Extent along axis_B relative to origin_B [m]; 0 for planes.
   double span_high{0};
   double coverage{0};  ///< Angle of the full turn that the faces cover [rad].
   double area{0};      ///< [m^2]
@@ -139,14 +140,15 @@ struct Form {
   FormKind kind{FormKind::kSeat};
   std::vector<FeatureId> features;  ///< Which it is made of; hole patterns: the holes.
   std::vector<FaceId> faces;        ///< All of its faces.
-  Vec3 origin_B{Vec3::Zero()};      ///< On the axis at the entry; else the centre.
+  Vec3 origin_B{Vec3::Zero()};      ///< The axis's point at the entry; else the centre.
   Vec3 axis_B{Vec3::UnitZ()};       ///< Into the material for holes, slots, pockets; outward for
                                     ///< bosses and seats; patterns: along the holes.
-  double diameter{0};  ///< Of hole, boss or bolt circle; width of slot, fillet radius x 2 [m].
-  double depth{0};     ///< From the entry [m].
-  double angle{0};     ///< Included, of countersink or chamfer [rad].
-  int count{1};        ///< Steps of a stepped hole, holes of a pattern.
-  double lead_in{0};   ///< Radial width of the chamfer or fillet at the entry [m]; 0: sharp.
+  double diameter{
+      0};  ///< Diameter of hole, boss or bolt circle; width of slot, fillet radius x 2 [m].
+  double depth{0};    ///< Distance from the entry [m].
+  double angle{0};    ///< Included, of countersink or chamfer [rad].
+  int count{1};       ///< Steps of a stepped hole, holes of a pattern.
+  double lead_in{0};  ///< Radial width of the chamfer or fillet at the entry [m]; 0: sharp.
 };
 
 enum class InnerConstraintKind { kParallel, kPerpendicular, kCoaxial, kCoplanar, kConcentric };
@@ -175,7 +177,7 @@ struct Part {
   std::vector<InnerConstraint> inner_constraints;
   std::vector<Dimension> dimensions;                     ///< Where the file states any.
   std::vector<GeometricTolerance> geometric_tolerances;  ///< Where the file states any.
-  std::string shape_hash;  ///< Of faces and mesh; equal for equal geometry.
+  std::string shape_hash;  ///< Hash of faces and mesh; equal for equal geometry.
 };
 
 /** A node of the tree: the product itself (the root), or a subassembly. */
@@ -233,7 +235,7 @@ enum class SurfaceConstraintKind { kCoaxial, kCoplanar, kSameCone, kConcentric }
 /** What a mate asks of two faces (X2, layer J). */
 struct SurfaceConstraint {
   SurfaceConstraintKind kind{SurfaceConstraintKind::kCoplanar};
-  FaceId a;  ///< Of the part of Mate::a.
+  FaceId a;  ///< A face of the part of Mate::a.
   FaceId b;
 };
 
@@ -299,8 +301,8 @@ struct Product {
 
   /** Levels of subassemblies above the deepest part, the product included: a flat product has 1. */
   [[nodiscard]] int depth() const;
-  [[nodiscard]] double volume() const;  ///< Of all occurrences [m^3].
-  [[nodiscard]] double mass() const;    ///< Of all occurrences [kg].
+  [[nodiscard]] double volume() const;  ///< Volume of all occurrences [m^3].
+  [[nodiscard]] double mass() const;    ///< Mass of all occurrences [kg].
 };
 
 }  // namespace hvas::product

@@ -14,7 +14,7 @@
  lie in memory. Made to be read by the program that wrote them; exchange formats are elsewhere. */
 namespace hvas::product {
 
-/** To be raised whenever the bytes change: a field, an enumerator, their order. */
+/** The version is raised whenever the bytes change: a field, an enumerator, their order. */
 inline constexpr std::uint32_t kProductFormat = 1;
 
 /** All of a product. Equal products give equal bytes. */
@@ -27,7 +27,7 @@ void WriteDiagnostics(const Diagnostics& diagnostics, ByteWriter* writer);
  tree is one. */
 [[nodiscard]] Product ReadProduct(ByteReader* reader);
 
-/** The same for diagnostics. */
+/** Reads diagnostics as ReadProduct() does a product. */
 [[nodiscard]] Diagnostics ReadDiagnostics(ByteReader* reader);
 
 /** A product on its own, behind its format's number. */

@@ -13,10 +13,10 @@ namespace hvas::product {
 /** What is found at one end of a ring, looked at in 24 sectors of the turn: in each of them the
  outermost segment of the border counts. */
 struct RingEnd {
-  int sectors{0};  ///< With a segment; the others below are counts of these.
+  int sectors{0};  ///< Sectors with a segment; the others below are counts of these.
   int convex{0}, concave{0}, tangent{0}, open{0};
-  std::vector<std::pair<FaceId, int>> neighbours;  ///< By their counts, largest first.
-  double radius{0};                                ///< At that end [m].
+  std::vector<std::pair<FaceId, int>> neighbours;  ///< Ordered by their counts, largest first.
+  double radius{0};                                ///< Radius at that end [m].
 };
 
 /** Faces of one surface of revolution about its axis: a step of a hole or shaft, a chamfer, the
@@ -31,7 +31,7 @@ struct Ring {
   double low{0}, high{0};       ///< Along axis_B from origin_B [m].
   bool is_inward{true};         ///< Its normals look towards the axis.
   double turn{0};               ///< What it covers of the turn [rad]; filled for parts of a turn.
-  std::array<RingEnd, 2> ends;  ///< At low and at high.
+  std::array<RingEnd, 2> ends;  ///< The ends at low and at high.
 
   [[nodiscard]] double at(std::size_t end) const { return end == 0 ? low : high; }
 
@@ -68,7 +68,7 @@ struct RingLink {
 struct ChainItem {
   std::uint32_t ring{0};
   std::size_t near{0};
-  std::vector<FaceId> shoulder;  ///< Between it and the item before.
+  std::vector<FaceId> shoulder;  ///< Faces between it and the item before.
 
   [[nodiscard]] std::size_t far() const { return 1 - near; }
 };

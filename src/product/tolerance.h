@@ -16,12 +16,12 @@ enum class DimensionKind { kDiameter, kRadius, kLinear, kAngular, kOther };
 /** A dimension with its limits. Lengths in metres, angles in radians. */
 struct Dimension {
   DimensionKind kind{DimensionKind::kOther};
-  std::string name;                ///< As the file calls it: "diameter", "linear distance", ...
+  std::string name;                ///< What the file calls it: "diameter", "linear distance", ...
   double nominal{0};               ///< [m], or [rad] for kAngular.
   std::optional<double> upper;     ///< Upper deviation from the nominal, signed.
   std::optional<double> lower;     ///< Lower deviation from the nominal, signed.
   std::optional<std::string> fit;  ///< ISO 286: "G6" (capitals: hole), "g6", or "H7/g6".
-  std::vector<FaceId> faces;       ///< Of the part that has the dimension; may be empty.
+  std::vector<FaceId> faces;       ///< Faces of the part that has the dimension; may be empty.
   std::string entity;              ///< Where it stands in the file: "#123".
 };
 
@@ -47,10 +47,10 @@ enum class GeometricToleranceKind {
 /** A tolerance of form, orientation, place or run-out. */
 struct GeometricTolerance {
   GeometricToleranceKind kind{GeometricToleranceKind::kOther};
-  std::string name;                 ///< As the file calls it.
+  std::string name;                 ///< What the file calls it.
   double magnitude{0};              ///< Width or diameter of the zone [m].
-  std::vector<std::string> datums;  ///< In order of precedence; "A-B" is a common datum.
-  std::vector<FaceId> faces;        ///< Of the part that has the tolerance; may be empty.
+  std::vector<std::string> datums;  ///< Datums in order of precedence; "A-B" is a common datum.
+  std::vector<FaceId> faces;        ///< Faces of the part that has the tolerance; may be empty.
   std::string entity;               ///< Where it stands in the file: "#123".
 };
 

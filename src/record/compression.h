@@ -14,8 +14,8 @@ namespace hvas::record {
 [[nodiscard]] std::vector<std::byte> Decompress(std::span<const std::byte> block,
                                                 std::size_t limit);
 
-/** Of ticks, each `tick_size` bytes: what changes little from one to the next comes together, and
- takes little room.
+/** Compresses ticks, each of `tick_size` bytes: what changes little from one to the next comes
+ together, and takes little room.
  @pre a whole number of ticks. */
 [[nodiscard]] std::vector<std::byte> CompressTicks(std::span<const std::byte> packed,
                                                    std::size_t tick_size);

@@ -41,7 +41,7 @@ class Reader {
   /** False for a session that was cut short, or goes on; what is there is still good. */
   [[nodiscard]] bool is_complete() const { return meta_.contains(kMetaDigest); }
 
-  /** Of all hands, when it was opened or refreshed. */
+  /** Ticks of all hands, when it was opened or refreshed. */
   [[nodiscard]] std::int64_t tick_count() const { return tick_count_; }
 
   /** Session time of the last tick that is there [ns]; 0 for none. */
@@ -54,7 +54,7 @@ class Reader {
   Result<void> ForEachTick(Span span, const std::function<bool(const TickRecord&)>& visit);
   Result<std::vector<TickRecord>> ReadTicks(Span span);
   Result<std::vector<Event>> ReadEvents();
-  /** In the order given. None in a record of before schema 3. */
+  /** Commands in the order given. None in a record of before schema 3. */
   Result<std::vector<Command>> ReadCommands();
 
   /** Visits frames of a span in the order recorded until the visitor returns false. */

@@ -56,14 +56,14 @@ class Recorder {
   void AddCommand(Command command);
   /** Returns false for a frame that is counted and lost, as too many wait. */
   bool AddFrame(Frame frame);
-  /** In place of what had this name. */
+  /** Takes the place of what had this name. */
   void AddAttachment(Attachment attachment);
 
   /** Writes what is left and closes the file. Nothing can be added afterwards.
    Errors: the first one that the disk gave since Create(). */
   Result<void> Finish();
 
-  /** Of all so far (threaded: that the writer thread took; all after Finish()). */
+  /** Digest of all so far (threaded: that the writer thread took; all after Finish()). */
   [[nodiscard]] std::string Digest() const;
   [[nodiscard]] std::int64_t tick_count() const;
   [[nodiscard]] std::uint64_t dropped_ticks() const;

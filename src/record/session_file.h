@@ -92,7 +92,7 @@ class SessionFile {
   Ledger ledger_;
   std::string sealed_entries_;  // Those of the last seal that has them.
   std::int64_t last_seal_{0};
-  std::int64_t moved_ns_{0};  // On the machine's clock.
+  std::int64_t moved_ns_{0};  // Time of the machine's clock.
   std::vector<std::byte> chunk_;
   std::int64_t chunk_ticks_{0};
   std::int64_t chunk_first_ns_{0};

@@ -39,8 +39,8 @@ struct TickRecord {
   std::uint32_t status{0};            ///< Bit mask of what the tick had to report; 0: all well.
   spatial::Pose X_WH;                 ///< Tracked: the hand in the world.
   spatial::Pose X_WD;                 ///< Displayed: where the held part (or the pointer) is shown.
-  spatial::Wrench F_true_W;           ///< As physics has it, about Do [N m, N].
-  spatial::Wrench F_felt_W;           ///< As sent to the hand, about Do [N m, N].
+  spatial::Wrench F_true_W;           ///< The true wrench, about Do [N m, N].
+  spatial::Wrench F_felt_W;           ///< The wrench that the hand was given, about Do [N m, N].
   std::uint32_t held{kNoOccurrence};  ///< Occurrence in the hand.
   std::uint8_t state{0};              ///< State of the held part.
   std::uint16_t contact_count{0};     ///< Contacts found; the deepest ones are kept below.
@@ -50,7 +50,7 @@ struct TickRecord {
   std::uint8_t hand{0};              ///< Whose tick; hands of a period follow one another.
   std::int64_t sample_ns{0};         ///< When the device took the sample, by its clock; 0: now.
   std::uint32_t device_buttons{0};   ///< Bit mask; the first one is bit 0.
-  std::uint8_t device_condition{0};  ///< As the device was; 0: ready.
+  std::uint8_t device_condition{0};  ///< device::Condition; 0: ready.
   std::int32_t vendor_code{0};       ///< What the device's own software said last.
   double device_grip{std::numeric_limits<double>::quiet_NaN()};  ///< 0 open .. 1 closed; NaN: none.
   std::int64_t model_age_ns{0};   ///< Since the physics loop last answered.

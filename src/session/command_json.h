@@ -19,7 +19,7 @@ inline constexpr const char* kPlaceKind = "place";
 /** How a stretch begins: each hand's options, and where all parts are. */
 struct Beginning {
   std::vector<haptics::TickOptions> hands;
-  std::vector<simulation::PartState> parts;  ///< By OccurrenceId.
+  std::vector<simulation::PartState> parts;  ///< One for each OccurrenceId.
 };
 
 [[nodiscard]] std::string MakeBeginningJson(const Beginning& beginning);

@@ -26,7 +26,7 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder);
 /** Errors: kUnsupported for a record without a product, or with one of another format. */
 [[nodiscard]] Result<product::Product> LoadProduct(record::Reader* reader);
 
-/** As LoadProduct(); none for a record of before schema 3, which has no product in it. */
+/** Does as LoadProduct(); none for a record of before schema 3, which has no product in it. */
 [[nodiscard]] Result<std::optional<product::Product>> FindProduct(record::Reader* reader);
 
 /** A record's model, compiled anew.

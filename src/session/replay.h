@@ -15,7 +15,7 @@
 namespace hvas::session {
 
 struct ReplayOptions {
-  std::optional<haptics::Condition> condition;     ///< In place of the recorded one.
+  std::optional<haptics::Condition> condition;     ///< Takes the place of the recorded one.
   std::optional<haptics::ForceMapKind> force_map;  ///< Likewise.
   std::function<void(double fraction)> progress;   ///< May be null.
 };
@@ -24,7 +24,7 @@ struct ReplayOptions {
 struct FirstDifference {
   std::int64_t t_ns{0};  ///< Session time.
   std::size_t hand{0};
-  std::string field;  ///< With its unit.
+  std::string field;  ///< Ends with its unit.
 };
 
 /** What a part's holds amounted to, as recorded and as replayed. */
@@ -32,7 +32,7 @@ struct ReplayedPart {
   struct Outcome {
     double peak_true{0};  ///< [N]
     double peak_felt{0};  ///< [N]
-    double depth{0};      ///< Of insertion, the most [m].
+    double depth{0};      ///< The deepest insertion [m].
     bool is_seated{false};
   };
 
@@ -44,13 +44,14 @@ struct ReplayedPart {
 
 struct ReplayReport {
   std::int64_t stretches{0};
-  std::int64_t ticks{0};              ///< That were run again.
-  std::int64_t different_ticks{0};    ///< Of these, in any bit of what they gave.
-  std::int64_t unreachable_ticks{0};  ///< Behind ticks that the record lacks, until a new stretch.
+  std::int64_t ticks{0};            ///< That were run again.
+  std::int64_t different_ticks{0};  ///< Those that differ in any bit of what they gave.
+  std::int64_t unreachable_ticks{
+      0};  ///< Those behind ticks that the record lacks, until a new stretch.
   std::optional<FirstDifference> first;
   double largest_felt_difference{0};  ///< [N]
-  double rms_felt_difference{0};      ///< Over all ticks run again [N].
-  double largest_way{0};              ///< Between the displayed parts [m].
+  double rms_felt_difference{0};      ///< Root mean square of all ticks run again [N].
+  double largest_way{0};              ///< Largest distance between the displayed parts [m].
   std::vector<ReplayedPart> parts;    ///< Those that were in a hand, in that order.
   std::int64_t session_ns{0};         ///< That was run again.
   std::int64_t wall_ns{0};            ///< That it took.

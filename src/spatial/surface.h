@@ -37,11 +37,11 @@ struct SurfaceDistance {
 /** Exact distance from a point to an analytic surface, in the surface's frame. RT-safe. */
 [[nodiscard]] SurfaceDistance CalcDistance(const Surface& surface, const Vec3& p) noexcept;
 
-/** The same for a cone, of whose half angle the cosine and sine are known. RT-safe. */
+/** Does so for a cone whose half angle's cosine and sine are known. RT-safe. */
 [[nodiscard]] SurfaceDistance CalcConeDistance(const Surface& cone, double cosine, double sine,
                                                const Vec3& p) noexcept;
 
-/** The same surface in another frame: A's coordinates of what is given in B. */
+/** Gives a surface in another frame: A's coordinates of what is given in B. */
 [[nodiscard]] Surface Transform(const Pose& X_AB, const Surface& surface_B);
 
 }  // namespace hvas::spatial

@@ -42,9 +42,9 @@ struct NodeRange {
 
   [[nodiscard]] int longest() const;
   [[nodiscard]] Vec3 CalcCentre(const Grid& grid) const;
-  /** From the centre to the furthest node [m]. */
+  /** The distance from the centre to the furthest node [m]. */
   [[nodiscard]] double CalcRadius(const Grid& grid) const;
-  /** In halves along every axis that has more than one node. */
+  /** Divides the block into halves along every axis that has more than one node. */
   [[nodiscard]] std::vector<NodeRange> Split() const;
 };
 

@@ -48,7 +48,7 @@ class PartField {
   };
 
   contact::Mesh mesh_;
-  contact::NearSearch search_;  // In mesh_.
+  contact::NearSearch search_;  // Searches mesh_.
   spatial::Box box_;
   double band_;
   Grid grid_;

@@ -23,8 +23,8 @@ using Path = std::vector<spatial::Pose>;
 [[nodiscard]] spatial::Pose Interpolate(const spatial::Pose& from, const spatial::Pose& to,
                                         double fraction);
 
-/** The same way in steps in which no point of a box moves further than `step` [m]; where the part
- rests, poses that differ by less than an eighth of it are left out. */
+/** Divides a way into steps in which no point of a box moves further than `step` [m]; where the
+ part rests, poses that differ by less than an eighth of it are left out. */
 [[nodiscard]] Path Resample(const Path& path, const spatial::Box& box_B, double step);
 
 /** Way of a point of B [m], with arcs as the chords between the poses. */

@@ -23,7 +23,7 @@ struct SurfaceMesh {
  @pre the values at the grid's rim are positive. */
 [[nodiscard]] SurfaceMesh ExtractSurface(const Grid& grid);
 
-/** By the divergence theorem [m^3]. */
+/** The volume, by the divergence theorem [m^3]. */
 [[nodiscard]] double CalcVolume(const SurfaceMesh& mesh);
 
 }  // namespace hvas::sweep

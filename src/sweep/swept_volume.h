@@ -19,7 +19,7 @@ struct SweepOptions {
 
 /** All the space, in W, that a part needs on its way. */
 struct SweptVolume {
-  SurfaceMesh mesh;      ///< In W; not empty.
+  SurfaceMesh mesh;      ///< Stands in W; not empty.
   double volume{0};      ///< [m^3]
   double resolution{0};  ///< That was taken [m].
   /** No point of the mesh has a signed distance to the part at its nearest pose of a larger amount

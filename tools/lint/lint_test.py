@@ -11,6 +11,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import codes  # noqa: E402
 import layers  # noqa: E402
+import openings  # noqa: E402
 import rt_symbols  # noqa: E402
 
 TABLE = """
@@ -77,6 +78,14 @@ class Layers(unittest.TestCase):
     def test_circle_in_the_table_is_caught(self):
         self.write("docs/architecture.md", TABLE.replace("| results | - |", "| results | top |"))
         self.assertRaises(ValueError, self.problems)
+
+
+class Openings(unittest.TestCase):
+    def test_comment_that_begins_in_the_middle_is_caught_with_its_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            header = pathlib.Path(folder) / "a.h"
+            header.write_text("/** The size. */\nint a;  ///< Of the file.\n/** The same again. */\nint b;  ///< Offers it.\n")
+            self.assertEqual([number for _, number, _ in openings.find_openings(pathlib.Path(folder))], [2, 3])
 
 
 class Codes(unittest.TestCase):

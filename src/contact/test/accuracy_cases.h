@@ -17,9 +17,10 @@ struct AccuracyCase {
   const char* name;
   std::function<ShapeSource(double deviation)> held, other;
   double depth;                               ///< Everywhere along the way [m].
-  int steps;                                  ///< Of a millisecond.
+  int steps;                                  ///< Steps of a millisecond.
   std::function<spatial::Pose(double)> pose;  ///< X_WH at a step; the other part is where W is.
-  double force_limit;  ///< Of the pooled force's change in a step at 1 N/mm [N]; 0: none is stated.
+  double force_limit;  ///< Limit of the pooled force's change in a step at 1 N/mm [N]; 0: none is
+                       ///< stated.
 };
 
 inline Vec3 Radial(double length, double angle) {
@@ -83,7 +84,7 @@ inline AccuracyCase CaseD() {
           0};
 }
 
-inline constexpr double kConeSlope = 0.125;   ///< Of taper and seat: tan of the half angle.
+inline constexpr double kConeSlope = 0.125;   ///< Tangent of the half angle of taper and seat.
 inline constexpr double kConeSeated = 48e-3;  ///< Height of the taper that just fits its seat.
 
 inline Quat TurnedOver() {

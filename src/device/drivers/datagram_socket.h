@@ -20,7 +20,7 @@ struct Endpoint {
   friend bool operator==(const Endpoint&, const Endpoint&) = default;
 };
 
-/** By numbers, as "127.0.0.1", or "localhost". Error: kInvalid. */
+/** Reads numbers, as "127.0.0.1", or "localhost". Error: kInvalid. */
 [[nodiscard]] Result<Endpoint> ParseEndpoint(const std::string& host, std::uint16_t port);
 
 /** A UDP socket that never waits. */

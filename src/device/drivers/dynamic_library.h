@@ -16,7 +16,7 @@ struct LibrarySearch {
   std::string title;  ///< "OpenHaptics (3D Systems)"
   /** File names, best first; one that ends in * stands for all that begin so, newest first. */
   std::vector<std::string> names;
-  std::vector<std::filesystem::path> folders;  ///< In the order in which they are searched.
+  std::vector<std::filesystem::path> folders;  ///< Ordered as they are searched.
   bool asks_loader{true};                      ///< Besides, on the loader's own path.
   std::string remedy;                          ///< How one comes by it.
   std::string version;  ///< Which one is needed, in words: "version 3.5 or later".
@@ -79,7 +79,7 @@ class SymbolBinder {
     }
   }
 
-  /** As Bind, for what a driver can do without. */
+  /** Binds what a driver can do without. */
   template <typename Function>
   void BindOptional(const char* name, Function** function) {
     *function = reinterpret_cast<Function*>(library_.Find(name));

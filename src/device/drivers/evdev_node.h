@@ -22,7 +22,7 @@ class EvdevNode {
 
   EvdevNode() = default;
 
-  /** Without waiting for it; a closed one when that fails, with errno. */
+  /** Opens it without waiting; a closed one when that fails, with errno. */
   static EvdevNode TryOpen(const std::filesystem::path& path);
 
   [[nodiscard]] bool is_open() const noexcept { return events_.is_open(); }

@@ -13,14 +13,14 @@ namespace hvas::device::haply {
 /** How a force is written: services since 3.5 read "vector", those before "values". */
 enum class Dialect : std::uint8_t { kVector, kValues };
 
-/** By the version that a service tells, as "3.5.1"; none where it tells none. */
+/** Finds the dialect by the version that a service tells, as "3.5.1"; none where it tells none. */
 [[nodiscard]] std::optional<Dialect> DialectOf(std::string_view version);
 
 /** One state of one device. What a service leaves out has its default; what is there but no number
  is not a number. */
 struct Message {
   bool is_readable{false};  ///< It was JSON.
-  std::string version;      ///< Of the service; may be empty.
+  std::string version;      ///< Version of the service; may be empty.
   bool is_emulated{false};
   bool has_device{false};
   std::string device_id;

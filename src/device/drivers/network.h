@@ -14,11 +14,12 @@ namespace hvas::device {
 
 /** What came, what did not, and how old things were: of one network device. */
 struct LinkCounts {
-  std::uint64_t states{0};         ///< Taken.
-  std::uint64_t states_lost{0};    ///< Sent in this session, but never here.
-  std::uint64_t wrenches{0};       ///< Sent in this session.
-  std::uint64_t wrenches_lost{0};  ///< Of those that the device had to have by its newest state.
-  std::int64_t round_trip_ns{0};   ///< From a wrench to the state that tells of it.
+  std::uint64_t states{0};       ///< Taken.
+  std::uint64_t states_lost{0};  ///< Sent in this session, but never here.
+  std::uint64_t wrenches{0};     ///< Sent in this session.
+  std::uint64_t wrenches_lost{
+      0};  ///< Lost ones of those that the device had to have by its newest state.
+  std::int64_t round_trip_ns{0};           ///< Time from a wrench to the state that tells of it.
   std::array<std::uint64_t, 7> refused{};  ///< Packets, by network::Refusal.
 };
 
@@ -38,7 +39,7 @@ class NetworkDevice final : public Device {
   void Write(const spatial::Wrench& F_H_D) noexcept override;
   [[nodiscard]] std::string Explain(const DeviceState& state) const override;
 
-  /** From any thread. */
+  /** Any thread may call it. */
   [[nodiscard]] LinkCounts counts() const noexcept;
 
  private:

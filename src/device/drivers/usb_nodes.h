@@ -13,7 +13,7 @@ namespace hvas::device {
 struct UsbNode {
   std::string id;              ///< "1451:0402"
   std::string name;            ///< Its own, may be empty.
-  std::filesystem::path node;  ///< In dev/bus/usb.
+  std::filesystem::path node;  ///< Node in dev/bus/usb.
   bool has_node{false};
   bool is_accessible{false};  ///< This user may read and write it.
 };

@@ -26,9 +26,10 @@ enum class VendorVerdict : std::uint8_t {
  profile; a device that is gone is opened again, off the haptic thread. */
 class VendorDevice : public Device, public Reopenable {
  public:
-  static constexpr std::int64_t kPauseNs = 100'000'000;  ///< Without force after a refusal.
-  static constexpr std::int64_t kSettleNs = 20'000'000;  ///< The same, after anything else.
-  static constexpr std::int64_t kRampNs = 200'000'000;   ///< From no force to all of it.
+  static constexpr std::int64_t kPauseNs = 100'000'000;  ///< Time without force after a refusal.
+  static constexpr std::int64_t kSettleNs =
+      20'000'000;                                       ///< Time without force after anything else.
+  static constexpr std::int64_t kRampNs = 200'000'000;  ///< Time from no force to all of it.
 
   [[nodiscard]] const DeviceInfo& info() const noexcept final { return info_; }
 
@@ -48,7 +49,7 @@ class VendorDevice : public Device, public Reopenable {
   /** A vendor's code in words, or empty. */
   [[nodiscard]] virtual std::string ExplainCode(std::int32_t code) const = 0;
 
-  /** To be called first in a destructor: from then on nobody else opens the device. */
+  /** Destructors call it first: from then on nobody else opens the device. */
   void StopReopening() { reopener_.reset(); }
 
   [[nodiscard]] std::int64_t NowNs() const noexcept { return clock_.NowNs(); }

@@ -48,10 +48,10 @@ struct HandIntent {
 
 /** What the encoders and switches of an emulated device say. */
 struct EmulatedSample {
-  std::int64_t t_ns{0};       ///< Of the sample, on the emulator's clock.
+  std::int64_t t_ns{0};       ///< Time of the sample, on the emulator's clock.
   std::uint64_t sequence{0};  ///< Grows with every new sample.
-  spatial::Pose X_DH;         ///< As quantised by the encoders.
-  spatial::Twist V_DH;        ///< From differences of that over 8 samples.
+  spatial::Pose X_DH;         ///< Pose that the encoders have quantised.
+  spatial::Twist V_DH;        ///< Twist from differences of that over 8 samples.
   std::uint32_t buttons{0};
   double grip{0};
   bool is_holding{true};
@@ -96,8 +96,8 @@ class EmulatedDevice final : public EmulatedPort {
   [[nodiscard]] Fault fault() const;
   /** Everything that is commanded takes so much longer to arrive [ns]. */
   void SetDelay(std::int64_t delay_ns);
-  /** Without a command for so long the motors go slack, as a vendor's own watchdog does [ns]; 0:
-   never. */
+  /** How long motors may be without a command until they go slack, as a vendor's own watchdog does
+   [ns]; 0: never. */
   void SetCommandTimeout(std::int64_t timeout_ns);
 
   /** Moves time on, in steps of at most 0.1 ms; there is a sample every period of the profile's
@@ -111,8 +111,8 @@ class EmulatedDevice final : public EmulatedPort {
     spatial::Twist V_DH;
     spatial::Wrench F_H_D;      ///< That the motors give.
     spatial::Wrench command;    ///< That they were given last (after the delay).
-    double work{0};             ///< Of the motors' forces on the hand since the start [J].
-    double turning_work{0};     ///< Of their torques [J].
+    double work{0};             ///< Work of the motors' forces on the hand since the start [J].
+    double turning_work{0};     ///< Work of their torques [J].
     std::uint64_t commands{0};  ///< That arrived.
   };
 

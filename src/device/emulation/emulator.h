@@ -16,7 +16,7 @@ namespace hvas::device {
 
 struct EmulatorOptions {
   DeviceProfile profile;
-  spatial::Pose X_DH;   ///< Of the handle, at first.
+  spatial::Pose X_DH;   ///< First pose of the handle.
   bool is_live{false};  ///< Runs by the machine's clock, on a thread of its own; else by Advance.
 };
 

@@ -12,7 +12,7 @@ namespace hvas::device {
 struct LibraryManners {
   bool is_licensed{true};         ///< OpenHaptics.
   bool is_calibrated{true};       ///< OpenHaptics, Force Dimension.
-  bool can_calibrate{true};       ///< By itself, when asked to.
+  bool can_calibrate{true};       ///< It calibrates itself when asked to.
   bool is_of_this_version{true};  ///< Virtuose: library and controller fit.
 };
 

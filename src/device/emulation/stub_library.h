@@ -13,10 +13,10 @@ namespace hvas::device {
 struct StubTraits {
   const char* model{""};    ///< What it calls itself; lives as long as the device.
   int system_type{0};       ///< Force Dimension's number of its type.
-  bool has_gripper{false};  ///< The same, for its gripper.
+  bool has_gripper{false};  ///< It has a gripper, and functions for it.
   bool has_active_wrist{false};
   bool is_licensed{true};         ///< OpenHaptics has a licence.
-  bool is_calibrated{true};       ///< At first.
+  bool is_calibrated{true};       ///< Whether it is calibrated at first.
   bool can_calibrate{true};       ///< When asked to.
   bool is_of_this_version{true};  ///< Library and controller fit each other.
 };

@@ -33,7 +33,7 @@ class WireServer {
 struct WireSite {
   EmulatedDevice* device;
   std::filesystem::path root;  ///< An empty folder of its own, the driver's Surroundings.root.
-  spatial::Pose X_DH;          ///< Of the handle, at first.
+  spatial::Pose X_DH;          ///< First pose of the handle.
 };
 
 /** Starts an emulator of "haply", "spacemouse", "gamepad", "network" or "plugin". In virtual time

@@ -18,7 +18,7 @@ struct LibraryCase {
   const char* name;
   const Driver& (*driver)();
   const char* profile;
-  int start_ms;  ///< Until a device that was opened, or refused force, gives force again.
+  int start_ms;  ///< Time until a device that was opened, or refused force, gives force again.
 };
 
 inline const LibraryCase kOpenHaptics{"openhaptics", OpenHapticsDriver, "touch_x", 400};

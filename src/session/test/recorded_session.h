@@ -45,7 +45,7 @@ struct Stretch {
   simulation::AssemblyRun run;
 };
 
-/** From the file alone. */
+/** Reads it from the file alone. */
 inline Result<ReplayReport> ReplayFile(const std::filesystem::path& path,
                                        const ReplayOptions& options = {}) {
   auto reader = record::Reader::Open(path);
