@@ -22,9 +22,8 @@ struct AssembleOptions {
   haptics::Condition condition{haptics::Condition::kHybrid};
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   bool is_realtime{false};
-  std::string device;  ///< Address of the device in the hand; empty: none.
-  std::string
-      second_device;  ///< Address of the other hand's device; without one there is no other hand.
+  std::string device;         ///< Address of the device in the hand; empty: none.
+  std::string second_device;  ///< Address for the other hand; empty: there is no other hand.
   simulation::RenderOptions render;
   std::filesystem::path record;    ///< Empty: no file; the digest is made all the same.
   bool is_record_replaced{false};  ///< A finished record that is there.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -49,21 +50,34 @@ std::string CommandPatterns(const std::vector<const CommandHelp*>& commands) {
   return fmt::format("{}", fmt::join(patterns, "|"));
 }
 
-/** The same of the options of all commands that `selects`. */
-template <typename Selects>
-std::string OptionPatterns(const std::vector<const CommandHelp*>& commands,
-                           const Selects& selects) {
-  std::vector<std::string> patterns;
+/** Calls `take` with "'command --option'" and the option, of each that `selects`. */
+template <typename Selects, typename Take>
+void ForEachOption(const std::vector<const CommandHelp*>& commands, const Selects& selects,
+                   const Take& take) {
   for (const CommandHelp* command : commands) {
     for (const OptionHelp& option : command->options) {
       if (!option.is_argument && selects(option)) {
         for (const std::string& name : option.names) {
-          patterns.push_back(Quoted(command->name + " " + name));
+          take(Quoted(command->name + " " + name), option);
         }
       }
     }
   }
+}
+
+/** Patterns of a case of the options of all commands that `selects`. */
+template <typename Selects>
+std::string OptionPatterns(const std::vector<const CommandHelp*>& commands,
+                           const Selects& selects) {
+  std::vector<std::string> patterns;
+  ForEachOption(commands, selects, [&](std::string pattern, const OptionHelp&) {
+    patterns.push_back(std::move(pattern));
+  });
   return fmt::format("{}", fmt::join(patterns, "|"));
+}
+
+bool HasChoices(const OptionHelp& option) {
+  return !option.choices.empty();
 }
 
 bool IsNumber(const OptionHelp& option) {
@@ -94,24 +108,6 @@ std::string Described(const std::string& word, const std::string& text) {
   return Quoted(word + ":" + Brief(text));
 }
 
-/** Every option whose values are known: "command --option", quoted, with its values. */
-std::vector<std::pair<std::string, std::string>> ListChoices(
-    const std::vector<const CommandHelp*>& commands) {
-  std::vector<std::pair<std::string, std::string>> choices;
-  for (const CommandHelp* command : commands) {
-    for (const OptionHelp& option : command->options) {
-      if (option.is_argument || option.choices.empty()) {
-        continue;
-      }
-      for (const std::string& name : option.names) {
-        choices.emplace_back(Quoted(command->name + " " + name),
-                             fmt::format("{}", fmt::join(option.choices, " ")));
-      }
-    }
-  }
-  return choices;
-}
-
 }  // namespace
 
 std::string MakeBashCompletion(const CommandHelp& root) {
@@ -129,9 +125,10 @@ std::string MakeBashCompletion(const CommandHelp& root) {
       "  COMPREPLY=()\n"
       "  case \"$command $previous\" in\n",
       CommandPatterns(commands));
-  for (const auto& [option, choices] : ListChoices(commands)) {
-    text += fmt::format("    {}) words={} ;;\n", option, Quoted(choices));
-  }
+  ForEachOption(commands, HasChoices, [&](const std::string& pattern, const OptionHelp& option) {
+    text += fmt::format("    {}) words={} ;;\n", pattern,
+                        Quoted(fmt::format("{}", fmt::join(option.choices, " "))));
+  });
   text += fmt::format(
       "    {}) compopt +o default 2>/dev/null; return ;;\n"
       "    {}) return ;;\n"
@@ -165,9 +162,10 @@ std::string MakeZshCompletion(const CommandHelp& root) {
       "  done\n"
       "  case \"$command $previous\" in\n",
       CommandPatterns(commands));
-  for (const auto& [option, choices] : ListChoices(commands)) {
-    text += fmt::format("    ({}) compadd -- {}; return ;;\n", option, choices);
-  }
+  ForEachOption(commands, HasChoices, [&](const std::string& pattern, const OptionHelp& option) {
+    text +=
+        fmt::format("    ({}) compadd -- {}; return ;;\n", pattern, fmt::join(option.choices, " "));
+  });
   text += fmt::format(
       "    ({}) _message number; return ;;\n"
       "    ({}) _files; return ;;\n"

@@ -33,7 +33,7 @@ EndWatch::~EndWatch() {
     is_over_ = true;
   }
   changed_.notify_all();
-  ::pthread_kill(thread_.native_handle(), SIGTERM);  // where no other has come
+  ::pthread_kill(thread_.native_handle(), SIGINT);  // ends the wait where no other has come
   thread_.join();
   // What has come besides was for this end, too.
   const sigset_t signals = EndSignals();

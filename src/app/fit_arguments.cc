@@ -404,44 +404,44 @@ Result<void> CheckEffects(const CLI::App& fit) {
     std::vector<const char*> one_of;
   };
 
-  static const std::vector<const char*> kBatch{"--population", "--curve"};
-  static const std::vector<Need> kNeeds{{"--hub", {"--length"}},
-                                        {"--bore", {"--length"}},
-                                        {"--material", {"--length"}},
-                                        {"--hub-material", {"--length"}},
-                                        {"--shaft-material", {"--length"}},
-                                        {"--mu", {"--length"}},
-                                        {"--mu-out", {"--length"}},
-                                        {"--oiled", {"--length"}},
-                                        {"--shrunk", {"--length"}},
-                                        {"--rz", {"--length"}},
-                                        {"--hub-rz", {"--length"}},
-                                        {"--shaft-rz", {"--length"}},
-                                        {"--smoothing", {"--length"}},
-                                        {"--chamfer-width", {"--length"}},
-                                        {"--population", {"--length"}},
-                                        {"--curve", {"--length"}},
-                                        {"--jamming", {"--length"}},
-                                        {"--start", kBatch},
-                                        {"--chamfer", {"--curve"}},
-                                        {"--room", {"--length"}},
-                                        {"--hub-temp", {"--length"}},
-                                        {"--shaft-temp", {"--length"}},
-                                        {"--hub-temp", {"--hub"}},
-                                        {"--join-speed", {"--hub-temp", "--shaft-temp"}},
-                                        {"--seed", kBatch},
-                                        {"--press-limit", kBatch},
-                                        {"--sizes-spread", kBatch},
-                                        {"--cp", kBatch},
-                                        {"--cpk", kBatch},
-                                        {"--sizes", kBatch},
-                                        {"--stations", kBatch},
-                                        {"--threads", kBatch},
-                                        {"--step", {"--curve"}},
-                                        {"--at", {"--jamming"}},
-                                        {"--load", {"--jamming"}}};
+  static const std::vector<const char*> batch{"--population", "--curve"};
+  static const std::vector<Need> needs{{"--hub", {"--length"}},
+                                       {"--bore", {"--length"}},
+                                       {"--material", {"--length"}},
+                                       {"--hub-material", {"--length"}},
+                                       {"--shaft-material", {"--length"}},
+                                       {"--mu", {"--length"}},
+                                       {"--mu-out", {"--length"}},
+                                       {"--oiled", {"--length"}},
+                                       {"--shrunk", {"--length"}},
+                                       {"--rz", {"--length"}},
+                                       {"--hub-rz", {"--length"}},
+                                       {"--shaft-rz", {"--length"}},
+                                       {"--smoothing", {"--length"}},
+                                       {"--chamfer-width", {"--length"}},
+                                       {"--population", {"--length"}},
+                                       {"--curve", {"--length"}},
+                                       {"--jamming", {"--length"}},
+                                       {"--start", batch},
+                                       {"--chamfer", {"--curve"}},
+                                       {"--room", {"--length"}},
+                                       {"--hub-temp", {"--length"}},
+                                       {"--shaft-temp", {"--length"}},
+                                       {"--hub-temp", {"--hub"}},
+                                       {"--join-speed", {"--hub-temp", "--shaft-temp"}},
+                                       {"--seed", batch},
+                                       {"--press-limit", batch},
+                                       {"--sizes-spread", batch},
+                                       {"--cp", batch},
+                                       {"--cpk", batch},
+                                       {"--sizes", batch},
+                                       {"--stations", batch},
+                                       {"--threads", batch},
+                                       {"--step", {"--curve"}},
+                                       {"--at", {"--jamming"}},
+                                       {"--load", {"--jamming"}}};
   const auto has = [&fit](const char* name) { return fit.count(name) > 0; };
-  for (const Need& need : kNeeds) {
+  for (const Need& need : needs) {
     if (has(need.option) && std::none_of(need.one_of.begin(), need.one_of.end(), has)) {
       const std::string needed = fmt::format("{}", fmt::join(need.one_of, " or "));
       return Fail(ErrorCode::kInvalid,
@@ -449,7 +449,7 @@ Result<void> CheckEffects(const CLI::App& fit) {
                   fmt::format("give {}, or leave {} out", needed, need.option));
     }
   }
-  static const std::vector<std::pair<const char*, std::vector<const char*>>> kOverruled{
+  static const std::vector<std::pair<const char*, std::vector<const char*>>> overruled{
       {"--oiled", {"--mu"}},
       {"--shrunk", {"--mu"}},
       {"--material", {"--hub-material", "--shaft-material"}},
@@ -457,7 +457,7 @@ Result<void> CheckEffects(const CLI::App& fit) {
       {"--sizes-spread", {"--sizes"}},
       {"--sizes-spread", {"--cp"}},
       {"--sizes-spread", {"--cpk"}}};
-  for (const auto& [option, others] : kOverruled) {
+  for (const auto& [option, others] : overruled) {
     if (has(option) && std::all_of(others.begin(), others.end(), has)) {
       return Fail(ErrorCode::kInvalid,
                   fmt::format("{} has no effect beside {}", option, fmt::join(others, " and ")), {},

@@ -27,10 +27,9 @@ struct FitCurve {
   FitPopulationOptions options;
   fits::Population batch;
   std::vector<Point> points;
-  std::vector<double>
-      pair_clearances;      ///< Clearances of the pair's diameters, one for each fit [m].
-  double release_ratio{1};  ///< Friction pulling out over friction pressing in.
-  double work_most{0};      ///< Work that presses in the largest interference [J].
+  std::vector<double> pair_clearances;  ///< One for each fit, by the pair's diameters [m].
+  double release_ratio{1};              ///< Friction pulling out over friction pressing in.
+  double work_most{0};                  ///< Work that presses in the largest interference [J].
 };
 
 /** @param step  Of the depth [m]; 0: a two hundredth of the way. Errors: kInvalid for a step that

@@ -17,12 +17,11 @@ namespace hvas::app {
 
 /** How a table of results is to be read. */
 struct StudyTableOptions {
-  std::filesystem::path file;  ///< "-" is the standard input.
-  std::string delimiter{","};  ///< One character, or "tab".
-  std::vector<std::string>
-      columns;           ///< Columns of a wide table that are conditions; none: all but the first.
-  std::string value;     ///< Column of values of a long table; empty: "value".
-  std::string quantity;  ///< What the values are; by the table without.
+  std::filesystem::path file;        ///< "-" is the standard input.
+  std::string delimiter{","};        ///< One character, or "tab".
+  std::vector<std::string> columns;  ///< Conditions of a wide table; empty: all other columns.
+  std::string value;                 ///< Column of values of a long table; empty: "value".
+  std::string quantity;              ///< What the values are; by the table without.
   std::string unit;
   study::TrialSummary trials{study::TrialSummary::kMean};
 };

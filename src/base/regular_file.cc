@@ -81,15 +81,19 @@ Result<RegularFile> RegularFile::Open(const std::filesystem::path& path) {
     return FailForKind(status.st_mode, path);
   }
   // What stands there may have become something else since then.
-  RegularFile file(Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)));
-  if (!file.file_.is_open() || ::fstat(file.descriptor(), &status) != 0) {
+  return Take(Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)), path);
+}
+
+Result<RegularFile> RegularFile::Take(Descriptor file, const std::filesystem::path& path) {
+  struct stat status {};
+
+  if (!file.is_open() || ::fstat(file.value(), &status) != 0) {
     return FailToOpen(errno, path);
   }
   if (!S_ISREG(status.st_mode)) {
     return FailForKind(status.st_mode, path);
   }
-  file.size_ = static_cast<std::uintmax_t>(status.st_size);
-  return file;
+  return RegularFile(std::move(file), static_cast<std::uintmax_t>(status.st_size));
 }
 
 Result<void> CheckRegularFile(const std::filesystem::path& path) {
@@ -105,7 +109,13 @@ Result<std::string> ReadFileHead(const std::filesystem::path& path, std::size_t 
 }
 
 Result<std::string> ReadRegularFile(const std::filesystem::path& path, std::size_t largest) {
-  auto text = ReadFileHead(path, largest + 1);
+  const auto file = RegularFile::Open(path);
+  return file ? ReadRegularFile(*file, path, largest) : Unexpected(file.error());
+}
+
+Result<std::string> ReadRegularFile(const RegularFile& file, const std::filesystem::path& path,
+                                    std::size_t largest) {
+  auto text = Read(file, largest + 1, path);
   if (text && text->size() > largest) {
     return Fail(ErrorCode::kUnsupported,
                 fmt::format("the file is larger than the {} bytes that it may have", largest),

@@ -20,13 +20,17 @@ class RegularFile {
    Errors: kNotFound, kUnreadable; each says which file, why not, and what to do. */
   [[nodiscard]] static Result<RegularFile> Open(const std::filesystem::path& path);
 
+  /** Takes a file that the caller has opened for reading; `path` is for the messages. Errors as
+   Open(). */
+  [[nodiscard]] static Result<RegularFile> Take(Descriptor file, const std::filesystem::path& path);
+
   [[nodiscard]] int descriptor() const { return file_.value(); }
 
   /** When it was opened [bytes]. */
   [[nodiscard]] std::uintmax_t size() const { return size_; }
 
  private:
-  explicit RegularFile(Descriptor file) : file_(std::move(file)) {}
+  RegularFile(Descriptor file, std::uintmax_t size) : file_(std::move(file)), size_(size) {}
 
   Descriptor file_;
   std::uintmax_t size_{0};
@@ -45,5 +49,10 @@ class RegularFile {
 [[nodiscard]] Result<std::string> ReadRegularFile(
     const std::filesystem::path& path,
     std::size_t largest = std::numeric_limits<std::size_t>::max() / 2);
+
+/** All bytes of one that is open; `path` is for the messages. */
+[[nodiscard]] Result<std::string> ReadRegularFile(const RegularFile& file,
+                                                  const std::filesystem::path& path,
+                                                  std::size_t largest);
 
 }  // namespace hvas

@@ -29,9 +29,8 @@ using FaceColors = NCollection_DataMap<TopoDS_Shape, product::Color, TopTools_Sh
 [[nodiscard]] std::optional<product::Color> ColorOf(const TDF_Label& label);
 
 struct PartColors {
-  std::optional<product::Color>
-      part;          ///< Colour of the definition, or of its first solid that has one.
-  FaceColors faces;  ///< Where a face, shell or solid has one of its own.
+  std::optional<product::Color> part;  ///< The definition's, or that of its first coloured solid.
+  FaceColors faces;                    ///< Where a face, shell or solid has one of its own.
 };
 
 [[nodiscard]] PartColors CollectColors(const TDF_Label& definition);

@@ -62,8 +62,7 @@ struct Mesh {
   std::vector<std::array<EdgeKind, 3>> edge_kind;
   std::vector<VertexKind> vertex_kind;
   std::vector<ShortVec3> vertex_normals;  ///< Angle-weighted pseudonormals, not unit.
-  std::vector<std::array<std::uint32_t, 2>>
-      vertex_faces;  ///< The two faces of a vertex of kOnEdge.
+  std::vector<std::array<std::uint32_t, 2>> vertex_faces;  ///< Both faces of a kOnEdge.
   std::vector<std::uint8_t> is_vertex_open;
   bool is_closed{true};
 

@@ -60,8 +60,7 @@ Result<SourcedProfile> ParseProfile(std::string_view json, const std::string& wh
 /** All profiles that HVAS brings along, by id. */
 [[nodiscard]] const std::vector<SourcedProfile>& KnownProfiles();
 
-/** Finds a profile by id, or by what a device of this driver calls itself; null where nothing is
- * known. */
+/** Finds a profile by id, or by what a device calls itself; null where nothing is known. */
 [[nodiscard]] const SourcedProfile* FindProfile(std::string_view id);
 [[nodiscard]] const SourcedProfile* FindProfileOfModel(std::string_view driver,
                                                        std::string_view model);

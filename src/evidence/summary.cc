@@ -74,7 +74,7 @@ Result<void> ReadHands(record::Reader* reader, Summary* summary) {
   };
 
   std::array<Reading, 2> readings;
-  const Result<void> done = reader->ForEachTick({}, [&](const TickRecord& tick) {
+  Result<void> done = reader->ForEachTick({}, [&](const TickRecord& tick) {
     Reading& reading = readings[tick.hand == 0 ? 0 : 1];
     HandSummary& hand = reading.hand;
     reading.first_ns = hand.ticks == 0 ? tick.t_ns : reading.first_ns;

@@ -3,13 +3,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/check.h"
 #include "fits/size_distribution.h"
 
 namespace hvas::fits {
 
 std::vector<double> CalcSizeProbabilities(int zone_um) {
-  HVAS_DEMAND(zone_um >= 0);
   if (zone_um <= 0) {
     return {1.0};
   }

@@ -11,7 +11,7 @@
  rest normalised (of a 12 um zone 0.998846 lies inside). */
 namespace hvas::fits {
 
-/** Probabilities of 0, 1, .. zone_um micrometres above the lower limit. @pre zone_um >= 0. */
+/** Probabilities of 0, 1, .. zone_um micrometres above the lower limit; one where zone_um <= 0. */
 [[nodiscard]] std::vector<double> CalcSizeProbabilities(int zone_um);
 
 /** A deviation from the nominal size [m]: the lower limit plus a whole number of micrometres. */

@@ -58,9 +58,8 @@ struct PopulationBlock {
   std::int32_t assembly_count;  ///< Room for a multiple of kLanes is everywhere.
   std::uint64_t seed;           ///< Seed of this block.
   float press_force;            ///< [N]
-  /** Each depth's scale: no force makes kForceBins or more, rounding included. 0 where none is
-   * possible.
-   */
+  /** Each depth's scale: no force makes kForceBins or more, rounding included. 0 where no force is
+   possible. */
   const float* bins_per_newton;
   // Results.
   std::uint16_t* bins;  ///< Rows of `stride`, by depth: 0 without force, else 1 to kForceBins.

@@ -13,8 +13,7 @@ namespace hvas::mates {
 /** A JSON document that knows on which line each of its elements begins. */
 struct LocatedJson {
   nlohmann::ordered_json root;
-  std::map<std::string, int>
-      lines;  ///< Lines by JSON pointer: "", "/fits", "/fits/0", "/fits/0/fit".
+  std::map<std::string, int> lines;  ///< One for each JSON pointer: "", "/fits", "/fits/0/fit".
 
   /** Line of the element, or of what holds it; the first line is 1. */
   [[nodiscard]] int LineOf(std::string pointer) const;

@@ -15,8 +15,7 @@ inline constexpr std::int64_t kSchemaVersion = 4;
 /** Bytes of a tick in a file: its fields in order, little-endian, without gaps. */
 inline constexpr std::size_t kPackedTickSize = 454;
 
-/** Bytes of a tick in files of an older schema, whose ticks end earlier. @pre 1 <= schema, and
- * known. */
+/** Bytes of a tick in files of a schema; older ticks end earlier. @pre 1 <= schema, and known. */
 [[nodiscard]] std::size_t PackedTickSize(std::int64_t schema) noexcept;
 
 void Pack(const TickRecord& tick, std::span<std::byte, kPackedTickSize> bytes) noexcept;

@@ -1,7 +1,9 @@
 #include "session/command_json.h"
 
+#include <algorithm>
 #include <array>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,12 +34,17 @@ void ReadPart(JsonFields* fields, PartState* part) {
   (*fields)("X_WB", part->X_WB);
 }
 
-/** To the last bit, the sign of a zero, too. */
+/** Whether two poses are the same to the last bit, the signs of zeros included. */
+bool HasSameBits(const Pose& a, const Pose& b) {
+  const auto is_same = [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  };
+  return std::equal(a.p().begin(), a.p().end(), b.p().begin(), is_same) &&
+         std::equal(a.q().coeffs().begin(), a.q().coeffs().end(), b.q().coeffs().begin(), is_same);
+}
+
 bool IsSame(const PartState& a, const PartState& b) {
-  return a.placement == b.placement &&
-         std::memcmp(a.X_WB.p().data(), b.X_WB.p().data(), sizeof(Vec3)) == 0 &&
-         std::memcmp(a.X_WB.q().coeffs().data(), b.X_WB.q().coeffs().data(), 4 * sizeof(double)) ==
-             0;
+  return a.placement == b.placement && HasSameBits(a.X_WB, b.X_WB);
 }
 
 Json MakeStepJson(const SequenceStep& step) {

@@ -321,7 +321,7 @@ class Simulation {
   std::vector<PartState> parts_;
   std::function<void(const GivenCommand&)> tell_of_command_;
   std::uint32_t given_commands_{0};
-  std::deque<TickCommand> waiting_commands_;  ///< For room in the ring.
+  std::deque<TickCommand> waiting_commands_;  ///< The ring has no room for them yet.
 };
 
 }  // namespace hvas::simulation

@@ -23,8 +23,7 @@ struct NormalDesign {
 /** Times as they are as a rule, skew: the same of the logarithm. */
 struct LogNormalDesign {
   std::vector<double> medians;  ///< Above zero.
-  std::vector<double>
-      log_sds;  ///< Standard deviations of the natural logarithm: 0.3 is about 30 %.
+  std::vector<double> log_sds;  ///< Spread of the natural logarithm: 0.3 is about 30 %.
   double correlation{0.5};
 };
 

@@ -26,8 +26,7 @@ struct Share {
 struct Confusion {
   std::vector<std::vector<std::int64_t>> counts;  ///< [shown][answered].
   Share accuracy;  ///< Chance: by the shares of what was shown and answered.
-  std::vector<std::optional<Share>>
-      recall;  ///< One for each that was shown; none where it never was.
+  std::vector<std::optional<Share>> recall;  ///< One for each kind; none where it was not shown.
   /** Cohen, Educational and Psychological Measurement 20, 1960: agreement beyond chance. None where
    one answer and one thing shown are all there is. */
   std::optional<double> kappa;

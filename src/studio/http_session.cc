@@ -17,13 +17,6 @@
 namespace hvas::studio {
 namespace {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
-using tcp = asio::ip::tcp;
-using beast::error_code;
-
 constexpr std::size_t kMostHeader = 8 << 10;
 constexpr std::size_t kMostBody = 4 << 10;  // of what is no upload
 constexpr double kSlowest = 128 << 10;      // that an answer may be read with [bytes/s]

@@ -3,13 +3,11 @@
 
 #include <memory>
 
-#include <boost/asio/ip/tcp.hpp>
-
 #include "studio/server_shared.h"
 
 namespace hvas::studio {
 
 /** Answers the requests of a connection, one after the other, for as long as it is open. */
-void StartHttpSession(boost::asio::ip::tcp::socket socket, std::shared_ptr<ServerShared> shared);
+void StartHttpSession(tcp::socket socket, std::shared_ptr<ServerShared> shared);
 
 }  // namespace hvas::studio

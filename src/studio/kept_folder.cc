@@ -45,22 +45,23 @@ Result<void> MakeOwnFolder(const fs::path& folder) {
 }  // namespace
 
 Result<std::string> ReadKeptFile(const fs::path& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-  if (!file.is_open()) {
+  Descriptor opened(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (!opened.is_open()) {
     return Fail(errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kInvalid,
                 "cannot be read: " + std::generic_category().message(errno), path.string(),
                 "delete the file");
   }
+  const auto file = RegularFile::Take(std::move(opened), path);
 
   struct stat status {};
 
-  if (::fstat(file.value(), &status) != 0 || !S_ISREG(status.st_mode) ||
+  if (!file || ::fstat(file->descriptor(), &status) != 0 ||
       (status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     return Fail(ErrorCode::kInvalid, "this is no file of this user's alone", path.string(),
                 fmt::format("delete it, or: chmod 600 '{}'", path.string()));
   }
   constexpr std::size_t kLargest = std::size_t{64} << 20U;
-  return ReadRegularFile(path, kLargest);
+  return ReadRegularFile(*file, path, kLargest);
 }
 
 Result<KeptFolder> KeptFolder::Take(const fs::path& parent, std::string_view subject) {

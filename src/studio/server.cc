@@ -15,10 +15,6 @@
 
 namespace hvas::studio {
 
-namespace asio = boost::asio;
-using boost::beast::error_code;
-using tcp = asio::ip::tcp;
-
 class Server::Impl {
  public:
   Impl(Workbench* workbench, std::vector<Example> examples, const ServerOptions& options)

@@ -5,13 +5,24 @@
 #include <utility>
 #include <vector>
 
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
+#include <boost/beast/core/error.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/websocket/error.hpp>
 #include <fmt/format.h>
 
 #include "studio/connection.h"
 #include "studio/server.h"
 
 namespace hvas::studio {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using beast::error_code;
+using tcp = asio::ip::tcp;
 
 /** All that the sessions share; one thread's. */
 struct ServerShared {
@@ -24,7 +35,7 @@ struct ServerShared {
   Hub hub;
   ServerOptions options;
   std::unique_ptr<Access> access;
-  std::unique_ptr<boost::asio::ssl::context> tls;  ///< Null: nothing is encrypted.
+  std::unique_ptr<asio::ssl::context> tls;  ///< Null: nothing is encrypted.
   std::shared_ptr<Guests> guests{std::make_shared<Guests>()};
 
   /** After a change of who may come in. What cannot be written is told of once. */

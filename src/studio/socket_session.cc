@@ -12,12 +12,6 @@
 namespace hvas::studio {
 namespace {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
-using beast::error_code;
-
 constexpr std::size_t kMostMessage = 64 << 10;  // to the server
 constexpr std::size_t kMostQueued = 16 << 20;   // of text to a client that does not read
 

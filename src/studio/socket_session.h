@@ -13,6 +13,6 @@ namespace hvas::studio {
 /** Makes a client of a connection whose request asks for a WebSocket; it lives as long as the
  connection does. */
 void StartSocketSession(Connection connection, std::shared_ptr<ServerShared> shared, Role role,
-                        const boost::beast::http::request<boost::beast::http::empty_body>& request);
+                        const http::request<http::empty_body>& request);
 
 }  // namespace hvas::studio

@@ -42,6 +42,7 @@ Pose Along(const Screw& screw, double fraction) {
 
 std::vector<Vec3> CornersOf(const Box& box) {
   std::vector<Vec3> corners;
+  corners.reserve(8);
   for (int i = 0; i < 8; ++i) {
     corners.emplace_back((i & 1) != 0 ? box.high.x() : box.low.x(),
                          (i & 2) != 0 ? box.high.y() : box.low.y(),

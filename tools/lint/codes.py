@@ -7,11 +7,11 @@ within the numbers that docs/references.md gives for that paper; a standard (ISO
 when there is one.
 """
 
-import argparse
-import pathlib
 import re
 import subprocess
 import sys
+
+from checkout import parse_root, report
 
 CODE = re.compile(r"(?<![\w-])([XWN])([1-9]\d?)(?![\w(-])")
 EQUATION = re.compile(r"\b([XW])\((\d{1,2})\)")
@@ -60,25 +60,22 @@ def find_strays(path, rows, spans, references):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
-    root = parser.parse_args().root
+    root = parse_root(__doc__)
     rows, spans = read_rows(root / "docs/requirements.md"), read_spans(root / "docs/references.md")
     references = (root / "docs/references.md").read_text()
     if not rows or not spans:
-        sys.exit("codes: docs/requirements.md or docs/references.md has no table")
+        return report(["docs/requirements.md or docs/references.md has no table"], "")
     globs = ["src/*.h", "src/*.cc", "products/*.h", "products/*.cc", "bench/*.cc", "docs/*.md", "README.md"]
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *globs]
-    names = subprocess.run(command, check=True, capture_output=True, text=True, cwd=root).stdout.split("\n")
-    count = 0
-    for name in filter(None, names):
-        if (root / name).is_file() and name != "docs/references.md":
-            for number, what in find_strays(root / name, rows, spans, references):
-                print(f"{name}:{number}: {what}")
-                count += 1
-    print(f"codes: {len(rows)} requirements, {sum(map(len, spans.values()))} equations, {count} strays")
-    sys.exit(1 if count else 0)
+    names = subprocess.run(command, check=True, capture_output=True, text=True, cwd=root).stdout.splitlines()
+    problems = [
+        f"{name}:{line}: {what}"
+        for name in names
+        if (root / name).is_file() and name != "docs/references.md"
+        for line, what in find_strays(root / name, rows, spans, references)
+    ]
+    return report(problems, f"codes: {len(rows)} requirements, {sum(map(len, spans.values()))} equations, no stray")
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

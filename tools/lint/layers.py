@@ -6,10 +6,10 @@ know, and of libraries from outside those of its row and of the rooms it knows. 
 may do what the room may. Prints each line that offends; exit status 1 when there is one.
 """
 
-import argparse
-import pathlib
 import re
 import sys
+
+from checkout import parse_root, report
 
 # Names that the table gives to families of headers and link targets.
 OUTSIDE = {
@@ -129,20 +129,13 @@ def check_links(root, rooms, reach, libraries):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
-    root = parser.parse_args().root
+    root = parse_root(__doc__)
     rooms, outside = read_table(root / "docs" / "architecture.md")
     if not rooms:
-        print("docs/architecture.md has no table of rooms", file=sys.stderr)
-        return 1
+        return report(["docs/architecture.md has no table of rooms"], "")
     reach, libraries = close(rooms, outside)
     problems = [*check_sources(root, rooms, reach, libraries), *check_links(root, rooms, reach, libraries)]
-    for problem in problems:
-        print(problem, file=sys.stderr)
-    if not problems:
-        print(f"layers: {len(rooms)} rooms include and link only what they may")
-    return 1 if problems else 0
+    return report(problems, f"layers: {len(rooms)} rooms include and link only what they may")
 
 
 if __name__ == "__main__":

@@ -54,7 +54,7 @@ TEST(SessionRecorderTest, TimesOfASecondStretchGoOn) {
   const hvas::testing::TemporaryFolder folder;
   const auto file = folder / "session";
   const auto recorder = MakeRecorder(file);
-  const auto model = PegInBlockModel();
+  const auto& model = PegInBlockModel();
   SessionRecorder sink(recorder.get(), *model);
   for (int i = 0; i < 2; ++i) {
     simulation::Simulation simulation(model, haptics::TickOptions());
