@@ -25,9 +25,9 @@
 
 #include "base/test/temporary_folder.h"
 #include "base/units.h"
+#include "cad/brep/part_shape.h"
 #include "cad/import.h"
-#include "cad/part_shape.h"
-#include "cad/read_cad.h"
+#include "cad/process/read_cad.h"
 
 namespace {
 

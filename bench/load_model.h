@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "app/load_product.h"
+#include "app/product/load_product.h"
 #include "simulation/model.h"
 
 namespace hvas::bench {

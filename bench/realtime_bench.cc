@@ -17,7 +17,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "app/latency_json.h"
+#include "app/devices/latency_json.h"
 #include "base/clock.h"
 #include "load_model.h"
 #include "simulation/assembly_run.h"

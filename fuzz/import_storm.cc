@@ -35,7 +35,7 @@
 #include "base/test/temporary_folder.h"
 #include "base/work_watch.h"
 #include "cad/import.h"
-#include "cad/read_cad.h"
+#include "cad/process/read_cad.h"
 #include "fuzz/mutate.h"
 #include "mates/infer.h"
 

@@ -1,10 +1,10 @@
 // The model in a 3MF file, and the ZIP archive around it.
-#include "cad/model_3mf.h"
+#include "cad/scene/model_3mf.h"
 
 #include <limits>
 #include <span>
 
-#include "cad/zip_entry.h"
+#include "cad/scene/zip_entry.h"
 #include "fuzz/target.h"
 
 namespace hvas::fuzz {

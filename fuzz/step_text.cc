@@ -1,13 +1,13 @@
 // STEP text: our reader of its entities, measures and tolerances.
-#include "cad/step_text.h"
+#include "cad/step/step_text.h"
 
 #include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "cad/step_measure.h"
-#include "cad/tolerances.h"
+#include "cad/step/step_measure.h"
+#include "cad/step/tolerances.h"
 #include "fuzz/target.h"
 
 namespace hvas::fuzz {

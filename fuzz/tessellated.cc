@@ -1,9 +1,9 @@
 // STEP text with triangles instead of surfaces.
-#include "cad/tessellated.h"
+#include "cad/triangles/tessellated.h"
 
 #include <string>
 
-#include "cad/read_cad.h"
+#include "cad/process/read_cad.h"
 #include "fuzz/target.h"
 
 namespace hvas::fuzz {

@@ -8,7 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "base/file_cache.h"
-#include "cad/part_shape.h"
+#include "cad/brep/part_shape.h"
 #include "contact/shape_cache.h"
 #include "gear_pump_parts.h"
 

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/terminal.h"
-#include "app/text_layout.h"
+#include "app/output/terminal.h"
+#include "app/output/text_layout.h"
 
 namespace hvas::app {
 namespace {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/choice.h"
+#include "app/output/choice.h"
 
 namespace hvas::app {
 namespace {

@@ -11,9 +11,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "app/report_failure.h"
-#include "app/text_layout.h"
-#include "app/text_table.h"
+#include "app/output/report_failure.h"
+#include "app/output/text_layout.h"
+#include "app/output/text_table.h"
 #include "mates/side_file.h"
 
 asm(".pushsection .rodata\n"

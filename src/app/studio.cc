@@ -20,10 +20,10 @@
 #include <fmt/format.h>
 
 #include "app/end_watch.h"
-#include "app/load_product.h"
-#include "app/report_failure.h"
+#include "app/output/report_failure.h"
+#include "app/product/load_product.h"
 #include "app/shipped_files.h"
-#include "app/study_protocol.h"
+#include "app/study/study_protocol.h"
 #include "base/scratch_folder.h"
 #include "base/user_folder.h"
 #include "cad/input_file.h"

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/load_product.h"
+#include "app/product/load_product.h"
 #include "app/test/run_hvas.h"
 #include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"

@@ -15,8 +15,8 @@
 #include "app/command_tree.h"
 #include "app/completion.h"
 #include "app/manual.h"
+#include "app/output/text_layout.h"
 #include "app/test/run_hvas.h"
-#include "app/text_layout.h"
 #include "base/test/temporary_folder.h"
 
 namespace hvas::app {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/devices_report.h"
+#include "app/devices/devices_report.h"
 #include "app/test/json_schema.h"
 #include "app/test/run_hvas.h"
 #include "base/test/temporary_folder.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/doctor_checks.h"
+#include "app/devices/doctor_checks.h"
 #include "app/test/json_schema.h"
 #include "app/test/run_hvas.h"
 #include "base/test/temporary_folder.h"

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "app/output/text_layout.h"
 #include "app/test/run_hvas.h"
-#include "app/text_layout.h"
 
 namespace hvas::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/text_table.h"
+#include "app/output/text_table.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/text_layout.h"
+#include "app/output/text_layout.h"
 #include "base/random.h"
 
 namespace hvas::app {

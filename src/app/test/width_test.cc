@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "app/output/text_layout.h"
 #include "app/test/run_hvas.h"
-#include "app/text_layout.h"
 #include "base/test/temporary_folder.h"
 
 namespace hvas::app {

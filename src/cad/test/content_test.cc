@@ -29,12 +29,12 @@
 
 #include "base/parallel.h"
 #include "base/test/temporary_folder.h"
-#include "cad/assembly_tree.h"
-#include "cad/equal_shapes.h"
-#include "cad/read_cad.h"
-#include "cad/solid_measure.h"
+#include "cad/brep/assembly_tree.h"
+#include "cad/brep/equal_shapes.h"
+#include "cad/brep/solid_measure.h"
+#include "cad/process/read_cad.h"
+#include "cad/step/text_encoding.h"
 #include "cad/test/step_fixture.h"
-#include "cad/text_encoding.h"
 
 namespace hvas::cad {
 namespace {

@@ -30,7 +30,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "cad/part_shape.h"
+#include "cad/brep/part_shape.h"
 #include "product/features.h"
 
 namespace hvas::cad {

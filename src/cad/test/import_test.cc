@@ -17,8 +17,8 @@
 #include <gtest/gtest.h>
 
 #include "base/test/temporary_folder.h"
-#include "cad/assembly_tree.h"
-#include "cad/read_cad.h"
+#include "cad/brep/assembly_tree.h"
+#include "cad/process/read_cad.h"
 #include "cad/test/step_fixture.h"
 
 namespace hvas::cad {

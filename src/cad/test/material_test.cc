@@ -1,4 +1,4 @@
-#include "cad/material.h"
+#include "cad/step/material.h"
 
 #include <gtest/gtest.h>
 

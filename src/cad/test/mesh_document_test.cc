@@ -1,4 +1,4 @@
-#include "cad/mesh_document.h"
+#include "cad/scene/mesh_document.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@
 
 #include "base/test/temporary_folder.h"
 #include "base/units.h"
-#include "cad/model_3mf.h"
+#include "cad/scene/model_3mf.h"
 #include "cad/test/mesh_fixture.h"
 #include "cad/test/step_fixture.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "cad/welded_mesh.h"
+#include "cad/triangles/welded_mesh.h"
 
 class TopoDS_Shape;
 

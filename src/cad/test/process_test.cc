@@ -19,7 +19,7 @@
 #include "base/test/temporary_folder.h"
 #include "cad/import.h"
 #include "cad/import_cache.h"
-#include "cad/read_cad.h"
+#include "cad/process/read_cad.h"
 #include "cad/test/step_fixture.h"
 #include "cad/worker.h"
 #include "product/product_io.h"

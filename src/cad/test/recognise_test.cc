@@ -1,4 +1,4 @@
-#include "cad/recognise.h"
+#include "cad/triangles/recognise.h"
 
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "cad/segment.h"
+#include "cad/triangles/segment.h"
 
 #include <algorithm>
 #include <array>
@@ -24,10 +24,10 @@
 
 #include "base/test/temporary_folder.h"
 #include "base/units.h"
-#include "cad/read_cad.h"
+#include "cad/process/read_cad.h"
 #include "cad/test/mesh_fixture.h"
 #include "cad/test/step_fixture.h"
-#include "cad/triangle_part.h"
+#include "cad/triangles/triangle_part.h"
 
 namespace hvas::cad {
 namespace {

@@ -1,4 +1,4 @@
-#include "cad/tessellated.h"
+#include "cad/triangles/tessellated.h"
 
 #include <algorithm>
 #include <cmath>

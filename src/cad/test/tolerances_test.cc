@@ -1,4 +1,4 @@
-#include "cad/tolerances.h"
+#include "cad/step/tolerances.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 
 #include "base/random.h"
 #include "base/test/temporary_folder.h"
-#include "cad/read_cad.h"
-#include "cad/step_text.h"
+#include "cad/process/read_cad.h"
+#include "cad/step/step_text.h"
 #include "cad/test/step_fixture.h"
 
 namespace hvas::cad {

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/product/load_product.h"
+#include "haptics/options.h"
+#include "simulation/device_session.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hvas::app {
+
+struct AssembleOptions {
+  LoadOptions load;
+  std::vector<std::string> order;  ///< Parts to begin with, by name, path or id.
+  std::uint64_t seed{1};
+  haptics::Condition condition{haptics::Condition::kHybrid};
+  haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
+  bool is_realtime{false};
+  std::string device;         ///< Address of the device in the hand; empty: none.
+  std::string second_device;  ///< Address for the other hand; empty: there is no other hand.
+  simulation::RenderOptions render;
+  std::filesystem::path record;    ///< Empty: no file; the digest is made all the same.
+  bool is_record_replaced{false};  ///< A finished record that is there.
+  double limit_s{0};               ///< Session time after which to stop; 0: none.
+  bool is_json{false};
+};
+
+/** Lays the parts of a product out on a table and lets a simulated person, or two, or whoever has
+ the devices, assemble them one by one.
+ Prints a table, or one JSON document, on stdout.
+ @returns The exit status: 0 when every part is in its place, 1 on an error, 2 when one is not. */
+[[nodiscard]] int RunAssemble(const AssembleOptions& options);
+
+/** Adds `hvas assemble` to the command line; `status` receives what RunAssemble returns. */
+void AddAssemble(CLI::App* app, int* status);
+
+}  // namespace hvas::app

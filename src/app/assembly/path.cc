@@ -1,0 +1,296 @@
+#include "app/assembly/path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/output/json_flag.h"
+#include "app/output/progress.h"
+#include "app/output/report_failure.h"
+#include "app/product/load_product.h"
+#include "app/recording/recorded_path.h"
+#include "base/atomic_file.h"
+#include "base/units.h"
+#include "mates/assignments.h"
+#include "simulation/shapes.h"
+#include "studio/paths.h"
+#include "sweep/stl.h"
+#include "sweep/swept_volume.h"
+
+namespace hvas::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using product::Occurrence;
+using product::Product;
+
+struct PathOptions {
+  LoadOptions load;
+  std::string part;
+  std::filesystem::path record;
+  std::size_t hold{0};
+  std::vector<double> translate_mm;
+  std::vector<double> rotate;  ///< An axis, and an angle [deg].
+  std::vector<double> about_mm;
+  bool is_swept{false};
+  double resolution_mm{0};
+  std::filesystem::path output;
+  bool is_forced{false};
+  bool is_json{false};
+};
+
+Vec3 VectorOf(const std::vector<double>& numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+/** What can be known to fail before the work. */
+Result<void> Check(const PathOptions& options) {
+  const std::string format = options.output.extension().string();
+  const bool is_mesh = format == ".stl" || format == ".glb";
+  const bool is_table = format == ".csv" || format == ".json";
+  if (options.is_swept ? !is_mesh : !is_table) {
+    return Fail(ErrorCode::kInvalid,
+                options.is_swept ? "a swept volume is written as .stl or .glb"
+                                 : "a path is written as .csv or .json",
+                options.output.string(),
+                options.is_swept ? "give the file one of these endings"
+                                 : "give the file one of these endings, or ask for --swept");
+  }
+  std::error_code error;
+  if (!options.is_forced &&
+      std::filesystem::exists(std::filesystem::symlink_status(options.output, error))) {
+    return Fail(ErrorCode::kInvalid, "the file is there already", options.output.string(),
+                "choose another name, or replace it with --force");
+  }
+  if (!options.rotate.empty() && !(VectorOf(options.rotate).norm() > 0)) {
+    return Fail(ErrorCode::kInvalid, "the axis has no direction", "--rotate",
+                "give it as in --rotate 0,0,1,90");
+  }
+  return {};
+}
+
+Result<TimedPath> FindPath(const PathOptions& options, const Product& product,
+                           const Occurrence& occurrence) {
+  if (!options.record.empty()) {
+    return ReadRecordedPath(options.record, product, occurrence.id, options.hold);
+  }
+  const spatial::Pose& X_WB = occurrence.X_WB;
+  if (!options.translate_mm.empty()) {
+    return TimedPath{
+        sweep::MakeTranslation(X_WB, units::FromMm(1) * VectorOf(options.translate_mm)), {}};
+  }
+  const Vec3 p_WQ = options.about_mm.empty() ? X_WB * product.part_of(occurrence.id).mass.p_BoBcm_B
+                                             : Vec3(units::FromMm(1) * VectorOf(options.about_mm));
+  return TimedPath{sweep::MakeRotation(X_WB, p_WQ, VectorOf(options.rotate).normalized(),
+                                       units::FromDeg(options.rotate[3])),
+                   {}};
+}
+
+/** A path that was not recorded has few poses: it is shown in steps. */
+void FillIn(const product::Part& part, TimedPath* path) {
+  constexpr double kSteps = 100;
+  if (path->t_ns.empty()) {
+    const double length = sweep::CalcLength(path->X_WB, part.mass.p_BoBcm_B);
+    const double step = std::max(length, part.box_B.size().norm()) / kSteps;
+    path->X_WB = sweep::Resample(path->X_WB, part.box_B, step);
+  }
+}
+
+std::string MakeCsv(const TimedPath& path, const Vec3& p_BoBcm_B) {
+  std::string csv = "t_s,centre_x_m,centre_y_m,centre_z_m,x_m,y_m,z_m,q_w,q_x,q_y,q_z\n";
+  for (std::size_t i = 0; i < path.X_WB.size(); ++i) {
+    const spatial::Pose& X_WB = path.X_WB[i];
+    const Vec3 centre = X_WB * p_BoBcm_B;
+    const std::string time =
+        path.t_ns.empty() ? "" : fmt::format("{:.3f}", 1e-9 * static_cast<double>(path.t_ns[i]));
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", time, centre.x(), centre.y(),
+                       centre.z(), X_WB.p().x(), X_WB.p().y(), X_WB.p().z(), X_WB.q().w(),
+                       X_WB.q().x(), X_WB.q().y(), X_WB.q().z());
+  }
+  return csv;
+}
+
+Json MakeJson(const TimedPath& path, const Occurrence& occurrence, const Vec3& p_BoBcm_B) {
+  Json json{{"occurrence", occurrence.path},
+            {"times_s", Json::array()},
+            {"points_m", Json::array()},
+            {"poses", Json::array()}};
+  for (const std::int64_t t_ns : path.t_ns) {
+    json["times_s"].push_back(1e-9 * static_cast<double>(t_ns));
+  }
+  for (const spatial::Pose& X_WB : path.X_WB) {
+    const Vec3 centre = X_WB * p_BoBcm_B;
+    const Vec3& p = X_WB.p();
+    const Quat& q = X_WB.q();
+    json["points_m"].push_back({centre.x(), centre.y(), centre.z()});
+    json["poses"].push_back({{"p", {p.x(), p.y(), p.z()}}, {"q", {q.w(), q.x(), q.y(), q.z()}}});
+  }
+  return json;
+}
+
+Result<sweep::SweptVolume> SweepPart(const PathOptions& options, const Product& product,
+                                     const Occurrence& occurrence, const sweep::Path& path) {
+  sweep::SweepOptions sweeping;
+  sweeping.resolution = units::FromMm(options.resolution_mm);
+  if (!options.load.is_quiet && IsWatched()) {
+    sweeping.progress = [](double fraction) { ShowProgress("sweep", fraction); };
+  }
+  auto swept =
+      sweep::Sweep(simulation::MakeShapeSource(product.part_of(occurrence.id)), path, sweeping);
+  if (swept) {
+    return swept;
+  }
+  Error error = swept.error();
+  error.where = occurrence.path;
+  return Unexpected(std::move(error));
+}
+
+Result<void> WriteSwept(const PathOptions& options, const Occurrence& occurrence,
+                        const sweep::SweptVolume& swept) {
+  if (options.output.extension() == ".stl") {
+    return WriteAtomically(options.output, sweep::MakeStl(swept.mesh));
+  }
+  const auto glb = studio::MakeGlb(swept.mesh, occurrence.name);
+  return glb ? WriteAtomically(options.output, *glb) : Unexpected(glb.error());
+}
+
+Json DescribeSwept(const sweep::SweptVolume& swept) {
+  spatial::Box box_W;
+  for (const Vec3& vertex : swept.mesh.vertices) {
+    box_W.Add(vertex);
+  }
+  const auto corner_mm = [](const Vec3& p) {
+    return Json{units::ToMm(p.x()), units::ToMm(p.y()), units::ToMm(p.z())};
+  };
+  return {
+      {"volume_mm3", units::ToMm3(swept.volume)}, {"resolution_mm", units::ToMm(swept.resolution)},
+      {"error_mm", units::ToMm(swept.error)},     {"triangles", swept.mesh.triangles.size()},
+      {"low_mm", corner_mm(box_W.low)},           {"high_mm", corner_mm(box_W.high)}};
+}
+
+void Print(const Json& summary) {
+  fmt::print("{}: {} poses, {:.1f} mm\n", summary["occurrence"].get<std::string>(),
+             summary["poses"].get<std::size_t>(), summary["length_mm"].get<double>());
+  if (summary.contains("volume_mm3")) {
+    fmt::print("swept volume {:.1f} mm^3, surface within {:.3f} mm, {} triangles\n",
+               summary["volume_mm3"].get<double>(), summary["error_mm"].get<double>(),
+               summary["triangles"].get<std::size_t>());
+  }
+}
+
+Result<void> WritePath(const PathOptions& options) {
+  if (const auto checked = Check(options); !checked) {
+    return checked;
+  }
+  Diagnostics diagnostics;
+  const Result<Product> product = LoadProduct(options.load, &diagnostics);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  const auto id = mates::FindOccurrence(*product, options.part);
+  if (!id) {
+    return Unexpected(id.error());
+  }
+  const Occurrence& occurrence = product->occurrences[id->index()];
+  const product::Part& part = product->part_of(*id);
+  auto path = FindPath(options, *product, occurrence);
+  if (!path) {
+    return Unexpected(path.error());
+  }
+  FillIn(part, &*path);
+  Json summary{{"occurrence", occurrence.path},
+               {"poses", path->X_WB.size()},
+               {"length_mm", units::ToMm(sweep::CalcLength(path->X_WB, part.mass.p_BoBcm_B))},
+               {"output", options.output.string()}};
+  Result<void> written;
+  if (options.is_swept) {
+    const auto swept = SweepPart(options, *product, occurrence, path->X_WB);
+    if (!swept) {
+      return Unexpected(swept.error());
+    }
+    summary.update(DescribeSwept(*swept));
+    written = WriteSwept(options, occurrence, *swept);
+  } else {
+    written = WriteAtomically(options.output,
+                              options.output.extension() == ".csv"
+                                  ? MakeCsv(*path, part.mass.p_BoBcm_B)
+                                  : MakeJson(*path, occurrence, part.mass.p_BoBcm_B).dump() + "\n");
+  }
+  if (written && options.is_json) {
+    fmt::print("{}\n", summary.dump(2));
+  } else if (written) {
+    Print(summary);
+  }
+  return written;
+}
+
+}  // namespace
+
+void AddPath(CLI::App* app, int* status) {
+  CLI::App* command = app->add_subcommand(
+      "path", "Write the way of a part, as poses or as the volume that it sweeps");
+  const auto options = std::make_shared<PathOptions>();
+  command->add_option("file", options->load.file, "CAD file")->required();
+  command->add_option("--part", options->part, "Name, path or end of path of an occurrence")
+      ->required();
+  auto* way = command->add_option_group("way", "The way that it goes");
+  CLI::Option* record =
+      way->add_option("--record", options->record, "As a hand moved it: a record of hvas assemble");
+  constexpr int kVector = 3;
+  way->add_option("--translate", options->translate_mm, "Straight on from its place: X,Y,Z [mm]")
+      ->delimiter(',')
+      ->expected(kVector);
+  CLI::Option* rotate = way->add_option("--rotate", options->rotate,
+                                        "About an axis: X,Y,Z of its direction, angle [deg]")
+                            ->delimiter(',')
+                            ->expected(kVector + 1);
+  way->require_option(1);
+  command->add_option("--hold", options->hold, "Which time that it was held, from 1; the last one")
+      ->check(CLI::PositiveNumber)
+      ->needs(record);
+  command
+      ->add_option("--about", options->about_mm,
+                   "A point of the axis: X,Y,Z [mm]; the part's centre of mass")
+      ->delimiter(',')
+      ->expected(kVector)
+      ->needs(rotate);
+  CLI::Option* swept =
+      command->add_flag("--swept", options->is_swept, "The space that it needs, as a closed mesh");
+  command
+      ->add_option("--resolution-mm", options->resolution_mm,
+                   "Edge of a cell of the swept volume; a hundredth of its extent")
+      ->check(CLI::PositiveNumber)
+      ->needs(swept);
+  command->add_option("-o,--output", options->output, "File to write")->required();
+  command->add_flag("--force", options->is_forced, "Replace a file that is there");
+  AddJsonFlag(command, &options->is_json, "path");
+  AddLoadOptions(command, &options->load);
+  command->footer(
+      "  .csv   a pose a line: time, centre of mass, origin and rotation of the part [s, m]\n"
+      "  .json  the same: times_s, points_m, poses\n"
+      "  .stl   with --swept: millimetres    .glb   with --swept: metres, Y up\n"
+      "Poses are those of the part in the product's frame. No point of the mesh is further from\n"
+      "the surface than is printed; docs/algorithms/sweep.md says how.\n"
+      "Examples:\n"
+      "  hvas assemble pump.step --record run.hvasrec\n"
+      "  hvas path pump.step --part 'bushing 1' --record run.hvasrec -o way.csv\n"
+      "  hvas path pump.step --part 'bushing 1' --record run.hvasrec --swept -o way.stl\n"
+      "  hvas path pump.step --part cover --translate 0,0,80 --swept --resolution-mm 0.5 -o "
+      "up.glb\n"
+      "  hvas path pump.step --part lever --rotate 0,0,1,90 --about 10,0,0 --swept -o turn.stl");
+  command->callback([options, status] {
+    const Result<void> done = WritePath(*options);
+    *status = done ? 0 : ReportFailure(done.error());
+  });
+}
+
+}  // namespace hvas::app

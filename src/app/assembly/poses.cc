@@ -1,0 +1,224 @@
+#include "app/assembly/poses.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/units.h"
+#include "mates/assignments.h"
+#include "mates/located_json.h"
+#include "record/reader.h"
+
+namespace hvas::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using product::OccurrenceId;
+using product::Product;
+using spatial::Pose;
+
+constexpr const char* kFormat = "hvas-poses-1";
+constexpr const char* kRemedy = "see data/schemas/poses.schema.json";
+constexpr double kFarthest = 1e4;        // [m]
+constexpr double kNormTolerance = 1e-6;  // Of a quaternion that people wrote.
+
+using Poses = std::map<OccurrenceId, Pose>;
+
+/** N numbers within limits; nothing where there is something else. */
+template <std::size_t N>
+std::optional<std::array<double, N>> ReadNumbers(const Json& json, double most) {
+  if (!json.is_array() || json.size() != N) {
+    return std::nullopt;
+  }
+  std::array<double, N> numbers{};
+  for (std::size_t i = 0; i < N; ++i) {
+    if (!json[i].is_number() || !(std::abs(json[i].get<double>()) <= most)) {
+      return std::nullopt;
+    }
+    numbers[i] = json[i].get<double>();
+  }
+  return numbers;
+}
+
+std::optional<Vec3> ReadPosition(const Json& json, double unit) {
+  const auto p = ReadNumbers<3>(json, kFarthest / unit);
+  return p ? std::optional<Vec3>(unit * Vec3((*p)[0], (*p)[1], (*p)[2])) : std::nullopt;
+}
+
+std::optional<Quat> ReadRotation(const Json& json) {
+  const auto q = ReadNumbers<4>(json, 1 + kNormTolerance);
+  if (!q) {
+    return std::nullopt;
+  }
+  const Quat rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
+  return std::abs(rotation.norm() - 1) <= kNormTolerance ? std::optional(rotation.normalized())
+                                                         : std::nullopt;
+}
+
+/** By name, path, end of path, or number as in "o12". */
+Result<OccurrenceId> Find(const Product& product, const std::string& name) {
+  std::uint32_t number = 0;
+  const char* end = name.data() + name.size();
+  if (name.size() > 1 && name.front() == 'o' &&
+      std::from_chars(name.data() + 1, end, number).ptr == end &&
+      number < product.occurrences.size()) {
+    return OccurrenceId(number);
+  }
+  return mates::FindOccurrence(product, name);
+}
+
+/** One entry of a pose file. @returns what is wrong with it and with which key, if anything. */
+std::optional<std::pair<std::string, std::string>> ReadEntry(const Json& entry,
+                                                             const Product& product, Poses* poses) {
+  using Wrong = std::pair<std::string, std::string>;
+  if (!entry.is_object() || !entry.contains("occurrence") || !entry["occurrence"].is_string()) {
+    return Wrong("", "an entry needs \"occurrence\", a text");
+  }
+  for (const auto& [key, value] : entry.items()) {
+    if (key != "occurrence" && key != "position_mm" && key != "rotation_wxyz" && key != "note") {
+      return Wrong("/" + key, fmt::format("\"{}\" is no key of an entry", key));
+    }
+  }
+  const auto id = Find(product, entry["occurrence"].get<std::string>());
+  if (!id) {
+    return Wrong("/occurrence", id.error().message);
+  }
+  const Pose& drawn = product.occurrences[id->index()].X_WB;
+  std::optional<Vec3> p = drawn.p();
+  std::optional<Quat> q = drawn.q();
+  if (entry.contains("position_mm") &&
+      !(p = ReadPosition(entry["position_mm"], units::kMetresPerMillimetre))) {
+    return Wrong("/position_mm", "\"position_mm\" is three numbers up to 1e7");
+  }
+  if (entry.contains("rotation_wxyz") && !(q = ReadRotation(entry["rotation_wxyz"]))) {
+    return Wrong("/rotation_wxyz", "\"rotation_wxyz\" is a quaternion of length 1");
+  }
+  if (!poses->emplace(*id, Pose(*q, *p)).second) {
+    return Wrong("/occurrence",
+                 fmt::format("\"{}\" stands here twice", product.occurrences[id->index()].path));
+  }
+  return std::nullopt;
+}
+
+Result<Poses> ReadPoseFile(std::string_view text, const std::string& name, const Product& product) {
+  const auto document = mates::ParseLocatedJson(text, name);
+  if (!document) {
+    return Unexpected(document.error());
+  }
+  const auto fail = [&](const std::string& pointer, const std::string& message) {
+    return Fail(ErrorCode::kInvalid, message, fmt::format("{}:{}", name, document->LineOf(pointer)),
+                kRemedy);
+  };
+  const Json& root = document->root;
+  if (!root.is_object() || !root.contains("format") || root["format"] != kFormat) {
+    return fail("/format", fmt::format("this is no pose file: \"format\" is not \"{}\"", kFormat));
+  }
+  if (!root.contains("poses") || !root["poses"].is_array()) {
+    return fail("/poses", "\"poses\" is a list");
+  }
+  Poses poses;
+  for (std::size_t i = 0; i < root["poses"].size(); ++i) {
+    if (const auto wrong = ReadEntry(root["poses"][i], product, &poses)) {
+      return fail(fmt::format("/poses/{}{}", i, wrong->first), wrong->second);
+    }
+  }
+  return poses;
+}
+
+Result<Poses> ReadRecord(const std::filesystem::path& file, const Product& product) {
+  const std::string name = file.filename().string();
+  auto reader = record::Reader::Open(file);
+  if (!reader) {
+    return Unexpected(reader.error());
+  }
+  const auto ids = MatchParts(reader->meta(), name, product);
+  if (!ids) {
+    return Unexpected(ids.error());
+  }
+  const auto events = reader->ReadEvents();
+  if (!events) {
+    return Unexpected(events.error());
+  }
+  Poses poses;
+  for (const record::Event& event : *events) {
+    const auto id = ids->find(event.occurrence);
+    const Json details = Json::parse(event.json, nullptr, false);
+    if (event.kind != "dropped" || id == ids->end() || !details.is_object()) {
+      continue;
+    }
+    const auto p = ReadPosition(details.contains("position_m") ? details["position_m"] : Json(), 1);
+    const auto q =
+        ReadRotation(details.contains("rotation_wxyz") ? details["rotation_wxyz"] : Json());
+    if (!p || !q) {
+      return Fail(ErrorCode::kUnreadable, "the record does not say where parts were let go", name,
+                  "record the session again");
+    }
+    poses[id->second] = Pose(*q, *p);
+  }
+  return poses;
+}
+
+}  // namespace
+
+Result<std::map<std::uint32_t, OccurrenceId>> MatchParts(const record::Meta& meta,
+                                                         const std::string& name,
+                                                         const Product& product) {
+  const auto found = meta.find("model_json");
+  const Json parts = Json::parse(found != meta.end() ? found->second : "", nullptr, false);
+  std::map<std::uint32_t, OccurrenceId> ids;
+  for (const Json& part : parts.is_array() ? parts : Json::array()) {
+    const bool is_known = part.is_object() && part.contains("path") && part["path"].is_string() &&
+                          part.contains("id") && part["id"].is_number_unsigned();
+    const std::string path = is_known ? part["path"].get<std::string>() : std::string();
+    const auto at = std::find_if(product.occurrences.begin(), product.occurrences.end(),
+                                 [&path](const auto& other) { return other.path == path; });
+    if (!is_known || at == product.occurrences.end() || !part.contains("shape_hash") ||
+        part["shape_hash"] != product.part_of(at->id).shape_hash) {
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("the record is of another product: {} has no such part \"{}\"",
+                              product.source, path),
+                  name, "export the file that was assembled");
+    }
+    ids[part["id"].get<std::uint32_t>()] = at->id;
+  }
+  return ids;
+}
+
+Result<cad::PartMotions> ApplyPoses(const std::filesystem::path& file, Product* product) {
+  const Result<cad::MappedFile> bytes = cad::MappedFile::Open(file);
+  if (!bytes) {
+    return Unexpected(bytes.error());
+  }
+  const std::string_view text(reinterpret_cast<const char*>(bytes->bytes().data()),
+                              bytes->bytes().size());
+  const auto poses = text.starts_with("SQLite format 3")
+                         ? ReadRecord(file, *product)
+                         : ReadPoseFile(text, file.filename().string(), *product);
+  if (!poses) {
+    return Unexpected(poses.error());
+  }
+  cad::PartMotions motions;
+  for (const auto& [id, X_WB] : *poses) {
+    product::Occurrence& occurrence = product->occurrences[id.index()];
+    motions.emplace_back(occurrence.path, X_WB * occurrence.X_WB.Inverse());
+    occurrence.X_WB = X_WB;
+  }
+  product->box_W = {};
+  for (const product::Occurrence& occurrence : product->occurrences) {
+    for (const Vec3& vertex : product->part_of(occurrence.id).mesh.vertices) {
+      product->box_W.Add(occurrence.X_WB * vertex);
+    }
+  }
+  return motions;
+}
+
+}  // namespace hvas::app

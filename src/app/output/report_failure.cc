@@ -1,0 +1,29 @@
+#include "app/output/report_failure.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "app/output/terminal.h"
+
+namespace hvas::app {
+
+namespace {
+
+void PrintError(const Error& error) {
+  fmt::print(stderr, "{} {}\n", Painted("hvas:", Style::kBad, stderr), error.ToString());
+}
+
+}  // namespace
+
+int ReportFailure(const Error& error) {
+  PrintError(error);
+  return 1;
+}
+
+int ReportMisuse(const Error& error) {
+  PrintError(error);
+  return kMisused;
+}
+
+}  // namespace hvas::app

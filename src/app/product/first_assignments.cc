@@ -1,0 +1,80 @@
+#include "app/product/first_assignments.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/units.h"
+#include "mates/side_file.h"
+#include "product/names.h"
+
+namespace hvas::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using product::Mate;
+using product::Product;
+
+/** Mates of equal parts and fits get equal keys, in the order of parts. */
+auto GroupOf(const Product& product, const Mate& mate) {
+  return std::tuple(product.occurrences[mate.a.occurrence.index()].part,
+                    product.occurrences[mate.b.occurrence.index()].part, mate.hole_radius,
+                    mate.shaft_radius, mate.id);
+}
+
+Json MakeEntry(const Product& product, const Mate& mate) {
+  const auto path = [&product](const product::Connector& side) {
+    return product.occurrences[side.occurrence.index()].path;
+  };
+  Json entry{{"mate", mate.key}};
+  const product::Fit& fit = *mate.fit;
+  entry["fit"] = fit.kind == product::FitKind::kThread ? "thread" : fit.code;
+  const auto add = [&entry](const char* key, const std::optional<double>& value, double scale) {
+    if (value) {
+      entry[key] = scale * *value;
+    }
+  };
+  const product::FitConditions& conditions = mate.conditions;
+  add("hole_diameter_mm", conditions.hole_diameter, units::ToMm(1));
+  add("shaft_diameter_mm", conditions.shaft_diameter, units::ToMm(1));
+  add("hole_rz_um", conditions.hole_roughness, units::ToUm(1));
+  add("shaft_rz_um", conditions.shaft_roughness, units::ToUm(1));
+  add("friction", conditions.friction, 1);
+  add("hole_temperature_c", conditions.hole_temperature, 1);
+  add("shaft_temperature_c", conditions.shaft_temperature, 1);
+  entry["note"] = fmt::format("{}{}, {:.6g} mm: {} <- {}{}", fit.is_proposed ? "proposed " : "",
+                              ToString(fit.kind), units::ToMm(fit.nominal_diameter), path(mate.a),
+                              path(mate.b), fit.reason.empty() ? "" : " (" + fit.reason + ")");
+  return entry;
+}
+
+}  // namespace
+
+Json MakeFirstAssignments(const Product& product) {
+  std::vector<const Mate*> mates;
+  for (const Mate& mate : product.mates) {
+    const bool has_fit =
+        mate.fit && (mate.fit->kind == product::FitKind::kThread || !mate.fit->code.empty());
+    if (mate.kind == product::MateKind::kAxisHole && has_fit) {
+      mates.push_back(&mate);
+    }
+  }
+  std::sort(mates.begin(), mates.end(), [&product](const Mate* first, const Mate* second) {
+    return GroupOf(product, *first) < GroupOf(product, *second);
+  });
+  Json document{
+      {"format", mates::kSideFileFormat},
+      {"note", "Fits of " + product.source +
+                   "; those called proposed are guesses from the drawn diameters, to be checked."},
+      {"fits", Json::array()}};
+  for (const Mate* mate : mates) {
+    document["fits"].push_back(MakeEntry(product, *mate));
+  }
+  return document;
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/product/selection.h"
+#include "base/diagnostics.h"
+#include "product/product.h"
+
+namespace hvas::app {
+
+/** The schema of the JSON that ToJson makes: data/schemas/inspect.schema.json. */
+inline constexpr std::string_view kInspectFormat = "hvas-inspect-2";
+
+struct ToleranceCounts {
+  std::size_t dimensions{0};
+  std::size_t geometric{0};
+  std::size_t fits{0};  ///< Dimensions with a fit.
+};
+
+[[nodiscard]] ToleranceCounts CountTolerances(const product::Product& product);
+
+/** The product as one JSON object: format, summary (always of the whole product) and the sections
+ that are selected. Keys carry their unit; keys keep this order. */
+[[nodiscard]] nlohmann::ordered_json ToJson(const product::Product& product,
+                                            const Diagnostics& diagnostics,
+                                            const Selection& selection);
+
+/** Mates as in the section "mates". */
+[[nodiscard]] nlohmann::ordered_json MatesToJson(const std::vector<product::Mate>& mates);
+
+/** Adds "meshes": vertices and triangles of the selected parts. */
+void AddMeshes(const product::Product& product, const Selection& selection, bool is_fine,
+               nlohmann::ordered_json* json);
+
+}  // namespace hvas::app

@@ -1,0 +1,207 @@
+#include "app/recording/export.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/assembly/poses.h"
+#include "app/output/progress.h"
+#include "app/output/report_failure.h"
+#include "app/product/load_product.h"
+#include "app/product/product_json.h"
+#include "app/product/selection.h"
+#include "app/recording/export_record.h"
+#include "base/atomic_file.h"
+#include "cad/export_step.h"
+#include "cad/glb.h"
+#include "cad/input_file.h"
+
+namespace hvas::app {
+namespace {
+
+using product::Product;
+
+struct ExportOptions {
+  LoadOptions load;
+  std::filesystem::path output;
+  std::filesystem::path poses;  ///< Empty: as drawn.
+  bool is_fine{false};
+  bool has_meshes{false};
+  bool is_forced{false};
+  RecordSelection record;
+};
+
+/** In small letters, with the dot. */
+std::string FormatOf(const std::filesystem::path& file) {
+  std::string format = file.extension().string();
+  std::transform(format.begin(), format.end(), format.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return format;
+}
+
+/** What can be known to fail before the work. */
+Result<void> Check(const ExportOptions& options, const std::string& format) {
+  const std::string name = options.output.string();
+  if (const auto input = cad::CheckInputFile(options.load.file); !input) {
+    return Unexpected(input.error());
+  }
+  if (IsRecord(options.load.file)) {
+    if (!IsRecordFormat(format)) {
+      return Fail(ErrorCode::kInvalid,
+                  "the name has no ending of a format that a record can be written as", name,
+                  std::string("end it with ") + kRecordFormats);
+    }
+  } else if (format != ".glb" && format != ".json" && format != ".step" && format != ".stp") {
+    return Fail(ErrorCode::kInvalid, "the name has no ending of a format that can be written", name,
+                "end it with .glb, .json or .step");
+  }
+  std::error_code error;
+  if (std::filesystem::equivalent(options.load.file, options.output, error)) {
+    return Fail(ErrorCode::kInvalid, "this is the file that is exported", name,
+                "choose another name");
+  }
+  if (!options.is_forced &&
+      std::filesystem::exists(std::filesystem::symlink_status(options.output, error))) {
+    return Fail(ErrorCode::kInvalid, "the file is there already", name,
+                "choose another name, or replace it with --force");
+  }
+  return {};
+}
+
+Result<void> WriteStep(const ExportOptions& options, const Product& product,
+                       const cad::PartMotions& motions) {
+  const auto without = std::count_if(product.parts.begin(), product.parts.end(),
+                                     [](const product::Part& part) { return !part.has_brep; });
+  if (without > 0) {
+    return Fail(ErrorCode::kUnsupported,
+                fmt::format("{} of {} parts are triangles only, which STEP of AP214 cannot hold",
+                            without, product.parts.size()),
+                product.source, "export it as .glb, or start from the CAD system's own STEP file");
+  }
+  cad::ImportControl control;
+  control.limits.time = options.load.time_limit;
+  control.limits.memory = options.load.memory_limit;
+  if (!options.load.is_quiet && IsWatched()) {
+    control.progress = ShowProgress;
+  }
+  const Result<cad::MappedFile> step = cad::ExportStep(options.load.file, control, motions);
+  if (!step) {
+    return Unexpected(step.error());
+  }
+  const auto bytes = step->bytes();
+  return WriteAtomically(
+      options.output, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+Result<void> WriteJson(const ExportOptions& options, const Product& product,
+                       const Diagnostics& diagnostics) {
+  const Selection everything(product);
+  nlohmann::ordered_json json = ToJson(product, diagnostics, everything);
+  if (options.has_meshes) {
+    AddMeshes(product, everything, options.is_fine, &json);
+  }
+  return WriteAtomically(options.output,
+                         json.dump(options.has_meshes ? -1 : 2, ' ', false,
+                                   nlohmann::ordered_json::error_handler_t::replace) +
+                             "\n");
+}
+
+Result<void> ExportProduct(const ExportOptions& options, const std::string& format) {
+  Diagnostics diagnostics;
+  Result<Product> product = LoadProduct(options.load, &diagnostics);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  cad::PartMotions motions;
+  if (!options.poses.empty()) {
+    auto moved = ApplyPoses(options.poses, &*product);
+    if (!moved) {
+      return Unexpected(moved.error());
+    }
+    motions = std::move(*moved);
+  }
+  if (format == ".glb") {
+    const Result<std::string> glb = cad::MakeGlb(*product, options.is_fine);
+    return glb ? WriteAtomically(options.output, *glb) : Unexpected(glb.error());
+  }
+  return format == ".json" ? WriteJson(options, *product, diagnostics)
+                           : WriteStep(options, *product, motions);
+}
+
+/** @returns The exit status. */
+int RunExport(const ExportOptions& options) {
+  const std::string format = FormatOf(options.output);
+  Result<void> done = Check(options, format);
+  if (done && IsRecord(options.load.file)) {
+    const auto damage = [&] {
+      std::optional<Busy> busy;
+      if (!options.load.is_quiet) {
+        busy.emplace("reading the record and writing what it holds");
+      }
+      return ExportRecord(options.load.file, options.output, format, options.record);
+    }();
+    if (damage && !damage->empty()) {
+      fmt::print(stderr, "hvas: {}: {}\n", options.load.file.string(), *damage);
+      return kDamagedRecord;
+    }
+    return damage ? 0 : ReportFailure(damage.error());
+  }
+  if (done) {
+    done = ExportProduct(options, format);
+  }
+  return done ? 0 : ReportFailure(done.error());
+}
+
+}  // namespace
+
+void AddExport(CLI::App* app, int* status) {
+  CLI::App* command =
+      app->add_subcommand("export",
+                          "Write a CAD file as .glb, .json or .step, or a record as .csv, .json, "
+                          ".h5, .mcap or .glb, by the ending of X");
+  const auto options = std::make_shared<ExportOptions>();
+  command->add_option("file", options->load.file, "CAD file, or a record")->required();
+  command->add_option("-o,--output", options->output, "File to write")->required();
+  command->add_option("--poses", options->poses,
+                      "Poses in place of those drawn: a pose file or a record of hvas assemble");
+  command->add_flag("--fine", options->is_fine, "The meshes for contact, not those for the eye");
+  command->add_flag("--meshes", options->has_meshes, "Meshes in the .json, too");
+  command->add_flag("--force", options->is_forced, "Replace a file that is there");
+  AddRecordSelection(command, &options->record);
+  AddLoadOptions(command, &options->load);
+  command->footer(
+      "Exit status: 0; 2 when a record was exported that is not as it was written; 1 on an error.\n"
+      "  .glb   glTF 2.0 in metres, Y up: the tree as nodes, a mesh for each part, colours of\n"
+      "         faces, and with each vertex the index of its face (_FACE_ID)\n"
+      "  .json  what hvas inspect --json prints\n"
+      "  .step  AP214: structure, poses, names and colours, all in one file\n"
+      "Of a record of hvas assemble or the studio (docs/record.md), every number with its unit:\n"
+      "  .csv   a row for each tick          .json  the same, with the events and what it is of\n"
+      "  .h5    HDF5: a column for each number, compressed, with units and events\n"
+      "  .mcap  for Foxglove and Rerun       .glb   the ways of the parts as lines\n"
+      "A pose file is {\"format\": \"hvas-poses-1\", \"poses\": [{\"occurrence\": \"pump/shaft\",\n"
+      "\"position_mm\": [0, 0, 50], \"rotation_wxyz\": [1, 0, 0, 0]}]}; of a record, each part is\n"
+      "where it was let go last. What is not spoken of stays as drawn.\n"
+      "Examples:\n"
+      "  hvas export pump.step -o pump.glb\n"
+      "  hvas export pump.step -o pump.json --meshes --fine\n"
+      "  hvas export pump.stp -o whole.step --force\n"
+      "  hvas export pump.step -o exploded.step --poses exploded.json\n"
+      "  hvas assemble pump.step --record run.hvasrec && "
+      "hvas export pump.step -o run.glb --poses run.hvasrec\n"
+      "  hvas export run.hvasrec -o run.csv --every 10 --from 20 --to 30\n"
+      "  hvas export run.hvasrec -o run.mcap --every 20");
+  command->callback([options, status] { *status = RunExport(*options); });
+}
+
+}  // namespace hvas::app

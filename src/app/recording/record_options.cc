@@ -1,0 +1,44 @@
+#include "app/recording/record_options.h"
+
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/output/progress.h"
+#include "base/file_cache.h"
+#include "contact/shape_cache.h"
+#include "session/recorded_model.h"
+
+namespace hvas::app {
+
+void AddRecordOptions(CLI::App* command, RecordOptions* options) {
+  command->add_option("file", options->file, "A record of `hvas assemble --record` or the studio")
+      ->required();
+  command->add_flag("--quiet,-q", options->is_quiet, "No progress");
+  command->add_flag("!--no-cache", options->is_cache_used,
+                    "Prepare everything anew, and keep nothing on disk");
+}
+
+Result<std::shared_ptr<const simulation::Model>> PrepareModel(record::Reader* reader,
+                                                              const RecordOptions& options) {
+  simulation::CompileOptions compile;
+  if (const auto directory = FileCache::DefaultDirectory(); directory && options.is_cache_used) {
+    compile.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
+  }
+  if (!options.is_quiet && IsWatched()) {
+    compile.progress = [](const std::string& stage, double fraction) {
+      ShowProgress(stage, fraction);
+    };
+  }
+  Diagnostics diagnostics;
+  auto model = session::LoadModel(reader, compile, &diagnostics);
+  for (const Diagnostic& item : diagnostics.items()) {
+    if (item.code == "model-differs" || item.code == "shape-cache") {
+      fmt::print(stderr, "hvas: {}: {} ({})\n", item.entity, item.message, item.remedy);
+    }
+  }
+  return model;
+}
+
+}  // namespace hvas::app

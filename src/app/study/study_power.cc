@@ -1,0 +1,267 @@
+#include "app/study/study_power.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/output/choice.h"
+#include "app/output/json_flag.h"
+#include "app/output/progress.h"
+#include "app/output/report_failure.h"
+#include "app/output/text_layout.h"
+#include "app/study/study_table.h"
+#include "statistics/power.h"
+
+namespace hvas::app {
+namespace {
+
+using statistics::Design;
+using statistics::PowerPoint;
+using statistics::PowerResult;
+using statistics::PowerTest;
+
+struct PowerArguments {
+  StudyTableOptions table;
+  std::vector<double> means;
+  std::vector<double> sds;
+  std::vector<double> medians;
+  std::vector<double> log_sds;
+  std::vector<double> shares;
+  int of{0};
+  double correlation{0.5};
+  int comparisons{1};
+  std::optional<int> participants;
+  statistics::PowerOptions options;
+  bool is_json{false};
+};
+
+/** One spread stands for all conditions. */
+std::vector<double> Spread(const std::vector<double>& spreads, std::size_t count) {
+  return spreads.size() == 1 ? std::vector<double>(count, spreads[0]) : spreads;
+}
+
+Result<Design> MakePilot(const StudyTableOptions& options) {
+  const auto read = ReadStudyTable(options);
+  if (!read) {
+    return Unexpected(read.error());
+  }
+  const auto* table = std::get_if<study::Table>(&read->content);
+  if (table == nullptr) {
+    return Fail(ErrorCode::kInvalid, "a table of answers is no pilot", options.file.string(),
+                "give the shares of right answers by --identification");
+  }
+  statistics::PilotDesign design;
+  for (const study::Row& row : table->rows) {
+    std::vector<double> values;
+    for (const std::optional<double>& value : row.values) {
+      if (value) {
+        values.push_back(*value);
+      }
+    }
+    if (values.size() == row.values.size()) {
+      design.rows.push_back(std::move(values));
+    }
+  }
+  return design;
+}
+
+Result<Design> MakeDesign(const PowerArguments& a) {
+  const int given = (a.means.empty() ? 0 : 1) + (a.medians.empty() ? 0 : 1) +
+                    (a.shares.empty() ? 0 : 1) + (a.table.file.empty() ? 0 : 1);
+  if (given != 1) {
+    return Fail(ErrorCode::kInvalid, fmt::format("{} designs are given", given), "design",
+                "give one of --means, --medians, --identification and --table");
+  }
+  if (!a.means.empty()) {
+    return statistics::NormalDesign{a.means, Spread(a.sds, a.means.size()), a.correlation};
+  }
+  if (!a.medians.empty()) {
+    return statistics::LogNormalDesign{a.medians, Spread(a.log_sds, a.medians.size()),
+                                       a.correlation};
+  }
+  if (!a.shares.empty()) {
+    return statistics::CountDesign{a.shares, a.of};
+  }
+  return MakePilot(a.table);
+}
+
+const char* ToText(PowerTest test) {
+  return test == PowerTest::kFriedman ? "friedman" : "wilcoxon";
+}
+
+nlohmann::ordered_json ToJson(const PowerArguments& a, const Design& design,
+                              const PowerResult& result) {
+  nlohmann::ordered_json json{{"schema", "hvas-study-power-1"},
+                              {"test", ToText(a.options.test)},
+                              {"conditions", statistics::CountConditions(design)},
+                              {"level", a.options.alpha},
+                              {"target_power", a.options.target},
+                              {"runs", a.options.runs},
+                              {"seed", a.options.seed},
+                              {"participants", nullptr},
+                              {"points", nlohmann::ordered_json::array()}};
+  if (result.participants) {
+    json["participants"] = *result.participants;
+  }
+  for (const PowerPoint& point : result.points) {
+    json["points"].push_back({{"participants", point.participants},
+                              {"power", point.power.share},
+                              {"monte_carlo_error", point.monte_carlo_error},
+                              {"power_ci", {point.power.ci.low, point.power.ci.high}}});
+  }
+  return json;
+}
+
+void PrintText(const PowerArguments& a, const Design& design, const PowerResult& result) {
+  fmt::print("{}\n", Fold(fmt::format(
+                         "{} test of {} conditions at level {:.4g}: {} simulated studies of each "
+                         "size, seed {}\n",
+                         a.options.test == PowerTest::kFriedman ? "Friedman" : "Wilcoxon",
+                         statistics::CountConditions(design), a.options.alpha, a.options.runs,
+                         a.options.seed)));
+  fmt::print("{:>12}{:>9}{:>14}{:>18}\n", "participants", "power", "Monte Carlo", "95 % of power");
+  for (const PowerPoint& point : result.points) {
+    fmt::print("{:>12}{:>9.4f}{:>14}{:>18}\n", point.participants, point.power.share,
+               fmt::format("+- {:.4f}", point.monte_carlo_error),
+               fmt::format("{:.4f} to {:.4f}", point.power.ci.low, point.power.ci.high));
+  }
+  if (a.participants) {
+    return;
+  }
+  if (result.participants) {
+    fmt::print("\n{}",
+               Wrap(fmt::format("{} participants reach a power of {:g}. Where the interval of "
+                                "one fewer reaches it, too, more --runs tell them apart.",
+                                *result.participants, a.options.target),
+                    0));
+  } else {
+    fmt::print("\n{}", Wrap(fmt::format("Up to {} participants do not reach a power of {:g}: raise "
+                                        "--most, or the difference that is looked for.",
+                                        a.options.most, a.options.target),
+                            0));
+  }
+}
+
+Result<void> Simulate(PowerArguments a) {
+  if (a.comparisons < 1) {
+    return Fail(ErrorCode::kInvalid, fmt::format("{} comparisons", a.comparisons), "--comparisons",
+                "give at least 1");
+  }
+  a.options.alpha /= a.comparisons;
+  const auto design = MakeDesign(a);
+  if (!design) {
+    return Unexpected(design.error());
+  }
+  statistics::PowerProgress progress;
+  if (IsWatched()) {
+    progress = [](int participants, double fraction) {
+      ShowProgress(fmt::format("studies of {} participants", participants), fraction);
+    };
+  }
+  PowerResult result;
+  if (a.participants) {
+    a.options.most = std::max(a.options.most, *a.participants);
+    const auto point = statistics::EstimatePower(*design, a.options, *a.participants, progress);
+    if (!point) {
+      return Unexpected(point.error());
+    }
+    result.points.push_back(*point);
+    if (point->power.share >= a.options.target) {
+      result.participants = point->participants;
+    }
+  } else {
+    auto found = statistics::FindSampleSize(*design, a.options, progress);
+    if (!found) {
+      return Unexpected(found.error());
+    }
+    result = *std::move(found);
+  }
+  if (IsWatched()) {
+    ShowProgress("", 1);
+  }
+  if (a.is_json) {
+    fmt::print("{}\n", ToJson(a, *design, result).dump(2));
+  } else {
+    PrintText(a, *design, result);
+  }
+  return {};
+}
+
+void AddDesignOptions(CLI::App* command, PowerArguments* a) {
+  const char* const group = "Design";
+  const auto add = [&](const char* name, std::vector<double>* values, const char* what) {
+    return command->add_option(name, *values, what)->delimiter(',')->group(group);
+  };
+  CLI::Option* means = add("--means", &a->means, "Of each condition; normal values");
+  CLI::Option* sds =
+      add("--sd", &a->sds, "Standard deviation between participants, one or one each");
+  CLI::Option* medians =
+      add("--medians", &a->medians, "Of each condition; log-normal values, as times");
+  CLI::Option* log_sds = add("--log-sd", &a->log_sds,
+                             "Standard deviation of their natural logarithm: 0.3 is about 30 %");
+  CLI::Option* shares =
+      add("--identification", &a->shares, "Probability of a right answer under each condition");
+  CLI::Option* of = command->add_option("--of", a->of, "Trials of each condition")->group(group);
+  command
+      ->add_option("--correlation", a->correlation,
+                   "Of a participant's values under two conditions, with --means and --medians")
+      ->capture_default_str()
+      ->group(group);
+  means->needs(sds);
+  sds->needs(means);
+  medians->needs(log_sds);
+  log_sds->needs(medians);
+  shares->needs(of);
+  of->needs(shares);
+}
+
+}  // namespace
+
+void AddStudyPower(CLI::App* study, int* status) {
+  CLI::App* command =
+      study->add_subcommand("power", "How many participants a design needs, by simulation");
+  const auto a = std::make_shared<PowerArguments>();
+  AddDesignOptions(command, a.get());
+  AddStudyTableOptions(command, &a->table);
+  const Choices<PowerTest> tests{{"friedman", PowerTest::kFriedman},
+                                 {"wilcoxon", PowerTest::kWilcoxon}};
+  AddChoice(command, "--test", &a->options.test, tests,
+            "friedman, or wilcoxon of two conditions; asymptotic")
+      ->default_str("friedman");
+  command->add_option("--alpha", a->options.alpha, "Level of all comparisons together")
+      ->capture_default_str();
+  command
+      ->add_option("--comparisons", a->comparisons,
+                   "Tests that share the level, after Bonferroni: 3 for the pairs of three")
+      ->capture_default_str();
+  command
+      ->add_option("--power", a->options.target, "Share of studies that are to find a difference")
+      ->capture_default_str();
+  command->add_option("--participants", a->participants, "Only tell the power with so many");
+  command->add_option("--most", a->options.most, "Participants that are tried")
+      ->capture_default_str();
+  command->add_option("--runs", a->options.runs, "Simulated studies of each size")
+      ->capture_default_str();
+  command->add_option("--seed", a->options.seed, "Of the simulated people")->capture_default_str();
+  AddJsonFlag(command, &a->is_json, "study_power");
+  command->footer(
+      "The table is a pilot study, as `hvas study analyse` reads it: its complete participants "
+      "are\n"
+      "drawn with putting back.\n"
+      "Examples:\n"
+      "  hvas study power --means 12.6,9.4 --sd 4 --correlation 0.5 --test wilcoxon\n"
+      "  hvas study power --medians 29.8,12.6,9.4 --log-sd 0.4 --power 0.9\n"
+      "  hvas study power --identification 0.911,0.804,0.773 --of 15\n"
+      "  hvas study power --table data/studies/identification-2016.csv --columns B1,B2 --test "
+      "wilcoxon --comparisons 3");
+  command->callback([a, status] {
+    const auto done = Simulate(*a);
+    *status = done ? 0 : ReportFailure(done.error());
+  });
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,87 @@
+#include "app/study/study_protocol.h"
+
+#include <algorithm>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/shipped_files.h"
+#include "contact/shape_cache.h"
+
+namespace hvas::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> ListShipped() {
+  std::vector<std::string> names;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(StudiesFolder(), failed)) {
+    if (entry.path().extension() == ".yaml") {
+      names.push_back(entry.path().stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+Result<study::Protocol> FindProtocol(const std::string& name_or_file) {
+  std::error_code failed;
+  if (fs::is_regular_file(name_or_file, failed)) {
+    return study::ReadProtocol(name_or_file);
+  }
+  const fs::path shipped = StudiesFolder() / (name_or_file + ".yaml");
+  const bool is_name = fs::path(name_or_file).filename() == name_or_file;
+  if (is_name && fs::is_regular_file(shipped, failed)) {
+    return study::ReadProtocol(shipped);
+  }
+  if (fs::exists(name_or_file, failed)) {
+    return study::ReadProtocol(name_or_file);  // Says what it is instead of a file.
+  }
+  return Fail(ErrorCode::kNotFound, "there is no such protocol", name_or_file,
+              fmt::format("give a file, or one of: {}", fmt::join(ListShipped(), ", ")));
+}
+
+Result<fs::path> FindProductOf(const study::Protocol& protocol) {
+  const fs::path named(protocol.product);
+  const fs::path file = named.has_extension() ? protocol.file.parent_path() / named
+                                              : ProductsFolder() / (protocol.product + ".step");
+  std::error_code failed;
+  if (!fs::is_regular_file(file, failed)) {
+    return Fail(ErrorCode::kNotFound,
+                fmt::format("the product \"{}\" of the protocol is not there", protocol.product),
+                file.string(), "correct \"product\": a file beside the protocol, or an example");
+  }
+  return file;
+}
+
+study::ModelSource MakeModelSource(const study::Protocol& protocol, const fs::path& product,
+                                   const LoadOptions& load, std::uint64_t seed) {
+  LoadOptions options = load;
+  options.file = product;
+  return [options, part = protocol.part,
+          seed](const std::string& fit) -> Result<std::shared_ptr<const simulation::Model>> {
+    LoadOptions one = options;
+    if (!fit.empty()) {
+      one.fits.push_back(part + "=" + fit);
+    }
+    Diagnostics diagnostics;
+    auto loaded = LoadProduct(one, &diagnostics);
+    if (!loaded) {
+      return Unexpected(loaded.error());
+    }
+    simulation::CompileOptions compile;
+    compile.seed = seed;
+    if (const auto directory = CacheDirectory(one)) {
+      compile.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
+    }
+    return simulation::Compile(std::make_shared<product::Product>(std::move(*loaded)), compile,
+                               &diagnostics);
+  };
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,304 @@
+#include "cad/brep/part_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <BRepBndLib.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Solid.hxx>
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "cad/brep/brep_surface.h"
+#include "cad/brep/solid_measure.h"
+#include "cad/triangles/recognise.h"
+#include "cad/triangles/shape_hash.h"
+
+namespace hvas::cad {
+namespace {
+
+using product::Face;
+using product::Part;
+using spatial::SurfaceKind;
+
+constexpr double kRecognitionTolerance = 1e-6;          // [m]
+constexpr double kRelativeRecognitionTolerance = 1e-6;  // Of the part's diagonal, for huge parts.
+
+constexpr double kSquareMetres = units::kMetresPerMillimetre * units::kMetresPerMillimetre;
+constexpr double kLeastGap = 100;  // Hole in a mesh, in deflections squared.
+
+/** What a part is made of: its solids, turned right side out; without any the solids inside its
+ closed shells; else its loose faces. */
+struct Body {
+  TopoDS_Compound shape;
+  gp_Pnt centre;         // What it is measured about.
+  SolidMeasure measure;  // Areas of all faces; the rest is zero where there is no solid.
+  int solid_count{0};
+  int reversed_count{0};
+  bool is_closed_shell{false};
+};
+
+void AddSolid(TopoDS_Shape solid, bool is_threaded, Body* body) {
+  SolidMeasure measure = MeasureSolid(solid, body->centre, is_threaded);
+  if (measure.volume < 0) {
+    solid.Reverse();
+    measure.Negate();
+    ++body->reversed_count;
+  }
+  BRep_Builder().Add(body->shape, solid);
+  body->measure.Add(measure);
+  ++body->solid_count;
+}
+
+Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre, bool is_threaded) {
+  Body body;
+  body.centre = centre;
+  const BRep_Builder builder;
+  builder.MakeCompound(body.shape);
+  for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
+    AddSolid(it.Current(), is_threaded, &body);
+  }
+  if (body.solid_count > 0) {
+    return body;
+  }
+  for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next()) {
+    if (BRep_Tool::IsClosed(it.Current())) {
+      TopoDS_Solid solid;
+      builder.MakeSolid(solid);
+      builder.Add(solid, it.Current());
+      AddSolid(solid, is_threaded, &body);
+    }
+  }
+  body.is_closed_shell = body.solid_count > 0;
+  if (body.solid_count == 0) {
+    builder.Add(body.shape, shape);
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      body.measure.face_areas.push_back(MeasureArea(it.Current()));
+    }
+  }
+  return body;
+}
+
+/** Makes the part's faces, with their display triangles. @pre The shape is meshed for display. */
+void AddDisplayMesh(const TopoDS_Shape& shape, Part* part) {
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    Face face;
+    face.first_display_triangle = static_cast<std::uint32_t>(part->display_mesh.triangles.size());
+    AppendTriangles(TopoDS::Face(it.Current()), &part->display_mesh);
+    face.display_triangle_count = static_cast<std::uint32_t>(part->display_mesh.triangles.size()) -
+                                  face.first_display_triangle;
+    part->faces.push_back(face);
+  }
+}
+
+/** Lends a face that could be meshed only in pieces its fine triangles for display. */
+void CopyToDisplay(Part* part, Face* face) {
+  product::Mesh& display = part->display_mesh;
+  face->first_display_triangle = static_cast<std::uint32_t>(display.triangles.size());
+  face->display_triangle_count = face->triangle_count;
+  for (std::uint32_t i = 0; i < face->triangle_count; ++i) {
+    const auto first = static_cast<std::uint32_t>(display.vertices.size());
+    for (const std::uint32_t vertex : part->mesh.triangles[face->first_triangle + i]) {
+      display.vertices.push_back(part->mesh.vertices[vertex]);
+    }
+    display.triangles.push_back({first, first + 1, first + 2});
+  }
+}
+
+/** Gives the part's faces area, box and triangles. @returns the number of faces without any.
+ @pre The shape is meshed for contact, and AddDisplayMesh was called. */
+int AddContactMesh(const Body& body, const MeshLevel& level, Part* part) {
+  int unmeshed = 0;
+  std::size_t index = 0;
+  for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
+    const TopoDS_Face& source = TopoDS::Face(it.Current());
+    Face& face = part->faces[index];
+    face.area = kSquareMetres * body.measure.face_areas[index];
+    face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
+    const std::size_t first_vertex = part->mesh.vertices.size();
+    const bool is_whole = IsMeshed(source);
+    if (is_whole) {
+      AppendTriangles(source, &part->mesh);
+    } else if (face.area > kLeastGap * level.deflection * level.deflection) {
+      for (const TopoDS_Face& piece : MeshInPieces(source, level)) {
+        AppendTriangles(piece, &part->mesh);
+      }
+    }
+    for (std::size_t i = first_vertex; i < part->mesh.vertices.size(); ++i) {
+      face.box_B.Add(part->mesh.vertices[i]);
+    }
+    part->box_B.Add(face.box_B);
+    face.triangle_count =
+        static_cast<std::uint32_t>(part->mesh.triangles.size()) - face.first_triangle;
+    if (face.display_triangle_count == 0) {
+      CopyToDisplay(part, &face);
+    }
+    const bool is_gap = !is_whole && face.triangle_count == 0 &&
+                        face.area > kLeastGap * level.deflection * level.deflection;
+    unmeshed += is_gap ? 1 : 0;
+  }
+  return unmeshed;
+}
+
+/** Gives a face its surface, or leaves it freeform when the triangles do not lie on it. */
+void SetSurface(const TopoDS_Face& source, FaceSurface found, double deflection, const Part& part,
+                Face* face, Diagnostics* diagnostics) {
+  // Without triangles there is nothing to tell the outer side by.
+  if (face->triangle_count == 0 || found.surface.kind == SurfaceKind::kFreeform) {
+    return;
+  }
+  const auto triangles =
+      std::span(part.mesh.triangles).subspan(face->first_triangle, face->triangle_count);
+  const double agreement = OrientSurface(part.mesh.vertices, triangles, &found.surface);
+  const double slack = 10 * deflection + 4 * units::FromMm(BRep_Tool::Tolerance(source)) + 1e-5;
+  double worst = 0;
+  for (const auto& triangle : triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      worst = std::max(worst,
+                       std::abs(CalcDistance(found.surface, part.mesh.vertices[vertex]).distance));
+    }
+  }
+  if (agreement < 0.5 || worst > slack) {
+    diagnostics->Note("face-off-surface", part.name,
+                      fmt::format("a face lies {:.3f} mm off the surface that the file gives for "
+                                  "it; only its mesh is used",
+                                  units::ToMm(worst)));
+    return;
+  }
+  face->surface = found.surface;
+  face->is_recognised = found.is_recognised;
+}
+
+void SetMass(const Body& body, Part* part) {
+  constexpr double kMetres = units::kMetresPerMillimetre;
+  const SolidMeasure& measure = body.measure;
+  part->solid_count = body.solid_count;
+  const double faces = std::accumulate(measure.face_areas.begin(), measure.face_areas.end(), 0.0);
+  // A solid of no thickness has what rounding leaves of its volume.
+  if (body.solid_count == 0 || !(measure.volume > 1e-9 * std::pow(faces, 1.5))) {
+    return;
+  }
+  const double density = part->material.density;
+  part->mass.volume = units::FromMm3(measure.volume);
+  part->mass.mass = density * part->mass.volume;
+  const Vec3 r = measure.first / measure.volume;
+  const Vec3 centre(body.centre.X(), body.centre.Y(), body.centre.Z());
+  part->mass.p_BoBcm_B = kMetres * (centre + r);
+  const Mat3 shift = measure.volume * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  part->mass.I_BBcm_B = density * units::FromMm3(1) * kMetres * kMetres * (measure.inertia - shift);
+}
+
+double CalcMeshVolume(const product::Mesh& mesh, const Vec3& about) {
+  double six_volumes = 0;
+  for (const auto& t : mesh.triangles) {
+    six_volumes += (mesh.vertices[t[0]] - about)
+                       .dot((mesh.vertices[t[1]] - about).cross(mesh.vertices[t[2]] - about));
+  }
+  return six_volumes / 6;
+}
+
+/** Tells of what later stages will feel: no solid or volume, several solids, holes in the mesh. */
+void CheckPart(const Part& part, int unmeshed, Diagnostics* diagnostics) {
+  if (part.solid_count == 0) {
+    diagnostics->Warn("no-solid", part.name, "the part has surfaces but no solid; it has no mass",
+                      "export it as a solid body");
+  } else if (part.mass.volume <= 0) {
+    diagnostics->Warn("no-volume", part.name, "the solid encloses no volume; it has no mass",
+                      "heal the part in the CAD system and export it again");
+  }
+  if (part.solid_count > 1) {
+    diagnostics->Note("several-solids", part.name,
+                      fmt::format("{} solids; they move as one rigid part", part.solid_count),
+                      "export them as parts of a subassembly to move them apart");
+  }
+  if (unmeshed > 0) {
+    diagnostics->Warn(
+        "unmeshed-face", part.name,
+        fmt::format("{} of {} faces could not be meshed", unmeshed, part.faces.size()),
+        "heal the part in the CAD system and export it again");
+  }
+  const double mesh_volume = CalcMeshVolume(part.mesh, part.mass.p_BoBcm_B);
+  if (part.solid_count > 0 &&
+      std::abs(mesh_volume - part.mass.volume) > 0.02 * std::abs(part.mass.volume)) {
+    diagnostics->Warn("volume-mismatch", part.name,
+                      fmt::format("the mesh encloses {:.3f} mm3, the solid {:.3f} mm3",
+                                  units::ToMm3(mesh_volume), units::ToMm3(part.mass.volume)),
+                      "the solid may be open; heal it in the CAD system");
+  }
+}
+
+}  // namespace
+
+ShapeContent CountContent(const TopoDS_Shape& shape) {
+  ShapeContent content;
+  for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
+    ++content.solids;
+  }
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    ++content.faces;
+  }
+  return content;
+}
+
+std::optional<MeshLevel> BuildPartShape(const TopoDS_Shape& shape, const ImportOptions& options,
+                                        const FaceColorFn& color_of, Part* part,
+                                        Diagnostics* diagnostics, const FaceEntityFn& entity_of) {
+  Bnd_Box box_mm;
+  BRepBndLib::AddClose(shape, box_mm);
+  if (box_mm.IsVoid() || box_mm.IsOpen()) {
+    return std::nullopt;
+  }
+  const double diagonal = units::FromMm(std::sqrt(box_mm.SquareExtent()));
+  const gp_Pnt low = box_mm.CornerMin();
+  const gp_Pnt centre = low.Translated(gp_Vec(low, box_mm.CornerMax()) * 0.5);
+  const Body body = CollectBody(shape, centre, options.threads != 1);
+  const MeshLevel display = MeshForDisplay(body.shape, diagonal, options);
+  AddDisplayMesh(body.shape, part);
+  const double tolerance =
+      std::max(kRecognitionTolerance, kRelativeRecognitionTolerance * diagonal);
+  std::vector<FaceSurface> surfaces;
+  std::vector<bool> is_analytic;
+  for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next()) {
+    surfaces.push_back(CalcFaceSurface(TopoDS::Face(it.Current()), tolerance));
+    is_analytic.push_back(surfaces.back().surface.kind != SurfaceKind::kFreeform);
+  }
+  const MeshLevel level =
+      MeshForContact(body.shape, diagonal, display, is_analytic, options, part->name, diagnostics);
+  const int unmeshed = AddContactMesh(body, level, part);
+  std::size_t index = 0;
+  for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
+    const TopoDS_Face& source = TopoDS::Face(it.Current());
+    Face& face = part->faces[index];
+    SetSurface(source, surfaces[index], level.deflection, *part, &face, diagnostics);
+    face.color = color_of(source);
+    face.entity = entity_of ? entity_of(source) : 0;
+  }
+  BRepTools::Clean(body.shape);  // The triangles are ours now.
+  if (part->mesh.triangles.empty()) {
+    return std::nullopt;
+  }
+  SetMass(body, part);
+  if (body.is_closed_shell) {
+    diagnostics->Note("closed-shell", part->name, "closed surfaces, taken as a solid");
+  } else if (body.reversed_count > 0) {
+    diagnostics->Note(
+        "reversed-solid", part->name,
+        fmt::format("{} solids were inside out and were turned", body.reversed_count));
+  }
+  CheckPart(*part, unmeshed, diagnostics);
+  part->shape_hash = CalcShapeHash(*part);
+  return level;
+}
+
+}  // namespace hvas::cad

@@ -1,0 +1,245 @@
+#include "cad/brep/step_document.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <Message_ProgressIndicator.hxx>
+#include <Message_ProgressScope.hxx>
+#include <STEPCAFControl_Controller.hxx>
+#include <STEPCAFControl_ExternFile.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <STEPConstruct_ExternRefs.hxx>
+#include <STEPControl_Reader.hxx>
+#include <StepBasic_ProductDefinition.hxx>
+#include <StepData_StepModel.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
+#include <StepShape_FaceSurface.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_TShape.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <fmt/format.h>
+
+#include "base/regular_file.h"
+#include "cad/scene/placed_parts.h"
+#include "cad/step/text_encoding.h"
+
+namespace hvas::cad {
+namespace {
+
+/** Hands OpenCASCADE's progress on. */
+class Indicator : public Message_ProgressIndicator {
+ public:
+  explicit Indicator(const ProgressFn* progress) : progress_(progress) {}
+
+ private:
+  void Show(const Message_ProgressScope& /*scope*/, const Standard_Boolean /*force*/) override {
+    const double fraction = GetPosition();
+    if (*progress_ && fraction >= shown_ + 0.01) {
+      shown_ = fraction;
+      (*progress_)("transfer", fraction);
+    }
+  }
+
+  const ProgressFn* progress_;
+  double shown_{0};
+};
+
+void InitialiseOnce() {
+  static const bool is_done = [] {
+    STEPCAFControl_Controller::Init();
+    // Its messages go to std::cout; what matters in them comes back as a status.
+    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    return true;
+  }();
+  static_cast<void>(is_done);
+}
+
+/** Tells OpenCASCADE what the bytes in strings are: it decodes anything as UTF-8, and spoils what
+ is not. As Latin-1 they come through as they are, for CleanName to see to. */
+void SetEncoding(const std::filesystem::path& file) {
+  const std::string text = ReadRegularFile(file).value_or(std::string());
+  Interface_Static::SetCVal("read.step.codepage", IsUtf8(text) ? "UTF8" : "iso8859-1");
+}
+
+/** How many parts and subassemblies the file places. To be known before the transfer, which goes
+ through all of them. */
+double CountPlacedProducts(const STEPCAFControl_Reader& reader) {
+  const Handle(StepData_StepModel) model = reader.Reader().StepModel();
+  Uses uses;
+  std::set<std::uint64_t> used;
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const auto usage = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(i));
+    if (!usage.IsNull() && !usage->RelatingProductDefinition().IsNull() &&
+        !usage->RelatedProductDefinition().IsNull()) {
+      const auto number = [&model](const Handle(Standard_Transient) & entity) {
+        return static_cast<std::uint64_t>(model->Number(entity));
+      };
+      uses[number(usage->RelatingProductDefinition())].push_back(
+          number(usage->RelatedProductDefinition()));
+      used.insert(number(usage->RelatedProductDefinition()));
+    }
+  }
+  std::vector<std::uint64_t> roots;
+  for (const auto& [user, list] : uses) {
+    if (used.count(user) == 0) {
+      roots.push_back(user);
+    }
+  }
+  return CountPlaced(uses, roots);
+}
+
+void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagnostics) {
+  std::vector<std::string> missing;
+  using ExternFiles =
+      NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>;
+  for (ExternFiles::Iterator it(reader.ExternFiles()); it.More(); it.Next()) {
+    const Handle(STEPCAFControl_ExternFile)& file = it.Value();
+    if (file.IsNull() || file->GetLoadStatus() != IFSelect_RetDone || !file->GetTransferStatus()) {
+      missing.emplace_back(it.Key().ToCString());
+    }
+  }
+  std::sort(missing.begin(), missing.end());
+  for (const std::string& name : missing) {
+    diagnostics->Warn("missing-file", name,
+                      "the assembly refers to this file, which could not be read",
+                      "put it beside the assembly");
+  }
+}
+
+/** Where the files that the read ones refer to are, or would have been looked for. */
+std::vector<std::filesystem::path> ListReferredFiles(const STEPCAFControl_Reader& reader,
+                                                     const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> paths;
+  using ExternFiles =
+      NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>;
+  for (ExternFiles::Iterator it(reader.ExternFiles()); it.More(); it.Next()) {
+    const Handle(STEPCAFControl_ExternFile)& extern_file = it.Value();
+    const bool is_loaded = !extern_file.IsNull() && !extern_file->GetWS().IsNull() &&
+                           extern_file->GetLoadStatus() == IFSelect_RetDone;
+    const std::filesystem::path name =
+        is_loaded ? extern_file->GetWS()->LoadedFile() : it.Key().ToCString();
+    paths.push_back((file.parent_path() / name).lexically_normal());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+/** OpenCASCADE waits for ever for a pipe that the file names as one of its parts. */
+Result<void> CheckReferredFiles(const STEPCAFControl_Reader& reader,
+                                const std::filesystem::path& file) {
+  STEPConstruct_ExternRefs references(reader.Reader().WS());
+  references.LoadExternRefs();
+  for (int i = 1; i <= references.NbExternRefs(); ++i) {
+    const char* name = references.FileName(i);
+    if (name == nullptr || *name == '\0') {
+      continue;
+    }
+    const auto checked = CheckRegularFile(file.parent_path() / name);
+    if (!checked && checked.error().code != ErrorCode::kNotFound) {
+      return Fail(ErrorCode::kUnreadable,
+                  fmt::format("it refers to {}: {}", name, checked.error().message),
+                  file.filename().string(), checked.error().remedy);
+    }
+  }
+  return {};
+}
+
+/** The entities of all faces that were transferred, by the shape under the face: its place and
+ sense change in assemblies and when solids are turned. */
+FaceEntityFn IndexFaces(const STEPCAFControl_Reader& reader) {
+  const auto entities = std::make_shared<std::map<const TopoDS_TShape*, std::uint64_t>>();
+  // Keeps the shapes, so that no other can have the address of one of them.
+  const auto shapes = std::make_shared<std::vector<TopoDS_Shape>>();
+  const Handle(StepData_StepModel) model = reader.Reader().StepModel();
+  const Handle(Transfer_TransientProcess) process =
+      reader.Reader().WS()->TransferReader()->TransientProcess();
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Standard_Transient) entity = model->Value(i);
+    const int id = model->IdentLabel(entity);
+    if (id <= 0 || !entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) {
+      continue;
+    }
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, entity);
+    if (shape.IsNull()) {
+      continue;
+    }
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      shapes->push_back(it.Current());
+      entities->emplace(it.Current().TShape().get(), static_cast<std::uint64_t>(id));
+    }
+  }
+  return [entities, shapes](const TopoDS_Face& face) -> std::uint64_t {
+    const auto found = entities->find(face.TShape().get());
+    return found != entities->end() ? found->second : 0;
+  };
+}
+
+}  // namespace
+
+Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& file,
+                                                  std::size_t max_parts, const ReadWatch& watch,
+                                                  Diagnostics* diagnostics,
+                                                  FaceEntityFn* entity_of) {
+  InitialiseOnce();
+  SetEncoding(file);
+  const std::string name = file.filename().string();
+  STEPCAFControl_Reader reader;
+  reader.SetColorMode(true);
+  reader.SetNameMode(true);
+  reader.SetLayerMode(true);
+  reader.SetPropsMode(true);
+  reader.SetMatMode(true);
+  reader.SetGDTMode(false);
+  reader.SetViewMode(false);
+  if (watch.progress) {
+    watch.progress("read", 0);
+  }
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+    return Fail(ErrorCode::kUnreadable, "the STEP file is damaged", name,
+                "export it again from the CAD system");
+  }
+  if (const auto checked = CheckPlaced(CountPlacedProducts(reader), max_parts, name); !checked) {
+    return Unexpected(checked.error());
+  }
+  if (const auto checked = CheckReferredFiles(reader, file); !checked) {
+    return Unexpected(checked.error());
+  }
+  Handle(TDocStd_Document) document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  const opencascade::handle<Indicator> indicator = new Indicator(&watch.progress);
+  if (!reader.Transfer(document, indicator->Start())) {
+    CloseDocument(document);
+    return Fail(ErrorCode::kUnreadable, "the STEP file holds no product that can be read", name,
+                "export it again from the CAD system");
+  }
+  ReportMissingFiles(reader, diagnostics);
+  if (watch.referred_files != nullptr) {
+    *watch.referred_files = ListReferredFiles(reader, file);
+  }
+  if (entity_of != nullptr) {
+    *entity_of = IndexFaces(reader);
+  }
+  return document;
+}
+
+void CloseDocument(const Handle(TDocStd_Document) & document) {
+  XCAFApp_Application::GetApplication()->Close(document);
+}
+
+}  // namespace hvas::cad

@@ -1,0 +1,188 @@
+#include "cad/process/read_cad.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
+#include <TDocStd_Document.hxx>
+#include <fmt/format.h>
+
+#include "base/regular_file.h"
+#include "base/units.h"
+#include "cad/brep/assembly_tree.h"
+#include "cad/brep/step_document.h"
+#include "cad/input_file.h"
+#include "cad/scene/mesh_document.h"
+#include "cad/scene/mesh_format.h"
+#include "cad/step/tolerances.h"
+#include "cad/triangles/tessellated.h"
+
+namespace hvas::cad {
+namespace {
+
+using product::Product;
+
+void CheckSize(const Product& product, Diagnostics* diagnostics) {
+  const double size = product.box_W.size().norm();
+  if (size > 50 || size < 1e-4) {
+    diagnostics->Warn("implausible-size", product.source,
+                      fmt::format("the product measures {:.6g} mm across", units::ToMm(size)),
+                      "check the length unit of the file");
+  }
+}
+
+/** The bytes of a file; empty where they cannot be had. */
+std::string ReadText(const std::filesystem::path& file) {
+  return ReadRegularFile(file).value_or(std::string());
+}
+
+/** The text of a file that states tolerances; empty where it states none, or cannot be had. */
+std::string ReadToleranceText(const std::filesystem::path& file) {
+  std::string text = ReadText(file);
+  return MayHoldTolerances(text) ? text : std::string();
+}
+
+/** Reads the tolerances into a product; whatever goes wrong with them is no more than a warning. */
+void AddTolerances(std::string text, Product* product, Diagnostics* diagnostics) {
+  if (text.empty()) {
+    return;
+  }
+  try {
+    ReadTolerances(std::move(text), product, diagnostics);
+  } catch (const std::exception& exception) {
+    diagnostics->Warn("tolerances-unread", product->source,
+                      fmt::format("the tolerances could not be read: {}", exception.what()),
+                      "export the file again from the CAD system");
+  }
+}
+
+Result<Product> ReadSolids(const std::filesystem::path& file, const ImportOptions& options,
+                           const ReadWatch& watch, Diagnostics* diagnostics) {
+  std::string tolerance_text = options.with_tolerances ? ReadToleranceText(file) : std::string();
+  FaceEntityFn entity_of;
+  const auto document = ReadStepDocument(file, options.max_parts, watch, diagnostics,
+                                         tolerance_text.empty() ? nullptr : &entity_of);
+  if (!document) {
+    return Unexpected(document.error());
+  }
+  Product product;
+  product.name = file.stem().string();
+  product.source = file.filename().string();
+  const Result<void> built =
+      BuildProduct(*document, options, watch, &product, diagnostics, entity_of);
+  CloseDocument(*document);
+  if (!built) {
+    const auto missing =
+        std::count_if(diagnostics->items().begin(), diagnostics->items().end(),
+                      [](const Diagnostic& item) { return item.code == "missing-file"; });
+    if (missing > 0) {
+      return Fail(
+          ErrorCode::kNotFound,
+          fmt::format("the assembly keeps its parts in {} other files that are not there", missing),
+          product.source, "put them beside the assembly");
+    }
+    return Unexpected(built.error());
+  }
+  if (watch.progress) {
+    watch.progress("tolerances", 0);
+  }
+  AddTolerances(std::move(tolerance_text), &product, diagnostics);
+  CheckSize(product, diagnostics);
+  return product;
+}
+
+/** A file without solids may have triangles in their place. */
+Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions& options,
+                         const ReadWatch& watch, Diagnostics* diagnostics) {
+  Diagnostics of_solids;
+  Result<Product> solids = ReadSolids(file, options, watch, &of_solids);
+  const bool is_over = solids || solids.error().code == ErrorCode::kUnsupported;
+  std::string text = is_over ? std::string() : ReadText(file);
+  if (is_over || !MayHoldTessellation(text)) {
+    for (const Diagnostic& item : of_solids.items()) {
+      diagnostics->Add(item);
+    }
+    return solids;
+  }
+  Product product;
+  product.name = file.stem().string();
+  product.source = file.filename().string();
+  std::string tolerance_text =
+      options.with_tolerances && MayHoldTolerances(text) ? text : std::string();
+  if (const auto read = ReadTessellated(std::move(text), options, watch, &product, diagnostics);
+      !read) {
+    return Unexpected(read.error());
+  }
+  if (watch.progress) {
+    watch.progress("tolerances", 0);
+  }
+  AddTolerances(std::move(tolerance_text), &product, diagnostics);
+  CheckSize(product, diagnostics);
+  return product;
+}
+
+/** The one place where formats are told apart: by content, whatever the file is called. */
+Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOptions& options,
+                              const ReadWatch& watch, Diagnostics* diagnostics) {
+  constexpr std::size_t kHead = 4096;
+  const std::string head = ReadFileHead(file, kHead).value_or(std::string());
+  if (head.find("ISO-10303-21") != std::string::npos) {
+    return ReadStep(file, options, watch, diagnostics);
+  }
+  if (const std::optional<MeshFormat> format = FindMeshFormat(file, head)) {
+    Result<Product> product = ReadMeshFile(file, *format, options, watch, diagnostics);
+    if (product) {
+      CheckSize(*product, diagnostics);
+    }
+    return product;
+  }
+  return Fail(ErrorCode::kUnreadable, "this is not a STEP file, and no mesh",
+              file.filename().string(), kFormats);
+}
+
+/** The only place where exceptions of other libraries end. */
+Result<Product> ReadGuarded(const std::filesystem::path& file, const ImportOptions& options,
+                            const ReadWatch& watch, Diagnostics* diagnostics) {
+  constexpr const char* kRemedy = "export it again from the CAD system, if need be in parts";
+  const std::string name = file.filename().string();
+  try {
+    return ReadByContent(file, options, watch, diagnostics);
+  } catch (const Standard_OutOfMemory&) {
+    return Fail(ErrorCode::kOutOfResource, "memory ran out while reading it", name, kRemedy);
+  } catch (const Standard_Failure& failure) {
+    return Fail(ErrorCode::kUnreadable,
+                fmt::format("OpenCASCADE could not read it: {} {}", failure.DynamicType()->Name(),
+                            failure.GetMessageString()),
+                name, kRemedy);
+  } catch (const std::bad_alloc&) {
+    return Fail(ErrorCode::kOutOfResource, "memory ran out while reading it", name, kRemedy);
+  } catch (const std::exception& exception) {
+    return Fail(ErrorCode::kUnreadable, fmt::format("could not be read: {}", exception.what()),
+                name, kRemedy);
+  }
+}
+
+}  // namespace
+
+Result<Product> ReadCad(const std::filesystem::path& file, const ImportOptions& options,
+                        Diagnostics* diagnostics, const ReadWatch& watch) {
+  const Result<std::filesystem::path> path = CheckInputFile(file);
+  if (!path) {
+    return Unexpected(path.error());
+  }
+  static std::mutex mutex;  // OpenCASCADE keeps its settings and documents in globals.
+  const std::scoped_lock lock(mutex);
+  Result<Product> product = ReadGuarded(*path, options, watch, diagnostics);
+  if (product && watch.progress) {
+    watch.progress("done", 1);
+  }
+  return product;
+}
+
+}  // namespace hvas::cad

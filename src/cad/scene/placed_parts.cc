@@ -1,0 +1,81 @@
+#include "cad/scene/placed_parts.h"
+
+#include <fmt/format.h>
+
+namespace hvas::cad {
+namespace {
+
+constexpr double kNodesPerPart =
+    4;  // Subassemblies count too, and real files have fewer than parts.
+constexpr const char* kAllowMoreParts =
+    "allow more with --max-parts, or open one of its subassemblies";
+
+}  // namespace
+
+double CountPlaced(const Uses& uses, const std::vector<std::uint64_t>& roots) {
+  struct Step {
+    std::uint64_t definition;
+    const std::vector<std::uint64_t>* used;  // Null for one that uses nothing.
+    std::size_t next{0};
+    double count{1};
+  };
+
+  std::unordered_map<std::uint64_t, double> known;  // 0 while it is being counted.
+  const auto begin = [&](std::uint64_t definition) {
+    known[definition] = 0;
+    const auto found = uses.find(definition);
+    return Step{definition, found == uses.end() ? nullptr : &found->second};
+  };
+  double total = 0;
+  for (const std::uint64_t root : roots) {
+    // This is no recursion: a chain may be longer than the stack.
+    std::vector<Step> path;
+    if (known.count(root) == 0) {
+      path.push_back(begin(root));
+    }
+    while (!path.empty()) {
+      Step& step = path.back();
+      if (step.used == nullptr || step.next == step.used->size()) {
+        known[step.definition] = step.count;
+        path.pop_back();
+        continue;
+      }
+      const std::uint64_t used = (*step.used)[step.next];
+      const auto found = known.find(used);
+      if (found == known.end()) {
+        path.push_back(begin(used));  // Its count is taken when it is met again.
+      } else {
+        step.count += found->second;
+        ++step.next;
+      }
+    }
+    total += known[root];
+  }
+  return total;
+}
+
+Result<void> CheckPlaced(double placed, std::size_t most, const std::string& name) {
+  if (placed <= kNodesPerPart * static_cast<double>(most)) {
+    return {};
+  }
+  return Fail(ErrorCode::kUnsupported,
+              fmt::format("it places {:.6g} parts and subassemblies, and {} parts are the most",
+                          placed, most),
+              name, kAllowMoreParts);
+}
+
+Unexpected TooManyParts(std::size_t most, const std::string& name) {
+  return Fail(ErrorCode::kUnsupported, fmt::format("it places more than {} parts", most), name,
+              kAllowMoreParts);
+}
+
+Unexpected TooManyBytes(const std::string& what, double bytes, std::uint64_t most,
+                        const std::string& name) {
+  constexpr double kMebibyte = 1 << 20;
+  return Fail(ErrorCode::kUnsupported,
+              fmt::format("{} {:.4g} MiB, and {:.4g} MiB are the most", what, bytes / kMebibyte,
+                          static_cast<double>(most) / kMebibyte),
+              name, "allow more with --memory-limit, or export it in parts");
+}
+
+}  // namespace hvas::cad

@@ -1,0 +1,163 @@
+#include "cad/step/step_measure.h"
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "base/units.h"
+
+namespace hvas::cad {
+namespace {
+
+using Kind = StepValue::Kind;
+
+constexpr int kMaxUnitDepth = 8;  // Of units by other units.
+
+struct Unit {
+  double scale{1};
+  Quantity quantity{Quantity::kOther};
+};
+
+/** A number and the unit that it refers to. */
+struct Raw {
+  double number{0};
+  std::uint64_t unit{0};
+  Quantity quantity{Quantity::kOther};  // By the type of the number.
+  std::string name;
+};
+
+Quantity ToQuantity(std::string_view type) {
+  if (type.find("LENGTH") != std::string_view::npos) {
+    return Quantity::kLength;
+  }
+  return type.find("PLANE_ANGLE") != std::string_view::npos ? Quantity::kAngle : Quantity::kOther;
+}
+
+std::optional<Raw> ReadRaw(const StepText& text, std::uint64_t id) {
+  Raw raw;
+  bool has_number = false;
+  for (const StepRecord& record : text.Find(id)) {
+    for (const StepValue& value : record.values) {
+      const bool is_typed = value.kind == Kind::kTyped && value.items.size() == 1 &&
+                            value.items.front().kind == Kind::kNumber;
+      if (!has_number && (is_typed || value.kind == Kind::kNumber)) {
+        has_number = true;
+        raw.number = is_typed ? value.items.front().number : value.number;
+        raw.quantity = ToQuantity(is_typed ? value.text : record.name);
+      } else if (has_number && raw.unit == 0 && value.kind == Kind::kReference) {
+        raw.unit = value.reference;
+      } else if (value.kind == Kind::kText && raw.name.empty()) {
+        raw.name = value.text;
+      }
+    }
+  }
+  return has_number ? std::optional(raw) : std::nullopt;
+}
+
+double PrefixScale(std::string_view prefix) {
+  static constexpr std::array<std::pair<std::string_view, double>, 11> kPrefixes{{{"GIGA", 1e9},
+                                                                                  {"MEGA", 1e6},
+                                                                                  {"KILO", 1e3},
+                                                                                  {"HECTO", 1e2},
+                                                                                  {"DECA", 10},
+                                                                                  {"DECI", 0.1},
+                                                                                  {"CENTI", 1e-2},
+                                                                                  {"MILLI", 1e-3},
+                                                                                  {"MICRO", 1e-6},
+                                                                                  {"NANO", 1e-9},
+                                                                                  {"PICO", 1e-12}}};
+  for (const auto& [name, scale] : kPrefixes) {
+    if (prefix == name) {
+      return scale;
+    }
+  }
+  return 1;
+}
+
+std::optional<Unit> ReadUnit(const StepText& text, std::uint64_t id, int depth) {
+  if (depth > kMaxUnitDepth) {
+    return std::nullopt;
+  }
+  for (const StepRecord& record : text.Find(id)) {
+    if (record.name == "SI_UNIT") {
+      std::string prefix;
+      std::string name;
+      for (const StepValue& value : record.values) {
+        if (value.kind == Kind::kEnum) {
+          prefix = std::exchange(name, value.text);
+        }
+      }
+      const Quantity quantity = name == "METRE"    ? Quantity::kLength
+                                : name == "RADIAN" ? Quantity::kAngle
+                                                   : Quantity::kOther;
+      return Unit{PrefixScale(prefix), quantity};
+    }
+    const bool is_converted = record.name.find("CONVERSION_BASED_UNIT") == 0;
+    if (is_converted && record.values.size() > 1) {
+      const auto raw = ReadRaw(text, record.values.back().reference);
+      const auto base = raw ? ReadUnit(text, raw->unit, depth + 1) : std::nullopt;
+      if (base && std::isfinite(raw->number * base->scale)) {
+        return Unit{raw->number * base->scale, base->quantity};
+      }
+      return std::nullopt;  // Looks at no second one: many in each step would take for ever.
+    }
+  }
+  return std::nullopt;
+}
+
+/** The unit of a quantity in the context of a representation. */
+std::optional<Unit> ReadContextUnit(const StepText& text, std::uint64_t representation,
+                                    Quantity quantity) {
+  std::uint64_t context = 0;
+  for (const StepRecord& record : text.Find(representation)) {
+    if (record.values.size() > 2) {
+      context = record.values[2].reference;
+    }
+  }
+  for (const StepRecord& record : text.Find(context)) {
+    if (record.name != "GLOBAL_UNIT_ASSIGNED_CONTEXT" || record.values.empty()) {
+      continue;
+    }
+    for (const StepValue& value : record.values.back().items) {
+      const auto unit = ReadUnit(text, value.reference, 0);
+      if (unit && unit->quantity == quantity) {
+        return unit;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double ReadUnitOf(const StepText& text, std::uint64_t representation, Quantity quantity) {
+  const std::optional<Unit> unit = ReadContextUnit(text, representation, quantity);
+  const double otherwise = quantity == Quantity::kLength ? units::kMetresPerMillimetre : 1;
+  return unit && unit->scale > 0 ? unit->scale : otherwise;
+}
+
+std::optional<StepMeasure> ReadMeasure(const StepText& text, std::uint64_t id,
+                                       std::uint64_t representation) {
+  const auto raw = ReadRaw(text, id);
+  if (!raw) {
+    return std::nullopt;
+  }
+  auto unit = ReadUnit(text, raw->unit, 0);
+  if (!unit) {
+    unit = ReadContextUnit(text, representation, raw->quantity);
+  }
+  if (!unit) {
+    const bool is_length = raw->quantity == Quantity::kLength;
+    unit = Unit{is_length ? units::kMetresPerMillimetre : 1, raw->quantity};
+  }
+  const double value = raw->number * unit->scale + 0.0;  // Files have -0.
+  constexpr double kAbsurd =
+      1e12;  // Larger than any product; sums and products of less are finite.
+  if (!(std::abs(value) < kAbsurd)) {
+    return std::nullopt;
+  }
+  return StepMeasure{value, unit->quantity, raw->name};
+}
+
+}  // namespace hvas::cad

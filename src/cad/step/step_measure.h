@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "cad/step/step_text.h"
+
+namespace hvas::cad {
+
+enum class Quantity { kOther, kLength, kAngle };
+
+/** A number with the unit that its entity names, in SI. */
+struct StepMeasure {
+  double value{0};  ///< [m], [rad], or as in the file for kOther.
+  Quantity quantity{Quantity::kOther};
+  std::string name;  ///< "nominal value", "upper limit", ...; mostly empty.
+};
+
+/** Reads a measure with unit, a measure or value representation item, in one record or complex.
+ Without a unit of its own it has that of the context of `representation` (0: none), else
+ millimetres or radians. Empty where there is no number. Follows at most eight references. */
+[[nodiscard]] std::optional<StepMeasure> ReadMeasure(const StepText& text, std::uint64_t id,
+                                                     std::uint64_t representation);
+
+/** One unit of a quantity in the context of a representation [m or rad]; a millimetre or a radian
+ where it names none. */
+[[nodiscard]] double ReadUnitOf(const StepText& text, std::uint64_t representation,
+                                Quantity quantity);
+
+}  // namespace hvas::cad

@@ -1,0 +1,167 @@
+#include "cad/step/text_encoding.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <Resource_Unicode.hxx>
+#include <TCollection_ExtendedString.hxx>
+
+namespace hvas::cad {
+namespace {
+
+constexpr char32_t kReplacement = 0xFFFD;
+
+// What Windows-1252 has where Latin-1 has control characters; 0 where it has nothing.
+constexpr std::array<char16_t, 32> kWindows{
+    0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+    0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+    0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
+
+void AppendUtf8(char32_t c, std::string* out) {
+  const auto put = [out](char32_t byte) { out->push_back(static_cast<char>(byte)); };
+  if (c < 0x80) {
+    put(c);
+  } else if (c < 0x800) {
+    put(0xC0 | (c >> 6));
+    put(0x80 | (c & 0x3F));
+  } else if (c < 0x10000) {
+    put(0xE0 | (c >> 12));
+    put(0x80 | ((c >> 6) & 0x3F));
+    put(0x80 | (c & 0x3F));
+  } else {
+    put(0xF0 | (c >> 18));
+    put(0x80 | ((c >> 12) & 0x3F));
+    put(0x80 | ((c >> 6) & 0x3F));
+    put(0x80 | (c & 0x3F));
+  }
+}
+
+std::string Utf16ToUtf8(std::u16string_view units) {
+  std::string text;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const char32_t unit = units[i];
+    const bool is_high = unit >= 0xD800 && unit < 0xDC00;
+    const bool is_low = unit >= 0xDC00 && unit < 0xE000;
+    if (is_high && i + 1 < units.size() && units[i + 1] >= 0xDC00 && units[i + 1] < 0xE000) {
+      AppendUtf8(0x10000 + ((unit - 0xD800) << 10) + (units[++i] - 0xDC00U), &text);
+    } else {
+      AppendUtf8(is_high || is_low || unit >= 0xFFFE ? kReplacement : unit, &text);
+    }
+  }
+  return text;
+}
+
+std::uint8_t ByteAt(std::string_view bytes, std::size_t i) {
+  return static_cast<std::uint8_t>(bytes[i]);
+}
+
+/** Length of the UTF-8 sequence that starts at `i`; 0 where there is none (RFC 3629). */
+std::size_t SequenceLength(std::string_view bytes, std::size_t i) {
+  const std::uint8_t lead = ByteAt(bytes, i);
+  if (lead < 0x80) {
+    return 1;
+  }
+  const std::size_t length = lead >= 0xC2 && lead < 0xE0   ? 2
+                             : lead >= 0xE0 && lead < 0xF0 ? 3
+                             : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                           : 0;
+  if (length == 0 || i + length > bytes.size()) {
+    return 0;
+  }
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((ByteAt(bytes, i + k) & 0xC0U) != 0x80) {
+      return 0;
+    }
+  }
+  const std::uint8_t second = ByteAt(bytes, i + 1);
+  const bool is_overlong = (lead == 0xE0 && second < 0xA0) || (lead == 0xF0 && second < 0x90);
+  const bool is_beyond = (lead == 0xED && second >= 0xA0) || (lead == 0xF4 && second >= 0x90);
+  return is_overlong || is_beyond ? 0 : length;
+}
+
+/** Shift-JIS that no text in a Latin alphabet would be taken for. */
+bool IsShiftJis(std::string_view bytes) {
+  bool is_japanese = false;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const std::uint8_t lead = ByteAt(bytes, i);
+    if (lead < 0x80 || (lead >= 0xA1 && lead <= 0xDF)) {  // ASCII, half-width katakana.
+      continue;
+    }
+    const std::uint8_t trail = i + 1 < bytes.size() ? ByteAt(bytes, i + 1) : 0;
+    const bool is_lead = (lead >= 0x81 && lead <= 0x9F) || (lead >= 0xE0 && lead <= 0xEF);
+    if (!is_lead || trail < 0x40 || trail == 0x7F || trail > 0xFC) {
+      return false;
+    }
+    is_japanese = is_japanese || lead <= 0x9F;
+    ++i;
+  }
+  return is_japanese;
+}
+
+std::string ShiftJisToUtf8(std::string_view bytes) {
+  TCollection_ExtendedString text;
+  Resource_Unicode::ConvertSJISToUnicode(std::string(bytes).c_str(), text);
+  std::u16string units;
+  for (int i = 1; i <= text.Length(); ++i) {
+    units.push_back(text.Value(i));
+  }
+  return Utf16ToUtf8(units);
+}
+
+std::string WindowsToUtf8(std::string_view bytes) {
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const std::uint8_t byte = ByteAt(bytes, i);
+    const bool is_special = byte >= 0x80 && byte < 0xA0;
+    const char32_t c = is_special ? kWindows.at(byte - 0x80U) : byte;
+    AppendUtf8(c == 0 && byte != 0 ? kReplacement : c, &text);
+  }
+  return text;
+}
+
+/** Without control characters (they become blanks) and surrounding blanks. */
+std::string Tidy(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<std::uint8_t>(c) < 0x20 || c == 0x7F; }, ' ');
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? std::string()
+                                    : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+}  // namespace
+
+bool IsUtf8(std::string_view bytes) {
+  for (std::size_t i = 0; i < bytes.size();) {
+    const std::size_t length = SequenceLength(bytes, i);
+    if (length == 0) {
+      return false;
+    }
+    i += length;
+  }
+  return true;
+}
+
+std::string CleanName(std::string_view name) {
+  if (IsUtf8(name)) {
+    return Tidy(std::string(name));
+  }
+  return Tidy(IsShiftJis(name) ? ShiftJisToUtf8(name) : WindowsToUtf8(name));
+}
+
+std::string CleanName(std::u16string_view name) {
+  const bool is_narrow =
+      std::all_of(name.begin(), name.end(), [](char16_t unit) { return unit <= 0xFF; });
+  if (is_narrow) {
+    std::string bytes;
+    for (const char16_t unit : name) {
+      bytes.push_back(static_cast<char>(unit));
+    }
+    return CleanName(bytes);
+  }
+  return Tidy(Utf16ToUtf8(name));
+}
+
+}  // namespace hvas::cad
