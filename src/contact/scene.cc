@@ -89,9 +89,11 @@ struct Scene::Data {
   void Run(const spatial::Box& box_W, const QueryOptions& options, const QueryWorkspace::Data& work,
            BodyQuery* query) const noexcept {
     tree.Query(box_W, [&](std::uint32_t item) {
+      const auto has_item = [item](std::span<const BodyId> list) {
+        return std::find(list.begin(), list.end(), BodyId{item}) != list.end();
+      };
       if (BodyId{item} != options.self &&
-          std::find(options.left_out.begin(), options.left_out.end(), BodyId{item}) ==
-              options.left_out.end()) {
+          std::none_of(options.left_out.begin(), options.left_out.end(), has_item)) {
         query->Collect(BodyId{item}, Place(item));
       }
       return true;

@@ -49,7 +49,7 @@ struct BrokenEdges {
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
   std::span<const IgnoredPair> ignored{};
-  std::span<const BodyId> left_out{};  ///< Bodies that are not asked at all.
+  std::array<std::span<const BodyId>, 2> left_out{};  ///< Lists of bodies that are not asked.
   /** The held part's faces as made; null: those of `self`, and if there is none, as drawn. */
   const FaceOffsets* held_offsets{nullptr};
   BodyId self;  ///< This body of the scene is the held one itself: skipped.

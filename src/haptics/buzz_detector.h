@@ -11,8 +11,8 @@ namespace hvas::haptics {
  stable swings faster, and its force swings with it. */
 struct BuzzThresholds {
   double speed{0.03};   ///< Swings that stay below, either way, are none [m/s] or [rad/s].
-  double force{0.4};    ///< The same of the force within a swing, from end to end [N] or [N m].
-  double window{0.16};  ///< In which `kReversals` reversals are too many [s]: 23 Hz or more.
+  double force{0.4};    ///< Change of the force within a swing, from end to end [N] or [N m].
+  double window{0.16};  ///< Time in which `kReversals` reversals are too many [s]: 23 Hz or more.
 };
 
 /** Finds fast reversals of the hand's velocity together with those of its force, along each axis
@@ -30,10 +30,10 @@ class BuzzDetector {
 
  private:
   struct Axis {
-    int sign{0};      ///< Of the swing that it is in.
-    double f_min{0};  ///< In this swing.
+    int sign{0};      ///< Present swing's.
+    double f_min{0};  ///< Reached in this swing.
     double f_max{0};
-    std::array<double, kReversals> times{};  ///< Of the last reversals; ring.
+    std::array<double, kReversals> times{};  ///< Times of the last reversals; a ring.
     std::size_t next{0};
     std::size_t count{0};
   };

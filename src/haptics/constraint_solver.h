@@ -28,7 +28,7 @@ class ConstraintSolver {
   static constexpr int kMaxContacts = 128;
   static constexpr int kMaxPatches = 32;
   static constexpr int kMaxBoundedRows = 4;
-  static constexpr int kWorld = -1;  ///< In the place of a body: what does not move.
+  static constexpr int kWorld = -1;  ///< Index of what does not move, in place of a body's.
 
   /** A body as it is before the step. */
   struct Body {
@@ -36,7 +36,7 @@ class ConstraintSolver {
     Mat3 I_W{Mat3::Identity()};  ///< About the centre of mass.
     Vec3 p_WCm{Vec3::Zero()};
     spatial::Twist V_0;
-    spatial::Wrench F_Cm_W;  ///< On it, besides what the solver adds.
+    spatial::Wrench F_Cm_W;  ///< Wrench on it besides what the solver adds.
   };
 
   /** Contacts of two bodies that share their friction. */
@@ -44,9 +44,10 @@ class ConstraintSolver {
     int body{0};
     int other{kWorld};
     double coefficient{0};
-    /** Of the bristles, all contacts together [N/m]; they share it as they share the load. */
+    /** Stiffness of the bristles, all contacts together [N/m]; they share it as they share the
+     * load. */
     double stiffness{std::numeric_limits<double>::infinity()};
-    /** Of the normal force, against rolling and turning on the spot [m]. */
+    /** Lever arm of the normal force against rolling and turning on the spot [m]. */
     double rolling_arm{0};
   };
 
@@ -59,7 +60,7 @@ class ConstraintSolver {
     double compliance{0};  ///< [m/N]
     /** The contact pushes no harder than needed to separate at this speed [m/s]. */
     double recovery_speed{std::numeric_limits<double>::infinity()};
-    Vec3 stick_W{Vec3::Zero()};  ///< By how much the bristles are bent before the step [m].
+    Vec3 stick_W{Vec3::Zero()};  ///< Bend of the bristles before the step [m].
   };
 
   /** Starts a step with body 0, the one that springs, dampers and bounded rows act on. Inertia
@@ -116,7 +117,7 @@ class ConstraintSolver {
    the springs were added. */
   [[nodiscard]] spatial::Twist SolveUnconstrained() noexcept;
 
-  /** Of a body at its centre of mass. Valid after Solve. */
+  /** Velocity of a body at its centre of mass. Valid after Solve. */
   [[nodiscard]] spatial::Twist velocity(int body) const noexcept {
     const Vec6& V = V_[static_cast<std::size_t>(body)];
     return {V.head<3>(), V.tail<3>()};
@@ -128,8 +129,8 @@ class ConstraintSolver {
 
   [[nodiscard]] const Mat6& inverse() const noexcept { return inverse_[0]; }
 
-  /** Of all rows and contacts on body 0, as [turn; shift] about its centre of mass. Valid after
-   Solve. */
+  /** Impulse of all rows and contacts on body 0, as [turn; shift] about its centre of mass. Valid
+   after Solve. */
   [[nodiscard]] Vec6 row_impulse() const noexcept { return A_ * V_[0] - rhs_; }
 
   [[nodiscard]] int contact_count() const noexcept { return contact_count_; }

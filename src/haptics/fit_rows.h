@@ -12,7 +12,7 @@ struct FitLoad {
   double in{0};         ///< Against going in [N].
   double out{0};        ///< Against coming out [N].
   double torque{0};     ///< Against turning about the axis [N m].
-  double shown_in{0};   ///< As paper W displays them: k_r or k_s times the above [N].
+  double shown_in{0};   ///< Load that paper W displays: k_r or k_s times the above [N].
   double shown_out{0};  ///< [N]
 };
 
@@ -56,7 +56,7 @@ class FitRows {
   /** Adds the rows to a step. */
   void Add(const FitLoad& load, const FitAxis& axis, ConstraintSolver* solver) noexcept;
 
-  /** After the solution: the bristles remember, and the forces are known; none without rows. */
+  /** Lets the bristles remember the solution. @returns the forces; none without rows. */
   [[nodiscard]] FitForces Finish(const ConstraintSolver& solver) noexcept;
 
  private:

@@ -23,9 +23,9 @@ struct BodyProperties {
 struct FreeBody {
   contact::BodyId id;
   spatial::Pose X_WB;
-  spatial::Twist V;        ///< At the centre of mass, in W.
+  spatial::Twist V;        ///< Velocity of the centre of mass, in W.
   double time_at_rest{0};  ///< [s]
-  int index{-1};           ///< In this tick's solver.
+  int index{-1};           ///< Index in this tick's solver.
   double clearance{0};     ///< Least distance before the step, or the margin of its query [m].
 };
 
@@ -55,7 +55,8 @@ class FreeBodies {
    awake. */
   bool Wake(contact::BodyId id, const spatial::Pose& X_WB, const spatial::Twist& V) noexcept;
 
-  /** The same, and where too many are awake the one that has been at rest for longest sleeps. */
+  /** Wakes a body as Wake does; where too many are awake, the one that has been at rest for longest
+ sleeps. */
   void WakeFirst(contact::BodyId id, const spatial::Pose& X_WB, const spatial::Twist& V) noexcept;
 
   [[nodiscard]] bool is_loose(contact::BodyId id) const noexcept {
@@ -72,7 +73,7 @@ class FreeBodies {
   /** Puts to sleep those that have been at rest for so long [s]. */
   void Sleep(double rest_time) noexcept;
 
-  /** As the solver takes it: in W, under gravity, turning as it would by itself. */
+  /** Description for the solver: in W, under gravity, turning as the body would by itself. */
   [[nodiscard]] ConstraintSolver::Body MakeSolverBody(const FreeBody& body, const Vec3& gravity_W,
                                                       double dt) const noexcept;
 

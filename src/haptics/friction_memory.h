@@ -23,8 +23,8 @@ namespace hvas::haptics {
 
 /** One of the two bodies of a pair that touch. */
 struct TouchingBody {
-  int index{ConstraintSolver::kWorld};  ///< In the solver; kWorld when it cannot move.
-  std::uint32_t id{0xffffffffU};        ///< Of its body in the scene.
+  int index{ConstraintSolver::kWorld};  ///< Index in the solver; kWorld when it cannot move.
+  std::uint32_t id{0xffffffffU};        ///< Id of its body in the scene.
   spatial::Pose X_WB;                   ///< Now. Of what cannot move: anything, the same each tick.
 };
 

@@ -43,7 +43,7 @@ struct HeldMember {
   product::OccurrenceId occurrence;
   contact::BodyId body;
   std::shared_ptr<const contact::Shape> shape;
-  spatial::Pose X_BS;                     ///< In the frame of the part in the hand.
+  spatial::Pose X_BS;                     ///< Pose in the frame of the part in the hand.
   std::vector<contact::BodyId> left_out;  ///< The rest of the subassembly, and what it overlaps.
 };
 
@@ -63,7 +63,8 @@ struct HeldPart {
   std::vector<HeldMate> mates;
   bool lacks_partners{false};  ///< What it should have been put to is not there: it never seats.
   std::vector<contact::BodyId> left_out;  ///< Lie in it as drawn, or move with it: no contact.
-  std::vector<HeldMember> members;        ///< Of a subassembly, besides this part.
+  std::vector<HeldMember> members;        ///< Other parts of a subassembly.
+  std::vector<contact::BodyId> bodies;    ///< All that is in the hand: `body`, and the members'.
   fits::FrictionSurface surface{fits::FrictionSurface::kUnknown};
   bool falls_when_dropped{false};  ///< Let go anywhere but in its place, it is a free body.
 };

@@ -10,8 +10,8 @@ namespace hvas::haptics {
 
 /** What a hand and a force can do to a handle, at most. SI. */
 struct KickThresholds {
-  double resolution{23e-6};  ///< Of the encoders [m].
-  double mass{0.1};          ///< Of the mechanism at the handle [kg].
+  double resolution{23e-6};  ///< Resolution of the encoders [m].
+  double mass{0.1};          ///< Mass of the mechanism at the handle [kg].
   double min_force{0.3};     ///< Below this a force tells nothing of its direction [N].
   double jerk{200};          ///< A hand that works changes its acceleration no faster [m/s^3].
   double blow{80};           ///< Hands change the acceleration by less, whatever they do [m/s^2].
@@ -54,7 +54,7 @@ class KickDetector {
   /** What happened within three spans. */
   struct Window {
     Vec3 deviation{Vec3::Zero()};  ///< e
-    Vec3 moved{Vec3::Zero()};      ///< In the last span.
+    Vec3 moved{Vec3::Zero()};      ///< Values of the last span.
     Vec3 moved_before{Vec3::Zero()};
     double most_force{0};
     double least_force{0};

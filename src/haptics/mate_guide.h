@@ -12,15 +12,15 @@ namespace hvas::haptics {
 
 /** Where the held part stands to one mate. */
 struct MateGeometry {
-  Vec3 axis_W{Vec3::UnitZ()};  ///< Of the placed side: axis, or outward normal.
+  Vec3 axis_W{Vec3::UnitZ()};  ///< Axis or outward normal of the placed side.
   Vec3 p_WQ{Vec3::Zero()};     ///< The held side's point that the mate acts on.
   Vec3 offset_W{
-      Vec3::Zero()};          ///< From where Q belongs to Q: across the axis, or along the normal.
+      Vec3::Zero()};  ///< Vector from where Q belongs to Q: across the axis, or along the normal.
   Vec3 tilt_W{Vec3::Zero()};  ///< Small rotation that takes the held axis to the placed one [rad].
   double angle{0};            ///< |tilt| (X(7)) [rad].
   double distance{0};         ///< |offset| [m].
   double engaged{0};          ///< Length of the overlap: the insertion depth l [m].
-  double depth{0};            ///< The same, negative by how far the spans are apart [m].
+  double depth{0};            ///< Insertion depth; negative by how far the spans are apart [m].
 };
 
 /** Geometry of a mate at a pose of the held part. RT-safe. */
@@ -71,7 +71,7 @@ class MateGuide {
    [m/s]. */
   [[nodiscard]] FitLoad CalcFitLoad(const HeldPart& part, double slip) const noexcept;
 
-  /** With which the bores hold the shaft back, for W5's Coulomb friction [N]. */
+  /** Force with which the bores hold the shaft back, for W5's Coulomb friction [N]. */
   [[nodiscard]] double lateral_force() const noexcept { return lateral_force_; }
 
   /** Deepest engagement of a captured axis mate [m]. */

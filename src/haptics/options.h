@@ -41,17 +41,17 @@ struct CouplingGains {
 /** When a mate is captured and how it guides. */
 struct GuidanceOptions {
   mates::CaptureThresholds capture;
-  double ramp_time{0.25};            ///< From first touch of guidance to full stiffness [s].
+  double ramp_time{0.25};            ///< Time from first touch of guidance to full stiffness [s].
   double k_lin{1e6};                 ///< Full stiffness across an axis [N/m].
   double k_rot{1e4};                 ///< Full stiffness against tilt [N m/rad].
   double max_force{20};              ///< Guidance never pulls harder [N].
   double max_torque{2};              ///< [N m]
   double attraction_force{1.0};      ///< K1 F_max of X(9) [N]; until a fit answers.
-  double attraction_torque{0.15};    ///< The same about a free axis [N m].
-  double seat_distance{0.15e-3};     ///< From the goal, to count as arrived [m].
+  double attraction_torque{0.15};    ///< Attraction about a free axis [N m].
+  double seat_distance{0.15e-3};     ///< Distance from the goal at which a part has arrived [m].
   double seat_angle{0.06};           ///< [rad]
-  double loose_seat_distance{3e-3};  ///< For a part without any mate [m].
-  double seat_time{0.12};            ///< Of the last, exact, movement into place [s].
+  double loose_seat_distance{3e-3};  ///< Distance for a part without any mate [m].
+  double seat_time{0.12};            ///< Duration of the last, exact, movement into place [s].
   /** A part that is let go so near to its place, and can be moved there, is in it [m]. 0: it stays
    where it was let go. */
   double finish_distance{0};
@@ -59,9 +59,9 @@ struct GuidanceOptions {
 
 struct ContactOptions {
   double compliance{5e-7};      ///< [m/N]; 5 um at 10 N.
-  double settling_time{2e-3};   ///< Of a contact under a new load [s].
-  fits::FrictionLaw friction;   ///< Of pairs that the table of materials does not have.
-  double rolling_arm{5e-4};     ///< Of free bodies, against rolling and turning on the spot [m].
+  double settling_time{2e-3};   ///< Settling time of a contact under a new load [s].
+  fits::FrictionLaw friction;   ///< Friction of pairs that the table of materials does not have.
+  double rolling_arm{5e-4};     ///< Arm against rolling and turning of free bodies [m].
   double recovery_speed{0.02};  ///< Penetration is undone no faster [m/s].
   double max_depth{100e-6};     ///< A contact pushes no harder than at this depth [m].
   double edge_break{1e-6};      ///< Lower ledges do not catch [m].
@@ -75,8 +75,9 @@ struct ContactOptions {
 
 /** How much a tick may do. Less of it where the time does not suffice, in this order. */
 struct Effort {
-  std::uint32_t point_budget{contact::QueryOptions::kDefaultPointBudget};  ///< Of each query.
-  int iterations{30};                                                      ///< Of the solver.
+  std::uint32_t point_budget{
+      contact::QueryOptions::kDefaultPointBudget};  ///< Points of each query.
+  int iterations{30};                               ///< Iterations of the solver.
   bool wakes_bodies{true};  ///< Loose parts begin to move when they are touched.
 };
 
@@ -97,8 +98,8 @@ struct TickOptions {
   std::optional<SafetyLimits> limits;
   /** A device is in the hand: the energy that it gives and takes is controlled (N6). */
   bool controls_passivity{false};
-  /** For a device that shows forces but no torques: from its point to where the hand holds it, in H
-   [m]; a torque becomes the force at that lever. Zero: torques are not shown then. */
+  /** Lever of a device that shows forces but no torques: from its point to where the hand holds it,
+   in H [m]; a torque becomes the force at that lever. Zero: torques are not shown then. */
   Vec3 p_HG{Vec3::Zero()};
   double dt{1e-3};  ///< [s]
 };

@@ -26,8 +26,8 @@ struct PassivityLimits {
 
 /** Where energy went [J]. The first four only grow. */
 struct PassivityAccount {
-  double in{0};         ///< From the hand.
-  double out{0};        ///< To the hand.
+  double in{0};         ///< Energy from the hand.
+  double out{0};        ///< Energy to the hand.
   double credited{0};   ///< Owed to it.
   double forgotten{0};  ///< Old dissipation, no licence any more.
   double withheld{0};  ///< That the wanted force would have given beyond what the written one gave.
@@ -90,7 +90,7 @@ class PassivityChannel {
   double energy_{0};
   PassivityAccount account_;
   Vec3 v_{Vec3::Zero()};
-  Vec3 moved_{Vec3::Zero()};           ///< In the last tick.
+  Vec3 moved_{Vec3::Zero()};           ///< Displacement in the last tick.
   std::array<Given, kHistory> given_;  ///< Ring; the newest is before `next_`.
   std::size_t next_{0};
   Vec3 wanted_{Vec3::Zero()};
@@ -98,10 +98,11 @@ class PassivityChannel {
   bool is_lost_{false};
   double lost_force_{0};  ///< Largest that acted while there was no position.
 
-  std::array<double, kBuckets> dissipation_{};  ///< Of each stretch of the window; ring.
+  std::array<double, kBuckets>
+      dissipation_{};  ///< Dissipation in each stretch of the window; a ring.
   std::size_t bucket_{0};
   double bucket_time_{0};
-  double dissipated_{0};  ///< In all, as of the last tick.
+  double dissipated_{0};  ///< Total, as of the last tick.
 };
 
 /** Passivity observer and controller of one device, translation and rotation apart (Hannaford and
@@ -147,7 +148,7 @@ class PassivityController {
   bool has_pose_{false};
 };
 
-/** For a device whose tick takes dt. */
+/** Makes the controller of a device whose tick takes dt. */
 [[nodiscard]] PassivityController MakePassivityController(const device::DeviceProfile& profile,
                                                           double dt) noexcept;
 

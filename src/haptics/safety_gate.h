@@ -25,19 +25,19 @@ struct SafetyLimits {
 
   double continuous_force{kNever};   ///< That the motors stand for ever [N].
   double continuous_torque{kNever};  ///< [N m]
-  double thermal_time{1};            ///< Over which the mean square is taken [s].
+  double thermal_time{1};            ///< Time over which the mean square is taken [s].
 
-  double soft_start_time{0};          ///< In which the limits grow to their full size [s].
+  double soft_start_time{0};          ///< Time in which the limits grow to their full size [s].
   double engage_force_rate{kNever};   ///< The force grows no faster meanwhile [N/s].
   double engage_torque_rate{kNever};  ///< [N m/s]
   double cut_time{0};                 ///< A cut is done within this [s]; 0: the rates hold.
-  double fade_speed{kNever};          ///< Of the hand: beyond this the force fades [m/s].
-  double cut_speed{kNever};           ///< And here it is zero.
+  double fade_speed{kNever};          ///< Speed of the hand beyond which the force fades [m/s].
+  double cut_speed{kNever};           ///< Speed at which it is zero.
   double model_hold{kNever};          ///< A model of up to this age is good [s].
   double model_fade{0.05};            ///< Then the force goes to zero in so long.
-  double client_hold{kNever};         ///< The same of the client.
+  double client_hold{kNever};         ///< Age of the client's last word at which the force goes.
   double client_fade{0.05};
-  bool has_detectors{false};  ///< Of kicks and buzzing.
+  bool has_detectors{false};  ///< Detection of kicks and buzzing.
   KickThresholds kick{};
   BuzzThresholds buzz{};
   BuzzThresholds turn_buzz{0.6, 0.02, 0.16};
@@ -98,8 +98,8 @@ struct GateInput {
   bool is_held{true};       ///< The dead-man or presence switch is closed, or there is none.
   bool is_stopped{false};   ///< An emergency stop, of the device or in software.
   bool is_gripping{true};   ///< The hand holds on to a part: opening this ends a latch.
-  bool has_engaged{false};  ///< In this tick a part was taken or a mate captured.
-  double model_age{0};      ///< Of what F was computed from [s].
+  bool has_engaged{false};  ///< A part was taken or a mate captured in this tick.
+  double model_age{0};      ///< Age of what F was computed from [s].
   double client_age{0};     ///< Since whoever asks for F was last heard of [s].
 };
 
@@ -121,7 +121,7 @@ class SafetyGate {
   /** Returns the wrench that may go to the device. Never not finite, never beyond the limits. */
   [[nodiscard]] spatial::Wrench Pass(const GateInput& input) noexcept;
 
-  /** The same where nothing else is known. */
+  /** Passes a wrench where nothing else is known. */
   [[nodiscard]] spatial::Wrench Pass(const spatial::Wrench& F_W, double dt) noexcept;
 
   /** What the last Pass had to do. */
@@ -139,7 +139,7 @@ class SafetyGate {
     double rate;
     double engage_rate;
     ThermalLimit thermal;
-    double start_limit;  ///< From which the soft start's limit grows.
+    double start_limit;  ///< Limit with which the soft start begins.
     double cut_from;     ///< Norm when the cut began.
     Vec3 last{Vec3::Zero()};
   };
@@ -163,7 +163,7 @@ class SafetyGate {
   bool has_opened_{false};     ///< Since it latched.
   bool is_interrupted_{true};  ///< Nothing went out in the last tick, for a reason.
   bool is_cut_{false};
-  double start_progress_{1};  ///< Of the soft start, 0..1.
+  double start_progress_{1};  ///< Progress of the soft start, 0..1.
   std::uint32_t actions_{kGatePassed};
 };
 

@@ -9,15 +9,15 @@ namespace hvas::haptics {
 
 /** The device's room in the scene, and how one gets beyond it. */
 struct WorkspaceOptions {
-  WorkspaceMapping mapping;  ///< At first.
+  WorkspaceMapping mapping;  ///< Mapping at first.
   /** Edges of the box that the handle moves in, about D's origin [m]; infinite: no border. */
   Vec3 box{Vec3::Constant(std::numeric_limits<double>::infinity())};
-  double border_speed{0.4};  ///< Of the scene, with the handle at the very edge [m/s].
+  double border_speed{0.4};  ///< Speed of the scene with the handle at the very edge [m/s].
   double border_force{1.2};  ///< That the border pushes back with there [N].
-  double border_share{0.2};  ///< Of each half edge, that belongs to the border.
+  double border_share{0.2};  ///< Share of each half edge that belongs to the border.
 };
 
-/** From the handle to the hand in the scene (X5). Inside the box the hand follows the handle; in
+/** Maps the handle to the hand in the scene (X5). Inside the box the hand follows the handle; in
  the border it also drifts on, the faster the further out, against a soft spring that is felt
  (bubble technique: Dominjon et al., World Haptics 2005). While the clutch is pressed the hand stays
  where it is, and the handle can be brought to a better place; after a gap in the samples the hand

@@ -10,7 +10,7 @@ namespace hvas::haptics {
 struct WorkspaceMapping {
   spatial::Pose X_WD;
   double scale{1};                 ///< Scene length per device length, > 0.
-  Quat q_index{Quat::Identity()};  ///< Between the handle and the hand, changed by clutching.
+  Quat q_index{Quat::Identity()};  ///< Offset of the hand from the handle, changed by clutching.
 };
 
 /** The hand H in the scene. */

@@ -140,7 +140,7 @@ class ScriptedHand {
     Move(d, turn, time, [](double s) { return std::pair(s, 1.0); });
   }
 
-  /** The same along a minimum-jerk path. */
+  /** Moves along a minimum-jerk path. */
   void MoveSoftly(const Vec3& d, double time, const Vec3& turn = Vec3::Zero()) {
     Move(d, turn, time, [](double s) {
       return std::pair(s * s * s * (10 + s * (-15 + 6 * s)), 30 * s * s * (1 - s) * (1 - s));
@@ -204,6 +204,7 @@ struct HeldRig {
   void Place(std::shared_ptr<const contact::Shape> shape, const spatial::Pose& X_WB_start) {
     part.occurrence = product::OccurrenceId(1);
     part.body = scene.Add(shape, X_WB_start);
+    part.bodies = {part.body};
     part.shape = std::move(shape);
     part.X_WB_start = X_WB_start;
   }

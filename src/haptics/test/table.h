@@ -36,6 +36,7 @@ struct Table {
   void Drop(contact::BodyId id, std::shared_ptr<const contact::Shape> shape, double mass,
             const Mat3& inertia) {
     part.body = id;
+    part.bodies = {id};
     part.shape = std::move(shape);
     part.mass = mass;
     part.I_BBcm_B = inertia;

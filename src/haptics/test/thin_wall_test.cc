@@ -91,6 +91,7 @@ struct Wall {
       HeldPart part;
       part.shape = shape;
       part.body = scene.Add(shape, Pose(Vec3(1, 1, 1)));
+      part.bodies = {part.body};
       scene.SetEnabled(part.body, false);
       part.mass = 0.05;
       part.p_BoBcm_B = shape->box_B().centre();

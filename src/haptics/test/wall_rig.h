@@ -33,7 +33,7 @@ inline device::HandIntent MakeHand(const Grip& grip) {
   return hand;
 }
 
-/** Of a movement along x from `from` to `to` in `time` by minimum jerk; p and v. */
+/** State of a movement along x from `from` to `to` in `time` by minimum jerk; p and v. */
 struct Reach {
   double p;
   double v;
@@ -127,14 +127,14 @@ inline int CountDelay(const device::DeviceProfile& profile, double dt) {
 
 /** The hand presses on a wall; does the loop come to rest? */
 struct PressRun {
-  double swing{0};    ///< Of the handle over the last 0.3 s, from end to end [m].
+  double swing{0};    ///< Swing of the handle over the last 0.3 s, from end to end [m].
   double allowed{0};  ///< More is not stable [m].
-  double work{0};     ///< Of the motors on the hand, over all [J].
+  double work{0};     ///< Work of the motors on the hand, over all [J].
 
   double force{0};     ///< That the wall gave over the same time, on average [N].
   double expected{0};  ///< That it gives at rest, in series with the hand's spring [N].
 
-  /** At rest, and the wall is still there. */
+  /** The handle is at rest, and the wall is still there. */
   [[nodiscard]] bool is_stable() const { return swing <= allowed && force >= 0.5 * expected; }
 };
 

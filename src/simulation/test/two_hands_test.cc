@@ -26,9 +26,8 @@ using testing::OccurrenceId;
 using testing::Pose;
 using testing::Watch;
 
-static_assert(noexcept(std::declval<Simulation&>().HapticTick(1,
-                                                              std::declval<const DeviceState&>())));
-static_assert(noexcept(std::declval<haptics::HapticTick&>().ShareSceneWith(nullptr, true)));
+static_assert(noexcept(std::declval<HapticSide&>().Tick(1, std::declval<const DeviceState&>())));
+static_assert(noexcept(std::declval<const haptics::HapticTick&>().Exchange()));
 
 constexpr double kHalf = 15e-3;  // [m] of each block's edges
 const OccurrenceId kFirst(0);
@@ -67,17 +66,17 @@ class TwoHands {
         state.t_ns += 1'000'000;
         state.V_DH.v = v[hand];
         state.X_DH = Pose(state.X_DH.q(), state.X_DH.p() + 1e-3 * v[hand]);
-        out[hand] = simulation.HapticTick(hand, state);
+        out[hand] = simulation.haptics().Tick(hand, state);
         watches[hand].OnTick(hand, state, out[hand]);
       }
       if (states[0].t_ns % Simulation::kPhysicsStepNs == 0) {
-        simulation.PhysicsStep(&events);
+        simulation.physics().Step(&events);
       }
     }
   }
 
   [[nodiscard]] Vec3 CentreOf(OccurrenceId id) const {
-    return simulation.pose(id) * simulation.model().bodies[id.index()].mass.p_BoBcm_B;
+    return simulation.physics().pose(id) * simulation.model().bodies[id.index()].mass.p_BoBcm_B;
   }
 
   /** Moves a hand to a place at once; only an empty one should. */
@@ -94,8 +93,8 @@ class TwoHands {
   void TakeBlocksUp() {
     Take(0, kFirst);
     Take(1, kSecond);
-    ASSERT_EQ(simulation.placement(kFirst), Placement::kHeld);
-    ASSERT_EQ(simulation.placement(kSecond), Placement::kHeld);
+    ASSERT_EQ(simulation.physics().placement(kFirst), Placement::kHeld);
+    ASSERT_EQ(simulation.physics().placement(kSecond), Placement::kHeld);
     const Vec3 up(0, 0, 0.1);
     Run(1.0, up, up);
     const Vec3 p_beside = states[0].X_DH.p() + Vec3(2 * kHalf + 5e-3, 0, 0);
@@ -129,14 +128,14 @@ TEST(TwoHandsTest, PhysicsThatStandsStillForHalfAMinuteMissesNoPart) {
       state.V_DH.v = Vec3::Zero();
       state.is_gripping = i < 10'000;
       state.condition = i % 2 == 0 ? device::Condition::kLost : device::Condition::kReady;
-      hands.out[hand] = hands.simulation.HapticTick(hand, state);
+      hands.out[hand] = hands.simulation.haptics().Tick(hand, state);
     }
   }
   hands.Run(0.1);
   const auto& events = hands.events.events;
   for (std::size_t hand = 0; hand < 2; ++hand) {
     SCOPED_TRACE(hand);
-    EXPECT_FALSE(hands.simulation.is_holding(hand));
+    EXPECT_FALSE(hands.simulation.physics().is_holding(hand));
     const auto of_hand = [hand](SimulationEvent::Kind kind) {
       return [hand, kind](const SimulationEvent& e) { return e.hand == hand && e.kind == kind; };
     };
@@ -150,8 +149,8 @@ TEST(TwoHandsTest, PhysicsThatStandsStillForHalfAMinuteMissesNoPart) {
   hands.Run(1.0);  // until what was let go of lies on the table
   hands.Take(0, kFirst);
   hands.Take(1, kSecond);
-  EXPECT_EQ(hands.simulation.placement(kFirst), Placement::kHeld);
-  EXPECT_EQ(hands.simulation.placement(kSecond), Placement::kHeld);
+  EXPECT_EQ(hands.simulation.physics().placement(kFirst), Placement::kHeld);
+  EXPECT_EQ(hands.simulation.physics().placement(kSecond), Placement::kHeld);
 }
 
 TEST(TwoHandsTest, PartsPushAgainstEachOtherWithOneForce) {  // X7
@@ -236,7 +235,7 @@ TEST(TwoHandsTest, OneHandPressesWhatTheOtherHasOnTheTable) {  // X7
 TEST(TwoHandsTest, WhatOneHandHoldsTheOtherCannotTake) {  // X3
   TwoHands hands(Blocks());
   hands.Take(0, kFirst);
-  ASSERT_EQ(hands.simulation.placement(kFirst), Placement::kHeld);
+  ASSERT_EQ(hands.simulation.physics().placement(kFirst), Placement::kHeld);
   hands.Take(1, kFirst);
   EXPECT_FALSE(hands.out[1].occurrence.is_valid());
   EXPECT_EQ(hands.out[0].occurrence, kFirst);
@@ -299,7 +298,7 @@ TEST(TwoHandsTest, OneHandCatchesWhatTheOtherDrops) {  // X3
     hands.states[1 - dropper].is_gripping = true;
     hands.Run(0.5);
     EXPECT_EQ(hands.out[1 - dropper].occurrence, kFirst);
-    EXPECT_EQ(hands.simulation.placement(kFirst), Placement::kHeld);
+    EXPECT_EQ(hands.simulation.physics().placement(kFirst), Placement::kHeld);
     EXPECT_NEAR(hands.out[1 - dropper].X_WD.p().z(), p_held.z() - 15e-3, 20e-3);
     EXPECT_TRUE(hands.watches[1 - dropper].is_finite);
     EXPECT_LE(hands.watches[1 - dropper].largest_jump, 0.5);
@@ -331,7 +330,7 @@ void Assign(const Simulation& simulation, OccurrenceId id, SimulatedPerson* pers
   PersonTask task;
   task.occurrence = id;
   task.p_BG = X_BG.p();
-  task.X_WG_start = simulation.pose(id) * X_BG;
+  task.X_WG_start = simulation.physics().pose(id) * X_BG;
   task.X_WG_goal = body.X_WB_goal * X_BG;
   task.centre_W = simulation.model().centre_W;
   task.transfer_radius = simulation.model().transfer_radius;
@@ -422,7 +421,7 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   ASSERT_TRUE(log.tick(2 * 1050).is_stopped);
   for (std::size_t i = 0; i < log.tick_count(); ++i) {
     ASSERT_EQ(log.tick(i).hand, i % 2);
-    ASSERT_EQ(again.ReplayTick(log, i).F_H_D.f, log.tick(i).F_H_D.f) << i;
+    ASSERT_EQ(again.haptics().ReplayTick(log, i).F_H_D.f, log.tick(i).F_H_D.f) << i;
   }
 }
 

@@ -1,0 +1,420 @@
+#include "haptics/contact_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "haptics/motion_check.h"
+
+namespace hvas::haptics {
+namespace {
+
+constexpr double kWakeGap = 20e-6;    // [m]; a loose body is woken by what comes so near
+constexpr double kRestSpeed = 1e-4;   // [m/s]; slower bodies are at rest
+constexpr double kDepthNoise = 2e-6;  // [m]
+
+/** The first share of what is deeper than allowed already must not become deeper. */
+double AllowedDepth(double deepest, const ContactOptions& contact) noexcept {
+  return std::max(contact.stop_depth, kDepthNoise - deepest);
+}
+
+/** Limits both parts of a velocity, direction kept. */
+spatial::Twist Limited(const spatial::Twist& V, double max_speed, double max_turn_rate) noexcept {
+  const double speed = V.v.norm();
+  const double turn = V.w.norm();
+  const double scale =
+      std::min({1.0, speed > 0 ? max_speed / speed : 1.0, turn > 0 ? max_turn_rate / turn : 1.0});
+  return {scale * V.w, scale * V.v};
+}
+
+/** Largest distance of a point of a shape's box from Q [m]. */
+double CalcShapeReach(const contact::Shape& shape, const Vec3& p_BQ) noexcept {
+  const spatial::Box& box = shape.box_B();
+  return (box.centre() - p_BQ).norm() + 0.5 * box.size().norm();
+}
+
+}  // namespace
+
+double ContactStep::CalcReach(const HeldPart& part) noexcept {
+  const auto reach_of = [&part](const contact::Shape& shape, const spatial::Pose& X_BS) {
+    const spatial::Box& box = shape.box_B();
+    return (X_BS * box.centre() - part.p_BoBcm_B).norm() + 0.5 * box.size().norm();
+  };
+  double reach = reach_of(*part.shape, spatial::Pose());
+  for (const HeldMember& member : part.members) {
+    reach = std::max(reach, reach_of(*member.shape, member.X_BS));
+  }
+  return reach;
+}
+
+void ContactStep::MoveInScene(const HeldPart& part, const spatial::Pose& X_WB) noexcept {
+  scene_.SetPose(part.body, X_WB);
+  for (const HeldMember& member : part.members) {
+    scene_.SetPose(member.body, X_WB * member.X_BS);
+  }
+}
+
+void ContactStep::Begin(const HeldPart* held, const HandExchange* other) noexcept {
+  held_ = held;
+  other_ = other;
+  const bool has_pushed = other_index_ != ConstraintSolver::kWorld;
+  if (!has_pushed || other == nullptr || other->hold != other_hold_) {
+    F_other_W_ = {};
+  }
+  other_index_ = ConstraintSolver::kWorld;
+  has_solved_contact_ = false;
+}
+
+spatial::Wrench ContactStep::CalcPush(std::uint32_t hold) const noexcept {
+  return other_ != nullptr && other_->pushed_hold == hold ? other_->F_pushed_W : spatial::Wrench();
+}
+
+void ContactStep::FillExchange(HandExchange* exchange) const noexcept {
+  exchange->awake = bodies_.awake();
+  exchange->F_pushed_W = other_index_ == ConstraintSolver::kWorld ? spatial::Wrench() : F_other_W_;
+  exchange->pushed_hold = other_hold_;
+  exchange->has_solved_contact = has_solved_contact_;
+  exchange->contact = mutual_;
+}
+
+ContactStep::HeldShape ContactStep::MakeHeldShape(const HeldPart& part, std::size_t member,
+                                                  const spatial::Pose& X_WB,
+                                                  double margin) noexcept {
+  HeldShape held;
+  held.query.margin = margin;
+  held.query.point_budget = effort_.point_budget;
+  held.query.ignored = {ignored_.data(), guide_.CollectIgnored(part, ignored_, member)};
+  held.query.left_out[1] = unmet_;
+  if (member == 0) {
+    held.shape = part.shape.get();
+    held.X_WS = X_WB;
+    held.query.left_out[0] = part.left_out;
+    held.query.self = part.body;
+  } else {
+    const HeldMember& other = part.members[member - 1];
+    held.shape = other.shape.get();
+    held.X_WS = X_WB * other.X_BS;
+    held.query.left_out[0] = other.left_out;
+    held.query.self = other.body;
+  }
+  return held;
+}
+
+std::span<const contact::BodyId> ContactStep::ListHeld() const noexcept {
+  return held_ != nullptr ? std::span<const contact::BodyId>(held_->bodies)
+                          : std::span<const contact::BodyId>();
+}
+
+std::span<const contact::BodyId> ContactStep::ListHeldByOther() const noexcept {
+  return other_ != nullptr && other_->is_holding()
+             ? std::span<const contact::BodyId>(other_->displayed.part->bodies)
+             : std::span<const contact::BodyId>();
+}
+
+bool ContactStep::IsHeldByOther(contact::BodyId id) const noexcept {
+  const std::span<const contact::BodyId> held = ListHeldByOther();
+  return std::find(held.begin(), held.end(), id) != held.end();
+}
+
+bool ContactStep::IsMovedByOther(contact::BodyId id) const noexcept {
+  return other_ != nullptr && std::any_of(other_->awake.begin(), other_->awake.end(),
+                                          [id](const FreeBody& body) { return body.id == id; });
+}
+
+TouchingBody ContactStep::Touch(const contact::Contact& c, ConstraintSolver* solver) noexcept {
+  TouchingBody other;
+  other.id = c.body.value();
+  if (IsHeldByOther(c.body)) {
+    other.index = other_index_;
+    other.X_WB = scene_.pose(c.body);
+    return other;
+  }
+  if (!bodies_.is_loose(c.body)) {
+    return other;
+  }
+  FreeBody* body = bodies_.FindAwake(c.body);
+  if (body == nullptr && !IsMovedByOther(c.body) && effort_.wakes_bodies && c.distance < kWakeGap &&
+      bodies_.Wake(c.body, scene_.pose(c.body), {})) {
+    body = bodies_.FindAwake(c.body);
+    body->index = solver->AddBody(bodies_.MakeSolverBody(*body, options_.gravity_W, options_.dt));
+  }
+  if (body != nullptr) {
+    other.index = body->index;
+    other.X_WB = body->X_WB;
+  }
+  return other;
+}
+
+void ContactStep::AddQueried(const TouchingBody& body, fits::FrictionSurface surface,
+                             double rolling_arm, ConstraintSolver* solver) noexcept {
+  const ContactOptions& options = options_.contact;
+  const double settling = options_.dt + options.settling_time;
+  account_.is_truncated = account_.is_truncated || workspace_.stats().is_truncated;
+  account_.points_tested += workspace_.stats().points_tested;
+  for (const contact::Contact& c : workspace_.contacts()) {
+    if (body.index == 0 && IsMovedByOther(c.body)) {
+      continue;  // its hand's step has this part as a body
+    }
+    const auto index = static_cast<std::size_t>(solver->contact_count());
+    const TouchingBody other = Touch(c, solver);
+    const BodyProperties* properties = bodies_.properties(c.body);
+    const fits::FrictionLaw law = fits::FindFriction(
+        surface, properties != nullptr ? properties->surface : fits::FrictionSurface::kUnknown,
+        options.friction);
+    ConstraintSolver::Contact contact;
+    contact.patch = friction_.AddPair(body, other, law, rolling_arm, solver);
+    // A spring with a dashpot: F = (-phi - settling_time phi') / c. A blow sinks in no deeper than
+    // a lasting load.
+    const double time = c.distance > 0 ? options_.dt : settling;
+    contact.velocity_bias = -std::max(c.distance, -options.max_depth) / time;
+    contact.compliance = options.compliance * options_.dt / settling;
+    contact.recovery_speed = options.recovery_speed;
+    if (contact.patch < 0 || !friction_.AddContact(c, contact, solver)) {
+      account_.is_truncated = true;
+      break;
+    }
+    contacts_[index] = c;
+  }
+}
+
+void ContactStep::AddHeldContacts(const DisplayedPart& displayed,
+                                  ConstraintSolver* solver) noexcept {
+  if (options_.condition == Condition::kConstraint) {
+    return;
+  }
+  unmet_ = is_solved_by_other() ? ListHeldByOther() : std::span<const contact::BodyId>();
+  const HeldPart& part = *displayed.part;
+  const ContactOptions& contact = options_.contact;
+  const spatial::Twist V = solver->SolveUnconstrained();
+  const double speed = std::min(contact.max_speed, V.v.norm()) +
+                       std::min(contact.max_turn_rate, V.w.norm()) * displayed.reach;
+  const double margin = contact.min_margin + 1.5 * (speed + CalcOtherSpeed()) * options_.dt;
+  clearance_ = margin;
+  const spatial::Pose X_WD_ahead =
+      MoveAbout(displayed.X_WD, part.p_BoBcm_B, displayed.V, options_.dt);
+  for (std::size_t member = 0; member <= part.members.size(); ++member) {
+    HeldShape held = MakeHeldShape(part, member, displayed.X_WD, margin);
+    held.query.broken_edges = {contact.edge_break,
+                               X_WD_ahead * (displayed.X_WD.Inverse() * held.X_WS)};
+    scene_.Query(*held.shape, held.X_WS, held.query, &workspace_);
+    account_.deepest = std::min(account_.deepest, workspace_.deepest());
+    AddQueried({0, part.body.value(), displayed.X_WD}, part.surface, 0, solver);
+  }
+  clearance_ = std::min(margin, account_.deepest);
+  held_contacts_ = solver->contact_count();
+  unmet_ = {};
+}
+
+void ContactStep::AddOtherPart(ConstraintSolver* solver) noexcept {
+  if (other_ == nullptr || !other_->is_holding()) {
+    return;
+  }
+  // But for what this hand pushes it with, it goes on as in its own last step.
+  const HeldResponse& response = other_->response;
+  Vec6 impulse;
+  impulse << options_.dt * F_other_W_.t, options_.dt * F_other_W_.f;
+  V_other_ << response.V.w, response.V.v;
+  V_other_ += response.inverse * (response.gain - impulse);
+  other_hold_ = other_->hold;
+  other_index_ = solver->AddBody(other_->displayed.p_WCm(), V_other_, response.inverse);
+}
+
+double ContactStep::CalcOtherSpeed() const noexcept {
+  return other_index_ == ConstraintSolver::kWorld
+             ? 0.0
+             : V_other_.tail<3>().norm() + V_other_.head<3>().norm() * other_->displayed.reach;
+}
+
+void ContactStep::PushOtherPart(const ConstraintSolver& solver) noexcept {
+  if (other_index_ == ConstraintSolver::kWorld) {
+    return;
+  }
+  const spatial::Twist V = solver.velocity(other_index_);
+  Vec6 change;
+  change << V.w, V.v;
+  change -= V_other_;
+  const Vec6 F = other_->response.matrix * change / options_.dt;
+  F_other_W_ = {F.head<3>(), F.tail<3>()};
+  // Where it will be at the end of the step: what pushes it does not stop at where it was.
+  const DisplayedPart& other_part = other_->displayed;
+  MoveInScene(*other_part.part,
+              MoveAbout(other_part.X_WD, other_part.part->p_BoBcm_B, V, options_.dt));
+}
+
+void ContactStep::AddBodies(ConstraintSolver* solver) noexcept {
+  friction_.BeginTick();
+  AddOtherPart(solver);
+  for (FreeBody& body : bodies_.awake()) {
+    body.index = solver->AddBody(bodies_.MakeSolverBody(body, options_.gravity_W, options_.dt));
+  }
+}
+
+void ContactStep::AddFreeContacts(ConstraintSolver* solver) noexcept {
+  const ContactOptions& options = options_.contact;
+  std::array<contact::BodyId, FreeBodies::kMaxAwake> done;
+  // Those that are woken on the way come at the end of the list.
+  for (std::size_t i = 0; i < bodies_.awake().size(); ++i) {
+    FreeBody& body = bodies_.awake()[i];
+    const contact::Shape& shape = scene_.shape(body.id);
+    const BodyProperties& properties = *bodies_.properties(body.id);
+    contact::QueryOptions query;
+    query.self = body.id;
+    query.left_out[0] = {done.data(), i};
+    query.left_out[1] = ListHeld();
+    query.point_budget = effort_.point_budget;
+    query.broken_edges = {options.edge_break, bodies_.Move(body, body.V, options_.dt)};
+    const double speed =
+        body.V.v.norm() + body.V.w.norm() * CalcShapeReach(shape, properties.p_BoBcm_B);
+    query.margin =
+        options.min_margin +
+        1.5 * options_.dt * (speed + CalcOtherSpeed() + options_.dt * options_.gravity_W.norm());
+    scene_.Query(shape, body.X_WB, query, &workspace_);
+    body.clearance = std::min(query.margin, workspace_.deepest());
+    AddQueried({body.index, body.id.value(), body.X_WB}, properties.surface, options.rolling_arm,
+               solver);
+    done[i] = body.id;
+  }
+}
+
+void ContactStep::MoveFreeBodies(const ConstraintSolver& solver) noexcept {
+  const ContactOptions& options = options_.contact;
+  for (FreeBody& body : bodies_.awake()) {
+    const contact::Shape& shape = scene_.shape(body.id);
+    const double reach = CalcShapeReach(shape, bodies_.properties(body.id)->p_BoBcm_B);
+    body.V = Limited(solver.velocity(body.index), options.max_free_speed,
+                     options.max_free_speed / reach);
+    const double travel = options_.dt * (body.V.v.norm() + body.V.w.norm() * reach);
+    contact::QueryOptions query;
+    query.self = body.id;
+    query.left_out[0] = ListHeld();
+    const double tolerance = AllowedDepth(body.clearance, options);
+    const auto at = [&](double share) { return bodies_.Move(body, body.V, share * options_.dt); };
+    const double share = FindFreeShare(body.clearance + tolerance, travel, [&](double candidate) {
+      return scene_.IsFree(shape, at(candidate), tolerance, query, &workspace_);
+    });
+    body.X_WB = at(share);
+    body.V = {share * body.V.w, share * body.V.v};
+    body.time_at_rest = travel < kRestSpeed * options_.dt ? body.time_at_rest + options_.dt : 0;
+    scene_.SetPose(body.id, body.X_WB);
+  }
+  bodies_.Sleep(options.rest_time);
+}
+
+void ContactStep::Finish(const ConstraintSolver& solver) noexcept {
+  RecordContacts(solver);
+  friction_.EndTick(solver, options_.dt);
+  PushOtherPart(solver);
+  MoveFreeBodies(solver);
+}
+
+void ContactStep::StepFreeBodies(ConstraintSolver* solver) noexcept {
+  if (bodies_.awake().empty()) {
+    return;
+  }
+  solver->BeginFree(options_.dt);
+  AddBodies(solver);
+  AddFreeContacts(solver);
+  (void)solver->Solve(effort_.iterations);
+  PushOtherPart(*solver);
+  MoveFreeBodies(*solver);
+  friction_.EndTick(*solver, options_.dt);
+}
+
+void ContactStep::MoveDisplayed(const spatial::Twist& V_Cm, DisplayedPart* displayed) noexcept {
+  const ContactOptions& options = options_.contact;
+  const HeldPart& part = *displayed->part;
+  const spatial::Pose X_WD = displayed->X_WD;
+  const spatial::Twist V = Limited(V_Cm, options.max_speed, options.max_turn_rate);
+  double share = 1;
+  const auto at = [&](double candidate) {
+    return MoveAbout(X_WD, part.p_BoBcm_B, V, candidate * options_.dt);
+  };
+  // To stop where it meets the other's part would not keep that one from coming on.
+  const bool passes_other =
+      is_solved_by_other() || (has_solved_contact_ && other_->response.yields);
+  unmet_ = passes_other ? ListHeldByOther() : std::span<const contact::BodyId>();
+  if (options_.condition != Condition::kConstraint) {
+    // Free bodies have moved already; those near have come nearer.
+    const double speed = V.v.norm() + V.w.norm() * displayed->reach;
+    double others = 0;
+    for (const FreeBody& body : bodies_.awake()) {
+      others = std::max(others, body.V.v.norm());
+    }
+    const double tolerance = AllowedDepth(clearance_, options);
+    share = FindFreeShare(clearance_ + tolerance - options_.dt * others, options_.dt * speed,
+                          [&](double s) { return IsFreeAt(part, at(s), tolerance); });
+  }
+  unmet_ = {};
+  displayed->X_WD = at(share);
+  displayed->V = {share * V.w, share * V.v};
+}
+
+bool ContactStep::IsFreeAt(const HeldPart& part, const spatial::Pose& X_WB,
+                           double tolerance) noexcept {
+  for (std::size_t member = 0; member <= part.members.size(); ++member) {
+    const HeldShape held = MakeHeldShape(part, member, X_WB, 0);
+    const bool is_free = scene_.IsFree(*held.shape, held.X_WS, tolerance, held.query, &workspace_);
+    account_.points_tested += workspace_.stats().points_tested;
+    if (!is_free) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void ContactStep::MeasureDepth(const DisplayedPart& displayed) noexcept {
+  const HeldPart& part = *displayed.part;
+  for (std::size_t member = 0; member <= part.members.size(); ++member) {
+    const HeldShape held = MakeHeldShape(part, member, displayed.X_WD, 0);
+    scene_.Query(*held.shape, held.X_WS, held.query, &workspace_);
+    account_.points_tested += workspace_.stats().points_tested;
+    account_.deepest = std::min(account_.deepest, workspace_.deepest());
+  }
+}
+
+void ContactStep::RecordContacts(const ConstraintSolver& solver) noexcept {
+  double hardest = 0;
+  mutual_ = {};
+  has_solved_contact_ = leads_ && other_index_ != ConstraintSolver::kWorld;
+  if (is_solved_by_other()) {
+    const MutualContact& mutual = other_->contact;
+    account_.contact_count = mutual.contact_count;
+    account_.deepest = std::min(account_.deepest, mutual.deepest);
+    account_.p_WC = mutual.p_WC;
+    account_.f_C_W = -mutual.f_C_W;
+    account_.contact_body = mutual.body;
+    hardest = mutual.f_C_W.norm();
+  }
+  for (int i = 0; i < held_contacts_; ++i) {
+    const contact::Contact& c = contacts_[static_cast<std::size_t>(i)];
+    const double force = solver.normal_force(i);
+    if (has_solved_contact_ && IsHeldByOther(c.body)) {
+      RecordMutual(c, solver.contact_force(i));
+    }
+    if (force <= 1e-6) {
+      continue;
+    }
+    ++account_.contact_count;
+    if (force > hardest) {
+      hardest = force;
+      account_.p_WC = c.p_WC;
+      account_.f_C_W = solver.contact_force(i);
+      account_.contact_body = c.body;
+    }
+  }
+}
+
+void ContactStep::RecordMutual(const contact::Contact& c, const Vec3& f_C_W) noexcept {
+  mutual_.body = held_->body;
+  mutual_.deepest = std::min(mutual_.deepest, c.distance);
+  if (f_C_W.norm() <= 1e-6) {
+    return;
+  }
+  ++mutual_.contact_count;
+  if (f_C_W.norm() > mutual_.f_C_W.norm()) {
+    mutual_.p_WC = c.p_WC;
+    mutual_.f_C_W = f_C_W;
+  }
+}
+
+}  // namespace hvas::haptics

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+
+#include "contact/scene.h"
+#include "haptics/constraint_solver.h"
+#include "haptics/displayed_part.h"
+#include "haptics/free_bodies.h"
+#include "haptics/friction_memory.h"
+#include "haptics/hand_exchange.h"
+#include "haptics/mate_guide.h"
+#include "haptics/options.h"
+#include "haptics/tick_output.h"
+
+namespace hvas::haptics {
+
+/** Contacts in one step of a hand: of the held part, of loose parts that move, and of the part that
+ the other hand holds, which joins the step as a body with its own response. Finds them, gives them
+ to the solver with their friction, and moves what was solved as far as it may go (X7, X11).
+
+ All but SetProperties is RT-safe. */
+class ContactStep {
+ public:
+  /** @param scene  Bodies in the world. What is held stays in it and is left out of queries; loose
+   bodies are moved in it.
+   @param guide  Mates of the held part: contact leaves their faces to them.
+   All three outlive this object.
+   @param leads  Of two hands this one ticks first, and solves the contact of the two held parts. */
+  ContactStep(const TickOptions& options, contact::Scene* scene, const MateGuide* guide,
+              bool leads) noexcept
+      : options_(options), scene_(*scene), guide_(*guide), leads_(leads) {}
+
+  void SetProperties(contact::BodyId id, const BodyProperties& properties) {
+    bodies_.SetProperties(id, properties);
+  }
+
+  void SetLoose(contact::BodyId id, bool is_loose) noexcept { bodies_.SetLoose(id, is_loose); }
+
+  void SetEffort(const Effort& effort) noexcept { effort_ = effort; }
+
+  [[nodiscard]] const Effort& effort() const noexcept { return effort_; }
+
+  /** Loose parts that move by themselves now, as this hand has woken them. */
+  [[nodiscard]] std::span<const FreeBody> awake() const noexcept { return bodies_.awake(); }
+
+  /** A body that this hand moves; null where it moves no such one. */
+  [[nodiscard]] const FreeBody* FindAwake(contact::BodyId id) noexcept {
+    return bodies_.FindAwake(id);
+  }
+
+  /** Makes a part loose that goes on at a velocity of its centre of mass. */
+  void LetGo(contact::BodyId id, const spatial::Pose& X_WB, const spatial::Twist& V) noexcept {
+    bodies_.SetLoose(id, true);
+    bodies_.WakeFirst(id, X_WB, V);
+  }
+
+  /** Largest distance of a point of the part, with its members, from its centre of mass [m]. */
+  [[nodiscard]] static double CalcReach(const HeldPart& part) noexcept;
+
+  /** Moves a held part in the scene, with its members. */
+  void MoveInScene(const HeldPart& part, const spatial::Pose& X_WB) noexcept;
+
+  /** A tick begins.
+   @param held   What this hand holds; null: nothing.
+   @param other  What the other hand gave after its last tick; null: there is one hand. */
+  void Begin(const HeldPart* held, const HandExchange* other) noexcept;
+
+  /** Adds loose bodies that move, and the other hand's part, to the step. */
+  void AddBodies(ConstraintSolver* solver) noexcept;
+
+  /** Adds contacts of the held part to the step. */
+  void AddHeldContacts(const DisplayedPart& displayed, ConstraintSolver* solver) noexcept;
+
+  /** Adds contacts of the loose bodies that move, and of those that they wake. */
+  void AddFreeContacts(ConstraintSolver* solver) noexcept;
+
+  /** Takes over forces and friction from the solution, and moves the loose bodies. */
+  void Finish(const ConstraintSolver& solver) noexcept;
+
+  /** Moves the displayed part as far as it may go at a velocity of its centre of mass. */
+  void MoveDisplayed(const spatial::Twist& V_Cm, DisplayedPart* displayed) noexcept;
+
+  /** One step of the loose bodies without a held part. */
+  void StepFreeBodies(ConstraintSolver* solver) noexcept;
+
+  /** The part comes no deeper than the tolerance into anything there [m]. */
+  [[nodiscard]] bool IsFreeAt(const HeldPart& part, const spatial::Pose& X_WB,
+                              double tolerance) noexcept;
+
+  /** Adds the depth of a part that is moved without a step to the account. */
+  void MeasureDepth(const DisplayedPart& displayed) noexcept;
+
+  /** What the contacts of the held part were since this was asked last. */
+  [[nodiscard]] ContactAccount TakeAccount() noexcept {
+    return std::exchange(account_, ContactAccount());
+  }
+
+  /** Wrench that the other hand's last step had on the held part, at its centre of mass. */
+  [[nodiscard]] spatial::Wrench CalcPush(std::uint32_t hold) const noexcept;
+
+  /** Fills in what this step has for the other hand. */
+  void FillExchange(HandExchange* exchange) const noexcept;
+
+ private:
+  /** A shape of what is held: of the part itself, or of a member of its subassembly. */
+  struct HeldShape {
+    const contact::Shape* shape;
+    spatial::Pose X_WS;
+    contact::QueryOptions query;
+  };
+
+  [[nodiscard]] HeldShape MakeHeldShape(const HeldPart& part, std::size_t member,
+                                        const spatial::Pose& X_WB, double margin) noexcept;
+  [[nodiscard]] std::span<const contact::BodyId> ListHeld() const noexcept;
+  [[nodiscard]] std::span<const contact::BodyId> ListHeldByOther() const noexcept;
+  [[nodiscard]] bool IsHeldByOther(contact::BodyId id) const noexcept;
+
+  /** The other hand's last step has solved the contact of the two held parts. */
+  [[nodiscard]] bool is_solved_by_other() const noexcept {
+    return other_ != nullptr && other_->has_solved_contact;
+  }
+
+  [[nodiscard]] bool IsMovedByOther(contact::BodyId id) const noexcept;
+  [[nodiscard]] TouchingBody Touch(const contact::Contact& c, ConstraintSolver* solver) noexcept;
+  void AddQueried(const TouchingBody& body, fits::FrictionSurface surface, double rolling_arm,
+                  ConstraintSolver* solver) noexcept;
+  void AddOtherPart(ConstraintSolver* solver) noexcept;
+  [[nodiscard]] double CalcOtherSpeed() const noexcept;
+  void PushOtherPart(const ConstraintSolver& solver) noexcept;
+  void MoveFreeBodies(const ConstraintSolver& solver) noexcept;
+  void RecordContacts(const ConstraintSolver& solver) noexcept;
+  void RecordMutual(const contact::Contact& c, const Vec3& f_C_W) noexcept;
+
+  const TickOptions& options_;
+  contact::Scene& scene_;
+  const MateGuide& guide_;
+  const bool leads_;
+  Effort effort_;
+  contact::QueryWorkspace workspace_;
+  FrictionMemory friction_;
+  FreeBodies bodies_;
+  std::array<contact::IgnoredPair, 2 * MateGuide::kMaxMates> ignored_;
+  std::array<contact::Contact, ConstraintSolver::kMaxContacts> contacts_;  ///< Those in the solver.
+
+  // Of the present tick.
+  const HeldPart* held_{nullptr};
+  const HandExchange* other_{nullptr};
+  ContactAccount account_;
+  int held_contacts_{0};  ///< Contacts of the held part in the solver; the first ones.
+  double clearance_{0};   ///< Least distance of the held part before the step, or the margin [m].
+  int other_index_{ConstraintSolver::kWorld};  ///< The other hand's part in the solver.
+  Vec6 V_other_{Vec6::Zero()};              ///< Its velocity without what touches it in this step.
+  std::span<const contact::BodyId> unmet_;  ///< Bodies that the held part does not meet now.
+
+  // For the other hand.
+  spatial::Wrench F_other_W_;    ///< Wrench of the last step on its part, at the centre of mass.
+  std::uint32_t other_hold_{0};  ///< Its hold that this was for.
+  bool has_solved_contact_{false};
+  MutualContact mutual_;
+};
+
+}  // namespace hvas::haptics

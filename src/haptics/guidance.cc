@@ -1,0 +1,138 @@
+#include "haptics/guidance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hvas::haptics {
+namespace {
+
+constexpr double kFitTakesOver = 2e-3;  // [m] of depth over which attraction gives way
+
+}  // namespace
+
+void Guidance::Begin(const HeldPart& part) noexcept {
+  captured_before_ = 0;
+  is_stuck_ = false;
+  is_attracting_ = false;
+  guide_.Reset();
+  if (part.starts_in_place) {
+    guide_.StartInPlace();
+  }
+  fit_rows_.Reset();
+}
+
+void Guidance::Update(const DisplayedPart& displayed, const spatial::Pose& X_WT) noexcept {
+  if (options_.condition != Condition::kCollision) {
+    guide_.Update(*displayed.part, options_.guidance, displayed.X_WD, X_WT, options_.dt);
+  }
+}
+
+EnergyCredit Guidance::AddTo(const DisplayedPart& displayed, double weight, double soft_start,
+                             ConstraintSolver* solver) noexcept {
+  is_stuck_ = false;
+  guide_.AddSprings(*displayed.part, options_.guidance, solver);
+  if (options_.condition == Condition::kCollision || guide_.captured_count() == 0) {
+    is_attracting_ = false;
+    fit_rows_.Reset();
+    return {};
+  }
+  const MateGeometry* axis = guide_.axis();
+  if (axis == nullptr) {
+    fit_rows_.Reset();
+    return {};
+  }
+  const EnergyCredit credit = AddAttraction(displayed, *axis, soft_start, solver);
+  if (guide_.is_aligned() && options_.renders_fits) {
+    AddFits(displayed, *axis, weight, solver);
+  } else {
+    fit_rows_.Reset();
+  }
+  return credit;
+}
+
+EnergyCredit Guidance::AddAttraction(const DisplayedPart& displayed, const MateGeometry& axis,
+                                     double soft_start, ConstraintSolver* solver) noexcept {
+  // X(9): attraction along the axis towards the final pose, and about it. Along it a fit takes over
+  // as it engages: what pulls the part in would hold it back on the way out.
+  const HeldPart& part = *displayed.part;
+  const GuidanceOptions& guidance = options_.guidance;
+  const Vec3& a = axis.axis_W;
+  const double to_go = a.dot(part.X_WB_goal * part.p_BoBcm_B - displayed.p_WCm());
+  const double to_turn = a.dot(spatial::RotationBetween(displayed.X_WD.q(), part.X_WB_goal.q()));
+  EnergyCredit credit;
+  if (!is_attracting_) {
+    is_attracting_ = true;
+    start_distance_ = std::abs(to_go);
+    start_angle_ = std::abs(to_turn);
+    const double scale = options_.workspace.mapping.scale;
+    credit.force = 0.5 * guidance.attraction_force * start_distance_ / scale;
+    credit.torque = 0.5 * guidance.attraction_torque * start_angle_;
+  }
+  const auto pull = [soft_start](double rest, double start, double strongest) {
+    const double share = start > 0 ? std::min(1.0, std::abs(rest) / start) : 0.0;
+    return std::copysign(soft_start * share * strongest, rest);
+  };
+  const bool has_fit = options_.renders_fits && part.mates[guide_.axis_index()].fit != nullptr;
+  const double left = has_fit ? std::clamp(1 - axis.depth / kFitTakesOver, 0.0, 1.0) : 1.0;
+  solver->AddWrench({pull(to_turn, start_angle_, guidance.attraction_torque) * a,
+                     left * pull(to_go, start_distance_, guidance.attraction_force) * a});
+  return credit;
+}
+
+void Guidance::AddFits(const DisplayedPart& displayed, const MateGeometry& axis, double weight,
+                       ConstraintSolver* solver) noexcept {
+  // W5, W8, W9: the fit resists motion along and about the axis up to what physics says at this
+  // depth, felt through the map; at rest it holds, and never pushes.
+  const HeldPart& part = *displayed.part;
+  const bool is_out = axis.axis_W.dot(part.insertion_W) <= 0;
+  fit_axis_.out_W = is_out ? axis.axis_W : Vec3(-axis.axis_W);
+  fit_axis_.p_CmQ_W = axis.p_WQ - displayed.p_WCm();
+  fit_axis_.radius = part.mates[guide_.axis_index()].radius;
+  fit_axis_.weight_out = weight * options_.gravity_W.normalized().dot(fit_axis_.out_W);
+  const spatial::Twist& V = displayed.V;
+  const double speed = fit_axis_.out_W.dot(V.v + V.w.cross(fit_axis_.p_CmQ_W));
+  FitLoad load = guide_.CalcFitLoad(part, speed);
+  is_stuck_ = std::min(load.in, load.out) > weight;
+  const double friction = options_.contact.friction.kinetic_coefficient * guide_.lateral_force();
+  for (double* sum : {&load.in, &load.out, &load.shown_in, &load.shown_out}) {
+    *sum += friction;
+  }
+  load.torque += friction * fit_axis_.radius;
+  fit_rows_.Add(load, fit_axis_, solver);
+}
+
+void Guidance::Finish(const ConstraintSolver& solver, TickOutput* out) noexcept {
+  const FitForces forces = fit_rows_.Finish(solver);
+  out->axial_felt = forces.axial_felt;
+  out->axial_true = forces.axial_true;
+  const Vec3 f = (forces.axial_true - forces.axial_felt) * fit_axis_.out_W;
+  out->F_true_W.f += f;
+  out->F_true_W.t +=
+      fit_axis_.p_CmQ_W.cross(f) + (forces.torque_true - forces.torque_felt) * fit_axis_.out_W;
+  out->insertion_depth = guide_.insertion_depth();
+}
+
+GuidedAxis Guidance::DescribeAxis(const HeldPart& part) const noexcept {
+  const MateGeometry* geometry = guide_.axis();
+  if (geometry == nullptr) {
+    return {};
+  }
+  const HeldMate& mate = part.mates[guide_.axis_index()];
+  GuidedAxis axis;
+  axis.mate = mate.id;
+  axis.p_WQ = geometry->p_WQ;
+  axis.axis_W = geometry->axis_W;
+  axis.tilt = geometry->angle;
+  axis.offset = geometry->distance;
+  axis.depth = geometry->depth;
+  axis.depth_goal = CalcMateGeometry(mate, part.X_WB_goal).engaged;
+  return axis;
+}
+
+bool Guidance::HasCapturedMore() noexcept {
+  const int before = std::exchange(captured_before_, guide_.captured_count());
+  return guide_.captured_count() > before;
+}
+
+}  // namespace hvas::haptics

@@ -1,0 +1,122 @@
+#include "haptics/seating.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hvas::haptics {
+namespace {
+
+constexpr double kSeatTolerance = 50e-6;  // [m]; no deeper on the last bit into place
+constexpr double kLeaveFactor = 2;        // of the limits of being seated, to be out of place
+
+double MinimumJerk(double s) noexcept {
+  return s * s * s * (10 + s * (-15 + 6 * s));
+}
+
+}  // namespace
+
+void Seating::Begin(const HeldPart& part) noexcept {
+  progress_ = 0;
+  leaves_place_ = part.starts_in_place;
+}
+
+Seating::Remainder Seating::CalcRemainder(const DisplayedPart& displayed) noexcept {
+  const HeldPart& part = *displayed.part;
+  return {displayed.p_WCm() - part.X_WB_goal * part.p_BoBcm_B,
+          spatial::RotationBetween(displayed.X_WD.q(), part.X_WB_goal.q()).norm()};
+}
+
+bool Seating::HasArrived(const DisplayedPart& displayed, const TrackedPart& tracked) noexcept {
+  const HeldPart& part = *displayed.part;
+  const GuidanceOptions& guidance = options_.guidance;
+  if (part.lacks_partners) {
+    return false;
+  }
+  const auto [d, angle] = CalcRemainder(displayed);
+  leaves_place_ = leaves_place_ && d.norm() < kLeaveFactor * guidance.loose_seat_distance &&
+                  angle < kLeaveFactor * guidance.seat_angle;
+  if (leaves_place_ || IsDrawnOut(part, tracked)) {
+    return false;
+  }
+  if (d.norm() > guidance.loose_seat_distance || angle > guidance.seat_angle) {
+    return false;
+  }
+  if (d.norm() <= guidance.seat_distance) {
+    return true;  // wherever the hand is by now
+  }
+  const MateGuide& mates = guidance_.mates();
+  const bool is_guided = mates.captured_count() > 0;
+  const bool needs_guide = !part.mates.empty() && options_.condition != Condition::kCollision;
+  if (needs_guide && !is_guided) {
+    return false;
+  }
+  // Along the way in, and across an axis, a part is home or it is not; where only planes or nothing
+  // at all hold it, it is set straight over the last bit, if nothing is there.
+  const double along = std::abs(d.dot(part.insertion_W));
+  const double tight = mates.axis() != nullptr ? d.norm() : along;
+  if (is_guided && tight > guidance.seat_distance) {
+    return false;
+  }
+  return IsWayHomeFree(displayed);
+}
+
+bool Seating::IsWayHomeFree(const DisplayedPart& displayed) noexcept {
+  if (options_.condition == Condition::kConstraint) {
+    return true;
+  }
+  X_WD_start_ = displayed.X_WD;
+  constexpr double kSamples[] = {0.25, 0.5, 0.75};
+  for (const double s : kSamples) {
+    if (!contacts_.IsFreeAt(*displayed.part, CalcPose(*displayed.part, s), kSeatTolerance)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Seating::CanFinish(const DisplayedPart& displayed, const TrackedPart& tracked) noexcept {
+  const HeldPart& part = *displayed.part;
+  if (part.lacks_partners || guidance_.is_stuck() || IsDrawnOut(part, tracked)) {
+    return false;
+  }
+  const auto [d, angle] = CalcRemainder(displayed);
+  if (d.norm() > options_.guidance.finish_distance || angle > options_.guidance.seat_angle) {
+    return false;
+  }
+  return IsWayHomeFree(displayed);
+}
+
+bool Seating::IsDrawnOut(const HeldPart& part, const TrackedPart& tracked) const noexcept {
+  const Vec3 lead = tracked.X_WT * part.p_BoBcm_B - part.X_WB_goal * part.p_BoBcm_B;
+  return part.starts_in_place &&
+         lead.dot(part.insertion_W) < -options_.guidance.loose_seat_distance;
+}
+
+spatial::Pose Seating::CalcPose(const HeldPart& part, double progress) const noexcept {
+  if (progress >= 1) {
+    return part.X_WB_goal;
+  }
+  const double s = MinimumJerk(progress);
+  const Vec3& p_BoBcm_B = part.p_BoBcm_B;
+  const Vec3 p_from = X_WD_start_ * p_BoBcm_B;
+  const Vec3 theta = spatial::RotationBetween(X_WD_start_.q(), part.X_WB_goal.q());
+  const Quat q = spatial::RotationFromVector(s * theta) * X_WD_start_.q();
+  return {q, p_from + s * (part.X_WB_goal * p_BoBcm_B - p_from) - q * p_BoBcm_B};
+}
+
+void Seating::Start(const DisplayedPart& displayed) noexcept {
+  progress_ = 0;
+  X_WD_start_ = displayed.X_WD;
+}
+
+void Seating::Advance(DisplayedPart* displayed) noexcept {
+  // The last fraction of a millimetre, to the exact pose that the mates resolve to (X9).
+  const HeldPart& part = *displayed->part;
+  const spatial::Pose X_before = displayed->X_WD;
+  progress_ = std::min(1.0, progress_ + options_.dt / options_.guidance.seat_time);
+  displayed->X_WD = CalcPose(part, progress_);
+  displayed->V.w = spatial::RotationBetween(X_before.q(), displayed->X_WD.q()) / options_.dt;
+  displayed->V.v = (displayed->p_WCm() - X_before * part.p_BoBcm_B) / options_.dt;
+}
+
+}  // namespace hvas::haptics

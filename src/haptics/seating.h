@@ -1,0 +1,65 @@
+#pragma once
+
+#include "haptics/contact_step.h"
+#include "haptics/displayed_part.h"
+#include "haptics/guidance.h"
+#include "haptics/options.h"
+
+namespace hvas::haptics {
+
+/** The end of an insertion: whether the held part has come to its place, and its last, exact,
+ movement there (X9). RT-safe. */
+class Seating {
+ public:
+  /** How far the displayed part is from its place. */
+  struct Remainder {
+    Vec3 d_W;      ///< Vector from where its centre of mass belongs to where it is [m].
+    double angle;  ///< [rad]
+  };
+
+  Seating(const TickOptions& options, const Guidance* guidance, ContactStep* contacts) noexcept
+      : options_(options), guidance_(*guidance), contacts_(*contacts) {}
+
+  void Begin(const HeldPart& part) noexcept;
+
+  /** The hand has let go. */
+  void End() noexcept { leaves_place_ = false; }
+
+  /** The part was taken up in its place, and is not out of it yet. */
+  [[nodiscard]] bool leaves_place() const noexcept { return leaves_place_; }
+
+  /** The displayed part is where it belongs: it may be moved exactly there. */
+  [[nodiscard]] bool HasArrived(const DisplayedPart& displayed,
+                                const TrackedPart& tracked) noexcept;
+
+  /** A part that is let go may be moved into its place: it is close, nothing is in between, and no
+   fit would have to be overcome. */
+  [[nodiscard]] bool CanFinish(const DisplayedPart& displayed, const TrackedPart& tracked) noexcept;
+
+  /** Begins the last movement where the part is displayed now. */
+  void Start(const DisplayedPart& displayed) noexcept;
+
+  /** Moves the part on by one tick. */
+  void Advance(DisplayedPart* displayed) noexcept;
+
+  [[nodiscard]] bool is_finished() const noexcept { return progress_ >= 1; }
+
+  [[nodiscard]] static Remainder CalcRemainder(const DisplayedPart& displayed) noexcept;
+
+ private:
+  /** The straight way from here into the part's place is free. */
+  [[nodiscard]] bool IsWayHomeFree(const DisplayedPart& displayed) noexcept;
+  /** The part was taken up in its place, and the hand leads it outwards: it may bounce there, and
+   comes home only with a hand that brings it. */
+  [[nodiscard]] bool IsDrawnOut(const HeldPart& part, const TrackedPart& tracked) const noexcept;
+  [[nodiscard]] spatial::Pose CalcPose(const HeldPart& part, double progress) const noexcept;
+
+  const TickOptions& options_;
+  const Guidance& guidance_;
+  ContactStep& contacts_;
+  double progress_{0};        ///< 0..1 of the last movement.
+  spatial::Pose X_WD_start_;  ///< Where the last movement begins.
+  bool leaves_place_{false};
+};
+
+}  // namespace hvas::haptics
