@@ -164,7 +164,7 @@ Result<Outcome> Run(const std::shared_ptr<const Model>& model, const std::string
   outcome.turning_excess = truth.turning_work - watch.TurningBound(info.profile);
   outcome.largest_share = info.profile.max_force > 0 ? largest_motor / info.profile.max_force : 0;
   const product::OccurrenceId part = model->sequence.steps[1 + seed % (steps - 1)].occurrence;
-  outcome.is_seated = simulation.placement(part) == simulation::Placement::kPlaced;
+  outcome.is_seated = simulation.physics().placement(part) == simulation::Placement::kPlaced;
   return outcome;
 }
 

@@ -113,7 +113,7 @@ std::vector<std::size_t> Replay(const std::shared_ptr<const Model>& model,
   std::vector<std::size_t> slow_again;
   for (std::size_t i = 0; i < log.tick_count(); ++i) {
     const std::int64_t start_ns = ThreadCpuNs();
-    const haptics::TickOutput out = again.ReplayTick(log, i);
+    const haptics::TickOutput out = again.haptics().ReplayTick(log, i);
     const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
     totals->replayed.Add(compute_ns);
     totals->different += out.F_H_D.f == log.tick(i).F_H_D.f ? 0 : 1;

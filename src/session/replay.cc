@@ -180,7 +180,7 @@ class Replayer {
     device::DeviceState device = MakeDeviceState(recorded);
     device.t_ns -= start_ns_;
     const haptics::TickOutput out =
-        simulation_->ReplayTick(recorded.hand, device, MakeTickContext(recorded));
+        simulation_->haptics().ReplayTick(recorded.hand, device, MakeTickContext(recorded));
     TickRecord replayed = MakeTickRecord(recorded.hand, device, out, recorded.commands);
     replayed.t_ns = recorded.t_ns;
     Compare(recorded, replayed);

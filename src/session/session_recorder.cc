@@ -101,17 +101,18 @@ SessionRecorder::SessionRecorder(record::Recorder* recorder, const simulation::M
 }
 
 void SessionRecorder::Begin(simulation::Simulation* simulation) {
-  simulation_ = simulation;
+  haptics_ = &simulation->haptics();
   start_ns_ = t_ns();
   period_ns_ = std::llround(1e9 * simulation->options().dt);
-  told_ = simulation->parts();
+  told_ = simulation->physics().parts();
   Beginning beginning;
   beginning.parts = told_;
   for (std::size_t hand = 0; hand < simulation->hand_count(); ++hand) {
     beginning.hands.push_back(simulation->options(hand));
   }
   recorder_->AddCommand({start_ns_, 0, kBeginKind, MakeBeginningJson(beginning)});
-  simulation->TellOfCommands([this](const simulation::GivenCommand& given) { OnCommand(given); });
+  simulation->physics().SetCommandListener(
+      [this](const simulation::GivenCommand& given) { OnCommand(given); });
 }
 
 void SessionRecorder::OnCommand(const simulation::GivenCommand& given) {
@@ -123,7 +124,7 @@ void SessionRecorder::OnCommand(const simulation::GivenCommand& given) {
 
 void SessionRecorder::OnTick(std::size_t hand, const device::DeviceState& device,
                              const haptics::TickOutput& out) noexcept {
-  record::TickRecord tick = MakeTickRecord(hand, device, out, simulation_->obeyed_commands());
+  record::TickRecord tick = MakeTickRecord(hand, device, out, haptics_->applied_commands());
   tick.t_ns += start_ns_;
   t_ns_.store(tick.t_ns + period_ns_, std::memory_order_relaxed);
   recorder_->AddTick(tick);

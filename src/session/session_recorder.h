@@ -34,8 +34,8 @@ class SessionRecorder final : public simulation::Sink {
   void OnCommand(const simulation::GivenCommand& given);
 
   record::Recorder* recorder_;
-  const simulation::Simulation* simulation_{nullptr};  ///< This stretch's.
-  std::int64_t start_ns_{0};                           ///< This stretch's, in session time.
+  const simulation::HapticSide* haptics_{nullptr};  ///< This stretch's.
+  std::int64_t start_ns_{0};                        ///< Beginning of this stretch, in session time.
   std::int64_t period_ns_{0};
   std::atomic<std::int64_t> t_ns_{0};
   std::vector<simulation::PartState> told_;  ///< What the last command had. Physics thread.

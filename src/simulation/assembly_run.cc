@@ -21,7 +21,7 @@ bool IsSinglePart(const SequenceStep& step) {
 }  // namespace
 
 AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream)
-    : simulation_(simulation), downstream_(downstream) {
+    : simulation_(simulation), physics_(simulation->physics()), downstream_(downstream) {
   for (std::size_t hand = 0; hand < persons.size(); ++hand) {
     if (persons[hand] != nullptr) {
       workers_.push_back({persons[hand], hand, nullptr, 0});
@@ -97,7 +97,7 @@ PersonTask AssemblyRun::MakeTask(const SequenceStep& step) const {
   PersonTask task;
   task.occurrence = step.occurrence;
   task.p_BG = X_BG.p();
-  task.X_WG_start = simulation_->pose(step.occurrence) * X_BG;
+  task.X_WG_start = physics_.pose(step.occurrence) * X_BG;
   task.X_WG_goal = body.X_WB_goal * X_BG;
   task.X_WG_goal = {task.X_WG_goal.q(), task.X_WG_goal.p() + step.offset_W};
   task.extraction_W = step.extraction_W;
@@ -145,7 +145,7 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& 
   if (!dropped) {
     return person != nullptr ? "could not be taken up" : "was not taken up";
   }
-  if (const OccurrenceId missing = simulation_->FindMissingPartner(step); missing.is_valid()) {
+  if (const OccurrenceId missing = physics_.FindMissingPartner(step); missing.is_valid()) {
     return fmt::format("{}, which it goes to, is not in its place",
                        simulation_->model().product->occurrences[missing.index()].path);
   }
@@ -189,7 +189,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
     const OccurrenceId other =
         mate.a.occurrence == step.occurrence ? mate.b.occurrence : mate.a.occurrence;
     const bool is_new = step.kind == SequenceStep::Kind::kInsert && step.members.empty();
-    result.mates += is_new && simulation_->placement(other) == Placement::kPlaced ? 1 : 0;
+    result.mates += is_new && physics_.placement(other) == Placement::kPlaced ? 1 : 0;
   }
   for (const OccurrenceId member : step.members) {
     PartResult& other = ResultOf(member);
@@ -208,8 +208,8 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
 
 void AssemblyRun::Update(OccurrenceId id) {
   PartResult& result = ResultOf(id);
-  result.is_seated = simulation_->placement(id) == Placement::kPlaced;
-  const spatial::Pose& X_WB = simulation_->pose(id);
+  result.is_seated = physics_.placement(id) == Placement::kPlaced;
+  const spatial::Pose& X_WB = physics_.pose(id);
   const spatial::Pose& X_goal = simulation_->model().bodies[id.index()].X_WB_goal;
   result.pose_error = (X_WB.p() - X_goal.p()).norm();
   result.pose_error_angle = spatial::RotationBetween(X_goal.q(), X_WB.q()).norm();
@@ -223,7 +223,7 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
   const OccurrenceId id = worker.step->occurrence;
   const std::optional<SimulationEvent>& dropped = dropped_[id.index()];
   return (dropped && dropped->was_seated) ||
-         (IsSinglePart(*worker.step) && simulation_->placement(id) == Placement::kPlaced);
+         (IsSinglePart(*worker.step) && physics_.placement(id) == Placement::kPlaced);
 }
 
 bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker) const {
@@ -234,7 +234,7 @@ bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker
 
 bool AssemblyRun::IsInPlaceAlready(const SequenceStep& step) const {
   return IsSinglePart(step) && !dropped_[step.occurrence.index()] &&
-         simulation_->placement(step.occurrence) == Placement::kPlaced;
+         physics_.placement(step.occurrence) == Placement::kPlaced;
 }
 
 spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
@@ -269,12 +269,11 @@ AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
 bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
   // Of a subassembly only that moves which has got into it.
   SequenceStep possible = step;
-  std::erase_if(possible.members, [this](OccurrenceId id) {
-    return simulation_->placement(id) == Placement::kLoose;
-  });
+  std::erase_if(possible.members,
+                [this](OccurrenceId id) { return physics_.placement(id) == Placement::kLoose; });
   for (std::size_t hand = 0; hand < simulation_->hand_count(); ++hand) {
     if (worker->person == nullptr || hand == worker->hand) {
-      simulation_->Prepare(possible, hand);
+      physics_.Prepare(possible, hand);
     }
   }
   if (worker->person != nullptr) {
@@ -330,7 +329,7 @@ void AssemblyRun::Advance() {
       return;
     }
     if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
-      simulation_->PlaceInFixture(step.occurrence);
+      physics_.PlaceInFixture(step.occurrence);
       Update(step.occurrence);
       ResultOf(step.occurrence).note = DescribeOverlaps(step.occurrence);
     } else if (IsDoneByAnother(step, *worker)) {

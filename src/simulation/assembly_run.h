@@ -20,24 +20,24 @@ struct PartResult {
   bool is_seated{false};
   std::string reason;          ///< Why not, when it is not seated.
   std::string note;            ///< What was odd about it although it is; may be empty.
-  double time{0};              ///< From taking it up to letting go [s].
+  double time{0};              ///< Time from taking it up to letting go [s].
   double path{0};              ///< [m]
   double peak_true{0};         ///< [N]
   double peak_felt{0};         ///< [N]
   double fit_true{0};          ///< Largest axial force of its fits, true [N].
-  double fit_felt{0};          ///< The same as felt [N].
+  double fit_felt{0};          ///< Largest axial force of its fits, as felt [N].
   double deepest{0};           ///< Deepest penetration met [m].
   double insertion{0};         ///< Longest that a mate's shaft was in its hole [m].
   std::size_t hand{0};         ///< That let go of it last.
-  int mates{0};                ///< With parts that were in place.
-  double pose_error{0};        ///< Of the origin, from the file's pose [m].
+  int mates{0};                ///< Mates with parts that were in place.
+  double pose_error{0};        ///< Distance of the origin from the file's pose [m].
   double pose_error_angle{0};  ///< [rad]
 };
 
 /** How far an assembly has come. */
 struct AssemblyProgress {
   std::size_t tried{0};   ///< Parts that have had their turn.
-  std::size_t seated{0};  ///< Of these.
+  std::size_t seated{0};  ///< Parts in their place, of those tried.
   std::size_t total{0};
   std::int64_t t_ns{0};  ///< Session time.
 };
@@ -46,13 +46,13 @@ struct AssemblyProgress {
 using Persons = std::array<SimulatedPerson*, 2>;
 
 /** Has a model assembled, one part after the other in the order that was found, and keeps the
- account: by simulated persons, or by whoever holds the device. Two persons take turns. While one
+ account: by simulated persons, or by the user of the device. Two persons take turns. While one
  puts a part in, the other begins with the next one where their ways in are apart: neither stands
  in the other's way, whichever comes first. A real hand beside a simulated one does what it likes;
  what it puts in its place is done. As a Sink the run stands between the loops and the record. */
 class AssemblyRun final : public Sink {
  public:
-  /** @param person  Null: a real one, who puts each part in its place in his own time.
+  /** @param person  Null: a real one, who puts each part in its place in their own time.
    @param downstream  Gets everything too; may be null. */
   AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream)
       : AssemblyRun(simulation, Persons{person, nullptr}, downstream) {}
@@ -64,25 +64,27 @@ class AssemblyRun final : public Sink {
   void OnEvent(const SimulationEvent& event) override;
   void OnFlight(const std::vector<FlightTick>& ticks) override;
 
-  /** Before it begins: only these steps of the sequence; what comes before them is in place. */
+  /** Limits a run that has not begun to these steps of the sequence; what comes before them is in
+ place. */
   void Only(std::size_t first, std::size_t count) {
     first_step_ = first;
     end_step_ = first + count;
   }
 
-  /** For an executor: this run, advanced until it is done, with these in the hands.
+  /** Describes this run for an executor: advanced until it is done, with these in the hands.
    @param limit_s  Of session time [s].
    @param second_hand  Of a simulation with two; else null. */
   [[nodiscard]] Execution MakeExecution(Operator* hand, double limit_s,
                                         Operator* second_hand = nullptr);
 
-  /** Before it begins: goes on with this step; what came before it was done already. */
+  /** Lets a run that has not begun go on with this step; what came before it was done already. */
   void Resume(std::size_t next_step) { next_step_ = next_step; }
 
   /** The first step of the sequence that is not done; their number when all are. */
   [[nodiscard]] std::size_t next_step() const;
 
-  /** After every physics step, on its thread: gives whoever is free the next part. */
+  /** Gives a worker who is free the next part. To be called after every physics step, on its
+   * thread. */
   void Advance();
 
   [[nodiscard]] bool is_done() const { return is_done_; }
@@ -93,7 +95,7 @@ class AssemblyRun final : public Sink {
   std::function<void(const AssemblyProgress&, const PartResult&)> on_part;
 
  private:
-  /** Who does the steps, one at a time: a person, or whoever has the devices. */
+  /** Who does the steps, one at a time: a simulated person, or the user of the devices. */
   struct Worker {
     SimulatedPerson* person{nullptr};
     std::size_t hand{0};  ///< The person's.
@@ -106,7 +108,7 @@ class AssemblyRun final : public Sink {
   [[nodiscard]] bool HasFinished(const Worker& worker) const;
   /** Another hand than the worker's has put it in its place. */
   [[nodiscard]] bool IsDoneByAnother(const SequenceStep& step, const Worker& worker) const;
-  /** It was there before the run began. */
+  /** The part was in its place before the run began. */
   [[nodiscard]] bool IsInPlaceAlready(const SequenceStep& step) const;
   /** Its step is to be done again where the part was in its place before. */
   void GoBackTo(const SimulationEvent& dropped);
@@ -124,16 +126,17 @@ class AssemblyRun final : public Sink {
   [[nodiscard]] PersonTask MakeTask(const SequenceStep& step) const;
 
   Simulation* simulation_;
+  PhysicsSide& physics_;
   std::vector<Worker> workers_;
   std::size_t last_worker_;  ///< That began a step last.
   Sink* downstream_;
   std::vector<PartResult> results_;
-  std::vector<bool> is_finished_;  ///< By step.
+  std::vector<bool> is_finished_;  ///< One for each step.
   std::size_t next_step_{0};
   std::size_t first_step_{0};
   std::size_t end_step_{std::numeric_limits<std::size_t>::max()};
   std::size_t total_{0};
-  std::array<haptics::HoldState, 2> states_{};           ///< By hand.
+  std::array<haptics::HoldState, 2> states_{};           ///< One for each hand.
   std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
   double lift_height_{0.05};
   bool is_done_{false};

@@ -16,7 +16,7 @@ namespace hvas::simulation {
 /** What a person may choose about how a model is rendered to a device. */
 struct RenderOptions {
   double scale{0};       ///< Scene length per device length; 0: chosen from the sizes of both.
-  double rate_hz{1000};  ///< Of the haptic tick, 1000..8000.
+  double rate_hz{1000};  ///< Rate of the haptic tick, 1000..8000 [Hz].
 };
 
 /** Options of the tick for a model and a device: coupling by the device's limits and the rate, full

@@ -59,6 +59,7 @@ class HapticLoop {
  public:
   HapticLoop(const Execution& execution, ExecutionReport* report)
       : execution_(execution),
+        haptics_(execution.simulation->haptics()),
         report_(report),
         period_ns_(PeriodOf(*execution.simulation)),
         shedder_(period_ns_) {
@@ -66,7 +67,7 @@ class HapticLoop {
     hands_[1].person = execution.second_hand;
     for (std::size_t i = 0; i < hand_count(); ++i) {
       haptics::TickOutput& last = hands_[i].last;
-      last.workspace = execution.simulation->options(i).workspace.mapping;
+      last.workspace = haptics_.options(i).workspace.mapping;
       last.X_WH = last.workspace.X_WD;
     }
   }
@@ -82,7 +83,7 @@ class HapticLoop {
     report_->overruns += compute_ns > period_ns_ ? 1 : 0;
     if (execution_.sheds_load) {
       ++report_->ticks_at_level[static_cast<std::size_t>(shedder_.level())];
-      execution_.simulation->SetEffortLevel(shedder_.Update(compute_ns));
+      haptics_.SetEffortLevel(shedder_.Update(compute_ns));
     }
     ++report_->ticks;
     t_ns_ += period_ns_;
@@ -104,7 +105,7 @@ class HapticLoop {
     device::DeviceState device = hand.person->Step(MakeInput(&hand, t_ns_, period_ns_));
     device.t_ns = t_ns_;
     const std::int64_t start_ns = ThreadCpuNs();
-    hand.last = execution_.simulation->HapticTick(i, device);
+    hand.last = haptics_.Tick(i, device);
     const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
     hand.person->Apply(hand.last.F_H_D);
     report_->slowest.Add({t_ns_, i, compute_ns, hand.last.occurrence, hand.last.state,
@@ -137,6 +138,7 @@ class HapticLoop {
   }
 
   const Execution& execution_;
+  HapticSide& haptics_;
   ExecutionReport* report_;
   std::int64_t period_ns_;
   LoadShedder shedder_;
@@ -182,7 +184,7 @@ class StatusTeller {
 };
 
 void StepPhysics(const Execution& execution) {
-  execution.simulation->PhysicsStep(execution.sink);
+  execution.simulation->physics().Step(execution.sink);
   if (execution.advance) {
     execution.advance();
   }

@@ -8,6 +8,7 @@
 #include "base/histogram.h"
 #include "base/triple_buffer.h"
 #include "simulation/flight_recorder.h"
+#include "simulation/load_shedder.h"
 #include "simulation/operator.h"
 #include "simulation/realtime_thread.h"
 #include "simulation/simulation.h"
@@ -21,7 +22,7 @@ struct SlowTick {
   std::int64_t compute_ns{0};
   product::OccurrenceId occurrence;
   haptics::HoldState state{haptics::HoldState::kEmpty};
-  std::uint32_t points_tested{0};  ///< By its contact queries.
+  std::uint32_t points_tested{0};  ///< Points tested by its contact queries.
   int contact_count{0};            ///< Contacts that pressed.
 };
 
@@ -46,8 +47,8 @@ struct ExecutionReport {
   std::int64_t wall_ns{0};
   std::int64_t cpu_ns{0};  ///< Lockstep only: processor time of the whole run.
   std::uint64_t ticks{0};
-  LatencyHistogram compute;         ///< Of the hands' ticks of a period, operators excluded.
-  SlowTicks slowest;                ///< By compute.
+  LatencyHistogram compute;         ///< Time of the hands' ticks of a period, operators excluded.
+  SlowTicks slowest;                ///< Slowest ticks by compute time.
   LatencyHistogram wake_up;         ///< Realtime only: from deadline to start.
   std::uint64_t late_wake_ups{0};   ///< Started more than a period after the deadline.
   std::uint64_t overruns{0};        ///< Compute alone took longer than a period.
@@ -64,12 +65,12 @@ struct ExecutionReport {
 struct LoopStatus {
   LatencyHistogram compute;
   LatencyHistogram wake_up;
-  std::uint64_t ticks{0};  ///< In all.
+  std::uint64_t ticks{0};  ///< Ticks since the beginning.
   std::uint64_t late_wake_ups{0};
   std::uint64_t overruns{0};
   std::uint64_t lost_events{0};
   int effort_level{0};
-  bool is_fifo{false};  ///< As in RealtimeGrant.
+  bool is_fifo{false};  ///< Thread runs under SCHED_FIFO (RealtimeGrant).
   bool is_memory_locked{false};
 };
 
@@ -78,15 +79,15 @@ struct LoopStatus {
 struct Execution {
   Simulation* simulation{nullptr};
   Operator* hand{nullptr};
-  Operator* second_hand{nullptr};  ///< For a simulation with two.
+  Operator* second_hand{nullptr};  ///< Operator of the second hand, where there are two.
   Sink* sink{nullptr};
   std::function<void()> advance;
   std::function<bool()> is_done;
   std::int64_t limit_ns{0};
   FlightRecorder* flight{nullptr};              ///< May be null.
   TickLog* log{nullptr};                        ///< The one that the simulation keeps; may be null.
-  std::function<void(const Frame&)> on_frame;   ///< On the publish thread; realtime only.
-  std::int64_t frame_ns{Simulation::kFrameNs};  ///< Between frames; realtime only.
+  std::function<void(const Frame&)> on_frame;   ///< Called on the publish thread; realtime only.
+  std::int64_t frame_ns{Simulation::kFrameNs};  ///< Time between frames; realtime only.
   TripleBuffer<LoopStatus>* status{nullptr};    ///< Written once a second; realtime only.
   /** Lockstep only: the physics loop misses its step at this time [ns], as a thread that the system
    keeps waiting; null: never. */

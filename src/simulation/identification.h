@@ -31,28 +31,29 @@ inline constexpr int kPaperTrials = 225;
 struct Observer {
   double weber{0.10};
   double threshold{0.1};  ///< [N]
-  int looks{10};          ///< At the force of one insertion, evenly over the depth, 1 to 1000.
+  int looks{10};  ///< Looks at the force of one insertion, evenly over the depth, 1 to 1000.
 };
 
 /** Which pairs of parts are shown. Their surfaces are drawn anew every time. */
 enum class ShownSizes {
-  kOnePair,  ///< As in paper W, one of each fit: in mid zone; H7/k6: hole and shaft of one size.
+  kOnePair,  ///< One pair of each fit, as in paper W: in mid zone; H7/k6: hole and shaft of one
+             ///< size.
   kOfKind,   ///< Drawn from the zones until they are what their class is called: S > 0 throughout,
              ///< S < 0 throughout, or both, as paper W, 3.3, assumes of transition fits.
   kAny,      ///< Drawn from the zones: many an H7/k6 has clearance or interference throughout.
 };
 
 struct IdentificationOptions {
-  int trials{1000};   ///< Of each fit, 1 to 1,000,000.
+  int trials{1000};   ///< Trials of each fit, 1 to 1,000,000.
   int training{500};  ///< Insertions of each fit, told which, from which the templates are.
   std::uint64_t seed{1};
   haptics::ForceMapKind map{haptics::ForceMapKind::kPublished};
   device::DeviceProfile device;
   Observer observer;
   ShownSizes sizes{ShownSizes::kOnePair};
-  double aim_error{0.7e-3};         ///< Of the hand beside the axis, each way [m].
+  double aim_error{0.7e-3};         ///< Error of the hand beside the axis, each way [m].
   double coupling_stiffness{1000};  ///< [N/m]; presses the shaft aside, W(5).
-  double friction{0.15};            ///< Of its side on the hole.
+  double friction{0.15};            ///< Force of its side on the hole [N].
 };
 
 struct Identification {

@@ -24,9 +24,9 @@ struct Body {
   product::OccurrenceId occurrence;
   std::shared_ptr<const contact::Shape> shape;
   dynamics::MassProperties mass;  ///< Never without mass: what has none gets a little.
-  spatial::Pose X_WB_goal;        ///< As drawn.
+  spatial::Pose X_WB_goal;        ///< Place as drawn.
   spatial::Pose X_WB_start;       ///< Lying on the table.
-  std::shared_ptr<const contact::FaceOffsets> faces;  ///< As made; null: as drawn.
+  std::shared_ptr<const contact::FaceOffsets> faces;  ///< Faces as made; null: as drawn.
 };
 
 /** A mate with what the loops need besides its geometry. */
@@ -54,9 +54,9 @@ struct CompileOptions {
 /** Immutable; shared by all loops. A change of fit or mate compiles a new one. */
 struct Model {
   std::shared_ptr<const product::Product> product;
-  std::vector<Body> bodies;                            ///< By OccurrenceId.
-  std::vector<ModelMate> mates;                        ///< By MateId.
-  std::vector<std::vector<product::MateId>> mates_of;  ///< By OccurrenceId.
+  std::vector<Body> bodies;                            ///< Indexed by OccurrenceId.
+  std::vector<ModelMate> mates;                        ///< Indexed by MateId.
+  std::vector<std::vector<product::MateId>> mates_of;  ///< Indexed by OccurrenceId.
   Sequence sequence;
   double table_z{0};            ///< [m]
   Vec3 centre_W{Vec3::Zero()};  ///< The product's.

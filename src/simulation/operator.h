@@ -11,7 +11,7 @@ namespace hvas::simulation {
 struct OperatorInput {
   std::int64_t t_ns{0};
   double dt{1e-3};        ///< Since the last sample [s].
-  spatial::Wrench F_H_D;  ///< On the hand, in the device's base frame.
+  spatial::Wrench F_H_D;  ///< Wrench on the hand, in the device's base frame.
   bool hears_capture{false};
   bool hears_seated{false};
   bool sees_part{false};                ///< Something is in the hand.

@@ -289,7 +289,7 @@ void Planner::FindOverlaps() {
     // A query reports a limited number of contacts: ask again without those found until none is
     // left.
     for (bool is_clear = false; !is_clear;) {
-      query.left_out = left_out;
+      query.left_out[0] = left_out;
       input_.scene->Query(input_.scene->shape(self), occurrence.X_WB, query, &workspace_);
       std::map<contact::BodyId, double> depths;
       for (const contact::Contact& contact : workspace_.contacts()) {
@@ -337,7 +337,7 @@ std::optional<Blocker> Planner::FindBlocker(const Unit& unit, const Vec3& direct
       contact::QueryOptions query;
       query.margin = -kDepthTolerance;
       query.ignored = member.ignored;
-      query.left_out = member.left_out;
+      query.left_out[0] = member.left_out;
       query.self = contact::BodyId(member.id.index());
       const product::Pose& X_WB = product_.occurrences[member.id.index()].X_WB;
       const spatial::Pose X(X_WB.q(), X_WB.p() + s * direction);

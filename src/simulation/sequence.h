@@ -15,7 +15,7 @@ namespace hvas::simulation {
 struct SequenceStep {
   enum class Kind {
     kBase,    ///< The first part of a product or subassembly: it is put into the fixture.
-    kInsert,  ///< From the table, or from the shelf, into its place.
+    kInsert,  ///< The part goes from the table, or from the shelf, into its place.
     kPark,    ///< A finished subassembly goes as one body onto the shelf, out of the way.
     kRemove,  ///< Out of its place again, by the way it came. Not planned: a person's own wish.
   };
@@ -23,8 +23,8 @@ struct SequenceStep {
   product::OccurrenceId occurrence;            ///< The part, or the base of the subassembly.
   std::vector<product::OccurrenceId> members;  ///< What else moves with it (X3).
   Vec3 extraction_W{Vec3::UnitZ()};            ///< Unit; the way out. The way in is the reverse.
-  double engage_distance{0};                   ///< From the goal until nothing is engaged [m].
-  Vec3 offset_W{Vec3::Zero()};                 ///< kPark: from the drawn place to the shelf [m].
+  double engage_distance{0};    ///< Distance from the goal until nothing is engaged [m].
+  Vec3 offset_W{Vec3::Zero()};  ///< kPark: from the drawn place to the shelf [m].
 };
 
 /** Two parts that lie in one another as drawn, beyond what a mate between them explains. Contact
@@ -42,7 +42,7 @@ struct SequenceGap {
 };
 
 struct Sequence {
-  std::vector<SequenceStep> steps;  ///< In the order of assembly.
+  std::vector<SequenceStep> steps;  ///< Steps in the order of assembly.
   std::vector<SequenceGap> gaps;
   std::vector<DrawnOverlap> overlaps;
 };
@@ -55,7 +55,7 @@ struct SequenceInput {
   const product::Product* product{nullptr};
   contact::Scene* scene{
       nullptr};  ///< All parts at their drawn poses; body index = occurrence index.
-  std::vector<std::shared_ptr<const haptics::MateFaces>> faces_a;  ///< By MateId.
+  std::vector<std::shared_ptr<const haptics::MateFaces>> faces_a;  ///< Indexed by MateId.
   std::vector<std::shared_ptr<const haptics::MateFaces>> faces_b;
   std::function<void(double fraction)> progress;
 };

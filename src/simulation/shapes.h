@@ -18,7 +18,7 @@ struct ShapesControl {
   contact::ShapeOptions shape;                    ///< Its `stop` ends the building of all.
   contact::ShapeCache* cache{nullptr};            ///< Null: shapes are always built.
   int threads{2};                                 ///< Parts that are built at a time.
-  std::function<void(double fraction)> progress;  ///< On the calling thread; may be null.
+  std::function<void(double fraction)> progress;  ///< Called on the calling thread; may be null.
 };
 
 /** The shape of each part of a product, by PartId: parts side by side, and blocks of a part side by

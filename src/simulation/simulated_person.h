@@ -31,28 +31,28 @@ struct PersonTask {
  device or keep a posture: Dolan, Friedman and Nagurka, IEEE Trans. SMC 23(3), 1993; Tsuji et al.,
  Biological Cybernetics 72, 1995; Fu and Cavusoglu, IEEE Trans. SMC B 42(6), 2012. */
 struct PersonOptions {
-  double mass{0.8};               ///< At the hand [kg].
+  double mass{0.8};               ///< Effective mass at the hand [kg].
   double stiffness{400};          ///< [N/m]
   double damping{25};             ///< [N s/m]
-  double inertia{3e-3};           ///< Of the hand's turning [kg m^2].
+  double inertia{3e-3};           ///< Inertia of the hand's turning [kg m^2].
   double turn_stiffness{6};       ///< [N m/rad]
   double turn_damping{0.2};       ///< [N m s/rad]
   double carry_speed{0.45};       ///< Mean speed of a reach [m/s].
   double approach_speed{0.15};    ///< Towards the place [m/s].
   double insert_speed{0.04};      ///< [m/s]
   double aim_error{0.7e-3};       ///< Standard deviation of where the hand believes to be [m].
-  double aim_error_angle{0.015};  ///< The same of how it is turned [rad].
-  double eye_error{0.2e-3};       ///< The same when it looks closely at the part on the screen [m].
+  double aim_error_angle{0.015};  ///< Error of how it is turned [rad].
+  double eye_error{0.2e-3};       ///< Error where it looks closely at the part on the screen [m].
   double eye_error_angle{4e-3};   ///< [rad]
   double tremor{0.05e-3};         ///< Physiological tremor, 8..12 Hz, amplitude [m].
   double push_limit{6.8};         ///< Felt force beyond which it does not press harder [N].
-  double unguided_limit{6.8};  ///< The same while no mate guides it: nothing has to give way [N].
+  double unguided_limit{6.8};  ///< Push while no mate guides the part: nothing has to give way [N].
   double first_push{4.0};      ///< What it tries first [N].
-  double careful_push{2.0};    ///< At most, once it has missed and looks closely [N].
+  double careful_push{2.0};    ///< Largest push once it has missed and looks closely [N].
   double light_push{0.8};      ///< Tips nothing over [N].
   double push_rate{6};         ///< How fast it presses harder [N/s].
   double most_stretch{0.012};  ///< The hand goes no further than the part it holds [m].
-  double patience_s{25};       ///< On one part, from the beginning of insertion [s].
+  double patience_s{25};       ///< Time spent on one part, from the beginning of insertion [s].
 };
 
 /** Where a person wants the hand to be, and what else it does; the hand is drawn there by the arm's
@@ -62,7 +62,7 @@ struct HandReference {
   Vec3 v_R_W{Vec3::Zero()};  ///< [m/s]
   Vec3 f_W{Vec3::Zero()};    ///< Besides, to hold up what it carries [N].
   bool is_gripping{false};
-  std::int64_t client_age_ns{0};  ///< As in device::DeviceState.
+  std::int64_t client_age_ns{0};  ///< Grip, as in device::DeviceState.
 };
 
 /** Somebody whose hand holds a device, whose mechanics move it. */
@@ -73,14 +73,14 @@ class DeviceHolder {
   DeviceHolder& operator=(const DeviceHolder&) = delete;
   virtual ~DeviceHolder() = default;
 
-  /** In the place of Operator::Step: the hand is where the screen shows it. RT-safe. */
+  /** Replaces Operator::Step where the hand is where the screen shows it. RT-safe. */
   [[nodiscard]] virtual HandReference Intend(const OperatorInput& input) noexcept = 0;
 
-  /** Of the arm: its impedance. */
+  /** Impedance of the arm. */
   [[nodiscard]] virtual const PersonOptions& options() const noexcept = 0;
 };
 
-/** Of the person who has this hand, in a session with this seed. */
+/** Seed of the person who has this hand, in a session with this seed. */
 [[nodiscard]] constexpr std::uint64_t SeedOfHand(std::uint64_t seed, std::size_t hand) {
   constexpr std::uint64_t kOther = 0x9e3779b97f4a7c15;
   return hand == 0 ? seed : seed ^ kOther;
@@ -164,7 +164,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
    @param speed  The way it wants to go [m/s]. */
   void AdjustPush(const OperatorInput& input, double speed, double wanted_speed,
                   bool is_light) noexcept;
-  /** To and fro, harder the longer it sticks. */
+  /** Offset that moves to and fro, harder the longer the part sticks. */
   void Rock(const Vec3& d, bool is_slow) noexcept;
   /** Gives way across the way in, and in how it is turned, to what holds the hand back. */
   void YieldToTouch(const Vec3& d) noexcept;
@@ -196,12 +196,12 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   Vec3 v_ref_{Vec3::Zero()};
   bool is_gripping_{false};
   Vec3 carried_force_{Vec3::Zero()};  ///< Slowly learned load that the arm holds up.
-  Vec3 grip_offset_W_{Vec3::Zero()};  ///< From the hand to the grip point, when carried [m].
-  /** Of the hand's goal, for how the part is held at a device, across the way in [m]. */
+  Vec3 grip_offset_W_{Vec3::Zero()};  ///< Vector from the hand to the grip point, when carried [m].
+  /** Correction of the hand's goal for how the part is held at a device, across the way in [m]. */
   Vec3 hold_offset_W_{Vec3::Zero()};
-  Vec3 p_part_W_{Vec3::Zero()};    ///< Of the grip, as seen at a device.
+  Vec3 p_part_W_{Vec3::Zero()};    ///< Grip as seen at a device.
   Vec3 v_part_W_{Vec3::Zero()};    ///< [m/s]
-  Vec3 aim_offset_{Vec3::Zero()};  ///< Of this part: where the hand wrongly believes to be.
+  Vec3 aim_offset_{Vec3::Zero()};  ///< Error of where the hand believes this part to be.
   Vec3 aim_turn_{Vec3::Zero()};
 
   static constexpr int kMaxReaches = 6;
@@ -210,8 +210,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   int reach_index_{0};
   double reach_time_s_{0};
   double phase_time_s_{0};
-  double waited_s_{0};  ///< For the hand, at the end of the reaches.
-  double calm_s_{0};    ///< Of that, without motion.
+  double waited_s_{0};  ///< Goal of the hand at the end of the reaches.
+  double calm_s_{0};    ///< Part of that time without motion.
 
   double travel_{0};       ///< Reference distance still to go along the way in [m].
   double push_{0};         ///< Force that the hand is ready to press with [N].
@@ -227,7 +227,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   double look_time_s_{0};  ///< Still to look, after backing off.
   double tremor_phase_[3]{};
   double t_s_{0};
-  double dt_{1e-3};           ///< Of the present sample [s].
+  double dt_{1e-3};           ///< Time of the present sample [s].
   bool is_at_device_{false};  ///< Something else than this arm moves the hand.
 };
 

@@ -62,9 +62,9 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
   }
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     if (!hands_[i]->follows_pointer()) {
-      simulation_.AwaitOpenGrip(i);
+      simulation_.physics().AwaitOpenGrip(i);
       if (trial_ == nullptr) {
-        simulation_.LetTakeOut(i);
+        simulation_.physics().AllowTakingOut(i);
       }
     }
   }
@@ -75,7 +75,7 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
     trial_->Begin(&simulation_);
   }
   assembly_.Resume(start.next_step);
-  observed_ = {simulation_.parts(), start.next_step};
+  observed_ = {simulation_.physics().parts(), start.next_step};
   thread_ = std::thread([this, options] { Run(options); });
 }
 
@@ -104,7 +104,7 @@ void LiveRun::Take(std::size_t hand, const simulation::SequenceStep& step,
                    const spatial::Pose& X_WH) {
   const std::lock_guard lock(mutex_);
   tasks_.emplace_back([this, hand, step, X_WH] {
-    simulation_.Prepare(step, hand);
+    simulation_.physics().Prepare(step, hand);
     hands_[hand]->pointer().Move({MonotonicNs(), X_WH, true});
   });
 }
@@ -186,13 +186,13 @@ void LiveRun::Advance() {
 }
 
 void LiveRun::Observe() {
-  LiveState now{simulation_.parts(), assembly_.next_step()};
+  LiveState now{simulation_.physics().parts(), assembly_.next_step()};
   LiveState before;
   {
     const std::lock_guard lock(mutex_);
     before = std::exchange(observed_, now);
     for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
-      is_holding_[hand] = simulation_.is_holding(hand);
+      is_holding_[hand] = simulation_.physics().is_holding(hand);
     }
     const bool has_closed =
         !std::equal(now.parts.begin(), now.parts.end(), before.parts.begin(),

@@ -34,7 +34,7 @@ TICK_ONLY = """
 
 # Entry points in files that hold set-up code too, as regular expressions of whole demangled names.
 ROOTS = [
-    r"hvas::simulation::Simulation::HapticTick\(.*",
+    r"hvas::simulation::HapticSide::Tick\(.*",
     r"hvas::simulation::SimulatedPerson::Step\(.*",  # virtual: the operator of a headless run
     r"hvas::simulation::SimulatedPerson::Intend\(.*",
     r"hvas::simulation::DeviceOperator::(Step|Apply)\(.*",

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Runs clang-tidy-14 over sources: tidy.py BUILD_FOLDER [-j N] [--changed] [FILE...]
+"""Runs clang-tidy-14 over sources: tidy.py BUILD_FOLDER [-j N] [--changed] [--most N] [FILE...]
 
 BUILD_FOLDER is of a preset that compiles each source by itself (`clang`), so that what a source does
 not include is found, too. FILEs select sources by the end of their path; --changed selects what
 tools/changed names, a header by the source of the same name, or by any one that includes it. A source
 that has passed is not looked at again until it, a header of ours that it includes, its command line
-or .clang-tidy changes.
+or .clang-tidy changes. Where more than --most sources would have to be looked at, none is, and it
+says so.
 """
 
 import argparse
@@ -50,6 +51,11 @@ def fingerprint(entry):
     return digest.hexdigest()
 
 
+def mark_of(passed_folder, entry):
+    """The file that is there once this source has passed as it is now."""
+    return passed_folder / fingerprint(entry)
+
+
 def list_files(*command):
     text = subprocess.run(command, check=True, capture_output=True, text=True, cwd=ROOT).stdout
     return {ROOT / line for line in text.splitlines()}
@@ -71,6 +77,7 @@ def main():
     parser.add_argument("build", type=lambda p: pathlib.Path(p).resolve())
     parser.add_argument("-j", type=int, default=1, metavar="N")
     parser.add_argument("--changed", action="store_true")
+    parser.add_argument("--most", type=int, metavar="N")
     parser.add_argument("files", nargs="*")
     args = parser.parse_intermixed_args()
     sources = list_files("git", "ls-files", "--cached", "--others", "--exclude-standard", "*.cc")
@@ -80,32 +87,33 @@ def main():
         if entry["path"] in sources and entry["file"].endswith(tuple(args.files) or ""):
             entries.setdefault(entry["path"], entry)
     entries = choose_changed(list(entries.values())) if args.changed else list(entries.values())
+    chosen = len(entries)
     passed_folder = args.build / "tidy"
     passed_folder.mkdir(exist_ok=True)
+    entries = [e for e in entries if not mark_of(passed_folder, e).exists()]
+    if args.most is not None and len(entries) > args.most:
+        print(f"tidy: {len(entries)} sources would have to be looked at, more than {args.most}; left to ./test all")
+        return 0
 
     def check(entry):
-        mark = passed_folder / fingerprint(entry)
-        if mark.exists():
-            return entry, None, 0.0, ""
         start = time.monotonic()
         done = subprocess.run(
             ["clang-tidy-14", "--quiet", "-p", args.build, entry["file"]], capture_output=True, text=True
         )
         if done.returncode == 0:
-            mark.touch()
+            mark_of(passed_folder, entry).touch()
         noise = done.stderr if done.returncode and not done.stdout.strip() else ""
         return entry, done.returncode == 0, time.monotonic() - start, done.stdout + noise
 
-    looked, bad = 0, 0
+    bad = 0
     # Slowest first is unknown; largest first is near enough, so that no core idles at the end.
     entries.sort(key=lambda e: -e["path"].stat().st_size)
     with concurrent.futures.ThreadPoolExecutor(args.j) as pool:
         for entry, is_clean, seconds, text in pool.map(check, entries):
-            looked += is_clean is not None
-            if is_clean is False:
+            if not is_clean:
                 bad += 1
                 print(f"{entry['path'].relative_to(ROOT)} ({seconds:.0f} s):\n{text}", flush=True)
-    print(f"tidy: {looked} of {len(entries)} sources looked at, {len(entries) - looked} unchanged, {bad} with findings")
+    print(f"tidy: {len(entries)} of {chosen} sources looked at, the others unchanged; {bad} with findings")
     return 1 if bad else 0
 
 

@@ -94,7 +94,7 @@ std::int64_t RecordStretches(const std::filesystem::path& file) {
     sink.Begin(stretch.simulation.get());
     const auto ran = RunLockstep(stretch.MakeExecution(3));
     ticks += static_cast<std::int64_t>(ran.ticks * hands);
-    parts = stretch.simulation->parts();
+    parts = stretch.simulation->physics().parts();
   }
   EXPECT_EQ(sink.t_ns(), recorder->Finish().has_value() ? sink.t_ns() : 0);
   return ticks;
@@ -196,8 +196,8 @@ TEST_F(ReplayTest, MissingCommandIsNamed) {
   const auto model = PegInBlockModel();
   AttachModel(*model, recorder.get());
   simulation::Simulation simulation(model, haptics::TickOptions());
-  recorder->AddCommand(
-      {0, 0, kBeginKind, MakeBeginningJson({{simulation.options()}, simulation.parts()})});
+  recorder->AddCommand({0, 0, kBeginKind,
+                        MakeBeginningJson({{simulation.options()}, simulation.physics().parts()})});
   recorder->AddTick(MakeTickRecord(0, {}, {}, 1));
   ASSERT_TRUE(recorder->Finish().has_value());
   const auto report = ReplayFile(file);

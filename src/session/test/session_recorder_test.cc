@@ -59,10 +59,10 @@ TEST(SessionRecorderTest, TimesOfASecondStretchGoOn) {
   for (int i = 0; i < 2; ++i) {
     simulation::Simulation simulation(model, haptics::TickOptions());
     sink.Begin(&simulation);
-    simulation.PlaceInFixture(product::OccurrenceId(0));
+    simulation.physics().PlaceInFixture(product::OccurrenceId(0));
     device::DeviceState device;
     for (device.t_ns = 0; device.t_ns < 3'000'000; device.t_ns += 1'000'000) {
-      sink.OnTick(0, device, simulation.HapticTick(device));
+      sink.OnTick(0, device, simulation.haptics().Tick(0, device));
     }
     simulation::SimulationEvent event;
     event.t_ns = 1'000'000;

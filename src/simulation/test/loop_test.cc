@@ -132,7 +132,7 @@ TEST(TickLogTest, EveryTickRunsAgainBitForBit) {  // N9
   Simulation again(model, session.simulation.options());
   double largest = 0;
   for (std::size_t i = 0; i < log.tick_count(); ++i) {
-    const haptics::TickOutput out = again.ReplayTick(log, i);
+    const haptics::TickOutput out = again.haptics().ReplayTick(log, i);
     ASSERT_EQ(out.F_H_D.f, log.tick(i).F_H_D.f) << i;
     ASSERT_EQ(out.F_H_D.t, log.tick(i).F_H_D.t) << i;
     largest = std::max(largest, out.F_H_D.f.norm());

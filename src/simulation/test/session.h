@@ -23,9 +23,9 @@ class Watch final : public Sink {
   [[nodiscard]] std::string Hex() const { return digest_.Hex(); }
 
   std::uint64_t ticks{0};
-  double largest_jump{0};  ///< Of the force on the hand, from tick to tick [N].
+  double largest_jump{0};  ///< Largest change of the force on the hand, from tick to tick [N].
   std::int64_t t_of_jump_ns{0};
-  double largest_force{0};  ///< On the hand [N].
+  double largest_force{0};  ///< Force on the hand [N].
   double deepest{0};        ///< Penetration, >= 0 [m].
   bool is_finite{true};
   std::vector<SimulationEvent> events;

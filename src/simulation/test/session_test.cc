@@ -149,11 +149,11 @@ TEST(SessionTest, PartThatCannotGoInIsBroughtBackWithAReason) {  // N10
   const PartResult& peg = session.run.results()[1];
   EXPECT_FALSE(peg.is_seated);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "rig/block", peg.reason);
-  EXPECT_EQ(session.simulation.placement(kPeg), Placement::kLoose);
+  EXPECT_EQ(session.simulation.physics().placement(kPeg), Placement::kLoose);
   EXPECT_LE(session.watch.largest_jump, 0.5);
   EXPECT_LE(session.watch.deepest, 50e-6);
   // It lies on the table again.
-  EXPECT_LT(session.simulation.pose(kPeg).p().z(), model->table_z + testing::kPegLength);
+  EXPECT_LT(session.simulation.physics().pose(kPeg).p().z(), model->table_z + testing::kPegLength);
 }
 
 TEST(SessionTest, CaptivePartIsAResultWithItsReason) {
@@ -184,10 +184,10 @@ class ScriptedHand {
         sent.X_DH = Pose(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
         sent.is_gripping = false;
       }
-      out = simulation_->HapticTick(sent);
+      out = simulation_->haptics().Tick(0, sent);
       watch.OnTick(0, sent, out);
       if (state.t_ns % Simulation::kPhysicsStepNs == 0) {
-        simulation_->PhysicsStep(&watch);
+        simulation_->physics().Step(&watch);
       }
     }
   }
@@ -202,14 +202,14 @@ class ScriptedHand {
 
 /** With the peg in the hand, lifted by 10 cm. */
 void TakePegUp(Simulation* simulation, ScriptedHand* hand) {
-  simulation->PlaceInFixture(OccurrenceId(0));
+  simulation->physics().PlaceInFixture(OccurrenceId(0));
   const Body& body = PegInBlockModel()->bodies[kPeg.index()];
-  hand->state.X_DH = Pose(simulation->pose(kPeg) * body.mass.p_BoBcm_B);
+  hand->state.X_DH = Pose(simulation->physics().pose(kPeg) * body.mass.p_BoBcm_B);
   hand->Run(0.1);
-  ASSERT_EQ(simulation->placement(kPeg), Placement::kLoose);
+  ASSERT_EQ(simulation->physics().placement(kPeg), Placement::kLoose);
   hand->state.is_gripping = true;
   hand->Run(0.5);
-  ASSERT_EQ(simulation->placement(kPeg), Placement::kHeld);
+  ASSERT_EQ(simulation->physics().placement(kPeg), Placement::kHeld);
   hand->Run(1.0, Vec3(0, 0, 0.1));
   hand->Run(0.3);
   ASSERT_NEAR(hand->out.X_WD.p().z(), body.X_WB_start.p().z() + 0.1, 5e-3);
@@ -219,7 +219,7 @@ void TakePegUp(Simulation* simulation, ScriptedHand* hand) {
 double HeightOverTable(const Simulation& simulation) {
   double lowest = 1;
   for (const Vec3& p_B : simulation.model().product->part_of(kPeg).mesh.vertices) {
-    lowest = std::min(lowest, (simulation.pose(kPeg) * p_B).z());
+    lowest = std::min(lowest, (simulation.physics().pose(kPeg) * p_B).z());
   }
   return lowest - simulation.model().table_z;
 }
@@ -230,7 +230,7 @@ TEST(SimulationTest, DroppedPartFallsToTheTableAndComesToRest) {
   TakePegUp(&simulation, &hand);
   hand.state.is_gripping = false;
   hand.Run(0.05);
-  ASSERT_EQ(simulation.placement(kPeg), Placement::kLoose);
+  ASSERT_EQ(simulation.physics().placement(kPeg), Placement::kLoose);
   const double start = HeightOverTable(simulation);
   EXPECT_GT(start, 0.07);
   hand.Run(0.05);
@@ -239,35 +239,36 @@ TEST(SimulationTest, DroppedPartFallsToTheTableAndComesToRest) {
   EXPECT_GT(HeightOverTable(simulation), 0);
   hand.Run(3.0);
   EXPECT_NEAR(HeightOverTable(simulation), 0, 0.5e-3);
-  const Pose X_WB = simulation.pose(kPeg);
+  const Pose X_WB = simulation.physics().pose(kPeg);
   hand.Run(1.0);
-  EXPECT_LT((simulation.pose(kPeg).p() - X_WB.p()).norm(), 10e-6);
-  EXPECT_LT(spatial::RotationBetween(simulation.pose(kPeg).q(), X_WB.q()).norm(), 1e-3);
+  EXPECT_LT((simulation.physics().pose(kPeg).p() - X_WB.p()).norm(), 10e-6);
+  EXPECT_LT(spatial::RotationBetween(simulation.physics().pose(kPeg).q(), X_WB.q()).norm(), 1e-3);
   // And it can be taken up again from where it fell.
-  hand.state.X_DH = Pose(simulation.pose(kPeg) * PegInBlockModel()->bodies[1].mass.p_BoBcm_B);
+  hand.state.X_DH =
+      Pose(simulation.physics().pose(kPeg) * PegInBlockModel()->bodies[1].mass.p_BoBcm_B);
   hand.Run(0.1);
   hand.state.is_gripping = true;
   hand.Run(0.2);
-  EXPECT_EQ(simulation.placement(kPeg), Placement::kHeld);
+  EXPECT_EQ(simulation.physics().placement(kPeg), Placement::kHeld);
 }
 
 TEST(SimulationTest, HandThatClosesOnNothingTakesNothing) {
   Simulation simulation(PegInBlockModel(), {});
   ScriptedHand hand(&simulation);
-  const Vec3 p_WCm = simulation.pose(kPeg) * PegInBlockModel()->bodies[1].mass.p_BoBcm_B;
+  const Vec3 p_WCm = simulation.physics().pose(kPeg) * PegInBlockModel()->bodies[1].mass.p_BoBcm_B;
   hand.state.X_DH = Pose(p_WCm + Vec3(0, 0, 60e-3));
   hand.state.is_gripping = true;
   hand.Run(0.2);
-  EXPECT_EQ(simulation.placement(kPeg), Placement::kLoose);
+  EXPECT_EQ(simulation.physics().placement(kPeg), Placement::kLoose);
   // A closed hand that passes the part does not take it along either.
   hand.Run(0.6, Vec3(0, 0, -0.1));
   hand.Run(0.2);
-  EXPECT_EQ(simulation.placement(kPeg), Placement::kLoose);
+  EXPECT_EQ(simulation.physics().placement(kPeg), Placement::kLoose);
   hand.state.is_gripping = false;
   hand.Run(0.05);
   hand.state.is_gripping = true;
   hand.Run(0.05);
-  EXPECT_EQ(simulation.placement(kPeg), Placement::kHeld);
+  EXPECT_EQ(simulation.physics().placement(kPeg), Placement::kHeld);
 }
 
 TEST(SimulationTest, LostDeviceFadesToZeroAndKeepsThePart) {  // N6
@@ -280,13 +281,13 @@ TEST(SimulationTest, LostDeviceFadesToZeroAndKeepsThePart) {  // N6
   EXPECT_TRUE(hand.watch.is_finite);
   EXPECT_LT(hand.out.F_H_W.f.norm(), 1e-3);
   EXPECT_LT(hand.out.F_H_W.t.norm(), 1e-3);
-  EXPECT_EQ(simulation.placement(kPeg), Placement::kHeld);
+  EXPECT_EQ(simulation.physics().placement(kPeg), Placement::kHeld);
   // Back again, 5 cm away: no blow, and the part follows.
   hand.state.X_DH = Pose(hand.state.X_DH.p() + Vec3(0.05, 0, 0));
   hand.Run(1.0);
   EXPECT_TRUE(hand.watch.is_finite);
   EXPECT_LE(hand.watch.largest_jump, 0.5) << "at " << hand.watch.t_of_jump_ns << " ns";
-  EXPECT_EQ(simulation.placement(kPeg), Placement::kHeld);
+  EXPECT_EQ(simulation.physics().placement(kPeg), Placement::kHeld);
   EXPECT_LT((hand.out.X_WD.p() - hand.out.X_WT.p()).norm(), 2e-3);
 }
 
@@ -313,7 +314,7 @@ TEST(SessionTest, WhoMissesWhereNothingStopsThePartLooksAndComesAgain) {  // X14
   constexpr std::uint64_t kMissesAtFirst = 5;
   Session session(testing::PegInBlockModel(), kMissesAtFirst, options, hasty);
   (void)RunLockstep(session.MakeExecution(kLimit_s));
-  EXPECT_EQ(session.simulation.placement(testing::OccurrenceId(1)), Placement::kPlaced);
+  EXPECT_EQ(session.simulation.physics().placement(testing::OccurrenceId(1)), Placement::kPlaced);
   EXPECT_GT(session.person.searches(), 0);
 }
 

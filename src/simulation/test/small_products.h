@@ -48,7 +48,7 @@ inline constexpr double kClampHeight = 35e-3;   // Of the clamp's top.
  the peg is a part of the way in its bore. */
 Product CollarUnderClamp();
 
-/** The same with a cap on the peg's top, beside the clamp. */
+/** The clamped peg with a cap on its top, beside the clamp. */
 Product CappedCollarUnderClamp();
 
 /** The model of PegInBlock, compiled once in a program. */

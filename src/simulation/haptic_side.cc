@@ -1,0 +1,252 @@
+#include "simulation/haptic_side.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "simulation/load_shedder.h"
+
+namespace hvas::simulation {
+
+HapticSide::HapticSide(const Model& model, const haptics::TickOptions* options, std::size_t hands,
+                       Handover* handover)
+    : handover_(*handover) {
+  for (std::size_t i = 0; i < hands; ++i) {
+    hands_.emplace_back(i, options[i], &scene_);
+  }
+  for (const Body& body : model.bodies) {
+    const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
+    scene_.SetOffsets(id, body.faces);
+    for (Hand& hand : hands_) {
+      hand.tick.SetProperties(id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
+                                   SurfaceOf(model.product->part_of(body.occurrence).material)});
+      hand.tick.SetLoose(id, true);
+    }
+  }
+  scene_.SetGround(model.table_z);
+}
+
+void HapticSide::Restore(const std::vector<PartState>& parts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const contact::BodyId id(i);
+    scene_.SetPose(id, parts[i].X_WB);
+    for (Hand& hand : hands_) {
+      hand.tick.SetLoose(id, parts[i].placement == Placement::kLoose);
+    }
+  }
+}
+
+void HapticSide::SetEffortLevel(int level) noexcept {
+  effort_level_ = level;
+  for (Hand& hand : hands_) {
+    hand.tick.SetEffort(kEffortLevels[static_cast<std::size_t>(level)]);
+  }
+}
+
+HapticSide::Hand* HapticSide::FindOther(const Hand& hand) noexcept {
+  return hands_.size() == 2 ? &hands_[1 - hand.index] : nullptr;
+}
+
+void HapticSide::Apply(const TickCommand& command, std::int64_t t_ns) noexcept {
+  if (command.kind == TickCommand::Kind::kTake) {
+    ApplyTake(command, t_ns);
+    return;
+  }
+  for (Hand& hand : hands_) {
+    hand.tick.SetLoose(command.body, false);
+  }
+  scene_.SetPose(command.body, command.X_WB);
+}
+
+void HapticSide::ApplyTake(const TickCommand& command, std::int64_t t_ns) noexcept {
+  Hand& hand = hands_[command.hand];
+  if (Hand* other = FindOther(hand)) {
+    const haptics::HandExchange exchange = other->tick.Exchange();
+    hand.tick.Take(command.part, &exchange);
+    for (const contact::BodyId body : command.part->bodies) {
+      other->tick.SetLoose(body, false);
+    }
+  } else {
+    hand.tick.Take(command.part);
+  }
+  hand.metrics = {};
+  hand.metrics.t_taken_ns = t_ns;
+  hand.last_contact_ns = t_ns;  // it is taken off what it lies on
+  hand.p_last_Cm = command.X_WB * command.part->p_BoBcm_B;
+  SimulationEvent event;
+  event.t_ns = t_ns;
+  event.kind = SimulationEvent::Kind::kTaken;
+  event.hand = hand.index;
+  event.occurrence = command.part->occurrence;
+  event.state = haptics::HoldState::kFree;
+  event.X_WB = command.X_WB;
+  event.metrics = hand.metrics;
+  handover_.PushOwnership(event);
+}
+
+void HapticSide::LetGo(Hand* hand, std::int64_t t_ns) noexcept {
+  const haptics::HeldPart& part = *hand->tick.held();
+  const haptics::LetGo let_go = hand->tick.Drop();
+  if (Hand* other = FindOther(*hand); other != nullptr && let_go.is_falling) {
+    other->tick.SetLoose(part.body, true);
+  }
+  SimulationEvent event;
+  event.t_ns = t_ns;
+  event.kind = SimulationEvent::Kind::kDropped;
+  event.hand = hand->index;
+  event.occurrence = part.occurrence;
+  event.state = haptics::HoldState::kEmpty;
+  event.X_WB = let_go.X_WB;
+  event.was_seated = let_go.is_in_place;
+  event.to_place = let_go.to_place;
+  event.metrics = hand->metrics;
+  handover_.PushOwnership(event);
+}
+
+haptics::TickOutput HapticSide::Tick(std::size_t hand, const device::DeviceState& device) noexcept {
+  TickCommand command;
+  while (handover_.commands.TryPop(&command)) {
+    if (log_ != nullptr) {
+      log_->Add(command);
+    }
+    Apply(command, device.t_ns);
+    ++applied_commands_;
+  }
+  haptics::TickContext context;
+  context.model_age_ns = device.t_ns - handover_.physics_t_ns.load(std::memory_order_acquire);
+  context.is_stopped = is_stopped_.load(std::memory_order_acquire);
+  context.effort_level = effort_level_;
+  haptics::TickOutput out = RunTick(&hands_[hand], device, context);
+  if (log_ != nullptr) {
+    log_->Add({device, context.model_age_ns, context.is_stopped,
+               static_cast<std::uint8_t>(effort_level_), static_cast<std::uint8_t>(hand), 0,
+               out.F_H_D});
+  }
+  return out;
+}
+
+haptics::TickOutput HapticSide::ReplayTick(const TickLog& log, std::size_t i) noexcept {
+  const TickLog::Tick& tick = log.tick(i);
+  for (; replayed_commands_ < log.command_count() && log.command(replayed_commands_).tick <= i;
+       ++replayed_commands_) {
+    Apply(log.command(replayed_commands_).command, tick.device.t_ns);
+  }
+  haptics::TickContext context;
+  context.model_age_ns = tick.model_age_ns;
+  context.is_stopped = tick.is_stopped;
+  context.effort_level = tick.effort_level;
+  return ReplayTick(tick.hand, tick.device, context);
+}
+
+haptics::TickOutput HapticSide::ReplayTick(std::size_t hand, const device::DeviceState& device,
+                                           const haptics::TickContext& context) noexcept {
+  SetEffortLevel(context.effort_level);
+  return RunTick(&hands_[hand], device, context);
+}
+
+haptics::TickOutput HapticSide::RunTick(Hand* hand, const device::DeviceState& device,
+                                        const haptics::TickContext& context) noexcept {
+  if (hand->tick.held() != nullptr && device.is_valid && !device.is_gripping) {
+    LetGo(hand, device.t_ns);
+  }
+  haptics::TickOutput out;
+  if (Hand* other = FindOther(*hand)) {
+    const haptics::HandExchange exchange = other->tick.Exchange();
+    out = hand->tick.Tick(device, context, &exchange);
+  } else {
+    out = hand->tick.Tick(device, context);
+  }
+  UpdateMetrics(hand, device.t_ns, out);
+  ReportChanges(hand, device, out);
+  HandReport report{device.t_ns, device.is_gripping && device.is_valid, out, {}, 0};
+  for (const haptics::FreeBody& body : hand->tick.awake()) {
+    report.moving[report.moving_count++] = {body.id, body.X_WB};
+  }
+  handover_.reports[hand->index].Write(report);
+  return out;
+}
+
+void HapticSide::ReportChanges(Hand* hand, const device::DeviceState& device,
+                               const haptics::TickOutput& out) noexcept {
+  SimulationEvent event;
+  event.t_ns = device.t_ns;
+  event.hand = hand->index;
+  event.occurrence = out.occurrence;
+  event.state = out.state;
+  if (out.state != hand->last_state) {
+    SimulationEvent change = event;
+    change.X_WB = out.X_WD;
+    change.metrics = hand->metrics;
+    if (handover_.TryPushTelemetry(change)) {  // else it is reported by the next tick
+      hand->last_state = out.state;
+    }
+  }
+  ReportSafety(hand, event, out.gate_actions);
+  if (effort_level_ != reported_effort_level_) {
+    event.kind = SimulationEvent::Kind::kEffort;
+    event.effort_level = effort_level_;
+    if (handover_.TryPushTelemetry(event)) {
+      reported_effort_level_ = effort_level_;
+    }
+  }
+  if (device.condition != hand->last_condition) {
+    event.kind = SimulationEvent::Kind::kDevice;
+    event.condition = device.condition;
+    event.vendor_code = device.vendor_code;
+    if (handover_.TryPushTelemetry(event)) {
+      hand->last_condition = device.condition;
+    }
+  }
+}
+
+void HapticSide::ReportSafety(Hand* hand, SimulationEvent event,
+                              std::uint32_t gate_actions) noexcept {
+  constexpr std::int64_t kQuietNs = 1'000'000'000;  // an action that goes on is one event
+  for (std::size_t bit = 0; bit < hand->last_action_ns.size(); ++bit) {
+    if ((gate_actions >> bit & 1u) == 0) {
+      continue;
+    }
+    std::int64_t& last_ns = hand->last_action_ns[bit];
+    if (last_ns == 0 || event.t_ns - last_ns > kQuietNs) {
+      event.gate_actions |= 1u << bit;
+    }
+    last_ns = event.t_ns;
+  }
+  if (event.gate_actions == 0) {
+    return;
+  }
+  event.kind = SimulationEvent::Kind::kSafety;
+  if (!handover_.TryPushTelemetry(event)) {
+    handover_.lost_safety_events.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+void HapticSide::UpdateMetrics(Hand* hand, std::int64_t t_ns,
+                               const haptics::TickOutput& out) noexcept {
+  if (hand->tick.held() == nullptr) {
+    return;
+  }
+  HoldMetrics& metrics = hand->metrics;
+  const Vec3 p_Cm = out.X_WD * hand->tick.held()->p_BoBcm_B;
+  metrics.path += (p_Cm - hand->p_last_Cm).norm();
+  hand->p_last_Cm = p_Cm;
+  metrics.peak_true = std::max(metrics.peak_true, out.F_true_W.f.norm());
+  metrics.peak_felt = std::max(metrics.peak_felt, out.F_H_W.f.norm());
+  metrics.fit_true = std::max(metrics.fit_true, std::abs(out.axial_true));
+  metrics.fit_felt = std::max(metrics.fit_felt, std::abs(out.axial_felt));
+  metrics.deepest = std::max(metrics.deepest, -out.deepest);
+  metrics.insertion = std::max(metrics.insertion, out.insertion_depth);
+  if (out.contact_count > 0) {
+    constexpr std::int64_t kApartNs = 100'000'000;  // what touches again sooner has not let go
+    const bool is_new = t_ns - hand->last_contact_ns > kApartNs;
+    metrics.collisions += is_new && out.state < haptics::HoldState::kCaptured ? 1 : 0;
+    hand->last_contact_ns = t_ns;
+  }
+  const double force = out.f_C_W.norm();
+  if (out.contact_count > 0 && out.contact_body.is_valid() && force > metrics.hardest_force) {
+    metrics.hardest_force = force;
+    metrics.hardest = out.contact_body;
+  }
+}
+
+}  // namespace hvas::simulation

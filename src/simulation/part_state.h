@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "haptics/tick_output.h"
+#include "simulation/model.h"
+#include "simulation/tick_log.h"
+#include "spatial/pose.h"
+
+namespace hvas::simulation {
+
+enum class Placement : std::uint8_t {
+  kLoose,  ///< The part is on the table, or falling.
+  kHeld,
+  kPlaced,  ///< The part is in the product, or in a subassembly that is being put together.
+  kParked,  ///< The part is on the shelf with its subassembly.
+};
+
+/** Where a part is, and what it does there. */
+struct PartState {
+  Placement placement{Placement::kLoose};
+  spatial::Pose X_WB;
+};
+
+/** What a viewer needs: poses of all parts and of the hands. */
+struct Frame {
+  std::int64_t t_ns{0};
+  std::vector<spatial::Pose> X_WB;         ///< Indexed by OccurrenceId.
+  std::vector<haptics::TickOutput> ticks;  ///< One for each hand.
+};
+
+/** A command of the physics loop to the ticks, with all that the loop knew then: enough to give it
+ again, whatever physics has come to know since. */
+struct GivenCommand {
+  std::uint32_t number{0};  ///< 1 for the first one since the simulation began.
+  std::int64_t t_ns{0};     ///< Session time that physics had seen.
+  TickCommand::Kind kind{TickCommand::Kind::kPlace};
+  std::size_t hand{0};           ///< The hand that takes.
+  SequenceStep step;             ///< What is taken; of what is placed the occurrence alone.
+  std::vector<PartState> parts;  ///< Indexed by OccurrenceId.
+};
+
+}  // namespace hvas::simulation

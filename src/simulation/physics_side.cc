@@ -1,0 +1,266 @@
+#include "simulation/physics_side.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::OccurrenceId;
+
+constexpr double kReach = 0.03;  // [m] from a part's centre of mass, to take it up
+
+}  // namespace
+
+PhysicsSide::PhysicsSide(std::shared_ptr<const Model> model, const haptics::TickOptions* options,
+                         std::size_t hands, Handover* handover, TripleBuffer<Frame>* frames)
+    : model_(std::move(model)),
+      handover_(*handover),
+      frames_(*frames),
+      parts_(model_->bodies.size()),
+      maker_(*model_, parts_),
+      hands_(hands) {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    parts_[i].X_WB = model_->bodies[i].X_WB_start;
+  }
+  for (std::size_t i = 0; i < hands; ++i) {
+    hands_[i].reports_energy = options[i].controls_passivity;
+  }
+}
+
+void PhysicsSide::Restore(const std::vector<PartState>& parts) {
+  HVAS_DEMAND(parts.size() == model_->bodies.size());
+  parts_ = parts;
+  for (PartState& part : parts_) {
+    if (part.placement == Placement::kHeld) {
+      part.placement = Placement::kLoose;
+    }
+  }
+  PublishFrame();
+}
+
+TickCommand PhysicsSide::RemakeCommand(const GivenCommand& given,
+                                       std::shared_ptr<const haptics::HeldPart>* held_before) {
+  parts_ = given.parts;
+  TickCommand command;
+  command.kind = given.kind;
+  command.hand = given.hand;
+  if (given.kind == TickCommand::Kind::kTake) {
+    Hand& hand = hands_[given.hand];
+    *held_before = std::exchange(hand.held, maker_.Make(given.step));
+    command.part = hand.held.get();
+    command.X_WB = hand.held->X_WB_start;
+  } else {
+    command.body = contact::BodyId(given.step.occurrence.index());
+    command.X_WB = parts_[given.step.occurrence.index()].X_WB;
+  }
+  return command;
+}
+
+void PhysicsSide::Step(Sink* sink) {
+  FlushCommands();
+  SimulationEvent event;
+  while (handover_.TryPopEvent(&event)) {
+    if (event.kind == SimulationEvent::Kind::kDropped) {
+      HandleDrop(event);
+    }
+    if (sink != nullptr) {
+      sink->OnEvent(event);
+    }
+  }
+  for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
+    if (handover_.reports[hand].Update()) {
+      HandleReport(hand);
+    }
+    ReportEnergy(hand, sink);
+  }
+  PublishFrame();
+}
+
+void PhysicsSide::HandleReport(std::size_t index) {
+  const HandReport& report = handover_.reports[index].value();
+  Hand& hand = hands_[index];
+  handover_.physics_t_ns.store(report.t_ns, std::memory_order_release);
+  if (!report.is_gripping) {
+    hand.is_waiting_for_grip_to_open = false;
+  } else if (hand.held == nullptr && !hand.is_waiting_for_grip_to_open) {
+    TakeNearest(index, report.out.X_WH.p());
+  }
+  for (std::size_t i = 0; i < report.moving_count; ++i) {
+    PartState& part = parts_[report.moving[i].body.index()];
+    if (part.placement == Placement::kLoose) {
+      part.X_WB = report.moving[i].X_WB;
+    }
+  }
+}
+
+void PhysicsSide::ReportEnergy(std::size_t index, Sink* sink) {
+  const HandReport& report = handover_.reports[index].value();
+  Hand& hand = hands_[index];
+  if (!hand.reports_energy || sink == nullptr || report.t_ns < hand.next_energy_ns) {
+    return;
+  }
+  hand.next_energy_ns = report.t_ns + 1'000'000'000;
+  SimulationEvent event;
+  event.t_ns = report.t_ns;
+  event.kind = SimulationEvent::Kind::kEnergy;
+  event.hand = index;
+  event.occurrence = report.out.occurrence;
+  event.state = report.out.state;
+  event.energy = report.out.energy;
+  event.turning_energy = report.out.turning_energy;
+  sink->OnEvent(event);
+}
+
+void PhysicsSide::PublishFrame() {
+  Frame& frame = frames_.back();
+  frame.t_ns = handover_.reports.front().value().t_ns;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    frame.X_WB[i] = parts_[i].X_WB;
+  }
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    const haptics::TickOutput& tick = handover_.reports[i].value().out;
+    const Hand& hand = hands_[i];
+    frame.ticks[i] = tick;
+    if (hand.held == nullptr || tick.occurrence != hand.held->occurrence) {
+      continue;
+    }
+    frame.X_WB[tick.occurrence.index()] = tick.X_WD;
+    for (const haptics::HeldMember& member : hand.held->members) {
+      frame.X_WB[member.occurrence.index()] = tick.X_WD * member.X_BS;
+    }
+  }
+  frames_.Publish();
+}
+
+void PhysicsSide::HandleDrop(const SimulationEvent& event) {
+  Hand& hand = hands_[event.hand];
+  const bool is_shelf = hand.held_step.kind == SequenceStep::Kind::kPark;
+  const auto settle = [&](OccurrenceId id, const spatial::Pose& X_WB) {
+    PartState& part = parts_[id.index()];
+    part.X_WB = X_WB;
+    if (event.was_seated && !is_shelf) {
+      part.placement = Placement::kPlaced;
+    } else if (is_shelf || !hand.held_step.members.empty()) {
+      part.placement = Placement::kParked;  // a subassembly does not fall apart
+    } else {
+      part.placement = Placement::kLoose;
+    }
+  };
+  settle(event.occurrence, event.X_WB);
+  for (const haptics::HeldMember& member : hand.held->members) {
+    settle(member.occurrence, event.X_WB * member.X_BS);
+  }
+  hand.held = nullptr;
+}
+
+void PhysicsSide::PlaceInFixture(OccurrenceId id) {
+  PartState& part = parts_[id.index()];
+  part.placement = Placement::kPlaced;
+  part.X_WB = model_->bodies[id.index()].X_WB_goal;
+  // Behind what is still on its way to the haptic thread, which alone writes to its scene.
+  TickCommand command;
+  command.body = contact::BodyId(id.index());
+  command.X_WB = part.X_WB;
+  SequenceStep step;
+  step.occurrence = id;
+  Send(command, step);
+}
+
+void PhysicsSide::Send(const TickCommand& command, const SequenceStep& step) {
+  ++given_commands_;
+  if (on_command_) {
+    on_command_({given_commands_, handover_.physics_t_ns.load(std::memory_order_relaxed),
+                 command.kind, command.hand, step, parts_});
+  }
+  waiting_commands_.push_back(command);
+  FlushCommands();
+}
+
+void PhysicsSide::FlushCommands() {
+  while (!waiting_commands_.empty() && handover_.commands.TryPush(waiting_commands_.front())) {
+    waiting_commands_.pop_front();
+  }
+}
+
+OccurrenceId PhysicsSide::FindNearest(const Vec3& p_WH, Placement placement) const {
+  OccurrenceId nearest;
+  double least = kReach;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (parts_[i].placement != placement) {
+      continue;
+    }
+    const double distance = (parts_[i].X_WB * model_->bodies[i].mass.p_BoBcm_B - p_WH).norm();
+    if (distance < least) {
+      least = distance;
+      nearest = OccurrenceId(i);
+    }
+  }
+  return nearest;
+}
+
+bool PhysicsSide::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
+  const Vec3 p_WCm = parts_[step.occurrence.index()].X_WB * CombineMass(*model_, step).p_BoBcm_B;
+  if ((p_WCm - p_WH).norm() > kReach) {
+    return false;
+  }
+  const auto is_free = [&](OccurrenceId id) {
+    const Placement placement = parts_[id.index()].placement;
+    if (step.kind == SequenceStep::Kind::kRemove) {
+      return placement == Placement::kPlaced;
+    }
+    return step.members.empty()
+               ? placement == Placement::kLoose
+               : placement == Placement::kPlaced || placement == Placement::kParked;
+  };
+  return is_free(step.occurrence) && std::all_of(step.members.begin(), step.members.end(), is_free);
+}
+
+void PhysicsSide::TakeNearest(std::size_t index, const Vec3& p_WH) {
+  Hand& hand = hands_[index];
+  if (hand.prepared && CanTake(*hand.prepared, p_WH)) {
+    Take(index, *hand.prepared);
+    return;
+  }
+  if (const OccurrenceId loose = FindNearest(p_WH, Placement::kLoose); loose.is_valid()) {
+    const SequenceStep* insertion = FindInsertion(model_->sequence, loose);
+    SequenceStep step;
+    step.occurrence = loose;
+    Take(index, insertion != nullptr ? *insertion : step);
+    return;
+  }
+  const OccurrenceId placed =
+      hand.takes_out ? FindNearest(p_WH, Placement::kPlaced) : OccurrenceId();
+  if (const SequenceStep* insertion = FindInsertion(model_->sequence, placed)) {
+    SequenceStep step = *insertion;
+    step.kind = SequenceStep::Kind::kRemove;
+    Take(index, step);
+    return;
+  }
+  hand.is_waiting_for_grip_to_open = true;  // closed on nothing: open before the next try
+}
+
+void PhysicsSide::Take(std::size_t index, const SequenceStep& step) {
+  Hand& hand = hands_[index];
+  hand.held_step = step;
+  hand.held = maker_.Make(step);
+  if (log_ != nullptr) {
+    log_->Keep(hand.held);
+  }
+  TickCommand command;
+  command.kind = TickCommand::Kind::kTake;
+  command.hand = index;
+  command.part = hand.held.get();
+  command.X_WB = hand.held->X_WB_start;
+  Send(command, step);
+  const auto mark_held = [this](OccurrenceId id) {
+    parts_[id.index()].placement = Placement::kHeld;
+  };
+  mark_held(step.occurrence);
+  for (const OccurrenceId id : step.members) {
+    mark_held(id);
+  }
+}
+
+}  // namespace hvas::simulation
