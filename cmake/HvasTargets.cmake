@@ -1,3 +1,8 @@
+# The rooms do the work of a test: its own sources take a sixth less time to compile at -O1 than at -O2.
+set(HVAS_TEST_OPTIMISATION)
+if(CMAKE_BUILD_TYPE STREQUAL RelWithDebInfo)
+  set(HVAS_TEST_OPTIMISATION -O1)
+endif()
 # What most sources include of others' headers, compiled once for rooms and once for tests. A source must not rely on it:
 # the preset `clang` compiles each source by itself without it.
 option(HVAS_PRECOMPILED "Compile the headers of libraries once" OFF)
@@ -16,6 +21,7 @@ if(HVAS_PRECOMPILED)
   endforeach()
   target_link_libraries(hvas_precompiled_tests PRIVATE GTest::gtest)
   target_precompile_headers(hvas_precompiled_tests PRIVATE <gtest/gtest.h>)
+  target_compile_options(hvas_precompiled_tests PRIVATE ${HVAS_TEST_OPTIMISATION})
 endif()
 
 # hvas_precompiled(<target> rooms|tests): what a target takes its precompiled headers from.
@@ -60,6 +66,7 @@ function(hvas_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE HVAS_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  target_compile_options(${name} PRIVATE ${HVAS_TEST_OPTIMISATION})
   hvas_precompiled(${name} tests)
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)

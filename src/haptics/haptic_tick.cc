@@ -63,7 +63,11 @@ void HapticTick::Take(const HeldPart* part, const HandExchange* other) noexcept 
 LetGo HapticTick::Drop() noexcept {
   const HeldPart& part = *displayed_.part;
   LetGo drop;
-  drop.is_in_place = is_in_place() || seating_.CanFinish(displayed_, coupling_.tracked());
+  const bool has_arrived = is_in_place();
+  drop.is_in_place = has_arrived || seating_.CanFinish(displayed_, coupling_.tracked());
+  if (drop.is_in_place) {
+    drop.arrival = has_arrived ? seating_.arrival() : Seating::CalcRemainder(displayed_);
+  }
   drop.X_WB = drop.is_in_place ? part.X_WB_goal : displayed_.X_WD;
   drop.to_place = drop.is_in_place ? 0 : Seating::CalcRemainder(displayed_).d_W.norm();
   drop.is_falling = part.falls_when_dropped && !drop.is_in_place && !guidance_.is_stuck();
@@ -230,7 +234,7 @@ void HapticTick::UpdateState() noexcept {
   if (seating_.HasArrived(displayed_, coupling_.tracked())) {
     state_ = HoldState::kSeated;
     seating_.Start(displayed_);
-    const double to_go = Seating::CalcRemainder(displayed_).d_W.norm();
+    const double to_go = seating_.arrival().d_W.norm();
     output_.AddCredit(0.5 * options_.coupling.k_lin * to_go * to_go /
                       options_.workspace.mapping.scale);
   } else if (mates.captured_count() > 0) {

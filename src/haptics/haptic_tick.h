@@ -25,6 +25,8 @@ struct LetGo {
   bool is_in_place{false};
   bool is_falling{false};  ///< It is a loose part that moves from now on.
   double to_place{0};      ///< Distance of its centre of mass from its place [m].
+  /** How far the part was from its place when it was moved exactly there; zero where it was not. */
+  Seating::Remainder arrival;
 };
 
 /** Which hand this is, of one or two in a scene. */

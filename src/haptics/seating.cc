@@ -16,6 +16,7 @@ double MinimumJerk(double s) noexcept {
 }  // namespace
 
 void Seating::Begin(const HeldPart& part) noexcept {
+  arrival_ = {};
   progress_ = 0;
   leaves_place_ = part.starts_in_place;
 }
@@ -105,6 +106,7 @@ spatial::Pose Seating::CalcPose(const HeldPart& part, double progress) const noe
 }
 
 void Seating::Start(const DisplayedPart& displayed) noexcept {
+  arrival_ = CalcRemainder(displayed);
   progress_ = 0;
   X_WD_start_ = displayed.X_WD;
 }

@@ -13,8 +13,8 @@ class Seating {
  public:
   /** How far the displayed part is from its place. */
   struct Remainder {
-    Vec3 d_W;      ///< Vector from where its centre of mass belongs to where it is [m].
-    double angle;  ///< [rad]
+    Vec3 d_W{Vec3::Zero()};  ///< Vector from where its centre of mass belongs to where it is [m].
+    double angle{0};         ///< [rad]
   };
 
   Seating(const TickOptions& options, const Guidance* guidance, ContactStep* contacts) noexcept
@@ -44,6 +44,9 @@ class Seating {
 
   [[nodiscard]] bool is_finished() const noexcept { return progress_ >= 1; }
 
+  /** How far the part was from its place when the last movement began. */
+  [[nodiscard]] const Remainder& arrival() const noexcept { return arrival_; }
+
   [[nodiscard]] static Remainder CalcRemainder(const DisplayedPart& displayed) noexcept;
 
  private:
@@ -57,6 +60,7 @@ class Seating {
   const TickOptions& options_;
   const Guidance& guidance_;
   ContactStep& contacts_;
+  Remainder arrival_;
   double progress_{0};        ///< 0..1 of the last movement.
   spatial::Pose X_WD_start_;  ///< Where the last movement begins.
   bool leaves_place_{false};

@@ -180,6 +180,8 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
     result.fit_felt = std::max(result.fit_felt, metrics.fit_felt);
     result.deepest = std::max(result.deepest, metrics.deepest);
     result.insertion = std::max(result.insertion, metrics.insertion);
+    result.arrival = metrics.arrival;
+    result.arrival_angle = metrics.arrival_angle;
   }
   const std::string reason = was_seated ? std::string() : ExplainFailure(step, worker);
   result.reason = reason;

@@ -18,19 +18,25 @@ namespace hvas::simulation {
 struct PartResult {
   product::OccurrenceId occurrence;
   bool is_seated{false};
-  std::string reason;          ///< Why not, when it is not seated.
-  std::string note;            ///< What was odd about it although it is; may be empty.
-  double time{0};              ///< Time from taking it up to letting go [s].
-  double path{0};              ///< [m]
-  double peak_true{0};         ///< [N]
-  double peak_felt{0};         ///< [N]
-  double fit_true{0};          ///< Largest axial force of its fits, true [N].
-  double fit_felt{0};          ///< Largest axial force of its fits, as felt [N].
-  double deepest{0};           ///< Deepest penetration met [m].
-  double insertion{0};         ///< Longest that a mate's shaft was in its hole [m].
-  std::size_t hand{0};         ///< That let go of it last.
-  int mates{0};                ///< Mates with parts that were in place.
-  double pose_error{0};        ///< Distance of the origin from the file's pose [m].
+  std::string reason;   ///< Why not, when it is not seated.
+  std::string note;     ///< What was odd about it although it is; may be empty.
+  double time{0};       ///< Time from taking it up to letting go [s].
+  double path{0};       ///< [m]
+  double peak_true{0};  ///< [N]
+  double peak_felt{0};  ///< [N]
+  double fit_true{0};   ///< Largest axial force of its fits, true [N].
+  double fit_felt{0};   ///< Largest axial force of its fits, as felt [N].
+  double deepest{0};    ///< Deepest penetration met [m].
+  double insertion{0};  ///< Longest that a mate's shaft was in its hole [m].
+  std::size_t hand{0};  ///< That let go of it last.
+  int mates{0};         ///< Mates with parts that were in place.
+  /** Distance from its place to which the hand brought it, before it was moved exactly there [m].
+   */
+  double arrival{0};
+  double arrival_angle{0};  ///< [rad]
+  /** Distance of the origin from the file's pose [m]: what the resolver of the mates leaves, as a
+   seated part stands where they say. */
+  double pose_error{0};
   double pose_error_angle{0};  ///< [rad]
 };
 

@@ -90,6 +90,8 @@ void HapticSide::LetGo(Hand* hand, std::int64_t t_ns) noexcept {
   if (Hand* other = FindOther(*hand); other != nullptr && let_go.is_falling) {
     other->tick.SetLoose(part.body, true);
   }
+  hand->metrics.arrival = let_go.arrival.d_W.norm();
+  hand->metrics.arrival_angle = let_go.arrival.angle;
   SimulationEvent event;
   event.t_ns = t_ns;
   event.kind = SimulationEvent::Kind::kDropped;

@@ -23,6 +23,8 @@ struct HoldMetrics {
   double fit_felt{0};       ///< Largest axial force of fits, as felt [N].
   double deepest{0};        ///< Deepest penetration, >= 0 [m].
   double insertion{0};      ///< Longest engagement of a captured axis [m].
+  double arrival{0};        ///< Distance from its place when it was moved exactly there [m].
+  double arrival_angle{0};  ///< Angle from its place then [rad].
   int collisions{0};        ///< Contacts that began before a mate guided the part.
   contact::BodyId hardest;  ///< Body pressed hardest while the hand was inserting; may be invalid.
   double hardest_force{0};  ///< [N]

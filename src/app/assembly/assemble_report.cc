@@ -79,6 +79,8 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
           {"deepest_um", units::ToUm(part.deepest)},
           {"insertion_mm", units::ToMm(part.insertion)},
           {"mates", part.mates},
+          {"arrival_um", units::ToUm(part.arrival)},
+          {"arrival_urad", 1e6 * part.arrival_angle},
           {"pose_error_um", units::ToUm(part.pose_error)},
           {"pose_error_urad", 1e6 * part.pose_error_angle}};
 }
@@ -91,9 +93,15 @@ nlohmann::ordered_json ToJson(const DeviceInHand& device) {
           {"notes", device.notes}};
 }
 
+/** A residual below what a double resolves of a product's size is not a measurement. */
+std::string DescribeResidual(double residual_um) {
+  constexpr double kResolved_um = 1e-6;
+  return residual_um < kResolved_um ? "< 1e-6" : fmt::format("{:.1e}", residual_um);
+}
+
 void PrintParts(const Model& model, const AssemblyOutcome& outcome) {
-  TextTable table({"  #", "part", "time\ns", "path\nm", "true\nN", "felt\nN", "mates", "error\num",
-                   "turned\nurad"},
+  TextTable table({"  #", "part", "time\ns", "path\nm", "true\nN", "felt\nN", "mates",
+                   "arrival\num", "tilt\nmrad", "residual\num"},
                   2);
   for (std::size_t i = 0; i < outcome.parts.size(); ++i) {
     const PartResult& part = outcome.parts[i];
@@ -105,11 +113,15 @@ void PrintParts(const Model& model, const AssemblyOutcome& outcome) {
     }
     table.Add({number, name, fmt::format("{:.2f}", part.time), fmt::format("{:.3f}", part.path),
                fmt::format("{:.2f}", part.peak_true), fmt::format("{:.2f}", part.peak_felt),
-               fmt::format("{}", part.mates), fmt::format("{:.1e}", units::ToUm(part.pose_error)),
-               fmt::format("{:.1e}", 1e6 * part.pose_error_angle)},
+               fmt::format("{}", part.mates), fmt::format("{:.1f}", units::ToUm(part.arrival)),
+               fmt::format("{:.2f}", 1e3 * part.arrival_angle),
+               DescribeResidual(units::ToUm(part.pose_error))},
               part.time == 0 ? "in the fixture" : part.note);
   }
-  fmt::print("{}", table.ToText());
+  fmt::print("{}{}", table.ToText(),
+             Fold("arrival, tilt: from the place to which the hand brought a part, before it was "
+                  "moved exactly there; residual: from there to the file's pose, by the resolution "
+                  "of the mates\n"));
 }
 
 void PrintTicks(const Model& model, const ExecutionReport& run) {

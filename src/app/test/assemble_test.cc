@@ -49,6 +49,9 @@ void ExpectAllSeated(const json& run, std::size_t count) {
     EXPECT_EQ(part["reason"], "");
     EXPECT_LT(part["pose_error_um"].get<double>(), 1) << part["name"];
     EXPECT_LT(part["pose_error_urad"].get<double>(), 1) << part["name"];
+    EXPECT_LE(part["arrival_um"].get<double>(), 3000) << part["name"];
+    EXPECT_EQ(part["arrival_um"].get<double>() > 0, part["time_s"].get<double>() > 0)
+        << part["name"] << ": the hand brings nothing exactly to its place";
     EXPECT_LE(part["deepest_um"].get<double>(), 50) << part["name"];
     EXPECT_GE(part["peak_true_n"].get<double>(), 0);
     EXPECT_LE(part["peak_felt_n"].get<double>(), 7.9 + 1e-9) << part["name"];
