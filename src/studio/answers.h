@@ -11,32 +11,32 @@
 
 namespace hvas::studio {
 
-/** What a GET is answered with. */
+/** Content of the response to a GET request. */
 struct Answer {
   std::string type;                   ///< Media type.
-  std::string_view bytes;             ///< That `owner` keeps, or that the program has for ever.
+  std::string_view bytes;             ///< Body; `owner` or static storage keeps it alive.
   std::shared_ptr<const void> owner;  ///< May be null.
-  std::string etag;                   ///< Empty: is not to be kept by anybody.
-  bool is_immutable{false};           ///< What has this path never changes.
-  std::string encoding;               ///< Content-Encoding, for what comes in several; or empty.
-  std::optional<std::filesystem::path> file;  ///< In place of the bytes, for saving.
+  std::string etag;                   ///< Entity tag; empty: the response must not be cached.
+  bool is_immutable{false};           ///< The content of this path never changes.
+  std::string encoding;               ///< Content-Encoding; empty: identity.
+  std::optional<std::filesystem::path> file;  ///< Sent instead of `bytes`, as a download.
 };
 
-/** A file of the client, that anybody may have.
- @param accepted  Accept-Encoding. Errors: kNotFound. */
+/** Serves a file of the client, for which no session is needed.
+ @param accepted  Value of Accept-Encoding. Errors: kNotFound. */
 [[nodiscard]] Result<Answer> AnswerAsset(std::string_view path, std::string_view accepted);
 
-/** What is under /api/, for those who may come in (docs/protocol.md).
- @param is_shielded  For whoever takes part in a study: the scene without its fits, the meshes, and
- nothing else. Errors: kNotFound for what is not there; those of a record. */
+/** Serves a resource below /api/ to a client with a session (docs/protocol.md).
+ @param is_shielded  The client is a participant of a study: it gets the scene without its fits, the
+ meshes, and nothing else. Errors: kNotFound for unknown resources; those of reading a record. */
 [[nodiscard]] Result<Answer> AnswerApi(Workbench* workbench, std::string_view path,
                                        bool is_shielded = false);
 
-/** A path of a URL with %xx as the bytes that they stand for; what is no such sequence stays. */
+/** Decodes the percent-encoding (%xx) of a URL's path; malformed sequences stay as they are. */
 [[nodiscard]] std::string DecodePercent(std::string_view path);
 
-/** How an uploaded file is called here: the last part of the name that a request's target gives it,
- of harmless letters, with its extension, which tells the format. */
+/** Makes a safe file name for an upload: the last component of the name in the request's target,
+ reduced to harmless characters, with its extension, which determines the format. */
 [[nodiscard]] std::string NameOfUpload(std::string_view target);
 
 }  // namespace hvas::studio

@@ -1,4 +1,4 @@
-// For the sources of the server alone: Boost.Beast takes long to compile.
+// Included by the sources of the server only: Boost.Beast takes long to compile.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace hvas::studio {
 
-/** Who is in: so many connections, and no more. Whoever holds one open without having shown a
- cookie keeps nobody out: the one of them that came first goes when another one comes. One thread's.
- */
+/** Limits the number of open connections. A connection without a valid session cookie keeps nobody
+ out: when the table is full, the oldest of those is closed in favour of a new one. For one
+ thread. */
 class Guests {
  public:
   static constexpr std::size_t kMost = 64;
 
-  /** @returns its number; 0 when all that are here are known, and there is no room. */
+  /** @returns the connection's number; 0 when the table is full of authenticated connections. */
   std::uint64_t Add(boost::beast::tcp_stream* stream) {
     if (guests_.size() >= kMost && !MakeRoom()) {
       return 0;
@@ -47,7 +47,7 @@ class Guests {
   bool MakeRoom() {
     for (auto it = guests_.begin(); it != guests_.end(); ++it) {
       if (!it->second.is_known) {
-        it->second.stream->close();  // whoever waits for it is told, and lets it go
+        it->second.stream->close();  // pending operations fail, which ends their session
         guests_.erase(it);
         return true;
       }
@@ -55,12 +55,12 @@ class Guests {
     return false;
   }
 
-  std::map<std::uint64_t, Guest> guests_;  ///< In the order in which they came.
+  std::map<std::uint64_t, Guest> guests_;  ///< Key: number, hence in the order of arrival.
   std::uint64_t last_{0};
 };
 
-/** A stream of Asio's to one client, with TLS or without: one type for both, so that all above it
- is compiled once. */
+/** An Asio stream to one client, with or without TLS. It is one type for both, so that the layers
+ above are compiled once. */
 class Connection {
  public:
   using next_layer_type = boost::beast::tcp_stream;
@@ -70,15 +70,15 @@ class Connection {
   Connection(boost::asio::ip::tcp::socket socket, std::shared_ptr<Guests> guests)
       : seat_(std::make_unique<Seat>(std::move(socket), std::move(guests))) {}
 
-  /** False: there is no room for it. */
+  /** Whether the connection table has accepted it. */
   [[nodiscard]] bool is_in() const { return seat_->number != 0; }
 
-  /** Whoever it is has shown a cookie of this server's. */
+  /** Marks the client as authenticated: it has sent a valid session cookie. */
   void SetKnown() { seat_->guests->Know(seat_->number); }
 
   [[nodiscard]] bool is_tls() const { return tls_ != nullptr; }
 
-  /** From here on all is encrypted. */
+  /** Begins TLS; all later reads and writes are encrypted. */
   Tls& BeginTls(boost::asio::ssl::context* context) {
     tls_ = std::make_unique<Tls>(seat_->stream, *context);
     return *tls_;
@@ -126,10 +126,10 @@ class Connection {
   };
 
   std::unique_ptr<Seat> seat_;
-  std::unique_ptr<Tls> tls_;  ///< Over the seat's stream; null: nothing is encrypted.
+  std::unique_ptr<Tls> tls_;  ///< TLS layer over the seat's stream; null: plain TCP.
 };
 
-/** Found by boost::beast::websocket where a WebSocket over a Connection has ended. */
+/** Closes the transport below a WebSocket; Boost.Beast finds it by argument-dependent lookup. */
 template <typename Handler>
 void async_teardown(boost::beast::role_type role, Connection& connection, Handler&& handler) {
   using boost::beast::websocket::async_teardown;

@@ -10,19 +10,20 @@
 
 namespace hvas::studio {
 
-/** A small file of this user's that a studio has kept.
- Errors: kNotFound when there is none; kInvalid when it is no plain file or others can read it; and
- as ReadRegularFile(). */
+/** Reads a small state file that only this user may read.
+ Errors: kNotFound when there is none; kInvalid when it is no regular file or other users can read
+ it; and those of ReadRegularFile(). */
 [[nodiscard]] Result<std::string> ReadKeptFile(const std::filesystem::path& path);
 
-/** Where a studio keeps what the next start goes on with: one folder for each subject, that nobody
- else can enter, and that one program has at a time, however it ends. */
+/** Folder with the state that the next start of the studio resumes from: one for each subject, with
+ access for this user only, locked by one process at a time. The lock ends with the process. */
 class KeptFolder {
  public:
-  /** @param parent  Is made; $XDG_STATE_HOME/hvas/studio.
-   @param subject  Of what it is: the product's file, a study's session; "" for none. Where another
-   program has the folder, there is a second one, and so on.
-   Errors (kOutOfResource): it cannot be made. */
+  /** Locks the folder of a subject; makes it when there is none. When another process has it, a
+   numbered second one is taken, and so on.
+   @param parent  Parent folder, usually $XDG_STATE_HOME/hvas/studio; made when there is none.
+   @param subject  File of the product or session of a study; "" for none.
+   Errors: kOutOfResource when no folder can be made. */
   [[nodiscard]] static Result<KeptFolder> Take(const std::filesystem::path& parent,
                                                std::string_view subject);
 
@@ -30,10 +31,10 @@ class KeptFolder {
 
   [[nodiscard]] std::filesystem::path work_file() const { return path_ / "work.json"; }
 
-  /** The folder of files that were sent to it; each lies in a folder of its own. */
+  /** Folder of uploaded files; each file has a subfolder of its own. */
   [[nodiscard]] std::filesystem::path uploads() const { return path_ / "uploads"; }
 
-  /** Removes all uploads but one, which may be none of them. */
+  /** Removes all uploads but `file`, which need not be an upload. */
   void RemoveUploadsBut(const std::filesystem::path& file) const;
 
  private:

@@ -10,28 +10,28 @@
 
 namespace hvas::studio {
 
-/** How far the work on a product has come: what a later start of the studio goes on from. */
+/** Saved work on a product: edits and state of assembly, from which a later start resumes. */
 struct KeptWork {
-  std::filesystem::path file;                 ///< The product's.
-  std::string name;                           ///< What people call it.
-  std::string digest;                         ///< CalcProductDigest of what was opened.
-  std::vector<nlohmann::ordered_json> edits;  ///< Commands, in the order in which they were given.
+  std::filesystem::path file;                 ///< CAD file of the product.
+  std::string name;                           ///< Display name of the product.
+  std::string digest;                         ///< CalcProductDigest of the product as opened.
+  std::vector<nlohmann::ordered_json> edits;  ///< Commands of edits, in order.
   LiveState state;
 };
 
-/** The digest of parts, meshes, mates and fits: of all that edits and places of parts refer to. */
+/** Computes the digest of parts, meshes, mates and fits: all that edits and poses refer to. */
 [[nodiscard]] std::string CalcProductDigest(const product::Product& product);
 
-/** @pre now.scene is not null. */
+/** Makes the saved work of a snapshot. @pre now.scene != nullptr. */
 [[nodiscard]] KeptWork MakeKeptWork(const SceneNow& now);
 
-/** Errors: those of ReadKeptFile; kUnreadable for what is not of SaveWork. */
+/** Reads a file of SaveWork. Errors: those of ReadKeptFile; kUnreadable for any other content. */
 [[nodiscard]] Result<KeptWork> LoadWork(const std::filesystem::path& file);
 
-/** What another work is about to take the place of stays beside it, until the next one does. */
+/** Moves saved work that is about to be replaced to a backup file beside it; one backup is kept. */
 void SetWorkAside(const std::filesystem::path& file);
 
-/** Into a file that nobody else can read. Errors: those of WriteAtomically. */
+/** Writes a file that only this user can read. Errors: those of WriteAtomically. */
 [[nodiscard]] Result<void> SaveWork(const std::filesystem::path& file, const KeptWork& work);
 
 }  // namespace hvas::studio

@@ -24,7 +24,7 @@ namespace websocket = beast::websocket;
 using beast::error_code;
 using tcp = asio::ip::tcp;
 
-/** All that the sessions share; one thread's. */
+/** State that all sessions of the server share. For one thread. */
 struct ServerShared {
   ServerShared(Workbench* bench, std::vector<Example> examples, const ServerOptions& given)
       : workbench(bench), hub(bench, std::move(examples)), options(given) {
@@ -35,10 +35,10 @@ struct ServerShared {
   Hub hub;
   ServerOptions options;
   std::unique_ptr<Access> access;
-  std::unique_ptr<asio::ssl::context> tls;  ///< Null: nothing is encrypted.
+  std::unique_ptr<asio::ssl::context> tls;  ///< Null: plain HTTP.
   std::shared_ptr<Guests> guests{std::make_shared<Guests>()};
 
-  /** After a change of who may come in. What cannot be written is told of once. */
+  /** Saves the access control after a change; prints a warning the first time that this fails. */
   void KeepAccess() {
     if (options.access_file.empty()) {
       return;
@@ -49,7 +49,7 @@ struct ServerShared {
     }
   }
 
-  /** A link that nobody has used yet, for the experimenter to pass on. */
+  /** Gives the study desk an unused participant's link, which the experimenter passes on. */
   void TellOfParticipantLink() {
     if (options.desk != nullptr) {
       options.desk->SetParticipantLink("/#t=" + access->FindFresh(Role::kParticipant));

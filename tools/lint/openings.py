@@ -15,7 +15,7 @@ OPENING = re.compile(
     r"(?:/\*\*|///<) (?:Of|To|With|By|For|In|After|From|At|As|On|Until|And|Or|Else|Without|Before|Behind|Between|Through"
     r"|Over|Under|Like|The same)\b"
 )
-PENDING = {"haptics": 99, "simulation": 73, "studio": 70, "study": 43}
+PENDING = {"haptics": 99, "simulation": 73}
 
 
 def find_openings(folder):
