@@ -82,7 +82,7 @@ std::string MakeToken() {
   }
   std::string token;
   for (const unsigned char byte : bytes) {
-    token += kAlphabet[byte % kAlphabet.size()];  // 64 letters: each is as likely as the others
+    token += kAlphabet[byte % kAlphabet.size()];  // 64 characters divide 256: uniform
   }
   return token;
 }
@@ -152,7 +152,7 @@ Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, 
 std::string Access::OriginOf(std::string_view host) const {
   constexpr std::uint16_t kHttp = 80;
   constexpr std::uint16_t kHttps = 443;
-  // Browsers leave out the port that the scheme has anyway.
+  // Browsers omit the default port of the scheme.
   const std::string suffix =
       port_ == (is_tls_ ? kHttps : kHttp) ? std::string() : fmt::format(":{}", port_);
   const bool is_v6 = host.find(':') != std::string_view::npos;
@@ -170,7 +170,7 @@ bool Access::AllowsOrigin(std::string_view origin) const {
 }
 
 KeptAccess::Browser* Access::FindBrowser(std::string_view secret) {
-  // All are compared every time.
+  // All entries are compared each time, so that the time does not tell which one matched.
   KeptAccess::Browser* found = nullptr;
   for (KeptAccess::Browser& browser : known_.browsers) {
     found = IsSameSecret(secret, browser.secret) ? &browser : found;
@@ -190,7 +190,7 @@ std::string Access::AddLink(Role role) {
 KeptAccess::Browser* Access::AddBrowser() {
   auto& browsers = known_.browsers;
   if (browsers.size() >= kMostBrowsers) {
-    // Whoever looks on comes in again by the same link.
+    // A viewer can be admitted again by the same link.
     const auto oldest = std::find_if(browsers.begin(), browsers.end(),
                                      [](const auto& one) { return !IsForOne(one.role); });
     browsers.erase(oldest == browsers.end() ? browsers.begin() : oldest);
@@ -219,10 +219,10 @@ Result<Access::Admission> Access::Admit(std::string_view token, std::string_view
   browser = browser != nullptr ? browser : AddBrowser();
   browser->role = link->role;
   link->browser = IsForOne(link->role) ? browser->secret : "";
-  constexpr int kKeptFor = 30 * 24 * 3600;  // [s]
-  return Admission{link->role,
-                   fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
-                               cookie_name_, browser->secret, kKeptFor, is_tls_ ? "; Secure" : "")};
+  constexpr int kCookieLifetime = 30 * 24 * 3600;  // [s]
+  return Admission{link->role, fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
+                                           cookie_name_, browser->secret, kCookieLifetime,
+                                           is_tls_ ? "; Secure" : "")};
 }
 
 std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {

@@ -18,7 +18,7 @@ Unexpected NothingHere(std::string_view path) {
   return Fail(ErrorCode::kNotFound, "there is nothing here", std::string(path), "");
 }
 
-/** Of bytes that nobody else keeps. */
+/** Makes a response that owns its bytes. */
 Result<Answer> Own(const char* type, Result<std::string> bytes) {
   if (!bytes) {
     return Unexpected(bytes.error());
@@ -35,7 +35,7 @@ Result<Answer> Own(const Json& json) {
   return Own(kJsonType, json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-/** Of a mesh whose path holds its digest. */
+/** Makes the response for a mesh whose path contains its digest. */
 Answer MakeGlbAnswer(std::string_view bytes, const std::string& digest,
                      std::shared_ptr<const void> owner) {
   Answer answer;
@@ -74,7 +74,7 @@ Result<Answer> AnswerPath(Workbench* workbench, std::string_view name) {
   return MakeGlbAnswer(swept->glb, swept->id, swept);
 }
 
-/** @param rest  Its id, and what of it. */
+/** @param rest  Path below /api/recordings/: id, and the resource of it. */
 Result<Answer> AnswerRecording(RecordingShelf* shelf, std::string_view rest) {
   const std::size_t slash = std::min(rest.find('/'), rest.size());
   const std::string id(rest.substr(0, slash));

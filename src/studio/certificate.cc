@@ -32,9 +32,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kDayS = 86'400;
-constexpr std::int64_t kValidDays = 397;    // the longest that browsers take from anybody
-constexpr std::int64_t kRenewedDays = 14;   // before the end
-constexpr std::int64_t kBackdatedDays = 1;  // for clocks that are behind
+constexpr std::int64_t kValidDays = 397;    // the longest validity that browsers accept
+constexpr std::int64_t kRenewedDays = 14;   // time before expiry
+constexpr std::int64_t kBackdatedDays = 1;  // allows for clocks that are behind
 
 template <auto kFree>
 struct Free {
@@ -54,7 +54,7 @@ bool IsAddress(const std::string& name) {
          ::inet_pton(AF_INET6, name.c_str(), bytes.data()) == 1;
 }
 
-/** As DNS has them. */
+/** Whether a name has the syntax of DNS host names. */
 bool IsHostName(const std::string& name) {
   constexpr std::size_t kLongest = 253;
   return !name.empty() && name.size() <= kLongest && name.front() != '.' && name.front() != '-' &&
@@ -66,7 +66,7 @@ Bio MakeBio(std::string_view bytes) {
   return Bio(BIO_new_mem_buf(bytes.data(), static_cast<int>(bytes.size())));
 }
 
-/** A key with a password has none here: nobody is asked. */
+/** Password callback of OpenSSL that gives none, so that nobody is prompted. */
 int RefusePassword(char* /*password*/, int /*size*/, int /*is_new*/, void* /*user*/) {
   return 0;
 }
@@ -119,8 +119,8 @@ bool SetNames(X509* certificate, const std::vector<std::string>& names) {
                       fmt::format("{}", fmt::join(alternatives, ",")));
 }
 
-/** Key and certificate in one text, so that they are replaced together; empty when OpenSSL has no
- random numbers or no memory. */
+/** Makes key and certificate in one text, so that they are replaced together; empty when OpenSSL
+ fails for lack of random numbers or memory. */
 std::string MakePem(const std::vector<std::string>& names, std::int64_t now_s) {
   const Key key(EVP_EC_gen("P-256"));
   const X509Ptr certificate(X509_new());
@@ -165,8 +165,8 @@ Result<void> CheckNames(const std::vector<std::string>& names) {
   return {};
 }
 
-/** What is kept, when it is good for the names for long enough; nothing when there is none or it
- has to be made anew. */
+/** Finds the certificate in a file; none when there is none, or when it expires too soon or lacks a
+ name. */
 Result<std::optional<SelfSigned>> FindKept(const fs::path& file,
                                            const std::vector<std::string>& names,
                                            std::int64_t now_s) {
@@ -207,7 +207,7 @@ Result<void> MakeFolder(const fs::path& folder) {
                 : Result<void>();
 }
 
-/** As people and certificates write it; nothing for what is of no other kind than asked for. */
+/** Formats an address; none for families other than IPv4 and IPv6, and for link-local IPv6. */
 std::optional<std::string> ReachableAddress(const sockaddr* address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address == nullptr) {
@@ -219,14 +219,14 @@ std::optional<std::string> ReachableAddress(const sockaddr* address) {
   }
   if (address->sa_family == AF_INET6) {
     const auto* v6 = reinterpret_cast<const sockaddr_in6*>(address);
-    if (!IN6_IS_ADDR_LINKLOCAL(&v6->sin6_addr)) {  // browsers take none with a zone
+    if (!IN6_IS_ADDR_LINKLOCAL(&v6->sin6_addr)) {  // browsers do not accept zone ids
       return ::inet_ntop(AF_INET6, &v6->sin6_addr, text.data(), text.size());
     }
   }
   return std::nullopt;
 }
 
-/** Of all interfaces that are up, but the loopback. */
+/** Lists the addresses of all interfaces that are up, except the loopback. */
 std::vector<std::string> ListAddresses(bool has_v6) {
   std::vector<std::string> addresses;
   ifaddrs* list = nullptr;

@@ -1,4 +1,4 @@
-// What clients may ask for: the commands of docs/protocol.md, in its order.
+// Handlers of the commands in docs/protocol.md, in its order.
 
 #include <algorithm>
 #include <iterator>
@@ -14,7 +14,7 @@
 namespace hvas::studio {
 namespace {
 
-/** The empty result of a command that was obeyed. */
+/** Empty result of a command that has succeeded. */
 Result<Json> Done(const Result<void>& result) {
   return result ? Result<Json>(Json::object()) : Result<Json>(Unexpected(result.error()));
 }

@@ -66,7 +66,7 @@ std::vector<protocol::BodyPose> ListMoved(const simulation::Frame& frame,
   return moved;
 }
 
-/** Counts between edges, the last of all that is longer. */
+/** Makes histogram counts between edges; the last bin has everything above the last edge. */
 Json CountBetween(const LatencyHistogram& histogram, std::span<const int> edges_us) {
   constexpr std::int64_t kNsPerUs = 1000;
   Json counts = Json::array();

@@ -14,11 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/** The pointer, as a device is described. */
+/** Describes the pointer in the form of a device. */
 device::DeviceInfo MakePointerInfo() {
   device::DeviceInfo info;
   info.model = "Mouse, touch or controller";
-  info.capabilities.force_axes = 3;  // they are computed, and shown as arrows and sounds
+  info.capabilities.force_axes = 3;  // forces are computed, and displayed as arrows and sounds
   info.capabilities.torque_axes = 3;
   return info;
 }
@@ -95,7 +95,7 @@ std::size_t HandRack::count() const {
 
 void HandRack::SetCount(std::size_t count) {
   HVAS_DEMAND(count == 1 || count == kMostHands);
-  std::vector<Slot> closed;  // outside the lock
+  std::vector<Slot> closed;  // destroyed after the lock is released: closing takes time
   const std::lock_guard lock(mutex_);
   while (slots_.size() > count) {
     closed.push_back(std::move(slots_.back()));

@@ -18,10 +18,10 @@ namespace hvas::studio {
 namespace {
 
 constexpr std::size_t kMostHeader = 8 << 10;
-constexpr std::size_t kMostBody = 4 << 10;  // of what is no upload
-constexpr double kSlowest = 128 << 10;      // that an answer may be read with [bytes/s]
+constexpr std::size_t kMostBody = 4 << 10;  // largest body but that of an upload [bytes]
+constexpr double kSlowest = 128 << 10;  // slowest rate at which a response may be read [bytes/s]
 constexpr std::chrono::seconds kUploadTime(300);
-constexpr std::chrono::seconds kLinger(5);  // for what was sent in vain
+constexpr std::chrono::seconds kLinger(5);  // time for reading the rest of a refused request
 
 constexpr std::string_view kContentSecurity =
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' "
@@ -41,7 +41,7 @@ std::string_view FieldOf(const Fields& fields, http::field name) {
   return ToView(fields[name]);
 }
 
-/** One connection's requests, one after the other. */
+/** Serves the requests of one connection, one after the other. */
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket socket, std::shared_ptr<ServerShared> shared)
@@ -95,7 +95,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void ReadHeader() {
     header_.emplace();
     header_->header_limit(kMostHeader);
-    header_->body_limit(std::numeric_limits<std::uint64_t>::max());  // each route has its own
+    header_->body_limit(
+        std::numeric_limits<std::uint64_t>::max());  // each route has a limit of its own
     wire().expires_after(shared_->options.patience);
     http::async_read_header(
         connection_, buffer_, *header_, [self = shared_from_this()](error_code error, std::size_t) {
@@ -148,8 +149,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     RouteKnown(*role, path, is_upgrade);
   }
 
-  /** The same page by https. The secret stays behind its #, in the browser. @pre Host is allowed.
-   */
+  /** Redirects to the page by https; the browser keeps the token in the fragment. @pre the host is
+   allowed. */
   void SendToTls() {
     const std::string page = fmt::format("https://{}/", FieldOf(header_->get(), http::field::host));
     http::response<http::string_body> response(http::status::temporary_redirect, 11);
@@ -187,8 +188,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
   }
 
-  /** Whether a body is as long as is said beforehand, and that no longer than this; if not, says
-   so. One that comes in chunks is counted by its parser. */
+  /** Checks Content-Length against a limit, and refuses the request beyond it. The parser counts
+   the bytes of a chunked body. */
   bool IsShort(std::uint64_t most) {
     const auto length = header_->content_length();
     if (length && *length > most) {
@@ -396,8 +397,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                       });
   }
 
-  /** What still comes is read and thrown away for a while: were it not, the system would end the
-   connection at once, and with it the answer that is on its way. */
+  /** Reads and discards the rest of the request for a while: closing with unread data would reset
+   the connection, and the client could lose the response. */
   void End() {
     wire().expires_after(kLinger);
     if (!connection_.is_tls()) {

@@ -19,7 +19,7 @@ bool IsForcesOff(const Json& command) {
          FlagAt(command, "off").value_or(false);
 }
 
-/** Without the true forces, which tell fits apart better than a hand does. */
+/** Removes the true forces, from which fits could be told apart better than by hand. */
 LiveFrame WithoutTruth(const LiveFrame& frame) {
   LiveFrame felt = frame;
   for (haptics::TickOutput& tick : felt.frame.ticks) {
@@ -70,7 +70,7 @@ Result<std::string> Hub::Join(Role role, ClientLink* link) {
 
 void Hub::Leave(const std::string& id) {
   clients_.erase(id);
-  // A hand that nobody steers any more stays where it is, by PointerOperator's silence.
+  // A hand without input stays where it is: PointerOperator times out.
   GiveLease(HandsOf(id), "");
 }
 
@@ -95,7 +95,7 @@ Json Hub::MakeHello(const std::string& id, const Client& client) const {
 
 void Hub::Broadcast(Json event) {
   if (event.value("event", "") == "hands") {
-    event["hands"] = MakeHands();  // whose they are, only this side knows
+    event["hands"] = MakeHands();  // the hub adds who holds the leases
   }
   if (event.value("event", "") == "reply") {
     if (const auto waiting = clients_.find(event["to"]); waiting != clients_.end()) {
@@ -104,7 +104,7 @@ void Hub::Broadcast(Json event) {
     return;
   }
   const bool has_news = desk_ != nullptr && desk_->OnBench(event, MonotonicNs());
-  if (!event.value("event", "").starts_with("trial_")) {  // those are between bench and desk
+  if (!event.value("event", "").starts_with("trial_")) {  // events for the study desk only
     const std::string text = Print(event);
     for (auto& [id, client] : clients_) {
       SendTo(client, event, text);
@@ -146,7 +146,7 @@ Result<void> Hub::CheckStudy(const Caller& caller, const std::string& name) cons
   if (desk_ == nullptr) {
     return {};
   }
-  // Not "lease": the hand is the participant's.
+  // "lease" is missing from both: the participant holds it.
   constexpr std::array kShielded{"study", "take", "release", "forces", "status"};
   constexpr std::array kExperimenters{"study",   "release", "forces", "status",
                                       "devices", "use",     "measure"};
@@ -221,7 +221,7 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
   ClientLink* link = found->second.link;
   const Result<Json> command = ParseCommand(text);
   Result<Json> result = command;
-  // Forces go off at once, however much was asked before (N6).
+  // Switching the forces off is exempt from the rate limit (N6).
   const bool is_urgent = command && IsForcesOff(*command) && !workbench_->forces_off();
   if (!MaySend(&found->second, now_ns) && !is_urgent) {
     result = Fail(ErrorCode::kOutOfResource, "too many commands", "", "send fewer a second");
@@ -345,7 +345,7 @@ void Hub::PublishStatus() {
     now["condition"] = hands[i]["condition"];
     status_["hands"].push_back(std::move(now));
   }
-  if (status_.contains("tick_hz")) {  // nothing runs before something is open
+  if (status_.contains("tick_hz")) {  // there is no loop before a file is open
     Broadcast(status_);
   }
 }

@@ -11,7 +11,7 @@ namespace hvas::studio {
 namespace {
 
 constexpr std::size_t kLongestText = 1000;
-constexpr std::size_t kMostFields = 64;  // of a command, those of its objects among them
+constexpr std::size_t kMostFields = 64;  // fields of a command, including those of nested objects
 
 Unexpected Wrong(const char* name, const char* wanted) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" must be {}", name, wanted), "command",

@@ -23,7 +23,7 @@ Unexpected CannotKeep(const fs::path& file, int error) {
               "make room there, or set XDG_STATE_HOME to another folder");
 }
 
-/** The locked file; closed when another program has it. */
+/** Opens and locks a file; the descriptor is closed when another process has the lock. */
 Result<Descriptor> LockFile(const fs::path& path) {
   Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   const int error = file.is_open() ? TryLock(file) : errno;

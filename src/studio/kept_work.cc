@@ -80,7 +80,7 @@ Result<KeptWork> LoadWork(const std::filesystem::path& file) {
 }
 
 void SetWorkAside(const std::filesystem::path& file) {
-  std::error_code ignored;  // there may be none
+  std::error_code ignored;  // there may be no file
   std::filesystem::rename(file, file.string() + ".before", ignored);
 }
 

@@ -15,7 +15,7 @@ namespace {
 using spatial::Surface;
 using spatial::SurfaceKind;
 
-constexpr double kParallel = 1e-4;  // sine of the angle, below which axes count as parallel
+constexpr double kParallel = 1e-4;  // sine of the angle below which axes count as parallel
 
 struct Measured {
   const product::Face* face{nullptr};
@@ -61,23 +61,23 @@ void Describe(const Measured& measured, Json* json) {
   (*json)["p_m"] = Json::array({ToJson(measured.surface_W.origin)});
 }
 
-/** Foot points of the shortest way between two parallel or square surfaces. */
+/** Foot points of the shortest distance between two surfaces. */
 struct Span {
   Vec3 p_a, p_b;
 };
 
-/** From b's point to the plane a. */
+/** Calculates the span from the plane a to a point of b. */
 Span ToPlane(const Surface& plane, const Vec3& p_b) {
   const Vec3 p_a = p_b - plane.axis.dot(p_b - plane.origin) * plane.axis;
   return {p_a, p_b};
 }
 
-/** From b's point to the axis a. */
+/** Calculates the span from the axis a to a point of b. */
 Span ToAxis(const Surface& round, const Vec3& p_b) {
   return {round.origin + round.axis.dot(p_b - round.origin) * round.axis, p_b};
 }
 
-/** Between two axes that are not parallel. */
+/** Calculates the span between two axes. @pre they are not parallel. */
 Span BetweenAxes(const Surface& a, const Surface& b) {
   const Vec3 r = b.origin - a.origin;
   const double cosine = a.axis.dot(b.axis);
@@ -87,7 +87,7 @@ Span BetweenAxes(const Surface& a, const Surface& b) {
   return {a.origin + along_a * a.axis, b.origin + along_b * b.axis};
 }
 
-/** Nothing where two surfaces have no distance: planes at an angle meet. */
+/** Finds the span between two surfaces; none where they intersect, like planes at an angle. */
 std::optional<Span> FindSpan(const Surface& a, const Surface& b) {
   const bool is_plane_a = a.kind == SurfaceKind::kPlane;
   const bool is_plane_b = b.kind == SurfaceKind::kPlane;

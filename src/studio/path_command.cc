@@ -1,4 +1,4 @@
-// The command `path` of docs/protocol.md.
+// Handler of the command "path" in docs/protocol.md.
 #include <utility>
 
 #include <fmt/format.h>

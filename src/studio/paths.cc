@@ -15,7 +15,7 @@ namespace {
 using product::OccurrenceId;
 using spatial::Pose;
 
-/** Less is no motion that anybody sees. */
+/** Whether a motion is large enough to be seen. */
 bool HasMoved(const Pose& from, const Pose& to) {
   constexpr double kWay = 20e-6;  // [m]
   constexpr double kTurn = 2e-4;  // [rad]
@@ -28,7 +28,7 @@ Result<std::shared_ptr<const SweptGlb>> Compute(const Sweeper::Task& task,
   const product::Occurrence& occurrence = task.model->product->occurrences[task.occurrence.index()];
   sweep::SweepOptions options;
   options.resolution = task.resolution;
-  options.threads = 1;  // the others are the hand's
+  options.threads = 1;  // the other cores are left to the loops of the hand
   options.stop = stop;
   const auto swept =
       sweep::Sweep(simulation::MakeShapeSource(task.model->product->part_of(task.occurrence)),

@@ -7,7 +7,7 @@
 namespace hvas::studio {
 namespace {
 
-constexpr double kTime = 0.012;     // [s] of each of two stages: 60 inputs a second make no steps
+constexpr double kTime = 0.012;     // [s]; time constant of each stage: smooths 60 Hz input
 constexpr double kMostSpeed = 0.8;  // [m/s]
 constexpr double kMostTurn = 6;     // [rad/s]
 
@@ -16,7 +16,7 @@ Vec3 Limit(const Vec3& v, double most) noexcept {
   return norm > most ? Vec3(v * (most / norm)) : v;
 }
 
-/** A step of a first-order lag, in place and in turning. */
+/** One step of a first-order lag, in position and orientation. */
 spatial::Twist Approach(const spatial::Pose& goal, double dt, spatial::Pose* X) noexcept {
   const double rate = 1 / std::max(dt, kTime);
   const spatial::Twist V{Limit(rate * spatial::RotationBetween(X->q(), goal.q()), kMostTurn),
@@ -39,7 +39,7 @@ void PointerOperator::Follow(const spatial::Pose& X_WH, double dt) noexcept {
 const PointerInput& PointerOperator::Listen(bool sees_part, std::int64_t* age_ns) noexcept {
   inputs_.Update();
   const PointerInput& wanted = inputs_.value();
-  // An empty hand waits for nobody.
+  // The timeout matters only while a part is held.
   *age_ns =
       sees_part && wanted.t_ns > 0 ? std::max<std::int64_t>(0, MonotonicNs() - wanted.t_ns) : 0;
   return wanted;
@@ -63,14 +63,14 @@ device::DeviceState PointerOperator::Step(const simulation::OperatorInput& input
   const PointerInput& wanted = Listen(input.sees_part, &state.client_age_ns);
   state.is_gripping = wanted.is_gripping;
   if (!input.sees_part) {
-    // An empty hand is where it is wanted at once: nothing is in it that could be torn along.
+    // An empty hand jumps to its target: it holds no part that would be dragged along.
     X_WH_ = wanted.X_WH;
     X_WS_ = wanted.X_WH;
     V_H_ = {};
   } else if (state.client_age_ns < kSilentNs) {
     Follow(wanted.X_WH, input.dt);
   } else {
-    // Nobody steers any more: the part stays where it is.
+    // The input has timed out: the part stays where it is.
     Follow(X_WH_, input.dt);
   }
   state.X_DH = haptics::MapPoseToDevice(input.workspace, X_WH_);

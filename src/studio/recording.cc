@@ -13,7 +13,7 @@
 namespace hvas::studio {
 namespace {
 
-/** What a page that plays the session needs of what was told. */
+/** Events that a page needs to play the session. */
 constexpr std::array<std::string_view, 8> kToldEvents{"taken", "state",  "dropped", "placement",
                                                       "step",  "safety", "device",  "demo"};
 
@@ -40,7 +40,7 @@ Result<std::shared_ptr<Recording>> Recording::Start(const std::filesystem::path&
   record::RecorderOptions options;
   options.path = file;
   options.is_threaded = true;
-  options.ring_ticks *= 2;  // of two hands
+  options.ring_ticks *= 2;  // ticks of two hands
   options.on_error = [on_failed = std::move(on_failed)](const Error&) { on_failed(); };
   record::Meta meta = session::MakeModelMeta(*scene->model);
   meta[kNameMeta] = name;

@@ -27,7 +27,7 @@ constexpr const char* kSuffix = ".hvasrec";
 constexpr const char* kNamesFile = "names.json";
 constexpr std::int64_t kNsPerMs = 1'000'000;
 
-/** Letters, digits and dashes. */
+/** Makes the stem of a file name from a product's name: letters, digits and dashes. */
 std::string MakeStem(const std::string& name) {
   constexpr std::size_t kLongest = 40;
   std::string stem;
@@ -66,7 +66,7 @@ Json DescribeFile(const std::string& id, const std::filesystem::path& file, std:
           {"bytes", bytes}};
 }
 
-/** What each part's holds amounted to, of the events "dropped". */
+/** Accumulates the results of each part's holds from the events "dropped". */
 class Results {
  public:
   void Add(const Json& dropped, const std::vector<std::string>& paths) {
@@ -123,8 +123,8 @@ std::vector<std::string> PathsOf(const record::Meta& meta) {
   return paths;
 }
 
-/** Whether an item of the folder may be a record: a link could lead to any file, and whoever opens
- a named pipe waits for ever. */
+/** Whether an entry of the folder may be a record: a regular file, because a link could lead to any
+ file and opening a named pipe blocks. */
 bool IsRecordFile(const std::filesystem::directory_entry& item) {
   std::error_code failed;
   return item.path().extension() == kSuffix &&
@@ -279,7 +279,7 @@ Result<void> RecordingShelf::Delete(const std::string& id) {
   const std::lock_guard lock(mutex_);
   auto names = ReadNames();
   if (names.erase(id) > 0) {
-    (void)WriteNames(names);  // a name of nothing harms nobody
+    (void)WriteNames(names);  // a left-over name without a record does no harm
   }
   return failed ? Result<void>(Fail(ErrorCode::kOutOfResource, failed.message(), file->string(),
                                     "delete the file by hand"))

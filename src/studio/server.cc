@@ -58,7 +58,8 @@ class Server::Impl {
     }
     KeptAccess kept = FindKeptAccess();
     const bool wants_kept_port = options.port == 0 && kept.port != 0;
-    if (!wants_kept_port || !Listen({address, kept.port})) {  // another program may have it now
+    if (!wants_kept_port ||
+        !Listen({address, kept.port})) {  // another program may use that port by now
       if (const auto listening = Listen({address, options.port}); !listening) {
         return listening;
       }

@@ -32,7 +32,8 @@ Json OrNull(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-/** Who may do what: the participant, or the experimenter at the operator's link. */
+/** Roles that may do an action: the participant, or the experimenter, who has the operator's
+ link. */
 bool MayDo(Role role, const std::string& action) {
   constexpr std::array kParticipants{"state", "consent", "ready", "answer", "pick"};
   constexpr std::array kExperimenters{"state", "begin", "ready", "next", "note", "abort", "resume"};
@@ -94,7 +95,7 @@ Result<void> StudyDesk::Tell(StudyEvent event) {
   }
   const auto written = journal_.Append(event);
   if (!written) {
-    session_ = std::move(before);  // what is not in the journal has not happened
+    session_ = std::move(before);  // an event that is not in the journal does not count
   }
   return written;
 }
@@ -263,7 +264,7 @@ void StudyDesk::BeginOnBench() {
   if (options_.keeps_records && session_.phase() == Phase::kRunning) {
     plan.record = folder_.RecordFile(id_, *session_.trial());
     std::error_code ignored;
-    std::filesystem::remove(plan.record, ignored);  // of a trial that was interrupted
+    std::filesystem::remove(plan.record, ignored);  // record of an interrupted trial
   }
   ending_.reset();
   hold_.clear();
@@ -284,11 +285,11 @@ Result<void> StudyDesk::FinishTrial() {
   missing_.clear();
   hold_.clear();
   if (session_.phase() == Phase::kTraining && session_.is_running()) {
-    BeginOnBench();  // as often as the participant likes
+    BeginOnBench();  // the training is repeated until the participant goes on
     return {};
   }
   if (over == nullptr || session_.phase() != Phase::kRunning) {
-    return {};  // aborted: it counts for nothing
+    return {};  // an aborted trial has no result
   }
   StudyEvent event;
   event.kind = Kind::kTrialEnded;
@@ -311,7 +312,7 @@ bool StudyDesk::OnBench(const Json& event, std::int64_t /*now_ns*/) {
     part_ = bench_->trial_part();
     missing_ = bench_->trial_constraints();
     if (!session_.is_running()) {
-      EndOnBench(Outcome::kNotDone);  // it was aborted, or the training ended, before it had begun
+      EndOnBench(Outcome::kNotDone);  // aborted, or the training ended, before the run began
     }
     return true;
   }
@@ -403,7 +404,7 @@ Json StudyDesk::MakeState(Role role, std::int64_t now_ns) const {
              {"is_open", is_open_}};
   state["trial"] = trial && sees_progress ? Json(*trial + 1) : Json(nullptr);
   state["trials"] = sees_progress ? Json(session_.schedule().size()) : Json(nullptr);
-  // In every language: the participant chooses it with the consent.
+  // The text is sent in every language: the participant chooses one with the consent.
   Json consent = nullptr;
   if (session_.phase() == Phase::kConsent) {
     consent = {{"en", protocol.consent.en}, {"de", protocol.consent.In("de")}};
@@ -461,7 +462,7 @@ Json StudyDesk::MakeQuestion() const {
     const study::Block& block = session_.BlockOf(open->trial);
     json["kind"] = "choice";
     json["text"] = block.question.In(language);
-    json["choices"] = Json::array();  // in the protocol's order, whatever was shown
+    json["choices"] = Json::array();  // in the protocol's order, which reveals nothing
     for (const std::size_t c : block.conditions) {
       const std::string& answer = study::AnswerOf(folder_.protocol().conditions[c]);
       json["choices"].push_back({{"id", answer}, {"text", answer}});

@@ -27,7 +27,7 @@ bool HasSameOrder(const simulation::Sequence& a, const simulation::Sequence& b) 
                     });
 }
 
-/** All parts on the table. */
+/** Makes the initial state: all parts lie on the table. */
 LiveState MakeStart(const simulation::Model& model) {
   LiveState state;
   for (const simulation::Body& body : model.bodies) {
@@ -36,7 +36,7 @@ LiveState MakeStart(const simulation::Model& model) {
   return state;
 }
 
-/** @param begun  With parts where a work that was kept had them, or none of them. */
+/** @param begun  Snapshot after resuming; without parts where the saved state was not restored. */
 Json MakeResumedEvent(const SceneNow& begun) {
   const auto& parts = begun.state.parts;
   return {{"event", "resumed"},
@@ -70,12 +70,12 @@ Workbench::~Workbench() {
 
 void Workbench::Stop() {
   worker_.RequestStop();
-  Cancel();           // after it: nothing else begins
-  FinishRecording();  // before all that may take long
+  Cancel();           // after the flag is set, so that nothing else begins
+  FinishRecording();  // before anything that takes long
   EndRun();
   sweeper_.Stop();
   worker_.Stop();
-  EndRun();  // that the worker had just begun
+  EndRun();  // a run that the worker has just begun
   FinishRecording();
   if (!std::exchange(has_stopped_, true)) {
     keeper_.Stop();
@@ -120,7 +120,7 @@ void Workbench::Open(const std::filesystem::path& file, const std::string& name)
 void Workbench::PostOpen(std::function<void()> job) {
   {
     const std::lock_guard lock(mutex_);
-    opening_.request_stop();  // what is being opened gives way to what comes after it
+    opening_.request_stop();  // a newer request replaces the one in progress
     opening_ = {};
   }
   Post(std::move(job));
@@ -159,7 +159,7 @@ void Workbench::DoOpen(const std::filesystem::path& file, const std::string& nam
     SetWorkAside(options_.work_file);
   }
   Show(begun.scene, begun.state, false);
-  paths_.Clear();  // of the product before: its last frame has come
+  paths_.Clear();  // paths of the previous product, whose last frame has come
   TellOfHistory();
   if (kept != nullptr) {
     Tell(MakeResumedEvent(begun));
@@ -194,9 +194,9 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
   }
   ended.reset();  // its threads end here, outside the lock that they may wait for
   if (!is_recorded) {
-    FinishRecording();  // a record is of one scene
+    FinishRecording();  // a record has one scene
   }
-  is_demo_ = has_person;  // not before: what the run before told last was still its own
+  is_demo_ = has_person;  // after the last events of the previous run
   {
     const std::lock_guard lock(mutex_);
     live.recording = recording_;
@@ -287,7 +287,7 @@ void Workbench::HandleStep(const OpenScene& scene, std::size_t step, bool has_pe
   KeepWork();
   const auto& steps = scene.model->sequence.steps;
   const bool is_finished = step >= steps.size();
-  // What stands in a fixture was nobody's work: it ends no demo of one step.
+  // Placing a fixture part is no work of a person, and does not end a demo of one step.
   const bool is_work = step > 0 && steps[step - 1].kind != SequenceStep::Kind::kBase;
   if (has_person && (is_finished || (is_work && ends_demo_after_step_.exchange(false)))) {
     Post([this] { Restart(false); });
@@ -309,7 +309,7 @@ void Workbench::SetForcesOff(bool is_off) {
 
 Result<void> Workbench::SetDemo(bool is_on) {
   if (!is_on) {
-    // A part in the hand is not dropped; a demo that is about to begin ends as well.
+    // A held part is not dropped; a demo that is about to begin ends, too.
     Post([this] { ends_demo_after_step_ = is_demo_.load(); });
     return {};
   }
@@ -339,7 +339,8 @@ Result<void> Workbench::GoTo(History::Direction direction) {
   }
   if (possible) {
     Post([this, is_undo = direction == History::Direction::kUndo, direction] {
-      if (const auto then = history_.Go(direction, Look())) {  // else somebody was faster
+      if (const auto then =
+              history_.Go(direction, Look())) {  // empty when another client was faster
         Show(then->scene, then->state, false, is_undo ? "undone" : "done again");
         TellOfHistory();
       }
@@ -371,7 +372,7 @@ Result<void> Workbench::Change(const Edit& edit) {
   if (auto idle = CheckIdle(); !idle) {
     return idle;
   }
-  // Tried here first, so that whoever asks learns at once what is wrong with it.
+  // The edit is tried here first, so that its errors are in the reply.
   product::Product trial = *scene()->model->product;
   auto changed = edit.change(&trial);
   if (changed) {
@@ -388,7 +389,7 @@ void Workbench::DoChange(const Edit& edit) {
     return;
   }
   Remember(Look(), edit.what);
-  // In another order, what is in its place already is passed over when its turn comes.
+  // In the new order, parts that are in their place already are skipped.
   const bool has_same_order = HasSameOrder(before->model->sequence, (*after)->model->sequence);
   Show(*after, {state.parts, has_same_order ? state.next_step : 0}, false, edit.what);
 }

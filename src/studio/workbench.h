@@ -62,8 +62,8 @@ class Workbench {
   void Resume(const KeptWork& work);
   void Cancel();
 
-  /** Takes a part with a hand that follows the pointer. @returns the pose X_WH that the hand moves
-   * to. */
+  /** Takes a part with a hand that follows the pointer. @returns the pose X_WH that the hand
+   moves to. */
   [[nodiscard]] Result<spatial::Pose> Take(std::size_t hand, product::OccurrenceId id);
   void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
   [[nodiscard]] Result<void> Release(std::size_t hand);

@@ -1,4 +1,4 @@
-// The hands on the workbench: what they follow, and what they take and let go.
+// Hands of the workbench: devices, taking and releasing of parts.
 
 #include <utility>
 
@@ -27,7 +27,7 @@ const std::string& NameOf(const simulation::Model& model, OccurrenceId id) {
   return model.product->occurrences[id.index()].name;
 }
 
-/** Nothing where a part can be taken. */
+/** Explains why a part cannot be taken; none where it can. */
 std::optional<Error> ExplainGone(Placement placement, const std::string& name) {
   switch (placement) {
     case Placement::kPlaced:
@@ -40,7 +40,7 @@ std::optional<Error> ExplainGone(Placement placement, const std::string& name) {
   }
 }
 
-/** For the list of what can be undone; null for what changed nothing. */
+/** Description of a release for the undo list; null where nothing has changed. */
 const char* WhatWasDone(const SceneNow& before, const simulation::SimulationEvent& dropped) {
   const bool was_placed =
       before.state.parts[dropped.occurrence.index()].placement == Placement::kPlaced;
@@ -117,7 +117,7 @@ Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
   if (gone && (!is_there || part.placement == Placement::kHeld)) {
     return Unexpected(*gone);
   }
-  // Upright: what the hand turns, the part turns with it.
+  // The hand goes upright to the part, because the part later turns with the hand.
   const spatial::Pose X_WH(part.X_WB * simulation::CombineMass(model, step).p_BoBcm_B);
   (*run)->Take(hand, step, X_WH);
   return X_WH;

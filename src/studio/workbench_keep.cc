@@ -1,4 +1,4 @@
-// The work on the workbench that is kept for the next start of the studio.
+// Saving of the work for the next start of the studio, and resuming it.
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-// Recordings of what is done on the workbench.
+// Recordings of the work on the workbench.
 
 #include <utility>
 
@@ -29,7 +29,7 @@ Result<void> Workbench::StartRecording(const std::string& name) {
 void Workbench::DoStartRecording(const std::filesystem::path& file, const std::string& name) {
   const auto [scene, state] = Look();
   if (!recording().is_null()) {
-    return;  // somebody was faster
+    return;  // another client was faster
   }
   const std::string called = name.empty() ? shelf_.MakeName(scene->model->product->name) : name;
   auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state),
@@ -42,7 +42,7 @@ void Workbench::DoStartRecording(const std::filesystem::path& file, const std::s
     const std::lock_guard lock(mutex_);
     recording_ = *started;
   }
-  Restart(false);  // a record begins with how the hands are set up and where all parts are
+  Restart(false);  // a record begins with the setup of the hands and all poses
   TellOfRecording((*started)->Describe());
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using statistics::Wilcoxon;
 
-/** More make tables of pairs that nobody reads, and are a mistake in the file as a rule. */
+/** Limit of conditions: more are usually a mistake in the file, and their pairs unreadable. */
 constexpr std::size_t kMostColumns = 20;
 
 Result<void> CheckOptions(const AnalysisOptions& options) {
@@ -208,7 +208,7 @@ Result<std::optional<PairResult>> ComparePair(const Analysis& analysis, std::siz
   return std::optional(pair);
 }
 
-/** What is not defined has p = 1: no difference was seen. */
+/** An undefined p counts as 1: no evidence of a difference. */
 void Adjust(Analysis* analysis) {
   std::vector<double> p;
   std::vector<double> exact;
@@ -277,7 +277,7 @@ double Summarise(std::vector<double> values, TrialSummary summary) {
   return sum / static_cast<double>(values.size());
 }
 
-/** The index of a name in a list, to which it is added when new. */
+/** Finds the index of a name in a list; adds it when it is new. */
 std::size_t FindOrAdd(const std::string& name, std::vector<std::string>* names) {
   const auto found = std::find(names->begin(), names->end(), name);
   if (found == names->end()) {

@@ -15,7 +15,7 @@ using pages::MakeTile;
 
 constexpr const char* kNone = "<span class=\"soft\">not defined</span>";
 
-/** Four digits that count, with a true minus. */
+/** Formats a number with four significant digits and a typographic minus. */
 std::string Format(double value) {
   std::string text = fmt::format("{:.4g}", value);
   if (text.front() == '-') {
@@ -36,7 +36,7 @@ std::string FormatPOf(const std::optional<double>& p) {
   return p ? Escape(FormatP(*p)) : kNone;
 }
 
-/** " [s]" as a second line of a head. */
+/** Makes the unit as the second line of a column's head: " [s]". */
 std::string UnitOf(const Table& table) {
   return table.unit.empty() ? "" : "<br>[" + Escape(table.unit) + "]";
 }

@@ -55,7 +55,7 @@ Json MakeResultJson(const TrialResult& result) {
   return json;
 }
 
-/** Throws where an int cannot hold it. */
+/** Reads an integer; throws where an int cannot hold it. */
 int ParseInt(const Json& json) {
   const double number = json.get<double>();
   if (!json.is_number_integer() || std::abs(number) > std::numeric_limits<int>::max()) {
@@ -133,7 +133,7 @@ Json MakeEventJson(const StudyEvent& event) {
   return json;
 }
 
-/** Throws what nlohmann does for what is not as MakeEventJson() makes it. */
+/** Parses an event of MakeEventJson(); throws nlohmann's exceptions for anything else. */
 StudyEvent ParseEvent(const Json& json) {
   StudyEvent event;
   if (!ReadWord(json.at("event"), kEventKinds, &event.kind)) {
@@ -163,7 +163,7 @@ std::string MakeLine(const Json& json) {
   return text + "\t" + SumOf(text) + "\n";
 }
 
-/** Nothing for a line that is torn or damaged. */
+/** Parses a line; none where it is incomplete or damaged. */
 std::optional<Json> ParseLine(std::string_view line) {
   const std::size_t tab = line.rfind('\t');
   if (tab == std::string_view::npos || SumOf(line.substr(0, tab)) != line.substr(tab + 1)) {
@@ -214,13 +214,13 @@ Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t end = bytes.find('\n', at);
     if (end == std::string::npos) {
-      break;  // torn
+      break;  // an incomplete line
     }
     ++number;
     const auto json = ParseLine(std::string_view(bytes).substr(at, end - at));
     if (!json) {
       if (end + 1 == bytes.size()) {
-        break;  // as a power cut may leave it: the length is there, and not all of the bytes
+        break;  // a power cut can leave the full length without all bytes
       }
       return Damaged(file, number);
     }
@@ -241,7 +241,7 @@ Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
 
 Result<Journal> Journal::Open(const std::filesystem::path& file, const JournalHead& head,
                               bool is_synced) {
-  // Nobody else's business: what people did and said.
+  // Journals are personal data: only this user may read them.
   Journal journal(file, Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)),
                   is_synced);
   const int descriptor = journal.file_.value();
@@ -281,7 +281,7 @@ Result<void> Journal::Write(const std::string& line) {
     error = errno;
   }
   if (error != 0) {
-    // What is half there must not be in front of the next line.
+    // The incomplete line is removed, so that the next one starts a new line.
     static_cast<void>(::ftruncate(file_.value(), size_));
     static_cast<void>(::lseek(file_.value(), size_, SEEK_SET));
     return DiskFailed(path_, error);

@@ -37,8 +37,8 @@ class Journal {
   /** All events so far, in order. */
   [[nodiscard]] const std::vector<StudyEvent>& events() const { return events_; }
 
-  /** Appends an event. Errors: kOutOfResource when it cannot be written; it then counts as not
-   * added. */
+  /** Appends an event. Errors: kOutOfResource when it cannot be written; it then counts as
+   not added. */
   [[nodiscard]] Result<void> Append(const StudyEvent& event);
 
  private:

@@ -22,7 +22,7 @@ constexpr double kMostSeconds = 86400;
 constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};
 constexpr std::array<std::string_view, 3> kHidden{"condition", "time", "progress"};
 
-/** Ids become names of files and of columns. */
+/** Whether a text is a valid id: ids become names of files and columns. */
 bool IsId(std::string_view text) {
   return !text.empty() && text.size() <= 40 &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) {
@@ -31,7 +31,7 @@ bool IsId(std::string_view text) {
          });
 }
 
-/** Reads what stands in a document into a protocol. */
+/** Reads a document into a protocol. */
 class ProtocolReader {
  public:
   ProtocolReader(YamlDocument* document, Protocol* protocol)

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostParticipants = 999;
 
-// What a drawn order is for, so that none is another's.
+// Purposes of random streams, so that their seeds differ.
 constexpr std::uint64_t kLabels = 1;
 constexpr std::uint64_t kShuffle = 2;
 
@@ -31,7 +31,7 @@ std::vector<std::size_t> Count(std::size_t count) {
   return numbers;
 }
 
-/** The orders that participants and repetitions go through, as places in Block::conditions. */
+/** Orders for participants and repetitions, as indices into Block::conditions. */
 class Orders {
  public:
   Orders(const Block& block, std::size_t block_index, int participant, std::uint64_t seed)
@@ -102,7 +102,7 @@ std::vector<std::size_t> OrderOf(const Block& block, Orders* orders) {
 
 std::vector<std::vector<std::size_t>> MakeSquare(std::size_t count, bool is_balanced) {
   HVAS_DEMAND(count >= 1);
-  // 0, 1, n-1, 2, n-2 ...: the differences of neighbours are all different.
+  // The differences of neighbours in 0, 1, n-1, 2, n-2 ... are all different.
   std::vector<std::size_t> first = Count(count);
   if (is_balanced) {
     for (std::size_t i = 1; i < count; ++i) {

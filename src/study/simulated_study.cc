@@ -17,10 +17,10 @@ namespace {
 
 using Kind = StudyEvent::Kind;
 
-constexpr std::uint64_t kTrialStream = 1000;  // and the index of the trial
+constexpr std::uint64_t kTrialStream = 1000;  // plus the index of the trial
 constexpr std::uint64_t kObserverStream = 102;
 
-/** By the index of the condition. */
+/** Models, indexed by condition. */
 using Setups = std::vector<TrialSetup>;
 
 Result<Setups> MakeSetups(const Protocol& protocol, const ModelSource& models) {
@@ -54,7 +54,7 @@ Result<Setups> MakeSetups(const Protocol& protocol, const ModelSource& models) {
   return setups;
 }
 
-/** Takes one participant through the session. */
+/** Runs the session of one participant. */
 class Walk {
  public:
   Walk(const StudyFolder& folder, const Setups& setups, KeptRecords records, int participant,
@@ -143,7 +143,7 @@ class Walk {
     const PlannedTrial& planned = session_.schedule()[trial];
     const Block& block = session_.BlockOf(trial);
     if (block.is_identification) {
-      TrialResult result;  // the observer is shown the force of an insertion; nothing moves
+      TrialResult result;  // the observer gets the force of an insertion; nothing moves
       result.outcome = Outcome::kDone;
       return result;
     }
@@ -154,7 +154,7 @@ class Walk {
         is_kept && has_session ? folder_.RecordFile(ParticipantId(session_.participant()), trial)
                                : std::filesystem::path();
     std::error_code ignored;
-    std::filesystem::remove(record, ignored);  // of a trial that was interrupted
+    std::filesystem::remove(record, ignored);  // record of an interrupted trial
     return RunSimulatedTrial(setups_[planned.condition], session_.ConditionOf(trial), skill_,
                              SeedOf(kTrialStream + trial), record);
   }
@@ -188,7 +188,7 @@ class Walk {
         return AnswerOf(folder_.protocol().conditions[condition]);
       }
     }
-    // A fit that this block does not show: as good as any other wrong one.
+    // An answer that this block does not offer counts as any other wrong one.
     return AnswerOf(folder_.protocol().conditions[session_.BlockOf(trial).conditions.front()]);
   }
 

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFolderFormat = "hvas-study-folder-1";
 constexpr const char* kHead = "study.json";
 
-/** What is made of all journals together, and so knows of each participant. */
+/** Files made from all journals, which therefore contain data of each participant. */
 bool IsMadeOfAll(const fs::path& file) {
   const std::string ending = file.extension().string();
   return ending == ".csv" || ending == ".html" || ending == ".pdf";
@@ -41,7 +41,7 @@ Result<void> MakeFolder(const fs::path& folder) {
   return failed ? Result<void>(CannotWrite(folder, failed)) : Result<void>();
 }
 
-/** Quoted where RFC 4180 asks for it. */
+/** Formats a CSV cell, quoted where RFC 4180 requires it. */
 std::string Cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;
@@ -181,7 +181,7 @@ Result<std::vector<Participant>> StudyFolder::ReadParticipants() const {
 
 fs::path StudyFolder::RecordFile(const std::string& id, std::size_t trial) const {
   const fs::path folder = folder_ / "records" / id;
-  static_cast<void>(MakeFolder(folder));  // the recorder says what is wrong with it
+  static_cast<void>(MakeFolder(folder));  // the recorder reports the error
   return folder / fmt::format("{:03}.hvasrec", trial + 1);
 }
 

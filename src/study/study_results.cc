@@ -6,7 +6,7 @@
 namespace hvas::study {
 namespace {
 
-/** Visits what is over in a block. */
+/** Visits the completed trials of a block. */
 template <typename Visit>
 void ForEachTrial(const Participant& participant, std::size_t block, const Visit& visit) {
   for (const DoneTrial& done : participant.session->done()) {
@@ -17,7 +17,7 @@ void ForEachTrial(const Participant& participant, std::size_t block, const Visit
   }
 }
 
-/** The place of a condition in a block. */
+/** Index of a condition in a block. */
 std::size_t PlaceOf(const Block& block, std::size_t condition) {
   return static_cast<std::size_t>(
       std::find(block.conditions.begin(), block.conditions.end(), condition) -
@@ -29,7 +29,7 @@ struct Sum {
   int count{0};
 };
 
-/** A row a participant; cells by what `cell` makes of the sums over a condition's trials. */
+/** Makes a table with one row for each participant; `cell` makes a cell of a condition's sums. */
 template <typename Add, typename Cell>
 Table MakeBlockTable(const Protocol& protocol, std::size_t block_index,
                      const std::vector<Participant>& participants, const Add& add,

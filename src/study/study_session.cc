@@ -33,7 +33,7 @@ const char* WhatNow(Phase phase) {
   return "the session is over";
 }
 
-/** Characters, not bytes, of UTF-8. */
+/** Counts the code points of a UTF-8 text. */
 std::size_t CountCharacters(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xC0) != 0x80;

@@ -106,8 +106,8 @@ class StudySession {
   /** @param protocol  Outlives this. */
   StudySession(const Protocol* protocol, int participant, std::uint64_t seed);
 
-  /** Applies an event. Errors: kInvalid for one that is impossible in this state, which stays as
-   * is. */
+  /** Applies an event. Errors: kInvalid for one that is impossible in this state, which stays
+   as is. */
   [[nodiscard]] Result<void> Apply(const StudyEvent& event);
 
   /** Waits for kBegun again, after the program was started again. */

@@ -1,4 +1,4 @@
-// What an analysis says, in words that the page and the command share.
+// Descriptions of an analysis in words, for the page and the command.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ std::string TellFriedman(const Analysis& analysis) {
     return {};
   }
   const statistics::Friedman& friedman = *analysis.friedman;
-  // The exact test stands where there is one: the other is its approximation.
+  // The exact test takes precedence: the other is its approximation.
   const double p = friedman.exact_p.value_or(*friedman.p);
   return fmt::format(
       "{}: Friedman chi-square {:.4f} with {} degrees of freedom, p {}{}, {}Kendall's W {:.3f}, {} "

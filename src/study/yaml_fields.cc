@@ -53,7 +53,7 @@ YamlFields::YamlFields(YamlDocument* document, YAML::Node node, std::string enti
 
 YAML::Node YamlFields::Get(const std::string& key) {
   asked_.push_back(key);
-  const YAML::Node& here = node_;  // const: looking for a key does not make it
+  const YAML::Node& here = node_;  // const, so that looking up a key does not insert it
   return here[key];
 }
 
