@@ -21,7 +21,7 @@ constexpr std::array kPlacements{"loose", "held", "placed", "parked"};
 constexpr std::array kStepKinds{"base", "insert", "park", "remove"};
 
 Unexpected Refuse(const std::string& what, const std::string& field) {
-  return Fail(ErrorCode::kUnreadable, fmt::format("{} has no good \"{}\".", what, field));
+  return Fail(ErrorCode::kUnreadable, fmt::format("{} has no valid \"{}\".", what, field));
 }
 
 Json MakePartJson(const PartState& part) {
@@ -35,7 +35,7 @@ void ReadPart(JsonFields* fields, PartState* part) {
 }
 
 /** Whether two poses are the same to the last bit, the signs of zeros included. */
-bool HasSameBits(const Pose& a, const Pose& b) {
+bool HasSameBits(const spatial::Pose& a, const spatial::Pose& b) {
   const auto is_same = [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
   };

@@ -27,7 +27,7 @@ inline constexpr std::array kRoles{Role::kOperator, Role::kViewer, Role::kPartic
 [[nodiscard]] std::optional<Role> ParseRole(std::string_view name);
 
 /** Whether a link of this role admits a single browser. */
-[[nodiscard]] constexpr bool IsForOne(Role role) {
+[[nodiscard]] constexpr bool IsSingleUse(Role role) {
   return role != Role::kViewer;
 }
 
@@ -40,14 +40,14 @@ inline constexpr std::array kRoles{Role::kOperator, Role::kViewer, Role::kPartic
 
 /** Extracts the name or address from a Host header: without the port, and without the brackets of
  an IPv6 address. None where the header is malformed. */
-[[nodiscard]] std::optional<std::string> HostOf(std::string_view host_header);
+[[nodiscard]] std::optional<std::string> FindHost(std::string_view host_header);
 
 /** Finds the value of one cookie in a Cookie header. */
 [[nodiscard]] std::optional<std::string> FindCookie(std::string_view cookie_header,
                                                     std::string_view name);
 
 /** Links and browser sessions that one start of the studio hands on to the next. */
-struct KeptAccess {
+struct SavedAccess {
   struct Link {
     std::string token;
     Role role{Role::kViewer};
@@ -66,10 +66,10 @@ struct KeptAccess {
 
 /** Reads a file of SaveAccess. Errors: kNotFound when there is no such file; kInvalid when other
  users can read it; kUnreadable when SaveAccess has not written it. */
-[[nodiscard]] Result<KeptAccess> LoadAccess(const std::filesystem::path& file);
+[[nodiscard]] Result<SavedAccess> LoadAccess(const std::filesystem::path& file);
 
 /** Writes a file that only this user can read. Errors: those of WriteAtomically. */
-[[nodiscard]] Result<void> SaveAccess(const std::filesystem::path& file, const KeptAccess& access);
+[[nodiscard]] Result<void> SaveAccess(const std::filesystem::path& file, const SavedAccess& access);
 
 /** Access control of the server: the host names that it answers to, the origins that its pages may
  have, the tokens of links and the secrets of browser sessions. A link of an operator or participant
@@ -86,7 +86,7 @@ class Access {
    @param port  Port that the browser connects to.
    @param is_tls  Whether pages are served by https.
    @param kept  State of the previous start; ignored where that had another port. */
-  Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, KeptAccess kept = {});
+  Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, SavedAccess kept = {});
 
   /** The origin of this server under a host name or address, as browsers write it. */
   [[nodiscard]] std::string OriginOf(std::string_view host) const;
@@ -118,18 +118,18 @@ class Access {
   [[nodiscard]] std::string token(Role role) const;
 
   /** Makes a link that admits one more browser. @returns its token. */
-  [[nodiscard]] std::string Invite(Role role);
+  [[nodiscard]] std::string MakeInvitation(Role role);
 
   /** Token of an unused link of a role; makes a link when all of them have been used. */
-  [[nodiscard]] std::string FindFresh(Role role);
+  [[nodiscard]] std::string FindUnusedLink(Role role);
 
   /** Copies the state for the next start. */
-  [[nodiscard]] KeptAccess Keep() const;
+  [[nodiscard]] SavedAccess Keep() const;
 
  private:
-  [[nodiscard]] KeptAccess::Browser* FindBrowser(std::string_view secret);
+  [[nodiscard]] SavedAccess::Browser* FindBrowser(std::string_view secret);
   std::string AddLink(Role role);
-  KeptAccess::Browser* AddBrowser();
+  SavedAccess::Browser* AddBrowser();
 
   std::vector<std::string> hosts_;
   std::vector<std::string> origins_;
@@ -137,7 +137,7 @@ class Access {
   std::uint16_t port_;
   bool is_tls_;
   mutable std::mutex mutex_;  ///< Protects what follows.
-  KeptAccess known_;  ///< The first links, in the order of kRoles, are those that are printed.
+  SavedAccess known_;  ///< The first links, in the order of kRoles, are those that are printed.
 };
 
 }  // namespace hvas::studio

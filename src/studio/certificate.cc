@@ -84,7 +84,7 @@ bool HasName(X509* certificate, const std::string& name) {
                          : X509_check_host(certificate, name.c_str(), name.size(), 0, nullptr) == 1;
 }
 
-bool EndsBefore(const X509* certificate, std::int64_t time_s) {
+bool ExpiresBefore(const X509* certificate, std::int64_t time_s) {
   std::time_t time = time_s;
   return X509_cmp_time(X509_get0_notAfter(certificate), &time) <= 0;
 }
@@ -159,7 +159,7 @@ Result<void> CheckNames(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (!IsAddress(name) && !IsHostName(name)) {
       return Fail(ErrorCode::kInvalid, "this is neither a host name nor an address", name,
-                  "give it as in studio.example or 192.168.1.5");
+                  "give a name such as studio.example, or an address such as 192.168.1.5");
     }
   }
   return {};
@@ -176,21 +176,21 @@ Result<std::optional<SelfSigned>> FindKept(const fs::path& file,
     return std::nullopt;
   }
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-    return Fail(ErrorCode::kInvalid, "others than you can read this key", file.string(),
-                fmt::format("delete it for a new one, or: chmod 600 '{}'", file.string()));
+    return Fail(ErrorCode::kInvalid, "other users can read this key", file.string(),
+                fmt::format("delete it to get a new one, or run: chmod 600 '{}'", file.string()));
   }
   const std::string pem = ReadRegularFile(file).value_or(std::string());
   const X509Ptr certificate = ReadCertificate(pem);
   const Key key = ReadKey(pem);
   if (certificate == nullptr || key == nullptr ||
       X509_check_private_key(certificate.get(), key.get()) != 1) {
-    return Fail(ErrorCode::kUnreadable, "this is no certificate with its key", file.string(),
-                "delete it: a new one is made then");
+    return Fail(ErrorCode::kUnreadable, "the file is not a certificate with its key", file.string(),
+                "delete it; the studio makes a new one");
   }
   const bool has_names = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return HasName(certificate.get(), name);
   });
-  if (!has_names || EndsBefore(certificate.get(), now_s + kRenewedDays * kDayS)) {
+  if (!has_names || ExpiresBefore(certificate.get(), now_s + kRenewedDays * kDayS)) {
     return std::nullopt;
   }
   return SelfSigned{{file, file}, FingerprintOf(certificate.get()), false};
@@ -203,12 +203,12 @@ Result<void> MakeFolder(const fs::path& folder) {
   }
   return failed ? Result<void>(Fail(ErrorCode::kOutOfResource,
                                     "this folder cannot be made: " + failed.message(),
-                                    folder.string(), "set XDG_STATE_HOME to one that can"))
+                                    folder.string(), "set XDG_STATE_HOME to a writable folder"))
                 : Result<void>();
 }
 
 /** Formats an address; none for families other than IPv4 and IPv6, and for link-local IPv6. */
-std::optional<std::string> ReachableAddress(const sockaddr* address) {
+std::optional<std::string> FormatAddress(const sockaddr* address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address == nullptr) {
     return std::nullopt;
@@ -236,7 +236,7 @@ std::vector<std::string> ListAddresses(bool has_v6) {
   const std::unique_ptr<ifaddrs, Free<::freeifaddrs>> owner(list);
   for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
     const bool is_reached = (at->ifa_flags & IFF_UP) != 0 && (at->ifa_flags & IFF_LOOPBACK) == 0;
-    const auto address = ReachableAddress(at->ifa_addr);
+    const auto address = FormatAddress(at->ifa_addr);
     if (is_reached && address && (has_v6 || at->ifa_addr->sa_family == AF_INET)) {
       addresses.push_back(*address);
     }
@@ -250,12 +250,12 @@ Result<fs::path> FindCertificateFolder() {
   if (const auto folder = FindUserFolder("XDG_STATE_HOME", ".local/state")) {
     return *folder;
   }
-  return Fail(ErrorCode::kNotFound, "there is no home folder to keep a certificate in", "HOME",
+  return Fail(ErrorCode::kNotFound, "there is no home folder for the certificate", "HOME",
               "set XDG_STATE_HOME to a folder, or give --certificate and --key");
 }
 
-Result<SelfSigned> KeepCertificate(const fs::path& folder, const std::vector<std::string>& names,
-                                   std::int64_t now_s) {
+Result<SelfSigned> EnsureCertificate(const fs::path& folder, const std::vector<std::string>& names,
+                                     std::int64_t now_s) {
   if (const auto checked = CheckNames(names); !checked) {
     return Unexpected(checked.error());
   }
@@ -269,7 +269,7 @@ Result<SelfSigned> KeepCertificate(const fs::path& folder, const std::vector<std
   }
   const std::string pem = MakePem(names, now_s);
   if (pem.empty()) {
-    return Fail(ErrorCode::kInternal, "OpenSSL makes no certificate", file.string(),
+    return Fail(ErrorCode::kInternal, "OpenSSL could not make a certificate", file.string(),
                 "give --certificate and --key");
   }
   if (const auto made = MakeFolder(folder); !made) {
@@ -288,7 +288,7 @@ Result<std::string> CalcFingerprint(const fs::path& certificate) {
   }
   const X509Ptr read = ReadCertificate(*text);
   if (read == nullptr) {
-    return Fail(ErrorCode::kUnreadable, "there is no certificate in PEM in this file",
+    return Fail(ErrorCode::kUnreadable, "the file has no certificate in PEM format",
                 certificate.string(), "give the file that begins with -----BEGIN CERTIFICATE-----");
   }
   return FingerprintOf(read.get());
@@ -296,8 +296,8 @@ Result<std::string> CalcFingerprint(const fs::path& certificate) {
 
 Result<std::vector<std::string>> ListNamesOf(const std::string& address) {
   if (!IsAddress(address)) {
-    return Fail(ErrorCode::kInvalid, "this is no address", address,
-                "give one of this machine, or 0.0.0.0 for all that it has");
+    return Fail(ErrorCode::kInvalid, "this is not an IP address", address,
+                "give an address of this machine, or 0.0.0.0 for all of them");
   }
   std::vector<std::string> names{address};
   if (address == "0.0.0.0" || address == "::") {

@@ -33,9 +33,9 @@ struct SelfSigned {
  @param now_s  Unix time [s].
  Errors: kUnreadable when the file holds something else; kInvalid when other users can read it or a
  name is malformed; those of WriteAtomically. */
-[[nodiscard]] Result<SelfSigned> KeepCertificate(const std::filesystem::path& folder,
-                                                 const std::vector<std::string>& names,
-                                                 std::int64_t now_s);
+[[nodiscard]] Result<SelfSigned> EnsureCertificate(const std::filesystem::path& folder,
+                                                   const std::vector<std::string>& names,
+                                                   std::int64_t now_s);
 
 /** Computes the SHA-256 fingerprint of the first certificate of a PEM file, as browsers show it:
  "0A:1B:..". Errors: kUnreadable when there is no certificate in it. */

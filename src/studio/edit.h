@@ -26,6 +26,6 @@ struct Edit {
 [[nodiscard]] Result<Edit> MakeEdit(const nlohmann::ordered_json& command);
 
 /** Combines commands into one change that applies them in order. Errors: the first of MakeEdit. */
-[[nodiscard]] Result<ChangeFn> MakeChangeOf(const std::vector<nlohmann::ordered_json>& commands);
+[[nodiscard]] Result<ChangeFn> CombineEdits(const std::vector<nlohmann::ordered_json>& commands);
 
 }  // namespace hvas::studio

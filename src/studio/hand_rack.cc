@@ -79,7 +79,7 @@ Json ListDevices() {
         {{"address", fmt::format("emulated:{}:{}", profile.driver, profile.profile.id)},
          {"driver", profile.driver},
          {"name", profile.profile.name},
-         {"detail", "not there: computed, and held by the pointer or the simulated person"},
+         {"detail", "not connected: simulated, and held by the pointer or the simulated person"},
          {"is_emulated", true},
          {"is_ready", true}});
   }
@@ -111,12 +111,12 @@ Result<void> HandRack::Use(std::size_t hand, const std::string& address, double 
     const std::lock_guard lock(mutex_);
     if (hand >= slots_.size()) {
       return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
-                  "ask for two hands first");
+                  "switch to two hands first");
     }
     for (std::size_t i = 0; i < slots_.size() && address != kPointer; ++i) {
       if (slots_[i].address == address && i != hand) {
-        return Fail(ErrorCode::kInvalid, "this device is in the other hand", address,
-                    "put another one there first");
+        return Fail(ErrorCode::kInvalid, "the other hand uses this device", address,
+                    "choose another device for that hand first");
       }
     }
     if (slots_[hand].address == address) {

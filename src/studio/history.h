@@ -14,7 +14,7 @@
 namespace hvas::studio {
 
 /** Snapshot of a scene and its state of assembly. */
-struct SceneNow {
+struct SceneSnapshot {
   std::shared_ptr<const OpenScene> scene;  ///< Null while no file is open.
   LiveState state;
 };
@@ -29,14 +29,14 @@ class History {
 
   /** Adds an undo step. @param before  Snapshot before the action.
    @param what  Description of the action for people. */
-  void Remember(SceneNow before, const std::string& what);
+  void Remember(SceneSnapshot before, const std::string& what);
 
   /** Errors: kNotFound when the list of this direction is empty. */
   [[nodiscard]] Result<void> Check(Direction direction) const;
 
   /** Goes one step in a direction. @param now  Present snapshot, for the opposite list.
    @returns the snapshot to restore; none where the list is empty. */
-  [[nodiscard]] std::optional<SceneNow> Go(Direction direction, const SceneNow& now);
+  [[nodiscard]] std::optional<SceneSnapshot> Go(Direction direction, const SceneSnapshot& now);
 
   void Clear();
 
@@ -45,7 +45,7 @@ class History {
 
  private:
   struct Moment {
-    SceneNow scene;
+    SceneSnapshot scene;
     std::string what;  ///< Description of the action that followed it.
   };
 

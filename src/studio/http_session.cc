@@ -9,9 +9,9 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/format.h>
 
-#include "studio/answers.h"
 #include "studio/event_json.h"
 #include "studio/json_fields.h"
+#include "studio/responses.h"
 #include "studio/socket_session.h"
 
 namespace hvas::studio {
@@ -117,8 +117,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const Access& access = *shared_->access;
     if (!access.AllowsHost(FieldOf(request, http::field::host))) {
       return Refuse(http::status::forbidden,
-                    {ErrorCode::kInvalid, "this server does not answer to that host name", "Host",
-                     "open the address that it printed"});
+                    {ErrorCode::kInvalid, "this server does not accept this host name", "Host",
+                     "open the address that the program printed"});
     }
     if (shared_->tls != nullptr && !connection_.is_tls()) {
       return SendToTls();
@@ -127,8 +127,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const bool is_upgrade = websocket::is_upgrade(request);
     if ((is_change || is_upgrade || !origin.empty()) && !access.AllowsOrigin(origin)) {
       return Refuse(http::status::forbidden,
-                    {ErrorCode::kInvalid, "a page from elsewhere may not speak with this server",
-                     "Origin", "open the address that it printed"});
+                    {ErrorCode::kInvalid, "a page of another origin may not access this server",
+                     "Origin", "open the address that the program printed"});
     }
     const std::string_view target = ToView(request.target());
     const std::string_view path = target.substr(0, target.find('?'));
@@ -137,15 +137,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     if (request.method() == http::verb::get && !path.starts_with("/api/") && path != "/ws") {
       const auto accepted = FieldOf(request, http::field::accept_encoding);
-      return Reply(AnswerAsset(path, accepted));
+      return Reply(MakeAssetResponse(path, accepted));
     }
     const auto role = access.RoleOfCookie(FieldOf(request, http::field::cookie));
     if (!role) {
       return Refuse(http::status::unauthorized,
-                    {ErrorCode::kInvalid, "nobody knows you here", "",
-                     "open the link that the program printed, with its token"});
+                    {ErrorCode::kInvalid, "this browser has no session", "",
+                     "open the link that the program printed, including its token"});
     }
-    connection_.SetKnown();
+    connection_.MarkAuthenticated();
     RouteKnown(*role, path, is_upgrade);
   }
 
@@ -156,7 +156,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::response<http::string_body> response(http::status::temporary_redirect, 11);
     response.set(http::field::location, page);
     response.set(http::field::content_type, "text/plain; charset=utf-8");
-    response.body() = fmt::format("This studio speaks https only: open {}\n", page);
+    response.body() = fmt::format("This studio is available by https only: open {}\n", page);
     is_refused_ = true;
     Send(std::move(response));
   }
@@ -168,23 +168,24 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       StartSocketSession(std::move(connection_), shared_, role, header_->get());
     } else if (method == http::verb::get) {
       try {
-        Reply(AnswerApi(shared_->workbench, DecodePercent(path), shared_->hub.IsShielded(role)));
+        Reply(MakeApiResponse(shared_->workbench, DecodePercent(path),
+                              shared_->hub.IsShielded(role)));
       } catch (const std::exception& failed) {
         Refuse(http::status::internal_server_error,
-               {ErrorCode::kInternal, failed.what(), std::string(path), "load the page again"});
+               {ErrorCode::kInternal, failed.what(), std::string(path), "reload the page"});
       }
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
     } else if (path == "/api/link" && method == http::verb::post) {
       if (role != Role::kOperator) {
-        Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for looking on", "",
-                                         "ask whoever steers for a link"});
+        Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
+                                         "ask the user in control for a link"});
       } else {
         ReadJson(&HttpSession::MakeLink);
       }
     } else {
       Refuse(http::status::not_found,
-             {ErrorCode::kNotFound, "there is nothing here", std::string(path), ""});
+             {ErrorCode::kNotFound, "there is no such resource", std::string(path), ""});
     }
   }
 
@@ -224,9 +225,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!admission) {
       return Refuse(http::status::unauthorized, admission.error());
     }
-    shared_->KeepAccess();
+    shared_->SaveAccessState();
     if (admission->role == Role::kParticipant) {
-      shared_->TellOfParticipantLink();
+      shared_->UpdateParticipantLink();
     }
     http::response<http::string_body> response(http::status::ok, 11);
     response.set(http::field::set_cookie, admission->set_cookie);
@@ -241,7 +242,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!role || (*role == Role::kParticipant && shared_->options.desk == nullptr)) {
       return Refuse(http::status::bad_request,
                     {ErrorCode::kInvalid, "there is no such role", "role",
-                     "ask for a link of an operator or a viewer"});
+                     "request a link for an operator or a viewer"});
     }
     const Access& access = *shared_->access;
     const ServerOptions& options = shared_->options;
@@ -250,11 +251,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
          options.tls ? options.names : std::vector<std::string>{"127.0.0.1"}) {
       origins.push_back(access.OriginOf(name));
     }
-    const std::string token = shared_->access->Invite(*role);
-    shared_->KeepAccess();
+    const std::string token = shared_->access->MakeInvitation(*role);
+    shared_->SaveAccessState();
     SendJson(http::status::ok, {{"token", token},
                                 {"role", ToString(*role)},
-                                {"is_for_one", IsForOne(*role)},
+                                {"is_for_one", IsSingleUse(*role)},
                                 {"origins", std::move(origins)},
                                 {"is_local", asio::ip::make_address(options.address).is_loopback()},
                                 {"reachable", options.reachable}});
@@ -262,8 +263,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void ReadUpload(Role role) {
     if (role != Role::kOperator) {
-      return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for looking on",
-                                              "", "ask for a link to steer"});
+      return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
+                                              "ask for an operator's link"});
     }
     if (!IsShort(shared_->options.most_upload)) {
       return;
@@ -280,7 +281,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (failed || error) {
       return Refuse(
           http::status::insufficient_storage,
-          {ErrorCode::kOutOfResource, "the file cannot be kept", name, "make room on the disk"});
+          {ErrorCode::kOutOfResource, "the file cannot be saved", name, "free disk space"});
     }
     wire().expires_after(kUploadTime);
     http::async_read(
@@ -299,15 +300,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void RefuseBody(error_code error) {
     if (error == http::error::body_limit) {
       Refuse(http::status::payload_too_large,
-             {ErrorCode::kOutOfResource, "this is larger than may be sent", "",
+             {ErrorCode::kOutOfResource, "the file exceeds the limit for uploads", "",
               "open the file with `hvas studio FILE`"});
     } else {
       Refuse(http::status::bad_request,
-             {ErrorCode::kInvalid, "the request broke off", "", "try again"});
+             {ErrorCode::kInvalid, "the request was interrupted", "", "try again"});
     }
   }
 
-  void Reply(Result<Answer> answer) {
+  void Reply(Result<Response> answer) {
     if (!answer) {
       const bool is_missing = answer.error().code == ErrorCode::kNotFound;
       return Refuse(is_missing ? http::status::not_found : http::status::internal_server_error,
@@ -406,14 +407,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       wire().socket().shutdown(tcp::socket::shutdown_send, ignored);
     }
     buffer_.clear();
-    ThrowAway();
+    DiscardInput();
   }
 
-  void ThrowAway() {
+  void DiscardInput() {
     connection_.async_read_some(buffer_.prepare(kMostHeader),
                                 [self = shared_from_this()](error_code error, std::size_t) {
                                   if (!error) {
-                                    self->ThrowAway();
+                                    self->DiscardInput();
                                   }
                                 });
   }

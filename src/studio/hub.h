@@ -50,7 +50,7 @@ class Hub {
 
   /** Runs a study: clients other than the experimenter then see no more than a participant may.
    @param desk  Outlives this. @pre no client has joined. */
-  void RunStudy(StudyDesk* desk) { desk_ = desk; }
+  void SetStudyDesk(StudyDesk* desk) { desk_ = desk; }
 
   /** Whether a client of this role sees no more than a participant of a study may. */
   [[nodiscard]] bool IsShielded(Role role) const {
@@ -62,13 +62,13 @@ class Hub {
   void Leave(const std::string& id);
 
   /** Removes all clients without notice, when the server ends. */
-  void Forget() { clients_.clear(); }
+  void DropClients() { clients_.clear(); }
 
   /** Executes a command and replies to it. @param now_ns  MonotonicNs(). */
   void OnText(const std::string& id, std::string_view text, std::int64_t now_ns);
   void OnBinary(const std::string& id, std::string_view bytes);
 
-  /** Sends an event to all clients; the event "reply" (MakeLateReply) to the one that waits for
+  /** Sends an event to all clients; the event "reply" (MakeDeferredReply) to the one that waits for
    it. */
   void Broadcast(Json event);
 
@@ -151,7 +151,7 @@ class Hub {
 
   /** Checks a command against a running study. Errors: kInvalid when it is not allowed then. */
   [[nodiscard]] Result<void> CheckStudy(const Caller& caller, const std::string& name) const;
-  void TellOfStudy();
+  void BroadcastStudyState();
   void SendTo(const Client& client, const Json& event, const std::string& text);
 
   [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
@@ -162,7 +162,7 @@ class Hub {
   /** The hands that a lease command is about: the one that it names, or all. */
   [[nodiscard]] Result<std::vector<std::size_t>> LeasesAt(const Json& command) const;
   Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);
-  void TellOfRoles();
+  void BroadcastRoles();
   [[nodiscard]] Json MakeHands() const;
   [[nodiscard]] Json MakeRoles() const;
   void SendFrame(const LiveFrame& frame, Client* client);

@@ -20,13 +20,14 @@ namespace hvas::studio {
 /** Makes the reply to a command. */
 [[nodiscard]] Json MakeReply(const Json& id, const Result<Json>& result);
 
-/** Result of a command's handler whose reply follows later, as the event of MakeLateReply. */
-[[nodiscard]] inline Json AnsweredLater() {
+/** Result of a command's handler whose reply follows later, as the event of MakeDeferredReply. */
+[[nodiscard]] inline Json MakeDeferredResult() {
   return Json(Json::value_t::discarded);
 }
 
 /** Makes a deferred reply for Hub::Broadcast. @param to  Id of the client that waits for it. */
-[[nodiscard]] Json MakeLateReply(const std::string& to, const Json& id, const Result<Json>& result);
+[[nodiscard]] Json MakeDeferredReply(const std::string& to, const Json& id,
+                                     const Result<Json>& result);
 
 /** Required fields of a command. Errors: kInvalid, with the field's name and the expected type. */
 [[nodiscard]] Result<std::string> TextAt(const Json& object, const char* name);

@@ -7,7 +7,7 @@ constexpr double kFinishDistance = 3e-3;  // [m]; a part released so near its pl
 
 /** Removes the force when the client's input times out; the part then stays where it is. */
 void AddClientLimits(haptics::SafetyLimits* limits) {
-  limits->client_hold = 1e-9 * static_cast<double>(PointerOperator::kSilentNs);
+  limits->client_hold = 1e-9 * static_cast<double>(PointerOperator::kInputTimeoutNs);
   limits->client_fade = 0.25;  // [s]
 }
 
@@ -32,7 +32,7 @@ haptics::TickOptions MakePointerOptions(double rate_hz) {
   options.dt = 1 / rate_hz;
   options.device.name = "pointer";
   options.limits = haptics::MakeSafetyLimits(options.device);
-  // There are no motors to be kept cool, and no handle that could kick or be torn away.
+  // The detectors for motor heat, kick and torn-away handles have no meaning without a device.
   options.limits->has_detectors = false;
   options.limits->continuous_force = haptics::SafetyLimits::kNever;
   options.limits->continuous_torque = haptics::SafetyLimits::kNever;

@@ -17,9 +17,9 @@ using spatial::Pose;
 
 /** Whether a motion is large enough to be seen. */
 bool HasMoved(const Pose& from, const Pose& to) {
-  constexpr double kWay = 20e-6;  // [m]
-  constexpr double kTurn = 2e-4;  // [rad]
-  return (to.p() - from.p()).norm() > kWay ||
+  constexpr double kDistance = 20e-6;  // [m]
+  constexpr double kTurn = 2e-4;       // [rad]
+  return (to.p() - from.p()).norm() > kDistance ||
          spatial::RotationBetween(from.q(), to.q()).norm() > kTurn;
 }
 
@@ -128,8 +128,8 @@ Result<void> Sweeper::Post(Task task) {
   const auto job = [this, task = std::move(task)](const std::stop_token& stop) { Do(task, stop); };
   if (!thread_.TryPost(job, kMostWaiting)) {
     return Fail(ErrorCode::kOutOfResource,
-                fmt::format("{} swept volumes are asked for already", kMostWaiting), "",
-                "wait for one of them");
+                fmt::format("{} swept volumes are queued already", kMostWaiting), "",
+                "wait until one of them is done");
   }
   return {};
 }

@@ -7,9 +7,9 @@
 namespace hvas::studio {
 namespace {
 
-constexpr double kTime = 0.012;     // [s]; time constant of each stage: smooths 60 Hz input
-constexpr double kMostSpeed = 0.8;  // [m/s]
-constexpr double kMostTurn = 6;     // [rad/s]
+constexpr double kTimeConstant = 0.012;  // [s]; time constant of each stage: smooths 60 Hz input
+constexpr double kMostSpeed = 0.8;       // [m/s]
+constexpr double kMostTurn = 6;          // [rad/s]
 
 Vec3 Limit(const Vec3& v, double most) noexcept {
   const double norm = v.norm();
@@ -18,7 +18,7 @@ Vec3 Limit(const Vec3& v, double most) noexcept {
 
 /** One step of a first-order lag, in position and orientation. */
 spatial::Twist Approach(const spatial::Pose& goal, double dt, spatial::Pose* X) noexcept {
-  const double rate = 1 / std::max(dt, kTime);
+  const double rate = 1 / std::max(dt, kTimeConstant);
   const spatial::Twist V{Limit(rate * spatial::RotationBetween(X->q(), goal.q()), kMostTurn),
                          Limit(rate * (goal.p() - X->p()), kMostSpeed)};
   const Vec3 turn = dt * V.w;
@@ -36,7 +36,7 @@ void PointerOperator::Follow(const spatial::Pose& X_WH, double dt) noexcept {
   V_H_ = Approach(X_WS_, dt, &X_WH_);
 }
 
-const PointerInput& PointerOperator::Listen(bool sees_part, std::int64_t* age_ns) noexcept {
+const PointerInput& PointerOperator::ReadInput(bool sees_part, std::int64_t* age_ns) noexcept {
   inputs_.Update();
   const PointerInput& wanted = inputs_.value();
   // The timeout matters only while a part is held.
@@ -46,28 +46,28 @@ const PointerInput& PointerOperator::Listen(bool sees_part, std::int64_t* age_ns
 }
 
 simulation::HandReference PointerOperator::Intend(const simulation::OperatorInput& input) noexcept {
-  constexpr double kThere = 5e-3;  // [m]
+  constexpr double kReached = 5e-3;  // [m]
   simulation::HandReference reference;
-  const PointerInput& wanted = Listen(input.sees_part, &reference.client_age_ns);
-  Follow(reference.client_age_ns < kSilentNs ? wanted.X_WH : X_WH_, input.dt);
+  const PointerInput& wanted = ReadInput(input.sees_part, &reference.client_age_ns);
+  Follow(reference.client_age_ns < kInputTimeoutNs ? wanted.X_WH : X_WH_, input.dt);
   reference.X_WR = X_WH_;
   reference.v_R_W = V_H_.v;
   // The device has to bring the hand there before it can close on a part.
-  const bool is_there = (input.X_WH.p() - wanted.X_WH.p()).norm() < kThere;
+  const bool is_there = (input.X_WH.p() - wanted.X_WH.p()).norm() < kReached;
   reference.is_gripping = wanted.is_gripping && (input.sees_part || is_there);
   return reference;
 }
 
 device::DeviceState PointerOperator::Step(const simulation::OperatorInput& input) noexcept {
   device::DeviceState state;
-  const PointerInput& wanted = Listen(input.sees_part, &state.client_age_ns);
+  const PointerInput& wanted = ReadInput(input.sees_part, &state.client_age_ns);
   state.is_gripping = wanted.is_gripping;
   if (!input.sees_part) {
     // An empty hand jumps to its target: it holds no part that would be dragged along.
     X_WH_ = wanted.X_WH;
     X_WS_ = wanted.X_WH;
     V_H_ = {};
-  } else if (state.client_age_ns < kSilentNs) {
+  } else if (state.client_age_ns < kInputTimeoutNs) {
     Follow(wanted.X_WH, input.dt);
   } else {
     // The input has timed out: the part stays where it is.

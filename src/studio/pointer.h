@@ -24,7 +24,7 @@ struct PointerInput {
 class PointerOperator final : public simulation::Operator, public simulation::DeviceHolder {
  public:
   /** Age at which the input times out [ns]. */
-  static constexpr std::int64_t kSilentNs = 250'000'000;
+  static constexpr std::int64_t kInputTimeoutNs = 250'000'000;
 
   explicit PointerOperator(const spatial::Pose& X_WH);
 
@@ -42,7 +42,7 @@ class PointerOperator final : public simulation::Operator, public simulation::De
 
  private:
   /** Reads the newest input and calculates its age. */
-  const PointerInput& Listen(bool sees_part, std::int64_t* age_ns) noexcept;
+  const PointerInput& ReadInput(bool sees_part, std::int64_t* age_ns) noexcept;
   void Follow(const spatial::Pose& X_WH, double dt) noexcept;
 
   simulation::PersonOptions options_;

@@ -20,7 +20,8 @@ namespace hvas::studio {
 /** Attachments of a record from which a page can play it. */
 inline constexpr const char* kSceneAttachment = "scene.json";
 inline constexpr const char* kGlbAttachment = "model.glb";
-inline constexpr const char* kToldKind = "told";  ///< Kind of events in the form that clients got.
+inline constexpr const char* kClientEventKind =
+    "told";                                       ///< Kind of events in the form that clients got.
 inline constexpr const char* kNameMeta = "name";  ///< Metadata: display name.
 
 /** A recording in progress: one scene, through all live runs that follow one another. */
@@ -47,7 +48,7 @@ class Recording final : public simulation::Sink {
   /** Adds a frame as clients get it. Called on the publish thread. */
   void AddFrame(const LiveFrame& frame);
   /** Adds an event as clients get it. Any thread but the haptic one may call it. */
-  void AddTold(const nlohmann::ordered_json& event);
+  void AddClientEvent(const nlohmann::ordered_json& event);
 
   /** Closes the file. A run may keep this as its sink; nothing is written any more.
    Errors: those of writing the file. */

@@ -43,12 +43,12 @@ class SceneBuilder {
                                                               const std::stop_token& stop);
 
   /** Applies edits of OpenScene to a scene. Errors: those of the first edit that fails. */
-  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> MakeEdits(
+  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> ApplyEdits(
       const OpenScene& opened, const std::vector<nlohmann::ordered_json>& edits,
       const cad::ProgressFn& progress);
 
   /** Copies a scene under a new epoch. */
-  [[nodiscard]] std::shared_ptr<const OpenScene> Again(const OpenScene& before);
+  [[nodiscard]] std::shared_ptr<const OpenScene> MakeCopy(const OpenScene& before);
 
   /** Applies an edit to the product of a scene; the meshes stay. Errors: those of the edit, and of
    compiling the model. */

@@ -22,7 +22,7 @@ struct ServerOptions {
   std::uint16_t port{0};             ///< Port to listen on; 0: any free one.
   std::optional<TlsFiles> tls;       ///< None: plain HTTP.
   std::filesystem::path upload_folder;   ///< Exists; no other process uses it.
-  std::filesystem::path access_file;     ///< File of KeptAccess; empty: it is not saved.
+  std::filesystem::path access_file;     ///< File of SavedAccess; empty: it is not saved.
   std::vector<std::string> reachable;    ///< Addresses for links of other machines.
   std::vector<std::string> names;        ///< Host names that it answers to besides the loopback's.
   std::uint64_t most_upload{256 << 20};  ///< Largest upload [bytes].

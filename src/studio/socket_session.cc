@@ -38,7 +38,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
 
   void SendText(std::string text) override {
     if (queued_ + text.size() > kMostQueued) {
-      CutOff();
+      Abort();
       return;
     }
     Push({std::move(text), true});
@@ -54,7 +54,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
     const websocket::close_reason why(websocket::close_code::policy_error,
                                       reason.substr(0, kLongestReason));
     socket_.async_close(why, [self = shared_from_this()](error_code) {});
-    LeaveSoon();
+    PostLeave();
   }
 
  private:
@@ -73,17 +73,17 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
     Read();
   }
 
-  /** Of a client that reads nothing, not even why it has to go. */
-  void CutOff() {
+  /** Closes the connection of a client that does not read, without a closing handshake. */
+  void Abort() {
     if (!std::exchange(is_closing_, true)) {
       beast::get_lowest_layer(socket_).close();
-      LeaveSoon();
+      PostLeave();
     }
   }
 
   /** Leaves in a later call, because the hub may be in the middle of a broadcast; but before the
    closing handshake, so that the lease is free at once. */
-  void LeaveSoon() {
+  void PostLeave() {
     asio::post(socket_.get_executor(), [self = shared_from_this()] { self->Leave(); });
   }
 

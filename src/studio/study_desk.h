@@ -42,7 +42,7 @@ class StudyDesk {
   [[nodiscard]] Result<Json> Do(Role role, const Json& command, std::int64_t now_ns);
 
   /** Handles an event of the workbench. @returns whether the state has changed. */
-  bool OnBench(const Json& event, std::int64_t now_ns);
+  bool OnBenchEvent(const Json& event, std::int64_t now_ns);
 
   /** Checks time limits; to be called periodically. @returns whether the state has changed. */
   bool Poll(std::int64_t now_ns);
@@ -60,20 +60,20 @@ class StudyDesk {
   StudyDesk(study::StudyFolder folder, Workbench* bench, Options options, study::Journal journal,
             int number);
 
-  [[nodiscard]] Result<void> Tell(study::StudyEvent event);
-  [[nodiscard]] Result<void> Act(Role role, const std::string& action, const Json& command,
-                                 std::int64_t now_ns);
+  [[nodiscard]] Result<void> RecordEvent(study::StudyEvent event);
+  [[nodiscard]] Result<void> Execute(Role role, const std::string& action, const Json& command,
+                                     std::int64_t now_ns);
   [[nodiscard]] Result<void> Consent(const Json& command);
-  [[nodiscard]] Result<void> Ready(std::int64_t now_ns);
-  [[nodiscard]] Result<void> Next();
-  [[nodiscard]] Result<void> Answer(const Json& command);
+  [[nodiscard]] Result<void> BeginTrial(std::int64_t now_ns);
+  [[nodiscard]] Result<void> Continue();
+  [[nodiscard]] Result<void> AnswerQuestion(const Json& command);
   [[nodiscard]] Result<Json> Pick(Role role, const Json& command, std::int64_t now_ns);
   [[nodiscard]] Result<void> Abort(const std::string& reason);
   void BeginOnBench();
   /** Ends the run on the workbench; the trial is over with the event "trial_over". */
   void EndOnBench(study::Outcome outcome);
   [[nodiscard]] Result<void> FinishTrial();
-  [[nodiscard]] const study::Condition* ConditionAtHand() const;
+  [[nodiscard]] const study::Condition* FindCurrentCondition() const;
   [[nodiscard]] bool IsPicking() const;
   void AddTrialAtHand(std::int64_t now_ns, bool sees_all, Json* state) const;
   void AddForExperimenter(Json* state) const;

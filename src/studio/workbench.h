@@ -18,12 +18,12 @@
 #include "base/result.h"
 #include "studio/hand_rack.h"
 #include "studio/history.h"
-#include "studio/kept_work.h"
 #include "studio/live_run.h"
 #include "studio/live_trial.h"
 #include "studio/paths.h"
 #include "studio/recording.h"
 #include "studio/recording_shelf.h"
+#include "studio/saved_work.h"
 #include "studio/scene_builder.h"
 
 namespace hvas::studio {
@@ -33,7 +33,7 @@ using Json = nlohmann::ordered_json;
 struct WorkbenchOptions {
   SceneBuilder::Options scenes;
   std::filesystem::path recordings_folder;  ///< Empty: recording is switched off.
-  std::filesystem::path work_file;  ///< File that KeptWork is saved to after changes; empty: none.
+  std::filesystem::path work_file;  ///< File that SavedWork is saved to after changes; empty: none.
   double rate_hz{1000};
 };
 
@@ -59,7 +59,7 @@ class Workbench {
   void Open(const std::filesystem::path& file, const std::string& name);
   /** Opens the product of saved work, applies its edits and restores its state; where the file
    holds another product by now, it is opened as new. Reports by the event "resumed". */
-  void Resume(const KeptWork& work);
+  void Resume(const SavedWork& work);
   void Cancel();
 
   /** Takes a part with a hand that follows the pointer. @returns the pose X_WH that the hand
@@ -125,13 +125,13 @@ class Workbench {
 
   [[nodiscard]] Sweeper& sweeper() { return sweeper_; }
 
-  [[nodiscard]] LiveState state() const { return Look().state; }
+  [[nodiscard]] LiveState state() const { return MakeSnapshot().state; }
 
   /** Scene and state of the same moment. */
-  [[nodiscard]] SceneNow Look() const;
+  [[nodiscard]] SceneSnapshot MakeSnapshot() const;
   [[nodiscard]] LiveFrame frame() const;
   /** Events that a client needs which joins later: the present state, in the form of events. */
-  [[nodiscard]] std::vector<Json> NewsForLatecomer() const;
+  [[nodiscard]] std::vector<Json> MakeCatchUpEvents() const;
   [[nodiscard]] std::optional<simulation::LoopStatus> TakeStatus();
 
   [[nodiscard]] bool is_demo() const { return is_demo_.load(); }
@@ -140,17 +140,17 @@ class Workbench {
   void Post(std::function<void()> job);
   void PostOpen(std::function<void()> job);
   /** @param kept  Saved work to resume; null: none. */
-  void DoOpen(const std::filesystem::path& file, const std::string& name, const KeptWork* kept);
+  void DoOpen(const std::filesystem::path& file, const std::string& name, const SavedWork* kept);
   /** Restores saved work on a scene that has been opened; where it does not fit, the scene as
    opened. */
-  [[nodiscard]] SceneNow GoOnFrom(const KeptWork& kept,
-                                  const std::shared_ptr<const OpenScene>& opened);
+  [[nodiscard]] SceneSnapshot RestoreWork(const SavedWork& kept,
+                                          const std::shared_ptr<const OpenScene>& opened);
   void DoChange(const Edit& edit);
   /** Schedules a save of the work in its state at that time. */
-  void KeepWork();
-  void DoKeepWork();
-  /** Snapshot for KeptWork, in which a held part is where it was before it was taken. */
-  [[nodiscard]] SceneNow LookAtRest() const;
+  void ScheduleSave();
+  void DoSaveWork();
+  /** Snapshot for SavedWork, in which a held part is where it was before it was taken. */
+  [[nodiscard]] SceneSnapshot MakeRestingSnapshot() const;
   void EndRun();
   void DoBeginTrial(const LiveTrial::Plan& plan);
   void DoEndTrial();
@@ -158,7 +158,7 @@ class Workbench {
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> FindTrialScene(
       const LiveTrial::Plan& plan);
   [[nodiscard]] Result<void> GoTo(History::Direction direction);
-  [[nodiscard]] cad::ProgressFn TellProgressOf(const std::string& name) const;
+  [[nodiscard]] cad::ProgressFn MakeProgressListener(const std::string& name) const;
   /** @param why  Reason for the change of scene, for people; empty: a file was opened. */
   void Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state, bool has_person,
             const std::string& why = "");
@@ -167,15 +167,15 @@ class Workbench {
                                             const LiveOptions& live);
   void HandleEvent(const OpenScene& scene, const simulation::SimulationEvent& event);
   void HandleStep(const OpenScene& scene, std::size_t step, bool has_person);
-  void TellOfStep(const OpenScene& scene, std::size_t step) const;
-  void Tell(Json event) const;
-  void TellOfHistory() const;
-  void TellOfPlacements() const;
+  void PublishStep(const OpenScene& scene, std::size_t step) const;
+  void Publish(Json event) const;
+  void PublishHistory() const;
+  void PublishPlacements() const;
   /** Adds an undo step to the history. */
-  void Remember(SceneNow before, const std::string& what);
-  void TellOfHands() const;
+  void Remember(SceneSnapshot before, const std::string& what);
+  void PublishHands() const;
   void DoStartRecording(const std::filesystem::path& file, const std::string& name);
-  void TellOfRecording(Json recording) const;
+  void PublishRecording(Json recording) const;
   void FinishRecording();
   /** Finishes the recording in progress if writing has failed, and tells all clients. */
   void EndFailedRecording();
@@ -206,7 +206,8 @@ class Workbench {
   Json failure_;       ///< Event of the last file that could not be opened; null: none.
   Json resumed_;       ///< Event "resumed", until the next change; null: none.
   LiveState resting_;  ///< State between the end of one run and the begin of the next.
-  std::array<std::optional<SceneNow>, HandRack::kMostHands> before_take_;  ///< Indexed by hand.
+  std::array<std::optional<SceneSnapshot>, HandRack::kMostHands>
+      before_take_;  ///< Indexed by hand.
   LiveFrame frame_;
   std::stop_source opening_;
   std::shared_ptr<Recording> recording_;  ///< Null while nothing is recorded.
@@ -223,7 +224,7 @@ class Workbench {
   Sweeper sweeper_;
   RecordingShelf shelf_;
 
-  bool can_keep_work_{true};  ///< False once writing has failed; used by the keeper's thread only.
+  bool can_save_work_{true};  ///< False once writing has failed; used by the keeper's thread only.
   JobThread keeper_;          ///< Saves the work to disk.
   JobThread worker_;          ///< Last member, so that it ends before the others are destroyed.
 };

@@ -69,12 +69,12 @@ Result<std::shared_ptr<const OpenScene>> Workbench::FindTrialScene(const LiveTri
     }
     known = std::move(*changed);
   }
-  return builder_.Again(*known);
+  return builder_.MakeCopy(*known);
 }
 
 void Workbench::DoBeginTrial(const LiveTrial::Plan& plan) {
   const auto fail = [this](const Error& error) {
-    Tell({{"event", "trial_failed"}, {"reason", error.ToString()}});
+    Publish({{"event", "trial_failed"}, {"reason", error.ToString()}});
   };
   if (scene() == nullptr) {
     fail({ErrorCode::kNotFound, "no product is open", "", ""});
@@ -104,7 +104,7 @@ void Workbench::DoBeginTrial(const LiveTrial::Plan& plan) {
   history_.Clear();  // there is no undo in a study
   const bool is_picked = plan.condition.method == study::Method::kPicking;
   Show(*found, MakeTrialState(model, *step), plan.has_person && !is_picked);
-  Tell({{"event", "trial_begun"}});
+  Publish({{"event", "trial_begun"}});
 }
 
 void Workbench::DoEndTrial() {
@@ -122,10 +122,10 @@ void Workbench::DoEndTrial() {
   is_demo_ = false;
   if (trial != nullptr) {
     if (const auto finished = trial->Finish(); !finished) {
-      Tell({{"event", "failed"}, {"file", "record"}, {"error", ToJson(finished.error())}});
+      Publish({{"event", "failed"}, {"file", "record"}, {"error", ToJson(finished.error())}});
     }
   }
-  Tell({{"event", "trial_over"}});
+  Publish({{"event", "trial_over"}});
 }
 
 }  // namespace hvas::studio

@@ -81,15 +81,15 @@ struct Analysis {
 
 /** Describes the result of the Friedman test in a sentence; empty where there is none. Plain
  text. */
-[[nodiscard]] std::string TellFriedman(const Analysis& analysis);
+[[nodiscard]] std::string DescribeFriedman(const Analysis& analysis);
 
 /** Describes which condition of a pair is higher, or better where a direction was stated: "B1
  higher"; "not shown" where no difference is significant. Plain text. */
-[[nodiscard]] std::string TellPair(const Analysis& analysis, const PairResult& pair);
+[[nodiscard]] std::string DescribePair(const Analysis& analysis, const PairResult& pair);
 
 /** Describes the conventions of the tests and figures of an analysis. Plain text, one paragraph for
  each. */
-[[nodiscard]] std::vector<std::string> TellConventions(const Analysis& analysis);
+[[nodiscard]] std::vector<std::string> DescribeConventions(const Analysis& analysis);
 
 /** Formats a p value: "0.0128", "< 0.0001". */
 [[nodiscard]] std::string FormatP(double p);

@@ -144,9 +144,10 @@ std::string DrawBoxes(const Analysis& analysis, const std::string& id) {
                     table.conditions[i], summary.median, summary.lower_quartile,
                     summary.upper_quartile, summary.min, summary.max);
   }
-  PlotFigure figure = MakeFigure(
-      "Spread", "Median, quartiles, whiskers to the last value within 1.5 boxes; a dot each value.",
-      std::move(description), id);
+  PlotFigure figure = MakeFigure("Spread",
+                                 "Median, quartiles, whiskers to the last value within 1.5 "
+                                 "interquartile ranges; one dot for each value.",
+                                 std::move(description), id);
   figure.panels = {std::move(panel)};
   return ToSvg(figure);
 }
@@ -167,7 +168,7 @@ std::string DrawPairs(const Analysis& analysis, const std::string& id) {
     }
     lines.points.push_back({std::nan(""), std::nan("")});
   }
-  std::string description = "A line each participant, from condition to condition. Medians: ";
+  std::string description = "One line for each participant. Medians: ";
   for (std::size_t i = 0; i < analysis.conditions.size(); ++i) {
     medians.points.push_back({static_cast<double>(i), analysis.conditions[i].summary.median});
     description +=
@@ -177,7 +178,7 @@ std::string DrawPairs(const Analysis& analysis, const std::string& id) {
   median_marks.points = medians.points;
   panel.series = {lines, dots, medians, median_marks};
   PlotFigure figure =
-      MakeFigure("Participants", "What each participant has under each condition, joined.",
+      MakeFigure("Participants", "Values of each participant, joined over the conditions.",
                  std::move(description), id);
   figure.panels = {std::move(panel)};
   return ToSvg(figure);
@@ -222,10 +223,9 @@ std::string DrawMeans(const Analysis& analysis, const std::string& id) {
   }
   PlotFigure figure = MakeFigure(
       is_share ? "Right answers" : "Means",
-      is_share
-          ? fmt::format("Of all trials together, with the {:g} % interval of Clopper and Pearson.",
-                        level)
-          : fmt::format("With the {:g} % interval of Student's t.", level),
+      is_share ? fmt::format("Shares of all trials, with {:g} % intervals by Clopper and Pearson.",
+                             level)
+               : fmt::format("Means with {:g} % intervals of Student's t distribution.", level),
       std::move(description), id);
   figure.panels = {std::move(panel)};
   return ToSvg(figure);
@@ -264,10 +264,9 @@ std::string DrawConfusion(const Identification& identification, const std::strin
       description += fmt::format("{} taken for {}: {}. ", names[i], names[j], row[j]);
     }
   }
-  PlotFigure figure = MakeFigure("What was taken for what",
-                                 "Answers, and their share of what was shown; right ones on the "
-                                 "diagonal.",
-                                 std::move(description), id);
+  PlotFigure figure = MakeFigure(
+      "Confusion matrix", "Counts and row shares of answers; correct answers on the diagonal.",
+      std::move(description), id);
   figure.panels = {std::move(panel)};
   return ToSvg(figure);
 }

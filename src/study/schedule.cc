@@ -142,7 +142,7 @@ std::vector<PlannedTrial> MakeSchedule(const Protocol& protocol, int participant
   return trials;
 }
 
-std::string ParticipantId(int number) {
+std::string FormatParticipantId(int number) {
   return fmt::format("P{:02}", number);
 }
 
@@ -152,9 +152,9 @@ Result<int> ParseParticipantId(std::string_view id) {
   const bool is_long = id.size() >= 3 && id[0] == 'P';
   const auto [rest, code] = std::from_chars(id.data() + (is_long ? 1 : 0), end, number);
   if (!is_long || code != std::errc() || rest != end || number < 1 || number > kMostParticipants ||
-      ParticipantId(number) != id) {
-    return Fail(ErrorCode::kInvalid, "this is no participant's id", std::string(id),
-                "write P01 to P999: participants have no names here");
+      FormatParticipantId(number) != id) {
+    return Fail(ErrorCode::kInvalid, "this is not a participant's id", std::string(id),
+                "write P01 to P999; names are not used, to protect participants");
   }
   return number;
 }

@@ -33,7 +33,7 @@ struct PlannedTrial {
 [[nodiscard]] std::uint64_t MixSeed(std::uint64_t seed, std::uint64_t a, std::uint64_t b);
 
 /** Formats the id of a participant: "P03". @param number  From 1. */
-[[nodiscard]] std::string ParticipantId(int number);
+[[nodiscard]] std::string FormatParticipantId(int number);
 
 /** Parses the number in an id such as "P03". Errors: kInvalid for any other text, such as a
  name. */

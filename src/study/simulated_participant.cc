@@ -99,8 +99,8 @@ Result<std::size_t> FindPartStep(const simulation::Model& model, const std::stri
            step.members.empty();
   });
   if (found == steps.end()) {
-    return Fail(ErrorCode::kNotFound, "this part is not put in its place by itself", part,
-                "name another part of the product");
+    return Fail(ErrorCode::kNotFound, "the assembly has no step that inserts this part by itself",
+                part, "name another part of the product");
   }
   return static_cast<std::size_t>(found - steps.begin());
 }

@@ -151,8 +151,9 @@ class Walk {
                                                            planned.repetition == block.repetitions);
     const bool has_session = session_.ConditionOf(trial).method != Method::kPicking;
     const std::filesystem::path record =
-        is_kept && has_session ? folder_.RecordFile(ParticipantId(session_.participant()), trial)
-                               : std::filesystem::path();
+        is_kept && has_session
+            ? folder_.RecordFile(FormatParticipantId(session_.participant()), trial)
+            : std::filesystem::path();
     std::error_code ignored;
     std::filesystem::remove(record, ignored);  // record of an interrupted trial
     return RunSimulatedTrial(setups_[planned.condition], session_.ConditionOf(trial), skill_,
@@ -185,11 +186,11 @@ class Walk {
         simulation::kShownFitNames[static_cast<std::size_t>(observer_->Answer(shown))];
     for (const std::size_t condition : session_.BlockOf(trial).conditions) {
       if (folder_.protocol().conditions[condition].fit == fit) {
-        return AnswerOf(folder_.protocol().conditions[condition]);
+        return AnswerNameOf(folder_.protocol().conditions[condition]);
       }
     }
     // An answer that this block does not offer counts as any other wrong one.
-    return AnswerOf(folder_.protocol().conditions[session_.BlockOf(trial).conditions.front()]);
+    return AnswerNameOf(folder_.protocol().conditions[session_.BlockOf(trial).conditions.front()]);
   }
 
   [[nodiscard]] std::uint64_t SeedOf(std::uint64_t stream) const {
@@ -223,7 +224,7 @@ Result<void> RunSimulatedStudy(const StudyFolder& folder, const ModelSource& mod
       count, options.threads,
       [&](std::size_t i) {
         const int participant = static_cast<int>(i) + 1;
-        auto journal = folder.OpenJournal(ParticipantId(participant), true);
+        auto journal = folder.OpenJournal(FormatParticipantId(participant), true);
         const Result<void> done =
             journal
                 ? Walk(folder, *setups, options.records, participant, &*journal, &trials_done).Run()

@@ -117,7 +117,7 @@ Table MakeRightAnswersTable(const Protocol& protocol, std::size_t block,
       protocol, block, participants,
       [&](const PlannedTrial& planned, const DoneTrial& done, Sum* sum) {
         if (!done.answer.empty()) {
-          sum->value += done.answer == AnswerOf(protocol.conditions[planned.condition]) ? 1 : 0;
+          sum->value += done.answer == AnswerNameOf(protocol.conditions[planned.condition]) ? 1 : 0;
           ++sum->count;
         }
       },
@@ -129,14 +129,14 @@ Table MakeRightAnswersTable(const Protocol& protocol, std::size_t block,
   return table;
 }
 
-std::vector<Answer> CollectAnswers(const Protocol& protocol, std::size_t block,
-                                   const std::vector<Participant>& participants) {
-  std::vector<Answer> answers;
+std::vector<IdentificationAnswer> CollectAnswers(const Protocol& protocol, std::size_t block,
+                                                 const std::vector<Participant>& participants) {
+  std::vector<IdentificationAnswer> answers;
   for (const Participant& participant : participants) {
     ForEachTrial(participant, block, [&](const PlannedTrial& planned, const DoneTrial& done) {
       if (!done.answer.empty()) {
         answers.push_back(
-            {participant.id, AnswerOf(protocol.conditions[planned.condition]), done.answer});
+            {participant.id, AnswerNameOf(protocol.conditions[planned.condition]), done.answer});
       }
     });
   }
@@ -168,7 +168,7 @@ Table MakeScalesTable(const Protocol& protocol, const std::vector<Participant>& 
   return table;
 }
 
-Table WithoutEmptyRows(Table table) {
+Table RemoveEmptyRows(Table table) {
   std::erase_if(table.rows, [](const Row& row) {
     return std::none_of(row.values.begin(), row.values.end(),
                         [](const auto& value) { return value.has_value(); });

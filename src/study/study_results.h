@@ -35,14 +35,14 @@ struct ConditionTimes {
                                           const std::vector<Participant>& participants);
 
 /** Collects all answers of a block of identification. */
-[[nodiscard]] std::vector<Answer> CollectAnswers(const Protocol& protocol, std::size_t block,
-                                                 const std::vector<Participant>& participants);
+[[nodiscard]] std::vector<IdentificationAnswer> CollectAnswers(
+    const Protocol& protocol, std::size_t block, const std::vector<Participant>& participants);
 
 /** Makes a table of the answers to scales that are asked once, one column for each question. */
 [[nodiscard]] Table MakeScalesTable(const Protocol& protocol,
                                     const std::vector<Participant>& participants);
 
 /** Removes rows without any value. */
-[[nodiscard]] Table WithoutEmptyRows(Table table);
+[[nodiscard]] Table RemoveEmptyRows(Table table);
 
 }  // namespace hvas::study

@@ -185,7 +185,7 @@ class StudySession {
 };
 
 /** Name of a condition as an answer in a block of identification. */
-[[nodiscard]] const std::string& AnswerOf(const Condition& condition);
+[[nodiscard]] const std::string& AnswerNameOf(const Condition& condition);
 
 /** Checks an answer. Errors: kInvalid for a value that the question does not allow. */
 [[nodiscard]] Result<void> CheckAnswer(const Question& question, const AnswerValue& value);

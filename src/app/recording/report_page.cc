@@ -111,7 +111,8 @@ std::string MakeHead(const Summary& summary) {
       "{}.</p>",
       seated == taken.size() ? fmt::format("<span class=\"good\">All {}</span>", seated)
                              : fmt::format("<span class=\"bad\">{}</span>", seated),
-      taken.size(), summary.is_complete ? "" : "; the record was cut short, or still goes on");
+      taken.size(),
+      summary.is_complete ? "" : "; the record is incomplete, or the session still runs");
   if (!summary.damage.empty()) {
     html += fmt::format(
         "<p class=\"verdict\"><span class=\"bad\">This record is damaged</span>: {}. This page "
@@ -221,8 +222,8 @@ std::string MakeForces(const Summary& summary) {
     PlotFigure figure;
     figure.title = summary.hands.size() == 1 ? "" : hand == 0 ? "First hand" : "Second hand";
     const std::string x = "session time [s]";
-    figure.panels.push_back({"Force given to the hand", x, "felt [N]", "", 1, {felt}, {}, {}});
-    figure.panels.push_back({"Force as physics has it", x, "true [N]", "", 1, {real}, {}, {}});
+    figure.panels.push_back({"Force rendered to the hand", x, "felt [N]", "", 1, {felt}, {}, {}});
+    figure.panels.push_back({"True force", x, "true [N]", "", 1, {real}, {}, {}});
     figure.panels.push_back({"Depth of insertion", x, "depth [mm]", "", 1, {depth}, {}, {}});
     html += "<figure>" + ToSvg(figure) + "</figure>";
   }
@@ -271,7 +272,7 @@ std::string MakeLoops(const Summary& summary) {
          fmt::format(
              "</tbody></table></div><p><small>Energy is accounted for with a device that "
              "shows forces, of the last stretch. Ticks that the record lacks: {}.</small></p>",
-             dropped.empty() ? "not known, as it was cut short" : Escape(dropped));
+             dropped.empty() ? "unknown, because the record is incomplete" : Escape(dropped));
 }
 
 /** What an event says, in words. */
@@ -335,7 +336,7 @@ std::string MakeSource(const Summary& summary) {
       Escape(MetaOf(summary, "seed")), device("device"),
       summary.hands.size() < 2 ? "" : ", in the second: " + device("second_device"),
       summary.is_complete ? Escape(MetaOf(summary, record::kMetaDigest))
-                          : "not made, as the record was cut short");
+                          : "missing, because the record is incomplete");
 }
 
 }  // namespace

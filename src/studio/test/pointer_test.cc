@@ -133,12 +133,12 @@ TEST(PointerTest, HandStaysWhereItIsWhenNothingIsHeard) {  // N11: 250 ms withou
   }
   const Vec3 p_before = pointer.Step(Tick(true)).X_DH.p();
   ASSERT_GT((Vec3(0.2, 0, 0) - p_before).norm(), 0.1);  // on its way, far from the goal
-  pointer.Move(Input(At(0.2), PointerOperator::kSilentNs + 1'000'000));
+  pointer.Move(Input(At(0.2), PointerOperator::kInputTimeoutNs + 1'000'000));
   Vec3 p_last = p_before;
   for (int i = 0; i < 1000; ++i) {
     const auto state = pointer.Step(Tick(true));
     ASSERT_TRUE(IsFinite(state));
-    EXPECT_GE(state.client_age_ns, PointerOperator::kSilentNs);
+    EXPECT_GE(state.client_age_ns, PointerOperator::kInputTimeoutNs);
     p_last = state.X_DH.p();
     // What the first stage was ahead by, 0.8 m/s for 12 ms, is shared between the two.
     EXPECT_LT((p_last - p_before).norm(), kMostSpeed * 0.012);
@@ -148,7 +148,7 @@ TEST(PointerTest, HandStaysWhereItIsWhenNothingIsHeard) {  // N11: 250 ms withou
 
 TEST(PointerTest, HandGoesOnWhenItIsHeardAgain) {
   PointerOperator pointer(At(0));
-  pointer.Move(Input(At(0.1), 2 * PointerOperator::kSilentNs));
+  pointer.Move(Input(At(0.1), 2 * PointerOperator::kInputTimeoutNs));
   EXPECT_LT(pointer.Step(Tick(true)).X_DH.p().norm(), 1e-12);
   Vec3 p_last;
   for (int i = 0; i < 400; ++i) {

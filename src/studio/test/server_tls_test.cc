@@ -16,7 +16,7 @@ using testing::ServerTest;
 ServerOptions MakeTlsOptions() {
   static const hvas::testing::TemporaryFolder folder;  // one for all
   ServerOptions options;
-  options.tls = KeepCertificate(folder.path() / "tls", {"127.0.0.1"}, std::time(nullptr))->files;
+  options.tls = EnsureCertificate(folder.path() / "tls", {"127.0.0.1"}, std::time(nullptr))->files;
   return options;
 }
 

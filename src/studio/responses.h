@@ -12,7 +12,7 @@
 namespace hvas::studio {
 
 /** Content of the response to a GET request. */
-struct Answer {
+struct Response {
   std::string type;                   ///< Media type.
   std::string_view bytes;             ///< Body; `owner` or static storage keeps it alive.
   std::shared_ptr<const void> owner;  ///< May be null.
@@ -24,13 +24,13 @@ struct Answer {
 
 /** Serves a file of the client, for which no session is needed.
  @param accepted  Value of Accept-Encoding. Errors: kNotFound. */
-[[nodiscard]] Result<Answer> AnswerAsset(std::string_view path, std::string_view accepted);
+[[nodiscard]] Result<Response> MakeAssetResponse(std::string_view path, std::string_view accepted);
 
 /** Serves a resource below /api/ to a client with a session (docs/protocol.md).
  @param is_shielded  The client is a participant of a study: it gets the scene without its fits, the
  meshes, and nothing else. Errors: kNotFound for unknown resources; those of reading a record. */
-[[nodiscard]] Result<Answer> AnswerApi(Workbench* workbench, std::string_view path,
-                                       bool is_shielded = false);
+[[nodiscard]] Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
+                                               bool is_shielded = false);
 
 /** Decodes the percent-encoding (%xx) of a URL's path; malformed sequences stay as they are. */
 [[nodiscard]] std::string DecodePercent(std::string_view path);

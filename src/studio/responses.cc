@@ -1,4 +1,4 @@
-#include "studio/answers.h"
+#include "studio/responses.h"
 
 #include <algorithm>
 #include <charconv>
@@ -14,145 +14,145 @@ namespace {
 constexpr const char* kJsonType = "application/json";
 constexpr const char* kGlbType = "model/gltf-binary";
 
-Unexpected NothingHere(std::string_view path) {
-  return Fail(ErrorCode::kNotFound, "there is nothing here", std::string(path), "");
+Unexpected FailNotFound(std::string_view path) {
+  return Fail(ErrorCode::kNotFound, "there is no such resource", std::string(path), "");
 }
 
 /** Makes a response that owns its bytes. */
-Result<Answer> Own(const char* type, Result<std::string> bytes) {
+Result<Response> MakeOwnedResponse(const char* type, Result<std::string> bytes) {
   if (!bytes) {
     return Unexpected(bytes.error());
   }
   auto kept = std::make_shared<const std::string>(std::move(*bytes));
-  Answer answer;
-  answer.type = type;
-  answer.bytes = *kept;
-  answer.owner = std::move(kept);
-  return answer;
+  Response response;
+  response.type = type;
+  response.bytes = *kept;
+  response.owner = std::move(kept);
+  return response;
 }
 
-Result<Answer> Own(const Json& json) {
-  return Own(kJsonType, json.dump(-1, ' ', false, Json::error_handler_t::replace));
+Result<Response> MakeOwnedResponse(const Json& json) {
+  return MakeOwnedResponse(kJsonType, json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 /** Makes the response for a mesh whose path contains its digest. */
-Answer MakeGlbAnswer(std::string_view bytes, const std::string& digest,
-                     std::shared_ptr<const void> owner) {
-  Answer answer;
-  answer.type = kGlbType;
-  answer.bytes = bytes;
-  answer.owner = std::move(owner);
-  answer.etag = digest;
-  answer.is_immutable = true;
-  return answer;
+Response MakeGlbResponse(std::string_view bytes, const std::string& digest,
+                         std::shared_ptr<const void> owner) {
+  Response response;
+  response.type = kGlbType;
+  response.bytes = bytes;
+  response.owner = std::move(owner);
+  response.etag = digest;
+  response.is_immutable = true;
+  return response;
 }
 
-Result<Answer> AnswerScene(const Workbench& workbench, bool is_shielded) {
-  const SceneNow now = workbench.Look();
+Result<Response> MakeSceneResponse(const Workbench& workbench, bool is_shielded) {
+  const SceneSnapshot now = workbench.MakeSnapshot();
   if (now.scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example");
   }
-  return Own(is_shielded ? MakeShieldedSceneJson(*now.scene, now.state)
-                         : MakeSceneJson(*now.scene, now.state));
+  return MakeOwnedResponse(is_shielded ? MakeShieldedSceneJson(*now.scene, now.state)
+                                       : MakeSceneJson(*now.scene, now.state));
 }
 
-Result<Answer> AnswerModel(const Workbench& workbench, std::string_view name) {
+Result<Response> MakeModelResponse(const Workbench& workbench, std::string_view name) {
   const auto scene = workbench.scene();
   if (scene == nullptr || name != scene->glb_hash + ".glb") {
-    return Fail(ErrorCode::kNotFound, "this model is not open", std::string(name),
-                "ask for /api/scene again");
+    return Fail(ErrorCode::kNotFound, "this model is no longer open", std::string(name),
+                "request /api/scene again");
   }
-  return MakeGlbAnswer(*scene->glb, scene->glb_hash, scene);
+  return MakeGlbResponse(*scene->glb, scene->glb_hash, scene);
 }
 
-Result<Answer> AnswerPath(Workbench* workbench, std::string_view name) {
+Result<Response> MakePathResponse(Workbench* workbench, std::string_view name) {
   const auto swept = workbench->sweeper().Find(name.substr(0, name.find(".glb")));
   if (swept == nullptr || name != swept->id + ".glb") {
-    return Fail(ErrorCode::kNotFound, "this swept volume is not kept any more", std::string(name),
-                "ask for it again");
+    return Fail(ErrorCode::kNotFound, "this swept volume is no longer available", std::string(name),
+                "compute it again");
   }
-  return MakeGlbAnswer(swept->glb, swept->id, swept);
+  return MakeGlbResponse(swept->glb, swept->id, swept);
 }
 
 /** @param rest  Path below /api/recordings/: id, and the resource of it. */
-Result<Answer> AnswerRecording(RecordingShelf* shelf, std::string_view rest) {
+Result<Response> MakeRecordingResponse(RecordingShelf* shelf, std::string_view rest) {
   const std::size_t slash = std::min(rest.find('/'), rest.size());
   const std::string id(rest.substr(0, slash));
   const std::string_view what = rest.substr(slash);
   if (what.empty()) {
     const auto description = shelf->Describe(id);
-    return description ? Own(*description) : Unexpected(description.error());
+    return description ? MakeOwnedResponse(*description) : Unexpected(description.error());
   }
   if (what == "/frames") {
-    return Own("application/octet-stream", shelf->ReadFrames(id));
+    return MakeOwnedResponse("application/octet-stream", shelf->ReadFrames(id));
   }
   if (what == "/scene") {
-    return Own(kJsonType, shelf->ReadAttachment(id, kSceneAttachment));
+    return MakeOwnedResponse(kJsonType, shelf->ReadAttachment(id, kSceneAttachment));
   }
   if (what == "/model.glb") {
-    return Own(kGlbType, shelf->ReadAttachment(id, kGlbAttachment));
+    return MakeOwnedResponse(kGlbType, shelf->ReadAttachment(id, kGlbAttachment));
   }
   if (what == "/file") {
     auto file = shelf->Find(id);
     if (!file) {
       return Unexpected(file.error());
     }
-    Answer answer;
-    answer.type = "application/vnd.sqlite3";
-    answer.file = std::move(*file);
-    return answer;
+    Response response;
+    response.type = "application/vnd.sqlite3";
+    response.file = std::move(*file);
+    return response;
   }
-  return NothingHere(what);
+  return FailNotFound(what);
 }
 
 }  // namespace
 
-Result<Answer> AnswerAsset(std::string_view path, std::string_view accepted) {
+Result<Response> MakeAssetResponse(std::string_view path, std::string_view accepted) {
   const Asset* asset = FindAsset(path == "/" ? "/index.html" : path);
   if (asset == nullptr) {
-    return NothingHere(path);
+    return FailNotFound(path);
   }
-  Answer answer;
-  answer.type = asset->type;
-  answer.bytes = asset->plain;
-  answer.etag = asset->etag;
-  answer.is_immutable = asset->is_immutable;
+  Response response;
+  response.type = asset->type;
+  response.bytes = asset->plain;
+  response.etag = asset->etag;
+  response.is_immutable = asset->is_immutable;
   const auto takes = [accepted](std::string_view coding, std::string_view bytes) {
     return accepted.find(coding) != std::string_view::npos && !bytes.empty();
   };
   if (takes("br", asset->brotli)) {
-    answer.bytes = asset->brotli;
-    answer.encoding = "br";
+    response.bytes = asset->brotli;
+    response.encoding = "br";
   } else if (takes("gzip", asset->gzip)) {
-    answer.bytes = asset->gzip;
-    answer.encoding = "gzip";
+    response.bytes = asset->gzip;
+    response.encoding = "gzip";
   }
-  return answer;
+  return response;
 }
 
-Result<Answer> AnswerApi(Workbench* workbench, std::string_view path, bool is_shielded) {
+Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bool is_shielded) {
   constexpr std::string_view kModel = "/api/model/";
   constexpr std::string_view kPath = "/api/path/";
   constexpr std::string_view kRecording = "/api/recording/";
   if (path == "/api/scene") {
-    return AnswerScene(*workbench, is_shielded);
+    return MakeSceneResponse(*workbench, is_shielded);
   }
   if (is_shielded && !path.starts_with(kModel)) {
-    return NothingHere(path);
+    return FailNotFound(path);
   }
   if (path == "/api/recordings") {
-    return Own(workbench->shelf().List());
+    return MakeOwnedResponse(workbench->shelf().List());
   }
   if (path.starts_with(kModel)) {
-    return AnswerModel(*workbench, path.substr(kModel.size()));
+    return MakeModelResponse(*workbench, path.substr(kModel.size()));
   }
   if (path.starts_with(kPath)) {
-    return AnswerPath(workbench, path.substr(kPath.size()));
+    return MakePathResponse(workbench, path.substr(kPath.size()));
   }
   if (path.starts_with(kRecording)) {
-    return AnswerRecording(&workbench->shelf(), path.substr(kRecording.size()));
+    return MakeRecordingResponse(&workbench->shelf(), path.substr(kRecording.size()));
   }
-  return NothingHere(path);
+  return FailNotFound(path);
 }
 
 std::string DecodePercent(std::string_view path) {

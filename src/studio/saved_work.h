@@ -11,7 +11,7 @@
 namespace hvas::studio {
 
 /** Saved work on a product: edits and state of assembly, from which a later start resumes. */
-struct KeptWork {
+struct SavedWork {
   std::filesystem::path file;                 ///< CAD file of the product.
   std::string name;                           ///< Display name of the product.
   std::string digest;                         ///< CalcProductDigest of the product as opened.
@@ -23,15 +23,16 @@ struct KeptWork {
 [[nodiscard]] std::string CalcProductDigest(const product::Product& product);
 
 /** Makes the saved work of a snapshot. @pre now.scene != nullptr. */
-[[nodiscard]] KeptWork MakeKeptWork(const SceneNow& now);
+[[nodiscard]] SavedWork MakeSavedWork(const SceneSnapshot& now);
 
-/** Reads a file of SaveWork. Errors: those of ReadKeptFile; kUnreadable for any other content. */
-[[nodiscard]] Result<KeptWork> LoadWork(const std::filesystem::path& file);
+/** Reads a file of SaveWork. Errors: those of ReadPrivateFile; kUnreadable for any other content.
+ */
+[[nodiscard]] Result<SavedWork> LoadWork(const std::filesystem::path& file);
 
 /** Moves saved work that is about to be replaced to a backup file beside it; one backup is kept. */
-void SetWorkAside(const std::filesystem::path& file);
+void BackUpWork(const std::filesystem::path& file);
 
 /** Writes a file that only this user can read. Errors: those of WriteAtomically. */
-[[nodiscard]] Result<void> SaveWork(const std::filesystem::path& file, const KeptWork& work);
+[[nodiscard]] Result<void> SaveWork(const std::filesystem::path& file, const SavedWork& work);
 
 }  // namespace hvas::studio
