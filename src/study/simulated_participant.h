@@ -39,9 +39,9 @@ struct Skill {
 [[nodiscard]] simulation::PersonOptions MakePerson(const Skill& skill, Random* random);
 
 /** Draws the time for setting constraints with the mouse by the keystroke-level model [s] (Card,
- Moran and Newell, CACM 23(7), 1980): H for the hand to the mouse; for each constraint twice
- (M, P, K), for the first and the second surface, and (P, K) for the kind of constraint.
- M 1.35 s, P 1.1 s, K 0.2 s, H 0.4 s; each is lognormal with a deviation of a fifth.
+ Moran and Newell, CACM 23(7), 1980): H for the hand to the mouse; for each constraint M, P, K for
+ the first surface, P, K for the second, and M, P, K for the kind of constraint. M 1.35 s, P 1.1 s,
+ K 0.2 s, H 0.4 s; each is lognormal with a deviation of a fifth.
  @param constraints  Number of the part's mates, at least 1. */
 [[nodiscard]] double DrawPickingTime(int constraints, const Skill& skill, Random* random);
 
