@@ -109,7 +109,7 @@ enum class TrialSummary { kMean, kMedian };
                               std::string quantity, std::string unit);
 
 /** One trial of a blind identification: stimulus and response. */
-struct Answer {
+struct IdentificationAnswer {
   std::string participant;
   std::string shown;     ///< Name of the stimulus.
   std::string answered;  ///< Name that the participant gave.
@@ -126,7 +126,7 @@ struct Identification {
 
 /** Analyses an identification; chance is one over the number of stimuli. Errors: kInvalid for
  none. */
-[[nodiscard]] Result<Identification> AnalyseIdentification(const std::vector<Answer>& answers,
-                                                           double alpha = 0.05);
+[[nodiscard]] Result<Identification> AnalyseIdentification(
+    const std::vector<IdentificationAnswer>& answers, double alpha = 0.05);
 
 }  // namespace hvas::study
