@@ -33,8 +33,8 @@ bool HasArray(const Json& object, const char* name) {
 }
 
 bool IsPort(std::string_view text) {
-  constexpr std::size_t kMostDigits = 5;
-  return !text.empty() && text.size() <= kMostDigits &&
+  constexpr std::size_t kMaxDigits = 5;
+  return !text.empty() && text.size() <= kMaxDigits &&
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
@@ -180,7 +180,7 @@ SavedAccess::Browser* Access::FindBrowser(std::string_view secret) {
 
 std::string Access::AddLink(Role role) {
   auto& links = known_.links;
-  if (links.size() >= kMostLinks) {
+  if (links.size() >= kMaxLinks) {
     links.erase(links.begin() + kRoles.size());
   }
   links.push_back({MakeToken(), role, ""});
@@ -189,7 +189,7 @@ std::string Access::AddLink(Role role) {
 
 SavedAccess::Browser* Access::AddBrowser() {
   auto& browsers = known_.browsers;
-  if (browsers.size() >= kMostBrowsers) {
+  if (browsers.size() >= kMaxBrowsers) {
     // A viewer can be admitted again by the same link.
     const auto oldest = std::find_if(browsers.begin(), browsers.end(),
                                      [](const auto& one) { return !IsSingleUse(one.role); });

@@ -79,8 +79,8 @@ class Access {
  public:
   /** Capacities; beyond them the oldest link that is not printed, or the oldest viewer, is
    removed. */
-  static constexpr std::size_t kMostLinks = 64;
-  static constexpr std::size_t kMostBrowsers = 64;
+  static constexpr std::size_t kMaxLinks = 64;
+  static constexpr std::size_t kMaxBrowsers = 64;
 
   /** @param names  Host names and addresses that it answers to besides those of the loopback.
    @param port  Port that the browser connects to.

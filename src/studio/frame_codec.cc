@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "frames are little endian");
 
-constexpr std::uint32_t kMostItems = 64;
+constexpr std::uint32_t kMaxItems = 64;
 
 Error Refuse(const std::string& what) {
   return {ErrorCode::kInvalid, what, "frame from a client", "reload the page"};
@@ -18,7 +18,7 @@ Error Refuse(const std::string& what) {
 
 template <typename Item>
 Result<std::vector<Item>> ReadItems(const protocol::Header& header, std::string_view body) {
-  if (header.count > kMostItems || body.size() != header.count * sizeof(Item)) {
+  if (header.count > kMaxItems || body.size() != header.count * sizeof(Item)) {
     return Unexpected(Refuse(fmt::format("{} items in {} bytes", header.count, body.size())));
   }
   std::vector<Item> items(header.count);

@@ -94,7 +94,7 @@ std::size_t HandRack::count() const {
 }
 
 void HandRack::SetCount(std::size_t count) {
-  HVAS_DEMAND(count == 1 || count == kMostHands);
+  HVAS_DEMAND(count == 1 || count == kMaxHands);
   std::vector<Slot> closed;  // destroyed after the lock is released: closing takes time
   const std::lock_guard lock(mutex_);
   while (slots_.size() > count) {

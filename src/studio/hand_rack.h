@@ -17,12 +17,12 @@ namespace hvas::studio {
 class HandRack {
  public:
   static constexpr const char* kPointer = "pointer";  ///< Address for a hand without a device.
-  static constexpr std::size_t kMostHands = 2;
+  static constexpr std::size_t kMaxHands = 2;
 
   [[nodiscard]] std::size_t count() const;
 
   /** Sets the number of hands; closes the device of a hand that is removed. @pre 1 or
-   kMostHands. */
+   kMaxHands. */
   void SetCount(std::size_t count);
 
   /** Assigns a device to a hand in place of its present one; a device that it has already stays

@@ -12,7 +12,7 @@ void History::Remember(SceneSnapshot before, const std::string& what) {
   const std::lock_guard lock(mutex_);
   undo_.push_back({std::move(before), what});
   redo_.clear();
-  if (undo_.size() > kMostMoments) {
+  if (undo_.size() > kMaxMoments) {
     undo_.erase(undo_.begin());
   }
 }

@@ -25,7 +25,7 @@ class History {
   enum class Direction { kUndo, kRedo };
 
   /** Capacity of each list; beyond it the oldest moment is dropped. */
-  static constexpr std::size_t kMostMoments = 100;
+  static constexpr std::size_t kMaxMoments = 100;
 
   /** Adds an undo step. @param before  Snapshot before the action.
    @param what  Description of the action for people. */

@@ -17,9 +17,9 @@
 namespace hvas::studio {
 namespace {
 
-constexpr std::size_t kMostHeader = 8 << 10;
-constexpr std::size_t kMostBody = 4 << 10;  // largest body but that of an upload [bytes]
-constexpr double kSlowest = 128 << 10;  // slowest rate at which a response may be read [bytes/s]
+constexpr std::size_t kMaxHeader = 8 << 10;
+constexpr std::size_t kMaxBody = 4 << 10;  // largest body but that of an upload [bytes]
+constexpr double kSlowest = 128 << 10;     // slowest rate at which a response may be read [bytes/s]
 constexpr std::chrono::seconds kUploadTime(300);
 constexpr std::chrono::seconds kLinger(5);  // time for reading the rest of a refused request
 
@@ -94,7 +94,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void ReadHeader() {
     header_.emplace();
-    header_->header_limit(kMostHeader);
+    header_->header_limit(kMaxHeader);
     header_->body_limit(
         std::numeric_limits<std::uint64_t>::max());  // each route has a limit of its own
     wire().expires_after(shared_->options.patience);
@@ -203,11 +203,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   using JsonHandler = void (HttpSession::*)(const Json& body);
 
   void ReadJson(JsonHandler handler) {
-    if (!IsShort(kMostBody)) {
+    if (!IsShort(kMaxBody)) {
       return;
     }
     auto parser = std::make_shared<http::request_parser<http::string_body>>(std::move(*header_));
-    parser->body_limit(kMostBody);
+    parser->body_limit(kMaxBody);
     http::async_read(connection_, buffer_, *parser,
                      [self = shared_from_this(), parser, handler](error_code error, std::size_t) {
                        if (error) {
@@ -266,7 +266,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
                                               "ask for an operator's link"});
     }
-    if (!IsShort(shared_->options.most_upload)) {
+    if (!IsShort(shared_->options.max_upload)) {
       return;
     }
     const std::string name = NameOfUpload(ToView(header_->get().target()));
@@ -275,7 +275,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     std::filesystem::create_directory(folder, failed);
     const std::filesystem::path file = folder / name;
     auto parser = std::make_shared<http::request_parser<http::file_body>>(std::move(*header_));
-    parser->body_limit(shared_->options.most_upload);
+    parser->body_limit(shared_->options.max_upload);
     error_code error;
     parser->get().body().open(file.c_str(), beast::file_mode::write_new, error);
     if (failed || error) {
@@ -411,7 +411,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void DiscardInput() {
-    connection_.async_read_some(buffer_.prepare(kMostHeader),
+    connection_.async_read_some(buffer_.prepare(kMaxHeader),
                                 [self = shared_from_this()](error_code error, std::size_t) {
                                   if (!error) {
                                     self->DiscardInput();
@@ -421,7 +421,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   Connection connection_;
   std::shared_ptr<ServerShared> shared_;
-  beast::flat_buffer buffer_{kMostHeader + (64 << 10)};
+  beast::flat_buffer buffer_{kMaxHeader + (64 << 10)};
   std::optional<Header> header_;
   std::shared_ptr<const void> owner_;
   std::string cookie_;  ///< Of the request whose body was read.

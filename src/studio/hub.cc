@@ -40,9 +40,9 @@ Hub::Hub(Workbench* workbench, std::vector<Example> examples)
     : workbench_(workbench), examples_(std::move(examples)), status_({{"event", "status"}}) {}
 
 Result<std::string> Hub::Join(Role role, ClientLink* link) {
-  if (clients_.size() >= kMostClients) {
+  if (clients_.size() >= kMaxClients) {
     return Fail(ErrorCode::kOutOfResource,
-                fmt::format("{} clients are connected already, the maximum", kMostClients), "",
+                fmt::format("{} clients are connected already, the maximum", kMaxClients), "",
                 "close another window of the studio");
   }
   const std::string id = fmt::format("c{}", ++last_id_);
@@ -308,7 +308,7 @@ void Hub::PublishFrame() {
   }
   const LiveFrame frame = workbench_->frame();
   for (auto& [id, client] : clients_) {
-    if (client.serial != frame.serial && client.sent_seq - client.seen_seq < kMostUnseen) {
+    if (client.serial != frame.serial && client.sent_seq - client.seen_seq < kMaxUnseen) {
       client.serial = frame.serial;
       SendFrame(frame, &client);
     }

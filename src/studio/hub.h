@@ -40,8 +40,8 @@ struct Example {
  the events and frames that they get. All functions are for one thread. */
 class Hub {
  public:
-  static constexpr std::size_t kMostClients = 8;
-  static constexpr std::size_t kMostUnseen = 2;  ///< Frame messages not yet acknowledged.
+  static constexpr std::size_t kMaxClients = 8;
+  static constexpr std::size_t kMaxUnseen = 2;  ///< Frame messages not yet acknowledged.
   /** Sustained rate for one client (token bucket). */
   static constexpr double kCommandsPerSecond = 50;
   static constexpr double kCommandBurst = 100;  ///< Capacity of the token bucket.
@@ -57,7 +57,7 @@ class Hub {
     return desk_ != nullptr && role != Role::kOperator;
   }
 
-  /** Adds a client. @returns its id. Errors: kOutOfResource when there are kMostClients. */
+  /** Adds a client. @returns its id. Errors: kOutOfResource when there are kMaxClients. */
   [[nodiscard]] Result<std::string> Join(Role role, ClientLink* link);
   void Leave(const std::string& id);
 
@@ -173,7 +173,7 @@ class Hub {
   std::map<std::string, Client> clients_;
   std::map<std::string, Upload> uploads_;
   /** Client that holds the lease, indexed by hand; empty: nobody. */
-  std::array<std::string, HandRack::kMostHands> leases_;
+  std::array<std::string, HandRack::kMaxHands> leases_;
   std::uint32_t last_id_{0};
   Json status_;
 };

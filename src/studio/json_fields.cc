@@ -11,7 +11,7 @@ namespace hvas::studio {
 namespace {
 
 constexpr std::size_t kLongestText = 1000;
-constexpr std::size_t kMostFields = 64;  // fields of a command, including those of nested objects
+constexpr std::size_t kMaxFields = 64;  // fields of a command, including those of nested objects
 
 Unexpected FailField(const char* name, const char* wanted) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" must be {}", name, wanted), "command",
@@ -24,11 +24,11 @@ Result<Json> ParseCommand(std::string_view text) {
   std::size_t fields = 0;
   const auto keep = [&fields](int, Json::parse_event_t event, const Json&) {
     fields += event == Json::parse_event_t::key ? 1 : 0;
-    return fields <= kMostFields;
+    return fields <= kMaxFields;
   };
   Json command = Json::parse(text, keep, /*allow_exceptions=*/false);
-  if (fields > kMostFields) {
-    return Fail(ErrorCode::kInvalid, fmt::format("a command has at most {} fields", kMostFields),
+  if (fields > kMaxFields) {
+    return Fail(ErrorCode::kInvalid, fmt::format("a command has at most {} fields", kMaxFields),
                 "command", "reload the page");
   }
   if (!command.is_object()) {
@@ -88,7 +88,7 @@ Result<std::size_t> HandAt(const Json& object) {
     return 0;
   }
   const auto hand = IndexAt(object, "hand");
-  if (!hand || *hand >= HandRack::kMostHands) {
+  if (!hand || *hand >= HandRack::kMaxHands) {
     return FailField("hand", "0 or 1");
   }
   return *hand;

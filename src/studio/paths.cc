@@ -76,7 +76,7 @@ void PathLog::Append(const Pose& X_WB, Hold* hold) {
   }
   hold->passed = 0;
   hold->path.push_back(X_WB);
-  if (hold->path.size() < kMostPoses) {
+  if (hold->path.size() < kMaxPoses) {
     return;
   }
   for (std::size_t i = 0; 2 * i < hold->path.size(); ++i) {
@@ -126,9 +126,9 @@ Result<std::string> MakeGlb(const sweep::SurfaceMesh& mesh, const std::string& n
 
 Result<void> Sweeper::Post(Task task) {
   const auto job = [this, task = std::move(task)](const std::stop_token& stop) { Do(task, stop); };
-  if (!thread_.TryPost(job, kMostWaiting)) {
+  if (!thread_.TryPost(job, kMaxWaiting)) {
     return Fail(ErrorCode::kOutOfResource,
-                fmt::format("{} swept volumes are queued already", kMostWaiting), "",
+                fmt::format("{} swept volumes are queued already", kMaxWaiting), "",
                 "wait until one of them is done");
   }
   return {};
@@ -142,7 +142,7 @@ void Sweeper::Do(const Task& task, const std::stop_token& stop) {
   if (swept) {
     const std::lock_guard lock(mutex_);
     kept_.push_back(*swept);
-    if (kept_.size() > kMostKept) {
+    if (kept_.size() > kMaxKept) {
       kept_.pop_front();
     }
   }

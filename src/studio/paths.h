@@ -24,7 +24,7 @@ namespace hvas::studio {
 class PathLog {
  public:
   /** Capacity for one part; beyond it every second pose is dropped. */
-  static constexpr std::size_t kMostPoses = 4096;
+  static constexpr std::size_t kMaxPoses = 4096;
 
   void Add(const simulation::Frame& frame);
   void Clear();
@@ -61,8 +61,8 @@ struct SweptGlb {
 /** Computes swept volumes, one after the other, on a thread of its own. */
 class Sweeper {
  public:
-  static constexpr std::size_t kMostWaiting = 8;
-  static constexpr std::size_t kMostKept = 16;
+  static constexpr std::size_t kMaxWaiting = 8;
+  static constexpr std::size_t kMaxKept = 16;
 
   using DoneFn = std::function<void(const Result<std::shared_ptr<const SweptGlb>>& swept)>;
 
@@ -74,10 +74,10 @@ class Sweeper {
     DoneFn done;           ///< Called on the sweeper's thread; never after Stop().
   };
 
-  /** Queues a task. Errors: kOutOfResource when kMostWaiting tasks wait already. */
+  /** Queues a task. Errors: kOutOfResource when kMaxWaiting tasks wait already. */
   [[nodiscard]] Result<void> Post(Task task);
 
-  /** Finds one of the kMostKept volumes computed last by its id; null where there is none. */
+  /** Finds one of the kMaxKept volumes computed last by its id; null where there is none. */
   [[nodiscard]] std::shared_ptr<const SweptGlb> Find(std::string_view id) const;
 
   /** Cancels the current task and drops the queue. */

@@ -8,8 +8,8 @@ namespace hvas::studio {
 namespace {
 
 constexpr double kTimeConstant = 0.012;  // [s]; time constant of each stage: smooths 60 Hz input
-constexpr double kMostSpeed = 0.8;       // [m/s]
-constexpr double kMostTurn = 6;          // [rad/s]
+constexpr double kMaxSpeed = 0.8;        // [m/s]
+constexpr double kMaxTurn = 6;           // [rad/s]
 
 Vec3 Limit(const Vec3& v, double most) noexcept {
   const double norm = v.norm();
@@ -19,8 +19,8 @@ Vec3 Limit(const Vec3& v, double most) noexcept {
 /** One step of a first-order lag, in position and orientation. */
 spatial::Twist Approach(const spatial::Pose& goal, double dt, spatial::Pose* X) noexcept {
   const double rate = 1 / std::max(dt, kTimeConstant);
-  const spatial::Twist V{Limit(rate * spatial::RotationBetween(X->q(), goal.q()), kMostTurn),
-                         Limit(rate * (goal.p() - X->p()), kMostSpeed)};
+  const spatial::Twist V{Limit(rate * spatial::RotationBetween(X->q(), goal.q()), kMaxTurn),
+                         Limit(rate * (goal.p() - X->p()), kMaxSpeed)};
   const Vec3 turn = dt * V.w;
   *X = {(spatial::RotationFromVector(turn) * X->q()).normalized(), X->p() + dt * V.v};
   return V;

@@ -21,11 +21,11 @@ struct ServerOptions {
   std::string address{"127.0.0.1"};  ///< Address to listen on; beyond the loopback it needs `tls`.
   std::uint16_t port{0};             ///< Port to listen on; 0: any free one.
   std::optional<TlsFiles> tls;       ///< None: plain HTTP.
-  std::filesystem::path upload_folder;   ///< Exists; no other process uses it.
-  std::filesystem::path access_file;     ///< File of SavedAccess; empty: it is not saved.
-  std::vector<std::string> reachable;    ///< Addresses for links of other machines.
-  std::vector<std::string> names;        ///< Host names that it answers to besides the loopback's.
-  std::uint64_t most_upload{256 << 20};  ///< Largest upload [bytes].
+  std::filesystem::path upload_folder;  ///< Exists; no other process uses it.
+  std::filesystem::path access_file;    ///< File of SavedAccess; empty: it is not saved.
+  std::vector<std::string> reachable;   ///< Addresses for links of other machines.
+  std::vector<std::string> names;       ///< Host names that it answers to besides the loopback's.
+  std::uint64_t max_upload{256 << 20};  ///< Largest upload [bytes].
   /** Time after which an inactive connection is closed: an unfinished handshake or header, a
    response that is not read, a WebSocket that does not answer pings. */
   std::chrono::milliseconds patience{30'000};

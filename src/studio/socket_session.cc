@@ -12,8 +12,8 @@
 namespace hvas::studio {
 namespace {
 
-constexpr std::size_t kMostMessage = 64 << 10;  // from the client [bytes]
-constexpr std::size_t kMostQueued = 16 << 20;   // text for a client that does not read [bytes]
+constexpr std::size_t kMaxMessage = 64 << 10;  // from the client [bytes]
+constexpr std::size_t kMaxQueued = 16 << 20;   // text for a client that does not read [bytes]
 
 /** Session of a WebSocket. Text is queued until sent; the hub's credits limit the queued frames. */
 class SocketSession final : public ClientLink, public std::enable_shared_from_this<SocketSession> {
@@ -27,7 +27,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
     // A silent peer gets a ping after half of this time, and is disconnected at its end.
     const auto patience = shared_->options.patience;
     socket_.set_option(websocket::stream_base::timeout{patience, patience, true});
-    socket_.read_message_max(kMostMessage);
+    socket_.read_message_max(kMaxMessage);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](error_code error) {
       if (!error) {
@@ -37,7 +37,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   }
 
   void SendText(std::string text) override {
-    if (queued_ + text.size() > kMostQueued) {
+    if (queued_ + text.size() > kMaxQueued) {
       Abort();
       return;
     }

@@ -70,8 +70,8 @@ Result<StateFolder> StateFolder::Take(const fs::path& parent, std::string_view s
   }
   Digest digest;
   digest.AddText(subject);
-  constexpr int kMostAtOnce = 100;
-  for (int i = 1; i <= kMostAtOnce; ++i) {
+  constexpr int kMaxAtOnce = 100;
+  for (int i = 1; i <= kMaxAtOnce; ++i) {
     fs::path path = parent / (i == 1 ? digest.Hex() : fmt::format("{}-{}", digest.Hex(), i));
     if (const auto made = MakeOwnFolder(path / "uploads"); !made) {
       return Unexpected(made.error());

@@ -206,8 +206,7 @@ class Workbench {
   Json failure_;       ///< Event of the last file that could not be opened; null: none.
   Json resumed_;       ///< Event "resumed", until the next change; null: none.
   LiveState resting_;  ///< State between the end of one run and the begin of the next.
-  std::array<std::optional<SceneSnapshot>, HandRack::kMostHands>
-      before_take_;  ///< Indexed by hand.
+  std::array<std::optional<SceneSnapshot>, HandRack::kMaxHands> before_take_;  ///< Indexed by hand.
   LiveFrame frame_;
   std::stop_source opening_;
   std::shared_ptr<Recording> recording_;  ///< Null while nothing is recorded.

@@ -141,7 +141,7 @@ Result<void> Workbench::Release(std::size_t hand) {
 }
 
 Result<void> Workbench::SetHandCount(std::size_t count) {
-  if (count != 1 && count != HandRack::kMostHands) {
+  if (count != 1 && count != HandRack::kMaxHands) {
     return Fail(ErrorCode::kInvalid, "the number of hands has to be 1 or 2", "count", "");
   }
   auto idle = CheckHands();

@@ -15,7 +15,7 @@ namespace {
 using statistics::Wilcoxon;
 
 /** Limit of conditions: more are usually a mistake in the file, and their pairs unreadable. */
-constexpr std::size_t kMostColumns = 20;
+constexpr std::size_t kMaxColumns = 20;
 
 Result<void> CheckOptions(const AnalysisOptions& options) {
   if (!(options.alpha > 0 && options.alpha < 0.5)) {
@@ -60,10 +60,10 @@ Result<void> CheckCell(const Table& table, const Row& row, std::size_t column,
 }
 
 Result<void> CheckTable(const Table& table, const AnalysisOptions& options) {
-  if (table.conditions.size() < 2 || table.conditions.size() > kMostColumns) {
+  if (table.conditions.size() < 2 || table.conditions.size() > kMaxColumns) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("{} conditions cannot be compared", table.conditions.size()), "table",
-                fmt::format("give from 2 to {}, one for each column", kMostColumns));
+                fmt::format("give from 2 to {}, one for each column", kMaxColumns));
   }
   if (std::set<std::string>(table.conditions.begin(), table.conditions.end()).size() <
       table.conditions.size()) {

@@ -15,10 +15,10 @@
 namespace hvas::study {
 namespace {
 
-constexpr std::size_t kMostConditions = 26;
+constexpr std::size_t kMaxConditions = 26;
 constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]
-constexpr int kMostTrials = 5000;                    // for one participant
-constexpr double kMostSeconds = 86400;
+constexpr int kMaxTrials = 5000;                     // for one participant
+constexpr double kMaxSeconds = 86400;
 constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};
 constexpr std::array<std::string_view, 3> kHidden{"condition", "time", "progress"};
 
@@ -135,7 +135,7 @@ class ProtocolReader {
       ReadRendering(&one, &condition);
       condition.answer = one.TextOr("answer", "");
       if (one.Has("published_mean_s")) {
-        condition.published_mean = one.NumberOr("published_mean_s", {0.01, kMostSeconds}, 1);
+        condition.published_mean = one.NumberOr("published_mean_s", {0.01, kMaxSeconds}, 1);
       }
       if (one.Has("published_right_share")) {
         condition.published_right_share = one.NumberOr("published_right_share", {0, 1}, 1);
@@ -143,7 +143,7 @@ class ProtocolReader {
       one.Finish();
       protocol_->conditions.push_back(std::move(condition));
     }
-    if (protocol_->conditions.empty() || protocol_->conditions.size() > kMostConditions) {
+    if (protocol_->conditions.empty() || protocol_->conditions.size() > kMaxConditions) {
       document_->Refuse(list, "\"conditions\" is empty, or has more than 26",
                         "write 1 to 26 conditions");
     }
@@ -374,10 +374,10 @@ class ProtocolReader {
   }
 
   void CheckTrials(const YamlFields& fields) {
-    if (protocol_->CountTrials() > kMostTrials) {
+    if (protocol_->CountTrials() > kMaxTrials) {
       document_->Refuse(fields.node(),
                         fmt::format("a participant would have {} trials", protocol_->CountTrials()),
-                        fmt::format("lower \"repetitions\": at most {} are possible", kMostTrials));
+                        fmt::format("lower \"repetitions\": at most {} are possible", kMaxTrials));
     }
   }
 

@@ -12,7 +12,7 @@
 namespace hvas::study {
 namespace {
 
-constexpr int kMostParticipants = 999;
+constexpr int kMaxParticipants = 999;
 
 // Purposes of random streams, so that their seeds differ.
 constexpr std::uint64_t kLabels = 1;
@@ -151,7 +151,7 @@ Result<int> ParseParticipantId(std::string_view id) {
   const char* end = id.data() + id.size();
   const bool is_long = id.size() >= 3 && id[0] == 'P';
   const auto [rest, code] = std::from_chars(id.data() + (is_long ? 1 : 0), end, number);
-  if (!is_long || code != std::errc() || rest != end || number < 1 || number > kMostParticipants ||
+  if (!is_long || code != std::errc() || rest != end || number < 1 || number > kMaxParticipants ||
       FormatParticipantId(number) != id) {
     return Fail(ErrorCode::kInvalid, "this is not a participant's id", std::string(id),
                 "write P01 to P999; names are not used, to protect participants");

@@ -8,7 +8,7 @@
 namespace hvas::study {
 namespace {
 
-constexpr std::size_t kMostBytes = 1 << 20;
+constexpr std::size_t kMaxBytes = 1 << 20;
 
 std::string FormatMark(const std::string& file, const YAML::Mark& mark) {
   return mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
@@ -21,7 +21,7 @@ std::string Print(double x) {
 }  // namespace
 
 Result<YamlDocument> YamlDocument::Parse(const std::string& text, const std::string& file) {
-  if (text.size() > kMostBytes) {
+  if (text.size() > kMaxBytes) {
     return Fail(ErrorCode::kInvalid, "the file is too long for a protocol", file,
                 "shorten it to less than 1 MB");
   }

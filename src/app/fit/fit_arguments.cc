@@ -103,8 +103,8 @@ CLI::Validator Count(std::int64_t most) {
       fmt::format("1 TO {}", most));
 }
 
-constexpr std::int64_t kMostAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
-constexpr std::int64_t kMostThreads = 256;
+constexpr std::int64_t kMaxAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
+constexpr std::int64_t kMaxThreads = 256;
 
 /** The value of the k-th fit in a list with one for each, or one for all. */
 double Pick(const std::vector<double>& list, std::size_t k, double otherwise) {
@@ -271,7 +271,7 @@ Result<void> CheckLists(const FitArguments& a) {
 void AddBatchArguments(CLI::App* fit, FitArguments* a) {
   const char* const group = "Populations";
   fit->add_option("--population", a->population.count, "Number of assemblies to simulate")
-      ->transform(Count(kMostAssemblies))
+      ->transform(Count(kMaxAssemblies))
       ->group(group);
   fit->add_option("--seed", a->population.seed, "Seed of the random numbers")
       ->capture_default_str()
@@ -301,7 +301,7 @@ void AddBatchArguments(CLI::App* fit, FitArguments* a) {
       ->group(group);
   fit->add_option("--threads", a->population.threads,
                   "Number of threads; it does not change the results [all cores]")
-      ->transform(Count(kMostThreads))
+      ->transform(Count(kMaxThreads))
       ->group(group);
 }
 

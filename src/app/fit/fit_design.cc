@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostProposals = 5;
+constexpr std::size_t kMaxProposals = 5;
 
 Result<void> Check(const FitDemand& d) {
   const bool is_good = d.torque >= 0 && d.axial >= 0 && std::isfinite(d.torque + d.axial) &&
@@ -203,7 +203,7 @@ Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint) 
     return Unexpected(found.error());
   }
   for (const fits::FoundFit& fit : *found) {
-    if (d.proposals.size() == kMostProposals) {
+    if (d.proposals.size() == kMaxProposals) {
       break;
     }
     Result<std::vector<FitCard>> cards = MakeCards(WithFit(joint, demand, fit.fit.ToString()));

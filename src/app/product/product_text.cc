@@ -196,10 +196,10 @@ class Counted {
   void Print(ListLimit* limit) const {
     for (const Entry& entry : entries_) {
       if (limit->Next()) {
-        constexpr std::size_t kMostNames = 60;
+        constexpr std::size_t kMaxNames = 60;
         std::string which = entry.which;
-        if (which.size() > kMostNames) {
-          which = which.substr(0, which.rfind(' ', kMostNames)) + " ...";
+        if (which.size() > kMaxNames) {
+          which = which.substr(0, which.rfind(' ', kMaxNames)) + " ...";
         }
         fmt::print("{}", Wrap(fmt::format("{} x {} ({})", entry.count, entry.text, which), 6));
       }

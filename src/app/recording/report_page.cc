@@ -32,7 +32,7 @@ using units::ToMm;
 constexpr int kPictureWidth = 900;
 constexpr int kPictureHeight = 560;
 constexpr int kWaysHeight = 480;
-constexpr std::size_t kMostIncidents = 60;
+constexpr std::size_t kMaxIncidents = 60;
 constexpr int kColors = 5;  // of svg_plot.h
 
 constexpr const char* kStyle = R"(
@@ -305,7 +305,7 @@ std::string MakeIncidents(const Summary& summary) {
   html +=
       "<div class=\"scroll\"><table><thead><tr><th>Time [s]</th><th class=\"l\">What</th>"
       "<th class=\"l\">Part in the hand</th><th class=\"l\">Details</th></tr></thead><tbody>";
-  for (std::size_t i = 0; i < std::min(summary.incidents.size(), kMostIncidents); ++i) {
+  for (std::size_t i = 0; i < std::min(summary.incidents.size(), kMaxIncidents); ++i) {
     const record::Event& event = summary.incidents[i];
     html += fmt::format(
         "<tr><td>{:.3f}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
@@ -315,9 +315,9 @@ std::string MakeIncidents(const Summary& summary) {
         Escape(Explain(event)));
   }
   html += "</tbody></table></div>";
-  if (summary.incidents.size() > kMostIncidents) {
+  if (summary.incidents.size() > kMaxIncidents) {
     html += fmt::format("<p><small>The first {} of {}; all are in the record.</small></p>",
-                        kMostIncidents, summary.incidents.size());
+                        kMaxIncidents, summary.incidents.size());
   }
   return html;
 }

@@ -275,14 +275,14 @@ TEST(AccessTest, BrowserThatHasLookedOnSteersAgainByItsOwnLink) {
 TEST(AccessTest, ManyWhoLookOnDriveNobodyOutWhoSteers) {
   Access access({}, kPort, false);
   const std::string steers = ComeBy(&access, access.token(Role::kOperator));
-  for (std::size_t i = 0; i < 3 * Access::kMostBrowsers; ++i) {
+  for (std::size_t i = 0; i < 3 * Access::kMaxBrowsers; ++i) {
     ComeBy(&access, access.token(Role::kViewer));
     (void)access.MakeInvitation(Role::kOperator);
   }
   EXPECT_EQ(access.RoleOfCookie(steers), Role::kOperator);
   EXPECT_EQ(ComeBy(&access, access.token(Role::kOperator), steers), steers);
-  EXPECT_LE(access.Keep().browsers.size(), Access::kMostBrowsers);
-  EXPECT_LE(access.Keep().links.size(), Access::kMostLinks);
+  EXPECT_LE(access.Keep().browsers.size(), Access::kMaxBrowsers);
+  EXPECT_LE(access.Keep().links.size(), Access::kMaxLinks);
 }
 
 TEST(AccessTest, CookieGivesItsRole) {

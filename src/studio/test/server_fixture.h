@@ -23,7 +23,7 @@ namespace hvas::studio::testing {
 
 using Headers = std::vector<std::pair<std::string, std::string>>;
 
-inline constexpr std::uint64_t kMostUpload = 10'000;  // [bytes]
+inline constexpr std::uint64_t kMaxUpload = 10'000;  // [bytes]
 
 /** A server on a free port, with nothing open. */
 class ServerTest : public ::testing::Test {
@@ -32,7 +32,7 @@ class ServerTest : public ::testing::Test {
 
   explicit ServerTest(ServerOptions options) : is_tls_(options.tls.has_value()) {
     options.upload_folder = folder_;
-    options.most_upload = kMostUpload;
+    options.max_upload = kMaxUpload;
     bench_ = std::make_unique<Workbench>(testing::SmallBench());
     server_ = std::make_unique<Server>(
         bench_.get(), std::vector<Example>{{"peg", "Peg", "a peg", "peg.step"}}, options);
