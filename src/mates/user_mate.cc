@@ -319,7 +319,7 @@ Result<MateId> FindMate(const Product& product, std::string_view text) {
       return index < product.mates.size()
                  ? Result<MateId>(MateId(index))
                  : Result<MateId>(
-                       fail(fmt::format("there is no mate {}, of {}", text, product.mates.size())));
+                       fail(fmt::format("there is no mate {}; the product has {} mates", text, product.mates.size())));
     }
   }
   std::optional<MateId> found;

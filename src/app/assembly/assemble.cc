@@ -218,7 +218,10 @@ Result<std::unique_ptr<record::Recorder>> MakeRecorder(const Model& model,
   recorder.ring_ticks *= options.second_device.empty() ? 1 : 2;
   recorder.replaces = options.is_record_replaced;
   recorder.on_error = [](const Error& error) {
-    fmt::print(stderr, "\nhvas: {} (the assembly goes on)\n", error.ToString());
+    fmt::print(stderr,
+               "\n"
+               "hvas: {} (the assembly continues)\n",
+               error.ToString());
   };
   return record::Recorder::Create(recorder, MakeMeta(model, options));
 }

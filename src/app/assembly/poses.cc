@@ -85,7 +85,7 @@ std::optional<std::pair<std::string, std::string>> ReadEntry(const Json& entry,
   }
   for (const auto& [key, value] : entry.items()) {
     if (key != "occurrence" && key != "position_mm" && key != "rotation_wxyz" && key != "note") {
-      return FailEntry("/" + key, fmt::format("\"{}\" is no key of an entry", key));
+      return FailEntry("/" + key, fmt::format("an entry has no key \"{}\"", key));
     }
   }
   const auto id = Find(product, entry["occurrence"].get<std::string>());

@@ -103,7 +103,7 @@ std::string Name(const PaperCurve& curve) {
 
 std::string FactorText(const PaperCurve& curve) {
   const std::string_view symbol = fits::FindPaperScale(curve.kind).symbol;
-  return symbol.empty() ? "shown as it is" : fmt::format("{} = {:.3g}", symbol, curve.factor);
+  return symbol.empty() ? "shown unscaled" : fmt::format("{} = {:.3g}", symbol, curve.factor);
 }
 
 }  // namespace

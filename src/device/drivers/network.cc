@@ -309,9 +309,7 @@ LinkCounts NetworkDevice::counts() const noexcept {
 std::string NetworkDevice::Explain(const DeviceState& state) const {
   const LinkCounts now = counts();
   return fmt::format(
-      "{}; lost {:.1f} % of its states and {:.1f} % of its wrenches, which take {:.1f} ms there "
-      "and "
-      "back{}",
+      "{}; lost {:.1f} % of its states and {:.1f} % of its wrenches, round trip {:.1f} ms{}",
       Device::Explain(state), Percent(now.states_lost, now.states_lost + now.states),
       Percent(now.wrenches_lost, now.wrenches), 1e-6 * static_cast<double>(now.round_trip_ns),
       RefusedInWords(now));
