@@ -36,17 +36,17 @@ namespace hvas::app {
 namespace {
 
 constexpr std::array<ExitStatus, 4> kStatuses{{
-    {"0", "It is done; of hvas assemble: every part is in its place."},
+    {"0", "Success; for hvas assemble: every part is in its place."},
     {"1",
-     "Something failed: a file that is missing, damaged or not to be written, a fit that "
-     "does not exist. The message names it and says what to do."},
+     "An error: for example a file that is missing, damaged or not writable, or a fit that does "
+     "not exist. The message names the cause and a remedy."},
     {"2",
-     "It is done, and the answer is no: a part is not in its place (hvas assemble), a record is "
-     "not as it was written (hvas report, export and replay), the run differs from the record "
-     "(hvas replay --verify), or the machine is late (hvas doctor)."},
+     "A negative result: a part is not in its place (hvas assemble), a record was changed after it "
+     "was written (hvas report, export and replay), the replay differs from the record (hvas "
+     "replay --verify), or the machine misses deadlines (hvas doctor)."},
     {"64",
-     "The command line is wrong: an unknown command or option, a value out of range, "
-     "options that do not go together. Nothing was done."},
+     "A wrong command line: an unknown command or option, a value out of range, or options that "
+     "exclude each other. Nothing was done."},
 }};
 
 /** The name of a command with those of its parents, and a blank behind. */
@@ -90,11 +90,11 @@ std::string DescribeUnknown(const CommandHelp& command, const std::string& word)
     }
   }
   if (!is_option && candidates.empty()) {
-    return fmt::format("\"{}\" is one argument too many", word);
+    return fmt::format("the argument \"{}\" is one too many", word);
   }
   const std::string nearest = mates::FindNearest(word, candidates);
   return fmt::format("there is no {} \"{}\"{}", is_option ? "option" : "command", word,
-                     nearest.empty() ? "" : fmt::format("; \"{}\" may be meant", nearest));
+                     nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest));
 }
 
 /** Says it in other words than CLI11, where those say little. */
@@ -104,7 +104,7 @@ std::string Rephrase(const std::string& what) {
     const std::string rest = what.substr(at + kConversion.size());
     const std::size_t equals = rest.find(" = ");
     if (equals != std::string::npos) {
-      return fmt::format("{} takes a number, not \"{}\"", rest.substr(0, equals),
+      return fmt::format("{} needs a number, not \"{}\"", rest.substr(0, equals),
                          rest.substr(equals + 3));
     }
   }
@@ -124,17 +124,19 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
       unknown.empty()
           ? Rephrase(error.what())
           : DescribeUnknown(Describe(reached, CommandPath(reached.get_parent())), unknown);
-  fmt::print(stderr, "{} {}\n{}--help tells what there is.\n",
+  fmt::print(stderr,
+             "{} {}\n"
+             "Run {}--help for the commands and options.\n",
              Painted(name.substr(0, name.size() - 1) + ":", Style::kBad, stderr), what, name);
   return kMisused;
 }
 
 void SetGroups(CLI::App* app) {
   static const std::vector<std::pair<const char*, std::vector<const char*>>> kGroups{
-      {"Look into a CAD file", {"inspect", "mate", "export", "path"}},
-      {"Put it together", {"studio", "assemble", "replay", "report"}},
+      {"Inspect and convert CAD files", {"inspect", "mate", "export", "path"}},
+      {"Assemble", {"studio", "assemble", "replay", "report"}},
       {"Calculate fits", {"fit"}},
-      {"Experiment with people", {"study"}},
+      {"Run studies with participants", {"study"}},
       {"This machine", {"devices", "doctor"}},
       {"This program", {"completion", "man", "licences"}}};
   for (const auto& [group, commands] : kGroups) {
@@ -155,10 +157,11 @@ std::span<const ExitStatus> ExitStatuses() {
 }
 
 std::unique_ptr<CLI::App> MakeCommandLine(int* status) {
-  auto app = std::make_unique<CLI::App>("Assemble CAD products by hand, and feel it", "hvas");
+  auto app = std::make_unique<CLI::App>("Haptic virtual assembly of CAD products", "hvas");
   app->formatter(std::make_shared<HelpFormatter>());
-  app->set_help_flag("-h,--help", "Say what there is, and end");
-  app->set_version_flag("--version", fmt::format("hvas {}", Version()), "Say the version, and end");
+  app->set_help_flag("-h,--help", "Print this help and exit");
+  app->set_version_flag("--version", fmt::format("hvas {}", Version()),
+                        "Print the version and exit");
   app->require_subcommand(1);
   AddInspect(app.get(), status);
   AddMate(app.get(), status);
@@ -177,12 +180,12 @@ std::unique_ptr<CLI::App> MakeCommandLine(int* status) {
   AddLicences(app.get(), status);
   SetGroups(app.get());
   app->footer(
-      "To begin with:\n"
-      "  hvas inspect pump.step              what is in the file, and how it fits\n"
-      "  hvas studio pump.step               put it together by hand, in a browser\n"
-      "  hvas assemble pump.step             let the simulated person do it\n"
+      "Examples:\n"
+      "  hvas inspect pump.step              show parts, features, mates and fits\n"
+      "  hvas studio pump.step               assemble by hand, in a browser\n"
+      "  hvas assemble pump.step             let the simulated person assemble\n"
       "  hvas fit 40 H7/p6 --length 50       limits, pressure, force, stresses\n"
-      "hvas COMMAND --help has the options and examples of each.");
+      "hvas COMMAND --help shows the options and examples of a command.");
   return app;
 }
 

@@ -123,7 +123,7 @@ void AddOptions(const CLI::App& app, const std::string& group, CommandHelp* help
 }
 
 /** A line of two columns. */
-std::string Entry(const std::string& left, const std::string& text) {
+std::string FormatEntry(const std::string& left, const std::string& text) {
   std::string lines = Wrap(text, kDescriptionColumn);
   const std::string begin = "  " + left;
   const std::string painted = "  " + Painted(left, Style::kName);
@@ -136,7 +136,7 @@ std::string Entry(const std::string& left, const std::string& text) {
   return lines.replace(0, CalcWidth(begin), painted);
 }
 
-std::string Heading(const std::string& name) {
+std::string FormatHeading(const std::string& name) {
   return "\n" + Painted(name + ":", Style::kHeading) + "\n";
 }
 
@@ -212,10 +212,10 @@ std::string ToHelp(const CommandHelp& command) {
     remember(below.group);
   }
   for (const std::string& group : groups) {
-    text += Heading(group == "Subcommands" ? "Commands" : group);
+    text += FormatHeading(group == "Subcommands" ? "Commands" : group);
     for (const CommandHelp& below : command.commands) {
       if (below.group == group) {
-        text += Entry(below.LastName(), below.description);
+        text += FormatEntry(below.LastName(), below.description);
       }
     }
   }
@@ -224,10 +224,10 @@ std::string ToHelp(const CommandHelp& command) {
     remember(option.is_argument ? "Arguments" : option.group);
   }
   for (const std::string& group : groups) {
-    text += Heading(group);
+    text += FormatHeading(group);
     for (const OptionHelp& option : command.options) {
       if ((option.is_argument ? "Arguments" : option.group) == group) {
-        text += Entry(option.Left(), option.description);
+        text += FormatEntry(option.Left(), option.description);
       }
     }
   }

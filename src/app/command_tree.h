@@ -46,7 +46,7 @@ struct CommandHelp {
 /** The command itself and all below it, parents first. */
 [[nodiscard]] std::vector<const CommandHelp*> ListCommands(const CommandHelp& root);
 
-/** What stands behind --help, in Columns() columns. */
+/** What stands behind --help, in CountColumns() columns. */
 [[nodiscard]] std::string ToHelp(const CommandHelp& command);
 
 }  // namespace hvas::app

@@ -260,7 +260,8 @@ void AddCompletion(CLI::App* app, int* status) {
       "The shell")
       ->required();
   command->footer(
-      "An installed hvas has the scripts where shells look for them. By hand:\n"
+      "An installation contains the scripts in the folders that shells search. To install one by "
+      "hand:\n"
       "  source <(hvas completion bash)\n"
       "  hvas completion zsh > ~/.zfunc/_hvas\n"
       "  hvas completion fish > ~/.config/fish/completions/hvas.fish");

@@ -57,7 +57,7 @@ void EndWatch::Watch(std::chrono::milliseconds patience) {
   changed_.notify_all();
   if (!changed_.wait_for(lock, patience, [this] { return is_over_; })) {
     constexpr std::string_view kWord =
-        "hvas: it does not end by itself, and is ended. What was done is on disk.\n";
+        "hvas: stopping took too long, so the program was ended. Completed work is on disk.\n";
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kWord.data(), kWord.size());
     device::WithdrawForces();
     ::_exit(1);

@@ -39,14 +39,14 @@ struct Licensed {
   std::string_view text;
 };
 
-std::string_view AllTerms() {
+std::string_view GetAllTerms() {
   return {hvas_third_party, static_cast<std::size_t>(hvas_third_party_end - hvas_third_party)};
 }
 
 std::vector<Licensed> ListLicensed() {
   constexpr std::string_view kHead = "\n### ";
   std::vector<Licensed> list;
-  const std::string_view all = AllTerms();
+  const std::string_view all = GetAllTerms();
   for (std::size_t at = all.find(kHead); at != std::string_view::npos;
        at = all.find(kHead, at + 1)) {
     const std::size_t begin = at + kHead.size();
@@ -92,9 +92,11 @@ std::string ListText() {
   for (const Licensed& one : ListLicensed()) {
     table.Add({one.name, one.version, one.terms.substr(0, one.terms.find_last_of('.'))});
   }
-  return "hvas is under the Apache License 2.0. In it is the work of others:\n\n" +
+  return "hvas is licensed under the Apache License 2.0. It contains third-party components:\n"
+         "\n" +
          table.ToText(2) +
-         "\nhvas licences NAME prints the terms of one, hvas licences those of all.\n";
+         "\n"
+         "hvas licences NAME prints the terms of one component, hvas licences those of all.\n";
 }
 
 int ShowLicences(const std::string& name, bool is_list) {
@@ -103,7 +105,7 @@ int ShowLicences(const std::string& name, bool is_list) {
     return 0;
   }
   if (name.empty()) {
-    fmt::print("{}", Fold(WithoutMarks(AllTerms())));
+    fmt::print("{}", Fold(WithoutMarks(GetAllTerms())));
     return 0;
   }
   std::vector<std::string> names;
@@ -116,21 +118,21 @@ int ShowLicences(const std::string& name, bool is_list) {
   }
   const std::string nearest = mates::FindNearest(name, names);
   return ReportMisuse({ErrorCode::kNotFound,
-                       fmt::format("there is no \"{}\" in hvas", name),
+                       fmt::format("hvas contains no component \"{}\"", name),
                        {},
-                       nearest.empty() ? "hvas licences --list says what there is"
-                                       : fmt::format("\"{}\" may be meant", nearest)});
+                       nearest.empty() ? "hvas licences --list lists the components"
+                                       : fmt::format("did you mean \"{}\"?", nearest)});
 }
 
 }  // namespace
 
 void AddLicences(CLI::App* app, int* status) {
   CLI::App* command =
-      app->add_subcommand("licences", "Print the terms of what others have written of hvas");
+      app->add_subcommand("licences", "Print the licences of third-party components");
   const auto name = std::make_shared<std::string>();
   const auto is_list = std::make_shared<bool>(false);
-  CLI::Option* one = command->add_option("name", *name, "Of one library or package only");
-  command->add_flag("--list", *is_list, "Names, versions and licences only")->excludes(one);
+  CLI::Option* one = command->add_option("name", *name, "Only this library or package");
+  command->add_flag("--list", *is_list, "List names, versions and licences only")->excludes(one);
   command->footer("Examples:\n  hvas licences --list\n  hvas licences zlib");
   command->callback([name, is_list, status] { *status = ShowLicences(*name, *is_list); });
 }

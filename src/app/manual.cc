@@ -20,7 +20,7 @@ std::string Escaped(std::string_view text) {
 }
 
 /** A line of text that begins with no request. */
-std::string Line(std::string_view text) {
+std::string FormatLine(std::string_view text) {
   const bool is_request = text.starts_with('.') || text.starts_with('\'');
   return (is_request ? "\\&" : "") + Escaped(text) + "\n";
 }
@@ -29,16 +29,16 @@ std::string Verbatim(std::string_view lines) {
   std::string text = ".PP\n.nf\n";
   while (!lines.empty()) {
     const std::size_t end = std::min(lines.find('\n'), lines.size());
-    text += Line(lines.substr(0, end));
+    text += FormatLine(lines.substr(0, end));
     lines.remove_prefix(std::min(end + 1, lines.size()));
   }
   return text + ".fi\n";
 }
 
 void AppendCommand(const CommandHelp& command, std::string* text) {
-  *text += ".SS " + Escaped(command.Usage()) + "\n" + Line(command.description + ".");
+  *text += ".SS " + Escaped(command.Usage()) + "\n" + FormatLine(command.description + ".");
   for (const OptionHelp& option : command.options) {
-    *text += ".TP\n.B " + Escaped(option.Left()) + "\n" + Line(option.description);
+    *text += ".TP\n.B " + Escaped(option.Left()) + "\n" + FormatLine(option.description);
   }
   if (!command.footer.empty()) {
     *text += Verbatim(command.footer);
@@ -51,15 +51,17 @@ std::string MakeManual(const CommandHelp& root, const std::string& version) {
   std::string text = fmt::format(
       ".\\\" Written by `hvas man`.\n"
       ".TH HVAS 1 \"\" \"hvas {}\" \"User Commands\"\n"
-      ".SH NAME\nhvas \\- {}\n"
-      ".SH SYNOPSIS\n.B {}\n"
+      ".SH NAME\n"
+      "hvas \\- {}\n"
+      ".SH SYNOPSIS\n"
+      ".B {}\n"
       ".SH DESCRIPTION\n"
-      "HVAS opens a CAD assembly, finds out how its parts belong together, and lets a hand put it "
-      "together again, feeling contact, mates and fits. The hand is a person at a haptic device, "
-      "or a simulated one.\n",
+      "HVAS opens a CAD assembly, infers the mates of its parts, and lets a user assemble it with "
+      "a haptic device, feeling contact, mates and fits. A simulated person can take the place of "
+      "the user.\n",
       version, Escaped(root.description), Escaped(root.Usage()));
   for (const OptionHelp& option : root.options) {
-    text += ".TP\n.B " + Escaped(option.Left()) + "\n" + Line(option.description);
+    text += ".TP\n.B " + Escaped(option.Left()) + "\n" + FormatLine(option.description);
   }
   text += ".SH COMMANDS\n";
   const auto commands = ListCommands(root);
@@ -68,21 +70,26 @@ std::string MakeManual(const CommandHelp& root, const std::string& version) {
   }
   text += ".SH EXIT STATUS\n";
   for (const ExitStatus& row : ExitStatuses()) {
-    text += fmt::format(".TP\n.B {}\n{}", row.status, Line(row.meaning));
+    text += fmt::format(".TP\n.B {}\n{}", row.status, FormatLine(row.meaning));
   }
   text +=
       ".SH ENVIRONMENT\n"
-      ".TP\n.B COLUMNS\nThe columns that text may take, in place of those of the terminal.\n"
-      ".TP\n.B NO_COLOR\nWhere it is set, the terminal is given no colours.\n"
-      ".TP\n.B XDG_CACHE_HOME\nThe folder that prepared parts are kept in, below hvas; ~/.cache "
-      "without it.\n";
+      ".TP\n"
+      ".B COLUMNS\n"
+      "Width of text in columns, instead of that of the terminal.\n"
+      ".TP\n"
+      ".B NO_COLOR\n"
+      "When it is set, output has no colours.\n"
+      ".TP\n"
+      ".B XDG_CACHE_HOME\n"
+      "Parent of the folder hvas, in which prepared parts are cached; default ~/.cache.\n";
   return text + (root.footer.empty() ? "" : ".SH EXAMPLES\n" + Verbatim(root.footer));
 }
 
 void AddManual(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand("man", "Print the manual page, hvas(1)");
   command->footer(
-      "An installed hvas has it where man looks for it. By hand:\n"
+      "An installation contains the page where man finds it. To read it otherwise:\n"
       "  hvas man | man -l -");
   command->callback([app, status] {
     fmt::print("{}", MakeManual(Describe(*app), Version()));

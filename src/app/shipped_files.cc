@@ -15,11 +15,11 @@ std::filesystem::path FindFolder(const char* installed_name, const char* built) 
 
 }  // namespace
 
-std::filesystem::path ProductsFolder() {
+std::filesystem::path FindProductsFolder() {
   return FindFolder("products", HVAS_BUILT_FILES "/products");
 }
 
-std::filesystem::path StudiesFolder() {
+std::filesystem::path FindStudiesFolder() {
   return FindFolder("studies", HVAS_BUILT_FILES "/data/studies");
 }
 

@@ -29,9 +29,9 @@
 #include "cad/input_file.h"
 #include "contact/shape_cache.h"
 #include "studio/certificate.h"
-#include "studio/kept_folder.h"
-#include "studio/kept_work.h"
+#include "studio/saved_work.h"
 #include "studio/server.h"
+#include "studio/state_folder.h"
 #include "studio/study_desk.h"
 #include "studio/workbench.h"
 
@@ -58,10 +58,10 @@ struct StudioOptions {
 std::vector<studio::Example> FindExamples() {
   std::vector<studio::Example> examples{
       {"gear_pump", "Gear pump", "38 parts: press fits, dowels, screws", "gear_pump.step"},
-      {"bushing", "Bushing", "3 parts: a bushing pressed into a plate, and a shaft through it",
+      {"bushing", "Bushing", "3 parts: a bushing pressed into a plate, and a shaft in the bushing",
        "bushing.step"},
-      {"frame_500", "Frame", "500 parts, to try how large a product may be", "frame_500.step"}};
-  const std::filesystem::path folder = ProductsFolder();
+      {"frame_500", "Frame", "500 parts, to test large products", "frame_500.step"}};
+  const std::filesystem::path folder = FindProductsFolder();
   std::erase_if(examples, [&](studio::Example& example) {
     example.file = folder / example.file;
     return !std::filesystem::exists(example.file);
@@ -114,27 +114,27 @@ std::filesystem::path FullPath(const std::filesystem::path& file) {
 
 /** What an earlier start has kept of the same: a product, a session of a study, or no file at all.
  @param scratch  Where nothing can be kept. */
-Result<studio::KeptFolder> TakeFolder(const StudioOptions& options,
-                                      const std::filesystem::path& scratch) {
+Result<studio::StateFolder> TakeFolder(const StudioOptions& options,
+                                       const std::filesystem::path& scratch) {
   std::string subject = options.load.file.empty() ? "" : FullPath(options.load.file).string();
   if (!options.study.empty()) {
     subject = fmt::format("study {} {} {}", options.study, FullPath(options.folder).string(),
                           options.participant);
   }
   if (const auto state = FindUserFolder("XDG_STATE_HOME", ".local/state")) {
-    auto folder = studio::KeptFolder::Take(*state / "studio", subject);
+    auto folder = studio::StateFolder::Take(*state / "studio", subject);
     if (folder) {
       return folder;
     }
-    fmt::print(stderr, "warning: a later start cannot go on from this one: {}\n",
+    fmt::print(stderr, "warning: this session cannot be saved for the next start: {}\n",
                folder.error().ToString());
   }
-  return studio::KeptFolder::Take(scratch, subject);
+  return studio::StateFolder::Take(scratch, subject);
 }
 
 /** The work to go on with; none where another product is asked for than it was of. */
-std::optional<studio::KeptWork> FindWork(const StudioOptions& options,
-                                         const studio::KeptFolder& folder) {
+std::optional<studio::SavedWork> FindWork(const StudioOptions& options,
+                                          const studio::StateFolder& folder) {
   if (!options.study.empty()) {
     return std::nullopt;  // it has a journal of its own
   }
@@ -142,10 +142,10 @@ std::optional<studio::KeptWork> FindWork(const StudioOptions& options,
   const bool is_same =
       work && (options.load.file.empty() || FullPath(work->file) == FullPath(options.load.file));
   if (!work && work.error().code != ErrorCode::kNotFound) {
-    fmt::print(stderr, "warning: the work begins anew: {}\n", work.error().ToString());
+    fmt::print(stderr, "warning: the saved work cannot be restored: {}\n", work.error().ToString());
   }
   if (!is_same || options.is_fresh) {
-    studio::SetWorkAside(folder.work_file());
+    studio::BackUpWork(folder.work_file());
     return std::nullopt;
   }
   return std::move(*work);
@@ -173,23 +173,23 @@ Result<std::string> PrepareForOthers(const StudioOptions& options, studio::Serve
   if (!options.tls.certificate.empty()) {
     served->tls = options.tls;
     const auto fingerprint = studio::CalcFingerprint(options.tls.certificate);
-    return fingerprint
-               ? Result<std::string>(fmt::format("Its certificate: SHA-256 {}\n", *fingerprint))
-               : Unexpected(fingerprint.error());
+    return fingerprint ? Result<std::string>(fmt::format("Certificate: SHA-256 {}\n", *fingerprint))
+                       : Unexpected(fingerprint.error());
   }
   const auto folder = studio::FindCertificateFolder();
   if (!folder) {
     return Unexpected(folder.error());
   }
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  const auto own = studio::KeepCertificate(
+  const auto own = studio::EnsureCertificate(
       *folder, served->names, std::chrono::duration_cast<std::chrono::seconds>(now).count());
   if (!own) {
     return Unexpected(own.error());
   }
   served->tls = own->files;
   return fmt::format(
-      "Browsers will warn of its certificate{}, which nobody has signed. Go on only when it is\n"
+      "Browsers will warn about the self-signed certificate{}. Continue only if its fingerprint "
+      "is\n"
       "  SHA-256 {}\n",
       own->is_new ? ", a new one" : "", own->fingerprint);
 }
@@ -202,10 +202,10 @@ void PrintLinks(const studio::Server& server, const studio::ServerOptions& serve
                server.LinkFor(studio::Role::kOperator, host));
   }
   if (served.desk != nullptr) {
-    fmt::print("The link above is the experimenter's. The participant's: {}\n",
+    fmt::print("The link above is for the experimenter. Link for the participant: {}\n",
                server.LinkFor(studio::Role::kParticipant, hosts.front()));
   }
-  fmt::print("To look on: {}\n", server.LinkFor(studio::Role::kViewer, hosts.front()));
+  fmt::print("Link for viewers: {}\n", server.LinkFor(studio::Role::kViewer, hosts.front()));
 }
 
 /** The session of a study, or nothing where none is asked for. */
@@ -249,7 +249,7 @@ int RunStudio(const StudioOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   const auto scratch = ScratchFolder::Make();
   const auto folder = scratch ? TakeFolder(options, scratch->path())
-                              : Result<studio::KeptFolder>(Unexpected(scratch.error()));
+                              : Result<studio::StateFolder>(Unexpected(scratch.error()));
   if (!folder) {
     return ReportFailure(folder.error());
   }
@@ -289,12 +289,12 @@ int RunStudio(const StudioOptions& options) {
     (*desk)->Start();
   }
   if (server.has_kept_links()) {
-    fmt::print("These are the links of the start before, and pages that are open come back.\n");
+    fmt::print("The links of the previous start are still valid, and open pages reconnect.\n");
   }
   if (work) {
-    fmt::print("It goes on with {} where that was; --fresh begins anew.\n", work->name);
+    fmt::print("The work on {} is restored; use --fresh to start over.\n", work->name);
   }
-  fmt::print("{}Ctrl+C ends it.\n", about_certificate);
+  fmt::print("{}Press Ctrl+C to end it.\n", about_certificate);
   std::fflush(stdout);
   if (work) {
     workbench.Resume(*work);
@@ -318,57 +318,61 @@ int RunStudio(const StudioOptions& options) {
 
 void AddStudio(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "studio", "Assemble a product by hand in a browser: see it, take hold of it, feel the fit");
+      "studio", "Assemble a product by hand in a browser, with a mouse, headset or haptic device");
   const auto options = std::make_shared<StudioOptions>();
-  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file to begin with");
-  command->add_option("--port", options->port, "To listen at; any that is free")
+  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file to open");
+  command->add_option("--port", options->port, "Port to listen on; default: any free port")
       ->check(CLI::Range(1, 65535));
-  CLI::Option* listen = command->add_option(
-      "--listen", options->listen,
-      "Let headsets and other machines in, at this address of this one, or 0.0.0.0; with TLS");
-  command->add_option("--host", options->hosts, "A further name that this machine is reached by")
+  CLI::Option* listen = command->add_option("--listen", options->listen,
+                                            "Address of this machine to listen on for headsets and "
+                                            "other machines, or 0.0.0.0 for all; uses TLS");
+  command->add_option("--host", options->hosts, "Additional host name of this machine")
       ->needs(listen);
-  CLI::Option* certificate = command
-                                 ->add_option("--certificate", options->tls.certificate,
-                                              "In PEM, in place of one that is made and kept")
-                                 ->needs(listen);
-  CLI::Option* key = command->add_option("--key", options->tls.key, "Of the certificate, in PEM")
-                         ->needs(certificate);
+  CLI::Option* certificate =
+      command
+          ->add_option("--certificate", options->tls.certificate,
+                       "Certificate in PEM format, instead of a generated one")
+          ->needs(listen);
+  CLI::Option* key =
+      command
+          ->add_option("--key", options->tls.key, "Private key of the certificate, in PEM format")
+          ->needs(certificate);
   certificate->needs(key);
   command->add_flag("!--no-open", options->opens_browser, "Do not open a browser");
   command->add_flag("--fresh", options->is_fresh,
-                    "Begin with all parts on the table, not where the work on it has ended");
+                    "Start with all parts on the table instead of restoring the saved work");
   command->add_flag("--new-links", options->new_links,
-                    "Make new links, and let nobody in by those of the start before");
+                    "Make new links, and revoke those of the previous start");
   command->add_option("--recordings", options->recordings,
-                      "Folder of what is recorded; ~/.local/share/hvas/recordings");
+                      "Folder for recordings; default ~/.local/share/hvas/recordings");
   CLI::Option* study = command->add_option(
-      "--study", options->study, "Run a study with a person: a protocol, or xia-2011 or fit-2016");
-  CLI::Option* participant =
-      command->add_option("--participant", options->participant, "Who takes part: P01 and so on")
-          ->needs(study);
+      "--study", options->study,
+      "Run a study with a participant: a protocol file, or xia-2011 or fit-2016");
+  CLI::Option* participant = command
+                                 ->add_option("--participant", options->participant,
+                                              "Id of the participant: P01, P02, ...")
+                                 ->needs(study);
   study->needs(participant);
   command
       ->add_option("-o,--output", options->folder,
-                   "The study's folder; when not given, the protocol's id")
+                   "Folder of the study; default: the protocol's id")
       ->needs(study);
-  command->add_option("--seed", options->seed, "Seed of the parts' actual sizes, and of a study")
+  command->add_option("--seed", options->seed, "Seed of the parts' actual sizes and of the study")
       ->capture_default_str();
-  command->add_option("--rate", options->rate_hz, "Of the haptic loop [Hz]")
+  command->add_option("--rate", options->rate_hz, "Rate of the haptic loop [Hz]")
       ->check(CLI::Range(1000.0, 8000.0))
       ->capture_default_str();
   AddLoadOptions(command, &options->load);
   command->footer(
-      "The address has a secret in it: the browser that opens the first link first steers, and\n"
-      "whoever has the second looks on. The next start for the same product has the same links, "
-      "and\n"
-      "goes on where the work was, however the program has ended. Only programs on this machine "
-      "can reach it, but with --listen; then everything "
-      "is\n"
-      "encrypted, and the fingerprint that is printed is to be compared with the browser's.\n"
-      "A headset on a cable needs no --listen: `adb reverse tcp:8080 tcp:8080`, and in its "
-      "browser\n"
-      "the link with localhost in place of 127.0.0.1.\n"
+      "The printed links contain a secret. The first browser that opens the first link gets "
+      "control;\n"
+      "the second link is for viewers. The next start for the same product has the same links and\n"
+      "restores the work, however the program has ended. Without --listen, only programs on this\n"
+      "machine can reach the studio. With --listen, connections are encrypted: compare the "
+      "printed\n"
+      "fingerprint with the one that the browser shows.\n"
+      "A headset on a cable needs no --listen: run `adb reverse tcp:8080 tcp:8080`, and open the\n"
+      "link in its browser with localhost instead of 127.0.0.1.\n"
       "Examples:\n"
       "  hvas studio\n"
       "  hvas studio products/gear_pump.step\n"

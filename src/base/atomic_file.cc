@@ -61,7 +61,7 @@ Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view
     }
   }
   if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error)) {
-    return Fail(ErrorCode::kInvalid, "is there and not a file", file.string(),
+    return Fail(ErrorCode::kInvalid, "exists and is not a file", file.string(),
                 "choose another name");
   }
   std::string name = target.string() + ".XXXXXX";  // mkstemp puts letters of its own for the six X.

@@ -19,7 +19,7 @@ Result<std::string> PackGlb(std::string json, std::string_view binary) {
       kHeader + kChunkHeader + json.size() + (binary.empty() ? 0 : kChunkHeader + binary.size());
   if (length > std::numeric_limits<std::uint32_t>::max()) {
     return Fail(ErrorCode::kOutOfResource, "the meshes are larger than the 4 GiB of a .glb file",
-                "", "write less of them, or coarser");
+                "", "write fewer or coarser meshes");
   }
   ByteWriter writer;
   for (const std::uint32_t word : {kMagic, kVersion, static_cast<std::uint32_t>(length),

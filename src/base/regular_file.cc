@@ -38,10 +38,10 @@ const char* NameOfKind(mode_t mode) {
 }
 
 Unexpected FailForKind(mode_t mode, const std::filesystem::path& path) {
-  return Fail(
-      ErrorCode::kUnreadable, fmt::format("this is {}, not a file", NameOfKind(mode)),
-      path.string(),
-      S_ISDIR(mode) ? "name a file in it" : "copy what it gives into a file, and name that");
+  return Fail(ErrorCode::kUnreadable, fmt::format("this is {}, not a file", NameOfKind(mode)),
+              path.string(),
+              S_ISDIR(mode) ? "name a file in this folder"
+                            : "copy its content into a file, and name that file");
 }
 
 /** Up to `most` bytes. */
@@ -118,8 +118,8 @@ Result<std::string> ReadRegularFile(const RegularFile& file, const std::filesyst
   auto text = Read(file, largest + 1, path);
   if (text && text->size() > largest) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("the file is larger than the {} bytes that it may have", largest),
-                path.string(), "keep only what belongs into it");
+                fmt::format("the file is larger than the limit of {} bytes", largest),
+                path.string(), "remove what does not belong into it");
   }
   return text;
 }

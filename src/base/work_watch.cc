@@ -77,7 +77,7 @@ Error WorkWatch::Explain(std::string_view work, std::string where) const {
       return {ErrorCode::kOutOfResource,
               fmt::format("{} needed more than {:.3g} GiB of memory, which is the limit", work,
                           static_cast<double>(limits_.memory) / (1U << 30U)),
-              std::move(where), "allow more with --memory-limit, or export it in parts"};
+              std::move(where), "raise --memory-limit, or export the product in parts"};
     case Reason::kTime:
     case Reason::kNone:
       break;
@@ -85,7 +85,7 @@ Error WorkWatch::Explain(std::string_view work, std::string where) const {
   return {ErrorCode::kOutOfResource,
           fmt::format("{} took longer than the {:g} s that opening a file may take", work,
                       limits_.time),
-          std::move(where), "allow more with --time-limit, or export it in parts"};
+          std::move(where), "raise --time-limit, or export the product in parts"};
 }
 
 }  // namespace hvas

@@ -45,14 +45,14 @@ Unexpected Explain(const WorkerRun& run, const std::string& name) {
   const std::string message = fmt::format("the writer {}", run.Describe());
   switch (run.fate) {
     case WorkerFate::kCancelled:
-      return Fail(ErrorCode::kCancelled, "exporting it was stopped", name);
+      return Fail(ErrorCode::kCancelled, "the export was cancelled", name);
     case WorkerFate::kTimeUp:
     case WorkerFate::kPartTimeUp:
-      return Fail(ErrorCode::kOutOfResource, message, name, "allow more with --time-limit");
+      return Fail(ErrorCode::kOutOfResource, message, name, "raise --time-limit");
     case WorkerFate::kNoMemory:
-      return Fail(ErrorCode::kOutOfResource, message, name, "allow more with --memory-limit");
+      return Fail(ErrorCode::kOutOfResource, message, name, "raise --memory-limit");
     default:
-      return Fail(ErrorCode::kUnreadable, message, name, "export it as .glb instead");
+      return Fail(ErrorCode::kUnreadable, message, name, "export the product as .glb instead");
   }
 }
 
@@ -93,7 +93,7 @@ Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportCon
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!text.starts_with("ISO-10303-21")) {
     return Fail(ErrorCode::kUnreadable, std::string(text.substr(0, text.find('\n'))), name,
-                "export it as .glb instead");
+                "export the product as .glb instead");
   }
   return std::move(run.output);
 }

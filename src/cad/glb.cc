@@ -258,7 +258,7 @@ class GlbBuilder {
     auto glb = PackGlb(json_.dump(-1, ' ', false, Json::error_handler_t::replace), binary);
     if (!glb) {
       glb.error().where = product_.source;
-      glb.error().remedy = "export it without --fine, or subassembly by subassembly";
+      glb.error().remedy = "export the product without --fine, or each subassembly by itself";
     }
     return glb;
   }

@@ -111,21 +111,22 @@ bool Attempts::LeaveOut(const WorkerRun& run) {
   }
   if (run.stage == "tolerances" && options_.with_tolerances) {
     options_.with_tolerances = false;
-    omissions_.Warn("tolerances-skipped", name_,
-                    fmt::format("the reader {} while it read the tolerances; the product is "
-                                "without its dimensions, tolerances and stated fits",
-                                run.Describe()),
-                    "give the fits in a side file or with --fit, or export it without PMI");
+    omissions_.Warn(
+        "tolerances-skipped", name_,
+        fmt::format("the reader {} while it read the tolerances; the product has no dimensions, "
+                    "tolerances and stated fits",
+                    run.Describe()),
+        "give the fits in a side file or with --fit, or export the product without PMI");
   } else if (run.part && options_.skipped_parts.size() < kMaxSkippedParts &&
              std::find(options_.skipped_parts.begin(), options_.skipped_parts.end(), *run.part) ==
                  options_.skipped_parts.end()) {
     options_.skipped_parts.push_back(*run.part);
-    omissions_.Warn("part-skipped", run.part_name,
-                    fmt::format("the reader of {} {} while it worked at this part; left out", name_,
-                                run.Describe()),
-                    is_limit ? "allow more with --time-limit or --memory-limit, or export the part "
-                               "in a simpler form"
-                             : "heal the part in the CAD system and export it again");
+    omissions_.Warn(
+        "part-skipped", run.part_name,
+        fmt::format("the reader of {} {} while it processed this part; the part is omitted", name_,
+                    run.Describe()),
+        is_limit ? "raise --time-limit or --memory-limit, or simplify the part"
+                 : "heal the part in the CAD system and export it again");
   } else {
     return false;
   }
@@ -136,33 +137,33 @@ bool Attempts::LeaveOut(const WorkerRun& run) {
 Unexpected Attempts::GiveUp(const WorkerRun& run) const {
   std::string at;
   if (run.part) {
-    at = fmt::format(" while it worked at the part \"{}\"", run.part_name);
+    at = fmt::format(" while it processed the part \"{}\"", run.part_name);
   } else if (!run.stage.empty()) {
     at = fmt::format(" at the stage \"{}\"", run.stage);
   }
   const std::string message = fmt::format("the reader {}{}", run.Describe(), at);
   switch (run.fate) {
     case WorkerFate::kCancelled:
-      return Fail(ErrorCode::kCancelled, "opening it was stopped", name_);
+      return Fail(ErrorCode::kCancelled, "opening the file was cancelled", name_);
     case WorkerFate::kTimeUp:
     case WorkerFate::kPartTimeUp:
       return Fail(ErrorCode::kOutOfResource, message, name_,
-                  "allow more with --time-limit, or export it in parts");
+                  "raise --time-limit, or export the product in parts");
     case WorkerFate::kNoMemory:
       return Fail(ErrorCode::kOutOfResource, message, name_,
-                  "allow more with --memory-limit, or export it in parts");
+                  "raise --memory-limit, or export the product in parts");
     case WorkerFate::kNotStarted:
       return Fail(ErrorCode::kNotFound, message, call_.program.string(),
                   "install hvas-cad beside hvas again");
     case WorkerFate::kFinished:
-      return Fail(ErrorCode::kInternal, "the reader handed over no product", name_,
-                  "check that hvas and hvas-cad are of the same version");
+      return Fail(ErrorCode::kInternal, "the reader returned no product", name_,
+                  "check that hvas and hvas-cad have the same version");
     case WorkerFate::kCrashed:
     case WorkerFate::kFailed:
       break;
   }
   return Fail(ErrorCode::kUnreadable, message, name_,
-              "export it again from the CAD system, if need be in parts");
+              "export the file again from the CAD system, if necessary in parts");
 }
 
 Result<ImportResult> Attempts::Run() {
@@ -235,8 +236,8 @@ Result<Product> Import(const std::filesystem::path& file, const ImportOptions& o
     if (!is_kept) {
       result->diagnostics.Note(
           "cache-unwritable", control.cache_directory->string(),
-          "the product cannot be kept on disk; it will be read again next time",
-          "make room there and make it writable, or set HVAS_CACHE=off");
+          "the product cannot be cached on disk; the file will be read again next time",
+          "free disk space there and make the folder writable, or set HVAS_CACHE=off");
     }
   }
   return Finish(std::move(*result), control, diagnostics);

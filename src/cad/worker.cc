@@ -34,7 +34,7 @@ constexpr int kPollMs = 20;  // How late a request to stop may be noticed.
 constexpr std::size_t kLongestLine = 4096;
 
 /** The same open file at a number that leaves room for the worker's; closed when there is none. */
-Descriptor AboveNumbersOfWorker(const Descriptor& file) {
+Descriptor DuplicateAboveWorkerNumbers(const Descriptor& file) {
   return Descriptor(file.is_open() ? ::fcntl(file.value(), F_DUPFD_CLOEXEC, kOutputDescriptor + 1)
                                    : -1);
 }
@@ -47,7 +47,7 @@ class Listener {
   void Take(std::string_view text) {
     for (const char c : text) {
       if (c == '\n') {
-        Line(line_);
+        HandleLine(line_);
         line_.clear();
       } else if (line_.size() < kLongestLine) {
         line_.push_back(c);
@@ -59,7 +59,7 @@ class Listener {
   [[nodiscard]] std::int64_t since_ns() const { return since_ns_; }
 
  private:
-  void Line(std::string_view line) {
+  void HandleLine(std::string_view line) {
     const std::size_t first = line.find(' ');
     const std::size_t second = first == std::string_view::npos ? first : line.find(' ', first + 1);
     if (second == std::string_view::npos) {
@@ -172,7 +172,7 @@ std::optional<WorkerFate> FindReasonToStop(const WorkerCall& call, const WorkerR
   return now_ns > call.deadline_ns ? std::optional(WorkerFate::kTimeUp) : std::nullopt;
 }
 
-void Judge(int status, WorkerRun* run) {
+void ClassifyExit(int status, WorkerRun* run) {
   if (WIFSIGNALED(status)) {
     run->signal = WTERMSIG(status);
     // The kernel kills what takes the machine's last memory, and nobody else sends this.
@@ -209,7 +209,7 @@ void Attend(const WorkerCall& call, pid_t child, int pipe, WorkerRun* run) {
   Drain(pipe, &listener);
   ::kill(-child, SIGKILL);  // Nothing that it started outlives it.
   if (ended == child) {
-    Judge(status, run);
+    ClassifyExit(status, run);
   } else {  // This program leaves its children to nobody: how it ended is not known.
     run->fate = WorkerFate::kFailed;
   }
@@ -224,7 +224,7 @@ Result<fs::path> FindWorker() {
     if (::access(told, X_OK) == 0) {
       return fs::path(told);
     }
-    return Fail(ErrorCode::kNotFound, "HVAS_CAD_WORKER names no program that can be started", told,
+    return Fail(ErrorCode::kNotFound, "the program in HVAS_CAD_WORKER cannot be started", told,
                 "correct or unset the variable");
   }
   std::error_code error;
@@ -234,8 +234,8 @@ Result<fs::path> FindWorker() {
       return path;
     }
   }
-  return Fail(ErrorCode::kNotFound, "the program hvas-cad, which reads CAD files, is not there",
-              beside.string(), "install it beside hvas, or set HVAS_CAD_WORKER to where it is");
+  return Fail(ErrorCode::kNotFound, "the program hvas-cad, which reads CAD files, is missing",
+              beside.string(), "install it beside hvas, or set HVAS_CAD_WORKER to its path");
 }
 
 std::string WorkerRun::Describe() const {
@@ -247,31 +247,30 @@ std::string WorkerRun::Describe() const {
     case WorkerFate::kCancelled:
       return "was stopped";
     case WorkerFate::kTimeUp:
-      return "took more time than it may";
+      return "exceeded the time limit";
     case WorkerFate::kPartTimeUp:
-      return "took more time on it than it may";
+      return "exceeded the time limit for a part";
     case WorkerFate::kNoMemory:
-      return signal != 0 ? "was killed, probably for lack of memory"
-                         : "needed more memory than it may have";
+      return signal != 0 ? "was killed, probably for lack of memory" : "exceeded the memory limit";
     case WorkerFate::kCrashed:
       return fmt::format("crashed ({})", ::sigdescr_np(signal));
     case WorkerFate::kFailed:
       break;
   }
-  return fmt::format("gave up (exit status {})", status);
+  return fmt::format("failed (exit status {})", status);
 }
 
 WorkerRun RunWorker(const WorkerCall& call) {
   WorkerRun run;
   int ends[2] = {-1, -1};
   const Descriptor output =
-      AboveNumbersOfWorker(Descriptor(::memfd_create("hvas-cad", MFD_CLOEXEC)));
+      DuplicateAboveWorkerNumbers(Descriptor(::memfd_create("hvas-cad", MFD_CLOEXEC)));
   if (!output.is_open() || ::pipe2(ends, O_CLOEXEC) != 0) {
     run.status = errno;
     return run;
   }
   const Descriptor from_worker(ends[0]);
-  Descriptor to_us = AboveNumbersOfWorker(Descriptor(ends[1]));
+  Descriptor to_us = DuplicateAboveWorkerNumbers(Descriptor(ends[1]));
   WorkerCall limited = call;
   limited.arguments.insert(limited.arguments.end(),
                            {"--parent", std::to_string(::getpid()), "--memory-limit",

@@ -31,14 +31,14 @@ Result<void> Check(std::size_t f, const FaceOffset& offset, spatial::SurfaceKind
       !std::all_of(offset.stations.begin(), offset.stations.end(),
                    [&](double v) { return is_good(offset.uniform + v); })) {
     return Unexpected(Invalid(f, "The offset is not a number or larger than 0.25 mm.",
-                              "Draw the part nearer to its actual size."));
+                              "Change the drawn size towards the actual size."));
   }
   if (offset.stations.empty()) {
     return {};
   }
   if (offset.stations.size() < 2 || !(offset.end > offset.begin) || !std::isfinite(offset.begin) ||
       !std::isfinite(offset.end)) {
-    return Unexpected(Invalid(f, "A profile needs two stations and a length.",
+    return Unexpected(Invalid(f, "A profile needs at least two stations and a length.",
                               "Give a uniform offset, or stations over a length."));
   }
   if (!HasAxis(kind)) {

@@ -100,7 +100,7 @@ Result<void> Prepare(const ShapeSource& source, const ShapeOptions& options, Sha
         "contact shape", "Choose a larger voxel, or none.");
   }
   const auto cancelled = [] {
-    return Fail(ErrorCode::kCancelled, "preparing a part was stopped", "contact shape");
+    return Fail(ErrorCode::kCancelled, "preparing a part was cancelled", "contact shape");
   };
   if (options.stop.stop_requested()) {
     return cancelled();
@@ -129,7 +129,7 @@ Result<std::shared_ptr<const Shape>> Shape::Build(const ShapeSource& source,
       return Unexpected(prepared.error());
     }
   } catch (const std::bad_alloc&) {
-    return Fail(ErrorCode::kOutOfResource, "there is not enough memory to prepare a part",
+    return Fail(ErrorCode::kOutOfResource, "there is too little memory to prepare a part",
                 "contact shape", "close other programs, or choose a larger voxel");
   }
   return std::make_shared<const Shape>(std::move(data));

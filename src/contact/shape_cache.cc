@@ -130,9 +130,9 @@ void ShapeCache::Store(const std::string& key, const Shape& shape) {
   const std::lock_guard lock(mutex_);
   if (!files_.Store(key, {std::as_bytes(std::span(&header, 1)), bytes}) && !is_problem_known_) {
     is_problem_known_ = true;
-    problem_ = Error{ErrorCode::kOutOfResource, "contact shapes cannot be kept on disk",
+    problem_ = Error{ErrorCode::kOutOfResource, "contact shapes cannot be cached on disk",
                      files_.directory().string(),
-                     "make room there and make it writable, or set HVAS_CACHE=off"};
+                     "free disk space there and make the folder writable, or set HVAS_CACHE=off"};
   }
 }
 

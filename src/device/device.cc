@@ -40,17 +40,17 @@ std::string Device::Explain(const DeviceState& state) const {
       case Condition::kReady:
         return "is ready";
       case Condition::kNoForce:
-        return "shows no force at present; let go of the part and take it up again";
+        return "renders no force at present; release the part and take it again";
       case Condition::kNotHeld:
-        return "is not held; close your hand around its handle";
+        return "is not being held; hold its handle";
       case Condition::kNotCalibrated:
         return "has lost its calibration; put its handle into the rest position";
       case Condition::kStale:
-        return "sends nothing new; look at its cable and at the load of the machine";
+        return "has stopped sending; check its cable and the load of the machine";
       case Condition::kImplausible:
-        return "gave a pose that no hand makes; it is believed again once it is steady";
+        return "reported an implausible pose; it is used again when its poses are steady";
       case Condition::kLost:
-        return "is gone; plug it in again, it is taken up by itself";
+        return "is disconnected; connect it again, and it resumes by itself";
       case Condition::kStopped:
         return "is stopped; release its emergency stop";
       case Condition::kFault:

@@ -88,7 +88,8 @@ Result<void> ReadAxes(const json& document, const std::string& where, SourcedPro
     R_UD.row(static_cast<Eigen::Index>(k)) = ParseAxis(axes[k]).transpose();
   }
   if (std::abs(R_UD.determinant() - 1) > 1e-9) {
-    return Invalid(where, kAxes, "must be three axes as in [\"+x\", \"-z\", \"+y\"], right-handed");
+    return Invalid(where, kAxes,
+                   "must be three right-handed axes such as [\"+x\", \"-z\", \"+y\"]");
   }
   profile->profile.q_UD = Quat(R_UD);
   return {};
@@ -124,7 +125,7 @@ Result<void> ReadFigures(const json& figures, const std::string& where, SourcedP
     profile->profile.workspace[k] = edges[static_cast<std::size_t>(k)].get<double>();
   }
   if (figures.size() != kFigures.size() + 1) {
-    return Invalid(where, "figures", "has a key that is not known");
+    return Invalid(where, "figures", "has an unknown key");
   }
   return {};
 }
@@ -147,7 +148,7 @@ std::vector<SourcedProfile> ReadKnownProfiles() {
 Result<SourcedProfile> ParseProfile(std::string_view text, const std::string& where) {
   const json document = json::parse(text, nullptr, false);
   if (!document.is_object()) {
-    return Fail(ErrorCode::kUnreadable, "this is no JSON object", where,
+    return Fail(ErrorCode::kUnreadable, "the file is not a JSON object", where,
                 "see data/schemas/device_profile.schema.json");
   }
   if (document.value("schema", json()) != kSchema) {
@@ -172,7 +173,7 @@ Result<SourcedProfile> ParseProfile(std::string_view text, const std::string& wh
   const json models = document.value("models", json());
   if (!models.is_array() ||
       !std::all_of(models.begin(), models.end(), [](const json& m) { return m.is_string(); })) {
-    return Invalid(where, "models", "must list what the device calls itself");
+    return Invalid(where, "models", "must list the names that the device reports");
   }
   result.models = models.get<std::vector<std::string>>();
   if (const auto read = ReadAxes(document, where, &result); !read) {

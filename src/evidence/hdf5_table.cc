@@ -212,8 +212,8 @@ Result<void> WriteHdf5(record::Reader* reader, const Selection& selection,
     const Handle parts = writer.MakeGroup("parts");
     writer.WriteTexts(parts.id(), "path", ReadPaths(*reader));
     if (!writer.Flush()) {
-      return Fail(ErrorCode::kOutOfResource, "the file could not be written to its end",
-                  file.string(), "free disk space, or choose another place");
+      return Fail(ErrorCode::kOutOfResource, "the file could not be written completely",
+                  file.string(), "free disk space, or choose another folder");
     }
   }
   return output->Finish();

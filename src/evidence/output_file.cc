@@ -14,7 +14,7 @@ Result<OutputFile> OutputFile::Create(const std::filesystem::path& file) {
   OutputFile output(file, file.string() + ".part");
   if (!output.stream_) {
     return Fail(ErrorCode::kNotFound, "the file cannot be written", file.string(),
-                "check that the folder exists and may be written");
+                "check that the folder exists and is writable");
   }
   return output;
 }
@@ -34,8 +34,8 @@ Result<void> OutputFile::Finish() {
     std::filesystem::rename(working_path_, file_, failed);
   }
   if (!stream_ || failed) {
-    return Fail(ErrorCode::kOutOfResource, "the file could not be written to its end",
-                file_.string(), "free disk space, or choose another place");
+    return Fail(ErrorCode::kOutOfResource, "the file could not be written completely",
+                file_.string(), "free disk space, or choose another folder");
   }
   stream_.close();
   return {};

@@ -135,8 +135,8 @@ Result<AnsiFit> FindAnsiFit(std::string_view text, double nominal) {
   if (table == nullptr) {
     return Fail(ErrorCode::kNotFound, fmt::format("there is no table of ANSI B4.1 for {}", name),
                 {},
-                "there are RC1 to RC9, LN1 to LN3 and FN1 to FN5; give the classes of hole and "
-                "shaft for others, as in 1.5in H7/h6");
+                "the tables have RC1 to RC9, LN1 to LN3 and FN1 to FN5; for others give the "
+                "classes of hole and shaft, for example 1.5in H7/h6");
   }
   const std::span<const double> ends =
       usual != nullptr ? std::span<const double>(kRanges) : std::span<const double>(kForceRanges);

@@ -35,7 +35,7 @@ Result<void> Check(const FitForceParameters& p) {
   if (result) {
     result =
         Check(p.friction.slip >= 0 && p.friction.slip <= p.friction.release, "the friction of slip",
-              p.friction.slip, "at least 0 and no more than that at release");
+              p.friction.slip, "at least 0 and not above the friction at release");
   }
   if (result) {
     result = Check(p.stations >= 1 && p.stations <= 1'000'000, "the number of stations", p.stations,

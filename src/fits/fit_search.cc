@@ -53,9 +53,9 @@ Result<std::vector<FoundFit>> FindFits(double nominal, double min_clearance, dou
                                        FitBasis basis) {
   if (!(min_clearance < max_clearance) || !std::isfinite(max_clearance - min_clearance)) {
     return Fail(ErrorCode::kInvalid,
-                fmt::format("{:g} to {:g} um is no range of clearances", units::ToUm(min_clearance),
-                            units::ToUm(max_clearance)),
-                "search for fits", "give the smaller one first; negative is interference");
+                fmt::format("{:g} to {:g} um is not a range of clearances",
+                            units::ToUm(min_clearance), units::ToUm(max_clearance)),
+                "search for fits", "give the smaller one first; negative values are interference");
   }
   if (Result<double> check = CalcStandardTolerance(7, nominal); !check) {
     return Unexpected(check.error());

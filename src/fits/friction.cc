@@ -84,9 +84,9 @@ constexpr std::array<JointFriction, 45> kJoints{{
      "DTPPress, design values", "one source"},
     {"steel / steel", "force rendering of fits", "mu", 0.15, 0.15, "paper W, section 4.2.3",
      "as printed; that of a shrink fit in DIN 7190-1"},
-    {"steel / steel", "example of a press fit", "mu", 0.15, 0.15, "eAssistant", "an input only"},
+    {"steel / steel", "example of a press fit", "mu", 0.15, 0.15, "eAssistant", "an assumed input"},
     {"steel / steel", "plain surfaces at rest, dry", "mu", 0.45, 0.80, "handbook charts",
-     "not for press fits; a wide range"},
+     "not for press fits; wide range"},
     {"steel / steel", "plain surfaces, lubricated", "mu", 0.10, 0.10, "handbook charts",
      "not for press fits"},
 }};

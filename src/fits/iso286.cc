@@ -33,19 +33,20 @@ std::size_t FindRange(const std::array<double, kCount>& upper_ends_mm, double si
       upper_ends_mm.begin());
 }
 
-std::string GradeName(int grade) {
+std::string FormatGrade(int grade) {
   return grade < 0 ? "01" : std::to_string(grade);
 }
 
-Unexpected NotDefined(const std::string& what, double size_mm, const std::string& rule,
-                      const std::string& remedy) {
+Unexpected FailNotDefined(const std::string& what, double size_mm, const std::string& rule,
+                          const std::string& remedy) {
   return Fail(ErrorCode::kUnsupported,
               fmt::format("ISO 286 defines no {} at {:g} mm: {}", what, size_mm, rule), {}, remedy);
 }
 
 /** Why there is no standard tolerance of a grade at a size. */
 std::string RuleOfGrade(int grade) {
-  return grade <= 0 ? "IT01 and IT0 end at 500 mm" : "IT14 to IT18 are not for sizes up to 1 mm";
+  return grade <= 0 ? "IT01 and IT0 end at 500 mm"
+                    : "IT14 to IT18 are not defined for sizes up to 1 mm";
 }
 
 std::optional<Error> CheckSize(double size_mm) {
@@ -53,9 +54,9 @@ std::optional<Error> CheckSize(double size_mm) {
     return std::nullopt;
   }
   return Error{ErrorCode::kInvalid,
-               fmt::format("{:g} mm is no nominal size of ISO 286", size_mm),
+               fmt::format("{:g} mm is not a nominal size of ISO 286", size_mm),
                {},
-               "give a diameter over 0 and up to 3150 mm"};
+               "give a diameter above 0 and up to 3150 mm"};
 }
 
 /** IT in micrometres; kNo where undefined. */
@@ -158,7 +159,7 @@ std::string RuleOfClass(const ToleranceClass& c, double size_mm) {
     letter = c.is_hole() ? static_cast<char>(letter - 'A' + 'a') : letter;
   }
   if (small == "js") {
-    return "js and JS go with IT1 to IT18";
+    return "js and JS are defined for IT1 to IT18";
   }
   if (small == "j") {
     return c.is_hole() ? "J is defined as J6, J7 and J8 up to 500 mm"
@@ -168,7 +169,7 @@ std::string RuleOfClass(const ToleranceClass& c, double size_mm) {
     return small == letters && size_mm <= from_mm;
   };
   if (begins("a", 1) || begins("b", 1)) {
-    return "a, b, A and B are not for sizes up to 1 mm";
+    return "a, b, A and B are not defined for sizes up to 1 mm";
   }
   if (size_mm > 500 && FindDeviation(kUpperDeviations, small, size_mm) == kNo &&
       FindDeviation(kLowerDeviations, small, size_mm) == kNo) {
@@ -178,13 +179,13 @@ std::string RuleOfClass(const ToleranceClass& c, double size_mm) {
     return "cd, ef, fg and their holes end at 50 mm";
   }
   if (begins("t", 24) || begins("v", 14) || begins("y", 18)) {
-    return "t begins over 24 mm, v over 14 mm and y over 18 mm, and so their holes";
+    return "t begins above 24 mm, v above 14 mm and y above 18 mm, and so do their holes";
   }
   if (c.is_hole() && small == "k" && c.grade > 8) {
-    return "K above IT8 is for sizes up to 3 mm only";
+    return "K above IT8 is defined for sizes up to 3 mm only";
   }
   if (c.is_hole() && small == "n" && c.grade > 8) {
-    return "N9 and coarser are not for sizes up to 1 mm";
+    return "N9 and coarser are not defined for sizes up to 1 mm";
   }
   return "delta, which holes K to ZC need between 3 and 500 mm, begins with IT3";
 }
@@ -202,9 +203,9 @@ bool IsLetter(const std::string& letters) {
          Has(kLowerDeviations, small);
 }
 
-Unexpected NoClass(std::string_view text) {
-  return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no tolerance class", text), {},
-              "write letters and grade as in H7 or js6");
+Unexpected FailWithoutClass(std::string_view text) {
+  return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is not a tolerance class", text), {},
+              "write letters and grade, for example H7 or js6");
 }
 
 bool IsAsciiLetter(char c) {
@@ -228,7 +229,7 @@ std::string_view Trim(std::string_view text) {
 }  // namespace
 
 std::string ToleranceClass::ToString() const {
-  return letters + GradeName(grade);
+  return letters + FormatGrade(grade);
 }
 
 std::string FitClass::ToString() const {
@@ -246,7 +247,7 @@ Result<ToleranceClass> ParseToleranceClass(std::string_view text) {
   const std::string_view digits = text.substr(split);
   if (parsed.letters.empty() || digits.empty() || digits.size() > 2 ||
       !std::all_of(digits.begin(), digits.end(), IsDigit) || !IsLetter(parsed.letters)) {
-    return NoClass(text);
+    return FailWithoutClass(text);
   }
   if (digits == "01") {
     parsed.grade = kFinestGrade;
@@ -254,7 +255,7 @@ Result<ToleranceClass> ParseToleranceClass(std::string_view text) {
   }
   parsed.grade = std::stoi(std::string(digits));
   if (parsed.grade > kCoarsestGrade || (digits.size() == 2 && digits.front() == '0')) {
-    return NoClass(text);
+    return FailWithoutClass(text);
   }
   return parsed;
 }
@@ -263,8 +264,8 @@ Result<FitClass> ParseFit(std::string_view text) {
   const std::string_view trimmed = Trim(text);
   const std::size_t split = trimmed.find_first_of("/- ");
   if (split == std::string_view::npos) {
-    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no fit", text), {},
-                "write hole and shaft as in H7/g6");
+    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is not a fit", text), {},
+                "write hole and shaft, for example H7/g6");
   }
   const std::size_t second = trimmed.find_first_not_of("/- ", split);
   const Result<ToleranceClass> hole = ParseToleranceClass(trimmed.substr(0, split));
@@ -277,8 +278,8 @@ Result<FitClass> ParseFit(std::string_view text) {
     return Unexpected(shaft.error());
   }
   if (!hole->is_hole() || shaft->is_hole()) {
-    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no hole with a shaft", text), {},
-                "capitals stand for the hole and come first: H7/g6");
+    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is not a hole with a shaft", text), {},
+                "the class of the hole has capital letters and comes first: H7/g6");
   }
   return FitClass{*hole, *shaft};
 }
@@ -290,7 +291,8 @@ Result<double> CalcStandardTolerance(int grade, double nominal) {
   }
   const double it_um = FindIt(grade, size_mm);
   if (it_um == kNo) {
-    return NotDefined("IT" + GradeName(grade), size_mm, RuleOfGrade(grade), "choose another grade");
+    return FailNotDefined("IT" + FormatGrade(grade), size_mm, RuleOfGrade(grade),
+                          "choose another grade");
   }
   return units::FromUm(it_um);
 }
@@ -309,8 +311,8 @@ Result<Limits> CalcLimits(const ToleranceClass& tolerance_class, double nominal)
                                     ? FindHole(letters, tolerance_class.grade, size_mm)
                                     : FindShaft(letters, tolerance_class.grade, size_mm);
   if (deviation.value_um == kNo) {
-    return NotDefined("class " + tolerance_class.ToString(), size_mm,
-                      RuleOfClass(tolerance_class, size_mm), "choose another class");
+    return FailNotDefined("class " + tolerance_class.ToString(), size_mm,
+                          RuleOfClass(tolerance_class, size_mm), "choose another class");
   }
   // In micrometres until the end, so that limits are what a table prints.
   const double it_um = FindIt(tolerance_class.grade, size_mm);

@@ -73,7 +73,7 @@ Range Collect(const Names& pairs, const Fits& fits) {
   return range;
 }
 
-bool Says(const JointFriction& row, std::string_view word) {
+bool HasWord(const JointFriction& row, std::string_view word) {
   return row.condition.find(word) != std::string_view::npos;
 }
 
@@ -81,8 +81,9 @@ std::string SourceOf(const Range& range) {
   return fmt::format("{}, {}, {}", range.pair, range.condition, range.source);
 }
 
-PressFriction Assume() {
-  return {0.2, 0.05, 0.05, "assumed: the table has no such pair of materials; give --mu", true};
+PressFriction MakeAssumedFriction() {
+  return {0.2, 0.05, 0.05,
+          "assumed, because the table does not have this pair of materials; give --mu", true};
 }
 
 /** Of transverse fits; where a table has the normal state, not the degreased one. */
@@ -91,7 +92,8 @@ Range FindTransverse(const Rows& rows, bool is_oiled) {
     return row.condition.starts_with("transverse");
   };
   const Range usual = Collect(rows.transverse, [&](const JointFriction& row) {
-    return is_transverse(row) && (Says(row, "mineral oil") == is_oiled) && !Says(row, "degreased");
+    return is_transverse(row) && (HasWord(row, "mineral oil") == is_oiled) &&
+           !HasWord(row, "degreased");
   });
   return usual.is_empty() ? Collect(rows.transverse, is_transverse) : usual;
 }
@@ -101,7 +103,7 @@ Range FindTransverse(const Rows& rows, bool is_oiled) {
 PressFriction FindPressFriction(const Material& hub, const Material& shaft, const JoiningWay& way) {
   const bool is_hub_steel = SurfaceOf(hub.group) == FrictionSurface::kSteel;
   if (!is_hub_steel && SurfaceOf(shaft.group) != FrictionSurface::kSteel) {
-    return Assume();
+    return MakeAssumedFriction();
   }
   // DIN names the hub beside a shaft of steel; of a hub of steel on another shaft that one counts.
   const Rows rows =
@@ -109,17 +111,18 @@ PressFriction FindPressFriction(const Material& hub, const Material& shaft, cons
   const std::string_view state = way.is_oiled ? "oiled" : "dry";
   const auto pressed = [&](std::string_view symbol) {
     return Collect(rows.longitudinal, [&](const JointFriction& row) {
-      return row.condition.starts_with("longitudinal") && Says(row, state) && row.symbol == symbol;
+      return row.condition.starts_with("longitudinal") && HasWord(row, state) &&
+             row.symbol == symbol;
     });
   };
   const Range design = Collect(rows.design, [&](const JointFriction& row) {
     return row.condition.starts_with("pressed") &&
-           (Says(row, state) || (!Says(row, "dry") && !Says(row, "oiled")));
+           (HasWord(row, state) || (!HasWord(row, "dry") && !HasWord(row, "oiled")));
   });
   Range release = pressed("nu_ll");
   release = release.is_empty() ? design : release;
   if (release.is_empty()) {
-    return Assume();
+    return MakeAssumedFriction();
   }
   const double in = std::max(release.high, design.high);
   if (way.is_shrunk) {

@@ -251,7 +251,7 @@ bool HasDigits(const Alias& alias) {
 
 /** A designation says more than a family ("stainless steel 316L"), and of two of a kind the longer
  one does. */
-bool SaysMore(const Alias& a, const Alias& b) {
+bool IsMoreSpecific(const Alias& a, const Alias& b) {
   if (HasDigits(a) != HasDigits(b)) {
     return HasDigits(a);
   }
@@ -275,7 +275,7 @@ std::optional<MaterialMatch> FindMaterial(std::string_view name) {
   for (const Alias& alias : known) {
     const auto found =
         std::search(tokens.begin(), tokens.end(), alias.tokens.begin(), alias.tokens.end());
-    if (found == tokens.end() || (best != nullptr && !SaysMore(alias, *best))) {
+    if (found == tokens.end() || (best != nullptr && !IsMoreSpecific(alias, *best))) {
       continue;
     }
     if (!(found + static_cast<std::ptrdiff_t>(alias.tokens.size()) - 1)->is_glued) {

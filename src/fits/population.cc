@@ -46,11 +46,11 @@ Result<void> Check(const PopulationParameters& p) {
 
 constexpr std::size_t kBins = kForceBins;
 
-double Middle(const Limits& limits) {
+double CalcMiddle(const Limits& limits) {
   return 0.5 * (limits.lower + limits.upper);
 }
 
-double Width(const Limits& limits) {
+double CalcWidth(const Limits& limits) {
   return limits.upper - limits.lower;
 }
 
@@ -242,7 +242,7 @@ class Batch {
 Counts Batch::MakeCounts() const {
   Counts counts;
   for (const PreparedLand& land : lands_) {
-    const double half = 0.5 * Width(land.clearance);
+    const double half = 0.5 * CalcWidth(land.clearance);
     counts.clearances.emplace_back().SetRange(-half, half);
   }
   for (const double highest : highest_) {
@@ -268,8 +268,8 @@ void Batch::DrawClearances(std::int64_t block, std::vector<std::vector<float>>* 
     const PreparedLand& land = lands_[k];
     kernel_.draw_bits(SeedOf(block) + k, 2 * kBlock, bits.data());
     const PopulationLand& source = *land.source;
-    const double hole_middle = Middle(source.hole.bounds());
-    const double shaft_middle = Middle(source.shaft.bounds());
+    const double hole_middle = CalcMiddle(source.hole.bounds());
+    const double shaft_middle = CalcMiddle(source.shaft.bounds());
     source.hole.ToDeviations(hole_bits, hole_middle, {hole_um.data(), count});
     source.shaft.ToDeviations(shaft_bits, shaft_middle, {shaft_um.data(), count});
     SizeBlock work{hole_um.data(),
@@ -278,7 +278,7 @@ void Batch::DrawClearances(std::int64_t block, std::vector<std::vector<float>>* 
                    static_cast<float>(units::ToUm(hole_middle - shaft_middle)),
                    static_cast<float>(units::ToUm(land.smoothing_loss)),
                    static_cast<float>(units::ToUm(land.yield_interference)),
-                   static_cast<float>(units::ToUm(-0.5 * Width(land.clearance))),
+                   static_cast<float>(units::ToUm(-0.5 * CalcWidth(land.clearance))),
                    static_cast<float>(units::FromUm(counts->clearances[k].bins_per_unit())),
                    (*clearances_um)[k].data(),
                    bins.data(),
@@ -385,7 +385,7 @@ Population Batch::Run() {
     }
     LandStatistics land;
     const Limits& range = lands_[k].clearance;
-    land.mean_clearance = Middle(range) + sum / n;
+    land.mean_clearance = CalcMiddle(range) + sum / n;
     land.sigma_clearance = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
     // What bounds a distribution that has no end says nothing of the batch: half a step in.
     std::vector<double> shares(kBandShares.begin(), kBandShares.end());
@@ -394,7 +394,7 @@ Population Batch::Run() {
     }
     std::vector<double> quantiles = all.clearances[k].Quantiles(shares);
     for (double& quantile : quantiles) {
-      quantile += Middle(range);
+      quantile += CalcMiddle(range);
     }
     std::copy_n(quantiles.begin(), kBandShares.size(), land.clearance_quantiles.begin());
     land.clearance_curve.assign(quantiles.begin() + kBandShares.size(), quantiles.end());

@@ -16,7 +16,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /** In which unit people state it. */
-enum class Told { kMm, kUm, kMpa, kPure };
+enum class Unit { kMm, kUm, kMpa, kPure };
 
 struct Bound {
   const char* name;
@@ -24,18 +24,18 @@ struct Bound {
   double low;
   double high;
   bool includes_low;
-  Told told;
+  Unit unit;
 };
 
-std::string Tell(double value, Told told) {
-  switch (told) {
-    case Told::kMm:
+std::string FormatWithUnit(double value, Unit unit) {
+  switch (unit) {
+    case Unit::kMm:
       return fmt::format("{:g} mm", units::ToMm(value));
-    case Told::kUm:
+    case Unit::kUm:
       return fmt::format("{:g} um", units::ToUm(value));
-    case Told::kMpa:
+    case Unit::kMpa:
       return fmt::format("{:g} MPa", units::ToMpa(value));
-    case Told::kPure:
+    case Unit::kPure:
       break;
   }
   return fmt::format("{:g}", value);
@@ -45,11 +45,12 @@ Result<void> CheckBounds(std::initializer_list<Bound> bounds) {
   for (const Bound& b : bounds) {
     const bool is_above = b.includes_low ? b.value >= b.low : b.value > b.low;
     if (!is_above || !(b.value < b.high)) {
-      return Fail(ErrorCode::kInvalid,
-                  fmt::format("{} is {}, but must be {} {}{}", b.name, Tell(b.value, b.told),
-                              b.includes_low ? "at least" : "over", Tell(b.low, b.told),
-                              b.high < kInfinity ? " and below " + Tell(b.high, b.told) : ""),
-                  "press fit", "check the sizes and materials of both parts");
+      return Fail(
+          ErrorCode::kInvalid,
+          fmt::format("{} is {}, but must be {} {}{}", b.name, FormatWithUnit(b.value, b.unit),
+                      b.includes_low ? "at least" : "over", FormatWithUnit(b.low, b.unit),
+                      b.high < kInfinity ? " and below " + FormatWithUnit(b.high, b.unit) : ""),
+          "press fit", "check the sizes and materials of both parts");
     }
   }
   return {};
@@ -61,19 +62,19 @@ Result<void> Check(const PressFitParameters& p) {
                 "give the sizes of both parts");
   }
   return CheckBounds(
-      {{"the joint's diameter", p.joint_diameter, 0, kInfinity, false, Told::kMm},
-       {"the hub's outer diameter", p.hub_diameter, p.joint_diameter, kInfinity, false, Told::kMm},
-       {"the shaft's bore", p.shaft_bore, 0, p.joint_diameter, true, Told::kMm},
-       {"the joint's length", p.length, 0, kInfinity, false, Told::kMm},
-       {"the hub's roughness", p.hub_roughness, 0, kInfinity, true, Told::kUm},
-       {"the shaft's roughness", p.shaft_roughness, 0, kInfinity, true, Told::kUm},
-       {"the hub's Young's modulus", p.hub.youngs_modulus, 0, kInfinity, false, Told::kMpa},
-       {"the shaft's Young's modulus", p.shaft.youngs_modulus, 0, kInfinity, false, Told::kMpa},
-       {"the hub's Poisson's ratio", p.hub.poisson_ratio, 0, 0.5001, true, Told::kPure},
-       {"the shaft's Poisson's ratio", p.shaft.poisson_ratio, 0, 0.5001, true, Told::kPure},
-       {"the friction when pressing in", p.friction_in, 0, kInfinity, true, Told::kPure},
-       {"the friction at release", p.friction_release, 0, kInfinity, true, Told::kPure},
-       {"the friction against turning", p.friction_torque, 0, kInfinity, true, Told::kPure}});
+      {{"the joint's diameter", p.joint_diameter, 0, kInfinity, false, Unit::kMm},
+       {"the hub's outer diameter", p.hub_diameter, p.joint_diameter, kInfinity, false, Unit::kMm},
+       {"the shaft's bore", p.shaft_bore, 0, p.joint_diameter, true, Unit::kMm},
+       {"the joint's length", p.length, 0, kInfinity, false, Unit::kMm},
+       {"the hub's roughness", p.hub_roughness, 0, kInfinity, true, Unit::kUm},
+       {"the shaft's roughness", p.shaft_roughness, 0, kInfinity, true, Unit::kUm},
+       {"the hub's Young's modulus", p.hub.youngs_modulus, 0, kInfinity, false, Unit::kMpa},
+       {"the shaft's Young's modulus", p.shaft.youngs_modulus, 0, kInfinity, false, Unit::kMpa},
+       {"the hub's Poisson's ratio", p.hub.poisson_ratio, 0, 0.5001, true, Unit::kPure},
+       {"the shaft's Poisson's ratio", p.shaft.poisson_ratio, 0, 0.5001, true, Unit::kPure},
+       {"the friction when pressing in", p.friction_in, 0, kInfinity, true, Unit::kPure},
+       {"the friction at release", p.friction_release, 0, kInfinity, true, Unit::kPure},
+       {"the friction against turning", p.friction_torque, 0, kInfinity, true, Unit::kPure}});
 }
 
 /** What both sides give way: diametral strain for each pascal. */
@@ -89,11 +90,11 @@ Compliance CalcCompliance(const PressFitParameters& p) {
           ((1 + qi2) / (1 - qi2) - p.shaft.poisson_ratio) / p.shaft.youngs_modulus};
 }
 
-double SmoothingLoss(const PressFitParameters& p) {
-  return SmoothingFactor(p.smoothing) * (p.hub_roughness + p.shaft_roughness);
+double CalcSmoothingLoss(const PressFitParameters& p) {
+  return GetSmoothingFactor(p.smoothing) * (p.hub_roughness + p.shaft_roughness);
 }
 
-ElasticLimit HubLimit(const PressFitParameters& p) {
+ElasticLimit CalcHubLimit(const PressFitParameters& p) {
   const double q2 = std::pow(p.joint_diameter / p.hub_diameter, 2);
   const PressMaterial& m = p.hub;
   if (m.yield_strength > 0) {
@@ -106,7 +107,7 @@ ElasticLimit HubLimit(const PressFitParameters& p) {
   return {kInfinity, kInfinity};
 }
 
-ElasticLimit ShaftLimit(const PressFitParameters& p) {
+ElasticLimit CalcShaftLimit(const PressFitParameters& p) {
   const double q2 = std::pow(p.shaft_bore / p.joint_diameter, 2);
   const PressMaterial& m = p.shaft;
   // A brittle shaft is in compression throughout; its tensile strength is on the safe side.
@@ -124,13 +125,13 @@ bool IsBrittle(const PressMaterial& m) {
   return !(m.yield_strength > 0) && m.tensile_strength > 0;
 }
 
-double Margin(double limit, double pressure) {
+double CalcMargin(double limit, double pressure) {
   return pressure > 0 ? limit / pressure : kInfinity;
 }
 
 }  // namespace
 
-double SmoothingFactor(Smoothing edition) noexcept {
+double GetSmoothingFactor(Smoothing edition) noexcept {
   switch (edition) {
     case Smoothing::kNone:
       break;
@@ -157,19 +158,19 @@ double RingStress::tresca() const noexcept {
 }
 
 double PressFit::margin_von_mises() const noexcept {
-  return Margin(std::min(hub_limit.von_mises, shaft_limit.von_mises), pressure);
+  return CalcMargin(std::min(hub_limit.von_mises, shaft_limit.von_mises), pressure);
 }
 
 double PressFit::margin_tresca() const noexcept {
-  return Margin(std::min(hub_limit.tresca, shaft_limit.tresca), pressure);
+  return CalcMargin(std::min(hub_limit.tresca, shaft_limit.tresca), pressure);
 }
 
 double PressFit::margin_hub() const noexcept {
-  return Margin(hub_limit.von_mises, pressure);
+  return CalcMargin(hub_limit.von_mises, pressure);
 }
 
 double PressFit::margin_shaft() const noexcept {
-  return Margin(shaft_limit.von_mises, pressure);
+  return CalcMargin(shaft_limit.von_mises, pressure);
 }
 
 bool IsFracturing(const PressFit& fit) noexcept {
@@ -188,7 +189,7 @@ Result<PressFit> CalcPressFit(const PressFitParameters& parameters) {
   }
   const Compliance compliance = CalcCompliance(p);
   PressFit fit;
-  fit.smoothing_loss = SmoothingLoss(p);
+  fit.smoothing_loss = CalcSmoothingLoss(p);
   fit.effective_interference = std::max(0.0, p.interference - fit.smoothing_loss);
   fit.pressure_per_interference = 1 / (p.joint_diameter * (compliance.hub + compliance.shaft));
   fit.pressure = fit.pressure_per_interference * fit.effective_interference;
@@ -199,8 +200,8 @@ Result<PressFit> CalcPressFit(const PressFitParameters& parameters) {
   fit.hub_bore = {fit.pressure * (1 + qa2) / (1 - qa2), -fit.pressure};
   fit.shaft_surface = {-fit.pressure * (1 + qi2) / (1 - qi2), -fit.pressure};
   fit.shaft_governing = qi2 > 0 ? RingStress{-2 * fit.pressure / (1 - qi2), 0} : fit.shaft_surface;
-  fit.hub_limit = HubLimit(p);
-  fit.shaft_limit = ShaftLimit(p);
+  fit.hub_limit = CalcHubLimit(p);
+  fit.shaft_limit = CalcShaftLimit(p);
   fit.is_hub_brittle = IsBrittle(p.hub);
   const double normal_force = std::numbers::pi * p.joint_diameter * p.length * fit.pressure;
   fit.press_in_force = p.friction_in * normal_force;
@@ -215,7 +216,7 @@ Result<double> CalcInterferenceFor(double pressure, const PressFitParameters& pa
   }
   const Compliance compliance = CalcCompliance(parameters);
   return pressure * parameters.joint_diameter * (compliance.hub + compliance.shaft) +
-         SmoothingLoss(parameters);
+         CalcSmoothingLoss(parameters);
 }
 
 double CalcRequiredPressure(const PressFitParameters& parameters, double axial_load,

@@ -18,7 +18,7 @@ enum class Smoothing {
   kDin2017,  ///< k = 0.4, DIN 7190-1:2017.
 };
 
-[[nodiscard]] double SmoothingFactor(Smoothing edition) noexcept;
+[[nodiscard]] double GetSmoothingFactor(Smoothing edition) noexcept;
 
 /** Elastic constants and strength of one side. */
 struct PressMaterial {

@@ -31,14 +31,16 @@ Result<void> Check(const StrokeLand& land) {
   // Steeper than this, friction and slope together lock.
   const double steepest = std::atan(1 / std::max(land.press.friction_in, 1e-12));
   if (!(land.lead_in_angle >= 0) || !(land.lead_in_angle < steepest)) {
-    return fail(fmt::format("a chamfer of {:g} degrees from the axis leads nothing in",
-                            units::ToDeg(land.lead_in_angle)),
-                fmt::format("give an angle over 0 and below {:.1f} degrees; DIN 7190-1 asks for 5",
-                            units::ToDeg(steepest)));
+    return fail(
+        fmt::format("a chamfer of {:g} degrees from the axis is not a lead-in",
+                    units::ToDeg(land.lead_in_angle)),
+        fmt::format("give an angle above 0 and below {:.1f} degrees; DIN 7190-1 recommends 5",
+                    units::ToDeg(steepest)));
   }
   if (land.clearances.size() == 1 || !std::all_of(land.clearances.begin(), land.clearances.end(),
                                                   [](double s) { return std::isfinite(s); })) {
-    return fail("clearances of a land are too few or not finite", "give two numbers or more");
+    return fail("a land has fewer than two clearances, or one that is not finite",
+                "give at least two finite numbers");
   }
   return {};
 }

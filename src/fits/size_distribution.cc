@@ -70,10 +70,11 @@ Result<SizeDistribution> SizeDistribution::FromCapability(const Limits& limits, 
                                                           double cpk, bool is_shifted_up) {
   const double width = limits.upper - limits.lower;
   if (!(width > 0) || !(cpk > 0) || !(cpk <= cp) || !std::isfinite(cp)) {
-    return Fail(ErrorCode::kInvalid,
-                fmt::format("C_p {:g} and C_pk {:g} are no capabilities of a zone of {:g} um", cp,
-                            cpk, units::ToUm(width)),
-                "process capability", "give 0 < C_pk <= C_p, for example 1.33 and 1.0");
+    return Fail(
+        ErrorCode::kInvalid,
+        fmt::format("C_p {:g} and C_pk {:g} are not valid capabilities for a zone of {:g} um", cp,
+                    cpk, units::ToUm(width)),
+        "process capability", "give 0 < C_pk <= C_p, for example 1.33 and 1.0");
   }
   SizeDistribution d;
   d.kind_ = Kind::kNormal;

@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kDinExpansion =
     "DIN 7190, as quoted in the help of WHZ's sheet and of Autodesk Inventor";
 constexpr std::string_view kHandbookExpansion =
-    "handbook from 20 to 100 C; for cooling less of it, on the safe side";
+    "handbook value from 20 to 100 C; reduced for cooling, on the safe side";
 
 double CalcHubStrain(const ThermalJoint& joint, double hub_c) noexcept {
   const double rise = hub_c - joint.room_c;
@@ -22,8 +22,8 @@ double CalcShaftStrain(const ThermalJoint& joint, double shaft_c) noexcept {
   return (rise >= 0 ? joint.shaft_heating : joint.shaft_expansion) * rise;
 }
 
-JoiningMaterial OfHandbook(const Material& material, double cooling_share, double hottest_c,
-                           std::string_view limit_source) noexcept {
+JoiningMaterial MakeHandbookMaterial(const Material& material, double cooling_share,
+                                     double hottest_c, std::string_view limit_source) noexcept {
   return {material.thermal_expansion, cooling_share * material.thermal_expansion, hottest_c,
           kHandbookExpansion, limit_source};
 }
@@ -59,7 +59,8 @@ JoiningMaterial FindJoiningMaterial(const Material& material) noexcept {
     return material.group.find(word) != std::string_view::npos;
   };
   if (has("stainless")) {
-    return OfHandbook(material, 0.77, 300, "below the range in which stainless steels embrittle");
+    return MakeHandbookMaterial(material, 0.77, 300,
+                                "below the range in which stainless steels embrittle");
   }
   if (has("steel")) {
     constexpr double kHighStrength = 850e6;
@@ -88,12 +89,12 @@ JoiningMaterial FindJoiningMaterial(const Material& material) noexcept {
     return {26e-6, 21e-6, 150, kDinExpansion, "softens above it, handbooks"};
   }
   if (has("polymer")) {
-    return OfHandbook(material, 0.5, 80, "softens above it, handbooks");
+    return MakeHandbookMaterial(material, 0.5, 80, "softens above it, handbooks");
   }
   if (has("zinc")) {
-    return OfHandbook(material, 0.77, 100, "creeps above it, handbooks");
+    return MakeHandbookMaterial(material, 0.77, 100, "creeps above it, handbooks");
   }
-  return OfHandbook(material, 0.77, 300, "scales above it, handbooks");
+  return MakeHandbookMaterial(material, 0.77, 300, "scales above it, handbooks");
 }
 
 double SpecificHeatOf(std::string_view group) noexcept {

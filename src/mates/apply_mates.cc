@@ -49,9 +49,9 @@ Result<Mate> MakeAdded(const Product& product, const AddedMate& added) {
   }
   if (added.kind && mate->kind != *added.kind) {
     return Fail(ErrorCode::kInvalid,
-                fmt::format("the two surfaces make a mate of kind {}, not {}", ToString(mate->kind),
+                fmt::format("the two surfaces form a mate of kind {}, not {}", ToString(mate->kind),
                             ToString(*added.kind)),
-                added.where, "correct the kind or leave it out, or name other faces");
+                added.where, "correct or omit the kind, or give other faces");
   }
   return mate;
 }
@@ -68,7 +68,7 @@ Result<void> RemoveAll(const SideFile& file, Product* product, MateChanges* chan
     if (mate == product->mates.end()) {
       return Fail(ErrorCode::kNotFound, fmt::format("there is no mate \"{}\"", removed.mate),
                   removed.where,
-                  "write the key of a mate, or take the entry out with hvas mate restore");
+                  "write the key of a mate, or remove the entry with hvas mate restore");
     }
     changes->removed.push_back(*mate);
   }
@@ -104,14 +104,14 @@ Result<OccurrenceId> FindOccurrence(const Product& product, std::string_view nam
     }
     const std::string nearest = FindNearest(name, names);
     return Fail(
-        ErrorCode::kNotFound, fmt::format("no occurrence is called \"{}\"", name), product.source,
-        nearest.empty() ? "hvas inspect lists them"
-                        : fmt::format("\"{}\" may be meant; hvas inspect lists them", nearest));
+        ErrorCode::kNotFound, fmt::format("there is no occurrence \"{}\"", name), product.source,
+        nearest.empty() ? "hvas inspect lists the occurrences"
+                        : fmt::format("did you mean \"{}\"? hvas inspect lists them", nearest));
   }
   if (found.size() > 1) {
-    return Fail(ErrorCode::kInvalid,
-                fmt::format("{} occurrences are called \"{}\"", found.size(), name), product.source,
-                fmt::format("write the path of one, such as \"{}\"", found.front()->path));
+    return Fail(
+        ErrorCode::kInvalid, fmt::format("{} occurrences have the name \"{}\"", found.size(), name),
+        product.source, fmt::format("write the path of one, such as \"{}\"", found.front()->path));
   }
   return found.front()->id;
 }

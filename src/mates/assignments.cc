@@ -28,7 +28,7 @@ using product::Product;
 
 constexpr double kSameDiameter = 0.01;  // As a part of the diameter.
 constexpr double kMostMeasured = 0.05;  // A measured size from the drawn or nominal one.
-constexpr const char* kSeeMates = "list the mates with hvas inspect, and use the names from there";
+constexpr const char* kSeeMates = "use the names that hvas inspect lists";
 
 std::string NearestOccurrence(const Product& product, std::string_view name) {
   std::vector<std::string> names;
@@ -145,9 +145,9 @@ Result<void> CheckMeasured(const char* name, std::optional<double> measured, dou
     return {};
   }
   return Fail(ErrorCode::kInvalid,
-              fmt::format("the {}'s measured {:g} mm are far from the {:g} mm that are drawn", name,
-                          units::ToMm(*measured), units::ToMm(drawn)),
-              where, "give the diameter in mm, or name another mate");
+              fmt::format("the measured diameter of the {}, {:g} mm, is far from the drawn {:g} mm",
+                          name, units::ToMm(*measured), units::ToMm(drawn)),
+              where, "give the diameter in mm, or another mate");
 }
 
 template <typename T>
@@ -171,8 +171,8 @@ Result<void> ApplyEntry(const FitEntry& entry, const std::string& reason, Mate* 
   if (mate->kind != MateKind::kAxisHole) {
     return Fail(
         ErrorCode::kInvalid,
-        fmt::format("mate \"{}\" is {}, which has no fit", entry.mate, ToString(mate->kind)),
-        entry.where, "name an axis-hole mate");
+        fmt::format("mate \"{}\" is {}, a kind without a fit", entry.mate, ToString(mate->kind)),
+        entry.where, "give an axis-hole mate");
   }
   if (!entry.fit.empty()) {
     Result<Fit> fit = MakeFit(entry.fit, *mate, entry.diameter, reason);
@@ -280,8 +280,8 @@ Result<MateChanges> ApplyAssignments(const std::filesystem::path& file, Product*
 Result<void> AssignFit(Product* product, std::string_view assignment) {
   const std::size_t split = assignment.rfind('=');
   if (split == std::string_view::npos || split == 0) {
-    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" assigns no fit", assignment), "--fit",
-                "write AXIS=H7/p6 with a mate (m12), an occurrence's name, or all");
+    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" does not assign a fit", assignment),
+                "--fit", "write AXIS=H7/p6 with a mate (m12), an occurrence's name, or all");
   }
   const std::string_view axis = assignment.substr(0, split);
   std::vector<std::pair<std::size_t, Fit>> changes;
@@ -305,9 +305,10 @@ Result<void> AssignFit(Product* product, std::string_view assignment) {
     changes.emplace_back(i, *std::move(fit));
   }
   if (changes.empty()) {
-    return Fail(ErrorCode::kNotFound, fmt::format("\"{}\" names no axis-hole mate", axis),
-                fmt::format("--fit {}", assignment),
-                "list mates and occurrences with hvas inspect; threads go by their mate only");
+    return Fail(
+        ErrorCode::kNotFound, fmt::format("\"{}\" does not identify an axis-hole mate", axis),
+        fmt::format("--fit {}", assignment),
+        "hvas inspect lists mates and occurrences; threads can be given by their mate only");
   }
   for (auto& [mate, fit] : changes) {
     product->mates[mate].fit = std::move(fit);

@@ -28,7 +28,7 @@ void ReportInterference(const Product& product, Diagnostics* diagnostics) {
       diagnostics->Note("drawn-interference", PathOf(product, mate.b.occurrence),
                         "is drawn larger than its hole in " + PathOf(product, mate.a.occurrence) +
                             " (" + mate.fit->reason + ")",
-                        "assign the fit that is meant, if it is no press fit");
+                        "assign the intended fit, if it is not a press fit");
     }
   }
 }
@@ -60,7 +60,8 @@ void ReportOverlaps(const Product& product, const std::vector<DrawnOddity>& oddi
                     entry.count > 1
                         ? fmt::format(", and {} more pairs of these parts", entry.count - 1)
                         : std::string()),
-        "nothing is moved; move the part in the CAD program, if it is meant to touch only");
+        "the part is not moved; correct its position in the CAD system if the parts should only "
+        "touch");
   }
 }
 
@@ -75,11 +76,10 @@ void ReportDuplicates(const Product& product, const std::vector<OccurrenceId>& o
   for (const auto& [original, count] : counts) {
     diagnostics->Warn(
         "duplicate-part", PathOf(product, original),
-        count == 1 ? "a copy of it is drawn at the very same place; the copy gets no mates"
-                   : fmt::format("{} copies of it are drawn at the very same place; they get "
-                                 "no mates",
-                                 count),
-        "delete the copies in the CAD program");
+        count == 1
+            ? "a copy of this part has the same pose; the copy gets no mates"
+            : fmt::format("{} copies of this part have the same pose; they get no mates", count),
+        "delete the copies in the CAD system");
   }
 }
 
@@ -104,14 +104,15 @@ void ReportLoose(const Product& product, const std::vector<DrawnOddity>& odditie
         product.occurrences.size() < 2) {
       continue;
     }
-    std::string message = "touches no other part along a plane, in a hole or in a seat";
+    std::string message =
+        "the part has no contact with another part along a plane, in a hole or in a seat";
     if (const DrawnOddity* near = nearest[occurrence.id.index()]) {
       const OccurrenceId other = near->a == occurrence.id ? near->b : near->a;
       message +=
           fmt::format("; a face of {} is {:.3f} mm away", PathOf(product, other), ToMm(near->gap));
     }
     diagnostics->Warn("no-mate", occurrence.path, std::move(message),
-                      "define a mate by hand, or check the drawn position");
+                      "define a mate with hvas mate add, or check the drawn position");
   }
 }
 

@@ -350,7 +350,7 @@ Linkage CalcLinkage(const Product& product) {
   return linkage;
 }
 
-int LinkedParts(const Product& product) {
+int CountLinkedParts(const Product& product) {
   return CalcLinkage(product).linked_parts;
 }
 

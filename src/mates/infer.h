@@ -38,6 +38,6 @@ struct Linkage {
 [[nodiscard]] Linkage CalcLinkage(const product::Product& product);
 
 /** Occurrences with at least one mate. */
-[[nodiscard]] int LinkedParts(const product::Product& product);
+[[nodiscard]] int CountLinkedParts(const product::Product& product);
 
 }  // namespace hvas::mates

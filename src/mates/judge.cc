@@ -54,18 +54,18 @@ double CalcScale(const Product& product, const Mate& mate) {
 }
 
 /** What is printed as zero has no sign. */
-double Unsigned(double value, double half_of_last_digit) {
+double DropSignOfZero(double value, double half_of_last_digit) {
   return std::abs(value) < half_of_last_digit ? 0.0 : value;
 }
 
 /** From 1 at zero to `least` at the limit and beyond. */
-double Fall(double value, double limit, double least) {
+double CalcFalling(double value, double limit, double least) {
   return 1 - (1 - least) * std::clamp(value / limit, 0.0, 1.0);
 }
 
 /** From `least` at zero to 1 at `enough` and beyond. */
-double Rise(double value, double enough, double least) {
-  return enough > 0 ? 1 - Fall(value, enough, least) + least : 1.0;
+double CalcRising(double value, double enough, double least) {
+  return enough > 0 ? 1 - CalcFalling(value, enough, least) + least : 1.0;
 }
 
 /** Screws hold nothing inside themselves, and nuts do not turn on nuts. */
@@ -79,18 +79,19 @@ double CalcAxisConfidence(const Product& product, const Mate& mate, const Infere
   const double scale = CalcScale(product, mate);
   const double play = std::abs(mate.hole_radius - mate.shaft_radius);
   const double most = CalcLargestPlay(limits, scale, std::min(mate.hole_radius, mate.shaft_radius));
-  double sizes = Fall(play, most, 0.5);
+  double sizes = CalcFalling(play, most, 0.5);
   if (shaft_part == FastenerKind::kScrew && !ContradictsNames(hole_part, shaft_part)) {
     sizes = std::max(sizes, 0.9);  // Screws have play in their holes, or threads drawn anyhow.
   }
   // A diameter is enough, or all of a short ring, but not of less than a quarter of a diameter.
   const double shorter = std::min(mate.hole_high - mate.hole_low, mate.shaft_high - mate.shaft_low);
   const double diameter = 2 * mate.shaft_radius;
-  const double length = Rise(mate.overlap, std::clamp(shorter, 0.25 * diameter, diameter), 0.5);
-  const double place = Fall(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
+  const double length =
+      CalcRising(mate.overlap, std::clamp(shorter, 0.25 * diameter, diameter), 0.5);
+  const double place = CalcFalling(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
   const double turn =
-      Rise(std::min(FeatureOf(product, mate.a).coverage, FeatureOf(product, mate.b).coverage),
-           limits.coverage, 0.7);
+      CalcRising(std::min(FeatureOf(product, mate.a).coverage, FeatureOf(product, mate.b).coverage),
+                 limits.coverage, 0.7);
   const double names = ContradictsNames(hole_part, shaft_part) ? 0.6 : 1.0;
   return sizes * length * place * turn * names;
 }
@@ -102,23 +103,24 @@ double CalcConfidence(const Product& product, const Mate& mate, const InferenceL
     case MateKind::kAxisHole:
       return CalcAxisConfidence(product, mate, limits, part_a, part_b);
     case MateKind::kFaceFace:
-      return Rise(mate.overlap, 0.25 * CalcSmallerArea(product, mate), 0.5) *
-             Fall(std::abs(CalcGap(product, mate)), limits.plane_gap * scale, 0.7);
+      return CalcRising(mate.overlap, 0.25 * CalcSmallerArea(product, mate), 0.5) *
+             CalcFalling(std::abs(CalcGap(product, mate)), limits.plane_gap * scale, 0.7);
     case MateKind::kConeSeat: {
       const double tilt =
           std::abs(FeatureOf(product, mate.a).half_angle - FeatureOf(product, mate.b).half_angle);
-      return Fall(tilt, limits.cone_angle, 0.7) *
-             Fall(std::abs(CalcConeGap(product, mate)), limits.cone_gap * scale, 0.5) *
-             Rise(mate.overlap, 0.25 * mate.shaft_radius, 0.5) *
-             Fall(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
+      return CalcFalling(tilt, limits.cone_angle, 0.7) *
+             CalcFalling(std::abs(CalcConeGap(product, mate)), limits.cone_gap * scale, 0.5) *
+             CalcRising(mate.overlap, 0.25 * mate.shaft_radius, 0.5) *
+             CalcFalling(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
     }
     case MateKind::kSphereSeat: {
       const double play = std::abs(mate.hole_radius - mate.shaft_radius);
       const double most =
           CalcLargestPlay(limits, scale, std::min(mate.hole_radius, mate.shaft_radius));
-      return Fall(play, most, 0.5) *
-             Rise(mate.overlap, std::numbers::pi * mate.shaft_radius * mate.shaft_radius, 0.5) *
-             Fall(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
+      return CalcFalling(play, most, 0.5) *
+             CalcRising(mate.overlap, std::numbers::pi * mate.shaft_radius * mate.shaft_radius,
+                        0.5) *
+             CalcFalling(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
     }
   }
   return 0;
@@ -139,14 +141,15 @@ std::string DescribeEvidence(const Product& product, const Mate& mate) {
       const double share = smaller > 0 ? std::min(1.0, mate.overlap / smaller) : 0.0;
       return fmt::format("touching {:.2f} mm2, {:.0f} % of the smaller face, {:.2f} um apart",
                          1e6 * mate.overlap, 100 * share,
-                         Unsigned(ToUm(CalcGap(product, mate)), 0.005));
+                         DropSignOfZero(ToUm(CalcGap(product, mate)), 0.005));
     }
     case MateKind::kConeSeat:
       return fmt::format(
           "half angles {:.2f}/{:.2f} deg, facing over {:.2f} mm, {:.3f} mm apart, axes {:.2f} um "
           "apart",
           units::ToDeg(a.half_angle), units::ToDeg(b.half_angle), ToMm(mate.overlap),
-          Unsigned(ToMm(CalcConeGap(product, mate)), 0.0005), ToUm(CalcOffset(product, mate)));
+          DropSignOfZero(ToMm(CalcConeGap(product, mate)), 0.0005),
+          ToUm(CalcOffset(product, mate)));
     case MateKind::kSphereSeat: {
       const double whole = 4 * std::numbers::pi * mate.shaft_radius * mate.shaft_radius;
       return fmt::format(
@@ -163,7 +166,7 @@ void Judge(const Product& product, const InferenceLimits& limits, FastenerKind p
            FastenerKind part_b, Mate* mate) {
   mate->evidence = DescribeEvidence(product, *mate);
   if (mate->kind == MateKind::kAxisHole && ContradictsNames(part_a, part_b)) {
-    mate->evidence += ", against the names";
+    mate->evidence += ", contradicts the names";
   }
   mate->confidence = std::clamp(CalcConfidence(product, *mate, limits, part_a, part_b), 0.0, 1.0);
 }

@@ -71,7 +71,7 @@ class LineScanner {
     std::set<std::string> keys;
   };
 
-  [[nodiscard]] std::string Here() const {
+  [[nodiscard]] std::string MakePointer() const {
     if (levels_.empty()) {
       return "";
     }
@@ -87,24 +87,25 @@ class LineScanner {
     if (!std::isfinite(std::strtod(word.c_str(), nullptr))) {
       return Fail(
           ErrorCode::kInvalid,
-          fmt::format("\"{}\" is {}, which is beyond all numbers", Here(),
+          fmt::format("\"{}\" is {}, which is out of the range of numbers", MakePointer(),
                       word.size() > kLongestShown ? word.substr(0, kLongestShown) + "..." : word),
-          fmt::format("{}:{}", file_, line_), "write a number of a size that can be meant");
+          fmt::format("{}:{}", file_, line_), "write a number of plausible size");
     }
     return {};
   }
 
   void Note() {
-    lines_.emplace(Here(), line_);
+    lines_.emplace(MakePointer(), line_);
     is_value_next_ = false;
   }
 
   Result<void> Open(bool is_object) {
     if (levels_.size() == kDeepest) {
-      return Fail(ErrorCode::kInvalid, fmt::format("it is nested deeper than {} levels", kDeepest),
-                  fmt::format("{}:{}", file_, line_), "take the inner levels out");
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("the file is nested deeper than {} levels", kDeepest),
+                  fmt::format("{}:{}", file_, line_), "remove the inner levels");
     }
-    std::string pointer = Here();
+    std::string pointer = MakePointer();
     Note();
     levels_.push_back({is_object, std::move(pointer), 0, "", {}});
     is_value_next_ = !is_object;
@@ -148,12 +149,12 @@ class LineScanner {
     Level& level = levels_.back();
     level.key = key.get<std::string>();
     if (!level.keys.insert(level.key).second) {
-      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" stands there twice", level.key),
+      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" occurs twice", level.key),
                   fmt::format("{}:{}", file_, line_), "keep one of the two");
     }
     if (level.keys.size() > kMostKeys) {
       return Fail(ErrorCode::kInvalid, fmt::format("an object has more than {} keys", kMostKeys),
-                  fmt::format("{}:{}", file_, line_), "take out what does not belong there");
+                  fmt::format("{}:{}", file_, line_), "remove the keys that do not belong there");
     }
     return {};
   }
@@ -198,7 +199,7 @@ Result<LocatedJson> ParseLocatedJson(std::string_view text, const std::string& f
         fmt::format("the file is not JSON: {}",
                     said == std::string_view::npos ? what : what.substr(said + 2)),
         fmt::format("{}:{}", file, CountLines(text, std::max<std::size_t>(error.byte, 1) - 1)),
-        "correct that place; quotes, commas and brackets are what is missed most often");
+        "correct this place; often a quote, comma or bracket is missing");
   } catch (const json::exception& error) {
     return Fail(ErrorCode::kUnreadable, fmt::format("the file is not JSON: {}", error.what()), file,
                 "check it with a JSON validator");

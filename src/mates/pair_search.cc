@@ -80,7 +80,7 @@ std::vector<Triangle2> Flatten(const Part& part, const Feature& feature, const P
   return triangles;
 }
 
-Pose PlaneFrame(const Feature& plane) {
+Pose MakePlaneFrame(const Feature& plane) {
   return {spatial::FrameFromZ(plane.axis_B), plane.origin_B};
 }
 
@@ -260,8 +260,8 @@ bool IsAround(const Part& hole_part, const Feature& hole, const Part& shaft_part
                              shaft.radius - kSame, limit));
 }
 
-bool Engage(const Feature& hole, const Feature& shaft, const Pose& X_HS,
-            const InferenceLimits& limits, double scale, AxisHit* hit) {
+bool DoEngage(const Feature& hole, const Feature& shaft, const Pose& X_HS,
+              const InferenceLimits& limits, double scale, AxisHit* hit) {
   if (std::abs(hole.radius - shaft.radius) >=
       CalcLargestPlay(limits, scale, std::min(hole.radius, shaft.radius))) {
     return false;
@@ -312,7 +312,7 @@ void PairSearch::TestPair(const Context& context, const SearchFeature& a, const 
     AxisHit hit{is_first, seat_id, body_id};
     const Part& hole_part = is_first ? context.a : context.b;
     const Part& shaft_part = is_first ? context.b : context.a;
-    if (Engage(seat, body, X_SB, limits_, context.scale, &hit) &&
+    if (DoEngage(seat, body, X_SB, limits_, context.scale, &hit) &&
         !IsAround(hole_part, seat, shaft_part, body, X_SB, hit,
                   limits_.axis_distance * context.scale)) {
       hits->axes.push_back(hit);
@@ -360,7 +360,7 @@ const std::vector<Triangle2>& PairSearch::FlattenOnce(PartId part, const SearchF
   }
   return triangles_
       .emplace(key, Flatten(product_.parts[part.index()], *feature.feature,
-                            PlaneFrame(*feature.feature).Inverse()))
+                            MakePlaneFrame(*feature.feature).Inverse()))
       .first->second;
 }
 
@@ -377,7 +377,7 @@ void PairSearch::TestPlanes(const Context& context, const SearchFeature& a, cons
   }
   // In the frame of the finer one (a base plate has many neighbours), near the other only.
   const bool is_a_finer = CountTriangles(context.a, plane_a) >= CountTriangles(context.b, plane_b);
-  const Pose X_AP = is_a_finer ? PlaneFrame(plane_a) : context.X_AB * PlaneFrame(plane_b);
+  const Pose X_AP = is_a_finer ? MakePlaneFrame(plane_a) : context.X_AB * MakePlaneFrame(plane_b);
   const Pose X_PA = X_AP.Inverse();
   const std::vector<Triangle2> coarse = is_a_finer
                                             ? Flatten(context.b, plane_b, X_PA * context.X_AB)

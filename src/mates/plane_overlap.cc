@@ -13,7 +13,7 @@ struct Sorted {
   Vec2 high;
 };
 
-double Cross(const Vec2& u, const Vec2& v) {
+double CalcCross(const Vec2& u, const Vec2& v) {
   return u.x() * v.y() - u.y() * v.x();
 }
 
@@ -21,7 +21,7 @@ std::vector<Sorted> SortByX(const std::vector<Triangle2>& triangles) {
   std::vector<Sorted> sorted;
   sorted.reserve(triangles.size());
   for (Triangle2 t : triangles) {
-    const double doubled_area = Cross(t[1] - t[0], t[2] - t[0]);
+    const double doubled_area = CalcCross(t[1] - t[0], t[2] - t[0]);
     if (doubled_area == 0) {
       continue;
     }
@@ -50,8 +50,8 @@ Polygon ClipLeft(const Polygon& in, const Vec2& p, const Vec2& q) {
   for (int i = 0; i < in.count; ++i) {
     const Vec2& current = in.corners[static_cast<std::size_t>(i)];
     const Vec2& next = in.corners[static_cast<std::size_t>(i + 1 < in.count ? i + 1 : 0)];
-    const double side_current = Cross(edge, current - p);
-    const double side_next = Cross(edge, next - p);
+    const double side_current = CalcCross(edge, current - p);
+    const double side_next = CalcCross(edge, next - p);
     if (side_current >= 0) {
       out.corners[static_cast<std::size_t>(out.count++)] = current;
     }
@@ -68,8 +68,8 @@ bool HasSeparatingEdge(const Triangle2& t, const Triangle2& other) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2& p = t[k];
     const Vec2 edge = t[(k + 1) % 3] - p;
-    if (Cross(edge, other[0] - p) <= 0 && Cross(edge, other[1] - p) <= 0 &&
-        Cross(edge, other[2] - p) <= 0) {
+    if (CalcCross(edge, other[0] - p) <= 0 && CalcCross(edge, other[1] - p) <= 0 &&
+        CalcCross(edge, other[2] - p) <= 0) {
       return true;
     }
   }
@@ -91,7 +91,7 @@ void AddCommon(const Triangle2& a, const Triangle2& b, double* area, Vec2* momen
     const Vec2& p = polygon.corners[0];
     const Vec2& q = polygon.corners[static_cast<std::size_t>(i)];
     const Vec2& r = polygon.corners[static_cast<std::size_t>(i) + 1];
-    const double piece = 0.5 * Cross(q - p, r - p);
+    const double piece = 0.5 * CalcCross(q - p, r - p);
     *area += piece;
     *moment += piece / 3.0 * (p + q + r);
   }

@@ -73,28 +73,28 @@ std::optional<std::string> FindThreadReason(const FitEvidence& evidence, double 
   const bool is_threaded_hole = evidence.hole_thread != ThreadKind::kNone;
   const bool is_threaded_shaft = evidence.shaft_thread != ThreadKind::kNone;
   if (is_nut && is_screw) {
-    return "names or shapes say nut and screw";
+    return "names or shapes indicate nut and screw";
   }
   if (is_threaded_hole && (is_screw || is_threaded_shaft)) {
     return "a screw in a threaded hole";
   }
   if (!is_larger && is_nut) {
-    return "name or shape says nut";
+    return "name or shape indicates a nut";
   }
   if (!is_larger && is_threaded_hole) {
     return "the hole is threaded";
   }
   if (!is_larger && is_screw && !evidence.nut_on_shaft) {
-    return "name or shape says screw";
+    return "name or shape indicates a screw";
   }
   if (!is_larger && is_threaded_shaft && !evidence.nut_on_shaft) {
     return "the shaft is threaded";
   }
   if (is_smaller && is_screw) {
-    return "a screw is never pressed in";
+    return "a screw is never a press fit";
   }
   if (is_smaller && evidence.shaft_part == FastenerKind::kNut) {
-    return "a nut or insert in its pocket, melted or pulled in";
+    return "a nut or insert in its pocket, melted in or pulled in";
   }
   return std::nullopt;
 }

@@ -149,7 +149,7 @@ Result<void> CheckObject(const ordered_json& object, SideFileObject kind, const 
                  [](const SideFileKey& key) { return std::string(key.name); });
   const std::string all = fmt::format("the keys here are {}", fmt::join(names, ", "));
   if (!object.is_object()) {
-    return Fail(ErrorCode::kInvalid, "there has to be an object {...}", place.Where(), all);
+    return Fail(ErrorCode::kInvalid, "an object {...} is expected", place.Where(), all);
   }
   for (const auto& item : object.items()) {
     const std::string& name = item.key();
@@ -217,7 +217,7 @@ Result<FitEntry> ReadFit(const ordered_json& item, const Place& place) {
   const bool has_names = item.contains("hole") && item.contains("shaft");
   const bool has_a_name = item.contains("hole") || item.contains("shaft");
   if (item.contains("mate") ? has_a_name || entry.diameter.has_value() : !has_names) {
-    return Fail(ErrorCode::kInvalid, "the entry does not say which mate it is about", entry.where,
+    return Fail(ErrorCode::kInvalid, "the entry does not identify a mate", entry.where,
                 R"(write "mate": "KEY" alone, or "hole": "..." and "shaft": "...")");
   }
   const bool says_something = std::any_of(item.begin(), item.end(), [&item](const auto& value) {
@@ -227,8 +227,8 @@ Result<FitEntry> ReadFit(const ordered_json& item, const Place& place) {
     });
   });
   if (!says_something) {
-    return Fail(ErrorCode::kInvalid, "the entry says nothing about its mate", entry.where,
-                R"(add "fit": "H7/g6", or a measured size, or take the entry out)");
+    return Fail(ErrorCode::kInvalid, "the entry has no data for its mate", entry.where,
+                R"(add "fit": "H7/g6", or a measured size, or remove the entry)");
   }
   return entry;
 }
@@ -239,8 +239,8 @@ Result<SideEntry> ReadSide(const ordered_json& item, const Place& place) {
   }
   SideEntry side{TextAt(item, "occurrence"), IndexAt(item, "face"), IndexAt(item, "feature")};
   if (side.face.has_value() == side.feature.has_value()) {
-    return Fail(ErrorCode::kInvalid, "the side names neither a face nor a feature, or both",
-                place.Where(), R"(write "face": 3 or "feature": 1, as hvas inspect lists them)");
+    return Fail(ErrorCode::kInvalid, "the side needs either a face or a feature", place.Where(),
+                R"(write "face": 3 or "feature": 1, as hvas inspect lists them)");
   }
   return side;
 }

@@ -95,7 +95,7 @@ AxialReach CalcAxialReach(const Side& side, FaceId id) {
   return reach;
 }
 
-bool Meet(const AxialReach& a, const AxialReach& b) {
+bool DoOverlap(const AxialReach& a, const AxialReach& b) {
   constexpr double kLeast = 1e-6;  // [m]
   return std::min(a.high, b.high) - std::max(a.low, b.low) > kLeast &&
          (a.sectors & b.sectors).any();
@@ -154,7 +154,7 @@ Directions CalcDirections(const Side& side, FaceId id) {
   return covered;
 }
 
-bool Meet(const Directions& a, const Directions& b) {
+bool DoOverlap(const Directions& a, const Directions& b) {
   return (a & b).any();
 }
 
@@ -246,7 +246,7 @@ void AddPairs(const Side& a, const std::vector<FaceId>& faces_a, const Side& b,
     }
     const Reach reach_a = calc(a, id_a);
     for (std::size_t k = 0; k < faces_b.size(); ++k) {
-      if (Meet(reach_a, reach_b[k])) {
+      if (DoOverlap(reach_a, reach_b[k])) {
         pairs->push_back({kind, id_a, faces_b[k]});
       }
     }

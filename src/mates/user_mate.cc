@@ -68,7 +68,7 @@ Result<MateSide> FindSide(const Product& product, const Pick& pick) {
   if (pick.face.is_valid()) {
     if (pick.face.index() >= part.faces.size()) {
       return Fail(ErrorCode::kNotFound,
-                  fmt::format("there is no face {}, the last is {}", pick.face.value(),
+                  fmt::format("there is no face {}; the last one is {}", pick.face.value(),
                               part.faces.empty() ? 0 : part.faces.size() - 1),
                   NameOf(product, pick), "hvas inspect lists features with their faces");
     }
@@ -81,7 +81,7 @@ Result<MateSide> FindSide(const Product& product, const Pick& pick) {
       return Fail(
           ErrorCode::kUnsupported,
           fmt::format("face {} belongs to no hole, shaft, plane, cone or ball", pick.face.value()),
-          NameOf(product, pick), "pick a face of one; hvas inspect lists them");
+          NameOf(product, pick), "choose a face of one of these; hvas inspect lists them");
     }
     side.feature = FeatureId(static_cast<std::size_t>(found - part.features.begin()));
   }
@@ -111,7 +111,7 @@ std::optional<MateKind> FindKind(FeatureKind a, FeatureKind b) {
 
 Error ExplainKinds(const Product& product, const MateSide& a, FeatureKind kind_a, const MateSide& b,
                    FeatureKind kind_b) {
-  std::string remedy = "pick two planes, or a hole and a shaft";
+  std::string remedy = "choose two planes, or a hole and a shaft";
   if (kind_a == kind_b) {
     const char* other = kind_a == FeatureKind::kHole       ? "a shaft"
                         : kind_a == FeatureKind::kShaft    ? "a hole"
@@ -119,9 +119,9 @@ Error ExplainKinds(const Product& product, const MateSide& a, FeatureKind kind_a
                         : kind_a == FeatureKind::kTaper    ? "a conical seat"
                         : kind_a == FeatureKind::kSocket   ? "a ball"
                                                            : "a socket";
-    remedy = fmt::format("pick {} on one side", other);
+    remedy = fmt::format("choose {} on one side", other);
     if (kind_a == FeatureKind::kHole) {
-      remedy += "; holes of two parts are held in line by a bolt";
+      remedy += "; a bolt aligns the holes of two parts";
     }
   }
   return {ErrorCode::kInvalid,
@@ -148,14 +148,14 @@ std::optional<Error> CheckSizes(const Product& product, MateKind kind, const Fea
                    fmt::format("radii of {:.3f} and {:.3f} mm cannot mate: they may differ by at "
                                "most {:.3f} mm",
                                ToMm(a.radius), ToMm(b.radius), ToMm(most)),
-                   where, "pick the faces that touch each other"};
+                   where, "choose the faces that touch each other"};
     }
   }
   if (kind == MateKind::kConeSeat && std::abs(a.half_angle - b.half_angle) > limits.cone_angle) {
     return Error{ErrorCode::kInvalid,
                  fmt::format("cones of {:.2f} and {:.2f} deg (half angles) cannot mate",
                              units::ToDeg(a.half_angle), units::ToDeg(b.half_angle)),
-                 where, "pick cones of one angle"};
+                 where, "choose cones with equal angles"};
   }
   return std::nullopt;
 }
@@ -233,7 +233,7 @@ std::optional<Error> CheckContradiction(const Product& product, const Mate& mate
                fmt::format("the mate contradicts {} between the same parts (off by {:.3f} mm)",
                            others, ToMm(resolution.residual)),
                product.occurrences[mate.b.occurrence.index()].path,
-               "remove those first, or pick other surfaces"};
+               "remove those mates first, or choose other surfaces"};
 }
 
 }  // namespace
@@ -245,8 +245,8 @@ Result<Mate> MakeMate(const Product& product, const Pick& pick_a, const Pick& pi
     return Unexpected(b.error());
   }
   if (a->occurrence == b->occurrence) {
-    return Fail(ErrorCode::kInvalid, "a part cannot mate with itself", NameOf(product, pick_a),
-                "pick surfaces of two parts");
+    return Fail(ErrorCode::kInvalid, "a part cannot be mated with itself", NameOf(product, pick_a),
+                "choose surfaces of two parts");
   }
   const auto feature_of = [&product](const MateSide& side) -> const Feature& {
     return product.part_of(side.occurrence).features[side.feature.index()];
@@ -319,7 +319,7 @@ Result<MateId> FindMate(const Product& product, std::string_view text) {
       return index < product.mates.size()
                  ? Result<MateId>(MateId(index))
                  : Result<MateId>(
-                       fail(fmt::format("there is no mate {}, of {}", text, product.mates.size())));
+                       fail(fmt::format("there is no mate {}; the product has {} mates", text, product.mates.size())));
     }
   }
   std::optional<MateId> found;
@@ -328,12 +328,12 @@ Result<MateId> FindMate(const Product& product, std::string_view text) {
       continue;
     }
     if (found) {
-      return fail(fmt::format("several mates have a key that begins with '{}'", text));
+      return fail(fmt::format("several mates have keys that begin with '{}'", text));
     }
     found = mate.id;
   }
   return found ? Result<MateId>(*found)
-               : Result<MateId>(fail(fmt::format("no mate is called '{}'", text)));
+               : Result<MateId>(fail(fmt::format("there is no mate '{}'", text)));
 }
 
 Result<Mate> RemoveMate(Product* product, std::string_view text) {

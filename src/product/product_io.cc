@@ -424,12 +424,12 @@ Result<Product> DeserialiseProduct(std::span<const std::byte> bytes) {
   std::uint32_t format = 0;
   reader.Plain(&format, 1);
   if (reader.has_failed() || format != kProductFormat) {
-    return Fail(ErrorCode::kUnreadable, "these bytes are no product of this version of HVAS", {},
+    return Fail(ErrorCode::kUnreadable, "the data are not a product of this version of HVAS", {},
                 "read the CAD file again");
   }
   Product product = ReadProduct(&reader);
   if (!reader.is_finished()) {
-    return Fail(ErrorCode::kUnreadable, "the bytes of a product are damaged", {},
+    return Fail(ErrorCode::kUnreadable, "the data of the product are damaged", {},
                 "read the CAD file again");
   }
   return product;

@@ -16,7 +16,7 @@ Unexpected FailWith(sqlite3* database, int code, const std::string& path) {
   switch (code & 0xff) {
     case SQLITE_NOTADB:
       return Fail(ErrorCode::kUnreadable, "this is not a session record: " + reason, path,
-                  "name a file that HVAS recorded");
+                  "give a file that HVAS recorded");
     case SQLITE_CORRUPT:
       return Fail(ErrorCode::kUnreadable, "the record is damaged: " + reason, path,
                   "restore the file from a copy");
@@ -24,16 +24,17 @@ Unexpected FailWith(sqlite3* database, int code, const std::string& path) {
     case SQLITE_PERM:
     case SQLITE_READONLY:
       return Fail(ErrorCode::kNotFound, "the record cannot be opened or written: " + reason, path,
-                  "check that the folder exists and may be written");
+                  "check that the folder exists and is writable");
     case SQLITE_FULL:
-      return Fail(ErrorCode::kOutOfResource, "there is no room for more of the record", path,
+      return Fail(ErrorCode::kOutOfResource,
+                  "the disk is full, or the record has reached its size limit", path,
                   "free disk space or raise the record's size limit");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return Fail(ErrorCode::kOutOfResource, "another program holds the record: " + reason, path,
-                  "close it and try again");
+      return Fail(ErrorCode::kOutOfResource, "another program has the record open: " + reason, path,
+                  "close that program and try again");
     case SQLITE_IOERR:
-      return Fail(ErrorCode::kOutOfResource, "the disk refused the record: " + reason, path,
+      return Fail(ErrorCode::kOutOfResource, "writing the record failed: " + reason, path,
                   "check the disk and its free space");
     default:
       return Fail(ErrorCode::kInternal, "SQLite: " + reason, path);
@@ -170,7 +171,7 @@ Result<Database> Database::OpenUnwritable(const std::filesystem::path& path) {
   }
   if (failed) {
     return Fail(ErrorCode::kOutOfResource,
-                "the record's journal is in a folder that may not be written, and there is no room "
+                "the folder of the record and its journal is not writable, and there is no space "
                 "for a copy: " +
                     failed.message(),
                 path.string(), "copy both files to a folder of your own");

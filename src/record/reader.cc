@@ -64,7 +64,7 @@ Result<void> Reader::CheckKind() {
   }
   if (*id != kApplicationId) {
     return Fail(ErrorCode::kUnreadable, "this is not a session record", path_.string(),
-                "name a file that HVAS recorded");
+                "give a file that HVAS recorded");
   }
   const Result<std::int64_t> version = database_.QueryInt("SELECT version FROM schema_version");
   if (!version) {
@@ -72,12 +72,13 @@ Result<void> Reader::CheckKind() {
   }
   if (*version > kSchemaVersion) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("the record has layout {}, newer than {}, the newest known here",
+                fmt::format("the record has layout version {}, newer than {}, the newest that this "
+                            "version of HVAS reads",
                             *version, kSchemaVersion),
                 path_.string(), "open it with the version of HVAS that wrote it");
   }
   if (*version < 1) {
-    return Fail(ErrorCode::kUnreadable, fmt::format("there is no layout {}", *version),
+    return Fail(ErrorCode::kUnreadable, fmt::format("there is no layout version {}", *version),
                 path_.string(), "restore the file from a copy");
   }
   schema_ = *version;
@@ -347,8 +348,8 @@ Result<std::string> Reader::Verify() {
   }
   if (hex && is_complete() && meta_.at(kMetaDigest) != *hex) {
     return Fail(ErrorCode::kUnreadable,
-                "the record is not as it was written: its ticks, events and commands have another "
-                "digest",
+                "the record was changed after it was written: the digest of its ticks, events and "
+                "commands differs",
                 path_.string(), "restore the file from a copy");
   }
   return hex;

@@ -44,8 +44,8 @@ class SealCheck {
 
  private:
   [[nodiscard]] Unexpected NotAsWritten(const std::string& what) const {
-    return Fail(ErrorCode::kUnreadable, "the record is not as it was written: " + what, path_,
-                "restore the file from a copy");
+    return Fail(ErrorCode::kUnreadable, "the record was changed after it was written: " + what,
+                path_, "restore the file from a copy");
   }
 
   static std::string AtTime(std::int64_t t_ns) {
@@ -89,7 +89,7 @@ class SealCheck {
     if (!step) {
       return Unexpected(step.error());
     }
-    return seals_.empty() ? NotAsWritten("all of its seals are missing") : Result<void>();
+    return seals_.empty() ? NotAsWritten("all seals are missing") : Result<void>();
   }
 
   Result<void> CheckEntries() {

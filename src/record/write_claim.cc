@@ -31,13 +31,13 @@ bool IsLockedByOthers(const Descriptor& file) {
 
 Unexpected FailAsWritten(const std::filesystem::path& path) {
   return Fail(ErrorCode::kInvalid, "another session is being recorded to this file", path.string(),
-              "choose another name for the record, or end that session");
+              "choose another file name, or end that session");
 }
 
 Unexpected FailToMake(int cause, const std::filesystem::path& path) {
   return Fail(cause == ENOSPC ? ErrorCode::kOutOfResource : ErrorCode::kNotFound,
               std::string("the record cannot be made: ") + std::strerror(cause), path.string(),
-              "check that the folder exists and may be written");
+              "check that the folder exists and is writable");
 }
 
 /** Removes what is at the path, unless somebody writes to it. Who reads it can read on. */
@@ -67,16 +67,17 @@ Result<void> CheckTarget(const std::filesystem::path& path, bool replaces) {
   }
   if (!std::filesystem::is_regular_file(status) ||
       (std::filesystem::file_size(path, ignored) > 0 && !IsRecord(path))) {
-    return Fail(ErrorCode::kInvalid, "what is there is not a session record and is kept",
-                path.string(), "choose another name for the record");
+    return Fail(ErrorCode::kInvalid,
+                "the existing file is not a session record and is not replaced", path.string(),
+                "choose another file name");
   }
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.is_open() && IsLockedByOthers(file)) {
     return FailAsWritten(path);
   }
   if (std::filesystem::file_size(path, ignored) > 0 && !replaces) {
-    return Fail(ErrorCode::kInvalid, "there is a record of another session", path.string(),
-                "choose another name for the record, or replace it with --force");
+    return Fail(ErrorCode::kInvalid, "the file has the record of another session", path.string(),
+                "choose another file name, or replace it with --force");
   }
   return {};
 }
@@ -108,7 +109,7 @@ Result<void> WriteClaim::CheckStillThere() const {
   const bool is_there = ::fstat(file_.value(), &made) == 0 && ::stat(path_.c_str(), &found) == 0 &&
                         made.st_dev == found.st_dev && made.st_ino == found.st_ino;
   if (!is_there) {
-    return Fail(ErrorCode::kNotFound, "the record was removed or replaced while it was written",
+    return Fail(ErrorCode::kNotFound, "the record was removed or replaced during recording",
                 path_.string(), "record the rest of the session to another file");
   }
   return {};

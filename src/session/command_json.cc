@@ -21,7 +21,7 @@ constexpr std::array kPlacements{"loose", "held", "placed", "parked"};
 constexpr std::array kStepKinds{"base", "insert", "park", "remove"};
 
 Unexpected Refuse(const std::string& what, const std::string& field) {
-  return Fail(ErrorCode::kUnreadable, fmt::format("{} has no good \"{}\".", what, field));
+  return Fail(ErrorCode::kUnreadable, fmt::format("{} has no valid \"{}\".", what, field));
 }
 
 Json MakePartJson(const PartState& part) {

@@ -65,7 +65,8 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
 Result<product::Product> LoadProduct(record::Reader* reader) {
   const auto bytes = reader->ReadAttachment(kProductAttachment);
   if (!bytes && bytes.error().code == ErrorCode::kNotFound) {
-    return Fail(ErrorCode::kUnsupported, "the record has no product in it, as older ones have not",
+    return Fail(ErrorCode::kUnsupported,
+                "the record contains no product; it was written by an older version of HVAS",
                 reader->path().string(), "record the session again");
   }
   if (!bytes) {
@@ -73,10 +74,10 @@ Result<product::Product> LoadProduct(record::Reader* reader) {
   }
   auto product = product::DeserialiseProduct(*bytes);
   if (!product) {
-    return Fail(
-        ErrorCode::kUnsupported,
-        "The product in the record is of another version of HVAS: " + product.error().message + ".",
-        reader->path().string(), "Open it with the version of HVAS that wrote it");
+    return Fail(ErrorCode::kUnsupported,
+                "The product in the record was written by another version of HVAS: " +
+                    product.error().message + ".",
+                reader->path().string(), "Open it with the version of HVAS that wrote it");
   }
   return product;
 }
@@ -118,7 +119,7 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
   }
   if (!fields.refused().empty()) {
     return Fail(ErrorCode::kUnreadable,
-                "the model in the record has no good \"" + fields.refused() + "\"",
+                "the model in the record has no valid \"" + fields.refused() + "\"",
                 reader->path().string(), "restore the file from a copy");
   }
   options.seed = json[kSeed].get<std::uint64_t>();
@@ -127,8 +128,8 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
                                    diagnostics);
   if (model && CalcFingerprint(**model) != fingerprint) {
     diagnostics->Warn("model-differs", reader->path().string(),
-                      "this version of HVAS prepares the product in another way than the one that "
-                      "recorded it, so its ticks can come out otherwise",
+                      "this version of HVAS prepares the product differently from the one that "
+                      "recorded it, so ticks can differ",
                       "replay it with the version that recorded it");
   }
   return model;

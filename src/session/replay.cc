@@ -37,7 +37,7 @@ bool IsSame(const spatial::Pose& a, const spatial::Pose& b) {
 /** The first thing in which two ticks differ, for people. */
 std::string NameDifference(const TickRecord& a, const TickRecord& b) {
   if (a.held != b.held || a.state != b.state) {
-    return "the part in the hand, or its state";
+    return "the held part, or its state";
   }
   if (!IsSame(a.X_WH, b.X_WH)) {
     return "the hand's pose";
@@ -54,7 +54,7 @@ std::string NameDifference(const TickRecord& a, const TickRecord& b) {
   if (a.F_true_W.f != b.F_true_W.f || a.F_true_W.t != b.F_true_W.t) {
     return fmt::format("the true force, by {:.3g} N", (a.F_true_W.f - b.F_true_W.f).norm());
   }
-  return a.status != b.status ? "what the gate did" : "the contacts or the depth";
+  return a.status != b.status ? "the actions of the safety gate" : "the contacts or the depth";
 }
 
 void Follow(const TickRecord& tick, ReplayedPart::Outcome* outcome) {
@@ -86,7 +86,7 @@ class Replayer {
       next_beginning_ = FindBeginning(next_);
     }
     if (!error_ && (simulation_ == nullptr || recorded.hand >= simulation_->hand_count())) {
-      Refuse("A tick of the record is of no stretch.");
+      Refuse("A tick of the record belongs to no stretch of the session.");
     }
     if (!error_ && !IsNext(recorded)) {
       is_lost_ = true;
@@ -253,9 +253,9 @@ Result<ReplayReport> Replay(record::Reader* reader,
   if (commands->empty()) {
     return Fail(
         ErrorCode::kUnsupported,
-        fmt::format("the record is of layout {}, which does not have what reached the ticks "
-                    "besides their samples",
-                    reader->schema()),
+        fmt::format(
+            "the record has layout version {}, which does not contain all inputs of the ticks",
+            reader->schema()),
         reader->path().string(), "record the session again; export and report still work");
   }
   const std::int64_t start_ns = MonotonicNs();

@@ -327,7 +327,7 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   const std::string refused = fields.refused().empty() ? FindUnsound(&options) : fields.refused();
   if (!refused.empty()) {
     return Fail(ErrorCode::kUnreadable,
-                fmt::format("the options of a hand have no good \"{}\"", refused));
+                fmt::format("the options of a hand have no valid \"{}\"", refused));
   }
   return options;
 }

@@ -22,19 +22,20 @@ Unexpected Refuse(std::string what, std::string where, std::string remedy) {
 Result<void> CheckSpread(const std::vector<double>& centers, const std::vector<double>& spreads,
                          double correlation) {
   if (spreads.size() != centers.size()) {
-    return Refuse(fmt::format("{} spreads of {} conditions", spreads.size(), centers.size()),
-                  "design", "give one, or one a condition");
+    return Refuse(
+        fmt::format("{} standard deviations for {} conditions", spreads.size(), centers.size()),
+        "design", "give one, or one for each condition");
   }
   for (std::size_t i = 0; i < centers.size(); ++i) {
     if (!std::isfinite(centers[i]) || !(spreads[i] > 0) || !std::isfinite(spreads[i])) {
-      return Refuse(fmt::format("{} with a spread of {}", centers[i], spreads[i]),
+      return Refuse(fmt::format("{} with a standard deviation of {}", centers[i], spreads[i]),
                     fmt::format("design, condition {}", i + 1),
-                    "give finite values and spreads above zero");
+                    "give finite values and standard deviations above zero");
     }
   }
   if (!(correlation >= 0 && correlation < 1)) {
-    return Refuse(fmt::format("{} is no correlation within participants", correlation), "design",
-                  "give a number from 0 and below 1");
+    return Refuse(fmt::format("{} is not a valid correlation", correlation), "design",
+                  "give a number of at least 0 and below 1");
   }
   return {};
 }
@@ -61,7 +62,7 @@ struct CheckDesign {
     }
     for (const double share : d.shares) {
       if (!(share >= 0 && share <= 1)) {
-        return Refuse(fmt::format("{} is no share of right answers", share), "design",
+        return Refuse(fmt::format("{} is not a share of correct answers", share), "design",
                       "give numbers from 0 to 1");
       }
     }
@@ -76,7 +77,7 @@ struct CheckDesign {
     for (const std::vector<double>& row : d.rows) {
       if (row.size() != d.rows[0].size() ||
           !std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); })) {
-        return Refuse("rows of the pilot are not complete", "design", "leave those out");
+        return Refuse("rows of the pilot are not complete", "design", "omit those rows");
       }
     }
     return {};
@@ -160,18 +161,18 @@ Result<void> Check(const Design& design, const PowerOptions& options) {
   const std::size_t conditions = CountConditions(design);
   if (options.test == PowerTest::kWilcoxon && conditions != 2) {
     return Refuse(fmt::format("{} conditions", conditions), "Wilcoxon test",
-                  "give two, or take the Friedman test");
+                  "give two, or use the Friedman test");
   }
   if (conditions < 2 || conditions > kMostConditions) {
     return Refuse(fmt::format("{} conditions", conditions), "design",
                   fmt::format("give from 2 to {}", kMostConditions));
   }
   if (!(options.alpha > 0 && options.alpha < 0.5)) {
-    return Refuse(fmt::format("{} is no level of a test", options.alpha), "alpha",
+    return Refuse(fmt::format("{} is not a significance level", options.alpha), "alpha",
                   "give a number above 0 and below 0.5");
   }
   if (!(options.target > 0 && options.target < 1)) {
-    return Refuse(fmt::format("{} is no power", options.target), "power",
+    return Refuse(fmt::format("{} is not a power", options.target), "power",
                   "give a number between 0 and 1");
   }
   if (options.runs < 100 || options.runs > 1'000'000) {

@@ -153,7 +153,7 @@ Result<void> CheckRows(std::span<const std::vector<double>> rows) {
       return Fail(
           ErrorCode::kInvalid,
           fmt::format("row {} has {} values, the first {}", i + 1, rows[i].size(), rows[0].size()),
-          "Friedman test", "leave out rows that are not complete");
+          "Friedman test", "omit incomplete rows");
     }
     if (auto checked = CheckSample(rows[i]); !checked) {
       return checked;

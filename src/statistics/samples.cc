@@ -14,7 +14,7 @@ Result<void> CheckSample(std::span<const double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) {
       return Fail(ErrorCode::kInvalid, fmt::format("value {} is not finite", i + 1), "sample",
-                  "leave out what was not measured");
+                  "omit values that were not measured");
     }
   }
   return {};

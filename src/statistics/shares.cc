@@ -12,11 +12,11 @@ Result<Share> CalcShare(std::int64_t right, std::int64_t trials, std::optional<d
     return Unexpected(checked.error());
   }
   if (trials < 1 || right < 0 || right > trials) {
-    return Fail(ErrorCode::kInvalid, fmt::format("{} right of {} trials", right, trials), "share",
-                "count from none to all of at least one trial");
+    return Fail(ErrorCode::kInvalid, fmt::format("{} correct answers in {} trials", right, trials),
+                "share", "give a count from 0 to the number of trials, and at least one trial");
   }
   if (chance && !(*chance > 0 && *chance < 1)) {
-    return Fail(ErrorCode::kInvalid, fmt::format("{} is no probability of guessing", *chance),
+    return Fail(ErrorCode::kInvalid, fmt::format("{} is not a probability of guessing", *chance),
                 "chance", "give a number between 0 and 1");
   }
   Share result;
@@ -51,7 +51,7 @@ Result<Confusion> CalcConfusion(std::vector<std::vector<std::int64_t>> counts,
       if (counts[i][j] < 0) {
         return Fail(ErrorCode::kInvalid, fmt::format("{} answers", counts[i][j]),
                     fmt::format("confusion matrix, row {}, column {}", i + 1, j + 1),
-                    "count from zero");
+                    "give counts of zero or more");
       }
       shown[i] += counts[i][j];
       answered[j] += counts[i][j];

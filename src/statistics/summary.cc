@@ -16,8 +16,8 @@ Result<void> CheckConfidence(double confidence) {
   if (confidence > 0 && confidence < 1) {
     return {};
   }
-  return Fail(ErrorCode::kInvalid, fmt::format("{} is no confidence", confidence), "confidence",
-              "give a number between 0 and 1, as 0.95");
+  return Fail(ErrorCode::kInvalid, fmt::format("{} is not a confidence level", confidence),
+              "confidence", "give a number between 0 and 1, such as 0.95");
 }
 
 Result<Summary> Summarise(std::span<const double> values, double confidence) {

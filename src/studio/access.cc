@@ -12,7 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "studio/json_fields.h"
-#include "studio/kept_folder.h"
+#include "studio/state_folder.h"
 
 namespace hvas::studio {
 namespace {
@@ -33,8 +33,8 @@ bool HasArray(const Json& object, const char* name) {
 }
 
 bool IsPort(std::string_view text) {
-  constexpr std::size_t kMostDigits = 5;
-  return !text.empty() && text.size() <= kMostDigits &&
+  constexpr std::size_t kMaxDigits = 5;
+  return !text.empty() && text.size() <= kMaxDigits &&
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
@@ -78,11 +78,11 @@ std::optional<Role> ParseRole(std::string_view name) {
 std::string MakeToken() {
   std::array<unsigned char, kTokenLength> bytes{};
   if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
-    throw std::runtime_error("the system gives no random numbers");
+    throw std::runtime_error("the system provides no random numbers");
   }
   std::string token;
   for (const unsigned char byte : bytes) {
-    token += kAlphabet[byte % kAlphabet.size()];  // 64 letters: each is as likely as the others
+    token += kAlphabet[byte % kAlphabet.size()];  // 64 characters divide 256: uniform
   }
   return token;
 }
@@ -91,7 +91,7 @@ bool IsSameSecret(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-std::optional<std::string> HostOf(std::string_view host_header) {
+std::optional<std::string> FindHost(std::string_view host_header) {
   std::string_view host = host_header;
   if (host.starts_with('[')) {
     const std::size_t end = host.find(']');
@@ -128,7 +128,7 @@ std::optional<std::string> FindCookie(std::string_view cookie_header, std::strin
   return std::nullopt;
 }
 
-Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, KeptAccess kept)
+Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, SavedAccess kept)
     : hosts_{"127.0.0.1", "localhost", "::1"},
       cookie_name_(fmt::format("hvas_session_{}", port)),
       port_(port),
@@ -152,7 +152,7 @@ Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, 
 std::string Access::OriginOf(std::string_view host) const {
   constexpr std::uint16_t kHttp = 80;
   constexpr std::uint16_t kHttps = 443;
-  // Browsers leave out the port that the scheme has anyway.
+  // Browsers omit the default port of the scheme.
   const std::string suffix =
       port_ == (is_tls_ ? kHttps : kHttp) ? std::string() : fmt::format(":{}", port_);
   const bool is_v6 = host.find(':') != std::string_view::npos;
@@ -161,7 +161,7 @@ std::string Access::OriginOf(std::string_view host) const {
 }
 
 bool Access::AllowsHost(std::string_view host_header) const {
-  const std::optional<std::string> host = HostOf(host_header);
+  const std::optional<std::string> host = FindHost(host_header);
   return host && std::find(hosts_.begin(), hosts_.end(), *host) != hosts_.end();
 }
 
@@ -169,10 +169,10 @@ bool Access::AllowsOrigin(std::string_view origin) const {
   return std::find(origins_.begin(), origins_.end(), origin) != origins_.end();
 }
 
-KeptAccess::Browser* Access::FindBrowser(std::string_view secret) {
-  // All are compared every time.
-  KeptAccess::Browser* found = nullptr;
-  for (KeptAccess::Browser& browser : known_.browsers) {
+SavedAccess::Browser* Access::FindBrowser(std::string_view secret) {
+  // All entries are compared each time, so that the time does not tell which one matched.
+  SavedAccess::Browser* found = nullptr;
+  for (SavedAccess::Browser& browser : known_.browsers) {
     found = IsSameSecret(secret, browser.secret) ? &browser : found;
   }
   return found;
@@ -180,19 +180,19 @@ KeptAccess::Browser* Access::FindBrowser(std::string_view secret) {
 
 std::string Access::AddLink(Role role) {
   auto& links = known_.links;
-  if (links.size() >= kMostLinks) {
+  if (links.size() >= kMaxLinks) {
     links.erase(links.begin() + kRoles.size());
   }
   links.push_back({MakeToken(), role, ""});
   return links.back().token;
 }
 
-KeptAccess::Browser* Access::AddBrowser() {
+SavedAccess::Browser* Access::AddBrowser() {
   auto& browsers = known_.browsers;
-  if (browsers.size() >= kMostBrowsers) {
-    // Whoever looks on comes in again by the same link.
+  if (browsers.size() >= kMaxBrowsers) {
+    // A viewer can be admitted again by the same link.
     const auto oldest = std::find_if(browsers.begin(), browsers.end(),
-                                     [](const auto& one) { return !IsForOne(one.role); });
+                                     [](const auto& one) { return !IsSingleUse(one.role); });
     browsers.erase(oldest == browsers.end() ? browsers.begin() : oldest);
   }
   browsers.push_back({MakeToken(), Role::kViewer});
@@ -201,35 +201,35 @@ KeptAccess::Browser* Access::AddBrowser() {
 
 Result<Access::Admission> Access::Admit(std::string_view token, std::string_view cookie_header) {
   const std::lock_guard lock(mutex_);
-  KeptAccess::Link* link = nullptr;
-  for (KeptAccess::Link& one : known_.links) {
+  SavedAccess::Link* link = nullptr;
+  for (SavedAccess::Link& one : known_.links) {
     link = IsSameSecret(token, one.token) ? &one : link;
   }
   if (link == nullptr) {
-    return Fail(ErrorCode::kNotFound, "this link is not known", "",
-                "open the link that the program has printed, or ask whoever steers for one");
+    return Fail(ErrorCode::kNotFound, "this link is not valid", "",
+                "open the link that the program has printed, or ask the user in control for one");
   }
-  KeptAccess::Browser* browser = FindBrowser(FindCookie(cookie_header, cookie_name_).value_or(""));
+  SavedAccess::Browser* browser = FindBrowser(FindCookie(cookie_header, cookie_name_).value_or(""));
   const bool is_owner = browser != nullptr && IsSameSecret(link->browser, browser->secret);
-  if (IsForOne(link->role) && !link->browser.empty() && !is_owner) {
-    return Fail(ErrorCode::kInvalid, "this link has let another browser in already", "",
-                "ask whoever steers for one of your own (\"Share\"), or start the studio again "
-                "with --new-links");
+  if (IsSingleUse(link->role) && !link->browser.empty() && !is_owner) {
+    return Fail(ErrorCode::kInvalid, "this link has been used by another browser already", "",
+                "ask the user in control for a link of your own (\"Share\"), or start the studio "
+                "again with --new-links");
   }
   browser = browser != nullptr ? browser : AddBrowser();
   browser->role = link->role;
-  link->browser = IsForOne(link->role) ? browser->secret : "";
-  constexpr int kKeptFor = 30 * 24 * 3600;  // [s]
-  return Admission{link->role,
-                   fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
-                               cookie_name_, browser->secret, kKeptFor, is_tls_ ? "; Secure" : "")};
+  link->browser = IsSingleUse(link->role) ? browser->secret : "";
+  constexpr int kCookieLifetime = 30 * 24 * 3600;  // [s]
+  return Admission{link->role, fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
+                                           cookie_name_, browser->secret, kCookieLifetime,
+                                           is_tls_ ? "; Secure" : "")};
 }
 
 std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
   const std::string secret = FindCookie(cookie_header, cookie_name_).value_or("");
   const std::lock_guard lock(mutex_);
   std::optional<Role> role;
-  for (const KeptAccess::Browser& browser : known_.browsers) {
+  for (const SavedAccess::Browser& browser : known_.browsers) {
     role = IsSameSecret(secret, browser.secret) ? std::optional(browser.role) : role;
   }
   return role;
@@ -240,15 +240,15 @@ std::string Access::token(Role role) const {
   return known_.links[static_cast<std::size_t>(role)].token;
 }
 
-std::string Access::Invite(Role role) {
-  if (!IsForOne(role)) {
+std::string Access::MakeInvitation(Role role) {
+  if (!IsSingleUse(role)) {
     return token(role);
   }
   const std::lock_guard lock(mutex_);
   return AddLink(role);
 }
 
-std::string Access::FindFresh(Role role) {
+std::string Access::FindUnusedLink(Role role) {
   const std::lock_guard lock(mutex_);
   const auto fresh =
       std::find_if(known_.links.begin(), known_.links.end(),
@@ -256,27 +256,27 @@ std::string Access::FindFresh(Role role) {
   return fresh != known_.links.end() ? fresh->token : AddLink(role);
 }
 
-KeptAccess Access::Keep() const {
+SavedAccess Access::Keep() const {
   const std::lock_guard lock(mutex_);
   return known_;
 }
 
-Result<KeptAccess> LoadAccess(const std::filesystem::path& file) {
-  const auto text = ReadKeptFile(file);
+Result<SavedAccess> LoadAccess(const std::filesystem::path& file) {
+  const auto text = ReadPrivateFile(file);
   if (!text) {
     return Unexpected(text.error());
   }
   const Json json = Json::parse(*text, nullptr, false);
   const auto unreadable = [&file] {
-    return Fail(ErrorCode::kUnreadable, "this is not what a studio keeps of its links",
-                file.string(), "delete the file: the studio makes new links");
+    return Fail(ErrorCode::kUnreadable, "the file does not contain the studio's links",
+                file.string(), "delete the file; the studio makes new links");
   };
   const std::uint32_t port = IndexOr(json, "port", kHighestPort + 1);
   if (IndexOr(json, "version", 0) != kAccessVersion || port > kHighestPort ||
       !HasArray(json, "links") || !HasArray(json, "browsers")) {
     return unreadable();
   }
-  KeptAccess kept;
+  SavedAccess kept;
   kept.port = static_cast<std::uint16_t>(port);
   for (const Json& browser : json["browsers"]) {
     const auto role = ParseRole(TextOr(browser, "role", ""));
@@ -289,7 +289,7 @@ Result<KeptAccess> LoadAccess(const std::filesystem::path& file) {
     const auto role = ParseRole(TextOr(link, "role", ""));
     kept.links.push_back(
         {TextOr(link, "token", ""), role.value_or(Role::kViewer), TextOr(link, "browser", "")});
-    const KeptAccess::Link& read = kept.links.back();
+    const SavedAccess::Link& read = kept.links.back();
     if (!role || !IsToken(read.token) || !(read.browser.empty() || IsToken(read.browser))) {
       return unreadable();
     }
@@ -303,14 +303,14 @@ Result<KeptAccess> LoadAccess(const std::filesystem::path& file) {
   return kept;
 }
 
-Result<void> SaveAccess(const std::filesystem::path& file, const KeptAccess& access) {
+Result<void> SaveAccess(const std::filesystem::path& file, const SavedAccess& access) {
   Json links = Json::array();
-  for (const KeptAccess::Link& link : access.links) {
+  for (const SavedAccess::Link& link : access.links) {
     links.push_back(
         {{"token", link.token}, {"role", ToString(link.role)}, {"browser", link.browser}});
   }
   Json browsers = Json::array();
-  for (const KeptAccess::Browser& browser : access.browsers) {
+  for (const SavedAccess::Browser& browser : access.browsers) {
     browsers.push_back({{"secret", browser.secret}, {"role", ToString(browser.role)}});
   }
   const Json json{{"version", kAccessVersion},

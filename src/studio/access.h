@@ -15,9 +15,9 @@ namespace hvas::studio {
 
 /** What a client may do. */
 enum class Role : std::uint8_t {
-  kOperator,  ///< May hold the lease, and with it steer.
-  kViewer,    ///< Looks on; may always switch the forces off.
-  /** Of a study: may hold the lease, and sees nothing of what a study hides. */
+  kOperator,  ///< May hold the lease of a hand, and so steer it.
+  kViewer,    ///< May only look on, and switch the forces off at any time.
+  /** A participant of a study: may hold a lease, and sees nothing that the study hides. */
   kParticipant,
 };
 
@@ -26,107 +26,110 @@ inline constexpr std::array kRoles{Role::kOperator, Role::kViewer, Role::kPartic
 [[nodiscard]] const char* ToString(Role role);
 [[nodiscard]] std::optional<Role> ParseRole(std::string_view name);
 
-/** Whether a link of this role lets in one browser and no other. */
-[[nodiscard]] constexpr bool IsForOne(Role role) {
+/** Whether a link of this role admits a single browser. */
+[[nodiscard]] constexpr bool IsSingleUse(Role role) {
   return role != Role::kViewer;
 }
 
-/** 192 random bits as 32 letters, digits, '-' and '_': for tokens and sessions. */
+/** Draws 192 random bits, as 32 characters of base64url: a token of a link or a session's
+ secret. */
 [[nodiscard]] std::string MakeToken();
 
-/** Compares in a time that does not depend on where they differ. */
+/** Compares two secrets in constant time: the duration does not depend on where they differ. */
 [[nodiscard]] bool IsSameSecret(std::string_view a, std::string_view b);
 
-/** A name or address as it stands in a Host header, without the port; an IPv6 address without its
- brackets. Nothing where it is not well formed. */
-[[nodiscard]] std::optional<std::string> HostOf(std::string_view host_header);
+/** Extracts the name or address from a Host header: without the port, and without the brackets of
+ an IPv6 address. None where the header is malformed. */
+[[nodiscard]] std::optional<std::string> FindHost(std::string_view host_header);
 
-/** The value of one cookie of a Cookie header; nothing where it is not there. */
+/** Finds the value of one cookie in a Cookie header. */
 [[nodiscard]] std::optional<std::string> FindCookie(std::string_view cookie_header,
                                                     std::string_view name);
 
-/** Who has come in, and by what: what one start of the studio leaves to the next. */
-struct KeptAccess {
+/** Links and browser sessions that one start of the studio hands on to the next. */
+struct SavedAccess {
   struct Link {
     std::string token;
     Role role{Role::kViewer};
-    std::string browser;  ///< Secret of the one that it has let in; empty: none yet.
+    std::string browser;  ///< Secret of the browser that it has admitted; empty: none yet.
   };
 
   struct Browser {
-    std::string secret;  ///< That it shows as its cookie.
+    std::string secret;  ///< Value of its session cookie.
     Role role{Role::kViewer};
   };
 
-  std::uint16_t port{0};  ///< That the addresses of the links have; 0: none.
+  std::uint16_t port{0};  ///< Port in the addresses of the links; 0: none.
   std::vector<Link> links;
   std::vector<Browser> browsers;
 };
 
-/** Errors: kNotFound when there is no such file; kInvalid when others can read it; kUnreadable for
- what is not of SaveAccess. */
-[[nodiscard]] Result<KeptAccess> LoadAccess(const std::filesystem::path& file);
+/** Reads a file of SaveAccess. Errors: kNotFound when there is no such file; kInvalid when other
+ users can read it; kUnreadable when SaveAccess has not written it. */
+[[nodiscard]] Result<SavedAccess> LoadAccess(const std::filesystem::path& file);
 
-/** Into a file that nobody else can read. Errors: those of WriteAtomically. */
-[[nodiscard]] Result<void> SaveAccess(const std::filesystem::path& file, const KeptAccess& access);
+/** Writes a file that only this user can read. Errors: those of WriteAtomically. */
+[[nodiscard]] Result<void> SaveAccess(const std::filesystem::path& file, const SavedAccess& access);
 
-/** Who may speak with the server at all: the names that it answers to, where pages may come from,
- and the secrets. A link to steer lets one browser in, which gets a cookie of its own and may come
- by the link again; a link to look on is for whoever has it. Any thread. */
+/** Access control of the server: the host names that it answers to, the origins that its pages may
+ have, the tokens of links and the secrets of browser sessions. A link of an operator or participant
+ admits one browser, which gets a session cookie and may use the link again; a viewer's link admits
+ every browser that has it. Any thread may call it. */
 class Access {
  public:
-  /** What lies unused is forgotten, the oldest first. */
-  static constexpr std::size_t kMostLinks = 64;
-  static constexpr std::size_t kMostBrowsers = 64;
+  /** Capacities; beyond them the oldest link that is not printed, or the oldest viewer, is
+   removed. */
+  static constexpr std::size_t kMaxLinks = 64;
+  static constexpr std::size_t kMaxBrowsers = 64;
 
-  /** @param names  Hosts besides those of the loopback that it answers to.
-   @param port  As the browser sees it.
-   @param is_tls  Pages come by https.
-   @param kept  Of the start before, which counts where it had the same port. */
-  Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, KeptAccess kept = {});
+  /** @param names  Host names and addresses that it answers to besides those of the loopback.
+   @param port  Port that the browser connects to.
+   @param is_tls  Whether pages are served by https.
+   @param kept  State of the previous start; ignored where that had another port. */
+  Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, SavedAccess kept = {});
 
-  /** As browsers write it, of a host name or an address. */
+  /** The origin of this server under a host name or address, as browsers write it. */
   [[nodiscard]] std::string OriginOf(std::string_view host) const;
 
-  /** Against DNS rebinding: only names that are this machine's. */
+  /** Whether a Host header names this machine; guards against DNS rebinding. */
   [[nodiscard]] bool AllowsHost(std::string_view host_header) const;
 
-  /** Exactly one of the origins that this server's own page has, compared as a whole. */
+  /** Whether an Origin header equals one of the origins of this server's own pages. */
   [[nodiscard]] bool AllowsOrigin(std::string_view origin) const;
 
-  /** What came of a token. */
+  /** Result of a token that was accepted. */
   struct Admission {
     Role role{Role::kViewer};
-    std::string set_cookie;  ///< For whoever came.
+    std::string set_cookie;  ///< Set-Cookie header for the admitted browser.
   };
 
-  /** Lets a browser in by a link's token.
-   Errors (kNotFound): there is no such link; (kInvalid): it has let another browser in. */
+  /** Admits a browser by the token of a link.
+   Errors: kNotFound when there is no such link; kInvalid when it has admitted another browser. */
   [[nodiscard]] Result<Admission> Admit(std::string_view token, std::string_view cookie_header);
 
-  /** The role of a browser, from the Cookie header. */
+  /** Finds the role of a browser by its Cookie header; none without a valid session. */
   [[nodiscard]] std::optional<Role> RoleOfCookie(std::string_view cookie_header) const;
 
-  /** Has the port in it: browsers keep the cookies of all ports of a host together, and two studios
-   may run on one. */
+  /** Name of the session cookie. It contains the port, because browsers share cookies between the
+   ports of a host, and two studios may run on one host. */
   [[nodiscard]] const std::string& cookie_name() const { return cookie_name_; }
 
-  /** The token of the link that the program prints. */
+  /** Token of the link that the program prints for a role. */
   [[nodiscard]] std::string token(Role role) const;
 
-  /** The token of a link that lets one more browser in. */
-  [[nodiscard]] std::string Invite(Role role);
+  /** Makes a link that admits one more browser. @returns its token. */
+  [[nodiscard]] std::string MakeInvitation(Role role);
 
-  /** The token of a link that lets one more browser in: the same until one has come by it. */
-  [[nodiscard]] std::string FindFresh(Role role);
+  /** Token of an unused link of a role; makes a link when all of them have been used. */
+  [[nodiscard]] std::string FindUnusedLink(Role role);
 
-  /** For the next start. */
-  [[nodiscard]] KeptAccess Keep() const;
+  /** Copies the state for the next start. */
+  [[nodiscard]] SavedAccess Keep() const;
 
  private:
-  [[nodiscard]] KeptAccess::Browser* FindBrowser(std::string_view secret);
+  [[nodiscard]] SavedAccess::Browser* FindBrowser(std::string_view secret);
   std::string AddLink(Role role);
-  KeptAccess::Browser* AddBrowser();
+  SavedAccess::Browser* AddBrowser();
 
   std::vector<std::string> hosts_;
   std::vector<std::string> origins_;
@@ -134,7 +137,7 @@ class Access {
   std::uint16_t port_;
   bool is_tls_;
   mutable std::mutex mutex_;  ///< Protects what follows.
-  KeptAccess known_;          ///< The first links are those that are printed, by role.
+  SavedAccess known_;  ///< The first links, in the order of kRoles, are those that are printed.
 };
 
 }  // namespace hvas::studio

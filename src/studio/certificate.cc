@@ -32,9 +32,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kDayS = 86'400;
-constexpr std::int64_t kValidDays = 397;    // the longest that browsers take from anybody
-constexpr std::int64_t kRenewedDays = 14;   // before the end
-constexpr std::int64_t kBackdatedDays = 1;  // for clocks that are behind
+constexpr std::int64_t kValidDays = 397;    // the longest validity that browsers accept
+constexpr std::int64_t kRenewedDays = 14;   // time before expiry
+constexpr std::int64_t kBackdatedDays = 1;  // allows for clocks that are behind
 
 template <auto kFree>
 struct Free {
@@ -54,7 +54,7 @@ bool IsAddress(const std::string& name) {
          ::inet_pton(AF_INET6, name.c_str(), bytes.data()) == 1;
 }
 
-/** As DNS has them. */
+/** Whether a name has the syntax of DNS host names. */
 bool IsHostName(const std::string& name) {
   constexpr std::size_t kLongest = 253;
   return !name.empty() && name.size() <= kLongest && name.front() != '.' && name.front() != '-' &&
@@ -66,7 +66,7 @@ Bio MakeBio(std::string_view bytes) {
   return Bio(BIO_new_mem_buf(bytes.data(), static_cast<int>(bytes.size())));
 }
 
-/** A key with a password has none here: nobody is asked. */
+/** Password callback of OpenSSL that gives none, so that nobody is prompted. */
 int RefusePassword(char* /*password*/, int /*size*/, int /*is_new*/, void* /*user*/) {
   return 0;
 }
@@ -84,7 +84,7 @@ bool HasName(X509* certificate, const std::string& name) {
                          : X509_check_host(certificate, name.c_str(), name.size(), 0, nullptr) == 1;
 }
 
-bool EndsBefore(const X509* certificate, std::int64_t time_s) {
+bool ExpiresBefore(const X509* certificate, std::int64_t time_s) {
   std::time_t time = time_s;
   return X509_cmp_time(X509_get0_notAfter(certificate), &time) <= 0;
 }
@@ -119,8 +119,8 @@ bool SetNames(X509* certificate, const std::vector<std::string>& names) {
                       fmt::format("{}", fmt::join(alternatives, ",")));
 }
 
-/** Key and certificate in one text, so that they are replaced together; empty when OpenSSL has no
- random numbers or no memory. */
+/** Makes key and certificate in one text, so that they are replaced together; empty when OpenSSL
+ fails for lack of random numbers or memory. */
 std::string MakePem(const std::vector<std::string>& names, std::int64_t now_s) {
   const Key key(EVP_EC_gen("P-256"));
   const X509Ptr certificate(X509_new());
@@ -159,14 +159,14 @@ Result<void> CheckNames(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (!IsAddress(name) && !IsHostName(name)) {
       return Fail(ErrorCode::kInvalid, "this is neither a host name nor an address", name,
-                  "give it as in studio.example or 192.168.1.5");
+                  "give a name such as studio.example, or an address such as 192.168.1.5");
     }
   }
   return {};
 }
 
-/** What is kept, when it is good for the names for long enough; nothing when there is none or it
- has to be made anew. */
+/** Finds the certificate in a file; none when there is none, or when it expires too soon or lacks a
+ name. */
 Result<std::optional<SelfSigned>> FindKept(const fs::path& file,
                                            const std::vector<std::string>& names,
                                            std::int64_t now_s) {
@@ -176,21 +176,21 @@ Result<std::optional<SelfSigned>> FindKept(const fs::path& file,
     return std::nullopt;
   }
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-    return Fail(ErrorCode::kInvalid, "others than you can read this key", file.string(),
-                fmt::format("delete it for a new one, or: chmod 600 '{}'", file.string()));
+    return Fail(ErrorCode::kInvalid, "other users can read this key", file.string(),
+                fmt::format("delete it to get a new one, or run: chmod 600 '{}'", file.string()));
   }
   const std::string pem = ReadRegularFile(file).value_or(std::string());
   const X509Ptr certificate = ReadCertificate(pem);
   const Key key = ReadKey(pem);
   if (certificate == nullptr || key == nullptr ||
       X509_check_private_key(certificate.get(), key.get()) != 1) {
-    return Fail(ErrorCode::kUnreadable, "this is no certificate with its key", file.string(),
-                "delete it: a new one is made then");
+    return Fail(ErrorCode::kUnreadable, "the file is not a certificate with its key", file.string(),
+                "delete it; the studio makes a new one");
   }
   const bool has_names = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return HasName(certificate.get(), name);
   });
-  if (!has_names || EndsBefore(certificate.get(), now_s + kRenewedDays * kDayS)) {
+  if (!has_names || ExpiresBefore(certificate.get(), now_s + kRenewedDays * kDayS)) {
     return std::nullopt;
   }
   return SelfSigned{{file, file}, FingerprintOf(certificate.get()), false};
@@ -203,12 +203,12 @@ Result<void> MakeFolder(const fs::path& folder) {
   }
   return failed ? Result<void>(Fail(ErrorCode::kOutOfResource,
                                     "this folder cannot be made: " + failed.message(),
-                                    folder.string(), "set XDG_STATE_HOME to one that can"))
+                                    folder.string(), "set XDG_STATE_HOME to a writable folder"))
                 : Result<void>();
 }
 
-/** As people and certificates write it; nothing for what is of no other kind than asked for. */
-std::optional<std::string> ReachableAddress(const sockaddr* address) {
+/** Formats an address; none for families other than IPv4 and IPv6, and for link-local IPv6. */
+std::optional<std::string> FormatAddress(const sockaddr* address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address == nullptr) {
     return std::nullopt;
@@ -219,14 +219,14 @@ std::optional<std::string> ReachableAddress(const sockaddr* address) {
   }
   if (address->sa_family == AF_INET6) {
     const auto* v6 = reinterpret_cast<const sockaddr_in6*>(address);
-    if (!IN6_IS_ADDR_LINKLOCAL(&v6->sin6_addr)) {  // browsers take none with a zone
+    if (!IN6_IS_ADDR_LINKLOCAL(&v6->sin6_addr)) {  // browsers do not accept zone ids
       return ::inet_ntop(AF_INET6, &v6->sin6_addr, text.data(), text.size());
     }
   }
   return std::nullopt;
 }
 
-/** Of all interfaces that are up, but the loopback. */
+/** Lists the addresses of all interfaces that are up, except the loopback. */
 std::vector<std::string> ListAddresses(bool has_v6) {
   std::vector<std::string> addresses;
   ifaddrs* list = nullptr;
@@ -236,7 +236,7 @@ std::vector<std::string> ListAddresses(bool has_v6) {
   const std::unique_ptr<ifaddrs, Free<::freeifaddrs>> owner(list);
   for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
     const bool is_reached = (at->ifa_flags & IFF_UP) != 0 && (at->ifa_flags & IFF_LOOPBACK) == 0;
-    const auto address = ReachableAddress(at->ifa_addr);
+    const auto address = FormatAddress(at->ifa_addr);
     if (is_reached && address && (has_v6 || at->ifa_addr->sa_family == AF_INET)) {
       addresses.push_back(*address);
     }
@@ -250,12 +250,12 @@ Result<fs::path> FindCertificateFolder() {
   if (const auto folder = FindUserFolder("XDG_STATE_HOME", ".local/state")) {
     return *folder;
   }
-  return Fail(ErrorCode::kNotFound, "there is no home folder to keep a certificate in", "HOME",
+  return Fail(ErrorCode::kNotFound, "there is no home folder for the certificate", "HOME",
               "set XDG_STATE_HOME to a folder, or give --certificate and --key");
 }
 
-Result<SelfSigned> KeepCertificate(const fs::path& folder, const std::vector<std::string>& names,
-                                   std::int64_t now_s) {
+Result<SelfSigned> EnsureCertificate(const fs::path& folder, const std::vector<std::string>& names,
+                                     std::int64_t now_s) {
   if (const auto checked = CheckNames(names); !checked) {
     return Unexpected(checked.error());
   }
@@ -269,7 +269,7 @@ Result<SelfSigned> KeepCertificate(const fs::path& folder, const std::vector<std
   }
   const std::string pem = MakePem(names, now_s);
   if (pem.empty()) {
-    return Fail(ErrorCode::kInternal, "OpenSSL makes no certificate", file.string(),
+    return Fail(ErrorCode::kInternal, "OpenSSL could not make a certificate", file.string(),
                 "give --certificate and --key");
   }
   if (const auto made = MakeFolder(folder); !made) {
@@ -288,7 +288,7 @@ Result<std::string> CalcFingerprint(const fs::path& certificate) {
   }
   const X509Ptr read = ReadCertificate(*text);
   if (read == nullptr) {
-    return Fail(ErrorCode::kUnreadable, "there is no certificate in PEM in this file",
+    return Fail(ErrorCode::kUnreadable, "the file has no certificate in PEM format",
                 certificate.string(), "give the file that begins with -----BEGIN CERTIFICATE-----");
   }
   return FingerprintOf(read.get());
@@ -296,8 +296,8 @@ Result<std::string> CalcFingerprint(const fs::path& certificate) {
 
 Result<std::vector<std::string>> ListNamesOf(const std::string& address) {
   if (!IsAddress(address)) {
-    return Fail(ErrorCode::kInvalid, "this is no address", address,
-                "give one of this machine, or 0.0.0.0 for all that it has");
+    return Fail(ErrorCode::kInvalid, "this is not an IP address", address,
+                "give an address of this machine, or 0.0.0.0 for all of them");
   }
   std::vector<std::string> names{address};
   if (address == "0.0.0.0" || address == "::") {

@@ -9,41 +9,41 @@
 
 namespace hvas::studio {
 
-/** What a server shows to prove who it is: PEM files, which may be one and the same. */
+/** Certificate and private key of a server: PEM files, which may be one file. */
 struct TlsFiles {
-  std::filesystem::path certificate;  ///< With those that signed it behind it.
+  std::filesystem::path certificate;  ///< The certificate, followed by its chain.
   std::filesystem::path key;
 };
 
-/** A certificate that nobody but its key has signed: people compare its fingerprint. */
+/** A self-signed certificate, which people verify by its fingerprint. */
 struct SelfSigned {
   TlsFiles files;
-  std::string fingerprint;  ///< As CalcFingerprint.
-  bool is_new{false};       ///< Browsers that trusted the one before ask again.
+  std::string fingerprint;  ///< Result of CalcFingerprint.
+  bool is_new{false};  ///< Made by this call: browsers that trusted the previous one ask again.
 };
 
-/** Where a user's own certificate is: $XDG_STATE_HOME/hvas, else ~/.local/state/hvas.
- Errors (kNotFound): there is no home. */
+/** Finds the folder of the user's certificate: $XDG_STATE_HOME/hvas, else ~/.local/state/hvas.
+ Errors: kNotFound when neither variable is set. */
 [[nodiscard]] Result<std::filesystem::path> FindCertificateFolder();
 
-/** The certificate for these names that is kept in a folder, in one file with its key that nobody
- but the user can read. It is made when there is none, and anew when it ends within two weeks or
- lacks a name: ECDSA on P-256, for a year.
+/** Finds or makes the self-signed certificate for these names in a folder: one file with its key,
+ readable by this user only. It is made when there is none, and again when it expires within two
+ weeks or lacks a name: ECDSA on P-256, valid for a year.
  @param names  Host names and addresses, at least one.
  @param now_s  Unix time [s].
- Errors: kUnreadable when the file there holds something else, kInvalid when others can read it or
- a name is none; those of writing a file. */
-[[nodiscard]] Result<SelfSigned> KeepCertificate(const std::filesystem::path& folder,
-                                                 const std::vector<std::string>& names,
-                                                 std::int64_t now_s);
+ Errors: kUnreadable when the file holds something else; kInvalid when other users can read it or a
+ name is malformed; those of WriteAtomically. */
+[[nodiscard]] Result<SelfSigned> EnsureCertificate(const std::filesystem::path& folder,
+                                                   const std::vector<std::string>& names,
+                                                   std::int64_t now_s);
 
-/** SHA-256 of the first certificate of a PEM file, as browsers show it: "0A:1B:..".
- Errors (kUnreadable): there is none. */
+/** Computes the SHA-256 fingerprint of the first certificate of a PEM file, as browsers show it:
+ "0A:1B:..". Errors: kUnreadable when there is no certificate in it. */
 [[nodiscard]] Result<std::string> CalcFingerprint(const std::filesystem::path& certificate);
 
-/** Of a machine that listens at an address: the address itself, or, where it stands for all of
- them ("0.0.0.0", "::"), all that others can reach it by; then the machine's name.
- Errors (kInvalid): this is no address. */
+/** Lists the names of a machine that listens at an address: the address itself, or, for the
+ unspecified address ("0.0.0.0", "::"), all addresses that other machines can reach; then the
+ machine's host name. Errors: kInvalid for a malformed address. */
 [[nodiscard]] Result<std::vector<std::string>> ListNamesOf(const std::string& address);
 
 }  // namespace hvas::studio

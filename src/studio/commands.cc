@@ -1,4 +1,4 @@
-// What clients may ask for: the commands of docs/protocol.md, in its order.
+// Handlers of the commands in docs/protocol.md, in its order.
 
 #include <algorithm>
 #include <iterator>
@@ -14,7 +14,7 @@
 namespace hvas::studio {
 namespace {
 
-/** The empty result of a command that was obeyed. */
+/** Empty result of a command that has succeeded. */
 Result<Json> Done(const Result<void>& result) {
   return result ? Result<Json>(Json::object()) : Result<Json>(Unexpected(result.error()));
 }
@@ -102,8 +102,8 @@ Result<Json> Hub::DoForces(const Caller& caller, const Json& command) {
     return Unexpected(is_off.error());
   }
   if (!*is_off && !caller.has_lease) {
-    return Fail(ErrorCode::kInvalid, "only whoever steers can switch the forces on", "forces",
-                "ask for the lease first");
+    return Fail(ErrorCode::kInvalid, "only the user in control can switch the forces on", "forces",
+                "ask for control first");
   }
   workbench_->SetForcesOff(*is_off);
   Broadcast({{"event", "forces"}, {"off", *is_off}, {"by", caller.id}});
@@ -222,7 +222,7 @@ Result<Json> Hub::RequestLease(const Caller& caller, const std::vector<std::size
       holder = leases_[hand];
     }
   }
-  TellOfRoles();
+  BroadcastRoles();
   if (holder.empty()) {
     return Json::object();
   }
@@ -257,8 +257,8 @@ Result<Json> Hub::DoLease(const Caller& caller, const Json& command) {
     GiveLease(given, to);
     return Json::object();
   }
-  return Fail(ErrorCode::kInvalid, "this cannot be done with the lease now", *action,
-              caller.role == Role::kOperator ? "" : "this link is for looking on");
+  return Fail(ErrorCode::kInvalid, "control cannot be given or asked for in this way now", *action,
+              caller.role == Role::kOperator ? "" : "this link is for viewers");
 }
 
 Result<Json> Hub::DoStatus() {
@@ -267,12 +267,12 @@ Result<Json> Hub::DoStatus() {
 
 Result<Json> Hub::DoStudy(const Caller& caller, const Json& command) {
   if (desk_ == nullptr) {
-    return Fail(ErrorCode::kInvalid, "no study is run here", "study",
-                "begin the studio with --study and --participant");
+    return Fail(ErrorCode::kInvalid, "this studio does not run a study", "study",
+                "start the studio with --study and --participant");
   }
   auto result = desk_->Do(caller.role, command, MonotonicNs());
   if (result && TextAt(command, "action").value_or("") != "state") {
-    TellOfStudy();
+    BroadcastStudyState();
   }
   return result;
 }

@@ -1,4 +1,4 @@
-// For the sources of the server alone: Boost.Beast takes long to compile.
+// Included by the sources of the server only: Boost.Beast takes long to compile.
 #pragma once
 
 #include <cstdint>
@@ -14,90 +14,90 @@
 
 namespace hvas::studio {
 
-/** Who is in: so many connections, and no more. Whoever holds one open without having shown a
- cookie keeps nobody out: the one of them that came first goes when another one comes. One thread's.
- */
-class Guests {
+/** Limits the number of open connections. A connection without a valid session cookie keeps nobody
+ out: when the table is full, the oldest of those is closed in favour of a new one. For one
+ thread. */
+class ConnectionTable {
  public:
   static constexpr std::size_t kMost = 64;
 
-  /** @returns its number; 0 when all that are here are known, and there is no room. */
+  /** @returns the connection's number; 0 when the table is full of authenticated connections. */
   std::uint64_t Add(boost::beast::tcp_stream* stream) {
-    if (guests_.size() >= kMost && !MakeRoom()) {
+    if (entries_.size() >= kMost && !MakeRoom()) {
       return 0;
     }
-    guests_[++last_] = {stream, false};
+    entries_[++last_] = {stream, false};
     return last_;
   }
 
-  void Know(std::uint64_t number) {
-    if (const auto found = guests_.find(number); found != guests_.end()) {
-      found->second.is_known = true;
+  void MarkAuthenticated(std::uint64_t number) {
+    if (const auto found = entries_.find(number); found != entries_.end()) {
+      found->second.is_authenticated = true;
     }
   }
 
-  void Remove(std::uint64_t number) { guests_.erase(number); }
+  void Remove(std::uint64_t number) { entries_.erase(number); }
 
  private:
-  struct Guest {
+  struct Entry {
     boost::beast::tcp_stream* stream{nullptr};
-    bool is_known{false};
+    bool is_authenticated{false};
   };
 
   bool MakeRoom() {
-    for (auto it = guests_.begin(); it != guests_.end(); ++it) {
-      if (!it->second.is_known) {
-        it->second.stream->close();  // whoever waits for it is told, and lets it go
-        guests_.erase(it);
+    for (auto it = entries_.begin(); it != entries_.end(); ++it) {
+      if (!it->second.is_authenticated) {
+        it->second.stream->close();  // pending operations fail, which ends their session
+        entries_.erase(it);
         return true;
       }
     }
     return false;
   }
 
-  std::map<std::uint64_t, Guest> guests_;  ///< In the order in which they came.
+  std::map<std::uint64_t, Entry> entries_;  ///< Key: number, hence in the order of arrival.
   std::uint64_t last_{0};
 };
 
-/** A stream of Asio's to one client, with TLS or without: one type for both, so that all above it
- is compiled once. */
+/** An Asio stream to one client, with or without TLS. It is one type for both, so that the layers
+ above are compiled once. */
 class Connection {
  public:
   using next_layer_type = boost::beast::tcp_stream;
   using executor_type = next_layer_type::executor_type;
   using Tls = boost::beast::ssl_stream<next_layer_type&>;
 
-  Connection(boost::asio::ip::tcp::socket socket, std::shared_ptr<Guests> guests)
-      : seat_(std::make_unique<Seat>(std::move(socket), std::move(guests))) {}
+  Connection(boost::asio::ip::tcp::socket socket, std::shared_ptr<ConnectionTable> table)
+      : slot_(std::make_unique<Slot>(std::move(socket), std::move(table))) {}
 
-  /** False: there is no room for it. */
-  [[nodiscard]] bool is_in() const { return seat_->number != 0; }
+  /** Whether the connection table has accepted it. */
+  [[nodiscard]] bool is_in() const { return slot_->number != 0; }
 
-  /** Whoever it is has shown a cookie of this server's. */
-  void SetKnown() { seat_->guests->Know(seat_->number); }
+  /** Marks the client as authenticated: it has sent a valid session cookie. */
+  void MarkAuthenticated() { slot_->table->MarkAuthenticated(slot_->number); }
 
   [[nodiscard]] bool is_tls() const { return tls_ != nullptr; }
 
-  /** From here on all is encrypted. */
+  /** Begins TLS; all later reads and writes are encrypted. */
   Tls& BeginTls(boost::asio::ssl::context* context) {
-    tls_ = std::make_unique<Tls>(seat_->stream, *context);
+    tls_ = std::make_unique<Tls>(slot_->stream, *context);
     return *tls_;
   }
 
   [[nodiscard]] Tls& tls() { return *tls_; }
 
-  executor_type get_executor() noexcept { return seat_->stream.get_executor(); }
+  executor_type get_executor() noexcept { return slot_->stream.get_executor(); }
 
-  next_layer_type& next_layer() noexcept { return seat_->stream; }
+  next_layer_type& next_layer() noexcept { return slot_->stream; }
 
-  const next_layer_type& next_layer() const noexcept { return seat_->stream; }
+  const next_layer_type& next_layer() const noexcept { return slot_->stream; }
 
   template <typename Buffers, typename Handler>
   void async_read_some(const Buffers& buffers, Handler&& handler) {
     if (tls_ != nullptr) {
       tls_->async_read_some(buffers, std::forward<Handler>(handler));
     } else {
-      seat_->stream.async_read_some(buffers, std::forward<Handler>(handler));
+      slot_->stream.async_read_some(buffers, std::forward<Handler>(handler));
     }
   }
 
@@ -106,30 +106,30 @@ class Connection {
     if (tls_ != nullptr) {
       tls_->async_write_some(buffers, std::forward<Handler>(handler));
     } else {
-      seat_->stream.async_write_some(buffers, std::forward<Handler>(handler));
+      slot_->stream.async_write_some(buffers, std::forward<Handler>(handler));
     }
   }
 
  private:
-  struct Seat {
-    Seat(boost::asio::ip::tcp::socket socket, std::shared_ptr<Guests> given)
-        : stream(std::move(socket)), guests(std::move(given)), number(guests->Add(&stream)) {}
+  struct Slot {
+    Slot(boost::asio::ip::tcp::socket socket, std::shared_ptr<ConnectionTable> given)
+        : stream(std::move(socket)), table(std::move(given)), number(table->Add(&stream)) {}
 
-    ~Seat() { guests->Remove(number); }
+    ~Slot() { table->Remove(number); }
 
-    Seat(const Seat&) = delete;
-    Seat& operator=(const Seat&) = delete;
+    Slot(const Slot&) = delete;
+    Slot& operator=(const Slot&) = delete;
 
     boost::beast::tcp_stream stream;
-    std::shared_ptr<Guests> guests;
+    std::shared_ptr<ConnectionTable> table;
     std::uint64_t number;
   };
 
-  std::unique_ptr<Seat> seat_;
-  std::unique_ptr<Tls> tls_;  ///< Over the seat's stream; null: nothing is encrypted.
+  std::unique_ptr<Slot> slot_;
+  std::unique_ptr<Tls> tls_;  ///< TLS layer over the seat's stream; null: plain TCP.
 };
 
-/** Found by boost::beast::websocket where a WebSocket over a Connection has ended. */
+/** Closes the transport below a WebSocket; Boost.Beast finds it by argument-dependent lookup. */
 template <typename Handler>
 void async_teardown(boost::beast::role_type role, Connection& connection, Handler&& handler) {
   using boost::beast::websocket::async_teardown;

@@ -77,10 +77,10 @@ Result<Edit> MakeEdit(const Json& command) {
   if (*name == "remove_mate") {
     return MakeRemoveMate(command);
   }
-  return Fail(ErrorCode::kInvalid, "this is no change of the product", *name, "");
+  return Fail(ErrorCode::kInvalid, "the command is not a change of the product", *name, "");
 }
 
-Result<ChangeFn> MakeChangeOf(const std::vector<Json>& commands) {
+Result<ChangeFn> CombineEdits(const std::vector<Json>& commands) {
   std::vector<ChangeFn> changes;
   for (const Json& command : commands) {
     auto edit = MakeEdit(command);

@@ -14,18 +14,18 @@ namespace hvas::studio {
 /** A change of a product. */
 using ChangeFn = std::function<Result<void>(product::Product*)>;
 
-/** A change of the product that somebody has asked for. */
+/** A change of the product that a client has requested. */
 struct Edit {
-  std::string what;                ///< For the list of what can be undone.
-  nlohmann::ordered_json command;  ///< That it can be made from again; null: it cannot.
+  std::string what;                ///< Description in the undo list.
+  nlohmann::ordered_json command;  ///< Command to repeat it from; null: it cannot be repeated.
   ChangeFn change;
 };
 
-/** The edit that a command assign_fit, add_mate or remove_mate asks for. Errors (kInvalid): it is
- none of them, or lacks a field. */
+/** Makes the edit of a command assign_fit, add_mate or remove_mate. Errors: kInvalid for another
+ command, or one that lacks a field. */
 [[nodiscard]] Result<Edit> MakeEdit(const nlohmann::ordered_json& command);
 
-/** Many of them, one after the other. Errors: of the first that is no edit. */
-[[nodiscard]] Result<ChangeFn> MakeChangeOf(const std::vector<nlohmann::ordered_json>& commands);
+/** Combines commands into one change that applies them in order. Errors: the first of MakeEdit. */
+[[nodiscard]] Result<ChangeFn> CombineEdits(const std::vector<nlohmann::ordered_json>& commands);
 
 }  // namespace hvas::studio

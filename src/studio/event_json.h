@@ -7,13 +7,13 @@
 
 namespace hvas::studio {
 
-/** The numbers and words of docs/protocol.md. */
+/** Values in the notation of docs/protocol.md: SI units, quaternions as w, x, y, z. */
 [[nodiscard]] const char* ToString(simulation::Placement placement);
 [[nodiscard]] nlohmann::ordered_json ToJson(const Error& error);
 [[nodiscard]] nlohmann::ordered_json ToJson(const Vec3& v);
 [[nodiscard]] nlohmann::ordered_json ToJson(const spatial::Pose& X);
 
-/** Null for events that viewers are not told of. */
+/** Event of docs/protocol.md; null for events that clients do not get. */
 [[nodiscard]] nlohmann::ordered_json ToJson(const simulation::SimulationEvent& event);
 
 }  // namespace hvas::studio

@@ -10,15 +10,15 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "frames are little endian");
 
-constexpr std::uint32_t kMostItems = 64;
+constexpr std::uint32_t kMaxItems = 64;
 
 Error Refuse(const std::string& what) {
-  return {ErrorCode::kInvalid, what, "frame from a client", "load the page again"};
+  return {ErrorCode::kInvalid, what, "frame from a client", "reload the page"};
 }
 
 template <typename Item>
 Result<std::vector<Item>> ReadItems(const protocol::Header& header, std::string_view body) {
-  if (header.count > kMostItems || body.size() != header.count * sizeof(Item)) {
+  if (header.count > kMaxItems || body.size() != header.count * sizeof(Item)) {
     return Unexpected(Refuse(fmt::format("{} items in {} bytes", header.count, body.size())));
   }
   std::vector<Item> items(header.count);
@@ -51,7 +51,7 @@ Result<void> AddFrame(const protocol::Header& header, std::string_view body, Cli
       }
       for (const protocol::HandInput& input : *items) {
         if (!IsFinite(input)) {
-          return Unexpected(Refuse("a pose that is no pose"));
+          return Unexpected(Refuse("the pose is not finite, or its quaternion is not of length 1"));
         }
         frames->inputs.push_back(input);
       }
@@ -77,19 +77,19 @@ Result<ClientFrames> ReadClientFrames(std::string_view message) {
   while (!message.empty()) {
     protocol::Header header;
     if (message.size() < sizeof(header)) {
-      return Unexpected(Refuse(fmt::format("{} bytes are no header", message.size())));
+      return Unexpected(Refuse(fmt::format("{} bytes are too short for a header", message.size())));
     }
     std::memcpy(&header, message.data(), sizeof(header));
     if (header.magic != protocol::kMagic) {
-      return Unexpected(Refuse("it does not begin with HVAS"));
+      return Unexpected(Refuse("the message does not begin with HVAS"));
     }
     if (header.version != protocol::kVersion) {
-      return Unexpected(
-          Refuse(fmt::format("version {} instead of {}", header.version, protocol::kVersion)));
+      return Unexpected(Refuse(fmt::format("the header has version {} instead of {}",
+                                           header.version, protocol::kVersion)));
     }
     if (header.size < sizeof(header) || header.size > message.size()) {
-      return Unexpected(
-          Refuse(fmt::format("a size of {} bytes, where {} came", header.size, message.size())));
+      return Unexpected(Refuse(fmt::format(
+          "the header has a size of {} bytes, but {} were received", header.size, message.size())));
     }
     const auto added =
         AddFrame(header, message.substr(sizeof(header), header.size - sizeof(header)), &frames);

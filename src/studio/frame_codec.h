@@ -12,8 +12,8 @@
 
 namespace hvas::studio {
 
-/** One frame: header and items, as the protocol lays them out. Items are trivially copyable and
- the machine is little endian. */
+/** Appends one frame to a binary message: header and items in the layout of docs/protocol.md, for
+ which items have to be trivially copyable and the machine little endian. */
 template <typename Item>
 void AppendFrame(std::span<const Item> items, std::uint32_t seq, std::uint32_t epoch,
                  std::int64_t t_ns, std::string* bytes) {
@@ -32,15 +32,15 @@ void AppendFrame(std::span<const Item> items, std::uint32_t seq, std::uint32_t e
   }
 }
 
-/** All that a client's binary message says. */
+/** Content of a client's binary message. */
 struct ClientFrames {
   std::vector<protocol::HandInput> inputs;
   std::vector<protocol::Acknowledgement> credits;
 };
 
-/** Reads a client's message; passes over kinds that it does not know, by their size.
- Errors (kInvalid): not our frames, another version, a size that the message does not have, more
- items than a client has reason to send, a number that is not finite. */
+/** Reads a client's binary message; frames of unknown kinds are skipped by their size.
+ Errors: kInvalid for a wrong magic number or version, a size beyond the end of the message, more
+ items than a client has reason to send, or a number that is not finite. */
 [[nodiscard]] Result<ClientFrames> ReadClientFrames(std::string_view message);
 
 }  // namespace hvas::studio

@@ -53,20 +53,20 @@ protocol::HandState MakeHand(const haptics::TickOutput& tick, std::size_t index,
 }
 
 std::vector<protocol::BodyPose> ListMoved(const simulation::Frame& frame,
-                                          std::vector<spatial::Pose>* told) {
+                                          std::vector<spatial::Pose>* known) {
   std::vector<protocol::BodyPose> moved;
-  const bool is_first = told->size() != frame.X_WB.size();
+  const bool is_first = known->size() != frame.X_WB.size();
   for (std::size_t i = 0; i < frame.X_WB.size(); ++i) {
-    if (is_first || !IsSame(frame.X_WB[i], (*told)[i])) {
+    if (is_first || !IsSame(frame.X_WB[i], (*known)[i])) {
       moved.push_back(
           {static_cast<std::uint32_t>(i), Pack(frame.X_WB[i].p()), Pack(frame.X_WB[i].q())});
     }
   }
-  *told = frame.X_WB;
+  *known = frame.X_WB;
   return moved;
 }
 
-/** Counts between edges, the last of all that is longer. */
+/** Makes histogram counts between edges; the last bin has everything above the last edge. */
 Json CountBetween(const LatencyHistogram& histogram, std::span<const int> edges_us) {
   constexpr std::int64_t kNsPerUs = 1000;
   Json counts = Json::array();
@@ -91,9 +91,9 @@ Json MakeHistograms(const simulation::LoopStatus& status) {
 }  // namespace
 
 std::string MakeFrames(const LiveFrame& live, std::int64_t t_ns, std::uint32_t seq,
-                       std::vector<spatial::Pose>* told) {
+                       std::vector<spatial::Pose>* known) {
   const simulation::Frame& frame = live.frame;
-  const std::vector<protocol::BodyPose> moved = ListMoved(frame, told);
+  const std::vector<protocol::BodyPose> moved = ListMoved(frame, known);
   std::vector<protocol::HandState> hands;
   std::vector<protocol::ContactPoint> contacts;
   for (std::size_t i = 0; i < frame.ticks.size(); ++i) {

@@ -9,19 +9,20 @@
 
 namespace hvas::studio {
 
-/** The message with what has changed since a client was told last; empty when that is nothing.
- @param t_ns  What its frames have for their time.
- @param told  The poses that the client has, brought up to date; empty: it has none. */
+/** Makes the binary message with all poses that have changed since the client's last one; empty
+ when none has.
+ @param t_ns  Time in the header of its frames [ns].
+ @param[in,out] known  Poses X_WB that the client has, by occurrence; empty: none. */
 [[nodiscard]] std::string MakeFrames(const LiveFrame& frame, std::int64_t t_ns, std::uint32_t seq,
-                                     std::vector<spatial::Pose>* told);
+                                     std::vector<spatial::Pose>* known);
 
-/** Where an input wants the hand. @pre it came through ReadClientFrames. */
+/** Target pose X_WH of an input. @pre ReadClientFrames has checked it. */
 [[nodiscard]] spatial::Pose PoseOf(const protocol::HandInput& input);
 
-/** What "status" says of a hand. */
+/** Makes the entry of a hand in the event "status". */
 [[nodiscard]] Json MakeHandStatus(const LiveFrame& frame, std::size_t hand);
 
-/** The event "status" of docs/protocol.md, without what the hub knows. */
+/** Makes the event "status" of docs/protocol.md, without the fields that the hub adds. */
 [[nodiscard]] Json MakeStatus(const simulation::LoopStatus& status);
 
 }  // namespace hvas::studio

@@ -14,11 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/** The pointer, as a device is described. */
+/** Describes the pointer in the form of a device. */
 device::DeviceInfo MakePointerInfo() {
   device::DeviceInfo info;
   info.model = "Mouse, touch or controller";
-  info.capabilities.force_axes = 3;  // they are computed, and shown as arrows and sounds
+  info.capabilities.force_axes = 3;  // forces are computed, and displayed as arrows and sounds
   info.capabilities.torque_axes = 3;
   return info;
 }
@@ -79,7 +79,7 @@ Json ListDevices() {
         {{"address", fmt::format("emulated:{}:{}", profile.driver, profile.profile.id)},
          {"driver", profile.driver},
          {"name", profile.profile.name},
-         {"detail", "not there: computed, and held by the pointer or the simulated person"},
+         {"detail", "not connected: simulated, and held by the pointer or the simulated person"},
          {"is_emulated", true},
          {"is_ready", true}});
   }
@@ -94,8 +94,8 @@ std::size_t HandRack::count() const {
 }
 
 void HandRack::SetCount(std::size_t count) {
-  HVAS_DEMAND(count == 1 || count == kMostHands);
-  std::vector<Slot> closed;  // outside the lock
+  HVAS_DEMAND(count == 1 || count == kMaxHands);
+  std::vector<Slot> closed;  // destroyed after the lock is released: closing takes time
   const std::lock_guard lock(mutex_);
   while (slots_.size() > count) {
     closed.push_back(std::move(slots_.back()));
@@ -111,12 +111,12 @@ Result<void> HandRack::Use(std::size_t hand, const std::string& address, double 
     const std::lock_guard lock(mutex_);
     if (hand >= slots_.size()) {
       return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
-                  "ask for two hands first");
+                  "switch to two hands first");
     }
     for (std::size_t i = 0; i < slots_.size() && address != kPointer; ++i) {
       if (slots_[i].address == address && i != hand) {
-        return Fail(ErrorCode::kInvalid, "this device is in the other hand", address,
-                    "put another one there first");
+        return Fail(ErrorCode::kInvalid, "the other hand uses this device", address,
+                    "choose another device for that hand first");
       }
     }
     if (slots_[hand].address == address) {

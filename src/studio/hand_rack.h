@@ -12,30 +12,34 @@
 
 namespace hvas::studio {
 
-/** The devices that are in the hands, from one live run to the next. Any thread; Use may take some
- seconds, and is one thread's. */
+/** Devices of the hands; they stay open from one live run to the next. Any thread may call it, but
+ Use(), which may take some seconds, is for one thread. */
 class HandRack {
  public:
-  static constexpr const char* kPointer = "pointer";  ///< The address of no device.
-  static constexpr std::size_t kMostHands = 2;
+  static constexpr const char* kPointer = "pointer";  ///< Address for a hand without a device.
+  static constexpr std::size_t kMaxHands = 2;
 
   [[nodiscard]] std::size_t count() const;
 
-  /** What a hand that is taken away has held is closed. @pre 1 or kMostHands. */
+  /** Sets the number of hands; closes the device of a hand that is removed. @pre 1 or
+   kMaxHands. */
   void SetCount(std::size_t count);
 
-  /** Puts a device into a hand, in the place of what is there. One that is there already stays
-   open. Errors: kInvalid where the hand is none or the device is in the other one; the driver's. */
+  /** Assigns a device to a hand in place of its present one; a device that it has already stays
+   open.
+   @param scale  As in simulation::RenderOptions.
+   Errors: kInvalid where there is no such hand or the other hand has the device; the driver's. */
   [[nodiscard]] Result<void> Use(std::size_t hand, const std::string& address, double scale);
 
-  /** By hand. */
+  /** Setups, indexed by hand. */
   [[nodiscard]] std::vector<HandSetup> setups() const;
 
-  /** A tick has told how a device is. @returns that in words, with what to do; empty for none. */
+  /** Keeps the condition of a device that a tick has reported. @returns a message for people, with
+   the remedy; empty where there is none to show. */
   std::string SetState(std::size_t hand, device::Condition condition, std::int32_t vendor_code);
 
-  /** "hands" of docs/protocol.md.
-   @param hands  Those of the run, for what they render; may be empty. */
+  /** Makes the field "hands" of docs/protocol.md.
+   @param hands  Tick options of the run, for what the hands render; may be empty. */
   [[nodiscard]] nlohmann::ordered_json Describe(
       const std::vector<const haptics::TickOptions*>& hands) const;
 
@@ -50,16 +54,17 @@ class HandRack {
   std::vector<Slot> slots_{1};
 };
 
-/** What could be put into a hand, found without opening any. Any thread. */
+/** Searches for devices that a hand could use, without opening one. Any thread may call it. */
 class DeviceSearch {
  public:
-  /** @returns whether the caller is to call Run: false where somebody searches already. */
+  /** Claims the search. @returns whether the caller has to call Run(): false while one is
+   running. */
   [[nodiscard]] bool Begin();
 
-  /** Takes some seconds. */
+  /** Searches; takes some seconds. */
   void Run();
 
-  /** "devices" of docs/protocol.md: those found last. */
+  /** Makes the field "devices" of docs/protocol.md, from the result of the last search. */
   [[nodiscard]] nlohmann::ordered_json Describe() const;
 
  private:

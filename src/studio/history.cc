@@ -8,11 +8,11 @@ namespace hvas::studio {
 
 using Json = nlohmann::ordered_json;
 
-void History::Remember(SceneNow before, const std::string& what) {
+void History::Remember(SceneSnapshot before, const std::string& what) {
   const std::lock_guard lock(mutex_);
   undo_.push_back({std::move(before), what});
   redo_.clear();
-  if (undo_.size() > kMostMoments) {
+  if (undo_.size() > kMaxMoments) {
     undo_.erase(undo_.begin());
   }
 }
@@ -27,7 +27,7 @@ Result<void> History::Check(Direction direction) const {
   return {};
 }
 
-std::optional<SceneNow> History::Go(Direction direction, const SceneNow& now) {
+std::optional<SceneSnapshot> History::Go(Direction direction, const SceneSnapshot& now) {
   const std::lock_guard lock(mutex_);
   auto& from = direction == Direction::kUndo ? undo_ : redo_;
   auto& to = direction == Direction::kUndo ? redo_ : undo_;

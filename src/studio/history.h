@@ -13,40 +13,40 @@
 
 namespace hvas::studio {
 
-/** What is open, and how far it has come. */
-struct SceneNow {
-  std::shared_ptr<const OpenScene> scene;  ///< Null while nothing is.
+/** Snapshot of a scene and its state of assembly. */
+struct SceneSnapshot {
+  std::shared_ptr<const OpenScene> scene;  ///< Null while no file is open.
   LiveState state;
 };
 
-/** What was done and can be undone, and what was undone and can be done again. Any thread. */
+/** Undo and redo lists. Any thread may call it. */
 class History {
  public:
   enum class Direction { kUndo, kRedo };
 
-  /** Of what is forgotten first. */
-  static constexpr std::size_t kMostMoments = 100;
+  /** Capacity of each list; beyond it the oldest moment is dropped. */
+  static constexpr std::size_t kMaxMoments = 100;
 
-  /** @param before  How all was before it.
-      @param what  Was done, as people call it. */
-  void Remember(SceneNow before, const std::string& what);
+  /** Adds an undo step. @param before  Snapshot before the action.
+   @param what  Description of the action for people. */
+  void Remember(SceneSnapshot before, const std::string& what);
 
-  /** Errors (kNotFound): there is nothing to go to. */
+  /** Errors: kNotFound when the list of this direction is empty. */
   [[nodiscard]] Result<void> Check(Direction direction) const;
 
-  /** One step; nothing where there is none.
-   @param now  To come back to. @returns how all was then. */
-  [[nodiscard]] std::optional<SceneNow> Go(Direction direction, const SceneNow& now);
+  /** Goes one step in a direction. @param now  Present snapshot, for the opposite list.
+   @returns the snapshot to restore; none where the list is empty. */
+  [[nodiscard]] std::optional<SceneSnapshot> Go(Direction direction, const SceneSnapshot& now);
 
   void Clear();
 
-  /** The event "history" of docs/protocol.md. */
+  /** Makes the event "history" of docs/protocol.md. */
   [[nodiscard]] nlohmann::ordered_json Describe() const;
 
  private:
   struct Moment {
-    SceneNow scene;
-    std::string what;  ///< Was done after it.
+    SceneSnapshot scene;
+    std::string what;  ///< Description of the action that followed it.
   };
 
   mutable std::mutex mutex_;

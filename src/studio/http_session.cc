@@ -9,19 +9,19 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/format.h>
 
-#include "studio/answers.h"
 #include "studio/event_json.h"
 #include "studio/json_fields.h"
+#include "studio/responses.h"
 #include "studio/socket_session.h"
 
 namespace hvas::studio {
 namespace {
 
-constexpr std::size_t kMostHeader = 8 << 10;
-constexpr std::size_t kMostBody = 4 << 10;  // of what is no upload
-constexpr double kSlowest = 128 << 10;      // that an answer may be read with [bytes/s]
+constexpr std::size_t kMaxHeader = 8 << 10;
+constexpr std::size_t kMaxBody = 4 << 10;  // largest body but that of an upload [bytes]
+constexpr double kSlowest = 128 << 10;     // slowest rate at which a response may be read [bytes/s]
 constexpr std::chrono::seconds kUploadTime(300);
-constexpr std::chrono::seconds kLinger(5);  // for what was sent in vain
+constexpr std::chrono::seconds kLinger(5);  // time for reading the rest of a refused request
 
 constexpr std::string_view kContentSecurity =
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' "
@@ -41,7 +41,7 @@ std::string_view FieldOf(const Fields& fields, http::field name) {
   return ToView(fields[name]);
 }
 
-/** One connection's requests, one after the other. */
+/** Serves the requests of one connection, one after the other. */
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket socket, std::shared_ptr<ServerShared> shared)
@@ -94,8 +94,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void ReadHeader() {
     header_.emplace();
-    header_->header_limit(kMostHeader);
-    header_->body_limit(std::numeric_limits<std::uint64_t>::max());  // each route has its own
+    header_->header_limit(kMaxHeader);
+    header_->body_limit(
+        std::numeric_limits<std::uint64_t>::max());  // each route has a limit of its own
     wire().expires_after(shared_->options.patience);
     http::async_read_header(
         connection_, buffer_, *header_, [self = shared_from_this()](error_code error, std::size_t) {
@@ -116,8 +117,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const Access& access = *shared_->access;
     if (!access.AllowsHost(FieldOf(request, http::field::host))) {
       return Refuse(http::status::forbidden,
-                    {ErrorCode::kInvalid, "this server does not answer to that host name", "Host",
-                     "open the address that it printed"});
+                    {ErrorCode::kInvalid, "this server does not accept this host name", "Host",
+                     "open the address that the program printed"});
     }
     if (shared_->tls != nullptr && !connection_.is_tls()) {
       return SendToTls();
@@ -126,8 +127,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const bool is_upgrade = websocket::is_upgrade(request);
     if ((is_change || is_upgrade || !origin.empty()) && !access.AllowsOrigin(origin)) {
       return Refuse(http::status::forbidden,
-                    {ErrorCode::kInvalid, "a page from elsewhere may not speak with this server",
-                     "Origin", "open the address that it printed"});
+                    {ErrorCode::kInvalid, "a page of another origin may not access this server",
+                     "Origin", "open the address that the program printed"});
     }
     const std::string_view target = ToView(request.target());
     const std::string_view path = target.substr(0, target.find('?'));
@@ -136,26 +137,26 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     if (request.method() == http::verb::get && !path.starts_with("/api/") && path != "/ws") {
       const auto accepted = FieldOf(request, http::field::accept_encoding);
-      return Reply(AnswerAsset(path, accepted));
+      return Reply(MakeAssetResponse(path, accepted));
     }
     const auto role = access.RoleOfCookie(FieldOf(request, http::field::cookie));
     if (!role) {
       return Refuse(http::status::unauthorized,
-                    {ErrorCode::kInvalid, "nobody knows you here", "",
-                     "open the link that the program printed, with its token"});
+                    {ErrorCode::kInvalid, "this browser has no session", "",
+                     "open the link that the program printed, including its token"});
     }
-    connection_.SetKnown();
+    connection_.MarkAuthenticated();
     RouteKnown(*role, path, is_upgrade);
   }
 
-  /** The same page by https. The secret stays behind its #, in the browser. @pre Host is allowed.
-   */
+  /** Redirects to the page by https; the browser keeps the token in the fragment. @pre the host is
+   allowed. */
   void SendToTls() {
     const std::string page = fmt::format("https://{}/", FieldOf(header_->get(), http::field::host));
     http::response<http::string_body> response(http::status::temporary_redirect, 11);
     response.set(http::field::location, page);
     response.set(http::field::content_type, "text/plain; charset=utf-8");
-    response.body() = fmt::format("This studio speaks https only: open {}\n", page);
+    response.body() = fmt::format("This studio is available by https only: open {}\n", page);
     is_refused_ = true;
     Send(std::move(response));
   }
@@ -167,28 +168,29 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       StartSocketSession(std::move(connection_), shared_, role, header_->get());
     } else if (method == http::verb::get) {
       try {
-        Reply(AnswerApi(shared_->workbench, DecodePercent(path), shared_->hub.IsShielded(role)));
+        Reply(MakeApiResponse(shared_->workbench, DecodePercent(path),
+                              shared_->hub.IsShielded(role)));
       } catch (const std::exception& failed) {
         Refuse(http::status::internal_server_error,
-               {ErrorCode::kInternal, failed.what(), std::string(path), "load the page again"});
+               {ErrorCode::kInternal, failed.what(), std::string(path), "reload the page"});
       }
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
     } else if (path == "/api/link" && method == http::verb::post) {
       if (role != Role::kOperator) {
-        Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for looking on", "",
-                                         "ask whoever steers for a link"});
+        Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
+                                         "ask the user in control for a link"});
       } else {
         ReadJson(&HttpSession::MakeLink);
       }
     } else {
       Refuse(http::status::not_found,
-             {ErrorCode::kNotFound, "there is nothing here", std::string(path), ""});
+             {ErrorCode::kNotFound, "there is no such resource", std::string(path), ""});
     }
   }
 
-  /** Whether a body is as long as is said beforehand, and that no longer than this; if not, says
-   so. One that comes in chunks is counted by its parser. */
+  /** Checks Content-Length against a limit, and refuses the request beyond it. The parser counts
+   the bytes of a chunked body. */
   bool IsShort(std::uint64_t most) {
     const auto length = header_->content_length();
     if (length && *length > most) {
@@ -201,11 +203,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   using JsonHandler = void (HttpSession::*)(const Json& body);
 
   void ReadJson(JsonHandler handler) {
-    if (!IsShort(kMostBody)) {
+    if (!IsShort(kMaxBody)) {
       return;
     }
     auto parser = std::make_shared<http::request_parser<http::string_body>>(std::move(*header_));
-    parser->body_limit(kMostBody);
+    parser->body_limit(kMaxBody);
     http::async_read(connection_, buffer_, *parser,
                      [self = shared_from_this(), parser, handler](error_code error, std::size_t) {
                        if (error) {
@@ -223,9 +225,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!admission) {
       return Refuse(http::status::unauthorized, admission.error());
     }
-    shared_->KeepAccess();
+    shared_->SaveAccessState();
     if (admission->role == Role::kParticipant) {
-      shared_->TellOfParticipantLink();
+      shared_->UpdateParticipantLink();
     }
     http::response<http::string_body> response(http::status::ok, 11);
     response.set(http::field::set_cookie, admission->set_cookie);
@@ -240,7 +242,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!role || (*role == Role::kParticipant && shared_->options.desk == nullptr)) {
       return Refuse(http::status::bad_request,
                     {ErrorCode::kInvalid, "there is no such role", "role",
-                     "ask for a link of an operator or a viewer"});
+                     "request a link for an operator or a viewer"});
     }
     const Access& access = *shared_->access;
     const ServerOptions& options = shared_->options;
@@ -249,11 +251,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
          options.tls ? options.names : std::vector<std::string>{"127.0.0.1"}) {
       origins.push_back(access.OriginOf(name));
     }
-    const std::string token = shared_->access->Invite(*role);
-    shared_->KeepAccess();
+    const std::string token = shared_->access->MakeInvitation(*role);
+    shared_->SaveAccessState();
     SendJson(http::status::ok, {{"token", token},
                                 {"role", ToString(*role)},
-                                {"is_for_one", IsForOne(*role)},
+                                {"is_for_one", IsSingleUse(*role)},
                                 {"origins", std::move(origins)},
                                 {"is_local", asio::ip::make_address(options.address).is_loopback()},
                                 {"reachable", options.reachable}});
@@ -261,10 +263,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void ReadUpload(Role role) {
     if (role != Role::kOperator) {
-      return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for looking on",
-                                              "", "ask for a link to steer"});
+      return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
+                                              "ask for an operator's link"});
     }
-    if (!IsShort(shared_->options.most_upload)) {
+    if (!IsShort(shared_->options.max_upload)) {
       return;
     }
     const std::string name = NameOfUpload(ToView(header_->get().target()));
@@ -273,13 +275,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     std::filesystem::create_directory(folder, failed);
     const std::filesystem::path file = folder / name;
     auto parser = std::make_shared<http::request_parser<http::file_body>>(std::move(*header_));
-    parser->body_limit(shared_->options.most_upload);
+    parser->body_limit(shared_->options.max_upload);
     error_code error;
     parser->get().body().open(file.c_str(), beast::file_mode::write_new, error);
     if (failed || error) {
       return Refuse(
           http::status::insufficient_storage,
-          {ErrorCode::kOutOfResource, "the file cannot be kept", name, "make room on the disk"});
+          {ErrorCode::kOutOfResource, "the file cannot be saved", name, "free disk space"});
     }
     wire().expires_after(kUploadTime);
     http::async_read(
@@ -298,15 +300,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void RefuseBody(error_code error) {
     if (error == http::error::body_limit) {
       Refuse(http::status::payload_too_large,
-             {ErrorCode::kOutOfResource, "this is larger than may be sent", "",
+             {ErrorCode::kOutOfResource, "the file exceeds the limit for uploads", "",
               "open the file with `hvas studio FILE`"});
     } else {
       Refuse(http::status::bad_request,
-             {ErrorCode::kInvalid, "the request broke off", "", "try again"});
+             {ErrorCode::kInvalid, "the request was interrupted", "", "try again"});
     }
   }
 
-  void Reply(Result<Answer> answer) {
+  void Reply(Result<Response> answer) {
     if (!answer) {
       const bool is_missing = answer.error().code == ErrorCode::kNotFound;
       return Refuse(is_missing ? http::status::not_found : http::status::internal_server_error,
@@ -396,8 +398,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                       });
   }
 
-  /** What still comes is read and thrown away for a while: were it not, the system would end the
-   connection at once, and with it the answer that is on its way. */
+  /** Reads and discards the rest of the request for a while: closing with unread data would reset
+   the connection, and the client could lose the response. */
   void End() {
     wire().expires_after(kLinger);
     if (!connection_.is_tls()) {
@@ -405,21 +407,21 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       wire().socket().shutdown(tcp::socket::shutdown_send, ignored);
     }
     buffer_.clear();
-    ThrowAway();
+    DiscardInput();
   }
 
-  void ThrowAway() {
-    connection_.async_read_some(buffer_.prepare(kMostHeader),
+  void DiscardInput() {
+    connection_.async_read_some(buffer_.prepare(kMaxHeader),
                                 [self = shared_from_this()](error_code error, std::size_t) {
                                   if (!error) {
-                                    self->ThrowAway();
+                                    self->DiscardInput();
                                   }
                                 });
   }
 
   Connection connection_;
   std::shared_ptr<ServerShared> shared_;
-  beast::flat_buffer buffer_{kMostHeader + (64 << 10)};
+  beast::flat_buffer buffer_{kMaxHeader + (64 << 10)};
   std::optional<Header> header_;
   std::shared_ptr<const void> owner_;
   std::string cookie_;  ///< Of the request whose body was read.

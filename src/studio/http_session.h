@@ -1,4 +1,4 @@
-// For the sources of the server alone: Boost.Beast takes long to compile.
+// Included by the sources of the server only: Boost.Beast takes long to compile.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace hvas::studio {
 
-/** Answers the requests of a connection, one after the other, for as long as it is open. */
+/** Serves the HTTP requests of a connection, one after the other, until it closes. */
 void StartHttpSession(tcp::socket socket, std::shared_ptr<ServerShared> shared);
 
 }  // namespace hvas::studio

@@ -19,8 +19,8 @@ bool IsForcesOff(const Json& command) {
          FlagAt(command, "off").value_or(false);
 }
 
-/** Without the true forces, which tell fits apart better than a hand does. */
-LiveFrame WithoutTruth(const LiveFrame& frame) {
+/** Removes the true forces, from which fits could be told apart better than by hand. */
+LiveFrame RemoveTrueForces(const LiveFrame& frame) {
   LiveFrame felt = frame;
   for (haptics::TickOutput& tick : felt.frame.ticks) {
     tick.F_true_W = {};
@@ -40,10 +40,10 @@ Hub::Hub(Workbench* workbench, std::vector<Example> examples)
     : workbench_(workbench), examples_(std::move(examples)), status_({{"event", "status"}}) {}
 
 Result<std::string> Hub::Join(Role role, ClientLink* link) {
-  if (clients_.size() >= kMostClients) {
+  if (clients_.size() >= kMaxClients) {
     return Fail(ErrorCode::kOutOfResource,
-                fmt::format("{} clients are connected already", kMostClients), "",
-                "close a window of the studio");
+                fmt::format("{} clients are connected already, the maximum", kMaxClients), "",
+                "close another window of the studio");
   }
   const std::string id = fmt::format("c{}", ++last_id_);
   Client& client = clients_[id];
@@ -58,19 +58,19 @@ Result<std::string> Hub::Join(Role role, ClientLink* link) {
     leases_[0] = id;
   }
   link->SendText(MakeHello(id, client).dump());
-  for (const Json& event : workbench_->NewsForLatecomer()) {
+  for (const Json& event : workbench_->MakeCatchUpEvents()) {
     SendTo(client, event, event.dump());
   }
   if (desk_ != nullptr) {
     link->SendText(Print(desk_->MakeState(role, MonotonicNs())));
   }
-  TellOfRoles();
+  BroadcastRoles();
   return id;
 }
 
 void Hub::Leave(const std::string& id) {
   clients_.erase(id);
-  // A hand that nobody steers any more stays where it is, by PointerOperator's silence.
+  // A hand without input stays where it is: PointerOperator times out.
   GiveLease(HandsOf(id), "");
 }
 
@@ -95,7 +95,7 @@ Json Hub::MakeHello(const std::string& id, const Client& client) const {
 
 void Hub::Broadcast(Json event) {
   if (event.value("event", "") == "hands") {
-    event["hands"] = MakeHands();  // whose they are, only this side knows
+    event["hands"] = MakeHands();  // the hub adds who holds the leases
   }
   if (event.value("event", "") == "reply") {
     if (const auto waiting = clients_.find(event["to"]); waiting != clients_.end()) {
@@ -103,15 +103,15 @@ void Hub::Broadcast(Json event) {
     }
     return;
   }
-  const bool has_news = desk_ != nullptr && desk_->OnBench(event, MonotonicNs());
-  if (!event.value("event", "").starts_with("trial_")) {  // those are between bench and desk
+  const bool has_news = desk_ != nullptr && desk_->OnBenchEvent(event, MonotonicNs());
+  if (!event.value("event", "").starts_with("trial_")) {  // events for the study desk only
     const std::string text = Print(event);
     for (auto& [id, client] : clients_) {
       SendTo(client, event, text);
     }
   }
   if (has_news) {
-    TellOfStudy();
+    BroadcastStudyState();
   }
 }
 
@@ -135,7 +135,7 @@ void Hub::SendTo(const Client& client, const Json& event, const std::string& tex
   client.link->SendText(text);
 }
 
-void Hub::TellOfStudy() {
+void Hub::BroadcastStudyState() {
   const std::int64_t now_ns = MonotonicNs();
   for (auto& [id, client] : clients_) {
     client.link->SendText(Print(desk_->MakeState(client.role, now_ns)));
@@ -146,7 +146,7 @@ Result<void> Hub::CheckStudy(const Caller& caller, const std::string& name) cons
   if (desk_ == nullptr) {
     return {};
   }
-  // Not "lease": the hand is the participant's.
+  // "lease" is missing from both: the participant holds it.
   constexpr std::array kShielded{"study", "take", "release", "forces", "status"};
   constexpr std::array kExperimenters{"study",   "release", "forces", "status",
                                       "devices", "use",     "measure"};
@@ -154,8 +154,8 @@ Result<void> Hub::CheckStudy(const Caller& caller, const std::string& name) cons
     return std::any_of(names.begin(), names.end(), [&](const char* one) { return name == one; });
   };
   if (!(IsShielded(caller.role) ? has(kShielded) : has(kExperimenters))) {
-    return Fail(ErrorCode::kInvalid, "not while a study is run", name,
-                "end the study first; then the studio is as always");
+    return Fail(ErrorCode::kInvalid, "the command is not available during a study", name,
+                "end the study first");
   }
   return name == "take" ? desk_->CheckTake() : Result<void>();
 }
@@ -171,7 +171,7 @@ Json Hub::MakeRoles() const {
   return {{"event", "roles"}, {"clients", std::move(clients)}};
 }
 
-void Hub::TellOfRoles() {
+void Hub::BroadcastRoles() {
   Broadcast(MakeRoles());
   Broadcast({{"event", "hands"}});
 }
@@ -188,7 +188,7 @@ void Hub::GiveLease(const std::vector<std::size_t>& hands, const std::string& id
   for (const std::size_t hand : hands) {
     leases_[hand] = id;
   }
-  TellOfRoles();
+  BroadcastRoles();
 }
 
 std::vector<std::size_t> Hub::HandsOf(const std::string& id) const {
@@ -221,10 +221,11 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
   ClientLink* link = found->second.link;
   const Result<Json> command = ParseCommand(text);
   Result<Json> result = command;
-  // Forces go off at once, however much was asked before (N6).
+  // Switching the forces off is exempt from the rate limit (N6).
   const bool is_urgent = command && IsForcesOff(*command) && !workbench_->forces_off();
   if (!MaySend(&found->second, now_ns) && !is_urgent) {
-    result = Fail(ErrorCode::kOutOfResource, "too many commands", "", "send fewer a second");
+    result = Fail(ErrorCode::kOutOfResource, "too many commands", "",
+                  "send fewer commands for each second");
   } else if (command) {
     result = Execute(id, *command);
   }
@@ -240,7 +241,7 @@ Result<Json> Hub::Execute(const std::string& id, const Json& command) {
   }
   const auto found = Commands().find(*name);
   if (found == Commands().end()) {
-    return Fail(ErrorCode::kNotFound, "there is no such command", *name, "load the page again");
+    return Fail(ErrorCode::kNotFound, "there is no such command", *name, "reload the page");
   }
   const Caller caller{id, clients_[id].role, leases_[0] == id};
   if (const auto checked = CheckStudy(caller, *name); !checked) {
@@ -248,8 +249,8 @@ Result<Json> Hub::Execute(const std::string& id, const Json& command) {
   }
   if (!MayDo(found->second.right, caller, command)) {
     return Fail(
-        ErrorCode::kInvalid, "only whoever steers can do this", *name,
-        caller.role == Role::kOperator ? "ask for the lease first" : "this link is for looking on");
+        ErrorCode::kInvalid, "only the user in control can do this", *name,
+        caller.role == Role::kOperator ? "ask for control first" : "this link is for viewers");
   }
   return Call(found->second.handler, caller, command);
 }
@@ -307,7 +308,7 @@ void Hub::PublishFrame() {
   }
   const LiveFrame frame = workbench_->frame();
   for (auto& [id, client] : clients_) {
-    if (client.serial != frame.serial && client.sent_seq - client.seen_seq < kMostUnseen) {
+    if (client.serial != frame.serial && client.sent_seq - client.seen_seq < kMaxUnseen) {
       client.serial = frame.serial;
       SendFrame(frame, &client);
     }
@@ -319,7 +320,7 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
     client->epoch = frame.epoch;
     client->X_WB.clear();
   }
-  std::string bytes = MakeFrames(IsShielded(client->role) ? WithoutTruth(frame) : frame,
+  std::string bytes = MakeFrames(IsShielded(client->role) ? RemoveTrueForces(frame) : frame,
                                  frame.clock_ns, client->sent_seq + 1, &client->X_WB);
   if (bytes.empty()) {
     return;
@@ -330,7 +331,7 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
 
 void Hub::PublishStatus() {
   if (desk_ != nullptr && desk_->Poll(MonotonicNs())) {
-    TellOfStudy();
+    BroadcastStudyState();
   }
   if (const auto status = workbench_->TakeStatus()) {
     status_ = MakeStatus(*status);
@@ -345,7 +346,7 @@ void Hub::PublishStatus() {
     now["condition"] = hands[i]["condition"];
     status_["hands"].push_back(std::move(now));
   }
-  if (status_.contains("tick_hz")) {  // nothing runs before something is open
+  if (status_.contains("tick_hz")) {  // there is no loop before a file is open
     Broadcast(status_);
   }
 }

@@ -18,7 +18,7 @@
 
 namespace hvas::studio {
 
-/** The way to one client. */
+/** Connection of the hub to one client. */
 class ClientLink {
  public:
   ClientLink() = default;
@@ -30,53 +30,55 @@ class ClientLink {
   virtual void Close(const std::string& reason) = 0;
 };
 
-/** A product that can be opened without a file of one's own. */
+/** An example product that comes with the program. */
 struct Example {
   std::string id, name, about;
   std::filesystem::path file;
 };
 
-/** Everybody who looks at one workbench: who may steer, what each is told, what each has seen. All
- functions belong to one thread. */
+/** The clients of one workbench: their leases on hands, the commands and inputs that they send, and
+ the events and frames that they get. All functions are for one thread. */
 class Hub {
  public:
-  static constexpr std::size_t kMostClients = 8;
-  static constexpr std::size_t kMostUnseen = 2;     ///< Frame messages that wait for their Credit.
-  static constexpr double kCommandsPerSecond = 50;  ///< Of one client, for long.
-  static constexpr double kCommandBurst = 100;
+  static constexpr std::size_t kMaxClients = 8;
+  static constexpr std::size_t kMaxUnseen = 2;  ///< Frame messages not yet acknowledged.
+  /** Sustained rate for one client (token bucket). */
+  static constexpr double kCommandsPerSecond = 50;
+  static constexpr double kCommandBurst = 100;  ///< Capacity of the token bucket.
 
   Hub(Workbench* workbench, std::vector<Example> examples);
 
-  /** Before anybody joins: a study is run, and who is no experimenter sees nothing of it but what
-   the participant may see. It outlives this. */
-  void RunStudy(StudyDesk* desk) { desk_ = desk; }
+  /** Runs a study: clients other than the experimenter then see no more than a participant may.
+   @param desk  Outlives this. @pre no client has joined. */
+  void SetStudyDesk(StudyDesk* desk) { desk_ = desk; }
 
-  /** Whoever has this role sees no more than the participant of a study may see. */
+  /** Whether a client of this role sees no more than a participant of a study may. */
   [[nodiscard]] bool IsShielded(Role role) const {
     return desk_ != nullptr && role != Role::kOperator;
   }
 
-  /** Nothing when the house is full. @returns the client's id. */
+  /** Adds a client. @returns its id. Errors: kOutOfResource when there are kMaxClients. */
   [[nodiscard]] Result<std::string> Join(Role role, ClientLink* link);
   void Leave(const std::string& id);
 
-  /** The server ends: nobody is told of anything any more. */
-  void Forget() { clients_.clear(); }
+  /** Removes all clients without notice, when the server ends. */
+  void DropClients() { clients_.clear(); }
 
-  /** @param now_ns  By MonotonicNs(). */
+  /** Executes a command and replies to it. @param now_ns  MonotonicNs(). */
   void OnText(const std::string& id, std::string_view text, std::int64_t now_ns);
   void OnBinary(const std::string& id, std::string_view bytes);
 
-  /** Tells everybody; the event "reply" (MakeLateReply) only whoever waits for it. */
+  /** Sends an event to all clients; the event "reply" (MakeDeferredReply) to the one that waits for
+   it. */
   void Broadcast(Json event);
 
-  /** There is a new frame: sends it to those who have seen the one before. */
+  /** Sends the newest frame to all clients that have acknowledged enough of the previous ones. */
   void PublishFrame();
 
-  /** Once a second. */
+  /** Sends the event "status"; to be called once a second. */
   void PublishStatus();
 
-  /** A file that was sent is here; it is opened by the id. */
+  /** Registers an uploaded file. @returns the id by which a client can open it. */
   [[nodiscard]] std::string AddUpload(const std::filesystem::path& file, const std::string& name);
 
   [[nodiscard]] std::size_t client_count() const { return clients_.size(); }
@@ -88,8 +90,8 @@ class Hub {
     std::uint32_t sent_seq{0};
     std::uint32_t seen_seq{0};
     std::uint32_t epoch{0};
-    std::uint64_t serial{0};          ///< Of the frame that it was sent last.
-    std::vector<spatial::Pose> X_WB;  ///< As it was told last.
+    std::uint64_t serial{0};          ///< LiveFrame::serial of the last frame sent.
+    std::vector<spatial::Pose> X_WB;  ///< Poses that the client has.
     double allowance{kCommandBurst};
     std::int64_t last_command_ns{0};
   };
@@ -102,13 +104,13 @@ class Hub {
   struct Caller {
     std::string id;
     Role role;
-    bool has_lease;  ///< Of hand 0.
+    bool has_lease;  ///< Whether it holds the lease of hand 0.
   };
 
   enum class Right {
     kAnybody,
-    kLease,  ///< Of hand 0.
-    kHand,   ///< Of the hand that the command names.
+    kLease,  ///< Needs the lease of hand 0.
+    kHand,   ///< Needs the lease of the hand that the command names.
   };
 
   using Handler = std::variant<Result<Json> (Hub::*)(), Result<Json> (Hub::*)(const Json& command),
@@ -147,20 +149,20 @@ class Hub {
   Result<Json> DoStatus();
   Result<Json> DoStudy(const Caller& caller, const Json& command);
 
-  /** Errors: not while a study runs, or not for this role. */
+  /** Checks a command against a running study. Errors: kInvalid when it is not allowed then. */
   [[nodiscard]] Result<void> CheckStudy(const Caller& caller, const std::string& name) const;
-  void TellOfStudy();
+  void BroadcastStudyState();
   void SendTo(const Client& client, const Json& event, const std::string& text);
 
   [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
   [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
-  /** Whose are these hands: nobody's, when `id` is empty. */
+  /** Gives the leases of hands to a client, and tells all clients; empty `id`: to nobody. */
   void GiveLease(const std::vector<std::size_t>& hands, const std::string& id);
   [[nodiscard]] std::vector<std::size_t> HandsOf(const std::string& id) const;
-  /** That a command of the lease is about: the one that it names, or all. */
+  /** The hands that a lease command is about: the one that it names, or all. */
   [[nodiscard]] Result<std::vector<std::size_t>> LeasesAt(const Json& command) const;
   Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);
-  void TellOfRoles();
+  void BroadcastRoles();
   [[nodiscard]] Json MakeHands() const;
   [[nodiscard]] Json MakeRoles() const;
   void SendFrame(const LiveFrame& frame, Client* client);
@@ -170,8 +172,8 @@ class Hub {
   std::vector<Example> examples_;
   std::map<std::string, Client> clients_;
   std::map<std::string, Upload> uploads_;
-  /** By hand: the client that steers it; empty: nobody. */
-  std::array<std::string, HandRack::kMostHands> leases_;
+  /** Client that holds the lease, indexed by hand; empty: nobody. */
+  std::array<std::string, HandRack::kMaxHands> leases_;
   std::uint32_t last_id_{0};
   Json status_;
 };

@@ -11,11 +11,11 @@ namespace hvas::studio {
 namespace {
 
 constexpr std::size_t kLongestText = 1000;
-constexpr std::size_t kMostFields = 64;  // of a command, those of its objects among them
+constexpr std::size_t kMaxFields = 64;  // fields of a command, including those of nested objects
 
-Unexpected Wrong(const char* name, const char* wanted) {
+Unexpected FailField(const char* name, const char* wanted) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" must be {}", name, wanted), "command",
-              "load the page again");
+              "reload the page");
 }
 
 }  // namespace
@@ -24,15 +24,16 @@ Result<Json> ParseCommand(std::string_view text) {
   std::size_t fields = 0;
   const auto keep = [&fields](int, Json::parse_event_t event, const Json&) {
     fields += event == Json::parse_event_t::key ? 1 : 0;
-    return fields <= kMostFields;
+    return fields <= kMaxFields;
   };
   Json command = Json::parse(text, keep, /*allow_exceptions=*/false);
-  if (fields > kMostFields) {
-    return Fail(ErrorCode::kInvalid, fmt::format("a command has at most {} fields", kMostFields),
-                "command", "load the page again");
+  if (fields > kMaxFields) {
+    return Fail(ErrorCode::kInvalid, fmt::format("a command has at most {} fields", kMaxFields),
+                "command", "reload the page");
   }
   if (!command.is_object()) {
-    return Fail(ErrorCode::kInvalid, "this is no JSON object", "command", "load the page again");
+    return Fail(ErrorCode::kInvalid, "the message is not a JSON object", "command",
+                "reload the page");
   }
   return command;
 }
@@ -52,7 +53,7 @@ Json MakeReply(const Json& id, const Result<Json>& result) {
   return reply;
 }
 
-Json MakeLateReply(const std::string& to, const Json& id, const Result<Json>& result) {
+Json MakeDeferredReply(const std::string& to, const Json& id, const Result<Json>& result) {
   return {{"event", "reply"}, {"to", to}, {"reply", MakeReply(id, result)}};
 }
 
@@ -60,7 +61,7 @@ Result<std::string> TextAt(const Json& object, const char* name) {
   const Json* field = FieldOf(object, name);
   if (field == nullptr || !field->is_string() ||
       field->get_ref<const std::string&>().size() > kLongestText) {
-    return Wrong(name, "a text");
+    return FailField(name, "a text");
   }
   return field->get<std::string>();
 }
@@ -68,7 +69,7 @@ Result<std::string> TextAt(const Json& object, const char* name) {
 Result<bool> FlagAt(const Json& object, const char* name) {
   const Json* field = FieldOf(object, name);
   if (field == nullptr || !field->is_boolean()) {
-    return Wrong(name, "true or false");
+    return FailField(name, "true or false");
   }
   return field->get<bool>();
 }
@@ -77,7 +78,7 @@ Result<std::uint32_t> IndexAt(const Json& object, const char* name) {
   const Json* field = FieldOf(object, name);
   if (field == nullptr || !field->is_number_unsigned() ||
       field->get<std::uint64_t>() >= std::numeric_limits<std::uint32_t>::max()) {
-    return Wrong(name, "an index");
+    return FailField(name, "an index");
   }
   return field->get<std::uint32_t>();
 }
@@ -87,8 +88,8 @@ Result<std::size_t> HandAt(const Json& object) {
     return 0;
   }
   const auto hand = IndexAt(object, "hand");
-  if (!hand || *hand >= HandRack::kMostHands) {
-    return Wrong("hand", "0 or 1");
+  if (!hand || *hand >= HandRack::kMaxHands) {
+    return FailField("hand", "0 or 1");
   }
   return *hand;
 }
@@ -101,7 +102,7 @@ Result<double> NumberAt(const Json& object, const char* name, const Limits& limi
   }
   const double number = field->is_number() ? field->get<double>() : limits.low - 1;
   if (!(number >= limits.low && number <= limits.high)) {
-    return Wrong(name, fmt::format("a number of {} to {}", limits.low, limits.high).c_str());
+    return FailField(name, fmt::format("a number of {} to {}", limits.low, limits.high).c_str());
   }
   return number;
 }
@@ -109,12 +110,12 @@ Result<double> NumberAt(const Json& object, const char* name, const Limits& limi
 Result<PickedFace> FaceAt(const Json& object, const char* name) {
   const Json* field = FieldOf(object, name);
   if (field == nullptr) {
-    return Wrong(name, "a face, as {\"occurrence\": 0, \"face\": 3}");
+    return FailField(name, "a face, such as {\"occurrence\": 0, \"face\": 3}");
   }
   const auto occurrence = IndexAt(*field, "occurrence");
   const auto face = IndexAt(*field, "face");
   if (!occurrence || !face) {
-    return Wrong(name, "a face, as {\"occurrence\": 0, \"face\": 3}");
+    return FailField(name, "a face, such as {\"occurrence\": 0, \"face\": 3}");
   }
   return PickedFace{product::OccurrenceId(*occurrence), product::FaceId(*face)};
 }

@@ -10,36 +10,38 @@
 
 namespace hvas::studio {
 
-/** What a client sent as a command. Errors (kInvalid): it is no JSON object, or has more fields
- than any command: keeping them in order takes the square of their number. */
+/** Parses a client's command. Errors: kInvalid for text that is no JSON object, or for more fields
+ than any command has: an ordered object takes quadratic time in their number. */
 [[nodiscard]] Result<Json> ParseCommand(std::string_view text);
 
-/** By which the reply is known: the command's "id", null where that is no whole number. */
+/** The "id" of a command, which its reply repeats; null where it is no integer. */
 [[nodiscard]] Json IdOf(const Json& command);
 
-/** What a command is answered with. */
+/** Makes the reply to a command. */
 [[nodiscard]] Json MakeReply(const Json& id, const Result<Json>& result);
 
-/** What the handler of a command returns that is answered later, by the event of MakeLateReply. */
-[[nodiscard]] inline Json AnsweredLater() {
+/** Result of a command's handler whose reply follows later, as the event of MakeDeferredReply. */
+[[nodiscard]] inline Json MakeDeferredResult() {
   return Json(Json::value_t::discarded);
 }
 
-/** For Hub::Broadcast. @param to  The client that waits for it. */
-[[nodiscard]] Json MakeLateReply(const std::string& to, const Json& id, const Result<Json>& result);
+/** Makes a deferred reply for Hub::Broadcast. @param to  Id of the client that waits for it. */
+[[nodiscard]] Json MakeDeferredReply(const std::string& to, const Json& id,
+                                     const Result<Json>& result);
 
-/** Fields of a command. Errors (kInvalid) name the field and what it should be. */
+/** Required fields of a command. Errors: kInvalid, with the field's name and the expected type. */
 [[nodiscard]] Result<std::string> TextAt(const Json& object, const char* name);
 [[nodiscard]] Result<bool> FlagAt(const Json& object, const char* name);
 [[nodiscard]] Result<std::uint32_t> IndexAt(const Json& object, const char* name);
-/** "hand": 0 where there is none. */
+/** Reads the field "hand"; 0 where it is missing. */
 [[nodiscard]] Result<std::size_t> HandAt(const Json& object);
 
-/** A number within limits, ends included; `missing` where there is none. */
+/** Closed interval of the values that a field may have. */
 struct Limits {
   double low, high;
 };
 
+/** Reads a number within limits; `missing` where there is no such field. */
 [[nodiscard]] Result<double> NumberAt(const Json& object, const char* name, const Limits& limits,
                                       double missing);
 [[nodiscard]] Result<PickedFace> FaceAt(const Json& object, const char* name);

@@ -3,11 +3,11 @@
 namespace hvas::studio {
 namespace {
 
-constexpr double kFinishDistance = 3e-3;  // [m]; what is let go so near to its place goes there
+constexpr double kFinishDistance = 3e-3;  // [m]; a part released so near its place is seated
 
-/** Whoever moves the hand may be gone: it is given no force then, and the part stays. */
+/** Removes the force when the client's input times out; the part then stays where it is. */
 void AddClientLimits(haptics::SafetyLimits* limits) {
-  limits->client_hold = 1e-9 * static_cast<double>(PointerOperator::kSilentNs);
+  limits->client_hold = 1e-9 * static_cast<double>(PointerOperator::kInputTimeoutNs);
   limits->client_fade = 0.25;  // [s]
 }
 
@@ -27,12 +27,12 @@ haptics::TickOptions MakeOptions(const HandSetup& setup, const HandPurpose& purp
 }  // namespace
 
 haptics::TickOptions MakePointerOptions(double rate_hz) {
-  constexpr double kModelHold = 0.2;  // [s]; as with a device
+  constexpr double kModelHold = 0.2;  // [s]; equal to that of a device
   haptics::TickOptions options;
   options.dt = 1 / rate_hz;
   options.device.name = "pointer";
   options.limits = haptics::MakeSafetyLimits(options.device);
-  // There are no motors to be kept cool, and no handle that could kick or be torn away.
+  // The detectors for motor heat, kick and torn-away handles have no meaning without a device.
   options.limits->has_detectors = false;
   options.limits->continuous_force = haptics::SafetyLimits::kNever;
   options.limits->continuous_torque = haptics::SafetyLimits::kNever;

@@ -11,42 +11,42 @@
 
 namespace hvas::studio {
 
-/** What is put into a hand. */
+/** Device of a hand. */
 struct HandSetup {
-  std::shared_ptr<device::OpenedDevice> device;  ///< Null: none, a pointer moves the hand.
-  double scale{0};                               ///< As in simulation::RenderOptions.
+  std::shared_ptr<device::OpenedDevice> device;  ///< Null: the client's pointer moves the hand.
+  double scale{0};                               ///< See simulation::RenderOptions.
 };
 
-/** What a hand is made for. */
+/** Conditions under which a hand is used. */
 struct HandPurpose {
-  bool has_person{false};  ///< The simulated person works, instead of whoever is at the page.
+  bool has_person{false};  ///< The simulated person works, instead of the user at the page.
   std::uint64_t seed{1};
-  spatial::Pose X_WH;  ///< Where the hand is at first.
+  spatial::Pose X_WH;  ///< Initial pose of the hand.
   double rate_hz{1000};
-  const LiveTrial* trial{nullptr};  ///< Of a study; may be null.
+  const LiveTrial* trial{nullptr};  ///< Trial of a study; may be null.
 };
 
-/** Options of the tick for a hand that is moved from afar: as for the simulated device, with full
- safety limits, and the force taken back when nothing is heard from the client. */
+/** Makes the tick options of a hand that a remote client moves: those of the simulated device, with
+ full safety limits, and no force once the client's input times out. */
 [[nodiscard]] haptics::TickOptions MakePointerOptions(double rate_hz);
 
-/** One hand of a live assembly. A device moves it, a pointer, or the simulated person. An emulated
- device is held by the person or the pointer; what is held for real is not moved by anybody else, so
- that the simulated person works beside it, without a device. */
+/** One hand of a live assembly, moved by a device, the client's pointer, or the simulated person.
+ The person or the pointer can hold an emulated device. A real device is moved by its user alone, so
+ that the simulated person works without a device there. */
 class LiveHand {
  public:
   LiveHand(const HandSetup& setup, const HandPurpose& purpose, const simulation::Model& model);
 
   [[nodiscard]] simulation::Operator* active() const { return active_; }
 
-  /** Null where the simulated person does not work. */
+  /** Null where the simulated person does not move this hand. */
   [[nodiscard]] simulation::SimulatedPerson* person() const { return person_.get(); }
 
   [[nodiscard]] PointerOperator& pointer() { return pointer_; }
 
   [[nodiscard]] const haptics::TickOptions& tick_options() const { return tick_options_; }
 
-  /** Somebody at the page moves it, and not a device by itself. */
+  /** Whether the client's pointer moves it, and not a device or the simulated person. */
   [[nodiscard]] bool follows_pointer() const { return follows_pointer_; }
 
  private:
@@ -54,7 +54,7 @@ class LiveHand {
   haptics::TickOptions tick_options_;
   PointerOperator pointer_;
   std::unique_ptr<simulation::SimulatedPerson> person_;
-  std::unique_ptr<simulation::Operator> at_device_;  ///< Null where nothing goes through a device.
+  std::unique_ptr<simulation::Operator> at_device_;  ///< Null where no device is in the loop.
   simulation::Operator* active_{nullptr};
   bool follows_pointer_{false};
 };

@@ -11,7 +11,7 @@ namespace {
 
 using simulation::Placement;
 
-constexpr std::int64_t kFrameNs = 16'666'667;  // what screens show
+constexpr std::int64_t kFrameNs = 16'666'667;  // frame period of displays at 60 Hz
 constexpr double kForEver = 1e9;               // [s]
 
 std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
@@ -116,7 +116,7 @@ void LiveRun::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping
     hands_[hand]->pointer().Move(input);
     return;
   }
-  // A hand that closed before the taking is prepared would take another part, or none.
+  // The hand closes only after the take is prepared; it would take another part, or none.
   tasks_.emplace_back([this, hand, input] { hands_[hand]->pointer().Move(input); });
 }
 

@@ -20,58 +20,59 @@
 
 namespace hvas::studio {
 
-/** How far an assembly has come, to go on from. */
+/** State of an assembly, from which a run can resume. */
 struct LiveState {
-  std::vector<simulation::PartState> parts;  ///< By OccurrenceId; empty: all on the table.
+  std::vector<simulation::PartState> parts;  ///< Indexed by OccurrenceId; empty: all on the table.
   std::size_t next_step{0};
 };
 
-/** Who is told of what. All but on_frame are called on the physics thread. */
+/** Callbacks of a run. All but on_frame are called on the physics thread. */
 struct LiveListeners {
   std::function<void(const simulation::SimulationEvent&)> on_event;
   std::function<void(product::OccurrenceId, simulation::Placement)> on_placement;
   std::function<void(std::size_t step)> on_step;
-  /** Publish thread. */
+  /** Called on the publish thread. */
   std::function<void(const simulation::Frame&, std::int64_t clock_ns, const PeakForces&)> on_frame;
 };
 
 struct LiveOptions {
-  bool has_person{false};           ///< As in HandPurpose.
+  bool has_person{false};           ///< See HandPurpose.
   std::vector<HandSetup> hands{1};  ///< One or two.
   std::uint64_t seed{1};
   double rate_hz{1000};
-  std::shared_ptr<Recording> recording;  ///< Of what happens; may be null.
-  std::shared_ptr<LiveTrial> trial;      ///< Of a study; may be null.
+  std::shared_ptr<Recording> recording;  ///< Receives all events; may be null.
+  std::shared_ptr<LiveTrial> trial;      ///< Trial of a study; may be null.
 };
 
-/** One stretch of a live assembly: a simulation of a model, run in real time until it is destroyed.
- What changes the model, who steers, or what was done begins a new one from the old one's state. */
+/** One section of a live assembly: a simulation of a model that runs in real time until this object
+ is destroyed. Another model, another operator and undo each begin a new run from a given state. */
 class LiveRun final : private simulation::Sink {
  public:
   LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState& start,
           const LiveOptions& options, LiveListeners listeners);
   ~LiveRun() override;
 
-  /** Has a hand go to a part and close on it. Any thread.
+  /** Moves a hand to a part and closes it there. Any thread may call it.
    @pre the hand follows a pointer. */
   void Take(std::size_t hand, const simulation::SequenceStep& step, const spatial::Pose& X_WH);
 
-  /** Where the pointer wants a hand. Any thread. */
+  /** Sets the pointer's target pose of a hand. Any thread may call it. */
   void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
 
   void StopForces(bool is_stopped) { simulation_.StopForces(is_stopped); }
 
-  /** As of the last physics step. Any thread. */
+  /** State at the last physics step; this and the next two may be called by any thread. */
   [[nodiscard]] LiveState state() const;
   [[nodiscard]] bool is_holding(std::size_t hand) const;
-  /** As it was before the hand that closed last had closed. */
+  /** State before the most recent take. */
   [[nodiscard]] LiveState state_before_take() const;
 
   [[nodiscard]] std::size_t hand_count() const { return hands_.size(); }
 
   [[nodiscard]] const LiveHand& hand(std::size_t i) const { return *hands_[i]; }
 
-  /** Of the last second, when one has ended since the last call. One thread. */
+  /** Status of the last full second; none when no second has ended since the last call. For one
+   thread. */
   [[nodiscard]] std::optional<simulation::LoopStatus> TakeStatus();
 
   [[nodiscard]] const simulation::Model& model() const { return simulation_.model(); }
@@ -93,16 +94,16 @@ class LiveRun final : private simulation::Sink {
   simulation::AssemblyRun assembly_;
   TripleBuffer<simulation::LoopStatus> status_;
   std::array<std::atomic<double>, 2> peak_felt_{};
-  /** When session time was 0, as its newest tick has it, by MonotonicNs(): what the loop has missed
-   is no session time. */
+  /** MonotonicNs() at session time 0, by the newest tick: periods that the loop missed are no
+   session time, so that it moves. */
   std::atomic<std::int64_t> begin_ns_;
   std::atomic<bool> is_stopping_{false};
 
-  mutable std::mutex mutex_;  ///< Of what follows; never taken by the haptic thread.
+  mutable std::mutex mutex_;  ///< Protects what follows; the haptic thread never takes it.
   std::vector<std::function<void()>> tasks_;
   LiveState observed_;
   LiveState before_take_;
-  std::array<bool, 2> is_holding_{};  ///< By hand.
+  std::array<bool, 2> is_holding_{};  ///< Indexed by hand.
 
   std::thread thread_;
 };

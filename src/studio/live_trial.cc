@@ -13,7 +13,7 @@ Result<std::shared_ptr<LiveTrial>> LiveTrial::Make(const Plan& plan, const simul
   if (!plan.record.empty()) {
     record::RecorderOptions options;
     options.path = plan.record;
-    options.replaces = true;  // of a trial that was broken off
+    options.replaces = true;  // replaces the record of an aborted trial
     options.is_threaded = true;
     record::Meta meta = session::MakeModelMeta(model);
     meta["condition"] = plan.condition.id;

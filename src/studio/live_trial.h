@@ -12,27 +12,29 @@
 
 namespace hvas::studio {
 
-/** One trial of a study as a live run has it: what is on, who keeps account, and the record. */
+/** One trial of a study in a live run: its condition, the measurement of it, and its record. */
 class LiveTrial final : public simulation::Sink {
  public:
   struct Plan {
     study::Condition condition;
-    std::string part;              ///< That is put in its place.
-    double mating_window{3};       ///< [s]
-    std::filesystem::path record;  ///< Empty: none.
-    bool has_person{false};        ///< The simulated person works.
+    std::string part;              ///< Part that the participant assembles.
+    double mating_window{3};       ///< See study::Protocol [s].
+    std::filesystem::path record;  ///< File of the record; empty: none.
+    bool has_person{false};        ///< The simulated person does the trial.
   };
 
-  /** @param step  Of the model's sequence: the part's. Errors: the recorder's. */
+  /** @param step  Index of the part's step in the model's sequence.
+   @param period_s  Period of the ticks [s].
+   Errors: those of record::Recorder::Create. */
   [[nodiscard]] static Result<std::shared_ptr<LiveTrial>> Make(const Plan& plan,
                                                                const simulation::Model& model,
                                                                std::size_t step, double period_s);
 
-  /** What is on in this condition. @param has_device  Then contact is felt no stiffer than it
-   bears. */
+  /** Applies the condition to the options of a tick. @param has_device  Whether a device renders
+   the forces: the coupling then is no stiffer than that device can render. */
   void Adjust(bool has_device, haptics::TickOptions* tick) const;
 
-  /** Before the loops run. */
+  /** Begins the trial. @pre the loops do not run yet. */
   void Begin(simulation::Simulation* simulation);
 
   void OnTick(std::size_t hand, const device::DeviceState& device,
@@ -40,7 +42,7 @@ class LiveTrial final : public simulation::Sink {
   void OnEvent(const simulation::SimulationEvent& event) override;
   void OnFlight(const std::vector<simulation::FlightTick>& ticks) override;
 
-  /** Once the loops have ended: closes the record. Errors: the disk's. */
+  /** Closes the record. @pre the loops have ended. Errors: those of writing it. */
   [[nodiscard]] Result<void> Finish();
 
   [[nodiscard]] const study::TrialWatch& watch() const { return *watch_; }

@@ -15,7 +15,7 @@ namespace {
 using spatial::Surface;
 using spatial::SurfaceKind;
 
-constexpr double kParallel = 1e-4;  // sine of the angle, below which axes count as parallel
+constexpr double kParallel = 1e-4;  // sine of the angle below which axes count as parallel
 
 struct Measured {
   const product::Face* face{nullptr};
@@ -32,7 +32,7 @@ Result<Measured> FindFace(const simulation::Model& model, const LiveState& state
   if (pick.face.index() >= part.faces.size()) {
     return Fail(
         ErrorCode::kNotFound,
-        fmt::format("the part has {} faces, and no {}", part.faces.size(), pick.face.value()),
+        fmt::format("the part has {} faces, and no face {}", part.faces.size(), pick.face.value()),
         part.name, "");
   }
   const product::Face& face = part.faces[pick.face.index()];
@@ -61,24 +61,24 @@ void Describe(const Measured& measured, Json* json) {
   (*json)["p_m"] = Json::array({ToJson(measured.surface_W.origin)});
 }
 
-/** Foot points of the shortest way between two parallel or square surfaces. */
+/** Foot points of the shortest distance between two surfaces. */
 struct Span {
   Vec3 p_a, p_b;
 };
 
-/** From b's point to the plane a. */
-Span ToPlane(const Surface& plane, const Vec3& p_b) {
+/** Calculates the span from the plane a to a point of b. */
+Span CalcSpanToPlane(const Surface& plane, const Vec3& p_b) {
   const Vec3 p_a = p_b - plane.axis.dot(p_b - plane.origin) * plane.axis;
   return {p_a, p_b};
 }
 
-/** From b's point to the axis a. */
-Span ToAxis(const Surface& round, const Vec3& p_b) {
+/** Calculates the span from the axis a to a point of b. */
+Span CalcSpanToAxis(const Surface& round, const Vec3& p_b) {
   return {round.origin + round.axis.dot(p_b - round.origin) * round.axis, p_b};
 }
 
-/** Between two axes that are not parallel. */
-Span BetweenAxes(const Surface& a, const Surface& b) {
+/** Calculates the span between two axes. @pre they are not parallel. */
+Span CalcSpanOfAxes(const Surface& a, const Surface& b) {
   const Vec3 r = b.origin - a.origin;
   const double cosine = a.axis.dot(b.axis);
   const double sine_sq = 1 - cosine * cosine;
@@ -87,25 +87,26 @@ Span BetweenAxes(const Surface& a, const Surface& b) {
   return {a.origin + along_a * a.axis, b.origin + along_b * b.axis};
 }
 
-/** Nothing where two surfaces have no distance: planes at an angle meet. */
+/** Finds the span between two surfaces; none where they intersect, like planes at an angle. */
 std::optional<Span> FindSpan(const Surface& a, const Surface& b) {
   const bool is_plane_a = a.kind == SurfaceKind::kPlane;
   const bool is_plane_b = b.kind == SurfaceKind::kPlane;
   const double sine = HasAxis(a.kind) && HasAxis(b.kind) ? a.axis.cross(b.axis).norm() : 0;
   if (is_plane_a && is_plane_b) {
-    return sine < kParallel ? std::optional(ToPlane(a, b.origin)) : std::nullopt;
+    return sine < kParallel ? std::optional(CalcSpanToPlane(a, b.origin)) : std::nullopt;
   }
   if (is_plane_a || is_plane_b) {
     const Surface& plane = is_plane_a ? a : b;
     const Surface& other = is_plane_a ? b : a;
     const bool meets = HasAxis(other.kind) && std::abs(plane.axis.dot(other.axis)) > kParallel;
-    return meets ? std::nullopt : std::optional(ToPlane(plane, other.origin));
+    return meets ? std::nullopt : std::optional(CalcSpanToPlane(plane, other.origin));
   }
   if (!HasAxis(a.kind) || !HasAxis(b.kind)) {
-    return HasAxis(a.kind) ? ToAxis(a, b.origin)
-                           : (HasAxis(b.kind) ? ToAxis(b, a.origin) : Span{a.origin, b.origin});
+    return HasAxis(a.kind)
+               ? CalcSpanToAxis(a, b.origin)
+               : (HasAxis(b.kind) ? CalcSpanToAxis(b, a.origin) : Span{a.origin, b.origin});
   }
-  return sine < kParallel ? ToAxis(a, b.origin) : BetweenAxes(a, b);
+  return sine < kParallel ? CalcSpanToAxis(a, b.origin) : CalcSpanOfAxes(a, b);
 }
 
 void Compare(const Measured& a, const Measured& b, Json* json) {
@@ -125,7 +126,7 @@ void Compare(const Measured& a, const Measured& b, Json* json) {
     (*json)["p_m"] = Json::array({ToJson(span->p_a), ToJson(span->p_b)});
     text = fmt::format("distance {:.4f} mm{}{}", distance_mm, text.empty() ? "" : ", ", text);
   }
-  (*json)["text"] = text.empty() ? "nothing to measure between these surfaces" : text;
+  (*json)["text"] = text.empty() ? "there is nothing to measure between these surfaces" : text;
 }
 
 }  // namespace

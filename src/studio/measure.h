@@ -8,16 +8,16 @@
 
 namespace hvas::studio {
 
-/** A face of a part, as a viewer picks it. */
+/** A face of an occurrence that a client has picked. */
 struct PickedFace {
   product::OccurrenceId occurrence;
   product::FaceId face;
 };
 
-/** What there is to measure on one face, or between two, at the parts' present poses; from the
- exact surfaces, not from triangles (X16). The fields are those of docs/protocol.md; those that make
- no sense for the pair are left out. Parallel planes and axes have a distance, others an angle.
- Errors (kNotFound): there is no such face. */
+/** Measures one face, or a pair of faces, at the parts' present poses, on the exact surfaces
+ instead of their triangles (X16). The fields are those of docs/protocol.md; fields without meaning
+ for the pair are omitted. Parallel planes and axes have a distance, others an angle. Errors:
+ kNotFound for a face that the part does not have. */
 [[nodiscard]] Result<Json> Measure(const simulation::Model& model, const LiveState& state,
                                    const PickedFace& a, const std::optional<PickedFace>& b);
 

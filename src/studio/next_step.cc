@@ -19,7 +19,7 @@ SequenceStep FindStep(const simulation::Model& model, const LiveState& state, Oc
         (step.members.empty() && placement != Placement::kLoose)) {
       continue;
     }
-    // Of a subassembly only that moves which has got into it.
+    // Only those members of a subassembly move that have been put into it.
     SequenceStep possible = step;
     std::erase_if(possible.members, [&](OccurrenceId member) {
       return state.parts[member.index()].placement == Placement::kLoose;

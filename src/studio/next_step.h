@@ -6,8 +6,8 @@
 
 namespace hvas::studio {
 
-/** The step that a part's next move belongs to: of the part itself, or of the subassembly that it
- is a member of; kRemove for a part that is in its place (X16). */
+/** Finds the step of the sequence that a part's next move belongs to: the part's own, or that of
+ the subassembly that it is a member of; kind kRemove for a part that is in its place (X16). */
 [[nodiscard]] simulation::SequenceStep FindStep(const simulation::Model& model,
                                                 const LiveState& state, product::OccurrenceId id);
 

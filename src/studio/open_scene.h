@@ -15,31 +15,31 @@
 
 namespace hvas::studio {
 
-/** What is open: a model and all that a viewer needs of it. Immutable. */
+/** An open product: its model and all that clients need of it. Immutable. */
 struct OpenScene {
   std::uint32_t epoch{0};
   std::shared_ptr<const simulation::Model> model;
   Diagnostics diagnostics;
   std::shared_ptr<const std::string> glb;
   std::string glb_hash;
-  std::filesystem::path file;  ///< That was opened.
-  std::string name;            ///< What people call the file.
-  std::string digest;          ///< CalcProductDigest of it as it was opened.
-  /** Commands that have changed the product since, in their order. */
+  std::filesystem::path file;  ///< CAD file that was opened.
+  std::string name;            ///< Display name of the file.
+  std::string digest;          ///< CalcProductDigest of the product as opened.
+  /** Commands of the edits since it was opened, in order. */
   std::vector<nlohmann::ordered_json> edits;
 };
 
-/** Of each hand: the largest force since it was asked for last [N]. */
+/** Largest force since the previous query, by hand [N]. */
 using PeakForces = std::array<double, 2>;
 
 /** The newest state of everything that moves. */
 struct LiveFrame {
   std::uint32_t epoch{0};
-  std::uint64_t serial{0};  ///< Another one for each frame.
+  std::uint64_t serial{0};  ///< Differs for each frame.
   simulation::Frame frame;
-  std::int64_t clock_ns{0};            ///< When its tick ran, by MonotonicNs().
-  PeakForces peak_felt{};              ///< Since the last one [N].
-  std::array<double, 2> hand_speed{};  ///< By hand, since the last one [m/s].
+  std::int64_t clock_ns{0};            ///< MonotonicNs() at its tick.
+  PeakForces peak_felt{};              ///< Largest since the previous frame, by hand [N].
+  std::array<double, 2> hand_speed{};  ///< Mean since the previous frame, by hand [m/s].
 };
 
 }  // namespace hvas::studio

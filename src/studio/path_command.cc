@@ -1,4 +1,4 @@
-// The command `path` of docs/protocol.md.
+// Handler of the command "path" in docs/protocol.md.
 #include <utility>
 
 #include <fmt/format.h>
@@ -51,7 +51,7 @@ Result<Json> Hub::DoPath(const Caller& caller, const Json& command) {
   }
   sweep::Path path = workbench_->paths().PathOf(id);
   if (path.empty()) {
-    return Fail(ErrorCode::kNotFound, "this part has been in no hand yet",
+    return Fail(ErrorCode::kNotFound, "this part has not been held yet",
                 product.occurrences[id.index()].name, "move it, or let the simulated person do so");
   }
   if (*as == "points") {
@@ -59,15 +59,15 @@ Result<Json> Hub::DoPath(const Caller& caller, const Json& command) {
   }
   if (*as != "swept") {
     return Fail(ErrorCode::kInvalid, R"("as" must be "points" or "swept")", "command",
-                "load the page again");
+                "reload the page");
   }
   const auto done = [bench = workbench_, to = caller.id, reply_to = IdOf(command)](
                         const Result<std::shared_ptr<const SweptGlb>>& swept) {
-    bench->on_event(MakeLateReply(to, reply_to, Describe(swept)));
+    bench->on_event(MakeDeferredReply(to, reply_to, Describe(swept)));
   };
   const auto posted = workbench_->sweeper().Post(
       {scene->model, id, std::move(path), units::FromMm(*resolution_mm), done});
-  return posted ? Result<Json>(AnsweredLater()) : Unexpected(posted.error());
+  return posted ? Result<Json>(MakeDeferredResult()) : Unexpected(posted.error());
 }
 
 }  // namespace hvas::studio

@@ -15,11 +15,11 @@ namespace {
 using product::OccurrenceId;
 using spatial::Pose;
 
-/** Less is no motion that anybody sees. */
+/** Whether a motion is large enough to be seen. */
 bool HasMoved(const Pose& from, const Pose& to) {
-  constexpr double kWay = 20e-6;  // [m]
-  constexpr double kTurn = 2e-4;  // [rad]
-  return (to.p() - from.p()).norm() > kWay ||
+  constexpr double kDistance = 20e-6;  // [m]
+  constexpr double kTurn = 2e-4;       // [rad]
+  return (to.p() - from.p()).norm() > kDistance ||
          spatial::RotationBetween(from.q(), to.q()).norm() > kTurn;
 }
 
@@ -28,7 +28,7 @@ Result<std::shared_ptr<const SweptGlb>> Compute(const Sweeper::Task& task,
   const product::Occurrence& occurrence = task.model->product->occurrences[task.occurrence.index()];
   sweep::SweepOptions options;
   options.resolution = task.resolution;
-  options.threads = 1;  // the others are the hand's
+  options.threads = 1;  // the other cores are left to the loops of the hand
   options.stop = stop;
   const auto swept =
       sweep::Sweep(simulation::MakeShapeSource(task.model->product->part_of(task.occurrence)),
@@ -76,7 +76,7 @@ void PathLog::Append(const Pose& X_WB, Hold* hold) {
   }
   hold->passed = 0;
   hold->path.push_back(X_WB);
-  if (hold->path.size() < kMostPoses) {
+  if (hold->path.size() < kMaxPoses) {
     return;
   }
   for (std::size_t i = 0; 2 * i < hold->path.size(); ++i) {
@@ -126,10 +126,10 @@ Result<std::string> MakeGlb(const sweep::SurfaceMesh& mesh, const std::string& n
 
 Result<void> Sweeper::Post(Task task) {
   const auto job = [this, task = std::move(task)](const std::stop_token& stop) { Do(task, stop); };
-  if (!thread_.TryPost(job, kMostWaiting)) {
+  if (!thread_.TryPost(job, kMaxWaiting)) {
     return Fail(ErrorCode::kOutOfResource,
-                fmt::format("{} swept volumes are asked for already", kMostWaiting), "",
-                "wait for one of them");
+                fmt::format("{} swept volumes are queued already", kMaxWaiting), "",
+                "wait until one of them is done");
   }
   return {};
 }
@@ -142,7 +142,7 @@ void Sweeper::Do(const Task& task, const std::stop_token& stop) {
   if (swept) {
     const std::lock_guard lock(mutex_);
     kept_.push_back(*swept);
-    if (kept_.size() > kMostKept) {
+    if (kept_.size() > kMaxKept) {
       kept_.pop_front();
     }
   }

@@ -19,23 +19,24 @@
 
 namespace hvas::studio {
 
-/** The ways that parts went in a hand: of each part that of its last hold, pose by pose as frames
- come, or fewer of them where it took long. Any thread. */
+/** Paths of parts while they were held: for each part that of its last hold, one pose a frame, and
+ fewer where the hold was long. Any thread may call it. */
 class PathLog {
  public:
-  static constexpr std::size_t kMostPoses = 4096;  ///< Of one part; beyond, every other one goes.
+  /** Capacity for one part; beyond it every second pose is dropped. */
+  static constexpr std::size_t kMaxPoses = 4096;
 
   void Add(const simulation::Frame& frame);
   void Clear();
 
-  /** None for a part that was in no hand. */
+  /** Path of a part; empty for a part that was never held. */
   [[nodiscard]] sweep::Path PathOf(product::OccurrenceId id) const;
 
  private:
   struct Hold {
     sweep::Path path;
-    std::size_t stride{1};  ///< Of so many frames in which it moved one is kept.
-    std::size_t passed{0};  ///< Since the last one that was.
+    std::size_t stride{1};  ///< One frame is kept of so many in which the part moved.
+    std::size_t passed{0};  ///< Frames since the last one that was kept.
     spatial::Pose newest;
   };
 
@@ -43,25 +44,25 @@ class PathLog {
 
   mutable std::mutex mutex_;
   std::map<product::OccurrenceId, Hold> holds_;
-  std::vector<product::OccurrenceId> held_;  ///< By hand.
+  std::vector<product::OccurrenceId> held_;  ///< Held part, indexed by hand.
 };
 
-/** A swept volume as clients get it. */
+/** A swept volume in the form that clients get. */
 struct SweptGlb {
-  std::string id;    ///< Digest of the bytes.
-  std::string glb;   ///< As cad::MakeGlb makes it: in W, metres, Y up.
+  std::string id;    ///< Digest of `glb`.
+  std::string glb;   ///< Binary glTF in the conventions of cad::MakeGlb: in W, metres, Y up.
   double volume{0};  ///< [m^3]
-  double error{0};   ///< [m]
+  double error{0};   ///< Bound of the surface's error [m].
 };
 
-/** Writes a closed mesh as binary glTF. */
+/** Makes the binary glTF of a closed mesh. Errors: those of cad::MakeGlb. */
 [[nodiscard]] Result<std::string> MakeGlb(const sweep::SurfaceMesh& mesh, const std::string& name);
 
 /** Computes swept volumes, one after the other, on a thread of its own. */
 class Sweeper {
  public:
-  static constexpr std::size_t kMostWaiting = 8;
-  static constexpr std::size_t kMostKept = 16;
+  static constexpr std::size_t kMaxWaiting = 8;
+  static constexpr std::size_t kMaxKept = 16;
 
   using DoneFn = std::function<void(const Result<std::shared_ptr<const SweptGlb>>& swept)>;
 
@@ -70,16 +71,16 @@ class Sweeper {
     product::OccurrenceId occurrence;
     sweep::Path path;
     double resolution{0};  ///< [m]; 0: chosen.
-    DoneFn done;           ///< Called by the sweeper's thread; not after Stop.
+    DoneFn done;           ///< Called on the sweeper's thread; never after Stop().
   };
 
-  /** Errors (kOutOfResource): so many wait already. */
+  /** Queues a task. Errors: kOutOfResource when kMaxWaiting tasks wait already. */
   [[nodiscard]] Result<void> Post(Task task);
 
-  /** Of those computed last; null: none of this id. */
+  /** Finds one of the kMaxKept volumes computed last by its id; null where there is none. */
   [[nodiscard]] std::shared_ptr<const SweptGlb> Find(std::string_view id) const;
 
-  /** Ends what is being computed, and forgets what waits. */
+  /** Cancels the current task and drops the queue. */
   void Stop() { thread_.Stop(); }
 
  private:
@@ -87,7 +88,7 @@ class Sweeper {
 
   mutable std::mutex mutex_;
   std::deque<std::shared_ptr<const SweptGlb>> kept_;
-  JobThread thread_;  ///< The last member: the first that ends.
+  JobThread thread_;  ///< Last member, so that it ends before the others are destroyed.
 };
 
 }  // namespace hvas::studio

@@ -8,25 +8,27 @@
 
 namespace hvas::studio {
 
-/** Where a client wants the hand, and since when. */
+/** A client's target for the hand. */
 struct PointerInput {
-  std::int64_t t_ns{0};  ///< Arrival, by MonotonicNs().
+  std::int64_t t_ns{0};  ///< MonotonicNs() at its arrival.
   spatial::Pose X_WH;
   bool is_gripping{false};
 };
 
-/** A hand that is moved from afar, by a mouse or a controller in a browser (X5). Inputs come when
- they come, 60 to 120 times a second or late: the hand follows the newest one smoothly, no faster
- than a hand moves, and says how old it is, so that the gate can take the force away and nothing
- moves on. With an emulated device in the hand, the device's mechanics take the hand there. Step and
- Intend belong to the haptic thread, Move to one other thread. RT-safe. */
+/** A hand that a remote client moves, with a mouse or a controller in a browser (X5). Inputs arrive
+ 60 to 120 times a second, with jitter and gaps. The hand follows the newest one through a low-pass
+ filter of second order, with a limited speed; it reports the age of the input, by which the safety
+ gate removes the force and the motion stops. With an emulated device in the hand, the mechanics of
+ the device move the hand. Step and Intend are for the haptic thread, Move for one other thread.
+ RT-safe. */
 class PointerOperator final : public simulation::Operator, public simulation::DeviceHolder {
  public:
-  static constexpr std::int64_t kSilentNs = 250'000'000;  ///< After so long without input.
+  /** Age at which the input times out [ns]. */
+  static constexpr std::int64_t kInputTimeoutNs = 250'000'000;
 
   explicit PointerOperator(const spatial::Pose& X_WH);
 
-  /** Any time; newest wins. */
+  /** Sets the target; may be called at any time, and the newest one counts. */
   void Move(const PointerInput& input) noexcept { inputs_.Write(input); }
 
   device::DeviceState Step(const simulation::OperatorInput& input) noexcept override;
@@ -39,14 +41,14 @@ class PointerOperator final : public simulation::Operator, public simulation::De
   }
 
  private:
-  /** The newest wish, and its age. */
-  const PointerInput& Listen(bool sees_part, std::int64_t* age_ns) noexcept;
+  /** Reads the newest input and calculates its age. */
+  const PointerInput& ReadInput(bool sees_part, std::int64_t* age_ns) noexcept;
   void Follow(const spatial::Pose& X_WH, double dt) noexcept;
 
   simulation::PersonOptions options_;
   TripleBuffer<PointerInput> inputs_;
   spatial::Pose X_WH_;
-  spatial::Pose X_WS_;  ///< The first of the two stages that smooth the way.
+  spatial::Pose X_WS_;  ///< State of the first of the filter's two stages.
   spatial::Twist V_H_;
 };
 

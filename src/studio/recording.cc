@@ -13,9 +13,9 @@
 namespace hvas::studio {
 namespace {
 
-/** What a page that plays the session needs of what was told. */
-constexpr std::array<std::string_view, 8> kToldEvents{"taken", "state",  "dropped", "placement",
-                                                      "step",  "safety", "device",  "demo"};
+/** Events that a page needs to play the session. */
+constexpr std::array<std::string_view, 8> kClientEvents{"taken", "state",  "dropped", "placement",
+                                                        "step",  "safety", "device",  "demo"};
 
 std::vector<std::byte> BytesOf(std::string_view text) {
   const auto bytes = std::as_bytes(std::span(text));
@@ -40,7 +40,7 @@ Result<std::shared_ptr<Recording>> Recording::Start(const std::filesystem::path&
   record::RecorderOptions options;
   options.path = file;
   options.is_threaded = true;
-  options.ring_ticks *= 2;  // of two hands
+  options.ring_ticks *= 2;  // ticks of two hands
   options.on_error = [on_failed = std::move(on_failed)](const Error&) { on_failed(); };
   record::Meta meta = session::MakeModelMeta(*scene->model);
   meta[kNameMeta] = name;
@@ -87,11 +87,12 @@ void Recording::AddFrame(const LiveFrame& frame) {
   recorder_->AddFrame({t_ns, BytesOf(bytes)});
 }
 
-void Recording::AddTold(const nlohmann::ordered_json& event) {
+void Recording::AddClientEvent(const nlohmann::ordered_json& event) {
   const std::string name = event.value("event", "");
-  if (is_on_ && std::find(kToldEvents.begin(), kToldEvents.end(), name) != kToldEvents.end()) {
-    recorder_->AddEvent(
-        {sink_.t_ns(), kToldKind, event.value("occurrence", record::kNoOccurrence), event.dump()});
+  if (is_on_ &&
+      std::find(kClientEvents.begin(), kClientEvents.end(), name) != kClientEvents.end()) {
+    recorder_->AddEvent({sink_.t_ns(), kClientEventKind,
+                         event.value("occurrence", record::kNoOccurrence), event.dump()});
   }
 }
 

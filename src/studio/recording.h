@@ -17,18 +17,19 @@
 
 namespace hvas::studio {
 
-/** What is added to a record for a page that plays it. */
+/** Attachments of a record from which a page can play it. */
 inline constexpr const char* kSceneAttachment = "scene.json";
 inline constexpr const char* kGlbAttachment = "model.glb";
-inline constexpr const char* kToldKind = "told";  ///< Of an event: as viewers were told.
-inline constexpr const char* kNameMeta = "name";  ///< What people call it.
+inline constexpr const char* kClientEventKind =
+    "told";                                       ///< Kind of events in the form that clients got.
+inline constexpr const char* kNameMeta = "name";  ///< Metadata: display name.
 
-/** A session of one scene that is being recorded, over the live runs that follow one another. */
+/** A recording in progress: one scene, through all live runs that follow one another. */
 class Recording final : public simulation::Sink {
  public:
-  /** @param file  Its stem is the recording's id.
-   @param scene_json  As GET /api/scene has it.
-   @param on_failed  Called once, on another thread, when nothing can be written any more.
+  /** @param file  File to write; its stem is the recording's id.
+   @param scene_json  Response to GET /api/scene.
+   @param on_failed  Called once, on another thread, when writing has failed for good.
    Errors: those of record::Recorder::Create. */
   static Result<std::shared_ptr<Recording>> Start(const std::filesystem::path& file,
                                                   const std::string& name,
@@ -36,7 +37,7 @@ class Recording final : public simulation::Sink {
                                                   const nlohmann::ordered_json& scene_json,
                                                   std::function<void()> on_failed);
 
-  /** A run begins: before its loops do, and after it was restored. */
+  /** Begins with a run. @pre its state is restored, and its loops do not run yet. */
   void Begin(simulation::Simulation* simulation);
 
   void OnTick(std::size_t hand, const device::DeviceState& device,
@@ -44,21 +45,21 @@ class Recording final : public simulation::Sink {
   void OnEvent(const simulation::SimulationEvent& event) override;
   void OnFlight(const std::vector<simulation::FlightTick>& ticks) override;
 
-  /** What viewers are shown; publish thread. */
+  /** Adds a frame as clients get it. Called on the publish thread. */
   void AddFrame(const LiveFrame& frame);
-  /** What viewers are told; any thread but the haptic one. */
-  void AddTold(const nlohmann::ordered_json& event);
+  /** Adds an event as clients get it. Any thread but the haptic one may call it. */
+  void AddClientEvent(const nlohmann::ordered_json& event);
 
-  /** Ends the file. A run may go on with this as its sink; nothing is written any more.
-   Errors: what the disk has said. */
+  /** Closes the file. A run may keep this as its sink; nothing is written any more.
+   Errors: those of writing the file. */
   [[nodiscard]] Result<void> Stop();
 
-  /** Whether nothing can be written any more. */
+  /** Whether writing has failed for good. */
   [[nodiscard]] bool has_failed() const { return recorder_->error().has_value(); }
 
   [[nodiscard]] const OpenScene* scene() const { return scene_.get(); }
 
-  /** "recording" of docs/protocol.md. */
+  /** Makes the field "recording" of docs/protocol.md. */
   [[nodiscard]] nlohmann::ordered_json Describe() const;
 
  private:
@@ -71,9 +72,9 @@ class Recording final : public simulation::Sink {
   std::unique_ptr<record::Recorder> recorder_;
   session::SessionRecorder sink_;
   std::atomic<bool> is_on_{true};
-  std::atomic<std::int64_t> start_ns_{0};  ///< Session time at which the run of now began.
-  std::uint32_t frame_count_{0};           ///< The publish thread's own.
-  std::vector<spatial::Pose> shown_;       ///< Likewise.
+  std::atomic<std::int64_t> start_ns_{0};  ///< Session time at which the present run began [ns].
+  std::uint32_t frame_count_{0};           ///< Used by the publish thread only.
+  std::vector<spatial::Pose> shown_;       ///< Poses X_WB of the last frame; publish thread only.
 };
 
 }  // namespace hvas::studio

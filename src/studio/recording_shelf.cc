@@ -15,8 +15,8 @@
 #include "base/atomic_file.h"
 #include "record/reader.h"
 #include "studio/json_fields.h"
-#include "studio/kept_folder.h"
 #include "studio/recording.h"
+#include "studio/state_folder.h"
 
 namespace hvas::studio {
 namespace {
@@ -27,7 +27,7 @@ constexpr const char* kSuffix = ".hvasrec";
 constexpr const char* kNamesFile = "names.json";
 constexpr std::int64_t kNsPerMs = 1'000'000;
 
-/** Letters, digits and dashes. */
+/** Makes the stem of a file name from a product's name: letters, digits and dashes. */
 std::string MakeStem(const std::string& name) {
   constexpr std::size_t kLongest = 40;
   std::string stem;
@@ -66,7 +66,7 @@ Json DescribeFile(const std::string& id, const std::filesystem::path& file, std:
           {"bytes", bytes}};
 }
 
-/** What each part's holds amounted to, of the events "dropped". */
+/** Accumulates the results of each part's holds from the events "dropped". */
 class Results {
  public:
   void Add(const Json& dropped, const std::vector<std::string>& paths) {
@@ -123,8 +123,8 @@ std::vector<std::string> PathsOf(const record::Meta& meta) {
   return paths;
 }
 
-/** Whether an item of the folder may be a record: a link could lead to any file, and whoever opens
- a named pipe waits for ever. */
+/** Whether an entry of the folder may be a record: a regular file, because a link could lead to any
+ file and opening a named pipe blocks. */
 bool IsRecordFile(const std::filesystem::directory_entry& item) {
   std::error_code failed;
   return item.path().extension() == kSuffix &&
@@ -135,7 +135,8 @@ bool IsRecordFile(const std::filesystem::directory_entry& item) {
 
 Result<std::filesystem::path> RecordingShelf::MakePath(const std::string& product) const {
   if (folder_.empty()) {
-    return Fail(ErrorCode::kUnsupported, "there is no folder for recordings", "",
+    return Fail(ErrorCode::kUnsupported,
+                "recording is switched off: there is no folder for recordings", "",
                 "start the studio with --recordings FOLDER");
   }
   std::error_code failed;
@@ -197,7 +198,7 @@ Result<std::filesystem::path> RecordingShelf::Find(const std::string& id) const 
       return item.path();
     }
   }
-  return Fail(ErrorCode::kNotFound, "there is no such recording", id, "look at the list again");
+  return Fail(ErrorCode::kNotFound, "there is no such recording", id, "reload the list");
 }
 
 Result<record::Reader> RecordingShelf::Open(const std::string& id) const {
@@ -227,7 +228,7 @@ Result<Json> RecordingShelf::Describe(const std::string& id) const {
   Results results;
   Json& events = json["events"] = Json::array();
   for (const record::Event& event : *told) {
-    Json one = event.kind == kToldKind ? Json::parse(event.json, nullptr, false) : Json();
+    Json one = event.kind == kClientEventKind ? Json::parse(event.json, nullptr, false) : Json();
     if (!one.is_object()) {
       continue;
     }
@@ -279,10 +280,10 @@ Result<void> RecordingShelf::Delete(const std::string& id) {
   const std::lock_guard lock(mutex_);
   auto names = ReadNames();
   if (names.erase(id) > 0) {
-    (void)WriteNames(names);  // a name of nothing harms nobody
+    (void)WriteNames(names);  // a left-over name without a record does no harm
   }
   return failed ? Result<void>(Fail(ErrorCode::kOutOfResource, failed.message(), file->string(),
-                                    "delete the file by hand"))
+                                    "delete the file manually"))
                 : Result<void>();
 }
 
@@ -290,7 +291,7 @@ Result<void> RecordingShelf::Rename(const std::string& id, const std::string& na
   constexpr std::size_t kLongestName = 200;  // [bytes]
   if (name.find_first_not_of(' ') == std::string::npos || name.size() > kLongestName) {
     return Fail(ErrorCode::kInvalid,
-                fmt::format("a name has 1 to {} bytes, and not only spaces", kLongestName), name,
+                fmt::format("a name needs 1 to {} bytes, and not only spaces", kLongestName), name,
                 "choose another name");
   }
   if (const auto file = Find(id); !file) {
@@ -317,7 +318,7 @@ std::string RecordingShelf::MakeName(const std::string& product) {
 
 std::map<std::string, std::string> RecordingShelf::ReadNames() const {
   std::map<std::string, std::string> names;
-  const auto text = ReadKeptFile(folder_ / kNamesFile);
+  const auto text = ReadPrivateFile(folder_ / kNamesFile);
   const Json json = text ? Json::parse(*text, nullptr, false) : Json();
   if (json.is_object()) {
     for (const auto& [id, name] : json.items()) {

@@ -11,48 +11,50 @@
 
 namespace hvas::studio {
 
-/** The recordings in a folder, by id: the stem of the file's name. What clients ask for is found by
- comparing with what is there, never by making a path of it. Any thread. */
+/** The recordings in a folder, by id: the stem of the file's name. An id from a client is looked up
+ among the files that are there, and never made part of a path. Any thread may call it. */
 class RecordingShelf {
  public:
-  /** @param folder  Is made when something is recorded; empty: nothing can be. */
+  /** @param folder  Made with the first recording; empty: recording is switched off. */
   explicit RecordingShelf(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /** Where a new one of a product goes. Errors: why nothing can be recorded. */
+  /** Makes the path of a new recording of a product, and its folder. Errors: kUnsupported when
+   recording is switched off; kOutOfResource when the folder cannot be made. */
   [[nodiscard]] Result<std::filesystem::path> MakePath(const std::string& product) const;
 
-  /** "recordings" of docs/protocol.md, the newest first. What is no record is passed over. */
+  /** Makes the field "recordings" of docs/protocol.md, newest first. Other files are skipped. */
   [[nodiscard]] nlohmann::ordered_json List();
 
-  /** Errors: kNotFound. */
+  /** Path of a recording. Errors: kNotFound. */
   [[nodiscard]] Result<std::filesystem::path> Find(const std::string& id) const;
 
-  /** What a page needs to play it: docs/protocol.md. */
+  /** Makes the description from which a page plays a recording (docs/protocol.md). */
   [[nodiscard]] Result<nlohmann::ordered_json> Describe(const std::string& id) const;
 
-  /** All that viewers were shown, frame after frame. */
+  /** Reads all frames as clients got them, one after the other. */
   [[nodiscard]] Result<std::string> ReadFrames(const std::string& id) const;
 
-  /** kSceneAttachment or kGlbAttachment. */
+  /** Reads an attachment. @param name  kSceneAttachment or kGlbAttachment. */
   [[nodiscard]] Result<std::string> ReadAttachment(const std::string& id,
                                                    const std::string& name) const;
 
   [[nodiscard]] Result<void> Delete(const std::string& id);
 
-  /** What people call it from now on; the record itself, which may be evidence, stays as it was.
-   Errors: kNotFound; kInvalid for an empty name; those of WriteAtomically. */
+  /** Changes the display name, in a file beside the records; the record itself, which may be
+   evidence, is not modified. Errors: kNotFound; kInvalid for an empty name; those of
+   WriteAtomically. */
   [[nodiscard]] Result<void> Rename(const std::string& id, const std::string& name);
 
-  /** For a new one of a product: its name, with the first number behind it that none has yet. */
+  /** Makes a display name for a new recording: the product's, with the first number not in use. */
   [[nodiscard]] std::string MakeName(const std::string& product);
 
  private:
   [[nodiscard]] Result<record::Reader> Open(const std::string& id) const;
-  /** Those that Rename has given, by id. */
+  /** Names given by Rename, by id. */
   [[nodiscard]] std::map<std::string, std::string> ReadNames() const;
   [[nodiscard]] Result<void> WriteNames(const std::map<std::string, std::string>& names) const;
 
-  /** As of a file that has not changed since. */
+  /** Cached description of a file; valid while the file's time and size are these. */
   struct Entry {
     std::filesystem::file_time_type written;
     std::uintmax_t bytes{0};
@@ -61,7 +63,7 @@ class RecordingShelf {
 
   std::filesystem::path folder_;
   std::mutex mutex_;
-  std::map<std::string, Entry> entries_;  ///< By id.
+  std::map<std::string, Entry> entries_;  ///< Cache, by id.
 };
 
 }  // namespace hvas::studio

@@ -5,7 +5,7 @@
 
 #include "base/digest.h"
 #include "cad/glb.h"
-#include "studio/kept_work.h"
+#include "studio/saved_work.h"
 
 namespace hvas::studio {
 
@@ -26,7 +26,7 @@ Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const 
     return Unexpected(model.error());
   }
   if (stop.stop_requested()) {
-    return Fail(ErrorCode::kCancelled, "opening was stopped", name, "");
+    return Fail(ErrorCode::kCancelled, "opening the file was cancelled", name, "");
   }
   auto glb = cad::MakeGlb(*(*model)->product, false);
   if (!glb) {
@@ -44,15 +44,16 @@ Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const 
   return scene;
 }
 
-SharedScene SceneBuilder::Again(const OpenScene& before) {
+SharedScene SceneBuilder::MakeCopy(const OpenScene& before) {
   auto scene = std::make_shared<OpenScene>(before);
   scene->epoch = ++last_epoch_;
   return scene;
 }
 
-Result<SharedScene> SceneBuilder::MakeEdits(const OpenScene& opened, const std::vector<Json>& edits,
-                                            const cad::ProgressFn& progress) {
-  auto change = MakeChangeOf(edits);
+Result<SharedScene> SceneBuilder::ApplyEdits(const OpenScene& opened,
+                                             const std::vector<Json>& edits,
+                                             const cad::ProgressFn& progress) {
+  auto change = CombineEdits(edits);
   if (!change) {
     return Unexpected(change.error());
   }
@@ -89,8 +90,8 @@ Result<std::shared_ptr<const simulation::Model>> SceneBuilder::Compile(
     Diagnostics* diagnostics) const {
   if (!(product.mass() > 0)) {
     return Fail(ErrorCode::kUnsupported,
-                "no part of it has a mass, so there is nothing to assemble", name,
-                "export it with its solids, not as surfaces");
+                "no part of the product has a mass, so there is nothing to assemble", name,
+                "export the product with solids, not as surfaces");
   }
   simulation::CompileOptions compile;
   compile.seed = options_.seed;

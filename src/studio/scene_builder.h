@@ -16,41 +16,42 @@
 
 namespace hvas::studio {
 
-/** Opens a CAD file ready to assemble. */
+/** Imports a CAD file and infers its mates. */
 using LoadFn = std::function<Result<product::Product>(
     const std::filesystem::path& file, const cad::ProgressFn& progress, std::stop_token stop,
     Diagnostics* diagnostics)>;
 
-/** Makes scenes of files and of changes. One thread's. */
+/** Makes scenes from files and from edits of scenes. For one thread. */
 class SceneBuilder {
  public:
   struct Options {
     LoadFn load;
     std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
     std::uint64_t seed{1};
-    /** Epochs begin behind it: pages of a program's start before know theirs from these. */
+    /** New epochs are larger, so that they differ from those of the program's previous start. */
     std::uint32_t last_epoch{0};
   };
 
   explicit SceneBuilder(Options options)
       : options_(std::move(options)), last_epoch_(options_.last_epoch) {}
 
-  /** @param name  As people call the file.
-   Errors: of the file; kUnsupported where nothing of it has a mass; kCancelled. */
+  /** Opens a file. @param name  Display name of the file.
+   Errors: those of the import; kUnsupported where no part has a mass; kCancelled. */
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> Open(const std::filesystem::path& file,
                                                               const std::string& name,
                                                               const cad::ProgressFn& progress,
                                                               const std::stop_token& stop);
 
-  /** What was opened, after edits as of OpenScene. Errors: of the first that cannot be made. */
-  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> MakeEdits(
+  /** Applies edits of OpenScene to a scene. Errors: those of the first edit that fails. */
+  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> ApplyEdits(
       const OpenScene& opened, const std::vector<nlohmann::ordered_json>& edits,
       const cad::ProgressFn& progress);
 
-  /** The same, as a scene of its own. */
-  [[nodiscard]] std::shared_ptr<const OpenScene> Again(const OpenScene& before);
+  /** Copies a scene under a new epoch. */
+  [[nodiscard]] std::shared_ptr<const OpenScene> MakeCopy(const OpenScene& before);
 
-  /** The same product after a change; its pictures stay. Errors: of the change. */
+  /** Applies an edit to the product of a scene; the meshes stay. Errors: those of the edit, and of
+   compiling the model. */
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> Change(const OpenScene& before,
                                                                 const Edit& edit,
                                                                 const cad::ProgressFn& progress);

@@ -90,7 +90,8 @@ Json OccurrencesOf(const Model& model, const LiveState& state) {
   return all;
 }
 
-/** The fit with its limits by ISO 286 and the size that was drawn for it; diametral. */
+/** Describes the fit with its limits by ISO 286 and the size drawn from the population;
+ diametral. */
 Json FitOf(const Model& model, const product::Mate& mate) {
   if (!mate.fit) {
     return nullptr;
@@ -111,7 +112,7 @@ Json FitOf(const Model& model, const product::Mate& mate) {
     }
   }
   if (const auto& force = model.mates[mate.id.index()].fit; force != nullptr) {
-    constexpr double kMouth = 0;  // where the roughness counts least
+    constexpr double kMouth = 0;  // where the effect of roughness is smallest
     json["clearance_actual_um"] = units::ToUm(2 * force->CalcClearance(kMouth));
   }
   return json;

@@ -42,11 +42,11 @@ class Server::Impl {
     error_code error;
     const auto address = asio::ip::make_address(options.address, error);
     if (error) {
-      return Fail(ErrorCode::kInvalid, "this is no address", options.address,
-                  "give one of this machine, or 0.0.0.0 for all that it has");
+      return Fail(ErrorCode::kInvalid, "this is not an IP address", options.address,
+                  "give an address of this machine, or 0.0.0.0 for all of them");
     }
     if (!address.is_loopback() && !options.tls) {
-      return Fail(ErrorCode::kInvalid, "other machines are not spoken with unencrypted",
+      return Fail(ErrorCode::kInvalid, "connections of other machines have to be encrypted",
                   options.address, "give a certificate, or listen on 127.0.0.1");
     }
     if (options.tls) {
@@ -56,9 +56,10 @@ class Server::Impl {
       }
       shared_->tls = std::move(*tls);
     }
-    KeptAccess kept = FindKeptAccess();
+    SavedAccess kept = FindKeptAccess();
     const bool wants_kept_port = options.port == 0 && kept.port != 0;
-    if (!wants_kept_port || !Listen({address, kept.port})) {  // another program may have it now
+    if (!wants_kept_port ||
+        !Listen({address, kept.port})) {  // another program may use that port by now
       if (const auto listening = Listen({address, options.port}); !listening) {
         return listening;
       }
@@ -66,8 +67,8 @@ class Server::Impl {
     has_kept_links_ = kept.port == port();
     shared_->access =
         std::make_unique<Access>(options.names, port(), options.tls.has_value(), std::move(kept));
-    shared_->KeepAccess();
-    shared_->TellOfParticipantLink();
+    shared_->SaveAccessState();
+    shared_->UpdateParticipantLink();
     Accept();
     Tick();
     thread_ = std::thread([this] { Run(); });
@@ -95,13 +96,13 @@ class Server::Impl {
 
  private:
   /** What the start before has kept; nothing where there was none, or it cannot be used. */
-  [[nodiscard]] KeptAccess FindKeptAccess() const {
+  [[nodiscard]] SavedAccess FindKeptAccess() const {
     const auto& file = shared_->options.access_file;
-    auto kept = file.empty() ? KeptAccess() : LoadAccess(file);
+    auto kept = file.empty() ? SavedAccess() : LoadAccess(file);
     if (!kept && kept.error().code != ErrorCode::kNotFound) {
       fmt::print(stderr, "warning: new links are made: {}\n", kept.error().ToString());
     }
-    return kept ? std::move(*kept) : KeptAccess();
+    return kept ? std::move(*kept) : SavedAccess();
   }
 
   Result<void> Listen(const tcp::endpoint& wanted) {

@@ -18,18 +18,18 @@
 namespace hvas::studio {
 
 struct ServerOptions {
-  std::string address{"127.0.0.1"};      ///< To listen on; another than the loopback's needs `tls`.
-  std::uint16_t port{0};                 ///< 0: any that is free.
-  std::optional<TlsFiles> tls;           ///< None: it speaks http.
-  std::filesystem::path upload_folder;   ///< Exists, and is this process's own.
-  std::filesystem::path access_file;     ///< Keeps KeptAccess; empty: nothing is kept of it.
-  std::vector<std::string> reachable;    ///< Addresses that it could listen on for others.
-  std::vector<std::string> names;        ///< Hosts besides the loopback's that it answers to.
-  std::uint64_t most_upload{256 << 20};  ///< [bytes]
-  /** With whoever is connected and says nothing: a handshake, a header, an answer that is not read,
-   a WebSocket that does not answer. */
+  std::string address{"127.0.0.1"};  ///< Address to listen on; beyond the loopback it needs `tls`.
+  std::uint16_t port{0};             ///< Port to listen on; 0: any free one.
+  std::optional<TlsFiles> tls;       ///< None: plain HTTP.
+  std::filesystem::path upload_folder;  ///< Exists; no other process uses it.
+  std::filesystem::path access_file;    ///< File of SavedAccess; empty: it is not saved.
+  std::vector<std::string> reachable;   ///< Addresses for links of other machines.
+  std::vector<std::string> names;       ///< Host names that it answers to besides the loopback's.
+  std::uint64_t max_upload{256 << 20};  ///< Largest upload [bytes].
+  /** Time after which an inactive connection is closed: an unfinished handshake or header, a
+   response that is not read, a WebSocket that does not answer pings. */
   std::chrono::milliseconds patience{30'000};
-  StudyDesk* desk{nullptr};  ///< Of the study that is run; null: none.
+  StudyDesk* desk{nullptr};  ///< Session of a study; null: none is run.
 };
 
 /** The studio's HTTP and WebSocket server (docs/protocol.md), with one thread of its own. */
@@ -40,21 +40,22 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /** Binds and begins to answer, at the port that was kept where none is asked for. Errors:
-   kOutOfResource when the port is taken or the address is another machine's, kInvalid for an
-   address that is none or would be spoken with unencrypted, kUnreadable for a certificate or a key
+  /** Binds and listens; at the port of the previous start when port 0 is asked for. Errors:
+   kOutOfResource when the port is in use or the address is another machine's; kInvalid for a
+   malformed address, or one beyond the loopback without TLS; kUnreadable for a certificate or key
    that cannot be used. */
   [[nodiscard]] Result<void> Start();
 
-  /** Lets everybody go. @pre the workbench has stopped: it tells nobody any more. */
+  /** Closes all connections. @pre the workbench has stopped, and sends no more events. */
   void Stop();
 
   [[nodiscard]] std::uint16_t port() const;
 
-  /** The links of the start before are good again. */
+  /** Whether the links of the previous start are valid. */
   [[nodiscard]] bool has_kept_links() const;
 
-  /** The address to open, with the token of a role in its fragment, which no server ever sees. */
+  /** URL to open, with the token of a role in its fragment, which browsers do not send to
+   servers. */
   [[nodiscard]] std::string LinkFor(Role role, std::string_view host = "127.0.0.1") const;
 
  private:

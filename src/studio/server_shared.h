@@ -24,39 +24,41 @@ namespace websocket = beast::websocket;
 using beast::error_code;
 using tcp = asio::ip::tcp;
 
-/** All that the sessions share; one thread's. */
+/** State that all sessions of the server share. For one thread. */
 struct ServerShared {
   ServerShared(Workbench* bench, std::vector<Example> examples, const ServerOptions& given)
       : workbench(bench), hub(bench, std::move(examples)), options(given) {
-    hub.RunStudy(given.desk);
+    hub.SetStudyDesk(given.desk);
   }
 
   Workbench* workbench;
   Hub hub;
   ServerOptions options;
   std::unique_ptr<Access> access;
-  std::unique_ptr<asio::ssl::context> tls;  ///< Null: nothing is encrypted.
-  std::shared_ptr<Guests> guests{std::make_shared<Guests>()};
+  std::unique_ptr<asio::ssl::context> tls;  ///< Null: plain HTTP.
+  std::shared_ptr<ConnectionTable> connections{std::make_shared<ConnectionTable>()};
 
-  /** After a change of who may come in. What cannot be written is told of once. */
-  void KeepAccess() {
+  /** Saves the access control after a change; prints a warning the first time that this fails. */
+  void SaveAccessState() {
     if (options.access_file.empty()) {
       return;
     }
     const auto saved = SaveAccess(options.access_file, access->Keep());
-    if (!saved && std::exchange(can_keep_access, false)) {
-      fmt::print(stderr, "warning: the next start makes new links: {}\n", saved.error().ToString());
+    if (!saved && std::exchange(can_save_access, false)) {
+      fmt::print(stderr,
+                 "warning: the links cannot be saved, so the next start makes new ones: {}\n",
+                 saved.error().ToString());
     }
   }
 
-  /** A link that nobody has used yet, for the experimenter to pass on. */
-  void TellOfParticipantLink() {
+  /** Gives the study desk an unused participant's link, which the experimenter passes on. */
+  void UpdateParticipantLink() {
     if (options.desk != nullptr) {
-      options.desk->SetParticipantLink("/#t=" + access->FindFresh(Role::kParticipant));
+      options.desk->SetParticipantLink("/#t=" + access->FindUnusedLink(Role::kParticipant));
     }
   }
 
-  bool can_keep_access{true};
+  bool can_save_access{true};
 };
 
 }  // namespace hvas::studio

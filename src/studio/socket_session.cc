@@ -12,10 +12,10 @@
 namespace hvas::studio {
 namespace {
 
-constexpr std::size_t kMostMessage = 64 << 10;  // to the server
-constexpr std::size_t kMostQueued = 16 << 20;   // of text to a client that does not read
+constexpr std::size_t kMaxMessage = 64 << 10;  // from the client [bytes]
+constexpr std::size_t kMaxQueued = 16 << 20;   // text for a client that does not read [bytes]
 
-/** Text is kept until it is sent; frames are few, by the hub's credit. */
+/** Session of a WebSocket. Text is queued until sent; the hub's credits limit the queued frames. */
 class SocketSession final : public ClientLink, public std::enable_shared_from_this<SocketSession> {
  public:
   SocketSession(Connection connection, std::shared_ptr<ServerShared> shared, Role role)
@@ -24,10 +24,10 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   ~SocketSession() override { Leave(); }
 
   void Run(const http::request<http::empty_body>& request) {
-    // Whoever has gone without a word, or sleeps, is asked after half the time, and let go of.
+    // A silent peer gets a ping after half of this time, and is disconnected at its end.
     const auto patience = shared_->options.patience;
     socket_.set_option(websocket::stream_base::timeout{patience, patience, true});
-    socket_.read_message_max(kMostMessage);
+    socket_.read_message_max(kMaxMessage);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](error_code error) {
       if (!error) {
@@ -37,8 +37,8 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   }
 
   void SendText(std::string text) override {
-    if (queued_ + text.size() > kMostQueued) {
-      CutOff();
+    if (queued_ + text.size() > kMaxQueued) {
+      Abort();
       return;
     }
     Push({std::move(text), true});
@@ -54,7 +54,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
     const websocket::close_reason why(websocket::close_code::policy_error,
                                       reason.substr(0, kLongestReason));
     socket_.async_close(why, [self = shared_from_this()](error_code) {});
-    LeaveSoon();
+    PostLeave();
   }
 
  private:
@@ -73,17 +73,17 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
     Read();
   }
 
-  /** Of a client that reads nothing, not even why it has to go. */
-  void CutOff() {
+  /** Closes the connection of a client that does not read, without a closing handshake. */
+  void Abort() {
     if (!std::exchange(is_closing_, true)) {
       beast::get_lowest_layer(socket_).close();
-      LeaveSoon();
+      PostLeave();
     }
   }
 
-  /** Not at once: the hub may be just telling everybody something. Whoever has to go does not keep
-   its lease until it has answered. */
-  void LeaveSoon() {
+  /** Leaves in a later call, because the hub may be in the middle of a broadcast; but before the
+   closing handshake, so that the lease is free at once. */
+  void PostLeave() {
     asio::post(socket_.get_executor(), [self = shared_from_this()] { self->Leave(); });
   }
 

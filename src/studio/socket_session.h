@@ -10,8 +10,8 @@
 
 namespace hvas::studio {
 
-/** Makes a client of a connection whose request asks for a WebSocket; it lives as long as the
- connection does. */
+/** Upgrades a connection to a WebSocket and joins it to the hub as a client, which lives as long as
+ the connection. */
 void StartSocketSession(Connection connection, std::shared_ptr<ServerShared> shared, Role role,
                         const http::request<http::empty_body>& request);
 

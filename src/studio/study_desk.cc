@@ -24,7 +24,7 @@ double Seconds(std::int64_t ns) {
   return 1e-9 * static_cast<double>(ns);
 }
 
-Unexpected NotNow(const char* what, const char* remedy) {
+Unexpected FailNotNow(const char* what, const char* remedy) {
   return Fail(ErrorCode::kInvalid, fmt::format("{} is not possible now", what), "study", remedy);
 }
 
@@ -32,7 +32,8 @@ Json OrNull(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-/** Who may do what: the participant, or the experimenter at the operator's link. */
+/** Roles that may do an action: the participant, or the experimenter, who has the operator's
+ link. */
 bool MayDo(Role role, const std::string& action) {
   constexpr std::array kParticipants{"state", "consent", "ready", "answer", "pick"};
   constexpr std::array kExperimenters{"state", "begin", "ready", "next", "note", "abort", "resume"};
@@ -86,7 +87,7 @@ void StudyDesk::Start() {
   bench_->Open(options_.product, folder_.protocol().title.en);
 }
 
-Result<void> StudyDesk::Tell(StudyEvent event) {
+Result<void> StudyDesk::RecordEvent(StudyEvent event) {
   event.unix_ms = options_.unix_ms ? options_.unix_ms() : 0;
   study::StudySession before = session_;
   if (const auto applied = session_.Apply(event); !applied) {
@@ -94,7 +95,7 @@ Result<void> StudyDesk::Tell(StudyEvent event) {
   }
   const auto written = journal_.Append(event);
   if (!written) {
-    session_ = std::move(before);  // what is not in the journal has not happened
+    session_ = std::move(before);  // an event that is not in the journal does not count
   }
   return written;
 }
@@ -105,59 +106,59 @@ Result<Json> StudyDesk::Do(Role role, const Json& command, std::int64_t now_ns) 
     return Unexpected(action.error());
   }
   if (!MayDo(role, *action)) {
-    return Fail(ErrorCode::kInvalid, "this link may not do that, or there is no such action",
-                *action, "see who may in docs/protocol.md");
+    return Fail(ErrorCode::kInvalid, "there is no such action, or this link does not allow it",
+                *action, "see docs/protocol.md for actions and roles");
   }
   if (*action == "pick") {
     return Pick(role, command, now_ns);
   }
-  if (const auto done = Act(role, *action, command, now_ns); !done) {
+  if (const auto done = Execute(role, *action, command, now_ns); !done) {
     return Unexpected(done.error());
   }
   return Json{{"state", MakeState(role, now_ns)}};
 }
 
-Result<void> StudyDesk::Act(Role role, const std::string& action, const Json& command,
-                            std::int64_t now_ns) {
+Result<void> StudyDesk::Execute(Role role, const std::string& action, const Json& command,
+                                std::int64_t now_ns) {
   StudyEvent event;
   if (action == "begin") {
     if (!is_open_) {
-      return NotNow("to begin", "wait until the product is open");
+      return FailNotNow("beginning", "wait until the product is open");
     }
     if (session_.phase() != Phase::kWaiting) {
-      return NotNow("to begin", "the session has begun already");
+      return FailNotNow("beginning", "the session has begun already");
     }
     event.kind = Kind::kBegun;
-    return Tell(event);
+    return RecordEvent(event);
   }
   if (action == "consent") {
     return Consent(command);
   }
   if (action == "ready") {
-    return Ready(now_ns);
+    return BeginTrial(now_ns);
   }
   if (action == "next") {
-    return Next();
+    return Continue();
   }
   if (action == "answer") {
-    return Answer(command);
+    return AnswerQuestion(command);
   }
   if (action == "note") {
     const auto text = TextAt(command, "text");
     if (!text || text->empty() || text->size() > kLongestNote) {
-      return Fail(ErrorCode::kInvalid, "this is no note", "text",
-                  fmt::format("write from 1 to {} bytes", kLongestNote));
+      return Fail(ErrorCode::kInvalid, "the note is missing or too long", "text",
+                  fmt::format("write 1 to {} bytes", kLongestNote));
     }
     event.kind = Kind::kNote;
     event.text = *text;
-    return Tell(event);
+    return RecordEvent(event);
   }
   if (action == "abort") {
     return Abort(TextAt(command, "reason").value_or("no reason given"));
   }
   if (action == "resume") {
     event.kind = Kind::kResumed;
-    return Tell(event);
+    return RecordEvent(event);
   }
   static_cast<void>(role);
   return {};
@@ -172,43 +173,43 @@ Result<void> StudyDesk::Consent(const Json& command) {
   event.kind = Kind::kConsent;
   event.agrees = *agrees;
   event.language = TextAt(command, "language").value_or(folder_.protocol().languages.front());
-  return Tell(event);
+  return RecordEvent(event);
 }
 
-Result<void> StudyDesk::Ready(std::int64_t now_ns) {
+Result<void> StudyDesk::BeginTrial(std::int64_t now_ns) {
   if (trial_ != nullptr) {
-    return NotNow("to begin", "what is on the bench has to end first");
+    return FailNotNow("beginning", "the previous trial has to end first");
   }
   StudyEvent event;
   event.trial = session_.trial().value_or(0);
   event.kind = session_.phase() == Phase::kTraining ? Kind::kTrainingBegun : Kind::kTrialBegun;
-  const auto told = Tell(event);
-  if (told) {
+  const auto recorded = RecordEvent(event);
+  if (recorded) {
     training_since_ns_ = now_ns;
     BeginOnBench();
   }
-  return told;
+  return recorded;
 }
 
-Result<void> StudyDesk::Next() {
+Result<void> StudyDesk::Continue() {
   const Phase phase = session_.phase();
   if (phase == Phase::kTraining && session_.is_running()) {
     StudyEvent event;
     event.kind = Kind::kTrainingEnded;
-    const auto told = Tell(event);
-    if (told) {
+    const auto recorded = RecordEvent(event);
+    if (recorded) {
       EndOnBench(Outcome::kNotDone);
     }
-    return told;
+    return recorded;
   }
   if (phase == Phase::kRunning && trial_ != nullptr) {
     EndOnBench(Outcome::kNotDone);
     return {};
   }
-  return NotNow("this", "it ends a training or a trial that runs");
+  return FailNotNow("this action", "the action ends a training or trial in progress");
 }
 
-Result<void> StudyDesk::Answer(const Json& command) {
+Result<void> StudyDesk::AnswerQuestion(const Json& command) {
   const auto question = TextAt(command, "question");
   if (!question) {
     return Unexpected(question.error());
@@ -223,25 +224,25 @@ Result<void> StudyDesk::Answer(const Json& command) {
   } else if (value.is_string()) {
     event.value = value.get<std::string>();
   } else if (!value.is_null()) {
-    return Fail(ErrorCode::kInvalid, "this is no answer to the question", *question,
+    return Fail(ErrorCode::kInvalid, "the answer does not suit the question", *question,
                 "give a whole number, a text, or null for none");
   }
-  return Tell(std::move(event));
+  return RecordEvent(std::move(event));
 }
 
 Result<void> StudyDesk::Abort(const std::string& reason) {
   StudyEvent event;
   event.kind = Kind::kAborted;
   event.text = reason.substr(0, kLongestNote);
-  const auto told = Tell(event);
-  if (told) {
+  const auto recorded = RecordEvent(event);
+  if (recorded) {
     last_abort_ = event.text;
     EndOnBench(Outcome::kNotDone);
   }
-  return told;
+  return recorded;
 }
 
-const Condition* StudyDesk::ConditionAtHand() const {
+const Condition* StudyDesk::FindCurrentCondition() const {
   const study::Protocol& protocol = folder_.protocol();
   if (session_.phase() == Phase::kTraining) {
     return &protocol.conditions[protocol.training.condition.value_or(0)];
@@ -256,14 +257,14 @@ bool StudyDesk::IsPicking() const {
 
 void StudyDesk::BeginOnBench() {
   LiveTrial::Plan plan;
-  plan.condition = *ConditionAtHand();
+  plan.condition = *FindCurrentCondition();
   plan.part = folder_.protocol().part;
   plan.mating_window = folder_.protocol().mating_window;
   plan.has_person = options_.has_person;
   if (options_.keeps_records && session_.phase() == Phase::kRunning) {
     plan.record = folder_.RecordFile(id_, *session_.trial());
     std::error_code ignored;
-    std::filesystem::remove(plan.record, ignored);  // of a trial that was interrupted
+    std::filesystem::remove(plan.record, ignored);  // record of an interrupted trial
   }
   ending_.reset();
   hold_.clear();
@@ -284,11 +285,11 @@ Result<void> StudyDesk::FinishTrial() {
   missing_.clear();
   hold_.clear();
   if (session_.phase() == Phase::kTraining && session_.is_running()) {
-    BeginOnBench();  // as often as the participant likes
+    BeginOnBench();  // the training is repeated until the participant goes on
     return {};
   }
   if (over == nullptr || session_.phase() != Phase::kRunning) {
-    return {};  // aborted: it counts for nothing
+    return {};  // an aborted trial has no result
   }
   StudyEvent event;
   event.kind = Kind::kTrialEnded;
@@ -298,10 +299,10 @@ Result<void> StudyDesk::FinishTrial() {
   if (outcome == Outcome::kTimedOut && event.result.time) {
     event.result.time = std::min(*event.result.time, over->plan().condition.time_limit);
   }
-  return Tell(std::move(event));
+  return RecordEvent(std::move(event));
 }
 
-bool StudyDesk::OnBench(const Json& event, std::int64_t /*now_ns*/) {
+bool StudyDesk::OnBenchEvent(const Json& event, std::int64_t /*now_ns*/) {
   const std::string name = event.value("event", "");
   if (name == "scene") {
     return !std::exchange(is_open_, true);
@@ -311,7 +312,7 @@ bool StudyDesk::OnBench(const Json& event, std::int64_t /*now_ns*/) {
     part_ = bench_->trial_part();
     missing_ = bench_->trial_constraints();
     if (!session_.is_running()) {
-      EndOnBench(Outcome::kNotDone);  // it was aborted, or the training ended, before it had begun
+      EndOnBench(Outcome::kNotDone);  // aborted, or the training ended, before the run began
     }
     return true;
   }
@@ -342,7 +343,7 @@ bool StudyDesk::Poll(std::int64_t now_ns) {
   const Phase phase = session_.phase();
   if (phase == Phase::kTraining && session_.is_running()) {
     if (Seconds(now_ns - training_since_ns_) >= folder_.protocol().training.duration) {
-      static_cast<void>(Next());
+      static_cast<void>(Continue());
     }
     return true;
   }
@@ -357,10 +358,10 @@ bool StudyDesk::Poll(std::int64_t now_ns) {
 
 Result<void> StudyDesk::CheckTake() const {
   if (trial_ == nullptr || ending_) {
-    return NotNow("to take a part", "wait until the trial has begun");
+    return FailNotNow("taking a part", "wait until the trial has begun");
   }
   return IsPicking()
-             ? Result<void>(NotNow("to take a part", "pick the surfaces that belong together"))
+             ? Result<void>(FailNotNow("taking a part", "pick the surfaces that belong together"))
              : Result<void>();
 }
 
@@ -371,7 +372,7 @@ Result<Json> StudyDesk::Pick(Role role, const Json& command, std::int64_t now_ns
     return Unexpected(!a ? a.error() : b.error());
   }
   if (!IsPicking() || ending_) {
-    return NotNow("to pick", "surfaces are picked in a trial whose method is picking");
+    return FailNotNow("picking", "surfaces can be picked only in trials with that method");
   }
   const auto scene = bench_->scene();
   const auto mate = mates::MakeMate(*scene->model->product, {a->occurrence, a->face, {}},
@@ -403,7 +404,7 @@ Json StudyDesk::MakeState(Role role, std::int64_t now_ns) const {
              {"is_open", is_open_}};
   state["trial"] = trial && sees_progress ? Json(*trial + 1) : Json(nullptr);
   state["trials"] = sees_progress ? Json(session_.schedule().size()) : Json(nullptr);
-  // In every language: the participant chooses it with the consent.
+  // The text is sent in every language: the participant chooses one with the consent.
   Json consent = nullptr;
   if (session_.phase() == Phase::kConsent) {
     consent = {{"en", protocol.consent.en}, {"de", protocol.consent.In("de")}};
@@ -422,7 +423,7 @@ void StudyDesk::AddTrialAtHand(std::int64_t now_ns, bool sees_all, Json* state) 
   const Phase phase = session_.phase();
   const bool is_training = phase == Phase::kTraining;
   const bool is_at_hand = is_training || phase == Phase::kReady || phase == Phase::kRunning;
-  const Condition* condition = is_at_hand ? ConditionAtHand() : nullptr;
+  const Condition* condition = is_at_hand ? FindCurrentCondition() : nullptr;
   Json& s = *state;
   for (const char* key : {"instruction", "method", "occurrence", "elapsed_s", "limit_s"}) {
     s[key] = nullptr;
@@ -461,9 +462,9 @@ Json StudyDesk::MakeQuestion() const {
     const study::Block& block = session_.BlockOf(open->trial);
     json["kind"] = "choice";
     json["text"] = block.question.In(language);
-    json["choices"] = Json::array();  // in the protocol's order, whatever was shown
+    json["choices"] = Json::array();  // in the protocol's order, which reveals nothing
     for (const std::size_t c : block.conditions) {
-      const std::string& answer = study::AnswerOf(folder_.protocol().conditions[c]);
+      const std::string& answer = study::AnswerNameOf(folder_.protocol().conditions[c]);
       json["choices"].push_back({{"id", answer}, {"text", answer}});
     }
     return json;
@@ -504,7 +505,7 @@ Json StudyDesk::MakeDone() const {
                     {"collisions", done.result.collisions},
                     {"peak_force_n", done.result.peak_felt},
                     {"answer", OrNull(done.answer)},
-                    {"is_right", is_answered ? Json(done.answer == study::AnswerOf(condition))
+                    {"is_right", is_answered ? Json(done.answer == study::AnswerNameOf(condition))
                                              : Json(nullptr)}});
   }
   return list;
@@ -513,7 +514,7 @@ Json StudyDesk::MakeDone() const {
 void StudyDesk::AddForExperimenter(Json* state) const {
   const study::Protocol& protocol = folder_.protocol();
   const auto trial = session_.trial();
-  const Condition* condition = ConditionAtHand();
+  const Condition* condition = FindCurrentCondition();
   Json& s = *state;
   s["participant"] = id_;
   s["link"] = OrNull(participant_link_);

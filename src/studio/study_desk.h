@@ -13,43 +13,45 @@
 
 namespace hvas::studio {
 
-/** Where a participant's session of a study is run: between the study's state machine with its
- journal, the bench that trials are done on, and the two who look at it (docs/protocol.md). One
- thread's, the hub's. */
+/** Runs the session of one participant of a study: connects the study's state machine and journal
+ with the workbench that trials run on and with the clients of the participant and the experimenter
+ (docs/protocol.md). For the hub's thread. */
 class StudyDesk {
  public:
   struct Options {
     std::string participant;        ///< "P01"
-    std::filesystem::path product;  ///< That the protocol names, as a file.
-    bool has_person{false};         ///< The simulated person does the trials: to show a study.
+    std::filesystem::path product;  ///< File of the product that the protocol names.
+    bool has_person{false};  ///< The simulated person does the trials, to demonstrate a study.
     bool keeps_records{true};
-    std::function<std::int64_t()> unix_ms;  ///< The wall clock, for the journal.
+    std::function<std::int64_t()> unix_ms;  ///< Wall clock for the journal: Unix time [ms].
   };
 
-  /** Goes on with the participant's journal, or begins it. Errors: the journal's, or events in it
-   that cannot have happened; kInvalid where simulated participants are in this folder. */
+  /** Resumes the participant's journal, or begins it. Errors: those of the journal, and of events
+   in it that contradict the protocol; kInvalid when the folder has simulated participants. */
   [[nodiscard]] static Result<std::unique_ptr<StudyDesk>> Open(study::StudyFolder folder,
                                                                Workbench* bench, Options options);
 
-  /** For the experimenter to pass on: from the page's "/" on. Before anybody has joined. */
+  /** Sets the link that the experimenter passes on: path and fragment. @pre no client has
+   joined. */
   void SetParticipantLink(std::string link) { participant_link_ = std::move(link); }
 
-  /** Has the product opened; the session may begin once it is. */
+  /** Opens the product on the workbench; the session can begin once it is open. */
   void Start();
 
-  /** The command `study`. @returns what is answered. */
+  /** Executes the command "study". @param now_ns  MonotonicNs(). @returns the reply. */
   [[nodiscard]] Result<Json> Do(Role role, const Json& command, std::int64_t now_ns);
 
-  /** Something that the bench told. @returns true when the state has changed. */
-  bool OnBench(const Json& event, std::int64_t now_ns);
+  /** Handles an event of the workbench. @returns whether the state has changed. */
+  bool OnBenchEvent(const Json& event, std::int64_t now_ns);
 
-  /** Now and then: time-outs, the end of the training. @returns true when there is news. */
+  /** Checks time limits; to be called periodically. @returns whether the state has changed. */
   bool Poll(std::int64_t now_ns);
 
-  /** The event `study` as a role may see it. */
+  /** Makes the event "study" with what a role may see. */
   [[nodiscard]] Json MakeState(Role role, std::int64_t now_ns) const;
 
-  /** Errors: parts cannot be taken up now: there is no trial, or surfaces are to be picked. */
+  /** Checks whether a part may be taken now. Errors: kInvalid while no trial runs, and in trials in
+   which constraints are picked. */
   [[nodiscard]] Result<void> CheckTake() const;
 
  private:
@@ -58,20 +60,20 @@ class StudyDesk {
   StudyDesk(study::StudyFolder folder, Workbench* bench, Options options, study::Journal journal,
             int number);
 
-  [[nodiscard]] Result<void> Tell(study::StudyEvent event);
-  [[nodiscard]] Result<void> Act(Role role, const std::string& action, const Json& command,
-                                 std::int64_t now_ns);
+  [[nodiscard]] Result<void> RecordEvent(study::StudyEvent event);
+  [[nodiscard]] Result<void> Execute(Role role, const std::string& action, const Json& command,
+                                     std::int64_t now_ns);
   [[nodiscard]] Result<void> Consent(const Json& command);
-  [[nodiscard]] Result<void> Ready(std::int64_t now_ns);
-  [[nodiscard]] Result<void> Next();
-  [[nodiscard]] Result<void> Answer(const Json& command);
+  [[nodiscard]] Result<void> BeginTrial(std::int64_t now_ns);
+  [[nodiscard]] Result<void> Continue();
+  [[nodiscard]] Result<void> AnswerQuestion(const Json& command);
   [[nodiscard]] Result<Json> Pick(Role role, const Json& command, std::int64_t now_ns);
   [[nodiscard]] Result<void> Abort(const std::string& reason);
   void BeginOnBench();
-  /** Ends what is on the bench; the trial is over when the bench says so. */
+  /** Ends the run on the workbench; the trial is over with the event "trial_over". */
   void EndOnBench(study::Outcome outcome);
   [[nodiscard]] Result<void> FinishTrial();
-  [[nodiscard]] const study::Condition* ConditionAtHand() const;
+  [[nodiscard]] const study::Condition* FindCurrentCondition() const;
   [[nodiscard]] bool IsPicking() const;
   void AddTrialAtHand(std::int64_t now_ns, bool sees_all, Json* state) const;
   void AddForExperimenter(Json* state) const;
@@ -86,13 +88,13 @@ class StudyDesk {
   std::string id_;
   std::string participant_link_;
   bool is_resumed_{false};
-  bool is_open_{false};  ///< The product is.
+  bool is_open_{false};  ///< The product is open.
   std::string hold_;     ///< State of the held part; empty: none.
   std::string last_abort_;
-  std::shared_ptr<LiveTrial> trial_;      ///< On the bench; null: none.
-  std::optional<study::Outcome> ending_;  ///< What ended it; none while it runs.
+  std::shared_ptr<LiveTrial> trial_;      ///< Trial on the workbench; null: none.
+  std::optional<study::Outcome> ending_;  ///< Outcome of the trial; none while it runs.
   std::int64_t training_since_ns_{0};
-  std::vector<product::MateId> missing_;  ///< Constraints that are still to be picked.
+  std::vector<product::MateId> missing_;  ///< Constraints that have not been picked yet.
   std::optional<product::OccurrenceId> part_;
 };
 

@@ -14,15 +14,15 @@ Result<std::unique_ptr<asio::ssl::context>> MakeTls(const TlsFiles& files) {
                              error);
   tls->use_certificate_chain_file(files.certificate.string(), error);
   if (error) {
-    return Fail(ErrorCode::kUnreadable, "this certificate cannot be used: " + error.message(),
+    return Fail(ErrorCode::kUnreadable, "the certificate is unusable: " + error.message(),
                 files.certificate.string(),
-                "give --certificate a file in PEM, the server's own certificate first");
+                "give --certificate a PEM file that begins with the server's own certificate");
   }
   tls->use_private_key_file(files.key.string(), asio::ssl::context::pem, error);
   if (error) {
-    return Fail(ErrorCode::kUnreadable, "this key cannot be used: " + error.message(),
+    return Fail(ErrorCode::kUnreadable, "the key is unusable: " + error.message(),
                 files.key.string(),
-                "give --key the certificate's own key, in PEM, without a password");
+                "give --key the private key of the certificate, in PEM format without a password");
   }
   return tls;
 }

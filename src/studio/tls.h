@@ -9,9 +9,9 @@
 
 namespace hvas::studio {
 
-/** TLS 1.2 and above with a certificate of one's own.
- Errors (kUnreadable): a file is no PEM, is locked by a password, or the two do not belong together.
- */
+/** Makes the context of a server for TLS 1.2 and above.
+ Errors: kUnreadable when a file is not in PEM format or needs a password, or when the key does not
+ belong to the certificate. */
 [[nodiscard]] Result<std::unique_ptr<boost::asio::ssl::context>> MakeTls(const TlsFiles& files);
 
 }  // namespace hvas::studio

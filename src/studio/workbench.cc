@@ -27,7 +27,7 @@ bool HasSameOrder(const simulation::Sequence& a, const simulation::Sequence& b) 
                     });
 }
 
-/** All parts on the table. */
+/** Makes the initial state: all parts lie on the table. */
 LiveState MakeStart(const simulation::Model& model) {
   LiveState state;
   for (const simulation::Body& body : model.bodies) {
@@ -36,8 +36,8 @@ LiveState MakeStart(const simulation::Model& model) {
   return state;
 }
 
-/** @param begun  With parts where a work that was kept had them, or none of them. */
-Json MakeResumedEvent(const SceneNow& begun) {
+/** @param begun  Snapshot after resuming; without parts where the saved state was not restored. */
+Json MakeResumedEvent(const SceneSnapshot& begun) {
   const auto& parts = begun.state.parts;
   return {{"event", "resumed"},
           {"is_resumed", !parts.empty()},
@@ -47,8 +47,8 @@ Json MakeResumedEvent(const SceneNow& begun) {
           {"edits", begun.scene->edits.size()}};
 }
 
-std::array<double, 2> SpeedsBetween(const simulation::Frame& before,
-                                    const simulation::Frame& after) {
+std::array<double, 2> CalcHandSpeeds(const simulation::Frame& before,
+                                     const simulation::Frame& after) {
   std::array<double, 2> speeds{};
   const double elapsed = 1e-9 * static_cast<double>(after.t_ns - before.t_ns);
   for (std::size_t i = 0; i < after.ticks.size(); ++i) {
@@ -70,16 +70,16 @@ Workbench::~Workbench() {
 
 void Workbench::Stop() {
   worker_.RequestStop();
-  Cancel();           // after it: nothing else begins
-  FinishRecording();  // before all that may take long
+  Cancel();           // after the flag is set, so that nothing else begins
+  FinishRecording();  // before anything that takes long
   EndRun();
   sweeper_.Stop();
   worker_.Stop();
-  EndRun();  // that the worker had just begun
+  EndRun();  // a run that the worker has just begun
   FinishRecording();
   if (!std::exchange(has_stopped_, true)) {
     keeper_.Stop();
-    DoKeepWork();
+    DoSaveWork();
   }
 }
 
@@ -99,14 +99,14 @@ void Workbench::Post(std::function<void()> job) {
   worker_.Post([job = std::move(job)](const std::stop_token&) { job(); });
 }
 
-void Workbench::Tell(Json event) const {
+void Workbench::Publish(Json event) const {
   std::shared_ptr<Recording> recording;
   {
     const std::lock_guard lock(mutex_);
     recording = recording_;
   }
   if (recording != nullptr) {
-    recording->AddTold(event);
+    recording->AddClientEvent(event);
   }
   if (on_event) {
     on_event(std::move(event));
@@ -120,7 +120,7 @@ void Workbench::Open(const std::filesystem::path& file, const std::string& name)
 void Workbench::PostOpen(std::function<void()> job) {
   {
     const std::lock_guard lock(mutex_);
-    opening_.request_stop();  // what is being opened gives way to what comes after it
+    opening_.request_stop();  // a newer request replaces the one in progress
     opening_ = {};
   }
   Post(std::move(job));
@@ -132,43 +132,44 @@ void Workbench::Cancel() {
 }
 
 void Workbench::DoOpen(const std::filesystem::path& file, const std::string& name,
-                       const KeptWork* kept) {
+                       const SavedWork* kept) {
   std::stop_token stop;
   {
     const std::lock_guard lock(mutex_);
     stop = opening_.get_token();
   }
-  const auto scene = builder_.Open(file, name, TellProgressOf(name), stop);
+  const auto scene = builder_.Open(file, name, MakeProgressListener(name), stop);
   if (!scene) {
     Json failed{{"event", "failed"}, {"file", name}, {"error", ToJson(scene.error())}};
     {
       const std::lock_guard lock(mutex_);
       failure_ = failed;
     }
-    Tell(std::move(failed));
+    Publish(std::move(failed));
     return;
   }
   history_.Clear();
-  const SceneNow begun = kept != nullptr ? GoOnFrom(*kept, *scene) : SceneNow{*scene, {}};
+  const SceneSnapshot begun =
+      kept != nullptr ? RestoreWork(*kept, *scene) : SceneSnapshot{*scene, {}};
   {
     const std::lock_guard lock(mutex_);
     failure_ = nullptr;
     resumed_ = kept != nullptr ? MakeResumedEvent(begun) : Json(nullptr);
   }
   if (kept != nullptr && begun.state.parts.empty()) {
-    SetWorkAside(options_.work_file);
+    BackUpWork(options_.work_file);
   }
   Show(begun.scene, begun.state, false);
-  paths_.Clear();  // of the product before: its last frame has come
-  TellOfHistory();
+  paths_.Clear();  // paths of the previous product, whose last frame has come
+  PublishHistory();
   if (kept != nullptr) {
-    Tell(MakeResumedEvent(begun));
+    Publish(MakeResumedEvent(begun));
   }
 }
 
-cad::ProgressFn Workbench::TellProgressOf(const std::string& name) const {
+cad::ProgressFn Workbench::MakeProgressListener(const std::string& name) const {
   return [this, name](std::string_view stage, double fraction) {
-    Tell({{"event", "progress"}, {"stage", stage}, {"fraction", fraction}, {"file", name}});
+    Publish({{"event", "progress"}, {"stage", stage}, {"fraction", fraction}, {"file", name}});
   };
 }
 
@@ -194,9 +195,9 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
   }
   ended.reset();  // its threads end here, outside the lock that they may wait for
   if (!is_recorded) {
-    FinishRecording();  // a record is of one scene
+    FinishRecording();  // a record has one scene
   }
-  is_demo_ = has_person;  // not before: what the run before told last was still its own
+  is_demo_ = has_person;  // after the last events of the previous run
   {
     const std::lock_guard lock(mutex_);
     live.recording = recording_;
@@ -208,15 +209,15 @@ void Workbench::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
     run_ = run;
   }
   if (is_new) {
-    Tell({{"event", "scene"},
-          {"epoch", scene->epoch},
-          {"why", why.empty() ? Json(nullptr) : Json(why)}});
+    Publish({{"event", "scene"},
+             {"epoch", scene->epoch},
+             {"why", why.empty() ? Json(nullptr) : Json(why)}});
   } else {
-    TellOfPlacements();
+    PublishPlacements();
   }
-  TellOfStep(*scene, run->state().next_step);
-  TellOfHands();
-  KeepWork();
+  PublishStep(*scene, run->state().next_step);
+  PublishHands();
+  ScheduleSave();
 }
 
 void Workbench::Restart(bool has_person) {
@@ -233,7 +234,7 @@ void Workbench::Restart(bool has_person) {
   const LiveState state = run->state();
   run.reset();
   Show(scene, state, has_person);
-  Tell({{"event", "demo"}, {"on", has_person}});
+  Publish({{"event", "demo"}, {"on", has_person}});
 }
 
 LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& scene,
@@ -243,8 +244,9 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
     HandleEvent(*scene, event);
   };
   listeners.on_placement = [this](OccurrenceId id, Placement placement) {
-    Tell({{"event", "placement"}, {"occurrence", id.value()}, {"placement", ToString(placement)}});
-    KeepWork();
+    Publish(
+        {{"event", "placement"}, {"occurrence", id.value()}, {"placement", ToString(placement)}});
+    ScheduleSave();
   };
   listeners.on_step = [this, scene, has_person = live.has_person](std::size_t step) {
     HandleStep(*scene, step, has_person);
@@ -255,7 +257,7 @@ LiveListeners Workbench::MakeListeners(const std::shared_ptr<const OpenScene>& s
     LiveFrame shown;
     {
       const std::lock_guard lock(mutex_);
-      const auto speed = SpeedsBetween(frame_.frame, frame);
+      const auto speed = CalcHandSpeeds(frame_.frame, frame);
       frame_ = {epoch, frame_.serial + 1, frame, clock_ns, peak_felt, speed};
       shown = recording != nullptr ? frame_ : LiveFrame();
     }
@@ -274,29 +276,29 @@ void Workbench::HandleEvent(const OpenScene& scene, const simulation::Simulation
   HandleHold(scene, event);
   HandleDevice(event);
   if (Json json = ToJson(event); !json.is_null()) {
-    Tell(std::move(json));
+    Publish(std::move(json));
   }
 }
 
-void Workbench::TellOfStep(const OpenScene& scene, std::size_t step) const {
-  Tell(MakeStepEvent(scene, step));
+void Workbench::PublishStep(const OpenScene& scene, std::size_t step) const {
+  Publish(MakeStepEvent(scene, step));
 }
 
 void Workbench::HandleStep(const OpenScene& scene, std::size_t step, bool has_person) {
-  TellOfStep(scene, step);
-  KeepWork();
+  PublishStep(scene, step);
+  ScheduleSave();
   const auto& steps = scene.model->sequence.steps;
   const bool is_finished = step >= steps.size();
-  // What stands in a fixture was nobody's work: it ends no demo of one step.
+  // Placing a fixture part is no work of a person, and does not end a demo of one step.
   const bool is_work = step > 0 && steps[step - 1].kind != SequenceStep::Kind::kBase;
   if (has_person && (is_finished || (is_work && ends_demo_after_step_.exchange(false)))) {
     Post([this] { Restart(false); });
   }
 }
 
-void Workbench::Remember(SceneNow before, const std::string& what) {
+void Workbench::Remember(SceneSnapshot before, const std::string& what) {
   history_.Remember(std::move(before), what);
-  TellOfHistory();
+  PublishHistory();
 }
 
 void Workbench::SetForcesOff(bool is_off) {
@@ -309,7 +311,7 @@ void Workbench::SetForcesOff(bool is_off) {
 
 Result<void> Workbench::SetDemo(bool is_on) {
   if (!is_on) {
-    // A part in the hand is not dropped; a demo that is about to begin ends as well.
+    // A held part is not dropped; a demo that is about to begin ends, too.
     Post([this] { ends_demo_after_step_ = is_demo_.load(); });
     return {};
   }
@@ -317,7 +319,7 @@ Result<void> Workbench::SetDemo(bool is_on) {
   if (idle) {
     ends_demo_after_step_ = false;
     Post([this] {
-      Remember(Look(), "demo");
+      Remember(MakeSnapshot(), "demo");
       Restart(true);
     });
   }
@@ -339,9 +341,10 @@ Result<void> Workbench::GoTo(History::Direction direction) {
   }
   if (possible) {
     Post([this, is_undo = direction == History::Direction::kUndo, direction] {
-      if (const auto then = history_.Go(direction, Look())) {  // else somebody was faster
+      if (const auto then =
+              history_.Go(direction, MakeSnapshot())) {  // empty when another client was faster
         Show(then->scene, then->state, false, is_undo ? "undone" : "done again");
-        TellOfHistory();
+        PublishHistory();
       }
     });
   }
@@ -360,7 +363,7 @@ Result<void> Workbench::Reset() {
   auto idle = CheckIdle();
   if (idle) {
     Post([this] {
-      Remember(Look(), "reset");
+      Remember(MakeSnapshot(), "reset");
       Show(scene(), {}, false);
     });
   }
@@ -371,7 +374,7 @@ Result<void> Workbench::Change(const Edit& edit) {
   if (auto idle = CheckIdle(); !idle) {
     return idle;
   }
-  // Tried here first, so that whoever asks learns at once what is wrong with it.
+  // The edit is tried here first, so that its errors are in the reply.
   product::Product trial = *scene()->model->product;
   auto changed = edit.change(&trial);
   if (changed) {
@@ -381,14 +384,14 @@ Result<void> Workbench::Change(const Edit& edit) {
 }
 
 void Workbench::DoChange(const Edit& edit) {
-  const auto [before, state] = Look();
-  const auto after = builder_.Change(*before, edit, TellProgressOf(edit.what));
+  const auto [before, state] = MakeSnapshot();
+  const auto after = builder_.Change(*before, edit, MakeProgressListener(edit.what));
   if (!after) {
-    Tell({{"event", "failed"}, {"file", edit.what}, {"error", ToJson(after.error())}});
+    Publish({{"event", "failed"}, {"file", edit.what}, {"error", ToJson(after.error())}});
     return;
   }
-  Remember(Look(), edit.what);
-  // In another order, what is in its place already is passed over when its turn comes.
+  Remember(MakeSnapshot(), edit.what);
+  // In the new order, parts that are in their place already are skipped.
   const bool has_same_order = HasSameOrder(before->model->sequence, (*after)->model->sequence);
   Show(*after, {state.parts, has_same_order ? state.next_step : 0}, false, edit.what);
 }
@@ -398,7 +401,7 @@ std::shared_ptr<const OpenScene> Workbench::scene() const {
   return scene_;
 }
 
-SceneNow Workbench::Look() const {
+SceneSnapshot Workbench::MakeSnapshot() const {
   const std::lock_guard lock(mutex_);
   return {scene_, run_ != nullptr ? run_->state() : resting_};
 }
@@ -413,11 +416,11 @@ std::optional<simulation::LoopStatus> Workbench::TakeStatus() {
   return run_ != nullptr ? run_->TakeStatus() : std::nullopt;
 }
 
-void Workbench::TellOfHistory() const {
-  Tell(history_.Describe());
+void Workbench::PublishHistory() const {
+  Publish(history_.Describe());
 }
 
-std::vector<Json> Workbench::NewsForLatecomer() const {
+std::vector<Json> Workbench::MakeCatchUpEvents() const {
   std::vector<Json> news{history_.Describe()};
   if (const auto open = scene()) {
     news.push_back(MakeStepEvent(*open, state().next_step));
@@ -432,12 +435,12 @@ std::vector<Json> Workbench::NewsForLatecomer() const {
   return news;
 }
 
-void Workbench::TellOfPlacements() const {
+void Workbench::PublishPlacements() const {
   const LiveState now = state();
   for (std::size_t i = 0; i < now.parts.size(); ++i) {
-    Tell({{"event", "placement"},
-          {"occurrence", i},
-          {"placement", ToString(now.parts[i].placement)}});
+    Publish({{"event", "placement"},
+             {"occurrence", i},
+             {"placement", ToString(now.parts[i].placement)}});
   }
 }
 

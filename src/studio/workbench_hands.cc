@@ -1,4 +1,4 @@
-// The hands on the workbench: what they follow, and what they take and let go.
+// Hands of the workbench: devices, taking and releasing of parts.
 
 #include <utility>
 
@@ -15,11 +15,12 @@ using product::OccurrenceId;
 using simulation::Placement;
 using simulation::SequenceStep;
 
-Error DemoAtWork() {
-  return {ErrorCode::kInvalid, "the simulated person is at work", "", "end the demo first"};
+Error MakeDemoError() {
+  return {ErrorCode::kInvalid, "the simulated person is working", "",
+          "stop the simulated person first"};
 }
 
-Error NothingOpen() {
+Error MakeNoProductError() {
   return {ErrorCode::kNotFound, "no product is open", "", "open a file or an example first"};
 }
 
@@ -27,21 +28,21 @@ const std::string& NameOf(const simulation::Model& model, OccurrenceId id) {
   return model.product->occurrences[id.index()].name;
 }
 
-/** Nothing where a part can be taken. */
-std::optional<Error> ExplainGone(Placement placement, const std::string& name) {
+/** Explains why a part cannot be taken; none where it can. */
+std::optional<Error> ExplainUnavailable(Placement placement, const std::string& name) {
   switch (placement) {
     case Placement::kPlaced:
-      return Error{ErrorCode::kInvalid, "the part stands in its fixture", name,
-                   "take the other parts to it"};
+      return Error{ErrorCode::kInvalid, "the part is fixed", name, "bring the other parts to it"};
     case Placement::kHeld:
-      return Error{ErrorCode::kInvalid, "the part is in a hand already", name, "let it go first"};
+      return Error{ErrorCode::kInvalid, "another hand holds the part", name, "release it first"};
     default:
       return std::nullopt;
   }
 }
 
-/** For the list of what can be undone; null for what changed nothing. */
-const char* WhatWasDone(const SceneNow& before, const simulation::SimulationEvent& dropped) {
+/** Description of a release for the undo list; null where nothing has changed. */
+const char* DescribeRelease(const SceneSnapshot& before,
+                            const simulation::SimulationEvent& dropped) {
   const bool was_placed =
       before.state.parts[dropped.occurrence.index()].placement == Placement::kPlaced;
   if (dropped.was_seated) {
@@ -64,13 +65,13 @@ bool IsHolding(const LiveRun& run) {
 Result<void> Workbench::CheckIdle() const {
   const std::lock_guard lock(mutex_);
   if (scene_ == nullptr) {
-    return Unexpected(NothingOpen());
+    return Unexpected(MakeNoProductError());
   }
   if (is_demo_) {
-    return Unexpected(DemoAtWork());
+    return Unexpected(MakeDemoError());
   }
   if (run_ != nullptr && IsHolding(*run_)) {
-    return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
+    return Fail(ErrorCode::kInvalid, "the hand holds a part", "", "release it first");
   }
   return {};
 }
@@ -78,21 +79,21 @@ Result<void> Workbench::CheckIdle() const {
 Result<std::shared_ptr<LiveRun>> Workbench::RunForHand(std::size_t hand) const {
   const std::lock_guard lock(mutex_);
   if (scene_ == nullptr) {
-    return Unexpected(NothingOpen());
+    return Unexpected(MakeNoProductError());
   }
   if (is_demo_) {
-    return Unexpected(DemoAtWork());
+    return Unexpected(MakeDemoError());
   }
   if (run_ == nullptr) {
-    return Fail(ErrorCode::kInvalid, "the product is just being changed", "", "try again");
+    return Fail(ErrorCode::kInvalid, "the product is being changed", "", "try again");
   }
   if (hand >= run_->hand_count()) {
     return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
-                "ask for two hands first");
+                "switch to two hands first");
   }
   if (!run_->hand(hand).follows_pointer()) {
-    return Fail(ErrorCode::kInvalid, "a device is in this hand", fmt::format("hand {}", hand),
-                "take the part with it, or give the hand back to the pointer");
+    return Fail(ErrorCode::kInvalid, "a device moves this hand", fmt::format("hand {}", hand),
+                "take the part with the device, or assign the pointer to the hand");
   }
   return run_;
 }
@@ -107,17 +108,17 @@ Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
     return Fail(ErrorCode::kNotFound, "there is no such part", fmt::format("o{}", id.value()), "");
   }
   if ((*run)->is_holding(hand)) {
-    return Fail(ErrorCode::kInvalid, "a part is in the hand", "", "let it go first");
+    return Fail(ErrorCode::kInvalid, "the hand holds a part", "", "release it first");
   }
   const LiveState state = (*run)->state();
   const SequenceStep step = FindStep(model, state, id);
   const simulation::PartState& part = state.parts[step.occurrence.index()];
-  const auto gone = ExplainGone(part.placement, NameOf(model, id));
+  const auto gone = ExplainUnavailable(part.placement, NameOf(model, id));
   const bool is_there = step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
   if (gone && (!is_there || part.placement == Placement::kHeld)) {
     return Unexpected(*gone);
   }
-  // Upright: what the hand turns, the part turns with it.
+  // The hand goes upright to the part, because the part later turns with the hand.
   const spatial::Pose X_WH(part.X_WB * simulation::CombineMass(model, step).p_BoBcm_B);
   (*run)->Take(hand, step, X_WH);
   return X_WH;
@@ -140,8 +141,8 @@ Result<void> Workbench::Release(std::size_t hand) {
 }
 
 Result<void> Workbench::SetHandCount(std::size_t count) {
-  if (count != 1 && count != HandRack::kMostHands) {
-    return Fail(ErrorCode::kInvalid, "there are one or two hands", "count", "");
+  if (count != 1 && count != HandRack::kMaxHands) {
+    return Fail(ErrorCode::kInvalid, "the number of hands has to be 1 or 2", "count", "");
   }
   auto idle = CheckHands();
   if (idle) {
@@ -160,7 +161,7 @@ Result<void> Workbench::UseDevice(std::size_t hand, const std::string& address, 
   if (idle) {
     Post([this, hand, address, scale] {
       if (const auto used = rack_.Use(hand, address, scale); !used) {
-        Tell({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
+        Publish({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
         return;
       }
       RestartWithHands();
@@ -178,7 +179,7 @@ void Workbench::RestartWithHands() {
   if (scene() != nullptr) {
     Restart(false);
   } else {
-    TellOfHands();
+    PublishHands();
   }
 }
 
@@ -188,7 +189,7 @@ void Workbench::SearchDevices() {
       device_search_.Run();
       Json event = devices();
       event["event"] = "devices";
-      Tell(std::move(event));
+      Publish(std::move(event));
     });
   }
 }
@@ -210,8 +211,8 @@ Json Workbench::hands() const {
   return rack_.Describe(options);
 }
 
-void Workbench::TellOfHands() const {
-  Tell({{"event", "hands"}, {"hands", hands()}});
+void Workbench::PublishHands() const {
+  Publish({{"event", "hands"}, {"hands", hands()}});
 }
 
 void Workbench::HandleHold(const OpenScene& scene, const simulation::SimulationEvent& event) {
@@ -219,16 +220,17 @@ void Workbench::HandleHold(const OpenScene& scene, const simulation::SimulationE
   if (is_demo_ || (event.kind != Kind::kTaken && event.kind != Kind::kDropped)) {
     return;
   }
-  std::optional<SceneNow> before;
+  std::optional<SceneSnapshot> before;
   {
     const std::lock_guard lock(mutex_);
     before = std::exchange(before_take_[event.hand], std::nullopt);
     resumed_ = nullptr;
     if (event.kind == Kind::kTaken && run_ != nullptr) {
-      before_take_[event.hand] = SceneNow{scene_, run_->state_before_take()};
+      before_take_[event.hand] = SceneSnapshot{scene_, run_->state_before_take()};
     }
   }
-  const char* what = event.kind == Kind::kDropped && before ? WhatWasDone(*before, event) : nullptr;
+  const char* what =
+      event.kind == Kind::kDropped && before ? DescribeRelease(*before, event) : nullptr;
   if (what != nullptr) {
     Remember(std::move(*before),
              fmt::format("{} {}", what, NameOf(*scene.model, event.occurrence)));
@@ -240,11 +242,11 @@ void Workbench::HandleDevice(const simulation::SimulationEvent& event) {
     return;
   }
   const std::string text = rack_.SetState(event.hand, event.condition, event.vendor_code);
-  Tell({{"event", "device"},
-        {"hand", event.hand},
-        {"condition", device::ToString(event.condition)},
-        {"text", text}});
-  TellOfHands();
+  Publish({{"event", "device"},
+           {"hand", event.hand},
+           {"condition", device::ToString(event.condition)},
+           {"text", text}});
+  PublishHands();
 }
 
 }  // namespace hvas::studio

@@ -1,4 +1,4 @@
-// Recordings of what is done on the workbench.
+// Recordings of the work on the workbench.
 
 #include <utility>
 
@@ -15,7 +15,8 @@ Result<void> Workbench::StartRecording(const std::string& name) {
   {
     const std::lock_guard lock(mutex_);
     if (recording_ != nullptr) {
-      return Fail(ErrorCode::kInvalid, "this is being recorded already", "", "end that first");
+      return Fail(ErrorCode::kInvalid, "a recording is in progress", "",
+                  "stop the recording first");
     }
   }
   const auto file = shelf_.MakePath(scene()->model->product->name);
@@ -27,30 +28,30 @@ Result<void> Workbench::StartRecording(const std::string& name) {
 }
 
 void Workbench::DoStartRecording(const std::filesystem::path& file, const std::string& name) {
-  const auto [scene, state] = Look();
+  const auto [scene, state] = MakeSnapshot();
   if (!recording().is_null()) {
-    return;  // somebody was faster
+    return;  // another client was faster
   }
   const std::string called = name.empty() ? shelf_.MakeName(scene->model->product->name) : name;
   auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state),
                                   [this] { Post([this] { EndFailedRecording(); }); });
   if (!started) {
-    Tell({{"event", "failed"}, {"file", file.string()}, {"error", ToJson(started.error())}});
+    Publish({{"event", "failed"}, {"file", file.string()}, {"error", ToJson(started.error())}});
     return;
   }
   {
     const std::lock_guard lock(mutex_);
     recording_ = *started;
   }
-  Restart(false);  // a record begins with how the hands are set up and where all parts are
-  TellOfRecording((*started)->Describe());
+  Restart(false);  // a record begins with the setup of the hands and all poses
+  PublishRecording((*started)->Describe());
 }
 
 Result<void> Workbench::StopRecording() {
   {
     const std::lock_guard lock(mutex_);
     if (recording_ == nullptr) {
-      return Fail(ErrorCode::kInvalid, "nothing is being recorded", "", "");
+      return Fail(ErrorCode::kInvalid, "no recording is in progress", "", "");
     }
   }
   Post([this] { FinishRecording(); });
@@ -67,9 +68,9 @@ void Workbench::FinishRecording() {
     return;
   }
   if (const auto stopped = ended->Stop(); !stopped) {
-    Tell({{"event", "failed"}, {"file", "recording"}, {"error", ToJson(stopped.error())}});
+    Publish({{"event", "failed"}, {"file", "recording"}, {"error", ToJson(stopped.error())}});
   }
-  TellOfRecording(ended->Describe());
+  PublishRecording(ended->Describe());
 }
 
 void Workbench::EndFailedRecording() {
@@ -83,10 +84,10 @@ void Workbench::EndFailedRecording() {
   }
 }
 
-void Workbench::TellOfRecording(Json recording) const {
+void Workbench::PublishRecording(Json recording) const {
   recording["event"] = "recording";
-  Tell(std::move(recording));
-  Tell({{"event", "recordings"}});
+  Publish(std::move(recording));
+  Publish({{"event", "recordings"}});
 }
 
 Json Workbench::recording() const {
@@ -97,18 +98,19 @@ Json Workbench::recording() const {
 Result<void> Workbench::RenameRecording(const std::string& id, const std::string& name) {
   auto renamed = shelf_.Rename(id, name);
   if (renamed) {
-    Tell({{"event", "recordings"}});
+    Publish({{"event", "recordings"}});
   }
   return renamed;
 }
 
 Result<void> Workbench::DeleteRecording(const std::string& id) {
   if (const Json now = recording(); !now.is_null() && now["id"] == id) {
-    return Fail(ErrorCode::kInvalid, "this is being recorded", id, "end that first");
+    return Fail(ErrorCode::kInvalid, "this recording is in progress", id,
+                "stop the recording first");
   }
   auto deleted = shelf_.Delete(id);
   if (deleted) {
-    Tell({{"event", "recordings"}});
+    Publish({{"event", "recordings"}});
   }
   return deleted;
 }

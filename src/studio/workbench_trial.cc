@@ -14,7 +14,8 @@ namespace {
 
 using simulation::Placement;
 
-/** What comes before a step is in its place, all else on the table. */
+/** Makes the state in which parts that precede a step are in their place, all others on the
+ table. */
 LiveState MakeTrialState(const simulation::Model& model, std::size_t step) {
   LiveState state;
   for (const simulation::Body& body : model.bodies) {
@@ -68,12 +69,12 @@ Result<std::shared_ptr<const OpenScene>> Workbench::FindTrialScene(const LiveTri
     }
     known = std::move(*changed);
   }
-  return builder_.Again(*known);
+  return builder_.MakeCopy(*known);
 }
 
 void Workbench::DoBeginTrial(const LiveTrial::Plan& plan) {
   const auto fail = [this](const Error& error) {
-    Tell({{"event", "trial_failed"}, {"reason", error.ToString()}});
+    Publish({{"event", "trial_failed"}, {"reason", error.ToString()}});
   };
   if (scene() == nullptr) {
     fail({ErrorCode::kNotFound, "no product is open", "", ""});
@@ -100,10 +101,10 @@ void Workbench::DoBeginTrial(const LiveTrial::Plan& plan) {
     trial_ = *trial;
     trial_step_ = *step;
   }
-  history_.Clear();  // nothing is undone in a study
+  history_.Clear();  // there is no undo in a study
   const bool is_picked = plan.condition.method == study::Method::kPicking;
   Show(*found, MakeTrialState(model, *step), plan.has_person && !is_picked);
-  Tell({{"event", "trial_begun"}});
+  Publish({{"event", "trial_begun"}});
 }
 
 void Workbench::DoEndTrial() {
@@ -117,14 +118,14 @@ void Workbench::DoEndTrial() {
     ended = std::exchange(run_, nullptr);
     trial = std::exchange(trial_, nullptr);
   }
-  ended.reset();  // its threads end here: the account of the trial does not change any more
+  ended.reset();  // its threads end here, so that the trial's result is final
   is_demo_ = false;
   if (trial != nullptr) {
     if (const auto finished = trial->Finish(); !finished) {
-      Tell({{"event", "failed"}, {"file", "record"}, {"error", ToJson(finished.error())}});
+      Publish({{"event", "failed"}, {"file", "record"}, {"error", ToJson(finished.error())}});
     }
   }
-  Tell({{"event", "trial_over"}});
+  Publish({{"event", "trial_over"}});
 }
 
 }  // namespace hvas::studio

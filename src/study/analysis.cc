@@ -14,25 +14,25 @@ namespace {
 
 using statistics::Wilcoxon;
 
-/** More make tables of pairs that nobody reads, and are a mistake in the file as a rule. */
-constexpr std::size_t kMostColumns = 20;
+/** Limit of conditions: more are usually a mistake in the file, and their pairs unreadable. */
+constexpr std::size_t kMaxColumns = 20;
 
 Result<void> CheckOptions(const AnalysisOptions& options) {
   if (!(options.alpha > 0 && options.alpha < 0.5)) {
-    return Fail(ErrorCode::kInvalid, fmt::format("{} is no level of a test", options.alpha),
-                "alpha", "give a number above 0 and below 0.5, as 0.05");
+    return Fail(ErrorCode::kInvalid, fmt::format("{} is not a significance level", options.alpha),
+                "alpha", "give a number above 0 and below 0.5, such as 0.05");
   }
   if (options.of && *options.of < 1) {
     return Fail(ErrorCode::kInvalid, fmt::format("counts of {} trials", *options.of), "of",
                 "give the trials of each cell, at least 1");
   }
   if (options.chance && !options.of) {
-    return Fail(ErrorCode::kInvalid, "a chance is for counts of right answers", "chance",
-                "say of how many trials the counts are");
+    return Fail(ErrorCode::kInvalid, "a chance level applies to counts of correct answers only",
+                "chance", "give the number of trials for each count");
   }
   if (options.chance && !(*options.chance > 0 && *options.chance < 1)) {
     return Fail(ErrorCode::kInvalid,
-                fmt::format("{} is no probability of guessing", *options.chance), "chance",
+                fmt::format("{} is not a probability of guessing", *options.chance), "chance",
                 "give a number between 0 and 1");
   }
   return {};
@@ -48,43 +48,45 @@ Result<void> CheckCell(const Table& table, const Row& row, std::size_t column,
       fmt::format("participant {}, condition {}", row.participant, table.conditions[column]);
   if (!std::isfinite(value)) {
     return Fail(ErrorCode::kInvalid, "the value is not finite", where,
-                "leave empty what was not measured");
+                "leave cells without a measurement empty");
   }
   if (options.of && (value < 0 || value > *options.of || value != std::floor(value))) {
-    return Fail(ErrorCode::kInvalid,
-                fmt::format("{} is no count of right answers of {}", value, *options.of), where,
-                "give whole numbers from 0 to the number of trials");
+    return Fail(
+        ErrorCode::kInvalid,
+        fmt::format("{} is not a count of correct answers in {} trials", value, *options.of), where,
+        "give whole numbers from 0 to the number of trials");
   }
   return {};
 }
 
 Result<void> CheckTable(const Table& table, const AnalysisOptions& options) {
-  if (table.conditions.size() < 2 || table.conditions.size() > kMostColumns) {
+  if (table.conditions.size() < 2 || table.conditions.size() > kMaxColumns) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("{} conditions cannot be compared", table.conditions.size()), "table",
-                fmt::format("give from 2 to {}, one a column", kMostColumns));
+                fmt::format("give from 2 to {}, one for each column", kMaxColumns));
   }
   if (std::set<std::string>(table.conditions.begin(), table.conditions.end()).size() <
       table.conditions.size()) {
     return Fail(ErrorCode::kInvalid, "two conditions have the same name", "table",
-                "name each otherwise");
+                "give each a name of its own");
   }
   if (table.rows.size() < 2) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("{} participants are not enough", table.rows.size()), "table",
-                "give at least two, one a row");
+                "give at least two, one for each row");
   }
   std::set<std::string> names;
   for (const Row& row : table.rows) {
     if (!names.insert(row.participant).second) {
-      return Fail(ErrorCode::kInvalid, "participant " + row.participant + " is there twice",
-                  "table", "give each participant one row");
+      return Fail(ErrorCode::kInvalid, "participant " + row.participant + " occurs twice", "table",
+                  "give each participant one row");
     }
     if (row.values.size() != table.conditions.size()) {
       return Fail(
           ErrorCode::kInvalid,
           fmt::format("{} cells, but {} conditions", row.values.size(), table.conditions.size()),
-          "participant " + row.participant, "give one cell a condition, empty where missing");
+          "participant " + row.participant,
+          "give one cell for each condition, empty where the value is missing");
     }
     for (std::size_t j = 0; j < row.values.size(); ++j) {
       if (auto checked = CheckCell(table, row, j, options); !checked) {
@@ -105,7 +107,7 @@ Result<ConditionResult> AnalyseCondition(const Table& table, std::size_t column,
   }
   if (values.empty()) {
     return Fail(ErrorCode::kInvalid, "there are no values", "condition " + table.conditions[column],
-                "leave the condition out");
+                "omit the condition");
   }
   const auto summary = statistics::Summarise(values, 1 - options.alpha);
   if (!summary) {
@@ -146,10 +148,9 @@ Result<void> AddFriedman(Analysis* analysis) {
     analysis->notes.push_back(fmt::format(
         "{} of {} participants lack a condition: {}.", analysis->table.rows.size() - rows.size(),
         analysis->table.rows.size(),
-        analysis->conditions.size() > 2
-            ? "the Friedman test leaves them out, a comparison of two conditions only where one of "
-              "these is missing"
-            : "the comparison leaves them out"));
+        analysis->conditions.size() > 2 ? "the Friedman test omits them, a comparison of two "
+                                          "conditions only where one of these is missing"
+                                        : "the comparison omits them"));
   }
   if (analysis->conditions.size() < 3) {
     return {};
@@ -208,7 +209,7 @@ Result<std::optional<PairResult>> ComparePair(const Analysis& analysis, std::siz
   return std::optional(pair);
 }
 
-/** What is not defined has p = 1: no difference was seen. */
+/** An undefined p counts as 1: no evidence of a difference. */
 void Adjust(Analysis* analysis) {
   std::vector<double> p;
   std::vector<double> exact;
@@ -257,7 +258,7 @@ Result<void> AddPairs(Analysis* analysis) {
   }
   if (analysis->pairs.empty()) {
     return Fail(ErrorCode::kInvalid, "no participant has two conditions", "table",
-                "every participant has to meet the conditions that are compared");
+                "every participant needs values under the conditions that are compared");
   }
   analysis->bonferroni_level =
       analysis->options.alpha / static_cast<double>(analysis->pairs.size());
@@ -277,7 +278,7 @@ double Summarise(std::vector<double> values, TrialSummary summary) {
   return sum / static_cast<double>(values.size());
 }
 
-/** The index of a name in a list, to which it is added when new. */
+/** Finds the index of a name in a list; adds it when it is new. */
 std::size_t FindOrAdd(const std::string& name, std::vector<std::string>* names) {
   const auto found = std::find(names->begin(), names->end(), name);
   if (found == names->end()) {
@@ -337,7 +338,8 @@ Table MakeTable(const std::vector<Trial>& trials, TrialSummary summary, std::str
   return table;
 }
 
-Result<Identification> AnalyseIdentification(const std::vector<Answer>& answers, double alpha) {
+Result<Identification> AnalyseIdentification(const std::vector<IdentificationAnswer>& answers,
+                                             double alpha) {
   AnalysisOptions options;
   options.alpha = alpha;
   if (const auto checked = CheckOptions(options); !checked) {
@@ -346,18 +348,18 @@ Result<Identification> AnalyseIdentification(const std::vector<Answer>& answers,
   Identification result;
   result.confidence = 1 - alpha;
   std::set<std::string> participants;
-  for (const Answer& answer : answers) {
+  for (const IdentificationAnswer& answer : answers) {
     participants.insert(answer.participant);
     FindOrAdd(answer.shown, &result.names);
   }
   result.participant_count = participants.size();
   const std::size_t shown_count = result.names.size();
-  for (const Answer& answer : answers) {
+  for (const IdentificationAnswer& answer : answers) {
     FindOrAdd(answer.answered, &result.names);
   }
   std::vector<std::vector<std::int64_t>> counts(result.names.size(),
                                                 std::vector<std::int64_t>(result.names.size(), 0));
-  for (const Answer& answer : answers) {
+  for (const IdentificationAnswer& answer : answers) {
     const std::size_t shown = FindOrAdd(answer.shown, &result.names);
     ++counts[shown][FindOrAdd(answer.answered, &result.names)];
   }

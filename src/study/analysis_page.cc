@@ -15,7 +15,7 @@ using pages::MakeTile;
 
 constexpr const char* kNone = "<span class=\"soft\">not defined</span>";
 
-/** Four digits that count, with a true minus. */
+/** Formats a number with four significant digits and a typographic minus. */
 std::string Format(double value) {
   std::string text = fmt::format("{:.4g}", value);
   if (text.front() == '-') {
@@ -36,7 +36,7 @@ std::string FormatPOf(const std::optional<double>& p) {
   return p ? Escape(FormatP(*p)) : kNone;
 }
 
-/** " [s]" as a second line of a head. */
+/** Makes the unit as the second line of a column's head: " [s]". */
 std::string UnitOf(const Table& table) {
   return table.unit.empty() ? "" : "<br>[" + Escape(table.unit) + "]";
 }
@@ -78,7 +78,7 @@ std::string MakeHead(const Analysis& analysis) {
   }
   html += MakeTile("Pairs that differ", fmt::format("{} of {}", different, analysis.pairs.size()));
   html += "</dl>";
-  const std::string told = TellFriedman(analysis);
+  const std::string told = DescribeFriedman(analysis);
   return told.empty() ? html : html + "<p class=\"verdict\">" + Escape(told) + "</p>";
 }
 
@@ -151,7 +151,7 @@ std::string MakeTests(const Analysis& analysis) {
          FormatPOf(w.p), Escape(FormatP(pair.bonferroni_p)), Escape(FormatP(pair.holm_p)),
          FormatPOf(w.exact_p), FormatPOf(pair.exact_bonferroni_p), FormatPOf(pair.exact_holm_p),
          fmt::format("<span class=\"{} l\">{}</span>", pair.is_different ? "good" : "soft",
-                     Escape(TellPair(analysis, pair)))});
+                     Escape(DescribePair(analysis, pair)))});
   }
   return "<h3>Wilcoxon signed ranks</h3>" +
          MakeTable("Wilcoxon signed ranks",
@@ -174,7 +174,7 @@ std::string MakeFigure(const std::string& svg) {
 
 }  // namespace
 
-std::string AnalysisHtml(const Analysis& analysis, const std::string& id) {
+std::string MakeAnalysisHtml(const Analysis& analysis, const std::string& id) {
   const Table& table = analysis.table;
   std::string title = table.quantity;
   if (!title.empty() && title.front() >= 'a' && title.front() <= 'z') {
@@ -192,11 +192,11 @@ std::string AnalysisHtml(const Analysis& analysis, const std::string& id) {
   html += MakeTests(analysis) + MakeDifferences(analysis);
   html += MakeFigure(DrawMeans(analysis, id + "-means"));
   html += MakeFigure(DrawPairs(analysis, id + "-pairs"));
-  html += MakeParagraphs(TellConventions(analysis), "soft");
+  html += MakeParagraphs(DescribeConventions(analysis), "soft");
   return html + "</section>";
 }
 
-std::string IdentificationHtml(const Identification& identification, const std::string& id) {
+std::string MakeIdentificationHtml(const Identification& identification, const std::string& id) {
   const statistics::Confusion& confusion = identification.confusion;
   const double level = 100 * identification.confidence;
   const auto tell_ci = [](const statistics::Share& share) {
@@ -230,9 +230,8 @@ std::string IdentificationHtml(const Identification& identification, const std::
                     rows);
   return html +
          MakeParagraphs(
-             {fmt::format("Intervals of Clopper and Pearson; they, and p against chance, "
-                          "take all answers as independent, also those of one "
-                          "participant.")},
+             {fmt::format("Intervals by Clopper and Pearson; they, and p against chance, treat all "
+                          "answers as independent, also those of one participant.")},
              "soft") +
          "</section>";
 }

@@ -6,12 +6,13 @@
 
 namespace hvas::study {
 
-/** An analysis as HTML <section>s with tables and figures, for pages::MakeHtmlPage. `id` is for
- the page that has several: letters, digits, '-', and another one each time. */
-[[nodiscard]] std::string AnalysisHtml(const Analysis& analysis, const std::string& id = "a");
+/** Makes HTML <section>s of an analysis with tables and figures, for pages::MakeHtmlPage.
+ @param id  Prefix of element ids, unique within a page: letters, digits, '-'. */
+[[nodiscard]] std::string MakeAnalysisHtml(const Analysis& analysis, const std::string& id = "a");
 
-/** The same of an identification: the confusion matrix and what follows from it. */
-[[nodiscard]] std::string IdentificationHtml(const Identification& identification,
-                                             const std::string& id = "i");
+/** Makes HTML <section>s of an identification: the confusion matrix and its statistics.
+ @param id  As of MakeAnalysisHtml. */
+[[nodiscard]] std::string MakeIdentificationHtml(const Identification& identification,
+                                                 const std::string& id = "i");
 
 }  // namespace hvas::study

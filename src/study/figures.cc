@@ -18,7 +18,7 @@ using pages::PlotPoint;
 using pages::PlotSeries;
 using pages::PlotStyle;
 
-/** "completion time [s]" */
+/** Makes the label of an axis: "completion time [s]". */
 std::string LabelOf(const Table& table) {
   return table.unit.empty() ? table.quantity : fmt::format("{} [{}]", table.quantity, table.unit);
 }
@@ -37,7 +37,7 @@ std::vector<PlotPoint> MakeRectangle(double left, double right, double low, doub
   return {{left, low}, {right, low}, {right, high}, {left, high}};
 }
 
-/** A line down the middle with an end across at both. */
+/** Makes an error bar: a vertical line with caps at both ends. */
 std::vector<PlotPoint> MakeBracket(double x, double half_width, double low, double high) {
   const double gap = std::nan("");
   return {{x, low},
@@ -50,7 +50,7 @@ std::vector<PlotPoint> MakeBracket(double x, double half_width, double low, doub
           {x + half_width, high}};
 }
 
-/** The values of one condition that are there. */
+/** Collects the values of one condition, without missing ones. */
 std::vector<double> ValuesOf(const Table& table, std::size_t column) {
   std::vector<double> values;
   for (const Row& row : table.rows) {
@@ -61,10 +61,10 @@ std::vector<double> ValuesOf(const Table& table, std::size_t column) {
   return values;
 }
 
-/** Dots side by side where values are equal or would lie on each other. */
+/** Calculates the offsets of dots, so that equal or near values lie side by side. */
 std::vector<PlotPoint> SpreadDots(const std::vector<double>& values, double x, double range) {
-  constexpr int kRows = 60;        // Dots that find room above each other in a plot.
-  constexpr double kStep = 0.035;  // Between neighbours, of the way from name to name.
+  constexpr int kRows = 60;        // dots that fit above each other in a plot
+  constexpr double kStep = 0.035;  // distance of neighbours, as a share of the distance of names
   constexpr double kWidest = 0.3;
   std::map<long, std::vector<double>> rows;
   for (const double value : values) {
@@ -81,7 +81,7 @@ std::vector<PlotPoint> SpreadDots(const std::vector<double>& values, double x, d
   return points;
 }
 
-/** Tukey's whiskers: the last values within one and a half boxes of the box. */
+/** Calculates Tukey's whiskers: the last values within 1.5 interquartile ranges of the box. */
 statistics::Interval FindWhiskers(const std::vector<double>& values,
                                   const statistics::Summary& summary) {
   const double reach = 1.5 * (summary.upper_quartile - summary.lower_quartile);
@@ -96,7 +96,7 @@ statistics::Interval FindWhiskers(const std::vector<double>& values,
 }
 
 int ColorOf(std::size_t index) {
-  constexpr std::size_t kColors = 5;  // of svg_plot.h
+  constexpr std::size_t kColors = 5;  // number of colours in svg_plot.h
   return static_cast<int>(index % kColors);
 }
 
@@ -144,9 +144,10 @@ std::string DrawBoxes(const Analysis& analysis, const std::string& id) {
                     table.conditions[i], summary.median, summary.lower_quartile,
                     summary.upper_quartile, summary.min, summary.max);
   }
-  PlotFigure figure = MakeFigure(
-      "Spread", "Median, quartiles, whiskers to the last value within 1.5 boxes; a dot each value.",
-      std::move(description), id);
+  PlotFigure figure = MakeFigure("Spread",
+                                 "Median, quartiles, whiskers to the last value within 1.5 "
+                                 "interquartile ranges; one dot for each value.",
+                                 std::move(description), id);
   figure.panels = {std::move(panel)};
   return ToSvg(figure);
 }
@@ -167,7 +168,7 @@ std::string DrawPairs(const Analysis& analysis, const std::string& id) {
     }
     lines.points.push_back({std::nan(""), std::nan("")});
   }
-  std::string description = "A line each participant, from condition to condition. Medians: ";
+  std::string description = "One line for each participant. Medians: ";
   for (std::size_t i = 0; i < analysis.conditions.size(); ++i) {
     medians.points.push_back({static_cast<double>(i), analysis.conditions[i].summary.median});
     description +=
@@ -177,7 +178,7 @@ std::string DrawPairs(const Analysis& analysis, const std::string& id) {
   median_marks.points = medians.points;
   panel.series = {lines, dots, medians, median_marks};
   PlotFigure figure =
-      MakeFigure("Participants", "What each participant has under each condition, joined.",
+      MakeFigure("Participants", "Values of each participant, joined over the conditions.",
                  std::move(description), id);
   figure.panels = {std::move(panel)};
   return ToSvg(figure);
@@ -222,10 +223,9 @@ std::string DrawMeans(const Analysis& analysis, const std::string& id) {
   }
   PlotFigure figure = MakeFigure(
       is_share ? "Right answers" : "Means",
-      is_share
-          ? fmt::format("Of all trials together, with the {:g} % interval of Clopper and Pearson.",
-                        level)
-          : fmt::format("With the {:g} % interval of Student's t.", level),
+      is_share ? fmt::format("Shares of all trials, with {:g} % intervals by Clopper and Pearson.",
+                             level)
+               : fmt::format("Means with {:g} % intervals of Student's t distribution.", level),
       std::move(description), id);
   figure.panels = {std::move(panel)};
   return ToSvg(figure);
@@ -264,10 +264,9 @@ std::string DrawConfusion(const Identification& identification, const std::strin
       description += fmt::format("{} taken for {}: {}. ", names[i], names[j], row[j]);
     }
   }
-  PlotFigure figure = MakeFigure("What was taken for what",
-                                 "Answers, and their share of what was shown; right ones on the "
-                                 "diagonal.",
-                                 std::move(description), id);
+  PlotFigure figure = MakeFigure(
+      "Confusion matrix", "Counts and row shares of answers; correct answers on the diagonal.",
+      std::move(description), id);
   figure.panels = {std::move(panel)};
   return ToSvg(figure);
 }

@@ -55,7 +55,7 @@ Json MakeResultJson(const TrialResult& result) {
   return json;
 }
 
-/** Throws where an int cannot hold it. */
+/** Reads an integer; throws where an int cannot hold it. */
 int ParseInt(const Json& json) {
   const double number = json.get<double>();
   if (!json.is_number_integer() || std::abs(number) > std::numeric_limits<int>::max()) {
@@ -133,7 +133,7 @@ Json MakeEventJson(const StudyEvent& event) {
   return json;
 }
 
-/** Throws what nlohmann does for what is not as MakeEventJson() makes it. */
+/** Parses an event of MakeEventJson(); throws nlohmann's exceptions for anything else. */
 StudyEvent ParseEvent(const Json& json) {
   StudyEvent event;
   if (!ReadWord(json.at("event"), kEventKinds, &event.kind)) {
@@ -163,7 +163,7 @@ std::string MakeLine(const Json& json) {
   return text + "\t" + SumOf(text) + "\n";
 }
 
-/** Nothing for a line that is torn or damaged. */
+/** Parses a line; none where it is incomplete or damaged. */
 std::optional<Json> ParseLine(std::string_view line) {
   const std::size_t tab = line.rfind('\t');
   if (tab == std::string_view::npos || SumOf(line.substr(0, tab)) != line.substr(tab + 1)) {
@@ -189,16 +189,16 @@ JournalHead ParseHead(const Json& json) {
           json.at("seed").get<std::uint64_t>(), json.at("simulated").get<bool>()};
 }
 
-Unexpected Damaged(const std::filesystem::path& file, int line) {
+Unexpected FailDamaged(const std::filesystem::path& file, int line) {
   return Fail(ErrorCode::kUnreadable, "this line of the journal is damaged",
               fmt::format("{}:{}", file.string(), line),
-              "restore the file from a copy; only a last line may be torn");
+              "restore the file from a copy; only the last line may be incomplete");
 }
 
-Unexpected DiskFailed(const std::filesystem::path& file, int error) {
+Unexpected FailToAppend(const std::filesystem::path& file, int error) {
   return Fail(ErrorCode::kOutOfResource,
               fmt::format("the journal cannot be written: {}", std::strerror(error)), file.string(),
-              "make room on the disk, or give the folder write permission");
+              "free disk space, or make the folder writable");
 }
 
 }  // namespace
@@ -214,15 +214,15 @@ Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t end = bytes.find('\n', at);
     if (end == std::string::npos) {
-      break;  // torn
+      break;  // an incomplete line
     }
     ++number;
     const auto json = ParseLine(std::string_view(bytes).substr(at, end - at));
     if (!json) {
       if (end + 1 == bytes.size()) {
-        break;  // as a power cut may leave it: the length is there, and not all of the bytes
+        break;  // a power cut can leave the full length without all bytes
       }
-      return Damaged(file, number);
+      return FailDamaged(file, number);
     }
     try {
       if (number == 1) {
@@ -231,7 +231,7 @@ Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
         journal.events.push_back(ParseEvent(*json));
       }
     } catch (const Json::exception&) {
-      return Damaged(file, number);
+      return FailDamaged(file, number);
     }
     at = end + 1;
     journal.good_bytes = static_cast<std::int64_t>(at);
@@ -241,16 +241,16 @@ Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
 
 Result<Journal> Journal::Open(const std::filesystem::path& file, const JournalHead& head,
                               bool is_synced) {
-  // Nobody else's business: what people did and said.
+  // Journals are personal data: only this user may read them.
   Journal journal(file, Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)),
                   is_synced);
   const int descriptor = journal.file_.value();
   if (!journal.file_.is_open()) {
-    return DiskFailed(file, errno);
+    return FailToAppend(file, errno);
   }
   if (TryLock(journal.file_) != 0) {
-    return Fail(ErrorCode::kInvalid, "another program is at this participant's session",
-                file.string(), "end that one first");
+    return Fail(ErrorCode::kInvalid, "another program runs the session of this participant",
+                file.string(), "end that program first");
   }
   auto old = ReadJournal(file);
   if (!old) {
@@ -258,14 +258,15 @@ Result<Journal> Journal::Open(const std::filesystem::path& file, const JournalHe
   }
   const bool is_new = old->good_bytes == 0;
   if (!is_new && MakeHeadJson(old->head) != MakeHeadJson(head)) {
-    return Fail(ErrorCode::kInvalid, "this journal is of another participant, protocol or seed",
-                file.string(), "use the folder with the protocol that it was begun with");
+    return Fail(ErrorCode::kInvalid,
+                "this journal belongs to another participant, protocol or seed", file.string(),
+                "use the folder with the protocol and seed that it was begun with");
   }
   journal.size_ = old->good_bytes;
   journal.events_ = std::move(old->events);
   if (::ftruncate(descriptor, old->good_bytes) != 0 ||
       ::lseek(descriptor, old->good_bytes, SEEK_SET) < 0) {
-    return DiskFailed(file, errno);
+    return FailToAppend(file, errno);
   }
   if (is_new) {
     if (const auto written = journal.Write(MakeLine(MakeHeadJson(head))); !written) {
@@ -281,10 +282,10 @@ Result<void> Journal::Write(const std::string& line) {
     error = errno;
   }
   if (error != 0) {
-    // What is half there must not be in front of the next line.
+    // The incomplete line is removed, so that the next one starts a new line.
     static_cast<void>(::ftruncate(file_.value(), size_));
     static_cast<void>(::lseek(file_.value(), size_, SEEK_SET));
-    return DiskFailed(path_, error);
+    return FailToAppend(path_, error);
   }
   size_ += static_cast<std::int64_t>(line.size());
   return {};

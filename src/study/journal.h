@@ -11,32 +11,34 @@
 
 namespace hvas::study {
 
-/** What a journal says before its first event. */
+/** Header of a journal. */
 struct JournalHead {
   std::string participant;  ///< "P03"
-  std::string protocol;     ///< Its digest.
-  std::uint64_t seed{0};    ///< The study's.
+  std::string protocol;     ///< Digest of the protocol.
+  std::uint64_t seed{0};    ///< Seed of the study.
   bool is_simulated{false};
 };
 
-/** What happened to one participant, a line an event, to a file that only grows. Each line has its
- checksum, and is on the disk before Append() returns: whatever ends the program, at most the line
- that was just being written is lost, and reading drops it.
+/** Journal of one participant: an append-only file with one line for each event. Each line has a
+ checksum and is on the disk before Append() returns. However the program ends, at most the line
+ that was being written is lost; reading drops it.
 
  A line is a JSON object and, after a tab, the 64-bit XXH3 of the object's bytes in hexadecimal. */
 class Journal {
  public:
-  /** Opens one to go on with, or begins it.
-   Errors: kUnreadable for a line that is damaged and is not the last, with FILE:LINE; kInvalid for
-   another participant's, study's or seed's; kOutOfResource.
-   @param is_synced  False for what can be made again: simulated participants. */
+  /** Opens a journal to append to it, or begins it.
+   @param is_synced  Whether each line is forced to the disk; false for journals that can be made
+   again, those of simulated participants.
+   Errors: kUnreadable for a damaged line before the last, with FILE:LINE; kInvalid for a journal of
+   another participant, study or seed; kOutOfResource. */
   [[nodiscard]] static Result<Journal> Open(const std::filesystem::path& file,
                                             const JournalHead& head, bool is_synced = true);
 
-  /** All so far. */
+  /** All events so far, in order. */
   [[nodiscard]] const std::vector<StudyEvent>& events() const { return events_; }
 
-  /** Errors: kOutOfResource when the disk did not take it: then it has not happened. */
+  /** Appends an event. Errors: kOutOfResource when it cannot be written; it then counts as
+   not added. */
   [[nodiscard]] Result<void> Append(const StudyEvent& event);
 
  private:
@@ -52,14 +54,14 @@ class Journal {
   std::vector<StudyEvent> events_;
 };
 
-/** A journal as it was read. */
+/** Content of a journal. */
 struct ReadOnlyJournal {
   JournalHead head;
   std::vector<StudyEvent> events;
-  std::int64_t good_bytes{0};  ///< What comes after it is a torn line.
+  std::int64_t good_bytes{0};  ///< Size without an incomplete last line.
 };
 
-/** Without changing the file. Errors: as Journal::Open; kNotFound. */
+/** Reads a journal without changing the file. Errors: those of Journal::Open; kNotFound. */
 [[nodiscard]] Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file);
 
 }  // namespace hvas::study

@@ -15,14 +15,14 @@
 namespace hvas::study {
 namespace {
 
-constexpr std::size_t kMostConditions = 26;
+constexpr std::size_t kMaxConditions = 26;
 constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]
-constexpr int kMostTrials = 5000;                    // for one participant
-constexpr double kMostSeconds = 86400;
+constexpr int kMaxTrials = 5000;                     // for one participant
+constexpr double kMaxSeconds = 86400;
 constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};
 constexpr std::array<std::string_view, 3> kHidden{"condition", "time", "progress"};
 
-/** Ids become names of files and of columns. */
+/** Whether a text is a valid id: ids become names of files and columns. */
 bool IsId(std::string_view text) {
   return !text.empty() && text.size() <= 40 &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) {
@@ -31,7 +31,7 @@ bool IsId(std::string_view text) {
          });
 }
 
-/** Reads what stands in a document into a protocol. */
+/** Reads a document into a protocol. */
 class ProtocolReader {
  public:
   ProtocolReader(YamlDocument* document, Protocol* protocol)
@@ -40,7 +40,7 @@ class ProtocolReader {
   void Read() {
     YamlFields fields(document_, document_->root(), "the protocol");
     if (fields.Text("format") != kProtocolFormat) {
-      document_->Refuse(fields.Get("format"), "the protocol is of a format that is not known",
+      document_->Refuse(fields.Get("format"), "the format of the protocol is not known",
                         fmt::format("write `format: {}`", kProtocolFormat));
     }
     protocol_->id = ReadId(&fields);
@@ -68,7 +68,7 @@ class ProtocolReader {
     const std::string id = fields->Text("id");
     if (!id.empty() && !IsId(id)) {
       document_->Refuse(fields->Get("id"),
-                        fmt::format("the id \"{}\" of {} cannot be used", id, fields->entity()),
+                        fmt::format("the id \"{}\" of {} is not valid", id, fields->entity()),
                         "use at most 40 letters, digits, - and _");
     }
     return id;
@@ -76,8 +76,8 @@ class ProtocolReader {
 
   void RefuseIfTaken(const YamlFields& fields, const std::string& id, std::set<std::string>* ids) {
     if (!id.empty() && !ids->insert(id).second) {
-      document_->Refuse(fields.node(), fmt::format("the id \"{}\" is there twice", id),
-                        "give each its own");
+      document_->Refuse(fields.node(), fmt::format("the id \"{}\" occurs twice", id),
+                        "give each an id of its own");
     }
   }
 
@@ -135,7 +135,7 @@ class ProtocolReader {
       ReadRendering(&one, &condition);
       condition.answer = one.TextOr("answer", "");
       if (one.Has("published_mean_s")) {
-        condition.published_mean = one.NumberOr("published_mean_s", {0.01, kMostSeconds}, 1);
+        condition.published_mean = one.NumberOr("published_mean_s", {0.01, kMaxSeconds}, 1);
       }
       if (one.Has("published_right_share")) {
         condition.published_right_share = one.NumberOr("published_right_share", {0, 1}, 1);
@@ -143,9 +143,9 @@ class ProtocolReader {
       one.Finish();
       protocol_->conditions.push_back(std::move(condition));
     }
-    if (protocol_->conditions.empty() || protocol_->conditions.size() > kMostConditions) {
-      document_->Refuse(list, "\"conditions\" has none, or more than 26",
-                        "write from 1 to 26 conditions");
+    if (protocol_->conditions.empty() || protocol_->conditions.size() > kMaxConditions) {
+      document_->Refuse(list, "\"conditions\" is empty, or has more than 26",
+                        "write 1 to 26 conditions");
     }
   }
 
@@ -154,8 +154,8 @@ class ProtocolReader {
     condition->fit = fields->TextOr("fit", condition->fit);
     if (!condition->fit.empty() && !fits::ParseFit(condition->fit)) {
       document_->Refuse(fields->Get("fit"),
-                        fmt::format("\"{}\" of {} is no fit", condition->fit, fields->entity()),
-                        "write a fit of ISO 286, as H7/g6");
+                        fmt::format("\"{}\" of {} is not a fit", condition->fit, fields->entity()),
+                        "write a fit of ISO 286, for example H7/g6");
     }
     condition->renders_fits = fields->FlagOr("fit_force", condition->renders_fits);
     condition->force_map = fields->WordOr("force_map", kForceMaps, condition->force_map);
@@ -181,9 +181,8 @@ class ProtocolReader {
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const Condition& c) { return c.id == id; });
     if (found == all.end()) {
-      document_->Refuse(at,
-                        fmt::format("{} names a condition that there is not: \"{}\"", entity, id),
-                        "name one of \"conditions\"");
+      document_->Refuse(at, fmt::format("{} refers to an unknown condition: \"{}\"", entity, id),
+                        "use the id of one of \"conditions\"");
       return std::nullopt;
     }
     return static_cast<std::size_t>(found - all.begin());
@@ -246,7 +245,7 @@ class ProtocolReader {
       const auto index = FindIndex(at, name, fields->entity());
       if (index && std::count(block->conditions.begin(), block->conditions.end(), *index) > 0) {
         document_->Refuse(at, fmt::format("{} has \"{}\" twice", fields->entity(), name),
-                          "name each once, and set \"repetitions\"");
+                          "list each condition once, and set \"repetitions\"");
       }
       if (index) {
         block->conditions.push_back(*index);
@@ -254,7 +253,7 @@ class ProtocolReader {
     }
     if (block->conditions.empty()) {
       document_->Refuse(at, fmt::format("{} has no condition", fields->entity()),
-                        "name at least one");
+                        "list at least one");
     }
   }
 
@@ -266,16 +265,17 @@ class ProtocolReader {
       if (answer.empty() || !answers.insert(answer).second) {
         document_->Refuse(
             fields.node(),
-            fmt::format("in {} the answer of condition \"{}\" is missing, or another's too",
-                        fields.entity(), condition.id),
-            "give its conditions different fits, or each an \"answer\"");
+            fmt::format(
+                "in {} the answer of condition \"{}\" is missing, or another condition has it, too",
+                fields.entity(), condition.id),
+            "give the conditions different fits, or each an \"answer\" of its own");
       }
     }
     if (block.order != Order::kRandom || block.keeps_repetitions_together) {
       document_->Refuse(
           fields.node(),
           fmt::format("{} is identification, so its trials are shuffled", fields.entity()),
-          "leave \"order\" and \"together\" out");
+          "omit \"order\" and \"together\"");
     }
   }
 
@@ -302,8 +302,8 @@ class ProtocolReader {
           std::none_of(protocol_->blocks.begin(), protocol_->blocks.end(), is_block)) {
         document_->Refuse(
             one.node()["block"],
-            fmt::format("{} names a block that there is not: \"{}\"", one.entity(), question.block),
-            "name one of \"blocks\"");
+            fmt::format("{} refers to an unknown block: \"{}\"", one.entity(), question.block),
+            "use the id of one of \"blocks\"");
       }
       protocol_->questions.push_back(std::move(question));
     }
@@ -374,10 +374,10 @@ class ProtocolReader {
   }
 
   void CheckTrials(const YamlFields& fields) {
-    if (protocol_->CountTrials() > kMostTrials) {
+    if (protocol_->CountTrials() > kMaxTrials) {
       document_->Refuse(fields.node(),
                         fmt::format("a participant would have {} trials", protocol_->CountTrials()),
-                        fmt::format("at most {} are possible: lower \"repetitions\"", kMostTrials));
+                        fmt::format("lower \"repetitions\": at most {} are possible", kMaxTrials));
     }
   }
 

@@ -12,13 +12,13 @@
 #include "haptics/options.h"
 #include "mates/capture.h"
 
-/** What a study is (N9): conditions, trials and their order, questions, consent. Read from YAML or
- JSON; the language is in docs/studies.md and data/schemas/study.schema.json. */
+/** Protocol of a study (N9): conditions, trials and their order, questions, consent. The file is
+ YAML or JSON; docs/studies.md and data/schemas/study.schema.json define its format. */
 namespace hvas::study {
 
 inline constexpr std::string_view kProtocolFormat = "hvas-study-1";
 
-/** In the languages of a study; English where one is not given. */
+/** A text in the languages of a study; where a translation is missing, English. */
 struct LocalText {
   std::string en;
   std::string de;
@@ -30,12 +30,12 @@ struct LocalText {
   [[nodiscard]] bool empty() const { return en.empty(); }
 };
 
-/** How a part comes to its place. */
+/** Assembly method of a condition. */
 enum class Method : std::uint8_t {
-  kPicking,     ///< Constraints are set between surfaces with the mouse; no physics (W8: A1).
+  kPicking,     ///< Constraints between surfaces picked with the mouse; no physics (W8: A1).
   kCollision,   ///< Contact alone (X14, W8: A2).
-  kConstraint,  ///< Mates alone: parts can interpenetrate (X14).
-  kHybrid,      ///< Both (X14, W8: A3, B1 to B3).
+  kConstraint,  ///< Mates alone; parts can interpenetrate (X14).
+  kHybrid,      ///< Contact and mates (X14, W8: A3, B1 to B3).
 };
 
 inline constexpr std::array<std::string_view, 4> kMethods{
@@ -47,27 +47,27 @@ inline constexpr std::array<std::string_view, 4> kMethods{
 
 struct Condition {
   std::string id;
-  LocalText name;         ///< For the experimenter and the report.
-  LocalText instruction;  ///< All that the participant is told of it.
+  LocalText name;         ///< Shown to the experimenter and in the report.
+  LocalText instruction;  ///< Instruction for the participant.
   Method method{Method::kHybrid};
-  std::string fit;          ///< Of the part, ISO 286; empty: as the product has it.
-  bool renders_fits{true};  ///< The fit resists (W5).
-  std::string answer;       ///< Its name in identification; empty: the fit.
+  std::string fit;          ///< Fit of the part, as an ISO 286 code; empty: the product's.
+  bool renders_fits{true};  ///< Whether the resistance of the fit is rendered (W5).
+  std::string answer;       ///< Name of the response in identification; empty: `fit`.
   mates::CaptureThresholds capture;
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
-  double coupling{1000};   ///< Stiffness that contact and constraint are felt with at most [N/m].
-  double time_limit{120};  ///< Of a trial [s].
-  std::optional<double> published_mean;         ///< Of the paper's people [s].
-  std::optional<double> published_right_share;  ///< In identification, of theirs.
+  double coupling{1000};                        ///< Upper limit of the coupling's stiffness [N/m].
+  double time_limit{120};                       ///< Time limit of a trial [s].
+  std::optional<double> published_mean;         ///< Mean time that the source reports [s].
+  std::optional<double> published_right_share;  ///< Share of correct answers in the source.
 };
 
-/** How the order of conditions is varied between participants. */
+/** Counterbalancing: how the order of conditions varies between participants. */
 enum class Order : std::uint8_t {
-  kGiven,        ///< As written.
-  kLatinSquare,  ///< Each condition in each place equally often.
-  kBalanced,     ///< Besides, each follows each equally often (Williams, Aust. J. Sci. Res. A 2,
+  kGiven,        ///< The order of the protocol, for everybody.
+  kLatinSquare,  ///< Latin square: each condition is in each position equally often.
+  kBalanced,     ///< Each also follows each other equally often (Williams, Aust. J. Sci. Res. A 2,
                  ///< 1949).
-  kRandom,       ///< Drawn, from the study's seed.
+  kRandom,       ///< Random permutations from the study's seed.
 };
 
 inline constexpr std::array<std::string_view, 4> kOrders{"given", "latin_square", "balanced",
@@ -78,14 +78,15 @@ struct Block {
   std::string id;
   LocalText name;
   std::vector<std::size_t> conditions;  ///< Indices into Protocol::conditions.
-  int repetitions{1};                   ///< Of each condition.
+  int repetitions{1};                   ///< Trials of each condition.
   Order order{Order::kBalanced};
-  /** All repetitions of a condition one after the other; else one of each condition at a time. */
+  /** Whether all repetitions of a condition follow one another; otherwise rounds of all
+   conditions. */
   bool keeps_repetitions_together{true};
-  /** Blind identification (W12): all trials shuffled, and after each the participant says which
-   condition it was. */
+  /** Blind identification (W12): the trials are shuffled, and after each the participant names the
+   condition. */
   bool is_identification{false};
-  LocalText question;  ///< Of identification.
+  LocalText question;  ///< Question of identification.
 };
 
 enum class QuestionKind : std::uint8_t { kScale, kChoice, kText };
@@ -106,36 +107,36 @@ struct Question {
   std::string id;
   QuestionKind kind{QuestionKind::kScale};
   Asked asked{Asked::kAtEnd};
-  std::string block;  ///< Where it is asked after trials, conditions or a block; empty: any.
+  std::string block;  ///< Block in which it is asked; empty: every block. Unused with kAtEnd.
   LocalText text;
-  int low{1};  ///< Of a scale, in whole numbers.
-  int high{10};
-  LocalText low_text, high_text;  ///< Anchors of a scale.
+  int low{1};                     ///< Lowest value of a scale.
+  int high{10};                   ///< Highest value of a scale.
+  LocalText low_text, high_text;  ///< Verbal anchors of a scale.
   std::vector<Choice> choices;
-  int longest{2000};  ///< Of a text, in characters.
+  int longest{2000};  ///< Largest length of a text [characters].
 };
 
 struct Training {
-  double duration{0};  ///< [s]; 0: none.
+  double duration{0};  ///< Duration [s]; 0: no training.
   LocalText text;
-  std::optional<std::size_t> condition;  ///< That is trained with; the first where none is said.
+  std::optional<std::size_t> condition;  ///< Condition of the training; none: the first.
 };
 
-/** What the participant is not shown. Names of fits never reach a participant's client. */
+/** What is hidden from the participant. Names of fits are never sent to a participant's client. */
 struct Hidden {
-  bool condition{true};  ///< Its name.
-  bool time{true};       ///< While it runs.
-  bool progress{false};  ///< How many trials there are.
+  bool condition{true};  ///< Name of the condition.
+  bool time{true};       ///< Elapsed time of a trial.
+  bool progress{false};  ///< Number of trials.
 };
 
 struct Protocol {
   std::string id;
   LocalText title;
   std::string about;
-  std::string source;   ///< Of what is published with the conditions: a paper.
-  std::string product;  ///< A file beside the protocol, or the name of an example.
-  std::string part;     ///< That is put in its place; what comes before it is there already.
-  int participants{1};  ///< As planned.
+  std::string source;   ///< Citation for the published values of the conditions.
+  std::string product;  ///< File relative to the protocol's folder, or the name of an example.
+  std::string part;     ///< Part to assemble; parts that precede it are in their place already.
+  int participants{1};  ///< Planned number of participants.
   std::vector<std::string> languages{"en"};
   LocalText consent;
   Training training;
@@ -143,23 +144,23 @@ struct Protocol {
   std::vector<Block> blocks;
   std::vector<Question> questions;
   Hidden hidden;
-  double mating_window{3};  ///< At the end of a trial, of which forces are kept [s] (X15).
+  double mating_window{3};  ///< Time before a trial's end for which wrenches are kept [s] (X15).
 
   std::filesystem::path file;
-  std::string text;    ///< As it was read.
-  std::string digest;  ///< Of the text.
+  std::string text;    ///< Text of the file.
+  std::string digest;  ///< Digest of `text`.
 
   [[nodiscard]] const Condition* FindCondition(std::string_view condition_id) const;
-  /** How many trials a participant has. */
+  /** Counts the trials of a participant. */
   [[nodiscard]] int CountTrials() const;
 };
 
-/** Reads a protocol. Errors: kNotFound for no file; kUnreadable and kInvalid with
- "FILE:LINE:COLUMN", what it is about, and a remedy: keys that are not known or there twice, values
- of another type or out of their range, names that nothing has. */
+/** Reads a protocol. Errors: kNotFound for a missing file; kUnreadable and kInvalid, with
+ "FILE:LINE:COLUMN", the entity and a remedy, for unknown or duplicate keys, values of another type
+ or out of range, and names that are not defined. */
 [[nodiscard]] Result<Protocol> ReadProtocol(const std::filesystem::path& file);
 
-/** The same of a text; `file` is for messages, and for what stands beside it. */
+/** Parses a protocol's text; `file` is for messages, and for finding files relative to it. */
 [[nodiscard]] Result<Protocol> ParseProtocol(const std::string& text,
                                              const std::filesystem::path& file);
 

@@ -12,9 +12,9 @@
 namespace hvas::study {
 namespace {
 
-constexpr int kMostParticipants = 999;
+constexpr int kMaxParticipants = 999;
 
-// What a drawn order is for, so that none is another's.
+// Purposes of random streams, so that their seeds differ.
 constexpr std::uint64_t kLabels = 1;
 constexpr std::uint64_t kShuffle = 2;
 
@@ -31,7 +31,7 @@ std::vector<std::size_t> Count(std::size_t count) {
   return numbers;
 }
 
-/** The orders that participants and repetitions go through, as places in Block::conditions. */
+/** Orders for participants and repetitions, as indices into Block::conditions. */
 class Orders {
  public:
   Orders(const Block& block, std::size_t block_index, int participant, std::uint64_t seed)
@@ -102,7 +102,7 @@ std::vector<std::size_t> OrderOf(const Block& block, Orders* orders) {
 
 std::vector<std::vector<std::size_t>> MakeSquare(std::size_t count, bool is_balanced) {
   HVAS_DEMAND(count >= 1);
-  // 0, 1, n-1, 2, n-2 ...: the differences of neighbours are all different.
+  // The differences of neighbours in 0, 1, n-1, 2, n-2 ... are all different.
   std::vector<std::size_t> first = Count(count);
   if (is_balanced) {
     for (std::size_t i = 1; i < count; ++i) {
@@ -142,7 +142,7 @@ std::vector<PlannedTrial> MakeSchedule(const Protocol& protocol, int participant
   return trials;
 }
 
-std::string ParticipantId(int number) {
+std::string FormatParticipantId(int number) {
   return fmt::format("P{:02}", number);
 }
 
@@ -151,10 +151,10 @@ Result<int> ParseParticipantId(std::string_view id) {
   const char* end = id.data() + id.size();
   const bool is_long = id.size() >= 3 && id[0] == 'P';
   const auto [rest, code] = std::from_chars(id.data() + (is_long ? 1 : 0), end, number);
-  if (!is_long || code != std::errc() || rest != end || number < 1 || number > kMostParticipants ||
-      ParticipantId(number) != id) {
-    return Fail(ErrorCode::kInvalid, "this is no participant's id", std::string(id),
-                "write P01 to P999: participants have no names here");
+  if (!is_long || code != std::errc() || rest != end || number < 1 || number > kMaxParticipants ||
+      FormatParticipantId(number) != id) {
+    return Fail(ErrorCode::kInvalid, "this is not a participant's id", std::string(id),
+                "write P01 to P999; names are not used, to protect participants");
   }
   return number;
 }

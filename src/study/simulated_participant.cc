@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::uint64_t kSkillStream = 101;
 constexpr double kMedianSpeed = 0.85;
-constexpr int kObserverTraining = 60;  // insertions of each fit
+constexpr int kObserverTraining = 60;  // training insertions for each fit
 
-/** Lognormal about a median. @param sigma  Of the logarithm. */
+/** Draws from a lognormal distribution. @param sigma  Standard deviation of the logarithm. */
 double Vary(double median, double sigma, Random* random) {
   return median * std::exp(sigma * random->Normal());
 }
@@ -62,7 +62,7 @@ double DrawPickingTime(int constraints, const Skill& skill, Random* random) {
   constexpr double kSigma = 0.2;
   double time = Vary(kHome, kSigma, random);
   for (int i = 0; i < std::max(1, constraints); ++i) {
-    // First surface, second surface, kind.
+    // The operators are for the first surface, the second surface and the kind of constraint.
     for (const double operation :
          {kMental, kPoint, kClick, kPoint, kClick, kMental, kPoint, kClick}) {
       time += Vary(operation, kSigma, random);
@@ -99,8 +99,8 @@ Result<std::size_t> FindPartStep(const simulation::Model& model, const std::stri
            step.members.empty();
   });
   if (found == steps.end()) {
-    return Fail(ErrorCode::kNotFound, "this part is not put in its place by itself", part,
-                "name another part of the product");
+    return Fail(ErrorCode::kNotFound, "the assembly has no step that inserts this part by itself",
+                part, "name another part of the product");
   }
   return static_cast<std::size_t>(found - steps.begin());
 }
@@ -143,7 +143,7 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
   if (!record.empty()) {
     record::RecorderOptions options;
     options.path = record;
-    options.replaces = true;  // of a trial that was broken off
+    options.replaces = true;  // replaces the record of an aborted trial
     record::Meta meta = session::MakeModelMeta(model);
     meta["condition"] = condition.id;
     meta["simulated"] = "a simulated participant of a study";
@@ -168,7 +168,7 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
       run.Advance();
     }
   };
-  // What the hand does after the part is home belongs to nobody's time.
+  // The trial ends with seating; motion of the hand after it does not count.
   execution.is_done = [&] { return run.is_done() || watch.is_seated(); };
   const simulation::ExecutionReport report = simulation::RunLockstep(execution);
   if (recorder != nullptr) {

@@ -19,68 +19,69 @@
  with before people come. They stand for nobody, and what they give is marked as simulated. */
 namespace hvas::study {
 
-/** How one simulated participant differs from another. Factors are lognormal about 1. */
+/** Individual differences of a simulated participant. Factors are lognormal with median 1. */
 struct Skill {
-  double reaction_s{0.4};  ///< Before a trial's first motion [s].
-  /** Factor of all speeds of the arm. No more than 1: faster, the part would lag behind the hand by
-   more than the coupling bears, and the arm learns that lag as if it were weight. */
+  double reaction_s{0.4};  ///< Time before a trial's first motion [s].
+  /** Factor of all speeds of the arm, at most 1: a faster arm would make the part lag so far behind
+   the hand that the coupling saturates, and the arm would learn that lag as if it were weight. */
   double speed{1};
-  double mouse{1};        ///< Factor of all times with the mouse.
-  double aim{1};          ///< Factor of where the hand and the eye err.
-  double tremor{1};       ///< Factor.
-  double weber{0.10};     ///< Just noticeable difference of a force, as a part of it.
-  double threshold{0.1};  ///< Least force that is perceived [N].
+  double mouse{1};        ///< Factor of all times of mouse operations.
+  double aim{1};          ///< Factor of the errors of hand and eye.
+  double tremor{1};       ///< Factor of the tremor's amplitude.
+  double weber{0.10};     ///< Weber fraction of force.
+  double threshold{0.1};  ///< Absolute threshold of force [N].
 };
 
-/** The skill of a participant. The same number and seed give the same. */
+/** Draws the skill of a participant. Equal numbers and seeds give equal skills. */
 [[nodiscard]] Skill DrawSkill(int participant, std::uint64_t seed);
 
-/** Who does one trial: with that skill, and as one does it each time a little otherwise. */
+/** Makes the simulated person for one trial: the skill, with variation from trial to trial. */
 [[nodiscard]] simulation::PersonOptions MakePerson(const Skill& skill, Random* random);
 
-/** How long somebody takes to set constraints with the mouse, by the keystroke-level model: Card,
- Moran and Newell, CACM 23(7), 1980. To the mouse H; for each constraint twice (M, P, K) and (P, K):
- the first surface, the second, and the kind of constraint. M 1.35 s, P 1.1 s, K 0.2 s, H 0.4 s,
- each time lognormal with a deviation of a fifth [s].
- @param constraints  As many as the part has mates; at least 1. */
+/** Draws the time for setting constraints with the mouse by the keystroke-level model [s] (Card,
+ Moran and Newell, CACM 23(7), 1980): H for the hand to the mouse; for each constraint M, P, K for
+ the first surface, P, K for the second, and M, P, K for the kind of constraint. M 1.35 s, P 1.1 s,
+ K 0.2 s, H 0.4 s; each is lognormal with a deviation of a fifth.
+ @param constraints  Number of the part's mates, at least 1. */
 [[nodiscard]] double DrawPickingTime(int constraints, const Skill& skill, Random* random);
 
-/** What a trial is of. */
+/** Model and part of a trial. */
 struct TrialSetup {
-  std::shared_ptr<const simulation::Model> model;  ///< With the condition's fit.
-  std::size_t step{0};                             ///< Of its sequence: the part's.
-  double mating_window{3};                         ///< [s]
+  std::shared_ptr<const simulation::Model> model;  ///< Model with the condition's fit.
+  std::size_t step{0};                             ///< Index of the part's step in the sequence.
+  double mating_window{3};                         ///< See Protocol [s].
 };
 
-/** Sets what is on in a condition: contact, mates, fits, and how they are felt. */
+/** Sets the options of a condition: contact, mates, fits, and how they are rendered. */
 void ApplyCondition(const Condition& condition, haptics::TickOptions* tick);
 
-/** The options of the tick in a condition, without a device. */
+/** Makes the tick options of a condition without a device. */
 [[nodiscard]] haptics::TickOptions MakeTickOptions(const Condition& condition);
 
-/** Has a simulated person do a trial in virtual time: the parts before the one at hand are in their
- place. Repeats bit for bit.
- @param record  The file that the session goes to; empty: none. Errors: the recorder's. */
+/** Runs a trial with a simulated person in virtual time; parts that precede the trial's part are in
+ their place. Equal arguments give equal results, bit for bit.
+ @param record  File for the record of the session; empty: none. Errors: those of the recorder. */
 [[nodiscard]] Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup,
                                                     const Condition& condition, const Skill& skill,
                                                     std::uint64_t seed,
                                                     const std::filesystem::path& record);
 
-/** The step of a model in which a part is put in its place. Errors: kNotFound for no such part, and
- for one that comes to no place by itself. @param part  Name, path, or end of the path. */
+/** Finds the step of a model's sequence that inserts a part. @param part  Name, path, or end of the
+ path. Errors: kNotFound for an unknown part, and for one without an insertion step of its own. */
 [[nodiscard]] Result<std::size_t> FindPartStep(const simulation::Model& model,
                                                const std::string& part);
 
-/** Mates of a step's part with parts that come before it. */
+/** Lists the mates between a step's part and parts that precede it. */
 [[nodiscard]] std::vector<product::MateId> ListConstraints(const simulation::Model& model,
                                                            std::size_t step);
 
-/** The observer that this participant is in blind identification. */
+/** Makes the observer of this participant for blind identification. Errors: as FindShownFit. */
 [[nodiscard]] Result<simulation::FitObserver> MakeObserver(const Skill& skill,
                                                            const Condition& condition,
                                                            std::uint64_t seed);
 
-/** The place of a fit among those that the observer knows. Errors: kUnsupported for another. */
+/** Finds the index of a fit among those that the observer knows. Errors: kUnsupported for
+ others. */
 [[nodiscard]] Result<int> FindShownFit(const std::string& fit);
 
 }  // namespace hvas::study

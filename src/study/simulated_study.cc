@@ -17,10 +17,10 @@ namespace {
 
 using Kind = StudyEvent::Kind;
 
-constexpr std::uint64_t kTrialStream = 1000;  // and the index of the trial
+constexpr std::uint64_t kTrialStream = 1000;  // plus the index of the trial
 constexpr std::uint64_t kObserverStream = 102;
 
-/** By the index of the condition. */
+/** Models, indexed by condition. */
 using Setups = std::vector<TrialSetup>;
 
 Result<Setups> MakeSetups(const Protocol& protocol, const ModelSource& models) {
@@ -54,7 +54,7 @@ Result<Setups> MakeSetups(const Protocol& protocol, const ModelSource& models) {
   return setups;
 }
 
-/** Takes one participant through the session. */
+/** Runs the session of one participant. */
 class Walk {
  public:
   Walk(const StudyFolder& folder, const Setups& setups, KeptRecords records, int participant,
@@ -143,7 +143,7 @@ class Walk {
     const PlannedTrial& planned = session_.schedule()[trial];
     const Block& block = session_.BlockOf(trial);
     if (block.is_identification) {
-      TrialResult result;  // the observer is shown the force of an insertion; nothing moves
+      TrialResult result;  // the observer gets the force of an insertion; nothing moves
       result.outcome = Outcome::kDone;
       return result;
     }
@@ -151,10 +151,11 @@ class Walk {
                                                            planned.repetition == block.repetitions);
     const bool has_session = session_.ConditionOf(trial).method != Method::kPicking;
     const std::filesystem::path record =
-        is_kept && has_session ? folder_.RecordFile(ParticipantId(session_.participant()), trial)
-                               : std::filesystem::path();
+        is_kept && has_session
+            ? folder_.RecordFile(FormatParticipantId(session_.participant()), trial)
+            : std::filesystem::path();
     std::error_code ignored;
-    std::filesystem::remove(record, ignored);  // of a trial that was interrupted
+    std::filesystem::remove(record, ignored);  // record of an interrupted trial
     return RunSimulatedTrial(setups_[planned.condition], session_.ConditionOf(trial), skill_,
                              SeedOf(kTrialStream + trial), record);
   }
@@ -185,11 +186,11 @@ class Walk {
         simulation::kShownFitNames[static_cast<std::size_t>(observer_->Answer(shown))];
     for (const std::size_t condition : session_.BlockOf(trial).conditions) {
       if (folder_.protocol().conditions[condition].fit == fit) {
-        return AnswerOf(folder_.protocol().conditions[condition]);
+        return AnswerNameOf(folder_.protocol().conditions[condition]);
       }
     }
-    // A fit that this block does not show: as good as any other wrong one.
-    return AnswerOf(folder_.protocol().conditions[session_.BlockOf(trial).conditions.front()]);
+    // An answer that this block does not offer counts as any other wrong one.
+    return AnswerNameOf(folder_.protocol().conditions[session_.BlockOf(trial).conditions.front()]);
   }
 
   [[nodiscard]] std::uint64_t SeedOf(std::uint64_t stream) const {
@@ -223,7 +224,7 @@ Result<void> RunSimulatedStudy(const StudyFolder& folder, const ModelSource& mod
       count, options.threads,
       [&](std::size_t i) {
         const int participant = static_cast<int>(i) + 1;
-        auto journal = folder.OpenJournal(ParticipantId(participant), true);
+        auto journal = folder.OpenJournal(FormatParticipantId(participant), true);
         const Result<void> done =
             journal
                 ? Walk(folder, *setups, options.records, participant, &*journal, &trials_done).Run()

@@ -20,13 +20,13 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFolderFormat = "hvas-study-folder-1";
 constexpr const char* kHead = "study.json";
 
-/** What is made of all journals together, and so knows of each participant. */
+/** Files made from all journals, which therefore contain data of each participant. */
 bool IsMadeOfAll(const fs::path& file) {
   const std::string ending = file.extension().string();
   return ending == ".csv" || ending == ".html" || ending == ".pdf";
 }
 
-Unexpected CannotWrite(const fs::path& path, const std::error_code& failed) {
+Unexpected FailToWrite(const fs::path& path, const std::error_code& failed) {
   return Fail(ErrorCode::kOutOfResource,
               fmt::format("this cannot be written: {}", failed.message()), path.string(),
               "choose another folder with -o");
@@ -38,10 +38,10 @@ Result<void> MakeFolder(const fs::path& folder) {
   if (!failed) {
     fs::permissions(folder, fs::perms::owner_all, failed);
   }
-  return failed ? Result<void>(CannotWrite(folder, failed)) : Result<void>();
+  return failed ? Result<void>(FailToWrite(folder, failed)) : Result<void>();
 }
 
-/** Quoted where RFC 4180 asks for it. */
+/** Formats a CSV cell, quoted where RFC 4180 requires it. */
 std::string Cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;
@@ -75,7 +75,7 @@ Result<StudyFolder> StudyFolder::Create(const fs::path& folder, const Protocol& 
     return old;
   }
   if (fs::exists(folder, ignored) && !fs::is_empty(folder, ignored)) {
-    return Fail(ErrorCode::kInvalid, "there is something else than a study in this folder",
+    return Fail(ErrorCode::kInvalid, "the folder is not empty, and not the folder of a study",
                 folder.string(), "choose another folder with -o");
   }
   for (const fs::path& one : {folder, folder / "participants", folder / "records"}) {
@@ -103,7 +103,7 @@ Result<StudyFolder> StudyFolder::Open(const fs::path& folder) {
   const Result<std::string> text = ReadRegularFile(folder / kHead);
   if (!text && text.error().code == ErrorCode::kNotFound) {
     return Fail(ErrorCode::kNotFound, "there is no study in this folder", folder.string(),
-                "name the folder that `hvas study run` or the studio wrote with -o");
+                "give the folder that `hvas study run` or the studio wrote with -o");
   }
   if (!text) {
     return Unexpected(text.error());
@@ -115,7 +115,7 @@ Result<StudyFolder> StudyFolder::Open(const fs::path& folder) {
   };
   if (text_of("format") != kFolderFormat || !head.contains("seed") ||
       !head["seed"].is_number_unsigned()) {
-    return Fail(ErrorCode::kUnreadable, "this is not what a study begins with",
+    return Fail(ErrorCode::kUnreadable, "the file is not the description of a study",
                 (folder / kHead).string(), "restore the file from a copy");
   }
   const fs::path copy = folder / fs::path(text_of("protocol")).filename();
@@ -124,7 +124,7 @@ Result<StudyFolder> StudyFolder::Open(const fs::path& folder) {
     return Unexpected(protocol.error());
   }
   if (protocol->digest != text_of("digest")) {
-    return Fail(ErrorCode::kUnreadable, "this is not the protocol that the study began with",
+    return Fail(ErrorCode::kUnreadable, "the protocol has changed since the study began",
                 copy.string(), "restore the file from a copy; a changed protocol is another study");
   }
   return StudyFolder(folder, std::move(*protocol), head["seed"].get<std::uint64_t>());
@@ -181,7 +181,7 @@ Result<std::vector<Participant>> StudyFolder::ReadParticipants() const {
 
 fs::path StudyFolder::RecordFile(const std::string& id, std::size_t trial) const {
   const fs::path folder = folder_ / "records" / id;
-  static_cast<void>(MakeFolder(folder));  // the recorder says what is wrong with it
+  static_cast<void>(MakeFolder(folder));  // the recorder reports the error
   return folder / fmt::format("{:03}.hvasrec", trial + 1);
 }
 
@@ -199,8 +199,8 @@ Result<std::vector<fs::path>> StudyFolder::Delete(const std::string& id) const {
     files.push_back(entry.path());
   }
   if (files.empty() && !fs::exists(records, failed)) {
-    return Fail(ErrorCode::kNotFound, "there is nothing of this participant", id,
-                "see `hvas study list` for those who are there");
+    return Fail(ErrorCode::kNotFound, "there are no data of this participant", id,
+                "`hvas study list` lists the participants");
   }
   for (const auto& entry : fs::directory_iterator(folder_, failed)) {
     if (IsMadeOfAll(entry.path())) {
@@ -210,7 +210,7 @@ Result<std::vector<fs::path>> StudyFolder::Delete(const std::string& id) const {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     if (!fs::remove(file, failed) || failed) {
-      return CannotWrite(file, failed);
+      return FailToWrite(file, failed);
     }
   }
   fs::remove(records, failed);
@@ -221,9 +221,9 @@ Result<void> ApplyAll(const std::vector<StudyEvent>& events, StudySession* sessi
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (const auto applied = session->Apply(events[i]); !applied) {
       return Fail(ErrorCode::kUnreadable,
-                  fmt::format("event {} of the journal cannot have happened: {}", i + 1,
+                  fmt::format("event {} of the journal contradicts the protocol: {}", i + 1,
                               applied.error().ToString()),
-                  ParticipantId(session->participant()), "restore the journal from a copy");
+                  FormatParticipantId(session->participant()), "restore the journal from a copy");
     }
   }
   return {};
@@ -239,7 +239,7 @@ std::string MakeTrialsCsv(const std::vector<Participant>& participants) {
       const PlannedTrial& planned = session.schedule()[done.index];
       const TrialResult& r = done.result;
       const bool is_answered = !done.answer.empty();
-      const bool is_right = done.answer == AnswerOf(session.ConditionOf(done.index));
+      const bool is_right = done.answer == AnswerNameOf(session.ConditionOf(done.index));
       csv += fmt::format("{},{},{},{},{},{},{},", participant.id, participant.is_simulated ? 1 : 0,
                          session.BlockOf(done.index).id, session.ConditionOf(done.index).id,
                          planned.repetition, done.index + 1,

@@ -13,7 +13,7 @@
 
 namespace hvas::study {
 
-/** A participant as the folder has it. */
+/** A participant's session, read from the folder. */
 struct Participant {
   std::string id;
   std::unique_ptr<StudySession> session;
@@ -22,47 +22,47 @@ struct Participant {
 
 /** The folder of a study:
 
-     study.json            what it is: seed, digest of the protocol
-     protocol.yaml         a copy of it, .json where it is that
+     study.json               seed, and digest of the protocol
+     protocol.yaml            copy of the protocol (protocol.json where it is JSON)
      participants/P01.jsonl   journals
      records/P01/001.hvasrec  records of trials
-     trials.csv, report.html  made of them, at any time again
+     trials.csv, report.html  results, made from the journals; they can be made again
 
- Only the user may look into it. */
+ Only this user has access to it. */
 class StudyFolder {
  public:
-  /** Begins a study in a folder that is not there, or is empty; or opens it where the same protocol
-   and seed are there already. Errors: kInvalid for another study's folder. */
+  /** Begins a study in a folder that is missing or empty, or opens one with an equal protocol and
+   seed. Errors: kInvalid for the folder of another study. */
   [[nodiscard]] static Result<StudyFolder> Create(const std::filesystem::path& folder,
                                                   const Protocol& protocol, std::uint64_t seed);
 
-  /** Errors: kNotFound where there is no study; kUnreadable where the copy of the protocol is not
-   the one that the study began with. */
+  /** Opens a study. Errors: kNotFound when there is none; kUnreadable when the copy of the protocol
+   has changed since the study began. */
   [[nodiscard]] static Result<StudyFolder> Open(const std::filesystem::path& folder);
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
-  /** Stays where it is for as long as this object, or one that it was moved to. */
+  /** Protocol of the study; its address stays valid when this object is moved. */
   [[nodiscard]] const Protocol& protocol() const { return *protocol_; }
 
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
 
-  /** Ids of those who have a journal, in their order. */
+  /** Lists the ids of participants with a journal, in ascending order. */
   [[nodiscard]] std::vector<std::string> ListParticipants() const;
 
-  /** Begins or goes on with a participant's journal. @param id  Of a form that ParseParticipantId
-   takes. */
+  /** Opens or begins the journal of a participant. @param id  An id that ParseParticipantId
+   accepts. Errors: those of Journal::Open. */
   [[nodiscard]] Result<Journal> OpenJournal(const std::string& id, bool is_simulated) const;
 
-  /** Where they stand. Errors: the journal's. */
+  /** Restores the sessions of one or all participants. Errors: those of their journals. */
   [[nodiscard]] Result<Participant> ReadParticipant(const std::string& id) const;
   [[nodiscard]] Result<std::vector<Participant>> ReadParticipants() const;
 
-  /** Where a trial's record belongs; makes the folders. @param trial  Index into the schedule. */
+  /** Path of a trial's record; makes its folders. @param trial  Index into the schedule. */
   [[nodiscard]] std::filesystem::path RecordFile(const std::string& id, std::size_t trial) const;
 
-  /** Removes all of a participant: journal, records, and what was made of all journals together.
-   Errors: kNotFound where there is nothing of them. @returns the files that were removed. */
+  /** Deletes all data of a participant: journal, records, and the results made from all journals.
+   Errors: kNotFound when there are none. @returns the deleted files. */
   [[nodiscard]] Result<std::vector<std::filesystem::path>> Delete(const std::string& id) const;
 
  private:
@@ -80,16 +80,16 @@ class StudyFolder {
   std::uint64_t seed_;
 };
 
-/** Applies the events of a journal to a session. Errors: kUnreadable for one that cannot have
- happened. */
+/** Applies the events of a journal to a session. Errors: kUnreadable for an event that contradicts
+ the protocol. */
 [[nodiscard]] Result<void> ApplyAll(const std::vector<StudyEvent>& events, StudySession* session);
 
-/** All trials of all participants, a row each, as RFC 4180 has tables:
+/** Makes a CSV table (RFC 4180) with one row for each trial of each participant:
  participant,simulated,block,condition,repetition,trial,outcome,time_s,collisions,peak_force_n,
- peak_true_force_n,insertion_mm,answer,is_right. What is not known is an empty cell. */
+ peak_true_force_n,insertion_mm,answer,is_right. Missing values are empty cells. */
 [[nodiscard]] std::string MakeTrialsCsv(const std::vector<Participant>& participants);
 
-/** All answers: participant,simulated,question,after_trial,value. */
+/** Makes a CSV table of all answers: participant,simulated,question,after_trial,value. */
 [[nodiscard]] std::string MakeAnswersCsv(const std::vector<Participant>& participants);
 
 }  // namespace hvas::study

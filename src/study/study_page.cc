@@ -67,7 +67,7 @@ class StudyPage {
   }
 
  private:
-  [[nodiscard]] std::string Whose() const {
+  [[nodiscard]] std::string DescribeSample() const {
     if (simulated_ == 0) {
       return "people";
     }
@@ -80,7 +80,7 @@ class StudyPage {
       trials += participant.session->done().size();
     }
     std::string tiles = "<ul class=\"tiles\">";
-    tiles += MakeTile("participants, " + Whose(), fmt::format("{}", participants_.size()));
+    tiles += MakeTile("participants, " + DescribeSample(), fmt::format("{}", participants_.size()));
     tiles += MakeTile("trials", fmt::format("{}", trials));
     tiles += MakeTile("conditions", fmt::format("{}", protocol_.conditions.size()));
     tiles += MakeTile("seed", fmt::format("{}", folder_.seed()));
@@ -111,7 +111,7 @@ class StudyPage {
           Escape(c.fit.empty() ? "as drawn" : c.fit),
           !has_mates                                     ? "-"
           : !c.renders_fits                              ? "not felt"
-          : c.force_map == haptics::ForceMapKind::kPaper ? "felt, the paper's scales"
+          : c.force_map == haptics::ForceMapKind::kPaper ? "rendered, with the paper's factors"
                                                          : "felt",
           has_force ? fmt::format("{:g}", c.coupling) : "-",
           has_mates
@@ -165,7 +165,7 @@ class StudyPage {
         "<div class=\"scroll\"><table><thead><tr><th class=\"l\">condition</th><th>trials</th>"
         "<th>done</th><th>mean of done, {} [s]</th><th>mean of all [s]</th><th>published, people "
         "[s]</th></tr></thead><tbody>",
-        Whose(), Whose());
+        DescribeSample(), DescribeSample());
     std::vector<ConditionTimes> both;
     for (const ConditionTimes& one : times) {
       const auto& published = protocol_.conditions[one.condition].published_mean;
@@ -184,9 +184,9 @@ class StudyPage {
       const std::string here = OrderBy(both, [](const auto& t) { return t.restricted_mean; });
       const std::string there = OrderBy(both, [&](const auto& t) { return PublishedOf(t); });
       html += fmt::format(
-          "<p class=\"verdict\">Order here ({}, of all): {}. Order published: {}. {}</p>", Whose(),
-          here, there,
-          here == there ? "They are the same." : "They are <strong>not</strong> the same.");
+          "<p class=\"verdict\">Order here ({}, of all): {}. Order published: {}. {}</p>",
+          DescribeSample(), here, there,
+          here == there ? "They agree." : "They do <strong>not</strong> agree.");
       html += MakePercents(both);
     }
     return html + "</section>";
@@ -216,7 +216,7 @@ class StudyPage {
 
   /** Nothing where there are too few for a comparison. */
   Result<std::string> MakeTimesAnalysis(std::size_t b) const {
-    const Table table = WithoutEmptyRows(MakeTimesTable(protocol_, b, participants_));
+    const Table table = RemoveEmptyRows(MakeTimesTable(protocol_, b, participants_));
     std::string html = fmt::format("<h2>Times: {}</h2>", NameOf(protocol_.blocks[b]));
     if (table.rows.size() < 2 || table.conditions.size() < 2 || !HasAllColumns(table)) {
       return html + "<p>There are too few results to compare.</p>";
@@ -229,7 +229,7 @@ class StudyPage {
       return Unexpected(analysis.error());
     }
     return html + "<p>Of each participant the mean of the trials that were done.</p>" +
-           AnalysisHtml(*analysis, "t" + protocol_.blocks[b].id);
+           MakeAnalysisHtml(*analysis, "t" + protocol_.blocks[b].id);
   }
 
   static bool HasAllColumns(const Table& table) {
@@ -245,7 +245,7 @@ class StudyPage {
   Result<std::string> MakeIdentification(std::size_t b) const {
     const Block& block = protocol_.blocks[b];
     std::string html = fmt::format("<h2>{}</h2>", NameOf(block));
-    const std::vector<Answer> answers = CollectAnswers(protocol_, b, participants_);
+    const std::vector<IdentificationAnswer> answers = CollectAnswers(protocol_, b, participants_);
     if (answers.empty()) {
       return html + "<p>Nobody has answered yet.</p>";
     }
@@ -259,8 +259,8 @@ class StudyPage {
     if (!identification) {
       return Unexpected(identification.error());
     }
-    html += IdentificationHtml(*identification, "i" + block.id);
-    const Table table = WithoutEmptyRows(MakeRightAnswersTable(protocol_, b, participants_));
+    html += MakeIdentificationHtml(*identification, "i" + block.id);
+    const Table table = RemoveEmptyRows(MakeRightAnswersTable(protocol_, b, participants_));
     if (table.rows.size() >= 2 && table.conditions.size() >= 2 && HasAllColumns(table)) {
       AnalysisOptions options;
       options.alpha = kAlpha;
@@ -270,13 +270,13 @@ class StudyPage {
       if (!analysis) {
         return Unexpected(analysis.error());
       }
-      html += AnalysisHtml(*analysis, "r" + block.id);
+      html += MakeAnalysisHtml(*analysis, "r" + block.id);
     }
     return html + MakePublishedShares(block, answers);
   }
 
-  [[nodiscard]] std::string MakePublishedShares(const Block& block,
-                                                const std::vector<Answer>& answers) const {
+  [[nodiscard]] std::string MakePublishedShares(
+      const Block& block, const std::vector<IdentificationAnswer>& answers) const {
     std::string rows;
     for (const std::size_t c : block.conditions) {
       const Condition& condition = protocol_.conditions[c];
@@ -285,13 +285,13 @@ class StudyPage {
       }
       int shown = 0;
       int right = 0;
-      for (const Answer& answer : answers) {
-        const bool is_this = answer.shown == AnswerOf(condition);
+      for (const IdentificationAnswer& answer : answers) {
+        const bool is_this = answer.shown == AnswerNameOf(condition);
         shown += is_this ? 1 : 0;
         right += is_this && answer.answered == answer.shown ? 1 : 0;
       }
       rows += fmt::format("<tr><td class=\"l\">{}</td><td>{:.1f}</td><td>{:.1f}</td></tr>",
-                          Escape(AnswerOf(condition)), 100.0 * right / std::max(1, shown),
+                          Escape(AnswerNameOf(condition)), 100.0 * right / std::max(1, shown),
                           100 * *condition.published_right_share);
     }
     if (rows.empty()) {
@@ -300,7 +300,7 @@ class StudyPage {
     return fmt::format(
         "<div class=\"scroll\"><table><thead><tr><th class=\"l\">shown</th><th>right, {} [%]</th>"
         "<th>right, published, people [%]</th></tr></thead><tbody>{}</tbody></table></div>",
-        Whose(), rows);
+        DescribeSample(), rows);
   }
 
   /** The last trial of a condition that has forces, of the first participant who has one. */
@@ -434,7 +434,7 @@ class StudyPage {
           "<p>Simulated participants answer no questions: they have no opinions, and numbers made "
           "up for them would only say what was made up.</p>";
     }
-    Table table = WithoutEmptyRows(MakeScalesTable(protocol_, participants_));
+    Table table = RemoveEmptyRows(MakeScalesTable(protocol_, participants_));
     DropEmptyColumns(&table);
     if (table.rows.empty()) {
       return html + (simulated_ < participants_.size() ? "<p>Nobody has answered yet.</p>" : "") +

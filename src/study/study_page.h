@@ -9,9 +9,9 @@
 
 namespace hvas::study {
 
-/** A study as one HTML page that needs nothing else: what was done, with whom, times, forces of the
- mating, identification, answers, statistics, interruptions. Simulated participants are marked as
- such wherever their numbers stand. The same study, the same bytes. */
+/** Makes the report of a study as one self-contained HTML page: method, participants, times, forces
+ during mating, identification, answers, statistics, interruptions. Results of simulated
+ participants are marked as such. Equal studies give equal bytes. */
 [[nodiscard]] Result<std::string> MakeStudyPage(const StudyFolder& folder,
                                                 const std::vector<Participant>& participants);
 

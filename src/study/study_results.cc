@@ -6,7 +6,7 @@
 namespace hvas::study {
 namespace {
 
-/** Visits what is over in a block. */
+/** Visits the completed trials of a block. */
 template <typename Visit>
 void ForEachTrial(const Participant& participant, std::size_t block, const Visit& visit) {
   for (const DoneTrial& done : participant.session->done()) {
@@ -17,7 +17,7 @@ void ForEachTrial(const Participant& participant, std::size_t block, const Visit
   }
 }
 
-/** The place of a condition in a block. */
+/** Index of a condition in a block. */
 std::size_t PlaceOf(const Block& block, std::size_t condition) {
   return static_cast<std::size_t>(
       std::find(block.conditions.begin(), block.conditions.end(), condition) -
@@ -29,7 +29,7 @@ struct Sum {
   int count{0};
 };
 
-/** A row a participant; cells by what `cell` makes of the sums over a condition's trials. */
+/** Makes a table with one row for each participant; `cell` makes a cell of a condition's sums. */
 template <typename Add, typename Cell>
 Table MakeBlockTable(const Protocol& protocol, std::size_t block_index,
                      const std::vector<Participant>& participants, const Add& add,
@@ -117,7 +117,7 @@ Table MakeRightAnswersTable(const Protocol& protocol, std::size_t block,
       protocol, block, participants,
       [&](const PlannedTrial& planned, const DoneTrial& done, Sum* sum) {
         if (!done.answer.empty()) {
-          sum->value += done.answer == AnswerOf(protocol.conditions[planned.condition]) ? 1 : 0;
+          sum->value += done.answer == AnswerNameOf(protocol.conditions[planned.condition]) ? 1 : 0;
           ++sum->count;
         }
       },
@@ -129,14 +129,14 @@ Table MakeRightAnswersTable(const Protocol& protocol, std::size_t block,
   return table;
 }
 
-std::vector<Answer> CollectAnswers(const Protocol& protocol, std::size_t block,
-                                   const std::vector<Participant>& participants) {
-  std::vector<Answer> answers;
+std::vector<IdentificationAnswer> CollectAnswers(const Protocol& protocol, std::size_t block,
+                                                 const std::vector<Participant>& participants) {
+  std::vector<IdentificationAnswer> answers;
   for (const Participant& participant : participants) {
     ForEachTrial(participant, block, [&](const PlannedTrial& planned, const DoneTrial& done) {
       if (!done.answer.empty()) {
         answers.push_back(
-            {participant.id, AnswerOf(protocol.conditions[planned.condition]), done.answer});
+            {participant.id, AnswerNameOf(protocol.conditions[planned.condition]), done.answer});
       }
     });
   }
@@ -168,7 +168,7 @@ Table MakeScalesTable(const Protocol& protocol, const std::vector<Participant>& 
   return table;
 }
 
-Table WithoutEmptyRows(Table table) {
+Table RemoveEmptyRows(Table table) {
   std::erase_if(table.rows, [](const Row& row) {
     return std::none_of(row.values.begin(), row.values.end(),
                         [](const auto& value) { return value.has_value(); });

@@ -9,40 +9,40 @@
 /** What participants did, as tables for the statistics. */
 namespace hvas::study {
 
-/** Times of one condition in the blocks that are no identification. */
+/** Completion times of one condition in all blocks but those of identification. */
 struct ConditionTimes {
   std::size_t condition{0};  ///< Index into Protocol::conditions.
-  std::size_t trials{0};     ///< That are over.
-  std::size_t done{0};       ///< Of these, with the part in its place: those of the mean.
-  double mean{0};            ///< [s]
-  /** With those that were not done as if they had ended at their time limit: the restricted mean of
-   survival analysis. Without it a condition that few get through would look quick. [s] */
+  std::size_t trials{0};     ///< Number of completed trials.
+  std::size_t done{0};       ///< Number of them with the part seated: the sample of `mean`.
+  double mean{0};            ///< Mean time [s].
+  /** Restricted mean of survival analysis, in which trials without success count with their time
+   limit [s]. The plain mean would make a condition look fast that few complete. */
   double restricted_mean{0};
 };
 
-/** Of the conditions that have trials planned in such blocks, in the protocol's order. */
+/** Summarises the times of all conditions with trials in such blocks, in the protocol's order. */
 [[nodiscard]] std::vector<ConditionTimes> SummariseTimes(
     const Protocol& protocol, const std::vector<Participant>& participants);
 
-/** Mean times of the trials that were done, of a block, a row a participant [s]. Whoever has done
- none under a condition has no number there. */
+/** Makes a table of mean times of a block's successful trials [s], one row for each participant.
+ The cell of a condition without such trials is missing. */
 [[nodiscard]] Table MakeTimesTable(const Protocol& protocol, std::size_t block,
                                    const std::vector<Participant>& participants);
 
-/** Right answers in a block of identification, a row a participant. Whoever has not done all of the
- block's trials of a condition has no number there. */
+/** Makes a table of the counts of correct answers in a block of identification, one row for each
+ participant. The cell of a condition with trials to do is missing. */
 [[nodiscard]] Table MakeRightAnswersTable(const Protocol& protocol, std::size_t block,
                                           const std::vector<Participant>& participants);
 
-/** All answers of such a block. */
-[[nodiscard]] std::vector<Answer> CollectAnswers(const Protocol& protocol, std::size_t block,
-                                                 const std::vector<Participant>& participants);
+/** Collects all answers of a block of identification. */
+[[nodiscard]] std::vector<IdentificationAnswer> CollectAnswers(
+    const Protocol& protocol, std::size_t block, const std::vector<Participant>& participants);
 
-/** Answers to the scales that are asked once a participant, a column a question. */
+/** Makes a table of the answers to scales that are asked once, one column for each question. */
 [[nodiscard]] Table MakeScalesTable(const Protocol& protocol,
                                     const std::vector<Participant>& participants);
 
-/** Table of only those rows that have any number. */
-[[nodiscard]] Table WithoutEmptyRows(Table table);
+/** Removes rows without any value. */
+[[nodiscard]] Table RemoveEmptyRows(Table table);
 
 }  // namespace hvas::study

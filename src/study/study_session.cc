@@ -10,20 +10,20 @@ namespace {
 
 using Kind = StudyEvent::Kind;
 
-const char* WhatNow(Phase phase) {
+const char* DescribeNextAction(Phase phase) {
   switch (phase) {
     case Phase::kWaiting:
       return "begin the session first";
     case Phase::kConsent:
-      return "the participant has to agree, or not, first";
+      return "the participant has to give or refuse consent first";
     case Phase::kTraining:
-      return "the training is next";
+      return "the training comes next";
     case Phase::kReady:
-      return "the trial waits for its beginning";
+      return "the trial has to begin first";
     case Phase::kRunning:
-      return "the trial has to end first; or abort it";
+      return "wait until the trial ends, or abort it";
     case Phase::kQuestion:
-      return "the question has to be answered first, or passed over";
+      return "the question has to be answered or skipped first";
     case Phase::kPaused:
       return "resume the session first";
     case Phase::kDeclined:
@@ -33,7 +33,7 @@ const char* WhatNow(Phase phase) {
   return "the session is over";
 }
 
-/** Characters, not bytes, of UTF-8. */
+/** Counts the code points of a UTF-8 text. */
 std::size_t CountCharacters(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
@@ -42,13 +42,13 @@ std::size_t CountCharacters(const std::string& text) {
 
 }  // namespace
 
-const std::string& AnswerOf(const Condition& condition) {
+const std::string& AnswerNameOf(const Condition& condition) {
   return condition.answer.empty() ? condition.fit : condition.answer;
 }
 
 Result<void> CheckAnswer(const Question& question, const AnswerValue& value) {
   const auto refuse = [&](std::string remedy) {
-    return Fail(ErrorCode::kInvalid, "this is no answer to the question", question.id,
+    return Fail(ErrorCode::kInvalid, "the answer does not suit the question", question.id,
                 std::move(remedy));
   };
   if (std::holds_alternative<std::monostate>(value)) {
@@ -163,7 +163,7 @@ std::optional<OpenQuestion> StudySession::question() const {
 
 Unexpected StudySession::Refuse(const char* what) const {
   return Fail(ErrorCode::kInvalid, fmt::format("{} is not possible now", what),
-              fmt::format("phase \"{}\"", ToString(phase())), WhatNow(phase()));
+              fmt::format("phase \"{}\"", ToString(phase())), DescribeNextAction(phase()));
 }
 
 void StudySession::Interrupt(std::string reason) {
@@ -173,7 +173,7 @@ void StudySession::Interrupt(std::string reason) {
 
 Result<void> StudySession::ApplyBegun() {
   if (has_declined_ || at_ == agenda_.size()) {
-    return Refuse("to begin");
+    return Refuse("beginning");
   }
   if (has_begun_ && !is_paused_) {
     Interrupt("the program ended");
@@ -216,10 +216,10 @@ Result<void> StudySession::ApplyAnswer(const StudyEvent& event) {
     const auto& conditions = BlockOf(open->trial).conditions;
     const bool is_known =
         answer != nullptr && std::any_of(conditions.begin(), conditions.end(), [&](std::size_t c) {
-          return AnswerOf(protocol_->conditions[c]) == *answer;
+          return AnswerNameOf(protocol_->conditions[c]) == *answer;
         });
     if (!is_known) {
-      return Fail(ErrorCode::kInvalid, "this is no answer to the question", open->id,
+      return Fail(ErrorCode::kInvalid, "the answer does not suit the question", open->id,
                   "give the id of one of its choices");
     }
     done_.back().answer = *answer;
@@ -245,13 +245,13 @@ Result<void> StudySession::Apply(const StudyEvent& event) {
     }
     case Kind::kTrainingBegun:
       if (now != Phase::kTraining || is_running_) {
-        return Refuse("to begin the training");
+        return Refuse("beginning the training");
       }
       is_running_ = true;
       return {};
     case Kind::kTrainingEnded:
       if (now != Phase::kTraining || !is_running_) {
-        return Refuse("to end the training");
+        return Refuse("ending the training");
       }
       is_running_ = false;
       ++at_;

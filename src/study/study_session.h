@@ -16,14 +16,14 @@
 namespace hvas::study {
 
 enum class Phase : std::uint8_t {
-  kWaiting,  ///< Nobody has begun, or begun again.
+  kWaiting,  ///< The session has not begun, or has not been resumed yet.
   kConsent,
   kTraining,
-  kReady,  ///< For the trial at hand.
+  kReady,  ///< The next trial can begin.
   kRunning,
   kQuestion,
-  kPaused,    ///< By the experimenter.
-  kDeclined,  ///< The participant did not agree. For good.
+  kPaused,    ///< The experimenter has interrupted the session.
+  kDeclined,  ///< The participant did not consent. Final.
   kDone,
 };
 
@@ -34,14 +34,15 @@ inline constexpr std::array<std::string_view, 9> kPhases{
   return kPhases[static_cast<std::size_t>(phase)];
 }
 
-/** An answer: of a scale, of a choice or a text; none where somebody would not answer. */
+/** An answer: to a scale an int, to a choice or text a string; monostate: the question was
+ skipped. */
 using AnswerValue = std::variant<std::monostate, int, std::string>;
 
-/** Something that happened to a session of a study. The session is all that follows from its
- events, in their order: to resume it is to apply them again. */
+/** An event of a study's session. The state of the session is a function of its events in order; it
+ is resumed by applying them again. */
 struct StudyEvent {
   enum class Kind : std::uint8_t {
-    kBegun,  ///< Also again, after the program had ended.
+    kBegun,  ///< Begun, or begun again after the program had ended.
     kConsent,
     kTrainingBegun,
     kTrainingEnded,
@@ -54,7 +55,7 @@ struct StudyEvent {
   };
 
   Kind kind{Kind::kNote};
-  std::int64_t unix_ms{0};  ///< Of the wall clock; 0 in simulated sessions, which have none.
+  std::int64_t unix_ms{0};  ///< Wall clock: Unix time [ms]; 0 in simulated sessions.
   bool agrees{false};       ///< kConsent
   std::string language;     ///< kConsent
   std::size_t trial{0};     ///< kTrialBegun, kTrialEnded, kAnswered: index into the schedule.
@@ -68,57 +69,59 @@ inline constexpr std::array<std::string_view, 10> kEventKinds{
     "begun",       "consent",  "training_begun", "training_ended", "trial_begun",
     "trial_ended", "answered", "note",           "aborted",        "resumed"};
 
-/** The question of identification: after a trial, which condition it was. */
+/** Id of the question of identification, asked after a trial: which condition it was. */
 inline constexpr std::string_view kIdentifyQuestion = "identify";
 
-/** A trial that is over. */
+/** A completed trial. */
 struct DoneTrial {
-  std::size_t index{0};  ///< Into the schedule.
+  std::size_t index{0};  ///< Index into the schedule.
   TrialResult result;
-  std::string answer;  ///< Of identification; empty: none, or not yet.
+  std::string answer;  ///< Answer of identification; empty: none, or none yet.
 };
 
 struct GivenAnswer {
   std::string question;
-  std::optional<std::size_t> trial;  ///< That it was asked after.
+  std::optional<std::size_t> trial;  ///< Trial after which it was asked.
   AnswerValue value;
 };
 
 struct Note {
   std::string text;
-  std::size_t trial{0};     ///< Index of the trial that was at hand.
-  std::int64_t unix_ms{0};  ///< As StudyEvent's.
+  std::size_t trial{0};     ///< Index of the current trial at that time.
+  std::int64_t unix_ms{0};  ///< See StudyEvent [ms].
 };
 
-/** What is asked now. */
+/** The question that waits for an answer. */
 struct OpenQuestion {
   std::string id;
   const Question* question{nullptr};  ///< Null: identification.
-  std::size_t trial{0};               ///< Index of the trial before.
+  std::size_t trial{0};               ///< Index of the preceding trial.
 };
 
-/** The session of one participant: consent, training, trials, questions, in the order of the
- schedule. No input, output, threads or clocks: what happens comes as events, times are in them. */
+/** State machine of one participant's session: consent, training, trials and questions in the order
+ of the schedule. It has no input, output, threads or clocks: all that happens are events, which
+ have their times. */
 class StudySession {
  public:
   /** @param protocol  Outlives this. */
   StudySession(const Protocol* protocol, int participant, std::uint64_t seed);
 
-  /** Errors: kInvalid for what cannot happen now, with what can. Nothing has changed then. */
+  /** Applies an event. Errors: kInvalid for one that is impossible in this state, which stays
+   as is. */
   [[nodiscard]] Result<void> Apply(const StudyEvent& event);
 
-  /** The program was begun again: waits for kBegun, as at first. */
+  /** Waits for kBegun again, after the program was started again. */
   void AwaitBeginning() { is_waiting_ = true; }
 
   [[nodiscard]] Phase phase() const;
 
-  /** The trial at hand: that is trained for, waited for, run or asked about. None before the first
-   and after the last. */
+  /** Index of the current trial: the one that is trained for, ready, running or asked about. None
+   before the first and after the last. */
   [[nodiscard]] std::optional<std::size_t> trial() const;
 
   [[nodiscard]] std::optional<OpenQuestion> question() const;
 
-  /** A trial, or the training, has begun. */
+  /** Whether a trial or the training is running. */
   [[nodiscard]] bool is_running() const { return is_running_; }
 
   [[nodiscard]] const Protocol& protocol() const { return *protocol_; }
@@ -143,13 +146,13 @@ class StudySession {
 
   [[nodiscard]] const std::vector<Note>& notes() const { return notes_; }
 
-  /** Of all aborts and ends of the program in between, why. */
+  /** Reasons of all interruptions: aborts, and ends of the program during the session. */
   [[nodiscard]] const std::vector<std::string>& interruptions() const { return interruptions_; }
 
  private:
   enum class ItemKind : std::uint8_t { kConsent, kTraining, kTrial, kIdentify, kQuestion };
 
-  /** One thing to do. */
+  /** One item of the agenda. */
   struct Item {
     ItemKind kind{ItemKind::kConsent};
     std::size_t trial{0};
@@ -181,11 +184,10 @@ class StudySession {
   std::vector<std::string> interruptions_;
 };
 
-/** The names that a participant may answer with in an identification block, and of which condition
- each is. */
-[[nodiscard]] const std::string& AnswerOf(const Condition& condition);
+/** Name of a condition as an answer in a block of identification. */
+[[nodiscard]] const std::string& AnswerNameOf(const Condition& condition);
 
-/** Errors: kInvalid for a value that the question does not have. */
+/** Checks an answer. Errors: kInvalid for a value that the question does not allow. */
 [[nodiscard]] Result<void> CheckAnswer(const Question& question, const AnswerValue& value);
 
 }  // namespace hvas::study

@@ -12,31 +12,32 @@
 namespace hvas::study {
 
 enum class Outcome : std::uint8_t {
-  kDone,      ///< The part is in its place.
-  kTimedOut,  ///< It was not when the time was up.
-  kNotDone,   ///< The experimenter, or the simulated person, gave it up.
+  kDone,      ///< The part was seated.
+  kTimedOut,  ///< The time limit was reached first.
+  kNotDone,   ///< The experimenter, or the simulated person, gave up.
 };
 
 inline constexpr std::array<std::string_view, 3> kOutcomes{"done", "timed_out", "not_done"};
 
-/** What the hand feels of the mating, in a frame whose z axis is the way out (X15). */
+/** Wrench on the hand during mating, in a frame whose z axis is the direction of extraction
+ (X15). */
 struct MatingSample {
-  double t{0};                ///< Before the part is in its place, or the trial over; <= 0 [s].
-  Vec3 f{Vec3::Zero()};       ///< [N]
-  Vec3 torque{Vec3::Zero()};  ///< About the hand's point [N m].
+  double t{0};                ///< Time relative to seating, or to the trial's end; <= 0 [s].
+  Vec3 f{Vec3::Zero()};       ///< Force [N].
+  Vec3 torque{Vec3::Zero()};  ///< Torque about Ho [N m].
 };
 
-/** What one trial amounted to. */
+/** Measurements of one trial. */
 struct TrialResult {
   Outcome outcome{Outcome::kNotDone};
-  /** By the tick clock, from the first tick of the trial to the one in which the part is in its
-   place, or to its end [s]. None where nobody moved anything: identification by a simulated
-   observer. */
+  /** Duration by the tick clock, from the trial's first tick to the one in which the part is
+   seated, or to its end [s]. None where nothing was moved: identification by a simulated
+ observer. */
   std::optional<double> time;
-  int collisions{0};    ///< Times that something was met before a mate guided the part.
-  double peak_felt{0};  ///< [N]
-  double peak_true{0};  ///< [N]
-  double insertion{0};  ///< [m]
+  int collisions{0};    ///< Number of contacts that began before a mate guided the part.
+  double peak_felt{0};  ///< Largest force rendered to the hand [N].
+  double peak_true{0};  ///< Largest unscaled force on the part [N].
+  double insertion{0};  ///< Insertion depth [m].
   std::vector<MatingSample> mating;
 };
 

@@ -6,7 +6,7 @@
 namespace hvas::study {
 namespace {
 
-constexpr std::int64_t kApartNs = 100'000'000;  // As in simulation::HoldMetrics.
+constexpr std::int64_t kApartNs = 100'000'000;  // equal to that of simulation::HoldMetrics
 
 double Seconds(std::int64_t ns) {
   return 1e-9 * static_cast<double>(ns);

@@ -9,15 +9,15 @@
 
 namespace hvas::study {
 
-/** Keeps account of one trial while it runs: stands between the loops and whoever else is told. It
- ends for good with the tick in which the part is in its place. */
+/** Measures one trial while it runs, as a sink that passes everything on to another one. Measuring
+ ends with the tick in which the part is seated. */
 class TrialWatch final : public simulation::Sink {
  public:
-  /** @param part  Whose coming into its place ends the trial.
-   @param extraction_W  Unit; the way out.
-   @param window_s  Of the forces that are kept [s].
-   @param period_s  Of the ticks [s].
-   @param downstream  Gets everything too; may be null. */
+  /** @param part  Part whose seating ends the trial.
+   @param extraction_W  Direction of extraction in W; unit vector.
+   @param window_s  Time before the end for which wrenches are kept [s].
+   @param period_s  Period of the ticks [s].
+   @param downstream  Sink that everything is passed on to; may be null. */
   TrialWatch(product::OccurrenceId part, const Vec3& extraction_W, double window_s, double period_s,
              simulation::Sink* downstream);
 
@@ -26,19 +26,19 @@ class TrialWatch final : public simulation::Sink {
   void OnEvent(const simulation::SimulationEvent& event) override;
   void OnFlight(const std::vector<simulation::FlightTick>& ticks) override;
 
-  /** Since the first tick [s]. Any thread. */
+  /** Time since the trial's first tick [s]. Any thread may call it. */
   [[nodiscard]] double elapsed_s() const {
     return 1e-9 * static_cast<double>(elapsed_ns_.load(std::memory_order_relaxed));
   }
 
-  /** Haptic thread, or once the loops have ended. */
+  /** Whether the part is seated. For the haptic thread, or once the loops have ended. */
   [[nodiscard]] bool is_seated() const { return is_seated_; }
 
-  /** Once the loops have ended. The outcome is kDone, or kNotDone. */
+  /** Makes the result; its outcome is kDone or kNotDone. @pre the loops have ended. */
   [[nodiscard]] TrialResult MakeResult() const;
 
  private:
-  static constexpr int kKeepEvery = 10;  ///< Ticks.
+  static constexpr int kKeepEvery = 10;  ///< Decimation of the wrenches that are kept [ticks].
 
   struct Kept {
     std::int64_t t_ns{0};
@@ -49,7 +49,7 @@ class TrialWatch final : public simulation::Sink {
   void Keep(std::int64_t t_ns, const haptics::TickOutput& out) noexcept;
 
   product::OccurrenceId part_;
-  Quat q_AW_;  ///< Into the frame whose z axis is the way out.
+  Quat q_AW_;  ///< Rotation into the frame A whose z axis is the direction of extraction.
   simulation::Sink* downstream_;
   bool has_begun_{false};
   bool is_seated_{false};
@@ -58,7 +58,7 @@ class TrialWatch final : public simulation::Sink {
   std::atomic<std::int64_t> elapsed_ns_{0};
   std::int64_t contact_ns_;
   TrialResult sums_;
-  std::vector<Kept> kept_;  ///< Round and round, of one size.
+  std::vector<Kept> kept_;  ///< Ring buffer of fixed size.
   std::size_t next_{0};
   std::uint64_t kept_count_{0};
   std::uint64_t ticks_{0};

@@ -8,9 +8,9 @@
 namespace hvas::study {
 namespace {
 
-constexpr std::size_t kMostBytes = 1 << 20;
+constexpr std::size_t kMaxBytes = 1 << 20;
 
-std::string Here(const std::string& file, const YAML::Mark& mark) {
+std::string FormatMark(const std::string& file, const YAML::Mark& mark) {
   return mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
 }
 
@@ -21,16 +21,18 @@ std::string Print(double x) {
 }  // namespace
 
 Result<YamlDocument> YamlDocument::Parse(const std::string& text, const std::string& file) {
-  if (text.size() > kMostBytes) {
-    return Fail(ErrorCode::kInvalid, "this is too long for a protocol", file, "keep it below 1 MB");
+  if (text.size() > kMaxBytes) {
+    return Fail(ErrorCode::kInvalid, "the file is too long for a protocol", file,
+                "shorten it to less than 1 MB");
   }
   YamlDocument document;
   document.file_ = file;
   try {
     document.root_ = YAML::Load(text);
   } catch (const YAML::Exception& exception) {
-    return Fail(ErrorCode::kUnreadable, "this is not YAML: " + exception.msg,
-                Here(file, exception.mark), "correct the indentation or the quotes there");
+    return Fail(ErrorCode::kUnreadable, "the file is not valid YAML: " + exception.msg,
+                FormatMark(file, exception.mark),
+                "correct the indentation or the quotes at this place");
   }
   return document;
 }
@@ -38,7 +40,8 @@ Result<YamlDocument> YamlDocument::Parse(const std::string& text, const std::str
 void YamlDocument::Refuse(const YAML::Node& at, std::string message, std::string remedy) {
   if (!error_) {
     const YAML::Mark mark = at.IsDefined() ? at.Mark() : YAML::Mark::null_mark();
-    error_ = Error{ErrorCode::kInvalid, std::move(message), Here(file_, mark), std::move(remedy)};
+    error_ =
+        Error{ErrorCode::kInvalid, std::move(message), FormatMark(file_, mark), std::move(remedy)};
   }
 }
 
@@ -53,7 +56,7 @@ YamlFields::YamlFields(YamlDocument* document, YAML::Node node, std::string enti
 
 YAML::Node YamlFields::Get(const std::string& key) {
   asked_.push_back(key);
-  const YAML::Node& here = node_;  // const: looking for a key does not make it
+  const YAML::Node& here = node_;  // const, so that looking up a key does not insert it
   return here[key];
 }
 
@@ -144,7 +147,7 @@ std::vector<std::string> YamlFields::TextsOr(const std::string& key,
   for (const YAML::Node& item : ListOf(document_, value, fmt::format("\"{}\"", key))) {
     if (!item.IsScalar()) {
       document_->Refuse(item,
-                        fmt::format("\"{}\" of {} has something else than names", key, entity_),
+                        fmt::format("\"{}\" of {} has an element that is not a text", key, entity_),
                         "write it as [A, B, C]");
       return otherwise;
     }
@@ -177,12 +180,12 @@ void YamlFields::Finish() {
     if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) {
       const std::string nearest = mates::FindNearest(key, asked_);
       document_->Refuse(
-          item.first, fmt::format("{} has a key that is not known: \"{}\"", entity_, key),
-          nearest.empty() ? "take it out" : fmt::format("did you mean \"{}\"?", nearest));
+          item.first, fmt::format("{} has an unknown key: \"{}\"", entity_, key),
+          nearest.empty() ? "remove it" : fmt::format("did you mean \"{}\"?", nearest));
     }
     if (std::find(seen.begin(), seen.end(), key) != seen.end()) {
       document_->Refuse(item.first, fmt::format("{} has \"{}\" twice", entity_, key),
-                        "take one of them out");
+                        "remove one of them");
     }
     seen.push_back(key);
   }

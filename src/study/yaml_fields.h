@@ -15,11 +15,11 @@
 
 namespace hvas::study {
 
-/** A document of YAML, or of JSON, which is YAML too, while it is read. Keeps the first thing that
- is not what it should be, with file, line and column. */
+/** A YAML document that is being read; JSON documents are YAML, too. It keeps the first error, with
+ file, line and column. */
 class YamlDocument {
  public:
-  /** Errors: kUnreadable for what is no YAML, with the line and column. */
+  /** Parses a text. Errors: kUnreadable for malformed YAML, with line and column. */
   [[nodiscard]] static Result<YamlDocument> Parse(const std::string& text, const std::string& file);
 
   [[nodiscard]] const YAML::Node& root() const { return root_; }
@@ -41,18 +41,18 @@ struct Bounds {
   double high{0};
 };
 
-/** The fields of one mapping. Every getter says which key there may be: Finish() refuses those that
- none has asked for. A key that is missing, of another type or out of its range is refused in the
- document, and the default comes back. */
+/** The fields of one mapping. Each getter declares its key as known, and Finish() refuses all
+ others. A value of another type or out of its range, or a required key that is missing, is refused
+ in the document, and the getter returns its default. */
 class YamlFields {
  public:
-  /** @param entity  What the mapping is, as messages have it: "condition B1". */
+  /** @param entity  Name of the mapping in messages: "condition B1". */
   YamlFields(YamlDocument* document, YAML::Node node, std::string entity);
 
   [[nodiscard]] bool Has(const std::string& key);
-  /** The value, which may be missing. */
+  /** The node of a key; undefined where it is missing. */
   [[nodiscard]] YAML::Node Get(const std::string& key);
-  /** Has to be there. */
+  /** The node of a required key. */
   [[nodiscard]] YAML::Node Require(const std::string& key);
 
   [[nodiscard]] std::string Text(const std::string& key);
@@ -63,7 +63,7 @@ class YamlFields {
   [[nodiscard]] std::vector<std::string> TextsOr(const std::string& key,
                                                  std::vector<std::string> otherwise);
 
-  /** One of some words, by its place. */
+  /** Reads one of some words as the enumerator with its index. */
   template <typename E>
   [[nodiscard]] E WordOr(const std::string& key, std::span<const std::string_view> words,
                          E otherwise) {
@@ -71,7 +71,7 @@ class YamlFields {
     return index ? static_cast<E>(*index) : otherwise;
   }
 
-  /** Refuses keys that are not known, and keys that stand twice. */
+  /** Refuses unknown keys and duplicate keys. */
   void Finish();
 
   [[nodiscard]] const YAML::Node& node() const { return node_; }
@@ -91,7 +91,7 @@ class YamlFields {
   std::vector<std::string> asked_;
 };
 
-/** A list's elements; refused where the node is none. */
+/** Elements of a sequence; refuses a node of another type. */
 [[nodiscard]] std::vector<YAML::Node> ListOf(YamlDocument* document, const YAML::Node& node,
                                              const std::string& entity);
 

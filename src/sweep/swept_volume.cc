@@ -206,10 +206,10 @@ Box BoxAlong(const Path& path, const Box& box_B) {
 Result<void> Check(const contact::ShapeSource& part, const Path& path,
                    const SweepOptions& options) {
   if (part.triangles.empty()) {
-    return Fail(ErrorCode::kInvalid, "the part has no triangles", "", "choose one with a shape");
+    return Fail(ErrorCode::kInvalid, "the part has no triangles", "", "choose a part with a shape");
   }
   if (path.empty() || !std::all_of(path.begin(), path.end(), spatial::IsFinite)) {
-    return Fail(ErrorCode::kInvalid, "the path has no poses, or one that is not finite", "", "");
+    return Fail(ErrorCode::kInvalid, "the path has no poses, or a pose that is not finite", "", "");
   }
   if (!(options.resolution >= 0) || !std::isfinite(options.resolution)) {
     return Fail(ErrorCode::kInvalid, "the resolution must be a positive length", "", "");
@@ -268,11 +268,11 @@ Result<SweptVolume> Sweep(const contact::ShapeSource& part, const Path& path,
         }
       });
   if (options.stop.stop_requested()) {
-    return Fail(ErrorCode::kCancelled, "the swept volume was stopped", "", "");
+    return Fail(ErrorCode::kCancelled, "the computation of the swept volume was cancelled", "", "");
   }
   swept.mesh = ExtractSurface(*grid);
   if (swept.mesh.triangles.empty()) {
-    return Fail(ErrorCode::kInvalid, "the part is thinner than the grid is fine", "",
+    return Fail(ErrorCode::kInvalid, "the part is thinner than a cell of the grid", "",
                 "choose a finer resolution");
   }
   swept.volume = CalcVolume(swept.mesh);

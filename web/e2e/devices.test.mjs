@@ -83,7 +83,7 @@ describe("the hands", () => {
     await openDevices(page);
     await page.getByTestId("hands-2").click();
     await page.locator(".dialog-refusal").waitFor();
-    assert.match(await page.locator(".dialog-refusal").innerText(), /let/i, "the part has to be let go first");
+    assert.match(await page.locator(".dialog-refusal").innerText(), /release/i, "the part has to be released first");
     await takePicture(page, "device_refused");
     await page.context().close();
   }));

@@ -130,7 +130,7 @@ describe("a page", () => {
     );
     assert.equal(epoch, (await fetchScene(page)).epoch);
     await waitForState(page, ({ hasLease }) => hasLease);
-    await page.getByRole("log").filter({ hasText: /goes on/ }).waitFor({ state: "attached" });
+    await page.getByRole("log").filter({ hasText: /is restored/ }).waitFor({ state: "attached" });
     await takePicture(page, "restart_back");
     await page.keyboard.press("n");  // the next part
     await waitForPlacement(page, 2, "placed", 90_000);

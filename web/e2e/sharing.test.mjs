@@ -86,8 +86,8 @@ describe("somebody who looks on", () => {
         };
       });
     });
-    assert.match(error.message, /only whoever steers/);
-    assert.match(error.remedy, /looking on/);
+    assert.match(error.message, /only the user in control/);
+    assert.match(error.remedy, /for viewers/);
     await waitForAnswer(viewer);
     await waitForPlacement(viewer, kShaft, "loose");
   });
@@ -190,7 +190,7 @@ describe("a link for others", () => {
     await helper.page.reload();
     await waitForPicture(helper.page);
     const late = await openPage(browser, link, { isStranger: true });
-    await late.page.getByText(/has let another browser in/).waitFor();
+    await late.page.getByText(/has been used by another browser/).waitFor();
     await takePicture(late.page, "share_spent");
     await page.getByTestId("share-again").click();
     await page.waitForFunction((old) => document.querySelector('[data-testid="share-link"]')?.value !== old, link);

@@ -117,7 +117,7 @@ describe("what the simulated person has put together", () => {
   before(async () => {
     ({ page, complaints } = await openPage(browser, studio.operator));
     await waitForPicture(page);
-    await page.getByRole("button", { name: /Show me/ }).first().click();
+    await page.getByRole("button", { name: /Demonstrate/ }).first().click();
     await page.getByTestId("demo-runs").waitFor();
     await page.getByTestId("demo-runs").waitFor({ state: "detached", timeout: 90_000 });
   });
@@ -137,7 +137,7 @@ describe("what the simulated person has put together", () => {
     await page.getByTestId("part-2").click({ button: "right" });
     const mesh = page.waitForResponse((response) => response.url().includes("/api/path/"), { timeout: 60_000 });
     await page.getByText("Show its path as swept volume").click();
-    await page.getByText("Exact to").waitFor({ timeout: 60_000 });
+    await page.getByText("Maximum deviation").waitFor({ timeout: 60_000 });
     await (await mesh).finished();
     await waitForCalm(page);
     await takePicture(page, "path_swept");

@@ -84,7 +84,7 @@ async function pickSurfaces(person) {
   await person.getByText("These two do not belong together.").waitFor();
   await clickPart(person, kShaft);
   await clickPart(person, 1);
-  await person.getByText("Left to set: 1").waitFor();
+  await person.getByText("Constraints left: 1").waitFor();
   await takePicture(person, "study_picking_left");
   await clickPart(person, kShaft);
   await clickPart(person, 1);
@@ -295,7 +295,7 @@ describe("the experimenter", () => {
     await look(desk, "desk_running");
     await press(desk, "desk-abort");
     await desk.getByTestId("abort-yes").click();
-    await desk.getByText("Say why: it is kept with the session.").waitFor();
+    await desk.getByText("Give a reason: it is saved with the session.").waitFor();
     await look(desk, "desk_abort");
     await desk.getByTestId("abort-reason").fill("The telephone rang.");
     await desk.getByTestId("abort-yes").click();

@@ -98,7 +98,7 @@ async function pickConstraints(person, scene, occurrence) {
     await findAndClickFace(person, b, facesB[0]);
     await person.getByText("Now click the surface that it belongs to.").waitFor();
     await findAndClickFace(person, a, facesA[0]);
-    await person.getByText(k === 0 ? "Left to set: 1" : "Trial 2").first().waitFor();
+    await person.getByText(k === 0 ? "Constraints left: 1" : "Trial 2").first().waitFor();
   }
 }
 

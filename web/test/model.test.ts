@@ -203,8 +203,8 @@ describe("the session", () => {
     expect(store.ownHands.value).toEqual([0]);
     FakeWorker.last.say({ event: "roles", clients: [{ id: "c5", role: "operator", has_lease: false, hands: [1] }] });
     expect(store.ownHands.value).toEqual([1]);
-    FakeWorker.last.say({ event: "device", hand: 1, condition: "lost", text: "is lost; plug it in again" });
-    expect(store.deviceTroubles.value.get(1)).toMatch(/plug it in/);
+    FakeWorker.last.say({ event: "device", hand: 1, condition: "lost", text: "is disconnected; connect it again" });
+    expect(store.deviceTroubles.value.get(1)).toMatch(/connect it again/);
     FakeWorker.last.say({ event: "device", hand: 1, condition: "ready", text: "is ready" });
     expect(store.deviceTroubles.value.size).toBe(0);
     FakeWorker.last.say({ event: "recording", on: true, id: "r1", name: "First", t_s: 0 });
@@ -224,7 +224,7 @@ describe("the session", () => {
 
   it("shows why a file could not be opened, unless somebody has stopped it", async () => {
     const { store } = await start();
-    const error = { code: "cancelled", message: "opening it was stopped", where: "a.step", remedy: "" };
+    const error = { code: "cancelled", message: "opening the file was cancelled", where: "a.step", remedy: "" };
     FakeWorker.last.say({ event: "progress", stage: "read", fraction: 0.1, file: "a.step" });
     FakeWorker.last.say({ event: "failed", error });
     expect(store.loading.value).toBeNull();
@@ -264,7 +264,7 @@ describe("the session", () => {
 
   it("says that it is not let in any more where the server has other links, and comes back where it has the same", async () => {
     const { store } = await start();
-    const error = { code: "invalid", message: "nobody knows you here", where: "", remedy: "open the link" };
+    const error = { code: "invalid", message: "this browser has no session", where: "", remedy: "open the link" };
     FakeWorker.last.reply({ type: "closed" });
     expect(store.link.value).toBe("lost");
     vi.stubGlobal("fetch", () => Promise.resolve(new Response(JSON.stringify({ error }), { status: 401 })));

@@ -47,8 +47,8 @@ Result<std::shared_ptr<const Model>> MakeModel(const AssembleOptions& options,
   }
   if (!(product->mass() > 0)) {
     return Fail(ErrorCode::kUnsupported,
-                "no part of it has a mass, so there is nothing to assemble", product->source,
-                "export it with its solids, not as surfaces");
+                "no part of the product has a mass, so there is nothing to assemble",
+                product->source, "export the product with solids, not as surfaces");
   }
   simulation::CompileOptions compile;
   compile.seed = options.seed;
@@ -218,7 +218,10 @@ Result<std::unique_ptr<record::Recorder>> MakeRecorder(const Model& model,
   recorder.ring_ticks *= options.second_device.empty() ? 1 : 2;
   recorder.replaces = options.is_record_replaced;
   recorder.on_error = [](const Error& error) {
-    fmt::print(stderr, "\nhvas: {} (the assembly goes on)\n", error.ToString());
+    fmt::print(stderr,
+               "\n"
+               "hvas: {} (the assembly continues)\n",
+               error.ToString());
   };
   return record::Recorder::Create(recorder, MakeMeta(model, options));
 }
@@ -279,22 +282,23 @@ void AddMissing(const Model& model, AssemblyOutcome* outcome) {
 
 /** What is in the hands, and how it is rendered to. */
 void AddDeviceOptions(CLI::App* command, AssembleOptions* options) {
-  command->add_option("--device", options->device,
-                      "A device in the hand: see `hvas devices`; emulated:DRIVER[:PROFILE] for one "
-                      "that is not there, held by the simulated person");
-  command
-      ->add_option("--second-device", options->second_device,
-                   "A device in the other hand, named as the first one. A second simulated person "
-                   "takes every other part with an emulated one, and begins while the first still "
-                   "puts its part in where the two ways in are apart; with a real one the other "
-                   "hand takes what it likes")
-      ->needs("--device");
+  command->add_option(
+      "--device", options->device,
+      "Address of the device for the hand (`hvas devices` lists them); emulated:DRIVER[:PROFILE] "
+      "for an emulated one, held by the simulated person");
   command
       ->add_option(
-          "--scale", options->render.scale,
-          "Millimetres of the scene for one of the device; 0, when not given: by their sizes")
+          "--second-device", options->second_device,
+          "Address of the device for the second hand. With an emulated device, a second simulated "
+          "person takes every other part, and begins while the first is still inserting its part "
+          "where their paths are apart; with a real device, its user chooses the parts")
+      ->needs("--device");
+  command
+      ->add_option("--scale", options->render.scale,
+                   "Scale: millimetres of the scene for one millimetre of the device; default 0: "
+                   "chosen by the sizes of both")
       ->check(CLI::Range(0.0, 1000.0));
-  command->add_option("--rate", options->render.rate_hz, "Of the haptic loop [Hz]")
+  command->add_option("--rate", options->render.rate_hz, "Rate of the haptic loop [Hz]")
       ->check(CLI::Range(1000.0, 8000.0))
       ->capture_default_str();
 }
@@ -345,30 +349,34 @@ int RunAssemble(const AssembleOptions& options) {
 
 void AddAssemble(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "assemble", "Let a simulated person assemble a product, part by part, and keep the evidence");
+      "assemble", "Let a simulated person assemble a product part by part, and record the session");
   const auto options = std::make_shared<AssembleOptions>();
   command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file")->required();
   command
       ->add_option("--order", options->order,
-                   "Parts to begin with, by name, path or id (o12), separated by commas; the rest "
-                   "follows in the order found")
+                   "Parts to assemble first, by name, path or id (o12), separated by commas; the "
+                   "others follow in the order that HVAS finds")
       ->delimiter(',');
-  command->add_option("--seed", options->seed, "Seed of the person and of the parts' actual sizes")
+  command
+      ->add_option("--seed", options->seed,
+                   "Seed for the person's motion and the parts' actual sizes")
       ->capture_default_str();
   command->add_option("--fit", options->load.fits,
-                      "AXIS=FIT, as in m12=H7/p6: a mate's id, a part's name, or 'all'");
+                      "Assign a fit: AXIS=FIT, for example m12=H7/p6; AXIS is the id of a mate, "
+                      "the name of a part, or 'all'");
   AddConditionOption(command, &options->condition);
   AddForceMapOption(command, &options->force_map);
   AddDeviceOptions(command, options.get());
-  command->add_flag("--realtime", options->is_realtime,
-                    "Three threads at --rate, 100 and 30 Hz instead of virtual time");
+  command->add_flag(
+      "--realtime", options->is_realtime,
+      "Run in real time instead of virtual time, with three threads at --rate, 100 and 30 Hz");
   CLI::Option* record =
-      command->add_option("--record", options->record, "Write the session to this file");
-  command->add_flag("--force", options->is_record_replaced, "Replace a record that is there")
+      command->add_option("--record", options->record, "Record the session to this file");
+  command->add_flag("--force", options->is_record_replaced, "Replace an existing record")
       ->needs(record);
   command
       ->add_option("--limit", options->limit_s,
-                   "Stop after this session time [s]; 0, when not given: 120 s a part")
+                   "Stop after this session time [s]; default 0: 120 s for each part")
       ->check([](const std::string& text) {
         double limit_s = 0;
         const char* end = text.data() + text.size();

@@ -59,21 +59,22 @@ Result<void> Check(const PathOptions& options) {
   const bool is_table = format == ".csv" || format == ".json";
   if (options.is_swept ? !is_mesh : !is_table) {
     return Fail(ErrorCode::kInvalid,
-                options.is_swept ? "a swept volume is written as .stl or .glb"
-                                 : "a path is written as .csv or .json",
+                options.is_swept ? "a swept volume can be written as .stl or .glb only"
+                                 : "a path can be written as .csv or .json only",
                 options.output.string(),
-                options.is_swept ? "give the file one of these endings"
-                                 : "give the file one of these endings, or ask for --swept");
+                options.is_swept
+                    ? "choose a file name with one of these extensions"
+                    : "choose a file name with one of these extensions, or add --swept");
   }
   std::error_code error;
   if (!options.is_forced &&
       std::filesystem::exists(std::filesystem::symlink_status(options.output, error))) {
-    return Fail(ErrorCode::kInvalid, "the file is there already", options.output.string(),
+    return Fail(ErrorCode::kInvalid, "the file exists already", options.output.string(),
                 "choose another name, or replace it with --force");
   }
   if (!options.rotate.empty() && !(VectorOf(options.rotate).norm() > 0)) {
-    return Fail(ErrorCode::kInvalid, "the axis has no direction", "--rotate",
-                "give it as in --rotate 0,0,1,90");
+    return Fail(ErrorCode::kInvalid, "the direction of the axis has length zero", "--rotate",
+                "give a direction and an angle, for example --rotate 0,0,1,90");
   }
   return {};
 }
@@ -237,45 +238,50 @@ Result<void> WritePath(const PathOptions& options) {
 
 void AddPath(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "path", "Write the way of a part, as poses or as the volume that it sweeps");
+      "path", "Write the path of a part, as poses or as the volume that it sweeps");
   const auto options = std::make_shared<PathOptions>();
   command->add_option("file", options->load.file, "CAD file")->required();
-  command->add_option("--part", options->part, "Name, path or end of path of an occurrence")
+  command->add_option("--part", options->part, "Name, path or end of the path of an occurrence")
       ->required();
-  auto* way = command->add_option_group("way", "The way that it goes");
+  auto* way = command->add_option_group("way", "Source of the path");
   CLI::Option* record =
-      way->add_option("--record", options->record, "As a hand moved it: a record of hvas assemble");
+      way->add_option("--record", options->record,
+                      "Path in a recorded session: a record of hvas assemble or the studio");
   constexpr int kVector = 3;
-  way->add_option("--translate", options->translate_mm, "Straight on from its place: X,Y,Z [mm]")
+  way->add_option("--translate", options->translate_mm, "Translation from its place: X,Y,Z [mm]")
       ->delimiter(',')
       ->expected(kVector);
-  CLI::Option* rotate = way->add_option("--rotate", options->rotate,
-                                        "About an axis: X,Y,Z of its direction, angle [deg]")
-                            ->delimiter(',')
-                            ->expected(kVector + 1);
+  CLI::Option* rotate =
+      way->add_option("--rotate", options->rotate,
+                      "Rotation about an axis: X,Y,Z of the direction, angle [deg]")
+          ->delimiter(',')
+          ->expected(kVector + 1);
   way->require_option(1);
-  command->add_option("--hold", options->hold, "Which time that it was held, from 1; the last one")
+  command
+      ->add_option("--hold", options->hold,
+                   "Number of the hold of this part, from 1; default: the last one")
       ->check(CLI::PositiveNumber)
       ->needs(record);
   command
       ->add_option("--about", options->about_mm,
-                   "A point of the axis: X,Y,Z [mm]; the part's centre of mass")
+                   "Point on the axis: X,Y,Z [mm]; default: the part's centre of mass")
       ->delimiter(',')
       ->expected(kVector)
       ->needs(rotate);
   CLI::Option* swept =
-      command->add_flag("--swept", options->is_swept, "The space that it needs, as a closed mesh");
+      command->add_flag("--swept", options->is_swept, "Write the swept volume as a closed mesh");
   command
       ->add_option("--resolution-mm", options->resolution_mm,
-                   "Edge of a cell of the swept volume; a hundredth of its extent")
+                   "Cell size of the swept volume [mm]; default: a hundredth of its extent")
       ->check(CLI::PositiveNumber)
       ->needs(swept);
   command->add_option("-o,--output", options->output, "File to write")->required();
-  command->add_flag("--force", options->is_forced, "Replace a file that is there");
+  command->add_flag("--force", options->is_forced, "Replace an existing file");
   AddJsonFlag(command, &options->is_json, "path");
   AddLoadOptions(command, &options->load);
   command->footer(
-      "  .csv   a pose a line: time, centre of mass, origin and rotation of the part [s, m]\n"
+      "  .csv   one pose for each line: time, centre of mass, origin and rotation of the part [s, "
+      "m]\n"
       "  .json  the same: times_s, points_m, poses\n"
       "  .stl   with --swept: millimetres    .glb   with --swept: metres, Y up\n"
       "Poses are those of the part in the product's frame. No point of the mesh is further from\n"

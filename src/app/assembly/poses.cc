@@ -79,32 +79,32 @@ Result<OccurrenceId> Find(const Product& product, const std::string& name) {
 /** One entry of a pose file. @returns what is wrong with it and with which key, if anything. */
 std::optional<std::pair<std::string, std::string>> ReadEntry(const Json& entry,
                                                              const Product& product, Poses* poses) {
-  using Wrong = std::pair<std::string, std::string>;
+  using FailEntry = std::pair<std::string, std::string>;
   if (!entry.is_object() || !entry.contains("occurrence") || !entry["occurrence"].is_string()) {
-    return Wrong("", "an entry needs \"occurrence\", a text");
+    return FailEntry("", "an entry needs \"occurrence\", with a text");
   }
   for (const auto& [key, value] : entry.items()) {
     if (key != "occurrence" && key != "position_mm" && key != "rotation_wxyz" && key != "note") {
-      return Wrong("/" + key, fmt::format("\"{}\" is no key of an entry", key));
+      return FailEntry("/" + key, fmt::format("an entry has no key \"{}\"", key));
     }
   }
   const auto id = Find(product, entry["occurrence"].get<std::string>());
   if (!id) {
-    return Wrong("/occurrence", id.error().message);
+    return FailEntry("/occurrence", id.error().message);
   }
   const Pose& drawn = product.occurrences[id->index()].X_WB;
   std::optional<Vec3> p = drawn.p();
   std::optional<Quat> q = drawn.q();
   if (entry.contains("position_mm") &&
       !(p = ReadPosition(entry["position_mm"], units::kMetresPerMillimetre))) {
-    return Wrong("/position_mm", "\"position_mm\" is three numbers up to 1e7");
+    return FailEntry("/position_mm", "\"position_mm\" needs three numbers of at most 1e7");
   }
   if (entry.contains("rotation_wxyz") && !(q = ReadRotation(entry["rotation_wxyz"]))) {
-    return Wrong("/rotation_wxyz", "\"rotation_wxyz\" is a quaternion of length 1");
+    return FailEntry("/rotation_wxyz", "\"rotation_wxyz\" needs a quaternion of length 1");
   }
   if (!poses->emplace(*id, Pose(*q, *p)).second) {
-    return Wrong("/occurrence",
-                 fmt::format("\"{}\" stands here twice", product.occurrences[id->index()].path));
+    return FailEntry("/occurrence",
+                     fmt::format("\"{}\" occurs twice", product.occurrences[id->index()].path));
   }
   return std::nullopt;
 }
@@ -120,10 +120,11 @@ Result<Poses> ReadPoseFile(std::string_view text, const std::string& name, const
   };
   const Json& root = document->root;
   if (!root.is_object() || !root.contains("format") || root["format"] != kFormat) {
-    return fail("/format", fmt::format("this is no pose file: \"format\" is not \"{}\"", kFormat));
+    return fail("/format",
+                fmt::format("the file is not a pose file: its \"format\" is not \"{}\"", kFormat));
   }
   if (!root.contains("poses") || !root["poses"].is_array()) {
-    return fail("/poses", "\"poses\" is a list");
+    return fail("/poses", "\"poses\" needs a list");
   }
   Poses poses;
   for (std::size_t i = 0; i < root["poses"].size(); ++i) {
@@ -159,8 +160,8 @@ Result<Poses> ReadRecord(const std::filesystem::path& file, const Product& produ
     const auto q =
         ReadRotation(details.contains("rotation_wxyz") ? details["rotation_wxyz"] : Json());
     if (!p || !q) {
-      return Fail(ErrorCode::kUnreadable, "the record does not say where parts were let go", name,
-                  "record the session again");
+      return Fail(ErrorCode::kUnreadable, "the record does not contain where parts were released",
+                  name, "record the session again");
     }
     poses[id->second] = Pose(*q, *p);
   }
@@ -184,9 +185,9 @@ Result<std::map<std::uint32_t, OccurrenceId>> MatchParts(const record::Meta& met
     if (!is_known || at == product.occurrences.end() || !part.contains("shape_hash") ||
         part["shape_hash"] != product.part_of(at->id).shape_hash) {
       return Fail(ErrorCode::kInvalid,
-                  fmt::format("the record is of another product: {} has no such part \"{}\"",
+                  fmt::format("the record belongs to another product: {} has no part \"{}\"",
                               product.source, path),
-                  name, "export the file that was assembled");
+                  name, "export the file that was assembled in the session");
     }
     ids[part["id"].get<std::uint32_t>()] = at->id;
   }

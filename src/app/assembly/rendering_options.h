@@ -17,8 +17,8 @@ CLI::Option* AddForceMapOption(CLI::App* command, Kind* kind) {
       {haptics::ToString(haptics::ForceMapKind::kPublished), haptics::ForceMapKind::kPublished},
       {haptics::ToString(haptics::ForceMapKind::kPaper), haptics::ForceMapKind::kPaper}};
   return AddChoice(command, "--force-map", kind, kinds,
-                   "How forces of fits are felt: published (one map for all), or paper (paper W's "
-                   "factors k_r and k_s)");
+                   "Force map of fits: published (one map for all fits), or paper (factors k_r and "
+                   "k_s of paper W)");
 }
 
 /** Adds `--condition collision|constraint|hybrid` to a command.
@@ -29,7 +29,7 @@ CLI::Option* AddConditionOption(CLI::App* command, Condition* condition) {
                                                {"constraint", haptics::Condition::kConstraint},
                                                {"hybrid", haptics::Condition::kHybrid}};
   return AddChoice(command, "--condition", condition, conditions,
-                   "What is felt; hybrid is both, and the force of the fit");
+                   "Rendering: contact, mates, or hybrid (both, and the force of the fit)");
 }
 
 }  // namespace hvas::app

@@ -63,7 +63,7 @@ class FloorTrial {
   }
 
   /** The newest state, for one other thread. */
-  const TrialState& Look() {
+  const TrialState& ReadState() {
     states_.Update();
     return states_.value();
   }
@@ -96,7 +96,7 @@ void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
 
 void PrintState(const TrialState& state, const device::Device& device, double t_s) {
   const Vec3 p_mm = 1e3 * state.device.X_DH.p();
-  std::string text = fmt::format("{:6.1f} s  at {:7.2f} {:7.2f} {:7.2f} mm  given {:5.2f} N  {}",
+  std::string text = fmt::format("{:6.1f} s  at {:7.2f} {:7.2f} {:7.2f} mm  force {:5.2f} N  {}",
                                  t_s, p_mm.x(), p_mm.y(), p_mm.z(), state.F_H_D.f.norm(),
                                  device::ToString(state.device.condition));
   for (const haptics::GateAction action : haptics::ListNewActions(0, state.gate_actions)) {
@@ -119,7 +119,7 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
   device::Device& device = *opened->device;
   fmt::print("{}", DescribeDevice(device.info()));
   FloorTrial trial(&device, options.rate_hz);
-  fmt::print("A floor of {:.0f} N/m at the middle of the workspace. Press on it.\n",
+  fmt::print("A horizontal floor of {:.0f} N/m is in the middle of the workspace. Press on it.\n",
              trial.gains().k_lin);
   std::atomic<bool> is_stopping{false};
   simulation::RealtimeGrant grant;
@@ -145,7 +145,7 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
       MoveEmulatedHand(&opened->emulator->device(), i * kStep);
     }
     if (i % kStepsPerLine == kStepsPerLine / 2) {
-      PrintState(trial.Look(), device, i * kStep);
+      PrintState(trial.ReadState(), device, i * kStep);
     }
     (void)pacer.Wait();
   }

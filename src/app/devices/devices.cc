@@ -63,18 +63,18 @@ std::string AddressHelp() {
 
 void AddDevices(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "devices", "List devices for the hand: what was looked for, what is there, what is wrong");
+      "devices", "List haptic devices: what was searched for, what was found, and problems");
   const auto options = std::make_shared<DevicesOptions>();
   command->add_flag("--probe", options->is_probe,
-                    "Start each device that is there, without force, and let it go again");
+                    "Start each device that was found, without force, and stop it again");
   AddJsonFlag(command, &options->is_json, "devices");
   command->add_option(
       "--try", options->trial.address,
-      "Feel a horizontal floor with the device of this address, and see its samples");
-  command->add_option("--seconds", options->trial.seconds, "How long to try [s]")
+      "Render a horizontal floor on the device with this address, and print its samples");
+  command->add_option("--seconds", options->trial.seconds, "Duration of the trial [s]")
       ->check(CLI::Range(0.5, 3600.0))
       ->capture_default_str();
-  command->add_option("--rate", options->trial.rate_hz, "Of the loop [Hz]")
+  command->add_option("--rate", options->trial.rate_hz, "Rate of the loop [Hz]")
       ->check(CLI::Range(1000.0, 8000.0))
       ->capture_default_str();
   command->footer(AddressHelp() +

@@ -33,7 +33,7 @@ std::string DescribeSensing(const DeviceInfo& info) {
   const device::Capabilities& can = info.capabilities;
   const device::DeviceProfile& profile = info.profile;
   if (!can.senses_position) {
-    return "deflections, that a position is made of";
+    return "deflections, integrated to a position";
   }
   const Vec3 box_mm = 1e3 * profile.workspace;
   return fmt::format("{:.0f} x {:.0f} x {:.0f} mm in steps of {:.3g} um{}", box_mm.x(), box_mm.y(),
@@ -116,7 +116,7 @@ std::string NoteForPerson(const Finding& finding) {
   return is_loaders ? "" : finding.note;
 }
 
-std::vector<FindingGroup> Group(const std::vector<Finding>& findings) {
+std::vector<FindingGroup> GroupFindings(const std::vector<Finding>& findings) {
   std::vector<FindingGroup> by_place;
   for (const Finding& finding : findings) {
     FindingGroup one{{finding.what}, {finding.where}, finding.is_found, NoteForPerson(finding)};
@@ -142,7 +142,7 @@ std::string DescribeFindings(std::vector<Finding> findings) {
   std::stable_partition(findings.begin(), findings.end(),
                         [](const Finding& finding) { return finding.is_found; });
   std::string text;
-  for (const FindingGroup& group : Group(findings)) {
+  for (const FindingGroup& group : GroupFindings(findings)) {
     const std::string& place = group.places.front();
     const bool is_address = place.find(':') != std::string::npos;
     const std::string where = fmt::format("{}", fmt::join(group.places, ", "));
@@ -197,17 +197,17 @@ std::string NameOf(const DeviceInfo& info) {
   return (info.is_emulated ? "EMULATED " : "") + info.model;
 }
 
-std::string SayHowToUse(const DeviceInfo& info) {
+std::string DescribeUse(const DeviceInfo& info) {
   const std::string address = Quote(AddressOf(info));
   return fmt::format(
-      "Feel a floor with it first, then put it into the hand:\n"
+      "Try it with a virtual floor first, then use it:\n"
       "  hvas devices --try {0} --seconds 30\n"
       "  hvas assemble FILE --device {0} --realtime\n",
       address);
 }
 
 constexpr const char* kWithoutDevice =
-    "Without one, the simulated person works alone or with a device that is emulated:\n"
+    "Without a device, the simulated person works alone or with an emulated device:\n"
     "  hvas assemble FILE\n"
     "  hvas assemble FILE --device emulated:openhaptics:touch_x\n"
     "  hvas devices --try emulated:openhaptics --seconds 5\n";
@@ -246,23 +246,23 @@ std::string DescribeProbe(const std::vector<ProbeReport>& reports, bool has_open
   }
   if (!has_opened) {
     return text +
-           "Nothing was started. Next, to start each device that is there, without force:\n"
+           "No device was started. To start each one that was found, without force:\n"
            "  hvas devices --probe\n";
   }
   if (devices.empty()) {
     return text +
-           "No device can be used now. For the one that you have, do what its \"what to do\" says, "
-           "and look again.\n" +
+           "No device is usable now. Follow the \"what to do\" of your device, and run this "
+           "command again.\n" +
            kWithoutDevice;
   }
   const auto real = std::find_if(devices.begin(), devices.end(),
                                  [](const DeviceInfo& info) { return !info.is_emulated; });
   const DeviceInfo& first = real != devices.end() ? *real : devices.front();
   return text +
-         fmt::format("{} can be used.\n", devices.size() == 1
-                                              ? NameOf(first)
-                                              : fmt::format("{} devices", devices.size())) +
-         SayHowToUse(first);
+         fmt::format("{} usable.\n", devices.size() == 1
+                                         ? NameOf(first) + " is"
+                                         : fmt::format("{} devices are", devices.size())) +
+         DescribeUse(first);
 }
 
 nlohmann::ordered_json MakeProbeJson(const std::vector<ProbeReport>& reports, bool has_opened) {

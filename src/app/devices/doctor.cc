@@ -103,12 +103,13 @@ void PrintText(const std::vector<DoctorCheck>& checks, const Measured& measured,
                               options.rate_hz, options.seconds, measured.grant.ToString())));
   PrintLatencyHistogram("wake-up after the deadline", measured.wake_up);
   fmt::print("{}", Fold(fmt::format(
-                       "{} of {} came more than a period late, {} periods were passed over.\n{}",
+                       "{} of {} wake-ups were more than a period late, {} periods were skipped.\n"
+                       "{}",
                        measured.late, measured.wake_up.count(), measured.missed,
                        IsPunctual(measured, options.rate_hz)
-                           ? "This machine wakes a loop of this rate in time.\n"
-                           : "This machine does not always wake a loop of this rate in time: a "
-                             "device is given less force meanwhile, never more.\n")));
+                           ? "This machine meets the deadlines of a loop at this rate.\n"
+                           : "This machine misses some deadlines of a loop at this rate. The force "
+                             "of a device is reduced meanwhile, and never increased.\n")));
 }
 
 int RunDoctor(const DoctorOptions& options) {
@@ -129,17 +130,19 @@ int RunDoctor(const DoctorOptions& options) {
 
 void AddDoctor(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "doctor", "See whether this machine keeps a haptic loop in time, and what would help it");
+      "doctor",
+      "Check whether this machine meets the deadlines of a haptic loop, and what would help");
   const auto options = std::make_shared<DoctorOptions>();
-  command->add_option("--seconds", options->seconds, "How long to measure [s]")
+  command->add_option("--seconds", options->seconds, "Duration of the measurement [s]")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  command->add_option("--rate", options->rate_hz, "Of the loop [Hz]")
+  command->add_option("--rate", options->rate_hz, "Rate of the loop [Hz]")
       ->check(CLI::Range(100.0, 8000.0))
       ->capture_default_str();
   AddJsonFlag(command, &options->is_json, "doctor");
   command->footer(
-      "Exit status: 0 when 999 of 1000 wake-ups come within half a period and none a period late,\n"
+      "Exit status: 0 when 999 of 1000 wake-ups are less than half a period late and none a full "
+      "period,\n"
       "2 otherwise, 1 on an error.\n"
       "Examples:\n"
       "  hvas doctor\n"

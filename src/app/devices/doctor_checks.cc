@@ -66,8 +66,8 @@ DoctorCheck CheckKernel(const fs::path& root) {
                       OrUnknown(ReadLine(kernel / "osrelease")), is_realtime ? ", PREEMPT_RT" : ""),
           is_realtime,
           is_realtime ? ""
-                      : "an ordinary kernel now and then wakes a thread late by a millisecond and "
-                        "more; on Debian: apt install linux-image-rt-amd64, and start that one"};
+                      : "an ordinary kernel occasionally wakes a thread a millisecond or more "
+                        "late; on Debian: apt install linux-image-rt-amd64, and boot that kernel"};
 }
 
 DoctorCheck CheckPriority(const fs::path& root) {
@@ -90,7 +90,7 @@ DoctorCheck CheckMemoryLock(const fs::path& root) {
   const bool is_good = HasCapability(root, kIpcLock) || limit.starts_with("unlimited");
   return {"locked memory",
           is_good ? "unlimited" : fmt::format("up to {} kB", ToNumber(limit).value_or(0) / 1024),
-          is_good, is_good ? "" : "as for the priority: '@realtime - memlock unlimited'"};
+          is_good, is_good ? "" : "as for the priority above: '@realtime - memlock unlimited'"};
 }
 
 DoctorCheck CheckThrottling(const fs::path& root) {
@@ -131,16 +131,16 @@ DoctorCheck CheckCores(const fs::path& root) {
   std::string remedy;
   if (!is_good) {
     remedy = cores > 1 ? fmt::format(
-                             "give the haptic loop a core of its own: isolcpus={0} "
-                             "nohz_full={0} on the kernel's command line",
+                             "reserve a core for the haptic loop: isolcpus={0} nohz_full={0} on "
+                             "the kernel's command line",
                              cores - 1)
-                       : "the haptic loop shares the only core with all else: use a machine with "
-                         "two or more";
+                       : "the haptic loop shares the only core with all other programs: use a "
+                         "machine with two or more";
   }
   return {"cores",
           fmt::format("{}, {}", cores > 0 ? std::to_string(cores) : "unknown number",
-                      is_good ? fmt::format("of which {} has no other work", isolated)
-                              : "none kept free of other work"),
+                      is_good ? fmt::format("of which {} is reserved", isolated)
+                              : "none reserved for the haptic loop"),
           is_good, remedy};
 }
 
@@ -156,11 +156,11 @@ DoctorCheck CheckIdleStates(const fs::path& root) {
   }
   const bool is_good = longest_us <= kLongestUs;
   return {"idle states",
-          longest_us > 0 ? fmt::format("a core wakes from the deepest in {} us", longest_us)
-                         : "none that delay the waking of a core",
+          longest_us > 0 ? fmt::format("the deepest sleep state takes {} us to leave", longest_us)
+                         : "none with a wake-up delay",
           is_good,
           is_good ? ""
-                  : "deep sleep of a core delays its waking: processor.max_cstate=1 "
+                  : "deep sleep states delay the wake-up of a core: processor.max_cstate=1 "
                     "intel_idle.max_cstate=1 on the kernel's command line"};
 }
 
@@ -168,8 +168,8 @@ DoctorCheck CheckHypervisor(const fs::path& root) {
   const std::string flags = ReadValue(root / "proc/cpuinfo", "flags");
   const bool is_virtual = flags.find(" hypervisor") != std::string::npos;
   return {"machine", is_virtual ? "virtual" : "real", !is_virtual,
-          is_virtual ? "its host takes the processor away for milliseconds at a time, whatever is "
-                       "set here: for a force device use a real machine"
+          is_virtual ? "the host of a virtual machine suspends it for milliseconds, regardless of "
+                       "settings here: use a physical machine for a force device"
                      : ""};
 }
 
@@ -178,11 +178,11 @@ DoctorCheck CheckClock(const fs::path& root) {
       ReadLine(root / "sys/devices/system/clocksource/clocksource0/current_clocksource");
   const bool is_slow =
       source && (*source == "acpi_pm" || *source == "hpet" || *source == "jiffies");
-  return {"clock", OrUnknown(source), !is_slow,
-          is_slow
-              ? "this clock takes microseconds to read: clocksource=tsc on the kernel's command "
-                "line"
-              : ""};
+  return {
+      "clock", OrUnknown(source), !is_slow,
+      is_slow
+          ? "reading this clock takes microseconds: clocksource=tsc on the kernel's command line"
+          : ""};
 }
 
 }  // namespace

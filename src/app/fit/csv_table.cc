@@ -141,11 +141,11 @@ Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimite
   if (!is_good) {
     return Fail(ErrorCode::kInvalid, csv_strerror(error),
                 fmt::format("{}:{}", path.string(), parsed.line),
-                "write quotes within a cell twice, and close each");
+                "write a quote inside a cell twice, and close each quoted cell");
   }
   if (parsed.rows.empty()) {
     return Fail(ErrorCode::kInvalid, "is empty", path.string(),
-                "begin it with the names of columns");
+                "add a first line with the names of the columns");
   }
   CsvTable table;
   table.delimiter_ = delimiter;
@@ -185,7 +185,7 @@ Result<void> CsvTable::Require(const std::vector<std::string>& columns) const {
     return {};
   }
   return Fail(ErrorCode::kInvalid, "lacks the columns " + missing, "the first line",
-              "name the columns as hvas fit --help does");
+              "use the column names of hvas fit --help");
 }
 
 std::string_view CsvTable::Get(std::size_t row, std::string_view column) const {

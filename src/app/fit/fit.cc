@@ -62,9 +62,9 @@ Result<void> WritePlot(const std::string& file, const Plot& plot) {
     }
   }
   if (!EndsWith(file, ".svg")) {
-    return Fail(
-        ErrorCode::kInvalid, fmt::format("\"{}\" is no kind of plot", file), {},
-        kHasCsv ? "name a file that ends in .svg or .csv" : "name a file that ends in .svg");
+    return Fail(ErrorCode::kInvalid, fmt::format("a plot cannot be written as \"{}\"", file), {},
+                kHasCsv ? "choose a file name ending in .svg or .csv"
+                        : "choose a file name ending in .svg");
   }
   return WriteAtomically(file, ToSvg(plot));
 }
@@ -255,8 +255,8 @@ int Search(const SearchArguments& a) {
     RoundNumbers(&json);
     fmt::print("{}\n", json.dump(2));
   } else if (found->empty()) {
-    fmt::print("no fit of the {} basis has clearances within {:g} to {:g} um at {:g} mm\n", a.basis,
-               a.min_um, a.max_um, a.nominal_mm);
+    fmt::print("no standard fit of the {} basis has clearances from {:g} to {:g} um at {:g} mm\n",
+               a.basis, a.min_um, a.max_um, a.nominal_mm);
   }
   return 0;
 }
@@ -265,10 +265,10 @@ void AddBatch(CLI::App* fit, const char* name, const char* description, const ch
               Result<void> (*add)(CsvTable*), int* status) {
   auto arguments = std::make_shared<BatchArguments>();
   CLI::App* command = fit->add_subcommand(name, description);
-  command->add_option("--batch", arguments->in, "Table to read (CSV); - for the standard input")
+  command->add_option("--batch", arguments->in, "Table to read (CSV); - for standard input")
       ->required();
   command->add_option("-o,--output", arguments->out,
-                      "Table to write; - or without: the standard output");
+                      "Table to write; default, or -: standard output");
   command->footer(
       fmt::format("{}\nExample:\n  hvas fit {} --batch in.csv -o out.csv", columns, name));
   command->callback([arguments, add, status] { *status = RunBatch(*arguments, add); });
@@ -276,14 +276,19 @@ void AddBatch(CLI::App* fit, const char* name, const char* description, const ch
 
 void AddSearch(CLI::App* fit, int* status) {
   auto arguments = std::make_shared<SearchArguments>();
-  CLI::App* search = fit->add_subcommand("search", "Standard fits with clearances in a range");
-  search->add_option("--nominal", arguments->nominal_mm, "Nominal diameter [mm], or as in 1.5in")
+  CLI::App* search = fit->add_subcommand("search", "List standard fits with clearances in a range");
+  search
+      ->add_option("--nominal", arguments->nominal_mm,
+                   "Nominal diameter [mm], or with a unit: 1.5in")
       ->required()
       ->transform(Millimetres());
-  search->add_option("--min", arguments->min_um, "Least clearance [um]; negative: interference")
+  search
+      ->add_option("--min", arguments->min_um, "Smallest clearance [um]; negative for interference")
       ->required();
-  search->add_option("--max", arguments->max_um, "Largest clearance [um]")->required();
-  search->add_option("--basis", arguments->basis, "hole (H) or shaft (h)")
+  search
+      ->add_option("--max", arguments->max_um, "Largest clearance [um]; negative for interference")
+      ->required();
+  search->add_option("--basis", arguments->basis, "Basis system: hole (H) or shaft (h)")
       ->check(CLI::IsMember({"hole", "shaft"}));
   AddUnitOption(search, &arguments->unit);
   AddJsonFlag(search, &arguments->is_json, "fit_search");
@@ -293,10 +298,11 @@ void AddSearch(CLI::App* fit, int* status) {
 
 void AddPaper(CLI::App* fit, int* status) {
   auto arguments = std::make_shared<PaperArguments>();
-  CLI::App* paper =
-      fit->add_subcommand("paper", "Paper W's three force curves, as shown and in true newtons");
-  paper->add_option("--curve", arguments->curve, "Write them: .svg or .csv");
-  paper->add_option("--seed", arguments->seed, "Of roughness and hand")->capture_default_str();
+  CLI::App* paper = fit->add_subcommand(
+      "paper", "Compute the three force curves of paper W, as displayed and in true newtons");
+  paper->add_option("--curve", arguments->curve, "File to write the curves to: .svg or .csv");
+  paper->add_option("--seed", arguments->seed, "Seed for roughness and hand motion")
+      ->capture_default_str();
   paper->footer("Example:\n  hvas fit paper --curve figure8.svg");
   paper->callback([arguments, status] { *status = ShowPaper(*arguments); });
 }
@@ -304,7 +310,7 @@ void AddPaper(CLI::App* fit, int* status) {
 void AddFriction(CLI::App* fit, int* status) {
   auto is_json = std::make_shared<bool>(false);
   CLI::App* friction =
-      fit->add_subcommand("friction", "Coefficients of friction with their sources");
+      fit->add_subcommand("friction", "List coefficients of friction with their sources");
   AddJsonFlag(friction, is_json.get(), "fit_friction");
   friction->callback([is_json, status] { *status = ShowFriction(*is_json); });
 }
@@ -317,15 +323,16 @@ void CheckCommandWord(const CLI::App& fit, const std::string& word) {
   }
   const std::string nearest = mates::FindNearest(word, commands);
   if (!nearest.empty() && !ParseSizedFit(word)) {
-    throw CLI::ValidationError(fmt::format(
-        "there is no command \"{}\", and it is no fit; \"{}\" may be meant", word, nearest));
+    throw CLI::ValidationError(
+        fmt::format("\"{}\" is neither a command nor a fit; did you mean \"{}\"?", word, nearest));
   }
 }
 
 }  // namespace
 
 void AddFit(CLI::App* app, int* status) {
-  CLI::App* fit = app->add_subcommand("fit", "Limits, press fits and insertion of ISO 286 fits");
+  CLI::App* fit =
+      app->add_subcommand("fit", "Calculate limits, press fits and insertion of ISO 286 fits");
   auto a = std::make_shared<FitArguments>();
   AddFitArguments(fit, a.get());
   fit->footer(
@@ -341,23 +348,22 @@ void AddFit(CLI::App* app, int* status) {
       "  hvas fit paper --curve figure8.svg\n"
       "  hvas fit limits --batch classes.csv -o limits.csv\n"
       "  hvas fit search --nominal 40 --min 5 --max 60");
-  AddBatch(fit, "limits", "Limits of a table of classes",
-           "In: nominal_mm, class. Out: kind, upper_um, lower_um; empty, and a reason, where the "
-           "standard defines nothing.",
+  AddBatch(fit, "limits", "Calculate limits for a table of tolerance classes",
+           "Input columns: nominal_mm, class. Output columns: kind, upper_um, lower_um; empty, "
+           "with a reason, where the standard defines no limits.",
            AddLimits, status);
-  AddBatch(
-      fit, "press", "Press fits of a table of joints",
-      "In: d_F_mm, D_hub_mm, d_bore_shaft_mm, U_eff_diametral_mm, L_mm, mu, E_hub_MPa, nu_hub, "
-      "E_shaft_MPa, nu_shaft. Out: pressure, expansions, stresses, force, torque.",
-      AddPressFits, status);
-  AddBatch(
-      fit, "peg", "Answers to a table of questions about a peg in a hole",
-      "In: kind (two_point, two_point_depth, jamming, jamming_point, wedging, statics, chamfer, "
-      "one_point), id, inputs (as in \"D=40 d=39.9 l=10 mm\"), output, unit. Out: value; empty, "
-      "and a "
-      "reason, where no peg has such inputs. Whether a load jams: jamming_point with Fx, Fz, M, l, "
-      "r, mu; output slides. The tilt that wedges: wedging with D, d, mu; output theta_w.",
-      AddInsertions, status);
+  AddBatch(fit, "press", "Calculate press fits for a table of joints",
+           "Input columns: d_F_mm, D_hub_mm, d_bore_shaft_mm, U_eff_diametral_mm, L_mm, mu, "
+           "E_hub_MPa, nu_hub, E_shaft_MPa, nu_shaft. Output columns: pressure, expansions, "
+           "stresses, force, torque.",
+           AddPressFits, status);
+  AddBatch(fit, "peg", "Solve a table of peg-in-hole problems",
+           "Input columns: kind (two_point, two_point_depth, jamming, jamming_point, wedging, "
+           "statics, chamfer, one_point), id, inputs (for example \"D=40 d=39.9 l=10 mm\"), "
+           "output, unit. Output column: value; empty, with a reason, where no peg has such "
+           "inputs. Whether a load jams: jamming_point with Fx, Fz, M, l, r, mu; output slides. "
+           "The wedging tilt: wedging with D, d, mu; output theta_w.",
+           AddInsertions, status);
   AddSearch(fit, status);
   AddFitIdentify(fit, status);
   AddPaper(fit, status);
@@ -379,7 +385,7 @@ void AddFit(CLI::App* app, int* status) {
     }
     if (a->fits.empty()) {
       throw CLI::RequiredError(
-          "a fit, or one of limits, press, peg, search, design, paper, friction, materials,");
+          "a fit, or a command: limits, press, peg, search, design, paper, friction, materials,");
     }
     a->fits = JoinFitWords(a->fits);
     CheckCommandWord(*fit, a->fits.front());

@@ -24,7 +24,7 @@ const CLI::Validator& Positive() {
       [](const std::string& text) {
         double value = 0;
         return CLI::detail::lexical_cast(text, value) && value > 0 ? std::string()
-                                                                   : text + " is not over 0";
+                                                                   : text + " is not above 0";
       },
       "OVER 0");
   return validator;
@@ -35,7 +35,7 @@ const CLI::Validator& NotNegative() {
       [](const std::string& text) {
         double value = 0;
         return CLI::detail::lexical_cast(text, value) && value >= 0 ? std::string()
-                                                                    : text + " is not 0 or more";
+                                                                    : text + " is negative";
       },
       "0 OR MORE");
   return validator;
@@ -58,8 +58,8 @@ const CLI::Validator& Millimetres() {
 void AddUnitOption(CLI::App* command, std::optional<LengthUnit>* unit) {
   AddChoice(command, "--unit", unit,
             Choices<LengthUnit>{{"mm", LengthUnit::kMillimetre}, {"in", LengthUnit::kInch}},
-            "Answer in millimetres and micrometres, or in inches and thousandths of one; as the "
-            "fit is typed, when not given");
+            "Unit of the results: millimetres and micrometres, or inches and thousandths of an "
+            "inch; default: the unit of the fit");
 }
 
 namespace {
@@ -70,16 +70,15 @@ const CLI::Validator& Temperature() {
       [](const std::string& text) {
         double value = 0;
         if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) {
-          return text + " is no temperature";
+          return text + " is not a temperature";
         }
         if (value < fits::kAbsoluteZeroC) {
           return text + " C is below absolute zero, -273.15 C";
         }
         if (value < fits::kNitrogenC) {
-          return text +
-                 " C is colder than liquid nitrogen, -196 C, which is the coldest to join with";
+          return text + " C is below the temperature of liquid nitrogen, -196 C";
         }
-        return value <= 1000 ? std::string() : text + " C is over 1000 C, where metals melt";
+        return value <= 1000 ? std::string() : text + " C is above the limit of 1000 C for joining";
       },
       "C");
   return validator;
@@ -93,10 +92,10 @@ CLI::Validator Count(std::int64_t most) {
         const char* const end = text.data() + text.size();
         const auto [stop, error] = std::from_chars(text.data(), end, value);
         if (error != std::errc() || stop != end || value != std::floor(value) || !(value >= 1)) {
-          return text + " is not a whole number over 0";
+          return text + " is not a positive whole number";
         }
         if (!(value <= static_cast<double>(most))) {
-          return fmt::format("{} is over {}, the most there can be", text, most);
+          return fmt::format("{} is above the maximum, {}", text, most);
         }
         text = fmt::format("{}", static_cast<std::int64_t>(value));
         return std::string();
@@ -104,8 +103,8 @@ CLI::Validator Count(std::int64_t most) {
       fmt::format("1 TO {}", most));
 }
 
-constexpr std::int64_t kMostAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
-constexpr std::int64_t kMostThreads = 256;
+constexpr std::int64_t kMaxAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
+constexpr std::int64_t kMaxThreads = 256;
 
 /** The value of the k-th fit in a list with one for each, or one for all. */
 double Pick(const std::vector<double>& list, std::size_t k, double otherwise) {
@@ -119,10 +118,10 @@ struct NamedMaterial {
   fits::JoiningMaterial joining;
 };
 
-Unexpected NoMaterial(const std::string& what) {
+Unexpected FailNoMaterial(const std::string& what) {
   return Fail(ErrorCode::kNotFound, what, {},
-              "name it as EN, DIN or AISI do (hvas fit materials has the list), and give values of "
-              "your own behind it or alone: \"S355 Re=400 alpha=12\", \"E=210 nu=0.3 Re=355\"");
+              "use a designation of EN, DIN or AISI (hvas fit materials lists them), with values "
+              "of your own behind it or alone: \"S355 Re=400 alpha=12\", \"E=210 nu=0.3 Re=355\"");
 }
 
 /** Sets a value; E in GPa, Re and Rm in MPa, alpha and cold in 1e-6/K, rho in kg/m^3. */
@@ -141,7 +140,7 @@ bool SetValue(std::string_view key, double value, NamedMaterial* named) {
   } else if (key == "alpha") {
     m.thermal_expansion = named->joining.heating = 1e-6 * value;
     named->joining.cooling = 0.77e-6 * value;
-    named->joining.source = "given; for cooling 0.77 of it unless cold is given";
+    named->joining.source = "given; 0.77 of it for cooling unless cold is given";
   } else if (key == "cold") {
     named->joining.cooling = 1e-6 * value;
   } else {
@@ -168,7 +167,7 @@ Result<NamedMaterial> FindNamed(const std::string& text) {
   if (!base.empty() || values.empty()) {
     const auto match = fits::FindMaterial(base);
     if (!match) {
-      return NoMaterial(fmt::format("there is no material \"{}\"", text));
+      return FailNoMaterial(fmt::format("there is no material \"{}\"", text));
     }
     named.material = *match->material;
     named.name = std::string(match->material->name);
@@ -182,15 +181,15 @@ Result<NamedMaterial> FindNamed(const std::string& text) {
     const std::optional<double> value = ParseNumber(std::string_view(word).substr(equals + 1));
     if (!value || !std::isfinite(*value) ||
         !SetValue(std::string_view(word).substr(0, equals), *value, &named)) {
-      return NoMaterial(
-          fmt::format("\"{}\" is no value over 0 of E [GPa], nu, Re, Rm [MPa], rho "
-                      "[kg/m3], alpha or cold [1e-6/K]",
+      return FailNoMaterial(
+          fmt::format("\"{}\" is not a positive value of E [GPa], nu, Re, Rm [MPa], rho [kg/m3], "
+                      "alpha or cold [1e-6/K]",
                       word));
     }
     named.name += " " + word;
   }
   if (!(named.material.youngs_modulus > 0) || !(named.material.poisson_ratio >= 0)) {
-    return NoMaterial(fmt::format("\"{}\" lacks E or nu", text));
+    return FailNoMaterial(fmt::format("\"{}\" needs both E and nu", text));
   }
   return named;
 }
@@ -205,7 +204,7 @@ void SetFriction(const FitArguments& a, const fits::Material& hub, const fits::M
   }
   if (a.friction_out >= 0) {
     friction.release = friction.slip = a.friction_out;
-    friction.source += a.friction >= 0 ? "" : "; to hold as given";
+    friction.source += a.friction >= 0 ? "" : "; holding: as given";
   }
   p.friction_in = friction.in;
   p.friction_release = p.friction_torque = friction.release;
@@ -263,7 +262,7 @@ Result<void> CheckLists(const FitArguments& a) {
     if (size > 1 && size != a.fits.size()) {
       return Fail(ErrorCode::kInvalid,
                   fmt::format("{} has {} values for {} fits", name, size, a.fits.size()), {},
-                  "give one for all fits, or one for each, with commas between");
+                  "give one value for all fits, or one for each, separated by commas");
     }
   }
   return {};
@@ -271,55 +270,59 @@ Result<void> CheckLists(const FitArguments& a) {
 
 void AddBatchArguments(CLI::App* fit, FitArguments* a) {
   const char* const group = "Populations";
-  fit->add_option("--population", a->population.count, "Draw so many assemblies")
-      ->transform(Count(kMostAssemblies))
+  fit->add_option("--population", a->population.count, "Number of assemblies to simulate")
+      ->transform(Count(kMaxAssemblies))
       ->group(group);
-  fit->add_option("--seed", a->population.seed, "Of everything that is drawn")
+  fit->add_option("--seed", a->population.seed, "Seed of the random numbers")
       ->capture_default_str()
       ->group(group);
-  fit->add_option("--press-limit,--press", a->population.press_force, "What the press can do [N]")
+  fit->add_option("--press-limit,--press", a->population.press_force,
+                  "Force limit of the press [N]")
       ->check(Positive())
       ->group(group);
   fit->add_option("--sizes-spread", a->spread,
-                  "How sizes spread: paper (normal over whole um, sigma a sixth of the zone) or "
-                  "uniform; --cp and --sizes are others")
+                  "Distribution of sizes: paper (normal in whole um, sigma a sixth of the zone) or "
+                  "uniform; see also --cp and --sizes")
       ->check(CLI::IsMember({"paper", "uniform"}))
       ->capture_default_str()
       ->group(group);
-  fit->add_option("--cp", a->cp, "Process capability C_p of both sizes: normal, not cut off")
+  fit->add_option("--cp", a->cp, "Process capability C_p of both sizes: normal, not truncated")
       ->check(Positive())
       ->group(group);
-  fit->add_option("--cpk", a->cpk, "C_pk, towards interference; as C_p without")
+  fit->add_option("--cpk", a->cpk,
+                  "Process capability C_pk, with a shift towards interference; default: C_p")
       ->check(Positive())
       ->group(group);
-  fit->add_option("--sizes", a->sizes, "Measured diameters: a table with hole_mm, shaft_mm (CSV)")
+  fit->add_option("--sizes", a->sizes, "Table of measured diameters: hole_mm, shaft_mm (CSV)")
       ->group(group);
-  fit->add_option("--stations", a->population.stations, "N, the intervals of the roughness")
+  fit->add_option("--stations", a->population.stations, "Number N of intervals of the roughness")
       ->check(CLI::Range(1, 256))
       ->capture_default_str()
       ->group(group);
   fit->add_option("--threads", a->population.threads,
-                  "To draw with; the figures are the same with any [all]")
-      ->transform(Count(kMostThreads))
+                  "Number of threads; it does not change the results [all cores]")
+      ->transform(Count(kMaxThreads))
       ->group(group);
 }
 
 void AddPlotArguments(CLI::App* fit, FitArguments* a) {
   const char* const group = "Plots";
-  fit->add_option("--curve", a->curve, "Write force over depth, in and out: .svg or .csv")
+  fit->add_option("--curve", a->curve,
+                  "Write force over depth, pressing in and pulling out: .svg or .csv")
       ->group(group);
-  fit->add_option("--step", a->step_mm, "Of the curve's depth [mm]; a two hundredth without")
+  fit->add_option("--step", a->step_mm, "Step of the curve's depth [mm]; default: a 200th of it")
       ->check(Positive())
       ->group(group);
-  fit->add_option("--jamming", a->jamming, "Write the diagrams of jamming and wedging: .svg")
+  fit->add_option("--jamming", a->jamming, "Write the jamming and wedging diagrams: .svg")
       ->group(group);
   fit->add_option(
          "--at", a->at_mm,
-         "l of the diagram, from the tip's corner to the rim [mm]; half the length without")
+         "Depth l of the diagram, from the tip's corner to the rim [mm]; default: half the length")
       ->check(Positive())
       ->group(group);
   fit->add_option("--load", a->load,
-                  "On the shaft, at the middle of its tip: across, along [N] and moment [N mm]")
+                  "Load on the shaft at the centre of its tip: transverse and axial force [N], "
+                  "moment [N mm]")
       ->delimiter(',')
       ->expected(3)
       ->group(group);
@@ -328,68 +331,72 @@ void AddPlotArguments(CLI::App* fit, FitArguments* a) {
 }  // namespace
 
 void AddFitArguments(CLI::App* fit, FitArguments* a) {
-  fit->add_option(
-      "fit", a->fits,
-      "Diameter and classes: 40 H7/p6, 40 H7, 1.5in H7/g6, 1.5in RC4; several are fits of one "
-      "pair of parts");
+  fit->add_option("fit", a->fits,
+                  "Diameter and classes: 40 H7/p6, 40 H7, 1.5in H7/g6, 1.5in RC4; several fits "
+                  "belong to one pair of parts");
   const auto add_list = [fit](const char* name, std::vector<double>* list, const char* text) {
     return fit->add_option(name, *list, text)
         ->delimiter(',')
         ->allow_extra_args(false)
         ->transform(Millimetres());
   };
-  add_list(
-      "--length", &a->length_mm,
-      "Of the joint [mm], or as in 2in; with it the press fit is calculated. With several fits "
-      "one for each, with commas, or one for all; so --hub, --bore, --start")
+  add_list("--length", &a->length_mm,
+           "Length of the joint [mm], or with a unit: 2in; needed for the press fit. With several "
+           "fits: one for each, separated by commas, or one for all; the same holds for --hub, "
+           "--bore, --start")
       ->check(Positive());
-  add_list("--hub", &a->hub_mm, "Outer diameter of the hub [mm]; twice the nominal without")
+  add_list("--hub", &a->hub_mm,
+           "Outer diameter of the hub [mm]; default: twice the nominal diameter")
       ->check(Positive());
   add_list("--bore", &a->bore_mm, "Bore of a hollow shaft [mm]")->check(NotNegative());
   add_list("--start", &a->start_mm, "Depth of the shaft at which the fit begins to engage [mm]")
       ->check(NotNegative());
   fit->add_option("--chamfer", a->chamfer_deg,
-                  "Of the chamfer that leads in, from the axis [deg]; a sharp edge without")
+                  "Angle of the lead-in chamfer from the axis [deg]; default: a sharp edge")
       ->check(Positive());
   fit->add_option("--chamfer-width", a->chamfer_width_mm,
-                  "Of the chamfers of hole and shaft together, radially [mm]: widens the entry")
+                  "Radial width of the chamfers of hole and shaft together [mm]")
       ->check(NotNegative())
       ->transform(Millimetres());
-  fit->add_option(
-      "--material", a->material,
-      "Of both parts [S355]; values of your own behind the name or alone: E=210 nu=0.3 Re=355 "
-      "alpha=11 (GPa, MPa, 1e-6/K)");
-  fit->add_option("--hub-material", a->hub_material, "Of the hub");
-  fit->add_option("--shaft-material", a->shaft_material, "Of the shaft");
-  fit->add_option(
-         "--mu", a->friction,
-         "Coefficient of friction; by the pair of materials without (hvas fit friction), the "
-         "high value to press in and the low one to hold")
+  fit->add_option("--material", a->material,
+                  "Material of both parts [S355]; with values of your own behind the name or "
+                  "alone: E=210 nu=0.3 Re=355 alpha=11 (GPa, MPa, 1e-6/K)");
+  fit->add_option("--hub-material", a->hub_material, "Material of the hub");
+  fit->add_option("--shaft-material", a->shaft_material, "Material of the shaft");
+  fit->add_option("--mu", a->friction,
+                  "Coefficient of friction; default: by the pair of materials (hvas fit friction), "
+                  "the high value for pressing in and the low one for holding")
       ->check(NotNegative());
-  fit->add_option("--mu-out", a->friction_out,
-                  "To hold: to start it back or turning; as --mu without")
+  fit->add_option(
+         "--mu-out", a->friction_out,
+         "Coefficient of friction for holding, against release and rotation; default: as for --mu")
       ->check(NotNegative());
-  fit->add_flag("--oiled", a->is_oiled, "Friction with mineral oil, not dry");
+  fit->add_flag("--oiled", a->is_oiled, "Use friction with mineral oil instead of dry friction");
   fit->add_flag("--shrunk", a->is_shrunk,
-                "Friction of a joint by heat or cold, not pressed in; so --hub-temp, --shaft-temp");
+                "Use the friction of a joint by heat or cold instead of one pressed in; implied by "
+                "--hub-temp and --shaft-temp");
   fit->add_option("--rz", a->rz_um, "Roughness Rz of both surfaces [um]")
       ->check(NotNegative())
       ->capture_default_str();
-  fit->add_option("--hub-rz", a->hub_rz_um, "Of the hub alone [um]")->check(NotNegative());
-  fit->add_option("--shaft-rz", a->shaft_rz_um, "Of the shaft alone [um]")->check(NotNegative());
-  fit->add_option("--smoothing", a->smoothing,
-                  "Interference lost to roughness: none, din2001 (0.8), din2017 (0.4 of the sum)")
+  fit->add_option("--hub-rz", a->hub_rz_um, "Roughness Rz of the hub [um]")->check(NotNegative());
+  fit->add_option("--shaft-rz", a->shaft_rz_um, "Roughness Rz of the shaft [um]")
+      ->check(NotNegative());
+  fit->add_option(
+         "--smoothing", a->smoothing,
+         "Loss of interference by smoothing: none, din2001 (0.8) or din2017 (0.4 of the sum of Rz)")
       ->check(CLI::IsMember({"none", "din2001", "din2017"}))
       ->capture_default_str();
-  fit->add_option("--hub-temp", a->hub_c,
-                  "To join at [C]; says what play there is, and if it sticks")
+  fit->add_option(
+         "--hub-temp", a->hub_c,
+         "Temperature of the hub when joining [C]; adds the play, and whether the joint sticks")
       ->check(Temperature());
-  fit->add_option("--shaft-temp", a->shaft_c, "To join at [C]")->check(Temperature());
+  fit->add_option("--shaft-temp", a->shaft_c, "Temperature of the shaft when joining [C]")
+      ->check(Temperature());
   fit->add_option("--room", a->room_c,
-                  "Temperature at which the sizes hold, and of what is not heated or cooled [C]")
+                  "Reference temperature of the sizes, and of parts not heated or cooled [C]")
       ->check(Temperature())
       ->capture_default_str();
-  fit->add_option("--join-speed", a->join_speed_mm_s, "Of joining by heat or cold [mm/s]")
+  fit->add_option("--join-speed", a->join_speed_mm_s, "Speed of joining by heat or cold [mm/s]")
       ->check(Positive())
       ->capture_default_str();
   AddUnitOption(fit, &a->unit);
@@ -446,7 +453,7 @@ Result<void> CheckEffects(const CLI::App& fit) {
       const std::string needed = fmt::format("{}", fmt::join(need.one_of, " or "));
       return Fail(ErrorCode::kInvalid,
                   fmt::format("{} has no effect without {}", need.option, needed), {},
-                  fmt::format("give {}, or leave {} out", needed, need.option));
+                  fmt::format("give {}, or omit {}", needed, need.option));
     }
   }
   static const std::vector<std::pair<const char*, std::vector<const char*>>> overruled{
@@ -459,9 +466,10 @@ Result<void> CheckEffects(const CLI::App& fit) {
       {"--sizes-spread", {"--cpk"}}};
   for (const auto& [option, others] : overruled) {
     if (has(option) && std::all_of(others.begin(), others.end(), has)) {
-      return Fail(ErrorCode::kInvalid,
-                  fmt::format("{} has no effect beside {}", option, fmt::join(others, " and ")), {},
-                  "leave one of them out");
+      return Fail(
+          ErrorCode::kInvalid,
+          fmt::format("{} has no effect together with {}", option, fmt::join(others, " and ")), {},
+          "omit one of them");
     }
   }
   return {};
@@ -481,12 +489,12 @@ Result<void> CheckEffects(const FitArguments& arguments, const std::vector<FitCa
   if ((arguments.hub_c || arguments.shaft_c) &&
       !any([](const FitCard& c) { return c.limits && c.limits->min_clearance < 0; })) {
     return fail("--hub-temp and --shaft-temp have no effect on a clearance fit",
-                "leave them out, or choose a fit with interference");
+                "omit them, or choose a fit with interference");
   }
   if (arguments.chamfer_width_mm > 0 &&
       !any([](const FitCard& c) { return c.limits && c.limits->max_clearance > 0; })) {
     return fail("--chamfer-width has no effect on an interference fit",
-                "leave it out; --chamfer is the angle that leads in");
+                "omit it; --chamfer is the lead-in angle");
   }
   return {};
 }
@@ -513,8 +521,8 @@ Result<std::vector<FitCard>> MakeCards(const FitArguments& arguments) {
 Result<FitPopulationOptions> MakePopulationOptions(const FitArguments& arguments) {
   FitPopulationOptions options = arguments.population;
   if (!arguments.sizes.empty() && (arguments.cp > 0 || arguments.cpk > 0)) {
-    return Fail(ErrorCode::kInvalid, "sizes are either measured or of a capability", {},
-                "leave out --sizes, or --cp and --cpk");
+    return Fail(ErrorCode::kInvalid, "sizes can be measured or follow a capability, but not both",
+                {}, "omit --sizes, or --cp and --cpk");
   }
   if (!arguments.sizes.empty()) {
     if (Result<void> read = ReadSizes(arguments.sizes, &options); !read) {

@@ -38,7 +38,7 @@ class Row {
     const bool is_number = value && std::isfinite(*value);
     if (!is_number && (!cell.empty() || !otherwise) && reason_.empty()) {
       reason_ = cell.empty() ? fmt::format("{} is missing", column)
-                             : fmt::format("{} is no number: \"{}\"", column, cell);
+                             : fmt::format("{} is not a number: \"{}\"", column, cell);
     }
     return is_number ? *value : otherwise.value_or(0);
   }
@@ -61,9 +61,11 @@ void SetLimits(std::size_t i, CsvTable* table) {
   const bool is_number = number && std::isfinite(*number);
   const std::optional<double> length = TakeLength(&text);  // "1.5 in" converts.
   if (!is_number && (!length || !text.empty())) {
-    table->Set(i, "reason",
-               has_text ? "nominal_mm is no number; write millimetres, or inches as in 1.5 in"
-                        : "nominal_mm is missing");
+    table->Set(
+        i, "reason",
+        has_text
+            ? "nominal_mm is not a number; write millimetres, or inches with their unit: 1.5 in"
+            : "nominal_mm is missing");
     return;
   }
   const double nominal = is_number ? units::FromMm(*number) : *length;

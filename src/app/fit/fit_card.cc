@@ -65,10 +65,10 @@ std::string JoiningText(const FitCard& card) {
   const auto heat = [&hub](double hub_c) {
     return hub_c <= hub.hottest_c
                ? fmt::format("heat the hub to {:.0f} C", std::ceil(hub_c))
-               : fmt::format("cannot be done: the hub would need {:.0f} C", std::ceil(hub_c));
+               : fmt::format("impossible: the hub would need {:.0f} C", std::ceil(hub_c));
   };
   std::string text = fmt::format(
-      "to join with {} {} of play, alpha {:g}e-6/K of the hub (heated), {:g}e-6/K of the shaft "
+      "joining with {} {} of play, alpha {:g}e-6/K of the hub (heated), {:g}e-6/K of the shaft "
       "(cooled):\n",
       lengths.Small(joining.clearance), lengths.small_unit(), 1e6 * hub.heating,
       1e6 * shaft.cooling);
@@ -77,9 +77,9 @@ std::string JoiningText(const FitCard& card) {
   if (joining.shaft_c >= fits::kNitrogenC) {
     text += fmt::format("  by cold: cool the shaft to {:.0f} C\n", std::floor(joining.shaft_c));
   } else {
-    text += fmt::format(
-        "  by cold: cannot be done: in liquid nitrogen, {:g} C, the play is {} {}\n",
-        fits::kNitrogenC, lengths.Small(joining.nitrogen_clearance), lengths.small_unit());
+    text += fmt::format("  by cold: impossible: in liquid nitrogen, {:g} C, the play is {} {}\n",
+                        fits::kNitrogenC, lengths.Small(joining.nitrogen_clearance),
+                        lengths.small_unit());
   }
   text += fmt::format("  by both: cool the shaft to {:g} C (dry ice), {}\n", fits::kDryIceC,
                       heat(joining.dry_ice_hub_c));
@@ -145,7 +145,7 @@ bool IsHubTooHot(const FitCard& card) {
   return card.options.hub_c.value_or(card.options.room_c) > card.options.hub_joining.hottest_c;
 }
 
-std::string HotJointText(const FitCard& card) {
+std::string MakeHotJointText(const FitCard& card) {
   const LengthText lengths(card.options.unit);
   const HotJoint hot = CalcHotJoint(card);
   std::string text = fmt::format("hub at {:g} C, shaft at {:g} C: {} {} of play", hot.hub_c,
@@ -154,14 +154,14 @@ std::string HotJointText(const FitCard& card) {
     text += fmt::format("; above the hub's limit of {:g} C", card.options.hub_joining.hottest_c);
   }
   if (!(hot.clearance > 0)) {
-    return text + ", which does not go together\n";
+    return text + ", which cannot be assembled\n";
   }
   return text + fmt::format(
                     "; at {}/s it {}\n", lengths.Size(card.options.join_speed),
                     hot.sticking < card.options.press.length
-                        ? fmt::format("sticks at a depth of {:.3g} {}",
+                        ? fmt::format("the joint sticks at a depth of {:.3g} {}",
                                       hot.sticking * lengths.sizes_per_metre(), lengths.size_unit())
-                        : "is in before it sticks");
+                        : "the joint is complete before it sticks");
 }
 
 /** How a shaft gets in. */
@@ -178,7 +178,7 @@ Entry CalcEntry(const FitCard& card, double clearance) {
           std::max(0.0, fits::CalcWedgingTilt(pair, p.friction_in))};
 }
 
-double LeastClearance(const FitCard& card) {
+double CalcLeastClearance(const FitCard& card) {
   return std::max(0.0, card.limits->min_clearance);
 }
 
@@ -188,29 +188,29 @@ ordered_json EntryJson(const FitCard& card) {
                         {"largest_tilt_deg", units::ToDeg(entry.largest_tilt)},
                         {"wedging_tilt_deg", FiniteOrNull(units::ToDeg(entry.wedging_tilt))}};
   };
-  ordered_json entry = json(CalcEntry(card, LeastClearance(card)));
+  ordered_json entry = json(CalcEntry(card, CalcLeastClearance(card)));
   entry["with_largest_clearance"] = json(CalcEntry(card, card.limits->max_clearance));
   return entry;
 }
 
 std::string EntryText(const FitCard& card) {
   const LengthText lengths(card.options.unit);
-  const Entry worst = CalcEntry(card, LeastClearance(card));
+  const Entry worst = CalcEntry(card, CalcLeastClearance(card));
   const Entry best = CalcEntry(card, card.limits->max_clearance);
   return fmt::format(
-             "to enter, with the least to the largest clearance: upright within {} to {} {} beside "
-             "the axis, tilted below {:.2f} to {:.2f} deg\n",
+             "limits for entering, from the smallest to the largest clearance: upright {} to {} {} "
+             "off the axis, tilt {:.2f} to {:.2f} deg\n",
              lengths.Small(worst.window), lengths.Small(best.window), lengths.small_unit(),
              units::ToDeg(worst.largest_tilt), units::ToDeg(best.largest_tilt)) +
          (card.limits->min_clearance > 0
-              ? fmt::format("  in the worst case, the least clearance, nothing wedges below {:.3f} "
-                            "deg\n",
-                            units::ToDeg(worst.wedging_tilt))
-              : std::string("  in the worst case there is no clearance, and it wedges at any "
-                            "tilt\n"));
+              ? fmt::format(
+                    "  no wedging below {:.3f} deg in the worst case, the smallest clearance\n",
+                    units::ToDeg(worst.wedging_tilt))
+              : std::string("  in the worst case there is no clearance, and the shaft wedges at "
+                            "any tilt\n"));
 }
 
-Result<fits::PressFit> PressAt(const FitCard& card, double clearance) {
+Result<fits::PressFit> CalcPressFit(const FitCard& card, double clearance) {
   fits::PressFitParameters p = card.options.press;
   p.interference = -clearance;
   return fits::CalcPressFit(p);
@@ -232,8 +232,8 @@ std::string FitCard::JointText() const {
     text += fmt::format(" with a bore of {}", lengths.Size(p.shaft_bore));
   }
   text += fmt::format(
-      ", mu {:g} to press in, {:g} to hold, {:g} to slide out ({}), Rz {} and {} {}", p.friction_in,
-      p.friction_release, options.friction_slip, options.friction_source,
+      ", mu {:g} for pressing in, {:g} for holding, {:g} for sliding out ({}), Rz {} and {} {}",
+      p.friction_in, p.friction_release, options.friction_slip, options.friction_source,
       lengths.Small(p.hub_roughness), lengths.Small(p.shaft_roughness), lengths.small_unit());
   if (options.start > 0) {
     text += fmt::format(", from a depth of {} on", lengths.Size(options.start));
@@ -275,7 +275,7 @@ Result<FitCard> MakeFitCard(const FitCardOptions& options) {
        {std::pair(card.limits->max_clearance, &card.least),
         std::pair(0.5 * (card.limits->min_clearance + card.limits->max_clearance), &card.mean),
         std::pair(card.limits->min_clearance, &card.most)}) {
-    const Result<fits::PressFit> at = PressAt(card, clearance);
+    const Result<fits::PressFit> at = CalcPressFit(card, clearance);
     if (!at) {
       return Unexpected(at.error());
     }
@@ -317,7 +317,7 @@ std::string LimitsText(const FitCard& card) {
   side("hole", HoleClass(fit), card.hole);
   side("shaft", ShaftClass(fit), card.shaft);
   if (card.limits) {
-    text += fmt::format("  clearance of the diameters {} to {} {}: {} fit\n",
+    text += fmt::format("  diametral clearance {} to {} {}: {} fit\n",
                         lengths.SignedSmall(card.limits->min_clearance),
                         lengths.SignedSmall(card.limits->max_clearance), lengths.small_unit(),
                         ToString(mates::ToKind(card.limits->kind)));
@@ -331,13 +331,14 @@ std::string StrengthText(const FitCard& card) {
   std::string text;
   if (most.is_hub_brittle && fits::IsFracturing(most)) {
     text += fmt::format(
-        "  the hub is brittle, and its hoop stress comes nearer to its tensile strength than a "
-        "safety of {:g} allows\n",
+        "  the hub is brittle, and the margin of its hoop stress to its tensile strength is below "
+        "{:g}\n",
         fits::kBrittleSafety);
   }
   if (most.pressure > most.shaft_limit.von_mises ||
       (!most.is_hub_brittle && most.pressure > most.hub_limit.von_mises)) {
-    text += "  the largest interference yields: its figures are those of an elastic joint\n";
+    text +=
+        "  the largest interference causes yielding; its values are those of an elastic joint\n";
   }
   return text;
 }
@@ -385,7 +386,7 @@ std::string PressText(const FitCard& card) {
   if (card.limits->min_clearance < 0) {
     text += JoiningText(card);
     if (HasJoining(card)) {
-      text += HotJointText(card);
+      text += MakeHotJointText(card);
     }
   }
   return card.limits->max_clearance > 0 ? text + EntryText(card) : text;

@@ -75,7 +75,7 @@ fits::ForceBand InterpolateBand(const fits::Population& batch, double depth) {
   return band;
 }
 
-FitCurve::Forces ForcesAt(const fits::PressStroke& stroke, double depth) {
+FitCurve::Forces CalcForces(const fits::PressStroke& stroke, double depth) {
   const fits::StrokeForce force = stroke.CalcForce(depth);
   return {force.in, force.release};
 }
@@ -125,14 +125,14 @@ PlotPanel MakeForcePanel(const FitCurve& curve) {
       },
       &panel);
   AddLines(
-      curve, "a tight pair, with its roughness", PlotStyle::kLine, 1,
+      curve, "a tight pair with roughness", PlotStyle::kLine, 1,
       [](const FitCurve::Point& p) { return p.pair; }, &panel);
   AddLines(
-      curve, "largest interference of the limits, smooth", PlotStyle::kDashed, 2,
+      curve, "largest interference of the limits, without roughness", PlotStyle::kDashed, 2,
       [](const FitCurve::Point& p) { return p.most; }, &panel);
   if (curve.options.press_force > 0) {
     const double f = curve.options.press_force;
-    panel.series.push_back({"what the press can do",
+    panel.series.push_back({"force limit of the press",
                             PlotStyle::kDashed,
                             3,
                             {{units::ToMm(curve.points.front().depth), f},
@@ -144,7 +144,7 @@ PlotPanel MakeForcePanel(const FitCurve& curve) {
 /** On its own scale, for the steps of a rough transition fit. */
 PlotPanel MakePairPanel(const FitCurve& curve) {
   PlotPanel panel;
-  panel.title = "The tight pair by itself (first quartile): clearance of the diameters";
+  panel.title = "Tight pair (first quartile): diametral clearance";
   for (std::size_t k = 0; k < curve.pair_clearances.size(); ++k) {
     panel.title +=
         fmt::format("{} {:+.1f} um", k > 0 ? "," : "", units::ToUm(curve.pair_clearances[k]));
@@ -164,7 +164,7 @@ PlotPanel MakePairPanel(const FitCurve& curve) {
 PlotPanel MakeClearancePanel(const FitCurve& curve) {
   PlotPanel panel;
   panel.title = "Clearance of the batch";
-  panel.x_label = "clearance of the diameters, um (negative: interference)";
+  panel.x_label = "diametral clearance, um (negative: interference)";
   panel.y_label = "assemblies with less, %";
   panel.y = PlotRange{0, 100};
   double low = 0;
@@ -216,15 +216,15 @@ Result<FitCurve> MakeFitCurve(const std::vector<FitCard>& cards,
   if (!(steps <= 1e6)) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("steps of {:g} mm make {:.0f} points", units::ToMm(step), steps), {},
-                "give --step so that there are a million points at most");
+                "choose a larger --step: at most a million points");
   }
   const int count = static_cast<int>(steps);
   for (int i = 0; i <= count; ++i) {
     // From the end backwards, so that the last point is the full depth.
     const double back = (step > 0 ? step : way / count) * (count - i);
     const double depth = i > 0 ? most->end() - back : most->begin();
-    curve.points.push_back({depth, ForcesAt(*least, depth), ForcesAt(*mean, depth),
-                            ForcesAt(*most, depth), ForcesAt(*pair, depth),
+    curve.points.push_back({depth, CalcForces(*least, depth), CalcForces(*mean, depth),
+                            CalcForces(*most, depth), CalcForces(*pair, depth),
                             InterpolateBand(curve.batch, depth)});
   }
   return curve;
@@ -254,17 +254,17 @@ std::string ToSvg(const FitCurve& curve) {
   for (const FitCard& card : curve.cards) {
     figure.title += (figure.title.empty() ? "" : " and ") + card.Title();
     const LengthText lengths(card.options.unit);
-    figure.notes.push_back(fmt::format(
-        "{}: clearance of the diameters {} to {} {}; {}.", card.Title(),
-        lengths.SignedSmall(card.limits->min_clearance),
-        lengths.SignedSmall(card.limits->max_clearance), lengths.small_unit(), card.JointText()));
+    figure.notes.push_back(fmt::format("{}: diametral clearance {} to {} {}; {}.", card.Title(),
+                                       lengths.SignedSmall(card.limits->min_clearance),
+                                       lengths.SignedSmall(card.limits->max_clearance),
+                                       lengths.small_unit(), card.JointText()));
   }
   figure.notes.push_back(fmt::format("{} assemblies, {}, seed {}: {}.", curve.batch.count,
                                      SpreadText(curve.options), curve.options.seed,
                                      SharesText(curve.batch, curve.options)));
-  figure.notes.push_back(
-      fmt::format("Largest interference of the limits: {:.0f} N at the end, {:.1f} J to press in.",
-                  curve.points.back().most.in, curve.work_most));
+  figure.notes.push_back(fmt::format(
+      "Largest interference of the limits: {:.0f} N at the end, {:.1f} J for pressing in.",
+      curve.points.back().most.in, curve.work_most));
   figure.panels = {MakeForcePanel(curve), MakePairPanel(curve), MakeClearancePanel(curve)};
   return ToSvg(figure);
 }

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostProposals = 5;
+constexpr std::size_t kMaxProposals = 5;
 
 Result<void> Check(const FitDemand& d) {
   const bool is_good = d.torque >= 0 && d.axial >= 0 && std::isfinite(d.torque + d.axial) &&
@@ -32,8 +32,8 @@ Result<void> Check(const FitDemand& d) {
   if (is_good) {
     return {};
   }
-  return Fail(ErrorCode::kInvalid, "the joint is to hold nothing, or less than it has to", {},
-              "give --torque or --axial over 0, and --safety of 1 or more");
+  return Fail(ErrorCode::kInvalid, "the joint has no load, or a safety below 1", {},
+              "give a positive --torque or --axial, and a --safety of at least 1");
 }
 
 FitArguments WithFit(const FitArguments& joint, const FitDemand& demand, const std::string& fit) {
@@ -45,19 +45,20 @@ FitArguments WithFit(const FitArguments& joint, const FitDemand& demand, const s
 std::string ToText(const FitDesign& d) {
   const LengthText lengths(d.unit);
   std::string text = fmt::format(
-      "{:g} N m and {:g} N at once with a safety of {:g} take {:.2f} MPa, {} {} of interference at "
-      "least;\n{} {:.2f} MPa, {} {}\n",
+      "{:g} N m and {:g} N at once with a safety of {:g} need {:.2f} MPa, an interference of at "
+      "least {} {};\n"
+      "{} {:.2f} MPa, {} {}\n",
       d.demand.torque, d.demand.axial, d.demand.safety, units::ToMpa(d.required_pressure),
       lengths.Small(d.required_interference), lengths.small_unit(),
       d.is_hub_brittle
-          ? fmt::format("the brittle hub bears with a safety of {:g}", fits::kBrittleSafety)
+          ? fmt::format("the brittle hub allows with a safety of {:g}", fits::kBrittleSafety)
           : std::string("it yields (von Mises) at"),
       units::ToMpa(d.largest_pressure), lengths.Small(d.largest_interference),
       lengths.small_unit());
   if (d.proposals.empty()) {
-    return Fold(text +
-                "no standard fit lies between; a longer joint, or one with a thicker hub, "
-                "takes less\n");
+    return Fold(
+        text +
+        "no standard fit lies between; a longer joint or a thicker hub needs less interference\n");
   }
   text += d.proposals.front().JointText() + "\n";
   TextTable table({"fit", std::string("interference, ") + lengths.small_unit(), "holds, N m",
@@ -153,10 +154,9 @@ std::string MaterialsText() {
                fmt::format("{:.1f} / {:.1f}", 1e6 * joining.heating, 1e6 * joining.cooling),
                fmt::format("{:g}", joining.hottest_c)});
   }
-  return table.ToText() +
-         Fold(
-             "alpha: when heated / when cooled, to join; up to: of a hub that is heated. --json "
-             "has groups, sources and notes.\n");
+  return table.ToText() + Fold(
+                              "alpha: for heating / for cooling when joining; up to: limit for "
+                              "heating a hub. --json has groups, sources and notes.\n");
 }
 
 }  // namespace
@@ -170,7 +170,8 @@ Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint) 
     return Unexpected(any.error());
   }
   if (!any->front().most) {
-    return Fail(ErrorCode::kInvalid, "a joint needs a length", {}, "give --length over 0");
+    return Fail(ErrorCode::kInvalid, "the length of the joint is missing", {},
+                "give a positive --length");
   }
   const fits::PressFitParameters& press = any->front().options.press;
   const fits::PressFit& geometry = *any->front().most;
@@ -190,9 +191,9 @@ Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint) 
   d.largest_interference = *most;
   if (!(d.required_pressure < d.largest_pressure)) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("to hold that takes {:.1f} MPa, and the joint {} {:.1f} MPa",
+                fmt::format("this load needs {:.1f} MPa, and the joint {} {:.1f} MPa",
                             units::ToMpa(d.required_pressure),
-                            d.is_hub_brittle ? "with its brittle hub bears" : "yields at",
+                            d.is_hub_brittle ? "with its brittle hub allows" : "yields at",
                             units::ToMpa(d.largest_pressure)),
                 {}, "make the joint longer or the hub thicker, or choose a stronger material");
   }
@@ -202,7 +203,7 @@ Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint) 
     return Unexpected(found.error());
   }
   for (const fits::FoundFit& fit : *found) {
-    if (d.proposals.size() == kMostProposals) {
+    if (d.proposals.size() == kMaxProposals) {
       break;
     }
     Result<std::vector<FitCard>> cards = MakeCards(WithFit(joint, demand, fit.fit.ToString()));
@@ -216,41 +217,48 @@ Result<FitDesign> DesignFit(const FitDemand& demand, const FitArguments& joint) 
 
 void AddFitDesign(CLI::App* fit, int* status) {
   auto a = std::make_shared<DesignArguments>();
-  CLI::App* design =
-      fit->add_subcommand("design", "The interference, and fits, that hold a torque and a force");
-  design->add_option("--nominal", a->demand.nominal_mm, "Nominal diameter [mm], or as in 1.5in")
+  CLI::App* design = fit->add_subcommand(
+      "design", "Find the interference and fits that hold a torque and a force");
+  design
+      ->add_option("--nominal", a->demand.nominal_mm,
+                   "Nominal diameter [mm], or with a unit: 1.5in")
       ->required()
       ->check(Positive())
       ->transform(Millimetres());
-  design->add_option("--length", a->length_mm, "Of the joint [mm]")
+  design->add_option("--length", a->length_mm, "Length of the joint [mm]")
       ->required()
       ->check(Positive())
       ->transform(Millimetres());
-  design->add_option("--torque", a->demand.torque, "To hold about the axis [N m]")
+  design->add_option("--torque", a->demand.torque, "Torque to hold about the axis [N m]")
       ->check(NotNegative());
-  design->add_option("--axial", a->demand.axial, "To hold along it, at the same time [N]")
+  design->add_option("--axial", a->demand.axial, "Axial force to hold at the same time [N]")
       ->check(NotNegative());
   design->add_option("--safety", a->demand.safety, "Against slip")->capture_default_str();
   design
-      ->add_option("--hub", a->hub_mm, "Outer diameter of the hub [mm]; twice the nominal without")
+      ->add_option("--hub", a->hub_mm,
+                   "Outer diameter of the hub [mm]; default: twice the nominal diameter")
       ->check(Positive())
       ->transform(Millimetres());
   design->add_option("--bore", a->bore_mm, "Bore of a hollow shaft [mm]")
       ->check(NotNegative())
       ->transform(Millimetres());
-  design->add_option("--material", a->joint.material, "Of both parts [S355]");
-  design->add_option("--hub-material", a->joint.hub_material, "Of the hub");
-  design->add_option("--shaft-material", a->joint.shaft_material, "Of the shaft");
+  design->add_option("--material", a->joint.material, "Material of both parts [S355]");
+  design->add_option("--hub-material", a->joint.hub_material, "Material of the hub");
+  design->add_option("--shaft-material", a->joint.shaft_material, "Material of the shaft");
   design->add_option("--rz", a->joint.rz_um, "Roughness Rz of both surfaces [um]")
       ->check(NotNegative());
-  design->add_option("--mu", a->joint.friction, "Coefficient of friction; by the pair without")
+  design
+      ->add_option("--mu", a->joint.friction,
+                   "Coefficient of friction; default: by the pair of materials")
       ->check(Positive());
-  design->add_flag("--oiled", a->joint.is_oiled, "Friction with mineral oil, not dry");
-  design->add_flag("--shrunk", a->joint.is_shrunk, "Joined by heat or cold, not pressed in");
+  design->add_flag("--oiled", a->joint.is_oiled,
+                   "Use friction with mineral oil instead of dry friction");
+  design->add_flag("--shrunk", a->joint.is_shrunk,
+                   "Use the friction of a joint by heat or cold instead of one pressed in");
   AddChoice(
       design, "--basis", &a->demand.basis,
       Choices<fits::FitBasis>{{"hole", fits::FitBasis::kHole}, {"shaft", fits::FitBasis::kShaft}},
-      "hole (H) or shaft (h)");
+      "Basis system: hole (H) or shaft (h)");
   AddUnitOption(design, &a->joint.unit);
   AddJsonFlag(design, &a->is_json, "fit_design");
   design->footer(
@@ -259,7 +267,7 @@ void AddFitDesign(CLI::App* fit, int* status) {
 
   auto is_json = std::make_shared<bool>(false);
   CLI::App* materials =
-      fit->add_subcommand("materials", "The materials, with what fits take of them");
+      fit->add_subcommand("materials", "List the materials with the properties that fits use");
   AddJsonFlag(materials, is_json.get(), "fit_materials");
   materials->callback([is_json, status] {
     fmt::print("{}", *is_json ? MaterialsJson().dump(2) + "\n" : MaterialsText());

@@ -42,7 +42,7 @@ const char* ToString(ShownSizes sizes) {
   return "any";
 }
 
-double PaperShare(std::size_t fit) {
+double CalcPaperShare(std::size_t fit) {
   return static_cast<double>(kPaperRight[fit]) / kPaperTrials;
 }
 
@@ -70,7 +70,7 @@ nlohmann::ordered_json ToJson(const IdentificationOptions& options, const Identi
                             {"answers", answers},
                             {"felt_end_mean_n", result.mean_felt[i]},
                             {"felt_end_sigma_n", result.sigma_felt[i]},
-                            {"paper_right_share", PaperShare(i)}});
+                            {"paper_right_share", CalcPaperShare(i)}});
   }
   return json;
 }
@@ -89,7 +89,7 @@ void PrintText(const IdentificationOptions& options, const Identification& resul
                fmt::format("{}", result.counts[i][0]), fmt::format("{}", result.counts[i][1]),
                fmt::format("{}", result.counts[i][2]),
                fmt::format("{:.2f} +- {:.2f}", result.mean_felt[i], result.sigma_felt[i]),
-               fmt::format("{:.1f}", 100 * PaperShare(i))});
+               fmt::format("{:.1f}", 100 * CalcPaperShare(i))});
   }
   fmt::print("{}", table.ToText());
 }
@@ -113,18 +113,21 @@ int Run(const IdentificationOptions& options, bool is_json) {
 }  // namespace
 
 void AddFitIdentify(CLI::App* fit, int* status) {
-  CLI::App* command =
-      fit->add_subcommand("identify", "Can fits be told apart by feel? A simulated observer tries");
+  CLI::App* command = fit->add_subcommand(
+      "identify", "Test with a simulated observer whether fits can be identified by feel");
   const auto options = std::make_shared<IdentificationOptions>();
   const auto is_json = std::make_shared<bool>(false);
-  command->add_option("--trials", options->trials, "Insertions of each fit")->capture_default_str();
-  command->add_option("--training", options->training, "Insertions of each fit to learn from")
+  command->add_option("--trials", options->trials, "Test insertions of each fit")
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of sizes, surfaces and noise")
+  command->add_option("--training", options->training, "Training insertions of each fit")
       ->capture_default_str();
-  command->add_option("--weber", options->observer.weber, "Just noticeable difference of force")
+  command->add_option("--seed", options->seed, "Seed for sizes, surfaces and noise")
       ->capture_default_str();
-  command->add_option("--threshold", options->observer.threshold, "Least force perceived [N]")
+  command
+      ->add_option("--weber", options->observer.weber,
+                   "Just noticeable difference (Weber fraction) of force")
+      ->capture_default_str();
+  command->add_option("--threshold", options->observer.threshold, "Absolute threshold of force [N]")
       ->capture_default_str();
   command->add_option("--looks", options->observer.looks, "Perceptions in one insertion")
       ->capture_default_str();
@@ -132,15 +135,16 @@ void AddFitIdentify(CLI::App* fit, int* status) {
                                   {ToString(ShownSizes::kOfKind), ShownSizes::kOfKind},
                                   {ToString(ShownSizes::kAny), ShownSizes::kAny}};
   AddChoice(command, "--sizes", &options->sizes, sizes,
-            "one-pair (as in the paper), of-kind (drawn until S has the sign of its kind), or any "
-            "(drawn)");
+            "Sizes: one-pair (as in the paper), of-kind (drawn until S has the sign of its kind), "
+            "or any (drawn)");
   AddForceMapOption(command, &options->map);
   AddJsonFlag(command, is_json.get(), "fit_identify");
   command->footer(
-      "Shows paper W's three fits blind and lets an observer answer with the nearest of three\n"
-      "learned curves of felt force over depth. What it cannot tell apart, people will not "
+      "The three fits of paper W are presented blind; the observer answers with the nearest of "
+      "three\n"
+      "learned curves of felt force over depth. Fits that it cannot tell apart, people cannot "
       "either;\n"
-      "what it can, they may.");
+      "fits that it can, people may.");
   command->callback([options, is_json, status] { *status = Run(*options, *is_json); });
 }
 

@@ -21,25 +21,25 @@ using pages::PlotRange;
 using pages::PlotSeries;
 using pages::PlotStyle;
 
-double Radius(const FitJamming& j) {
+double CalcRadius(const FitJamming& j) {
   return 0.5 * j.pair.peg_diameter;
 }
 
-double Friction(const FitJamming& j) {
+double FrictionOf(const FitJamming& j) {
   return j.card.options.press.friction_in;
 }
 
 /** Where the load is in the diagram. */
 fits::DiagramPoint PlaceOf(const FitJamming& j) {
-  return {j.load.f_x / j.load.f_z, j.load.m / (Radius(j) * j.load.f_z)};
+  return {j.load.f_x / j.load.f_z, j.load.m / (CalcRadius(j) * j.load.f_z)};
 }
 
 /** Below this tilt nothing wedges, whatever the sizes within their limits are [rad]. */
-double SafeTilt(const FitJamming& j) {
-  return std::max(0.0, fits::CalcWedgingTilt(j.worst_pair, Friction(j)));
+double CalcSafeTilt(const FitJamming& j) {
+  return std::max(0.0, fits::CalcWedgingTilt(j.worst_pair, FrictionOf(j)));
 }
 
-std::string Verdict(const FitJamming& j) {
+std::string DescribeVerdict(const FitJamming& j) {
   return fmt::format("{}; {}", j.is_sliding ? "slides on" : "jams",
                      j.can_wedge ? "may wedge at this depth" : "cannot wedge at this depth");
 }
@@ -48,12 +48,12 @@ PlotPanel MakeJammingPanel(const FitJamming& j) {
   PlotPanel panel;
   panel.title = fmt::format("Jamming, two-point contact at l = {:g} mm (lambda = {:.3g})",
                             units::ToMm(j.l), j.lambda);
-  panel.x_label = "F_x / F_z (force across over force along), 1";
+  panel.x_label = "F_x / F_z (transverse over axial force), 1";
   panel.y_label = "M / (r F_z), 1";
   PlotSeries inside{"inside: slides on", PlotStyle::kArea, 2, {}};
   double wide = 0;
   double high = 0;
-  for (const fits::DiagramPoint& p : fits::CalcJammingDiagram(j.lambda, Friction(j))) {
+  for (const fits::DiagramPoint& p : fits::CalcJammingDiagram(j.lambda, FrictionOf(j))) {
     inside.points.push_back({p.f_x_over_f_z, p.m_over_r_f_z});
     wide = std::max(wide, std::abs(p.f_x_over_f_z));
     high = std::max(high, std::abs(p.m_over_r_f_z));
@@ -81,7 +81,7 @@ PlotPanel MakeWedgingPanel(const FitJamming& j) {
   const double length = j.card.options.press.length;
   const double least = fits::CalcLeastTwoPointLength(j.pair);
   const double largest_deg = units::ToDeg(fits::CalcLargestTilt(j.pair));
-  const double wedging = std::min(length, Friction(j) * j.pair.peg_diameter);
+  const double wedging = std::min(length, FrictionOf(j) * j.pair.peg_diameter);
   PlotPanel panel;
   panel.title = "Wedging: tilt at which both sides touch";
   panel.x_label = "l, from the tip's corner to the rim, mm";
@@ -108,11 +108,11 @@ PlotPanel MakeWedgingPanel(const FitJamming& j) {
        PlotStyle::kDashed,
        3,
        {{0, largest_deg}, {units::ToMm(length), largest_deg}}},
-      {fmt::format("below {:.3g} deg nothing wedges, with the least clearance either",
-                   units::ToDeg(SafeTilt(j))),
+      {fmt::format("no wedging below {:.3g} deg, with the smallest clearance either",
+                   units::ToDeg(CalcSafeTilt(j))),
        PlotStyle::kDashed,
        2,
-       {{0, units::ToDeg(SafeTilt(j))}, {units::ToMm(length), units::ToDeg(SafeTilt(j))}}},
+       {{0, units::ToDeg(CalcSafeTilt(j))}, {units::ToMm(length), units::ToDeg(CalcSafeTilt(j))}}},
       {"this depth",
        PlotStyle::kMarks,
        j.can_wedge ? 1 : 0,
@@ -134,7 +134,8 @@ Result<FitJamming> MakeFitJamming(const FitCard& card, double l, const fits::Peg
                                ? 0.5 * (card.limits->min_clearance + card.limits->max_clearance)
                                : 0.5 * card.limits->max_clearance;
   if (!(clearance > 0)) {
-    return fail(ErrorCode::kUnsupported, "a fit without clearance cannot tilt, so it cannot jam",
+    return fail(ErrorCode::kUnsupported,
+                "a fit without clearance cannot tilt, and therefore cannot jam",
                 "choose a clearance or transition fit, such as H7/g6");
   }
   const double nominal = card.options.fit.nominal;
@@ -152,15 +153,17 @@ Result<FitJamming> MakeFitJamming(const FitCard& card, double l, const fits::Peg
                             units::ToMm(card.options.press.length)));
   }
   if (!(load.f_z > 0) || !std::isfinite(load.f_x + load.f_z + load.m)) {
-    return fail(ErrorCode::kInvalid, "the load does not push the shaft in",
-                "give --load F_x,F_z,M with F_z over 0: newtons across and along, N mm");
+    return fail(
+        ErrorCode::kInvalid, "the load does not push the shaft into the hole",
+        "give --load F_x,F_z,M with a positive F_z: transverse and axial force [N], moment [N mm]");
   }
-  if (!(Friction(j) > 0)) {
-    return fail(ErrorCode::kInvalid, "without friction nothing jams", "give --mu over 0");
+  if (!(FrictionOf(j) > 0)) {
+    return fail(ErrorCode::kInvalid, "there is no jamming without friction",
+                "give a positive --mu");
   }
-  j.lambda = fits::CalcLambda(j.l, Radius(j), Friction(j));
-  j.is_sliding = fits::IsSliding(load, j.l, Radius(j), Friction(j));
-  j.can_wedge = fits::CanWedge(j.pair, j.l, Friction(j));
+  j.lambda = fits::CalcLambda(j.l, CalcRadius(j), FrictionOf(j));
+  j.is_sliding = fits::IsSliding(load, j.l, CalcRadius(j), FrictionOf(j));
+  j.can_wedge = fits::CanWedge(j.pair, j.l, FrictionOf(j));
   return j;
 }
 
@@ -169,16 +172,16 @@ std::string ToText(const FitJamming& j) {
   return Fold(fmt::format(
       "jamming at l = {} with F_x {:g} N, F_z {:g} N, M {:g} N mm, clearance {} {}, mu {:g}:\n"
       "  {}; both sides touch at a tilt of {:.4f} deg; lambda {:.4g}\n"
-      "  in the worst case, the least clearance, nothing wedges below {:.4f} deg\n",
+      "  no wedging below {:.4f} deg in the worst case, the smallest clearance\n",
       lengths.Size(j.l), j.load.f_x, j.load.f_z, 1e3 * j.load.m,
-      lengths.Small(j.pair.hole_diameter - j.pair.peg_diameter), lengths.small_unit(), Friction(j),
-      Verdict(j), units::ToDeg(fits::CalcTwoPointTilt(j.pair, j.l)), j.lambda,
-      units::ToDeg(SafeTilt(j))));
+      lengths.Small(j.pair.hole_diameter - j.pair.peg_diameter), lengths.small_unit(),
+      FrictionOf(j), DescribeVerdict(j), units::ToDeg(fits::CalcTwoPointTilt(j.pair, j.l)),
+      j.lambda, units::ToDeg(CalcSafeTilt(j))));
 }
 
 nlohmann::ordered_json ToJson(const FitJamming& j) {
   nlohmann::ordered_json vertices = nlohmann::ordered_json::array();
-  for (const fits::DiagramPoint& p : fits::CalcJammingDiagram(j.lambda, Friction(j))) {
+  for (const fits::DiagramPoint& p : fits::CalcJammingDiagram(j.lambda, FrictionOf(j))) {
     vertices.push_back({p.f_x_over_f_z, p.m_over_r_f_z});
   }
   return {{"l_mm", units::ToMm(j.l)},
@@ -190,7 +193,7 @@ nlohmann::ordered_json ToJson(const FitJamming& j) {
           {"can_wedge", j.can_wedge},
           {"two_point_tilt_deg", units::ToDeg(fits::CalcTwoPointTilt(j.pair, j.l))},
           {"largest_tilt_deg", units::ToDeg(fits::CalcLargestTilt(j.pair))},
-          {"wedging_tilt_deg", units::ToDeg(SafeTilt(j))}};
+          {"wedging_tilt_deg", units::ToDeg(CalcSafeTilt(j))}};
 }
 
 std::string ToSvg(const FitJamming& j) {
@@ -198,10 +201,10 @@ std::string ToSvg(const FitJamming& j) {
   PlotFigure figure;
   figure.title = j.card.Title() + ": jamming and wedging";
   figure.notes = {
-      fmt::format("Clearance of the diameters {} {}, mu {:g}. Load at the middle of the tip: F_x "
-                  "{:g} N, F_z {:g} N, M {:g} N mm: {}.",
+      fmt::format("Diametral clearance {} {}, mu {:g}. Load at the centre of the tip: F_x {:g} N, "
+                  "F_z {:g} N, M {:g} N mm: {}.",
                   lengths.Small(j.pair.hole_diameter - j.pair.peg_diameter), lengths.small_unit(),
-                  Friction(j), j.load.f_x, j.load.f_z, 1e3 * j.load.m, Verdict(j))};
+                  FrictionOf(j), j.load.f_x, j.load.f_z, 1e3 * j.load.m, DescribeVerdict(j))};
   figure.panels = {MakeJammingPanel(j), MakeWedgingPanel(j)};
   return ToSvg(figure);
 }

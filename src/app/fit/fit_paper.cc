@@ -55,7 +55,7 @@ class WanderingHand {
 
 /** Diametral clearance of the pair that stands for a fit: the mean of its limits, and in the
  transition fit hole and shaft of one size. */
-double StandIn(const fits::FitLimits& limits) {
+double CalcMeanClearance(const fits::FitLimits& limits) {
   return limits.kind == fits::FitKind::kTransition
              ? 0
              : 0.5 * (limits.min_clearance + limits.max_clearance);
@@ -70,7 +70,7 @@ Result<PaperCurve> MakeCurve(const char* experiment, fits::FitKind kind, std::ui
   land.press.hub_diameter = fits::kPaperRig.hub_diameter;
   land.press.length = fits::kPaperRig.length;
   land.press.friction_in = land.press.friction_release = fits::kPaperRig.friction;
-  const double clearance = StandIn(limits);
+  const double clearance = CalcMeanClearance(limits);
   land.clearances =
       fits::DrawClearances(clearance, fits::kPaperRig.roughness, fits::kPaperRig.stations, seed);
   const Result<fits::PressStroke> stroke = fits::PressStroke::Make({land});
@@ -103,7 +103,7 @@ std::string Name(const PaperCurve& curve) {
 
 std::string FactorText(const PaperCurve& curve) {
   const std::string_view symbol = fits::FindPaperScale(curve.kind).symbol;
-  return symbol.empty() ? "shown as it is" : fmt::format("{} = {:.3g}", symbol, curve.factor);
+  return symbol.empty() ? "shown unscaled" : fmt::format("{} = {:.3g}", symbol, curve.factor);
 }
 
 }  // namespace
@@ -154,10 +154,8 @@ std::string ToSvg(const std::vector<PaperCurve>& curves) {
   figure.title = "Assembly forces of paper W (its figure 8)";
   figure.notes = {
       "Shaft and bushing of 40 mm, bushing 80 mm outside and 50 mm long, steel, mu 0.15, Rz 6.3 "
-      "um, "
-      "20 stations; inserted at an even 10 mm/s. On the left as the paper's device shows it, on "
-      "the "
-      "right in true newtons.",
+      "um, 20 stations; inserted at a constant 10 mm/s. Left: as the paper's device displays it; "
+      "right: in true newtons.",
       "The paper prints neither sizes nor factors. Here B2 has its mean interference, B3 hole and "
       "shaft of one size, and the factors bring the force at the end to the paper's 6 N and 4 N. "
       "In "

@@ -141,7 +141,7 @@ class Inputs {
   [[nodiscard]] double operator()(const char* name) const {
     const auto it = values_.find(name);
     if (it == values_.end()) {
-      Refuse(fmt::format("the input {} is missing or no number", name));
+      Refuse(fmt::format("the input {} is missing or not a number", name));
       return 1;
     }
     return it->second;
@@ -159,7 +159,7 @@ class Inputs {
   void Take(const std::string& name, const std::string& number, const std::string& unit) {
     if (name.empty()) {
       if (!unit.empty()) {
-        Refuse(fmt::format("\"{}\" belongs to no input; write inputs as in D=40 d=39.9", unit));
+        Refuse(fmt::format("\"{}\" belongs to no input; write inputs like D=40 d=39.9", unit));
       }
       return;
     }
@@ -174,12 +174,12 @@ class Inputs {
     }
     const std::optional<double> value = ParseNumber(number);
     if (!value || !std::isfinite(*value)) {
-      Refuse(fmt::format("the input {} is no number: \"{}\"", name, number));
+      Refuse(fmt::format("the input {} is not a number: \"{}\"", name, number));
       return;
     }
     const std::optional<double> factor = FindFactor(rule->kind, unit);
     if (!factor) {
-      Refuse(fmt::format("the input {} is in \"{}\"; give it in one of {}", name, unit,
+      Refuse(fmt::format("the input {} has the unit \"{}\"; use one of {}", name, unit,
                          UnitsOf(rule->kind)));
       return;
     }
@@ -188,7 +188,7 @@ class Inputs {
     if (!is_above || !(scaled < rule->high)) {
       const std::string range =
           rule->kind == Kind::kAngle
-              ? fmt::format("over {:g} and below 90 degrees", units::ToDeg(rule->low))
+              ? fmt::format("above {:g} and below 90 degrees", units::ToDeg(rule->low))
               : fmt::format("{} {:g}", rule->includes_low ? "at least" : "over", rule->low);
       Refuse(fmt::format("the input {} is {}, but must be {}", name,
                          number + (unit.empty() ? "" : " " + unit), range));
@@ -225,7 +225,7 @@ struct Reply {
   std::string text{};
 };
 
-bool Begins(std::string_view text, std::string_view with) {
+bool StartsWith(std::string_view text, std::string_view with) {
   return text.starts_with(with);
 }
 
@@ -238,14 +238,14 @@ void RefuseTilt(const Question& q, const fits::PegInHole& pair, double tilt) {
   }
 }
 
-std::optional<Reply> AnswerTwoPoint(const Question& q) {
+std::optional<Reply> SolveTwoPoint(const Question& q) {
   if (q.kind == "two_point_depth") {
     const fits::PegInHole pair{2 * q.in("R"), 2 * q.in("r")};
     RefuseTilt(q, pair, q.in("theta"));
     return Reply{fits::CalcTipDepth(pair, q.in("theta")), Kind::kLength};
   }
   const fits::PegInHole pair{q.in("D"), q.in("d")};
-  if (Begins(q.output, "theta2")) {
+  if (StartsWith(q.output, "theta2")) {
     const double least = fits::CalcLeastTwoPointLength(pair);
     if (q.in("l") < least) {
       q.in.Refuse(
@@ -254,68 +254,68 @@ std::optional<Reply> AnswerTwoPoint(const Question& q) {
     }
     return Reply{fits::CalcTwoPointTilt(pair, q.in("l")), Kind::kAngle};
   }
-  if (Begins(q.output, "theta_m approx")) {
+  if (StartsWith(q.output, "theta_m approx")) {
     return Reply{std::sqrt(2 * pair.relative_clearance()), Kind::kAngle};
   }
-  if (Begins(q.output, "theta_m")) {
+  if (StartsWith(q.output, "theta_m")) {
     return Reply{fits::CalcLargestTilt(pair), Kind::kAngle};
   }
-  if (Begins(q.output, "Whitney")) {
+  if (StartsWith(q.output, "Whitney")) {
     return Reply{pair.relative_clearance() * pair.hole_diameter / q.in("l"), Kind::kAngle};
   }
-  if (Begins(q.output, "l_min")) {
+  if (StartsWith(q.output, "l_min")) {
     return Reply{fits::CalcLeastTwoPointLength(pair), Kind::kLength};
   }
-  if (Begins(q.output, "l2") || q.output == "l") {
+  if (StartsWith(q.output, "l2") || q.output == "l") {
     RefuseTilt(q, pair, q.in("theta"));
     return Reply{fits::CalcTwoPointLength(pair, q.in("theta")), Kind::kLength};
   }
-  if (q.output == "c" || Begins(q.output, "c=")) {
+  if (q.output == "c" || StartsWith(q.output, "c=")) {
     return Reply{pair.relative_clearance()};
   }
   return std::nullopt;
 }
 
-std::optional<Reply> AnswerWedging(const Question& q) {
-  if (Begins(q.output, "wedging")) {
+std::optional<Reply> SolveWedging(const Question& q) {
+  if (StartsWith(q.output, "wedging")) {
     const double d = 2 * q.in("r");
     return Reply{fits::CanWedge({d, d}, q.in("l"), q.in("mu")) ? 1.0 : 0.0};
   }
-  if (Begins(q.output, "theta_w")) {  // The worst case is the one of the least clearance.
+  if (StartsWith(q.output, "theta_w")) {  // The worst case is the one of the least clearance.
     return Reply{fits::CalcWedgingTilt({q.in("D"), q.in("d")}, q.in("mu")), Kind::kAngle};
   }
   return std::nullopt;
 }
 
 /** Whether a load moves the peg on, and where it is in the diagram. */
-std::optional<Reply> AnswerJammingPoint(const Question& q) {
+std::optional<Reply> SolveJammingPoint(const Question& q) {
   const double f_z = q.in("Fz");
-  if (Begins(q.output, "slides") || Begins(q.output, "jams")) {
+  if (StartsWith(q.output, "slides") || StartsWith(q.output, "jams")) {
     const bool is_sliding =
         fits::IsSliding({q.in("Fx"), f_z, q.in("M")}, q.in("l"), q.in("r"), q.in("mu"));
-    return Reply{is_sliding == Begins(q.output, "slides") ? 1.0 : 0.0};
+    return Reply{is_sliding == StartsWith(q.output, "slides") ? 1.0 : 0.0};
   }
-  if (Begins(q.output, "Fx/Fz")) {
+  if (StartsWith(q.output, "Fx/Fz")) {
     return Reply{q.in("Fx") / f_z};
   }
-  if (Begins(q.output, "M/(r")) {
+  if (StartsWith(q.output, "M/(r")) {
     return Reply{q.in("M") / (q.in("r") * f_z)};
   }
   return std::nullopt;
 }
 
-std::optional<Reply> AnswerJamming(const Question& q) {
+std::optional<Reply> SolveJamming(const Question& q) {
   if (!(q.in("mu") > 0)) {
-    q.in.Refuse("without friction nothing jams; give mu over 0");
+    q.in.Refuse("there is no jamming without friction; give a positive mu");
   }
-  if (q.kind == "jamming_point" || Begins(q.output, "slides")) {
-    return AnswerJammingPoint(q);
+  if (q.kind == "jamming_point" || StartsWith(q.output, "slides")) {
+    return SolveJammingPoint(q);
   }
   const double lambda = fits::CalcLambda(q.in("l"), q.in("r"), q.in("mu"));
-  if (Begins(q.output, "lambda")) {
+  if (StartsWith(q.output, "lambda")) {
     return Reply{lambda};
   }
-  if (Begins(q.output, "vertices")) {
+  if (StartsWith(q.output, "vertices")) {
     std::string text;
     for (const fits::DiagramPoint& p : fits::CalcJammingDiagram(lambda, q.in("mu"))) {
       text +=
@@ -326,7 +326,7 @@ std::optional<Reply> AnswerJamming(const Question& q) {
   return std::nullopt;
 }
 
-std::optional<Reply> AnswerStatics(const Question& q) {
+std::optional<Reply> SolveStatics(const Question& q) {
   const fits::PegLoad load =
       fits::CalcTwoPointLoad(q.in("f1"), q.in("f2"), q.in("l"), q.in("r"), q.in("mu"));
   if (q.output == "Fx") {
@@ -338,16 +338,16 @@ std::optional<Reply> AnswerStatics(const Question& q) {
   if (q.output == "M") {
     return Reply{load.m, Kind::kMoment};
   }
-  if (Begins(q.output, "M/(r")) {
+  if (StartsWith(q.output, "M/(r")) {
     if (!(load.f_z > 0)) {
-      q.in.Refuse("M / (r Fz) needs a force along; give mu, and f1 or f2, over 0");
+      q.in.Refuse("M / (r Fz) needs an axial force; give a positive mu, and a positive f1 or f2");
     }
     return Reply{load.m / (q.in("r") * load.f_z)};
   }
   return std::nullopt;
 }
 
-std::optional<Reply> AnswerSupport(const Question& q) {
+std::optional<Reply> SolveSupport(const Question& q) {
   const bool is_chamfer = q.kind == "chamfer";
   const fits::CompliantSupport support{q.in("Kx"), q.in("Kt"), q.in("Lg")};
   const fits::InsertionForce f =
@@ -355,10 +355,10 @@ std::optional<Reply> AnswerSupport(const Question& q) {
                  : fits::CalcOnePointForce(support, q.in("r"), q.in("mu"), q.in("eps0'"),
                                            q.in("theta0"), q.in("l"));
   if (std::isnan(f.normal)) {
-    q.in.Refuse(is_chamfer ? "nothing is in equilibrium: the chamfer needs tan alpha over mu, and "
-                             "the support a larger Kt or a smaller Lg"
-                           : "nothing is in equilibrium: the support needs a larger Kt or a "
-                             "smaller mu");
+    q.in.Refuse(is_chamfer
+                    ? "there is no equilibrium: tan alpha of the chamfer has to be above mu, and "
+                      "the support needs a larger Kt or a smaller Lg"
+                    : "there is no equilibrium: the support needs a larger Kt or a smaller mu");
   } else if (f.normal < 0) {
     q.in.Refuse("the peg touches the other side: eps0' + l theta0 must be 0 or more");
   }
@@ -374,21 +374,21 @@ std::optional<Reply> AnswerSupport(const Question& q) {
   return std::nullopt;
 }
 
-std::optional<Reply> AnswerOne(const Question& q) {
+std::optional<Reply> SolveOne(const Question& q) {
   if (q.kind == "two_point" || q.kind == "two_point_depth") {
-    return AnswerTwoPoint(q);
+    return SolveTwoPoint(q);
   }
   if (q.kind == "wedging") {
-    return AnswerWedging(q);
+    return SolveWedging(q);
   }
   if (q.kind == "jamming" || q.kind == "jamming_point") {
-    return AnswerJamming(q);
+    return SolveJamming(q);
   }
   if (q.kind == "statics") {
-    return AnswerStatics(q);
+    return SolveStatics(q);
   }
   if (q.kind == "chamfer" || q.kind == "one_point") {
-    return AnswerSupport(q);
+    return SolveSupport(q);
   }
   return std::nullopt;
 }
@@ -397,8 +397,8 @@ std::optional<Reply> AnswerOne(const Question& q) {
 std::string ToText(const Reply& reply, std::string_view unit, const Question& q) {
   const std::optional<double> factor = FindFactor(reply.kind, WithoutBlanks(unit));
   if (!factor) {
-    q.in.Refuse(fmt::format("{} has no unit \"{}\"; ask for one of {}", q.output, unit,
-                            UnitsOf(reply.kind)));
+    q.in.Refuse(
+        fmt::format("{} has no unit \"{}\"; use one of {}", q.output, unit, UnitsOf(reply.kind)));
     return "";
   }
   if (!reply.text.empty()) {
@@ -429,7 +429,7 @@ Result<void> AddInsertions(CsvTable* table) {
     const std::string kind(table->Get(i, "kind"));
     const std::string output(table->Get(i, "output"));
     const Question question{kind, output, in};
-    const std::optional<Reply> reply = AnswerOne(question);
+    const std::optional<Reply> reply = SolveOne(question);
     const std::string value = reply ? ToText(*reply, table->Get(i, "unit"), question) : "";
     if (!reply) {
       in.Refuse(fmt::format("there is no output \"{}\" of kind \"{}\"", output, kind));

@@ -52,7 +52,7 @@ bool HasRoughness(const std::vector<FitCard>& cards) {
 }
 
 constexpr const char* kDrawnRoughness =
-    "roughness is drawn along the joint (B(l)), and not smoothed as well";
+    "roughness is drawn along the joint (B(l)), so it cannot be smoothed as well";
 
 double Percent(double share) {
   return 100 * share;
@@ -79,14 +79,14 @@ Result<void> ReadSizes(const std::string& file, FitPopulationOptions* options) {
       const std::optional<double> value_mm = ParseNumber(table->Get(i, column));
       if (!value_mm || !std::isfinite(*value_mm) || !(*value_mm > 0)) {
         return Fail(ErrorCode::kInvalid,
-                    fmt::format("{} is no diameter: \"{}\"", column, table->Get(i, column)),
+                    fmt::format("{} is not a diameter: \"{}\"", column, table->Get(i, column)),
                     fmt::format("{}, row {}", file, i + 1), "write diameters in millimetres");
       }
       sizes->push_back(units::FromMm(*value_mm));
     }
   }
   if (options->holes.empty() && options->shafts.empty()) {
-    return Fail(ErrorCode::kInvalid, "there are no sizes", file,
+    return Fail(ErrorCode::kInvalid, "the table has no sizes", file,
                 "give columns hole_mm and shaft_mm, or one of them, with diameters in millimetres");
   }
   options->spread = SizeSpread::kMeasured;
@@ -96,8 +96,8 @@ Result<void> ReadSizes(const std::string& file, FitPopulationOptions* options) {
 Result<fits::Population> DrawPopulation(const std::vector<FitCard>& cards,
                                         const FitPopulationOptions& options) {
   if (options.spread == SizeSpread::kMeasured && cards.size() > 1) {
-    return Fail(ErrorCode::kInvalid, "measured sizes belong to one fit", {},
-                "give one fit, or leave the measured sizes out");
+    return Fail(ErrorCode::kInvalid, "measured sizes can be used with one fit only", {},
+                "give one fit, or omit the measured sizes");
   }
   fits::PopulationParameters p;
   for (const FitCard& card : cards) {
@@ -133,7 +133,7 @@ std::string SpreadText(const FitPopulationOptions& options) {
     case SizeSpread::kCapability:
       return fmt::format("sizes normal, C_p {:g}, C_pk {:g}", options.cp, options.cpk);
     case SizeSpread::kUniform:
-      return "sizes anywhere in the zone alike";
+      return "sizes uniform over the zone";
     case SizeSpread::kMeasured:
       return fmt::format("{} measured holes, {} measured shafts", options.holes.size(),
                          options.shafts.size());

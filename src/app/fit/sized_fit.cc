@@ -10,10 +10,10 @@
 namespace hvas::app {
 namespace {
 
-Unexpected NoFit(std::string_view text) {
-  return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no size with a fit", text), {},
-              "write the nominal diameter in mm and the classes, as in \"40 H7/p6\", \"40 H7\", "
-              "\"1.5in H7/g6\" or \"1.5in RC4\"");
+Unexpected FailNoFit(std::string_view text) {
+  return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is not a nominal size with a fit", text), {},
+              "write the nominal diameter in mm and the classes: \"40 H7/p6\", \"40 H7\", \"1.5in "
+              "H7/g6\" or \"1.5in RC4\"");
 }
 
 bool IsDigit(char c) {
@@ -148,7 +148,7 @@ Result<SizedFit> ParseSizedFit(std::string_view text) {
     rest.remove_suffix(1);
   }
   if (!nominal || !std::isfinite(*nominal) || rest.empty()) {
-    return NoFit(text);
+    return FailNoFit(text);
   }
   sized.nominal = *nominal;
   if (fits::IsAnsiFit(rest)) {

@@ -36,7 +36,8 @@ void ShowProgress(std::string_view stage, double fraction) {
     last_stage = stage;
     last_ns = now_ns;
     constexpr std::size_t kPercent = 7;
-    fmt::print(stderr, "\r\033[K{} {:.0f} %", Shorten(stage, Columns() - kPercent), 100 * fraction);
+    fmt::print(stderr, "\r\033[K{} {:.0f} %", Shorten(stage, CountColumns() - kPercent),
+               100 * fraction);
   } else {
     return;
   }
@@ -67,7 +68,7 @@ void Busy::Run() {
   int passed_s = 0;
   while (!changed_.wait_for(lock, kStep, [this] { return is_done_; })) {
     constexpr std::size_t kSeconds = 9;
-    fmt::print(stderr, "\r\033[K{}, {} s", Shorten(stage_, Columns() - kSeconds), ++passed_s);
+    fmt::print(stderr, "\r\033[K{}, {} s", Shorten(stage_, CountColumns() - kSeconds), ++passed_s);
     std::fflush(stderr);
   }
   if (passed_s > 0) {

@@ -38,7 +38,7 @@ const char* CodeOf(Style style) {
 
 }  // namespace
 
-std::size_t Columns() {
+std::size_t CountColumns() {
   if (const char* const stated = std::getenv("COLUMNS"); stated != nullptr) {
     const std::string_view text(stated);
     std::size_t columns = 0;

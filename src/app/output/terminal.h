@@ -10,7 +10,7 @@ namespace hvas::app {
 
 /** The columns that text on the standard output may take: the variable COLUMNS, or those of the
  terminal, or 80 where it is none; at least 40. */
-[[nodiscard]] std::size_t Columns();
+[[nodiscard]] std::size_t CountColumns();
 
 enum class Style { kHeading, kName, kGood, kBad };
 

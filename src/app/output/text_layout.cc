@@ -89,7 +89,7 @@ namespace {
 /** Appends words, the first line from the column that it is at, further ones from `indent`. */
 void AppendWrapped(std::string_view text, std::size_t column, std::size_t indent,
                    std::string* lines) {
-  const std::size_t columns = Columns();
+  const std::size_t columns = CountColumns();
   bool is_first = true;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find(' '), text.size());
@@ -124,12 +124,12 @@ std::string Fold(std::string_view text) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (CalcWidth(line) <= Columns()) {
+    if (CalcWidth(line) <= CountColumns()) {
       folded += line;
       folded += '\n';
       continue;
     }
-    const std::size_t indent = std::min(line.find_first_not_of(' '), Columns() / 2);
+    const std::size_t indent = std::min(line.find_first_not_of(' '), CountColumns() / 2);
     folded.append(indent, ' ');
     AppendWrapped(line.substr(indent), indent, indent + 2, &folded);
   }

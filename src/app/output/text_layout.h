@@ -16,10 +16,10 @@ namespace hvas::app {
 /** Shortens as Shorten() does, and fills up with spaces. */
 [[nodiscard]] std::string PadTo(std::string_view text, std::size_t width);
 
-/** Words in lines of Columns(), each begun with `indent` spaces; ends with a newline. */
+/** Words in lines of CountColumns(), each begun with `indent` spaces; ends with a newline. */
 [[nodiscard]] std::string Wrap(std::string_view text, std::size_t indent);
 
-/** The text with each line that is wider than Columns() broken between words; what follows is
+/** The text with each line that is wider than CountColumns() broken between words; what follows is
  indented by two more than the line. */
 [[nodiscard]] std::string Fold(std::string_view text);
 

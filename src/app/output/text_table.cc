@@ -93,7 +93,7 @@ std::vector<std::size_t> TextTable::CalcWidths() const {
 
 std::string TextTable::ToText(std::size_t indent) const {
   std::vector<std::size_t> widths = CalcWidths();
-  const std::size_t room = Columns() - indent;
+  const std::size_t room = CountColumns() - indent;
   const std::size_t whole =
       std::accumulate(widths.begin(), widths.end(), std::size_t{0}) + kGap * (widths.size() - 1);
   if (left_ > 0 && whole > room) {

@@ -69,7 +69,7 @@ Json MakeFirstAssignments(const Product& product) {
   Json document{
       {"format", mates::kSideFileFormat},
       {"note", "Fits of " + product.source +
-                   "; those called proposed are guesses from the drawn diameters, to be checked."},
+                   "; proposed fits are guesses from the drawn diameters and have to be checked."},
       {"fits", Json::array()}};
   for (const Mate* mate : mates) {
     document["fits"].push_back(MakeEntry(product, *mate));

@@ -46,7 +46,7 @@ Result<void> WriteAssignments(const InspectOptions& options, const Product& prod
                                          ? mates::FindAssignmentFile(options.load.file)
                                          : std::filesystem::path(*options.write_assignments);
   if (!options.is_forced && std::filesystem::exists(std::filesystem::symlink_status(file))) {
-    return Fail(ErrorCode::kInvalid, "the file is there already", file.string(),
+    return Fail(ErrorCode::kInvalid, "the file exists already", file.string(),
                 "choose another name, or replace it with --force");
   }
   nlohmann::ordered_json document = MakeFirstAssignments(product);
@@ -93,24 +93,25 @@ int RunInspect(const InspectOptions& options) {
 
 void AddInspect(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "inspect", "Show what is in a CAD file: tree, parts, features, mates, fits");
+      "inspect", "Show the content of a CAD file: tree, parts, features, mates, fits");
   const auto options = std::make_shared<InspectOptions>();
   SelectionOptions& selection = options->selection;
   command->add_option("file", options->load.file, "CAD file")->required();
   AddJsonFlag(command, &options->is_json, "inspect");
   command
-      ->add_option("--only", selection.only,
-                   fmt::format("Sections, joined by commas: {}", fmt::join(kSectionNames, ", ")))
+      ->add_option(
+          "--only", selection.only,
+          fmt::format("Sections to show, separated by commas: {}", fmt::join(kSectionNames, ", ")))
       ->delimiter(',');
-  command->add_option("--part", selection.parts, "Only this part: its name, or p3");
+  command->add_option("--part", selection.parts, "Only this part: name or id (p3)");
   command->add_option("--occurrence", selection.occurrences,
-                      "Only this occurrence or subassembly: its name, path or end of path");
-  command->add_option("--mate", selection.mates, "Only this mate: m12, or its key");
+                      "Only this occurrence or subassembly: name, path or end of the path");
+  command->add_option("--mate", selection.mates, "Only this mate: id (m12) or key");
   command
       ->add_option("--kind", selection.kinds,
-                   "Only mates of a kind: axis-hole, face-face, cone-seat, sphere-seat")
+                   "Only mates of this kind: axis-hole, face-face, cone-seat, sphere-seat")
       ->delimiter(',');
-  command->add_flag("--all", options->is_all, "Do not cut long lists short");
+  command->add_flag("--all", options->is_all, "Do not shorten long lists");
   command
       ->add_option_function<std::string>(
           "--write-assignments",
@@ -118,7 +119,7 @@ void AddInspect(CLI::App* app, int* status) {
           "Write a side file with the present fits (NAME.hvas.json when no FILE is given)")
       ->expected(0, 1)
       ->type_name("FILE");
-  command->add_flag("--force", options->is_forced, "Let --write-assignments replace a file");
+  command->add_flag("--force", options->is_forced, "Allow --write-assignments to replace a file");
   AddLoadOptions(command, &options->load);
   command->footer(
       "Examples:\n"

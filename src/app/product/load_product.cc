@@ -36,8 +36,8 @@ void AddUnitOption(CLI::App* command, double* length_unit) {
       ->add_option_function<std::string>(
           "--unit",
           [length_unit](const std::string& name) { *length_unit = LengthUnits().at(name); },
-          "Length unit of OBJ and STL files, which state none: mm (when not given), cm, m, in or "
-          "ft; all other formats state theirs, and it changes nothing for them")
+          "Length unit of OBJ and STL files, which do not state one: mm (default), cm, m, in or "
+          "ft; it has no effect on other formats")
       ->check(CLI::IsMember(&LengthUnits()))
       ->type_name("UNIT");
 }
@@ -45,24 +45,24 @@ void AddUnitOption(CLI::App* command, double* length_unit) {
 }  // namespace
 
 void AddLoadOptions(CLI::App* command, LoadOptions* options) {
-  command->add_flag("--strict", options->is_strict, "Take warnings for errors");
+  command->add_flag("--strict", options->is_strict, "Treat warnings as errors");
   command->add_flag("--quiet,-q", options->is_quiet, "No progress");
   command->add_flag("!--no-cache", options->is_cache_used,
-                    "Read and prepare everything anew, and keep nothing on disk");
+                    "Do not use the caches on disk: read and prepare everything again");
   AddUnitOption(command, &options->length_unit);
   command
       ->add_option("--time-limit", options->time_limit,
-                   "Longest time for opening the file with all that belongs to it, in seconds")
+                   "Time limit for opening and preparing the file [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
       ->add_option("--memory-limit", options->memory_limit,
-                   "Most memory for opening the file, as 8GB; when not given 4GB, or three "
-                   "quarters of the machine's where that is less")
+                   "Memory limit for opening the file, for example 8GB; default: 4GB, or three "
+                   "quarters of the machine's memory where that is less")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
   command
       ->add_option("--max-parts", options->max_parts,
-                   "Most parts that the file may place, copies counted")
+                   "Limit of parts in the file, each instance counted")
       ->check(CLI::Range(1, static_cast<int>(cad::kLargestMaxParts)))
       ->capture_default_str();
 }
@@ -150,10 +150,10 @@ Result<void> CheckStrict(const LoadOptions& options, const Diagnostics& diagnost
                  item.remedy.empty() ? "" : "; " + item.remedy);
     }
   }
-  return Fail(
-      ErrorCode::kInvalid,
-      fmt::format("{} warning{}, and --strict takes none", warnings, warnings == 1 ? "" : "s"),
-      options.file.filename().string(), "correct the file, or leave --strict out");
+  return Fail(ErrorCode::kInvalid,
+              fmt::format("{} warning{}, which --strict treats as errors", warnings,
+                          warnings == 1 ? "" : "s"),
+              options.file.filename().string(), "correct the file, or omit --strict");
 }
 
 }  // namespace hvas::app

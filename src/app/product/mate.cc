@@ -125,9 +125,10 @@ Result<ordered_json> ReadSide(const Product& product, const std::string& text,
   const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), index);
   if (colon == std::string::npos || colon == 0 || code != std::errc() ||
       end != number.data() + number.size()) {
-    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" names no surface", text), option,
-                "write OCCURRENCE:12 with the number of a face, or OCCURRENCE:feature3, as "
-                "hvas inspect --only faces,features lists them");
+    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" does not identify a surface", text),
+                option,
+                "write OCCURRENCE:12 with the number of a face, or OCCURRENCE:feature3; hvas "
+                "inspect --only faces,features lists them");
   }
   const auto occurrence = mates::FindOccurrence(product, text.substr(0, colon));
   if (!occurrence) {
@@ -159,16 +160,17 @@ Result<void> Add(const MateOptions& options) {
     return written;
   }
   const Mate& mate = opened->product.mates[opened->changes.added.back().index()];
-  fmt::print("{} m{} {}\n  in {}; undo: hvas mate remove {} {}\n",
-             opened->product.mates.size() > before ? "added" : "was found anyway, now the user's:",
-             mate.id.value(), Describe(opened->product, mate),
-             opened->document.contents().path.string(), Quote(options.load.file.string()),
-             mate.key);
+  fmt::print(
+      "{} m{} {}\n  in {}; undo: hvas mate remove {} {}\n",
+      opened->product.mates.size() > before ? "added"
+                                            : "was inferred already, now marked as the user's:",
+      mate.id.value(), Describe(opened->product, mate), opened->document.contents().path.string(),
+      Quote(options.load.file.string()), mate.key);
   return {};
 }
 
 /** How to bring back an entry of "mates". */
-std::string UndoOf(const ordered_json& entry, const std::string& file) {
+std::string DescribeUndo(const ordered_json& entry, const std::string& file) {
   const auto side = [](const ordered_json& json) {
     const bool is_face = json.contains("face");
     return Quote(fmt::format("{}:{}{}", json["occurrence"].get<std::string>(),
@@ -190,8 +192,8 @@ Result<std::string> RemoveOne(const std::string& key, const std::string& file, O
   const std::string note = what.substr(std::min(what.size(), key.size() + 1));
   auto& added = opened->changes.added;
   if (const auto mine = std::find(added.begin(), added.end(), *mate); mine != added.end()) {
-    undo = UndoOf(opened->document.Take("mates", static_cast<std::size_t>(mine - added.begin())),
-                  file);
+    undo = DescribeUndo(
+        opened->document.Take("mates", static_cast<std::size_t>(mine - added.begin())), file);
     added.erase(mine);
   }
   const auto is_it = [&key](const Mate& other) { return other.key == key; };
@@ -216,7 +218,7 @@ Result<void> Remove(const MateOptions& options) {
     if (std::any_of(removed.begin(), removed.end(),
                     [&name](const Mate& mate) { return mate.key == name; })) {
       return Fail(ErrorCode::kInvalid, fmt::format("mate {} is removed already", name),
-                  opened->document.contents().path.string(), "hvas mate restore brings it back");
+                  opened->document.contents().path.string(), "hvas mate restore restores it");
     }
     const auto mate = mates::FindMate(opened->product, name);
     if (!mate) {
@@ -258,10 +260,10 @@ Result<void> Restore(const MateOptions& options) {
       std::vector<std::string> keys;
       std::transform(removed.begin(), removed.end(), std::back_inserter(keys),
                      [](const mates::RemovedMate& entry) { return entry.mate; });
-      return Fail(
-          ErrorCode::kNotFound, fmt::format("mate \"{}\" is not removed", key),
-          document->contents().path.string(),
-          keys.empty() ? "no mate is" : fmt::format("removed are {}", fmt::join(keys, ", ")));
+      return Fail(ErrorCode::kNotFound, fmt::format("mate \"{}\" is not removed", key),
+                  document->contents().path.string(),
+                  keys.empty() ? "no mate is removed"
+                               : fmt::format("removed are {}", fmt::join(keys, ", ")));
     }
     document->Take("removed", static_cast<std::size_t>(found - removed.begin()));
     told += fmt::format("restored {}\n  undo: hvas mate remove {} {}\n", key,
@@ -303,7 +305,9 @@ CLI::App* AddCommand(CLI::App* parent, const char* name, const char* help,
                      const std::shared_ptr<MateOptions>& options, int* status,
                      Result<void> (*run)(const MateOptions&)) {
   CLI::App* command = parent->add_subcommand(name, help);
-  command->add_option("file", options->load.file, "CAD file; NAME.hvas.json beside it is edited")
+  command
+      ->add_option("file", options->load.file,
+                   "CAD file; the command edits NAME.hvas.json beside it")
       ->required();
   command->callback([options, status, run] {
     const Result<void> done = run(*options);
@@ -339,21 +343,21 @@ void AddMate(CLI::App* app, int* status) {
       "  hvas mate add pump.step --a 'pump/cover:feature0' --b 'pump/gasket:feature1'");
 
   options = std::make_shared<MateOptions>();
-  CLI::App* remove = AddCommand(mate, "remove", "Do without mates that were found or added",
-                                options, status, Remove);
-  remove->add_option("mates", options->mates, "Numbers as in m12, or keys")->required();
+  CLI::App* remove =
+      AddCommand(mate, "remove", "Remove mates, inferred or added ones", options, status, Remove);
+  remove->add_option("mates", options->mates, "Ids (m12) or keys of mates")->required();
   AddLoadOptions(remove, &options->load);
   remove->footer("Example:\n  hvas mate remove pump.step m12 3f2a01bc9d");
 
   options = std::make_shared<MateOptions>();
   CLI::App* restore =
-      AddCommand(mate, "restore", "Bring removed mates back", options, status, Restore);
-  restore->add_option("mates", options->mates, "Keys, as hvas mate list shows them")->required();
+      AddCommand(mate, "restore", "Restore removed mates", options, status, Restore);
+  restore->add_option("mates", options->mates, "Keys of mates (hvas mate list)")->required();
   restore->footer("Example:\n  hvas mate restore pump.step 3f2a01bc9d");
 
   options = std::make_shared<MateOptions>();
   CLI::App* list =
-      AddCommand(mate, "list", "List the mates, and those that are removed", options, status, List);
+      AddCommand(mate, "list", "List the mates and the removed mates", options, status, List);
   AddJsonFlag(list, &options->is_json, "mate_list");
   AddLoadOptions(list, &options->load);
   list->footer("Example:\n  hvas mate list pump.step --json | jq '.mates[].key'");

@@ -34,7 +34,7 @@ double ToMm2(double area) {
 
 /** "axis hole" for "axis_hole". */
 template <typename Kind>
-std::string Plain(Kind kind) {
+std::string FormatKind(Kind kind) {
   std::string name = ToString(kind);
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
@@ -77,9 +77,9 @@ class TreePrinter {
   void PrintLine(std::size_t indent, std::string_view name, int count) {
     if (limit_.Next()) {
       const std::string times = count > 1 ? fmt::format(" x {}", count) : "";
-      const std::size_t used = std::min(indent, Columns() / 2);
-      fmt::print("{}{}{}\n", std::string(used, ' '), Shorten(name, Columns() - used - times.size()),
-                 times);
+      const std::size_t used = std::min(indent, CountColumns() / 2);
+      fmt::print("{}{}{}\n", std::string(used, ' '),
+                 Shorten(name, CountColumns() - used - times.size()), times);
     }
   }
 
@@ -143,7 +143,7 @@ void PrintParts(const Product& product, const Selection& selection, bool is_all)
 }
 
 std::string DescribeForm(const product::Form& form) {
-  std::string text = Plain(form.kind);
+  std::string text = FormatKind(form.kind);
   const auto add = [&text](bool is_there, const std::string& words) {
     text += is_there ? ", " + words : "";
   };
@@ -160,7 +160,7 @@ std::string DescribeForm(const product::Form& form) {
 }
 
 std::string DescribeFeature(const product::Feature& feature) {
-  std::string text = Plain(feature.kind);
+  std::string text = FormatKind(feature.kind);
   if (feature.radius > 0) {
     text += fmt::format(", diameter {:.4g} mm", ToMm(2 * feature.radius));
   }
@@ -171,7 +171,7 @@ std::string DescribeFeature(const product::Feature& feature) {
     text += fmt::format(", length {:.4g} mm", ToMm(feature.span_high - feature.span_low));
   }
   if (feature.thread != product::ThreadKind::kNone) {
-    text += fmt::format(", {} thread", Plain(feature.thread));
+    text += fmt::format(", {} thread", FormatKind(feature.thread));
     text += feature.thread_pitch > 0
                 ? fmt::format(" of pitch {:.4g} mm", ToMm(feature.thread_pitch))
                 : "";
@@ -196,10 +196,10 @@ class Counted {
   void Print(ListLimit* limit) const {
     for (const Entry& entry : entries_) {
       if (limit->Next()) {
-        constexpr std::size_t kMostNames = 60;
+        constexpr std::size_t kMaxNames = 60;
         std::string which = entry.which;
-        if (which.size() > kMostNames) {
-          which = which.substr(0, which.rfind(' ', kMostNames)) + " ...";
+        if (which.size() > kMaxNames) {
+          which = which.substr(0, which.rfind(' ', kMaxNames)) + " ...";
         }
         fmt::print("{}", Wrap(fmt::format("{} x {} ({})", entry.count, entry.text, which), 6));
       }
@@ -224,7 +224,7 @@ void PrintFeatures(const Product& product, const Selection& selection, bool is_a
       continue;
     }
     fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()),
-               Shorten(part.name, Columns() - 7));
+               Shorten(part.name, CountColumns() - 7));
     Counted counted;
     for (std::size_t i = 0; i < part.forms.size(); ++i) {
       counted.Add("form: " + DescribeForm(part.forms[i]), std::to_string(i));
@@ -258,16 +258,17 @@ void PrintFaces(const Product& product, const Selection& selection, bool is_all)
       for (std::size_t f = 0; f < part.features.size() && feature.empty(); ++f) {
         const auto& faces = part.features[f].faces;
         if (std::find(faces.begin(), faces.end(), product::FaceId(i)) != faces.end()) {
-          feature = fmt::format(", {} {}", Plain(part.features[f].kind), f);
+          feature = fmt::format(", {} {}", FormatKind(part.features[f].kind), f);
         }
       }
       const Vec3 centre = 0.5 * (face.box_B.low + face.box_B.high);
-      table.Add(
-          {fmt::format("p{}", part.id.value()), fmt::format("{}", i),
-           Plain(face.surface.kind) + feature, fmt::format("{:.4f}", ToMm(face.surface.radius)),
-           fmt::format("{:.3f}", ToMm2(face.area)), fmt::format("{:.2g}", ToMm(face.residual)),
-           fmt::format("{:.2f} {:.2f} {:.2f}", ToMm(centre.x()), ToMm(centre.y()),
-                       ToMm(centre.z()))});
+      table.Add({fmt::format("p{}", part.id.value()), fmt::format("{}", i),
+                 FormatKind(face.surface.kind) + feature,
+                 fmt::format("{:.4f}", ToMm(face.surface.radius)),
+                 fmt::format("{:.3f}", ToMm2(face.area)),
+                 fmt::format("{:.2g}", ToMm(face.residual)),
+                 fmt::format("{:.2f} {:.2f} {:.2f}", ToMm(centre.x()), ToMm(centre.y()),
+                             ToMm(centre.z()))});
     }
   }
   fmt::print("\nFaces\n{}", table.ToText(2));
@@ -343,7 +344,7 @@ void PrintJoints(const Product& product, const Selection& selection, bool is_all
         !limit.Next()) {
       continue;
     }
-    const std::size_t width = (Columns() - 14) / 2;
+    const std::size_t width = (CountColumns() - 14) / 2;
     fmt::print("  {} t {} r  {} - {}\n", joint.free_translations, joint.free_rotations,
                PathOf(product, joint.a, width), PathOf(product, joint.b, width));
     fmt::print("{}", Wrap(fmt::format("{}{}", List(joint.mates, "m"),
@@ -357,7 +358,7 @@ void PrintJoints(const Product& product, const Selection& selection, bool is_all
   for (const product::Alignment& alignment : product.alignments) {
     if ((selection.Has(alignment.a.occurrence) || selection.Has(alignment.b.occurrence)) &&
         hints.Next()) {
-      const std::size_t width = (Columns() - 16) / 2;
+      const std::size_t width = (CountColumns() - 16) / 2;
       fmt::print("  in line    {} - {}\n             holes with nothing through both\n",
                  PathOf(product, alignment.a.occurrence, width),
                  PathOf(product, alignment.b.occurrence, width));
@@ -412,7 +413,7 @@ std::string DescribeDimension(const product::Dimension& dimension) {
 }
 
 std::string DescribeTolerance(const product::GeometricTolerance& tolerance) {
-  return fmt::format("{}: {} {:.6g} mm{}{} ({})", tolerance.entity, Plain(tolerance.kind),
+  return fmt::format("{}: {} {:.6g} mm{}{} ({})", tolerance.entity, FormatKind(tolerance.kind),
                      ToMm(tolerance.magnitude), tolerance.datums.empty() ? "" : " to ",
                      fmt::join(tolerance.datums, " | "), DescribeFaces(tolerance.faces));
 }
@@ -429,7 +430,7 @@ void PrintTolerances(const Product& product, const Selection& selection, bool is
       continue;
     }
     fmt::print("{:>5}  {}\n", fmt::format("p{}", part.id.value()),
-               Shorten(part.name, Columns() - 7));
+               Shorten(part.name, CountColumns() - 7));
     for (const product::Dimension& dimension : part.dimensions) {
       if (limit.Next()) {
         fmt::print("{}", Wrap(DescribeDimension(dimension), 6));
@@ -481,8 +482,9 @@ std::string CountMates(const Product& product) {
 void PrintSummary(const Product& product, const Diagnostics& diagnostics) {
   const mates::Linkage linkage = mates::CalcLinkage(product);
   const Vec3 size = product.box_W.size();
-  fmt::print("\n{}: {} parts ({} different) in {} levels\n", Shorten(product.source, Columns() / 2),
-             product.occurrences.size(), product.parts.size(), product.depth());
+  fmt::print("\n{}: {} parts ({} different) in {} levels\n",
+             Shorten(product.source, CountColumns() / 2), product.occurrences.size(),
+             product.parts.size(), product.depth());
   fmt::print("{:.0f} mm3, {:.4g} kg, {:.1f} x {:.1f} x {:.1f} mm\n", units::ToMm3(product.volume()),
              product.mass(), ToMm(size.x()), ToMm(size.y()), ToMm(size.z()));
   fmt::print(
@@ -496,9 +498,9 @@ void PrintSummary(const Product& product, const Diagnostics& diagnostics) {
 }  // namespace
 
 void PrintMate(const Product& product, const Mate& mate, bool with_evidence) {
-  const std::size_t width = (Columns() - 34) / 2;
+  const std::size_t width = (CountColumns() - 34) / 2;
   fmt::print("{:>6} {:<10} {:<11} {} <- {}\n", fmt::format("m{}", mate.id.value()), mate.key,
-             Plain(mate.kind), PathOf(product, mate.a.occurrence, width),
+             FormatKind(mate.kind), PathOf(product, mate.a.occurrence, width),
              PathOf(product, mate.b.occurrence, width));
   fmt::print("{}", Wrap(DescribeMate(mate, with_evidence), 7));
 }

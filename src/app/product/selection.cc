@@ -21,8 +21,8 @@ Unexpected FailToFind(const std::string& what, const std::string& name,
                       const std::vector<std::string>& candidates, const std::string& option) {
   const std::string nearest = mates::FindNearest(name, candidates);
   return Fail(ErrorCode::kNotFound, fmt::format("there is no {} \"{}\"", what, name), option,
-              nearest.empty() ? "hvas inspect lists what there is"
-                              : fmt::format("\"{}\" may be meant", nearest));
+              nearest.empty() ? "see hvas inspect for what the file contains"
+                              : fmt::format("did you mean \"{}\"?", nearest));
 }
 
 /** The occurrence itself, or any below a subassembly that is called so. */

@@ -58,21 +58,21 @@ Result<void> Check(const ExportOptions& options, const std::string& format) {
   if (IsRecord(options.load.file)) {
     if (!IsRecordFormat(format)) {
       return Fail(ErrorCode::kInvalid,
-                  "the name has no ending of a format that a record can be written as", name,
-                  std::string("end it with ") + kRecordFormats);
+                  "the file name has no extension of a format that a record can be exported to",
+                  name, std::string("end it with ") + kRecordFormats);
     }
   } else if (format != ".glb" && format != ".json" && format != ".step" && format != ".stp") {
-    return Fail(ErrorCode::kInvalid, "the name has no ending of a format that can be written", name,
-                "end it with .glb, .json or .step");
+    return Fail(ErrorCode::kInvalid,
+                "the file name has no extension of a format that can be written", name,
+                "use the extension .glb, .json or .step");
   }
   std::error_code error;
   if (std::filesystem::equivalent(options.load.file, options.output, error)) {
-    return Fail(ErrorCode::kInvalid, "this is the file that is exported", name,
-                "choose another name");
+    return Fail(ErrorCode::kInvalid, "the output is the input file", name, "choose another name");
   }
   if (!options.is_forced &&
       std::filesystem::exists(std::filesystem::symlink_status(options.output, error))) {
-    return Fail(ErrorCode::kInvalid, "the file is there already", name,
+    return Fail(ErrorCode::kInvalid, "the file exists already", name,
                 "choose another name, or replace it with --force");
   }
   return {};
@@ -84,7 +84,7 @@ Result<void> WriteStep(const ExportOptions& options, const Product& product,
                                      [](const product::Part& part) { return !part.has_brep; });
   if (without > 0) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("{} of {} parts are triangles only, which STEP of AP214 cannot hold",
+                fmt::format("{} of {} parts have triangles only, which STEP AP214 cannot represent",
                             without, product.parts.size()),
                 product.source, "export it as .glb, or start from the CAD system's own STEP file");
   }
@@ -146,7 +146,7 @@ int RunExport(const ExportOptions& options) {
     const auto damage = [&] {
       std::optional<Busy> busy;
       if (!options.load.is_quiet) {
-        busy.emplace("reading the record and writing what it holds");
+        busy.emplace("exporting the record");
       }
       return ExportRecord(options.load.file, options.output, format, options.record);
     }();
@@ -167,38 +167,43 @@ int RunExport(const ExportOptions& options) {
 void AddExport(CLI::App* app, int* status) {
   CLI::App* command =
       app->add_subcommand("export",
-                          "Write a CAD file as .glb, .json or .step, or a record as .csv, .json, "
-                          ".h5, .mcap or .glb, by the ending of X");
+                          "Export a CAD file as .glb, .json or .step, or a record as .csv, .json, "
+                          ".h5, .mcap or .glb, by the extension of X");
   const auto options = std::make_shared<ExportOptions>();
-  command->add_option("file", options->load.file, "CAD file, or a record")->required();
+  command->add_option("file", options->load.file, "CAD file or record")->required();
   command->add_option("-o,--output", options->output, "File to write")->required();
   command->add_option("--poses", options->poses,
-                      "Poses in place of those drawn: a pose file or a record of hvas assemble");
-  command->add_flag("--fine", options->is_fine, "The meshes for contact, not those for the eye");
-  command->add_flag("--meshes", options->has_meshes, "Meshes in the .json, too");
-  command->add_flag("--force", options->is_forced, "Replace a file that is there");
+                      "Poses instead of those in the file: a pose file or a record");
+  command->add_flag("--fine", options->is_fine,
+                    "Write the fine meshes of contact instead of those for display");
+  command->add_flag("--meshes", options->has_meshes, "Include meshes in the .json");
+  command->add_flag("--force", options->is_forced, "Replace an existing file");
   AddRecordSelection(command, &options->record);
   AddLoadOptions(command, &options->load);
   command->footer(
-      "Exit status: 0; 2 when a record was exported that is not as it was written; 1 on an error.\n"
+      "Exit status: 0; 2 when the exported record was changed after it was written; 1 on an "
+      "error.\n"
       "  .glb   glTF 2.0 in metres, Y up: the tree as nodes, a mesh for each part, colours of\n"
       "         faces, and with each vertex the index of its face (_FACE_ID)\n"
       "  .json  what hvas inspect --json prints\n"
       "  .step  AP214: structure, poses, names and colours, all in one file\n"
-      "Of a record of hvas assemble or the studio (docs/record.md), every number with its unit:\n"
-      "  .csv   a row for each tick          .json  the same, with the events and what it is of\n"
+      "Formats for a record of hvas assemble or the studio (docs/record.md), every number with its "
+      "unit:\n"
+      "  .csv   a row for each tick          .json  the same, with the events and the description "
+      "of the session\n"
       "  .h5    HDF5: a column for each number, compressed, with units and events\n"
-      "  .mcap  for Foxglove and Rerun       .glb   the ways of the parts as lines\n"
+      "  .mcap  for Foxglove and Rerun       .glb   the paths of the parts as lines\n"
       "A pose file is {\"format\": \"hvas-poses-1\", \"poses\": [{\"occurrence\": \"pump/shaft\",\n"
-      "\"position_mm\": [0, 0, 50], \"rotation_wxyz\": [1, 0, 0, 0]}]}; of a record, each part is\n"
-      "where it was let go last. What is not spoken of stays as drawn.\n"
+      "\"position_mm\": [0, 0, 50], \"rotation_wxyz\": [1, 0, 0, 0]}]}; with a record, each part "
+      "is\n"
+      "where it was released last. All other parts stay as drawn.\n"
       "Examples:\n"
       "  hvas export pump.step -o pump.glb\n"
       "  hvas export pump.step -o pump.json --meshes --fine\n"
       "  hvas export pump.stp -o whole.step --force\n"
       "  hvas export pump.step -o exploded.step --poses exploded.json\n"
-      "  hvas assemble pump.step --record run.hvasrec && "
-      "hvas export pump.step -o run.glb --poses run.hvasrec\n"
+      "  hvas assemble pump.step --record run.hvasrec && hvas export pump.step -o run.glb --poses "
+      "run.hvasrec\n"
       "  hvas export run.hvasrec -o run.csv --every 10 --from 20 --to 30\n"
       "  hvas export run.hvasrec -o run.mcap --every 20");
   command->callback([options, status] { *status = RunExport(*options); });

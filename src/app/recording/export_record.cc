@@ -35,11 +35,13 @@ Writer FindWriter(const std::string& ending) {
 }  // namespace
 
 void AddRecordSelection(CLI::App* command, RecordSelection* selection) {
-  command->add_option("--from", selection->from_s, "Of a record: from this session time on [s]");
-  command->add_option("--to", selection->to_s, "Of a record: up to this session time [s]");
+  command->add_option("--from", selection->from_s,
+                      "For a record: begin of the exported session time [s]");
+  command->add_option("--to", selection->to_s,
+                      "For a record: end of the exported session time [s]");
   command
       ->add_option("--every", selection->every,
-                   "Of a record: only every so many-th tick of each hand (not for .glb)")
+                   "For a record: keep one of so many ticks of each hand (not for .glb)")
       ->check(CLI::Range(1, 1'000'000));
 }
 

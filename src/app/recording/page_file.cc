@@ -60,12 +60,12 @@ Result<void> Print(const std::filesystem::path& page, const std::filesystem::pat
                                failed);
     if (status != 0 || failed) {
       return Fail(ErrorCode::kUnsupported, std::string(browser) + " could not print the page",
-                  pdf.string(), "write it as .html, and print that");
+                  pdf.string(), "write the page as .html, and print that");
     }
     return {};
   }
-  return Fail(ErrorCode::kUnsupported, "there is no Chromium to print the page with", pdf.string(),
-              "install chromium, or write it as .html and print that");
+  return Fail(ErrorCode::kUnsupported, "Chromium, which prints the page, was not found",
+              pdf.string(), "install chromium, or write the page as .html and print that");
 }
 
 }  // namespace
@@ -73,12 +73,13 @@ Result<void> Print(const std::filesystem::path& page, const std::filesystem::pat
 Result<void> CheckPageFile(const std::filesystem::path& file, bool is_forced) {
   const std::filesystem::path ending = file.extension();
   if (ending != ".html" && ending != ".pdf") {
-    return Fail(ErrorCode::kInvalid, "the name has no ending of a format that can be written",
-                file.string(), "end it with .html or .pdf");
+    return Fail(ErrorCode::kInvalid,
+                "the file name has no extension of a format that can be written", file.string(),
+                "use the extension .html or .pdf");
   }
   std::error_code ignored;
   if (!is_forced && std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
-    return Fail(ErrorCode::kInvalid, "the file is there already", file.string(),
+    return Fail(ErrorCode::kInvalid, "the file exists already", file.string(),
                 "choose another name, or replace it with --force");
   }
   return {};

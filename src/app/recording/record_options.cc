@@ -17,7 +17,7 @@ void AddRecordOptions(CLI::App* command, RecordOptions* options) {
       ->required();
   command->add_flag("--quiet,-q", options->is_quiet, "No progress");
   command->add_flag("!--no-cache", options->is_cache_used,
-                    "Prepare everything anew, and keep nothing on disk");
+                    "Do not use the caches on disk: prepare everything again");
 }
 
 Result<std::shared_ptr<const simulation::Model>> PrepareModel(record::Reader* reader,

@@ -54,7 +54,7 @@ Result<TimedPath> ReadRecordedPath(const std::filesystem::path& record,
   }
   if (holds == 0 || holds < hold) {
     return Fail(ErrorCode::kNotFound,
-                holds == 0 ? "no hand held this part"
+                holds == 0 ? "no hand held this part in the session"
                            : fmt::format("this part was held {} times only", holds),
                 fmt::format("{} in {}", product.occurrences[id.index()].path, name),
                 holds == 0 ? "choose another part, or give --translate or --rotate"

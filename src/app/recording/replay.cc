@@ -40,7 +40,7 @@ double Seconds(std::int64_t ns) {
   return 1e-9 * static_cast<double>(ns);
 }
 
-double SpeedOf(const ReplayReport& report) {
+double CalcSpeed(const ReplayReport& report) {
   return static_cast<double>(report.session_ns) /
          static_cast<double>(std::max<std::int64_t>(1, report.wall_ns));
 }
@@ -70,7 +70,7 @@ void PrintJson(const Model& model, const record::Reader& reader, const Outcome& 
                               {"largest_way_m", report.largest_way},
                               {"session_s", Seconds(report.session_ns)},
                               {"wall_s", Seconds(report.wall_ns)},
-                              {"real_time_factor", SpeedOf(report)}};
+                              {"real_time_factor", CalcSpeed(report)}};
   if (!outcome.damage.empty()) {
     json["damage"] = outcome.damage;
   }
@@ -115,17 +115,17 @@ void PrintText(const Model& model, const record::Reader& reader, const Outcome& 
   std::string text = fmt::format(
       "{}: {} ticks of {:.1f} s in {} stretch{} run again in {:.2f} s, {:.0f} times as fast\n",
       model.product->name, report.ticks, Seconds(report.session_ns), report.stretches,
-      report.stretches == 1 ? "" : "es", Seconds(report.wall_ns), SpeedOf(report));
+      report.stretches == 1 ? "" : "es", Seconds(report.wall_ns), CalcSpeed(report));
   if (!reader.is_complete()) {
-    text += "The session was cut short, or goes on: this is what there is of it.\n";
+    text += "The record is incomplete: the session was interrupted, or is still running.\n";
   }
   if (report.ticks == 0) {
-    text += "The record has no tick that could be run again: nothing is shown by it.\n";
+    text += "The record has no tick that can be replayed: nothing was verified.\n";
   } else if (report.is_exact()) {
     text += fmt::format("Every wrench and pose {} is the recorded one, bit for bit.\n",
                         outcome.damage.empty() ? "of the session" : "that the record still has");
   } else if (report.unreachable_ticks > 0) {
-    text += fmt::format("{} ticks could not be run again: the record lacks ticks before them.\n",
+    text += fmt::format("{} ticks could not be replayed: the record lacks ticks before them.\n",
                         report.unreachable_ticks);
   }
   if (report.first) {
@@ -184,25 +184,24 @@ int RunReplay(const ReplayArguments& arguments) {
 
 void AddReplay(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "replay", "Run a recorded session again, and compare every wrench with the record");
+      "replay", "Replay a recorded session and compare every wrench with the record");
   const auto arguments = std::make_shared<ReplayArguments>();
   AddRecordOptions(command, &arguments->record);
-  CLI::Option* verify = command->add_flag("--verify", arguments->is_verified,
-                                          "Exit with 2 unless the record is as it was written and "
-                                          "every bit comes out again");
+  CLI::Option* verify = command->add_flag(
+      "--verify", arguments->is_verified,
+      "Exit with status 2 unless the record is unchanged and the replay equals it bit for bit");
   AddConditionOption(command, &arguments->condition)
       ->description(
-          "Render what was recorded under this condition instead: collision, constraint "
-          "or hybrid")
+          "Render the recorded motion under this condition instead: collision, constraint or "
+          "hybrid")
       ->excludes(verify);
   AddForceMapOption(command, &arguments->force_map)->excludes(verify);
   AddJsonFlag(command, &arguments->is_json, "replay");
   command->footer(
-      "Exit status: 0; 2 when --verify found a difference, lost ticks, anything in the record "
-      "that\n"
-      "is not as it was written, or nothing to compare; 1 on an error.\n"
-      "With another condition or force map the hand moves as it was recorded: it did not feel what "
-      "is rendered now.\n"
+      "Exit status: 0; 2 when --verify found a difference, lost ticks, a change\n"
+      "in the record after it was written, or nothing to compare; 1 on an error.\n"
+      "With another condition or force map the hand moves as recorded: it does not react to the "
+      "new forces.\n"
       "Examples:\n"
       "  hvas replay press.hvasrec --verify\n"
       "  hvas replay press.hvasrec --force-map paper\n"

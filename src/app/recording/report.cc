@@ -51,19 +51,19 @@ int RunReport(const ReportOptions& options) {
 
 void AddReport(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "report", "Tell of a recorded session on one page: pictures, forces, fits, events");
+      "report", "Write a report of a recorded session: pictures, forces, fits, events");
   const auto options = std::make_shared<ReportOptions>();
   command->add_option("file", options->record, "A record of `hvas assemble --record` or the studio")
       ->required();
   command
       ->add_option("-o,--output", options->output,
-                   "The page to write, .html; or .pdf, which Chromium prints")
+                   "File to write: .html, or .pdf (printed by Chromium)")
       ->required();
-  command->add_flag("--force", options->is_forced, "Replace a file that is there");
+  command->add_flag("--force", options->is_forced, "Replace an existing file");
   command->footer(
-      "Exit status: 0; 2 when the record is not as it was written, which the page says, too; 1 on "
-      "an error.\n"
-      "The page needs no network and no other file.\n"
+      "Exit status: 0; 2 when the record was changed after it was written, which the page also "
+      "reports; 1 on an error.\n"
+      "The page is self-contained: it needs no network and no other file.\n"
       "Examples:\n"
       "  hvas report press.hvasrec -o press.html\n"
       "  hvas report press.hvasrec -o press.pdf --force");

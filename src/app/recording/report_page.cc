@@ -32,7 +32,7 @@ using units::ToMm;
 constexpr int kPictureWidth = 900;
 constexpr int kPictureHeight = 560;
 constexpr int kWaysHeight = 480;
-constexpr std::size_t kMostIncidents = 60;
+constexpr std::size_t kMaxIncidents = 60;
 constexpr int kColors = 5;  // of svg_plot.h
 
 constexpr const char* kStyle = R"(
@@ -111,7 +111,8 @@ std::string MakeHead(const Summary& summary) {
       "{}.</p>",
       seated == taken.size() ? fmt::format("<span class=\"good\">All {}</span>", seated)
                              : fmt::format("<span class=\"bad\">{}</span>", seated),
-      taken.size(), summary.is_complete ? "" : "; the record was cut short, or still goes on");
+      taken.size(),
+      summary.is_complete ? "" : "; the record is incomplete, or the session still runs");
   if (!summary.damage.empty()) {
     html += fmt::format(
         "<p class=\"verdict\"><span class=\"bad\">This record is damaged</span>: {}. This page "
@@ -221,8 +222,8 @@ std::string MakeForces(const Summary& summary) {
     PlotFigure figure;
     figure.title = summary.hands.size() == 1 ? "" : hand == 0 ? "First hand" : "Second hand";
     const std::string x = "session time [s]";
-    figure.panels.push_back({"Force given to the hand", x, "felt [N]", "", 1, {felt}, {}, {}});
-    figure.panels.push_back({"Force as physics has it", x, "true [N]", "", 1, {real}, {}, {}});
+    figure.panels.push_back({"Force rendered to the hand", x, "felt [N]", "", 1, {felt}, {}, {}});
+    figure.panels.push_back({"True force", x, "true [N]", "", 1, {real}, {}, {}});
     figure.panels.push_back({"Depth of insertion", x, "depth [mm]", "", 1, {depth}, {}, {}});
     html += "<figure>" + ToSvg(figure) + "</figure>";
   }
@@ -271,7 +272,7 @@ std::string MakeLoops(const Summary& summary) {
          fmt::format(
              "</tbody></table></div><p><small>Energy is accounted for with a device that "
              "shows forces, of the last stretch. Ticks that the record lacks: {}.</small></p>",
-             dropped.empty() ? "not known, as it was cut short" : Escape(dropped));
+             dropped.empty() ? "unknown, because the record is incomplete" : Escape(dropped));
 }
 
 /** What an event says, in words. */
@@ -304,7 +305,7 @@ std::string MakeIncidents(const Summary& summary) {
   html +=
       "<div class=\"scroll\"><table><thead><tr><th>Time [s]</th><th class=\"l\">What</th>"
       "<th class=\"l\">Part in the hand</th><th class=\"l\">Details</th></tr></thead><tbody>";
-  for (std::size_t i = 0; i < std::min(summary.incidents.size(), kMostIncidents); ++i) {
+  for (std::size_t i = 0; i < std::min(summary.incidents.size(), kMaxIncidents); ++i) {
     const record::Event& event = summary.incidents[i];
     html += fmt::format(
         "<tr><td>{:.3f}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
@@ -314,9 +315,9 @@ std::string MakeIncidents(const Summary& summary) {
         Escape(Explain(event)));
   }
   html += "</tbody></table></div>";
-  if (summary.incidents.size() > kMostIncidents) {
+  if (summary.incidents.size() > kMaxIncidents) {
     html += fmt::format("<p><small>The first {} of {}; all are in the record.</small></p>",
-                        kMostIncidents, summary.incidents.size());
+                        kMaxIncidents, summary.incidents.size());
   }
   return html;
 }
@@ -335,7 +336,7 @@ std::string MakeSource(const Summary& summary) {
       Escape(MetaOf(summary, "seed")), device("device"),
       summary.hands.size() < 2 ? "" : ", in the second: " + device("second_device"),
       summary.is_complete ? Escape(MetaOf(summary, record::kMetaDigest))
-                          : "not made, as the record was cut short");
+                          : "missing, because the record is incomplete");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace hvas::app {
 
 void AddStudy(CLI::App* app, int* status) {
-  CLI::App* study = app->add_subcommand("study", "Experiments with people, up to the statistics");
+  CLI::App* study = app->add_subcommand("study", "Run and analyse studies with participants");
   study->require_subcommand(1);
   AddStudyAnalyse(study, status);
   AddStudyPower(study, status);

@@ -78,7 +78,7 @@ void PrintPairs(const study::Analysis& analysis) {
     tests.Add({PairName(analysis, pair), fmt::format("{}", w.n), fmt::format("{}", w.zero_count),
                Format(w.z), FormatP(w.p), FormatP(pair.bonferroni_p), FormatP(pair.holm_p),
                FormatP(w.exact_p), FormatP(pair.exact_bonferroni_p), FormatP(pair.exact_holm_p)},
-              study::TellPair(analysis, pair));
+              study::DescribePair(analysis, pair));
   }
   TextTable variants({"Wilcoxon, variants\n", "with continuity\np", "Pratt\nZ", "Pratt\np"});
   for (const study::PairResult& pair : analysis.pairs) {
@@ -116,7 +116,7 @@ void PrintText(const study::Analysis& analysis, const std::vector<std::string>& 
                                       table.unit.empty() ? "" : fmt::format(" [{}]", table.unit),
                                       table.rows.size(), table.conditions.size())));
   PrintConditions(analysis);
-  const std::string told = study::TellFriedman(analysis);
+  const std::string told = study::DescribeFriedman(analysis);
   if (!told.empty()) {
     fmt::print("\n{}", Wrap(told, 0));
   }
@@ -124,7 +124,7 @@ void PrintText(const study::Analysis& analysis, const std::vector<std::string>& 
   fmt::print("\n");
   PrintParagraphs(notes);
   PrintParagraphs(analysis.notes);
-  PrintParagraphs(study::TellConventions(analysis));
+  PrintParagraphs(study::DescribeConventions(analysis));
 }
 
 void PrintText(const study::Identification& identification) {
@@ -162,7 +162,8 @@ void PrintText(const study::Identification& identification) {
     text += fmt::format("; p against chance ({:.3g} %) {}", 100 * *identification.chance,
                         FormatP(confusion.accuracy.chance_p));
   }
-  fmt::print("{}", Fold(text + "\nIntervals of Clopper and Pearson; all answers are taken as "
+  fmt::print("{}", Fold(text + "\n"
+                               "Intervals by Clopper and Pearson; all answers count as "
                                "independent, also those of one participant.\n"));
 }
 
@@ -186,13 +187,14 @@ Result<void> Analyse(AnalyseArguments a) {
     }
   }
   if (a.options.of && a.table.quantity.empty()) {
-    a.table.quantity = fmt::format("right answers of {}", *a.options.of);
+    a.table.quantity = fmt::format("correct answers of {}", *a.options.of);
   }
   const auto table = ReadStudyTable(a.table);
   if (!table) {
     return Unexpected(table.error());
   }
-  if (const auto* answers = std::get_if<std::vector<study::Answer>>(&table->content)) {
+  if (const auto* answers =
+          std::get_if<std::vector<study::IdentificationAnswer>>(&table->content)) {
     const auto identification = study::AnalyseIdentification(*answers, a.options.alpha);
     if (!identification) {
       return Unexpected(identification.error());
@@ -201,7 +203,7 @@ Result<void> Analyse(AnalyseArguments a) {
       PrintText(*identification);
     }
     return Show(a, ToJson(*identification, table->notes),
-                study::IdentificationHtml(*identification));
+                study::MakeIdentificationHtml(*identification));
   }
   auto analysis = study::Analyse(std::get<study::Table>(table->content), a.options);
   if (!analysis) {
@@ -214,37 +216,37 @@ Result<void> Analyse(AnalyseArguments a) {
   }
   const nlohmann::ordered_json json = ToJson(*analysis, table->notes);
   analysis->notes.insert(analysis->notes.begin(), table->notes.begin(), table->notes.end());
-  return Show(a, json, study::AnalysisHtml(*analysis));
+  return Show(a, json, study::MakeAnalysisHtml(*analysis));
 }
 
 }  // namespace
 
 void AddStudyAnalyse(CLI::App* study, int* status) {
   CLI::App* command = study->add_subcommand(
-      "analyse", "Tests, intervals, effect sizes and figures of a table of results");
+      "analyse", "Analyse a table of results: tests, intervals, effect sizes and figures");
   const auto a = std::make_shared<AnalyseArguments>();
   AddStudyTableOptions(command, &a->table)->required();
-  command->add_option("--alpha", a->options.alpha, "Level of all comparisons together")
+  command->add_option("--alpha", a->options.alpha, "Family-wise significance level")
       ->capture_default_str();
   command->add_option("--of", a->options.of,
-                      "Values are counts of right answers of so many trials");
-  command->add_option("--chance", a->options.chance,
-                      "Probability of a right answer by guessing; one in the number of conditions "
-                      "without it");
+                      "Number of trials for each value, when values are counts of correct answers");
+  command->add_option(
+      "--chance", a->options.chance,
+      "Probability of a correct answer by guessing; default: one over the number of conditions");
   CLI::Option* higher = command->add_flag_callback(
       "--higher-is-better", [a] { a->options.direction = study::Direction::kHigherIsBetter; },
-      "Say which of a pair is better; changes no test");
+      "Higher values are better: name the better of a pair; does not affect tests");
   command
       ->add_flag_callback(
           "--lower-is-better", [a] { a->options.direction = study::Direction::kLowerIsBetter; },
-          "The same, for times and errors")
+          "Lower values are better, as for times and errors")
       ->excludes(higher);
   AddJsonFlag(command, &a->is_json, "study_analysis or study_identification");
-  command->add_option("-o,--output", a->output, "Write a page with figures, too: .html or .pdf");
-  command->add_flag("--force", a->is_forced, "Replace a file that is there");
+  command->add_option("-o,--output", a->output, "Also write a page with figures: .html or .pdf");
+  command->add_flag("--force", a->is_forced, "Replace an existing file");
   command->footer(
-      "Three conditions or more: Friedman's test. Pairs: Wilcoxon's signed ranks, asymptotic and\n"
-      "exact, with Bonferroni and Holm. What is meant by each: docs/algorithms/statistics.md.\n"
+      "Three conditions or more: Friedman test. Pairs: Wilcoxon signed-rank test, asymptotic and\n"
+      "exact, adjusted by Bonferroni and Holm. Definitions: docs/algorithms/statistics.md.\n"
       "Examples:\n"
       "  hvas study analyse --table data/studies/identification-2016.csv --of 15\n"
       "  hvas study analyse --table times.csv --quantity \"completion time\" --unit s "

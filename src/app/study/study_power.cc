@@ -51,8 +51,8 @@ Result<Design> MakePilot(const StudyTableOptions& options) {
   }
   const auto* table = std::get_if<study::Table>(&read->content);
   if (table == nullptr) {
-    return Fail(ErrorCode::kInvalid, "a table of answers is no pilot", options.file.string(),
-                "give the shares of right answers by --identification");
+    return Fail(ErrorCode::kInvalid, "a table of answers cannot be used as a pilot study",
+                options.file.string(), "give the shares of correct answers with --identification");
   }
   statistics::PilotDesign design;
   for (const study::Row& row : table->rows) {
@@ -134,13 +134,13 @@ void PrintText(const PowerArguments& a, const Design& design, const PowerResult&
   }
   if (result.participants) {
     fmt::print("\n{}",
-               Wrap(fmt::format("{} participants reach a power of {:g}. Where the interval of "
-                                "one fewer reaches it, too, more --runs tell them apart.",
+               Wrap(fmt::format("{} participants reach a power of {:g}. If the interval of one "
+                                "fewer reaches it, too, increase --runs to separate them.",
                                 *result.participants, a.options.target),
                     0));
   } else {
-    fmt::print("\n{}", Wrap(fmt::format("Up to {} participants do not reach a power of {:g}: raise "
-                                        "--most, or the difference that is looked for.",
+    fmt::print("\n{}", Wrap(fmt::format("Up to {} participants do not reach a power of {:g}: "
+                                        "increase --most, or the difference to detect.",
                                         a.options.most, a.options.target),
                             0));
   }
@@ -196,19 +196,21 @@ void AddDesignOptions(CLI::App* command, PowerArguments* a) {
   const auto add = [&](const char* name, std::vector<double>* values, const char* what) {
     return command->add_option(name, *values, what)->delimiter(',')->group(group);
   };
-  CLI::Option* means = add("--means", &a->means, "Of each condition; normal values");
+  CLI::Option* means = add("--means", &a->means, "Means of the conditions; normal distribution");
   CLI::Option* sds =
-      add("--sd", &a->sds, "Standard deviation between participants, one or one each");
-  CLI::Option* medians =
-      add("--medians", &a->medians, "Of each condition; log-normal values, as times");
+      add("--sd", &a->sds,
+          "Standard deviation between participants: one for all conditions, or one for each");
+  CLI::Option* medians = add("--medians", &a->medians,
+                             "Medians of the conditions; log-normal distribution, as of times");
   CLI::Option* log_sds = add("--log-sd", &a->log_sds,
-                             "Standard deviation of their natural logarithm: 0.3 is about 30 %");
+                             "Standard deviation of the natural logarithm: 0.3 is about 30 %");
   CLI::Option* shares =
-      add("--identification", &a->shares, "Probability of a right answer under each condition");
-  CLI::Option* of = command->add_option("--of", a->of, "Trials of each condition")->group(group);
+      add("--identification", &a->shares, "Probability of a correct answer under each condition");
+  CLI::Option* of = command->add_option("--of", a->of, "Trials for each condition")->group(group);
   command
-      ->add_option("--correlation", a->correlation,
-                   "Of a participant's values under two conditions, with --means and --medians")
+      ->add_option(
+          "--correlation", a->correlation,
+          "Correlation of a participant's values under two conditions, with --means and --medians")
       ->capture_default_str()
       ->group(group);
   means->needs(sds);
@@ -222,36 +224,39 @@ void AddDesignOptions(CLI::App* command, PowerArguments* a) {
 }  // namespace
 
 void AddStudyPower(CLI::App* study, int* status) {
-  CLI::App* command =
-      study->add_subcommand("power", "How many participants a design needs, by simulation");
+  CLI::App* command = study->add_subcommand(
+      "power", "Find the number of participants that a design needs, by simulation");
   const auto a = std::make_shared<PowerArguments>();
   AddDesignOptions(command, a.get());
   AddStudyTableOptions(command, &a->table);
   const Choices<PowerTest> tests{{"friedman", PowerTest::kFriedman},
                                  {"wilcoxon", PowerTest::kWilcoxon}};
   AddChoice(command, "--test", &a->options.test, tests,
-            "friedman, or wilcoxon of two conditions; asymptotic")
+            "Test: friedman, or wilcoxon for two conditions; asymptotic")
       ->default_str("friedman");
-  command->add_option("--alpha", a->options.alpha, "Level of all comparisons together")
+  command->add_option("--alpha", a->options.alpha, "Family-wise significance level")
       ->capture_default_str();
   command
-      ->add_option("--comparisons", a->comparisons,
-                   "Tests that share the level, after Bonferroni: 3 for the pairs of three")
+      ->add_option(
+          "--comparisons", a->comparisons,
+          "Number of tests that share the level (Bonferroni): 3 for the pairs of three conditions")
       ->capture_default_str();
   command
-      ->add_option("--power", a->options.target, "Share of studies that are to find a difference")
+      ->add_option("--power", a->options.target,
+                   "Required power: share of studies that find a difference")
       ->capture_default_str();
-  command->add_option("--participants", a->participants, "Only tell the power with so many");
-  command->add_option("--most", a->options.most, "Participants that are tried")
+  command->add_option("--participants", a->participants,
+                      "Only calculate the power with this number of participants");
+  command->add_option("--most", a->options.most, "Largest number of participants to try")
       ->capture_default_str();
-  command->add_option("--runs", a->options.runs, "Simulated studies of each size")
+  command->add_option("--runs", a->options.runs, "Number of simulated studies for each size")
       ->capture_default_str();
-  command->add_option("--seed", a->options.seed, "Of the simulated people")->capture_default_str();
+  command->add_option("--seed", a->options.seed, "Seed of the simulation")->capture_default_str();
   AddJsonFlag(command, &a->is_json, "study_power");
   command->footer(
-      "The table is a pilot study, as `hvas study analyse` reads it: its complete participants "
+      "The table is a pilot study in the format of `hvas study analyse`; its complete participants "
       "are\n"
-      "drawn with putting back.\n"
+      "resampled with replacement.\n"
       "Examples:\n"
       "  hvas study power --means 12.6,9.4 --sd 4 --correlation 0.5 --test wilcoxon\n"
       "  hvas study power --medians 29.8,12.6,9.4 --log-sd 0.4 --power 0.9\n"

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 std::vector<std::string> ListShipped() {
   std::vector<std::string> names;
   std::error_code failed;
-  for (const auto& entry : fs::directory_iterator(StudiesFolder(), failed)) {
+  for (const auto& entry : fs::directory_iterator(FindStudiesFolder(), failed)) {
     if (entry.path().extension() == ".yaml") {
       names.push_back(entry.path().stem().string());
     }
@@ -34,7 +34,7 @@ Result<study::Protocol> FindProtocol(const std::string& name_or_file) {
   if (fs::is_regular_file(name_or_file, failed)) {
     return study::ReadProtocol(name_or_file);
   }
-  const fs::path shipped = StudiesFolder() / (name_or_file + ".yaml");
+  const fs::path shipped = FindStudiesFolder() / (name_or_file + ".yaml");
   const bool is_name = fs::path(name_or_file).filename() == name_or_file;
   if (is_name && fs::is_regular_file(shipped, failed)) {
     return study::ReadProtocol(shipped);
@@ -49,12 +49,13 @@ Result<study::Protocol> FindProtocol(const std::string& name_or_file) {
 Result<fs::path> FindProductOf(const study::Protocol& protocol) {
   const fs::path named(protocol.product);
   const fs::path file = named.has_extension() ? protocol.file.parent_path() / named
-                                              : ProductsFolder() / (protocol.product + ".step");
+                                              : FindProductsFolder() / (protocol.product + ".step");
   std::error_code failed;
   if (!fs::is_regular_file(file, failed)) {
     return Fail(ErrorCode::kNotFound,
-                fmt::format("the product \"{}\" of the protocol is not there", protocol.product),
-                file.string(), "correct \"product\": a file beside the protocol, or an example");
+                fmt::format("the product \"{}\" of the protocol does not exist", protocol.product),
+                file.string(),
+                "correct \"product\": a file relative to the protocol, or the name of an example");
   }
   return file;
 }

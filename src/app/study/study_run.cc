@@ -36,7 +36,7 @@ using study::Protocol;
 using study::StudyFolder;
 
 constexpr const char* kSimulated =
-    "simulated: participants with drawn skills, not people; they stand for nobody";
+    "simulated participants with random skills, not people; results do not generalise to people";
 
 struct RunOptions {
   std::string protocol;
@@ -96,7 +96,10 @@ void PrintSummary(const StudyFolder& folder, const std::vector<Participant>& par
                times.trials > 0 ? fmt::format("{:.2f}", times.restricted_mean) : "-",
                condition.published_mean ? fmt::format("{:.2f}", *condition.published_mean) : "-"});
   }
-  fmt::print("\n{}* those that were not done with their time limit\n", table.ToText());
+  fmt::print(
+      "\n"
+      "{}* trials without success count with their time limit\n",
+      table.ToText());
 }
 
 Result<void> WriteStudyPage(const StudyFolder& folder, const std::vector<Participant>& participants,
@@ -179,35 +182,38 @@ Result<void> RunSimulated(const RunOptions& options) {
 
 void AddRun(CLI::App* group, int* status) {
   CLI::App* command = group->add_subcommand(
-      "run", "Run a whole study with simulated participants, up to its report");
+      "run", "Run a complete study with simulated participants, including its report");
   const auto options = std::make_shared<RunOptions>();
-  command->add_option("protocol", options->protocol, "A protocol: a file, or xia-2011 or fit-2016")
+  command->add_option("protocol", options->protocol, "Protocol: a file, or xia-2011 or fit-2016")
       ->required();
   command
       ->add_option("--simulated", options->participants,
-                   "How many simulated participants; as the protocol plans, when not given")
+                   "Number of simulated participants; default: as planned in the protocol")
       ->expected(0, 1)
       ->check(CLI::Range(1, 999));
-  command->add_option("--seed", options->seed, "Of orders, skills, sizes and trials")
+  command->add_option("--seed", options->seed, "Seed of orders, skills, sizes and trials")
       ->capture_default_str();
   command->add_option("-o,--output", options->folder,
-                      "The study's folder; when not given, the protocol's id");
+                      "Folder of the study; default: the protocol's id");
   const Choices<study::KeptRecords> records{{"none", study::KeptRecords::kNone},
                                             {"last", study::KeptRecords::kLast},
                                             {"all", study::KeptRecords::kAll}};
   AddChoice(command, "--records", &options->records, records,
-            "Sessions to keep: none, last (repetition of each condition) or all; about 12 MB a "
-            "minute")
+            "Sessions to record: none, last (repetition of each condition) or all; about 12 MB for "
+            "each minute")
       ->default_str("last");
-  command->add_option("--threads", options->threads, "Participants at a time; 0: one a core")
+  command
+      ->add_option("--threads", options->threads,
+                   "Participants to simulate at a time; 0: one for each core")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   AddJsonFlag(command, &options->is_json, "study_summary");
   AddLoadOptions(command, &options->load);
   command->footer(
-      "With people a study is run in the studio: `hvas studio --study PROTOCOL --participant "
+      "To run a study with people, use the studio: `hvas studio --study PROTOCOL --participant "
       "P01`.\n"
-      "Run again, it goes on where it was stopped. The same seed gives the same results.\n"
+      "A study that was interrupted is resumed by running it again. Equal seeds give equal "
+      "results.\n"
       "Examples:\n"
       "  hvas study run xia-2011 --simulated 10\n"
       "  hvas study run fit-2016 --simulated 15 --seed 1 -o fits\n"
@@ -248,9 +254,10 @@ void PrintCheck(const Protocol& protocol) {
 }
 
 void AddCheck(CLI::App* group, int* status) {
-  CLI::App* command = group->add_subcommand("check", "Check a protocol, with lines and columns");
+  CLI::App* command =
+      group->add_subcommand("check", "Check a protocol; errors have line and column");
   const auto file = std::make_shared<std::string>();
-  command->add_option("protocol", *file, "A protocol: a file, or the id of a shipped one")
+  command->add_option("protocol", *file, "Protocol: a file, or the id of one that comes with HVAS")
       ->required();
   command->footer("Example:\n  hvas study check mine.yaml");
   command->callback([file, status] {
@@ -298,10 +305,10 @@ void PrintList(const Opened& study) {
 
 void AddList(CLI::App* group, int* status) {
   CLI::App* command =
-      group->add_subcommand("list", "List the participants of a study, and how far they are");
+      group->add_subcommand("list", "List the participants of a study and their progress");
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto is_json = std::make_shared<bool>(false);
-  command->add_option("folder", *folder, "The study's folder")->required();
+  command->add_option("folder", *folder, "Folder of the study")->required();
   AddJsonFlag(command, is_json.get(), "study_summary");
   command->footer("Example:\n  hvas study list xia-2011");
   command->callback([folder, is_json, status] {
@@ -317,14 +324,15 @@ void AddList(CLI::App* group, int* status) {
 }
 
 void AddExport(CLI::App* group, int* status) {
-  CLI::App* command =
-      group->add_subcommand("export", "Write a study's results as a table: CSV, a row a trial");
+  CLI::App* command = group->add_subcommand(
+      "export", "Export the results of a study as CSV, one row for each trial");
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto output = std::make_shared<std::filesystem::path>();
   const auto has_answers = std::make_shared<bool>(false);
-  command->add_option("folder", *folder, "The study's folder")->required();
-  command->add_option("-o,--output", *output, "The table; standard output, when not given");
-  command->add_flag("--answers", *has_answers, "The answers to the questions in place of trials");
+  command->add_option("folder", *folder, "Folder of the study")->required();
+  command->add_option("-o,--output", *output, "File to write; default: standard output");
+  command->add_flag("--answers", *has_answers,
+                    "Export the answers to the questions instead of trials");
   command->footer(
       "Examples:\n"
       "  hvas study export xia-2011 -o trials.csv\n"
@@ -346,14 +354,16 @@ void AddExport(CLI::App* group, int* status) {
 }
 
 void AddDelete(CLI::App* group, int* status) {
-  CLI::App* command = group->add_subcommand("delete", "Remove all of one participant, for good");
+  CLI::App* command =
+      group->add_subcommand("delete", "Delete all data of a participant irrevocably");
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto id = std::make_shared<std::string>();
-  command->add_option("folder", *folder, "The study's folder")->required();
-  command->add_option("--participant", *id, "Who: P01 and so on")->required();
+  command->add_option("folder", *folder, "Folder of the study")->required();
+  command->add_option("--participant", *id, "Id of the participant: P01, P02, ...")->required();
   command->footer(
-      "Removes the journal, the records, and the tables and reports in the folder, which have the\n"
-      "participant in them: write those again. What was written elsewhere is not found.\n"
+      "Deletes the journal, the records, and the tables and reports in the folder, which contain "
+      "data\n"
+      "of the participant: write those again. Files that were written elsewhere are not found.\n"
       "Example:\n"
       "  hvas study delete fits --participant P03");
   command->callback([folder, id, status] {
@@ -370,24 +380,22 @@ void AddDelete(CLI::App* group, int* status) {
     for (const std::filesystem::path& file : *removed) {
       fmt::print("removed {}\n", file.string());
     }
-    fmt::print("Nothing of {} is left in {}.\n", *id, folder->string());
+    fmt::print("All data of {} in {} were deleted.\n", *id, folder->string());
   });
 }
 
 void AddStudyReport(CLI::App* group, int* status) {
   CLI::App* command = group->add_subcommand(
-      "report", "Tell of a study on one page: times, forces, answers, statistics");
+      "report", "Write a report of a study: times, forces, answers, statistics");
   const auto folder = std::make_shared<std::filesystem::path>();
   const auto output = std::make_shared<std::filesystem::path>();
   const auto is_forced = std::make_shared<bool>(false);
-  command->add_option("folder", *folder, "The study's folder")->required();
-  command
-      ->add_option("-o,--output", *output,
-                   "The page to write, .html; or .pdf, which Chromium prints")
+  command->add_option("folder", *folder, "Folder of the study")->required();
+  command->add_option("-o,--output", *output, "File to write: .html, or .pdf (printed by Chromium)")
       ->required();
-  command->add_flag("--force", *is_forced, "Replace a file that is there");
+  command->add_flag("--force", *is_forced, "Replace an existing file");
   command->footer(
-      "The page needs no network and no other file.\n"
+      "The page is self-contained: it needs no network and no other file.\n"
       "Examples:\n"
       "  hvas study report fits -o fits.html\n"
       "  hvas study report fits -o fits.pdf --force");

@@ -39,7 +39,7 @@ class Source {
     const std::string_view text = table_.Get(row, column);
     if (text.empty()) {
       return Fail(ErrorCode::kInvalid, "the cell is empty", Where(row, column),
-                  "fill it in, or leave the row out");
+                  "fill it in, or remove the row");
     }
     return std::string(text);
   }
@@ -49,10 +49,11 @@ class Source {
                                                         const std::string& column) const {
     const std::optional<double> value = table_.GetNumber(row, column);
     if (value && !std::isfinite(*value)) {
-      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no number", table_.Get(row, column)),
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("\"{}\" is not a number", table_.Get(row, column)),
                   Where(row, column),
-                  "write it with a decimal point and without a unit, and leave empty what was not "
-                  "measured");
+                  "write numbers with a decimal point and without a unit, and leave cells without "
+                  "a measurement empty");
     }
     return value;
   }
@@ -70,7 +71,7 @@ Result<char> ParseDelimiter(const std::string& text) {
     return text[0];
   }
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" cannot delimit cells", text), "--delimiter",
-              "give one character, as \";\", or tab");
+              "give one character, such as \";\", or tab");
 }
 
 Result<void> CheckHeader(const Source& source) {
@@ -79,7 +80,7 @@ Result<void> CheckHeader(const Source& source) {
     for (const char* other : {";", "\t", "|"}) {
       if (columns[0].find(other) != std::string::npos) {
         return Fail(ErrorCode::kInvalid, "the table has one column", source.WhereHeader(),
-                    fmt::format("its cells seem to be delimited otherwise: --delimiter '{}'",
+                    fmt::format("its cells seem to have another delimiter: --delimiter '{}'",
                                 other[0] == '\t' ? "tab" : other));
       }
     }
@@ -89,9 +90,9 @@ Result<void> CheckHeader(const Source& source) {
     if (columns[i].empty() || !names.insert(columns[i]).second) {
       return Fail(ErrorCode::kInvalid,
                   columns[i].empty() ? "a column has no name"
-                                     : fmt::format("two columns are called \"{}\"", columns[i]),
+                                     : fmt::format("two columns have the name \"{}\"", columns[i]),
                   fmt::format("{}, column {}", source.WhereHeader(), i + 1),
-                  "name each column, and each otherwise");
+                  "give each column a name of its own");
     }
   }
   return {};
@@ -114,7 +115,7 @@ Result<bool> IsSum(const std::string& name, const std::vector<std::optional<doub
     if (!values[j] || std::abs(*values[j] - sum) > 1e-9 * std::abs(sum)) {
       return Fail(ErrorCode::kInvalid,
                   fmt::format("the row \"{}\" is not the sum of those above", name),
-                  above.conditions[j], "correct it, or leave it out");
+                  above.conditions[j], "correct it, or remove it");
     }
   }
   return true;
@@ -129,10 +130,10 @@ Result<StudyTable> ReadWide(const Source& source, const StudyTableOptions& optio
   }
   for (const std::string& condition : table.conditions) {
     if (!source.Has(condition)) {
-      return Fail(ErrorCode::kInvalid, fmt::format("there is no column \"{}\"", condition),
-                  source.WhereHeader(),
-                  "name columns of the file; one of the long form has participant, condition and a "
-                  "value");
+      return Fail(
+          ErrorCode::kInvalid, fmt::format("there is no column \"{}\"", condition),
+          source.WhereHeader(),
+          "use column names of the file; the long form has participant, condition and a value");
     }
   }
   StudyTable result;
@@ -157,8 +158,7 @@ Result<StudyTable> ReadWide(const Source& source, const StudyTableOptions& optio
       }
       if (*is_sum) {
         result.notes.push_back(
-            fmt::format("The last row, \"{}\", is the sum of the others and no "
-                        "participant.",
+            fmt::format("The last row, \"{}\", is the sum of the others and not a participant.",
                         row.participant));
         continue;
       }
@@ -173,9 +173,10 @@ Result<StudyTable> ReadLong(const Source& source, const StudyTableOptions& optio
   const std::string value_column = options.value.empty() ? "value" : options.value;
   for (const std::string& column : {std::string("participant"), value_column}) {
     if (!source.Has(column)) {
-      return Fail(ErrorCode::kInvalid, fmt::format("there is no column \"{}\"", column),
-                  source.WhereHeader(),
-                  "a table of trials has participant, condition and value, or what --value names");
+      return Fail(
+          ErrorCode::kInvalid, fmt::format("there is no column \"{}\"", column),
+          source.WhereHeader(),
+          "a table of trials needs participant, condition and value, or the column of --value");
     }
   }
   std::vector<study::Trial> trials;
@@ -197,11 +198,11 @@ Result<StudyTable> ReadLong(const Source& source, const StudyTableOptions& optio
   }
   StudyTable result;
   if (missing > 0) {
-    result.notes.push_back(fmt::format("{} of {} trials have no value and are left out.", missing,
+    result.notes.push_back(fmt::format("{} of {} trials have no value and are omitted.", missing,
                                        source.table().row_count()));
   }
   result.notes.push_back(
-      fmt::format("{} trials: a participant's value under a condition is the {} of their trials.",
+      fmt::format("{} trials: the value of a participant and condition is the {} of the trials.",
                   trials.size(), options.trials == study::TrialSummary::kMean ? "mean" : "median"));
   result.content =
       study::MakeTable(trials, options.trials,
@@ -210,10 +211,10 @@ Result<StudyTable> ReadLong(const Source& source, const StudyTableOptions& optio
 }
 
 Result<StudyTable> ReadAnswers(const Source& source) {
-  std::vector<study::Answer> answers;
+  std::vector<study::IdentificationAnswer> answers;
   if (!source.Has("participant")) {
     return Fail(ErrorCode::kInvalid, "there is no column \"participant\"", source.WhereHeader(),
-                "a table of answers has participant, shown and answered");
+                "a table of answers needs participant, shown and answered");
   }
   for (std::size_t i = 0; i < source.table().row_count(); ++i) {
     auto participant = source.GetText(i, "participant");
@@ -232,23 +233,24 @@ Result<StudyTable> ReadAnswers(const Source& source) {
 }  // namespace
 
 CLI::Option* AddStudyTableOptions(CLI::App* command, StudyTableOptions* table) {
-  CLI::Option* file = command->add_option(
-      "--table", table->file,
-      "Results (CSV); - for the standard input. Wide: participant, then a column a "
-      "condition. Long: participant, condition, value, a row a trial. Answers: "
-      "participant, shown, answered");
-  command->add_option("--delimiter", table->delimiter, "Between cells: one character, or tab")
+  CLI::Option* file =
+      command->add_option("--table", table->file,
+                          "Table of results (CSV); - for standard input. Wide: participant, then "
+                          "one column for each condition. Long: participant, condition, value, one "
+                          "row for each trial. Answers: participant, shown, answered");
+  command->add_option("--delimiter", table->delimiter, "Delimiter of cells: one character, or tab")
       ->capture_default_str();
-  command->add_option("--columns", table->columns, "The conditions of a wide table, if not all")
+  command
+      ->add_option("--columns", table->columns,
+                   "Columns of a wide table to use as conditions; default: all")
       ->delimiter(',');
-  command->add_option("--value", table->value,
-                      "The column of values of a long table, if not value");
-  command->add_option("--quantity", table->quantity, "What the values are: \"completion time\"");
-  command->add_option("--unit", table->unit, "Of the values: s");
+  command->add_option("--value", table->value, "Column of values in a long table; default: value");
+  command->add_option("--quantity", table->quantity, "Name of the quantity: \"completion time\"");
+  command->add_option("--unit", table->unit, "Unit of the values: s");
   const Choices<study::TrialSummary> summaries{{"mean", study::TrialSummary::kMean},
                                                {"median", study::TrialSummary::kMedian}};
   AddChoice(command, "--trials", &table->trials, summaries,
-            "Which one number stands for the trials of a participant and condition")
+            "Summary of the trials of a participant and condition")
       ->default_str("mean");
   return file;
 }

@@ -28,7 +28,7 @@ struct StudyTableOptions {
 
 /** A table of values, or of answers of a blind identification. */
 struct StudyTable {
-  std::variant<study::Table, std::vector<study::Answer>> content;
+  std::variant<study::Table, std::vector<study::IdentificationAnswer>> content;
   std::vector<std::string> notes;  ///< What was passed over.
 };
 

@@ -80,7 +80,7 @@ TEST(Help, OfEveryCommandSaysWhatItIsAndHasNoRawTypes) {
     for (const OptionHelp& option : command->options) {
       EXPECT_FALSE(option.description.empty()) << option.Left();
       for (const std::string& name : option.names) {
-        EXPECT_TRUE(names.insert(name).second) << name << " is there twice";
+        EXPECT_TRUE(names.insert(name).second) << name << " occurs twice";
       }
     }
     const std::string text = ToHelp(*command);
@@ -107,15 +107,15 @@ TEST(Usage, UnknownWordsAreNamedWithTheNearest) {
   };
 
   for (const Case& c : std::vector<Case>{
-           {{"inspekt"}, {"hvas: ", "command \"inspekt\"", "\"inspect\" may be meant"}},
+           {{"inspekt"}, {"hvas: ", "command \"inspekt\"", "did you mean \"inspect\"?"}},
            {{"paint"}, {"command \"paint\""}},
-           {{"study", "powr"}, {"hvas study: ", "\"powr\"", "\"power\" may be meant"}},
-           {{"fit", "desing"}, {"\"desing\"", "\"design\" may be meant"}},
-           {{"fit", "40 H7/p6", "--lenght", "50"}, {"hvas fit: ", "\"--length\" may be meant"}},
-           {{"fit", "40 H7/p6", "--lenght=50"}, {"\"--lenght\"", "\"--length\" may be meant"}},
-           {{"doctor", "now"}, {"\"now\" is one argument too many"}},
-           {{"assemble", "a.step", "b.step"}, {"\"b.step\" is one argument too many"}},
-           {{"mate", "ad", "a.step"}, {"hvas mate: ", "\"add\" may be meant"}}}) {
+           {{"study", "powr"}, {"hvas study: ", "\"powr\"", "did you mean \"power\"?"}},
+           {{"fit", "desing"}, {"\"desing\"", "did you mean \"design\"?"}},
+           {{"fit", "40 H7/p6", "--lenght", "50"}, {"hvas fit: ", "did you mean \"--length\"?"}},
+           {{"fit", "40 H7/p6", "--lenght=50"}, {"\"--lenght\"", "did you mean \"--length\"?"}},
+           {{"doctor", "now"}, {"the argument \"now\" is one too many"}},
+           {{"assemble", "a.step", "b.step"}, {"the argument \"b.step\" is one too many"}},
+           {{"mate", "ad", "a.step"}, {"hvas mate: ", "did you mean \"add\"?"}}}) {
     const Ran ran = RunHvas(c.arguments);
     SCOPED_TRACE(ran.err);
     EXPECT_EQ(ran.status, 64);
@@ -153,7 +153,7 @@ TEST(Usage, MisuseHasAnExitStatusOfItsOwn) {
 
 TEST(Usage, NumbersAndMissingWordsAreToldPlainly) {
   EXPECT_TRUE(Has(RunHvas({"fit", "identify", "--weber", "some"}).err,
-                  "--weber takes a number, not \"some\""));
+                  "--weber needs a number, not \"some\""));
   EXPECT_TRUE(Has(RunHvas({"study"}).err, "a command is missing"));
   EXPECT_TRUE(Has(RunHvas({"assemble"}).err, "file is missing"));
 }
@@ -352,7 +352,7 @@ TEST(Licences, AreInTheProgramWithTheirTexts) {
   EXPECT_EQ(one.status, 0);
   EXPECT_TRUE(Has(one.out, "Jean-loup Gailly"));
   EXPECT_FALSE(Has(one.out, "Mozilla"));
-  EXPECT_TRUE(Has(RunHvas({"licences", "zlip"}).err, "\"zlib\" may be meant"));
+  EXPECT_TRUE(Has(RunHvas({"licences", "zlip"}).err, "did you mean \"zlib\"?"));
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ plugin: Plug-in (a shared library for a device that HVAS does not know)
     what to do    put a plug-in's library there, or name it: plugin:/path/to/it.so
     not there     plug-ins in pc/usr/lib/hvas/plugins
 
-No device can be used now. For the one that you have, do what its "what to do" says, and look again.
+No device is usable now. For the one that you have, do what its "what to do" says, and look again.
 Without one, the simulated person works alone or with a device that is emulated:
   hvas assemble FILE
   hvas assemble FILE --device emulated:openhaptics:touch_x
@@ -145,9 +145,9 @@ Without one, the simulated person works alone or with a device that is emulated:
 
 TEST_F(BareMachine, WithoutProbingItSaysThatNothingWasStarted) {
   const std::string text = DescribeProbe(ProbeAll(false), false);
-  EXPECT_TRUE(text.ends_with(
-      "\n\nNothing was started. Next, to start each device that is there, without force:\n"
-      "  hvas devices --probe\n"))
+  EXPECT_TRUE(
+      text.ends_with("\n\nNo device was started. To start each one that was found, without force:\n"
+                     "  hvas devices --probe\n"))
       << text;
 }
 
@@ -190,8 +190,8 @@ TEST_F(BareMachine, KeyThatOthersCanReadIsAProblemAndNotAbsent) {
   const std::string text = DescribeProbe({Probe("network")}, true);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring,
                       "network: Network device (HVAS's own UDP protocol)\n"
-                      "    PROBLEM       others can read this key, so it is no secret\n"
-                      "    what to do    make a new one that only you can read: chmod 600 "
+                      "    PROBLEM       other users can read this key, so it is not secret\n"
+                      "    what to do    make a new key with access for you only: chmod 600 "
                       "pc/etc/hvas/network.key\n"
                       "    not there     key in pc/etc/hvas/network.key\n",
                       text);
@@ -222,8 +222,8 @@ TEST(ProbeTest, EmulatorIsMarkedAndTriedNext) {
   EXPECT_EQ(text.find("DEVICE"), std::string::npos);
   EXPECT_EQ(text.find("what to do"), std::string::npos);
   EXPECT_TRUE(
-      text.ends_with("\n\nEMULATED PHANTOM Desktop can be used.\n"
-                     "Feel a floor with it first, then put it into the hand:\n"
+      text.ends_with("\n\nEMULATED PHANTOM Desktop is usable.\n"
+                     "Try it with a virtual floor first, then use it:\n"
                      "  hvas devices --try openhaptics --seconds 30\n"
                      "  hvas assemble FILE --device openhaptics --realtime\n"))
       << text;
@@ -252,7 +252,7 @@ TEST(ProbeTest, LicenceThatIsMissingIsTold) {
       "                  Developer Edition\n"
       "    there         libHD.so in ",
       text);
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "No device can be used now.", text);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "No device is usable now.", text);
 }
 
 TEST(ProbeTest, RealDeviceIsProposedBeforeAnEmulatedOne) {
@@ -266,7 +266,7 @@ TEST(ProbeTest, RealDeviceIsProposedBeforeAnEmulatedOne) {
   report.devices[1].address = "1";
   report.devices[1].is_emulated = false;
   const std::string text = DescribeProbe({report}, true);
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "2 devices can be used.\n", text);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "2 devices are usable.\n", text);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "    DEVICE        sigma.7\n", text);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--try forcedimension:1 --seconds", text);
   report.devices = {info};
@@ -348,7 +348,7 @@ TEST_P(EmulatedTrialTest, IsMarkedAndRuns) {
   EXPECT_TRUE(ran.out.starts_with("    EMULATED      ")) << ran.out;
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "address       " + GetParam() + ":", ran.out);
   EXPECT_EQ(ran.out.find(GetParam() + ":" + GetParam() + ":"), std::string::npos) << ran.out;
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "A floor of ", ran.out);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "A horizontal floor of ", ran.out);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, " s  at ", ran.out);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "wake-up after the deadline: median", ran.out);
 }
@@ -470,7 +470,7 @@ TEST(AssembleWithDevice, WhatCannotBeOpenedIsNamedWithTheRemedy) {
                 "hvas: haply: a real device needs the real-time loop (add --realtime)\n");
   ExpectRefused({"--second-device", "emulated:haply"},
                 "hvas assemble: --second-device requires --device\n"
-                "hvas assemble --help tells what there is.\n",
+                "Run hvas assemble --help for the commands and options.\n",
                 64);
 }
 

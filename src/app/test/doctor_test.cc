@@ -98,8 +98,8 @@ TEST(DoctorTest, OrdinaryKernelIsToldWhichOneToInstall) {
   machine.ExpectGood("kernel", "Linux 6.1.0-rt, PREEMPT_RT");
   machine.Put("proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC Debian 6.1");
   machine.ExpectBad("kernel", "Linux 6.1.0-rt",
-                    "an ordinary kernel now and then wakes a thread late by a millisecond and "
-                    "more; on Debian: apt install linux-image-rt-amd64, and start that one");
+                    "an ordinary kernel occasionally wakes a thread a millisecond or more late; on "
+                    "Debian: apt install linux-image-rt-amd64, and boot that kernel");
   machine.Put("sys/kernel/realtime", "1");
   machine.ExpectGood("kernel", "Linux 6.1.0-rt, PREEMPT_RT");
 }
@@ -114,7 +114,7 @@ TEST(DoctorTest, PriorityAndMemoryNeedALimitOrARight) {
                     "/etc/security/limits.d/hvas.conf, then: groupadd realtime; usermod -aG "
                     "realtime $USER; log in again");
   machine.ExpectBad("locked memory", "up to 8192 kB",
-                    "as for the priority: '@realtime - memlock unlimited'");
+                    "as for the priority above: '@realtime - memlock unlimited'");
   // What root has on a machine of its own, but not always in a container.
   machine.Put(kStatus, kRights);
   machine.ExpectGood("real-time priority", "allowed");
@@ -146,28 +146,28 @@ TEST(DoctorTest, GovernorThatSavesPowerIsNamed) {
 
 TEST(DoctorTest, CoreIsKeptFreeOfOtherWork) {
   const Machine machine;
-  machine.ExpectGood("cores", "4, of which 3 has no other work");
+  machine.ExpectGood("cores", "4, of which 3 is reserved");
   machine.Put(std::string(kCpu) + "isolated", "");
   machine.Put(std::string(kCpu) + "online", "0-5,7");
-  machine.ExpectBad("cores", "7, none kept free of other work",
-                    "give the haptic loop a core of its own: isolcpus=6 nohz_full=6 on the "
+  machine.ExpectBad("cores", "7, none reserved for the haptic loop",
+                    "reserve a core for the haptic loop: isolcpus=6 nohz_full=6 on the "
                     "kernel's command line");
   machine.Put(std::string(kCpu) + "online", "0");
-  machine.ExpectBad("cores", "1, none kept free of other work",
-                    "the haptic loop shares the only core with all else: use a machine with two "
-                    "or more");
+  machine.ExpectBad("cores", "1, none reserved for the haptic loop",
+                    "the haptic loop shares the only core with all other programs: use a machine "
+                    "with two or more");
 }
 
 TEST(DoctorTest, DeepSleepOfACoreIsFoundUnlessItIsSwitchedOff) {
   const Machine machine;
   const std::string state = std::string(kCpu) + "cpu0/cpuidle/state2/";
-  machine.ExpectGood("idle states", "a core wakes from the deepest in 2 us");
+  machine.ExpectGood("idle states", "the deepest sleep state takes 2 us to leave");
   machine.Put(state + "latency", "890");
-  machine.ExpectBad("idle states", "a core wakes from the deepest in 890 us",
-                    "deep sleep of a core delays its waking: processor.max_cstate=1 "
+  machine.ExpectBad("idle states", "the deepest sleep state takes 890 us to leave",
+                    "deep sleep states delay the wake-up of a core: processor.max_cstate=1 "
                     "intel_idle.max_cstate=1 on the kernel's command line");
   machine.Put(state + "disable", "1");
-  machine.ExpectGood("idle states", "a core wakes from the deepest in 2 us");
+  machine.ExpectGood("idle states", "the deepest sleep state takes 2 us to leave");
 }
 
 TEST(DoctorTest, VirtualMachineIsTold) {
@@ -175,8 +175,8 @@ TEST(DoctorTest, VirtualMachineIsTold) {
   machine.ExpectGood("machine", "real");
   machine.Put("proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu vme hypervisor lahf_lm\n");
   machine.ExpectBad("machine", "virtual",
-                    "its host takes the processor away for milliseconds at a time, whatever is "
-                    "set here: for a force device use a real machine");
+                    "the host of a virtual machine suspends it for milliseconds, regardless of "
+                    "settings here: use a physical machine for a force device");
 }
 
 TEST(DoctorTest, SlowClockIsTold) {
@@ -185,7 +185,7 @@ TEST(DoctorTest, SlowClockIsTold) {
   for (const char* slow : {"hpet", "acpi_pm", "jiffies"}) {
     machine.Put("sys/devices/system/clocksource/clocksource0/current_clocksource", slow);
     machine.ExpectBad("clock", slow,
-                      "this clock takes microseconds to read: clocksource=tsc on the kernel's "
+                      "reading this clock takes microseconds: clocksource=tsc on the kernel's "
                       "command line");
   }
 }

@@ -42,7 +42,7 @@ TEST_P(BadFileTest, ErrorNamesTheFileAndWhatToDo) {
   ExpectError({command, "no such file.step"}, {"no such file.step", "(check the path)"});
   ExpectError({command, folder.path().string()}, {folder.path().string(), "not a file", "STEP"});
   const auto text = folder.Write("letter.step", "Dear all,\nthis is no product.\n");
-  ExpectError({command, text.string()}, {"letter.step", "not a STEP file", "AP242"});
+  ExpectError({command, text.string()}, {"letter.step", "neither a STEP file nor a mesh", "AP242"});
   const auto nothing = folder.Write("nothing.step", "");
   ExpectError({command, nothing.string()}, {"nothing.step"});
   const auto empty =
@@ -51,7 +51,7 @@ TEST_P(BadFileTest, ErrorNamesTheFileAndWhatToDo) {
                    "FILE_NAME('empty.step','2024-01-01T00:00:00',(''),(''),'','','');\n"
                    "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));\nENDSEC;\n"
                    "DATA;\nENDSEC;\nEND-ISO-10303-21;\n");
-  ExpectError({command, empty.string()}, {"empty.step", "no product", "export it again"});
+  ExpectError({command, empty.string()}, {"empty.step", "no product", "export the file again"});
   // The first half of a real file.
   const std::string whole = testing::ReadText(ProductFile("bushing"));
   const auto half = folder.Write("half.step", whole.substr(0, whole.size() / 2));
@@ -80,8 +80,8 @@ TEST(InspectErrorTest, NamesThatAreNotThereAreAnsweredWithTheNearest) {
   const std::string file = ProductFile("bushing");
   ExpectError({"inspect", file, "--only", "tree,mats"}, {"\"mats\"", "--only", "diagnostics"});
   ExpectError({"inspect", file, "--part", "chuk"},
-              {"\"chuk\"", "--part", "\"chuck\" may be meant"});
-  ExpectError({"inspect", file, "--occurrence", "shafts"}, {"\"shaft\" may be meant"});
+              {"\"chuk\"", "--part", "did you mean \"chuck\"?"});
+  ExpectError({"inspect", file, "--occurrence", "shafts"}, {"did you mean \"shaft\"?"});
   ExpectError({"inspect", file, "--mate", "m99"}, {"m99"});
   ExpectError({"inspect", file, "--kind", "weld"}, {"\"weld\"", "cone-seat"});
 }

@@ -372,7 +372,7 @@ TEST(ExportErrorTest, NothingIsWrittenOverOrHalf) {
   expect((folder / "rig.obj").string(), ".glb, .json or .step", rig);
   expect((folder / "rig").string(), ".glb, .json or .step", rig);
   expect((folder / "no" / "rig.glb").string(), "folder", rig);
-  expect(rig, "the file that is exported", rig);
+  expect(rig, "the output is the input file", rig);
   expect((folder / "x.glb").string(), "letter.glb", letter.string());
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }

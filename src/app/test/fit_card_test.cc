@@ -106,15 +106,15 @@ TEST(FitCommand, CapabilitiesMoveAndNarrowTheBatch) {
 
 TEST(FitCommand, RefusalsSayWhatAFitLooksLike) {
   ExpectRefusal({"fit", "H7/p6"}, {"40 H7/p6"});
-  ExpectRefusal({"fit", "40 H7/p66"}, {"no tolerance class"});
+  ExpectRefusal({"fit", "40 H7/p66"}, {"not a tolerance class"});
   ExpectRefusal({"fit", "4000 H7/p6"}, {"3150"});
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--material", "cheese"}, {"cheese"});
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--hub", "30"}, {"outer diameter"});
   ExpectRefusal({"fit", "40 H7/p6", "--population", "10"}, {"length"});
-  ExpectRefusal({"fit", "40 h7/G6"}, {"come first"});
-  ExpectRefusal({"fit", "0.8 N9"}, {"N9 and coarser are not for sizes up to 1 mm"});
+  ExpectRefusal({"fit", "40 h7/G6"}, {"comes first"});
+  ExpectRefusal({"fit", "0.8 N9"}, {"N9 and coarser are not defined for sizes up to 1 mm"});
   ExpectRefusal({"fit", "1000 ZC7"}, {"above 500 mm"});
-  ExpectRefusal({"fit", "40 H7/p6", "--length", "-3"}, {"--length: -3 is not over 0"});
+  ExpectRefusal({"fit", "40 H7/p6", "--length", "-3"}, {"--length: -3 is not above 0"});
   ExpectRefusal({"fit", "1 40 H7/p6"}, {"40 H7/p6"});
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--curve", "force.png"}, {".svg or .csv"});
   ExpectRefusal({"fit", "40 H7/p6", "--curve", "force.svg"}, {"--length"});
@@ -123,7 +123,7 @@ TEST(FitCommand, RefusalsSayWhatAFitLooksLike) {
                 {"--at"});
   ExpectRefusal({"fit", "40 H7/g6", "30 H7/g6", "--length", "9,8,7"}, {"3 values for 2 fits"});
   ExpectRefusal({"fit", "40 H7/p6", "--length", "50", "--chamfer", "88", "--curve", "f.csv"},
-                {"leads nothing in"});
+                {"is not a lead-in"});
   ExpectRefusal(
       {"fit", "40 H7/k6", "--length", "50", "--population", "9", "--cp", "1", "--cpk", "2"},
       {"C_pk"});
@@ -147,7 +147,7 @@ TEST(FitCommand, OptionsWithoutEffectAreRefused) {
   refuse({"40 H7/p6", "--length", "50", "--press-limit", "9"}, "without --population or --curve");
   refuse({"40 H7/p6", "--length", "50", "--chamfer-width", "1"}, "on an interference fit");
   refuse({"40 H7/p6", "--length", "50", "--mu", "0.1", "--oiled"},
-         "--oiled has no effect beside --mu");
+         "--oiled has no effect together with --mu");
   refuse({"40 H7", "--length", "50"}, "--length has no effect on one class alone");
   refuse({"40 H7/p6", "limits", "--batch", "in.csv"}, "fit: has no effect before limits");
   refuse({"--length", "50", "friction"}, "--length: has no effect before friction");
@@ -163,7 +163,7 @@ TEST(FitCommand, CountsMayBeWrittenAsPowersAndNotWithoutEnd) {
   ExpectRefusal(with({"1e12"}), {"1e12 is over 100000000"});
   ExpectRefusal(with({"1.5"}), {"1.5 is not a whole number"});
   ExpectRefusal(with({"100", "--threads", "100000"}), {"100000 is over 256"});
-  ExpectRefusal(with({"100", "--threads", "0"}), {"0 is not a whole number over 0"});
+  ExpectRefusal(with({"100", "--threads", "0"}), {"0 is not a positive whole number"});
 }
 
 TEST(FitCommand, ErrorsAreInTheUnitThatWasTyped) {
@@ -267,7 +267,7 @@ TEST(FitCommand, SearchFindsTheFitOfARange) {
   const json found = RunHvasJson({"fit", "search", "--nominal", "40", "--min", "9", "--max", "50"});
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found[0]["fit"], "H7/g6");
-  ExpectRefusal({"fit", "search", "--nominal", "40", "--min", "50", "--max", "9"}, {"no range"});
+  ExpectRefusal({"fit", "search", "--nominal", "40", "--min", "50", "--max", "9"}, {"not a range"});
 }
 
 }  // namespace

@@ -137,9 +137,10 @@ TEST(FitCommand, PlotsHaveAxesUnitsAndLegend) {
                 .status,
             0);
   ASSERT_EQ(RunHvas({"fit", "paper", "--curve", folder / "paper.svg"}).status, 0);
-  ExpectPlot(ReadText(folder / "curve.svg"),
-             {"axial force, N", "depth of the shaft, mm", "5 to 95 %", "The tight pair by itself",
-              "what the press can do", "clearance of the diameters, um"});
+  ExpectPlot(
+      ReadText(folder / "curve.svg"),
+      {"axial force, N", "depth of the shaft, mm", "5 to 95 %", "Tight pair (first quartile)",
+       "force limit of the press", "diametral clearance, um"});
   ExpectPlot(ReadText(folder / "jam.svg"),
              {"F_x / F_z", "M / (r F_z)", "tilt, deg", "may wedge", "slides on"});
   ExpectPlot(ReadText(folder / "paper.svg"),

@@ -42,14 +42,19 @@ TEST_F(FitTable, LimitsOfClassesOrTheReasonWhyThereAreNone) {
       "40,N01,hole,,,\"ISO 286 defines no class N01 at 40 mm: delta, which holes K to ZC need "
       "between 3 "
       "and 500 mm, begins with IT3; choose another class\"\n"
-      "40,Q7,,,,\"\"\"Q7\"\" is no tolerance class; write letters and grade as in H7 or js6\"\n"
-      "ten,H7,,,,\"nominal_mm is no number; write millimetres, or inches as in 1.5 in\"\n"
+      "40,Q7,,,,\"\"\"Q7\"\" is not a tolerance class; write letters and grade, for example H7 or "
+      "js6\"\n"
+      "ten,H7,,,,\"nominal_mm is not a number; write millimetres, or inches with their unit: 1.5 "
+      "in\"\n"
       "1.5 in,H7,hole,25,0,\n"
       "4E+1,H7,hole,25,0,\n"
       ",H7,,,,nominal_mm is missing\n"
-      "-5,H7,hole,,,-5 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 mm\n"
-      "0,H7,hole,,,0 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 mm\n"
-      "4000,H7,hole,,,4000 mm is no nominal size of ISO 286; give a diameter over 0 and up to 3150 "
+      "-5,H7,hole,,,-5 mm is not a nominal size of ISO 286; give a diameter above 0 and up to 3150 "
+      "mm\n"
+      "0,H7,hole,,,0 mm is not a nominal size of ISO 286; give a diameter above 0 and up to 3150 "
+      "mm\n"
+      "4000,H7,hole,,,4000 mm is not a nominal size of ISO 286; give a diameter above 0 and up to "
+      "3150 "
       "mm\n");
 }
 
@@ -87,7 +92,7 @@ TEST_F(FitTable, QuestionsAboutAPegInAHole) {
             "two_point_depth,b,R=10 r=9.95 theta=1 deg,h,mm,5.728982938,\n"
             "wedging,c,mu=.3 r=10 l=5.999,wedging possible,bool,1,\n"
             "statics,d,mu=.3 r=10 l=20 f1=3 f2=5,M,N mm,106,\n"
-            "two_point,e,D=20 l=10,theta2,rad,,the input d is missing or no number\n"
+            "two_point,e,D=20 l=10,theta2,rad,,the input d is missing or not a number\n"
             "two_point,f,D=20 d=19.9 l=10,colour,,,\"there is no output \"\"colour\"\" of kind "
             "\"\"two_point\"\"\"\n");
 }
@@ -119,7 +124,8 @@ TEST_F(FitTable, QuestionsAboutAPegThatCannotBeAreRefused) {
   refuse("jamming_point,c,mu=.3 r=10 l=5 Fx=1 Fz=-2 M=0,slides,bool",
          "Fz is -2, but must be over 0");
   refuse("statics,d,mu=.3 r=10 l=20 f1=-3 f2=5,M,N mm", "f1 is -3");
-  refuse("chamfer,e,Kx=10 Kt=50000 Lg=50 r=10 mu=0.9 alpha=30 deg z=1,Fz,N", "tan alpha over mu");
+  refuse("chamfer,e,Kx=10 Kt=50000 Lg=50 r=10 mu=0.9 alpha=30 deg z=1,Fz,N",
+         "tan alpha of the chamfer has to be above mu");
   refuse("one_point,f,Kx=10 Kt=50000 Lg=50 r=10 mu=0.1 eps0'=-1 theta0=0 l=10,f,N", "other side");
 }
 
@@ -192,7 +198,7 @@ TEST_F(FitTable, TablesMayHaveSemicolonsAndDecimalCommas) {
   EXPECT_PRED_FORMAT2(
       ::testing::IsSubstring, ",58.33333333,",
       Run("press", header + "\"100,0\",150,\"0,1\",50,\"0,15\",210000,0.3,210000,0.3\n"));
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "L_mm is no number: \"\"fifty\"\"",
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "L_mm is not a number: \"\"fifty\"\"",
                       Run("press", header + "100,150,0.1,fifty,0.15,210000,0.3,210000,0.3\n"));
 }
 

@@ -92,7 +92,7 @@ TEST(GreedyFileTest, ThousandsOfPartsAtOnePlaceAreOpenedWhenTheyAreAllowed) {
       folder.Write("many.gltf", cad::testing::MakeManyNodesGltf(20'000)).string();
   const Ran refused = RunHvas({"inspect", file});
   EXPECT_EQ(refused.status, 1);
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "many.gltf: it places more than 16384 parts",
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "many.gltf: the file places more than 16384 parts",
                       refused.err);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--max-parts", refused.err);
   const auto json =

@@ -157,7 +157,8 @@ TEST_F(PathCommandTest, WhatCannotBeDoneIsSaidBeforeAnythingIsWritten) {
   };
   EXPECT_TRUE(fails({"--translate", "0,0,1"}, "a.stl", "--swept"));
   EXPECT_TRUE(fails({"--translate", "0,0,1", "--swept"}, "a.csv", ".stl or .glb"));
-  EXPECT_TRUE(fails({"--rotate", "0,0,0,90"}, "a.csv", "no direction"));
+  EXPECT_TRUE(
+      fails({"--rotate", "0,0,0,90"}, "a.csv", "the direction of the axis has length zero"));
   EXPECT_TRUE(fails({}, "a.csv", "--translate", kMisuse));
   EXPECT_TRUE(
       fails({"--translate", "0,0,1", "--rotate", "0,0,1,1"}, "a.csv", "--translate", kMisuse));

@@ -71,7 +71,7 @@ TEST_F(FullDiskTest, OutputOfEveryCommandThatCannotBeWrittenIsAFailure) {
 TEST_F(FullDiskTest, FailureSaysItsOwnReasonFirst) {
   const Ran ran = testing::RunHvasInto("/dev/full", {"fit", "H7/p6"});
   EXPECT_EQ(ran.status, 1);
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "no size with a fit", ran.err);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "not a nominal size with a fit", ran.err);
 }
 
 class EndTest : public ::testing::TestWithParam<int> {};

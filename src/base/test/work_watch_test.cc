@@ -24,7 +24,7 @@ TEST(WorkWatchTest, TimeThatIsUpEndsTheWorkForGood) {
   EXPECT_EQ(error.code, ErrorCode::kOutOfResource);
   EXPECT_EQ(error.ToString(),
             "rig.step: finding the mates took longer than the 0.02 s that opening a file may take "
-            "(allow more with --time-limit, or export it in parts)");
+            "(raise --time-limit, or export the product in parts)");
 }
 
 TEST(WorkWatchTest, MemoryThatIsUsedUpEndsTheWork) {

@@ -106,7 +106,7 @@ class TreeBuilder {
   [[nodiscard]] std::vector<std::vector<std::size_t>> GroupSources(
       const std::vector<std::size_t>& wanted) const;
   void CopyGeometry(const Part& base, const PartSource& source, Part* part) const;
-  [[nodiscard]] bool LookAlike(std::size_t a, std::size_t b) const;
+  [[nodiscard]] bool AreAlike(std::size_t a, std::size_t b) const;
   std::vector<PartId> ShareParts(const std::vector<EqualShape>& equal,
                                  const std::vector<bool>& is_built);
   std::vector<bool> BuildSources(const std::vector<std::size_t>& wanted);
@@ -212,7 +212,7 @@ std::optional<PartId> TreeBuilder::FindPart(const TDF_Label& definition, const T
   std::optional<PartId> id;
   const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(definition);
   if (shape.IsNull() || CountContent(shape).faces == 0) {
-    diagnostics_->Note("no-face", name, "curves or points only; left out");
+    diagnostics_->Note("no-face", name, "the part has only curves or points and is omitted");
   } else {
     id = PartId(product_->parts.size());
     Part part;
@@ -222,7 +222,7 @@ std::optional<PartId> TreeBuilder::FindPart(const TDF_Label& definition, const T
     sources_.push_back({definition, shape, scale, color, {}, {}, {}});
     if (scale != 1) {
       diagnostics_->Note("baked-scale", name,
-                         fmt::format("an instance is {} by {}; it became a part of its own",
+                         fmt::format("an instance is {} by {}; it is imported as a part of its own",
                                      scale < 0 ? "mirrored" : "scaled", scale));
     }
   }
@@ -278,13 +278,13 @@ bool TreeBuilder::BuildPart(PartSource* source, Part* part) const {
       product::BuildFeatures(part);
       return true;
     }
-    diagnostics->Warn("no-mesh", part->name, "the part could not be meshed; left out",
+    diagnostics->Warn("no-mesh", part->name, "the part could not be meshed and is omitted",
                       "heal the part in the CAD system and export it again");
   } catch (const Standard_OutOfMemory&) {
     throw std::bad_alloc();
   } catch (const Standard_Failure& failure) {
     diagnostics->Warn("part-failed", part->name,
-                      fmt::format("OpenCASCADE could not work with the part ({} {}); left out",
+                      fmt::format("OpenCASCADE could not process the part ({} {}); it is omitted",
                                   failure.DynamicType()->Name(), failure.GetMessageString()),
                       "heal the part in the CAD system and export it again");
   }
@@ -354,7 +354,7 @@ void TreeBuilder::CopyGeometry(const Part& base, const PartSource& source, Part*
 }
 
 /** Whether two parts of one shape can be one: nothing about them tells them apart but the name. */
-bool TreeBuilder::LookAlike(std::size_t a, std::size_t b) const {
+bool TreeBuilder::AreAlike(std::size_t a, std::size_t b) const {
   const Part& part_a = product_->parts[a];
   const Part& part_b = product_->parts[b];
   const auto same = [](const Color& x, const Color& y) {
@@ -396,7 +396,7 @@ std::vector<PartId> TreeBuilder::ShareParts(const std::vector<EqualShape>& equal
     }
     std::vector<std::size_t>& looks = kinds[base];
     const auto twin = std::find_if(looks.begin(), looks.end(),
-                                   [this, i](std::size_t other) { return LookAlike(other, i); });
+                                   [this, i](std::size_t other) { return AreAlike(other, i); });
     if (twin != looks.end()) {
       part_of[i] = PartId(*twin);
     } else {
@@ -411,7 +411,8 @@ std::vector<PartId> TreeBuilder::ShareParts(const std::vector<EqualShape>& equal
   if (shared > 0) {
     diagnostics_->Note(
         "shared-parts", product_->source,
-        fmt::format("{} parts have the shape of another one, moved; they share it", shared));
+        fmt::format("{} parts have the shape of another part in another pose; they share it",
+                    shared));
   }
   return part_of;
 }
@@ -495,18 +496,18 @@ Result<void> TreeBuilder::Build() {
     }
   }
   if (product_->occurrences.size() > options_.max_parts) {
-    return TooManyParts(options_.max_parts, product_->source);
+    return FailTooManyParts(options_.max_parts, product_->source);
   }
   BuildParts();
   if (product_->occurrences.empty()) {
-    return Fail(ErrorCode::kUnreadable, "the file holds no solid part", product_->source,
-                "export the assembly with its solids, not only curves, points or references");
+    return Fail(ErrorCode::kUnreadable, "the file has no solid part", product_->source,
+                "export the assembly with solids, not only curves, points or references");
   }
   if (std::none_of(product_->parts.begin(), product_->parts.end(),
                    [](const Part& part) { return part.solid_count > 0; })) {
     diagnostics_->Warn("surfaces-only", product_->source,
-                       "the file holds surfaces but no solid; its parts have no mass",
-                       "export it with its solids");
+                       "the file has surfaces but no solids; its parts have no mass",
+                       "export the assembly with solids");
   }
   for (const product::Occurrence& occurrence : product_->occurrences) {
     for (const Vec3& vertex : product_->part_of(occurrence.id).mesh.vertices) {

@@ -183,7 +183,8 @@ std::optional<Pose> FindMotion(const Outline& from, const Outline& to) {
 }
 
 /** Whether each face of `from`, moved, lies on the surface of its counterpart in `to`. */
-bool FacesMatch(const TopoDS_Shape& from, const TopoDS_Shape& to, const Pose& X, double tolerance) {
+bool DoFacesMatch(const TopoDS_Shape& from, const TopoDS_Shape& to, const Pose& X,
+                  double tolerance) {
   TopExp_Explorer b(to, TopAbs_FACE);
   for (TopExp_Explorer a(from, TopAbs_FACE); a.More(); a.Next(), b.Next()) {
     const TopoDS_Face& face = TopoDS::Face(a.Current());
@@ -242,7 +243,7 @@ std::vector<EqualShape> FindEqualShapes(const std::vector<TopoDS_Shape>& shapes)
       Candidate candidate{i, MakeOutline(shapes[i])};
       for (const Candidate& base : bases) {
         const auto X = FindMotion(base.outline, candidate.outline);
-        if (X && FacesMatch(shapes[base.index], shapes[i], *X, ToleranceOf(base.outline))) {
+        if (X && DoFacesMatch(shapes[base.index], shapes[i], *X, ToleranceOf(base.outline))) {
           result[i] = {base.index, *X};
           break;
         }

@@ -170,10 +170,11 @@ void SetSurface(const TopoDS_Face& source, FaceSurface found, double deflection,
     }
   }
   if (agreement < 0.5 || worst > slack) {
-    diagnostics->Note("face-off-surface", part.name,
-                      fmt::format("a face lies {:.3f} mm off the surface that the file gives for "
-                                  "it; only its mesh is used",
-                                  units::ToMm(worst)));
+    diagnostics->Note(
+        "face-off-surface", part.name,
+        fmt::format(
+            "a face deviates by {:.3f} mm from its surface in the file; only its mesh is used",
+            units::ToMm(worst)));
     return;
   }
   face->surface = found.surface;
@@ -212,15 +213,16 @@ double CalcMeshVolume(const product::Mesh& mesh, const Vec3& about) {
 void CheckPart(const Part& part, int unmeshed, Diagnostics* diagnostics) {
   if (part.solid_count == 0) {
     diagnostics->Warn("no-solid", part.name, "the part has surfaces but no solid; it has no mass",
-                      "export it as a solid body");
+                      "export the part as a solid body");
   } else if (part.mass.volume <= 0) {
     diagnostics->Warn("no-volume", part.name, "the solid encloses no volume; it has no mass",
                       "heal the part in the CAD system and export it again");
   }
   if (part.solid_count > 1) {
-    diagnostics->Note("several-solids", part.name,
-                      fmt::format("{} solids; they move as one rigid part", part.solid_count),
-                      "export them as parts of a subassembly to move them apart");
+    diagnostics->Note(
+        "several-solids", part.name,
+        fmt::format("the part has {} solids, which move as one rigid body", part.solid_count),
+        "export the solids as parts of a subassembly to move them separately");
   }
   if (unmeshed > 0) {
     diagnostics->Warn(
@@ -290,11 +292,11 @@ std::optional<MeshLevel> BuildPartShape(const TopoDS_Shape& shape, const ImportO
   }
   SetMass(body, part);
   if (body.is_closed_shell) {
-    diagnostics->Note("closed-shell", part->name, "closed surfaces, taken as a solid");
+    diagnostics->Note("closed-shell", part->name, "closed surfaces are treated as a solid");
   } else if (body.reversed_count > 0) {
     diagnostics->Note(
         "reversed-solid", part->name,
-        fmt::format("{} solids were inside out and were turned", body.reversed_count));
+        fmt::format("{} solids were inside out and were reversed", body.reversed_count));
   }
   CheckPart(*part, unmeshed, diagnostics);
   part->shape_hash = CalcShapeHash(*part);

@@ -118,7 +118,7 @@ void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagno
   for (const std::string& name : missing) {
     diagnostics->Warn("missing-file", name,
                       "the assembly refers to this file, which could not be read",
-                      "put it beside the assembly");
+                      "put the file beside the assembly");
   }
 }
 
@@ -212,7 +212,7 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
   }
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
     return Fail(ErrorCode::kUnreadable, "the STEP file is damaged", name,
-                "export it again from the CAD system");
+                "export the file again from the CAD system");
   }
   if (const auto checked = CheckPlaced(CountPlacedProducts(reader), max_parts, name); !checked) {
     return Unexpected(checked.error());
@@ -225,8 +225,8 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
   const opencascade::handle<Indicator> indicator = new Indicator(&watch.progress);
   if (!reader.Transfer(document, indicator->Start())) {
     CloseDocument(document);
-    return Fail(ErrorCode::kUnreadable, "the STEP file holds no product that can be read", name,
-                "export it again from the CAD system");
+    return Fail(ErrorCode::kUnreadable, "the STEP file has no product that can be read", name,
+                "export the file again from the CAD system");
   }
   ReportMissingFiles(reader, diagnostics);
   if (watch.referred_files != nullptr) {

@@ -31,9 +31,10 @@ using product::Product;
 void CheckSize(const Product& product, Diagnostics* diagnostics) {
   const double size = product.box_W.size().norm();
   if (size > 50 || size < 1e-4) {
-    diagnostics->Warn("implausible-size", product.source,
-                      fmt::format("the product measures {:.6g} mm across", units::ToMm(size)),
-                      "check the length unit of the file");
+    diagnostics->Warn(
+        "implausible-size", product.source,
+        fmt::format("the product is {:.6g} mm across, an unusual size", units::ToMm(size)),
+        "check the length unit of the file");
   }
 }
 
@@ -82,10 +83,9 @@ Result<Product> ReadSolids(const std::filesystem::path& file, const ImportOption
         std::count_if(diagnostics->items().begin(), diagnostics->items().end(),
                       [](const Diagnostic& item) { return item.code == "missing-file"; });
     if (missing > 0) {
-      return Fail(
-          ErrorCode::kNotFound,
-          fmt::format("the assembly keeps its parts in {} other files that are not there", missing),
-          product.source, "put them beside the assembly");
+      return Fail(ErrorCode::kNotFound,
+                  fmt::format("the assembly refers to {} files of parts that are missing", missing),
+                  product.source, "put the files beside the assembly");
     }
     return Unexpected(built.error());
   }
@@ -142,14 +142,15 @@ Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOpt
     }
     return product;
   }
-  return Fail(ErrorCode::kUnreadable, "this is not a STEP file, and no mesh",
+  return Fail(ErrorCode::kUnreadable, "the file is neither a STEP file nor a mesh",
               file.filename().string(), kFormats);
 }
 
 /** The only place where exceptions of other libraries end. */
 Result<Product> ReadGuarded(const std::filesystem::path& file, const ImportOptions& options,
                             const ReadWatch& watch, Diagnostics* diagnostics) {
-  constexpr const char* kRemedy = "export it again from the CAD system, if need be in parts";
+  constexpr const char* kRemedy =
+      "export the file again from the CAD system, if necessary in parts";
   const std::string name = file.filename().string();
   try {
     return ReadByContent(file, options, watch, diagnostics);

@@ -36,7 +36,7 @@ std::string Write(const opencascade::handle<TDocStd_Document>& document, const s
   writer.SetPropsMode(Standard_True);
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetCVal("write.step.unit", "MM");
-  TellStage("translate", 0.5);
+  SendStage("translate", 0.5);
   if (!writer.Transfer(document, STEPControl_AsIs)) {
     return "OpenCASCADE cannot translate it";
   }
@@ -45,7 +45,7 @@ std::string Write(const opencascade::handle<TDocStd_Document>& document, const s
   header.SetName(new TCollection_HAsciiString(name.c_str()));
   header.SetTimeStamp(new TCollection_HAsciiString("1970-01-01T00:00:00"));
   header.SetOriginatingSystem(new TCollection_HAsciiString("HVAS"));
-  TellStage("write", 0.8);
+  SendStage("write", 0.8);
   if (writer.Write(fmt::format("/proc/self/fd/{}", kOutputDescriptor).c_str()) !=
       IFSelect_RetDone) {
     return "OpenCASCADE cannot write it";
@@ -66,11 +66,11 @@ std::string Move(const opencascade::handle<TDocStd_Document>& document, const st
     motions[path] = {Quat(w, x, y, z), Vec3(p_x, p_y, p_z)};
   }
   if (!stream.eof() || motions.empty()) {
-    return "its poses cannot be handed over";
+    return "the poses cannot be passed to hvas-cad";
   }
   const std::size_t found = MoveComponents(document, name, motions);
   return found == motions.size() ? ""
-                                 : fmt::format("{} of {} parts to be moved are not in it",
+                                 : fmt::format("{} of {} parts to be moved are not in the file",
                                                motions.size() - found, motions.size());
 }
 
@@ -84,7 +84,7 @@ int WorkerExportStep(const std::vector<std::string>& arguments) {
   std::string problem;
   try {
     Diagnostics ignored;  // Reading it for the product has told them.
-    const auto document = ReadStepDocument(file, kLargestMaxParts, {TellStage, {}, nullptr},
+    const auto document = ReadStepDocument(file, kLargestMaxParts, {SendStage, {}, nullptr},
                                            &ignored);  // Reading it has checked.
     problem = !document               ? document.error().message
               : arguments.size() == 3 ? Move(*document, file.stem().string(), arguments[2])
@@ -93,7 +93,7 @@ int WorkerExportStep(const std::vector<std::string>& arguments) {
       problem = Write(*document, file.filename().string());
     }
   } catch (const Standard_Failure& failure) {
-    problem = fmt::format("OpenCASCADE gave up: {}", failure.GetMessageString());
+    problem = fmt::format("OpenCASCADE failed: {}", failure.GetMessageString());
   } catch (const std::exception& exception) {
     problem = fmt::format("it cannot be written: {}", exception.what());
   }

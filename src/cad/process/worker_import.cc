@@ -73,7 +73,7 @@ int WorkerImport(const std::vector<std::string>& arguments) {
   std::vector<std::filesystem::path> referred_files;
   ImportResult result;
   result.product =
-      ReadCad(file, *options, &result.diagnostics, {TellStage, TellPart, &referred_files});
+      ReadCad(file, *options, &result.diagnostics, {SendStage, SendPart, &referred_files});
   if (!result.product && result.product.error().code == ErrorCode::kOutOfResource) {
     return kWorkerNoMemory;  // Another process may get on with less.
   }
@@ -83,8 +83,8 @@ int WorkerImport(const std::vector<std::string>& arguments) {
   }
   std::vector<std::byte> bytes = Serialise(result);
   if (bytes.size() > options->max_bytes) {
-    result.product = TooManyBytes("the product takes", static_cast<double>(bytes.size()),
-                                  options->max_bytes, file.filename().string());
+    result.product = FailTooManyBytes("the product takes", static_cast<double>(bytes.size()),
+                                      options->max_bytes, file.filename().string());
     bytes = Serialise(result);
   }
   return HandOver(bytes);

@@ -22,7 +22,7 @@ void WriteLine(std::string line) {
 
 }  // namespace
 
-void TellStage(std::string_view stage, double fraction) {
+void SendStage(std::string_view stage, double fraction) {
   static std::string last_stage;
   static std::int64_t last_ns = 0;
   const std::int64_t now_ns = MonotonicNs();
@@ -34,7 +34,7 @@ void TellStage(std::string_view stage, double fraction) {
   WriteLine(fmt::format("stage {:.3f} {}", std::isfinite(fraction) ? fraction : 0.0, stage));
 }
 
-void TellPart(std::uint32_t number, std::string_view name) {
+void SendPart(std::uint32_t number, std::string_view name) {
   WriteLine(fmt::format("part {} {}", number, name.substr(0, 1000)));
 }
 

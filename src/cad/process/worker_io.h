@@ -10,10 +10,10 @@
 namespace hvas::cad {
 
 /** Tells how far a stage is; seldom enough not to cost anything. */
-void TellStage(std::string_view stage, double fraction);
+void SendStage(std::string_view stage, double fraction);
 
 /** Tells which part is worked at from now on. */
-void TellPart(std::uint32_t number, std::string_view name);
+void SendPart(std::uint32_t number, std::string_view name);
 
 /** Writes what was made. @returns the exit status. */
 [[nodiscard]] int HandOver(std::span<const std::byte> output);

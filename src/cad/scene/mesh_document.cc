@@ -38,7 +38,7 @@ Result<void> Read3mfModel(const std::filesystem::path& file, const ImportOptions
   const auto archive = MappedFile::Open(file);
   if (const std::uint64_t unpacked = archive ? SumUnpackedSizes(archive->bytes()) : 0;
       unpacked > most) {
-    return TooManyBytes("unpacked it takes", static_cast<double>(unpacked), most, name);
+    return FailTooManyBytes("the unpacked file takes", static_cast<double>(unpacked), most, name);
   }
   const auto is_model = [](std::string_view entry) {
     std::string lower(entry);
@@ -52,7 +52,7 @@ Result<void> Read3mfModel(const std::filesystem::path& file, const ImportOptions
   if (!xml) {
     return Fail(ErrorCode::kUnreadable,
                 "the 3MF file could not be read: the archive is damaged, or holds no model", name,
-                "export it again");
+                "export the file again");
   }
   const Model3mf model = ParseModel3mf(*xml);
   if (const auto checked = CheckPlaced(model.placed, options.max_parts, name); !checked) {
@@ -62,7 +62,7 @@ Result<void> Read3mfModel(const std::filesystem::path& file, const ImportOptions
   if (!model.is_unit_known) {
     diagnostics->Warn("assumed-unit", name,
                       "the file names a unit that 3MF does not have; millimetres are assumed",
-                      "export it again in millimetres");
+                      "export the file again in millimetres");
   }
   for (const auto& [id, given] : model.names) {
     conventions->names.emplace(fmt::format("Object_{}", id), given);
@@ -91,29 +91,30 @@ Result<SceneConventions> FindConventions(const std::filesystem::path& file, Mesh
     case MeshFormat::kObj:
       conventions.length_unit = options.length_unit;
       diagnostics->Note("assumed-unit", file.filename().string(),
-                        fmt::format("{} files state no unit; one unit is taken for {:.6g} mm",
+                        fmt::format("{} files have no unit; one unit is assumed to be {:.6g} mm",
                                     NameOf(format), units::ToMm(options.length_unit)),
-                        "say which unit it is: --unit mm, cm, m, in or ft");
+                        "give the unit: --unit mm, cm, m, in or ft");
       break;
   }
   return checked ? Result<SceneConventions>(std::move(conventions)) : Unexpected(checked.error());
 }
 
-void TellFiles(const ConfinedIo::Log& log, const std::filesystem::path& file,
-               const ReadWatch& watch, Diagnostics* diagnostics) {
+void ReportFiles(const ConfinedIo::Log& log, const std::filesystem::path& file,
+                 const ReadWatch& watch, Diagnostics* diagnostics) {
   std::vector<std::filesystem::path> missing = log.missing;
   std::sort(missing.begin(), missing.end());
   missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
   for (const std::filesystem::path& path : missing) {
-    diagnostics->Warn("missing-file", path.filename().string(),
-                      fmt::format("{} refers to it, and it is not there", file.filename().string()),
-                      "put it beside the file");
+    diagnostics->Warn(
+        "missing-file", path.filename().string(),
+        fmt::format("{} refers to this file, which does not exist", file.filename().string()),
+        "put the missing file beside the file");
   }
   for (const std::string& name : log.refused) {
     diagnostics->Warn("refused-file", name,
-                      fmt::format("{} refers to it outside its own folder; it was not read",
+                      fmt::format("{} refers to this file outside its own folder; it was not read",
                                   file.filename().string()),
-                      "put it beside the file and refer to it by its name");
+                      "put the file into the folder and refer to it by its name");
   }
   if (watch.referred_files != nullptr) {
     std::vector<std::filesystem::path>& referred = *watch.referred_files;
@@ -125,22 +126,22 @@ void TellFiles(const ConfinedIo::Log& log, const std::filesystem::path& file,
   }
 }
 
-Unexpected NotRead(const std::string& name, MeshFormat format, const char* why,
-                   const ConfinedIo::Log& log) {
+Unexpected FailToRead(const std::string& name, MeshFormat format, const char* why,
+                      const ConfinedIo::Log& log) {
   if (!log.refused.empty()) {
     return Fail(ErrorCode::kUnreadable,
-                fmt::format("it needs {}, which is outside its folder", log.refused.front()), name,
-                "put the files beside each other");
+                fmt::format("the file needs {}, which is outside its folder", log.refused.front()),
+                name, "put both files into one folder");
   }
   if (!log.missing.empty()) {
-    return Fail(
-        ErrorCode::kNotFound,
-        fmt::format("it needs {}, which is not there", log.missing.front().filename().string()),
-        name, "put the files beside each other");
+    return Fail(ErrorCode::kNotFound,
+                fmt::format("the file needs {}, which does not exist",
+                            log.missing.front().filename().string()),
+                name, "put both files into one folder");
   }
   return Fail(ErrorCode::kUnreadable,
               fmt::format("the {} file could not be read: {}", NameOf(format), why), name,
-              "export it again");
+              "export the file again");
 }
 
 }  // namespace
@@ -162,19 +163,19 @@ Result<Product> ReadMeshFile(const std::filesystem::path& file, MeshFormat forma
   const aiScene* scene =
       importer.ReadFile(file.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) {
-    return NotRead(name, format, importer.GetErrorString(), log);
+    return FailToRead(name, format, importer.GetErrorString(), log);
   }
   Product product;
   product.name = file.stem().string();
   product.source = name;
-  TellFiles(log, file, watch, diagnostics);
+  ReportFiles(log, file, watch, diagnostics);
   if (const auto built =
           BuildSceneProduct(*scene, *conventions, options, watch, &product, diagnostics);
       !built) {
     return Unexpected(built.error());
   }
   if (product.occurrences.empty()) {
-    return Fail(ErrorCode::kUnreadable, "there is no triangle in it", name,
+    return Fail(ErrorCode::kUnreadable, "the file has no triangles", name,
                 "export the surfaces of the parts as triangles");
   }
   return product;

@@ -228,9 +228,10 @@ void SceneBuilder::BuildBodies() {
       whole.meshes.insert(whole.meshes.end(), body.meshes.begin(), body.meshes.end());
     }
     if (IsClosed(whole.meshes)) {
-      diagnostics_->Note(
-          "joined-groups", product_->source,
-          fmt::format("{} groups close only together; taken as faces of one part", bodies.size()));
+      diagnostics_->Note("joined-groups", product_->source,
+                         fmt::format("{} groups form a closed surface only together; they are "
+                                     "treated as faces of one part",
+                                     bodies.size()));
       bodies.assign(1, whole);
     }
   }
@@ -249,7 +250,8 @@ void SceneBuilder::AddLeaf(const Meshes& meshes, const std::string& name, Subass
     return;
   }
   if (!X_WN.A.allFinite() || !X_WN.t.allFinite()) {
-    diagnostics_->Warn("unusable-node", name, "its place cannot be used; left out",
+    diagnostics_->Warn("unusable-node", name,
+                       "the pose of this instance is unusable; the instance is omitted",
                        "export the file again");
     return;
   }
@@ -279,7 +281,7 @@ PartId SceneBuilder::FindPart(const Meshes& meshes, const std::string& name, con
     }
     if (!is_rigid) {
       diagnostics_->Note("baked-scale", name,
-                         fmt::format("an instance is {}; it became a part of its own",
+                         fmt::format("an instance is {}; it is imported as a part of its own",
                                      stretch.determinant() < 0 ? "mirrored" : "scaled"));
     }
   }
@@ -374,7 +376,7 @@ void SceneBuilder::BuildPart(const Source& source, Part* part) {
   }
   part->material = MakeMaterial(stated, part->name, diagnostics_);
   if (!BuildTrianglePart(MakeSoup(source), part, diagnostics_)) {
-    diagnostics_->Warn("no-mesh", part->name, "no triangle of the part can be used; left out",
+    diagnostics_->Warn("no-mesh", part->name, "the part has no usable triangle and is omitted",
                        "export the part again");
   }
 }
@@ -393,12 +395,12 @@ Result<void> SceneBuilder::Build() {
                   X_WF * ToAffine(scene_.mRootNode->mTransformation, conventions_.length_unit), 0);
   }
   if (is_too_large_) {
-    return TooManyParts(options_.max_parts, product_->source);
+    return FailTooManyParts(options_.max_parts, product_->source);
   }
   if (const double bytes = kBytesPerTriangle * triangles_;
       bytes > static_cast<double>(options_.max_bytes)) {
-    return TooManyBytes("the triangles of its parts take", bytes, options_.max_bytes,
-                        product_->source);
+    return FailTooManyBytes("the triangles of its parts take", bytes, options_.max_bytes,
+                            product_->source);
   }
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     if (watch_.progress) {

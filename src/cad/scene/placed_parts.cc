@@ -7,8 +7,7 @@ namespace {
 
 constexpr double kNodesPerPart =
     4;  // Subassemblies count too, and real files have fewer than parts.
-constexpr const char* kAllowMoreParts =
-    "allow more with --max-parts, or open one of its subassemblies";
+constexpr const char* kAllowMoreParts = "raise --max-parts, or open one of the subassemblies";
 
 }  // namespace
 
@@ -59,23 +58,23 @@ Result<void> CheckPlaced(double placed, std::size_t most, const std::string& nam
     return {};
   }
   return Fail(ErrorCode::kUnsupported,
-              fmt::format("it places {:.6g} parts and subassemblies, and {} parts are the most",
+              fmt::format("the file places {:.6g} parts and subassemblies; the limit is {} parts",
                           placed, most),
               name, kAllowMoreParts);
 }
 
-Unexpected TooManyParts(std::size_t most, const std::string& name) {
-  return Fail(ErrorCode::kUnsupported, fmt::format("it places more than {} parts", most), name,
-              kAllowMoreParts);
+Unexpected FailTooManyParts(std::size_t most, const std::string& name) {
+  return Fail(ErrorCode::kUnsupported, fmt::format("the file places more than {} parts", most),
+              name, kAllowMoreParts);
 }
 
-Unexpected TooManyBytes(const std::string& what, double bytes, std::uint64_t most,
-                        const std::string& name) {
+Unexpected FailTooManyBytes(const std::string& what, double bytes, std::uint64_t most,
+                            const std::string& name) {
   constexpr double kMebibyte = 1 << 20;
   return Fail(ErrorCode::kUnsupported,
-              fmt::format("{} {:.4g} MiB, and {:.4g} MiB are the most", what, bytes / kMebibyte,
+              fmt::format("{} {:.4g} MiB; the limit is {:.4g} MiB", what, bytes / kMebibyte,
                           static_cast<double>(most) / kMebibyte),
-              name, "allow more with --memory-limit, or export it in parts");
+              name, "raise --memory-limit, or export the product in parts");
 }
 
 }  // namespace hvas::cad

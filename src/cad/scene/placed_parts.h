@@ -24,11 +24,11 @@ using Uses = std::unordered_map<std::uint64_t, std::vector<std::uint64_t>>;
 [[nodiscard]] Result<void> CheckPlaced(double placed, std::size_t most, const std::string& name);
 
 /** The error of a file that places more than `most` parts. */
-[[nodiscard]] Unexpected TooManyParts(std::size_t most, const std::string& name);
+[[nodiscard]] Unexpected FailTooManyParts(std::size_t most, const std::string& name);
 
 /** The error of a file whose content takes more memory than a product, or one step on the way to
  it, may. @param what  "unpacked, it takes". */
-[[nodiscard]] Unexpected TooManyBytes(const std::string& what, double bytes, std::uint64_t most,
-                                      const std::string& name);
+[[nodiscard]] Unexpected FailTooManyBytes(const std::string& what, double bytes, std::uint64_t most,
+                                          const std::string& name);
 
 }  // namespace hvas::cad

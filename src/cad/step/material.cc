@@ -45,8 +45,8 @@ product::Material MakeMaterial(const std::optional<StatedMaterial>& stated,
         fmt::format("{} kg/m3 ({}) assumed", standard.density, standard.name);
     diagnostics->Note("assumed-density", part_name,
                       !stated || stated->density == 0
-                          ? "no density given; " + assumed
-                          : fmt::format("a density of {} makes no sense in any unit; {}",
+                          ? "the file has no density; " + assumed
+                          : fmt::format("a density of {} is implausible in any unit; {}",
                                         stated->density, assumed),
                       "give the part a material in the CAD system");
   }

@@ -530,12 +530,12 @@ void ToleranceReader::CheckSizes(Part* part) {
     bool is_explained = false;
     for (const double factor : {25.4, 1000.0, 1 / 25.4, 1e-3}) {
       if (explains(factor)) {
-        diagnostics_->Warn("dimension-unit", where,
-                           fmt::format("the {} is {:.6g} mm but its face has {:.6g} mm; the "
-                                       "value is taken times {:.6g}",
-                                       dimension.name, units::ToMm(dimension.nominal),
-                                       units::ToMm(sizes.front()), factor),
-                           "check the units of the dimensions in the CAD system");
+        diagnostics_->Warn(
+            "dimension-unit", where,
+            fmt::format(
+                "the {} is {:.6g} mm but its face has {:.6g} mm; the value is multiplied by {:.6g}",
+                dimension.name, units::ToMm(dimension.nominal), units::ToMm(sizes.front()), factor),
+            "check the units of the dimensions in the CAD system");
         dimension.nominal *= factor;
         if (dimension.upper) {
           *dimension.upper *= factor;
@@ -552,7 +552,7 @@ void ToleranceReader::CheckSizes(Part* part) {
           "dimension-differs", where,
           fmt::format("the {} is {:.6g} mm but its face has {:.6g} mm", dimension.name,
                       units::ToMm(dimension.nominal), units::ToMm(sizes.front())),
-          "check what the dimension is about in the CAD system");
+          "check which face the dimension belongs to in the CAD system");
     }
   }
 }
@@ -565,16 +565,15 @@ void ToleranceReader::Report() {
     }
     diagnostics_->Warn(
         "tolerance-damaged", product_->source,
-        fmt::format("{} dimensions or tolerances state no value that can be read "
-                    "({}{}); left out",
+        fmt::format("{} dimensions or tolerances have no readable value ({}{}) and are omitted",
                     damaged_.size(), names, damaged_.size() > kMaxNamed ? ", ..." : ""),
-        "check them in the CAD system and export the file again");
+        "check the dimensions in the CAD system and export the file again");
   }
   if (homeless_ > 0) {
-    diagnostics_->Note("tolerance-without-face", product_->source,
-                       fmt::format("{} dimensions or tolerances are about no face of any part; "
-                                   "left out",
-                                   homeless_));
+    diagnostics_->Note(
+        "tolerance-without-face", product_->source,
+        fmt::format("{} dimensions or tolerances belong to no face of any part and are omitted",
+                    homeless_));
   }
 }
 

@@ -172,7 +172,7 @@ TEST(GreedyFileTest, ArchivesThatUnpackToTooMuchAreRefused) {
     const Reading reading = Read(file, {}, control);
     const std::string name = file.filename().string();
     EXPECT_EQ(reading.parts, 0U) << name;
-    ExpectHas(reading.error, name + ": unpacked it takes 129 MiB, and 128 MiB are the most");
+    ExpectHas(reading.error, name + ": the unpacked file takes 129 MiB; the limit is 128 MiB");
     ExpectHas(reading.error, "--memory-limit");
     EXPECT_LT(reading.reader_mib, 200) << name;
   }

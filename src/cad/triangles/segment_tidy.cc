@@ -63,7 +63,7 @@ class Tidier {
   std::vector<Segment> Finish();
   void Refit(Segment* segment) const;
   [[nodiscard]] bool LiesOn(std::uint32_t t, const Surface& surface, double tolerance) const;
-  [[nodiscard]] bool Faces(std::uint32_t t, const Surface& surface, double tolerance) const;
+  [[nodiscard]] bool IsFacing(std::uint32_t t, const Surface& surface, double tolerance) const;
   [[nodiscard]] bool IsJoined(const Segment& a, const Segment& b) const;
   [[nodiscard]] std::vector<Vec3> PointsOf(const Segment& segment) const;
 
@@ -89,11 +89,11 @@ bool Tidier::LiesOn(std::uint32_t t, const Surface& surface, double tolerance) c
                        return std::abs(CalcDistance(surface, mesh_.vertices[v]).distance) <=
                               tolerance;
                      }) &&
-         Faces(t, surface, tolerance);
+         IsFacing(t, surface, tolerance);
 }
 
 /** Whether a triangle looks the way the surface does there; slivers do in any case. */
-bool Tidier::Faces(std::uint32_t t, const Surface& surface, double tolerance) const {
+bool Tidier::IsFacing(std::uint32_t t, const Surface& surface, double tolerance) const {
   const Triangle& v = mesh_.triangles[t];
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -152,7 +152,7 @@ bool Tidier::IsJoined(const Segment& a, const Segment& b) const {
                               tolerance;
                      }) &&
          std::all_of(b.triangles.begin(), b.triangles.end(),
-                     [&](std::uint32_t t) { return Faces(t, a.surface, tolerance); });
+                     [&](std::uint32_t t) { return IsFacing(t, a.surface, tolerance); });
 }
 
 void Tidier::Merge() {

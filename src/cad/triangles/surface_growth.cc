@@ -41,7 +41,7 @@ std::size_t CountDistinct(std::vector<double> values, double gap) {
 }
 
 /** Two more than a surface of this kind has parameters. */
-std::size_t LeastPoints(SurfaceKind kind) {
+std::size_t CountLeastPoints(SurfaceKind kind) {
   switch (kind) {
     case SurfaceKind::kSphere:
       return 6;
@@ -180,7 +180,8 @@ double SurfaceGrower::Refit(std::span<const std::uint32_t> members, Surface* sur
   return RefineSurface(points_, std::max(CalcExtent(points_), tolerance_), surface);
 }
 
-bool SurfaceGrower::Fits(const Surface& surface, std::uint32_t facet, double tolerance) const {
+bool SurfaceGrower::IsOnSurface(const Surface& surface, std::uint32_t facet,
+                                double tolerance) const {
   const Vec3& nhat = facets_.normal[facet];
   const bool is_ruled =
       surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone;
@@ -212,7 +213,7 @@ void SurfaceGrower::Spread(const Surface& surface, double tolerance, std::size_t
   for (std::size_t i = 0; i < members->size() && members->size() < limit; ++i) {
     for (const FacetLink& link : facets_.links_of((*members)[i])) {
       if (facet_stamp_[link.facet] != stamp && !is_taken_[link.facet] &&
-          Fits(surface, link.facet, tolerance)) {
+          IsOnSurface(surface, link.facet, tolerance)) {
         facet_stamp_[link.facet] = stamp;
         members->push_back(link.facet);
       }
@@ -328,7 +329,8 @@ std::optional<Surface> SurfaceGrower::FitSeeds(SurfaceKind kind,
   std::optional<Surface> surface = FitSurface(kind, samples);
   // Through so few corners a surface can always be laid.
   CollectPoints(seeds);
-  if (!surface || points_.size() < LeastPoints(kind) || !(Refit(seeds, &*surface) <= tolerance_)) {
+  if (!surface || points_.size() < CountLeastPoints(kind) ||
+      !(Refit(seeds, &*surface) <= tolerance_)) {
     return std::nullopt;
   }
   double sense = 0;
@@ -336,8 +338,9 @@ std::optional<Surface> SurfaceGrower::FitSeeds(SurfaceKind kind,
     sense += CalcDistance(*surface, sample.p).gradient.dot(sample.nhat);
   }
   surface->outward = sense < 0 ? -surface->outward : surface->outward;
-  const bool is_on_all = std::all_of(
-      seeds.begin(), seeds.end(), [&](std::uint32_t f) { return Fits(*surface, f, tolerance_); });
+  const bool is_on_all = std::all_of(seeds.begin(), seeds.end(), [&](std::uint32_t f) {
+    return IsOnSurface(*surface, f, tolerance_);
+  });
   return is_on_all ? surface : std::nullopt;
 }
 
@@ -354,7 +357,7 @@ void SurfaceGrower::Extend(Surface* surface, std::vector<std::uint32_t>* members
     if (Refit(*members, &refined) <= 2 * tolerance_) {
       *surface = refined;
     }
-    std::erase_if(*members, [&](std::uint32_t f) { return !Fits(*surface, f, tolerance_); });
+    std::erase_if(*members, [&](std::uint32_t f) { return !IsOnSurface(*surface, f, tolerance_); });
     if (members->size() <= before) {
       break;
     }

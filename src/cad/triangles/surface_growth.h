@@ -41,8 +41,8 @@ class SurfaceGrower {
                                                  const std::vector<std::uint32_t>& seeds);
   void Spread(const spatial::Surface& surface, double tolerance, std::size_t limit,
               std::vector<std::uint32_t>* members);
-  [[nodiscard]] bool Fits(const spatial::Surface& surface, std::uint32_t facet,
-                          double tolerance) const;
+  [[nodiscard]] bool IsOnSurface(const spatial::Surface& surface, std::uint32_t facet,
+                                 double tolerance) const;
   [[nodiscard]] double Refit(std::span<const std::uint32_t> members, spatial::Surface* surface);
   void DropCaps(const spatial::Surface& surface, std::vector<std::uint32_t>* members) const;
   [[nodiscard]] bool IsSupported(const spatial::Surface& surface,

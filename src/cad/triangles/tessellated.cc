@@ -361,7 +361,7 @@ std::optional<PartId> TessellationReader::FindPart(Id definition) {
     }
     part.material = MakeMaterial(std::nullopt, part.name, diagnostics_);
     if (!BuildTrianglePart(soup, &part, diagnostics_)) {
-      diagnostics_->Warn("no-mesh", part.name, "no triangle of the part can be used; left out",
+      diagnostics_->Warn("no-mesh", part.name, "the part has no usable triangle and is omitted",
                          "export the part again");
     }
   }
@@ -455,7 +455,7 @@ Result<void> TessellationReader::Read() {
     Visit(root, NameOf(root), SubassemblyId(0), {}, roots.size() > 1 ? 1 : 0, &tree);
   }
   if (product_->occurrences.size() > options_.max_parts) {
-    return TooManyParts(options_.max_parts, product_->source);
+    return FailTooManyParts(options_.max_parts, product_->source);
   }
   if (product_->occurrences.empty()) {  // Shapes that no product claims.
     if (const std::optional<PartId> part = FindPart(0)) {
@@ -464,13 +464,13 @@ Result<void> TessellationReader::Read() {
   }
   tree.Finish();
   if (product_->occurrences.empty()) {
-    return Fail(ErrorCode::kUnreadable, "there is no triangle in it", product_->source,
+    return Fail(ErrorCode::kUnreadable, "the file has no triangles", product_->source,
                 "export the parts as solids");
   }
   diagnostics_->Warn("no-brep", product_->source,
-                     "the file has triangles and no solids; surfaces are those that it gives for "
-                     "its faces or that fit the triangles",
-                     "export it with exact geometry for exact areas and volumes");
+                     "the file has triangles and no solids; surfaces are those given in the file "
+                     "or fitted to the triangles",
+                     "export the product with exact geometry for exact areas and volumes");
   return {};
 }
 

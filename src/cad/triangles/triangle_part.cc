@@ -86,23 +86,23 @@ void SetMass(const WeldedMesh& mesh, Part* part) {
   part->mass.I_BBcm_B = density * (central.trace() * Mat3::Identity() - central);
 }
 
-void TellDefects(const WeldedMesh& mesh, const Part& part, Diagnostics* diagnostics) {
+void ReportDefects(const WeldedMesh& mesh, const Part& part, Diagnostics* diagnostics) {
   const MeshDefects& defects = mesh.defects;
   if (defects.unusable > 0) {
-    diagnostics->Warn(
-        "damaged-mesh", part.name,
-        fmt::format("{} triangles have a corner that is no point; left out", defects.unusable),
-        "export the mesh again");
+    diagnostics->Warn("damaged-mesh", part.name,
+                      fmt::format("{} triangles have a corner that is not finite and are omitted",
+                                  defects.unusable),
+                      "export the mesh again");
   }
   if (defects.duplicate > 0) {
     diagnostics->Note("duplicate-triangles", part.name,
-                      fmt::format("{} triangles are there twice; taken once", defects.duplicate));
+                      fmt::format("{} duplicate triangles are used once", defects.duplicate));
   }
   if (defects.flipped > 0 || defects.turned_shells > 0) {
-    diagnostics->Note("reversed-mesh", part.name,
-                      fmt::format("{} triangles and {} whole shells were inside out and were "
-                                  "turned",
-                                  defects.flipped, defects.turned_shells));
+    diagnostics->Note(
+        "reversed-mesh", part.name,
+        fmt::format("{} triangles and {} whole shells were inside out and were reversed",
+                    defects.flipped, defects.turned_shells));
   }
   std::size_t open_shells = 0;
   for (const MeshShell& shell : mesh.shells) {
@@ -112,20 +112,21 @@ void TellDefects(const WeldedMesh& mesh, const Part& part, Diagnostics* diagnost
     diagnostics->Warn(
         "no-solid", part.name,
         fmt::format("the mesh is not closed ({} open edges); it has no mass", defects.open_edges),
-        "close the mesh, or export it as a solid body");
+        "close the mesh, or export the part as a solid body");
   } else if (open_shells > 0) {
     diagnostics->Warn("open-mesh", part.name,
                       fmt::format("{} of {} pieces of the mesh are not closed; they have no mass",
                                   open_shells, mesh.shells.size()),
-                      "close the mesh, or export it as a solid body");
+                      "close the mesh, or export the part as a solid body");
   }
   if (part.solid_count > 1) {
     diagnostics->Note("many-solids", part.name,
-                      fmt::format("{} separate bodies, taken as one part", part.solid_count));
+                      fmt::format("the mesh has {} separate bodies, which are treated as one part",
+                                  part.solid_count));
   }
 }
 
-void TellFit(const Part& part, Diagnostics* diagnostics) {
+void ReportFit(const Part& part, Diagnostics* diagnostics) {
   double total = 0;
   double freeform = 0;
   double worst = 0;
@@ -136,8 +137,8 @@ void TellFit(const Part& part, Diagnostics* diagnostics) {
   }
   diagnostics->Note(
       "fitted-mesh", part.name,
-      fmt::format("triangles only; {} faces were fitted to them, {:.3g} um off at most, and "
-                  "{:.0f} % of the area is freeform",
+      fmt::format("the part has triangles only; {} faces were fitted to them with a deviation of "
+                  "at most {:.3g} um, and {:.0f} % of the area is freeform",
                   part.faces.size(), units::ToUm(worst), 100 * freeform / total));
 }
 
@@ -161,8 +162,8 @@ bool BuildTrianglePart(const TriangleSoup& soup, Part* part, Diagnostics* diagno
   }
   part->display_mesh = part->mesh;
   SetMass(mesh, part);
-  TellDefects(mesh, *part, diagnostics);
-  TellFit(*part, diagnostics);
+  ReportDefects(mesh, *part, diagnostics);
+  ReportFit(*part, diagnostics);
   part->shape_hash = CalcShapeHash(*part);
   product::BuildFeatures(part);
   return true;

@@ -26,8 +26,9 @@ sockaddr_in ToSystem(const Endpoint& endpoint) noexcept {
 Result<Endpoint> ParseEndpoint(const std::string& host, std::uint16_t port) {
   in_addr address{};
   if (::inet_pton(AF_INET, host == "localhost" ? "127.0.0.1" : host.c_str(), &address) != 1) {
-    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no IPv4 address", host), {},
-                "give it by numbers, as 127.0.0.1, or 0.0.0.0 for all networks of this machine");
+    return Fail(
+        ErrorCode::kInvalid, fmt::format("\"{}\" is not an IPv4 address", host), {},
+        "give a numeric address such as 127.0.0.1, or 0.0.0.0 for all networks of this machine");
   }
   return Endpoint{address.s_addr, htons(port)};
 }
@@ -45,13 +46,13 @@ Result<DatagramSocket> DatagramSocket::Bind(const std::string& host, std::uint16
     const int reason = errno;
     const std::string where = fmt::format("UDP {}:{}", host, port);
     if (reason == EADDRINUSE) {
-      return Fail(ErrorCode::kOutOfResource, "another program has this port already", where,
-                  "end that program, or give another port");
+      return Fail(ErrorCode::kOutOfResource, "another program uses this port", where,
+                  "end that program, or choose another port");
     }
-    return Fail(
-        ErrorCode::kInvalid,
-        fmt::format("HVAS cannot listen there: {}", std::generic_category().message(reason)), where,
-        "give an address of this machine, and a port above 1023");
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("HVAS cannot listen on this address: {}",
+                            std::generic_category().message(reason)),
+                where, "give an address of this machine, and a port above 1023");
   }
   return socket;
 }

@@ -73,26 +73,26 @@ Error ExplainFailure(const LibrarySearch& search, const fs::path& file, const st
   const auto machine = ReadMachine(file);
   if (!machine) {
     return {ErrorCode::kUnsupported,
-            fmt::format("{} of {} is no library: it is damaged or only a placeholder",
+            fmt::format("{} of {} is not a library: it is damaged or a placeholder",
                         file.filename().string(), search.title),
             file.string(), "install it again; " + search.remedy};
   }
   if (machine != ReadMachine("/proc/self/exe")) {
     return {ErrorCode::kUnsupported,
-            fmt::format("{} of {} is made for another kind of processor than this machine's",
+            fmt::format("{} of {} is built for another processor architecture",
                         file.filename().string(), search.title),
-            file.string(), "install the edition for this machine (uname -m says which it is)"};
+            file.string(), "install the edition for the architecture of this machine (uname -m)"};
   }
   const std::string missing = words.substr(0, words.find(':'));
   const bool lacks_another =
       words.find("cannot open shared object file") != std::string::npos && missing != file.string();
   if (lacks_another) {
     return {ErrorCode::kUnsupported,
-            fmt::format("{} of {} needs {}, which is not on this machine", file.filename().string(),
+            fmt::format("{} of {} needs {}, which is not installed", file.filename().string(),
                         search.title, missing),
             file.string(),
-            fmt::format("install what brings {} (\"apt-file search {}\" names the package), or a "
-                        "newer version of {}",
+            fmt::format("install the package with {} (\"apt-file search {}\" finds it), or a newer "
+                        "version of {}",
                         missing, missing, search.title)};
   }
   return {
@@ -108,7 +108,7 @@ Error LibraryMissing(const LibrarySearch& search) {
     folders.push_back(folder.string());
   }
   return {ErrorCode::kNotFound,
-          fmt::format("the library of {} ({}) is not on this machine", search.title,
+          fmt::format("the library of {} ({}) is not installed", search.title,
                       fmt::join(search.names, ", ")),
           fmt::format("{}{}", fmt::join(folders, ":"),
                       search.asks_loader ? " and the loader's own path" : ""),
@@ -220,15 +220,16 @@ Result<DynamicLibrary> LoadFunctions(const LibrarySearch& search, std::vector<Fi
   const bool is_old = !search.old_function.empty() && library->Has(search.old_function.c_str());
   if (!binder.missing().empty() && is_old) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("the library of {} is of {}; {} is needed", search.title,
+                fmt::format("the library of {} has version {}; version {} is needed", search.title,
                             search.old_version, search.version),
                 library->path(), search.remedy);
   }
   if (!binder.missing().empty()) {
-    return Fail(ErrorCode::kUnsupported,
-                fmt::format("the library of {} lacks {}; it is of another version than HVAS needs",
-                            search.title, fmt::join(binder.missing(), ", ")),
-                library->path(), fmt::format("{} is needed; {}", search.version, search.remedy));
+    return Fail(
+        ErrorCode::kUnsupported,
+        fmt::format("the library of {} has no function {}; HVAS needs another version of it",
+                    search.title, fmt::join(binder.missing(), ", ")),
+        library->path(), fmt::format("{} is needed; {}", search.version, search.remedy));
   }
   return library;
 }

@@ -97,21 +97,21 @@ Error EvdevProblem(int reason, const std::filesystem::path& path) {
   switch (reason) {
     case EACCES:
     case EPERM:
-      return {
-          ErrorCode::kInvalid, "you may not use this input device", path.string(),
-          "join the group that may, and log in again: sudo usermod -aG input $USER; or give the "
-          "person at the machine the right by a udev rule: SUBSYSTEM==\"input\", "
-          "ENV{ID_INPUT_JOYSTICK}==\"1\", TAG+=\"uaccess\""};
+      return {ErrorCode::kInvalid, "this user has no permission to use this input device",
+              path.string(),
+              "join the group input and log in again: sudo usermod -aG input $USER; or give the "
+              "local user access by a udev rule: SUBSYSTEM==\"input\", "
+              "ENV{ID_INPUT_JOYSTICK}==\"1\", TAG+=\"uaccess\""};
     case ENOENT:
     case ENODEV:
     case ENXIO:
       return {ErrorCode::kNotFound, "there is no such input device", path.string(),
-              "plug it in, or leave out the address to take the first one found"};
+              "connect it, or omit the address to use the first one found"};
     default:
       return {ErrorCode::kOutOfResource,
               fmt::format("the input device cannot be opened: {}",
                           std::generic_category().message(reason)),
-              path.string(), "plug it out and in again"};
+              path.string(), "disconnect it and connect it again"};
   }
 }
 

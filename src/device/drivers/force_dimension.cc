@@ -34,20 +34,20 @@ VendorVerdict Judge(int error) noexcept {
 
 std::string Explain(int code) {
   static const std::map<int, std::string> words{
-      {kErrorCom, "the connection to it failed; look at its cable and power"},
+      {kErrorCom, "the connection to it failed; check its cable and power"},
       {3, "its controller is busy"},
-      {kErrorNoDriver, "the vendor's USB driver is not there"},
-      {kErrorNoDevice, "no device answers; look at its cable and power"},
-      {kErrorNotAvailable, "it does not offer what was asked for"},
-      {kErrorTimeout, "it did not answer in time; look at its cable and power"},
+      {kErrorNoDriver, "the vendor's USB driver is not installed"},
+      {kErrorNoDevice, "no device responds; check its cable and power"},
+      {kErrorNotAvailable, "it does not support the requested function"},
+      {kErrorTimeout, "it did not respond in time; check its cable and power"},
       {kErrorNotReady, "it is not calibrated"},
       {kErrorInUse, "another program has it open"},
-      {-kOffByButton, "its force button is off; press it"},
-      {-kOffByVelocity, "it was moved faster than it allows"},
-      {-kOffByWatchdog, "it was given nothing for too long, and its watchdog cut the force"},
-      {-kOffBySoftware, "the vendor's software cut the force"},
-      {-kOffByDisconnection, "its USB connection was cut"},
-      {-kOffByDeadMan, "its dead-man switch says that nobody holds it"}};
+      {-kOffByButton, "its forces are switched off; press its force button"},
+      {-kOffByVelocity, "it was moved faster than its limit"},
+      {-kOffByWatchdog, "it got no command for too long, and its watchdog switched the force off"},
+      {-kOffBySoftware, "the vendor's software switched the force off"},
+      {-kOffByDisconnection, "its USB connection was lost"},
+      {-kOffByDeadMan, "its dead-man switch reports that nobody holds it"}};
   const auto found = words.find(code);
   return found != words.end() ? found->second : "";
 }
@@ -91,7 +91,7 @@ constexpr const char* kTitle = "Force Dimension (DHD/DRD)";
 constexpr const char* kWeakest = "falcon";
 constexpr std::uint16_t kUsbVendor = 0x1451;
 constexpr const char* kRemedy =
-    "install the SDK of Force Dimension, and set FORCEDIM_SDK to its folder when it is not below "
+    "install the SDK of Force Dimension, and set FORCEDIM_SDK to its folder when that is not below "
     "/usr/local";
 constexpr std::int64_t kWatchdogNs = 20'000'000;
 constexpr std::int64_t kEnableEveryNs = 100'000'000;
@@ -108,12 +108,11 @@ Error NotStarted(int error, const std::string& device) {
   const std::string words = Explain(error);
   return {error == kErrorInUse ? ErrorCode::kOutOfResource : ErrorCode::kNotFound,
           fmt::format("device {} of Force Dimension could not be opened: {} (its error {})", device,
-                      words.empty() ? "for a reason that HVAS does not know" : words, error),
+                      words.empty() ? "for an unknown reason" : words, error),
           device,
-          error == kErrorInUse
-              ? "end that program"
-              : "see that it has power and its cable is in; as another user than root it also "
-                "needs a rule for udev (\"hvas devices\" says which)"};
+          error == kErrorInUse ? "end that program"
+                               : "check its power and cable; users other than root also need a "
+                                 "udev rule (\"hvas devices\" shows it)"};
 }
 
 /** A figure of the device itself where the SDK has the function and a limit is set. */
@@ -193,10 +192,10 @@ Result<void> Calibrate(const Functions& dhd, const Started& started) {
   if (dhd.drdIsInitialized(started.id) || dhd.drdAutoInit(started.id) >= 0) {
     return {};
   }
-  return Fail(ErrorCode::kUnsupported,
-              fmt::format("{} could not calibrate itself", started.info.model),
-              started.info.address,
-              "take it out of its rest, keep your hands off while it moves, and try again");
+  return Fail(
+      ErrorCode::kUnsupported, fmt::format("{} could not calibrate itself", started.info.model),
+      started.info.address,
+      "take it out of its rest position, keep your hands off while it moves, and try again");
 }
 
 /** Stops the vendor's own control, sets its limits and its watchdog, and switches force on. */
@@ -328,10 +327,9 @@ void DhdDevice::ReadStatus(DeviceState* sample) noexcept {
 class DhdDriver final : public Driver {
  public:
   DhdDriver()
-      : Driver(
-            {kName, kTitle,
-             "the number of the device, as \"forcedimension:0\"; none: the first one that is free. "
-             "One that is not calibrated moves by itself when it is opened"}) {}
+      : Driver({kName, kTitle,
+                "number of the device, for example \"forcedimension:0\"; default: the first free "
+                "one. An uncalibrated device moves by itself when it is opened"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override;
@@ -362,7 +360,7 @@ Result<std::unique_ptr<Device>> DhdDriver::Open(const std::string& address,
     const auto [end, error] =
         std::from_chars(address.data(), address.data() + address.size(), number);
     if (error != std::errc() || *end != '\0' || number < 0 || number >= kMaxDevices) {
-      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no number of a device", address),
+      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is not a device number", address),
                   address, std::string(address_help()));
     }
   }
@@ -411,8 +409,7 @@ ProbeReport DhdDriver::Probe(const Surroundings& surroundings, bool opens_device
       report.problems.push_back(
           {ErrorCode::kUnsupported, fmt::format("{} is not calibrated", started->info.model),
            started->info.address,
-           "it calibrates itself when HVAS opens it to work with: keep your hands off while it "
-           "moves"});
+           "it calibrates itself when HVAS opens it: keep your hands off while it moves"});
     }
     library->functions.drdClose(started->id);
   }

@@ -272,7 +272,7 @@ DeviceInfo InfoOf(const Ability& ability, const std::filesystem::path& path) {
   info.serial = ability.serial;
   info.is_emulated = ability.serial.starts_with("EMULATED");
   info.profile = FindProfile(kName)->profile;
-  info.profile_note = "sticks have no figures of their own; these are HVAS's";
+  info.profile_note = "gamepads report no limits; these are assumed by HVAS";
   info.capabilities.senses_position = false;
   info.capabilities.senses_rotation = true;
   info.capabilities.can_rumble = ability.effect != 0;
@@ -415,8 +415,8 @@ Result<std::unique_ptr<Device>> OpenNode(const std::filesystem::path& path,
   const Ability ability = AskAbility(node);
   if (!ability.is_usable) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("\"{}\" is no gamepad or joystick", ability.name), path.string(),
-                "leave out the address to take the first one found");
+                fmt::format("\"{}\" is not a gamepad or joystick", ability.name), path.string(),
+                "omit the address to use the first one found");
   }
   return std::make_unique<Gamepad>(std::move(node), ability, InfoOf(ability, path), path,
                                    surroundings.root, *surroundings.clock);
@@ -426,7 +426,7 @@ class Gamepads final : public Driver {
  public:
   Gamepads()
       : Driver({kName, "Gamepad or joystick (Linux evdev)",
-                "[NODE], as in gamepad:/dev/input/event5"}) {}
+                "[NODE], for example gamepad:/dev/input/event5"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
@@ -477,8 +477,8 @@ class Gamepads final : public Driver {
 
  private:
   static Error NoneFound(const Surroundings& surroundings) {
-    return {ErrorCode::kNotFound, "no gamepad or joystick is plugged in",
-            (surroundings.root / "dev/input").string(), "plug one in, or pair it by Bluetooth"};
+    return {ErrorCode::kNotFound, "no gamepad or joystick is connected",
+            (surroundings.root / "dev/input").string(), "connect one, or pair it by Bluetooth"};
   }
 };
 

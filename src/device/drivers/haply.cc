@@ -54,8 +54,8 @@ Result<HaplyAddress> ParseAddress(const std::string& text) {
     std::uint16_t number = 0;
     const auto [end, failure] = std::from_chars(port.data(), port.data() + port.size(), number);
     if (failure != std::errc() || end != port.data() + port.size() || number == 0) {
-      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no port", port), text,
-                  "write haply:HOST:PORT, as in haply:localhost:10001");
+      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is not a port number", port), text,
+                  "write haply:HOST:PORT, for example haply:localhost:10001");
     }
     address.ports = {number};
   }
@@ -103,7 +103,7 @@ class Conversation {
                   device_id_.empty()
                       ? "the Inverse Service runs, but no Inverse3 is connected"
                       : fmt::format("the Inverse Service has no device \"{}\"", device_id_),
-                  where(), "plug its cable and its power in, and wait for its light");
+                  where(), "connect its cable and power, and wait for its light");
     }
     const auto dialect = haply::DialectOf(message.version);
     is_dialect_known_ = dialect.has_value();
@@ -328,7 +328,7 @@ DeviceInfo InfoOf(const haply::Message& message, const std::string& host, std::u
   info.version = message.version;
   info.is_emulated = message.is_emulated;
   info.profile = FindProfile("inverse3")->profile;
-  info.profile_note = "the service tells no limits; these are HVAS's own figures";
+  info.profile_note = "the service reports no limits; these are assumed by HVAS";
   info.capabilities.force_axes = 3;
   info.capabilities.senses_rotation = message.has_handle;
   info.capabilities.button_count = message.has_handle ? 3 : 0;
@@ -339,7 +339,7 @@ class Haply final : public Driver {
  public:
   Haply()
       : Driver({kName, "Haply Inverse3 (Inverse Service)",
-                "[HOST[:PORT]][/DEVICE_ID] of the Inverse Service, as in "
+                "[HOST[:PORT]][/DEVICE_ID] of the Inverse Service, for example "
                 "haply:localhost:10001/049D"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,

@@ -23,7 +23,8 @@ constexpr const char* kDefaultHost = "127.0.0.1";
 constexpr std::uint16_t kDefaultPort = 47811;
 constexpr const char* kDefaultKey = "etc/hvas/network.key";
 constexpr const char* kMakeKey =
-    "make one: (umask 077; head -c 32 /dev/urandom > FILE), and give the device's program the same";
+    "make one with (umask 077; head -c 32 /dev/urandom > FILE), and give the device's program the "
+    "same file";
 constexpr std::size_t kMaxKey = 4096;
 constexpr int kHelloTimeout_ms = 1500;
 constexpr std::int64_t kLostNs = 500'000'000;  // of silence
@@ -45,8 +46,9 @@ Result<network::PacketKey> LoadKey(const std::filesystem::path& file) {
                 kMakeKey);
   }
   if (!S_ISREG(status.st_mode) || (status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-    return Fail(ErrorCode::kInvalid, "others can read this key, so it is no secret", file.string(),
-                fmt::format("make a new one that only you can read: chmod 600 {}", file.string()));
+    return Fail(
+        ErrorCode::kInvalid, "other users can read this key, so it is not secret", file.string(),
+        fmt::format("make a new key with access for you only: chmod 600 {}", file.string()));
   }
   const Result<std::string> read = ReadRegularFile(file);
   if (!read) {
@@ -58,7 +60,7 @@ Result<network::PacketKey> LoadKey(const std::filesystem::path& file) {
   }
   if (secret.size() < network::kMinKey || secret.size() > kMaxKey) {
     return Fail(ErrorCode::kInvalid,
-                fmt::format("this key has {} bytes; it has to have {} to {}", secret.size(),
+                fmt::format("this key has {} bytes; {} to {} are needed", secret.size(),
                             network::kMinKey, kMaxKey),
                 file.string(), kMakeKey);
   }
@@ -80,7 +82,7 @@ Result<NetworkAddress> ParseAddress(const std::string& text, const Surroundings&
     constexpr std::string_view kKey = "key=";
     const std::string_view option = std::string_view(text).substr(mark + 1);
     if (!option.starts_with(kKey) || option.size() == kKey.size()) {
-      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no option of an address", option),
+      return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is not an option of an address", option),
                   text, "write network:[HOST:]PORT?key=FILE");
     }
     address.key = option.substr(kKey.size());
@@ -93,7 +95,7 @@ Result<NetworkAddress> ParseAddress(const std::string& text, const Surroundings&
   const std::string port = colon == std::string::npos ? place : place.substr(colon + 1);
   const auto [end, failure] = std::from_chars(port.data(), port.data() + port.size(), address.port);
   if (failure != std::errc() || end != port.data() + port.size() || address.port == 0) {
-    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is no port", port), text,
+    return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" is not a port number", port), text,
                 "write network:[HOST:]PORT?key=FILE with a port of 1 to 65535");
   }
   if (colon != std::string::npos) {
@@ -105,11 +107,11 @@ Result<NetworkAddress> ParseAddress(const std::string& text, const Surroundings&
 const char* ToWords(Refusal refusal) {
   switch (refusal) {
     case Refusal::kMalformed:
-      return "not of this protocol";
+      return "of another protocol";
     case Refusal::kOtherVersion:
       return "of another version of the protocol";
     case Refusal::kForged:
-      return "with another key, or changed on the way";
+      return "with another key, or modified in transit";
     case Refusal::kForeignSession:
       return "of another session";
     case Refusal::kReplayed:
@@ -307,9 +309,7 @@ LinkCounts NetworkDevice::counts() const noexcept {
 std::string NetworkDevice::Explain(const DeviceState& state) const {
   const LinkCounts now = counts();
   return fmt::format(
-      "{}; lost {:.1f} % of its states and {:.1f} % of its wrenches, which take {:.1f} ms there "
-      "and "
-      "back{}",
+      "{}; lost {:.1f} % of its states and {:.1f} % of its wrenches, round trip {:.1f} ms{}",
       Device::Explain(state), Percent(now.states_lost, now.states_lost + now.states),
       Percent(now.wrenches_lost, now.wrenches), 1e-6 * static_cast<double>(now.round_trip_ns),
       RefusedInWords(now));
@@ -320,10 +320,9 @@ namespace {
 class Network final : public Driver {
  public:
   Network()
-      : Driver(
-            {kName, "Network device (HVAS's own UDP protocol)",
-             "[[HOST:]PORT][?key=FILE] to listen at, as in network:127.0.0.1:47811?key=/etc/hvas/"
-             "network.key"}) {}
+      : Driver({kName, "Network device (HVAS's own UDP protocol)",
+                "[[HOST:]PORT][?key=FILE] to listen on, for example "
+                "network:127.0.0.1:47811?key=/etc/hvas/network.key"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
@@ -362,7 +361,7 @@ class Network final : public Driver {
     auto device = std::make_unique<NetworkDevice>(std::move(*socket), *key, *surroundings.clock);
     if (!device->WaitForHello(kHelloTimeout_ms, text)) {
       return Fail(ErrorCode::kNotFound,
-                  fmt::format("no device said hello within {} s{}", 1e-3 * kHelloTimeout_ms,
+                  fmt::format("no device connected within {} s{}", 1e-3 * kHelloTimeout_ms,
                               RefusedInWords(device->counts())),
                   fmt::format("UDP {}:{}", address->host, address->port),
                   "start the device's program, with this address and the same key");

@@ -341,7 +341,7 @@ DeviceInfo InfoOf(const Hello& hello, const std::string& address) {
   info.profile.continuous_force = std::min(info.profile.continuous_force, info.profile.max_force);
   info.profile.continuous_torque =
       std::min(info.profile.continuous_torque, info.profile.max_torque);
-  info.profile_note = "limits, workspace, resolution, rate and delay are what the device tells";
+  info.profile_note = "limits, workspace, resolution, rate and delay are as reported by the device";
   return info;
 }
 

@@ -34,18 +34,18 @@ VendorVerdict Judge(std::uint32_t error) noexcept {
 
 std::string Explain(std::uint32_t error) {
   static const std::map<std::uint32_t, std::string> words{
-      {kWarmMotors, "its motors are too warm; let it rest some minutes"},
-      {kExceededForce, "more force was asked for than it gives"},
-      {0x0202, "the force rose faster than it allows"},
-      {0x0203, "it was moved faster than it allows"},
-      {kForceError, "it could not show the force"},
-      {kDeviceFault, "it does not answer; look at its power and cable"},
+      {kWarmMotors, "its motors are too hot; let them cool for some minutes"},
+      {kExceededForce, "the commanded force exceeded its maximum"},
+      {0x0202, "the commanded force rose faster than its limit"},
+      {0x0203, "it was moved faster than its limit"},
+      {kForceError, "it could not render the force"},
+      {kDeviceFault, "it does not respond; check its power and cable"},
       {kAlreadyInitiated, "another program has it open"},
-      {kCommError, "the connection to it failed; look at its cable"},
+      {kCommError, "the connection to it failed; check its cable"},
       {kTimerError, "the vendor's scheduler lost its timer"},
-      {kIllegalBegin, "a frame was begun twice"},
-      {kIllegalEnd, "a frame was ended that was not begun"},
-      {kFrameError, "a force was set outside of a frame"},
+      {kIllegalBegin, "a haptic frame was begun twice"},
+      {kIllegalEnd, "a haptic frame was ended that was not begun"},
+      {kFrameError, "a force was set outside of a haptic frame"},
       {kInvalidLicense, "OpenHaptics has no valid licence"}};
   const auto found = words.find(error);
   return found != words.end() ? found->second : "";
@@ -72,7 +72,7 @@ constexpr const char* kWeakest = "touch";
 constexpr std::uint16_t kUsbVendor = 0x2988;
 constexpr const char* kRemedy =
     "install the Touch Device Driver and OpenHaptics Developer Edition of 3D Systems, and set "
-    "GTDD_HOME when they are not below /usr or /opt";
+    "GTDD_HOME to their folder when that is not below /usr or /opt";
 constexpr int kMaxErrors = 32;
 constexpr std::int64_t kCalibrateEveryNs = 500'000'000;
 // Beyond this the vendor's last update is old; together with an unchanged pose it is no sample.
@@ -161,7 +161,7 @@ Error NotStarted(std::uint32_t error, const std::string& device) {
   const std::string message =
       fmt::format("{} of OpenHaptics could not be started: {} (its error 0x{:04x})",
                   device.empty() ? "the first device" : "\"" + device + "\"",
-                  words.empty() ? "for a reason that HVAS does not know" : words, error);
+                  words.empty() ? "for an unknown reason" : words, error);
   if (error == kInvalidLicense) {
     return {ErrorCode::kUnsupported, message, device,
             "install the licence that 3D Systems gave you (its License Installer), or the free "
@@ -171,8 +171,8 @@ Error NotStarted(std::uint32_t error, const std::string& device) {
     return {ErrorCode::kOutOfResource, message, device, "end that program"};
   }
   return {ErrorCode::kNotFound, message, device,
-          "see that it has power and its cable is in, give it its name with the vendor's setup "
-          "program (Touch Setup), and try the vendor's diagnostic"};
+          "check its power and cable, name it with the vendor's setup program (Touch Setup), and "
+          "run the vendor's diagnostic"};
 }
 
 Result<void> Calibrate(const Functions& hd, const std::string& model) {
@@ -432,10 +432,9 @@ void HdDevice::Tick() noexcept {
 class HdDriver final : public Driver {
  public:
   HdDriver()
-      : Driver(
-            {kName, kTitle,
-             "the name that the device has in the vendor's setup program, as \"openhaptics:Default "
-             "Device\"; none: the first one"}) {}
+      : Driver({kName, kTitle,
+                "name of the device in the vendor's setup program, for example "
+                "\"openhaptics:Default Device\"; default: the first one"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override;

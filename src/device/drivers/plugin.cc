@@ -192,7 +192,8 @@ DeviceInfo InfoOf(const HvasDeviceDescription& d, const std::string& address) {
   info.capabilities.has_emergency_stop = has(HVAS_DEVICE_HAS_EMERGENCY_STOP);
   info.capabilities.button_count = static_cast<int>(d.button_count);
   info.profile = ProfileOf(d);
-  info.profile_note = "limits, workspace, resolution, rate and delay are what the plug-in tells";
+  info.profile_note =
+      "limits, workspace, resolution, rate and delay are as reported by the plug-in";
   return info;
 }
 
@@ -202,13 +203,13 @@ Result<const HvasDevicePlugin*> FindTable(void* library, const std::string& file
   auto* const entry = reinterpret_cast<Entry>(::dlsym(library, kEntry));
   if (entry == nullptr) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("this library is no HVAS plug-in: it has no function {}", kEntry), file,
-                "build it with hvas_device_plugin.h, or give another file");
+                fmt::format("this library is not an HVAS plug-in: it has no function {}", kEntry),
+                file, "build it with hvas_device_plugin.h, or give another file");
   }
   const HvasDevicePlugin* plugin = entry(HVAS_DEVICE_PLUGIN_VERSION);
   if (plugin == nullptr) {
-    return Fail(ErrorCode::kUnsupported, "the plug-in gives no table of functions", file,
-                "ask whoever made it");
+    return Fail(ErrorCode::kUnsupported, "the plug-in returns no function table", file,
+                "contact the author of the plug-in");
   }
   if (plugin->version != HVAS_DEVICE_PLUGIN_VERSION || plugin->size < sizeof(HvasDevicePlugin)) {
     return Fail(ErrorCode::kUnsupported,
@@ -219,8 +220,8 @@ Result<const HvasDevicePlugin*> FindTable(void* library, const std::string& file
   }
   if (plugin->open == nullptr || plugin->close == nullptr || plugin->describe == nullptr ||
       plugin->read == nullptr || plugin->write == nullptr) {
-    return Fail(ErrorCode::kUnsupported, "the plug-in leaves out a function of its table", file,
-                "it has to have open, close, describe, read and write");
+    return Fail(ErrorCode::kUnsupported, "the plug-in's function table is incomplete", file,
+                "it needs open, close, describe, read and write");
   }
   return plugin;
 }
@@ -229,14 +230,14 @@ Result<Library> Load(const std::string& file) {
   std::error_code failure;
   if (!std::filesystem::exists(file, failure)) {
     return Fail(ErrorCode::kNotFound, "there is no such plug-in", file,
-                "give the path of its library, as in plugin:/path/to/device.so");
+                "give the path of its library, for example plugin:/path/to/device.so");
   }
   Library library(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (library == nullptr) {
     const char* reason = ::dlerror();
     return Fail(ErrorCode::kUnreadable,
                 fmt::format("the plug-in cannot be loaded: {}", reason != nullptr ? reason : "?"),
-                file, "it has to be a shared library for this machine, with all that it needs");
+                file, "it has to be a shared library for this machine, with all its dependencies");
   }
   return library;
 }
@@ -259,14 +260,15 @@ Result<std::unique_ptr<Device>> OpenPlugin(const std::string& address,
   if (device == nullptr) {
     const std::string reason = TextOf(error);
     return Fail(ErrorCode::kNotFound, reason.empty() ? "the plug-in finds no device" : reason, file,
-                reason.empty() ? "look at the device's cable and power" : "");
+                reason.empty() ? "check the device's cable and power" : "");
   }
   HvasDeviceDescription description = DefaultDescription();
   (*plugin)->describe(device, &description);
   if (!IsPlausible(description)) {
     (*plugin)->close(device);
-    return Fail(ErrorCode::kInvalid, "what the plug-in tells about its device cannot be", file,
-                "limits are 0 or more, peaks not below what lasts, axes 0 or 3, edges above 0");
+    return Fail(
+        ErrorCode::kInvalid, "the plug-in reports impossible properties of its device", file,
+        "limits must be 0 or more, peaks not below continuous limits, axes 0 or 3, edges above 0");
   }
   return std::make_unique<PluginDevice>(std::move(*library), *plugin, device,
                                         InfoOf(description, address), *surroundings.clock);
@@ -276,7 +278,7 @@ class Plugins final : public Driver {
  public:
   Plugins()
       : Driver({kName, "Plug-in (a shared library for a device that HVAS does not know)",
-                "FILE[?ARGUMENT], as in plugin:/opt/lab/our_arm.so?port=3"}) {}
+                "FILE[?ARGUMENT], for example plugin:/opt/lab/our_arm.so?port=3"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
@@ -297,7 +299,7 @@ class Plugins final : public Driver {
       report.looked_for.push_back({"plug-ins", folder.string(), false, ""});
       report.problems.push_back(
           {ErrorCode::kNotFound, "no plug-in is installed", folder.string(),
-           "put a plug-in's library there, or name it: plugin:/path/to/it.so"});
+           "put the library of a plug-in there, or give its path: plugin:/path/to/device.so"});
     }
     return report;
   }
@@ -310,8 +312,9 @@ class Plugins final : public Driver {
     const std::filesystem::path folder = surroundings.root / kFolder;
     const auto files = FilesIn(folder);
     if (files.empty()) {
-      return Fail(ErrorCode::kNotFound, "no plug-in is named, and none is installed",
-                  folder.string(), "name its library, as in plugin:/path/to/device.so");
+      return Fail(ErrorCode::kNotFound, "no plug-in is given, and none is installed",
+                  folder.string(),
+                  "give the path of its library, for example plugin:/path/to/device.so");
     }
     return OpenPlugin(files.front().string(), surroundings);
   }

@@ -178,16 +178,17 @@ std::filesystem::path FindSocket(const std::string& address, const Surroundings&
 Error WhyNot(int reason, const std::filesystem::path& path) {
   switch (reason) {
     case ENOENT:
-      return {ErrorCode::kNotFound, "spacenavd is not running: it has no socket here",
+      return {ErrorCode::kNotFound, "spacenavd is not running: its socket does not exist",
               path.string(),
               "install and start it: apt install spacenavd; systemctl start spacenavd"};
     case ECONNREFUSED:
-      return {ErrorCode::kNotFound, "spacenavd has ended: its socket is there, but nobody listens",
+      return {ErrorCode::kNotFound,
+              "spacenavd is not running: its socket exists, but no process listens on it",
               path.string(), "start it again: systemctl restart spacenavd"};
     case EACCES:
     case EPERM:
-      return {ErrorCode::kInvalid, "you may not use spacenavd's socket", path.string(),
-              fmt::format("let everybody use it: chmod 666 {}", path.string())};
+      return {ErrorCode::kInvalid, "this user has no permission to use the socket of spacenavd",
+              path.string(), fmt::format("give all users access: chmod 666 {}", path.string())};
     default:
       return {
           ErrorCode::kOutOfResource,
@@ -200,7 +201,7 @@ class SpaceMouses final : public Driver {
  public:
   SpaceMouses()
       : Driver({kName, "3Dconnexion SpaceMouse (spacenavd)",
-                "[SOCKET] of spacenavd, as in spacemouse:/var/run/spnav.sock"}) {}
+                "[SOCKET] of spacenavd, for example spacemouse:/var/run/spnav.sock"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override {
@@ -229,7 +230,7 @@ class SpaceMouses final : public Driver {
     info.model = "SpaceMouse";
     info.is_emulated = std::filesystem::exists(path.string() + spacenav::kEmulatedMark);
     info.profile = FindProfile(kName)->profile;
-    info.profile_note = "spacenavd tells nothing about the device; these are HVAS's own figures";
+    info.profile_note = "spacenavd reports no properties of the device; these are assumed by HVAS";
     info.capabilities.senses_position = false;
     info.capabilities.senses_rotation = true;
     info.capabilities.button_count = 2;

@@ -68,7 +68,7 @@ void ProbeUsb(const Surroundings& surroundings, std::uint16_t vendor, const std:
            fmt::format("USB device {} of {} {}", node.id, maker, permission), node.node.string(),
            fmt::format("as root, put the line SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", "
                        "MODE=\"0666\" into /etc/udev/rules.d/60-hvas-{:04x}.rules, run \"udevadm "
-                       "control --reload\", and plug the device in again",
+                       "control --reload\", and connect the device again",
                        vendor, vendor)});
     }
   }

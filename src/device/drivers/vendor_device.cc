@@ -42,8 +42,11 @@ Condition ToCondition(VendorVerdict verdict) noexcept {
 DeviceProfile ProfileOfModel(std::string_view driver, const std::string& model,
                              std::string_view otherwise, std::string* note) {
   const SourcedProfile* known = FindProfileOfModel(driver, model);
-  *note = known != nullptr ? fmt::format("figures of {}", known->profile.name)
-                           : fmt::format("\"{}\" is not known; figures of the weakest one", model);
+  *note =
+      known != nullptr
+          ? fmt::format("figures of {}", known->profile.name)
+          : fmt::format("the model \"{}\" is not known; limits of the weakest known model are used",
+                        model);
   return known != nullptr ? known->profile : FindProfile(otherwise)->profile;
 }
 

@@ -35,15 +35,15 @@ VendorVerdict JudgeAlarms(unsigned alarms) noexcept {
 
 std::string Explain(int code) {
   static const std::map<int, std::string> words{
-      {kErrorCommunication, "the connection to its controller failed; look at the network cable"},
+      {kErrorCommunication, "the connection to its controller failed; check the network cable"},
       {kErrorInvalidContext, "the vendor's software has lost the connection"},
-      {kErrorTimeout, "its controller did not answer in time; look at the network"},
-      {kErrorHardware, "its controller reports a fault of the hardware"},
-      {kErrorDiscontinuity, "the vendor's software saw its pose jump"},
-      {kErrorVersion, "library and controller are of different versions"},
-      {kErrorIncompatible, "library and controller are of different versions"},
-      {kAlarmOverheat, "its motors are too warm; let it rest some minutes"},
-      {kAlarmPosition, "its position is in error; calibrate it with the vendor's program"}};
+      {kErrorTimeout, "its controller did not respond in time; check the network"},
+      {kErrorHardware, "its controller reports a hardware fault"},
+      {kErrorDiscontinuity, "the vendor's software detected a jump of its pose"},
+      {kErrorVersion, "library and controller have different versions"},
+      {kErrorIncompatible, "library and controller have different versions"},
+      {kAlarmOverheat, "its motors are too hot; let them cool for some minutes"},
+      {kAlarmPosition, "its position is invalid; calibrate it with the vendor's program"}};
   const auto found = words.find(code);
   return found != words.end() ? found->second : "";
 }
@@ -85,7 +85,7 @@ constexpr const char* kProfile = "virtuose";
 constexpr const char* kDefaultAddress = "127.0.0.1#5000";
 constexpr const char* kRemedy =
     "install VirtuoseAPI 4 of Haption, and set VIRTUOSE_API to the folder of virtuoseAPI.so when "
-    "it is not below /usr or /opt";
+    "that is not below /usr or /opt";
 constexpr float kTimeStep = 1e-3F;
 constexpr float kTimeout = 0.1F;
 constexpr std::int64_t kRelaysNs = 3'000'000'000;  // Until its relays have closed.
@@ -105,14 +105,15 @@ Error NotStarted(const Functions& virt, const std::string& address, int error) {
     words = message;
   }
   const bool is_version = error == kErrorVersion || error == kErrorIncompatible;
-  return {is_version ? ErrorCode::kUnsupported : ErrorCode::kNotFound,
-          fmt::format("the Virtuose at {} could not be opened: {} (its error {})", address, words,
-                      error),
-          address,
-          is_version ? "ask Haption for the library that fits the controller"
-                     : "see that its controller is on and answers (ping), that the address is "
-                       "its own, as \"virtuose:192.168.1.2#5000\", and that no other program has "
-                       "it open"};
+  return {
+      is_version ? ErrorCode::kUnsupported : ErrorCode::kNotFound,
+      fmt::format("the Virtuose at {} could not be opened: {} (its error {})", address, words,
+                  error),
+      address,
+      is_version
+          ? "get the library for this controller from Haption"
+          : "check that its controller is on and responds to ping, that the address is correct "
+            "(for example \"virtuose:192.168.1.2#5000\"), and that no other program has it open"};
 }
 
 DeviceInfo AskInfo(const Library& library, void* context, const std::string& address) {
@@ -121,7 +122,7 @@ DeviceInfo AskInfo(const Library& library, void* context, const std::string& add
   info.address = address;
   info.is_emulated = library.is_emulated;
   info.profile = FindProfile(kProfile)->profile;
-  info.profile_note = "figures of " + info.profile.name + ", which the device does not tell";
+  info.profile_note = "figures of " + info.profile.name + ", which the device does not report";
   info.model = "Virtuose 6D";
   int type = 0;
   int serial = 0;
@@ -321,8 +322,8 @@ class VirtDriver final : public Driver {
  public:
   VirtDriver()
       : Driver({kName, kTitle,
-                "host and port of its controller, as \"virtuose:192.168.1.2#5000\"; none: "
-                "127.0.0.1#5000"}) {}
+                "host and port of its controller, for example \"virtuose:192.168.1.2#5000\"; "
+                "default: 127.0.0.1#5000"}) {}
 
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
                                   bool opens_devices) const override;

@@ -120,8 +120,8 @@ class Client final : public WebSocket {
     Tcp::resolver resolver(context_);
     const auto places = resolver.resolve(host, std::to_string(port), error);
     if (error) {
-      return Fail(ErrorCode::kNotFound, fmt::format("there is no machine called \"{}\"", host),
-                  where, "give localhost, or the address of the machine by numbers");
+      return Fail(ErrorCode::kNotFound, fmt::format("there is no host \"{}\"", host), where,
+                  "give localhost, or a numeric address");
     }
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
     stream_ = std::make_shared<Stream>(Tcp::socket(context_));
@@ -132,8 +132,8 @@ class Client final : public WebSocket {
     RunUntil(end, [&] { return outcome.has_value(); });
     if (!outcome || *outcome) {
       Abandon(&outcome);
-      return Fail(ErrorCode::kNotFound, fmt::format("nobody listens there: {}", outcome->message()),
-                  where);
+      return Fail(ErrorCode::kNotFound,
+                  fmt::format("no program listens on this address: {}", outcome->message()), where);
     }
     outcome.reset();
     stream_->websocket().async_handshake(fmt::format("{}:{}", host, port), "/",
@@ -142,7 +142,8 @@ class Client final : public WebSocket {
     if (!outcome || *outcome) {
       Abandon(&outcome);
       return Fail(ErrorCode::kUnreadable,
-                  fmt::format("whoever listens there speaks no WebSocket: {}", outcome->message()),
+                  fmt::format("the program on this address is not a WebSocket server: {}",
+                              outcome->message()),
                   where);
     }
     stream_->Start();

@@ -158,7 +158,7 @@ Result<std::unique_ptr<Emulator>> StartLibraryEmulator(std::string_view driver,
   auto emulator = std::make_unique<LibraryEmulator>(*kind, *entry(), options, manners);
   if (!emulator->is_attached()) {
     return Fail(ErrorCode::kOutOfResource,
-                fmt::format("no more than {} emulators of {} run at once", kMaxStubDevices, driver),
+                fmt::format("at most {} emulators of {} can run at once", kMaxStubDevices, driver),
                 std::string(driver), "stop one of them");
   }
   return emulator;

@@ -130,7 +130,7 @@ Result<std::unique_ptr<WireServer>> MakePluginServer(const WireSite& site) {
   auto* const registers = reinterpret_cast<Register>(::dlsym(library, "hvas_emulator_register"));
   if (registers == nullptr) {
     ::dlclose(library);
-    return Fail(ErrorCode::kUnsupported, "the emulated plug-in is another one",
+    return Fail(ErrorCode::kUnsupported, "the emulated plug-in is a different one",
                 HVAS_EMULATED_PLUGIN, "build HVAS again");
   }
   return std::make_unique<PluginServer>(library, registers, site);

@@ -135,7 +135,8 @@ Result<std::unique_ptr<Emulator>> StartWireEmulator(std::string_view driver,
     return server.driver == driver;
   });
   if (found == kServers.end()) {
-    return Fail(ErrorCode::kNotFound, fmt::format("driver \"{}\" has no emulator here", driver));
+    return Fail(ErrorCode::kNotFound,
+                fmt::format("driver \"{}\" has no emulator in this build", driver));
   }
   return StartWireEmulator(found->make, options);
 }

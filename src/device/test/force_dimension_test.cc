@@ -194,7 +194,7 @@ TEST(ForceDimensionTest, ADeviceThatThisUserMayNotUseComesWithTheRuleThatMendsIt
   EXPECT_EQ(report.problems[0].remedy,
             "as root, put the line SUBSYSTEM==\"usb\", ATTR{idVendor}==\"1451\", MODE=\"0666\" "
             "into /etc/udev/rules.d/60-hvas-1451.rules, run \"udevadm control --reload\", and "
-            "plug the device in again");
+            "connect the device again");
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ TEST(HaplyDriverTest, WithoutAServiceItSaysWhichOneItAskedForAndWhatToDo) {
   EXPECT_NE(error.find("ws://localhost:" + port), std::string::npos) << error;
   EXPECT_NE(error.find("the Inverse Service is not running"), std::string::npos) << error;
   EXPECT_NE(error.find("start Haply's Inverse Service"), std::string::npos) << error;
-  EXPECT_NE(ErrorOf("localhost:haply").find("is no port"), std::string::npos);
+  EXPECT_NE(ErrorOf("localhost:haply").find("is not a port"), std::string::npos);
 }
 
 TEST(HaplyDriverTest, AServiceWithoutThisDeviceSaysSo) {

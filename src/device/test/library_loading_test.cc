@@ -54,8 +54,8 @@ TEST(DynamicLibraryTest, ALibraryForAnotherProcessorIsNamed) {
   const Error error = OpenError(ForceDimensionDriver(), machine.surroundings());
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
   EXPECT_EQ(error.message,
-            "libdrd.so.3.17.5 of Force Dimension (DHD/DRD) is made for another kind of processor "
-            "than this machine's");
+            "libdrd.so.3.17.5 of Force Dimension (DHD/DRD) is built for another processor "
+            "architecture");
   EXPECT_EQ(error.where, machine.Path("usr/lib/libdrd.so.3.17.5"));
 }
 
@@ -64,8 +64,8 @@ TEST(DynamicLibraryTest, AFileThatIsNoLibraryIsNamed) {
   machine.Put("usr/local/lib/virtuoseAPI.so", "download failed");
   const Error error = OpenError(VirtuoseDriver(), machine.surroundings());
   EXPECT_EQ(error.message,
-            "virtuoseAPI.so of Haption Virtuose (VirtuoseAPI 4) is no library: it is damaged or "
-            "only a placeholder");
+            "virtuoseAPI.so of Haption Virtuose (VirtuoseAPI 4) is not a library: it is damaged or "
+            "a placeholder");
 }
 
 TEST(DynamicLibraryTest, FunctionsThatAreMissingAreNamed) {

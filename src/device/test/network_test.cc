@@ -353,7 +353,7 @@ TEST(NetworkDriverTest, KeysThatAreMissingReadableByOthersOrShortAreRefused) {
     EXPECT_NE(error.find(part), std::string::npos) << error;
   };
   ::chmod(file.c_str(), 0640);
-  expect("others can read this key");
+  expect("other users can read this key");
   expect("chmod 600");
   ::chmod(file.c_str(), 0600);
   folder.Write("network.key", "short");
@@ -363,16 +363,16 @@ TEST(NetworkDriverTest, KeysThatAreMissingReadableByOthersOrShortAreRefused) {
 }
 
 TEST(NetworkDriverTest, AddressesThatCannotBeAreExplained) {
-  EXPECT_NE(ErrorOf("127.0.0.1:70000").find("\"70000\" is no port"), std::string::npos);
-  EXPECT_NE(ErrorOf("1?kee=x").find("\"kee=x\" is no option"), std::string::npos);
+  EXPECT_NE(ErrorOf("127.0.0.1:70000").find("\"70000\" is not a port"), std::string::npos);
+  EXPECT_NE(ErrorOf("1?kee=x").find("\"kee=x\" is not an option"), std::string::npos);
   const TemporaryFolder folder;
   const std::string key = "?key=" + folder.Write("k", "a long enough secret").string();
   ::chmod((folder / "k").string().c_str(), 0600);
-  EXPECT_NE(ErrorOf("here:2000" + key).find("is no IPv4 address"), std::string::npos);
+  EXPECT_NE(ErrorOf("here:2000" + key).find("is not an IPv4 address"), std::string::npos);
   const auto taken = DatagramSocket::Bind("127.0.0.1", 0);
   ASSERT_TRUE(taken);
   const std::string port = std::to_string(taken->port());
-  EXPECT_NE(ErrorOf(port + key).find("another program has this port"), std::string::npos);
+  EXPECT_NE(ErrorOf(port + key).find("another program uses this port"), std::string::npos);
 }
 
 TEST(NetworkDriverTest, WithoutADeviceItSaysThatNobodySaidHello) {
@@ -381,7 +381,7 @@ TEST(NetworkDriverTest, WithoutADeviceItSaysThatNobodySaidHello) {
   ::chmod(key.c_str(), 0600);
   const std::uint16_t port = DatagramSocket::Bind("127.0.0.1", 0)->port();
   const std::string error = ErrorOf(std::to_string(port) + "?key=" + key);
-  EXPECT_NE(error.find("no device said hello within 1.5 s"), std::string::npos) << error;
+  EXPECT_NE(error.find("no device connected within 1.5 s"), std::string::npos) << error;
 }
 
 TEST(NetworkDriverTest, ProbingNamesTheKeyThatIsLookedFor) {
@@ -407,7 +407,8 @@ TEST(NetworkDriverTest, ProbingDoesNotStandInItsOwnWay) {
   ASSERT_EQ(report.problems.size(), 1u);
   const std::string problem = report.problems[0].ToString();
   const bool is_taken_by_another = !report.looked_for[1].is_found;
-  EXPECT_EQ(problem.find("another program has this port") != std::string::npos, is_taken_by_another)
+  EXPECT_EQ(problem.find("another program uses this port") != std::string::npos,
+            is_taken_by_another)
       << problem;
 }
 

@@ -62,14 +62,14 @@ TEST(PluginDriverTest, WhatIsNoPluginIsExplained) {
   ExpectError("/nowhere/arm.so", "there is no such plug-in");
   const TemporaryFolder folder;
   ExpectError(folder.Write("text.so", "not a library"), "the plug-in cannot be loaded");
-  ExpectError("", "no plug-in is named, and none is installed");
+  ExpectError("", "no plug-in is given, and none is installed");
   ExpectError(HVAS_ODD_PLUGIN_NONE, "it has no function hvas_device_plugin");
 }
 
 TEST(PluginDriverTest, AnotherVersionOfTheInterfaceIsToldClearly) {
   ExpectError(HVAS_ODD_PLUGIN_VERSION,
               "the plug-in was built for version 7 of the interface, HVAS has version 1");
-  ExpectError(HVAS_ODD_PLUGIN_HOLE, "leaves out a function of its table");
+  ExpectError(HVAS_ODD_PLUGIN_HOLE, "function table is incomplete");
 }
 
 TEST(PluginDriverTest, ProbingOpensWhatIsInstalled) {

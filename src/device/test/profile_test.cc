@@ -65,8 +65,8 @@ TEST(ProfileTest, WhatIsWrongIsNamed) {
     EXPECT_EQ(profile.error().where, "my.json");
     EXPECT_NE(profile.error().message.find(part), std::string::npos) << profile.error().message;
   };
-  expect_error("{", "no JSON");
-  expect_error("[]", "no JSON");
+  expect_error("{", "not a JSON object");
+  expect_error("[]", "not a JSON object");
   expect_error(Changed("\"schema\": 1", "\"schema\": 2"), "schema");
   expect_error(Changed("\"rate_hz\"", "\"rate\""), "rate_hz");
   expect_error(Changed("\"value\": 20,", "\"value\": -20,"), "max_force_n");

@@ -252,7 +252,7 @@ TEST(GamepadTest, WhereNothingIsPluggedInItSaysSo) {
   surroundings.root = folder.path();
   const ProbeReport report = GamepadDriver().Probe(surroundings, true);
   ASSERT_EQ(report.problems.size(), 1u);
-  EXPECT_EQ(report.problems[0].message, "no gamepad or joystick is plugged in");
+  EXPECT_EQ(report.problems[0].message, "no gamepad or joystick is connected");
   EXPECT_EQ(report.problems[0].where, (folder / "dev/input").string());
   const auto device = GamepadDriver().Open((folder / "dev/input/event3").string(), surroundings);
   ASSERT_FALSE(device);
@@ -272,7 +272,7 @@ TEST(GamepadTest, WhatIsNoGamepadIsPassedOver) {
   EXPECT_NE(GamepadDriver()
                 .Open((folder / "dev/input/event2").string(), surroundings)
                 .error()
-                .message.find("is no gamepad"),
+                .message.find("is not a gamepad"),
             std::string::npos);
 }
 
@@ -288,7 +288,7 @@ TEST(GamepadTest, ANodeThatCannotBeOpenedIsToldOnlyIfItsKeysMayBeAGamepads) {
   EXPECT_EQ(GamepadDriver().Probe(surroundings, false).problems.at(0).where, node);
   folder.Write(keys, "402000000 3803078f800d001 feffffdfffefffff fffffffffffffffe\n");  // keyboard
   EXPECT_EQ(GamepadDriver().Probe(surroundings, false).problems.at(0).message,
-            "no gamepad or joystick is plugged in");
+            "no gamepad or joystick is connected");
 }
 
 /** A gamepad that the kernel itself believes in. */

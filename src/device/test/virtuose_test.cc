@@ -86,7 +86,7 @@ TEST(VirtuoseTest, ADiscontinuityIsNotBelieved) {
   DeviceState state = rig.Run(100, Push);  // Longer than a jump alone is doubted.
   EXPECT_EQ(state.condition, Condition::kImplausible);
   EXPECT_EQ(state.vendor_code, virtuose::kErrorDiscontinuity);
-  EXPECT_NE(rig.device().Explain(state).find("saw its pose jump"), std::string::npos);
+  EXPECT_NE(rig.device().Explain(state).find("detected a jump of its pose"), std::string::npos);
   rig.emulated().SetFault(Fault::kNone);
   EXPECT_EQ(rig.Run(200, Push).condition, Condition::kReady);
 }
@@ -125,7 +125,7 @@ TEST(VirtuoseTest, AControllerOfAnotherVersionIsNamed) {
   const auto device = OpenEmulated(kVirtuose, *emulator);
   ASSERT_FALSE(device.has_value());
   EXPECT_EQ(device.error().code, ErrorCode::kUnsupported);
-  EXPECT_NE(device.error().message.find("library and controller are of different versions"),
+  EXPECT_NE(device.error().message.find("library and controller have different versions"),
             std::string::npos);
 }
 

@@ -95,7 +95,7 @@ TEST(Infer, FindsAxisHoleAndFaceFaceOfAPinWithCollarInAnyFrame) {
     EXPECT_LT((X_WM(product, face.a).p() - X_WA.p()).norm(), 1e-12);
     EXPECT_FALSE(face.fit.has_value());
     ExpectConnectorsCoincide(product);
-    EXPECT_EQ(LinkedParts(product), 2);
+    EXPECT_EQ(CountLinkedParts(product), 2);
     EXPECT_TRUE(diagnostics.items().empty());
   }
 }
@@ -133,7 +133,7 @@ TEST_P(InferRejects, NoMate) {
   Infer(&product, &diagnostics);
   EXPECT_TRUE(product.mates.empty()) << GetParam().what;
   EXPECT_EQ(diagnostics.Count(Severity::kWarning), 2);  // Both are without a mate.
-  EXPECT_EQ(LinkedParts(product), 0);
+  EXPECT_EQ(CountLinkedParts(product), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -66,7 +66,7 @@ TEST(Judge, PlayShortnessOffsetAndNamesLowerTheConfidenceByTheStatedFactors) {
   // A pin inside a screw.
   const Mate odd = MakePinned({5e-3, 5e-3, 10e-3, 0, "M20 bolt"});
   EXPECT_NEAR(odd.confidence, 0.6, 1e-9);
-  EXPECT_NE(odd.evidence.find("against the names"), std::string::npos);
+  EXPECT_NE(odd.evidence.find("contradicts the names"), std::string::npos);
   // Screws have play: it does not tell against them.
   EXPECT_NEAR(MakePinned({5.175e-3, 4.5e-3, 10e-3, 0, "plate", "M9 bolt"}).confidence, 0.9, 1e-9);
 }

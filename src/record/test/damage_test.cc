@@ -418,7 +418,7 @@ TEST_F(DamagedRecord, WhateverIsGoneOrOtherwiseIsFoundAndNamed) {
       Case{"DELETE FROM meta WHERE key = 'digest'", "\"digest\" is missing"},
       Case{"DELETE FROM meta", "is missing"},
       Case{"INSERT INTO meta VALUES ('a', 'b')", "meta entry \"a\" was added"},
-      Case{"DELETE FROM seal", "all of its seals"},
+      Case{"DELETE FROM seal", "all seals"},
       Case{"DELETE FROM seal WHERE id = 1", "seal 1"},
       Case{"DELETE FROM seal WHERE is_last = 1", "was added"},
       Case{"UPDATE seal SET t_ns = 0 WHERE is_last = 1", "was changed"},

@@ -71,12 +71,12 @@ TEST(AccessTest, SecretsAreComparedWhole) {
 }
 
 TEST(AccessTest, HostIsReadWithoutItsPort) {
-  EXPECT_EQ(HostOf("127.0.0.1:8080"), "127.0.0.1");
-  EXPECT_EQ(HostOf("127.0.0.1"), "127.0.0.1");
-  EXPECT_EQ(HostOf("LocalHost:80"), "localhost");
-  EXPECT_EQ(HostOf("[::1]:8080"), "::1");
-  EXPECT_EQ(HostOf("[::1]"), "::1");
-  EXPECT_EQ(HostOf("[FE80::A]"), "fe80::a");
+  EXPECT_EQ(FindHost("127.0.0.1:8080"), "127.0.0.1");
+  EXPECT_EQ(FindHost("127.0.0.1"), "127.0.0.1");
+  EXPECT_EQ(FindHost("LocalHost:80"), "localhost");
+  EXPECT_EQ(FindHost("[::1]:8080"), "::1");
+  EXPECT_EQ(FindHost("[::1]"), "::1");
+  EXPECT_EQ(FindHost("[FE80::A]"), "fe80::a");
 }
 
 TEST(AccessTest, HostThatIsNotWellFormedIsNone) {
@@ -84,7 +84,7 @@ TEST(AccessTest, HostThatIsNotWellFormedIsNone) {
        {"", ":", ":80", "localhost:", "localhost:x", "localhost:80x", "localhost:123456",
         "localhost:-1", "::1", "[::1", "[::1]80", "[::1]:", "[::1]:x", "[]", "[]:80", "[localhost]",
         "a:80:80", "127.0.0.1:80@evil"}) {
-    EXPECT_EQ(HostOf(host), std::nullopt) << host;
+    EXPECT_EQ(FindHost(host), std::nullopt) << host;
   }
 }
 
@@ -241,13 +241,13 @@ TEST(AccessTest, LinkToLookOnIsForWhoeverHasIt) {
   EXPECT_NE(one, other);
   EXPECT_EQ(access.RoleOfCookie(one), Role::kViewer);
   EXPECT_EQ(access.RoleOfCookie(other), Role::kViewer);
-  EXPECT_EQ(access.Invite(Role::kViewer), access.token(Role::kViewer));
+  EXPECT_EQ(access.MakeInvitation(Role::kViewer), access.token(Role::kViewer));
 }
 
 TEST(AccessTest, EachInvitationLetsOneMoreBrowserIn) {
   Access access({}, kPort, false);
-  const std::string first = access.Invite(Role::kOperator);
-  const std::string second = access.Invite(Role::kOperator);
+  const std::string first = access.MakeInvitation(Role::kOperator);
+  const std::string second = access.MakeInvitation(Role::kOperator);
   EXPECT_NE(first, second);
   EXPECT_EQ(access.RoleOfCookie(ComeBy(&access, first)), Role::kOperator);
   EXPECT_FALSE(access.Admit(first, "").has_value());
@@ -256,10 +256,10 @@ TEST(AccessTest, EachInvitationLetsOneMoreBrowserIn) {
 
 TEST(AccessTest, FreshLinkIsAnotherOneOnceSomebodyHasComeByIt) {
   Access access({}, kPort, false);
-  const std::string fresh = access.FindFresh(Role::kParticipant);
-  EXPECT_EQ(access.FindFresh(Role::kParticipant), fresh);
+  const std::string fresh = access.FindUnusedLink(Role::kParticipant);
+  EXPECT_EQ(access.FindUnusedLink(Role::kParticipant), fresh);
   ComeBy(&access, fresh);
-  EXPECT_NE(access.FindFresh(Role::kParticipant), fresh);
+  EXPECT_NE(access.FindUnusedLink(Role::kParticipant), fresh);
 }
 
 TEST(AccessTest, BrowserThatHasLookedOnSteersAgainByItsOwnLink) {
@@ -275,14 +275,14 @@ TEST(AccessTest, BrowserThatHasLookedOnSteersAgainByItsOwnLink) {
 TEST(AccessTest, ManyWhoLookOnDriveNobodyOutWhoSteers) {
   Access access({}, kPort, false);
   const std::string steers = ComeBy(&access, access.token(Role::kOperator));
-  for (std::size_t i = 0; i < 3 * Access::kMostBrowsers; ++i) {
+  for (std::size_t i = 0; i < 3 * Access::kMaxBrowsers; ++i) {
     ComeBy(&access, access.token(Role::kViewer));
-    (void)access.Invite(Role::kOperator);
+    (void)access.MakeInvitation(Role::kOperator);
   }
   EXPECT_EQ(access.RoleOfCookie(steers), Role::kOperator);
   EXPECT_EQ(ComeBy(&access, access.token(Role::kOperator), steers), steers);
-  EXPECT_LE(access.Keep().browsers.size(), Access::kMostBrowsers);
-  EXPECT_LE(access.Keep().links.size(), Access::kMostLinks);
+  EXPECT_LE(access.Keep().browsers.size(), Access::kMaxBrowsers);
+  EXPECT_LE(access.Keep().links.size(), Access::kMaxLinks);
 }
 
 TEST(AccessTest, CookieGivesItsRole) {
@@ -348,7 +348,7 @@ TEST_F(KeptAccessTest, NextStartKnowsLinksAndBrowsersOfTheOneBefore) {
   Access before({}, kPort, false);
   const std::string steers = ComeBy(&before, before.token(Role::kOperator));
   const std::string looks_on = ComeBy(&before, before.token(Role::kViewer));
-  const std::string unused = before.Invite(Role::kOperator);
+  const std::string unused = before.MakeInvitation(Role::kOperator);
   ASSERT_TRUE(SaveAccess(file_, before.Keep()));
 
   const auto kept = LoadAccess(file_);

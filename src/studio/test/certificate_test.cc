@@ -32,7 +32,7 @@ class CertificateTest : public ::testing::Test {
  protected:
   [[nodiscard]] Result<SelfSigned> Keep(const std::vector<std::string>& names,
                                         std::int64_t now_s = kNowS) const {
-    return KeepCertificate(tls_, names, now_s);
+    return EnsureCertificate(tls_, names, now_s);
   }
 
   void Write(const std::string& text) const {
@@ -143,7 +143,7 @@ TEST_F(CertificateTest, FilesThatHoldSomethingElseAreErrorsThatSayWhatToDo) {
   ASSERT_TRUE(Keep({"127.0.0.1"}));
   const std::string good = Read(file_);
   const std::size_t middle = good.find("-----BEGIN CERTIFICATE");
-  ASSERT_TRUE(KeepCertificate(folder_ / "other", {"127.0.0.1"}, kNowS));
+  ASSERT_TRUE(EnsureCertificate(folder_ / "other", {"127.0.0.1"}, kNowS));
   const std::string other = Read(folder_ / "other" / "studio.pem");
   for (const std::string& text :
        {std::string(), std::string("nonsense"), good.substr(0, middle), good.substr(middle),

@@ -59,8 +59,8 @@ TEST(PathLogTest, LongHoldsAreKeptWithFewerPoses) {
     log.Add(FrameAt(OccurrenceId(1), Vec3(std::cos(angle), std::sin(angle), 0)));
   }
   const sweep::Path path = log.PathOf(OccurrenceId(1));
-  EXPECT_LE(path.size(), PathLog::kMostPoses + 1);
-  EXPECT_GT(path.size(), PathLog::kMostPoses / 4);
+  EXPECT_LE(path.size(), PathLog::kMaxPoses + 1);
+  EXPECT_GT(path.size(), PathLog::kMaxPoses / 4);
   EXPECT_NEAR(sweep::CalcLength(path, Vec3::Zero()), 2 * std::numbers::pi, 1e-4);
 }
 
@@ -190,7 +190,7 @@ TEST_F(PathCommandTest, SoManyMayBeAskedForAndNoMore) {
   OpenPeg();
   PutPegIn();
   Json refused;
-  for (std::size_t i = 0; i < Sweeper::kMostWaiting + 2; ++i) {
+  for (std::size_t i = 0; i < Sweeper::kMaxWaiting + 2; ++i) {
     refused = Ask({{"occurrence", 1}, {"as", "swept"}, {"resolution_mm", 2}});
   }
   ASSERT_FALSE(refused.is_null());

@@ -13,8 +13,8 @@ namespace {
 using spatial::Pose;
 
 constexpr double kDt = 1e-3;
-constexpr double kMostSpeed = 0.8;  // [m/s]
-constexpr double kMostTurn = 6;     // [rad/s]
+constexpr double kMaxSpeed = 0.8;  // [m/s]
+constexpr double kMaxTurn = 6;     // [rad/s]
 
 simulation::OperatorInput Tick(bool sees_part) {
   simulation::OperatorInput input;
@@ -72,14 +72,14 @@ TEST(PointerTest, HoldingHandIsNoFasterThanAHand) {
     fastest = std::max(fastest, (state.X_DH.p() - p_last).norm() / kDt);
     fastest_turn =
         std::max(fastest_turn, spatial::RotationBetween(q_last, state.X_DH.q()).norm() / kDt);
-    EXPECT_LE(state.V_DH.v.norm(), kMostSpeed * (1 + 1e-9));
-    EXPECT_LE(state.V_DH.w.norm(), kMostTurn * (1 + 1e-9));
+    EXPECT_LE(state.V_DH.v.norm(), kMaxSpeed * (1 + 1e-9));
+    EXPECT_LE(state.V_DH.w.norm(), kMaxTurn * (1 + 1e-9));
     p_last = state.X_DH.p();
     q_last = state.X_DH.q();
   }
-  EXPECT_LE(fastest, kMostSpeed * (1 + 1e-6));
-  EXPECT_LE(fastest_turn, kMostTurn * (1 + 1e-6));
-  EXPECT_GT(fastest, 0.9 * kMostSpeed);  // it did hurry
+  EXPECT_LE(fastest, kMaxSpeed * (1 + 1e-6));
+  EXPECT_LE(fastest_turn, kMaxTurn * (1 + 1e-6));
+  EXPECT_GT(fastest, 0.9 * kMaxSpeed);  // it did hurry
   EXPECT_LT((p_last - Vec3(1, 0, 0)).norm(), 1e-6);
   EXPECT_LT(spatial::RotationBetween(q_last, Turned(3).q()).norm(), 1e-6);
 }
@@ -133,22 +133,22 @@ TEST(PointerTest, HandStaysWhereItIsWhenNothingIsHeard) {  // N11: 250 ms withou
   }
   const Vec3 p_before = pointer.Step(Tick(true)).X_DH.p();
   ASSERT_GT((Vec3(0.2, 0, 0) - p_before).norm(), 0.1);  // on its way, far from the goal
-  pointer.Move(Input(At(0.2), PointerOperator::kSilentNs + 1'000'000));
+  pointer.Move(Input(At(0.2), PointerOperator::kInputTimeoutNs + 1'000'000));
   Vec3 p_last = p_before;
   for (int i = 0; i < 1000; ++i) {
     const auto state = pointer.Step(Tick(true));
     ASSERT_TRUE(IsFinite(state));
-    EXPECT_GE(state.client_age_ns, PointerOperator::kSilentNs);
+    EXPECT_GE(state.client_age_ns, PointerOperator::kInputTimeoutNs);
     p_last = state.X_DH.p();
     // What the first stage was ahead by, 0.8 m/s for 12 ms, is shared between the two.
-    EXPECT_LT((p_last - p_before).norm(), kMostSpeed * 0.012);
+    EXPECT_LT((p_last - p_before).norm(), kMaxSpeed * 0.012);
   }
   EXPECT_LT(pointer.Step(Tick(true)).V_DH.v.norm(), 1e-6);
 }
 
 TEST(PointerTest, HandGoesOnWhenItIsHeardAgain) {
   PointerOperator pointer(At(0));
-  pointer.Move(Input(At(0.1), 2 * PointerOperator::kSilentNs));
+  pointer.Move(Input(At(0.1), 2 * PointerOperator::kInputTimeoutNs));
   EXPECT_LT(pointer.Step(Tick(true)).X_DH.p().norm(), 1e-12);
   Vec3 p_last;
   for (int i = 0; i < 400; ++i) {

@@ -14,14 +14,14 @@ struct ssl_st;
 
 namespace hvas::studio::testing {
 
-/** What a server answered. Status 0: it closed the connection without a word. */
+/** A server's response. Status 0: it closed the connection without one. */
 struct Reply {
   int status{0};
   std::map<std::string, std::string> headers;  ///< Names in small letters.
   std::string body;
 };
 
-/** A message of a WebSocket. */
+/** A WebSocket message. */
 struct Message {
   static constexpr int kText = 1;
   static constexpr int kBinary = 2;
@@ -34,43 +34,45 @@ struct Request {
   std::string method{"GET"};
   std::string target{"/"};
   std::vector<std::pair<std::string, std::string>> headers;
-  std::string body;  ///< With its Content-Length when it is not empty.
+  std::string body;  ///< Sent with its Content-Length when it is not empty.
 };
 
-/** A connection that sends whatever it is told to, also what no browser would. Waits at most 20 s
- for an answer. */
+/** An HTTP and WebSocket client that sends any bytes, also those that no browser would send. It
+ waits at most 20 s for a response. */
 class RawClient {
  public:
-  /** @param receive_buffer  How much the system takes in before it is read [bytes]; 0: as usual. */
+  /** @param receive_buffer  Size of the socket's receive buffer [bytes]; 0: the system's
+   default. */
   explicit RawClient(std::uint16_t port, int receive_buffer = 0);
   ~RawClient();
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
 
-  /** Speaks TLS from here on. @returns what is wrong with the server's certificate, when only those
-   of a PEM file are trusted and the server should be at an address; "ok" when nothing is, "" when
-   there was no handshake. */
+  /** Begins TLS, trusting only the certificates of a PEM file.
+   @param address  Address that the server's certificate has to name.
+   @returns OpenSSL's verdict on the certificate: "ok", or what is wrong with it; "" when the
+   handshake failed. */
   std::string ShakeHands(const std::filesystem::path& trusted, const std::string& address);
 
-  /** SHA-256 of the certificate that the server has shown: "0A:1B:..". */
+  /** SHA-256 fingerprint of the server's certificate: "0A:1B:..". */
   [[nodiscard]] std::string PeerFingerprint() const;
 
-  /** False when the server has closed the connection. */
+  /** Sends bytes or a request. @returns false when the server has closed the connection. */
   bool Send(std::string_view bytes);
   bool Send(const Request& request);
 
   Reply ReadReply();
   Reply Ask(const Request& request);
 
-  /** Whether the server ends the connection, after whatever it still sends. */
+  /** Waits for the server to close the connection, discarding what it still sends. */
   bool IsClosed();
 
-  /** As a browser asks for it; then ReadReply tells whether it is granted. */
+  /** Asks for a WebSocket as a browser does; ReadReply() then has the response. */
   bool SendUpgrade(std::vector<std::pair<std::string, std::string>> headers,
                    const std::string& target = "/ws");
   bool SendMessage(int opcode, std::string_view bytes);
 
-  /** None when the connection has ended, or nothing came in time. */
+  /** Reads a message; none when the connection has ended or nothing came in time. */
   std::optional<Message> ReadMessage();
 
  private:
@@ -83,7 +85,7 @@ class RawClient {
   bool Await(std::size_t size);
 
   int socket_{-1};
-  std::unique_ptr<ssl_st, TlsEnd> tls_;  ///< Null: not encrypted.
+  std::unique_ptr<ssl_st, TlsEnd> tls_;  ///< Null: plain TCP.
   std::string received_;
 };
 

@@ -23,7 +23,7 @@ namespace hvas::studio::testing {
 
 using Headers = std::vector<std::pair<std::string, std::string>>;
 
-inline constexpr std::uint64_t kMostUpload = 10'000;  // [bytes]
+inline constexpr std::uint64_t kMaxUpload = 10'000;  // [bytes]
 
 /** A server on a free port, with nothing open. */
 class ServerTest : public ::testing::Test {
@@ -32,7 +32,7 @@ class ServerTest : public ::testing::Test {
 
   explicit ServerTest(ServerOptions options) : is_tls_(options.tls.has_value()) {
     options.upload_folder = folder_;
-    options.most_upload = kMostUpload;
+    options.max_upload = kMaxUpload;
     bench_ = std::make_unique<Workbench>(testing::SmallBench());
     server_ = std::make_unique<Server>(
         bench_.get(), std::vector<Example>{{"peg", "Peg", "a peg", "peg.step"}}, options);
@@ -58,7 +58,7 @@ class ServerTest : public ::testing::Test {
 
   [[nodiscard]] std::string origin() const { return (is_tls_ ? "https://" : "http://") + host(); }
 
-  /** Connected as a browser would be. */
+  /** Connects as a browser does, with TLS where the server has it. */
   [[nodiscard]] std::unique_ptr<RawClient> Connect(int receive_buffer = 0) const {
     auto client = std::make_unique<RawClient>(server_->port(), receive_buffer);
     if (is_tls_) {
@@ -88,7 +88,7 @@ class ServerTest : public ::testing::Test {
     return Post("/api/session", Json{{"token", token}}.dump());
   }
 
-  /** The Cookie header of a browser that has come by the link of a role. */
+  /** The Cookie header of a browser that was admitted by the link of a role. */
   std::string CookieOf(Role role) {
     std::string& cookie = cookies_[role];
     if (cookie.empty()) {
@@ -109,7 +109,7 @@ class ServerTest : public ::testing::Test {
     return client;
   }
 
-  /** The next text message that fits; null when none came. */
+  /** Waits for the next text message that fits; null when none came. */
   static Json Await(RawClient* client, const std::function<bool(const Json&)>& fits) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (std::chrono::steady_clock::now() < until) {  // statuses come for ever
@@ -136,7 +136,7 @@ class ServerTest : public ::testing::Test {
     return Await(client, [&](const Json& json) { return json.value("id", -1) == command["id"]; });
   }
 
-  /** With the small product open. */
+  /** Joins as an operator and opens the small product. */
   std::unique_ptr<RawClient> JoinAndOpen() {
     auto client = Join(Role::kOperator);
     EXPECT_TRUE(Command(client.get(), {{"id", 1}, {"command", "open"}, {"example", "peg"}})["ok"]);
@@ -150,7 +150,7 @@ class ServerTest : public ::testing::Test {
                       std::filesystem::recursive_directory_iterator()));
   }
 
-  /** What was kept is thrown away after the answer: waits for it. */
+  /** Waits until the upload folder is empty: uploads are removed after the response. */
   [[nodiscard]] bool BecomesEmpty() const {
     return hvas::testing::AwaitTrue([this] { return CountFiles() == 0; });
   }

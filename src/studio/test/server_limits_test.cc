@@ -8,7 +8,7 @@
 namespace hvas::studio {
 namespace {
 
-using testing::kMostUpload;
+using testing::kMaxUpload;
 using testing::Message;
 using testing::RawClient;
 using testing::Reply;
@@ -66,9 +66,9 @@ TEST_F(ServerTest, LongBodyOfATokenIsRefused) {
 
 TEST_F(ServerTest, UploadAboveTheLimitLeavesNothing) {
   const std::string cookie = CookieOf(Role::kOperator);
-  EXPECT_EQ(Post("/api/upload?name=a.stp", std::string(kMostUpload + 1, 'x'), {{"Cookie", cookie}})
-                .status,
-            413);
+  EXPECT_EQ(
+      Post("/api/upload?name=a.stp", std::string(kMaxUpload + 1, 'x'), {{"Cookie", cookie}}).status,
+      413);
   const std::string start = "POST /api/upload?name=a.stp HTTP/1.1\r\nHost: " + host() +
                             "\r\nOrigin: " + origin() + "\r\nCookie: " + cookie + "\r\n";
   {
@@ -103,7 +103,7 @@ TEST_F(ServerTest, ViewersUploadIsRefused) {
 }
 
 TEST_F(ServerTest, UploadIsOpenedByItsId) {
-  const std::string bytes(kMostUpload, 'x');
+  const std::string bytes(kMaxUpload, 'x');
   const Reply reply =
       Post("/api/upload?name=part.stp", bytes, {{"Cookie", CookieOf(Role::kOperator)}});
   ASSERT_EQ(reply.status, 200);

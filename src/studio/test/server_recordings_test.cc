@@ -26,7 +26,7 @@ class ServerRecordingsTest : public ServerTest {
     auto recorder = record::Recorder::Create(options, meta);
     ASSERT_TRUE(recorder.has_value()) << recorder.error().ToString();
     (*recorder)->AddTick({});
-    (*recorder)->AddEvent({0, kToldKind, record::kNoOccurrence, told});
+    (*recorder)->AddEvent({0, kClientEventKind, record::kNoOccurrence, told});
     ASSERT_TRUE((*recorder)->Finish().has_value());
   }
 

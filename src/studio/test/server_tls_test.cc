@@ -7,7 +7,7 @@
 namespace hvas::studio {
 namespace {
 
-using testing::kMostUpload;
+using testing::kMaxUpload;
 using testing::RawClient;
 using testing::Reply;
 using testing::ServerTest;
@@ -16,7 +16,7 @@ using testing::ServerTest;
 ServerOptions MakeTlsOptions() {
   static const hvas::testing::TemporaryFolder folder;  // one for all
   ServerOptions options;
-  options.tls = KeepCertificate(folder.path() / "tls", {"127.0.0.1"}, std::time(nullptr))->files;
+  options.tls = EnsureCertificate(folder.path() / "tls", {"127.0.0.1"}, std::time(nullptr))->files;
   return options;
 }
 
@@ -46,7 +46,7 @@ TEST_F(TlsServerTest, PageCookieSceneAndSocketComeEncrypted) {  // N11: headsets
   const Reply model = Get(Json::parse(scene.body)["glb"], {{"Cookie", cookie}});
   EXPECT_EQ(model.body.substr(0, 4), "glTF");
   EXPECT_EQ(
-      Post("/api/upload?name=a.stp", std::string(kMostUpload, 'x'), {{"Cookie", cookie}}).status,
+      Post("/api/upload?name=a.stp", std::string(kMaxUpload, 'x'), {{"Cookie", cookie}}).status,
       200);
   EXPECT_EQ(Command(client.get(), {{"id", 5}, {"command", "status"}})["ok"], true);
 }

@@ -11,12 +11,12 @@
 
 namespace hvas::studio::testing {
 
-/** What a workbench told, in order; filled and read by different threads. */
+/** Events of a workbench, in order; any thread may fill and read it. */
 class EventLog {
  public:
   void Add(Json event);
 
-  /** The first event from `start` on that fits, once it is there; none after so many seconds. */
+  /** Waits for the first event from index `start` on that fits; none after so many seconds. */
   std::optional<Json> Await(const std::function<bool(const Json&)>& fits, std::size_t start = 0,
                             double seconds = 60);
   std::optional<Json> Await(const std::string& name, std::size_t start = 0, double seconds = 60);
@@ -29,9 +29,9 @@ class EventLog {
   std::vector<Json> events_;
 };
 
-/** Of a workbench whose every file is simulation::testing::PegInBlock: occurrence 0 is the block,
- 1 the peg. A file named "missing" cannot be opened. Shapes are made once in a program, and
- recordings are gone with it. */
+/** Makes the options of a workbench on which every file is simulation::testing::PegInBlock:
+ occurrence 0 is the block, 1 the peg. A file named "missing" cannot be opened. Contact shapes are
+ made once in a program; its recordings are deleted at its end. */
 [[nodiscard]] WorkbenchOptions SmallBench();
 
 }  // namespace hvas::studio::testing

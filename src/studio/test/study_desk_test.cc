@@ -72,7 +72,7 @@ class StudyDeskTest : public ::testing::Test {
     auto desk = StudyDesk::Open(std::move(*folder), &bench_, std::move(options));
     ASSERT_TRUE(desk) << desk.error().ToString();
     desk_ = std::move(*desk);
-    hub_.RunStudy(desk_.get());
+    hub_.SetStudyDesk(desk_.get());
   }
 
   void Join() {
@@ -337,7 +337,7 @@ TEST_F(StudyDeskTest, GoesOnAfterTheProgramHasEnded) {
   hub_.Forget();
   Open(false);  // as a program that is begun again
   EXPECT_EQ(Phase(), "waiting");
-  EXPECT_TRUE(desk_->OnBench({{"event", "scene"}}, now_ns_));
+  EXPECT_TRUE(desk_->OnBenchEvent({{"event", "scene"}}, now_ns_));
   ASSERT_TRUE(desk_->Do(Role::kOperator, {{"action", "begin"}}, now_ns_));
   EXPECT_EQ(Phase(), "ready");
   const Json state = desk_->MakeState(Role::kOperator, now_ns_);

@@ -58,14 +58,14 @@ TEST(Analysis, OfPaperWsTableSaysWhatThePaperSays) {
 TEST(Analysis, DirectionChangesWordsOnly) {
   AnalysisOptions options = OptionsOfPaper();
   const auto plain = Analyse(PaperTable(), options);
-  EXPECT_EQ(TellPair(*plain, plain->pairs[0]), "B1 higher");
-  EXPECT_EQ(TellPair(*plain, plain->pairs[2]), "not shown");
+  EXPECT_EQ(DescribePair(*plain, plain->pairs[0]), "B1 higher");
+  EXPECT_EQ(DescribePair(*plain, plain->pairs[2]), "not shown");
   options.direction = Direction::kHigherIsBetter;
   const auto higher = Analyse(PaperTable(), options);
-  EXPECT_EQ(TellPair(*higher, higher->pairs[0]), "B1 better");
+  EXPECT_EQ(DescribePair(*higher, higher->pairs[0]), "B1 better");
   options.direction = Direction::kLowerIsBetter;
   const auto lower = Analyse(PaperTable(), options);
-  EXPECT_EQ(TellPair(*lower, lower->pairs[0]), "B2 better");
+  EXPECT_EQ(DescribePair(*lower, lower->pairs[0]), "B2 better");
   EXPECT_EQ(lower->pairs[0].wilcoxon.p, plain->pairs[0].wilcoxon.p);
 }
 
@@ -96,7 +96,7 @@ TEST(Analysis, SaysWhatIsNotDefined) {
   for (const PairResult& pair : analysis->pairs) {
     EXPECT_FALSE(pair.is_different || pair.d_z);
   }
-  const std::string html = AnalysisHtml(*analysis);
+  const std::string html = MakeAnalysisHtml(*analysis);
   EXPECT_EQ(html.find(">nan"), std::string::npos);
   EXPECT_NE(html.find("not defined"), std::string::npos);
 }
@@ -107,7 +107,7 @@ TEST(Analysis, OfTwoConditionsHasNoFriedman) {
   ASSERT_TRUE(analysis);
   EXPECT_FALSE(analysis->friedman);
   EXPECT_EQ(analysis->pairs.size(), 1u);
-  EXPECT_TRUE(TellFriedman(*analysis).empty());
+  EXPECT_TRUE(DescribeFriedman(*analysis).empty());
 }
 
 TEST(Analysis, RefusesTablesThatCannotBeComparedAndNamesTheCell) {
@@ -155,11 +155,11 @@ TEST(Trials, AreSummarisedInTheOrderInWhichTheyCome) {
 }
 
 TEST(Identification, CountsWhatWasTakenForWhat) {
-  const std::vector<Answer> answers{{"1", "g6", "g6"},
-                                    {"1", "p6", "p6"},
-                                    {"1", "p6", "g6"},
-                                    {"2", "g6", "g6"},
-                                    {"2", "p6", "none"}};
+  const std::vector<IdentificationAnswer> answers{{"1", "g6", "g6"},
+                                                  {"1", "p6", "p6"},
+                                                  {"1", "p6", "g6"},
+                                                  {"2", "g6", "g6"},
+                                                  {"2", "p6", "none"}};
   const auto result = AnalyseIdentification(answers);
   ASSERT_TRUE(result);
   EXPECT_EQ(result->names, (std::vector<std::string>{"g6", "p6", "none"}));
@@ -167,7 +167,7 @@ TEST(Identification, CountsWhatWasTakenForWhat) {
   EXPECT_EQ(result->participant_count, 2u);
   EXPECT_DOUBLE_EQ(*result->chance, 0.5);
   EXPECT_FALSE(result->confusion.recall[2]);
-  EXPECT_NE(IdentificationHtml(*result).find("p6 taken for none: 1"), std::string::npos);
+  EXPECT_NE(MakeIdentificationHtml(*result).find("p6 taken for none: 1"), std::string::npos);
   EXPECT_FALSE(AnalyseIdentification({}));
 }
 
@@ -175,7 +175,7 @@ TEST(Page, HasFiguresWithWordsAndIdsOfItsOwnAndIsTheSameEveryTime) {
   Table table = PaperTable();
   table.conditions[0] = "B1 <&>";
   const auto analysis = Analyse(table, OptionsOfPaper());
-  const std::string html = AnalysisHtml(*analysis, "x");
+  const std::string html = MakeAnalysisHtml(*analysis, "x");
   for (const char* what :
        {"<section id=\"x\">", "x-boxesp0", "x-meansp0", "x-pairsp0", "<desc>", "role=\"img\"",
         "B1 &lt;&amp;&gt;", "prefers-color-scheme:dark", "by guessing: 33.3 %", "0.0128"}) {
@@ -185,7 +185,7 @@ TEST(Page, HasFiguresWithWordsAndIdsOfItsOwnAndIsTheSameEveryTime) {
     const std::size_t at = html.find(what);
     EXPECT_TRUE(at == std::string::npos || html.compare(at, 17, "http://www.w3.org") == 0) << what;
   }
-  EXPECT_EQ(html, AnalysisHtml(*Analyse(table, OptionsOfPaper()), "x"));
+  EXPECT_EQ(html, MakeAnalysisHtml(*Analyse(table, OptionsOfPaper()), "x"));
 }
 
 TEST(FormatP, IsShortAndNeverZero) {

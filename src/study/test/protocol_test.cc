@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "out of its range"},
         Refused{"NoFit",
                 kHead + "conditions:\n  - {id: A, name: A, method: hybrid, fit: X9}\n" + kBlocks,
-                "8:43", "no fit"},
+                "8:43", "not a fit"},
         Refused{"UnknownMethod",
                 kHead + "conditions:\n  - id: A\n    name: A\n    method: magic\n" + kBlocks,
                 "10:13", "\"magic\""},
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
                     kBlocks,
                 "9:5", "twice"},
         Refused{"SameKeyTwice", kHead + kConditions + kBlocks + "title: Other\n", "12:1", "twice"},
-        Refused{"NoYaml", kHead + "conditions: [\n", "8:1", "not YAML"},
+        Refused{"NoYaml", kHead + "conditions: [\n", "8:1", "not valid YAML"},
         Refused{"EmptyScale",
                 kHead + kConditions + kBlocks +
                     "questions:\n  - {id: q, kind: scale, text: Q, low: 5, high: 5}\n",

@@ -142,7 +142,7 @@ TEST(Schedule, FirstPlaceIsEachConditionsEquallyOftenInRandomOrders) {
 }
 
 TEST(ParticipantIds, AreNumbersAndNotNames) {
-  EXPECT_EQ(ParticipantId(3), "P03");
+  EXPECT_EQ(FormatParticipantId(3), "P03");
   EXPECT_EQ(*ParseParticipantId("P03"), 3);
   EXPECT_EQ(*ParseParticipantId("P120"), 120);
   for (const char* id :

@@ -15,7 +15,7 @@
 
 namespace hvas::study::testing {
 
-/** Two conditions once each, and each of two fits twice blind; a peg goes into a block. */
+/** A study of a peg in a block: three timed conditions once, and two fits blind twice each. */
 inline constexpr const char* kTinyProtocol = R"(
 format: hvas-study-1
 id: tiny
@@ -66,7 +66,7 @@ inline std::string ReadAll(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/** Bytes of all files below a folder, by their relative names. */
+/** Reads all files below a folder. @returns their bytes by relative path. */
 inline std::map<std::string, std::string> ReadFolder(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

@@ -93,7 +93,7 @@ export const deStudy: Record<keyof typeof enStudy, string> = {
   "desk.repetition": "Wiederholung",
   "desk.block": "Block",
   "desk.blind": "blind",
-  "desk.next": "Danach",
+  "desk.next": "Als Nächstes",
   "desk.felt": "Kraft, gefühlt",
   "desk.true": "Kraft, wahr",
   "desk.opening": "Das Produkt wird geöffnet.",

@@ -31,7 +31,7 @@ export const deTime: Record<keyof typeof enTime, string> = {
   "time.title": "Zeit",
   "time.rec": "Rec",
   "time.transport": "Wiedergabe",
-  "time.position": "Zeitpunkt",
+  "time.position": "Position",
   "time.speed": "Tempo",
   "time.live": "live",
   "time.ago": "vor {s} s",

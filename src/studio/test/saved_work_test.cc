@@ -1,4 +1,4 @@
-#include "studio/kept_work.h"
+#include "studio/saved_work.h"
 
 #include <filesystem>
 #include <fstream>
@@ -105,7 +105,7 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
   const auto& mate = next.bench.scene()->model->product->mates[0];
   ASSERT_TRUE(mate.fit.has_value());
   EXPECT_EQ(mate.fit->code, "H7/h6");
-  EXPECT_EQ(next.bench.NewsForLatecomer().back()["event"], "resumed");
+  EXPECT_EQ(next.bench.MakeCatchUpEvents().back()["event"], "resumed");
   ASSERT_TRUE(AwaitTrue([this] { return LoadWork(folder_ / "next.json").has_value(); }));
   EXPECT_EQ(LoadWork(folder_ / "next.json")->edits, work->edits);
 }
@@ -155,7 +155,7 @@ TEST_F(KeptWorkTest, WorkOnAnotherProductIsSetAside) {
 }
 
 TEST_F(KeptWorkTest, DamagedFilesAreRefused) {
-  KeptWork work{"/a/peg.step", "peg", "d", {{{"command", "remove_mate"}, {"mate", 0}}}, {}};
+  SavedWork work{"/a/peg.step", "peg", "d", {{{"command", "remove_mate"}, {"mate", 0}}}, {}};
   work.state.parts = {{Placement::kPlaced, spatial::Pose()}, {Placement::kParked, spatial::Pose()}};
   ASSERT_TRUE(SaveWork(file_, work));
   EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
@@ -179,7 +179,7 @@ TEST_F(KeptWorkTest, DamagedFilesAreRefused) {
        {nlohmann::json(), nlohmann::json(5), nlohmann::json{{"command", "open"}},
         nlohmann::json{{"command", "assign_fit"}, {"mate", -1}, {"fit", "H7/h6"}},
         nlohmann::json{{"command", "remove_mate"}}}) {
-    EXPECT_FALSE(MakeChangeOf({Json(command)}).has_value()) << command;
+    EXPECT_FALSE(CombineEdits({Json(command)}).has_value()) << command;
   }
 }
 

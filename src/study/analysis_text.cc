@@ -1,4 +1,4 @@
-// What an analysis says, in words that the page and the command share.
+// Descriptions of an analysis in words, for the page and the command.
 
 #include <fmt/format.h>
 
@@ -11,18 +11,18 @@ std::string FormatP(double p) {
   return p < kLeast ? "< 0.0001" : p < 0.01 ? fmt::format("{:.5f}", p) : fmt::format("{:.4f}", p);
 }
 
-std::string TellFriedman(const Analysis& analysis) {
+std::string DescribeFriedman(const Analysis& analysis) {
   if (!analysis.friedman || !analysis.friedman->p) {
     return {};
   }
   const statistics::Friedman& friedman = *analysis.friedman;
-  // The exact test stands where there is one: the other is its approximation.
+  // The exact test takes precedence: the other is its approximation.
   const double p = friedman.exact_p.value_or(*friedman.p);
   return fmt::format(
       "{}: Friedman chi-square {:.4f} with {} degrees of freedom, p {}{}, {}Kendall's W {:.3f}, {} "
       "participants.",
       p <= analysis.options.alpha ? "The conditions differ"
-                                  : "No difference of the conditions is shown",
+                                  : "No significant difference between the conditions",
       *friedman.chi_square, friedman.condition_count - 1, FormatP(*friedman.p),
       friedman.exact_p ? fmt::format(" (exact {})", FormatP(*friedman.exact_p)) : "",
       friedman.iman_davenport_f
@@ -32,7 +32,7 @@ std::string TellFriedman(const Analysis& analysis) {
       *friedman.kendall_w, friedman.row_count);
 }
 
-std::string TellPair(const Analysis& analysis, const PairResult& pair) {
+std::string DescribePair(const Analysis& analysis, const PairResult& pair) {
   if (!pair.is_different) {
     return "not shown";
   }
@@ -51,34 +51,33 @@ std::string TellPair(const Analysis& analysis, const PairResult& pair) {
   return higher + " higher";
 }
 
-std::vector<std::string> TellConventions(const Analysis& analysis) {
+std::vector<std::string> DescribeConventions(const Analysis& analysis) {
   const double level = 100 * (1 - analysis.options.alpha);
   std::vector<std::string> told{
-      fmt::format("Intervals hold {:g} %, each for itself. Quartiles are linear between order "
-                  "statistics (type 7). Differences are second minus first, in per cent of the "
-                  "first mean.",
-                  level),
+      fmt::format(
+          "Intervals have an individual confidence of {:g} %. Quartiles are linear between order "
+          "statistics (type 7). Differences are second minus first, in per cent of the first mean.",
+          level),
       fmt::format("Wilcoxon signed ranks: zero differences dropped, ties at mid ranks; p by the "
                   "normal approximation with corrected variance and without correction for "
-                  "continuity, and exact by all signs. Both are of two sides. A difference is "
-                  "taken as shown where Holm's p, {}, is at most {:g}.",
+                  "continuity, and exact by all signs. Both are two-sided. A difference is "
+                  "significant where Holm's p, {}, is at most {:g}.",
                   !analysis.pairs.empty() && analysis.pairs.front().exact_holm_p
                       ? "of the exact test"
                       : "of the normal approximation",
                   analysis.options.alpha)};
   if (analysis.pairs.size() > 1) {
     told.push_back(
-        fmt::format("Level of one of {} comparisons after Bonferroni: {:.4f}. Adjusted p are to be "
-                    "compared with {:g} itself.",
+        fmt::format("Level of one of {} comparisons after Bonferroni: {:.4f}. Compare adjusted p "
+                    "values with {:g} itself.",
                     analysis.pairs.size(), analysis.bonferroni_level, analysis.options.alpha));
   }
   if (analysis.options.of) {
     told.push_back(fmt::format(
-        "Shares take all trials of all participants as independent; where some "
-        "participants are better than others, the true interval is wider. Chance: {:.4g}, "
-        "{}; its p is of one side.",
+        "Shares treat all trials of all participants as independent; where some participants are "
+        "better than others, the true interval is wider. Chance: {:.4g}, {}; its p is one-sided.",
         analysis.chance,
-        analysis.options.chance ? "as stated" : "one in the number of conditions"));
+        analysis.options.chance ? "as stated" : "one over the number of conditions"));
   }
   return told;
 }

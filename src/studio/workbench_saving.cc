@@ -1,4 +1,4 @@
-// The work on the workbench that is kept for the next start of the studio.
+// Saving of the work for the next start of the studio, and resuming it.
 
 #include <algorithm>
 #include <utility>
@@ -10,17 +10,18 @@ namespace hvas::studio {
 
 using simulation::Placement;
 
-void Workbench::Resume(const KeptWork& work) {
+void Workbench::Resume(const SavedWork& work) {
   PostOpen([this, work] { DoOpen(work.file, work.name, &work); });
 }
 
-SceneNow Workbench::GoOnFrom(const KeptWork& kept, const std::shared_ptr<const OpenScene>& opened) {
+SceneSnapshot Workbench::RestoreWork(const SavedWork& kept,
+                                     const std::shared_ptr<const OpenScene>& opened) {
   if (opened->digest != kept.digest || opened->model->bodies.size() != kept.state.parts.size()) {
     return {opened, {}};
   }
-  SceneNow begun{opened, kept.state};
+  SceneSnapshot begun{opened, kept.state};
   if (!kept.edits.empty()) {
-    auto edited = builder_.MakeEdits(*opened, kept.edits, TellProgressOf(kept.name));
+    auto edited = builder_.ApplyEdits(*opened, kept.edits, MakeProgressListener(kept.name));
     if (!edited) {
       return {opened, {}};
     }
@@ -31,27 +32,27 @@ SceneNow Workbench::GoOnFrom(const KeptWork& kept, const std::shared_ptr<const O
   return begun;
 }
 
-void Workbench::KeepWork() {
+void Workbench::ScheduleSave() {
   if (!options_.work_file.empty()) {
-    (void)keeper_.TryPost([this](const std::stop_token&) { DoKeepWork(); }, 1);
+    (void)keeper_.TryPost([this](const std::stop_token&) { DoSaveWork(); }, 1);
   }
 }
 
-void Workbench::DoKeepWork() {
-  const SceneNow now = LookAtRest();
+void Workbench::DoSaveWork() {
+  const SceneSnapshot now = MakeRestingSnapshot();
   if (options_.work_file.empty() || now.scene == nullptr || trial() != nullptr) {
     return;
   }
-  const auto saved = SaveWork(options_.work_file, MakeKeptWork(now));
-  if (!saved && std::exchange(can_keep_work_, false)) {
-    Tell({{"event", "failed"}, {"file", now.scene->name}, {"error", ToJson(saved.error())}});
+  const auto saved = SaveWork(options_.work_file, MakeSavedWork(now));
+  if (!saved && std::exchange(can_save_work_, false)) {
+    Publish({{"event", "failed"}, {"file", now.scene->name}, {"error", ToJson(saved.error())}});
   }
-  can_keep_work_ = saved.has_value();
+  can_save_work_ = saved.has_value();
 }
 
-SceneNow Workbench::LookAtRest() const {
+SceneSnapshot Workbench::MakeRestingSnapshot() const {
   const std::lock_guard lock(mutex_);
-  SceneNow now{scene_, run_ != nullptr ? run_->state() : resting_};
+  SceneSnapshot now{scene_, run_ != nullptr ? run_->state() : resting_};
   for (std::size_t i = 0; i < now.state.parts.size(); ++i) {
     simulation::PartState& part = now.state.parts[i];
     if (part.placement != Placement::kHeld) {

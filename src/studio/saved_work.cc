@@ -1,4 +1,4 @@
-#include "studio/kept_work.h"
+#include "studio/saved_work.h"
 
 #include <algorithm>
 #include <system_error>
@@ -9,7 +9,7 @@
 #include "base/digest.h"
 #include "session/command_json.h"
 #include "studio/json_fields.h"
-#include "studio/kept_folder.h"
+#include "studio/state_folder.h"
 
 namespace hvas::studio {
 namespace {
@@ -19,9 +19,9 @@ using simulation::Placement;
 
 constexpr std::uint32_t kWorkVersion = 2;
 
-Unexpected NotKeptWork(const std::filesystem::path& file) {
-  return Fail(ErrorCode::kUnreadable, "this is not what a studio keeps of its work", file.string(),
-              "delete the file, or start the studio with --fresh");
+Unexpected FailNoSavedWork(const std::filesystem::path& file) {
+  return Fail(ErrorCode::kUnreadable, "the file does not contain saved work of the studio",
+              file.string(), "delete the file, or start the studio with --fresh");
 }
 
 }  // namespace
@@ -46,13 +46,13 @@ std::string CalcProductDigest(const product::Product& product) {
   return digest.Hex();
 }
 
-KeptWork MakeKeptWork(const SceneNow& now) {
+SavedWork MakeSavedWork(const SceneSnapshot& now) {
   HVAS_DEMAND(now.scene != nullptr);
   return {now.scene->file, now.scene->name, now.scene->digest, now.scene->edits, now.state};
 }
 
-Result<KeptWork> LoadWork(const std::filesystem::path& file) {
-  const auto text = ReadKeptFile(file);
+Result<SavedWork> LoadWork(const std::filesystem::path& file) {
+  const auto text = ReadPrivateFile(file);
   if (!text) {
     return Unexpected(text.error());
   }
@@ -62,9 +62,9 @@ Result<KeptWork> LoadWork(const std::filesystem::path& file) {
   };
   if (!json.is_object() || IndexOr(json, "version", 0) != kWorkVersion ||
       list_at("edits").is_null() || list_at("parts").is_null()) {
-    return NotKeptWork(file);
+    return FailNoSavedWork(file);
   }
-  KeptWork work;
+  SavedWork work;
   work.file = TextOr(json, "file", "");
   work.name = TextOr(json, "name", "");
   work.digest = TextOr(json, "digest", "");
@@ -73,18 +73,18 @@ Result<KeptWork> LoadWork(const std::filesystem::path& file) {
   auto parts = session::ParseParts(list_at("parts"));
   const auto is_held = [](const PartState& part) { return part.placement == Placement::kHeld; };
   if (!parts || std::any_of(parts->begin(), parts->end(), is_held)) {
-    return NotKeptWork(file);
+    return FailNoSavedWork(file);
   }
   work.state.parts = std::move(*parts);
   return work;
 }
 
-void SetWorkAside(const std::filesystem::path& file) {
-  std::error_code ignored;  // there may be none
+void BackUpWork(const std::filesystem::path& file) {
+  std::error_code ignored;  // there may be no file
   std::filesystem::rename(file, file.string() + ".before", ignored);
 }
 
-Result<void> SaveWork(const std::filesystem::path& file, const KeptWork& work) {
+Result<void> SaveWork(const std::filesystem::path& file, const SavedWork& work) {
   const Json json{{"version", kWorkVersion},
                   {"file", work.file.string()},
                   {"name", work.name},

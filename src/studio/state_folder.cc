@@ -1,4 +1,4 @@
-#include "studio/kept_folder.h"
+#include "studio/state_folder.h"
 
 #include <sys/stat.h>
 
@@ -17,20 +17,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Unexpected CannotKeep(const fs::path& file, int error) {
+Unexpected FailToWrite(const fs::path& file, int error) {
   return Fail(ErrorCode::kOutOfResource,
-              "nothing can be kept here: " + std::generic_category().message(error), file.string(),
-              "make room there, or set XDG_STATE_HOME to another folder");
+              "this folder cannot be written: " + std::generic_category().message(error),
+              file.string(), "free disk space there, or set XDG_STATE_HOME to another folder");
 }
 
-/** The locked file; closed when another program has it. */
+/** Opens and locks a file; the descriptor is closed when another process has the lock. */
 Result<Descriptor> LockFile(const fs::path& path) {
   Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   const int error = file.is_open() ? TryLock(file) : errno;
   if (error == EWOULDBLOCK) {
     return Descriptor();
   }
-  return error == 0 ? Result<Descriptor>(std::move(file)) : CannotKeep(path, error);
+  return error == 0 ? Result<Descriptor>(std::move(file)) : FailToWrite(path, error);
 }
 
 Result<void> MakeOwnFolder(const fs::path& folder) {
@@ -39,12 +39,12 @@ Result<void> MakeOwnFolder(const fs::path& folder) {
   if (!failed) {
     fs::permissions(folder, fs::perms::owner_all, failed);
   }
-  return failed ? Result<void>(CannotKeep(folder, failed.value())) : Result<void>();
+  return failed ? Result<void>(FailToWrite(folder, failed.value())) : Result<void>();
 }
 
 }  // namespace
 
-Result<std::string> ReadKeptFile(const fs::path& path) {
+Result<std::string> ReadPrivateFile(const fs::path& path) {
   Descriptor opened(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!opened.is_open()) {
     return Fail(errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kInvalid,
@@ -57,21 +57,21 @@ Result<std::string> ReadKeptFile(const fs::path& path) {
 
   if (!file || ::fstat(file->descriptor(), &status) != 0 ||
       (status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-    return Fail(ErrorCode::kInvalid, "this is no file of this user's alone", path.string(),
-                fmt::format("delete it, or: chmod 600 '{}'", path.string()));
+    return Fail(ErrorCode::kInvalid, "the file is not accessible to this user only", path.string(),
+                fmt::format("delete it, or run: chmod 600 '{}'", path.string()));
   }
   constexpr std::size_t kLargest = std::size_t{64} << 20U;
   return ReadRegularFile(*file, path, kLargest);
 }
 
-Result<KeptFolder> KeptFolder::Take(const fs::path& parent, std::string_view subject) {
+Result<StateFolder> StateFolder::Take(const fs::path& parent, std::string_view subject) {
   if (const auto made = MakeOwnFolder(parent); !made) {
     return Unexpected(made.error());
   }
   Digest digest;
   digest.AddText(subject);
-  constexpr int kMostAtOnce = 100;
-  for (int i = 1; i <= kMostAtOnce; ++i) {
+  constexpr int kMaxAtOnce = 100;
+  for (int i = 1; i <= kMaxAtOnce; ++i) {
     fs::path path = parent / (i == 1 ? digest.Hex() : fmt::format("{}-{}", digest.Hex(), i));
     if (const auto made = MakeOwnFolder(path / "uploads"); !made) {
       return Unexpected(made.error());
@@ -83,13 +83,13 @@ Result<KeptFolder> KeptFolder::Take(const fs::path& parent, std::string_view sub
       return Unexpected(lock.error());
     }
     if (lock->is_open()) {
-      return KeptFolder(std::move(path), std::move(*lock));
+      return StateFolder(std::move(path), std::move(*lock));
     }
   }
-  return CannotKeep(parent, EBUSY);
+  return FailToWrite(parent, EBUSY);
 }
 
-void KeptFolder::RemoveUploadsBut(const fs::path& file) const {
+void StateFolder::RemoveUploadsBut(const fs::path& file) const {
   std::error_code ignored;
   for (const auto& item : fs::directory_iterator(uploads(), ignored)) {
     if (item.path() != file.parent_path()) {

@@ -1,0 +1,195 @@
+#include "studio/responses.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "studio/assets.h"
+#include "studio/recording.h"
+#include "studio/scene_json.h"
+
+namespace hvas::studio {
+namespace {
+
+constexpr const char* kJsonType = "application/json";
+constexpr const char* kGlbType = "model/gltf-binary";
+
+Unexpected FailNotFound(std::string_view path) {
+  return Fail(ErrorCode::kNotFound, "there is no such resource", std::string(path), "");
+}
+
+/** Makes a response that owns its bytes. */
+Result<Response> MakeOwnedResponse(const char* type, Result<std::string> bytes) {
+  if (!bytes) {
+    return Unexpected(bytes.error());
+  }
+  auto kept = std::make_shared<const std::string>(std::move(*bytes));
+  Response response;
+  response.type = type;
+  response.bytes = *kept;
+  response.owner = std::move(kept);
+  return response;
+}
+
+Result<Response> MakeOwnedResponse(const Json& json) {
+  return MakeOwnedResponse(kJsonType, json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+/** Makes the response for a mesh whose path contains its digest. */
+Response MakeGlbResponse(std::string_view bytes, const std::string& digest,
+                         std::shared_ptr<const void> owner) {
+  Response response;
+  response.type = kGlbType;
+  response.bytes = bytes;
+  response.owner = std::move(owner);
+  response.etag = digest;
+  response.is_immutable = true;
+  return response;
+}
+
+Result<Response> MakeSceneResponse(const Workbench& workbench, bool is_shielded) {
+  const SceneSnapshot now = workbench.MakeSnapshot();
+  if (now.scene == nullptr) {
+    return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example");
+  }
+  return MakeOwnedResponse(is_shielded ? MakeShieldedSceneJson(*now.scene, now.state)
+                                       : MakeSceneJson(*now.scene, now.state));
+}
+
+Result<Response> MakeModelResponse(const Workbench& workbench, std::string_view name) {
+  const auto scene = workbench.scene();
+  if (scene == nullptr || name != scene->glb_hash + ".glb") {
+    return Fail(ErrorCode::kNotFound, "this model is no longer open", std::string(name),
+                "request /api/scene again");
+  }
+  return MakeGlbResponse(*scene->glb, scene->glb_hash, scene);
+}
+
+Result<Response> MakePathResponse(Workbench* workbench, std::string_view name) {
+  const auto swept = workbench->sweeper().Find(name.substr(0, name.find(".glb")));
+  if (swept == nullptr || name != swept->id + ".glb") {
+    return Fail(ErrorCode::kNotFound, "this swept volume is no longer available", std::string(name),
+                "compute it again");
+  }
+  return MakeGlbResponse(swept->glb, swept->id, swept);
+}
+
+/** @param rest  Path below /api/recordings/: id, and the resource of it. */
+Result<Response> MakeRecordingResponse(RecordingShelf* shelf, std::string_view rest) {
+  const std::size_t slash = std::min(rest.find('/'), rest.size());
+  const std::string id(rest.substr(0, slash));
+  const std::string_view what = rest.substr(slash);
+  if (what.empty()) {
+    const auto description = shelf->Describe(id);
+    return description ? MakeOwnedResponse(*description) : Unexpected(description.error());
+  }
+  if (what == "/frames") {
+    return MakeOwnedResponse("application/octet-stream", shelf->ReadFrames(id));
+  }
+  if (what == "/scene") {
+    return MakeOwnedResponse(kJsonType, shelf->ReadAttachment(id, kSceneAttachment));
+  }
+  if (what == "/model.glb") {
+    return MakeOwnedResponse(kGlbType, shelf->ReadAttachment(id, kGlbAttachment));
+  }
+  if (what == "/file") {
+    auto file = shelf->Find(id);
+    if (!file) {
+      return Unexpected(file.error());
+    }
+    Response response;
+    response.type = "application/vnd.sqlite3";
+    response.file = std::move(*file);
+    return response;
+  }
+  return FailNotFound(what);
+}
+
+}  // namespace
+
+Result<Response> MakeAssetResponse(std::string_view path, std::string_view accepted) {
+  const Asset* asset = FindAsset(path == "/" ? "/index.html" : path);
+  if (asset == nullptr) {
+    return FailNotFound(path);
+  }
+  Response response;
+  response.type = asset->type;
+  response.bytes = asset->plain;
+  response.etag = asset->etag;
+  response.is_immutable = asset->is_immutable;
+  const auto takes = [accepted](std::string_view coding, std::string_view bytes) {
+    return accepted.find(coding) != std::string_view::npos && !bytes.empty();
+  };
+  if (takes("br", asset->brotli)) {
+    response.bytes = asset->brotli;
+    response.encoding = "br";
+  } else if (takes("gzip", asset->gzip)) {
+    response.bytes = asset->gzip;
+    response.encoding = "gzip";
+  }
+  return response;
+}
+
+Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bool is_shielded) {
+  constexpr std::string_view kModel = "/api/model/";
+  constexpr std::string_view kPath = "/api/path/";
+  constexpr std::string_view kRecording = "/api/recording/";
+  if (path == "/api/scene") {
+    return MakeSceneResponse(*workbench, is_shielded);
+  }
+  if (is_shielded && !path.starts_with(kModel)) {
+    return FailNotFound(path);
+  }
+  if (path == "/api/recordings") {
+    return MakeOwnedResponse(workbench->shelf().List());
+  }
+  if (path.starts_with(kModel)) {
+    return MakeModelResponse(*workbench, path.substr(kModel.size()));
+  }
+  if (path.starts_with(kPath)) {
+    return MakePathResponse(workbench, path.substr(kPath.size()));
+  }
+  if (path.starts_with(kRecording)) {
+    return MakeRecordingResponse(&workbench->shelf(), path.substr(kRecording.size()));
+  }
+  return FailNotFound(path);
+}
+
+std::string DecodePercent(std::string_view path) {
+  std::string decoded;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    unsigned value = 0;
+    const char* begin = path.data() + i + 1;
+    if (path[i] == '%' && i + 2 < path.size() &&
+        std::from_chars(begin, begin + 2, value, 16).ptr == begin + 2) {
+      decoded += static_cast<char>(value);
+      i += 2;
+    } else {
+      decoded += path[i];
+    }
+  }
+  return decoded;
+}
+
+std::string NameOfUpload(std::string_view target) {
+  constexpr std::string_view kName = "name=";
+  constexpr std::size_t kLongestName = 80;
+  const std::size_t at = target.find(kName);
+  std::string_view given = at == std::string_view::npos ? "" : target.substr(at + kName.size());
+  given = given.substr(0, given.find('&'));
+  std::string name;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    char c = given[i];
+    if (c == '%' && i + 2 < given.size()) {
+      c = ' ';
+      i += 2;
+    }
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
+                          (c >= 'a' && c <= 'z') || c == '.' || c == '-';
+    name += is_plain ? c : '_';
+  }
+  name = name.size() > kLongestName ? name.substr(name.size() - kLongestName) : name;
+  return name.empty() || name.front() == '.' ? "upload" + name : name;
+}
+
+}  // namespace hvas::studio
