@@ -35,7 +35,7 @@ void ReadPart(JsonFields* fields, PartState* part) {
 }
 
 /** Whether two poses are the same to the last bit, the signs of zeros included. */
-bool HasSameBits(const Pose& a, const Pose& b) {
+bool HasSameBits(const spatial::Pose& a, const spatial::Pose& b) {
   const auto is_same = [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
   };
@@ -89,7 +89,7 @@ std::string MakeBeginningJson(const Beginning& beginning) {
 
 Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count) {
   constexpr const char* kWhat = "The beginning of a stretch";
-  constexpr std::size_t kMostHands = 2;
+  constexpr std::size_t kMostHands = 2;  // A simulation has so many.
   const Json json = Json::parse(text, nullptr, false);
   JsonFields fields(json);
   Beginning beginning;

@@ -39,7 +39,7 @@ struct PathOptions {
   std::filesystem::path record;
   std::size_t hold{0};
   std::vector<double> translate_mm;
-  std::vector<double> rotate;  ///< An axis, and an angle [deg].
+  std::vector<double> rotate_deg;  ///< An axis, and an angle [deg].
   std::vector<double> about_mm;
   bool is_swept{false};
   double resolution_mm{0};
@@ -71,7 +71,7 @@ Result<void> Check(const PathOptions& options) {
     return Fail(ErrorCode::kInvalid, "the file is there already", options.output.string(),
                 "choose another name, or replace it with --force");
   }
-  if (!options.rotate.empty() && !(VectorOf(options.rotate).norm() > 0)) {
+  if (!options.rotate_deg.empty() && !(VectorOf(options.rotate_deg).norm() > 0)) {
     return Fail(ErrorCode::kInvalid, "the axis has no direction", "--rotate",
                 "give it as in --rotate 0,0,1,90");
   }
@@ -90,13 +90,14 @@ Result<TimedPath> FindPath(const PathOptions& options, const Product& product,
   }
   const Vec3 p_WQ = options.about_mm.empty() ? X_WB * product.part_of(occurrence.id).mass.p_BoBcm_B
                                              : Vec3(units::FromMm(1) * VectorOf(options.about_mm));
-  return TimedPath{sweep::MakeRotation(X_WB, p_WQ, VectorOf(options.rotate).normalized(),
-                                       units::FromDeg(options.rotate[3])),
+  return TimedPath{sweep::MakeRotation(X_WB, p_WQ, VectorOf(options.rotate_deg).normalized(),
+                                       units::FromDeg(options.rotate_deg[3])),
                    {}};
 }
 
 /** A path that was not recorded has few poses: it is shown in steps. */
 void FillIn(const product::Part& part, TimedPath* path) {
+  // A path looks smooth with so many steps: a choice, not measured.
   constexpr double kSteps = 100;
   if (path->t_ns.empty()) {
     const double length = sweep::CalcLength(path->X_WB, part.mass.p_BoBcm_B);
@@ -245,11 +246,11 @@ void AddPath(CLI::App* app, int* status) {
   auto* way = command->add_option_group("way", "The way that it goes");
   CLI::Option* record =
       way->add_option("--record", options->record, "As a hand moved it: a record of hvas assemble");
-  constexpr int kVector = 3;
+  constexpr int kVector = 3;  // Coordinates.
   way->add_option("--translate", options->translate_mm, "Straight on from its place: X,Y,Z [mm]")
       ->delimiter(',')
       ->expected(kVector);
-  CLI::Option* rotate = way->add_option("--rotate", options->rotate,
+  CLI::Option* rotate = way->add_option("--rotate", options->rotate_deg,
                                         "About an axis: X,Y,Z of its direction, angle [deg]")
                             ->delimiter(',')
                             ->expected(kVector + 1);

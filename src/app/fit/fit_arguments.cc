@@ -72,10 +72,10 @@ const CLI::Validator& Temperature() {
         if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) {
           return text + " is no temperature";
         }
-        if (value < fits::kAbsoluteZeroC) {
+        if (value < fits::kAbsoluteZero_c) {
           return text + " C is below absolute zero, -273.15 C";
         }
-        if (value < fits::kNitrogenC) {
+        if (value < fits::kNitrogen_c) {
           return text +
                  " C is colder than liquid nitrogen, -196 C, which is the coldest to join with";
         }
@@ -105,7 +105,7 @@ CLI::Validator Count(std::int64_t most) {
 }
 
 constexpr std::int64_t kMostAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
-constexpr std::int64_t kMostThreads = 256;
+constexpr std::int64_t kMostThreads = 256;  // More than any machine that it ran on: a choice.
 
 /** The value of the k-th fit in a list with one for each, or one for all. */
 double Pick(const std::vector<double>& list, std::size_t k, double otherwise) {
