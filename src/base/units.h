@@ -5,6 +5,7 @@
 /** Conversions between SI and the units of files, tables and people. Nothing else converts. */
 namespace hvas::units {
 
+// All three are exact; the inch by the agreement of 1959.
 inline constexpr double kMetresPerMillimetre = 1e-3;
 inline constexpr double kMetresPerMicrometre = 1e-6;
 inline constexpr double kMetresPerInch = 0.0254;

@@ -52,7 +52,7 @@ struct FewFaces {
   }
 };
 
-constexpr std::size_t kMostFaces = 12;
+constexpr std::size_t kMostFaces = 12;  // A screen compares so many: a choice.
 
 // The distance from a surface in single precision has a gradient everywhere but on an axis.
 bool HasFormWithin(const spatial::Surface& surface, const Vec3& centre, double radius) {

@@ -58,6 +58,8 @@ class ContactReducer {
  private:
   static constexpr double kDeeper = 20e-9;   // [m]
   static constexpr double kFurther = 10e-6;  // [m]
+  // Groups of normals on all bodies; twice as many places of the hash table; directions in which a
+  // group keeps its furthest contact, 45 degrees apart.
   static constexpr std::size_t kMaxGroups = 256;
   static constexpr std::size_t kSlots = 512;
   static constexpr std::size_t kTangents = 8;

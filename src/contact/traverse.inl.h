@@ -31,7 +31,7 @@ class Traversal {
     if (shell_.node_count == 0) {
       return;
     }
-    constexpr int kStack = 256;
+    constexpr int kStack = 256;  // Pairs of nodes that wait: a choice.
     std::int32_t stack[kStack];
     int size = 0;
     stack[size++] = 0;

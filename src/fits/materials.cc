@@ -286,7 +286,7 @@ std::optional<MaterialMatch> FindMaterial(std::string_view name) {
 }
 
 std::optional<MaterialMatch> FindMaterialByDensity(double density) {
-  constexpr double kNear = 0.04;
+  constexpr double kNear = 0.04;  // Relative: alloys of a family differ by less. A choice.
   constexpr double kHeaviestPlastic = 1700;  // [kg/m^3]
   // The usual one of each family; light alloys, irons and plastics are told apart by density.
   constexpr std::array<std::string_view, 14> kUsual{

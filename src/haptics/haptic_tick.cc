@@ -544,7 +544,7 @@ bool HapticTick::IsWayHomeFree() noexcept {
   if (options_.condition == Condition::kConstraint) {
     return true;
   }
-  constexpr double kSamples[] = {0.25, 0.5, 0.75};
+  constexpr double kSamples[] = {0.25, 0.5, 0.75};  // Shares of the way: a choice, not measured.
   for (const double s : kSamples) {
     if (!IsFreeAt(CalcSeatPose(s), kSeatTolerance)) {
       return false;

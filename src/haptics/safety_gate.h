@@ -36,8 +36,8 @@ struct SafetyLimits {
   double model_hold{kNever};          ///< A model of up to this age is good [s].
   double model_fade{0.05};            ///< Then the force goes to zero in so long.
   double client_hold{kNever};         ///< The same of the client.
-  double client_fade{0.05};
-  bool has_detectors{false};  ///< Of kicks and buzzing.
+  double client_fade{0.05};           ///< Then it goes to zero in so long.
+  bool has_detectors{false};          ///< Of kicks and buzzing.
   KickThresholds kick{};
   BuzzThresholds buzz{};
   BuzzThresholds turn_buzz{0.6, 0.02, 0.16};

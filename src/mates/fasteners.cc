@@ -38,7 +38,7 @@ bool HasHexagon(const Part& part, const Feature& axis) {
     const Vec3 n = R.transpose() * plane.axis_B;
     flats.push_back({std::abs(distance), std::atan2(n.y(), n.x()), distance > 0});
   }
-  constexpr double kSixth = std::numbers::pi / 3;
+  constexpr double kSixth = std::numbers::pi / 3;  // [rad] of a hexagon's corner.
   for (const Flat& first : flats) {
     unsigned found = 0;
     for (const Flat& flat : flats) {

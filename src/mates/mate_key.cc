@@ -14,6 +14,7 @@ using product::Mate;
 using product::Product;
 
 constexpr double kGrid = 1e-6;  // [m], [rad]
+// Hex digits, 40 bits: two of 10,000 mates are alike once in 20,000 products.
 constexpr std::size_t kDigits = 10;
 
 std::int64_t Round(double value) {

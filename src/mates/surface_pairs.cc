@@ -70,7 +70,7 @@ AxialReach CalcAxialReach(const Side& side, FaceId id) {
     return reach;
   }
   std::swap(reach.low, reach.high);
-  constexpr double kTurn = 2 * std::numbers::pi;
+  constexpr double kTurn = 2 * std::numbers::pi;  // [rad].
   VisitTriangles(side, id, [&](const std::array<Vec3, 3>& corners) {
     const double first = std::atan2(corners[0].y(), corners[0].x());
     double low = 0;

@@ -281,7 +281,7 @@ struct AllFields {
 
 std::string FindUnsound(haptics::TickOptions* options) {
   constexpr double kShortestTick = 1e-5;  // [s]
-  constexpr double kLongestTick = 0.1;
+  constexpr double kLongestTick = 0.1;    // [s]; slower than this nothing is felt.
   UnsoundField unsound;
   AllFields::Visit(unsound, *options);
   const bool has_period = options->dt >= kShortestTick && options->dt <= kLongestTick;

@@ -19,7 +19,7 @@ namespace hvas::studio {
  */
 class Guests {
  public:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 64;  ///< Addresses that are remembered: a choice.
 
   /** @returns its number; 0 when all that are here are known, and there is no room. */
   std::uint64_t Add(boost::beast::tcp_stream* stream) {

@@ -17,7 +17,7 @@ namespace hvas::studio {
 class HandRack {
  public:
   static constexpr const char* kPointer = "pointer";  ///< The address of no device.
-  static constexpr std::size_t kMostHands = 2;
+  static constexpr std::size_t kMostHands = 2;        ///< A simulation has so many.
 
   [[nodiscard]] std::size_t count() const;
 

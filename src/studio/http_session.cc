@@ -17,6 +17,7 @@
 namespace hvas::studio {
 namespace {
 
+// [bytes] of a request's head, as usual servers take: a choice.
 constexpr std::size_t kMostHeader = 8 << 10;
 constexpr std::size_t kMostBody = 4 << 10;  // of what is no upload
 constexpr double kSlowest = 128 << 10;      // that an answer may be read with [bytes/s]

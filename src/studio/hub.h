@@ -40,10 +40,10 @@ struct Example {
  functions belong to one thread. */
 class Hub {
  public:
-  static constexpr std::size_t kMostClients = 8;
+  static constexpr std::size_t kMostClients = 8;    ///< Pages that see one scene: a choice.
   static constexpr std::size_t kMostUnseen = 2;     ///< Frame messages that wait for their Credit.
   static constexpr double kCommandsPerSecond = 50;  ///< Of one client, for long.
-  static constexpr double kCommandBurst = 100;
+  static constexpr double kCommandBurst = 100;      ///< Two seconds of commands at once.
 
   Hub(Workbench* workbench, std::vector<Example> examples);
 

@@ -10,8 +10,8 @@
 namespace hvas::studio {
 namespace {
 
-constexpr std::size_t kLongestText = 1000;
-constexpr std::size_t kMostFields = 64;  // of a command, those of its objects among them
+constexpr std::size_t kLongestText = 1000;  // [bytes] of a field's text: a choice.
+constexpr std::size_t kMostFields = 64;     // of a command, those of its objects among them
 
 Unexpected Wrong(const char* name, const char* wanted) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" must be {}", name, wanted), "command",

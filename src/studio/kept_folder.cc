@@ -60,6 +60,7 @@ Result<std::string> ReadKeptFile(const fs::path& path) {
     return Fail(ErrorCode::kInvalid, "this is no file of this user's alone", path.string(),
                 fmt::format("delete it, or: chmod 600 '{}'", path.string()));
   }
+  // [bytes] of a file that is kept: a choice.
   constexpr std::size_t kLargest = std::size_t{64} << 20U;
   return ReadRegularFile(*file, path, kLargest);
 }
@@ -70,7 +71,7 @@ Result<KeptFolder> KeptFolder::Take(const fs::path& parent, std::string_view sub
   }
   Digest digest;
   digest.AddText(subject);
-  constexpr int kMostAtOnce = 100;
+  constexpr int kMostAtOnce = 100;  // Studios on one subject: a choice.
   for (int i = 1; i <= kMostAtOnce; ++i) {
     fs::path path = parent / (i == 1 ? digest.Hex() : fmt::format("{}-{}", digest.Hex(), i));
     if (const auto made = MakeOwnFolder(path / "uploads"); !made) {

@@ -25,11 +25,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kSuffix = ".hvasrec";
 constexpr const char* kNamesFile = "names.json";
-constexpr std::int64_t kNsPerMs = 1'000'000;
+constexpr std::int64_t kNsPerMs = 1'000'000;  // A definition.
 
 /** Letters, digits and dashes. */
 std::string MakeStem(const std::string& name) {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kLongest = 40;  // Letters of a file's name: a choice.
   std::string stem;
   for (const char letter : name) {
     const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||

@@ -27,7 +27,7 @@ class SceneBuilder {
   struct Options {
     LoadFn load;
     std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
-    std::uint64_t seed{1};
+    std::uint64_t seed{1};  ///< Any number: the actual sizes of the fits follow from it.
     /** Epochs begin behind it: pages of a program's start before know theirs from these. */
     std::uint32_t last_epoch{0};
   };

@@ -34,7 +34,7 @@ struct WorkbenchOptions {
   SceneBuilder::Options scenes;
   std::filesystem::path recordings_folder;  ///< Empty: nothing can be recorded.
   std::filesystem::path work_file;  ///< Keeps KeptWork, as it goes on; empty: it is not kept.
-  double rate_hz{1000};
+  double rate_hz{1000};             ///< X4 asks for 1 kHz.
 };
 
 /** What is on the bench: the product that is open, the run of it, and what can be undone. All

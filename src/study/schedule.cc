@@ -12,7 +12,7 @@
 namespace hvas::study {
 namespace {
 
-constexpr int kMostParticipants = 999;
+constexpr int kMostParticipants = 999;  // Three digits, as in P001.
 
 // What a drawn order is for, so that none is another's.
 constexpr std::uint64_t kLabels = 1;

@@ -17,8 +17,8 @@ namespace {
 
 using Kind = StudyEvent::Kind;
 
-constexpr std::uint64_t kTrialStream = 1000;  // and the index of the trial
-constexpr std::uint64_t kObserverStream = 102;
+constexpr std::uint64_t kTrialStream = 1000;    // and the index of the trial
+constexpr std::uint64_t kObserverStream = 102;  // No other stream has this number.
 
 /** By the index of the condition. */
 using Setups = std::vector<TrialSetup>;

@@ -71,7 +71,7 @@ Unexpected TooManyParts(std::size_t most, const std::string& name) {
 
 Unexpected TooManyBytes(const std::string& what, double bytes, std::uint64_t most,
                         const std::string& name) {
-  constexpr double kMebibyte = 1 << 20;
+  constexpr double kMebibyte = 1 << 20;  // Bytes.
   return Fail(ErrorCode::kUnsupported,
               fmt::format("{} {:.4g} MiB, and {:.4g} MiB are the most", what, bytes / kMebibyte,
                           static_cast<double>(most) / kMebibyte),

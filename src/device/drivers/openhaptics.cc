@@ -69,10 +69,12 @@ using namespace openhaptics;  // NOLINT(google-build-using-namespace): this file
 constexpr const char* kName = "openhaptics";
 constexpr const char* kTitle = "OpenHaptics (3D Systems)";
 constexpr const char* kWeakest = "touch";
-constexpr std::uint16_t kUsbVendor = 0x2988;
+constexpr std::uint16_t kUsbVendor = 0x2988;  // The list of USB vendors has it.
 constexpr const char* kRemedy =
     "install the Touch Device Driver and OpenHaptics Developer Edition of 3D Systems, and set "
     "GTDD_HOME when they are not below /usr or /opt";
+// Errors that are taken off the vendor's stack at once, and the time between looks whether the
+// device wants to be calibrated: choices.
 constexpr int kMaxErrors = 32;
 constexpr std::int64_t kCalibrateEveryNs = 500'000'000;
 // Beyond this the vendor's last update is old; together with an unchanged pose it is no sample.
@@ -350,7 +352,7 @@ void HdDevice::LetGo() {
   hd.hdUnschedule(schedule_);
   samples_.Update();  // What it said last is of no use to whoever opens it again.
   InScheduler(library_, [&] {
-    constexpr std::array<double, 3> kNone{};
+    constexpr std::array<double, 3> kNone{};  // No force.
     hd.hdBeginFrame(device_);
     hd.hdSetDoublev(kForce, kNone.data());
     hd.hdEndFrame(device_);
