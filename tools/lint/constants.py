@@ -48,7 +48,7 @@ def find_bare(lines):
         member = None if constant or struct is None else MEMBER.match(line)
         if not constant and not member:
             # The rest of a declaration that goes on, or the end of what the comment was for.
-            is_explained = is_explained and stripped not in ("", "}", "};") and is_open(lines, index)
+            is_explained = is_explained and not re.search(r"(?:[{}]|^)$", stripped) and is_open(lines, index)
             continue
         statement = join_statement(lines, index)
         is_evident = NOTHING.fullmatch(member.group(2) or member.group(3)) if member else SELF_EVIDENT.search(statement)

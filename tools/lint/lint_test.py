@@ -108,6 +108,7 @@ class Constants(unittest.TestCase):
         self.assertEqual(self.bare(block), [])
         self.assertEqual(self.bare(block + "\nconstexpr int kC = 3;\n"), [(7, "kC")])
         self.assertEqual(self.bare(block + "Run();\nconstexpr int kC = 3;\n"), [(7, "kC")])
+        self.assertEqual(self.bare("/** Runs. */\nvoid Run() {\n  constexpr int kC = 3;\n}\n"), [(3, "kC")])
 
     def test_text_and_limits_of_types_need_none(self):
         text = 'constexpr const char* kA = "a";\nconstexpr double kB = std::numeric_limits<double>::infinity();\n'
