@@ -17,8 +17,8 @@
 namespace hvas::record {
 namespace {
 
-// The writer looks for ticks 50 times a second, and begins a chunk's writing at least every 0.4 s:
-// with the commits, a killed process loses less than a second (docs/record.md).
+// The writer looks for ticks 50 times a second, and writes what it has at least every 0.4 s, so
+// that at most the last half second is missing on disk (docs/record.md).
 constexpr std::chrono::milliseconds kPollPeriod{20};
 constexpr std::int64_t kFlushPeriodNs = 2 * kNsPerSecond / 5;
 

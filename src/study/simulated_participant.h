@@ -19,7 +19,8 @@
  with before people come. They stand for nobody, and what they give is marked as simulated. */
 namespace hvas::study {
 
-/** How one simulated participant differs from another. Factors are lognormal about 1. */
+/** How one simulated participant differs from another. Factors are lognormal about 1. Where the
+ numbers come from: docs/algorithms/simulated_person.md. */
 struct Skill {
   double reaction_s{0.4};  ///< Before a trial's first motion [s].
   /** Factor of all speeds of the arm. No more than 1: faster, the part would lag behind the hand by
