@@ -56,9 +56,10 @@ struct Constant {
 struct Outcome {
   int seated{0};
   int parts{0};
-  double time{0};     ///< Mean [s].
-  double peak{0};     ///< Mean over the seeds of the largest true force [N].
-  double deepest{0};  ///< Over all seeds [m].
+  double time{0};      ///< Mean [s].
+  double peak{0};      ///< Mean over the seeds of the largest true force [N].
+  double deepest{0};   ///< Over all seeds [m].
+  std::string reason;  ///< Why the first part that is lost is not in its place.
 };
 
 /** Factors by which each constant is multiplied; 1 is the assembly as it is. */
@@ -159,6 +160,7 @@ Outcome Assemble(const ModelPtr& model, const Setting& setting, const Common& co
     double peak = 0;
     for (const simulation::PartResult& part : run.results()) {
       outcome.seated += part.is_seated ? 1 : 0;
+      outcome.reason = outcome.reason.empty() ? part.reason : outcome.reason;
       peak = std::max(peak, part.peak_true);
       outcome.deepest = std::max(outcome.deepest, part.deepest);
     }
@@ -201,16 +203,11 @@ Result<ModelPtr> Compile(const ProductPtr& product, const contact::ShapeOptions&
   return simulation::Compile(product, options, &diagnostics);
 }
 
-/** Prints the table of one product. */
-Result<void> Study(const std::string& name, const ProductPtr& product, const Common& common) {
-  const auto usual_model = Compile(product, {});
-  if (!usual_model) {
-    return Unexpected(usual_model.error());
-  }
-  // Shapes are chosen for each part; here all of them have the finest, and its multiples.
+/** All that is varied for a product, whose shapes have the finest of what its parts were given. */
+std::vector<Constant> MakeConstants(const simulation::Model& model) {
   double voxel = std::numeric_limits<double>::infinity();
   double spacing = voxel;
-  for (const simulation::Body& body : (*usual_model)->bodies) {
+  for (const simulation::Body& body : model.bodies) {
     voxel = std::min(voxel, body.shape->voxel());
     spacing = std::min(spacing, body.shape->data().spacing);
   }
@@ -218,36 +215,96 @@ Result<void> Study(const std::string& name, const ProductPtr& product, const Com
   AddOfTick(&constants);
   AddOfShapes(&constants, spacing, voxel);
   AddOfPerson(&constants);
-  const Outcome usual = Assemble(*usual_model, {}, common);
-  fmt::print("## {}\n\nAs it is, {} seeds: {} of {} parts, {}.\n\n", name, common.seeds,
-             usual.seated, usual.parts, Describe(usual, usual));
-  fmt::print("| constant | as it is |{}\n|---|---|---|---|---|---|\n",
-             fmt::format(" x {:g} | x {:g} | x {:g} | x {:g} |", kFactors[0], kFactors[1],
-                         kFactors[2], kFactors[3]));
-  for (const Constant& constant : constants) {
+  return constants;
+}
+
+/** Prints the table of one product, row by row. */
+class Table {
+ public:
+  Table(ProductPtr product, ModelPtr model, const Common& common)
+      : product_(std::move(product)),
+        model_(std::move(model)),
+        common_(common),
+        usual_(Assemble(model_, {}, common)) {}
+
+  void PrintHead(const std::string& name) const {
+    fmt::print("### {}\n\nAs it is, {} seeds: {} of {} parts, {}.\n\n", name, common_.seeds,
+               usual_.seated, usual_.parts, Describe(usual_, usual_));
+    fmt::print("| constant | as it is |");
+    for (const double factor : kFactors) {
+      fmt::print(" x {:g} |", factor);
+    }
+    fmt::print("\n|---|---|---|---|---|---|\n");
+  }
+
+  Result<void> PrintRow(const Constant& constant) {
     fmt::print("| {} | {} |", constant.name, constant.value);
     for (const double factor : kFactors) {
       Setting setting;
       constant.scale(factor, &setting);
       const bool is_shaped = setting.shape.voxel > 0 || setting.shape.point_spacing > 0;
-      const auto model = is_shaped ? Compile(product, setting.shape) : usual_model;
+      const Result<ModelPtr> model = is_shaped ? Compile(product_, setting.shape) : model_;
       if (!model) {
         return Unexpected(model.error());
       }
-      fmt::print(" {} |", Describe(Assemble(*model, setting, common), usual));
+      PrintCell(Assemble(*model, setting, common_),
+                fmt::format("{} x {:g}", constant.name, factor));
     }
     fmt::print("\n");
     std::fflush(stdout);
+    return {};
   }
-  fmt::print("| iterations and points of a tick | 30, 4096 |");
-  for (std::size_t level = 0; level < simulation::kEffortLevels.size(); ++level) {
-    Setting setting;
-    setting.effort_level = static_cast<int>(level);
-    const haptics::Effort& effort = simulation::kEffortLevels[level];
-    fmt::print(" {}, {}: {} |", effort.iterations, effort.point_budget,
-               Describe(Assemble(*usual_model, setting, common), usual));
+
+  /** What a tick does when it is short of time, level by level. */
+  void PrintEfforts() {
+    fmt::print("| iterations, points of a tick | 30, 4096 |");
+    for (std::size_t level = 0; level < simulation::kEffortLevels.size(); ++level) {
+      Setting setting;
+      setting.effort_level = static_cast<int>(level);
+      const haptics::Effort& effort = simulation::kEffortLevels[level];
+      fmt::print(" {}, {}:", effort.iterations, effort.point_budget);
+      PrintCell(Assemble(model_, setting, common_), fmt::format("level {}", level));
+    }
+    fmt::print("\n\n");
   }
-  fmt::print("\n\n");
+
+  /** Why parts are lost. */
+  void PrintReasons() const {
+    for (const std::string& reason : reasons_) {
+      fmt::print("- {}\n", reason);
+    }
+    fmt::print("\n");
+  }
+
+ private:
+  void PrintCell(const Outcome& outcome, const std::string& what) {
+    fmt::print(" {} |", Describe(outcome, usual_));
+    if (outcome.seated < usual_.seated) {
+      reasons_.push_back(fmt::format("{}: {}", what, outcome.reason));
+    }
+  }
+
+  ProductPtr product_;
+  ModelPtr model_;
+  Common common_;
+  Outcome usual_;
+  std::vector<std::string> reasons_;
+};
+
+Result<void> Study(const std::string& name, const ProductPtr& product, const Common& common) {
+  const auto model = Compile(product, {});
+  if (!model) {
+    return Unexpected(model.error());
+  }
+  Table table(product, *model, common);
+  table.PrintHead(name);
+  for (const Constant& constant : MakeConstants(**model)) {
+    if (const auto printed = table.PrintRow(constant); !printed) {
+      return printed;
+    }
+  }
+  table.PrintEfforts();
+  table.PrintReasons();
   return {};
 }
 

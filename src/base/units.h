@@ -34,7 +34,7 @@ constexpr double FromMm3(double volume_mm3) {
   return volume_mm3 * 1e-9;
 }
 
-inline constexpr double kTurn = 2 * std::numbers::pi;  ///< [rad]
+inline constexpr double kTurn = 2 * std::numbers::pi;  ///< A full turn [rad].
 
 constexpr double FromDeg(double angle_deg) {
   return angle_deg * std::numbers::pi / 180.0;

@@ -9,7 +9,7 @@
 namespace hvas::contact {
 namespace {
 
-constexpr double kRounding = 1e-13;  // [m]
+constexpr double kRounding = 1e-13;  // [m]: the rounding of a double at some hundred metres.
 
 }  // namespace
 

@@ -282,7 +282,7 @@ std::vector<Sample> SampleAll(const Shape::Data& data) {
 // much as the surface turns on the way to the next sample, and some for the way that is still to
 // go.
 double FacingLimit(const Shape::Data& data, const Sample& sample) {
-  constexpr double kAllowed = 0.5;      // [rad]
+  constexpr double kAllowed = 0.5;      // [rad]: a choice, not measured.
   constexpr double kUnknownTurn = 1.0;  // [rad], of freeform faces.
   constexpr double kEdge = -0.3;        // Edges: each of their faces may look away this much.
   if (sample.is_edge) {

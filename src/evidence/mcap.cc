@@ -57,7 +57,7 @@ Json MakeTickMessage(const TickRecord& tick, const std::vector<std::string>& pat
 }
 
 Json MakeTimeJson(std::int64_t t_ns) {
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;  // [ns]
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;  // A definition.
   return {{"sec", t_ns / kSecond_ns}, {"nsec", t_ns % kSecond_ns}};
 }
 

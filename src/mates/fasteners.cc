@@ -16,7 +16,7 @@ using product::OccurrenceId;
 using product::Part;
 using product::Product;
 
-constexpr double kSameAngle = 2e-3;     // [rad]
+constexpr double kSameAngle = 2e-3;     // [rad]: what exports err by. A choice.
 constexpr double kSameDistance = 0.01;  // Part of the distance.
 
 /** A flat beside an axis. */

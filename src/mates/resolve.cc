@@ -11,8 +11,8 @@ namespace {
 
 using product::MateKind;
 
-constexpr double kConverged = 1e-10;      // [m]
-constexpr double kSmallestLength = 1e-3;  // [m]
+constexpr double kConverged = 1e-10;      // [m]: the rounding of poses of some metres.
+constexpr double kSmallestLength = 1e-3;  // [m]: mates closer together turn nothing. A choice.
 constexpr double kLoneLength = 10e-3;     // One mate alone gives no length [m].
 // Newton's steps at most, and how often one is halved until it is an improvement: choices;
 // resolve_test has how many are taken.

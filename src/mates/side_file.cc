@@ -19,7 +19,7 @@ namespace {
 using nlohmann::ordered_json;
 using Type = SideFileType;
 
-constexpr std::size_t kLargestFile = 16'000'000;  // [bytes]
+constexpr std::size_t kLargestFile = 16'000'000;  // [bytes]: 100,000 fits. A choice.
 
 constexpr std::array<std::string_view, 2> kFormats{"hvas-assignments-1", kSideFileFormat};
 constexpr std::array<std::string_view, 4> kMateKinds{"axis_hole", "face_face", "cone_seat",

@@ -280,7 +280,7 @@ struct AllFields {
 };
 
 std::string FindUnsound(haptics::TickOptions* options) {
-  constexpr double kShortestTick = 1e-5;  // [s]
+  constexpr double kShortestTick = 1e-5;  // [s], a hundred times 1 kHz: a choice.
   constexpr double kLongestTick = 0.1;    // [s]; slower than this nothing is felt.
   UnsoundField unsound;
   AllFields::Visit(unsound, *options);

@@ -92,7 +92,7 @@ haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info, const Model
 
 PersonOptions MakePersonOptions(const haptics::TickOptions& options) {
   constexpr double kPushShare = 0.86;  // above what fits are felt with at most
-  constexpr double kSlack = 5e-3;      // [m]
+  constexpr double kSlack = 5e-3;      // [m] beyond the stretch of full force: a choice.
   constexpr double kPatience = 1.6;    // of a hand that has no device between itself and the part
   PersonOptions habits;
   const double push_limit = kPushShare * options.device.max_force;

@@ -352,7 +352,7 @@ void SimulatedPerson::StartSearch(const Vec3& d, double travel, bool is_by_eye) 
 
 Vec3 SimulatedPerson::Tremor() noexcept {
   Vec3 tremor;
-  constexpr double kFrequencies[3] = {8.3, 9.7, 11.4};  // [Hz]
+  constexpr double kFrequencies[3] = {8.3, 9.7, 11.4};  // [Hz]: 8 to 12, and no multiples.
   for (int k = 0; k < 3; ++k) {
     tremor[k] = options_.tremor *
                 std::sin(2 * std::numbers::pi * kFrequencies[k] * t_s_ + tremor_phase_[k]);

@@ -220,7 +220,7 @@ Result<Access::Admission> Access::Admit(std::string_view token, std::string_view
   browser = browser != nullptr ? browser : AddBrowser();
   browser->role = link->role;
   link->browser = IsForOne(link->role) ? browser->secret : "";
-  constexpr int kKeptFor = 30 * 24 * 3600;  // [s]
+  constexpr int kKeptFor = 30 * 24 * 3600;  // [s], 30 days: a choice.
   return Admission{link->role,
                    fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
                                cookie_name_, browser->secret, kKeptFor, is_tls_ ? "; Secure" : "")};

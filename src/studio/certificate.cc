@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kDayS = 86'400;      // [s].
+constexpr std::int64_t kDayS = 86'400;      // Seconds of a day.
 constexpr std::int64_t kValidDays = 397;    // the longest that browsers take from anybody
 constexpr std::int64_t kRenewedDays = 14;   // before the end
 constexpr std::int64_t kBackdatedDays = 1;  // for clocks that are behind

@@ -17,8 +17,8 @@ using spatial::Pose;
 
 /** Less is no motion that anybody sees. */
 bool HasMoved(const Pose& from, const Pose& to) {
-  constexpr double kWay = 20e-6;  // [m]
-  constexpr double kTurn = 2e-4;  // [rad]
+  constexpr double kWay = 20e-6;  // [m]: less is not seen. A choice.
+  constexpr double kTurn = 2e-4;  // [rad]: less is not seen. A choice.
   return (to.p() - from.p()).norm() > kWay ||
          spatial::RotationBetween(from.q(), to.q()).norm() > kTurn;
 }

@@ -8,8 +8,8 @@ namespace hvas::studio {
 namespace {
 
 constexpr double kTime = 0.012;     // [s] of each of two stages: 60 inputs a second make no steps
-constexpr double kMostSpeed = 0.8;  // [m/s]
-constexpr double kMostTurn = 6;     // [rad/s]
+constexpr double kMostSpeed = 0.8;  // [m/s]: below the 1 m/s of a displayed part. A choice.
+constexpr double kMostTurn = 6;     // [rad/s]: below the 10 rad/s of a displayed part. A choice.
 
 Vec3 Limit(const Vec3& v, double most) noexcept {
   const double norm = v.norm();
@@ -46,7 +46,7 @@ const PointerInput& PointerOperator::Listen(bool sees_part, std::int64_t* age_ns
 }
 
 simulation::HandReference PointerOperator::Intend(const simulation::OperatorInput& input) noexcept {
-  constexpr double kThere = 5e-3;  // [m]
+  constexpr double kThere = 5e-3;  // [m]: near enough to close on a part. A choice.
   simulation::HandReference reference;
   const PointerInput& wanted = Listen(input.sees_part, &reference.client_age_ns);
   Follow(reference.client_age_ns < kSilentNs ? wanted.X_WH : X_WH_, input.dt);

@@ -287,7 +287,7 @@ Result<void> RecordingShelf::Delete(const std::string& id) {
 }
 
 Result<void> RecordingShelf::Rename(const std::string& id, const std::string& name) {
-  constexpr std::size_t kLongestName = 200;  // [bytes]
+  constexpr std::size_t kLongestName = 200;  // [bytes]: a line of text. A choice.
   if (name.find_first_not_of(' ') == std::string::npos || name.size() > kLongestName) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("a name has 1 to {} bytes, and not only spaces", kLongestName), name,

@@ -16,7 +16,7 @@ namespace hvas::study {
 namespace {
 
 constexpr std::size_t kMostConditions = 26;          // Letters of the alphabet, which name them.
-constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]
+constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]: a thousand pages. A choice.
 constexpr int kMostTrials = 5000;                    // for one participant
 constexpr double kMostSeconds = 86400;               // A day.
 constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};

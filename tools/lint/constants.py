@@ -3,7 +3,8 @@
 
 Looked at in src/, but for tests: constants (kName) of an arithmetic type, of a duration or of an array of
 such, and the defaults other than nothing of the members of structs that are options or limits. A comment stands
-on the line, or above the line, or above the block of constants that the line belongs to. Limits of a type
+on the line, or above the line, or above the block of constants that the line belongs to; one of a constant says more
+than its unit. Limits of a type
 (`std::numeric_limits`) need none. Prints each line that offends; exit status 1 when there is one.
 """
 
@@ -25,7 +26,8 @@ MEMBER = re.compile(rf"\s*{NUMBER} (\w+)(?:\{{(.+?)\}}| = (.+?));")
 # Zero, and what has its comment where it is named.
 NOTHING = re.compile(r"-?0+\.?0*|std::numeric_limits<.*|k[A-Z]\w*")
 SELF_EVIDENT = re.compile(r"(?:=|\{)\s*std::numeric_limits<[^;]*;")
-COMMENT = re.compile(r"//|/\*")
+COMMENT = re.compile(r"(?://|/\*)(.*)")
+UNIT = re.compile(r"\[[^\]]*\]|[^\w]")
 
 
 def find_bare(lines):
@@ -52,7 +54,8 @@ def find_bare(lines):
             continue
         statement = join_statement(lines, index)
         is_evident = NOTHING.fullmatch(member.group(2) or member.group(3)) if member else SELF_EVIDENT.search(statement)
-        if not is_explained and not is_evident and not COMMENT.search(statement):
+        words = "".join(UNIT.sub("", comment) for comment in COMMENT.findall(statement))
+        if not is_explained and not is_evident and (not words if constant else not COMMENT.search(statement)):
             yield index + 1, (constant or member).group(1), stripped
         is_explained = is_explained and not member  # A comment above is for one member, or for a block of constants.
 
@@ -76,7 +79,7 @@ def main():
     for path in list_sources(root):
         lines = path.read_text().splitlines()
         count += sum(1 for line in lines if CONSTANT.match(line))
-        problems += [f"{path.relative_to(root)}:{n}: {name} has no comment: {text}" for n, name, text in find_bare(lines)]
+        problems += [f"{path.relative_to(root)}:{n}: {name} does not say where it comes from: {text}" for n, name, text in find_bare(lines)]
     return report(problems, f"constants: {count}, each with a comment")
 
 

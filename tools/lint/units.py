@@ -17,7 +17,7 @@ SUFFIXES = {
     "mm^2": "mm2", "mm2": "mm2", "mm^3": "mm3", "mm3": "mm3", "mm^4": "mm4", "mm^5": "mm5", "mm/s": "mm_s", "in": "in",
     "MPa": "mpa", "GPa": "gpa", "N/mm^2": "mpa", "kN": "kn", "%": "percent", "ms": "ms", "us": "us", "ns": "ns",
     "min": "min", "h": "h", "rpm": "rpm", "1/min": "rpm",
-}  # fmt: skip
+}
 UNIT = re.compile(r"\[(" + "|".join(sorted(map(re.escape, SUFFIXES), key=len, reverse=True)) + r")\]")
 COMMENT = re.compile(r"//[/!]?<?(.*)$")
 PARAM = re.compile(r"@param(?:\[\w+\])?\s+(\w+)(.*?)(?=@\w|$)", re.DOTALL)
@@ -26,6 +26,7 @@ NOT_DECLARED = re.compile(r"\s*(?:return|using|struct|class|enum|namespace|case|
 
 
 def has_suffix(name, unit):
+    """Whether a name tells a unit: a_mm, a_mm_, kA_mm, kAMm."""
     suffix = SUFFIXES[unit]
     camel = "".join(part.capitalize() for part in suffix.split("_"))
     return bool(re.search(rf"(?:_|^){suffix}_?$", name) or name.endswith(camel))
@@ -63,6 +64,7 @@ def judge(lines, index, comment):
 
 
 def find_unsuffixed(lines):
+    """Line and fault of each declaration whose name lacks the suffix of its unit."""
     above = ""
     within = False
     for index, line in enumerate(lines):

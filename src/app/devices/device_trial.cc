@@ -138,7 +138,7 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
       work.Add(MonotonicNs() - start_ns);
     }
   });
-  constexpr double kStep = 0.002;     // [s]
+  constexpr double kStep = 0.002;     // [s]: the eye and the hand follow no faster. A choice.
   constexpr int kStepsPerLine = 500;  // A line a second.
   simulation::Pacer pacer(std::llround(1e9 * kStep));
   for (int i = 0; i * kStep < options.seconds; ++i) {

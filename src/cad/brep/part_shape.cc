@@ -32,7 +32,7 @@ using product::Face;
 using product::Part;
 using spatial::SurfaceKind;
 
-constexpr double kRecognitionTolerance = 1e-6;          // [m]
+constexpr double kRecognitionTolerance = 1e-6;          // [m]: below what is felt. A choice.
 constexpr double kRelativeRecognitionTolerance = 1e-6;  // Of the part's diagonal, for huge parts.
 
 // [m^2] in a square millimetre.

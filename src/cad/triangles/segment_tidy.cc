@@ -238,7 +238,7 @@ bool Tidier::BendsLessThan(const Segment& segment, double angle) const {
  of a triangle or two, are no faces of their own when they go on smoothly nearly all around into
  others of this sort. */
 std::vector<bool> Tidier::FindScraps() const {
-  constexpr double kMostBend = 0.5;       // [rad]
+  constexpr double kMostBend = 0.5;       // [rad]: a choice, not measured.
   constexpr double kMostLooseBend = 1.0;  // The same, where the fit is loose [rad].
   constexpr double kLeastShare = 0.7;     // Share of a rim that goes on smoothly (segmentation.md).
   constexpr std::size_t kFewCorners = 4;  // Corners of a quadrilateral: a scrap's.

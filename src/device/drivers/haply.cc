@@ -190,8 +190,8 @@ class Conversation {
   /** A service that tells no version, and shows no force though it has power and is given one,
    reads the other dialect. Tried once on a connection. */
   void JudgeDialect() {
-    constexpr double kClear = 0.2;     // [N]
-    constexpr double kNothing = 0.01;  // [N]
+    constexpr double kClear = 0.2;     // [N], told to the device and clear to see: a choice.
+    constexpr double kNothing = 0.01;  // [N], shown by the device, that is none: a choice.
     constexpr int kReplies = 25;       // That do not show a force before the dialect is changed.
     tells_force_ = tells_force_ || newest_.force.has_value();
     const double shown = newest_.force.value_or(Vec3::Zero()).norm();
