@@ -118,7 +118,7 @@ class Histogram {
   [[nodiscard]] double bins_per_unit() const { return per_width_; }
 
  private:
-  static constexpr std::size_t kTables = 4;  // That are looked at side by side: a choice.
+  static constexpr std::size_t kTables = 4;  // Tables that are looked at side by side: a choice.
   static constexpr double kSlack = 1e-4;     // Of 256 sums, each rounded by 2^-24, 1.5e-5.
 
   std::array<std::array<std::uint32_t, kBins + 1>, kTables> counts_{};  // 0: the lower bound.

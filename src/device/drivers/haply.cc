@@ -192,7 +192,7 @@ class Conversation {
   void JudgeDialect() {
     constexpr double kClear = 0.2;     // [N], told to the device and clear to see: a choice.
     constexpr double kNothing = 0.01;  // [N], shown by the device, that is none: a choice.
-    constexpr int kReplies = 25;       // That do not show a force before the dialect is changed.
+    constexpr int kReplies = 25;       // Replies without a force until it is changed: a choice.
     tells_force_ = tells_force_ || newest_.force.has_value();
     const double shown = newest_.force.value_or(Vec3::Zero()).norm();
     const bool is_unshown =
