@@ -14,6 +14,7 @@
 namespace hvas::app {
 namespace {
 
+// Descriptions begin at this column, behind most names of options: a choice.
 constexpr std::size_t kDescriptionColumn = 26;
 
 std::string ToUpper(std::string text) {

@@ -34,6 +34,7 @@ std::string QuotedForFish(std::string_view text) {
 
 /** One line, and not much of it. */
 std::string Brief(const std::string& text) {
+  // A candidate and its description stand beside each other in most terminals: a choice.
   constexpr std::size_t kMost = 70;
   if (text.size() <= kMost) {
     return text;

@@ -45,8 +45,8 @@ struct StudioOptions {
   std::vector<std::string> hosts;    ///< Further names of this machine.
   studio::TlsFiles tls;              ///< Empty: a certificate of our own.
   std::filesystem::path recordings;  ///< Empty: the user's own.
-  std::uint64_t seed{1};
-  double rate_hz{1000};
+  std::uint64_t seed{1};             ///< Any number: the actual sizes of the fits follow from it.
+  double rate_hz{1000};              ///< X4 asks for 1 kHz.
   bool opens_browser{true};
   bool is_fresh{false};          ///< Nothing of the work before is gone on with.
   bool new_links{false};         ///< Nor its links.

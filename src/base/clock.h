@@ -6,7 +6,7 @@
 
 namespace hvas {
 
-inline constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+inline constexpr std::int64_t kNsPerSecond = 1'000'000'000;  // A definition.
 
 /** Time on a POSIX clock [ns]. RT-safe. */
 [[nodiscard]] inline std::int64_t ReadClock(clockid_t clock) noexcept {

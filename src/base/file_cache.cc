@@ -26,6 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kUnfinished = "-tmp";  // Behind the extension.
+// An unfinished file this old was left by a process that was killed: a choice, as no shape takes so
+// long to build.
 constexpr auto kForgottenAfter = std::chrono::hours(1);
 
 /** While it lives, no Ctrl-C that comes to this thread ends the program: an unfinished file would

@@ -17,7 +17,8 @@ namespace hvas {
  storing) costs time and nothing else. What a file holds is checked by whoever reads it. */
 class FileCache {
  public:
-  static constexpr std::uintmax_t kDefaultCapacity = 2'000'000'000;  ///< [bytes]
+  /** [bytes], some hundred products: a choice. */
+  static constexpr std::uintmax_t kDefaultCapacity = 2'000'000'000;
 
   /** @param directory  Made when the first file is stored.
    @param extension  Of this cache's files, with its dot.

@@ -11,6 +11,7 @@ Result<std::string> PackGlb(std::string json, std::string_view binary) {
   constexpr std::uint32_t kMagic = 0x46546C67;      // "glTF"
   constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
   constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN\0"
+  // The head of glTF 2.0: magic, version, length; and of each chunk: length, type [bytes].
   constexpr std::uint32_t kVersion = 2;
   constexpr std::size_t kHeader = 12;
   constexpr std::size_t kChunkHeader = 8;

@@ -63,6 +63,7 @@ class Ring {  // NOLINT(clang-analyzer-optin.performance.Padding): each side has
   }
 
  private:
+  /** Bytes, of x86-64 and most ARM: no false sharing. */
   static constexpr std::size_t kCacheLine = 64;
 
   const std::size_t mask_;

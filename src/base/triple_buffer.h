@@ -48,9 +48,10 @@ class TripleBuffer {
   [[nodiscard]] const T& value() const noexcept { return slots_[front_].value; }
 
  private:
+  // The lowest two bits of `middle_` are the slot, the third says that nobody has read it.
   static constexpr std::uint32_t kIndexMask = 3;
   static constexpr std::uint32_t kFresh = 4;
-  static constexpr std::size_t kCacheLine = 64;
+  static constexpr std::size_t kCacheLine = 64;  ///< Bytes, of x86-64 and most ARM.
 
   struct alignas(kCacheLine) Slot {
     T value{};

@@ -5,6 +5,7 @@
 /** Conversions between SI and the units of files, tables and people. Nothing else converts. */
 namespace hvas::units {
 
+// All three are exact; the inch by the agreement of 1959.
 inline constexpr double kMetresPerMillimetre = 1e-3;
 inline constexpr double kMetresPerMicrometre = 1e-6;
 inline constexpr double kMetresPerInch = 0.0254;
@@ -33,7 +34,7 @@ constexpr double FromMm3(double volume_mm3) {
   return volume_mm3 * 1e-9;
 }
 
-inline constexpr double kTurn = 2 * std::numbers::pi;  ///< [rad]
+inline constexpr double kTurn = 2 * std::numbers::pi;  ///< A full turn [rad].
 
 constexpr double FromDeg(double angle_deg) {
   return angle_deg * std::numbers::pi / 180.0;

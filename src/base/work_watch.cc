@@ -17,6 +17,7 @@
 namespace hvas {
 namespace {
 
+// Looks at time and memory are this far apart, as each reads a file of /proc: a choice.
 constexpr std::int64_t kBetweenLooksNs = 5'000'000;
 constexpr double kLongest = 1e6;  // [s]
 

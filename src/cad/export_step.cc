@@ -17,7 +17,7 @@
 namespace hvas::cad {
 namespace {
 
-constexpr double kNsPerSecond = 1e9;
+constexpr double kNsPerSecond = 1e9;  // A definition.
 
 /** Motions in memory, under a name by which a process started from here can read them. */
 class MotionFile {

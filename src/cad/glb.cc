@@ -240,6 +240,7 @@ class GlbBuilder {
 
   Result<std::string> Assemble() {
     std::string binary;
+    // [bytes] of a position, a normal; indices are packed.
     constexpr std::array<int, kViewCount> kStrides{12, 12, 4, 0};
     for (int view = 0; view < kViewCount && json_.contains("meshes"); ++view) {
       const auto at = static_cast<std::size_t>(view);

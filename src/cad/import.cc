@@ -20,6 +20,8 @@ namespace {
 
 using product::Product;
 
+// Parts that may be left out, as the worker died of them, until the file is refused: each costs its
+// time. A choice.
 constexpr std::size_t kMaxSkippedParts = 8;
 constexpr double kPartShare = 0.2;  // Of the whole time.
 constexpr double kLongest = 1e6;    // [s]

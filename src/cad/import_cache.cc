@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 // To be raised whenever entries are named or written differently.
 constexpr std::int64_t kVersion = 2;
 constexpr const char* kExtension = ".hvasproduct";
-constexpr std::size_t kKeyLength = 32;
+constexpr std::size_t kKeyLength = 32;  // Hex digits of 128 bits.
 
 /** Tells builds of the worker apart. */
 void AddWorker(const fs::path& worker, Digest* digest) {

@@ -30,8 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPollMs = 20;  // How late a request to stop may be noticed.
-constexpr std::size_t kLongestLine = 4096;
+constexpr int kPollMs = 20;                 // How late a request to stop may be noticed.
+constexpr std::size_t kLongestLine = 4096;  // [bytes] of progress; what is longer is cut: a choice.
 
 /** The same open file at a number that leaves room for the worker's; closed when there is none. */
 Descriptor DuplicateAboveWorkerNumbers(const Descriptor& file) {

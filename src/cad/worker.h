@@ -18,6 +18,7 @@
  with 0 when the output is complete. */
 namespace hvas::cad {
 
+// The first two that are free in a process that has input, output and errors.
 inline constexpr int kProgressDescriptor = 3;
 inline constexpr int kOutputDescriptor = 4;
 

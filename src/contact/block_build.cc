@@ -19,7 +19,7 @@ Vec3 GridPoint(int n, int side) {
 constexpr double kFaceMarginVoxels = 0.25;
 constexpr double kLeastFaceMargin = 100e-6;  // [m]
 
-constexpr double kDeepestContact = 200e-6;  // [m]
+constexpr double kDeepestContact = 200e-6;  // [m]: the depth of exact zones (contact.md, "Zones").
 
 Vec3 Corner(int i) {
   return {(i & 1) * 2.0 - 1, ((i >> 1) & 1) * 2.0 - 1, (i >> 2) * 2.0 - 1};
@@ -52,11 +52,11 @@ struct FewFaces {
   }
 };
 
-constexpr std::size_t kMostFaces = 12;
+constexpr std::size_t kMostFaces = 12;  // A screen compares so many: a choice.
 
 // The distance from a surface in single precision has a gradient everywhere but on an axis.
 bool HasFormWithin(const spatial::Surface& surface, const Vec3& centre, double radius) {
-  constexpr double kOffAxis = 100e-6;  // [m]
+  constexpr double kOffAxis = 100e-6;  // [m]: the margin of faces listed (contact.md). A choice.
   if (MakeFaceForm(surface).kind == FaceForm::Kind::kNone) {
     return false;
   }

@@ -11,7 +11,7 @@ namespace hvas::contact {
  small moves touch nothing. Reserve allocates; all else is RT-safe. */
 class BodyTree {
  public:
-  static constexpr std::uint32_t kNone = 0xffffffffU;
+  static constexpr std::uint32_t kNone = 0xffffffffU;  ///< No node.
 
   /** Makes room for so many items. */
   void Reserve(std::size_t items);

@@ -20,6 +20,7 @@ namespace {
 constexpr double kMemoryAim = 8e6;  // [bytes] of blocks for one part.
 constexpr double kBlocksPerPatch =
     2.2;  // Blocks for each patch of surface as large as a block's side.
+// Voxels are no finer and no coarser than this [m]: docs/algorithms/contact.md, "Voxel".
 constexpr double kSmallestVoxel = 20e-6;
 constexpr double kLargestVoxel = 2e-3;
 
@@ -95,7 +96,7 @@ void Descend(const NearSearch& search, const Vec3& origin, double side, const In
 // Calls work(i) for i < count in runs of equal length; MakeWorker gives each run its own.
 template <typename MakeWorker>
 void ForEachInRuns(std::size_t count, const ShapeOptions& options, MakeWorker make) {
-  constexpr std::size_t kRun = 32;
+  constexpr std::size_t kRun = 32;  // Blocks that a thread takes at once: a choice.
   ForEachIndex((count + kRun - 1) / kRun, options.threads, [&](std::size_t run) {
     if (options.stop.stop_requested()) {
       return;
@@ -329,7 +330,7 @@ double CalcTrilinear(const FieldView& view, int block, const Index3& cell) {
 // How far the interpolated distance is from the exact one, at most, in each block's exact layer:
 // looked at in the middle of the cells, where interpolation is worst.
 void MeasureSlack(const ShapeOptions& options, Shape::Data* data) {
-  constexpr double kSafety = 1.5;
+  constexpr double kSafety = 1.5;  // Half as much again: docs/algorithms/contact.md, "Voxel".
   const FieldView& view = data->field.view;
   const double h = data->voxel;
   data->field.slack.assign(data->exact.zones.size() / kZonesPerBlock, 0.0F);

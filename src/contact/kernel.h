@@ -6,8 +6,9 @@
  sets. Coordinates are single precision, in the shapes' centred frames, in metres. */
 namespace hvas::contact {
 
-inline constexpr int kBlockCells = 8;
+inline constexpr int kBlockCells = 8;    ///< A side of a block: its nodes are 1.5 kB.
 inline constexpr int kBlockNodes = 729;  ///< 9^3.
+// The directory has these where there is no block.
 inline constexpr std::int32_t kTopOutside = -1;
 inline constexpr std::int32_t kTopInside = -2;
 inline constexpr std::int32_t kTopFace = -3;  ///< Less the number of the face that has the block.
@@ -76,17 +77,17 @@ struct FaceForm {
 /** What decides the distance in a cube of 2^3 cells. The upper two bits say how, the rest is a face
  or a list. */
 namespace zone {
-inline constexpr std::uint32_t kPayload = 0x3fffffffU;
-inline constexpr std::uint32_t kExact = 0x00000000U;   ///< One analytic face.
-inline constexpr std::uint32_t kSmooth = 0x40000000U;  ///< One face without an exact distance.
-inline constexpr std::uint32_t kList = 0x80000000U;    ///< Several: the triangles decide.
+inline constexpr std::uint32_t kPayload = 0x3fffffffU;  // The two highest bits are the kind.
+inline constexpr std::uint32_t kExact = 0x00000000U;    ///< One analytic face.
+inline constexpr std::uint32_t kSmooth = 0x40000000U;   ///< One face without an exact distance.
+inline constexpr std::uint32_t kList = 0x80000000U;     ///< Several: the triangles decide.
 inline constexpr std::uint32_t kFar =
     0xc0000000U;  ///< Far from the surface; payload: nearest face.
 }  // namespace zone
 
 /** The faces of a zone's list, and how the solid comes of them there. */
 struct ListFaces {
-  static constexpr unsigned kMost = 5;
+  static constexpr unsigned kMost = 5;  ///< More faces in a zone go through its triangles.
 
   enum class Kind : std::uint8_t {
     kMixed,         ///< The triangles decide.
@@ -113,6 +114,7 @@ struct FloatPose {
   float p[3];
 };
 
+// 32 ones stand for no face and for no list.
 inline constexpr std::uint32_t kUnscreened = 0xffffffffU;
 inline constexpr std::uint32_t kNoList = 0xffffffffU;
 

@@ -9,7 +9,7 @@
 namespace hvas::contact {
 namespace {
 
-constexpr double kRounding = 1e-13;  // [m]
+constexpr double kRounding = 1e-13;  // [m]: the rounding of a double at some hundred metres.
 
 }  // namespace
 
@@ -87,7 +87,7 @@ NearSearch::Surroundings NearSearch::SurroundingsOf(
       }
     }
   }
-  constexpr double kLeastCosine = 0.7;
+  constexpr double kLeastCosine = 0.7;  // 45 degrees; beyond, the bend is no bound.
   result.bend = cosine < kLeastCosine ? std::numeric_limits<double>::infinity()
                                       : std::sqrt(std::max(0.0, 1 - cosine * cosine)) / cosine;
   return result;

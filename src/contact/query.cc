@@ -8,8 +8,8 @@ namespace hvas::contact {
 namespace {
 
 constexpr std::size_t kMaxPairsPerBody = 8;  // Bits of a face mask; further pairs share the last.
-const std::uint32_t kGroundBody = BodyId{}.value();
-constexpr double kScreened = 0.2e-6;  // [m]; what single precision may be wrong by.
+const std::uint32_t kGroundBody = BodyId{}.value();  // An invalid id: Contact::body.
+constexpr double kScreened = 0.2e-6;                 // [m]; what single precision may be wrong by.
 
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
   std::uint8_t bits = 0;
@@ -24,8 +24,8 @@ std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& 
 // Whether `direction` leads along a sample's edge, or at a corner where none of its faces looks:
 // what lies there is met by the edge's end or by other samples, while this one slides past it.
 bool IsAlongEdge(const SampleFaces& sample, const Vec3& direction, double best) {
-  constexpr double kAlong = 0.8;
-  constexpr double kAway = 0.05;
+  constexpr double kAlong = 0.8;  // Cosine: 37 degrees from the edge.
+  constexpr double kAway = 0.05;  // Cosine: 87 degrees from both faces.
   if (sample.faces[1] == kNoFace) {
     return false;
   }

@@ -12,6 +12,8 @@
 
 namespace hvas::contact {
 
+// Rooms that are made once, so that a query allocates nothing: choices. What does not fit is left
+// out, and QueryStats::is_truncated says so.
 inline constexpr std::size_t kMaxQueryHits = 32768;
 inline constexpr std::size_t kMaxQueryFaces = 65536;
 inline constexpr std::size_t kMaxQueryLeaves = 65536;

@@ -8,7 +8,7 @@
 namespace hvas::contact {
 namespace {
 
-constexpr double kDiagonal = 0.70710678118654752440;
+constexpr double kDiagonal = 0.70710678118654752440;  // 1 / sqrt(2).
 
 // A direction's cell on a cube whose faces are cut in 5 x 5: cells of about 20 degrees. Odd, so
 // that the axes lie in the middle of a cell and rounding does not split a plane.

@@ -56,8 +56,10 @@ class ContactReducer {
   [[nodiscard]] bool is_full() const noexcept { return is_full_; }
 
  private:
-  static constexpr double kDeeper = 20e-9;   // [m]
-  static constexpr double kFurther = 10e-6;  // [m]
+  static constexpr double kDeeper = 20e-9;  ///< [m]: less is noise of the refined depths. A choice.
+  static constexpr double kFurther = 10e-6;  ///< [m]: less changes no lever. A choice.
+  // Groups of normals on all bodies; twice as many places of the hash table; directions in which a
+  // group keeps its furthest contact, 45 degrees apart.
   static constexpr std::size_t kMaxGroups = 256;
   static constexpr std::size_t kSlots = 512;
   static constexpr std::size_t kTangents = 8;

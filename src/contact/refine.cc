@@ -277,8 +277,8 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
 }  // namespace
 
 bool ProjectOnEdge(const FaceSurface& a, const FaceSurface& b, const Vec3& p, Vec3* q) noexcept {
-  constexpr int kMaxSteps = 6;
-  constexpr double kConverged = 1e-11;  // [m]
+  constexpr int kMaxSteps = 6;          // Newton's error squares in each: a choice.
+  constexpr double kConverged = 1e-11;  // [m]: far below what is felt. A choice.
   Vec3 x = *q;
   for (int i = 0; i < kMaxSteps; ++i) {
     const auto da = a.CalcDistance(x);

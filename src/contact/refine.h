@@ -111,7 +111,7 @@ class ListDistances {
       : faces_(FacesOfList(shape, list)),
         begin_(shape.exact.list_begin[list]),
         end_(shape.exact.list_begin[list + 1]) {
-    constexpr double kRounding = 1e-9;  // [m]
+    constexpr double kRounding = 1e-9;  // [m]: the rounding of the deviations in single precision.
     for (std::size_t i = 0; i < count(); ++i) {
       const std::uint32_t f = face(i);
       surface_[i] = CalcFaceDistance(shape.exact, f, p);

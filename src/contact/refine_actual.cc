@@ -55,7 +55,7 @@ class NearFaces {
   }
 
  private:
-  static constexpr std::size_t kMost = 4;
+  static constexpr std::size_t kMost = 4;  // Faces that meet at a point: kMaxPointFaces.
   static constexpr double kReach = 3;  // In offsets: both faces move, and edges further than faces.
 
   // False where no face of the list moves.

@@ -163,7 +163,7 @@ struct Scene::Data {
   bool FindTop(const Placed& held, double height, const RawContact& raw,
                Refined* top) const noexcept {
     constexpr double kSquare = 0.3;  // Cosine; blunter edges do not catch.
-    constexpr double kLower = 0.99;
+    constexpr double kLower = 0.99;  // Share of the height that is still below the ledge: a choice.
     if (raw.distance < -height) {
       return false;
     }

@@ -58,6 +58,7 @@ struct QueryOptions {
    share, and what it has more of is thinned out evenly: fewer points then stand for a contact. */
   std::uint32_t point_budget{kDefaultPointBudget};
 
+  // The times of docs/realtime.md are measured with it; docs/algorithms/sensitivity.md varies it.
   static constexpr std::uint32_t kDefaultPointBudget = 4096;
 };
 
@@ -72,7 +73,7 @@ struct QueryStats {
 /** Everything a query writes to: sized once, so that a query allocates nothing. One per thread. */
 class QueryWorkspace {
  public:
-  static constexpr int kMaxContacts = 64;
+  static constexpr int kMaxContacts = 64;  ///< The solver has room for twice as many.
 
   QueryWorkspace();
   ~QueryWorkspace();

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kVersion = 20;
 constexpr std::array<char, 8> kMagic{'H', 'V', 'A', 'S', 'S', 'H', 'A', 'P'};
 constexpr const char* kExtension = ".hvasshape";
-constexpr std::size_t kKeyLength = 32;
+constexpr std::size_t kKeyLength = 32;  // Hex digits of 128 bits.
 
 struct Header {
   std::array<char, 8> magic{kMagic};

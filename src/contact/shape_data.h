@@ -27,7 +27,7 @@ struct Field {
   }
 };
 
-inline constexpr int kZonesPerBlock = 64;
+inline constexpr int kZonesPerBlock = 64;  // Zones of 2 x 2 x 2 cells.
 
 /** A triangle that may be the closest one in a zone, with a lower bound of its distance from the
  zone's centre. */
@@ -70,7 +70,7 @@ struct ExactTable {
 /** kNone where single precision would not be good enough. */
 [[nodiscard]] FaceForm MakeFaceForm(const spatial::Surface& surface);
 
-inline constexpr std::size_t kMaxPointFaces = 4;
+inline constexpr std::size_t kMaxPointFaces = 4;  // A corner has three; one more is kept.
 
 /** The faces that meet at a sample and their normals (unit to 1e-4). Unused: kNoFace and zero. */
 struct SampleFaces {
@@ -78,7 +78,7 @@ struct SampleFaces {
   /** Out of the material, in units of kNormalUnit. */
   std::array<std::array<std::int16_t, 3>, kMaxPointFaces> normals;
 
-  static constexpr double kNormalUnit = 1.0 / 32767;
+  static constexpr double kNormalUnit = 1.0 / 32767;  ///< 16 bits with a sign.
 
   [[nodiscard]] Vec3 normal(std::size_t i) const noexcept {
     return kNormalUnit * Vec3(normals[i][0], normals[i][1], normals[i][2]);

@@ -13,7 +13,7 @@
 namespace hvas::contact {
 namespace {
 
-constexpr double kMaxFaceSamples = 15000;
+constexpr double kMaxFaceSamples = 15000;  // It bounds the memory of a part's shell: a choice.
 // Spacing of edge samples over that of face samples. Between two exact faces contacts slide along
 // the edge to where they belong, else the samples are all there is.
 constexpr double kEdgeRatio = 0.5;
@@ -91,7 +91,7 @@ class Sampler {
 
   // Distinct within a million cells a side; 15,000 samples span far fewer.
   static std::uint64_t Key(const std::array<std::int64_t, 3>& c) {
-    constexpr std::int64_t kHalf = 1 << 20;
+    constexpr std::int64_t kHalf = 1 << 20;  // 2^21 cells each way, three of 21 bits.
     return (static_cast<std::uint64_t>(c[0] + kHalf) << 42U) ^
            (static_cast<std::uint64_t>(c[1] + kHalf) << 21U) ^
            static_cast<std::uint64_t>(c[2] + kHalf);
@@ -200,6 +200,8 @@ struct FacePlan {
 };
 
 FacePlan PlanOf(const spatial::Surface& face) {
+  // Contacts slide on analytic faces, so that planes have one sample every 3 spacings along each
+  // way, round faces one every 2 across (docs/algorithms/contact.md, "Samples").
   constexpr double kSparse = 1.0 / 3;
   constexpr double kCurved = 1.0 / 2;
   FacePlan plan;
@@ -280,7 +282,7 @@ std::vector<Sample> SampleAll(const Shape::Data& data) {
 // much as the surface turns on the way to the next sample, and some for the way that is still to
 // go.
 double FacingLimit(const Shape::Data& data, const Sample& sample) {
-  constexpr double kAllowed = 0.5;      // [rad]
+  constexpr double kAllowed = 0.5;      // [rad]: a choice, not measured.
   constexpr double kUnknownTurn = 1.0;  // [rad], of freeform faces.
   constexpr double kEdge = -0.3;        // Edges: each of their faces may look away this much.
   if (sample.is_edge) {

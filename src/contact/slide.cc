@@ -7,11 +7,11 @@
 namespace hvas::contact {
 namespace {
 
-constexpr int kMaxSteps = 3;
+constexpr int kMaxSteps = 3;          // Slides over faces and edges to the lowest point: a choice.
 constexpr double kWorthwhile = 2e-8;  // [m]; a slide that can gain less is left out.
 
-constexpr double kFaceReach = 3.0;  // In spacings.
-constexpr double kEdgeReach = 1.5;
+constexpr double kFaceReach = 3.0;   // In spacings.
+constexpr double kEdgeReach = 1.5;   // Spacings, on edges: a choice.
 constexpr double kMostSparse = 8.0;  // A slide may not lead anywhere.
 
 double SparsityOf(const RawContact& contact) {

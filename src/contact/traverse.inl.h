@@ -31,7 +31,7 @@ class Traversal {
     if (shell_.node_count == 0) {
       return;
     }
-    constexpr int kStack = 256;
+    constexpr int kStack = 256;  // Pairs of nodes that wait: a choice.
     std::int32_t stack[kStack];
     int size = 0;
     stack[size++] = 0;
@@ -392,7 +392,7 @@ class Traversal {
     for (int k = 0; k < 3; ++k) {
       P::Store(P::Add(P::Mul(per_radial, radial[k]), P::Mul(per_axis, axis[k])), out.gradient[k]);
     }
-    constexpr float kOnAxis = 1e-5F;  // [m]
+    constexpr float kOnAxis = 1e-5F;  // [m]: nearer than that a direction is rounding. A choice.
     const bool has_axis = form.kind == FaceForm::Kind::kRound || form.across != 0.0F;
     out.good = has_axis ? P::Bits(P::Less(P::Set(kOnAxis), r)) : 0xffU;
     return out;

@@ -16,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 
+// The version of profiles that is read (data/schemas/device_profile.schema.json).
 constexpr int kSchema = 1;
 
 struct Figure {

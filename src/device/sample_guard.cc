@@ -6,6 +6,8 @@
 namespace hvas::device {
 namespace {
 
+// A sample of this age still counts; then what came of it fades in so long. Choices, as the
+// vendors' threads hold a wrench (docs/realtime.md).
 constexpr std::int64_t kAgeHeldNs = 20'000'000;
 constexpr std::int64_t kAgeDecayNs = 50'000'000;
 constexpr double kVelocityFade = 0.7;  // a tick, while there is no new sample
@@ -23,7 +25,7 @@ double ShareOfAge(std::int64_t age_ns) noexcept {
 }
 
 DeviceState SampleGuard::Accept(const DeviceState& sample) noexcept {
-  constexpr double kClosed = 0.5;
+  constexpr double kClosed = 0.5;  // Half of a grip's way.
   DeviceState state = sample;
   state.is_gripping = (sample.buttons & 1U) != 0 || sample.grip > kClosed;
   state.is_clutching = (sample.buttons & 2U) != 0;

@@ -27,7 +27,8 @@ struct Hold {
   std::vector<std::int64_t> point_ns;
 };
 
-inline constexpr double kPointGap = 0.5e-3;  // [m]
+/** [m]: a way drawn on a page bends no finer. A choice. */
+inline constexpr double kPointGap = 0.5e-3;
 
 /** All holds of a session, in the order in which they began.
  @param p_BQ  Of an occurrence, the point of it that is followed, in B. */

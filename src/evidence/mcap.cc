@@ -57,8 +57,8 @@ Json MakeTickMessage(const TickRecord& tick, const std::vector<std::string>& pat
 }
 
 Json MakeTimeJson(std::int64_t t_ns) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  return {{"sec", t_ns / kSecond}, {"nsec", t_ns % kSecond}};
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;  // A definition.
+  return {{"sec", t_ns / kSecond_ns}, {"nsec", t_ns % kSecond_ns}};
 }
 
 /** foxglove.FrameTransform */
@@ -82,6 +82,7 @@ Json MakeTransforms(const TickRecord& tick, const std::vector<std::string>& path
 
 /** foxglove.Log */
 Json MakeLog(const record::Event& event, const std::vector<std::string>& paths) {
+  // Levels as the schema of foxglove.Log numbers them.
   constexpr int kInfo = 2;
   constexpr int kWarning = 3;
   const bool is_odd = event.kind == "safety" || event.kind == "device" || event.kind == "flight";

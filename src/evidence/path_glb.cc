@@ -19,6 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// OpenGL has these numbers, and glTF 2.0 with it.
 constexpr int kFloat = 5126;
 constexpr int kArrayBuffer = 34962;
 constexpr int kLineStrip = 3;

@@ -13,7 +13,7 @@ namespace {
 constexpr int kSamples = 2;        // along each edge of a pixel
 constexpr double kRoom = 0.94;     // of the picture, that the box may fill
 constexpr double kSharpCos = 0.8;  // normals that differ by more make an edge
-constexpr double kAmbient = 0.42;
+constexpr double kAmbient = 0.42;  // Share of light that falls on what faces away: a choice.
 
 /** What is seen at a sample. */
 struct Sample {

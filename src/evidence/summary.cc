@@ -15,7 +15,7 @@ namespace {
 
 using record::TickRecord;
 
-constexpr std::size_t kBins = 1000;
+constexpr std::size_t kBins = 1000;  // Bins of a plot, at least: a choice.
 
 /** The ticks of a session, put into bins as they come: where there are twice as many as wanted, two
  neighbours become one. */

@@ -14,24 +14,24 @@
 namespace hvas::fits {
 namespace {
 
-constexpr std::size_t kMostRanges = 13;
-constexpr double kNone = -1;  // The table has no such fit there.
+constexpr std::size_t kMostRanges = 13;  // The most ranges of sizes that a table has.
+constexpr double kNone = -1;             // The table has no such fit there.
 
 /** Ends of the ranges of diameters [in]; a range is over the one before, up to and including its
  end. */
-constexpr std::array<double, kMostRanges> kRanges{0.12, 0.24, 0.40, 0.71,  1.19,  1.97, 3.15,
-                                                  4.73, 7.09, 9.85, 12.41, 15.75, 19.69};
-constexpr std::array<double, 11> kForceRanges{0.12, 0.24, 0.40, 0.56, 0.71, 0.95,
-                                              1.19, 1.58, 1.97, 2.56, 3.15};
+constexpr std::array<double, kMostRanges> kRanges_in{0.12, 0.24, 0.40, 0.71,  1.19,  1.97, 3.15,
+                                                     4.73, 7.09, 9.85, 12.41, 15.75, 19.69};
+constexpr std::array<double, 11> kForceRanges_in{0.12, 0.24, 0.40, 0.56, 0.71, 0.95,
+                                                 1.19, 1.58, 1.97, 2.56, 3.15};
 
 /** Deviations in thousandths of an inch: the hole's upper one (its lower is 0), and the shaft's. */
 struct Table {
   std::string_view name;
   std::string_view hole;
   std::string_view shaft;
-  std::array<double, kMostRanges> hole_upper;
-  std::array<double, kMostRanges> shaft_upper;
-  std::array<double, kMostRanges> shaft_lower;
+  std::array<double, kMostRanges> hole_upper_thou;
+  std::array<double, kMostRanges> shaft_upper_thou;
+  std::array<double, kMostRanges> shaft_lower_thou;
 };
 
 // clang-format off
@@ -73,6 +73,7 @@ constexpr std::array<Table, 12> kTables{{
      {0.5, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 2.0, 2.5, 3.0, 3.5, 4.5, 5.0}},
 }};
 
+// ANSI B4.1 has these upper deviations, in thousandths of an inch.
 constexpr std::array<double, kMostRanges> kForceH7{0.4, 0.5, 0.6, 0.7, 0.7, 0.8, 0.8, 1.0, 1.0, 1.2, 1.2};
 
 constexpr std::array<Table, 5> kForceTables{{
@@ -138,16 +139,16 @@ Result<AnsiFit> FindAnsiFit(std::string_view text, double nominal) {
                 "the tables have RC1 to RC9, LN1 to LN3 and FN1 to FN5; for others give the "
                 "classes of hole and shaft, for example 1.5in H7/h6");
   }
-  const std::span<const double> ends =
-      usual != nullptr ? std::span<const double>(kRanges) : std::span<const double>(kForceRanges);
-  const double inches = nominal / units::kMetresPerInch;
+  const std::span<const double> ends = usual != nullptr ? std::span<const double>(kRanges_in)
+                                                        : std::span<const double>(kForceRanges_in);
+  const double nominal_in = nominal / units::kMetresPerInch;
   // A diameter that meets the end of a range up to rounding is in it.
   const auto end = std::find_if(ends.begin(), ends.end(),
-                                [inches](double e) { return inches <= e * (1 + 1e-12); });
+                                [nominal_in](double e) { return nominal_in <= e * (1 + 1e-12); });
   const auto i = static_cast<std::size_t>(end - ends.begin());
-  if (!(inches > 0) || end == ends.end() || table->hole_upper[i] == kNone) {
+  if (!(nominal_in > 0) || end == ends.end() || table->hole_upper_thou[i] == kNone) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("{} is not tabulated at a diameter of {:g} in", name, inches), {},
+                fmt::format("{} is not tabulated at a diameter of {:g} in", name, nominal_in), {},
                 fmt::format("choose one up to {:g} in{}", ends.back(),
                             name == "FN3" ? " and over 0.95 in" : ""));
   }
@@ -156,8 +157,8 @@ Result<AnsiFit> FindAnsiFit(std::string_view text, double nominal) {
   fit.hole = table->hole;
   fit.shaft = table->shaft;
   FitLimits& limits = fit.limits;
-  limits.hole = {0, FromThou(table->hole_upper[i])};
-  limits.shaft = {FromThou(table->shaft_lower[i]), FromThou(table->shaft_upper[i])};
+  limits.hole = {0, FromThou(table->hole_upper_thou[i])};
+  limits.shaft = {FromThou(table->shaft_lower_thou[i]), FromThou(table->shaft_upper_thou[i])};
   limits.min_clearance = limits.hole.lower - limits.shaft.upper;
   limits.max_clearance = limits.hole.upper - limits.shaft.lower;
   limits.kind = ClassifyFit(limits.min_clearance, limits.max_clearance);

@@ -17,6 +17,7 @@ constexpr double kNo = std::numeric_limits<double>::infinity();
 
 #include "fits/iso286_tables.inc"
 
+// The grades IT01 (-1), IT0 (0) to IT18 of ISO 286-1.
 constexpr int kFinestGrade = -1;
 constexpr int kCoarsestGrade = 18;
 

@@ -286,8 +286,9 @@ std::optional<MaterialMatch> FindMaterial(std::string_view name) {
 }
 
 std::optional<MaterialMatch> FindMaterialByDensity(double density) {
-  constexpr double kNear = 0.04;
-  constexpr double kHeaviestPlastic = 1700;  // [kg/m^3]
+  constexpr double kNear = 0.04;  // Relative: alloys of a family differ by less. A choice.
+  // [kg/m^3]; magnesium, the lightest metal of the table, has more: a choice.
+  constexpr double kHeaviestPlastic = 1700;
   // The usual one of each family; light alloys, irons and plastics are told apart by density.
   constexpr std::array<std::string_view, 14> kUsual{
       "S235JR", "AW-6061 T6", "1.4301 (304)", "CuZn37", "Cu-ETP", "Ti-6Al-4V", "EN-GJL-250",

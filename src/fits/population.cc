@@ -16,8 +16,8 @@
 namespace hvas::fits {
 namespace {
 
-constexpr int kCurveSteps = 200;
-constexpr int kBlock = 2048;  // Assemblies; what is counted of them stays in the cache.
+constexpr int kCurveSteps = 200;  // Steps of a curve, half a percent each: a choice.
+constexpr int kBlock = 2048;      // Assemblies; what is counted of them stays in the cache.
 
 Result<void> Check(const PopulationParameters& p) {
   const auto fail = [](std::string what, std::string remedy) {
@@ -44,7 +44,7 @@ Result<void> Check(const PopulationParameters& p) {
   return {};
 }
 
-constexpr std::size_t kBins = kForceBins;
+constexpr std::size_t kBins = kForceBins;  // The kernel counts clearances in so many.
 
 double CalcMiddle(const Limits& limits) {
   return 0.5 * (limits.lower + limits.upper);
@@ -118,8 +118,8 @@ class Histogram {
   [[nodiscard]] double bins_per_unit() const { return per_width_; }
 
  private:
-  static constexpr std::size_t kTables = 4;
-  static constexpr double kSlack = 1e-4;  // Of 256 sums, each rounded by 2^-24, 1.5e-5.
+  static constexpr std::size_t kTables = 4;  // Tables that are looked at side by side: a choice.
+  static constexpr double kSlack = 1e-4;     // Of 256 sums, each rounded by 2^-24, 1.5e-5.
 
   std::array<std::array<std::uint32_t, kBins + 1>, kTables> counts_{};  // 0: the lower bound.
   double low_{0};

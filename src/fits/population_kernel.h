@@ -6,8 +6,8 @@
  instruction sets. Lengths in micrometres, forces in newtons, single precision. */
 namespace hvas::fits {
 
-inline constexpr int kLanes = 8;
-inline constexpr int kMaxStations = 256;
+inline constexpr int kLanes = 8;          // Floats of an AVX2 register.
+inline constexpr int kMaxStations = 256;  // Bounds the room of a block.
 
 /** Where a depth of the common grid lies on a land. */
 struct LandDepth {
@@ -20,13 +20,13 @@ struct LandView {
   float half_roughness_um;   ///< Rz / 2.
   float force_per_interval;  ///< Force of a micrometre of radial interference over an interval [N].
   /** Radial, of each assembly; negative is interference. Beyond the last assembly of a block, up to
-   a multiple of kLanes, kFarApart. */
+   a multiple of kLanes, kFarApart_um. */
   const float* mean_clearance_um;
   const LandDepth* depths;  ///< One for each depth of the grid.
 };
 
-inline constexpr int kForceBins = 2048;
-inline constexpr float kFarApart = 1e6F;
+inline constexpr int kForceBins = 2048;      // Counts of 16 bits have room for more: a choice.
+inline constexpr float kFarApart_um = 1e6F;  // [um]: a metre apart is no contact.
 
 /** The sizes of a land's parts in a block. */
 struct SizeBlock {
@@ -48,6 +48,7 @@ struct SizeBlock {
   std::int32_t yields;
 };
 
+// Bits of a mark.
 inline constexpr std::uint8_t kInterferes = 1;
 inline constexpr std::uint8_t kYields = 2;
 

@@ -93,7 +93,7 @@ inline void TakeSizes(hvas::fits::SizeBlock* block) {
     yields -= gives;
     sum += from_middle;
     squares += from_middle * from_middle;
-    const Floats mean = is_valid ? 0.5F * smoothed : zero + hvas::fits::kFarApart;
+    const Floats mean = is_valid ? 0.5F * smoothed : zero + hvas::fits::kFarApart_um;
     __builtin_memcpy(block->mean_clearance_um + first, &mean, sizeof(mean));
     const Signed marks = (interferes & hvas::fits::kInterferes) | (gives & hvas::fits::kYields);
     Bytes bytes;
@@ -114,11 +114,11 @@ inline void TakeSizes(hvas::fits::SizeBlock* block) {
   }
 }
 
-/** S at a station [um]: `size` its magnitude, and `twice` two times max(0, -S), which is size - S.
+/** S at a station [um]: `size_um` its magnitude, and `twice_um` two times max(0, -S), size_um - S.
  */
 struct Station {
-  Floats size;
-  Floats twice;
+  Floats size_um;
+  Floats twice_um;
 };
 
 inline Station MakeStation(const Floats& s) {
@@ -134,11 +134,11 @@ inline void IntegrateTwo(const Station& a, const Station& b, const Station& c, F
                          Floats* second) {
   // So that nothing is divided by zero between two stations that just touch [um]. Far below what
   // the sum with any other size keeps.
-  constexpr float kTiny = 1e-12F;
-  const Floats ab = a.twice + b.twice;
-  const Floats bc = b.twice + c.twice;
-  const Floats size_ab = a.size + b.size + kTiny;
-  const Floats size_bc = b.size + c.size + kTiny;
+  constexpr float kTiny_um = 1e-12F;
+  const Floats ab = a.twice_um + b.twice_um;
+  const Floats bc = b.twice_um + c.twice_um;
+  const Floats size_ab = a.size_um + b.size_um + kTiny_um;
+  const Floats size_bc = b.size_um + c.size_um + kTiny_um;
   const Floats inverse = 1.0F / (size_ab * size_bc);
   *first = ab * ab * (inverse * size_bc);
   *second = bc * bc * (inverse * size_ab);

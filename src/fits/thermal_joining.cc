@@ -63,7 +63,7 @@ JoiningMaterial FindJoiningMaterial(const Material& material) noexcept {
                                 "below the range in which stainless steels embrittle");
   }
   if (has("steel")) {
-    constexpr double kHighStrength = 850e6;
+    constexpr double kHighStrength = 850e6;  // [Pa]: what is quenched and tempered. A choice.
     if (has("case-hardening") || material.yield_strength >= kHighStrength) {
       return {11e-6, 8.5e-6, 200, kDinExpansion,
               "case-hardened or of high strength, DIN 7190, unverified"};
@@ -120,7 +120,7 @@ double SpecificHeatOf(std::string_view group) noexcept {
 }
 
 double CalcGapConductance(double clearance) noexcept {
-  constexpr double kAir = 0.03;
+  constexpr double kAir = 0.03;  // [W/(m K)], near 100 C.
   return 2 * kAir / clearance;
 }
 

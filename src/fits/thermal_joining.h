@@ -8,9 +8,9 @@
  people state them, with the suffix _c; differences in kelvin. */
 namespace hvas::fits {
 
-inline constexpr double kAbsoluteZeroC = -273.15;
-inline constexpr double kDryIceC = -78;     ///< Boils off at -78.5 C at ambient pressure.
-inline constexpr double kNitrogenC = -196;  ///< Liquid, boils at -195.8 C: as cold as shafts get.
+inline constexpr double kAbsoluteZero_c = -273.15;  ///< A definition.
+inline constexpr double kDryIce_c = -78;            ///< Boils off at -78.5 C at ambient pressure.
+inline constexpr double kNitrogen_c = -196;  ///< Liquid, boils at -195.8 C: as cold as shafts get.
 
 /** How a material takes heat and cold while it is joined. */
 struct JoiningMaterial {
@@ -54,8 +54,8 @@ struct ThermalJoint {
 [[nodiscard]] double CalcHubTemperature(const ThermalJoint& joint, double clearance,
                                         double shaft_c) noexcept;
 
-/** Temperature of the shaft for a clearance, with the hub at its own. A number below kNitrogenC, or
- even below kAbsoluteZeroC, means that cold alone does not do it. */
+/** Temperature of the shaft for a clearance, with the hub at its own. A number below kNitrogen_c,
+ or even below kAbsoluteZero_c, means that cold alone does not do it. */
 [[nodiscard]] double CalcShaftTemperature(const ThermalJoint& joint, double clearance,
                                           double hub_c) noexcept;
 

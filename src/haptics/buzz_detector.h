@@ -19,6 +19,7 @@ struct BuzzThresholds {
  apart (OpenHaptics Programmer's Guide, "buzzing"). RT-safe. */
 class BuzzDetector {
  public:
+  /** Eight in the usual window: buzzing of 23 Hz or more. */
   static constexpr std::size_t kReversals = 8;
 
   explicit BuzzDetector(const BuzzThresholds& thresholds) noexcept : thresholds_(thresholds) {}

@@ -330,7 +330,7 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
   for (Row& row : std::span(bounded_.data(), static_cast<std::size_t>(bounded_count_))) {
     PrepareRow({0, kWorld}, &row);
   }
-  constexpr double kConverged = 1e-9;  // [m/s or rad/s]
+  constexpr double kConverged = 1e-9;  // [m/s or rad/s]: a nanometre a second. A choice.
   for (int sweep = 0; sweep < iterations; ++sweep) {
     const std::array<Vec6, kMaxBodies> before = V_;
     RelaxBounded();

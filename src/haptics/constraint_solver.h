@@ -24,6 +24,9 @@ namespace hvas::haptics {
  No allocation after construction; RT-safe throughout. */
 class ConstraintSolver {
  public:
+  // Rooms that are made once, so that a step allocates nothing: the held part, that of the
+  // other hand and eight free bodies; twice the contacts of a query; their patches; two rows for
+  // each of two fits. Choices.
   static constexpr int kMaxBodies = 10;
   static constexpr int kMaxContacts = 128;
   static constexpr int kMaxPatches = 32;

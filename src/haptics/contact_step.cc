@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kWakeGap = 20e-6;    // [m]; a loose body is woken by what comes so near
 constexpr double kRestSpeed = 1e-4;   // [m/s]; slower bodies are at rest
-constexpr double kDepthNoise = 2e-6;  // [m]
+constexpr double kDepthNoise = 2e-6;  // [m]: what a depth may be wrong by. A choice.
 
 /** The first share of what is deeper than allowed already must not become deeper. */
 double AllowedDepth(double deepest, const ContactOptions& contact) noexcept {

@@ -76,6 +76,7 @@ class FrictionMemory {
 
   void Store(const Fit& fit, double dt, Pair* pair) noexcept;
 
+  /** A pair for each patch of the solver. */
   static constexpr std::size_t kMaxPairs = ConstraintSolver::kMaxPatches;
   std::array<Pair, 2 * kMaxPairs> pairs_;
   std::size_t size_{0};

@@ -8,13 +8,14 @@
 namespace hvas::haptics {
 namespace {
 
-constexpr double kSoftStartTime = 0.3;    // [s]
+// [s]: fades the weight in (haptics.md, section 3). A choice.
+constexpr double kSoftStartTime = 0.3;
 constexpr double kMinVirtualMass = 0.05;  // [kg]; lighter parts are felt as this inertia
 
 /** Rotational inertia for a virtual mass: the part's own shape, never thinner than a small ball. */
 Mat3 CalcVirtualInertia(const HeldPart& part, double virtual_mass) noexcept {
   const double scale = part.mass > 0 ? virtual_mass / part.mass : 0.0;
-  constexpr double kBallRadius = 0.02;  // [m]
+  constexpr double kBallRadius = 0.02;  // [m]: the ball's of haptics.md, section 2. A choice.
   return scale * part.I_BBcm_B + 0.4 * virtual_mass * kBallRadius * kBallRadius * Mat3::Identity();
 }
 

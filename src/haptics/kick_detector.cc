@@ -42,7 +42,7 @@ bool KickDetector::FindWindow(double span, Window* window) const noexcept {
     const Sample& sample = FindBack(back);
     window->most_force = std::max(window->most_force, sample.force);
     window->least_force = std::min(window->least_force, sample.force);
-    constexpr double kRounding = 1e-9;  // [s]
+    constexpr double kRounding = 1e-9;  // [s]: the rounding of sums of samples.
     // Samples need not be even: the position of a time lies between two of them.
     const Sample& newer = FindBack(back > 0 ? back - 1 : 0);
     const double gap = newer.time - sample.time;

@@ -9,7 +9,7 @@ namespace hvas::haptics {
 namespace {
 
 constexpr double kAlignedDistance = 20e-6;     // [m] beyond the clearance
-constexpr double kAlignedAngle = 1e-3;         // [rad]
+constexpr double kAlignedAngle = 1e-3;         // [rad] beyond the clearance: a choice.
 constexpr double kLeaveFactor = 10;            // of these, before an aligned mate counts as left
 constexpr double kOpening = 0.5e-3;            // [m] of depth over which the play opens
 constexpr double kNearRatio = 3;               // of the capture thresholds

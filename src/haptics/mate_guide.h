@@ -33,6 +33,7 @@ struct MateGeometry {
  geometric ramp, and fades the same way: nothing the hand feels ever jumps. RT-safe. */
 class MateGuide {
  public:
+  /** Room for a held subassembly, with all its parts: a choice. */
   static constexpr std::size_t kMaxMates = 96;
 
   void Reset() noexcept { mates_.fill({}); }

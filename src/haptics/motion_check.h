@@ -16,7 +16,9 @@ namespace hvas::haptics {
 template <typename IsAllowed>
 [[nodiscard]] double FindFreeShare(double clearance, double travel,
                                    const IsAllowed& is_allowed) noexcept {
-  constexpr double kCheckStep = 0.2e-3;  // [m]
+  constexpr double kCheckStep = 0.2e-3;  // [m], less than a thin wall: a choice.
+  // The tick's time bounds the looks at a motion. Seventeen of them reach 3.4 mm, where it moves 1
+  // mm at 1 m/s; three halve the last step, to 25 um. Choices.
   constexpr int kMaxChecks = 20;
   constexpr int kHalvings = 3;
   if (travel <= clearance) {

@@ -30,7 +30,9 @@ enum class ForceMapKind {
   return kind == ForceMapKind::kPaper ? "paper" : "published";
 }
 
-/** Spring and damper between the tracked and the displayed part, X(1) and X(2). */
+/** Spring and damper between the tracked and the displayed part, X(1) and X(2). Those of a device
+ are chosen for it (coupling_rule.h); these are choices, varied in docs/algorithms/sensitivity.md.
+ */
 struct CouplingGains {
   double k_lin{1000};  ///< [N/m]
   double b_lin{8};     ///< [N s/m]
@@ -38,7 +40,8 @@ struct CouplingGains {
   double b_rot{0.02};  ///< [N m s/rad]
 };
 
-/** When a mate is captured and how it guides. */
+/** When a mate is captured and how it guides (docs/algorithms/haptics.md, section 4). Choices where
+ the papers set none; docs/algorithms/sensitivity.md varies most. */
 struct GuidanceOptions {
   mates::CaptureThresholds capture;
   double ramp_time{0.25};            ///< Time from first touch of guidance to full stiffness [s].
@@ -57,6 +60,8 @@ struct GuidanceOptions {
   double finish_distance{0};
 };
 
+/** How contacts answer (docs/algorithms/haptics.md, section 2). Choices, not measured one by one
+ but for those that docs/algorithms/sensitivity.md varies. */
 struct ContactOptions {
   double compliance{5e-7};      ///< [m/N]; 5 um at 10 N.
   double settling_time{2e-3};   ///< Settling time of a contact under a new load [s].

@@ -158,7 +158,7 @@ void PassivityController::Reset() noexcept {
 PassivityController MakePassivityController(const device::DeviceProfile& profile,
                                             double dt) noexcept {
   const double ticks = std::ceil(profile.delay / dt - 1e-6);
-  constexpr double kHarmless = 0.3;  // [m/s]
+  constexpr double kHarmless = 0.3;  // [m/s]: a choice, not measured.
   PassivityLimits force;
   force.reserve = 0.5 * profile.mass * kHarmless * kHarmless;
   force.max_force = profile.max_force;

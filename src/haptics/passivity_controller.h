@@ -72,8 +72,9 @@ class PassivityChannel {
   [[nodiscard]] const PassivityLimits& limits() const noexcept { return limits_; }
 
  private:
+  /** The window forgets a 32nd of itself at once: a choice. */
   static constexpr std::size_t kBuckets = 32;
-  static constexpr std::size_t kHistory = kMaxDelay + 1;
+  static constexpr std::size_t kHistory = kMaxDelay + 1;  ///< One more than the largest delay.
 
   struct Given {
     Vec3 written{Vec3::Zero()};

@@ -36,8 +36,8 @@ struct SafetyLimits {
   double model_hold{kNever};          ///< A model of up to this age is good [s].
   double model_fade{0.05};            ///< Then the force goes to zero in so long.
   double client_hold{kNever};         ///< Age of the client's last word at which the force goes.
-  double client_fade{0.05};
-  bool has_detectors{false};  ///< Detection of kicks and buzzing.
+  double client_fade{0.05};           ///< Time in which it then goes to zero.
+  bool has_detectors{false};          ///< Detection of kicks and buzzing.
   KickThresholds kick{};
   BuzzThresholds buzz{};
   BuzzThresholds turn_buzz{0.6, 0.02, 0.16};

@@ -66,7 +66,7 @@ bool Seating::IsWayHomeFree(const DisplayedPart& displayed) noexcept {
     return true;
   }
   X_WD_start_ = displayed.X_WD;
-  constexpr double kSamples[] = {0.25, 0.5, 0.75};
+  constexpr double kSamples[] = {0.25, 0.5, 0.75};  // Shares of the way: a choice, not measured.
   for (const double s : kSamples) {
     if (!contacts_.IsFreeAt(*displayed.part, CalcPose(*displayed.part, s), kSeatTolerance)) {
       return false;

@@ -163,8 +163,8 @@ void Merge(const FitConditions& from, FitConditions* to) {
   Override(from.hole_roughness, &to->hole_roughness);
   Override(from.shaft_roughness, &to->shaft_roughness);
   Override(from.friction, &to->friction);
-  Override(from.hole_temperature, &to->hole_temperature);
-  Override(from.shaft_temperature, &to->shaft_temperature);
+  Override(from.hole_temperature_c, &to->hole_temperature_c);
+  Override(from.shaft_temperature_c, &to->shaft_temperature_c);
 }
 
 Result<void> ApplyEntry(const FitEntry& entry, const std::string& reason, Mate* mate) {

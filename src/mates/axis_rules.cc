@@ -22,7 +22,7 @@ const PlacedAxisHit* ChooseTightest(const std::vector<const PlacedAxisHit*>& gro
     if (hit->length() < 0.5 * longest) {
       continue;
     }
-    constexpr double kSame = 1e-7;  // [m]
+    constexpr double kSame = 1e-7;  // [m]: a tenth of the finest tolerance of ISO 286. A choice.
     const double gain = best == nullptr ? 1.0 : std::abs(best->play()) - std::abs(hit->play());
     if (best == nullptr || gain > kSame ||
         (gain > -kSame && hit->length() > best->length() + kSame)) {

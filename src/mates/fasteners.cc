@@ -16,7 +16,7 @@ using product::OccurrenceId;
 using product::Part;
 using product::Product;
 
-constexpr double kSameAngle = 2e-3;     // [rad]
+constexpr double kSameAngle = 2e-3;     // [rad]: what exports err by. A choice.
 constexpr double kSameDistance = 0.01;  // Part of the distance.
 
 /** A flat beside an axis. */
@@ -38,7 +38,7 @@ bool HasHexagon(const Part& part, const Feature& axis) {
     const Vec3 n = R.transpose() * plane.axis_B;
     flats.push_back({std::abs(distance), std::atan2(n.y(), n.x()), distance > 0});
   }
-  constexpr double kSixth = std::numbers::pi / 3;
+  constexpr double kSixth = std::numbers::pi / 3;  // [rad] of a hexagon's corner.
   for (const Flat& first : flats) {
     unsigned found = 0;
     for (const Flat& flat : flats) {

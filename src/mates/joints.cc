@@ -18,9 +18,9 @@ using product::MateKind;
 using product::OccurrenceId;
 using product::Product;
 
-constexpr double kSameRadius = 1e-6;  // [m]
-constexpr double kSameAxis = 20e-6;   // [m]
-constexpr double kParallel = 2e-3;    // [rad]
+constexpr double kSameRadius = 1e-6;  // [m]: the grid of a mate's key.
+constexpr double kSameAxis = 20e-6;   // [m]: the limit of axis-hole mates (mates.md, section 1).
+constexpr double kParallel = 2e-3;    // [rad]: a tenth of a degree, as in mates.md, section 1.
 
 /** Axes in the part of the mate's first side. */
 bool IsSamePattern(const Mate& a, const Mate& b) {

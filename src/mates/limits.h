@@ -26,6 +26,7 @@ struct InferenceLimits {
 
 /** What the lengths are multiplied by for a part of this size: one between 5 mm and 1 m. */
 [[nodiscard]] inline double CalcLengthScale(double size) {
+  // The limits were measured on parts between these sizes [m] (docs/algorithms/mates.md).
   constexpr double kSmall = 5e-3;
   constexpr double kLarge = 1.0;
   return size < kSmall ? size / kSmall : std::max(1.0, size / kLarge);

@@ -15,9 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kDeepest = 32;
-constexpr std::size_t kLongestShown = 40;
-constexpr std::size_t kMostKeys = 1000;  // Ordered objects are searched key by key.
+constexpr std::size_t kDeepest = 32;       // Levels, far above what a side file has.
+constexpr std::size_t kLongestShown = 40;  // Letters of a value in a message: a choice.
+constexpr std::size_t kMostKeys = 1000;    // Ordered objects are searched key by key.
 
 int CountLines(std::string_view text, std::size_t byte) {
   return 1 + static_cast<int>(std::count(

@@ -252,7 +252,7 @@ bool HasCylinderBetween(const Part& part, FeatureKind kind, const Feature& about
  before. */
 bool IsAround(const Part& hole_part, const Feature& hole, const Part& shaft_part,
               const Feature& shaft, const Pose& X_HS, const AxisHit& hit, double limit) {
-  constexpr double kSame = 1e-6;  // [m]
+  constexpr double kSame = 1e-6;  // [m]: equal radii differ by rounding alone. A choice.
   return shaft.radius > hole.radius + kSame &&
          (HasCylinderBetween(shaft_part, FeatureKind::kHole, hole, X_HS, hit, hole.radius + kSame,
                              shaft.radius, limit) ||
@@ -421,7 +421,7 @@ std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(const std::vector<
     return {};
   }
   Eigen::Index axis = 0;
-  constexpr double kTiny = 1e-9;  // [m]
+  constexpr double kTiny = 1e-9;  // [m], so that nothing is divided by zero.
   (all.size().array() / (sum.array() + kTiny)).maxCoeff(&axis);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
     return boxes[i].low[axis] < boxes[j].low[axis];

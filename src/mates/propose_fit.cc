@@ -15,7 +15,8 @@ using product::ThreadKind;
 
 constexpr double kEqual = 1e-6;                // Radii closer than this are drawn equal [m].
 constexpr double kThreadInterference = 0.015;  // Part of d.
-constexpr double kLargestDrawnThread = 12e-3;  // [m]
+// [m]: larger interferences than mates.md, section 3, has are no threads.
+constexpr double kLargestDrawnThread = 12e-3;
 
 std::string Describe(double diameter) {
   // Micrometres are enough to say what a drawing has.
@@ -40,7 +41,7 @@ std::optional<fits::FitLimits> FindLimits(std::string_view code, double nominal)
 
 /** The closest running fit that may have the drawn clearance, or the widest that the size has. */
 std::string ChooseClearanceCode(double nominal, double clearance) {
-  constexpr double kRounding = 1e-9;  // [m]
+  constexpr double kRounding = 1e-9;  // [m]: far below a step of ISO 286.
   std::string widest;
   for (const std::string_view code : {"H7/g6", "H8/f7", "H9/d9", "H11/c11"}) {
     if (const auto limits = FindLimits(code, nominal)) {

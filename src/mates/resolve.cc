@@ -11,9 +11,11 @@ namespace {
 
 using product::MateKind;
 
-constexpr double kConverged = 1e-10;      // [m]
-constexpr double kSmallestLength = 1e-3;  // [m]
+constexpr double kConverged = 1e-10;      // [m]: the rounding of poses of some metres.
+constexpr double kSmallestLength = 1e-3;  // [m]: mates closer together turn nothing. A choice.
 constexpr double kLoneLength = 10e-3;     // One mate alone gives no length [m].
+// Newton's steps at most, and how often one is halved until it is an improvement: choices;
+// resolve_test has how many are taken.
 constexpr int kMaxIterations = 40;
 constexpr int kMaxHalvings = 8;
 
@@ -130,6 +132,7 @@ Equations Linearise(std::span<const MateConstraint> mates, const Pose& X_WB, con
  With the identity as the second, the lengths become the first one's singular values and the second
  its right vectors. */
 void MakeColumnsOrthogonal(int count, Mat6* matrix, Mat6* follower) {
+  // A bound of Jacobi's sweeps, which end when nothing is left to turn: a choice.
   constexpr int kMaxSweeps = 30;
   bool is_done = false;
   for (int sweep = 0; sweep < kMaxSweeps && !is_done; ++sweep) {

@@ -15,7 +15,7 @@ using product::Pose;
 using product::Product;
 
 constexpr double kSamePose = 1e-9;   // [m], and as a part of the rotation.
-constexpr double kPlaceGrid = 1e-6;  // [m]
+constexpr double kPlaceGrid = 1e-6;  // [m]: the grid of a mate's key.
 
 /** For each part the first one that has its shape. */
 std::vector<std::int64_t> FindShapes(const Product& product) {

@@ -19,12 +19,14 @@ namespace {
 using nlohmann::ordered_json;
 using Type = SideFileType;
 
-constexpr std::size_t kLargestFile = 16'000'000;  // [bytes]
+constexpr std::size_t kLargestFile = 16'000'000;  // [bytes]: 100,000 fits. A choice.
 
 constexpr std::array<std::string_view, 2> kFormats{"hvas-assignments-1", kSideFileFormat};
 constexpr std::array<std::string_view, 4> kMateKinds{"axis_hole", "face_face", "cone_seat",
                                                      "sphere_seat"};
 
+// What is larger is a slip of the pen or of the unit: choices, but absolute zero and the largest
+// number of a face, which is 2^32 - 2.
 constexpr double kLargestDiameter_mm = 100'000;
 constexpr double kLargestRoughness_um = 1000;
 constexpr double kLargestFriction = 2;
@@ -212,8 +214,8 @@ Result<FitEntry> ReadFit(const ordered_json& item, const Place& place) {
   conditions.hole_roughness = NumberAt(item, "hole_rz_um", units::kMetresPerMicrometre);
   conditions.shaft_roughness = NumberAt(item, "shaft_rz_um", units::kMetresPerMicrometre);
   conditions.friction = NumberAt(item, "friction", 1);
-  conditions.hole_temperature = NumberAt(item, "hole_temperature_c", 1);
-  conditions.shaft_temperature = NumberAt(item, "shaft_temperature_c", 1);
+  conditions.hole_temperature_c = NumberAt(item, "hole_temperature_c", 1);
+  conditions.shaft_temperature_c = NumberAt(item, "shaft_temperature_c", 1);
   const bool has_names = item.contains("hole") && item.contains("shaft");
   const bool has_a_name = item.contains("hole") || item.contains("shaft");
   if (item.contains("mate") ? has_a_name || entry.diameter.has_value() : !has_names) {

@@ -70,7 +70,7 @@ AxialReach CalcAxialReach(const Side& side, FaceId id) {
     return reach;
   }
   std::swap(reach.low, reach.high);
-  constexpr double kTurn = 2 * std::numbers::pi;
+  constexpr double kTurn = 2 * std::numbers::pi;  // A full turn [rad].
   VisitTriangles(side, id, [&](const std::array<Vec3, 3>& corners) {
     const double first = std::atan2(corners[0].y(), corners[0].x());
     double low = 0;
@@ -96,7 +96,7 @@ AxialReach CalcAxialReach(const Side& side, FaceId id) {
 }
 
 bool DoOverlap(const AxialReach& a, const AxialReach& b) {
-  constexpr double kLeast = 1e-6;  // [m]
+  constexpr double kLeast = 1e-6;  // [m]: less is touching. A choice.
   return std::min(a.high, b.high) - std::max(a.low, b.low) > kLeast &&
          (a.sectors & b.sectors).any();
 }

@@ -13,13 +13,14 @@
 namespace hvas::pages {
 namespace {
 
+// Pixels around and inside a plot: choices by eye.
 constexpr double kLeft = 86;
 constexpr double kRight = 24;
 constexpr double kRightWithScale = 96;
 constexpr double kMargin = 20;
 constexpr double kPlotHeight = 300;
-constexpr double kLetter = 7.4;  // Mean width of a letter of 13 px; enough for wide sans serifs.
-constexpr double kLineHeight = 18;
+constexpr double kLetter = 7.4;     // Mean width of a letter of 13 px; enough for wide sans serifs.
+constexpr double kLineHeight = 18;  // Pixels, of text of 13 px.
 
 // Plain classes, no variables: they are read by what draws SVG outside of browsers, too.
 constexpr std::string_view kFigureStyle =
@@ -319,7 +320,7 @@ std::string DrawSeries(const PlotSeries& series, const Axes& axes) {
 
 /** The legend in rows under `top`, and the height it takes. */
 std::string DrawLegend(const PlotPanel& panel, double page_width, double top, double* height) {
-  constexpr double kSwatch = 26;
+  constexpr double kSwatch = 26;  // Pixels of a line in the legend.
   std::string svg;
   double x = kLeft;
   double y = top;

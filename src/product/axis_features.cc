@@ -12,6 +12,8 @@
 namespace hvas::product {
 namespace {
 
+// Angles of docs/algorithms/features.md, "Round enough to hold": more than half a turn, with a
+// margin.
 constexpr double kLeastCoverage = units::FromDeg(200);
 constexpr double kLargestGap = units::FromDeg(160);  // What 200 deg in one piece leave.
 constexpr double kLeastSum = units::FromDeg(60);     // Of several arcs.

@@ -10,16 +10,17 @@
 namespace hvas::product {
 namespace {
 
+// Rules of docs/algorithms/features.md, "Other forms": choices, set on public assemblies.
 constexpr double kLargestFilletTurn = units::FromDeg(170);
-constexpr double kLargestFillet = 0.15;  // Radius, of the part's diagonal.
-constexpr double kSameRadius = 0.01;     // Relative.
-constexpr double kLeastChamferAngle = units::FromDeg(20);
-constexpr double kLargestChamferAngle = units::FromDeg(70);
-constexpr double kLeastEdgeAngle = units::FromDeg(60);  // Of the edge that was cut off.
-constexpr double kLargestEdgeAngle = units::FromDeg(120);
-constexpr double kNarrow = 0.35;       // Width of a chamfer, of its length.
-constexpr double kNarrowBeside = 0.5;  // The same, of its neighbours' widths.
-constexpr double kSameWidth = 0.1;     // Relative.
+constexpr double kLargestFillet = 0.15;                      // Radius, of the part's diagonal.
+constexpr double kSameRadius = 0.01;                         // Relative.
+constexpr double kLeastChamferAngle = units::FromDeg(20);    // Each of its two faces [rad].
+constexpr double kLargestChamferAngle = units::FromDeg(70);  // [rad].
+constexpr double kLeastEdgeAngle = units::FromDeg(60);       // Of the edge that was cut off.
+constexpr double kLargestEdgeAngle = units::FromDeg(120);    // [rad].
+constexpr double kNarrow = 0.35;                             // Width of a chamfer, of its length.
+constexpr double kNarrowBeside = 0.5;                        // The same, of its neighbours' widths.
+constexpr double kSameWidth = 0.1;                           // Relative.
 
 /** A face of an edge form, with what it must share with the others of its form. */
 struct Strip {
@@ -33,7 +34,7 @@ struct Strip {
 std::vector<std::vector<std::size_t>> GroupStrips(const std::vector<Strip>& strips,
                                                   const Part& part, const FaceAdjacency& adjacency,
                                                   double same_size) {
-  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);  // No strip.
   std::vector<std::size_t> strip_of_face(part.faces.size(), kNone);
   for (std::size_t i = 0; i < strips.size(); ++i) {
     strip_of_face[strips[i].face.index()] = i;

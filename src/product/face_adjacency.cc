@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTangent = units::FromDeg(2);           // Between analytic faces.
 constexpr double kTangentOnFacets = units::FromDeg(12);  // Where one normal is a triangle's.
-constexpr std::uint32_t kNone = 0xffffffffU;
+constexpr std::uint32_t kNone = 0xffffffffU;             // No vertex.
 
 /** Gives vertices that lie within a tolerance of each other one number. */
 class Welder {

@@ -177,7 +177,7 @@ class PatternFinder {
 
   /** All spots in equal even circles beside each other: two bolt circles in one plate. */
   void TrySeparateCircles() {
-    constexpr std::size_t kMostOnOne = 8;
+    constexpr std::size_t kMostOnOne = 8;  // Holes on a circle beside others: a choice.
     for (std::size_t k = kMostOnOne; k >= kLeast; --k) {
       const std::size_t n = group_.spots.size();
       if (n % k != 0 || n <= k || n > kMostForRows) {

@@ -39,7 +39,7 @@ bool MeetsTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, c
   const Vec3 q = s.cross(u);
   const double gamma = dir.dot(q) / det;
   const double t = v.dot(q) / det;
-  constexpr double kAtStart = 1e-9;  // [m]
+  constexpr double kAtStart = 1e-9;  // [m]: the face that a ray begins on is not met.
   return beta >= 0 && gamma >= 0 && beta + gamma <= 1 && t > kAtStart && t <= reach;
 }
 

@@ -14,6 +14,7 @@
 namespace hvas::product {
 namespace {
 
+// Half a turn, with what is drawn inexactly (docs/algorithms/features.md, "Other forms"). Choices.
 constexpr double kLeastHalfTurn = units::FromDeg(160);
 constexpr double kLargestHalfTurn = units::FromDeg(200);
 constexpr double kLeastSeat = 0.2;        // Of the largest plane's area.
@@ -179,7 +180,7 @@ bool IsWall(const std::vector<bool>& is_inner_round, const FaceNeighbour& neighb
 /** Whether the space above a face is free, from a few of its triangles. */
 bool IsClear(const Part& part, FaceId id, double reach) {
   const Face& face = part.faces[id.index()];
-  constexpr std::uint32_t kRays = 5;
+  constexpr std::uint32_t kRays = 5;  // Rays that look for what is in front: a choice.
   std::uint32_t blocked = 0;
   const std::uint32_t count = std::min(kRays, face.triangle_count);
   for (std::uint32_t i = 0; i < count; ++i) {

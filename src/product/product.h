@@ -215,10 +215,10 @@ struct Fit {
 /** What somebody measured or knows about one mate, over what the fit would have drawn or looked up.
  */
 struct FitConditions {
-  std::optional<double> hole_diameter, shaft_diameter;        ///< Measured at 20 C [m].
-  std::optional<double> hole_roughness, shaft_roughness;      ///< Rz [m].
-  std::optional<double> friction;                             ///< Coulomb coefficient.
-  std::optional<double> hole_temperature, shaft_temperature;  ///< [deg C]
+  std::optional<double> hole_diameter, shaft_diameter;            ///< Measured at 20 C [m].
+  std::optional<double> hole_roughness, shaft_roughness;          ///< Rz [m].
+  std::optional<double> friction;                                 ///< Coulomb coefficient.
+  std::optional<double> hole_temperature_c, shaft_temperature_c;  ///< [deg C]
 };
 
 /** One side of a mate: the feature and its frame in the part. z is the axis direction (holes and

@@ -125,10 +125,10 @@ void Visit(A& a, T& value) {
 
 template <typename A, Is<FitConditions> T>
 void Visit(A& a, T& value) {
-  auto& [hole_diameter, shaft_diameter, hole_roughness, shaft_roughness, friction, hole_temperature,
-         shaft_temperature] = value;
-  a(hole_diameter, shaft_diameter, hole_roughness, shaft_roughness, friction, hole_temperature,
-    shaft_temperature);
+  auto& [hole_diameter, shaft_diameter, hole_roughness, shaft_roughness, friction,
+         hole_temperature_c, shaft_temperature_c] = value;
+  a(hole_diameter, shaft_diameter, hole_roughness, shaft_roughness, friction, hole_temperature_c,
+    shaft_temperature_c);
 }
 
 template <typename A, Is<Connector> T>

@@ -12,7 +12,7 @@
 namespace hvas::product {
 namespace {
 
-constexpr int kSectors = 24;
+constexpr int kSectors = 24;  // Sectors of a turn, 15 degrees each (docs/algorithms/features.md).
 constexpr double kLargestStep = 4;  // Ratio of radii of bores that follow each other.
 
 bool IsMember(const std::vector<FaceId>& faces, FaceId face) {
@@ -57,7 +57,7 @@ std::optional<std::size_t> FindEnd(const Ring& ring, const FaceEdge& edge, doubl
                sign * std::sin(ring.surface.second) * radial.normalized();
   }
   const double along = edge.conormal.dot(meridian);
-  constexpr double kAcross = 0.3;
+  constexpr double kAcross = 0.3;  // Sine: 17 degrees off the axis. A choice.
   if (std::abs(along) < kAcross) {
     return std::nullopt;
   }

@@ -43,7 +43,7 @@ struct Ring {
 /** The rings of a part: of its holes, shafts and cones, in their order; then the tori by their
  first face. */
 struct RingSet {
-  static constexpr std::uint32_t kNone = 0xffffffffU;
+  static constexpr std::uint32_t kNone = 0xffffffffU;  ///< No ring.
 
   std::vector<Ring> rings;
   std::vector<std::uint32_t> ring_of_face;  ///< Index or kNone.

@@ -96,7 +96,7 @@ class RoundFormReader {
     if (seen.radius < 0.02 * at.ends[1 - end].radius) {
       return EndState::kClosed;  // The tip of a drill, or of a pointed shaft.
     }
-    constexpr double kMost = 0.6;
+    constexpr double kMost = 0.6;  // Share of the sectors (docs/algorithms/features.md).
     if (seen.convex > kMost * seen.sectors) {
       return EndState::kOpen;
     }

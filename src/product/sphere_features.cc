@@ -7,6 +7,8 @@
 namespace hvas::product {
 namespace {
 
+// Shares of the whole sphere (docs/algorithms/features.md, "Corner or ball"): an eighth is a
+// corner.
 constexpr double kLeastShare = 0.15;
 constexpr double kCornerShare = 0.4;
 

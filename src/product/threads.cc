@@ -148,6 +148,7 @@ std::optional<HelixSums> FindHelix(const Part& part, const Line& line) {
 /** Pitch of rings drawn for a thread: five or more cones of one angle and nappe on a line, evenly
  spaced, with as many of the other nappe between them. */
 std::optional<HelixSums> FindRingThread(const Part& part, const Line& line) {
+  // Cones of each nappe (docs/algorithms/features.md, "Threads").
   constexpr std::size_t kLeastRings = 5;
   std::vector<std::pair<double, double>> spans[2];
   HelixSums all;
@@ -348,7 +349,7 @@ std::optional<double> FindHead(const Part& part, const Line& line,
       look(hexagon.inner_radius, hexagon.low, hexagon.high);
     }
   }
-  constexpr double kHeaded = 1.2;
+  constexpr double kHeaded = 1.2;  // A head is so many times as wide as the shank: a choice.
   return wide > kHeaded * slim ? std::optional(middle) : std::nullopt;
 }
 
@@ -360,7 +361,7 @@ void MarkScrew(const std::vector<Line>& lines, const std::optional<ThreadSize>& 
   }
   const Line& line = lines[*main];
   if (size) {  // The name says which: drawn as the major or the minor diameter.
-    constexpr double kMinor = 0.75;
+    constexpr double kMinor = 0.75;  // Least share of the major diameter: a choice.
     bool is_marked = false;
     for (const std::size_t i : line.features) {
       Feature& feature = part->features[i];

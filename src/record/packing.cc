@@ -96,6 +96,7 @@ void VisitFieldsOf2(F& f, Tick& tick) noexcept {
   f(tick.effort_level);
 }
 
+// Bytes of a tick in the first version of the format, and in the second, which has more.
 constexpr std::size_t kPackedTickSize1 =
     sizeof(std::int64_t) + 3 * sizeof(FlatPose) + 18 * sizeof(double) + 3 * sizeof(std::uint32_t) +
     sizeof(std::uint8_t) + sizeof(std::uint16_t) + 2 * sizeof(double) +

@@ -17,6 +17,8 @@
 namespace hvas::record {
 namespace {
 
+// The writer looks for ticks 50 times a second, and writes what it has at least every 0.4 s, so
+// that at most the last half second is missing on disk (docs/record.md).
 constexpr std::chrono::milliseconds kPollPeriod{20};
 constexpr std::int64_t kFlushPeriodNs = 2 * kNsPerSecond / 5;
 

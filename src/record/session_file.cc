@@ -14,6 +14,7 @@
 namespace hvas::record {
 namespace {
 
+// Half a second at most is missing on disk (docs/record.md). A page is SQLite's usual one.
 constexpr std::int64_t kCommitPeriodNs = kNsPerSecond / 2;
 constexpr std::int64_t kPageSize = 4096;
 // How often the journal's content is moved into the file itself: often enough that a file without

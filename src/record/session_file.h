@@ -22,6 +22,7 @@ namespace hvas::record {
 using Meta = std::map<std::string, std::string>;
 
 inline constexpr std::int64_t kApplicationId = 0x48564153;  // "HVAS", in the file's header.
+// A quarter of a second is compressed together: a choice.
 inline constexpr std::int64_t kChunkTicks = 250;
 
 /** Keys that the recorder adds when it ends; a record without them was cut short. */

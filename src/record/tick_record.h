@@ -30,6 +30,7 @@ inline constexpr std::uint32_t kDeviceNotValid = 1u << 2;  ///< It had no pose.
  after the contacts came with schema 2, the last one with schema 3; in older records they are as
  below. */
 struct TickRecord {
+  /** The two that press most; all would be the larger part of a record. */
   static constexpr int kContacts = 2;
 
   std::int64_t t_ns{0};               ///< Session time.

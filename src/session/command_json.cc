@@ -89,7 +89,7 @@ std::string MakeBeginningJson(const Beginning& beginning) {
 
 Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count) {
   constexpr const char* kWhat = "The beginning of a stretch";
-  constexpr std::size_t kMostHands = 2;
+  constexpr std::size_t kMostHands = 2;  // A simulation has so many.
   const Json json = Json::parse(text, nullptr, false);
   JsonFields fields(json);
   Beginning beginning;

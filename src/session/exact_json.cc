@@ -119,6 +119,7 @@ void JsonFields::operator()(const char* name, Quat& value) {
 }
 
 void JsonFields::operator()(const char* name, spatial::Pose& value) {
+  // Error of a quaternion's length; written ones are exact: a choice.
   constexpr double kUnitSlack = 1e-6;
   std::array<double, 7> v{};
   if (!Numbers(name, &v)) {

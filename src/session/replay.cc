@@ -20,7 +20,7 @@ using record::TickRecord;
 using simulation::PartState;
 using simulation::Simulation;
 
-constexpr std::int64_t kTicksPerReport = 20'000;
+constexpr std::int64_t kTicksPerReport = 20'000;  // 20 s of session: a choice.
 
 using PackedTick = std::array<std::byte, record::kPackedTickSize>;
 

@@ -280,8 +280,8 @@ struct AllFields {
 };
 
 std::string FindUnsound(haptics::TickOptions* options) {
-  constexpr double kShortestTick = 1e-5;  // [s]
-  constexpr double kLongestTick = 0.1;
+  constexpr double kShortestTick = 1e-5;  // [s], a hundred times 1 kHz: a choice.
+  constexpr double kLongestTick = 0.1;    // [s]; slower than this nothing is felt.
   UnsoundField unsound;
   AllFields::Visit(unsound, *options);
   const bool has_period = options->dt >= kShortestTick && options->dt <= kLongestTick;

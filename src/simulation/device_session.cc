@@ -80,7 +80,7 @@ haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info, const Model
   options.workspace.border_speed *= std::max(1.0, scale);
   options.workspace.border_force = std::min(options.workspace.border_force, 0.3 * given.max_force);
   options.coupling = haptics::ChooseCoupling(given, scale, options.dt);
-  constexpr double kLeastShare = 0.1;
+  constexpr double kLeastShare = 0.1;  // Share of the mass that is felt without a device: a choice.
   // Heavier than its force can carry about, a part swings to and fro on its coupling.
   const double strength = options.device.max_force / device::DeviceProfile().max_force;
   options.max_virtual_mass *= std::clamp(strength, kLeastShare, 1.0);
@@ -92,7 +92,7 @@ haptics::TickOptions MakeTickOptions(const device::DeviceInfo& info, const Model
 
 PersonOptions MakePersonOptions(const haptics::TickOptions& options) {
   constexpr double kPushShare = 0.86;  // above what fits are felt with at most
-  constexpr double kSlack = 5e-3;      // [m]
+  constexpr double kSlack = 5e-3;      // [m] beyond the stretch of full force: a choice.
   constexpr double kPatience = 1.6;    // of a hand that has no device between itself and the part
   PersonOptions habits;
   const double push_limit = kPushShare * options.device.max_force;

@@ -20,6 +20,7 @@ std::int64_t PeriodOf(const Simulation& simulation) {
 /** A tick after which the last second is worth keeping. */
 bool IsFault(const device::DeviceState& before, std::uint32_t actions_before,
              const device::DeviceState& device, const haptics::TickOutput& out) noexcept {
+  // What the flight recorder is for.
   constexpr std::uint32_t kFaults = haptics::kGateNotFinite | haptics::kGateLateModel |
                                     haptics::kGateLostClient | haptics::kGateNoDevice |
                                     haptics::kGateStopped | haptics::kGateBuzz | haptics::kGateKick;

@@ -89,8 +89,8 @@ struct Execution {
   std::function<void(const Frame&)> on_frame;   ///< Called on the publish thread; realtime only.
   std::int64_t frame_ns{Simulation::kFrameNs};  ///< Time between frames; realtime only.
   TripleBuffer<LoopStatus>* status{nullptr};    ///< Written once a second; realtime only.
-  /** Lockstep only: the physics loop misses its step at this time [ns], as a thread that the system
-   keeps waiting; null: never. */
+  /** Lockstep only: the physics loop misses its step at a session time in nanoseconds, as a thread
+   that the system keeps waiting; null: never. */
   std::function<bool(std::int64_t)> is_physics_late;
   bool sheds_load{true};  ///< Realtime only.
   bool is_live{false};    ///< Set by the executor.

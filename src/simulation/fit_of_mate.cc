@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kReferenceTemperature_c = 20;  // ISO 1
 constexpr double kThickestRatio = 0.95;         // of inner to outer radius that is believed
-constexpr double kThinnestRatio = 1e-3;
-constexpr double kSteepestLeadIn = 0.8;  // of the angle that friction would lock
+constexpr double kThinnestRatio = 1e-3;         // A solid shaft, or as good as one.
+constexpr double kSteepestLeadIn = 0.8;         // of the angle that friction would lock
 
 /** True where an axis of the same part runs along the feature's. */
 bool IsCoaxial(const product::Feature& feature, const Vec3& origin_B, const Vec3& axis_B) {
@@ -134,15 +134,15 @@ double ChooseDiameter(const std::optional<double>& measured,
 }
 
 /** The diameter at the temperature that is stated; expansion is free and uniform. */
-double Expand(double diameter, const std::optional<double>& temperature,
+double Expand(double diameter, const std::optional<double>& temperature_c,
               const product::Material& material) {
-  const double rise = temperature.value_or(kReferenceTemperature_c) - kReferenceTemperature_c;
+  const double rise = temperature_c.value_or(kReferenceTemperature_c) - kReferenceTemperature_c;
   return diameter * (1 + material.thermal_expansion * rise);
 }
 
 bool HasSizes(const product::FitConditions& conditions) {
-  return conditions.hole_diameter || conditions.shaft_diameter || conditions.hole_temperature ||
-         conditions.shaft_temperature;
+  return conditions.hole_diameter || conditions.shaft_diameter || conditions.hole_temperature_c ||
+         conditions.shaft_temperature_c;
 }
 
 }  // namespace
@@ -179,10 +179,10 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
   const product::Feature& shaft_feature = shaft.features[mate.b.feature.index()];
   parameters.hole_diameter = Expand(
       ChooseDiameter(conditions.hole_diameter, zones->hole, nominal, 2 * mate.hole_radius, &random),
-      conditions.hole_temperature, hub.material);
+      conditions.hole_temperature_c, hub.material);
   parameters.shaft_diameter = Expand(ChooseDiameter(conditions.shaft_diameter, zones->shaft,
                                                     nominal, 2 * mate.shaft_radius, &random),
-                                     conditions.shaft_temperature, shaft.material);
+                                     conditions.shaft_temperature_c, shaft.material);
   parameters.friction = ChooseFriction(conditions.friction, hub.material, shaft.material);
   // The profile of the pair is the mean of the two: equal sides give their own.
   parameters.roughness = 0.5 * (conditions.hole_roughness.value_or(parameters.roughness) +

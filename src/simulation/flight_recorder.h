@@ -53,7 +53,7 @@ class FlightRecorder {
     std::size_t count{0};
   };
 
-  static constexpr int kNone = -1;
+  static constexpr int kNone = -1;  ///< No tape.
 
   void HandOver() noexcept;
 

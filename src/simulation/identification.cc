@@ -173,7 +173,7 @@ double Identification::CalcShare(int fit) const noexcept {
 }
 
 ShareInterval CalcShareInterval(int right, int trials) noexcept {
-  constexpr double kZ = 1.959963984540054;
+  constexpr double kZ = 1.959963984540054;  // 97.5 % of the normal distribution lie below.
   if (trials <= 0) {
     return {};
   }

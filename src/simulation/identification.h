@@ -44,9 +44,9 @@ enum class ShownSizes {
 };
 
 struct IdentificationOptions {
-  int trials{1000};   ///< Trials of each fit, 1 to 1,000,000.
-  int training{500};  ///< Insertions of each fit, told which, from which the templates are.
-  std::uint64_t seed{1};
+  int trials{1000};       ///< Trials of each fit, 1 to 1,000,000.
+  int training{500};      ///< Insertions of each fit, told which, from which the templates are.
+  std::uint64_t seed{1};  ///< Any number.
   haptics::ForceMapKind map{haptics::ForceMapKind::kPublished};
   device::DeviceProfile device;
   Observer observer;

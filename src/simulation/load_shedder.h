@@ -33,7 +33,7 @@ class LoadShedder {
     } else {
       quiet_ns_ += period_ns_;
     }
-    constexpr int kHighest = static_cast<int>(kEffortLevels.size()) - 1;
+    constexpr int kHighest = static_cast<int>(kEffortLevels.size()) - 1;  ///< The last level.
     if (compute_ns > longest_ns_ && level_ < kHighest && since_change_ns_ >= kSettleNs) {
       ++level_;
       since_change_ns_ = 0;
@@ -50,6 +50,7 @@ class LoadShedder {
  private:
   static constexpr std::int64_t kLongestNs = 200'000;   // that a tick should take
   static constexpr std::int64_t kSettleNs = 3'000'000;  // until a change shows
+  /** Quiet time until more is done again: a choice. */
   static constexpr std::int64_t kQuietNs = 500'000'000;
 
   std::int64_t period_ns_;

@@ -23,11 +23,11 @@ using product::Product;
 
 constexpr double kTableGap = 10e-3;     // [m] between parts on the table
 constexpr double kTransferGap = 30e-3;  // [m] between a carried part and the product
-constexpr double kSettleTime = 3.0;     // [s]
+constexpr double kSettleTime = 3.0;     // [s]; parts that fall 30 mm lie still sooner: a choice.
 
 /** A surface without a solid weighs nothing in the file; in the hand it needs some inertia. */
 dynamics::MassProperties MakeMass(const product::Part& part) {
-  constexpr double kLeastMass = 1e-4;  // [kg]
+  constexpr double kLeastMass = 1e-4;  // [kg]: a tenth of a gram. A choice.
   const product::MassProperties& mass = part.mass;
   if (mass.mass > kLeastMass && mass.I_BBcm_B.determinant() > 0) {
     return {mass.mass, mass.p_BoBcm_B, mass.I_BBcm_B};

@@ -47,7 +47,7 @@ struct CompileOptions {
   std::vector<SequenceStep> steps;
   contact::ShapeOptions shape;
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
-  int threads{2};
+  int threads{2};  ///< The cores of the machine that it was made on: a choice.
   std::function<void(const std::string& stage, double fraction)> progress;
 };
 

@@ -17,8 +17,8 @@
 namespace hvas::simulation {
 namespace {
 
-constexpr int kPriority = 80;  // above ordinary threads, below the kernel's own
-constexpr int kPhysicsPriority = 70;
+constexpr int kPriority = 80;         // above ordinary threads, below the kernel's own
+constexpr int kPhysicsPriority = 70;  // The haptic thread goes first.
 constexpr const char* kIsolatedCores = "/sys/devices/system/cpu/isolated";
 
 int PinToIsolatedCore() {

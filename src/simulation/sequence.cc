@@ -20,8 +20,8 @@ using product::Product;
 
 constexpr double kDepthTolerance = 50e-6;  // [m]; drawn surfaces may touch this deep
 constexpr double kShortestStep = 0.25e-3;  // [m] between looks along a way
-constexpr double kLongestStep = 2e-3;
-constexpr double kParallel = 1e-3;  // sine or cosine that counts as zero
+constexpr double kLongestStep = 2e-3;      // [m]; longer ones could pass through a thin wall.
+constexpr double kParallel = 1e-3;         // sine or cosine that counts as zero
 
 struct MateView {
   const Mate* mate;

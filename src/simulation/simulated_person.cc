@@ -7,42 +7,43 @@
 namespace hvas::simulation {
 namespace {
 
-constexpr double kGraspTime = 0.35;
-constexpr double kHandSettleTime = 0.25;
-constexpr double kRestTime = 1.0;
-constexpr double kSlackTime = 0.08;  // in which the arm goes slack
-constexpr double kReleaseTime = 0.2;
-constexpr double kShortestReach = 0.35;
-constexpr double kStandOff = 6e-3;    // [m] before anything engages, where approach ends
+// Where each number comes from: docs/algorithms/simulated_person.md, "Where its numbers come from".
+constexpr double kGraspTime = 0.35;       // [s]
+constexpr double kHandSettleTime = 0.25;  // [s]; the hand rests when it has heard the part seat
+constexpr double kRestTime = 1.0;         // [s] without pressing, before it draws the part out
+constexpr double kSlackTime = 0.08;       // [s] in which the arm goes slack
+constexpr double kReleaseTime = 0.2;      // [s]
+constexpr double kShortestReach = 0.35;   // [s]
+constexpr double kStandOff = 6e-3;        // [m] before anything engages, where approach ends
 constexpr double kSlowShare = 0.4;    // of the speed of insertion; slower than that presses harder
 constexpr double kStillSpeed = 1e-3;  // [m/s] that counts as not moving
-constexpr double kStuckBeforeSearch = 1.2;
-constexpr double kBackOff = 8e-3;        // [m] before trying elsewhere
-constexpr double kLoosen = 1.5e-3;       // [m] back when it sticks in its hole
-constexpr double kLeadIn = 1e-3;         // [m] of travel until it is inside
-constexpr double kLookTime = 0.4;        // [s]
-constexpr double kCarefulSpeed = 0.012;  // [m/s]; what hits the hole tilted, wedges in it
-constexpr double kRockingRate = 3;       // [Hz]
-constexpr double kRocking = 0.02;        // [rad]; harder the longer it sticks
-constexpr double kMostRocking = 0.12;    // [rad]
-constexpr double kRockingTime = 6;       // [s]
-constexpr double kRockingTurn = 0.12;    // of a turn about the way in, for each of rocking
-constexpr double kRockingLag = 0.02;     // [s]
-constexpr double kYieldTime = 0.3;       // [s]; the wrist gives way to what it feels
-constexpr double kYieldReach = 2e-3;     // [m], no further than this
-constexpr double kYieldTurn = 0.05;      // [rad]
-constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
-constexpr double kLearnTime = 0.3;       // of a carried weight
-constexpr double kAtHand = 0.002;        // [m]; close enough to take something up
-constexpr double kFollows = 0.5e-3;      // [m]; a part that meets nothing is as near to its hand
-constexpr double kCalm = 0.02;           // [m/s]; slow enough for it
-constexpr double kMostLag = 0.05;        // [m]; the mind does not run ahead of the hand
-constexpr double kMostTurnLag = 0.3;     // [rad]
-constexpr double kTurned = 0.05;         // [rad]; as good as turned
-constexpr double kTurning = 0.02;        // [rad/s]; slower than that, the hand does not turn
-constexpr double kCalmTime = 0.2;        // [s]; what swings is only still for a moment
-constexpr double kMostWait = 1.5;        // [s] for a hand to come, and what it holds to hang still
-constexpr double kSenseTime = 0.08;      // in which it notices how fast its hand is
+constexpr double kStuckBeforeSearch = 1.2;  // [s]
+constexpr double kBackOff = 8e-3;           // [m] before trying elsewhere
+constexpr double kLoosen = 1.5e-3;          // [m] back when it sticks in its hole
+constexpr double kLeadIn = 1e-3;            // [m] of travel until it is inside
+constexpr double kLookTime = 0.4;           // [s]
+constexpr double kCarefulSpeed = 0.012;     // [m/s]; what hits the hole tilted, wedges in it
+constexpr double kRockingRate = 3;          // [Hz]
+constexpr double kRocking = 0.02;           // [rad]; harder the longer it sticks
+constexpr double kMostRocking = 0.12;       // [rad]
+constexpr double kRockingTime = 6;          // [s]
+constexpr double kRockingTurn = 0.12;       // of a turn about the way in, for each of rocking
+constexpr double kRockingLag = 0.02;        // [s]
+constexpr double kYieldTime = 0.3;          // [s]; the wrist gives way to what it feels
+constexpr double kYieldReach = 2e-3;        // [m], no further than this
+constexpr double kYieldTurn = 0.05;         // [rad]
+constexpr double kSearchPitch = 0.5e-3;     // [m] of radius a try
+constexpr double kLearnTime = 0.3;          // [s] in which a weight is learned
+constexpr double kAtHand = 0.002;           // [m]; close enough to take something up
+constexpr double kFollows = 0.5e-3;         // [m]; a part that meets nothing is as near to its hand
+constexpr double kCalm = 0.02;              // [m/s]; slow enough for it
+constexpr double kMostLag = 0.05;           // [m]; the mind does not run ahead of the hand
+constexpr double kMostTurnLag = 0.3;        // [rad]
+constexpr double kTurned = 0.05;            // [rad]; as good as turned
+constexpr double kTurning = 0.02;           // [rad/s]; slower than that, the hand does not turn
+constexpr double kCalmTime = 0.2;           // [s]; what swings is only still for a moment
+constexpr double kMostWait = 1.5;    // [s] for a hand to come, and what it holds to hang still
+constexpr double kSenseTime = 0.08;  // [s] in which it notices how fast its hand is
 
 void LimitLength(double most, Vec3* v) {
   *v *= std::min(1.0, most / std::max(v->norm(), most));
@@ -263,7 +264,7 @@ double SimulatedPerson::PushLimit() const noexcept {
 }
 
 bool SimulatedPerson::IsPressing(const OperatorInput& input) const noexcept {
-  constexpr double kNearly = 0.9;
+  constexpr double kNearly = 0.9;  // Share of the limit that is as good as all of it: a choice.
   return is_at_device_ ? push_ >= PushLimit() || input.F_H_D.f.norm() >= kNearly * PushLimit()
                        : push_ > options_.first_push;
 }
@@ -351,7 +352,7 @@ void SimulatedPerson::StartSearch(const Vec3& d, double travel, bool is_by_eye) 
 
 Vec3 SimulatedPerson::Tremor() noexcept {
   Vec3 tremor;
-  constexpr double kFrequencies[3] = {8.3, 9.7, 11.4};  // [Hz]
+  constexpr double kFrequencies[3] = {8.3, 9.7, 11.4};  // [Hz]: 8 to 12, and no multiples.
   for (int k = 0; k < 3; ++k) {
     tremor[k] = options_.tremor *
                 std::sin(2 * std::numbers::pi * kFrequencies[k] * t_s_ + tremor_phase_[k]);

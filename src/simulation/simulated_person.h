@@ -29,7 +29,8 @@ struct PersonTask {
 
 /** An arm and its habits. Values of the arm are of the order published for hands that hold a haptic
  device or keep a posture: Dolan, Friedman and Nagurka, IEEE Trans. SMC 23(3), 1993; Tsuji et al.,
- Biological Cybernetics 72, 1995; Fu and Cavusoglu, IEEE Trans. SMC B 42(6), 2012. */
+ Biological Cybernetics 72, 1995; Fu and Cavusoglu, IEEE Trans. SMC B 42(6), 2012. Where each value
+ comes from, and which are choices: docs/algorithms/simulated_person.md. */
 struct PersonOptions {
   double mass{0.8};               ///< Effective mass at the hand [kg].
   double stiffness{400};          ///< [N/m]
@@ -82,6 +83,7 @@ class DeviceHolder {
 
 /** Seed of the person who has this hand, in a session with this seed. */
 [[nodiscard]] constexpr std::uint64_t SeedOfHand(std::uint64_t seed, std::size_t hand) {
+  // 2^64 over the golden ratio: any number that makes the second hand's stream another one.
   constexpr std::uint64_t kOther = 0x9e3779b97f4a7c15;
   return hand == 0 ? seed : seed ^ kOther;
 }
@@ -204,7 +206,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   Vec3 aim_offset_{Vec3::Zero()};  ///< Error of where the hand believes this part to be.
   Vec3 aim_turn_{Vec3::Zero()};
 
-  static constexpr int kMaxReaches = 6;
+  static constexpr int kMaxReaches = 6;  ///< The longest plan has four.
   Reach reaches_[kMaxReaches];
   int reach_count_{0};
   int reach_index_{0};

@@ -74,6 +74,7 @@ class TickLog {
   [[nodiscard]] const Command& command(std::size_t i) const noexcept { return commands_[i]; }
 
  private:
+  /** More than ten a second for an hour: a choice. */
   static constexpr std::size_t kCommands = 65'536;
 
   std::size_t capacity_;

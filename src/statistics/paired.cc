@@ -12,8 +12,8 @@ namespace {
 /** The non-centrality under which a share of `below` of the non-central t distribution lies below
  `t`, by bisection: the share falls as the non-centrality grows. */
 double FindNonCentrality(double t, double dof, double below) {
-  constexpr int kSteps = 200;
-  constexpr int kMostDoublings = 20;
+  constexpr int kSteps = 200;         // Halvings: more than a double has bits.
+  constexpr int kMostDoublings = 20;  // Doublings of the interval: 2^20 is far beyond any t.
   double low = t - 1;
   double high = t + 1;
   for (int i = 0; i < kMostDoublings && CalcNonCentralStudent(t, dof, low) < below; ++i) {

@@ -12,6 +12,7 @@
 namespace hvas::statistics {
 namespace {
 
+// Fewer have no variance to speak of; more conditions nobody stands. Choices.
 constexpr int kLeastParticipants = 3;
 constexpr std::size_t kMostConditions = 20;
 
@@ -55,7 +56,7 @@ struct CheckDesign {
   }
 
   Result<void> operator()(const CountDesign& d) const {
-    constexpr int kMostTrials = 10'000;
+    constexpr int kMostTrials = 10'000;  // More than a person can do: a choice.
     if (d.of < 1 || d.of > kMostTrials) {
       return Refuse(fmt::format("counts of {} trials", d.of), "design",
                     fmt::format("give from 1 to {}", kMostTrials));

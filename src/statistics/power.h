@@ -47,11 +47,11 @@ enum class PowerTest {
 
 struct PowerOptions {
   PowerTest test{PowerTest::kFriedman};
-  double alpha{0.05};  ///< Level of this one test, in (0, 0.5).
-  double target{0.8};  ///< Power that is wanted, in (0, 1).
-  int runs{10'000};    ///< Simulated studies for each number of participants, 100 to 1,000,000.
-  std::uint64_t seed{1};
-  int most{500};  ///< Participants that are tried, 3 to 10,000.
+  double alpha{0.05};     ///< Level of this one test, in (0, 0.5).
+  double target{0.8};     ///< Power that is wanted, in (0, 1).
+  int runs{10'000};       ///< Simulated studies for each number of participants, 100 to 1,000,000.
+  std::uint64_t seed{1};  ///< Any number: the simulated studies follow from it.
+  int most{500};          ///< Participants that are tried, 3 to 10,000.
 };
 
 struct PowerPoint {

@@ -72,7 +72,7 @@ struct Wilcoxon {
   std::optional<double> r;  ///< z over the root of n.
 };
 
-inline constexpr std::size_t kMostExactPairs = 200;
+inline constexpr std::size_t kMostExactPairs = 200;  // Sums of 2^n signs are counted in n^3 steps.
 
 /** @param first, second One pair each; differences are second minus first. Errors: kInvalid for
  samples of different size, none, or values that are not finite. */

@@ -20,9 +20,9 @@ namespace {
 constexpr std::string_view kAlphabet =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
-constexpr std::size_t kTokenLength = 32;
-constexpr std::uint32_t kAccessVersion = 1;
-constexpr std::uint32_t kHighestPort = 65535;
+constexpr std::size_t kTokenLength = 32;       // Letters of an alphabet of 64: 192 bits.
+constexpr std::uint32_t kAccessVersion = 1;    // The file's format.
+constexpr std::uint32_t kHighestPort = 65535;  // The largest number of 16 bits.
 
 bool IsToken(std::string_view text) {
   return text.size() == kTokenLength && text.find_first_not_of(kAlphabet) == std::string_view::npos;
@@ -33,7 +33,7 @@ bool HasArray(const Json& object, const char* name) {
 }
 
 bool IsPort(std::string_view text) {
-  constexpr std::size_t kMaxDigits = 5;
+  constexpr std::size_t kMaxDigits = 5;  // Digits of 65535.
   return !text.empty() && text.size() <= kMaxDigits &&
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
@@ -150,6 +150,7 @@ Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, 
 }
 
 std::string Access::OriginOf(std::string_view host) const {
+  // The ports of the schemes.
   constexpr std::uint16_t kHttp = 80;
   constexpr std::uint16_t kHttps = 443;
   // Browsers omit the default port of the scheme.
@@ -219,7 +220,7 @@ Result<Access::Admission> Access::Admit(std::string_view token, std::string_view
   browser = browser != nullptr ? browser : AddBrowser();
   browser->role = link->role;
   link->browser = IsSingleUse(link->role) ? browser->secret : "";
-  constexpr int kCookieLifetime = 30 * 24 * 3600;  // [s]
+  constexpr int kCookieLifetime = 30 * 24 * 3600;  // [s], 30 days: a choice.
   return Admission{link->role, fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
                                            cookie_name_, browser->secret, kCookieLifetime,
                                            is_tls_ ? "; Secure" : "")};

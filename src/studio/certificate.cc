@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kDayS = 86'400;
+constexpr std::int64_t kDayS = 86'400;      // Seconds of a day.
 constexpr std::int64_t kValidDays = 397;    // the longest validity that browsers accept
 constexpr std::int64_t kRenewedDays = 14;   // time before expiry
 constexpr std::int64_t kBackdatedDays = 1;  // allows for clocks that are behind
@@ -56,7 +56,7 @@ bool IsAddress(const std::string& name) {
 
 /** Whether a name has the syntax of DNS host names. */
 bool IsHostName(const std::string& name) {
-  constexpr std::size_t kLongest = 253;
+  constexpr std::size_t kLongest = 253;  // Letters of a name (RFC 1035).
   return !name.empty() && name.size() <= kLongest && name.front() != '.' && name.front() != '-' &&
          std::all_of(name.begin(), name.end(),
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.'; });
@@ -99,7 +99,7 @@ bool AddExtension(X509* certificate, int kind, const std::string& value) {
 }
 
 bool SetSerial(X509* certificate) {
-  constexpr int kBits = 127;
+  constexpr int kBits = 127;  // Positive, and less than the 160 that X.509 allows.
   const std::unique_ptr<BIGNUM, Free<BN_free>> number(BN_new());
   return number != nullptr &&
          BN_rand(number.get(), kBits, BN_RAND_TOP_ANY, BN_RAND_BOTTOM_ANY) == 1 &&
@@ -303,7 +303,7 @@ Result<std::vector<std::string>> ListNamesOf(const std::string& address) {
   if (address == "0.0.0.0" || address == "::") {
     names = ListAddresses(address == "::");
   }
-  constexpr std::size_t kLongest = 256;
+  constexpr std::size_t kLongest = 256;  // HOST_NAME_MAX is 64 here, 255 in POSIX.
   std::array<char, kLongest> own{};
   if (::gethostname(own.data(), own.size() - 1) == 0 && IsHostName(own.data())) {
     names.emplace_back(own.data());

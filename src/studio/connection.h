@@ -19,7 +19,7 @@ namespace hvas::studio {
  thread. */
 class ConnectionTable {
  public:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 64;  ///< Addresses that are remembered: a choice.
 
   /** @returns the connection's number; 0 when the table is full of authenticated connections. */
   std::uint64_t Add(boost::beast::tcp_stream* stream) {

@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "frames are little endian");
 
-constexpr std::uint32_t kMaxItems = 64;
+constexpr std::uint32_t kMaxItems = 64;  // Hands and clients of a message: a choice.
 
 Error Refuse(const std::string& what) {
   return {ErrorCode::kInvalid, what, "frame from a client", "reload the page"};
@@ -38,6 +38,7 @@ bool IsFinite(const protocol::HandInput& input) {
     is_finite = is_finite && std::isfinite(value);
     norm_sq += value * value;
   }
+  // Error of a quaternion's squared length, in single precision: a choice.
   constexpr float kSlack = 0.1F;
   return is_finite && std::abs(norm_sq - 1) < kSlack;
 }

@@ -68,7 +68,7 @@ std::vector<protocol::BodyPose> ListMoved(const simulation::Frame& frame,
 
 /** Makes histogram counts between edges; the last bin has everything above the last edge. */
 Json CountBetween(const LatencyHistogram& histogram, std::span<const int> edges_us) {
-  constexpr std::int64_t kNsPerUs = 1000;
+  constexpr std::int64_t kNsPerUs = 1000;  // A definition.
   Json counts = Json::array();
   std::uint64_t before = 0;
   for (const int edge_us : edges_us) {
@@ -133,6 +133,7 @@ Json MakeHandStatus(const LiveFrame& frame, std::size_t hand) {
 
 Json MakeStatus(const simulation::LoopStatus& status) {
   const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
+  // The shares that are told: half, and all but a hundredth.
   constexpr double kP50 = 0.5;
   constexpr double kP99 = 0.99;
   const std::string scheduling = status.is_fifo ? "SCHED_FIFO" : "normal priority";

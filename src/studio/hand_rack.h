@@ -17,7 +17,7 @@ namespace hvas::studio {
 class HandRack {
  public:
   static constexpr const char* kPointer = "pointer";  ///< Address for a hand without a device.
-  static constexpr std::size_t kMaxHands = 2;
+  static constexpr std::size_t kMaxHands = 2;         ///< Hands of a simulation.
 
   [[nodiscard]] std::size_t count() const;
 

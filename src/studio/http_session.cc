@@ -17,6 +17,7 @@
 namespace hvas::studio {
 namespace {
 
+// [bytes] of a request's head, as usual servers take: a choice.
 constexpr std::size_t kMaxHeader = 8 << 10;
 constexpr std::size_t kMaxBody = 4 << 10;  // largest body but that of an upload [bytes]
 constexpr double kSlowest = 128 << 10;     // slowest rate at which a response may be read [bytes/s]

@@ -292,7 +292,7 @@ void Hub::OnBinary(const std::string& id, std::string_view bytes) {
   for (const protocol::Acknowledgement& credit : frames->credits) {
     client.seen_seq = std::max(client.seen_seq, std::min(credit.seq, client.sent_seq));
   }
-  constexpr std::uint32_t kGrip = 1;
+  constexpr std::uint32_t kGrip = 1;  // Bit 0 (docs/protocol.md).
   const bool may_grip = desk_ == nullptr || desk_->CheckTake().has_value();
   for (const protocol::HandInput& input : frames->inputs) {
     if (input.hand < leases_.size() && leases_[input.hand] == id) {

@@ -10,7 +10,7 @@
 namespace hvas::studio {
 namespace {
 
-constexpr std::size_t kLongestText = 1000;
+constexpr std::size_t kLongestText = 1000;  // [bytes] of a field's text: a choice.
 constexpr std::size_t kMaxFields = 64;  // fields of a command, including those of nested objects
 
 Unexpected FailField(const char* name, const char* wanted) {

@@ -12,7 +12,7 @@ namespace {
 using simulation::Placement;
 
 constexpr std::int64_t kFrameNs = 16'666'667;  // frame period of displays at 60 Hz
-constexpr double kForEver = 1e9;               // [s]
+constexpr double kForEver = 1e9;               // [s], thirty years.
 
 std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
                                                  const simulation::Model& model) {

@@ -38,8 +38,8 @@ struct LiveListeners {
 struct LiveOptions {
   bool has_person{false};           ///< See HandPurpose.
   std::vector<HandSetup> hands{1};  ///< One or two.
-  std::uint64_t seed{1};
-  double rate_hz{1000};
+  std::uint64_t seed{1};            ///< Any number: the simulated person's hand follows from it.
+  double rate_hz{1000};             ///< X4 asks for 1 kHz.
   std::shared_ptr<Recording> recording;  ///< Receives all events; may be null.
   std::shared_ptr<LiveTrial> trial;      ///< Trial of a study; may be null.
 };

@@ -110,7 +110,7 @@ std::optional<Span> FindSpan(const Surface& a, const Surface& b) {
 }
 
 void Compare(const Measured& a, const Measured& b, Json* json) {
-  constexpr double kDegrees = 180 / 3.14159265358979323846;
+  constexpr double kDegrees = 180 / 3.14159265358979323846;  // Degrees in a radian.
   (*json)["kind"] = fmt::format("{} to {}", ToString(a.surface_W.kind), ToString(b.surface_W.kind));
   std::string text;
   if (HasAxis(a.surface_W.kind) && HasAxis(b.surface_W.kind)) {

@@ -17,8 +17,8 @@ using spatial::Pose;
 
 /** Whether a motion is large enough to be seen. */
 bool HasMoved(const Pose& from, const Pose& to) {
-  constexpr double kDistance = 20e-6;  // [m]
-  constexpr double kTurn = 2e-4;       // [rad]
+  constexpr double kDistance = 20e-6;  // [m]: less is not seen. A choice.
+  constexpr double kTurn = 2e-4;       // [rad]: less is not seen. A choice.
   return (to.p() - from.p()).norm() > kDistance ||
          spatial::RotationBetween(from.q(), to.q()).norm() > kTurn;
 }

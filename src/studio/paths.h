@@ -61,6 +61,7 @@ struct SweptGlb {
 /** Computes swept volumes, one after the other, on a thread of its own. */
 class Sweeper {
  public:
+  // Swept volumes that are asked for and not yet made, and those that are kept: choices.
   static constexpr std::size_t kMaxWaiting = 8;
   static constexpr std::size_t kMaxKept = 16;
 

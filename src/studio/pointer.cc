@@ -8,8 +8,10 @@ namespace hvas::studio {
 namespace {
 
 constexpr double kTimeConstant = 0.012;  // [s]; time constant of each stage: smooths 60 Hz input
-constexpr double kMaxSpeed = 0.8;        // [m/s]
-constexpr double kMaxTurn = 6;           // [rad/s]
+// [m/s]: below the 1 m/s of a displayed part. A choice.
+constexpr double kMaxSpeed = 0.8;
+// [rad/s]: below the 10 rad/s of a displayed part. A choice.
+constexpr double kMaxTurn = 6;
 
 Vec3 Limit(const Vec3& v, double most) noexcept {
   const double norm = v.norm();
@@ -46,7 +48,7 @@ const PointerInput& PointerOperator::ReadInput(bool sees_part, std::int64_t* age
 }
 
 simulation::HandReference PointerOperator::Intend(const simulation::OperatorInput& input) noexcept {
-  constexpr double kReached = 5e-3;  // [m]
+  constexpr double kReached = 5e-3;  // [m]: near enough to close on a part. A choice.
   simulation::HandReference reference;
   const PointerInput& wanted = ReadInput(input.sees_part, &reference.client_age_ns);
   Follow(reference.client_age_ns < kInputTimeoutNs ? wanted.X_WH : X_WH_, input.dt);

@@ -25,11 +25,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kSuffix = ".hvasrec";
 constexpr const char* kNamesFile = "names.json";
-constexpr std::int64_t kNsPerMs = 1'000'000;
+constexpr std::int64_t kNsPerMs = 1'000'000;  // A definition.
 
 /** Makes the stem of a file name from a product's name: letters, digits and dashes. */
 std::string MakeStem(const std::string& name) {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kLongest = 40;  // Letters of a file's name: a choice.
   std::string stem;
   for (const char letter : name) {
     const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
@@ -288,7 +288,7 @@ Result<void> RecordingShelf::Delete(const std::string& id) {
 }
 
 Result<void> RecordingShelf::Rename(const std::string& id, const std::string& name) {
-  constexpr std::size_t kLongestName = 200;  // [bytes]
+  constexpr std::size_t kLongestName = 200;  // [bytes]: a line of text. A choice.
   if (name.find_first_not_of(' ') == std::string::npos || name.size() > kLongestName) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("a name needs 1 to {} bytes, and not only spaces", kLongestName), name,

@@ -173,7 +173,7 @@ std::string DecodePercent(std::string_view path) {
 
 std::string NameOfUpload(std::string_view target) {
   constexpr std::string_view kName = "name=";
-  constexpr std::size_t kLongestName = 80;
+  constexpr std::size_t kLongestName = 80;  // Characters of a file's name: a choice.
   const std::size_t at = target.find(kName);
   std::string_view given = at == std::string_view::npos ? "" : target.substr(at + kName.size());
   given = given.substr(0, given.find('&'));

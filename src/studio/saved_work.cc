@@ -17,7 +17,7 @@ namespace {
 using simulation::PartState;
 using simulation::Placement;
 
-constexpr std::uint32_t kWorkVersion = 2;
+constexpr std::uint32_t kWorkVersion = 2;  // The file's format.
 
 Unexpected FailNoSavedWork(const std::filesystem::path& file) {
   return Fail(ErrorCode::kUnreadable, "the file does not contain saved work of the studio",

@@ -27,7 +27,7 @@ class SceneBuilder {
   struct Options {
     LoadFn load;
     std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
-    std::uint64_t seed{1};
+    std::uint64_t seed{1};  ///< Any number: the actual sizes of the fits follow from it.
     /** New epochs are larger, so that they differ from those of the program's previous start. */
     std::uint32_t last_epoch{0};
   };

@@ -50,7 +50,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
     if (std::exchange(is_closing_, true)) {
       return;
     }
-    constexpr std::size_t kLongestReason = 120;
+    constexpr std::size_t kLongestReason = 120;  // [bytes]; RFC 6455 allows 123.
     const websocket::close_reason why(websocket::close_code::policy_error,
                                       reason.substr(0, kLongestReason));
     socket_.async_close(why, [self = shared_from_this()](error_code) {});

@@ -60,6 +60,7 @@ Result<std::string> ReadPrivateFile(const fs::path& path) {
     return Fail(ErrorCode::kInvalid, "the file is not accessible to this user only", path.string(),
                 fmt::format("delete it, or run: chmod 600 '{}'", path.string()));
   }
+  // [bytes] of a file that is kept: a choice.
   constexpr std::size_t kLargest = std::size_t{64} << 20U;
   return ReadRegularFile(*file, path, kLargest);
 }
@@ -70,7 +71,7 @@ Result<StateFolder> StateFolder::Take(const fs::path& parent, std::string_view s
   }
   Digest digest;
   digest.AddText(subject);
-  constexpr int kMaxAtOnce = 100;
+  constexpr int kMaxAtOnce = 100;  // Studios on one subject: a choice.
   for (int i = 1; i <= kMaxAtOnce; ++i) {
     fs::path path = parent / (i == 1 ? digest.Hex() : fmt::format("{}-{}", digest.Hex(), i));
     if (const auto made = MakeOwnFolder(path / "uploads"); !made) {

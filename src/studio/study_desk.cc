@@ -18,7 +18,7 @@ using study::Outcome;
 using study::Phase;
 using study::StudyEvent;
 
-constexpr std::size_t kLongestNote = 4000;
+constexpr std::size_t kLongestNote = 4000;  // [bytes]: a page of text. A choice.
 
 double Seconds(std::int64_t ns) {
   return 1e-9 * static_cast<double>(ns);

@@ -34,7 +34,7 @@ struct WorkbenchOptions {
   SceneBuilder::Options scenes;
   std::filesystem::path recordings_folder;  ///< Empty: recording is switched off.
   std::filesystem::path work_file;  ///< File that SavedWork is saved to after changes; empty: none.
-  double rate_hz{1000};
+  double rate_hz{1000};             ///< X4 asks for 1 kHz.
 };
 
 /** The open product, its live run, and the undo list. Any thread may call any function. All but

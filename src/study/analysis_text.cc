@@ -7,7 +7,7 @@
 namespace hvas::study {
 
 std::string FormatP(double p) {
-  constexpr double kLeast = 1e-4;
+  constexpr double kLeast = 1e-4;  // Less is told as "below".
   return p < kLeast ? "< 0.0001" : p < 0.01 ? fmt::format("{:.5f}", p) : fmt::format("{:.4f}", p);
 }
 

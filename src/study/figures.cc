@@ -65,7 +65,7 @@ std::vector<double> ValuesOf(const Table& table, std::size_t column) {
 std::vector<PlotPoint> SpreadDots(const std::vector<double>& values, double x, double range) {
   constexpr int kRows = 60;        // dots that fit above each other in a plot
   constexpr double kStep = 0.035;  // distance of neighbours, as a share of the distance of names
-  constexpr double kWidest = 0.3;
+  constexpr double kWidest = 0.3;  // Share of the distance of names: a choice.
   std::map<long, std::vector<double>> rows;
   for (const double value : values) {
     rows[range > 0 ? std::lround(kRows * value / range) : 0].push_back(value);
@@ -115,7 +115,7 @@ std::string DrawBoxes(const Analysis& analysis, const std::string& id) {
   }
   std::string description = "Box plot. ";
   for (std::size_t i = 0; i < analysis.conditions.size(); ++i) {
-    constexpr double kHalf = 0.22;
+    constexpr double kHalf = 0.22;  // Half a box, of the way from name to name: a choice.
     const statistics::Summary& summary = analysis.conditions[i].summary;
     const std::vector<double> values = ValuesOf(table, i);
     const auto x = static_cast<double>(i);
@@ -232,6 +232,7 @@ std::string DrawMeans(const Analysis& analysis, const std::string& id) {
 }
 
 std::string DrawConfusion(const Identification& identification, const std::string& id) {
+  // Shares from which cells are drawn ever fuller: choices.
   constexpr std::array<double, 3> kFaint{0.005, 0.2, 0.6};
   const std::vector<std::string>& names = identification.names;
   PlotPanel panel;

@@ -15,10 +15,10 @@
 namespace hvas::study {
 namespace {
 
-constexpr std::size_t kMaxConditions = 26;
-constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]
+constexpr std::size_t kMaxConditions = 26;           // Letters of the alphabet, which name them.
+constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]: a thousand pages. A choice.
 constexpr int kMaxTrials = 5000;                     // for one participant
-constexpr double kMaxSeconds = 86400;
+constexpr double kMaxSeconds = 86400;                // A day.
 constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};
 constexpr std::array<std::string_view, 3> kHidden{"condition", "time", "progress"};
 

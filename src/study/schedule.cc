@@ -12,7 +12,7 @@
 namespace hvas::study {
 namespace {
 
-constexpr int kMaxParticipants = 999;
+constexpr int kMaxParticipants = 999;  // Three digits, as in P001.
 
 // Purposes of random streams, so that their seeds differ.
 constexpr std::uint64_t kLabels = 1;

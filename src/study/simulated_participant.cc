@@ -16,6 +16,7 @@
 namespace hvas::study {
 namespace {
 
+// No other stream of random numbers has this number.
 constexpr std::uint64_t kSkillStream = 101;
 constexpr double kMedianSpeed = 0.85;
 constexpr int kObserverTraining = 60;  // training insertions for each fit
@@ -55,6 +56,8 @@ simulation::PersonOptions MakePerson(const Skill& skill, Random* random) {
 }
 
 double DrawPickingTime(int constraints, const Skill& skill, Random* random) {
+  // Operators of the keystroke-level model [s] (Card, Moran and Newell, Communications of the ACM
+  // 23(7), 1980): think, point, press, hand to the mouse. kSigma, their spread, is a choice.
   constexpr double kMental = 1.35;
   constexpr double kPoint = 1.1;
   constexpr double kClick = 0.2;

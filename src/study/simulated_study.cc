@@ -17,8 +17,8 @@ namespace {
 
 using Kind = StudyEvent::Kind;
 
-constexpr std::uint64_t kTrialStream = 1000;  // plus the index of the trial
-constexpr std::uint64_t kObserverStream = 102;
+constexpr std::uint64_t kTrialStream = 1000;    // plus the index of the trial
+constexpr std::uint64_t kObserverStream = 102;  // No other stream has this number.
 
 /** Models, indexed by condition. */
 using Setups = std::vector<TrialSetup>;

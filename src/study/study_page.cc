@@ -22,7 +22,7 @@ using pages::PlotPanel;
 using pages::PlotSeries;
 using pages::PlotStyle;
 
-constexpr double kAlpha = 0.05;
+constexpr double kAlpha = 0.05;  // The usual level of significance.
 
 constexpr const char* kStyle = R"(
 .simulated{border-left:4px solid #bb430a;padding:.5rem .9rem;margin:1rem 0}

@@ -8,7 +8,7 @@
 namespace hvas::study {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 20;
+constexpr std::size_t kMaxBytes = 1 << 20;  // [bytes] of a protocol: a choice.
 
 std::string FormatMark(const std::string& file, const YAML::Mark& mark) {
   return mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);

@@ -21,7 +21,7 @@ struct Grid {
    units of kNormalUnit; zero where that is not known. */
   std::vector<std::array<std::int16_t, 3>> normals;
 
-  static constexpr double kNormalUnit = 1.0 / 32767;
+  static constexpr double kNormalUnit = 1.0 / 32767;  ///< 16 bits with a sign.
 
   [[nodiscard]] std::size_t IndexOf(int i, int j, int k) const {
     return static_cast<std::size_t>(i) +

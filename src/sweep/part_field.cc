@@ -13,8 +13,8 @@ namespace {
 
 using contact::NearList;
 
-constexpr double kMostNodes = 4e6;
-constexpr int kListNodes = 5;  // Along an axis: fewer are not worth a list of their own.
+constexpr double kMostNodes = 4e6;  // 16 MB of distances: a choice.
+constexpr int kListNodes = 5;       // Along an axis: fewer are not worth a list of their own.
 
 /** Pieces that are worth a thread each. */
 std::vector<NodeRange> SplitTwice(const Grid& grid) {

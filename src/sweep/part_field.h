@@ -38,7 +38,7 @@ class PartField {
  private:
   friend class FieldFiller;
 
-  static constexpr std::uint32_t kNoLeaf = 0xffffffffU;
+  static constexpr std::uint32_t kNoLeaf = 0xffffffffU;  ///< No leaf.
 
   /** A cube near the surface, with the triangles that can be closest to what lies in it. */
   struct Leaf {

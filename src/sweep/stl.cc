@@ -25,8 +25,8 @@ void AppendVector(const Vec3& vector, std::string* bytes) {
 }  // namespace
 
 std::string MakeStl(const SurfaceMesh& mesh) {
-  constexpr std::size_t kHeader = 80;
-  constexpr std::size_t kTriangle = 50;
+  constexpr std::size_t kHeader = 80;       // [bytes], any text.
+  constexpr std::size_t kTriangle = 50;     // [bytes]: twelve floats and two of attributes.
   std::string bytes = "HVAS, millimetres";  // not "solid": that would be the format of text
   bytes.resize(kHeader, ' ');
   bytes.reserve(kHeader + sizeof(std::uint32_t) + kTriangle * mesh.triangles.size());

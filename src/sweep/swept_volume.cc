@@ -19,7 +19,7 @@ namespace {
 using spatial::Box;
 using spatial::Pose;
 
-constexpr double kMostCells = 20e6;
+constexpr double kMostCells = 20e6;   // 80 MB of distances: a choice.
 constexpr double kCellsAcross = 100;  // of the largest extent, when no resolution is given
 constexpr int kBrickNodes = 8;        // along an axis
 constexpr double kBandCells = 3;      // on both sides of the surface, where values are right
@@ -149,8 +149,8 @@ class Sweeping {
   /** Where a point is, as seen from B, when it is nearest between a sample and the next: by golden
    section; in so short a time it goes straight. */
   [[nodiscard]] Vec3 FindLeastBetween(const Vec3& p_W, std::size_t sample) const {
-    constexpr double kGolden = 0.6180339887498949;
-    constexpr int kSections = 6;
+    constexpr double kGolden = 0.6180339887498949;  // (sqrt(5) - 1) / 2.
+    constexpr int kSections = 6;  // Sections of the way, to 0.618^6 = 1/18 of it: a choice.
     const Vec3 from = samples_[sample] * p_W;
     const Vec3 way = samples_[sample + 1] * p_W - from;
     const auto at = [&](double t) { return part_.ExactAt(from + t * way).distance; };

@@ -12,6 +12,12 @@ def parse_root(description):
     return parser.parse_args().root
 
 
+def list_sources(root):
+    """Headers and sources below src/, without those of tests."""
+    paths = sorted((root / "src").rglob("*"))
+    return [path for path in paths if path.suffix in (".h", ".cc", ".inc") and "test" not in path.parts]
+
+
 def report(problems, summary):
     """Prints each problem, or the summary where there is none. Returns the exit status."""
     for problem in problems:

@@ -10,9 +10,11 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import codes  # noqa: E402
+import constants  # noqa: E402
 import layers  # noqa: E402
 import openings  # noqa: E402
 import rt_symbols  # noqa: E402
+import units  # noqa: E402
 
 TABLE = """
 | room | holds | may know | outside libraries |
@@ -86,6 +88,60 @@ class Openings(unittest.TestCase):
             header = pathlib.Path(folder) / "a.h"
             header.write_text("/** The size. */\nint a;  ///< Of the file.\n/** The same again. */\nint b;  ///< Offers it.\n")
             self.assertEqual([number for _, number, _ in openings.find_openings(pathlib.Path(folder))], [2, 3])
+
+
+class Constants(unittest.TestCase):
+    def bare(self, text):
+        return [(number, name) for number, name, _ in constants.find_bare(text.splitlines())]
+
+    def test_constant_without_a_comment_is_caught_with_its_line(self):
+        self.assertEqual(self.bare("int a = 1;\n\nconstexpr double kA = 2;\n"), [(3, "kA")])
+        self.assertEqual(self.bare("  static constexpr int kA{2};\n"), [(1, "kA")])
+        self.assertEqual(self.bare("const double kA = std::cos(1.0);\n"), [(1, "kA")])
+        self.assertEqual(self.bare("constexpr std::array<double, 2> kA{\n    1, 2};\n"), [(1, "kA")])
+
+    def test_comment_on_the_line_explains_that_line_alone(self):
+        self.assertEqual(self.bare("constexpr int kA = 1;  // [m]\nconstexpr int kB = 2;\n"), [(2, "kB")])
+
+    def test_comment_above_explains_a_block_but_not_what_follows_it(self):
+        block = "/** Both.\n And more. */\nconstexpr int kA =\n    1;\nconstexpr int kB = 2;\n"
+        self.assertEqual(self.bare(block), [])
+        self.assertEqual(self.bare(block + "\nconstexpr int kC = 3;\n"), [(7, "kC")])
+        self.assertEqual(self.bare(block + "Run();\nconstexpr int kC = 3;\n"), [(7, "kC")])
+        self.assertEqual(self.bare("/** Runs. */\nvoid Run() {\n  constexpr int kC = 3;\n}\n"), [(3, "kC")])
+
+    def test_text_and_limits_of_types_need_none(self):
+        text = 'constexpr const char* kA = "a";\nconstexpr double kB = std::numeric_limits<double>::infinity();\n'
+        self.assertEqual(self.bare(text), [])
+
+    def test_default_of_an_option_is_caught_unless_it_is_nothing(self):
+        text = "struct AOptions {\n  double a{0.5};\n  int b{0};\n  double c = 2;  ///< [m]\n  bool d{true};\n};\n"
+        self.assertEqual(self.bare(text), [(2, "a")])
+        self.assertEqual(self.bare("struct A {\n  double a{0.5};\n};\n"), [])
+
+
+class Units(unittest.TestCase):
+    def unsuffixed(self, text):
+        return [number for number, _ in units.find_unsuffixed(text.splitlines())]
+
+    def test_unit_that_is_not_si_asks_for_its_suffix(self):
+        self.assertEqual(self.unsuffixed("double a{0};  ///< The size [mm].\ndouble a_mm{0};  ///< [mm]\n"), [1])
+        self.assertEqual(self.unsuffixed("double a{0};  ///< The size [m].\n"), [])
+        self.assertEqual(self.unsuffixed("std::optional<double> a_c, b;  // [deg C]\n"), [1])
+        self.assertEqual(self.unsuffixed("std::array<double, 2> a_um_{};  // [um]\n"), [])
+        self.assertEqual(self.unsuffixed("constexpr int kAMs = 1;  // [ms]\nconstexpr int kA = 1;  // [ms]\n"), [2])
+
+    def test_comment_above_belongs_to_what_follows(self):
+        self.assertEqual(self.unsuffixed("/** The size\n [um]. */\ndouble size;\ndouble other;\n"), [3])
+        self.assertEqual(self.unsuffixed("/** The size [um]. */\n\n/** Any. */\ndouble other;\n"), [])
+
+    def test_parameters_are_told_of_by_name_and_functions_are_free(self):
+        self.assertEqual(self.unsuffixed("/** The time [ns]. */\nstd::int64_t Read(double a);\n"), [])
+        self.assertEqual(self.unsuffixed("/** Sets it.\n @param a  [mm] @param b  [m] */\nvoid Set(double a, double b);\n"), [3])
+        self.assertEqual(self.unsuffixed("/** @param a_mm  The size [mm]. */\nvoid Set(double a_mm);\n"), [])
+
+    def test_units_in_texts_are_no_comments(self):
+        self.assertEqual(self.unsuffixed('add("--size", size, "The size [mm]");\n'), [])
 
 
 class Codes(unittest.TestCase):

@@ -33,7 +33,7 @@ namespace {
 using simulation::Model;
 using simulation::PartResult;
 
-constexpr int kNotAllSeated = 2;
+constexpr int kNotAllSeated = 2;  // The exit status where a part is not in its place.
 // Of session time, before a run is stopped as a whole: for a part, where it is carried around a
 // product of ordinary size; in proportion for larger ones.
 constexpr double kSecondsPerPart = 120;

@@ -18,7 +18,7 @@ namespace hvas::app {
 struct AssembleOptions {
   LoadOptions load;
   std::vector<std::string> order;  ///< Parts to begin with, by name, path or id.
-  std::uint64_t seed{1};
+  std::uint64_t seed{1};           ///< Any number: sizes and the person's hand follow from it.
   haptics::Condition condition{haptics::Condition::kHybrid};
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   bool is_realtime{false};

@@ -95,6 +95,8 @@ nlohmann::ordered_json ToJson(const DeviceInHand& device) {
 
 /** A residual below what a double resolves of a product's size is not a measurement. */
 std::string DescribeResidual(double residual_um) {
+  // A double resolves 1e-16 of a product's size: 1e-10 um of a metre, with the resolver's
+  // iterations beside it.
   constexpr double kResolved_um = 1e-6;
   return residual_um < kResolved_um ? "< 1e-6" : fmt::format("{:.1e}", residual_um);
 }

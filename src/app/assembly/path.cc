@@ -39,7 +39,7 @@ struct PathOptions {
   std::filesystem::path record;
   std::size_t hold{0};
   std::vector<double> translate_mm;
-  std::vector<double> rotate;  ///< An axis, and an angle [deg].
+  std::vector<double> rotate_deg;  ///< An axis, and an angle [deg].
   std::vector<double> about_mm;
   bool is_swept{false};
   double resolution_mm{0};
@@ -72,7 +72,7 @@ Result<void> Check(const PathOptions& options) {
     return Fail(ErrorCode::kInvalid, "the file exists already", options.output.string(),
                 "choose another name, or replace it with --force");
   }
-  if (!options.rotate.empty() && !(VectorOf(options.rotate).norm() > 0)) {
+  if (!options.rotate_deg.empty() && !(VectorOf(options.rotate_deg).norm() > 0)) {
     return Fail(ErrorCode::kInvalid, "the direction of the axis has length zero", "--rotate",
                 "give a direction and an angle, for example --rotate 0,0,1,90");
   }
@@ -91,13 +91,14 @@ Result<TimedPath> FindPath(const PathOptions& options, const Product& product,
   }
   const Vec3 p_WQ = options.about_mm.empty() ? X_WB * product.part_of(occurrence.id).mass.p_BoBcm_B
                                              : Vec3(units::FromMm(1) * VectorOf(options.about_mm));
-  return TimedPath{sweep::MakeRotation(X_WB, p_WQ, VectorOf(options.rotate).normalized(),
-                                       units::FromDeg(options.rotate[3])),
+  return TimedPath{sweep::MakeRotation(X_WB, p_WQ, VectorOf(options.rotate_deg).normalized(),
+                                       units::FromDeg(options.rotate_deg[3])),
                    {}};
 }
 
 /** A path that was not recorded has few poses: it is shown in steps. */
 void FillIn(const product::Part& part, TimedPath* path) {
+  // A path looks smooth with so many steps: a choice, not measured.
   constexpr double kSteps = 100;
   if (path->t_ns.empty()) {
     const double length = sweep::CalcLength(path->X_WB, part.mass.p_BoBcm_B);
@@ -247,12 +248,12 @@ void AddPath(CLI::App* app, int* status) {
   CLI::Option* record =
       way->add_option("--record", options->record,
                       "Path in a recorded session: a record of hvas assemble or the studio");
-  constexpr int kVector = 3;
+  constexpr int kVector = 3;  // Coordinates.
   way->add_option("--translate", options->translate_mm, "Translation from its place: X,Y,Z [mm]")
       ->delimiter(',')
       ->expected(kVector);
   CLI::Option* rotate =
-      way->add_option("--rotate", options->rotate,
+      way->add_option("--rotate", options->rotate_deg,
                       "Rotation about an axis: X,Y,Z of the direction, angle [deg]")
           ->delimiter(',')
           ->expected(kVector + 1);

@@ -28,7 +28,7 @@ using spatial::Pose;
 
 constexpr const char* kFormat = "hvas-poses-1";
 constexpr const char* kRemedy = "see data/schemas/poses.schema.json";
-constexpr double kFarthest = 1e4;        // [m]
+constexpr double kFarthest = 1e4;        // [m]; further away is a slip of the unit: a choice.
 constexpr double kNormTolerance = 1e-6;  // Of a quaternion that people wrote.
 
 using Poses = std::map<OccurrenceId, Pose>;

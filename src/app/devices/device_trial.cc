@@ -83,12 +83,13 @@ class FloorTrial {
 /** The hand of an emulated device: slowly down into the floor and up again, in two seconds. It
  takes the handle anew each time, as a person would after an alarm. */
 void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
-  constexpr double kDepth = 0.012;  // [m] that it would go without the floor
-  constexpr double kTurn = std::numbers::pi;
+  constexpr double kDepth = 0.012;            // [m] that it would go without the floor
+  constexpr double kTurn = std::numbers::pi;  // [rad/s]: down and up in 2 s.
   const Vec3 down_D = device->profile().q_UD.conjugate() * -Vec3::UnitZ();
   device::HandIntent hand;
   hand.X_DR = spatial::Pose(Vec3(0.5 * kDepth * (1 - std::cos(kTurn * t_s)) * down_D));
   hand.V_DR.v = 0.5 * kDepth * kTurn * std::sin(kTurn * t_s) * down_D;
+  // The button is held so much of each 2 s, so that both ways are seen.
   constexpr double kHeld_s = 1.8;
   hand.buttons = std::fmod(t_s, 2) < kHeld_s ? 1 : 0;
   device->SetHand(hand);
@@ -137,8 +138,8 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
       work.Add(MonotonicNs() - start_ns);
     }
   });
-  constexpr double kStep = 0.002;  // [s]
-  constexpr int kStepsPerLine = 500;
+  constexpr double kStep = 0.002;     // [s]: the eye and the hand follow no faster. A choice.
+  constexpr int kStepsPerLine = 500;  // A line a second.
   simulation::Pacer pacer(std::llround(1e9 * kStep));
   for (int i = 0; i * kStep < options.seconds; ++i) {
     if (opened->emulator != nullptr) {

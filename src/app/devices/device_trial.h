@@ -6,8 +6,8 @@ namespace hvas::app {
 
 struct DeviceTrialOptions {
   std::string address;
-  double seconds{15};
-  double rate_hz{1000};
+  double seconds{15};    ///< Long enough to feel the floor some times: a choice [s].
+  double rate_hz{1000};  ///< X4 asks for 1 kHz.
 };
 
 /** Opens a device and renders a horizontal floor in the middle of its workspace for a while: the

@@ -93,6 +93,8 @@ nlohmann::ordered_json ToJson(const ProbeReport& report) {
 
 /** Lines that begin at one column, with a word before the first. */
 std::string Labelled(const std::string& label, const std::string& text) {
+  // A label begins at the first of these columns, and its text at the second, behind the longest
+  // label.
   constexpr std::size_t kIndent = 4;
   constexpr std::size_t kTextColumn = 18;
   return Wrap(text, kTextColumn).replace(kIndent, label.size(), label);

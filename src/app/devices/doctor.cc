@@ -23,13 +23,14 @@
 namespace hvas::app {
 namespace {
 
+// The exit status: the machine is no good for a haptic loop.
 constexpr int kNotGood = 2;
 // A wake-up that comes later than this leaves too little of a period for the tick.
 constexpr double kLatestShare = 0.5;
 
 struct DoctorOptions {
-  double seconds{5};
-  double rate_hz{1000};
+  double seconds{5};     ///< Long enough for wake-ups that are late once a second [s].
+  double rate_hz{1000};  ///< X4 asks for 1 kHz.
   bool is_json{false};
 };
 

@@ -71,8 +71,8 @@ DoctorCheck CheckKernel(const fs::path& root) {
 }
 
 DoctorCheck CheckPriority(const fs::path& root) {
-  constexpr unsigned kSysNice = 23;
-  constexpr int kWanted = 80;
+  constexpr unsigned kSysNice = 23;  // CAP_SYS_NICE of linux/capability.h.
+  constexpr int kWanted = 80;        // What the haptic thread asks for (realtime_thread.cc).
   const std::string limit = ReadValue(root / "proc/self/limits", "Max realtime priority");
   const bool has_right = HasCapability(root, kSysNice) || limit.starts_with("unlimited");
   const bool is_good = has_right || ToNumber(limit).value_or(0) >= kWanted;
@@ -85,7 +85,7 @@ DoctorCheck CheckPriority(const fs::path& root) {
 }
 
 DoctorCheck CheckMemoryLock(const fs::path& root) {
-  constexpr unsigned kIpcLock = 14;
+  constexpr unsigned kIpcLock = 14;  // CAP_IPC_LOCK of linux/capability.h.
   const std::string limit = ReadValue(root / "proc/self/limits", "Max locked memory");
   const bool is_good = HasCapability(root, kIpcLock) || limit.starts_with("unlimited");
   return {"locked memory",

@@ -33,7 +33,7 @@ void PrintLatencyHistogram(const std::string& title, const LatencyHistogram& his
   for (std::int64_t end_us = 1; below < histogram.count(); end_us *= 2) {
     const std::uint64_t up_to = histogram.CountUpTo(1000 * end_us);
     if (up_to > below) {
-      constexpr double kWidth = 45;
+      constexpr double kWidth = 45;  // Columns of the longest bar, beside the numbers in 80.
       const double share =
           static_cast<double>(up_to - below) / static_cast<double>(histogram.count());
       fmt::print("  up to {:>8} us {:>9} {}\n", end_us, up_to - below,

@@ -72,10 +72,10 @@ const CLI::Validator& Temperature() {
         if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) {
           return text + " is not a temperature";
         }
-        if (value < fits::kAbsoluteZeroC) {
+        if (value < fits::kAbsoluteZero_c) {
           return text + " C is below absolute zero, -273.15 C";
         }
-        if (value < fits::kNitrogenC) {
+        if (value < fits::kNitrogen_c) {
           return text + " C is below the temperature of liquid nitrogen, -196 C";
         }
         return value <= 1000 ? std::string() : text + " C is above the limit of 1000 C for joining";
@@ -104,6 +104,7 @@ CLI::Validator Count(std::int64_t most) {
 }
 
 constexpr std::int64_t kMaxAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
+// More than any machine that it ran on has: a choice.
 constexpr std::int64_t kMaxThreads = 256;
 
 /** The value of the k-th fit in a list with one for each, or one for all. */

@@ -39,8 +39,8 @@ struct JoiningTemperatures {
   double hub_c;               // Heating the hub alone.
   double shaft_c;             // Cooling the shaft alone.
   double nitrogen_clearance;  // With the shaft in liquid nitrogen and the hub as it is [m].
-  double dry_ice_hub_c;       // Heating the hub with the shaft at kDryIceC.
-  double nitrogen_hub_c;      // The same at kNitrogenC.
+  double dry_ice_hub_c;       // Heating the hub with the shaft at kDryIce_c.
+  double nitrogen_hub_c;      // The same at kNitrogen_c.
 };
 
 JoiningTemperatures CalcJoining(const FitCard& card) {
@@ -52,9 +52,9 @@ JoiningTemperatures CalcJoining(const FitCard& card) {
   return {clearance,
           hub_c(joint.room_c),
           fits::CalcShaftTemperature(joint, clearance, joint.room_c),
-          fits::CalcHotClearance(joint, joint.room_c, fits::kNitrogenC),
-          hub_c(fits::kDryIceC),
-          hub_c(fits::kNitrogenC)};
+          fits::CalcHotClearance(joint, joint.room_c, fits::kNitrogen_c),
+          hub_c(fits::kDryIce_c),
+          hub_c(fits::kNitrogen_c)};
 }
 
 std::string JoiningText(const FitCard& card) {
@@ -74,17 +74,17 @@ std::string JoiningText(const FitCard& card) {
       1e6 * shaft.cooling);
   text += fmt::format("  by heat: {}, at most {:g} C ({})\n", heat(joining.hub_c), hub.hottest_c,
                       hub.limit_source);
-  if (joining.shaft_c >= fits::kNitrogenC) {
+  if (joining.shaft_c >= fits::kNitrogen_c) {
     text += fmt::format("  by cold: cool the shaft to {:.0f} C\n", std::floor(joining.shaft_c));
   } else {
     text += fmt::format("  by cold: impossible: in liquid nitrogen, {:g} C, the play is {} {}\n",
-                        fits::kNitrogenC, lengths.Small(joining.nitrogen_clearance),
+                        fits::kNitrogen_c, lengths.Small(joining.nitrogen_clearance),
                         lengths.small_unit());
   }
-  text += fmt::format("  by both: cool the shaft to {:g} C (dry ice), {}\n", fits::kDryIceC,
+  text += fmt::format("  by both: cool the shaft to {:g} C (dry ice), {}\n", fits::kDryIce_c,
                       heat(joining.dry_ice_hub_c));
   text += fmt::format("  by both: cool the shaft to {:g} C (liquid nitrogen), {}\n",
-                      fits::kNitrogenC, heat(joining.nitrogen_hub_c));
+                      fits::kNitrogen_c, heat(joining.nitrogen_hub_c));
   return text + (hub.source == shaft.source
                      ? fmt::format("  alpha: {}\n", hub.source)
                      : fmt::format("  alpha: {}; of the shaft: {}\n", hub.source, shaft.source));
@@ -100,7 +100,7 @@ ordered_json JoiningJson(const FitCard& card) {
   return {{"play_um", units::ToUm(joining.clearance)},
           {"heat_hub_to_c", heat(joining.hub_c)},
           {"cool_shaft_to_c",
-           joining.shaft_c >= fits::kNitrogenC ? ordered_json(joining.shaft_c) : ordered_json()},
+           joining.shaft_c >= fits::kNitrogen_c ? ordered_json(joining.shaft_c) : ordered_json()},
           {"with_dry_ice_heat_hub_to_c", heat(joining.dry_ice_hub_c)},
           {"with_nitrogen_heat_hub_to_c", heat(joining.nitrogen_hub_c)},
           {"play_in_nitrogen_um", units::ToUm(joining.nitrogen_clearance)},

@@ -18,12 +18,12 @@ struct FitCardOptions {
   SizedFit fit;
   fits::PressFitParameters press;  ///< Lacks the interference, which comes from the limits.
   std::string hub_material, shaft_material;
-  double friction_slip{0.15};   ///< nu_rl, while it slides out.
-  std::string friction_source;  ///< Where the coefficients are from.
-  double start{0};              ///< Depth at which this fit begins to engage [m].
-  double lead_in_angle{0};      ///< Angle of the chamfer from the axis [rad]; 0: none.
-  double chamfer_width{0};      ///< Width of both parts together, radially [m].
-  double room_c{20};
+  double friction_slip{0.15};                ///< nu_rl, while it slides out.
+  std::string friction_source;               ///< Where the coefficients are from.
+  double start{0};                           ///< Depth at which this fit begins to engage [m].
+  double lead_in_angle{0};                   ///< Angle of the chamfer from the axis [rad]; 0: none.
+  double chamfer_width{0};                   ///< Width of both parts together, radially [m].
+  double room_c{20};                         ///< ISO 1: where sizes are measured [C].
   LengthUnit unit{LengthUnit::kMillimetre};  ///< The unit of the answer.
   fits::JoiningMaterial hub_joining, shaft_joining;
   std::optional<double> hub_c,

@@ -20,7 +20,7 @@ using pages::PlotRange;
 using pages::PlotSeries;
 using pages::PlotStyle;
 
-constexpr int kCurveSteps = 200;
+constexpr int kCurveSteps = 200;  // Steps of a plotted curve: a choice.
 
 /** The fits of all cards at once, at the clearances that `pick` says. */
 template <typename Pick>
@@ -173,11 +173,11 @@ PlotPanel MakeClearancePanel(const FitCurve& curve) {
     PlotSeries series{curve.cards[k].Title(), PlotStyle::kLine, static_cast<int>(k % 5), {}};
     const auto& quantiles = curve.batch.lands[k].clearance_curve;
     for (std::size_t i = 0; i < quantiles.size(); ++i) {
-      const double x = units::ToUm(quantiles[i]);
+      const double x_um = units::ToUm(quantiles[i]);
       series.points.push_back(
-          {x, 100 * static_cast<double>(i) / static_cast<double>(quantiles.size() - 1)});
-      low = std::min(low, x);
-      high = std::max(high, x);
+          {x_um, 100 * static_cast<double>(i) / static_cast<double>(quantiles.size() - 1)});
+      low = std::min(low, x_um);
+      high = std::max(high, x_um);
     }
     panel.series.push_back(std::move(series));
   }

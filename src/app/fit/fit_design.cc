@@ -24,6 +24,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// Proposals are read by people, who compare few: a choice.
 constexpr std::size_t kMaxProposals = 5;
 
 Result<void> Check(const FitDemand& d) {

@@ -77,7 +77,7 @@ PlotPanel MakeJammingPanel(const FitJamming& j) {
 }
 
 PlotPanel MakeWedgingPanel(const FitJamming& j) {
-  constexpr int kSteps = 300;
+  constexpr int kSteps = 300;  // Steps of the plotted curve: a choice.
   const double length = j.card.options.press.length;
   const double least = fits::CalcLeastTwoPointLength(j.pair);
   const double largest_deg = units::ToDeg(fits::CalcLargestTilt(j.pair));

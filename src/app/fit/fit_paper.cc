@@ -25,8 +25,8 @@ using pages::PlotRange;
 using pages::PlotSeries;
 using pages::PlotStyle;
 
-constexpr double kSpeed = 0.01;  // Of the hand; the paper does not say [m/s].
-constexpr int kPaperSteps = 500;
+constexpr double kSpeed = 0.01;   // Of the hand; the paper does not say [m/s].
+constexpr int kPaperSteps = 500;  // Steps of the plotted curves: a choice.
 
 /** How far the hand is off the axis in the clearance fit: up to and down from random values. */
 class WanderingHand {
@@ -47,6 +47,7 @@ class WanderingHand {
   }
 
  private:
+  // The hand wanders between so many random places along the way: a choice, not measured.
   static constexpr int kTurns = 13;
   // 2 N across at k_p, so 0.3 N along with mu 0.15.
   static constexpr double kLargest = 2.0 / fits::kPaperContactStiffness;

@@ -88,7 +88,7 @@ struct InputRule {
   double high;  // Not itself.
 };
 
-constexpr double kRight = std::numbers::pi / 2;
+constexpr double kRight = std::numbers::pi / 2;  // A right angle [rad].
 
 constexpr std::array<InputRule, 19> kRules{{
     {"D", Kind::kLength, 0, false, kInfinity},

@@ -9,7 +9,7 @@
 namespace hvas::app {
 namespace {
 
-constexpr double kThousandths = 1e3;
+constexpr double kThousandths = 1e3;  // Thousandths of an inch are the unit of ANSI B4.1.
 
 }  // namespace
 

@@ -17,6 +17,7 @@
 namespace hvas::app {
 namespace {
 
+// The eye follows no faster: 20 times a second.
 constexpr std::int64_t kOftenestNs = 50'000'000;
 
 }  // namespace
@@ -35,7 +36,7 @@ void ShowProgress(std::string_view stage, double fraction) {
   } else if (stage != last_stage || now_ns - last_ns >= kOftenestNs) {
     last_stage = stage;
     last_ns = now_ns;
-    constexpr std::size_t kPercent = 7;
+    constexpr std::size_t kPercent = 7;  // Columns of " 100 %", and one free.
     fmt::print(stderr, "\r\033[K{} {:.0f} %", Shorten(stage, CountColumns() - kPercent),
                100 * fraction);
   } else {
@@ -63,11 +64,11 @@ Busy::~Busy() {
 }
 
 void Busy::Run() {
-  constexpr std::chrono::seconds kStep{1};
+  constexpr std::chrono::seconds kStep{1};  // Numbers are shown once a second.
   std::unique_lock lock(mutex_);
   int passed_s = 0;
   while (!changed_.wait_for(lock, kStep, [this] { return is_done_; })) {
-    constexpr std::size_t kSeconds = 9;
+    constexpr std::size_t kSeconds = 9;  // Columns of ", 99999 s", and one free.
     fmt::print(stderr, "\r\033[K{}, {} s", Shorten(stage_, CountColumns() - kSeconds), ++passed_s);
     std::fflush(stderr);
   }

@@ -10,6 +10,7 @@
 namespace hvas::app {
 namespace {
 
+// Significant digits of what has no decimals of its own: a metre to a nanometre.
 constexpr int kDigits = 9;
 
 constexpr std::array<std::pair<std::string_view, int>, 7> kDecimals{

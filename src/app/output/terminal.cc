@@ -12,6 +12,7 @@
 namespace hvas::app {
 namespace {
 
+// Columns where no terminal says how many it has, and the fewest that tables are made for.
 constexpr std::size_t kUsual = 80;
 constexpr std::size_t kLeast = 40;
 

@@ -35,6 +35,7 @@ class ListLimit {
   void PrintRest() const;
 
  private:
+  /** Lines of a list before the rest is only counted: a choice. */
   static constexpr std::size_t kMost = 60;
   bool is_all_;
   std::size_t count_{0};

@@ -11,7 +11,7 @@
 namespace hvas::app {
 namespace {
 
-constexpr std::size_t kGap = 1;
+constexpr std::size_t kGap = 1;         // Columns between columns.
 constexpr std::size_t kLeastName = 18;  // Narrower than that a name says too little.
 
 std::vector<std::string> SplitLines(const std::string& text) {

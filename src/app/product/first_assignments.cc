@@ -44,8 +44,8 @@ Json MakeEntry(const Product& product, const Mate& mate) {
   add("hole_rz_um", conditions.hole_roughness, units::ToUm(1));
   add("shaft_rz_um", conditions.shaft_roughness, units::ToUm(1));
   add("friction", conditions.friction, 1);
-  add("hole_temperature_c", conditions.hole_temperature, 1);
-  add("shaft_temperature_c", conditions.shaft_temperature, 1);
+  add("hole_temperature_c", conditions.hole_temperature_c, 1);
+  add("shaft_temperature_c", conditions.shaft_temperature_c, 1);
   entry["note"] = fmt::format("{}{}, {:.6g} mm: {} <- {}{}", fit.is_proposed ? "proposed " : "",
                               ToString(fit.kind), units::ToMm(fit.nominal_diameter), path(mate.a),
                               path(mate.b), fit.reason.empty() ? "" : " (" + fit.reason + ")");

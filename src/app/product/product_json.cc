@@ -225,8 +225,8 @@ Json ToJson(const product::FitConditions& conditions) {
   add("hole_rz_um", conditions.hole_roughness, units::ToUm(1));
   add("shaft_rz_um", conditions.shaft_roughness, units::ToUm(1));
   add("friction", conditions.friction, 1);
-  add("hole_temperature_c", conditions.hole_temperature, 1);
-  add("shaft_temperature_c", conditions.shaft_temperature, 1);
+  add("hole_temperature_c", conditions.hole_temperature_c, 1);
+  add("shaft_temperature_c", conditions.shaft_temperature_c, 1);
   return json;
 }
 

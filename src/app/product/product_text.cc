@@ -196,7 +196,7 @@ class Counted {
   void Print(ListLimit* limit) const {
     for (const Entry& entry : entries_) {
       if (limit->Next()) {
-        constexpr std::size_t kMaxNames = 60;
+        constexpr std::size_t kMaxNames = 60;  // Columns, of 80 with what stands beside.
         std::string which = entry.which;
         if (which.size() > kMaxNames) {
           which = which.substr(0, which.rfind(' ', kMaxNames)) + " ...";
@@ -286,8 +286,8 @@ std::string DescribeConditions(const product::FitConditions& conditions) {
   add("hole Rz", conditions.hole_roughness, units::ToUm(1), " um");
   add("shaft Rz", conditions.shaft_roughness, units::ToUm(1), " um");
   add("friction", conditions.friction, 1, "");
-  add("hole at", conditions.hole_temperature, 1, " C");
-  add("shaft at", conditions.shaft_temperature, 1, " C");
+  add("hole at", conditions.hole_temperature_c, 1, " C");
+  add("shaft at", conditions.shaft_temperature_c, 1, " C");
   return text;
 }
 
@@ -389,7 +389,7 @@ void PrintFits(const Product& product, const Selection& selection, bool is_all) 
 
 /** " +0.1 -0.2", " +-0.1", or nothing. */
 std::string DescribeLimits(const product::Dimension& dimension, double scale) {
-  constexpr double kEqual = 1e-12;
+  constexpr double kEqual = 1e-12;  // [m]: below any digit that is shown.
   const auto& [upper, lower] = std::pair(dimension.upper, dimension.lower);
   if (upper && lower && std::abs(*upper + *lower) < kEqual) {
     return fmt::format(" +-{:.6g}", scale * *upper);

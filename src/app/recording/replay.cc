@@ -26,6 +26,7 @@ using session::ReplayedPart;
 using session::ReplayReport;
 using simulation::Model;
 
+// The exit status: the record says otherwise.
 constexpr int kDifferent = 2;
 
 /** What a replay has found out. */

@@ -29,6 +29,7 @@ using pages::PlotSeries;
 using pages::PlotStyle;
 using units::ToMm;
 
+// Pixels of pictures, and rows that a table of incidents has: choices for a page that is read.
 constexpr int kPictureWidth = 900;
 constexpr int kPictureHeight = 560;
 constexpr int kWaysHeight = 480;

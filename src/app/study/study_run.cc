@@ -40,8 +40,8 @@ constexpr const char* kSimulated =
 
 struct RunOptions {
   std::string protocol;
-  int participants{0};  ///< 0: as many as the protocol plans.
-  std::uint64_t seed{1};
+  int participants{0};    ///< 0: as many as the protocol plans.
+  std::uint64_t seed{1};  ///< Any number: orders and simulated people follow from it.
   std::filesystem::path folder;
   study::KeptRecords records{study::KeptRecords::kLast};
   unsigned threads{0};

@@ -54,7 +54,7 @@ using product::Product;
 using product::Subassembly;
 using product::SubassemblyId;
 
-constexpr double kScaleTolerance = 1e-6;
+constexpr double kScaleTolerance = 1e-6;  // Relative; scales that differ by less are equal.
 
 using FaceEntities = NCollection_DataMap<TopoDS_Shape, std::uint64_t, TopTools_ShapeMapHasher>;
 

@@ -25,6 +25,7 @@ using spatial::Surface;
 using spatial::SurfaceKind;
 using units::FromMm;
 
+// Samples each way on a surface that may be a simpler one drawn freely: a choice, not measured.
 constexpr int kGrid = 9;
 
 Vec3 ToPoint(const gp_Pnt& p) {

@@ -30,7 +30,7 @@ namespace {
 using spatial::Pose;
 using spatial::SurfaceKind;
 
-constexpr double kTolerance = 1e-6;          // [m]
+constexpr double kTolerance = 1e-6;          // [m]: no face of a real part is as small. A choice.
 constexpr double kRelativeTolerance = 1e-6;  // Of the size.
 
 /** What equal shapes have in common and is had for nothing. */

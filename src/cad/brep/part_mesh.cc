@@ -28,9 +28,9 @@ namespace hvas::cad {
 namespace {
 
 constexpr double kDisplayDeflection = 1e-3;  // Of the diagonal.
-constexpr double kDisplayAngle = 0.35;       // [rad]
+constexpr double kDisplayAngle = 0.35;       // [rad], 20 degrees: round to the eye. A choice.
 constexpr double kCoarser = 4;               // From one try to the next.
-constexpr int kRetries = 3;
+constexpr int kRetries = 3;                  // 4^3: 64 times coarser, then it is refused.
 
 // Largest deflection inside faces over that of edges. Contact does not take distances from the mesh
 // of an analytic face, so that angles limit it alone.

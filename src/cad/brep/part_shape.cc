@@ -32,9 +32,10 @@ using product::Face;
 using product::Part;
 using spatial::SurfaceKind;
 
-constexpr double kRecognitionTolerance = 1e-6;          // [m]
+constexpr double kRecognitionTolerance = 1e-6;          // [m]: below what is felt. A choice.
 constexpr double kRelativeRecognitionTolerance = 1e-6;  // Of the part's diagonal, for huge parts.
 
+// [m^2] in a square millimetre.
 constexpr double kSquareMetres = units::kMetresPerMillimetre * units::kMetresPerMillimetre;
 constexpr double kLeastGap = 100;  // Hole in a mesh, in deflections squared.
 
@@ -51,7 +52,7 @@ struct Body {
 
 void AddSolid(TopoDS_Shape solid, bool is_threaded, Body* body) {
   SolidMeasure measure = MeasureSolid(solid, body->centre, is_threaded);
-  if (measure.volume < 0) {
+  if (measure.volume_mm3 < 0) {
     solid.Reverse();
     measure.Negate();
     ++body->reversed_count;
@@ -84,7 +85,7 @@ Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre, bool is_thread
   if (body.solid_count == 0) {
     builder.Add(body.shape, shape);
     for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-      body.measure.face_areas.push_back(MeasureArea(it.Current()));
+      body.measure.face_areas_mm2.push_back(MeasureArea(it.Current()));
     }
   }
   return body;
@@ -124,7 +125,7 @@ int AddContactMesh(const Body& body, const MeshLevel& level, Part* part) {
   for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
     const TopoDS_Face& source = TopoDS::Face(it.Current());
     Face& face = part->faces[index];
-    face.area = kSquareMetres * body.measure.face_areas[index];
+    face.area = kSquareMetres * body.measure.face_areas_mm2[index];
     face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
     const std::size_t first_vertex = part->mesh.vertices.size();
     const bool is_whole = IsMeshed(source);
@@ -182,22 +183,24 @@ void SetSurface(const TopoDS_Face& source, FaceSurface found, double deflection,
 }
 
 void SetMass(const Body& body, Part* part) {
-  constexpr double kMetres = units::kMetresPerMillimetre;
+  constexpr double kMetres = units::kMetresPerMillimetre;  // [m] in a millimetre.
   const SolidMeasure& measure = body.measure;
   part->solid_count = body.solid_count;
-  const double faces = std::accumulate(measure.face_areas.begin(), measure.face_areas.end(), 0.0);
+  const double faces =
+      std::accumulate(measure.face_areas_mm2.begin(), measure.face_areas_mm2.end(), 0.0);
   // A solid of no thickness has what rounding leaves of its volume.
-  if (body.solid_count == 0 || !(measure.volume > 1e-9 * std::pow(faces, 1.5))) {
+  if (body.solid_count == 0 || !(measure.volume_mm3 > 1e-9 * std::pow(faces, 1.5))) {
     return;
   }
   const double density = part->material.density;
-  part->mass.volume = units::FromMm3(measure.volume);
+  part->mass.volume = units::FromMm3(measure.volume_mm3);
   part->mass.mass = density * part->mass.volume;
-  const Vec3 r = measure.first / measure.volume;
+  const Vec3 r = measure.first_mm4 / measure.volume_mm3;
   const Vec3 centre(body.centre.X(), body.centre.Y(), body.centre.Z());
   part->mass.p_BoBcm_B = kMetres * (centre + r);
-  const Mat3 shift = measure.volume * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-  part->mass.I_BBcm_B = density * units::FromMm3(1) * kMetres * kMetres * (measure.inertia - shift);
+  const Mat3 shift = measure.volume_mm3 * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  part->mass.I_BBcm_B =
+      density * units::FromMm3(1) * kMetres * kMetres * (measure.inertia_mm5 - shift);
 }
 
 double CalcMeshVolume(const product::Mesh& mesh, const Vec3& about) {

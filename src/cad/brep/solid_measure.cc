@@ -55,9 +55,9 @@ void AddIntegrals(const GProp_GProps& source, const gp_Pnt& about, const Vec3& f
       inertia(row, column) += central(row + 1, column + 1);
     }
   }
-  sum->volume += factors[0] * mass;
-  sum->first += factors[1] * mass * r;
-  sum->inertia += factors[2] * inertia;
+  sum->volume_mm3 += factors[0] * mass;
+  sum->first_mm4 += factors[1] * mass * r;
+  sum->inertia_mm5 += factors[2] * inertia;
 }
 
 /** The cones from a point to the parts of a curved face. Not by BRepGProp::VolumeProperties, whose
@@ -113,16 +113,17 @@ double AddFace(const TopoDS_Face& face, const gp_Pnt& about, SolidMeasure* sum) 
 }  // namespace
 
 void SolidMeasure::Add(const SolidMeasure& other) {
-  volume += other.volume;
-  first += other.first;
-  inertia += other.inertia;
-  face_areas.insert(face_areas.end(), other.face_areas.begin(), other.face_areas.end());
+  volume_mm3 += other.volume_mm3;
+  first_mm4 += other.first_mm4;
+  inertia_mm5 += other.inertia_mm5;
+  face_areas_mm2.insert(face_areas_mm2.end(), other.face_areas_mm2.begin(),
+                        other.face_areas_mm2.end());
 }
 
 void SolidMeasure::Negate() {
-  volume = -volume;
-  first = -first;
-  inertia = -inertia;
+  volume_mm3 = -volume_mm3;
+  first_mm4 = -first_mm4;
+  inertia_mm5 = -inertia_mm5;
 }
 
 SolidMeasure MeasureSolid(const TopoDS_Shape& solid, const gp_Pnt& about, bool is_threaded) {
@@ -134,7 +135,7 @@ SolidMeasure MeasureSolid(const TopoDS_Shape& solid, const gp_Pnt& about, bool i
   const auto measure_face = [&](int i) {
     const auto index = static_cast<std::size_t>(i);
     const double area = AddFace(faces[index], about, &cones[index]);
-    cones[index].face_areas.push_back(area);
+    cones[index].face_areas_mm2.push_back(area);
   };
   OSD_Parallel::For(0, static_cast<int>(faces.size()), measure_face,
                     /*isForceSingleThreadExecution=*/!is_threaded);

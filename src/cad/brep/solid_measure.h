@@ -11,10 +11,10 @@ namespace hvas::cad {
 
 /** What a boundary encloses, and its faces. In millimetres, like the shapes. */
 struct SolidMeasure {
-  double volume{0};                ///< Negative where the boundary is inside out [mm^3].
-  Vec3 first{Vec3::Zero()};        ///< Integral of the position from the point [mm^4].
-  Mat3 inertia{Mat3::Zero()};      ///< About the point, at density 1 [mm^5].
-  std::vector<double> face_areas;  ///< Areas in the order of TopExp_Explorer [mm^2].
+  double volume_mm3{0};                ///< Negative where the boundary is inside out [mm^3].
+  Vec3 first_mm4{Vec3::Zero()};        ///< Integral of the position from the point [mm^4].
+  Mat3 inertia_mm5{Mat3::Zero()};      ///< About the point, at density 1 [mm^5].
+  std::vector<double> face_areas_mm2;  ///< Areas in the order of TopExp_Explorer [mm^2].
 
   void Add(const SolidMeasure& other);
   void Negate();

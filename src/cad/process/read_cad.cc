@@ -130,7 +130,7 @@ Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions&
 /** The one place where formats are told apart: by content, whatever the file is called. */
 Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOptions& options,
                               const ReadWatch& watch, Diagnostics* diagnostics) {
-  constexpr std::size_t kHead = 4096;
+  constexpr std::size_t kHead = 4096;  // [bytes] in which a format's mark is looked for.
   const std::string head = ReadFileHead(file, kHead).value_or(std::string());
   if (head.find("ISO-10303-21") != std::string::npos) {
     return ReadStep(file, options, watch, diagnostics);

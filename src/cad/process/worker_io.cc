@@ -12,7 +12,7 @@
 namespace hvas::cad {
 namespace {
 
-constexpr std::int64_t kOftenestNs = 50'000'000;
+constexpr std::int64_t kOftenestNs = 50'000'000;  // 20 times a second.
 
 void WriteLine(std::string line) {
   std::replace(line.begin(), line.end(), '\n', ' ');

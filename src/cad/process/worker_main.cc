@@ -66,7 +66,7 @@ void LimitMemory(std::uint64_t bytes) {
  OpenCASCADE writes what it keeps in tables by address in the order of these. */
 void FixAddresses(char** argv) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // They know where they are.
-  constexpr unsigned long kAsk = 0xffffffff;
+  constexpr unsigned long kAsk = 0xffffffff;  // personality(2): tells, and changes nothing.
   const int before = ::personality(kAsk);
   if (before >= 0 && (before & ADDR_NO_RANDOMIZE) == 0 &&
       ::personality(static_cast<unsigned long>(before) | ADDR_NO_RANDOMIZE) >= 0) {

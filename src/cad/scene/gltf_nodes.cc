@@ -15,8 +15,8 @@ using Json = nlohmann::json;
 
 /** The document: of a GLB file its first chunk, behind two heads of 12 and 8 bytes. */
 std::string_view FindDocument(std::span<const std::byte> bytes) {
-  constexpr std::size_t kHeads = 20;
-  constexpr std::size_t kLengthAt = 12;
+  constexpr std::size_t kHeads = 20;     // 12 of the file and 8 of the chunk.
+  constexpr std::size_t kLengthAt = 12;  // The chunk's length lies here, little endian.
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!text.starts_with("glTF")) {
     return text;

@@ -18,8 +18,8 @@ std::string LowerExtension(const std::filesystem::path& file) {
 
 /** Whether the size is that which the count of triangles in the head asks for. */
 bool IsBinaryStl(const std::filesystem::path& file, std::string_view head) {
-  constexpr std::size_t kHeader = 80;
-  constexpr std::size_t kTriangle = 50;
+  constexpr std::size_t kHeader = 80;    // [bytes], any text; then the count in 4.
+  constexpr std::size_t kTriangle = 50;  // [bytes]: twelve floats and two of attributes.
   if (head.size() < kHeader + 4) {
     return false;
   }

@@ -34,6 +34,7 @@ using product::SubassemblyId;
 
 using Meshes = std::vector<std::uint32_t>;
 
+// Deeper trees could overflow the stack, by which nodes are visited: a choice, not measured.
 constexpr int kDeepestNode = 500;
 // A triangle is in a product twice, to touch and to look at, with vertices that it shares with
 // others.

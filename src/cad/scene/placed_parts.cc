@@ -70,7 +70,7 @@ Unexpected FailTooManyParts(std::size_t most, const std::string& name) {
 
 Unexpected FailTooManyBytes(const std::string& what, double bytes, std::uint64_t most,
                             const std::string& name) {
-  constexpr double kMebibyte = 1 << 20;
+  constexpr double kMebibyte = 1 << 20;  // Bytes.
   return Fail(ErrorCode::kUnsupported,
               fmt::format("{} {:.4g} MiB; the limit is {:.4g} MiB", what, bytes / kMebibyte,
                           static_cast<double>(most) / kMebibyte),

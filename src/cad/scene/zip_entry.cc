@@ -57,7 +57,7 @@ std::optional<std::string> Inflate(std::string_view data, std::size_t limit) {
   std::string out;
   int status = Z_OK;
   while (status == Z_OK && out.size() <= limit) {
-    constexpr std::size_t kStep = 1 << 18;
+    constexpr std::size_t kStep = 1 << 18;  // [bytes] by which the output grows: a choice.
     const std::size_t before = out.size();
     out.resize(before + kStep);
     stream.next_out = reinterpret_cast<Bytef*>(out.data() + before);

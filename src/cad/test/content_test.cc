@@ -205,19 +205,19 @@ TEST(BuildProduct, MeshesPartsLighterForTheEye) {
 void ExpectMeasure(const TopoDS_Shape& solid, double volume) {
   const gp_Pnt about(3, -5, 8);
   const SolidMeasure measure = MeasureSolid(solid, about);
-  EXPECT_NEAR(measure.volume, volume, 1e-6 * volume);
+  EXPECT_NEAR(measure.volume_mm3, volume, 1e-6 * volume);
   // Against the adaptive integration of OpenCASCADE over the whole solid.
   GProp_GProps whole(about);
   BRepGProp::VolumeProperties(solid, whole, 1e-9);
   const gp_Pnt centre = whole.CentreOfMass();
   const Vec3 r = Vec3(centre.X(), centre.Y(), centre.Z()) - Vec3(3, -5, 8);
-  EXPECT_LT((measure.first / measure.volume - r).norm(), 1e-6 * r.norm());
-  const Mat3 shift = measure.volume * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  EXPECT_LT((measure.first_mm4 / measure.volume_mm3 - r).norm(), 1e-6 * r.norm());
+  const Mat3 shift = measure.volume_mm3 * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
   const gp_Mat inertia = whole.MatrixOfInertia();
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      EXPECT_NEAR(measure.inertia(i, j) - shift(i, j), inertia(i + 1, j + 1),
-                  1e-5 * measure.inertia.trace());
+      EXPECT_NEAR(measure.inertia_mm5(i, j) - shift(i, j), inertia(i + 1, j + 1),
+                  1e-5 * measure.inertia_mm5.trace());
     }
   }
 }

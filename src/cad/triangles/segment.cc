@@ -20,7 +20,7 @@ namespace {
 using spatial::Surface;
 using spatial::SurfaceKind;
 
-constexpr std::uint32_t kNone = kNoTriangle;
+constexpr std::uint32_t kNone = kNoTriangle;  // No segment.
 // Tolerances, in resolutions. The last is for meshes that make no sense at the others.
 constexpr std::array<double, 4> kLevels{1, 10, 100, 400};
 constexpr std::size_t kUsualLevels = 3;
@@ -225,7 +225,7 @@ void Segmenter::TakePlane(const Facets& facets, std::uint32_t facet, double tole
 
 /** What is left and hangs together smoothly is a freeform face; two or three flats are flats. */
 void Segmenter::TakeRest(const Facets& facets, double tolerance) {
-  constexpr std::size_t kMostFlats = 3;
+  constexpr std::size_t kMostFlats = 3;  // More that go on smoothly are a freeform face.
   std::vector<bool> is_done(facets.size(), false);
   for (std::uint32_t seed = 0; seed < facets.size(); ++seed) {
     if (is_done[seed] || label_[facets.triangles[seed].front()] != kNone) {

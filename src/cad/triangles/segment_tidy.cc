@@ -16,6 +16,8 @@ namespace {
 using spatial::Surface;
 using spatial::SurfaceKind;
 
+// A triangle whose normal leans by more than 30 degrees against a surface is none of its, and
+// corners beyond so many are left out of a fit, evenly: choices, not measured one by one.
 const double kNormalCosine = std::cos(units::FromDeg(30));
 constexpr std::size_t kMaxRefitPoints = 4000;
 
@@ -236,10 +238,10 @@ bool Tidier::BendsLessThan(const Segment& segment, double angle) const {
  of a triangle or two, are no faces of their own when they go on smoothly nearly all around into
  others of this sort. */
 std::vector<bool> Tidier::FindScraps() const {
-  constexpr double kMostBend = 0.5;       // [rad]
+  constexpr double kMostBend = 0.5;       // [rad]: a choice, not measured.
   constexpr double kMostLooseBend = 1.0;  // The same, where the fit is loose [rad].
-  constexpr double kLeastShare = 0.7;
-  constexpr std::size_t kFewCorners = 4;
+  constexpr double kLeastShare = 0.7;     // Share of a rim that goes on smoothly (segmentation.md).
+  constexpr std::size_t kFewCorners = 4;  // Corners of a quadrilateral: a scrap's.
   std::vector<bool> is_scrap(segments_.size(), false);
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     const Segment& segment = segments_[s];
@@ -251,7 +253,7 @@ std::vector<bool> Tidier::FindScraps() const {
                   (IsCurved(segment) ? BendsLessThan(segment, is_loose ? kMostLooseBend : kMostBend)
                                      : segment.corners.size() <= kFewCorners);
   }
-  constexpr int kMaxRounds = 20;
+  constexpr int kMaxRounds = 20;  // Each joins neighbours: a bound, a choice.
   bool is_changed = true;
   for (int round = 0; round < kMaxRounds && is_changed; ++round) {
     is_changed = false;

@@ -8,7 +8,7 @@
 namespace hvas::cad {
 namespace {
 
-constexpr double kStep = 1e-8;      // [m]
+constexpr double kStep = 1e-8;      // [m]: files write as many digits. A choice.
 constexpr double kUnitStep = 1e-8;  // Of directions and angles.
 
 /** Two independent 64-bit lanes, each the finaliser of SplitMix64 over the words. */

@@ -109,6 +109,8 @@ double CalcResidual(std::span<const Vec3> points, const Surface& surface) {
 }
 
 double RefineSurface(std::span<const Vec3> points, double scale, Surface* surface) {
+  // Steps of Levenberg and Marquardt at most, and a shift relative to the scale that is nothing but
+  // rounding: choices.
   constexpr int kMaxSteps = 30;
   constexpr double kConverged = 1e-13;
   constexpr double kNoFit = std::numeric_limits<double>::infinity();

@@ -138,6 +138,7 @@ void SurfaceGrower::CollectRing(std::uint32_t seed) {
 /** The seed and its neighbours along its longest edges: three strips of a cylinder or cone, without
  what lies at their ends. */
 void SurfaceGrower::CollectStrips(std::uint32_t seed) {
+  // Share of the longest link: the two long sides of a strip. A choice.
   constexpr double kLong = 0.6;
   double longest = 0;
   for (const FacetLink& link : facets_.links_of(seed)) {
@@ -224,7 +225,7 @@ void SurfaceGrower::Spread(const Surface& surface, double tolerance, std::size_t
 /** Takes off facets whose middle stands off the surface much more than that of most: a flat on a
  ball has all of its corners on the ball. */
 void SurfaceGrower::DropCaps(const Surface& surface, std::vector<std::uint32_t>* members) const {
-  constexpr double kFar = 5;
+  constexpr double kFar = 5;  // Multiple of the middle height (segmentation.md).
   std::vector<double> heights;
   heights.reserve(members->size());
   for (const std::uint32_t f : *members) {
@@ -346,7 +347,7 @@ std::optional<Surface> SurfaceGrower::FitSeeds(SurfaceKind kind,
 
 /** Takes in the facets around that fit, and fits the surface to them, until there are no more. */
 void SurfaceGrower::Extend(Surface* surface, std::vector<std::uint32_t>* members) {
-  constexpr int kMaxRounds = 24;
+  constexpr int kMaxRounds = 24;  // Rounds of growth and a new fit: a bound, a choice.
   for (int round = 0; round < kMaxRounds; ++round) {
     const std::size_t before = members->size();
     Spread(*surface, 3 * tolerance_, 3 * before, members);

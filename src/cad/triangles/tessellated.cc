@@ -32,6 +32,7 @@ using product::SubassemblyId;
 using spatial::Pose;
 using Id = std::uint64_t;
 
+// What is nested deeper runs in a circle: a choice.
 constexpr int kDeepest = 100;
 
 /** What of an entity's type is looked for: the record of that name, or nothing. */
@@ -206,7 +207,7 @@ std::optional<Color> TessellationReader::ColorOf(Id item) const {
   if (style == styles_.end()) {
     return std::nullopt;
   }
-  constexpr std::size_t kMostSteps = 64;
+  constexpr std::size_t kMostSteps = 64;  // Entities on the way to a colour: a choice.
   std::vector<Id> queue{style->second};
   for (std::size_t i = 0; i < queue.size() && i < kMostSteps; ++i) {
     for (const StepRecord& record : text_.Find(queue[i])) {
@@ -302,7 +303,7 @@ void TessellationReader::AddFace(Id face, const StepRecord& record, const ShapeU
 /** A face, or what holds faces. */
 void TessellationReader::AddItem(Id item, const ShapeUnits& units, std::optional<Color> color,
                                  int depth, TriangleSoup* soup) {
-  constexpr int kDeepestItem = 4;
+  constexpr int kDeepestItem = 4;  // Levels of sets in sets: a choice.
   if (depth > kDeepestItem) {
     return;
   }

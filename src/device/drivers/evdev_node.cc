@@ -19,6 +19,7 @@
 namespace hvas::device {
 namespace {
 
+// The bytes of the longest answer, and the time that an emulator has for one: choices.
 constexpr std::size_t kMaxData = 256;
 constexpr int kAnswerTimeout_ms = 2000;
 

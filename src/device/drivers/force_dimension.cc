@@ -89,10 +89,12 @@ using namespace force_dimension;  // NOLINT(google-build-using-namespace): this 
 constexpr const char* kName = "forcedimension";
 constexpr const char* kTitle = "Force Dimension (DHD/DRD)";
 constexpr const char* kWeakest = "falcon";
-constexpr std::uint16_t kUsbVendor = 0x1451;
+constexpr std::uint16_t kUsbVendor = 0x1451;  // The list of USB vendors has it.
 constexpr const char* kRemedy =
     "install the SDK of Force Dimension, and set FORCEDIM_SDK to its folder when that is not below "
     "/usr/local";
+// A device that hears nothing for this time lets go; forces are switched on again at most this
+// often. Choices, not measured.
 constexpr std::int64_t kWatchdogNs = 20'000'000;
 constexpr std::int64_t kEnableEveryNs = 100'000'000;
 constexpr char kMaxDevices = 16;

@@ -24,6 +24,8 @@ namespace hvas::device {
 namespace {
 
 constexpr const char* kName = "gamepad";
+// Axes and keys as linux/input-event-codes.h numbers them. Rumble is sent at most 20 times a
+// second: a choice, not measured.
 constexpr std::size_t kAxisCount = ABS_HAT0Y + 1;
 constexpr std::size_t kKeyBits = KEY_CNT;
 constexpr std::int64_t kRumblePeriodNs = 50'000'000;
@@ -220,7 +222,7 @@ class Rumble {
   }
 
  private:
-  static constexpr double kLeast = 0.02;
+  static constexpr double kLeast = 0.02;  // Share of full rumble, below which it is off: a choice.
 
   bool is_there_{false};
   bool has_gain_{false};
@@ -352,7 +354,7 @@ class Gamepad final : public Device, public Reopenable {
 
   /** Takes all that came; false when the device is gone. */
   bool ReceiveEvents() noexcept {
-    constexpr int kMaxReads = 16;
+    constexpr int kMaxReads = 16;  // 64 events each; more wait for the next tick.
     std::array<input_event, 64> events;
     for (int i = 0; i < kMaxReads; ++i) {
       std::size_t count = 0;

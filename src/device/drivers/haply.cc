@@ -22,16 +22,18 @@ namespace hvas::device {
 namespace {
 
 constexpr const char* kName = "haply";
+// The service listens at one of these ports. The times that it is given, and the tries, are
+// choices.
 constexpr std::array<std::uint16_t, 2> kPorts{10001, 10000};
 constexpr int kConnectTimeout_ms = 1000;
 constexpr std::int64_t kSnapshotNs = 500'000'000;
 constexpr int kSnapshotTries = 3;
 constexpr std::int64_t kPeriodNs =
     500'000;  // between messages at least: the service's loop is ours
-constexpr std::int64_t kReplyNs = 2'000'000;
+constexpr std::int64_t kReplyNs = 2'000'000;  // The wait for the answer to a request: a choice.
 constexpr std::int64_t kSilentNs = 1'000'000'000;  // then the connection is made anew
-constexpr std::int64_t kRetryNs = 250'000'000;
-constexpr std::int64_t kAskAgainNs = 50'000'000;  // while no device is listed
+constexpr std::int64_t kRetryNs = 250'000'000;     // Time between tries to connect: a choice.
+constexpr std::int64_t kAskAgainNs = 50'000'000;   // while no device is listed
 
 struct HaplyAddress {
   std::string host{"localhost"};
@@ -188,9 +190,9 @@ class Conversation {
   /** A service that tells no version, and shows no force though it has power and is given one,
    reads the other dialect. Tried once on a connection. */
   void JudgeDialect() {
-    constexpr double kClear = 0.2;     // [N]
-    constexpr double kNothing = 0.01;  // [N]
-    constexpr int kReplies = 25;
+    constexpr double kClear = 0.2;     // [N], told to the device and clear to see: a choice.
+    constexpr double kNothing = 0.01;  // [N], shown by the device, that is none: a choice.
+    constexpr int kReplies = 25;       // Replies without a force until it is changed: a choice.
     tells_force_ = tells_force_ || newest_.force.has_value();
     const double shown = newest_.force.value_or(Vec3::Zero()).norm();
     const bool is_unshown =

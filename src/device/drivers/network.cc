@@ -20,15 +20,16 @@ using network::Refusal;
 
 constexpr const char* kName = "network";
 constexpr const char* kDefaultHost = "127.0.0.1";
-constexpr std::uint16_t kDefaultPort = 47811;
+constexpr std::uint16_t kDefaultPort = 47811;  // A choice, free for users by --device.
 constexpr const char* kDefaultKey = "etc/hvas/network.key";
 constexpr const char* kMakeKey =
     "make one with (umask 077; head -c 32 /dev/urandom > FILE), and give the device's program the "
     "same file";
-constexpr std::size_t kMaxKey = 4096;
+constexpr std::size_t kMaxKey = 4096;  // [bytes]: a file with more is no key.
+// A choice: thirty times the period of a client that sends 20 hellos a second.
 constexpr int kHelloTimeout_ms = 1500;
 constexpr std::int64_t kLostNs = 500'000'000;  // of silence
-constexpr int kMaxPacketsPerRead = 64;
+constexpr int kMaxPacketsPerRead = 64;  // A bound, so that nobody can keep a tick busy: a choice.
 
 /** 64 random bits that are not 0, from the system. */
 std::uint64_t DrawSession() noexcept {

@@ -18,7 +18,7 @@ namespace hvas::device::network {
 namespace {
 
 constexpr std::size_t kBlock = 64;  // of SHA-256 [bytes]
-constexpr std::size_t kHash = 32;
+constexpr std::size_t kHash = 32;   // [bytes] of SHA-256.
 
 // The figures of a profile in the order of Hello::limits; the workspace's edges follow.
 constexpr std::array kLimits{
@@ -35,7 +35,7 @@ constexpr std::array kLimits{
     &DeviceProfile::rate_hz,
     &DeviceProfile::delay,
 };
-constexpr std::size_t kEdges = kLimits.size();
+constexpr std::size_t kEdges = kLimits.size();  // The workspace's edges follow the limits.
 static_assert(kEdges + 3 == std::tuple_size_v<decltype(Hello::limits)>);
 
 // Each packet's members in the order of the wire, for a reader and a writer.

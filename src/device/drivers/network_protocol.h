@@ -14,6 +14,7 @@
 namespace hvas::device::network {
 
 inline constexpr std::uint32_t kMagic = 0x504E5648;  // "HVNP" as it lies there
+// Sizes in bytes, of version 1 of the protocol: half of an HMAC is the tag, as RFC 2104 allows.
 inline constexpr std::uint8_t kVersion = 1;
 inline constexpr std::size_t kHeaderSize = 32;
 inline constexpr std::size_t kTagSize = 16;
@@ -160,7 +161,7 @@ class SequenceWindow {
   [[nodiscard]] std::uint64_t missing() const noexcept { return newest_ - seen_count_; }
 
  private:
-  static constexpr std::uint64_t kWidth = 64;
+  static constexpr std::uint64_t kWidth = 64;  ///< Bits of `seen_`.
   std::uint64_t newest_{0};
   std::uint64_t seen_{0};  // bit k: newest_ - k was here
   std::uint64_t seen_count_{0};

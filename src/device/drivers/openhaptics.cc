@@ -69,11 +69,13 @@ using namespace openhaptics;  // NOLINT(google-build-using-namespace): this file
 constexpr const char* kName = "openhaptics";
 constexpr const char* kTitle = "OpenHaptics (3D Systems)";
 constexpr const char* kWeakest = "touch";
-constexpr std::uint16_t kUsbVendor = 0x2988;
+constexpr std::uint16_t kUsbVendor = 0x2988;  // The list of USB vendors has it.
 constexpr const char* kRemedy =
     "install the Touch Device Driver and OpenHaptics Developer Edition of 3D Systems, and set "
     "GTDD_HOME to their folder when that is not below /usr or /opt";
+// Errors taken off the vendor's stack at once: a choice.
 constexpr int kMaxErrors = 32;
+// Time between looks whether the device needs calibration: a choice.
 constexpr std::int64_t kCalibrateEveryNs = 500'000'000;
 // Beyond this the vendor's last update is old; together with an unchanged pose it is no sample.
 constexpr double kOldUpdate_ms = 2.5;
@@ -350,7 +352,7 @@ void HdDevice::LetGo() {
   hd.hdUnschedule(schedule_);
   samples_.Update();  // What it said last is of no use to whoever opens it again.
   InScheduler(library_, [&] {
-    constexpr std::array<double, 3> kNone{};
+    constexpr std::array<double, 3> kNone{};  // No force.
     hd.hdBeginFrame(device_);
     hd.hdSetDoublev(kForce, kNone.data());
     hd.hdEndFrame(device_);

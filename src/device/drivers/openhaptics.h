@@ -79,6 +79,7 @@ struct Functions {
 // NOLINTEND(readability-identifier-naming,bugprone-macro-parentheses)
 
 inline constexpr HHD kNoDevice = 0xFFFFFFFF;
+// The vendor's hd.h has these numbers.
 inline constexpr std::uint32_t kDone = 0;
 inline constexpr std::uint32_t kContinue = 1;
 inline constexpr unsigned short kHighestPriority = 65535;

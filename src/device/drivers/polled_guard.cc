@@ -9,6 +9,7 @@
 namespace hvas::device {
 namespace {
 
+// Error of a quaternion's length, far above single precision's: a choice.
 constexpr double kUnitSlack = 0.01;
 
 }  // namespace

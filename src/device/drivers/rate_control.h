@@ -15,6 +15,7 @@ struct Deflection {
  u grows from 0 at the dead zone's edge to 1. The direction stays. RT-safe. */
 class RateControl {
  public:
+  /** Share of a stick's way in which it is at rest: a choice. */
   static constexpr double kDeadZone = 0.08;
   static constexpr double kMaxSpeed = 0.25;    ///< [m/s]
   static constexpr double kMaxTurnRate = 1.5;  ///< [rad/s]

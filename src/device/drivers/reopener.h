@@ -28,6 +28,7 @@ class Reopenable {
  virtual time, which only the haptic thread knows, on that one. */
 class Reopener {
  public:
+  /** Time from one try to the next: a choice. */
   static constexpr std::int64_t kPeriodNs = 250'000'000;
 
   Reopener(Reopenable* device, const Clock& clock);

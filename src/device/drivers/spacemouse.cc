@@ -22,6 +22,7 @@ namespace hvas::device {
 namespace {
 
 constexpr const char* kName = "spacemouse";
+// Time from one try to connect to the next: a choice.
 constexpr std::int64_t kRetryNs = 250'000'000;
 /** A cap that is held still for so long without a word is taken to be let go of: the hand trembles.
  */
@@ -83,7 +84,7 @@ class SpaceMouse final : public Device {
   }
 
   void ReceiveFrames(std::int64_t now_ns) noexcept {
-    constexpr int kMaxFrames = 64;
+    constexpr int kMaxFrames = 64;  // A bound, so that nobody can keep a tick busy: a choice.
     for (int i = 0; i < kMaxFrames && socket_.is_open(); ++i) {
       std::size_t count = 0;
       const auto rest = std::span(frame_).subspan(filled_);

@@ -13,6 +13,7 @@ namespace hvas::device::spacenav {
 
 using Frame = std::array<std::int32_t, 8>;
 
+// Kinds of messages of spacenavd.
 inline constexpr std::int32_t kMotion = 0;
 inline constexpr std::int32_t kPress = 1;
 inline constexpr std::int32_t kRelease = 2;

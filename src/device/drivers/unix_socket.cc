@@ -13,7 +13,7 @@
 namespace hvas::device {
 namespace {
 
-constexpr int kBacklog = 8;
+constexpr int kBacklog = 8;  // Connections that wait: more than any test has.
 
 /** False where the path is too long for a socket. */
 bool MakeAddress(const char* path, sockaddr_un* address) noexcept {

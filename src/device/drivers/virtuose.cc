@@ -86,11 +86,12 @@ constexpr const char* kDefaultAddress = "127.0.0.1#5000";
 constexpr const char* kRemedy =
     "install VirtuoseAPI 4 of Haption, and set VIRTUOSE_API to the folder of virtuoseAPI.so when "
     "that is not below /usr or /opt";
-constexpr float kTimeStep = 1e-3F;
-constexpr float kTimeout = 0.1F;
+constexpr float kTimeStep = 1e-3F;  // [s]: a kilohertz, as the tick.
+constexpr float kTimeout = 0.1F;    // [s] until it stops without a command: a choice.
 constexpr std::int64_t kRelaysNs = 3'000'000'000;  // Until its relays have closed.
+// Time from one look for its power to the next: a choice.
 constexpr std::int64_t kPowerEveryNs = 250'000'000;
-constexpr int kButtons = 3;
+constexpr int kButtons = 3;  // Its handle has three.
 
 using Library = VendorLibrary<Functions>;
 

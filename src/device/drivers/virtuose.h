@@ -83,6 +83,7 @@ void BindAll(SymbolBinder* binder, Functions* functions);
 
 // NOLINTEND(readability-identifier-naming,bugprone-macro-parentheses)
 
+// The vendor's virtuoseAPI.h has these numbers.
 inline constexpr int kIndexingNone = 2;
 inline constexpr int kCommandImpedance = 3;
 

@@ -23,7 +23,7 @@ namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 using Tcp = asio::ip::tcp;
 
-constexpr std::size_t kMaxMessage = 1 << 20;  // [bytes]
+constexpr std::size_t kMaxMessage = 1 << 20;  // [bytes], far above any message: a choice.
 
 /** A connection whose handshake has been made: reads all the time, writes one message at a time.
  Lives as long as an operation of it is under way. */

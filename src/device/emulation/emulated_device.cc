@@ -7,8 +7,8 @@
 namespace hvas::device {
 namespace {
 
-constexpr std::int64_t kSubstepNs = 100'000;
-constexpr double kJump = 0.08;  // [m]
+constexpr std::int64_t kSubstepNs = 100'000;  // Step of the mechanics, ten a tick: a choice.
+constexpr double kJump = 0.08;                // [m] that a faulty encoder jumps: a choice.
 const Vec3 kJumpDirection = Vec3(0.6, -0.64, 0.48);
 
 double Quantise(double value, double step) {

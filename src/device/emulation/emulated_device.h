@@ -128,7 +128,7 @@ class EmulatedDevice final : public EmulatedPort {
     spatial::Wrench F_H_D;
   };
 
-  static constexpr std::size_t kHistory = 8;
+  static constexpr std::size_t kHistory = 8;  ///< Poses that are kept, for the delay of a profile.
 
   mutable std::mutex mutex_;
   DeviceProfile profile_;

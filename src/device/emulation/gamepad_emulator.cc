@@ -24,6 +24,7 @@ namespace {
 
 constexpr const char* kGamepadName = "Emulated gamepad";
 constexpr const char* kSerial = "EMULATED-1";
+// Ranges as pads with 16 and 10 bits report them.
 constexpr std::int32_t kStickMax = 32767;
 constexpr std::int32_t kTriggerMax = 1023;
 constexpr std::int64_t kRumbleLength_ms = 200;  // as the driver asks for

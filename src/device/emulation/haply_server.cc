@@ -13,6 +13,7 @@ namespace {
 
 using nlohmann::json;
 
+// A force is let go after this time without a word, as in the drivers.
 constexpr std::int64_t kWatchdogNs = 20'000'000;
 constexpr const char* kDeviceId = "EMULATED";
 

@@ -18,7 +18,7 @@ namespace hvas::device {
 namespace {
 
 constexpr const char* kSecret = "an emulated secret";
-constexpr std::int64_t kHelloNs = 50'000'000;
+constexpr std::int64_t kHelloNs = 50'000'000;          // 20 hellos a second.
 constexpr std::int64_t kServerSilentNs = 250'000'000;  // then HVAS is gone
 constexpr std::int64_t kWrenchLifeNs = 20'000'000;     // the protocol's rule
 

@@ -16,6 +16,7 @@ namespace {
 
 using Register = void (*)(const char* name, const HvasEmulatedPlugin* plugin);
 
+// A force is let go after this time without a word, as in the drivers.
 constexpr std::int64_t kWatchdogNs = 20'000'000;
 
 void Put(const Vec3& v, double (*values)[3]) {

@@ -11,7 +11,7 @@ constexpr double kClose_s = 0.1;  // the way that is left is covered in about th
 double DeflectionFor(double share) {
   double low = RateControl::kDeadZone;
   double high = 1;
-  constexpr int kHalvings = 20;
+  constexpr int kHalvings = 20;  // 2^-20 of the stick's way.
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + high);
     (RateControl::Response(middle) < share ? low : high) = middle;

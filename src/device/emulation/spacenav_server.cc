@@ -19,7 +19,7 @@
 namespace hvas::device {
 namespace {
 
-constexpr int kButtons = 2;
+constexpr int kButtons = 2;  // A SpaceMouse has two.
 
 class SpacenavServer final : public WireServer {
  public:

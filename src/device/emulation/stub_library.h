@@ -33,7 +33,7 @@ struct StubEntry {
 
 using StubEntryFunction = const StubEntry*();
 
-constexpr int kMaxStubDevices = 16;
+constexpr int kMaxStubDevices = 16;  // Drivers look for so many.
 
 /** A device of a stub; a kind of stub adds what else its vendor's software remembers. */
 struct StubSlot {

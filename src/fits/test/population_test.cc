@@ -211,7 +211,7 @@ TEST(Population, CountsWhatExceedsThePressAndWhatYields) {
 /** Clearances of assemblies, room up to a multiple of kLanes filled as blocks have to. */
 std::vector<float> DrawPaddedClearances(int count) {
   Random random(4);
-  std::vector<float> clearance_um(static_cast<std::size_t>(count + kLanes), kFarApart);
+  std::vector<float> clearance_um(static_cast<std::size_t>(count + kLanes), kFarApart_um);
   for (int i = 0; i < count; ++i) {
     clearance_um[static_cast<std::size_t>(i)] = static_cast<float>(random.Uniform(-20, 20));
   }
@@ -318,7 +318,7 @@ TEST(Population, BothKernelsTakeTheSameSizes) {
     EXPECT_NEAR(static_cast<double>(a.clearance_um[k]), 0.5 * (clearance_um + 3), 1e-5);
     EXPECT_EQ(a.bins[k], static_cast<int>((clearance_um - 2.5 + 40.5) * 25 + 1));
   }
-  EXPECT_EQ(a.clearance_um[kCount], kFarApart);
+  EXPECT_EQ(a.clearance_um[kCount], kFarApart_um);
   EXPECT_EQ(a.block.interferences, interferences);
   EXPECT_EQ(b.block.yields, yields);
   EXPECT_GT(yields, 5);

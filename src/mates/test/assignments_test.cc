@@ -159,8 +159,8 @@ TEST_F(Assignments, ConditionsAreSetInSiByKeyNumberAndNames) {
   EXPECT_DOUBLE_EQ(*second.hole_roughness, 3.2e-6);
   EXPECT_DOUBLE_EQ(*second.shaft_roughness, 1.6e-6);
   EXPECT_FALSE(second.friction.has_value());
-  EXPECT_EQ(first.hole_temperature, 150);
-  EXPECT_EQ(first.shaft_temperature, -40);
+  EXPECT_EQ(first.hole_temperature_c, 150);
+  EXPECT_EQ(first.shaft_temperature_c, -40);
   EXPECT_EQ(first.friction, 0.2);  // Later entries go over earlier ones.
   EXPECT_EQ(product_.mates[0].fit->code, "H7/g6");
   EXPECT_TRUE(product_.mates[0].fit->is_proposed);

@@ -275,8 +275,8 @@ TEST(ProductIo, KeepsTreeAndMatesToTheLastBit) {
               n.fit->is_proposed == m.fit->is_proposed && n.fit->reason == m.fit->reason);
   EXPECT_TRUE(n.conditions.hole_diameter == 0.1 && n.conditions.shaft_diameter == 0.2 &&
               n.conditions.hole_roughness == 0.3 && n.conditions.shaft_roughness == 0.4 &&
-              n.conditions.friction == 0.5 && n.conditions.hole_temperature == 0.6 &&
-              n.conditions.shaft_temperature == 0.7);
+              n.conditions.friction == 0.5 && n.conditions.hole_temperature_c == 0.6 &&
+              n.conditions.shaft_temperature_c == 0.7);
   ASSERT_EQ(n.surfaces.size(), 1u);
   EXPECT_TRUE(n.surfaces[0].kind == SurfaceConstraintKind::kSameCone &&
               n.surfaces[0].a == FaceId(0) && n.surfaces[0].b == FaceId(1));

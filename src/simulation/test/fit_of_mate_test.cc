@@ -181,14 +181,14 @@ TEST(MakeFitForceTest, TemperatureExpandsEachSideByItsMaterial) {
   product.mates[0].conditions.hole_diameter = 40e-3;
   product.mates[0].conditions.shaft_diameter = 40e-3;
   EXPECT_EQ(Make(product, 1)->mean_clearance(), 0);
-  product.mates[0].conditions.hole_temperature = 120;
+  product.mates[0].conditions.hole_temperature_c = 120;
   EXPECT_NEAR(2 * Make(product, 1)->mean_clearance(), 40e-3 * 23e-6 * 100, 1e-12);
-  product.mates[0].conditions.shaft_temperature = -180;  // in liquid nitrogen
+  product.mates[0].conditions.shaft_temperature_c = -180;  // in liquid nitrogen
   EXPECT_NEAR(2 * Make(product, 1)->mean_clearance(), 40e-3 * (23e-6 * 100 + 12e-6 * 200), 1e-12);
   // A hole hot enough lets a pressed shaft slide in.
   product = Rig("H7/p6");
   EXPECT_GT(Make(product, 2)->max_resistance(), 1000);
-  product.mates[0].conditions.hole_temperature = 250;
+  product.mates[0].conditions.hole_temperature_c = 250;
   EXPECT_EQ(Make(product, 2)->max_resistance(), 0);
 }
 
