@@ -16,6 +16,7 @@ namespace {
 using simulation::GivenCommand;
 using simulation::PartState;
 using simulation::SequenceStep;
+using spatial::Pose;
 
 constexpr std::array kPlacements{"loose", "held", "placed", "parked"};
 constexpr std::array kStepKinds{"base", "insert", "park", "remove"};
