@@ -4,10 +4,14 @@ import type { Ray as ThreeRay } from "three";
 import type { Ray } from "../model/assist";
 import type { Studio } from "../model/studio";
 import { groupAround } from "../model/tree";
-import { select } from "../model/view_state";
-import type { FaceOf } from "../protocol/messages";
+import { select, type ViewState } from "../model/view_state";
+import type { FaceOf, Vec3 } from "../protocol/messages";
+import type { CameraRig } from "./camera_rig";
+import type { HandControl } from "./hand_control";
+import type { Eye } from "./mouse_hand";
 import type { PickHit } from "./parts";
-import type { Viewport } from "./viewport";
+import type { SceneView } from "./scene_view";
+import type { WorkshopHost } from "./workshop_host";
 
 /** A press that moves further than this is a drag [px]. */
 const kClickPx = 4;
@@ -30,6 +34,23 @@ function plain(ray: ThreeRay): Ray {
   return { from: ray.origin.toArray(), along: ray.direction.toArray() };
 }
 
+/** The picture that is pointed at. */
+export interface PointedView {
+  readonly canvas: HTMLCanvasElement;
+  readonly view: ViewState;
+  readonly rig: CameraRig;
+  readonly eye: Eye;
+  readonly product: SceneView;
+  readonly hand: HandControl;
+  readonly workshop: WorkshopHost;
+  /** Through a point of the canvas [px]. */
+  rayAt(x: number, y: number): ThreeRay;
+  /** Direction that the side of the cube at this point looks along; null beside it. */
+  pickCube(x: number, y: number): Vec3 | null;
+  /** Brings these parts into the picture, or all. */
+  fit(only?: readonly number[]): void;
+}
+
 export class PointerInput {
   onContextMenu: (x: number, y: number, hit: PickHit | null) => void = () => {};
   private gesture: Gesture = { kind: "none" };
@@ -38,7 +59,7 @@ export class PointerInput {
   private lastHover = 0;
 
   constructor(
-    private readonly viewport: Viewport,
+    private readonly viewport: PointedView,
     private readonly studio: Studio,
   ) {
     const canvas = viewport.canvas;
