@@ -16,7 +16,6 @@ namespace {
 using simulation::GivenCommand;
 using simulation::PartState;
 using simulation::SequenceStep;
-using spatial::Pose;
 
 constexpr std::array kPlacements{"loose", "held", "placed", "parked"};
 constexpr std::array kStepKinds{"base", "insert", "park", "remove"};
@@ -36,7 +35,7 @@ void ReadPart(JsonFields* fields, PartState* part) {
 }
 
 /** Whether two poses are the same to the last bit, the signs of zeros included. */
-bool HasSameBits(const Pose& a, const Pose& b) {
+bool HasSameBits(const spatial::Pose& a, const spatial::Pose& b) {
   const auto is_same = [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
   };

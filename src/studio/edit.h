@@ -21,8 +21,19 @@ struct Edit {
   ChangeFn change;
 };
 
-/** The edit that a command assign_fit, add_mate or remove_mate asks for. Errors (kInvalid): it is
- none of them, or lacks a field. */
+namespace protocol {
+struct AssignFitCommand;
+struct AddMateCommand;
+struct RemoveMateCommand;
+}  // namespace protocol
+
+/** The edit that a command asks for. */
+[[nodiscard]] Edit MakeEdit(const protocol::AssignFitCommand& command);
+[[nodiscard]] Edit MakeEdit(const protocol::AddMateCommand& command);
+[[nodiscard]] Edit MakeEdit(const protocol::RemoveMateCommand& command);
+
+/** The edit of one of these commands as JSON. Errors (kInvalid): it is none of them, or lacks a
+ field. */
 [[nodiscard]] Result<Edit> MakeEdit(const nlohmann::ordered_json& command);
 
 /** Many of them, one after the other. Errors: of the first that is no edit. */

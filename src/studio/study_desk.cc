@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "mates/user_mate.h"
-#include "studio/json_fields.h"
+#include "studio/commands.h"
 #include "study/simulated_participant.h"
 
 namespace hvas::studio {
@@ -34,21 +34,22 @@ Json OrNull(const std::string& text) {
 
 /** Who may do what: the participant, or the experimenter at the operator's link. */
 bool MayDo(Role role, const std::string& action) {
-  constexpr std::array kParticipants{"state", "consent", "ready", "answer", "pick"};
-  constexpr std::array kExperimenters{"state", "begin", "ready", "next", "note", "abort", "resume"};
-  const auto has = [&](const auto& actions) {
-    return std::any_of(actions.begin(), actions.end(),
-                       [&](const char* one) { return action == one; });
-  };
+  const auto& rules = protocol::kStudyRules;
+  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const protocol::StudyRule& one) {
+    return action == one.action;
+  });
+  if (rule == rules.end()) {
+    return false;
+  }
   switch (role) {
     case Role::kParticipant:
-      return has(kParticipants);
+      return rule->is_for_participant;
     case Role::kOperator:
-      return has(kExperimenters);
+      return rule->is_for_experimenter;
     case Role::kViewer:
       break;
   }
-  return action == "state";
+  return rule->is_for_viewer;
 }
 
 }  // namespace
@@ -143,17 +144,11 @@ Result<void> StudyDesk::Act(Role role, const std::string& action, const Json& co
     return Answer(command);
   }
   if (action == "note") {
-    const auto text = TextAt(command, "text");
-    if (!text || text->empty() || text->size() > kLongestNote) {
-      return Fail(ErrorCode::kInvalid, "this is no note", "text",
-                  fmt::format("write from 1 to {} bytes", kLongestNote));
-    }
-    event.kind = Kind::kNote;
-    event.text = *text;
-    return Tell(event);
+    return Note(command);
   }
   if (action == "abort") {
-    return Abort(TextAt(command, "reason").value_or("no reason given"));
+    const auto fields = protocol::ReadFields<protocol::AbortAction>(command);
+    return fields ? Abort(fields->reason) : Unexpected(fields.error());
   }
   if (action == "resume") {
     event.kind = Kind::kResumed;
@@ -164,14 +159,14 @@ Result<void> StudyDesk::Act(Role role, const std::string& action, const Json& co
 }
 
 Result<void> StudyDesk::Consent(const Json& command) {
-  const auto agrees = FlagAt(command, "agreed");
-  if (!agrees) {
-    return Unexpected(agrees.error());
+  const auto fields = protocol::ReadFields<protocol::ConsentAction>(command);
+  if (!fields) {
+    return Unexpected(fields.error());
   }
   StudyEvent event;
   event.kind = Kind::kConsent;
-  event.agrees = *agrees;
-  event.language = TextAt(command, "language").value_or(folder_.protocol().languages.front());
+  event.agrees = fields->agreed;
+  event.language = fields->language.value_or(folder_.protocol().languages.front());
   return Tell(event);
 }
 
@@ -209,23 +204,27 @@ Result<void> StudyDesk::Next() {
 }
 
 Result<void> StudyDesk::Answer(const Json& command) {
-  const auto question = TextAt(command, "question");
-  if (!question) {
-    return Unexpected(question.error());
+  const auto fields = protocol::ReadFields<protocol::AnswerAction>(command);
+  if (!fields) {
+    return Unexpected(fields.error());
   }
   StudyEvent event;
   event.kind = Kind::kAnswered;
-  event.question = *question;
+  event.question = fields->question;
   event.trial = session_.trial().value_or(0);
-  const Json value = command.contains("value") ? command["value"] : Json(nullptr);
-  if (value.is_number_integer()) {
-    event.value = value.get<int>();
-  } else if (value.is_string()) {
-    event.value = value.get<std::string>();
-  } else if (!value.is_null()) {
-    return Fail(ErrorCode::kInvalid, "this is no answer to the question", *question,
-                "give a whole number, a text, or null for none");
+  event.value = fields->value;
+  return Tell(std::move(event));
+}
+
+Result<void> StudyDesk::Note(const Json& command) {
+  const auto fields = protocol::ReadFields<protocol::NoteAction>(command);
+  if (!fields || fields->text.empty()) {
+    return Fail(ErrorCode::kInvalid, "this is no note", "text",
+                fmt::format("write from 1 to {} bytes", kLongestNote));
   }
+  StudyEvent event;
+  event.kind = Kind::kNote;
+  event.text = fields->text;
   return Tell(std::move(event));
 }
 
@@ -365,17 +364,17 @@ Result<void> StudyDesk::CheckTake() const {
 }
 
 Result<Json> StudyDesk::Pick(Role role, const Json& command, std::int64_t now_ns) {
-  const auto a = FaceAt(command, "a");
-  const auto b = FaceAt(command, "b");
-  if (!a || !b) {
-    return Unexpected(!a ? a.error() : b.error());
+  const auto fields = protocol::ReadFields<protocol::PickAction>(command);
+  if (!fields) {
+    return Unexpected(fields.error());
   }
+  const auto& [a, b] = *fields;
   if (!IsPicking() || ending_) {
     return NotNow("to pick", "surfaces are picked in a trial whose method is picking");
   }
   const auto scene = bench_->scene();
-  const auto mate = mates::MakeMate(*scene->model->product, {a->occurrence, a->face, {}},
-                                    {b->occurrence, b->face, {}});
+  const auto mate = mates::MakeMate(*scene->model->product, {a.occurrence, a.face, {}},
+                                    {b.occurrence, b.face, {}});
   const auto found = mate ? std::find(missing_.begin(), missing_.end(), mate->id) : missing_.end();
   const bool is_set = found != missing_.end();
   if (is_set) {

@@ -65,6 +65,7 @@ class StudyDesk {
   [[nodiscard]] Result<void> Ready(std::int64_t now_ns);
   [[nodiscard]] Result<void> Next();
   [[nodiscard]] Result<void> Answer(const Json& command);
+  [[nodiscard]] Result<void> Note(const Json& command);
   [[nodiscard]] Result<Json> Pick(Role role, const Json& command, std::int64_t now_ns);
   [[nodiscard]] Result<void> Abort(const std::string& reason);
   void BeginOnBench();

@@ -232,6 +232,17 @@ def cpp_enums(schema, lines):
                       f"inline constexpr std::array<const char*, {len(words)}> k{name}s{{{listed}}};", ""]
 
 
+def cpp_study_rules(schema, lines):
+    rules = schema["study_actions"]
+    lines += ["/** Who may send an action of the command `study`. */", "struct StudyRule {", "  const char* action;",
+              "  bool is_for_participant, is_for_experimenter, is_for_viewer;", "};", "",
+              f"inline constexpr std::array<StudyRule, {len(rules)}> kStudyRules{{{{"]
+    for rule in rules:
+        who = ", ".join(str(mark in rule["who"]).lower() for mark in "pev")
+        lines.append(f'    {{"{rule["name"]}", {who}}},')
+    lines += ["}};", ""]
+
+
 def make_cpp(schema):
     lines = [
         "// Made from protocol.json by tools/protocol/generate.py.",
@@ -263,11 +274,10 @@ def make_cpp(schema):
         constants = [f'const char* kName = "{command["name"]}"', f"Right kRight = Right::{RIGHTS[command['right']]}"]
         cpp_struct(schema, camel(command["name"]) + "Command", f"The command `{command['name']}`.", constants, command, lines)
     for action in schema["study_actions"]:
-        who = [("kIsForParticipant", "p"), ("kIsForExperimenter", "e"), ("kIsForViewer", "v")]
-        constants = [f'const char* kName = "{action["name"]}"']
-        constants += [f"bool {name} = {str(mark in action['who']).lower()}" for name, mark in who]
-        cpp_struct(schema, camel(action["name"]) + "Action", f"The action `{action['name']}` of the command `study`.",
-                   constants, action, lines)
+        if fields_of(action):
+            cpp_struct(schema, camel(action["name"]) + "Action", f"The action `{action['name']}` of the command `study`.", [],
+                       action, lines)
+    cpp_study_rules(schema, lines)
     lines += ["}  // namespace hvas::studio::protocol", ""]
     return "\n".join(lines)
 
@@ -276,34 +286,28 @@ def make_cpp(schema):
 
 
 def told_type(kind):
-    """A type as a page says it, in words where it is plain."""
-    words = words_of(kind)
-    return " or ".join(f'"{word}"' for word in words) if words else ""
+    """A type as a page says it: "a", "b" or null."""
+    names = [one.replace("'", '"') for one in alternatives(kind)]
+    return ", ".join(names[:-1]) + (" or " if names[1:] else "") + names[-1]
 
 
-def page_field(schema, field):
-    kind, _ = without_null(field.kind)
-    words = told_type(kind) or told_type(alias_of(schema["types"].get(kind, {})) and alias_of(schema["types"][kind])[0] or "text")
-    told = [words or ("" if kind in ("text",) else f"{field.kind}")]
+def page_field(field):
+    told = ["" if field.kind == "text" else told_type(field.kind)]
     told += [f"{field.told['low']} to {field.told['high']}"] if "low" in field.told else []
     told += [f"at most {field.told['longest']} bytes"] if "longest" in field.told else []
     told += [f"{cpp_literal(field.told['missing'])} when missing"] if field.told.get("missing", "") != "" else []
-    told += [field.about] if field.about else []
+    told += [field.about.replace("; ", ", ")]
     text = ", ".join(one for one in told if one)
     return f"`{field.name}{'?' if field.is_optional else ''}`" + (f": {text}" if text else "")
 
 
-def cell(text):
-    return text.replace("|", "or")
-
-
 def row(*cells):
-    return "| " + " | ".join(cell(one) for one in cells) + " |"
+    return "| " + " | ".join(cells) + " |"
 
 
-def page_fields(schema, item):
+def page_fields(item):
     told = [f"those of {item['base']}"] if "base" in item else []
-    told += [page_field(schema, field) for field in fields_of(item)]
+    told += [page_field(field) for field in fields_of(item)]
     return "; ".join(told)
 
 
@@ -311,14 +315,14 @@ def page_commands(schema):
     lines = ["| command | fields | does | result |", "|---|---|---|---|"]
     for command in schema["commands"]:
         mark = schema["rights"][command["right"]]
-        lines.append(row(f"`{command['name']}` {mark}".strip(), page_fields(schema, command), command["about"],
-                         command.get("result", "")))
+        lines.append(row(f"`{command['name']}` {mark}".strip(), page_fields(command), command["about"],
+                         told_type(command["result"]) if "result" in command else ""))
     return lines
 
 
 def page_events(schema):
     lines = ["| event | tells | fields |", "|---|---|---|"]
-    return lines + [row(f"`{event['name']}`", event["about"], page_fields(schema, event)) for event in schema["events"]]
+    return lines + [row(f"`{event['name']}`", event["about"], page_fields(event)) for event in schema["events"]]
 
 
 def page_actions(schema):
@@ -326,7 +330,7 @@ def page_actions(schema):
     lines = ["| action | who | fields | does |", "|---|---|---|---|"]
     for action in schema["study_actions"]:
         who = ", ".join(names[mark] for mark in action["who"])
-        lines.append(row(f"`{action['name']}`", who, page_fields(schema, action), action["about"]))
+        lines.append(row(f"`{action['name']}`", who, page_fields(action), action["about"]))
     return lines
 
 
@@ -335,10 +339,10 @@ def page_types(schema):
     for name, told in schema["types"].items():
         alias = alias_of(told)
         if alias:
-            lines.append(row(name, told_type(alias[0]) or alias[0] + (f": {alias[1]}" if alias[1] else ""), ""))
+            lines.append(row(name, told_type(alias[0]) + (f": {alias[1]}" if alias[1] else ""), ""))
         else:
             about = told.get("about", "") + (" Any may be missing." if told.get("is_partial") else "")
-            lines.append(row(name, about.strip(), page_fields(schema, told)))
+            lines.append(row(name, about.strip(), page_fields(told)))
     return lines
 
 

@@ -374,7 +374,7 @@ void AddDelete(CLI::App* group, int* status) {
   });
 }
 
-void AddReport(CLI::App* group, int* status) {
+void AddStudyReport(CLI::App* group, int* status) {
   CLI::App* command = group->add_subcommand(
       "report", "Tell of a study on one page: times, forces, answers, statistics");
   const auto folder = std::make_shared<std::filesystem::path>();
@@ -410,7 +410,7 @@ void AddStudyRun(CLI::App* group, int* status) {
   AddRun(group, status);
   AddList(group, status);
   AddExport(group, status);
-  AddReport(group, status);
+  AddStudyReport(group, status);
   AddDelete(group, status);
 }
 
