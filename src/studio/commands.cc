@@ -1,7 +1,12 @@
 // Handlers of the commands in docs/protocol.md, in its order.
 
+#include "studio/commands.h"
+
 #include <algorithm>
+#include <functional>
 #include <iterator>
+#include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,51 +26,70 @@ Result<Json> Done(const Result<void>& result) {
 
 }  // namespace
 
+template <typename Fields, typename Do>
+std::pair<const std::string, Hub::Command> Hub::Entry(Do handler) {
+  return {
+      Fields::kName,
+      {Fields::kRight, [handler](Hub* hub, const Caller& caller, const Json& json) -> Result<Json> {
+         auto fields = protocol::ReadFields<Fields>(json);
+         if (!fields) {
+           return Unexpected(fields.error());
+         }
+         if constexpr (std::is_invocable_v<Do, Hub*, const Caller&, const Fields&>) {
+           return std::invoke(handler, hub, caller, *fields);
+         } else if constexpr (std::is_invocable_v<Do, Hub*, const Fields&>) {
+           return std::invoke(handler, hub, *fields);
+         } else {
+           return std::invoke(handler, hub);
+         }
+       }}};
+}
+
 const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
   static const std::map<std::string, Command, std::less<>> commands{
-      {"open", {Right::kLease, &Hub::DoOpen}},
-      {"cancel", {Right::kLease, &Hub::DoCancel}},
-      {"take", {Right::kHand, &Hub::DoTake}},
-      {"release", {Right::kHand, &Hub::DoRelease}},
-      {"forces", {Right::kAnybody, &Hub::DoForces}},
-      {"demo", {Right::kLease, &Hub::DoDemo}},
-      {"next", {Right::kLease, &Hub::DoNext}},
-      {"undo", {Right::kLease, &Hub::DoUndo}},
-      {"redo", {Right::kLease, &Hub::DoRedo}},
-      {"reset", {Right::kLease, &Hub::DoReset}},
-      {"hands", {Right::kLease, &Hub::DoHands}},
-      {"devices", {Right::kAnybody, &Hub::DoDevices}},
-      {"use", {Right::kLease, &Hub::DoUse}},
-      {"record", {Right::kLease, &Hub::DoRecord}},
-      {"rename_recording", {Right::kLease, &Hub::DoRenameRecording}},
-      {"delete_recording", {Right::kLease, &Hub::DoDeleteRecording}},
-      {"assign_fit", {Right::kLease, &Hub::DoEdit}},
-      {"add_mate", {Right::kLease, &Hub::DoEdit}},
-      {"remove_mate", {Right::kLease, &Hub::DoEdit}},
-      {"measure", {Right::kAnybody, &Hub::DoMeasure}},
-      {"path", {Right::kAnybody, &Hub::DoPath}},
-      {"lease", {Right::kAnybody, &Hub::DoLease}},
-      {"status", {Right::kAnybody, &Hub::DoStatus}},
-      {"study", {Right::kAnybody, &Hub::DoStudy}},
+      Entry<protocol::OpenCommand>(&Hub::DoOpen),
+      Entry<protocol::CancelCommand>(&Hub::DoCancel),
+      Entry<protocol::TakeCommand>(&Hub::DoTake),
+      Entry<protocol::ReleaseCommand>(&Hub::DoRelease),
+      Entry<protocol::HandsCommand>(&Hub::DoHands),
+      Entry<protocol::DevicesCommand>(&Hub::DoDevices),
+      Entry<protocol::UseCommand>(&Hub::DoUse),
+      Entry<protocol::ForcesCommand>(&Hub::DoForces),
+      Entry<protocol::DemoCommand>(&Hub::DoDemo),
+      Entry<protocol::NextCommand>(&Hub::DoNext),
+      Entry<protocol::UndoCommand>(&Hub::DoUndo),
+      Entry<protocol::RedoCommand>(&Hub::DoRedo),
+      Entry<protocol::ResetCommand>(&Hub::DoReset),
+      Entry<protocol::RecordCommand>(&Hub::DoRecord),
+      Entry<protocol::RenameRecordingCommand>(&Hub::DoRenameRecording),
+      Entry<protocol::DeleteRecordingCommand>(&Hub::DoDeleteRecording),
+      Entry<protocol::AssignFitCommand>(&Hub::DoEdit<protocol::AssignFitCommand>),
+      Entry<protocol::AddMateCommand>(&Hub::DoEdit<protocol::AddMateCommand>),
+      Entry<protocol::RemoveMateCommand>(&Hub::DoEdit<protocol::RemoveMateCommand>),
+      Entry<protocol::MeasureCommand>(&Hub::DoMeasure),
+      Entry<protocol::PathCommand>(&Hub::DoPath),
+      Entry<protocol::LeaseCommand>(&Hub::DoLease),
+      Entry<protocol::StatusCommand>(&Hub::DoStatus),
+      Entry<protocol::StudyCommand>(&Hub::DoStudy),
   };
   return commands;
 }
 
-Result<Json> Hub::DoOpen(const Json& command) {
-  if (const auto id = TextAt(command, "example")) {
+Result<Json> Hub::DoOpen(const protocol::OpenCommand& command) {
+  if (command.example) {
     const auto found = std::find_if(examples_.begin(), examples_.end(),
-                                    [&](const Example& example) { return example.id == *id; });
+                                    [&](const Example& one) { return one.id == *command.example; });
     if (found == examples_.end()) {
-      return Fail(ErrorCode::kNotFound, "there is no such example", *id, "");
+      return Fail(ErrorCode::kNotFound, "there is no such example", *command.example, "");
     }
     workbench_->Open(found->file, found->name);
     return Json::object();
   }
-  const auto id = TextAt(command, "upload");
-  if (!id) {
-    return Unexpected(id.error());
+  if (!command.upload) {
+    return Fail(ErrorCode::kInvalid, R"("example" or "upload" must be a text)", "command",
+                "load the page again");
   }
-  const auto found = uploads_.find(*id);
+  const auto found = uploads_.find(*command.upload);
   if (found == uploads_.end()) {
     return Fail(ErrorCode::kNotFound, "there is no such upload", "", "send the file again");
   }
@@ -78,44 +102,30 @@ Result<Json> Hub::DoCancel() {
   return Json::object();
 }
 
-Result<Json> Hub::DoTake(const Json& command) {
-  const auto hand = HandAt(command);
-  const auto id = IndexAt(command, "occurrence");
-  if (!hand || !id) {
-    return Unexpected(!hand ? hand.error() : id.error());
-  }
-  const auto X_WH = workbench_->Take(*hand, product::OccurrenceId(*id));
+Result<Json> Hub::DoTake(const protocol::TakeCommand& command) {
+  const auto X_WH = workbench_->Take(command.hand, product::OccurrenceId(command.occurrence));
   if (!X_WH) {
     return Unexpected(X_WH.error());
   }
   return Json{{"hand", ToJson(*X_WH)}};
 }
 
-Result<Json> Hub::DoRelease(const Json& command) {
-  const auto hand = HandAt(command);
-  return hand ? Done(workbench_->Release(*hand)) : Result<Json>(Unexpected(hand.error()));
+Result<Json> Hub::DoRelease(const protocol::ReleaseCommand& command) {
+  return Done(workbench_->Release(command.hand));
 }
 
-Result<Json> Hub::DoForces(const Caller& caller, const Json& command) {
-  const auto is_off = FlagAt(command, "off");
-  if (!is_off) {
-    return Unexpected(is_off.error());
-  }
-  if (!*is_off && !caller.has_lease) {
+Result<Json> Hub::DoForces(const Caller& caller, const protocol::ForcesCommand& command) {
+  if (!command.off && !caller.has_lease) {
     return Fail(ErrorCode::kInvalid, "only the user in control can switch the forces on", "forces",
                 "ask for control first");
   }
-  workbench_->SetForcesOff(*is_off);
-  Broadcast({{"event", "forces"}, {"off", *is_off}, {"by", caller.id}});
+  workbench_->SetForcesOff(command.off);
+  Broadcast({{"event", "forces"}, {"off", command.off}, {"by", caller.id}});
   return Json::object();
 }
 
-Result<Json> Hub::DoDemo(const Json& command) {
-  const auto is_on = FlagAt(command, "on");
-  if (!is_on) {
-    return Unexpected(is_on.error());
-  }
-  return Done(workbench_->SetDemo(*is_on));
+Result<Json> Hub::DoDemo(const protocol::DemoCommand& command) {
+  return Done(workbench_->SetDemo(command.on));
 }
 
 Result<Json> Hub::DoNext() {
@@ -134,9 +144,8 @@ Result<Json> Hub::DoReset() {
   return Done(workbench_->Reset());
 }
 
-Result<Json> Hub::DoHands(const Json& command) {
-  const auto count = IndexAt(command, "count");
-  return count ? Done(workbench_->SetHandCount(*count)) : Result<Json>(Unexpected(count.error()));
+Result<Json> Hub::DoHands(const protocol::HandsCommand& command) {
+  return Done(workbench_->SetHandCount(command.count));
 }
 
 Result<Json> Hub::DoDevices() {
@@ -144,73 +153,33 @@ Result<Json> Hub::DoDevices() {
   return workbench_->devices();
 }
 
-Result<Json> Hub::DoUse(const Json& command) {
-  const auto hand = HandAt(command);
-  const auto device = TextAt(command, "device");
-  const auto scale = NumberAt(command, "scale", {0, 1000}, 0);
-  if (!hand || !device || !scale) {
-    return Unexpected(!hand ? hand.error() : !device ? device.error() : scale.error());
-  }
-  return Done(workbench_->UseDevice(*hand, *device, *scale));
+Result<Json> Hub::DoUse(const protocol::UseCommand& command) {
+  return Done(workbench_->UseDevice(command.hand, command.device, command.scale));
 }
 
-Result<Json> Hub::DoRecord(const Json& command) {
-  const auto is_on = FlagAt(command, "on");
-  if (!is_on) {
-    return Unexpected(is_on.error());
-  }
-  return Done(*is_on ? workbench_->StartRecording(TextAt(command, "name").value_or(""))
-                     : workbench_->StopRecording());
+Result<Json> Hub::DoRecord(const protocol::RecordCommand& command) {
+  return Done(command.on ? workbench_->StartRecording(command.name) : workbench_->StopRecording());
 }
 
-Result<Json> Hub::DoRenameRecording(const Json& command) {
-  const auto id = TextAt(command, "recording");
-  const auto name = TextAt(command, "name");
-  if (!id || !name) {
-    return Unexpected(!id ? id.error() : name.error());
-  }
-  return Done(workbench_->RenameRecording(*id, *name));
+Result<Json> Hub::DoRenameRecording(const protocol::RenameRecordingCommand& command) {
+  return Done(workbench_->RenameRecording(command.recording, command.name));
 }
 
-Result<Json> Hub::DoDeleteRecording(const Json& command) {
-  const auto id = TextAt(command, "recording");
-  return id ? Done(workbench_->DeleteRecording(*id)) : Result<Json>(Unexpected(id.error()));
+Result<Json> Hub::DoDeleteRecording(const protocol::DeleteRecordingCommand& command) {
+  return Done(workbench_->DeleteRecording(command.recording));
 }
 
-Result<Json> Hub::DoEdit(const Json& command) {
-  const auto edit = MakeEdit(command);
-  return edit ? Done(workbench_->Change(*edit)) : Result<Json>(Unexpected(edit.error()));
+template <typename Fields>
+Result<Json> Hub::DoEdit(const Fields& command) {
+  return Done(workbench_->Change(MakeEdit(command)));
 }
 
-Result<Json> Hub::DoMeasure(const Json& command) {
+Result<Json> Hub::DoMeasure(const protocol::MeasureCommand& command) {
   const auto scene = workbench_->scene();
   if (scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
   }
-  const auto a = FaceAt(command, "a");
-  if (!a) {
-    return Unexpected(a.error());
-  }
-  std::optional<PickedFace> second;
-  if (command.contains("b") && !command["b"].is_null()) {
-    const auto b = FaceAt(command, "b");
-    if (!b) {
-      return Unexpected(b.error());
-    }
-    second = *b;
-  }
-  return Measure(*scene->model, workbench_->state(), *a, second);
-}
-
-Result<std::vector<std::size_t>> Hub::LeasesAt(const Json& command) const {
-  if (!command.contains("hand")) {
-    return std::vector<std::size_t>{0, 1};
-  }
-  const auto hand = HandAt(command);
-  if (!hand) {
-    return Unexpected(hand.error());
-  }
-  return std::vector<std::size_t>{*hand};
+  return Measure(*scene->model, workbench_->state(), command.a, command.b);
 }
 
 Result<Json> Hub::RequestLease(const Caller& caller, const std::vector<std::size_t>& hands) {
@@ -231,47 +200,46 @@ Result<Json> Hub::RequestLease(const Caller& caller, const std::vector<std::size
   return Json{{"waits_for", holder}};
 }
 
-Result<Json> Hub::DoLease(const Caller& caller, const Json& command) {
-  const auto action = TextAt(command, "action");
-  const auto hands = LeasesAt(command);
-  if (!action || !hands) {
-    return Unexpected(!action ? action.error() : hands.error());
-  }
-  if (*action == "request" && caller.role == Role::kOperator) {
-    return RequestLease(caller, *hands);
+Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& command) {
+  using protocol::LeaseAction;
+  const std::vector<std::size_t> hands =
+      command.hand ? std::vector<std::size_t>{*command.hand} : std::vector<std::size_t>{0, 1};
+  if (command.action == LeaseAction::kRequest) {
+    return RequestLease(caller, hands);
   }
   const std::vector<std::size_t> own = HandsOf(caller.id);
   std::vector<std::size_t> given;
-  std::set_intersection(own.begin(), own.end(), hands->begin(), hands->end(),
+  std::set_intersection(own.begin(), own.end(), hands.begin(), hands.end(),
                         std::back_inserter(given));
-  if (*action == "release" && !given.empty()) {
+  if (given.empty()) {
+    return Fail(ErrorCode::kInvalid, "only whoever has the lease can pass it on or let it go",
+                protocol::kLeaseActions[static_cast<std::size_t>(command.action)],
+                "ask for the lease first");
+  }
+  if (command.action == LeaseAction::kRelease) {
     GiveLease(given, "");
     return Json::object();
   }
-  if (*action == "give" && !given.empty()) {
-    const std::string to = TextAt(command, "to").value_or("");
-    const auto found = clients_.find(to);
-    if (found == clients_.end() || found->second.role != Role::kOperator) {
-      return Fail(ErrorCode::kNotFound, "there is no such operator", to, "");
-    }
-    GiveLease(given, to);
-    return Json::object();
+  const std::string to = command.to.value_or("");
+  const auto found = clients_.find(to);
+  if (found == clients_.end() || found->second.role != Role::kOperator) {
+    return Fail(ErrorCode::kNotFound, "there is no such operator", to, "");
   }
-  return Fail(ErrorCode::kInvalid, "control cannot be given or asked for in this way now", *action,
-              caller.role == Role::kOperator ? "" : "this link is for viewers");
+  GiveLease(given, to);
+  return Json::object();
 }
 
 Result<Json> Hub::DoStatus() {
   return status_;
 }
 
-Result<Json> Hub::DoStudy(const Caller& caller, const Json& command) {
+Result<Json> Hub::DoStudy(const Caller& caller, const protocol::StudyCommand& /*command*/) {
   if (desk_ == nullptr) {
     return Fail(ErrorCode::kInvalid, "this studio does not run a study", "study",
                 "start the studio with --study and --participant");
   }
-  auto result = desk_->Do(caller.role, command, MonotonicNs());
-  if (result && TextAt(command, "action").value_or("") != "state") {
+  auto result = desk_->Do(caller.role, caller.command, MonotonicNs());
+  if (result && TextOr(caller.command, "action", "") != "state") {
     BroadcastStudyState();
   }
   return result;

@@ -6,32 +6,35 @@
 
 #include "mates/assignments.h"
 #include "mates/user_mate.h"
-#include "studio/json_fields.h"
+#include "studio/commands.h"
 
 namespace hvas::studio {
 namespace {
 
-Result<Edit> MakeAssignFit(const Json& command) {
-  const auto mate = IndexAt(command, "mate");
-  const auto fit = TextAt(command, "fit");
-  if (!mate || !fit) {
-    return Unexpected(!mate ? mate.error() : fit.error());
-  }
-  const std::string assignment = fmt::format("m{}={}", *mate, *fit);
+Json ToJson(const PickedFace& face) {
+  return {{"occurrence", face.occurrence.value()}, {"face", face.face.value()}};
+}
+
+/** The edit that a command of these fields asks for. */
+template <typename Fields>
+Result<Edit> ReadEdit(const Json& command) {
+  const auto fields = protocol::ReadFields<Fields>(command);
+  return fields ? Result<Edit>(MakeEdit(*fields)) : Result<Edit>(Unexpected(fields.error()));
+}
+
+}  // namespace
+
+Edit MakeEdit(const protocol::AssignFitCommand& command) {
+  const std::string assignment = fmt::format("m{}={}", command.mate, command.fit);
   return Edit{
       fmt::format("fit {}", assignment),
-      {{"command", "assign_fit"}, {"mate", *mate}, {"fit", *fit}},
+      {{"command", command.kName}, {"mate", command.mate}, {"fit", command.fit}},
       [assignment](product::Product* product) { return mates::AssignFit(product, assignment); }};
 }
 
-Result<Edit> MakeAddMate(const Json& command) {
-  const auto a = FaceAt(command, "a");
-  const auto b = FaceAt(command, "b");
-  if (!a || !b) {
-    return Unexpected(!a ? a.error() : b.error());
-  }
-  const std::string fit = TextAt(command, "fit").value_or("");
-  const auto add = [a = *a, b = *b, fit](product::Product* product) -> Result<void> {
+Edit MakeEdit(const protocol::AddMateCommand& command) {
+  const auto add = [a = command.a, b = command.b,
+                    fit = command.fit](product::Product* product) -> Result<void> {
     auto mate = mates::MakeMate(*product, {a.occurrence, a.face, {}}, {b.occurrence, b.face, {}});
     if (!mate) {
       return Unexpected(mate.error());
@@ -43,39 +46,36 @@ Result<Edit> MakeAddMate(const Json& command) {
                        : mates::AssignFit(product, fmt::format("m{}={}", id.value(), fit));
   };
   return Edit{"add mate",
-              {{"command", "add_mate"}, {"a", command["a"]}, {"b", command["b"]}, {"fit", fit}},
+              {{"command", command.kName},
+               {"a", ToJson(command.a)},
+               {"b", ToJson(command.b)},
+               {"fit", command.fit}},
               add};
 }
 
-Result<Edit> MakeRemoveMate(const Json& command) {
-  const auto mate = IndexAt(command, "mate");
-  if (!mate) {
-    return Unexpected(mate.error());
-  }
-  const std::string name = fmt::format("m{}", *mate);
+Edit MakeEdit(const protocol::RemoveMateCommand& command) {
+  const std::string name = fmt::format("m{}", command.mate);
   return Edit{"remove mate",
-              {{"command", "remove_mate"}, {"mate", *mate}},
+              {{"command", command.kName}, {"mate", command.mate}},
               [name](product::Product* product) -> Result<void> {
                 const auto removed = mates::RemoveMate(product, name);
                 return removed ? Result<void>() : Result<void>(Unexpected(removed.error()));
               }};
 }
 
-}  // namespace
-
 Result<Edit> MakeEdit(const Json& command) {
   const auto name = TextAt(command, "command");
   if (!name) {
     return Unexpected(name.error());
   }
-  if (*name == "assign_fit") {
-    return MakeAssignFit(command);
+  if (*name == protocol::AssignFitCommand::kName) {
+    return ReadEdit<protocol::AssignFitCommand>(command);
   }
-  if (*name == "add_mate") {
-    return MakeAddMate(command);
+  if (*name == protocol::AddMateCommand::kName) {
+    return ReadEdit<protocol::AddMateCommand>(command);
   }
-  if (*name == "remove_mate") {
-    return MakeRemoveMate(command);
+  if (*name == protocol::RemoveMateCommand::kName) {
+    return ReadEdit<protocol::RemoveMateCommand>(command);
   }
   return Fail(ErrorCode::kInvalid, "the command is not a change of the product", *name, "");
 }

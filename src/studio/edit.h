@@ -21,8 +21,19 @@ struct Edit {
   ChangeFn change;
 };
 
-/** Makes the edit of a command assign_fit, add_mate or remove_mate. Errors: kInvalid for another
- command, or one that lacks a field. */
+namespace protocol {
+struct AssignFitCommand;
+struct AddMateCommand;
+struct RemoveMateCommand;
+}  // namespace protocol
+
+/** Makes the edit that a command asks for. */
+[[nodiscard]] Edit MakeEdit(const protocol::AssignFitCommand& command);
+[[nodiscard]] Edit MakeEdit(const protocol::AddMateCommand& command);
+[[nodiscard]] Edit MakeEdit(const protocol::RemoveMateCommand& command);
+
+/** Makes the edit of a command assign_fit, add_mate or remove_mate as JSON. Errors: kInvalid for
+ another command, or one that lacks a field. */
 [[nodiscard]] Result<Edit> MakeEdit(const nlohmann::ordered_json& command);
 
 /** Combines commands into one change that applies them in order. Errors: the first of MakeEdit. */

@@ -243,39 +243,31 @@ Result<Json> Hub::Execute(const std::string& id, const Json& command) {
   if (found == Commands().end()) {
     return Fail(ErrorCode::kNotFound, "there is no such command", *name, "reload the page");
   }
-  const Caller caller{id, clients_[id].role, leases_[0] == id};
+  const Caller caller{id, clients_[id].role, leases_[0] == id, command};
   if (const auto checked = CheckStudy(caller, *name); !checked) {
     return Unexpected(checked.error());
   }
-  if (!MayDo(found->second.right, caller, command)) {
+  if (!MayDo(found->second.right, caller)) {
     return Fail(
         ErrorCode::kInvalid, "only the user in control can do this", *name,
         caller.role == Role::kOperator ? "ask for control first" : "this link is for viewers");
   }
-  return Call(found->second.handler, caller, command);
+  return found->second.handler(this, caller, command);
 }
 
-bool Hub::MayDo(Right right, const Caller& caller, const Json& command) const {
+bool Hub::MayDo(protocol::Right right, const Caller& caller) const {
+  using protocol::Right;
   switch (right) {
     case Right::kAnybody:
       return true;
+    case Right::kOperator:
+      return caller.role == Role::kOperator;
     case Right::kLease:
       return caller.has_lease;
     case Right::kHand:
-      return leases_[HandAt(command).value_or(0)] == caller.id;
+      return leases_[HandAt(caller.command, "hand").value_or(0)] == caller.id;
   }
   return false;
-}
-
-Result<Json> Hub::Call(const Handler& handler, const Caller& caller, const Json& command) {
-  switch (handler.index()) {
-    case 0:
-      return (this->*std::get<0>(handler))();
-    case 1:
-      return (this->*std::get<1>(handler))(command);
-    default:
-      return (this->*std::get<2>(handler))(caller, command);
-  }
 }
 
 void Hub::OnBinary(const std::string& id, std::string_view bytes) {

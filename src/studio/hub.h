@@ -8,10 +8,11 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <variant>
+#include <utility>
 #include <vector>
 
 #include "studio/access.h"
+#include "studio/commands.h"
 #include "studio/frame_codec.h"
 #include "studio/study_desk.h"
 #include "studio/workbench.h"
@@ -104,50 +105,49 @@ class Hub {
   struct Caller {
     std::string id;
     Role role;
-    bool has_lease;  ///< Whether it holds the lease of hand 0.
+    bool has_lease;       ///< Whether it holds the lease of hand 0.
+    const Json& command;  ///< The command as it was sent.
   };
 
-  enum class Right {
-    kAnybody,
-    kLease,  ///< Needs the lease of hand 0.
-    kHand,   ///< Needs the lease of the hand that the command names.
-  };
-
-  using Handler = std::variant<Result<Json> (Hub::*)(), Result<Json> (Hub::*)(const Json& command),
-                               Result<Json> (Hub::*)(const Caller& caller, const Json& command)>;
+  /** Runs a command with its fields. */
+  using Handler = std::function<Result<Json>(Hub* hub, const Caller& caller, const Json& command)>;
 
   struct Command {
-    Right right;
+    protocol::Right right;
     Handler handler;
   };
 
   static const std::map<std::string, Command, std::less<>>& Commands();
+
+  /** Makes an entry of the table of commands. `Do` is a member function, of the caller, the fields,
+   both or neither. */
+  template <typename Fields, typename Do>
+  static std::pair<const std::string, Command> Entry(Do handler);
   [[nodiscard]] Result<Json> Execute(const std::string& id, const Json& command);
-  [[nodiscard]] bool MayDo(Right right, const Caller& caller, const Json& command) const;
-  [[nodiscard]] Result<Json> Call(const Handler& handler, const Caller& caller,
-                                  const Json& command);
-  Result<Json> DoOpen(const Json& command);
+  [[nodiscard]] bool MayDo(protocol::Right right, const Caller& caller) const;
+  Result<Json> DoOpen(const protocol::OpenCommand& command);
   Result<Json> DoCancel();
-  Result<Json> DoTake(const Json& command);
-  Result<Json> DoRelease(const Json& command);
-  Result<Json> DoForces(const Caller& caller, const Json& command);
-  Result<Json> DoDemo(const Json& command);
+  Result<Json> DoTake(const protocol::TakeCommand& command);
+  Result<Json> DoRelease(const protocol::ReleaseCommand& command);
+  Result<Json> DoForces(const Caller& caller, const protocol::ForcesCommand& command);
+  Result<Json> DoDemo(const protocol::DemoCommand& command);
   Result<Json> DoNext();
   Result<Json> DoUndo();
   Result<Json> DoRedo();
   Result<Json> DoReset();
-  Result<Json> DoHands(const Json& command);
+  Result<Json> DoHands(const protocol::HandsCommand& command);
   Result<Json> DoDevices();
-  Result<Json> DoUse(const Json& command);
-  Result<Json> DoRecord(const Json& command);
-  Result<Json> DoRenameRecording(const Json& command);
-  Result<Json> DoDeleteRecording(const Json& command);
-  Result<Json> DoEdit(const Json& command);
-  Result<Json> DoMeasure(const Json& command);
-  Result<Json> DoPath(const Caller& caller, const Json& command);
-  Result<Json> DoLease(const Caller& caller, const Json& command);
+  Result<Json> DoUse(const protocol::UseCommand& command);
+  Result<Json> DoRecord(const protocol::RecordCommand& command);
+  Result<Json> DoRenameRecording(const protocol::RenameRecordingCommand& command);
+  Result<Json> DoDeleteRecording(const protocol::DeleteRecordingCommand& command);
+  template <typename Fields>
+  Result<Json> DoEdit(const Fields& command);
+  Result<Json> DoMeasure(const protocol::MeasureCommand& command);
+  Result<Json> DoPath(const Caller& caller, const protocol::PathCommand& command);
+  Result<Json> DoLease(const Caller& caller, const protocol::LeaseCommand& command);
   Result<Json> DoStatus();
-  Result<Json> DoStudy(const Caller& caller, const Json& command);
+  Result<Json> DoStudy(const Caller& caller, const protocol::StudyCommand& command);
 
   /** Checks a command against a running study. Errors: kInvalid when it is not allowed then. */
   [[nodiscard]] Result<void> CheckStudy(const Caller& caller, const std::string& name) const;
@@ -159,8 +159,6 @@ class Hub {
   /** Gives the leases of hands to a client, and tells all clients; empty `id`: to nobody. */
   void GiveLease(const std::vector<std::size_t>& hands, const std::string& id);
   [[nodiscard]] std::vector<std::size_t> HandsOf(const std::string& id) const;
-  /** The hands that a lease command is about: the one that it names, or all. */
-  [[nodiscard]] Result<std::vector<std::size_t>> LeasesAt(const Json& command) const;
   Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);
   void BroadcastRoles();
   [[nodiscard]] Json MakeHands() const;

@@ -10,7 +10,6 @@
 namespace hvas::studio {
 namespace {
 
-constexpr std::size_t kLongestText = 1000;  // [bytes] of a field's text: a choice.
 constexpr std::size_t kMaxFields = 64;  // fields of a command, including those of nested objects
 
 Unexpected FailField(const char* name, const char* wanted) {
@@ -57,11 +56,13 @@ Json MakeDeferredReply(const std::string& to, const Json& id, const Result<Json>
   return {{"event", "reply"}, {"to", to}, {"reply", MakeReply(id, result)}};
 }
 
-Result<std::string> TextAt(const Json& object, const char* name) {
+Result<std::string> TextAt(const Json& object, const char* name, std::size_t longest) {
   const Json* field = FieldOf(object, name);
-  if (field == nullptr || !field->is_string() ||
-      field->get_ref<const std::string&>().size() > kLongestText) {
+  if (field == nullptr || !field->is_string()) {
     return FailField(name, "a text");
+  }
+  if (field->get_ref<const std::string&>().size() > longest) {
+    return FailField(name, fmt::format("a text of at most {} bytes", longest).c_str());
   }
   return field->get<std::string>();
 }
@@ -83,24 +84,18 @@ Result<std::uint32_t> IndexAt(const Json& object, const char* name) {
   return field->get<std::uint32_t>();
 }
 
-Result<std::size_t> HandAt(const Json& object) {
-  if (FieldOf(object, "hand") == nullptr) {
-    return 0;
-  }
-  const auto hand = IndexAt(object, "hand");
+Result<std::size_t> HandAt(const Json& object, const char* name) {
+  const auto hand = IndexAt(object, name);
   if (!hand || *hand >= HandRack::kMaxHands) {
-    return FailField("hand", "0 or 1");
+    return FailField(name, "0 or 1");
   }
   return *hand;
 }
 
-Result<double> NumberAt(const Json& object, const char* name, const Limits& limits,
-                        double missing) {
+Result<double> NumberAt(const Json& object, const char* name, const Limits& limits) {
   const Json* field = FieldOf(object, name);
-  if (field == nullptr) {
-    return missing;
-  }
-  const double number = field->is_number() ? field->get<double>() : limits.low - 1;
+  const bool is_number = field != nullptr && field->is_number();
+  const double number = is_number ? field->get<double>() : limits.low - 1;
   if (!(number >= limits.low && number <= limits.high)) {
     return FailField(name, fmt::format("a number of {} to {}", limits.low, limits.high).c_str());
   }
@@ -118,6 +113,37 @@ Result<PickedFace> FaceAt(const Json& object, const char* name) {
     return FailField(name, "a face, such as {\"occurrence\": 0, \"face\": 3}");
   }
   return PickedFace{product::OccurrenceId(*occurrence), product::FaceId(*face)};
+}
+
+Result<study::AnswerValue> AnswerAt(const Json& object, const char* name) {
+  const Json* field = FieldOf(object, name);
+  if (field == nullptr || field->is_null()) {
+    return study::AnswerValue();
+  }
+  if (field->is_string()) {
+    return study::AnswerValue(field->get<std::string>());
+  }
+  using Whole = std::numeric_limits<int>;
+  const bool is_whole = field->is_number_integer();
+  const double number = is_whole ? field->get<double>() : 0;
+  if (!is_whole || number < Whole::min() || number > Whole::max()) {
+    return FailField(name, "a whole number, a text, or null for none");
+  }
+  return study::AnswerValue(field->get<int>());
+}
+
+Result<std::size_t> WordIndexAt(const Json& object, const char* name,
+                                std::span<const char* const> words) {
+  const Json* field = FieldOf(object, name);
+  std::string wanted;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (field != nullptr && *field == words[i]) {
+      return i;
+    }
+    const char* before = i == 0 ? "" : i + 1 == words.size() ? " or " : ", ";
+    wanted += fmt::format("{}\"{}\"", before, words[i]);
+  }
+  return FailField(name, wanted.c_str());
 }
 
 }  // namespace hvas::studio

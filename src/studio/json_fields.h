@@ -1,12 +1,18 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/result.h"
 #include "session/json_values.h"
 #include "studio/measure.h"
+#include "study/study_session.h"
 
 namespace hvas::studio {
 
@@ -29,24 +35,71 @@ namespace hvas::studio {
 [[nodiscard]] Json MakeDeferredReply(const std::string& to, const Json& id,
                                      const Result<Json>& result);
 
+/** Longest text of a command whose schema gives no length [bytes]: a choice. */
+inline constexpr std::size_t kLongestText = 1000;
+
 /** Required fields of a command. Errors: kInvalid, with the field's name and the expected type. */
-[[nodiscard]] Result<std::string> TextAt(const Json& object, const char* name);
+[[nodiscard]] Result<std::string> TextAt(const Json& object, const char* name,
+                                         std::size_t longest = kLongestText);
 [[nodiscard]] Result<bool> FlagAt(const Json& object, const char* name);
 [[nodiscard]] Result<std::uint32_t> IndexAt(const Json& object, const char* name);
-/** Reads the field "hand"; 0 where it is missing. */
-[[nodiscard]] Result<std::size_t> HandAt(const Json& object);
+[[nodiscard]] Result<std::size_t> HandAt(const Json& object, const char* name);
 
 /** Closed interval of the values that a field may have. */
 struct Limits {
   double low, high;
 };
 
-/** Reads a number within limits; `missing` where there is no such field. */
-[[nodiscard]] Result<double> NumberAt(const Json& object, const char* name, const Limits& limits,
-                                      double missing);
+/** Reads a number within limits. */
+[[nodiscard]] Result<double> NumberAt(const Json& object, const char* name, const Limits& limits);
 [[nodiscard]] Result<PickedFace> FaceAt(const Json& object, const char* name);
+/** A whole number, a text, or null for none. */
+[[nodiscard]] Result<study::AnswerValue> AnswerAt(const Json& object, const char* name);
+/** Which of these words it is. */
+[[nodiscard]] Result<std::size_t> WordIndexAt(const Json& object, const char* name,
+                                              std::span<const char* const> words);
+
+/** Word is an enumeration in the order of the words. */
+template <typename Word, std::size_t kCount>
+[[nodiscard]] Result<Word> WordAt(const Json& object, const char* name,
+                                  const std::array<const char*, kCount>& words) {
+  const auto index = WordIndexAt(object, name, words);
+  return index ? Result<Word>(static_cast<Word>(*index)) : Result<Word>(Unexpected(index.error()));
+}
 
 using session::FieldOf;
+
+[[nodiscard]] inline bool HasField(const Json& object, const char* name) {
+  return FieldOf(object, name) != nullptr;
+}
+
+/** False for null, too. */
+[[nodiscard]] inline bool HasValue(const Json& object, const char* name) {
+  const Json* field = FieldOf(object, name);
+  return field != nullptr && !field->is_null();
+}
+
+/** What is read into a structure field by field: all of it, or the first error. */
+class FirstError {
+ public:
+  template <typename Value, typename Target>
+  void Keep(Result<Value> read, Target* target) {
+    if (read) {
+      *target = std::move(*read);
+    } else if (!error_) {
+      error_ = read.error();
+    }
+  }
+
+  template <typename Fields>
+  [[nodiscard]] Result<Fields> Or(Fields fields) const {
+    return error_ ? Result<Fields>(Unexpected(*error_)) : Result<Fields>(std::move(fields));
+  }
+
+ private:
+  std::optional<Error> error_;
+};
+
 using session::FlagOr;
 using session::IndexOr;
 using session::NumberOr;

@@ -32,41 +32,31 @@ Result<Json> Describe(const Result<std::shared_ptr<const SweptGlb>>& swept) {
 
 }  // namespace
 
-Result<Json> Hub::DoPath(const Caller& caller, const Json& command) {
-  constexpr Limits kResolutionMm{0.01, 1000};
+Result<Json> Hub::DoPath(const Caller& caller, const protocol::PathCommand& command) {
   const auto scene = workbench_->scene();
-  const auto index = IndexAt(command, "occurrence");
-  const auto as = TextAt(command, "as");
-  const auto resolution_mm = NumberAt(command, "resolution_mm", kResolutionMm, 0);
   if (scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
   }
-  if (!index || !as || !resolution_mm) {
-    return Unexpected(!index ? index.error() : (!as ? as.error() : resolution_mm.error()));
-  }
-  const product::OccurrenceId id(*index);
+  const product::OccurrenceId id(command.occurrence);
   const product::Product& product = *scene->model->product;
   if (id.index() >= product.occurrences.size()) {
-    return Fail(ErrorCode::kNotFound, "there is no such part", fmt::format("o{}", *index), "");
+    return Fail(ErrorCode::kNotFound, "there is no such part",
+                fmt::format("o{}", command.occurrence), "");
   }
   sweep::Path path = workbench_->paths().PathOf(id);
   if (path.empty()) {
     return Fail(ErrorCode::kNotFound, "this part has not been held yet",
                 product.occurrences[id.index()].name, "move it, or let the simulated person do so");
   }
-  if (*as == "points") {
+  if (command.as == protocol::PathForm::kPoints) {
     return MakePoints(path, product.part_of(id).mass.p_BoBcm_B);
   }
-  if (*as != "swept") {
-    return Fail(ErrorCode::kInvalid, R"("as" must be "points" or "swept")", "command",
-                "reload the page");
-  }
-  const auto done = [bench = workbench_, to = caller.id, reply_to = IdOf(command)](
+  const auto done = [bench = workbench_, to = caller.id, reply_to = IdOf(caller.command)](
                         const Result<std::shared_ptr<const SweptGlb>>& swept) {
     bench->on_event(MakeDeferredReply(to, reply_to, Describe(swept)));
   };
   const auto posted = workbench_->sweeper().Post(
-      {scene->model, id, std::move(path), units::FromMm(*resolution_mm), done});
+      {scene->model, id, std::move(path), units::FromMm(command.resolution_mm), done});
   return posted ? Result<Json>(MakeDeferredResult()) : Unexpected(posted.error());
 }
 

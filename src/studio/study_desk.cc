@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "mates/user_mate.h"
-#include "studio/json_fields.h"
+#include "studio/commands.h"
 #include "study/simulated_participant.h"
 
 namespace hvas::studio {
@@ -35,21 +35,22 @@ Json OrNull(const std::string& text) {
 /** Roles that may do an action: the participant, or the experimenter, who has the operator's
  link. */
 bool MayDo(Role role, const std::string& action) {
-  constexpr std::array kParticipants{"state", "consent", "ready", "answer", "pick"};
-  constexpr std::array kExperimenters{"state", "begin", "ready", "next", "note", "abort", "resume"};
-  const auto has = [&](const auto& actions) {
-    return std::any_of(actions.begin(), actions.end(),
-                       [&](const char* one) { return action == one; });
-  };
+  const auto& rules = protocol::kStudyRules;
+  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const protocol::StudyRule& one) {
+    return action == one.action;
+  });
+  if (rule == rules.end()) {
+    return false;
+  }
   switch (role) {
     case Role::kParticipant:
-      return has(kParticipants);
+      return rule->is_for_participant;
     case Role::kOperator:
-      return has(kExperimenters);
+      return rule->is_for_experimenter;
     case Role::kViewer:
       break;
   }
-  return action == "state";
+  return rule->is_for_viewer;
 }
 
 }  // namespace
@@ -144,17 +145,11 @@ Result<void> StudyDesk::Execute(Role role, const std::string& action, const Json
     return AnswerQuestion(command);
   }
   if (action == "note") {
-    const auto text = TextAt(command, "text");
-    if (!text || text->empty() || text->size() > kLongestNote) {
-      return Fail(ErrorCode::kInvalid, "the note is missing or too long", "text",
-                  fmt::format("write 1 to {} bytes", kLongestNote));
-    }
-    event.kind = Kind::kNote;
-    event.text = *text;
-    return RecordEvent(event);
+    return AddNote(command);
   }
   if (action == "abort") {
-    return Abort(TextAt(command, "reason").value_or("no reason given"));
+    const auto fields = protocol::ReadFields<protocol::AbortAction>(command);
+    return fields ? Abort(fields->reason) : Unexpected(fields.error());
   }
   if (action == "resume") {
     event.kind = Kind::kResumed;
@@ -165,14 +160,14 @@ Result<void> StudyDesk::Execute(Role role, const std::string& action, const Json
 }
 
 Result<void> StudyDesk::Consent(const Json& command) {
-  const auto agrees = FlagAt(command, "agreed");
-  if (!agrees) {
-    return Unexpected(agrees.error());
+  const auto fields = protocol::ReadFields<protocol::ConsentAction>(command);
+  if (!fields) {
+    return Unexpected(fields.error());
   }
   StudyEvent event;
   event.kind = Kind::kConsent;
-  event.agrees = *agrees;
-  event.language = TextAt(command, "language").value_or(folder_.protocol().languages.front());
+  event.agrees = fields->agreed;
+  event.language = fields->language.value_or(folder_.protocol().languages.front());
   return RecordEvent(event);
 }
 
@@ -210,23 +205,27 @@ Result<void> StudyDesk::Continue() {
 }
 
 Result<void> StudyDesk::AnswerQuestion(const Json& command) {
-  const auto question = TextAt(command, "question");
-  if (!question) {
-    return Unexpected(question.error());
+  const auto fields = protocol::ReadFields<protocol::AnswerAction>(command);
+  if (!fields) {
+    return Unexpected(fields.error());
   }
   StudyEvent event;
   event.kind = Kind::kAnswered;
-  event.question = *question;
+  event.question = fields->question;
   event.trial = session_.trial().value_or(0);
-  const Json value = command.contains("value") ? command["value"] : Json(nullptr);
-  if (value.is_number_integer()) {
-    event.value = value.get<int>();
-  } else if (value.is_string()) {
-    event.value = value.get<std::string>();
-  } else if (!value.is_null()) {
-    return Fail(ErrorCode::kInvalid, "the answer does not suit the question", *question,
-                "give a whole number, a text, or null for none");
+  event.value = fields->value;
+  return RecordEvent(std::move(event));
+}
+
+Result<void> StudyDesk::AddNote(const Json& command) {
+  const auto fields = protocol::ReadFields<protocol::NoteAction>(command);
+  if (!fields || fields->text.empty()) {
+    return Fail(ErrorCode::kInvalid, "the note is missing or too long", "text",
+                fmt::format("write 1 to {} bytes", kLongestNote));
   }
+  StudyEvent event;
+  event.kind = Kind::kNote;
+  event.text = fields->text;
   return RecordEvent(std::move(event));
 }
 
@@ -366,17 +365,17 @@ Result<void> StudyDesk::CheckTake() const {
 }
 
 Result<Json> StudyDesk::Pick(Role role, const Json& command, std::int64_t now_ns) {
-  const auto a = FaceAt(command, "a");
-  const auto b = FaceAt(command, "b");
-  if (!a || !b) {
-    return Unexpected(!a ? a.error() : b.error());
+  const auto fields = protocol::ReadFields<protocol::PickAction>(command);
+  if (!fields) {
+    return Unexpected(fields.error());
   }
+  const auto& [a, b] = *fields;
   if (!IsPicking() || ending_) {
     return FailNotNow("picking", "surfaces can be picked only in trials with that method");
   }
   const auto scene = bench_->scene();
-  const auto mate = mates::MakeMate(*scene->model->product, {a->occurrence, a->face, {}},
-                                    {b->occurrence, b->face, {}});
+  const auto mate = mates::MakeMate(*scene->model->product, {a.occurrence, a.face, {}},
+                                    {b.occurrence, b.face, {}});
   const auto found = mate ? std::find(missing_.begin(), missing_.end(), mate->id) : missing_.end();
   const bool is_set = found != missing_.end();
   if (is_set) {

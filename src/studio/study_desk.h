@@ -67,6 +67,7 @@ class StudyDesk {
   [[nodiscard]] Result<void> BeginTrial(std::int64_t now_ns);
   [[nodiscard]] Result<void> Continue();
   [[nodiscard]] Result<void> AnswerQuestion(const Json& command);
+  [[nodiscard]] Result<void> AddNote(const Json& command);
   [[nodiscard]] Result<Json> Pick(Role role, const Json& command, std::int64_t now_ns);
   [[nodiscard]] Result<void> Abort(const std::string& reason);
   void BeginOnBench();

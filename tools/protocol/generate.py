@@ -1,15 +1,20 @@
 #!/usr/bin/env python3
-"""Makes the studio's frames of src/studio/protocol.json: a C++ header, a TypeScript module, or bytes.
+"""Makes of src/studio/protocol.json what the studio's client and server say to each other.
 
-  generate.py cpp SCHEMA OUT.h     packed structs, their sizes checked by the compiler
-  generate.py ts SCHEMA OUT.ts     readers and writers over DataView
-  generate.py golden SCHEMA FOLDER one frame of each kind with known numbers, for the tests of both
+  generate.py cpp SCHEMA OUT.h           frames: packed structs, their sizes checked by the compiler
+  generate.py ts SCHEMA OUT.ts           frames: readers and writers over DataView
+  generate.py golden SCHEMA FOLDER       frames: one of each kind with known numbers, for the tests of both
+  generate.py commands SCHEMA OUT.h      commands: their fields as structs, with what reads them from JSON
+  generate.py messages SCHEMA OUT.ts     commands, events and what they are made of, as types
+  generate.py docs SCHEMA PAGE [--check] tables of a page, between its marks; --check only tells
 """
 
 import json
 import pathlib
 import struct
 import sys
+
+import messages
 
 CPP = {"u16": "std::uint16_t", "u32": "std::uint32_t", "i64": "std::int64_t", "f32": "float"}
 SIZE = {"u16": 2, "u32": 4, "i64": 8, "f32": 4}
@@ -32,7 +37,6 @@ def check(schema):
             at += SIZE[kind] * count
         if at % 4 != 0:
             raise SystemExit(f"{name} has {at} bytes, no multiple of 4")
-
 
 
 def cpp_struct(name, fields, lines):
@@ -161,19 +165,41 @@ def make_golden(schema, frame):
     return header + b"".join(pack(fields, golden_values(fields, 1 + 100 * i)) for i in range(count))
 
 
+def update_page(schema, page, only_tells):
+    before = page.read_text()
+    after = messages.write_tables(schema, before)
+    if before == after:
+        return
+    if only_tells:
+        raise SystemExit(f"{page}: tables are not those of the schema; mend them with\n"
+                         f"  tools/protocol/generate.py docs src/studio/protocol.json {page}")
+    page.write_text(after)
+
+
+def write_golden(schema, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    for frame in schema["frames"]:
+        (folder / f"{frame['name'].lower()}.bin").write_bytes(make_golden(schema, frame))
+
+
+MAKERS = {"cpp": make_cpp, "ts": make_ts, "commands": messages.make_cpp, "messages": messages.make_ts}
+
+
 def main(arguments):
-    if len(arguments) != 3 or arguments[0] not in ("cpp", "ts", "golden"):
+    only_tells = arguments[3:] == ["--check"] and arguments[0] == "docs"
+    if len(arguments) != (4 if only_tells else 3) or arguments[0] not in (*MAKERS, "golden", "docs"):
         raise SystemExit(__doc__)
     what, source, target = arguments[0], arguments[1], pathlib.Path(arguments[2])
     schema = json.loads(pathlib.Path(source).read_text())
     check(schema)
-    if what == "golden":
-        target.mkdir(parents=True, exist_ok=True)
-        for frame in schema["frames"]:
-            (target / f"{frame['name'].lower()}.bin").write_bytes(make_golden(schema, frame))
-        return
-    target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_text(make_cpp(schema) if what == "cpp" else make_ts(schema))
+    messages.check(schema)
+    if what == "docs":
+        update_page(schema, target, only_tells)
+    elif what == "golden":
+        write_golden(schema, target)
+    else:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(MAKERS[what](schema))
 
 
 if __name__ == "__main__":

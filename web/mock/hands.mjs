@@ -4,6 +4,7 @@ const MOUSE = {
   address: "pointer",
   name: "Mouse",
   model: "Simulated device of 7.9 N",
+  serial: "",
   is_emulated: false,
   has_force: true,
   has_torque: true,
@@ -38,7 +39,7 @@ export class Hands {
   }
 
   list() {
-    return this.devices.map((device, hand) => ({ hand, device, condition: "ready" }));
+    return this.devices.map((device, hand) => ({ hand, device, condition: "ready", lease: null }));
   }
 
   setCount(count) {
@@ -88,6 +89,9 @@ export function rates(hand) {
     histograms: { edges_us: EDGES_US, compute: counts(45), wake_up: counts(70) },
     hands: [0, 1].map((k) => ({
       hand: k,
+      speed_m_s: 0,
+      limit_n: 7.9,
+      condition: "ready",
       force_n: k === 0 ? Math.hypot(...(hand?.f_felt_W_n ?? [0])) : 0,
       torque_nm: k === 0 ? Math.hypot(...(hand?.t_felt_W_nm ?? [0])) : 0,
       energy_j: 0.0021,

@@ -82,7 +82,7 @@ function open(file) {
   world = makeScene(options.hvas, file, epoch);
   simulation = new Simulation(world.scene, broadcast);
   clients.forEach((client) => (client.knows = 0));
-  broadcast({ event: "scene", epoch });
+  broadcast({ event: "scene", epoch, why: null });
   simulation.nextStep();
 }
 
@@ -98,7 +98,7 @@ function layOut() {
   simulation = new Simulation(world.scene, (event) => event.event !== "demo" && broadcast(event));
   simulation.poses = world.scene.occurrences.map((o) => (o.id === PART ? o.start : o.goal));
   clients.forEach((client) => (client.knows = 0));
-  broadcast({ event: "scene", epoch });
+  broadcast({ event: "scene", epoch, why: null });
   simulation.nextStep();
 }
 
@@ -210,7 +210,7 @@ const commands = {
   forces({ off }) {
     forcesOff = off;
     simulation?.stopDemo();
-    broadcast({ event: "forces", off, by: lease() });
+    broadcast({ event: "forces", off, by: lease() ?? "" });
   },
   demo: ({ on }) => (on ? simulation.startDemo(true) : simulation.stopDemo()),
   next: () => simulation.startDemo(false),
@@ -251,7 +251,7 @@ new WebSocketServer({ server, path: "/ws" }).on("connection", (socket, upgrade) 
   const client = { socket, role, pending: 0, knows: 0 };
   clients.set(id, client);
   const hello = { event: "hello", version: 1, role, client: id, has_lease: id === lease() };
-  socket.send(JSON.stringify({ ...hello, examples: EXAMPLES, forces_off: forcesOff, has_scene: world !== null, hands: hands.list(), recording: recorder.state() }));
+  socket.send(JSON.stringify({ ...hello, examples: EXAMPLES, forces_off: forcesOff, has_scene: world !== null, hands: hands.list(), recording: recorder.state(), has_study: study !== null, demo: Boolean(simulation?.demo) }));
   broadcast({ event: "roles", clients: roles() });
   if (study !== null) {
     send(client, study.state(role));
@@ -311,11 +311,15 @@ setInterval(
     broadcast({
       event: "status",
       tick_hz: 1000,
+      compute_p50_us: 45,
       compute_p99_us: 63,
+      compute_max_us: 120,
       wake_up_p99_us: 90,
       scheduling: "SCHED_FIFO",
       physics_hz: 100,
       late_ticks: 0,
+      overruns: 0,
+      is_memory_locked: true,
       lost_events: 0,
       clients: clients.size,
       effort_level: 0,

@@ -53,7 +53,7 @@ export class Simulation {
     this.input = { p_WH_m: hand.p, q_WH: hand.q };
     this.place(id, "held");
     this.setState(FREE);
-    this.onEvent({ event: "taken", hand: 0, occurrence: id, state: "free" });
+    this.onEvent({ event: "taken", hand: 0, occurrence: id, state: 1 });
     return hand;
   }
 
@@ -72,8 +72,9 @@ export class Simulation {
       event: "dropped",
       hand: 0,
       occurrence: id,
-      state: "empty",
+      state: 0,
       was_seated: wasSeated,
+      to_place_mm: wasSeated ? 0 : 20,
       metrics: {
         time_s: (Date.now() - start) / 1e3,
         path_mm: 1e3 * path,
@@ -82,6 +83,7 @@ export class Simulation {
         fit_true_n: 0.6 * peak,
         depth_um: 12,
         insertion_mm: wasSeated ? 1e3 * this.length : 0,
+        collisions: 0,
       },
     });
     this.state = 0;
@@ -107,8 +109,7 @@ export class Simulation {
   setState(state) {
     if (state !== this.state) {
       this.state = state;
-      const names = ["empty", "free", "near", "captured", "mating", "seated"];
-      this.onEvent({ event: "state", hand: 0, occurrence: this.held.id, state: names[state] });
+      this.onEvent({ event: "state", hand: 0, occurrence: this.held.id, state });
     }
   }
 

@@ -1,6 +1,8 @@
 // A tiny study for the mock: consent, training, a trial by hand, one to identify, one by picking, two questions.
 // Phases, actions and views are those of docs/protocol.md; one scene and one toy serve all conditions.
 
+/** What a hand does, in the order of the numbers of frames and events. */
+const HOLD_STATES = ["empty", "free", "near", "captured", "mating", "seated"];
 const CONDITIONS = {
   A1: { name: "Constraints by mouse", method: "picking", fit: "H7/g6" },
   B1: { name: "Clearance", method: "hand", fit: "H7/g6" },
@@ -220,8 +222,8 @@ export class MockStudy {
     if (!this.isTask || occurrence !== this.occurrence || !["state", "taken", "dropped"].includes(event)) {
       return;
     }
-    this.hold = event === "dropped" ? null : state;
-    if (state === "seated") {
+    this.hold = event === "dropped" ? null : HOLD_STATES[state];
+    if (this.hold === "seated") {
       this.finish("done");
     }
     this.onChange();

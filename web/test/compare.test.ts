@@ -13,8 +13,7 @@ import { makeBars } from "../src/model/histogram";
 import { forceShare, isPointerHand, leaderOf, parseScale } from "../src/model/hands";
 import { heldAt, markedSpan, rangeOf, type PlotClock } from "../src/model/plot_range";
 import { makeRun } from "../src/model/recordings";
-import type { Client } from "../src/protocol/messages";
-import type { HandSetup, PartResult, RecordedEvent, RecordingDetail } from "../src/protocol/recording_messages";
+import type { Client, HandSetup, PartResult, RecordedEvent, RecordingDetail } from "../src/protocol/messages";
 import { kPeriodNs, toyDetail, toyFrames } from "./toy_recording";
 
 function result(path: string, occurrence: number, more: Partial<PartResult> = {}): PartResult {
@@ -194,8 +193,9 @@ describe("a histogram", () => {
 describe("hands", () => {
   const mouse: HandSetup = {
     hand: 0,
-    device: { address: "pointer", name: "Mouse", model: "", is_emulated: false, has_force: true, has_torque: true, max_force_n: 8, scale: 1, notes: [] },
+    device: { address: "pointer", name: "Mouse", model: "", serial: "", is_emulated: false, has_force: true, has_torque: true, max_force_n: 8, scale: 1, notes: [] },
     condition: "ready",
+    lease: null,
   };
   const touch: HandSetup = { ...mouse, hand: 1, device: { ...mouse.device, address: "touch:0" } };
 

@@ -3,7 +3,7 @@ import type { Studio } from "../src/model/studio";
 import { makeStore } from "../src/model/store";
 import { makeViewState } from "../src/model/view_state";
 import type { HandInput } from "../src/protocol/frames";
-import type { HandSetup } from "../src/protocol/recording_messages";
+import type { HandSetup } from "../src/protocol/messages";
 import { HandControl } from "../src/view3d/hand_control";
 import type { Eye } from "../src/view3d/mouse_hand";
 import type { SceneView } from "../src/view3d/scene_view";
@@ -18,8 +18,8 @@ const eye: Eye = {
 };
 
 function setup(hand: number, address = "pointer", isEmulated = false): HandSetup {
-  const device = { address, name: address, model: "", is_emulated: isEmulated, has_force: true, has_torque: true };
-  return { hand, device: { ...device, max_force_n: 8, scale: 1, notes: [] }, condition: "ready" };
+  const device = { address, name: address, model: "", serial: "", is_emulated: isEmulated, has_force: true, has_torque: true };
+  return { hand, device: { ...device, max_force_n: 8, scale: 1, notes: [] }, condition: "ready", lease: null };
 }
 
 /** A page with two hands, of which the server has been told what is listed. */

@@ -4,7 +4,7 @@ import { makeRun } from "../src/model/recordings";
 import { decodeMoment, decodeView, encodeMoment } from "../src/model/view_link";
 import { FrameStore } from "../src/protocol/frame_store";
 import { FrameCursor, RecordedFrames } from "../src/protocol/recorded_frames";
-import type { RecordedEvent } from "../src/protocol/recording_messages";
+import type { RecordedEvent } from "../src/protocol/messages";
 import { kPeriodNs, positionAt, toyDetail, toyFrames, toyScene } from "./toy_recording";
 
 const kMoments = 700;
@@ -84,18 +84,18 @@ describe("the frames of a recording", () => {
 
 const seconds = (moment: number) => moment * kPeriodNs;
 const events: RecordedEvent[] = [
-  { event: "taken", hand: 0, occurrence: 1, state: "free", t_ns: seconds(30) },
+  { event: "taken", hand: 0, occurrence: 1, state: 1, t_ns: seconds(30) },
   { event: "placement", occurrence: 1, placement: "held", t_ns: seconds(30) },
-  { event: "state", hand: 0, occurrence: 1, state: "captured", t_ns: seconds(100) },
+  { event: "state", hand: 0, occurrence: 1, state: 3, t_ns: seconds(100) },
   { event: "safety", reasons: ["kicked"], gate_actions: 1 << 12, t_ns: seconds(150) },
-  { event: "state", hand: 0, occurrence: 1, state: "seated", t_ns: seconds(200) },
+  { event: "state", hand: 0, occurrence: 1, state: 5, t_ns: seconds(200) },
   {
     event: "dropped",
     hand: 0,
     occurrence: 1,
-    state: "empty",
+    state: 0,
     was_seated: true,
-    metrics: { time_s: 3, path_mm: 900, peak_true_n: 40, peak_felt_n: 5, fit_true_n: 30, depth_um: 3, insertion_mm: 50 },
+    metrics: { time_s: 3, path_mm: 900, peak_true_n: 40, peak_felt_n: 5, fit_true_n: 30, depth_um: 3, insertion_mm: 50, collisions: 2 },
     t_ns: seconds(220),
   },
   { event: "placement", occurrence: 1, placement: "placed", t_ns: seconds(220) },

@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
 import { Recordings } from "../src/model/recordings";
 import { makeStore } from "../src/model/store";
-import type { RecordingEntry } from "../src/protocol/recording_messages";
+import type { RecordingEntry } from "../src/protocol/messages";
 import { toyDetail, toyFrames, toyScene } from "./toy_recording";
 
 const kEntry: RecordingEntry = {

@@ -1,15 +1,16 @@
 import { beforeEach, describe, expect, it } from "vitest";
 import { makeStore, type Store } from "../src/model/store";
-import { faultOf, stepsOf, StudyModel, type Commander } from "../src/model/study";
+import type { Commander } from "../src/model/commander";
+import { faultOf, stepsOf, StudyModel } from "../src/model/study";
 import { meanTimes } from "../src/model/study_summary";
-import type { Command } from "../src/protocol/messages";
 import type {
+  Command,
   ExperimenterState,
   FinishedTrial,
   ParticipantState,
   StudyQuestion,
   StudyReply,
-} from "../src/protocol/study_messages";
+} from "../src/protocol/messages";
 
 const told: ParticipantState = {
   view: "participant",
@@ -32,6 +33,8 @@ const told: ParticipantState = {
 const watched: ExperimenterState = {
   ...told,
   view: "experimenter",
+  link: null,
+  condition_name: null,
   participant: "P01",
   is_resumed: false,
   interruptions: 0,

@@ -16,6 +16,7 @@ const run = (occurrence: number, wasSeated: boolean, time_s: number, peak: numbe
     fit_true_n: 0,
     depth_um: 0,
     insertion_mm: 0,
+    collisions,
   },
 });
 

@@ -13,9 +13,8 @@ import {
   type HandState,
 } from "../src/protocol/frames";
 import { joinBytes, makeFrame } from "../src/protocol/decoder";
-import type { Scene } from "../src/protocol/messages";
+import type { RecordedEvent, RecordingDetail, Scene } from "../src/protocol/messages";
 import { makePart } from "./toy_part";
-import type { RecordedEvent, RecordingDetail } from "../src/protocol/recording_messages";
 
 export const kPeriodNs = 16_666_667;
 
@@ -93,7 +92,10 @@ export function toyDetail(events: RecordedEvent[], durationS: number): Recording
     id: "r1",
     name: "First",
     product: "toy",
+    started_unix_ms: 1_700_000_000_000,
     duration_s: durationS,
+    is_complete: true,
+    bytes: 0,
     scene: "/api/recording/r1/scene",
     glb: "/api/recording/r1/model.glb",
     frames: "/api/recording/r1/frames",

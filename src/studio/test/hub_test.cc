@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "studio/test/protocol_schema.h"
 #include "studio/test/small_bench.h"
 
 namespace hvas::studio {
@@ -16,7 +17,12 @@ namespace {
 /** A client that keeps all that it is sent. */
 class FakeLink final : public ClientLink {
  public:
-  void SendText(std::string text) override { texts.push_back(Json::parse(text)); }
+  void SendText(std::string text) override {
+    texts.push_back(Json::parse(text));
+    if (const Json& json = texts.back(); !json.contains("ok")) {
+      EXPECT_EQ(testing::FindEventFault(json), "") << json;
+    }
+  }
 
   void SendFrames(std::string bytes) override { frames.push_back(std::move(bytes)); }
 

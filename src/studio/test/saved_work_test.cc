@@ -9,6 +9,7 @@
 
 #include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
+#include "studio/test/protocol_schema.h"
 #include "studio/test/small_bench.h"
 #include "studio/workbench.h"
 
@@ -91,6 +92,7 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
   next.bench.Resume(*work);
   const auto resumed = next.log.Await("resumed");
   ASSERT_TRUE(resumed);
+  EXPECT_EQ(testing::FindEventFault(*resumed), "");
   EXPECT_EQ((*resumed)["is_resumed"], true);
   EXPECT_EQ((*resumed)["edits"], 1);
   const LiveState before = killed.bench.state();

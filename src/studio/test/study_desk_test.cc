@@ -11,6 +11,7 @@
 #include "base/test/await_true.h"
 #include "studio/hub.h"
 #include "studio/scene_json.h"
+#include "studio/test/protocol_schema.h"
 #include "studio/test/small_bench.h"
 
 namespace hvas::studio {
@@ -39,7 +40,14 @@ questions:
 
 class FakeLink final : public ClientLink {
  public:
-  void SendText(std::string text) override { texts.push_back(std::move(text)); }
+  void SendText(std::string text) override {
+    texts.push_back(std::move(text));
+    const Json json = Json::parse(texts.back());
+    const std::string fault = json.value("ok", false)
+                                  ? testing::FindResultFault("study", json["result"])
+                                  : (json.contains("ok") ? "" : testing::FindEventFault(json));
+    EXPECT_EQ(fault, "") << json;
+  }
 
   void SendFrames(std::string) override {}
 

@@ -205,7 +205,7 @@ const simulateActions: Action[] = [
   action("lease-release", "action.leaseRelease", () => void studio.command({ command: "lease", action: "release" }), {
     isEnabled: () => store.hasLease.value && store.clients.value.length > 1,
   }),
-  action("enter-vr", () => t(ui.isInVr.value ? "action.leaveVr" : "action.enterVr"), () => void enterVr(), {
+  action("enter-vr", () => t(ui.isInVr.value ? "action.leaveVr" : "action.enterVr"), () => void enterVr((id) => runAction(findAction(id))), {
     isEnabled: hasScene,
   }),
 ];

@@ -14,7 +14,7 @@ import {
 } from "../model/compare";
 import type { RecordedRun } from "../model/playback";
 import { store, studio, ui } from "./app_state";
-import { CompareChart, kStyles, type NamedCurve } from "./compare_chart";
+import { CompareChart, Dash, kStyles, type NamedCurve } from "./compare_chart";
 import { CompareTable } from "./compare_table";
 import { t } from "./i18n";
 import { Icon } from "./icons";
@@ -42,15 +42,6 @@ function useRuns(): readonly RecordedRun[] {
   }, [ids]);
   const runs = useComputed(() => ui.compared.value.flatMap((id) => loaded.value.get(id) ?? []));
   return runs.value;
-}
-
-export function Dash({ style }: { style: number }) {
-  const { color, dash } = kStyles[style]!;
-  return (
-    <svg class="dash" width={26} height={10} aria-hidden="true" style={{ color: `var(${color})` }}>
-      <line x1={1} y1={5} x2={25} y2={5} stroke-dasharray={dash.join(" ")} />
-    </svg>
-  );
 }
 
 function RecordingChips() {

@@ -17,6 +17,16 @@ export const kStyles: readonly { color: string; dash: number[] }[] = [
   { color: "--ink", dash: [1, 4] },
 ];
 
+/** A piece of the line that curves of a style are drawn with. */
+export function Dash({ style }: { style: number }) {
+  const { color, dash } = kStyles[style]!;
+  return (
+    <svg class="dash" width={26} height={10} aria-hidden="true" style={{ color: `var(${color})` }}>
+      <line x1={1} y1={5} x2={25} y2={5} stroke-dasharray={dash.join(" ")} />
+    </svg>
+  );
+}
+
 export interface NamedCurve {
   name: string;
   /** Which of the styles. */

@@ -3,7 +3,7 @@
 import { commonPaths, differencePercent, kMetrics, partRows, totalOf, type Metric, type Metrics } from "../model/compare";
 import type { RecordedRun } from "../model/playback";
 import { ui } from "./app_state";
-import { Dash } from "./compare";
+import { Dash } from "./compare_chart";
 import { saveTable } from "./exports";
 import { figures, number, t } from "./i18n";
 import { Icon } from "./icons";

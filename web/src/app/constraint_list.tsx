@@ -6,7 +6,7 @@ import { chooseCardMate, select } from "../model/view_state";
 import { canSteer, store, studio, view } from "./app_state";
 import { t } from "./i18n";
 import { Icon } from "./icons";
-import { isInPlace } from "./model_tree";
+import { isInPlace } from "./progress";
 
 const kShown = 40;
 

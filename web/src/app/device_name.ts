@@ -1,5 +1,5 @@
 import { kPointer } from "../model/hands";
-import type { HandSetup } from "../protocol/recording_messages";
+import type { HandSetup } from "../protocol/messages";
 import { t } from "./i18n";
 
 export function deviceName({ device }: HandSetup): string {

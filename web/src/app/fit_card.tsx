@@ -53,15 +53,16 @@ function MateChoice({ parts, mates, mate }: { parts: readonly number[]; mates: r
   );
 }
 
-/** Clearance is told as such, and as interference where both limits are below zero. */
+/** Clearance is told as such, and as interference where both limits are below zero. A thread has no limits by ISO 286. */
 function limits(fit: Fit): { label: string; text: string; actual: string } {
-  const isTight = fit.clearance_max_um <= 0;
+  const { clearance_min_um: min, clearance_max_um: max, clearance_actual_um: actual } = fit;
+  const isTight = max !== null && max <= 0;
   const sign = isTight ? -1 : 1;
-  const [low, high] = [sign * fit.clearance_min_um, sign * fit.clearance_max_um].sort((a, b) => a - b);
+  const [low, high] = [sign * (min ?? 0), sign * (max ?? 0)].sort((a, b) => a - b);
   return {
     label: t(isTight ? "fit.limitsInterference" : "fit.limits"),
-    text: `${number(low ?? 0, 0)} … ${number(high ?? 0, 0)} µm`,
-    actual: `${number(sign * fit.clearance_actual_um, 1)} µm`,
+    text: min === null || max === null ? "–" : `${number(low ?? 0, 0)} … ${number(high ?? 0, 0)} µm`,
+    actual: actual === null ? "–" : `${number(sign * actual, 1)} µm`,
   };
 }
 

@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { forceShare, kPointer, leaderOf, parseScale } from "../model/hands";
-import type { HandSetup } from "../protocol/recording_messages";
+import type { HandSetup } from "../protocol/messages";
 import { store, studio } from "./app_state";
 import { deviceName } from "./device_name";
 import type { MessageKey } from "./en";

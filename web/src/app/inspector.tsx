@@ -8,7 +8,7 @@ import { store, view } from "./app_state";
 import { FitCard } from "./fit_card";
 import { number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
-import { isInPlace } from "./model_tree";
+import { isInPlace } from "./progress";
 import { Procedure } from "./procedure";
 import { RunCard } from "./run_card";
 import { StepsCard } from "./steps_card";

@@ -9,6 +9,7 @@ import { store, ui, view, viewport } from "./app_state";
 import { t, tn } from "./i18n";
 import { Icon } from "./icons";
 import { Key } from "./key";
+import { isInPlace } from "./progress";
 
 interface Row {
   node: TreeNode;
@@ -41,10 +42,6 @@ function badgeOf(node: TreeNode): { text: string; look: string } {
   }
   const isNext = first === store.expected.value?.occurrence;
   return { text: isNext ? t("tree.expected") : "", look: "is-next" };
-}
-
-export function isInPlace(id: number): boolean {
-  return store.placements.value.get(id) === "placed" || store.occurrences.value.get(id)?.is_base === true;
 }
 
 interface RowProps {

@@ -7,28 +7,7 @@ import type { Step } from "../protocol/messages";
 import { store, view } from "./app_state";
 import { t } from "./i18n";
 import { Icon } from "./icons";
-import { isInPlace } from "./model_tree";
-
-function nameOf(step: Step): string {
-  return store.occurrences.value.get(step.occurrence)?.name ?? "";
-}
-
-function stepText(step: Step): string {
-  const name = nameOf(step);
-  const more = step.members.filter((id) => id !== step.occurrence).length;
-  if (step.kind === "insert") {
-    return more > 0 ? t("steps.insertMany", { name, n: more }) : t("steps.insert", { name });
-  }
-  return t(`steps.${step.kind}`, { name });
-}
-
-/** The step at hand, with its number. */
-export function stepTitle(): string {
-  const at = store.step.value?.index ?? 0;
-  const step = store.scene.value?.steps[at];
-  const total = store.scene.value?.steps.length ?? 0;
-  return step === undefined ? t("steps.doneAll") : `${at + 1}/${total} · ${stepText(step)}`;
-}
+import { isInPlace, nameOfStep, stepText } from "./progress";
 
 /** Backwards while the product is taken apart. */
 function shownSteps(): { steps: readonly Step[]; at: number | null; isApart: boolean } {
@@ -70,7 +49,7 @@ export function Procedure() {
                 onClick={() => select(view, [step.occurrence, ...step.members], false)}
               >
                 <Icon name={isNow ? "play" : done ? "check" : "dot"} size={14} />
-                <span>{isApart ? t("apart.next", { name: nameOf(step) }) : stepText(step)}</span>
+                <span>{isApart ? t("apart.next", { name: nameOfStep(step) }) : stepText(step)}</span>
                 <span class="sr-only">{isNow ? t("steps.isNow") : done ? t("steps.isDone") : ""}</span>
               </button>
             </li>

@@ -2,7 +2,7 @@
 
 import { useSignal, type Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import type { RecordingEntry } from "../protocol/recording_messages";
+import type { RecordingEntry } from "../protocol/messages";
 import { canSteer, store, studio, ui } from "./app_state";
 import { Dialog, DialogHead } from "./dialog";
 import { dateTime, duration, megabytes, t } from "./i18n";

@@ -31,6 +31,12 @@ function makeViewport(): Viewport {
   return made;
 }
 
+// While the page is worked on, the view of the module before does not go on beside the new one.
+import.meta.hot?.dispose(() => {
+  viewport.peek()?.dispose();
+  viewport.value = null;
+});
+
 export function ViewportHost() {
   const host = useRef<HTMLDivElement>(null);
   useEffect(() => {

@@ -2,11 +2,10 @@
 
 import { makeHint } from "../model/hints";
 import type { VrHost, VrStatus } from "../view3d/vr/host";
-import { findAction, runAction } from "./actions";
 import { forcesOff } from "./hand_actions";
 import { canSteer, store, studio, ui, viewport } from "./app_state";
 import { number, t } from "./i18n";
-import { stepTitle } from "./procedure";
+import { stepTitle } from "./progress";
 
 function describe(): VrStatus {
   const held = store.held.value[0] ?? null;
@@ -29,7 +28,8 @@ function describe(): VrStatus {
   };
 }
 
-const host: VrHost = {
+/** @param runNamed  Runs the action of this id. */
+const makeHost = (runNamed: (id: string) => void): VrHost => ({
   say: (word) => t(`vr.${word}`),
   number,
   status: describe,
@@ -37,11 +37,11 @@ const host: VrHost = {
     switch (action) {
       case "undo":
       case "next":
-        runAction(findAction(action));
+        runNamed(action);
         break;
       case "forces":
         if (store.forcesOff.value) {
-          runAction(findAction("forces-on"));
+          runNamed("forces-on");
         } else {
           forcesOff();
         }
@@ -51,9 +51,11 @@ const host: VrHost = {
         break;
     }
   },
-};
+});
 
-export async function enterVr(): Promise<void> {
+/** Begins a session in the headset, or ends the one that there is. */
+export async function enterVr(runNamed: (id: string) => void): Promise<void> {
+  const host = makeHost(runNamed);
   const port = viewport.value;
   if (port === null) {
     return;

@@ -1,6 +1,6 @@
 /** Recordings laid side by side: the same part in each, over time or over depth, and what it cost. */
 
-import type { PartResult, RecordingDetail } from "../protocol/recording_messages";
+import type { PartResult, RecordingDetail } from "../protocol/messages";
 import type { RecordedRun } from "./playback";
 import { extremes, type Trace } from "./trace";
 

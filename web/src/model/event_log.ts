@@ -1,6 +1,6 @@
 /** Events of the work in the form in which they are told, whether they come now or from a recording. */
 
-import type { HoldState, RunMetrics, ServerError } from "../protocol/messages";
+import type { RunMetrics, ServerError } from "../protocol/messages";
 import { holdStateOf } from "./hints";
 import type { LimitCounts, LogEntry, LogKind, Run } from "./store";
 
@@ -17,11 +17,11 @@ export const kRunsLength = 50;
 export interface WorkEvent {
   event: string;
   occurrence?: number | null;
-  state?: number | string;
+  state?: number;
   was_seated?: boolean;
   to_place_mm?: number;
   metrics?: RunMetrics;
-  reasons?: string[];
+  reasons?: readonly string[];
   gate_actions?: number;
   off?: boolean;
   on?: boolean;
@@ -55,7 +55,7 @@ export function tell(event: WorkEvent, nameOf: (occurrence: number) => string): 
     case "taken":
       return { kind: "taken", params: { part } };
     case "state":
-      return part === "" ? null : { kind: "state", params: { part, state: holdStateOf(event.state as HoldState) } };
+      return part === "" ? null : { kind: "state", params: { part, state: holdStateOf(event.state ?? 0) } };
     case "dropped":
       return { kind: "dropped", params: { part, seated: event.was_seated ? 1 : 0, ...missing(event) } };
     case "safety":

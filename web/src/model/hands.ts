@@ -1,7 +1,6 @@
 /** Who leads which hand, and with what. */
 
-import type { Client } from "../protocol/messages";
-import type { HandSetup } from "../protocol/recording_messages";
+import type { Client, HandSetup } from "../protocol/messages";
 
 export const kPointer = "pointer";
 

@@ -23,8 +23,9 @@ export interface Hint {
   params: { part: string; into: string; expected: string };
 }
 
-export function holdStateOf(state: number | HoldState): HoldState {
-  return typeof state === "number" ? (kHoldStates[state] ?? "empty") : state;
+/** The name of a state as frames and events have it. */
+export function holdStateOf(state: number): HoldState {
+  return kHoldStates[state] ?? "empty";
 }
 
 function nameOf(scene: Scene, id: number): string {

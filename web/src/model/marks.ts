@@ -3,7 +3,7 @@
 import { tell, type Told } from "./event_log";
 import type { LogEntry } from "./store";
 import type { Trace } from "./trace";
-import type { RecordedEvent } from "../protocol/recording_messages";
+import type { RecordedEvent } from "../protocol/messages";
 
 export type MarkKind = "taken" | "contact" | "captured" | "seated" | "dropped" | "safety";
 

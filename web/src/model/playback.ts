@@ -2,9 +2,8 @@
 
 import { computed, signal } from "@preact/signals";
 import type { LiveState } from "../protocol/frame_store";
-import type { Placement, Scene } from "../protocol/messages";
+import type { Placement, RecordedEvent, RecordingDetail, Scene } from "../protocol/messages";
 import { FrameCursor, type RecordedFrames } from "../protocol/recorded_frames";
-import type { RecordedEvent, RecordingDetail } from "../protocol/recording_messages";
 import { addToLog, countLimits, kRunsLength, runOf, tell } from "./event_log";
 import { isSameHeld, summarize } from "./held";
 import { recordedMarks, type Mark } from "./marks";

@@ -3,13 +3,12 @@
 import { batch, signal } from "@preact/signals";
 import { CommandError } from "../protocol/connection";
 import { kMaxHands, sampleOf } from "../protocol/frame_store";
-import type { Scene, ServerError } from "../protocol/messages";
+import type { RecordingDetail, RecordingEntry, RecordingNow, Scene, ServerError } from "../protocol/messages";
 import { RecordedFrames } from "../protocol/recorded_frames";
-import type { RecordingDetail, RecordingEntry, RecordingNow } from "../protocol/recording_messages";
+import type { Announcer, Commander } from "./commander";
 import type { Told } from "./event_log";
 import { Playback, type RecordedRun } from "./playback";
 import type { Store } from "./store";
-import type { Studio } from "./studio";
 import { Trace } from "./trace";
 
 /** Above those of all scenes of a server. */
@@ -53,7 +52,7 @@ export class Recordings {
 
   constructor(
     private readonly store: Store,
-    private readonly studio: Pick<Studio, "command" | "notify">,
+    private readonly studio: Commander & Announcer,
   ) {}
 
   /** The server records, or does not any more. @return What there is to tell. */

@@ -3,19 +3,21 @@
 import { computed, signal, type ReadonlySignal } from "@preact/signals";
 import type {
   Client,
+  DeviceList,
   Example,
+  HandSetup,
   HoldState,
   Occurrence,
   Placement,
+  RecordingEntry,
   Role,
   RunMetrics,
   Scene,
   ServerError,
   ServerStatus,
   Step,
+  StudyState,
 } from "../protocol/messages";
-import type { DeviceList, HandSetup, RecordingEntry } from "../protocol/recording_messages";
-import type { StudyState } from "../protocol/study_messages";
 
 export type LinkState = "starting" | "open" | "lost" | "denied";
 
@@ -166,7 +168,7 @@ export function makeStore() {
     upload: signal<{ file: string; fraction: number } | null>(null),
     failure: signal<ServerError | null>(null),
     forcesOff: signal(false),
-    safety: signal<{ reasons: string[] } | null>(null),
+    safety: signal<{ reasons: readonly string[] } | null>(null),
     demo: signal(false),
     history: signal<History>({ undo: null, redo: null }),
     status: signal<ServerStatus | null>(null),

@@ -1,20 +1,16 @@
 /** A study as this page knows it: what the server told last, and what one may do about it. */
 
 import { computed, signal } from "@preact/signals";
-import type { Command, CommandResults, FaceOf } from "../protocol/messages";
 import type {
   AnswerValue,
   ExperimenterState,
+  FaceOf,
   StudyCommand,
   StudyQuestion,
   StudyState,
-} from "../protocol/study_messages";
+} from "../protocol/messages";
+import type { Commander } from "./commander";
 import type { Store } from "./store";
-
-/** What is sent to the server; null: it was refused. */
-export interface Commander {
-  command<K extends Command["command"]>(command: Extract<Command, { command: K }>): Promise<CommandResults[K] | null>;
-}
 
 type Action = StudyCommand extends infer Each ? (Each extends StudyCommand ? Omit<Each, "command"> : never) : never;
 
@@ -174,6 +170,9 @@ export function stepsOf(question: StudyQuestion): readonly number[] {
   const low = question.low ?? 1;
   return Array.from({ length: Math.max(0, (question.high ?? 10) - low) + 1 }, (_, k) => low + k);
 }
+
+/** The question of blind identification: it has to be answered. */
+export const kIdentifyQuestion = "identify";
 
 export type AnswerFault = "missing" | "tooLong" | "unknown";
 

@@ -1,6 +1,6 @@
 /** The trials so far, in numbers. */
 
-import type { FinishedTrial } from "../protocol/study_messages";
+import type { FinishedTrial } from "../protocol/messages";
 
 export interface MeanTime {
   condition: string;

@@ -58,6 +58,10 @@ export class CameraRig {
     this.controls.mouseButtons.middle = CameraControls.ACTION.TRUCK;
   }
 
+  dispose(): void {
+    this.controls.dispose();
+  }
+
   get camera(): PerspectiveCamera | OrthographicCamera {
     return this.isParallel ? this.parallel : this.perspective;
   }

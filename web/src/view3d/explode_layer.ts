@@ -7,6 +7,7 @@ import { explodeOffsets, type Box } from "../model/explode";
 import { add, lerp, scale, slerp, type Pose, type Vec3 } from "../model/math";
 import type { ViewState } from "../model/view_state";
 import type { Scene, Step } from "../protocol/messages";
+import { disposeTree } from "./lifetime";
 import type { Parts } from "./parts";
 
 /** Of the slider: so much of it brings what lies about to its place in the picture. */
@@ -33,6 +34,10 @@ export class ExplodeLayer {
     this.lines.frustumCulled = false;
     this.lines.renderOrder = 5;
     this.lines.visible = false;
+  }
+
+  dispose(): void {
+    disposeTree(this.lines);
   }
 
   /** Whether parts are drawn elsewhere than they are. */

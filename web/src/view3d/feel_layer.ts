@@ -21,6 +21,7 @@ import { kMaxContacts } from "../protocol/frame_store";
 import type { ContactPoint, HandState } from "../protocol/frames";
 import { toQuat, toVec3, type Pose } from "../model/math";
 import { Seen } from "../model/seen";
+import { disposeTree } from "./lifetime";
 import type { Palette } from "./palette";
 import type { PartShape } from "./part_shape";
 import { toMatrix } from "./parts";
@@ -148,6 +149,14 @@ export class FeelLayer {
     this.axis.visible = false;
     this.axis.frustumCulled = false;
     this.root.add(this.force.root, this.torque.root, this.goal.root, this.tracked.root, this.dots, this.axis);
+  }
+
+  /** Parts that it shows as ghosts are not its own. */
+  dispose(): void {
+    this.setHeld([], []);
+    disposeTree(this.root);
+    this.goal.material.dispose();
+    this.tracked.material.dispose();
   }
 
   setPalette(palette: Palette): void {

@@ -1,10 +1,14 @@
 /** Where parts belong: as boxes to reckon with, and as ghosts to be seen. */
 
-import { Matrix4 } from "three";
+import { Matrix4, Vector3 } from "three";
 import type { Box } from "../model/explode";
 import type { Scene } from "../protocol/messages";
 import type { GhostPart } from "./feel_layer";
 import { toMatrix, type Parts } from "./parts";
+
+export function cornersOf({ low, high }: Box): Vector3[] {
+  return Array.from({ length: 8 }, (_, k) => new Vector3(...low.map((at, axis) => ((k >> axis) & 1 ? (high[axis] ?? at) : at))));
+}
 
 /** Of each part in its place, in W. */
 export function goalBoxes(scene: Scene, parts: Parts): Map<number, Box> {

@@ -1,7 +1,6 @@
 /** Takes and lets go on behalf of the hands that the mouse leads, and tells the server where they are. It
  leads one at a time; the other one stays where it was led to. */
 
-import { effect } from "@preact/signals";
 import { isPointerHand } from "../model/hands";
 import { toQuat, toVec3, type Pose } from "../model/math";
 import type { Studio } from "../model/studio";
@@ -9,6 +8,7 @@ import type { ViewState } from "../model/view_state";
 import { kMaxHands, type LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
 import type { Occurrence } from "../protocol/messages";
+import { Lifetime } from "./lifetime";
 import { MouseHand, type Eye } from "./mouse_hand";
 import type { SceneView } from "./scene_view";
 
@@ -33,24 +33,29 @@ export class HandControl {
     seatedSince: null,
   }));
   private isTaking = false;
+  private readonly life = new Lifetime();
 
   constructor(
     private readonly studio: Studio,
     private readonly product: SceneView,
     private readonly view: ViewState,
   ) {
-    effect(() => {
+    this.life.follow(() => {
       // Whoever steers now goes on from where the part is.
       const own = studio.store.ownHands.value;
       for (const led of this.led.filter(({ hand }) => !own.includes(hand))) {
         this.forget(led);
       }
     });
-    effect(() => {
+    this.life.follow(() => {
       if (view.hand.value >= Math.max(1, studio.store.hands.value.length)) {
         view.hand.value = 0;
       }
     });
+  }
+
+  dispose(): void {
+    this.life.end();
   }
 
   /** The hand that the mouse leads now. */

@@ -13,6 +13,7 @@ import {
   Vector3,
 } from "three";
 import type { Measurement } from "../protocol/messages";
+import { disposeShapes } from "./lifetime";
 import type { Palette } from "./palette";
 import type { PartShape } from "./part_shape";
 
@@ -60,7 +61,7 @@ export class MarkLayer {
   }
 
   showFaces(faces: readonly MarkedFace[]): void {
-    this.faces.clear();
+    this.clearFaces();
     for (const { shape, matrix, face } of faces) {
       const mesh = new Mesh(shape.faceGeometry(face), this.faceMaterial);
       mesh.matrixAutoUpdate = false;
@@ -72,8 +73,7 @@ export class MarkLayer {
   }
 
   showMeasurement(measurement: Measurement | null): void {
-    this.measured.clear();
-    this.anchor = null;
+    this.clearMeasured();
     const points = (measurement?.p_m ?? []).map((p) => new Vector3(...p));
     // Lines that are all but parallel meet where nobody looks.
     const isInSight = points.every((p) => p.length() < kFarthest * this.radius);
@@ -94,8 +94,27 @@ export class MarkLayer {
   }
 
   clear(): void {
+    this.clearFaces();
+    this.clearMeasured();
+  }
+
+  dispose(): void {
+    this.clear();
+    this.dot.dispose();
+    [this.faceMaterial, this.lineMaterial, this.dotMaterial].forEach((material) => material.dispose());
+    this.root.removeFromParent();
+  }
+
+  private clearFaces(): void {
+    disposeShapes(this.faces);
     this.faces.clear();
-    this.measured.clear();
+  }
+
+  private clearMeasured(): void {
     this.anchor = null;
+    if (this.measured.children.length > 0) {
+      disposeShapes(this.measured);
+      this.measured.clear();
+    }
   }
 }

@@ -19,6 +19,10 @@ export class Painter {
     private readonly view: ViewState,
   ) {}
 
+  dispose(): void {
+    this.stereo.dispose();
+  }
+
   /** @param vrEyes  Where a headset is drawn for. */
   draw(width: number, height: number, vrEyes: PerspectiveCamera): void {
     const { renderer, view, rig } = this;
@@ -30,6 +34,9 @@ export class Painter {
     renderer.setViewport(0, 0, width, height);
     renderer.clear();
     const stereo = view.stereo.peek();
+    if (stereo !== "anaglyph") {
+      this.stereo.dispose();
+    }
     if (stereo === "none") {
       this.drawScreen(rig.camera, width, height);
     } else {

@@ -1,9 +1,9 @@
 /** How each part looks for what it is: hidden, a ghost, pointed at, selected, held, the next one. */
 
-import { effect } from "@preact/signals";
 import { takingApart } from "../model/apart";
 import type { Store } from "../model/store";
 import type { ViewState } from "../model/view_state";
+import { Lifetime } from "./lifetime";
 import type { Palette } from "./palette";
 import type { PartLook, Parts } from "./parts";
 
@@ -14,16 +14,21 @@ export class PartLooks {
   /** What each part was given last, as text. */
   private readonly given = new Map<number, string>();
   private pulseUntil = 0;
+  private readonly life = new Lifetime();
 
   constructor(
     private readonly store: Store,
     private readonly view: ViewState,
   ) {
-    effect(() => {
+    this.life.follow(() => {
       void store.step.value;
       void store.expected.value;
       this.pulseUntil = performance.now() + kPulseMs;
     });
+  }
+
+  dispose(): void {
+    this.life.end();
   }
 
   setPalette(palette: Palette): void {

@@ -57,20 +57,19 @@ export class PartShape {
     return { point: hit.point, distance: hit.distance, face: Math.round(this.faceIds[vertex] ?? 0) };
   }
 
-  /** The triangles of one face as a mesh of its own. */
+  /** The triangles of one face as a mesh of its own, which shares nothing with the part. */
   faceGeometry(face: number): BufferGeometry {
-    const kept: number[] = [];
-    const index = this.index;
+    const corners: number[] = [];
+    const { index, positions } = this;
     for (let k = 0; k < index.length; k += 3) {
       if (Math.round(this.faceIds[index[k] ?? 0] ?? -1) === face) {
-        kept.push(index[k] ?? 0, index[k + 1] ?? 0, index[k + 2] ?? 0);
+        for (let corner = k; corner < k + 3; corner++) {
+          const at = 3 * (index[corner] ?? 0);
+          corners.push(positions[at] ?? 0, positions[at + 1] ?? 0, positions[at + 2] ?? 0);
+        }
       }
     }
-    const geometry = new BufferGeometry();
-    geometry.setAttribute("position", this.geometry.getAttribute("position"));
-    geometry.setAttribute("normal", this.geometry.getAttribute("normal"));
-    geometry.setIndex(kept);
-    return geometry;
+    return new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(corners), 3));
   }
 
   dispose(): void {

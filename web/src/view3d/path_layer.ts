@@ -1,6 +1,5 @@
 /** The way of a part: a line with its points, or the room that the part sweeps. */
 
-import { effect } from "@preact/signals";
 import {
   BufferGeometry,
   DoubleSide,
@@ -13,10 +12,10 @@ import {
   MeshStandardMaterial,
   SphereGeometry,
   Vector3,
-  type Object3D,
 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import type { PartPaths, ShownPath } from "../model/part_path";
+import { disposeShapes, Lifetime } from "./lifetime";
 import type { Palette } from "./palette";
 
 const kDotShare = 0.008;
@@ -35,9 +34,18 @@ export class PathLayer {
   });
   private loadCount = 0;
   private radius = 0.1;
+  private readonly life = new Lifetime();
 
   constructor(paths: PartPaths) {
-    effect(() => void this.show(paths.shown.value));
+    this.life.follow(() => void this.show(paths.shown.value));
+  }
+
+  dispose(): void {
+    this.life.end();
+    this.loadCount += 1;
+    disposeShapes(this.root);
+    [this.line, this.dots, this.sweep].forEach((material) => material.dispose());
+    this.root.removeFromParent();
   }
 
   setPalette(palette: Palette): void {
@@ -61,7 +69,7 @@ export class PathLayer {
     if (turn !== this.loadCount) {
       return;
     }
-    disposeAll(this.root);
+    disposeShapes(this.root);
     this.root.clear();
     if (content !== null) {
       this.root.add(content);
@@ -94,12 +102,4 @@ export class PathLayer {
     upright.rotation.x = Math.PI / 2;
     return upright;
   }
-}
-
-function disposeAll(root: Object3D): void {
-  root.traverse((node) => {
-    if (node instanceof Mesh || node instanceof Line) {
-      (node.geometry as BufferGeometry).dispose();
-    }
-  });
 }

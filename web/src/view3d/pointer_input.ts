@@ -4,10 +4,15 @@ import type { Ray as ThreeRay } from "three";
 import type { Ray } from "../model/assist";
 import type { Studio } from "../model/studio";
 import { groupAround } from "../model/tree";
-import { select } from "../model/view_state";
-import type { FaceOf } from "../protocol/messages";
+import { select, type ViewState } from "../model/view_state";
+import type { FaceOf, Vec3 } from "../protocol/messages";
+import type { CameraRig } from "./camera_rig";
+import type { HandControl } from "./hand_control";
+import { Lifetime } from "./lifetime";
+import type { Eye } from "./mouse_hand";
 import type { PickHit } from "./parts";
-import type { Viewport } from "./viewport";
+import type { SceneView } from "./scene_view";
+import type { WorkshopHost } from "./workshop_host";
 
 /** A press that moves further than this is a drag [px]. */
 const kClickPx = 4;
@@ -30,27 +35,55 @@ function plain(ray: ThreeRay): Ray {
   return { from: ray.origin.toArray(), along: ray.direction.toArray() };
 }
 
+/** The picture that is pointed at. */
+export interface PointedView {
+  readonly canvas: HTMLCanvasElement;
+  readonly view: ViewState;
+  readonly rig: CameraRig;
+  readonly eye: Eye;
+  readonly product: SceneView;
+  readonly hand: HandControl;
+  readonly workshop: WorkshopHost;
+  /** Through a point of the canvas [px]. */
+  rayAt(x: number, y: number): ThreeRay;
+  /** Direction that the side of the cube at this point looks along; null beside it. */
+  pickCube(x: number, y: number): Vec3 | null;
+  /** Brings these parts into the picture, or all. */
+  fit(only?: readonly number[]): void;
+}
+
 export class PointerInput {
   onContextMenu: (x: number, y: number, hit: PickHit | null) => void = () => {};
   private gesture: Gesture = { kind: "none" };
   private at = { x: 0, y: 0 };
   private rightPress: { x: number; y: number } | null = null;
   private lastHover = 0;
+  private readonly life = new Lifetime();
 
   constructor(
-    private readonly viewport: Viewport,
+    private readonly viewport: PointedView,
     private readonly studio: Studio,
   ) {
-    const canvas = viewport.canvas;
+    const { life } = this;
+    const { canvas } = viewport;
     // Captured, so that the eye's controls can be stopped before they hear of it.
-    canvas.addEventListener("pointerdown", (e) => this.onDown(e), { capture: true });
-    canvas.addEventListener("pointermove", (e) => this.onMove(e));
-    canvas.addEventListener("pointerup", (e) => this.onUp(e));
-    canvas.addEventListener("pointercancel", () => this.finish());
-    canvas.addEventListener("pointerleave", () => (viewport.view.hovered.value = null));
-    canvas.addEventListener("dblclick", (e) => this.onDoubleClick(e));
-    canvas.addEventListener("wheel", (e) => this.onWheel(e), { capture: true, passive: false });
-    canvas.addEventListener("contextmenu", (e) => e.preventDefault());
+    life.listen<PointerEvent>(canvas, "pointerdown", (e) => this.onDown(e), { capture: true });
+    life.listen<PointerEvent>(canvas, "pointermove", (e) => this.onMove(e));
+    life.listen<PointerEvent>(canvas, "pointerup", (e) => this.onUp(e));
+    life.listen(canvas, "pointercancel", () => this.finish());
+    life.listen(canvas, "pointerleave", () => (viewport.view.hovered.value = null));
+    life.listen<MouseEvent>(canvas, "dblclick", (e) => this.onDoubleClick(e));
+    life.listen<WheelEvent>(canvas, "wheel", (e) => this.onWheel(e), { capture: true, passive: false });
+    life.listen(canvas, "contextmenu", (e) => e.preventDefault());
+    life.listen(document, "visibilitychange", () => {
+      if (document.hidden) {
+        studio.rest();
+      }
+    });
+  }
+
+  dispose(): void {
+    this.life.end();
   }
 
   private locate(event: MouseEvent): { x: number; y: number } {

@@ -1,6 +1,6 @@
 /** The product in the view: loads it, puts parts where the frames say, and shows what is marked. */
 
-import { effect, untracked } from "@preact/signals";
+import { untracked } from "@preact/signals";
 import { Group, Quaternion, Ray, Sphere, Vector3 } from "three";
 import { clearanceOf, type Box } from "../model/explode";
 import { Extrapolator } from "../model/extrapolate";
@@ -13,8 +13,9 @@ import { kNone, type HandState } from "../protocol/frames";
 import type { Occurrence, Scene, Step } from "../protocol/messages";
 import { ArrowScale, FeelLayer } from "./feel_layer";
 import { ExplodeLayer } from "./explode_layer";
-import { ghostsOf, goalBoxes } from "./goals";
+import { cornersOf, ghostsOf, goalBoxes } from "./goals";
 import { loadShapes } from "./glb";
+import { Lifetime } from "./lifetime";
 import { MarkLayer } from "./mark_layer";
 import type { Palette } from "./palette";
 import { PartLooks } from "./part_looks";
@@ -44,6 +45,7 @@ export class SceneView {
   private generation = -1;
   private loadCount = 0;
   private glbUrl = "";
+  private readonly life = new Lifetime();
   /** One for each hand. */
   private readonly feels = Array.from({ length: kMaxHands }, () => new FeelLayer(this.arrowScale));
   private readonly heldKeys = this.feels.map(() => "");
@@ -56,21 +58,29 @@ export class SceneView {
     this.explode = new ExplodeLayer(view);
     this.root.add(...this.feels.map((feel) => feel.root), this.marks.root, this.explode.lines);
     // Only a new scene: what loading reads besides would load it again, and take the part out of the hand.
-    effect(() => {
+    this.life.follow(() => {
       const scene = store.scene.value;
       void untracked(() => this.load(scene));
     });
-    effect(() => this.applyLooks());
-    effect(() => this.applySection());
-    effect(() => {
+    this.life.follow(() => this.applyLooks());
+    this.life.follow(() => this.applySection());
+    this.life.follow(() => {
       this.parts?.setEdgesShown(view.showsEdges.value);
       this.arrowScale.isLocked = view.locksForceScale.value;
       this.isDirty = true;
     });
-    effect(() => {
+    this.life.follow(() => {
       this.marks.showMeasurement(view.measurement.value);
       this.markFaces();
     });
+  }
+
+  dispose(): void {
+    this.life.end();
+    this.loadCount += 1;
+    this.clear();
+    [...this.feels, this.marks, this.caps, this.explode, this.looks].forEach((each) => each.dispose());
+    this.root.removeFromParent();
   }
 
   setPalette(palette: Palette): void {
@@ -99,12 +109,7 @@ export class SceneView {
   /** Of what is to be seen at first: in a study also the place of the part at hand. */
   firstOutline(): Vector3[] {
     const box = this.boxes.get(this.store.study.peek()?.occurrence ?? -1);
-    if (box === undefined) {
-      return this.outline();
-    }
-    const [low, high] = [new Vector3(...box.low), new Vector3(...box.high)];
-    const at = (k: number) => new Vector3(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z);
-    return [...this.outline(), ...Array.from({ length: 8 }, (_, k) => at(k))];
+    return [...this.outline(), ...(box === undefined ? [] : cornersOf(box))];
   }
 
   /** How far out a part has to be to be clear of all that is in its place already [m]. */
@@ -286,10 +291,8 @@ export class SceneView {
   }
 
   private markFaces(): void {
-    const faces = [...this.view.picked.value];
-    if (this.view.selectedFace.value !== null) {
-      faces.push(this.view.selectedFace.value);
-    }
+    const selected = this.view.selectedFace.value;
+    const faces = [...this.view.picked.value, ...(selected === null ? [] : [selected])];
     this.marks.showFaces(
       faces.flatMap(({ occurrence, face }) => {
         const shape = this.parts?.shapeOf(occurrence);

@@ -116,6 +116,11 @@ export class SectionCaps {
     this.scene.clear();
   }
 
+  dispose(): void {
+    this.clear();
+    [this.back, this.front, this.hatch, this.quad].forEach((each) => each.dispose());
+  }
+
   private makeCap(occurrence: number, shape: PartShape): Group {
     const base = (shape.color ?? new Color(0.6, 0.6, 0.6)).clone();
     const fill = new MeshBasicMaterial({

@@ -17,6 +17,7 @@ import {
   type WebGLRenderer,
 } from "three";
 import { FloorGrid } from "./floor_grid";
+import { disposeTree } from "./lifetime";
 import type { Palette } from "./palette";
 
 export class Stage {
@@ -47,6 +48,10 @@ export class Stage {
     this.sun.shadow.radius = 4;
     this.root.add(this.sun, this.sun.target, this.fill, this.fill.target, this.sky, this.base);
     this.root.add(this.grid.object, this.shade, this.stand);
+  }
+
+  dispose(): void {
+    disposeTree(this.root);
   }
 
   /** Sets light and floor for parts in this sphere on a table of this height [m].

@@ -44,6 +44,13 @@ export class StereoView {
     renderer.setScissorTest(false);
   }
 
+  /** Frees the pictures of both eyes; they are made anew when they are wanted. */
+  dispose(): void {
+    this.anaglyph?.dispose();
+    this.anaglyph = null;
+    this.sizeKey = "";
+  }
+
   /** The effect sizes the canvas as well, and fixes it to pixels: that is the page's to decide. */
   private resize(effect: AnaglyphEffect, renderer: WebGLRenderer, size: StereoSize): void {
     const key = `${size.width}/${size.height}/${renderer.getPixelRatio()}`;

@@ -18,6 +18,7 @@ import {
   type WebGLRenderer,
 } from "three";
 import type { Vec3 } from "../model/math";
+import { disposeTree } from "./lifetime";
 import type { Palette } from "./palette";
 
 /** Names of the faces in the order of BoxGeometry: +x, -x, +y, -y, +z, -z. */
@@ -43,6 +44,10 @@ export class ViewCube {
     this.rim = new LineSegments(new EdgesGeometry(box), new LineBasicMaterial());
     this.scene.add(this.cube, this.rim);
     this.camera.up.set(0, 0, 1);
+  }
+
+  dispose(): void {
+    disposeTree(this.scene);
   }
 
   setLabels(labels: CubeLabels, palette: Palette): void {

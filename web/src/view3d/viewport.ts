@@ -1,6 +1,5 @@
 /** The 3D view as a whole: renderer, loop, eye, hand. What the rest of the page asks of it is here. */
 
-import { effect } from "@preact/signals";
 import { Box3, Group, PerspectiveCamera, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
 import type { Vec3 } from "../model/math";
 import type { PartPaths } from "../model/part_path";
@@ -9,9 +8,11 @@ import type { SharedView } from "../model/view_link";
 import type { ViewState } from "../model/view_state";
 import { nowMs, type LiveState } from "../protocol/frame_store";
 import { CameraRig, type ViewName } from "./camera_rig";
+import { makeEye } from "./eye";
 import { firstDirection } from "./first_direction";
 import { FrameMeter } from "./frame_meter";
 import { HandControl } from "./hand_control";
+import { Lifetime } from "./lifetime";
 import type { Eye } from "./mouse_hand";
 import { Painter } from "./painter";
 import { readPalette } from "./palette";
@@ -56,6 +57,7 @@ export class Viewport {
   private readonly cube = new ViewCube();
   private readonly painter: Painter;
   private readonly listeners = new Set<FrameListener>();
+  private readonly life = new Lifetime();
   private readonly caster = new Raycaster();
   private width = 1;
   private height = 1;
@@ -90,30 +92,32 @@ export class Viewport {
     this.hand = new HandControl(studio, this.product, view);
     this.pointer = new PointerInput(this, studio);
     this.product.onLoaded = (isNew) => this.onLoaded(isNew);
-    new ResizeObserver(() => this.resize()).observe(host);
+    const observer = new ResizeObserver(() => this.resize());
+    observer.observe(host);
+    this.life.onEnd(() => observer.disconnect());
     this.followState();
     this.resize();
     this.renderer.setAnimationLoop((now) => this.tick(now));
-    setInterval(() => this.moveHand(performance.now()), kHandMs);
-    document.addEventListener("visibilitychange", () => {
-      if (document.hidden) {
-        studio.rest();
-      }
-    });
+    const timer = setInterval(() => this.moveHand(performance.now()), kHandMs);
+    this.life.onEnd(() => clearInterval(timer));
+  }
+
+  /** Ends the picture: nothing of it is drawn, listened to or kept on the graphics card any more. */
+  dispose(): void {
+    void this.renderer.xr.getSession()?.end();
+    this.renderer.setAnimationLoop(null);
+    this.life.end();
+    this.listeners.clear();
+    const own = [this.pointer, this.hand, this.workshop, this.product, this.stage, this.cube, this.painter, this.rig];
+    own.forEach((each) => each.dispose());
+    this.pathLayer?.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
   }
 
   get eye(): Eye {
-    const camera = this.rig.camera;
-    camera.updateMatrixWorld();
-    const axis = (column: number): Vec3 => new Vector3().setFromMatrixColumn(camera.matrixWorld, column).toArray();
-    const from = camera.position;
-    return {
-      right: axis(0),
-      up: axis(1),
-      back: axis(2),
-      rayTo: (p) => this.rayThrough(new Vector3(...p).project(camera)),
-      metresPerPixel: (p) => this.rig.metresPerPixel(new Vector3(...p).distanceTo(from), this.height),
-    };
+    return makeEye(this.rig, this.caster, this.height);
   }
 
   onFrame(listener: FrameListener): () => void {
@@ -151,6 +155,7 @@ export class Viewport {
   }
 
   showPaths(paths: PartPaths): void {
+    this.pathLayer?.dispose();
     const layer = new PathLayer(paths);
     layer.onChange = () => this.invalidate();
     this.pathLayer = layer;
@@ -209,22 +214,22 @@ export class Viewport {
   }
 
   private followState(): void {
-    const { view } = this;
-    effect(() => {
+    const { view, life } = this;
+    life.follow(() => {
       this.rig.setParallel(view.isOrthographic.value);
       this.invalidate();
     });
-    effect(() => {
+    life.follow(() => {
       const isFine = view.isFine.value;
       this.stage.setShadows(isFine, this.renderer);
       this.renderer.setPixelRatio(isFine ? Math.min(2, devicePixelRatio) : 1);
       this.resize();
     });
-    effect(() => {
+    life.follow(() => {
       this.stage.setGridShown(view.showsGrid.value && !this.workshop.isShown);
       this.invalidate();
     });
-    effect(() => {
+    life.follow(() => {
       void view.stereo.value;
       this.resize();
       if (this.product.parts !== null) {
@@ -248,11 +253,6 @@ export class Viewport {
       this.rig.lookFrom(firstDirection(scene), this.product.firstOutline(), false);
     }
     this.hand.stop();
-  }
-
-  private rayThrough(ndc: Vector3): { from: Vec3; along: Vec3 } {
-    this.caster.setFromCamera(new Vector2(ndc.x, ndc.y), this.rig.camera);
-    return { from: this.caster.ray.origin.toArray(), along: this.caster.ray.direction.toArray() };
   }
 
   private resize(): void {

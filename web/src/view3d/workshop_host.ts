@@ -1,9 +1,9 @@
 /** The workshop in the view: loaded when it is first wanted, left out where drawing is slow. */
 
-import { effect } from "@preact/signals";
 import { Vector3, type Group, type Ray, type Sphere } from "three";
 import { firstItems, keepOnBench, type BenchItem, type BenchKind } from "../model/bench";
 import type { ViewState } from "../model/view_state";
+import { Lifetime } from "./lifetime";
 import type { Workshop } from "./workshop/workshop";
 
 interface Place {
@@ -18,6 +18,7 @@ export class WorkshopHost {
   private workshop: Workshop | null = null;
   private isLoading = false;
   private place: Place | null = null;
+  private readonly life = new Lifetime();
   /** What is dragged, and where on it the pointer took hold. */
   private dragged: { kind: BenchKind; dx: number; dy: number } | null = null;
 
@@ -25,16 +26,22 @@ export class WorkshopHost {
     private readonly parent: Group,
     private readonly view: ViewState,
   ) {
-    effect(() => {
+    this.life.follow(() => {
       if (this.isWanted) {
         void this.load();
       }
       this.follow();
     });
-    effect(() => {
+    this.life.follow(() => {
       void view.benchItems.value;
       this.follow();
     });
+  }
+
+  dispose(): void {
+    this.life.end();
+    this.workshop?.dispose();
+    this.workshop = null;
   }
 
   get isShown(): boolean {
@@ -106,6 +113,9 @@ export class WorkshopHost {
     }
     this.isLoading = true;
     const { Workshop: Loaded } = await import("./workshop/workshop");
+    if (this.life.isOver) {
+      return;
+    }
     this.workshop = new Loaded();
     this.parent.add(this.workshop.root);
     this.build();

@@ -2,7 +2,7 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import type { StudyState } from "../../protocol/study_messages";
+import type { StudyState } from "../../protocol/messages";
 import { studio } from "../app_state";
 import { languageNames, t, type Language } from "../i18n";
 import { BigButton, Paragraphs, StudyPage } from "./pages";

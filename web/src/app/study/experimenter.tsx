@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { liveNumbers } from "../../model/hints";
-import type { ExperimenterState } from "../../protocol/study_messages";
+import type { ExperimenterState } from "../../protocol/messages";
 import { store, studio } from "../app_state";
 import { figures, number, t, tn } from "../i18n";
 import { Icon } from "../icons";

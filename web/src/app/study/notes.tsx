@@ -1,7 +1,7 @@
 /** What the experimenter wrote down. */
 
 import { useSignal } from "@preact/signals";
-import type { ExperimenterState, StudyNote } from "../../protocol/study_messages";
+import type { ExperimenterState, StudyNote } from "../../protocol/messages";
 import { studio } from "../app_state";
 import { language, t } from "../i18n";
 

@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import type { StudyState } from "../../protocol/study_messages";
+import type { StudyState } from "../../protocol/messages";
 import { isPointerHand } from "../../model/hands";
 import { store, studio } from "../app_state";
 import { number, t } from "../i18n";

@@ -2,8 +2,8 @@
 
 import { useSignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
-import { faultOf, stepsOf, type AnswerFault } from "../../model/study";
-import { kIdentifyQuestion, type AnswerValue, type StudyQuestion, type StudyState } from "../../protocol/study_messages";
+import { faultOf, kIdentifyQuestion, stepsOf, type AnswerFault } from "../../model/study";
+import type { AnswerValue, StudyQuestion, StudyState } from "../../protocol/messages";
 import { studio } from "../app_state";
 import { t } from "../i18n";
 import { BigButton, StudyPage } from "./pages";

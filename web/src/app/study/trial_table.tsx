@@ -1,7 +1,7 @@
 /** The trials that are over, the newest first, and the mean times so far. */
 
 import { meanTimes } from "../../model/study_summary";
-import type { ExperimenterState, FinishedTrial } from "../../protocol/study_messages";
+import type { ExperimenterState, FinishedTrial } from "../../protocol/messages";
 import { figures, number, t } from "../i18n";
 
 function Outcome({ trial }: { trial: FinishedTrial }) {

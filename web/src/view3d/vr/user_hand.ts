@@ -20,6 +20,7 @@ import {
 } from "three";
 import type { Pose } from "../../model/math";
 import type { Pulse } from "../../model/vibration";
+import { disposeTree } from "../lifetime";
 
 /** Radius of what is drawn of a joint whose size is not known, and least of all [m]. */
 const kJoint = 0.006;
@@ -56,10 +57,12 @@ export class UserHand {
     this.joints.frustumCulled = false;
     this.joints.count = 0;
     const room = new Group().add(this.joints);
-    this.grip.add(makeHandle(this.material));
+    const handle = makeHandle(this.material);
+    this.grip.add(handle);
     parent.add(this.grip, this.ray, this.hand, room);
     this.removeAll = () => {
-      this.grip.clear();
+      disposeTree(room);
+      disposeTree(handle);
       for (const group of [this.grip, this.ray, this.hand, room]) {
         group.removeFromParent();
       }
