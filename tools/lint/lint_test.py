@@ -160,6 +160,18 @@ class Pages(unittest.TestCase):
         self.assertEqual(self.problems(), [])
 
 
+class Figures(unittest.TestCase):
+    def test_those_in_the_documents_are_what_the_script_draws(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        with tempfile.TemporaryDirectory() as name:
+            subprocess.run([sys.executable, root / "tools/pictures/figures.py", name], check=True)
+            drawn = {path.name: path.read_text() for path in pathlib.Path(name).iterdir()}
+        kept = {path.name: path.read_text() for path in (root / "docs/pictures").glob("*.svg")}
+        self.assertEqual(sorted(drawn), sorted(kept))
+        for name in drawn:
+            self.assertEqual(drawn[name], kept[name], f"{name} is old: tools/pictures/make figures")
+
+
 class Tutorials(unittest.TestCase):
     """The program of these pages is the shell's echo."""
 

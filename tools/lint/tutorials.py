@@ -41,7 +41,7 @@ CHANGING = [
 ]
 TOKEN = re.compile(r"\.\.\.(?=\s|$)|[-+]?\d+(?:\.\d+)?|[^\W\d]+|\S")
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?$")
-PATIENCE_S = 120
+PATIENCE_S = 300
 TOLERANCE = 0.05  # of a number
 GAP = "..."
 
