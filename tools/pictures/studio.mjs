@@ -1,7 +1,7 @@
 // Pictures of the studio for the documents, by headless Chromium: desk.png, a shaft that is put in by mouse; studio.png,
 // the simulated person at work; assembly.webp, the whole gear pump put together, as a moving picture.
-// Run by tools/pictures/make, in web/ (for its packages), with HVAS_BINARY. OUT [SECONDS]: the folder, and how many
-// seconds of the assembly are recorded at most, for a quick try.
+// Run by tools/pictures/make, in web/ (for its packages), with HVAS_BINARY. OUT [SECONDS [NAME]]: the folder, how many
+// seconds of the assembly are recorded at most, for a quick try, and "desk" or "pump" where only that is wanted.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -23,7 +23,7 @@ import {
   waitForState,
 } from "../../web/e2e/harness.mjs";
 
-const [out, longest = "600"] = process.argv.slice(2);
+const [out, longest = "600", only = ""] = process.argv.slice(2);
 const kProducts = new URL("../../products/", import.meta.url).pathname;
 const kSize = { width: 1120, height: 690 };
 const kDeskSize = { width: 1360, height: 760 };
@@ -200,10 +200,11 @@ async function takePump(studio, browser) {
   await waitForState(live, (state) => (state.step?.index ?? 0) >= kPng.step && (state.held[0]?.state ?? "") === "mating", 180_000);
   await waitForCalm(live);
   await live.screenshot({ path: join(out, "studio.png") });
-  await live.context().close();
+  await Promise.race([live.context().close(), pause(20_000)]);  // a browser without a graphics processor may be long about it
   await takeHand();
 
   const isDone = async () => (await getJson("/api/scene")).occurrences.every((each) => each.placement === "placed");
+  process.stderr.write("studio.png is taken; the rest of the pump is put together\n");
   while (Date.now() - began < 1000 * Number(longest) && !(await isDone())) {
     await pause(1000);
   }
@@ -256,5 +257,9 @@ async function takePump(studio, browser) {
 }
 
 mkdirSync(out, { recursive: true });
-await withStudio("bushing.step", takeDesk);
-await withStudio("gear_pump.step", takePump);
+if (only !== "pump") {
+  await withStudio("bushing.step", takeDesk);
+}
+if (only !== "desk") {
+  await withStudio("gear_pump.step", takePump);
+}
