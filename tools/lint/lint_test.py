@@ -13,7 +13,9 @@ import codes  # noqa: E402
 import constants  # noqa: E402
 import layers  # noqa: E402
 import openings  # noqa: E402
+import pages  # noqa: E402
 import rt_symbols  # noqa: E402
+import tutorials  # noqa: E402
 import units  # noqa: E402
 
 TABLE = """
@@ -168,6 +170,98 @@ class Codes(unittest.TestCase):
 
     def test_what_a_document_quotes_is_no_citation(self):
         self.assertEqual(self.strays("a.md", "`N9` is a class; N4 is a requirement"), [])
+
+
+class Pages(unittest.TestCase):
+    def setUp(self):
+        self.root = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        subprocess.run(["git", "init", "--quiet", self.root], check=True)
+        self.write("docs/README.md", "# All pages\n\n[one](one.md)\n")
+        self.write("docs/one.md", "# One\n\n## What it does, and why `a_b`\n\n## Twice\n\n## Twice\n")
+
+    def write(self, path, text):
+        (self.root / path).parent.mkdir(parents=True, exist_ok=True)
+        (self.root / path).write_text(text)
+
+    def problems(self):
+        return list(pages.check(self.root))
+
+    def test_pages_that_lead_to_each_other_pass(self):
+        self.write("README.md", "[all](docs/), [one](docs/one.md#twice-1) and [why](docs/one.md#what-it-does-and-why-a_b)\n"
+                   "[elsewhere](https://example.org/x) [below](#two)\n# Two\n")
+        self.assertEqual(self.problems(), [])
+
+    def test_links_to_nothing_are_caught_with_their_line(self):
+        self.write("README.md", "\n[gone](docs/gone.md)\n[far](docs/one.md#three)\n<img src=\"docs/no.png\">\n")
+        self.assertEqual(self.problems(), [
+            "README.md:2: docs/gone.md is not there",
+            "README.md:3: docs/one.md has no heading #three",
+            "README.md:4: docs/no.png is not there",
+        ])
+
+    def test_code_has_no_links(self):
+        self.write("README.md", "`[a](b)` and\n```\n[c](d)\n# heading\n```\n``[e](f) ` ``\n")
+        self.assertEqual(self.problems(), [])
+
+    def test_page_that_nothing_leads_to_is_caught_also_where_another_lost_one_does(self):
+        self.write("docs/lost.md", "[also](deep/lost.md)")
+        self.write("docs/deep/lost.md", "[back](../lost.md)")
+        self.assertEqual(len(self.problems()), 2)
+
+    def test_picture_that_no_page_shows_is_caught(self):
+        self.write("docs/pictures/a.svg", "")
+        self.assertEqual(self.problems(), ["docs/pictures/a.svg: no page shows it"])
+        self.write("docs/one.md", "![a](pictures/a.svg)")
+        self.assertEqual(self.problems(), [])
+
+
+class Figures(unittest.TestCase):
+    def test_those_in_the_documents_are_what_the_script_draws(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        with tempfile.TemporaryDirectory() as name:
+            subprocess.run([sys.executable, root / "tools/pictures/figures.py", name], check=True)
+            drawn = {path.name: path.read_text() for path in pathlib.Path(name).iterdir()}
+        kept = {path.name: path.read_text() for path in (root / "docs/pictures").glob("*.svg")}
+        self.assertEqual(sorted(drawn), sorted(kept))
+        for name in drawn:
+            self.assertEqual(drawn[name], kept[name], f"{name} is old: tools/pictures/make figures")
+
+
+class Tutorials(unittest.TestCase):
+    """The program of these pages is the shell's echo."""
+
+    def faults(self, text, is_update=False):
+        with tempfile.TemporaryDirectory() as name:
+            page = pathlib.Path(name) / "page.md"
+            page.write_text(text)
+            found = tutorials.run_page(page, pathlib.Path("/bin/echo"), is_update)
+            return page.read_text() if is_update else found
+
+    def test_what_is_printed_passes_also_in_parts_and_with_other_digits_at_the_end(self):
+        self.assertEqual(self.faults("```console\n$ hvas a b 1.234\na b 1.25\n$ echo a; echo b; echo c\na\n...\nc\n```\n"), [])
+
+    def test_other_words_numbers_and_states_are_caught_with_their_line(self):
+        for shown in ("a c 100", "a b 90", "a b", "a b 100 d"):
+            faults = self.faults(f"#\n```console\n$ hvas a b 100\n{shown}\n```\n")
+            self.assertEqual(len(faults), 1, shown)
+            self.assertIn("page.md:2: $ hvas a b 100", faults[0])
+        self.assertEqual(len(self.faults("```console\n$ false\n```\n")), 1)
+        self.assertEqual(self.faults("```console\n$ false\n[exit status 1]\n```\n"), [])
+
+    def test_parts_have_to_come_in_their_order(self):
+        self.assertEqual(len(self.faults("```console\n$ hvas one two three\n...\nthree\n...\ntwo\n...\n```\n")), 1)
+
+    def test_blocks_are_one_session_with_files_of_the_page(self):
+        page = "```yaml file=a.txt\nhere\n```\n```console\n$ mkdir b && cd b\n```\n```sh\nno\n```\n```console\n$ cat ../a.txt\nhere\n```\n"
+        self.assertEqual(self.faults(page), [])
+
+    def test_a_server_ends_when_it_has_said_what_is_shown(self):
+        self.assertEqual(self.faults('```console until-shown\n$ sh -c "echo up; sleep 100"\nup\n```\n'), [])
+
+    def test_update_writes_what_is_printed_and_keeps_the_cuts(self):
+        page = "```console\n$ seq 5\n0\n...\n9\n$ hvas x\ny\n```\n"
+        self.assertEqual(self.faults(page, is_update=True), "```console\n$ seq 5\n1\n...\n5\n$ hvas x\nx\n```\n")
 
 
 # A tick that allocates only behind a local function in another file, and a clean one.
