@@ -16,12 +16,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "assembly/assembly_setup.h"
 #include "base/random.h"
 #include "device/driver.h"
 #include "device/emulation/emulator.h"
 #include "haptics/passivity_controller.h"
 #include "load_model.h"
-#include "simulation/assembly_run.h"
 #include "simulation/device_session.h"
 #include "simulation/executors.h"
 
@@ -128,6 +128,7 @@ Result<Outcome> Run(const std::shared_ptr<const Model>& model, const std::string
   if (const auto* known = device::FindProfileOfDriver(driver); known != nullptr) {
     emulation.profile = known->profile;
   }
+  // Not by an address: the emulator has this profile, and its forces arrive late.
   auto emulator = device::StartEmulator(driver, emulation);
   if (!emulator) {
     return Unexpected(emulator.error());
@@ -141,30 +142,32 @@ Result<Outcome> Run(const std::shared_ptr<const Model>& model, const std::string
   device::DeviceInfo info = (*device)->info();
   info.profile.delay += delay;
   const haptics::TickOptions options = simulation::MakeTickOptions(info, *model, {});
-  simulation::Simulation simulation(model, options);
-  simulation::SimulatedPerson person(simulation::MakePersonOptions(options), seed,
-                                     simulation::StartOfHand(*model));
-  simulation::PersonAtDevice hand(&person, emulator->get(), device->get(), false);
   ForceWatch watch(options);
-  simulation::AssemblyRun run(&simulation, &person, &watch);
+  const device::EmulatedDevice& emulated = (*emulator)->device();
+  assembly::AssemblySetup setup(
+      model,
+      assembly::MakeDeviceHand(*model, {std::move(*emulator), std::move(*device)}, options, seed,
+                               false),
+      &watch);
   const std::size_t steps = model->sequence.steps.size();
-  run.Only(1 + seed % (steps - 1), 1);
-  simulation::Execution execution = run.MakeExecution(&hand, storm.limit_s);
+  setup.run().Only(1 + seed % (steps - 1), 1);
+  simulation::Execution execution = setup.MakeExecution(storm.limit_s);
   double largest_motor = 0;
   execution.is_done = [&] {
-    largest_motor = std::max(largest_motor, (*emulator)->device().truth().F_H_D.f.norm());
-    return run.is_done();
+    largest_motor = std::max(largest_motor, emulated.truth().F_H_D.f.norm());
+    return setup.run().is_done();
   };
   execution.is_physics_late = LatePhysics(seed + 1'000'000);
   (void)RunLockstep(execution);
-  const auto truth = (*emulator)->device().truth();
+  const auto truth = emulated.truth();
   Outcome outcome = watch.outcome;
   outcome.net_work = truth.work;
   outcome.energy_excess = truth.work - watch.Bound(info.profile);
   outcome.turning_excess = truth.turning_work - watch.TurningBound(info.profile);
   outcome.largest_share = info.profile.max_force > 0 ? largest_motor / info.profile.max_force : 0;
   const product::OccurrenceId part = model->sequence.steps[1 + seed % (steps - 1)].occurrence;
-  outcome.is_seated = simulation.physics().placement(part) == simulation::Placement::kPlaced;
+  outcome.is_seated =
+      setup.simulation().physics().placement(part) == simulation::Placement::kPlaced;
   return outcome;
 }
 

@@ -18,9 +18,9 @@
 #include <fmt/format.h>
 
 #include "app/devices/latency_json.h"
+#include "assembly/assembly_setup.h"
 #include "base/clock.h"
 #include "load_model.h"
-#include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 
 namespace hvas {
@@ -145,16 +145,14 @@ void CountOurs(const std::shared_ptr<const Model>& model, const haptics::TickOpt
 
 void RunSession(const std::shared_ptr<const Model>& model, const BenchOptions& bench,
                 std::uint64_t seed, double limit_s, Totals* totals) {
-  haptics::TickOptions options;
-  options.dt = 1 / bench.rate_hz;
+  const haptics::TickOptions options = assembly::MakePersonTick({0, bench.rate_hz});
   simulation::TickLog log(static_cast<std::size_t>(bench.rate_hz * limit_s) + 1000);
-  simulation::Simulation simulation(model, options);
-  simulation.KeepLog(&log);
-  simulation::SimulatedPerson person({}, seed, simulation::StartOfHand(*model));
-  simulation::AssemblyRun run(&simulation, &person, nullptr);
+  assembly::AssemblySetup setup(model, assembly::MakePersonHand(*model, options, {}, seed),
+                                nullptr);
+  setup.simulation().KeepLog(&log);
   simulation::FlightRecorder flight(bench.rate_hz);
   FramePacker packer;
-  simulation::Execution execution = run.MakeExecution(&person, limit_s);
+  simulation::Execution execution = setup.MakeExecution(limit_s);
   execution.flight = &flight;
   execution.log = &log;
   execution.on_frame = [&](const simulation::Frame& frame) {
@@ -172,9 +170,10 @@ void RunSession(const std::shared_ptr<const Model>& model, const BenchOptions& b
     totals->ticks_at_level[level] += report.ticks_at_level[level];
   }
   totals->scheduling = report.scheduling;
-  totals->parts += run.results().size();
+  const std::vector<simulation::PartResult>& parts = setup.run().results();
+  totals->parts += parts.size();
   totals->seated += static_cast<std::size_t>(
-      std::count_if(run.results().begin(), run.results().end(),
+      std::count_if(parts.begin(), parts.end(),
                     [](const simulation::PartResult& part) { return part.is_seated; }));
   CountOurs(model, options, log, totals);
 }

@@ -16,10 +16,7 @@
 
 #include "base/random.h"
 #include "base/scratch_folder.h"
-#include "cad/import.h"
-#include "contact/shape_cache.h"
-#include "mates/infer.h"
-#include "mates/stated_fits.h"
+#include "load_model.h"
 #include "record/reader.h"
 #include "session/recorded_model.h"
 #include "session/replay.h"
@@ -36,23 +33,9 @@ struct Tally {
   std::int64_t replayed_ticks{0};
 };
 
-using ModelPtr = std::shared_ptr<const simulation::Model>;
-
-Result<ModelPtr> Compile(const std::string& file, const simulation::CompileOptions& options) {
-  Diagnostics diagnostics;
-  auto product = cad::Import(file, {}, &diagnostics, {});
-  if (!product) {
-    return Unexpected(product.error());
-  }
-  mates::Infer(&*product, &diagnostics);
-  mates::AssignStatedFits(&*product);
-  return simulation::Compile(std::make_shared<product::Product>(std::move(*product)), options,
-                             &diagnostics);
-}
-
 /** Empty: the record is as it should be. */
 std::string Judge(const std::filesystem::path& file, std::int64_t ran,
-                  const simulation::CompileOptions& options, Tally* tally) {
+                  const assembly::PrepareOptions& options, Tally* tally) {
   auto reader = record::Reader::Open(file);
   if (!reader) {
     if (ran == 0) {
@@ -73,7 +56,8 @@ std::string Judge(const std::filesystem::path& file, std::int64_t ran,
     return {};
   }
   Diagnostics diagnostics;
-  const auto model = session::LoadModel(&*reader, options, &diagnostics);
+  const auto model =
+      session::LoadModel(&*reader, assembly::MakeCompileOptions(options), &diagnostics);
   if (!model) {
     return model.error().ToString();
   }
@@ -93,9 +77,9 @@ int Run(const std::string& file, int runs, double longest_s, std::uint64_t seed)
     fmt::print(stderr, "{}\n", folder.error().ToString());
     return 1;
   }
-  simulation::CompileOptions options;
-  options.shape_cache = std::make_shared<contact::ShapeCache>(folder->path() / "shapes");
-  const auto model = Compile(file, options);
+  assembly::PrepareOptions options;
+  options.shape_cache = assembly::MakeShapeCache(folder->path() / "shapes");
+  const auto model = bench::LoadModel(file, options);
   if (!model) {
     fmt::print(stderr, "{}\n", model.error().ToString());
     return 1;

@@ -186,6 +186,7 @@ int main(int argc, char** argv) {
   }
   std::vector<Row> sums(voxels.size());
   for (const std::string& file : arguments.files) {
+    // Imported and no more: mates change nothing in the shape of a part.
     hvas::Diagnostics diagnostics;
     hvas::cad::ImportControl control;
     control.cache_directory = hvas::FileCache::DefaultDirectory();

@@ -30,6 +30,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include "assembly/open_product.h"
 #include "base/clock.h"
 #include "base/diagnostics.h"
 #include "base/test/temporary_folder.h"
@@ -37,7 +38,6 @@
 #include "cad/import.h"
 #include "cad/process/read_cad.h"
 #include "fuzz/mutate.h"
-#include "mates/infer.h"
 
 namespace {
 
@@ -146,23 +146,18 @@ struct Cost {
 /** In the child: opens the file as the program does, and ends with what came of it. */
 [[noreturn]] void OpenAndExit(const fs::path& file, int costs) {
   hvas::Diagnostics diagnostics;
-  hvas::WorkWatch watch{hvas::WorkLimits()};
-  auto product = hvas::cad::Import(file, {}, &diagnostics);
-  hvas::Error error = product ? hvas::Error() : product.error();
-  if (product) {
-    if (const auto inferred = hvas::mates::Infer(&*product, &diagnostics, &watch); !inferred) {
-      error = inferred.error();
-    }
-  }
+  hvas::assembly::OpenOptions options;
+  options.file = file;
+  const auto product = hvas::assembly::OpenProduct(options, &diagnostics);
   rusage own{};
   rusage reader{};
   getrusage(RUSAGE_SELF, &own);
   getrusage(RUSAGE_CHILDREN, &reader);
   const std::array<long, 2> peaks{own.ru_maxrss, reader.ru_maxrss};  // [KiB]
   const bool is_told = write(costs, peaks.data(), sizeof(peaks)) == sizeof(peaks);
-  const bool is_good = product && error.message.empty();
-  const bool says_enough = is_good || (!error.message.empty() && !error.where.empty());
-  _exit(!is_told || !says_enough ? kSilent : is_good ? kOpened : kRefused);
+  const bool says_enough =
+      product || (!product.error().message.empty() && !product.error().where.empty());
+  _exit(!is_told || !says_enough ? kSilent : product ? kOpened : kRefused);
 }
 
 /** @returns the status of the child; -1 when it died. */

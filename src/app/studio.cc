@@ -24,10 +24,10 @@
 #include "app/product/load_product.h"
 #include "app/shipped_files.h"
 #include "app/study/study_protocol.h"
+#include "assembly/prepare_model.h"
 #include "base/scratch_folder.h"
 #include "base/user_folder.h"
 #include "cad/input_file.h"
-#include "contact/shape_cache.h"
 #include "studio/certificate.h"
 #include "studio/saved_work.h"
 #include "studio/server.h"
@@ -80,9 +80,7 @@ studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
   constexpr std::uint32_t kBelowRecordings = 0x3FFFFFFF;  // which begin above it, in the page
   bench.scenes.last_epoch = static_cast<std::uint32_t>(std::time(nullptr)) & kBelowRecordings;
   bench.rate_hz = options.rate_hz;
-  if (const auto directory = CacheDirectory(options.load)) {
-    bench.scenes.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
-  }
+  bench.scenes.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
   bench.scenes.load = [load = options.load](const std::filesystem::path& file,
                                             const cad::ProgressFn& progress, std::stop_token stop,
                                             Diagnostics* diagnostics) {

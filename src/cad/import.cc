@@ -72,29 +72,23 @@ class Attempts {
 };
 
 std::vector<std::string> Attempts::Arguments() const {
-  std::vector<std::string> arguments{"import",
-                                     file_.string(),
-                                     "--relative-deflection",
-                                     fmt::format("{}", options_.relative_deflection),
-                                     "--min-deflection",
-                                     fmt::format("{}", options_.min_deflection),
-                                     "--max-angle",
-                                     fmt::format("{}", options_.max_angle),
-                                     "--length-unit",
-                                     fmt::format("{}", options_.length_unit),
-                                     "--max-triangles",
-                                     fmt::format("{}", options_.max_triangles),
-                                     "--max-parts",
-                                     fmt::format("{}", options_.max_parts),
-                                     "--max-bytes",
-                                     fmt::format("{}", options_.max_bytes),
-                                     "--threads",
-                                     fmt::format("{}", options_.threads)};
+  std::vector<std::string> arguments{"import", file_.string()};
+  const auto add = [&arguments](const char* option, const auto& value) {
+    arguments.insert(arguments.end(), {option, fmt::format("{}", value)});
+  };
+  add("--relative-deflection", options_.relative_deflection);
+  add("--min-deflection", options_.min_deflection);
+  add("--max-angle", options_.max_angle);
+  add("--length-unit", options_.length_unit);
+  add("--max-triangles", options_.max_triangles);
+  add("--max-parts", options_.max_parts);
+  add("--max-bytes", options_.max_bytes);
+  add("--threads", options_.threads);
   if (!options_.with_tolerances) {
     arguments.emplace_back("--no-tolerances");
   }
   for (const std::uint32_t part : options_.skipped_parts) {
-    arguments.insert(arguments.end(), {"--skip-part", std::to_string(part)});
+    add("--skip-part", part);
   }
   return arguments;
 }

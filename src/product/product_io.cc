@@ -13,167 +13,51 @@
 namespace hvas::product {
 namespace {
 
-// What a value's fields are is written once for both directions: T is const where an archive
-// writes. The bindings name all fields in the order of the declaration, so that a field that is
-// added there does not compile here until it is written; then kProductFormat is to be raised.
 template <typename T, typename Value>
 concept Is = std::same_as<std::remove_const_t<T>, Value>;
 
-template <typename A, Is<Color> T>
-void Visit(A& a, T& value) {
-  auto& [r, g, b] = value;
-  a(r, g, b);
-}
-
-template <typename A, Is<Box> T>
-void Visit(A& a, T& value) {
-  auto& [low, high] = value;
-  a(low, high);
-}
-
-template <typename A, Is<Surface> T>
-void Visit(A& a, T& value) {
-  auto& [kind, origin, axis, radius, second, outward] = value;
-  a(kind, origin, axis, radius, second, outward);
-}
-
-template <typename A, Is<Material> T>
-void Visit(A& a, T& value) {
-  auto& [name, density, is_assumed, standard, is_standard_assumed, youngs_modulus, poisson_ratio,
-         yield_strength, thermal_expansion] = value;
-  a(name, density, is_assumed, standard, is_standard_assumed, youngs_modulus, poisson_ratio,
-    yield_strength, thermal_expansion);
-}
-
-template <typename A, Is<MassProperties> T>
-void Visit(A& a, T& value) {
-  auto& [volume, mass, p_BoBcm_B, I_BBcm_B] = value;
-  a(volume, mass, p_BoBcm_B, I_BBcm_B);
-}
-
-template <typename A, Is<Face> T>
-void Visit(A& a, T& value) {
-  auto& [surface, is_recognised, area, box_B, first_triangle, triangle_count, color, entity,
-         residual, first_display_triangle, display_triangle_count] = value;
-  a(surface, is_recognised, area, box_B, first_triangle, triangle_count, color, entity, residual,
-    first_display_triangle, display_triangle_count);
-}
-
-template <typename A, Is<Mesh> T>
-void Visit(A& a, T& value) {
-  auto& [vertices, triangles] = value;
-  a(vertices, triangles);
-}
-
-template <typename A, Is<Feature> T>
-void Visit(A& a, T& value) {
-  auto& [kind, faces, origin_B, axis_B, radius, half_angle, span_low, span_high, coverage, area,
-         thread, thread_pitch] = value;
-  a(kind, faces, origin_B, axis_B, radius, half_angle, span_low, span_high, coverage, area, thread,
-    thread_pitch);
-}
-
-template <typename A, Is<Form> T>
-void Visit(A& a, T& value) {
-  auto& [kind, features, faces, origin_B, axis_B, diameter, depth, angle, count, lead_in] = value;
-  a(kind, features, faces, origin_B, axis_B, diameter, depth, angle, count, lead_in);
-}
-
-template <typename A, Is<InnerConstraint> T>
-void Visit(A& archive, T& value) {
-  auto& [kind, a, b] = value;
-  archive(kind, a, b);
-}
-
-template <typename A, Is<Dimension> T>
-void Visit(A& a, T& value) {
-  auto& [kind, name, nominal, upper, lower, fit, faces, entity] = value;
-  a(kind, name, nominal, upper, lower, fit, faces, entity);
-}
-
-template <typename A, Is<GeometricTolerance> T>
-void Visit(A& a, T& value) {
-  auto& [kind, name, magnitude, datums, faces, entity] = value;
-  a(kind, name, magnitude, datums, faces, entity);
-}
-
-template <typename A, Is<Part> T>
-void Visit(A& a, T& value) {
-  auto& [id, name, color, material, mass, solid_count, has_brep, box_B, mesh, faces, display_mesh,
-         features, forms, inner_constraints, dimensions, geometric_tolerances, shape_hash] = value;
-  a(id, name, color, material, mass, solid_count, has_brep, box_B, mesh, faces, display_mesh,
-    features, forms, inner_constraints, dimensions, geometric_tolerances, shape_hash);
-}
-
-template <typename A, Is<Subassembly> T>
-void Visit(A& a, T& value) {
-  auto& [id, parent, name, subassemblies, occurrences] = value;
-  a(id, parent, name, subassemblies, occurrences);
-}
-
-template <typename A, Is<Occurrence> T>
-void Visit(A& a, T& value) {
-  auto& [id, part, parent, name, path, X_WB] = value;
-  a(id, part, parent, name, path, X_WB);
-}
-
-template <typename A, Is<Fit> T>
-void Visit(A& a, T& value) {
-  auto& [kind, code, nominal_diameter, is_proposed, reason] = value;
-  a(kind, code, nominal_diameter, is_proposed, reason);
-}
-
-template <typename A, Is<FitConditions> T>
-void Visit(A& a, T& value) {
-  auto& [hole_diameter, shaft_diameter, hole_roughness, shaft_roughness, friction,
-         hole_temperature_c, shaft_temperature_c] = value;
-  a(hole_diameter, shaft_diameter, hole_roughness, shaft_roughness, friction, hole_temperature_c,
-    shaft_temperature_c);
-}
-
-template <typename A, Is<Connector> T>
-void Visit(A& a, T& value) {
-  auto& [occurrence, feature, X_BM] = value;
-  a(occurrence, feature, X_BM);
-}
-
-template <typename A, Is<SurfaceConstraint> T>
-void Visit(A& archive, T& value) {
-  auto& [kind, a, b] = value;
-  archive(kind, a, b);
-}
-
-template <typename A, Is<Mate> T>
-void Visit(A& archive, T& value) {
-  auto& [id, key, kind, a, b, hole_low, hole_high, shaft_low, shaft_high, hole_radius, shaft_radius,
-         overlap, fit, conditions, surfaces, origin, confidence, evidence] = value;
-  archive(id, key, kind, a, b, hole_low, hole_high, shaft_low, shaft_high, hole_radius,
-          shaft_radius, overlap, fit, conditions, surfaces, origin, confidence, evidence);
-}
-
-template <typename A, Is<Joint> T>
-void Visit(A& archive, T& value) {
-  auto& [a, b, mates, free_translations, free_rotations, pattern_count] = value;
-  archive(a, b, mates, free_translations, free_rotations, pattern_count);
-}
-
-template <typename A, Is<Alignment> T>
-void Visit(A& archive, T& value) {
-  auto& [a, b] = value;
-  archive(a, b);
-}
-
-template <typename A, Is<Product> T>
-void Visit(A& a, T& value) {
-  auto& [name, source, parts, subassemblies, occurrences, mates, joints, alignments, box_W] = value;
-  a(name, source, parts, subassemblies, occurrences, mates, joints, alignments, box_W);
-}
-
-template <typename A, Is<Diagnostic> T>
-void Visit(A& a, T& value) {
-  auto& [severity, code, entity, message, remedy] = value;
-  a(severity, code, entity, message, remedy);
-}
+// What a value's fields are is written once for both directions: T is const where an archive
+// writes. All fields are named in the order of the declaration, so that a field that is added there
+// does not compile here until it is written; then kProductFormat is to be raised.
+#define HVAS_FIELDS(Value, ...)      \
+  template <typename A, Is<Value> T> \
+  void Visit(A& archive, T& value) { \
+    auto& [__VA_ARGS__] = value;     \
+    archive(__VA_ARGS__);            \
+  }
+HVAS_FIELDS(Color, r, g, b)
+HVAS_FIELDS(Box, low, high)
+HVAS_FIELDS(Surface, kind, origin, axis, radius, second, outward)
+HVAS_FIELDS(Material, name, density, is_assumed, standard, is_standard_assumed, youngs_modulus,
+            poisson_ratio, yield_strength, thermal_expansion)
+HVAS_FIELDS(MassProperties, volume, mass, p_BoBcm_B, I_BBcm_B)
+HVAS_FIELDS(Face, surface, is_recognised, area, box_B, first_triangle, triangle_count, color,
+            entity, residual, first_display_triangle, display_triangle_count)
+HVAS_FIELDS(Mesh, vertices, triangles)
+HVAS_FIELDS(Feature, kind, faces, origin_B, axis_B, radius, half_angle, span_low, span_high,
+            coverage, area, thread, thread_pitch)
+HVAS_FIELDS(Form, kind, features, faces, origin_B, axis_B, diameter, depth, angle, count, lead_in)
+HVAS_FIELDS(InnerConstraint, kind, a, b)
+HVAS_FIELDS(Dimension, kind, name, nominal, upper, lower, fit, faces, entity)
+HVAS_FIELDS(GeometricTolerance, kind, name, magnitude, datums, faces, entity)
+HVAS_FIELDS(Part, id, name, color, material, mass, solid_count, has_brep, box_B, mesh, faces,
+            display_mesh, features, forms, inner_constraints, dimensions, geometric_tolerances,
+            shape_hash)
+HVAS_FIELDS(Subassembly, id, parent, name, subassemblies, occurrences)
+HVAS_FIELDS(Occurrence, id, part, parent, name, path, X_WB)
+HVAS_FIELDS(Fit, kind, code, nominal_diameter, is_proposed, reason)
+HVAS_FIELDS(FitConditions, hole_diameter, shaft_diameter, hole_roughness, shaft_roughness, friction,
+            hole_temperature_c, shaft_temperature_c)
+HVAS_FIELDS(Connector, occurrence, feature, X_BM)
+HVAS_FIELDS(SurfaceConstraint, kind, a, b)
+HVAS_FIELDS(Mate, id, key, kind, a, b, hole_low, hole_high, shaft_low, shaft_high, hole_radius,
+            shaft_radius, overlap, fit, conditions, surfaces, origin, confidence, evidence)
+HVAS_FIELDS(Joint, a, b, mates, free_translations, free_rotations, pattern_count)
+HVAS_FIELDS(Alignment, a, b)
+HVAS_FIELDS(Product, name, source, parts, subassemblies, occurrences, mates, joints, alignments,
+            box_W)
+HVAS_FIELDS(Diagnostic, severity, code, entity, message, remedy)
+#undef HVAS_FIELDS
 
 // The last enumerator of each kind: larger numbers are no enumerators.
 constexpr Severity LastOf(Severity /*kind*/) {

@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "record/packing.h"
 #include "session/command_json.h"
+#include "session/make_simulation.h"
 #include "session/session_recorder.h"
 #include "simulation/simulation.h"
 
@@ -136,10 +137,7 @@ class Replayer {
       hand.condition = options_.condition.value_or(hand.condition);
       hand.force_map = options_.force_map.value_or(hand.force_map);
     }
-    simulation_ =
-        beginning->hands.size() == 1
-            ? std::make_unique<Simulation>(model_, beginning->hands[0])
-            : std::make_unique<Simulation>(model_, beginning->hands[0], beginning->hands[1]);
+    simulation_ = MakeSimulation(model_, beginning->hands);
     simulation_->Restore(beginning->parts);
     parts_ = std::move(beginning->parts);
     start_ns_ = command.t_ns;

@@ -43,6 +43,9 @@ haptics::TickOptions MakePointerOptions(double rate_hz) {
   return options;
 }
 
+// A hand of its own instead of assembly::Hand: a pointer moves it, too, by itself or with an
+// emulated device in the hand; the device outlives the run; and a simulated person works beside a
+// real device.
 LiveHand::LiveHand(const HandSetup& setup, const HandPurpose& purpose,
                    const simulation::Model& model)
     : device_(setup.device), pointer_(purpose.X_WH) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "session/make_simulation.h"
 
 namespace hvas::studio {
 namespace {
@@ -26,12 +27,12 @@ std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
   return hands;
 }
 
-simulation::Simulation MakeSimulation(std::shared_ptr<const simulation::Model> model,
-                                      const std::vector<std::unique_ptr<LiveHand>>& hands) {
-  const haptics::TickOptions& first = hands.front()->tick_options();
-  return hands.size() == 1
-             ? simulation::Simulation(std::move(model), first)
-             : simulation::Simulation(std::move(model), first, hands.back()->tick_options());
+std::vector<haptics::TickOptions> TicksOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
+  std::vector<haptics::TickOptions> ticks;
+  for (const auto& hand : hands) {
+    ticks.push_back(hand->tick_options());
+  }
+  return ticks;
 }
 
 simulation::Persons PersonsOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
@@ -54,28 +55,28 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
       recording_(options.recording),
       trial_(options.trial),
       hands_(MakeHands(options, *model)),
-      simulation_(MakeSimulation(std::move(model), hands_)),
-      assembly_(&simulation_, PersonsOf(hands_), this),
+      simulation_(session::MakeSimulation(std::move(model), TicksOf(hands_))),
+      assembly_(simulation_.get(), PersonsOf(hands_), this),
       begin_ns_(MonotonicNs()) {
   if (!start.parts.empty()) {
-    simulation_.Restore(start.parts);
+    simulation_->Restore(start.parts);
   }
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     if (!hands_[i]->follows_pointer()) {
-      simulation_.physics().AwaitOpenGrip(i);
+      simulation_->physics().AwaitOpenGrip(i);
       if (trial_ == nullptr) {
-        simulation_.physics().AllowTakingOut(i);
+        simulation_->physics().AllowTakingOut(i);
       }
     }
   }
   if (recording_ != nullptr) {
-    recording_->Begin(&simulation_);
+    recording_->Begin(simulation_.get());
   }
   if (trial_ != nullptr) {
-    trial_->Begin(&simulation_);
+    trial_->Begin(simulation_.get());
   }
   assembly_.Resume(start.next_step);
-  observed_ = {simulation_.physics().parts(), start.next_step};
+  observed_ = {simulation_->physics().parts(), start.next_step};
   thread_ = std::thread([this, options] { Run(options); });
 }
 
@@ -104,7 +105,7 @@ void LiveRun::Take(std::size_t hand, const simulation::SequenceStep& step,
                    const spatial::Pose& X_WH) {
   const std::lock_guard lock(mutex_);
   tasks_.emplace_back([this, hand, step, X_WH] {
-    simulation_.physics().Prepare(step, hand);
+    simulation_->physics().Prepare(step, hand);
     hands_[hand]->pointer().Move({MonotonicNs(), X_WH, true});
   });
 }
@@ -186,13 +187,13 @@ void LiveRun::Advance() {
 }
 
 void LiveRun::Observe() {
-  LiveState now{simulation_.physics().parts(), assembly_.next_step()};
+  LiveState now{simulation_->physics().parts(), assembly_.next_step()};
   LiveState before;
   {
     const std::lock_guard lock(mutex_);
     before = std::exchange(observed_, now);
     for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
-      is_holding_[hand] = simulation_.physics().is_holding(hand);
+      is_holding_[hand] = simulation_->physics().is_holding(hand);
     }
     const bool has_closed =
         !std::equal(now.parts.begin(), now.parts.end(), before.parts.begin(),

@@ -59,7 +59,7 @@ class LiveRun final : private simulation::Sink {
   /** Sets the pointer's target pose of a hand. Any thread may call it. */
   void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
 
-  void StopForces(bool is_stopped) { simulation_.StopForces(is_stopped); }
+  void StopForces(bool is_stopped) { simulation_->StopForces(is_stopped); }
 
   /** State at the last physics step; this and the next two may be called by any thread. */
   [[nodiscard]] LiveState state() const;
@@ -75,7 +75,7 @@ class LiveRun final : private simulation::Sink {
    thread. */
   [[nodiscard]] std::optional<simulation::LoopStatus> TakeStatus();
 
-  [[nodiscard]] const simulation::Model& model() const { return simulation_.model(); }
+  [[nodiscard]] const simulation::Model& model() const { return simulation_->model(); }
 
  private:
   void OnTick(std::size_t hand, const device::DeviceState& device,
@@ -90,7 +90,7 @@ class LiveRun final : private simulation::Sink {
   std::shared_ptr<Recording> recording_;
   std::shared_ptr<LiveTrial> trial_;
   std::vector<std::unique_ptr<LiveHand>> hands_;
-  simulation::Simulation simulation_;
+  std::unique_ptr<simulation::Simulation> simulation_;
   simulation::AssemblyRun assembly_;
   TripleBuffer<simulation::LoopStatus> status_;
   std::array<std::atomic<double>, 2> peak_felt_{};

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "session/recorded_model.h"
+#include "assembly/assembly_setup.h"
 #include "study/simulated_participant.h"
 
 namespace hvas::studio {
@@ -15,9 +15,7 @@ Result<std::shared_ptr<LiveTrial>> LiveTrial::Make(const Plan& plan, const simul
     options.path = plan.record;
     options.replaces = true;  // replaces the record of an aborted trial
     options.is_threaded = true;
-    record::Meta meta = session::MakeModelMeta(model);
-    meta["condition"] = plan.condition.id;
-    auto recorder = record::Recorder::Create(options, meta);
+    auto recorder = assembly::MakeRecorder(model, options, {{"condition", plan.condition.id}});
     if (!recorder) {
       return Unexpected(recorder.error());
     }

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "assembly/assembly_setup.h"
 #include "product/names.h"
-#include "session/recorded_model.h"
 #include "studio/frames.h"
 
 namespace hvas::studio {
@@ -42,9 +42,7 @@ Result<std::shared_ptr<Recording>> Recording::Start(const std::filesystem::path&
   options.is_threaded = true;
   options.ring_ticks *= 2;  // ticks of two hands
   options.on_error = [on_failed = std::move(on_failed)](const Error&) { on_failed(); };
-  record::Meta meta = session::MakeModelMeta(*scene->model);
-  meta[kNameMeta] = name;
-  auto recorder = record::Recorder::Create(options, meta);
+  auto recorder = assembly::MakeRecorder(*scene->model, options, {{kNameMeta, name}});
   if (!recorder) {
     return Unexpected(recorder.error());
   }

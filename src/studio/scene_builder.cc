@@ -3,6 +3,7 @@
 #include <system_error>
 #include <utility>
 
+#include "assembly/prepare_model.h"
 #include "base/digest.h"
 #include "cad/glb.h"
 #include "studio/saved_work.h"
@@ -88,17 +89,12 @@ Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const Edit& ed
 Result<std::shared_ptr<const simulation::Model>> SceneBuilder::Compile(
     product::Product product, const std::string& name, const cad::ProgressFn& progress,
     Diagnostics* diagnostics) const {
-  if (!(product.mass() > 0)) {
-    return Fail(ErrorCode::kUnsupported,
-                "no part of the product has a mass, so there is nothing to assemble", name,
-                "export the product with solids, not as surfaces");
-  }
-  simulation::CompileOptions compile;
-  compile.seed = options_.seed;
-  compile.shape_cache = options_.shape_cache;
-  compile.progress = progress;
-  return simulation::Compile(std::make_shared<product::Product>(std::move(product)), compile,
-                             diagnostics);
+  assembly::PrepareOptions prepare;
+  prepare.seed = options_.seed;
+  prepare.shape_cache = options_.shape_cache;
+  prepare.progress = progress;
+  prepare.name = name;
+  return assembly::PrepareModel(std::move(product), prepare, diagnostics);
 }
 
 }  // namespace hvas::studio

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "assembly/assembly_setup.h"
 #include "mates/assignments.h"
-#include "session/recorded_model.h"
 #include "session/session_recorder.h"
-#include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 #include "study/schedule.h"
 #include "study/trial_watch.h"
@@ -85,8 +85,7 @@ void ApplyCondition(const Condition& condition, haptics::TickOptions* tick) {
 }
 
 haptics::TickOptions MakeTickOptions(const Condition& condition) {
-  haptics::TickOptions tick;
-  tick.device.name = "simulated 6-DoF device";
+  haptics::TickOptions tick = assembly::MakePersonTick({});
   ApplyCondition(condition, &tick);
   return tick;
 }
@@ -137,42 +136,43 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
     result.time = std::min(*result.time, condition.time_limit);
     return result;
   }
-  const haptics::TickOptions tick = MakeTickOptions(condition);
-  simulation::SimulatedPerson person(MakePerson(skill, &random), random.NextBits(),
-                                     simulation::StartOfHand(model));
-  simulation::Simulation simulation(setup.model, tick);
+  const std::uint64_t person_seed = random.NextBits();  // Drawn before the habits, always.
+  const simulation::PersonOptions habits = MakePerson(skill, &random);
+  assembly::Hand hand =
+      assembly::MakePersonHand(model, MakeTickOptions(condition), habits, person_seed);
   std::unique_ptr<record::Recorder> recorder;
   std::optional<session::SessionRecorder> sink;
   if (!record.empty()) {
     record::RecorderOptions options;
     options.path = record;
     options.replaces = true;  // replaces the record of an aborted trial
-    record::Meta meta = session::MakeModelMeta(model);
-    meta["condition"] = condition.id;
-    meta["simulated"] = "a simulated participant of a study";
-    auto created = record::Recorder::Create(options, meta);
+    auto created = assembly::MakeRecorder(
+        model, options,
+        {{"condition", condition.id}, {"simulated", "a simulated participant of a study"}});
     if (!created) {
       return Unexpected(created.error());
     }
     recorder = std::move(*created);
     sink.emplace(recorder.get(), model);
-    sink->Begin(&simulation);
   }
-  TrialWatch watch(step.occurrence, step.extraction_W, setup.mating_window, tick.dt,
+  TrialWatch watch(step.occurrence, step.extraction_W, setup.mating_window, hand.tick.dt,
                    sink ? &*sink : nullptr);
-  simulation::AssemblyRun run(&simulation, &person, &watch);
-  run.Only(setup.step, 1);
-  simulation::Execution execution = run.MakeExecution(&person, condition.time_limit);
+  assembly::AssemblySetup trial(setup.model, std::move(hand), &watch);
+  if (sink) {
+    sink->Begin(&trial.simulation());
+  }
+  trial.run().Only(setup.step, 1);
+  simulation::Execution execution = trial.MakeExecution(condition.time_limit);
   const auto begin_ns = std::llround(1e9 * skill.reaction_s);
   std::int64_t now_ns = 0;
   execution.advance = [&] {
     now_ns += simulation::Simulation::kPhysicsStepNs;
     if (now_ns >= begin_ns) {
-      run.Advance();
+      trial.run().Advance();
     }
   };
   // The trial ends with seating; motion of the hand after it does not count.
-  execution.is_done = [&] { return run.is_done() || watch.is_seated(); };
+  execution.is_done = [&] { return trial.run().is_done() || watch.is_seated(); };
   const simulation::ExecutionReport report = simulation::RunLockstep(execution);
   if (recorder != nullptr) {
     if (const auto finished = recorder->Finish(); !finished) {
@@ -180,7 +180,7 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
     }
   }
   TrialResult result = watch.MakeResult();
-  if (!watch.is_seated() && !run.is_done()) {
+  if (!watch.is_seated() && !trial.run().is_done()) {
     result.outcome = Outcome::kTimedOut;
     result.time = 1e-9 * static_cast<double>(report.session_ns);
   }

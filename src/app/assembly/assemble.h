@@ -1,13 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "app/product/load_product.h"
-#include "haptics/options.h"
-#include "simulation/device_session.h"
+#include "assembly/run_assembly.h"
 
 namespace CLI {
 class App;
@@ -18,16 +15,9 @@ namespace hvas::app {
 struct AssembleOptions {
   LoadOptions load;
   std::vector<std::string> order;  ///< Parts to begin with, by name, path or id.
-  std::uint64_t seed{1};           ///< Any number: sizes and the person's hand follow from it.
-  haptics::Condition condition{haptics::Condition::kHybrid};
-  haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
-  bool is_realtime{false};
-  std::string device;         ///< Address of the device in the hand; empty: none.
-  std::string second_device;  ///< Address for the other hand; empty: there is no other hand.
-  simulation::RenderOptions render;
-  std::filesystem::path record;    ///< Empty: no file; the digest is made all the same.
-  bool is_record_replaced{false};  ///< A finished record that is there.
-  double limit_s{0};               ///< Session time after which to stop; 0: none.
+  std::string device;              ///< Address of the device in the hand; empty: none.
+  std::string second_device;       ///< Address for the other hand; empty: there is no other hand.
+  assembly::RunOptions run;        ///< All but the devices, and who is told.
   bool is_json{false};
 };
 

@@ -14,6 +14,8 @@
 namespace hvas::app {
 namespace {
 
+using assembly::DeviceInHand;
+using assembly::RunOutcome;
 using simulation::ExecutionReport;
 using simulation::Model;
 using simulation::PartResult;
@@ -31,14 +33,14 @@ double Ratio(const ExecutionReport& report, std::int64_t taken_ns) {
   return taken_ns > 0 ? ToS(report.session_ns) / ToS(taken_ns) : 0.0;
 }
 
-std::size_t CountSeated(const AssemblyOutcome& outcome) {
+std::size_t CountSeated(const RunOutcome& outcome) {
   return static_cast<std::size_t>(
       std::count_if(outcome.parts.begin(), outcome.parts.end(),
                     [](const PartResult& part) { return part.is_seated; }));
 }
 
 /** Without those that came from the fixture. */
-std::size_t CountSeatedBy(const AssemblyOutcome& outcome, std::size_t hand) {
+std::size_t CountSeatedBy(const RunOutcome& outcome, std::size_t hand) {
   return static_cast<std::size_t>(
       std::count_if(outcome.parts.begin(), outcome.parts.end(), [hand](const PartResult& part) {
         return part.is_seated && part.hand == hand && part.time > 0;
@@ -101,7 +103,7 @@ std::string DescribeResidual(double residual_um) {
   return residual_um < kResolved_um ? "< 1e-6" : fmt::format("{:.1e}", residual_um);
 }
 
-void PrintParts(const Model& model, const AssemblyOutcome& outcome) {
+void PrintParts(const Model& model, const RunOutcome& outcome) {
   TextTable table({"  #", "part", "time\ns", "path\nm", "true\nN", "felt\nN", "mates",
                    "arrival\num", "tilt\nmrad", "residual\num"},
                   2);
@@ -141,14 +143,13 @@ void PrintTicks(const Model& model, const ExecutionReport& run) {
   fmt::print("{}", Fold(text));
 }
 
-void PrintDevices(const AssemblyOutcome& outcome) {
-  for (std::size_t hand = 0; hand < outcome.devices.size(); ++hand) {
-    const DeviceInHand& device = outcome.devices[hand];
+void PrintDevices(const RunOutcome& outcome) {
+  for (const DeviceInHand& device : outcome.devices) {
     std::string text =
-        fmt::format("in the {}: {}{} ({})", outcome.hands == 1 ? "hand" : NameOfHand(hand),
+        fmt::format("in the {}: {}{} ({})", outcome.hands == 1 ? "hand" : NameOfHand(device.hand),
                     device.is_emulated ? "EMULATED " : "", device.model, device.address);
     if (outcome.hands > 1) {
-      text += fmt::format("; parts put in place: {}", CountSeatedBy(outcome, hand));
+      text += fmt::format("; parts put in place: {}", CountSeatedBy(outcome, device.hand));
     }
     fmt::print("{}", Fold(text));
   }
@@ -160,20 +161,21 @@ const char* NameOfHand(std::size_t hand) {
   return hand == 0 ? "first hand" : "second hand";
 }
 
-void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
+void PrintAssemblyJson(const Model& model, const AssemblyReport& report) {
+  const RunOutcome& outcome = report.run;
   nlohmann::ordered_json json;
   const ExecutionReport& run = outcome.execution;
   json["product"] = model.product->name;
   json["source"] = model.product->source;
-  json["seed"] = outcome.seed;
+  json["seed"] = report.seed;
   json["digest"] = outcome.digest;
-  json["force_map"] = haptics::ToString(outcome.force_map);
+  json["force_map"] = haptics::ToString(report.force_map);
   json["hands"] = outcome.hands;
   constexpr const char* kKeys[] = {"device", "second_device"};
-  for (std::size_t hand = 0; hand < outcome.devices.size(); ++hand) {
-    json[kKeys[hand]] = ToJson(outcome.devices[hand]);
+  for (const DeviceInHand& device : outcome.devices) {
+    json[kKeys[device.hand]] = ToJson(device);
   }
-  json["preparation_s"] = ToS(outcome.preparation_ns);
+  json["preparation_s"] = ToS(report.preparation_ns);
   json["contact_shapes_bytes"] = simulation::CalcShapeMemory(model).total();
   json["session_s"] = ToS(run.session_ns);
   json["wall_s"] = ToS(run.wall_ns);
@@ -182,7 +184,7 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
   json["tick_us"] = MakeLatencyJson(run.compute);
   json["slowest_ticks"] = ToJson(model, run.slowest);
   json["scheduling"] = run.scheduling;
-  if (outcome.is_realtime) {
+  if (report.is_realtime) {
     json["ticks_per_s"] = static_cast<double>(run.ticks) / ToS(run.wall_ns);
     json["wake_up_us"] = MakeLatencyJson(run.wake_up);
     json["late_wake_ups"] = run.late_wake_ups;
@@ -201,23 +203,24 @@ void PrintAssemblyJson(const Model& model, const AssemblyOutcome& outcome) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-void PrintAssemblyTable(const Model& model, const AssemblyOutcome& outcome) {
+void PrintAssemblyTable(const Model& model, const AssemblyReport& report) {
+  const RunOutcome& outcome = report.run;
   PrintParts(model, outcome);
   const ExecutionReport& run = outcome.execution;
   std::string text = fmt::format(
       "\n{}: {} of {} parts in place after {:.1f} s of work; prepared in {:.1f} s (contact shapes: "
       "{:.1f} MB), computed in {:.1f} s ({:.1f} x real time",
       model.product->source, CountSeated(outcome), outcome.parts.size(), ToS(run.session_ns),
-      ToS(outcome.preparation_ns),
+      ToS(report.preparation_ns),
       1e-6 * static_cast<double>(simulation::CalcShapeMemory(model).total()), ToS(run.wall_ns),
       Ratio(run, run.wall_ns));
-  if (!outcome.is_realtime) {
+  if (!report.is_realtime) {
     text += fmt::format("; {:.1f} s of processor time, {:.1f} x", ToS(run.cpu_ns),
                         Ratio(run, run.cpu_ns));
   }
   fmt::print("{}", Fold(text + ")\n"));
   PrintTicks(model, run);
-  if (outcome.is_realtime) {
+  if (report.is_realtime) {
     fmt::print(
         "{}",
         Fold(fmt::format(

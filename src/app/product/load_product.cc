@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <map>
 #include <string>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -11,11 +10,7 @@
 #include "app/output/progress.h"
 #include "base/file_cache.h"
 #include "base/units.h"
-#include "base/work_watch.h"
 #include "cad/import.h"
-#include "mates/assignments.h"
-#include "mates/infer.h"
-#include "mates/stated_fits.h"
 
 namespace hvas::app {
 
@@ -51,12 +46,12 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options) {
                     "Do not use the caches on disk: read and prepare everything again");
   AddUnitOption(command, &options->length_unit);
   command
-      ->add_option("--time-limit", options->time_limit,
+      ->add_option("--time-limit", options->limits.time,
                    "Time limit for opening and preparing the file [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
-      ->add_option("--memory-limit", options->memory_limit,
+      ->add_option("--memory-limit", options->limits.memory,
                    "Memory limit for opening the file, for example 8GB; default: 4GB, or three "
                    "quarters of the machine's memory where that is less")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
@@ -73,65 +68,25 @@ std::optional<std::filesystem::path> CacheDirectory(const LoadOptions& options) 
 
 namespace {
 
-Result<product::Product> LoadInferredWithin(const LoadOptions& options, WorkWatch* watch,
-                                            Diagnostics* diagnostics) {
-  cad::ImportControl control;
-  control.limits.time = options.time_limit;
-  control.limits.memory = options.memory_limit;
-  control.cache_directory = CacheDirectory(options);
-  control.stop = options.stop;
-  control.progress = options.progress;
-  if (control.progress == nullptr && !options.is_quiet && IsWatched()) {
-    control.progress = ShowProgress;
+assembly::OpenOptions MakeOpenOptions(const LoadOptions& options) {
+  assembly::OpenOptions open = options;
+  open.cache_directory = CacheDirectory(options);
+  if (open.progress == nullptr && !options.is_quiet && IsWatched()) {
+    open.progress = ShowProgress;
   }
-  cad::ImportOptions import;
-  import.length_unit = options.length_unit;
-  import.max_parts = static_cast<std::size_t>(options.max_parts);
-  auto product = cad::Import(options.file, import, diagnostics, control);
-  if (!product) {
-    return product;
-  }
-  if (const auto inferred = mates::Infer(&*product, diagnostics, watch); !inferred) {
-    return Unexpected(inferred.error());
-  }
-  return product;
-}
-
-WorkWatch Watch(const LoadOptions& options) {
-  return WorkWatch({options.time_limit, options.memory_limit}, options.stop);
+  return open;
 }
 
 }  // namespace
 
 Result<product::Product> LoadInferred(const LoadOptions& options, Diagnostics* diagnostics) {
-  WorkWatch watch = Watch(options);
-  return LoadInferredWithin(options, &watch, diagnostics);
+  return assembly::OpenInferred(MakeOpenOptions(options), diagnostics);
 }
 
 Result<product::Product> LoadProduct(const LoadOptions& options, Diagnostics* diagnostics) {
-  WorkWatch watch = Watch(options);
-  auto product = LoadInferredWithin(options, &watch, diagnostics);
+  auto product = assembly::OpenProduct(MakeOpenOptions(options), diagnostics);
   if (!product) {
     return product;
-  }
-  const std::filesystem::path side_file = mates::FindAssignmentFile(options.file);
-  std::error_code error;
-  // A link that leads nowhere is a mistake to be told, not a side file that is not there.
-  if (std::filesystem::exists(std::filesystem::symlink_status(side_file, error))) {
-    if (const auto applied = mates::ApplyAssignments(side_file, &*product, &watch); !applied) {
-      return Unexpected(applied.error());
-    }
-  } else {
-    mates::AssignStatedFits(&*product, &watch);
-    if (!watch.MayGoOn()) {
-      return Unexpected(
-          watch.Explain("assigning the stated fits", options.file.filename().string()));
-    }
-  }
-  for (const std::string& fit : options.fits) {
-    if (const auto assigned = mates::AssignFit(&*product, fit); !assigned) {
-      return Unexpected(assigned.error());
-    }
   }
   if (const auto strict = CheckStrict(options, *diagnostics); !strict) {
     return Unexpected(strict.error());

@@ -89,8 +89,8 @@ Result<void> WriteStep(const ExportOptions& options, const Product& product,
                 product.source, "export it as .glb, or start from the CAD system's own STEP file");
   }
   cad::ImportControl control;
-  control.limits.time = options.load.time_limit;
-  control.limits.memory = options.load.memory_limit;
+  control.limits.time = options.load.limits.time;
+  control.limits.memory = options.load.limits.memory;
   if (!options.load.is_quiet && IsWatched()) {
     control.progress = ShowProgress;
   }

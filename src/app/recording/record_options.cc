@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "app/output/progress.h"
+#include "assembly/prepare_model.h"
 #include "base/file_cache.h"
-#include "contact/shape_cache.h"
 #include "session/recorded_model.h"
 
 namespace hvas::app {
@@ -22,17 +22,15 @@ void AddRecordOptions(CLI::App* command, RecordOptions* options) {
 
 Result<std::shared_ptr<const simulation::Model>> PrepareModel(record::Reader* reader,
                                                               const RecordOptions& options) {
-  simulation::CompileOptions compile;
-  if (const auto directory = FileCache::DefaultDirectory(); directory && options.is_cache_used) {
-    compile.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
+  assembly::PrepareOptions prepare;
+  if (options.is_cache_used) {
+    prepare.shape_cache = assembly::MakeShapeCache(FileCache::DefaultDirectory());
   }
   if (!options.is_quiet && IsWatched()) {
-    compile.progress = [](const std::string& stage, double fraction) {
-      ShowProgress(stage, fraction);
-    };
+    prepare.progress = ShowProgress;
   }
   Diagnostics diagnostics;
-  auto model = session::LoadModel(reader, compile, &diagnostics);
+  auto model = session::LoadModel(reader, assembly::MakeCompileOptions(prepare), &diagnostics);
   for (const Diagnostic& item : diagnostics.items()) {
     if (item.code == "model-differs" || item.code == "shape-cache") {
       fmt::print(stderr, "hvas: {}: {} ({})\n", item.entity, item.message, item.remedy);

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/shipped_files.h"
-#include "contact/shape_cache.h"
+#include "assembly/prepare_model.h"
 
 namespace hvas::app {
 namespace {
@@ -75,13 +75,10 @@ study::ModelSource MakeModelSource(const study::Protocol& protocol, const fs::pa
     if (!loaded) {
       return Unexpected(loaded.error());
     }
-    simulation::CompileOptions compile;
-    compile.seed = seed;
-    if (const auto directory = CacheDirectory(one)) {
-      compile.shape_cache = std::make_shared<contact::ShapeCache>(*directory);
-    }
-    return simulation::Compile(std::make_shared<product::Product>(std::move(*loaded)), compile,
-                               &diagnostics);
+    assembly::PrepareOptions prepare;
+    prepare.seed = seed;
+    prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(one));
+    return assembly::PrepareModel(std::move(*loaded), prepare, &diagnostics);
   };
 }
 

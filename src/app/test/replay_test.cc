@@ -6,18 +6,19 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "app/product/load_product.h"
 #include "app/test/run_hvas.h"
+#include "assembly/assembly_setup.h"
+#include "assembly/prepare_model.h"
 #include "base/test/temporary_folder.h"
-#include "device/opened_device.h"
 #include "record/reader.h"
 #include "session/recorded_model.h"
 #include "session/session_recorder.h"
-#include "simulation/assembly_run.h"
-#include "simulation/device_session.h"
 #include "simulation/executors.h"
 
 namespace hvas::app {
@@ -25,7 +26,6 @@ namespace {
 
 using nlohmann::json;
 using record::TickRecord;
-using simulation::Simulation;
 using testing::ProductFile;
 using testing::RunHvas;
 using testing::RunHvasJson;
@@ -37,48 +37,33 @@ std::shared_ptr<const simulation::Model> Bushing() {
   Diagnostics diagnostics;
   auto product = LoadProduct(load, &diagnostics);
   EXPECT_TRUE(product.has_value());
-  return *simulation::Compile(std::make_shared<product::Product>(std::move(*product)), {},
-                              &diagnostics);
+  return *assembly::PrepareModel(std::move(*product), {}, &diagnostics);
 }
-
-/** A simulated person with an emulated device in the hand. */
-struct Hand {
-  Hand(const simulation::Model& model, const char* address, std::uint64_t seed)
-      : opened(*device::OpenAnyDevice(address, false)),
-        options(simulation::MakeTickOptions(opened.device->info(), model, {})),
-        person(simulation::MakePersonOptions(options), seed, simulation::StartOfHand(model)),
-        at_device(&person, opened.emulator.get(), opened.device.get(), false) {}
-
-  device::OpenedDevice opened;
-  haptics::TickOptions options;
-  simulation::SimulatedPerson person;
-  simulation::PersonAtDevice at_device;
-};
 
 /** Twenty seconds of two hands: forces are stopped once for a tenth of a second, physics is late
  once, and each fault that a device can have comes and goes. */
 std::uint64_t RecordTwoHands(const std::shared_ptr<const simulation::Model>& model,
                              const std::filesystem::path& file) {
-  Hand left(*model, "emulated:openhaptics:touch_x", 1);
-  Hand right(*model, "emulated:haply", 2);
-  Simulation simulation(model, left.options, right.options);
+  std::vector<assembly::Hand> hands;
+  hands.push_back(*assembly::MakeHand(*model, {"emulated:openhaptics:touch_x", {}, 1}));
+  hands.push_back(*assembly::MakeHand(*model, {"emulated:haply", {}, 2}));
+  device::EmulatedDevice& left = hands.front().opened.emulator->device();
   record::RecorderOptions options;
   options.path = file;
   const auto recorder = record::Recorder::Create(options, {});
   EXPECT_TRUE(recorder.has_value());
   session::SessionRecorder sink(recorder->get(), *model);
-  sink.Begin(&simulation);
-  simulation::AssemblyRun run(&simulation, simulation::Persons{&left.person, &right.person}, &sink);
-  simulation::Execution execution = run.MakeExecution(&left.at_device, 20, &right.at_device);
+  assembly::AssemblySetup setup(model, std::move(hands), &sink);
+  sink.Begin(&setup.simulation());
+  simulation::Execution execution = setup.MakeExecution(20);
   std::size_t steps = 0;
   execution.advance = [&] {
-    run.Advance();
+    setup.run().Advance();
     ++steps;
-    simulation.StopForces(steps > 200 && steps <= 210);
+    setup.simulation().StopForces(steps > 200 && steps <= 210);
     const std::size_t number = steps / 200;
     const bool has_fault = steps % 200 < 20 && number > 1 && number - 2 < device::kFaults.size();
-    left.opened.emulator->device().SetFault(has_fault ? device::kFaults.at(number - 2)
-                                                      : device::Fault::kNone);
+    left.SetFault(has_fault ? device::kFaults.at(number - 2) : device::Fault::kNone);
   };
   execution.is_physics_late = [](std::int64_t t_ns) { return t_ns / 50'000'000 == 30; };
   const simulation::ExecutionReport report = RunLockstep(execution);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -92,6 +93,11 @@ class SymbolBinder {
   std::vector<std::string> missing_;
 };
 
+/** Binds a function of a list of macros as HVAS_DHD_FUNCTIONS is one: by a SymbolBinder `binder`
+ into a struct `functions` that has a pointer of its name. */
+#define HVAS_BIND(name) binder->Bind(#name, &functions->name);
+#define HVAS_BIND_OPTIONAL(name) binder->BindOptional(#name, &functions->name);
+
 /** Loads a library and takes its functions.
  Errors: those of Load; kUnsupported, with the names, when it lacks any. */
 Result<DynamicLibrary> LoadFunctions(const LibrarySearch& search, std::vector<Finding>* looked_for,
@@ -116,6 +122,34 @@ Result<VendorLibrary<Functions>> LoadVendorLibrary(const LibrarySearch& search,
   }
   library.is_emulated = loaded->is_emulated();
   return library;
+}
+
+/** How a driver's probe begins: looks for the files of its library, and loads it where devices may
+ be opened. Gives nothing where they may not, or where it cannot be loaded, which becomes a problem.
+ @param load  Result<Library>(std::vector<Finding>* looked_for) */
+template <typename Load>
+auto ProbeLibrary(const LibrarySearch& search, bool opens_devices, ProbeReport* report, Load load)
+    -> std::optional<typename decltype(load(&report->looked_for))::value_type> {
+  if (!opens_devices) {
+    ProbeFiles(search, report);
+    return std::nullopt;
+  }
+  auto library = load(&report->looked_for);
+  if (!library) {
+    report->problems.push_back(library.error());
+    return std::nullopt;
+  }
+  return *std::move(library);
+}
+
+/** ProbeLibrary for a struct of functions that has a BindAll beside it. */
+template <typename Functions>
+std::optional<VendorLibrary<Functions>> ProbeVendorLibrary(const LibrarySearch& search,
+                                                           bool opens_devices,
+                                                           ProbeReport* report) {
+  return ProbeLibrary(search, opens_devices, report, [&](std::vector<Finding>* looked_for) {
+    return LoadVendorLibrary<Functions>(search, looked_for);
+  });
 }
 
 }  // namespace hvas::device

@@ -48,8 +48,7 @@ std::string Explain(int code) {
       {-kOffBySoftware, "the vendor's software switched the force off"},
       {-kOffByDisconnection, "its USB connection was lost"},
       {-kOffByDeadMan, "its dead-man switch reports that nobody holds it"}};
-  const auto found = words.find(code);
-  return found != words.end() ? found->second : "";
+  return WordsOf(words, code);
 }
 
 std::string ModelOfType(int type) {
@@ -57,8 +56,7 @@ std::string ModelOfType(int type) {
       {33, "omega.3"},   {34, "omega.6"},  {36, "omega.6"},  {35, "omega.7"},
       {37, "omega.7"},   {104, "sigma.7"}, {105, "sigma.7"}, {108, "lambda.7"},
       {109, "lambda.7"}, {63, "delta.3"},  {60, "Falcon"}};
-  const auto found = models.find(type);
-  return found != models.end() ? found->second : "";
+  return WordsOf(models, type);
 }
 
 spatial::Pose ToPose(const Vec3& p, const double rows[3][3]) noexcept {
@@ -72,12 +70,8 @@ spatial::Pose ToPose(const Vec3& p, const double rows[3][3]) noexcept {
 }
 
 void BindAll(SymbolBinder* binder, Functions* functions) {
-#define HVAS_BIND(name) binder->Bind(#name, &functions->name);
   HVAS_DHD_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
-#define HVAS_BIND(name) binder->BindOptional(#name, &functions->name);
-  HVAS_DHD_OPTIONAL_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
+  HVAS_DHD_OPTIONAL_FUNCTIONS(HVAS_BIND_OPTIONAL)
 }
 
 }  // namespace force_dimension
@@ -386,13 +380,8 @@ Result<std::unique_ptr<Device>> DhdDriver::Open(const std::string& address,
 ProbeReport DhdDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
   ProbeReport report = BeginReport();
   ProbeUsb(surroundings, kUsbVendor, "Force Dimension", &report);
-  if (!opens_devices) {
-    ProbeFiles(Search(surroundings), &report);
-    return report;
-  }
-  const auto library = LoadVendorLibrary<Functions>(Search(surroundings), &report.looked_for);
+  const auto library = ProbeVendorLibrary<Functions>(Search(surroundings), opens_devices, &report);
   if (!library) {
-    report.problems.push_back(library.error());
     return report;
   }
   const int count = std::min<int>(library->functions.dhdGetDeviceCount(), kMaxDevices);

@@ -47,8 +47,7 @@ std::string Explain(std::uint32_t error) {
       {kIllegalEnd, "a haptic frame was ended that was not begun"},
       {kFrameError, "a force was set outside of a haptic frame"},
       {kInvalidLicense, "OpenHaptics has no valid licence"}};
-  const auto found = words.find(error);
-  return found != words.end() ? found->second : "";
+  return WordsOf(words, error);
 }
 
 spatial::Pose ToPose(const std::array<double, 16>& m) noexcept {
@@ -476,11 +475,9 @@ Result<Library*> HdDriver::Load(const Surroundings& surroundings,
   static std::mutex mutex;
   static std::map<std::string, std::unique_ptr<Library>> libraries;  // For ever, by path.
   auto fresh = std::make_unique<Library>();
-  const auto loaded = LoadFunctions(Search(surroundings), looked_for, [&](SymbolBinder* binder) {
-#define HVAS_BIND(name) binder->Bind(#name, &fresh->hd.name);
-    HVAS_HD_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
-  });
+  Functions* functions = &fresh->hd;
+  const auto loaded = LoadFunctions(Search(surroundings), looked_for,
+                                    [&](SymbolBinder* binder) { HVAS_HD_FUNCTIONS(HVAS_BIND) });
   if (!loaded) {
     return Unexpected(loaded.error());
   }
@@ -492,13 +489,10 @@ Result<Library*> HdDriver::Load(const Surroundings& surroundings,
 ProbeReport HdDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
   ProbeReport report = BeginReport();
   ProbeUsb(surroundings, kUsbVendor, "3D Systems", &report);
-  if (!opens_devices) {
-    ProbeFiles(Search(surroundings), &report);
-    return report;
-  }
-  auto library = Load(surroundings, &report.looked_for);
+  const auto library = ProbeLibrary(
+      Search(surroundings), opens_devices, &report,
+      [&](std::vector<Finding>* looked_for) { return Load(surroundings, looked_for); });
   if (!library) {
-    report.problems.push_back(library.error());
     return report;
   }
   const std::scoped_lock lock((*library)->mutex);

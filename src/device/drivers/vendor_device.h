@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -20,6 +21,13 @@ enum class VendorVerdict : std::uint8_t {
 };
 
 [[nodiscard]] Condition ToCondition(VendorVerdict verdict) noexcept;
+
+/** What a table has for a vendor's code; empty where it is not in it. */
+template <typename Code>
+[[nodiscard]] std::string WordsOf(const std::map<Code, std::string>& words, Code code) {
+  const auto found = words.find(code);
+  return found != words.end() ? found->second : "";
+}
 
 /** What is alike in the devices of all vendors' libraries: samples go through the guard, force only
  while all is well, ramped back after every pause, faded while samples are missing, within the

@@ -44,8 +44,7 @@ std::string Explain(int code) {
       {kErrorIncompatible, "library and controller have different versions"},
       {kAlarmOverheat, "its motors are too hot; let them cool for some minutes"},
       {kAlarmPosition, "its position is invalid; calibrate it with the vendor's program"}};
-  const auto found = words.find(code);
-  return found != words.end() ? found->second : "";
+  return WordsOf(words, code);
 }
 
 spatial::Pose ToPose(const std::array<float, 7>& pose) noexcept {
@@ -65,12 +64,8 @@ std::array<float, 6> FromWrench(const spatial::Wrench& F) noexcept {
 }
 
 void BindAll(SymbolBinder* binder, Functions* functions) {
-#define HVAS_BIND(name) binder->Bind(#name, &functions->name);
   HVAS_VIRT_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
-#define HVAS_BIND(name) binder->BindOptional(#name, &functions->name);
-  HVAS_VIRT_OPTIONAL_FUNCTIONS(HVAS_BIND)
-#undef HVAS_BIND
+  HVAS_VIRT_OPTIONAL_FUNCTIONS(HVAS_BIND_OPTIONAL)
 }
 
 }  // namespace virtuose
@@ -368,13 +363,8 @@ Result<std::unique_ptr<Device>> VirtDriver::Open(const std::string& address,
 
 ProbeReport VirtDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
   ProbeReport report = BeginReport();
-  if (!opens_devices) {
-    ProbeFiles(Search(surroundings), &report);
-    return report;
-  }
-  const auto library = LoadVendorLibrary<Functions>(Search(surroundings), &report.looked_for);
+  const auto library = ProbeVendorLibrary<Functions>(Search(surroundings), opens_devices, &report);
   if (!library) {
-    report.problems.push_back(library.error());
     return report;
   }
   const auto started = OpenAddress(*library, kDefaultAddress);

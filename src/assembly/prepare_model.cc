@@ -1,0 +1,35 @@
+#include "assembly/prepare_model.h"
+
+#include <utility>
+
+namespace hvas::assembly {
+
+std::shared_ptr<contact::ShapeCache> MakeShapeCache(
+    const std::optional<std::filesystem::path>& directory) {
+  return directory ? std::make_shared<contact::ShapeCache>(*directory) : nullptr;
+}
+
+simulation::CompileOptions MakeCompileOptions(const PrepareOptions& options) {
+  simulation::CompileOptions compile;
+  compile.seed = options.seed;
+  compile.first_parts = options.first_parts;
+  compile.shape_cache = options.shape_cache;
+  compile.progress = options.progress;
+  compile.shape.stop = options.stop;
+  return compile;
+}
+
+Result<std::shared_ptr<const simulation::Model>> PrepareModel(product::Product product,
+                                                              const PrepareOptions& options,
+                                                              Diagnostics* diagnostics) {
+  if (!(product.mass() > 0)) {
+    return Fail(ErrorCode::kUnsupported,
+                "no part of the product has a mass, so there is nothing to assemble",
+                options.name.empty() ? product.source : options.name,
+                "export the product with solids, not as surfaces");
+  }
+  return simulation::Compile(std::make_shared<product::Product>(std::move(product)),
+                             MakeCompileOptions(options), diagnostics);
+}
+
+}  // namespace hvas::assembly

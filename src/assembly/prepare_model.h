@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/result.h"
+#include "cad/import.h"
+#include "contact/shape_cache.h"
+#include "product/product.h"
+#include "simulation/model.h"
+
+namespace hvas::assembly {
+
+/** How a product is prepared. */
+struct PrepareOptions {
+  std::uint64_t seed{1};                 ///< Draws the actual sizes of the fits.
+  std::vector<std::string> first_parts;  ///< Names, paths or ids ("o12"); the others follow.
+  std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: contact shapes are always built.
+  cad::ProgressFn progress;                          ///< Called by the calling thread; may be null.
+  std::stop_token stop;                              ///< Ends the building of contact shapes.
+  std::string name;  ///< The product's in errors; empty: Product::source.
+};
+
+/** The contact shapes that are kept in a directory; null where there is none. */
+[[nodiscard]] std::shared_ptr<contact::ShapeCache> MakeShapeCache(
+    const std::optional<std::filesystem::path>& directory);
+
+/** Options as simulation::Compile takes them, and session::LoadModel, which prepares the model of a
+ record. */
+[[nodiscard]] simulation::CompileOptions MakeCompileOptions(const PrepareOptions& options);
+
+/** Prepares a product for assembly: contact shapes, fits with sizes drawn by the seed, the order of
+ assembly, and the layout of the parts on the table. The same product, seed and order give the same
+ model. Shapes that cannot be kept are a warning ("shape-cache").
+ Errors: kUnsupported where no part has a mass; those of simulation::Compile, kCancelled after a
+ stop among them.
+ @param product  As OpenProduct gives it. @pre diagnostics != nullptr. */
+[[nodiscard]] Result<std::shared_ptr<const simulation::Model>> PrepareModel(
+    product::Product product, const PrepareOptions& options, Diagnostics* diagnostics);
+
+}  // namespace hvas::assembly
