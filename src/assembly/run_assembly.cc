@@ -19,7 +19,7 @@ using simulation::PartResult;
 
 Result<void> Check(const Model& model, const RunOptions& options) {
   constexpr double kSlowest = 1000;  // [Hz]: X4.
-  constexpr double kFastest = 8000;  // [Hz]: the fastest device, an 8 kHz USB HID.
+  constexpr double kFastest = 8000;  // [Hz]: a choice.
   if (options.devices.empty() || options.devices.size() > 2) {
     return Fail(ErrorCode::kInvalid, fmt::format("there are no {} hands", options.devices.size()),
                 model.product->source, "ask for one hand or two");

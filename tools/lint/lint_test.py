@@ -103,7 +103,7 @@ class Constants(unittest.TestCase):
         self.assertEqual(self.bare("constexpr std::array<double, 2> kA{\n    1, 2};\n"), [(1, "kA")])
 
     def test_comment_on_the_line_explains_that_line_alone(self):
-        self.assertEqual(self.bare("constexpr int kA = 1;  // [m]\nconstexpr int kB = 2;\n"), [(2, "kB")])
+        self.assertEqual(self.bare("constexpr int kA = 1;  // Length [m].\nconstexpr int kB = 2;\n"), [(2, "kB")])
 
     def test_comment_above_explains_a_block_but_not_what_follows_it(self):
         block = "/** Both.\n And more. */\nconstexpr int kA =\n    1;\nconstexpr int kB = 2;\n"
