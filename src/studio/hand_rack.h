@@ -69,7 +69,7 @@ class DeviceSearch {
 
  private:
   mutable std::mutex mutex_;
-  nlohmann::ordered_json found_{nlohmann::ordered_json::array()};
+  nlohmann::ordered_json found_ = nlohmann::ordered_json::array();
   bool is_searching_{false};
 };
 

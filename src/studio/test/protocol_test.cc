@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/test/await_true.h"
 #include "studio/event_json.h"
 #include "studio/hub.h"
 #include "studio/scene_json.h"
@@ -113,6 +114,9 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   PumpUntil("taken");
   EXPECT_FALSE(Do({{"command", "release"}, {"hand", 0}}).is_null());
   PumpUntil("dropped");
+  EXPECT_FALSE(Do({{"command", "next"}}).is_null());
+  PumpUntil("dropped");
+  ASSERT_TRUE(hvas::testing::AwaitTrue([&] { return !bench_.is_demo(); }));
   EXPECT_FALSE(Do({{"command", "path"}, {"occurrence", 1}, {"as", "points"}}).is_null());
   EXPECT_FALSE(Do({{"command", "path"}, {"occurrence", 1}, {"as", "swept"}}).is_null());
   EXPECT_FALSE(Do({{"command", "record"}, {"on", false}}).is_null());
@@ -146,7 +150,6 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   PumpUntil("hands");
   EXPECT_FALSE(Do({{"command", "devices"}}).is_null());
   PumpUntil("devices");
-  EXPECT_FALSE(Do({{"command", "next"}}).is_null());
   EXPECT_FALSE(Do({{"command", "forces"}, {"off", true}}).is_null());
   EXPECT_FALSE(DoAs("c2", &other_link_, {{"command", "lease"}, {"action", "request"}}).is_null());
   EXPECT_FALSE(Do({{"command", "lease"}, {"action", "give"}, {"to", "c2"}}).is_null());
