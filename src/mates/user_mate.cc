@@ -318,8 +318,8 @@ Result<MateId> FindMate(const Product& product, std::string_view text) {
     if (error == std::errc() && last == end) {
       return index < product.mates.size()
                  ? Result<MateId>(MateId(index))
-                 : Result<MateId>(
-                       fail(fmt::format("there is no mate {}; the product has {} mates", text, product.mates.size())));
+                 : Result<MateId>(fail(fmt::format("there is no mate {}; the product has {} mates",
+                                                   text, product.mates.size())));
     }
   }
   std::optional<MateId> found;
