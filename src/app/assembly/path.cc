@@ -281,8 +281,7 @@ void AddPath(CLI::App* app, int* status) {
   AddJsonFlag(command, &options->is_json, "path");
   AddLoadOptions(command, &options->load);
   command->footer(
-      "  .csv   one pose for each line: time, centre of mass, origin and rotation of the part [s, "
-      "m]\n"
+      "  .csv   one pose per line: time, centre of mass, origin, rotation [s, m]\n"
       "  .json  the same: times_s, points_m, poses\n"
       "  .stl   with --swept: millimetres    .glb   with --swept: metres, Y up\n"
       "Poses are those of the part in the product's frame. No point of the mesh is further from\n"
