@@ -237,7 +237,7 @@ TEST(MeasureSolid, GivesVolumeCentreAndInertiaOfSolidsAnywhere) {
     ExpectMeasure(Moved(solids[i].first, MakeMotion(1.1, 30)), solids[i].second);
     ExpectMeasure(solids[i].first.Moved(MakeMotion(1.1, 30)), solids[i].second);
   }
-  EXPECT_NEAR(MeasureSolid(MakePlate().Reversed(), gp_Pnt(1, 2, 3)).volume,
+  EXPECT_NEAR(MeasureSolid(MakePlate().Reversed(), gp_Pnt(1, 2, 3)).volume_mm3,
               -(60 * 40 * 10 - std::numbers::pi * 25 * 10), 1e-6);
 }
 
