@@ -18,7 +18,7 @@ std::string_view TakeLine(std::string_view* bytes) {
 
 void CheckHost(const studio::Access& access, std::string_view line) {
   constexpr std::array<std::string_view, 3> kOwn{"127.0.0.1", "localhost", "::1"};
-  const auto host = studio::HostOf(line);
+  const auto host = studio::FindHost(line);
   if (host) {
     Check(!host->empty() && host->size() <= line.size());
     Check(std::none_of(host->begin(), host->end(), [](char c) { return c >= 'A' && c <= 'Z'; }));

@@ -46,7 +46,7 @@ std::string_view FieldOf(const Fields& fields, http::field name) {
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket socket, std::shared_ptr<ServerShared> shared)
-      : connection_(std::move(socket), shared->guests), shared_(std::move(shared)) {}
+      : connection_(std::move(socket), shared->connections), shared_(std::move(shared)) {}
 
   void Run() {
     if (!connection_.is_in()) {

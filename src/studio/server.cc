@@ -80,7 +80,7 @@ class Server::Impl {
     if (thread_.joinable()) {
       thread_.join();
     }
-    shared_->hub.Forget();
+    shared_->hub.DropClients();
   }
 
   [[nodiscard]] bool has_kept_links() const { return has_kept_links_; }

@@ -104,7 +104,7 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   EXPECT_FALSE(Do({{"command", "open"}, {"example", "peg"}}).is_null());
   PumpUntil("scene");
   PumpUntil("history");
-  const SceneNow now = bench_.Look();
+  const SceneSnapshot now = bench_.MakeSnapshot();
   EXPECT_EQ(testing::FindFault("Scene", MakeSceneJson(*now.scene, now.state)), "");
   EXPECT_EQ(testing::FindFault("Scene", MakeShieldedSceneJson(*now.scene, now.state)), "");
 

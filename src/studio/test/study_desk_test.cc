@@ -342,7 +342,7 @@ TEST_F(StudyDeskTest, GoesOnAfterTheProgramHasEnded) {
   PumpUntil("trial_begun");
   Do(experimenter_, {{"action", "next"}});
   PumpUntil("trial_over");
-  hub_.Forget();
+  hub_.DropClients();
   Open(false);  // as a program that is begun again
   EXPECT_EQ(Phase(), "waiting");
   EXPECT_TRUE(desk_->OnBenchEvent({{"event", "scene"}}, now_ns_));
