@@ -152,7 +152,7 @@ Outcome Assemble(const ModelPtr& model, const Setting& setting, const Common& co
   Outcome outcome;
   for (int seed = 1; seed <= common.seeds; ++seed) {
     simulation::Simulation simulation(model, tick);
-    simulation.SetEffortLevel(setting.effort_level);
+    simulation.haptics().SetEffortLevel(setting.effort_level);
     simulation::SimulatedPerson person(setting.person, static_cast<std::uint64_t>(seed),
                                        simulation::StartOfHand(*model));
     simulation::AssemblyRun run(&simulation, &person, nullptr);

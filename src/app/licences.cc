@@ -92,11 +92,11 @@ std::string ListText() {
   for (const Licensed& one : ListLicensed()) {
     table.Add({one.name, one.version, one.terms.substr(0, one.terms.find_last_of('.'))});
   }
-  return "hvas is licensed under the Apache License 2.0. It contains third-party components:\n"
+  return "hvas is licensed under the Apache License 2.0. Its third-party components:\n"
          "\n" +
          table.ToText(2) +
          "\n"
-         "hvas licences NAME prints the terms of one component, hvas licences those of all.\n";
+         "hvas licences NAME prints the terms of one component, hvas licences all terms.\n";
 }
 
 int ShowLicences(const std::string& name, bool is_list) {

@@ -66,6 +66,12 @@ Result<void> Reader::CheckKind() {
     return Fail(ErrorCode::kUnreadable, "this is not a session record", path_.string(),
                 "give a file that HVAS recorded");
   }
+  const Result<std::int64_t> tables =
+      database_.QueryInt("SELECT count(*) FROM sqlite_master WHERE name = 'schema_version'");
+  if (tables && *tables == 0) {
+    return Fail(ErrorCode::kUnreadable, "the record is empty: its writer was ended before it began",
+                path_.string(), "record the session again");
+  }
   const Result<std::int64_t> version = database_.QueryInt("SELECT version FROM schema_version");
   if (!version) {
     return Unexpected(version.error());

@@ -81,7 +81,9 @@ constexpr const char* kInsertSeal =
     "INSERT INTO seal (t_ns, is_last, chunks, chunk_hash, events, event_hash, commands, "
     "command_hash, frames, frame_hash, entries, hash) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 
-Result<void> CreateSchema(Database* database, const SessionFileOptions& options) {
+/** Begins the transaction in which a record comes to be, up to its tables. The first seal ends it:
+ a process that is killed before leaves no record, and none without a seal. */
+Result<void> BeginRecord(Database* database, const SessionFileOptions& options) {
   std::string sql = fmt::format(
       "PRAGMA page_size={}; PRAGMA journal_mode=WAL; PRAGMA synchronous={};"
       "PRAGMA application_id={};",
@@ -91,7 +93,7 @@ Result<void> CreateSchema(Database* database, const SessionFileOptions& options)
                        std::max<std::int64_t>(options.max_bytes / kPageSize, 1));
   }
   sql += "BEGIN;" + std::string(kSchema) +
-         fmt::format("INSERT INTO schema_version VALUES ({}); COMMIT;", kSchemaVersion);
+         fmt::format("INSERT INTO schema_version VALUES ({});", kSchemaVersion);
   return database->Execute(sql);
 }
 
@@ -106,7 +108,7 @@ Result<SessionFile> SessionFile::Create(const SessionFileOptions& options, const
   if (!database) {
     return Unexpected(database.error());
   }
-  Result<void> done = CreateSchema(&*database, options);
+  Result<void> done = BeginRecord(&*database, options);
   if (!done) {
     return Unexpected(done.error());
   }
@@ -116,6 +118,7 @@ Result<SessionFile> SessionFile::Create(const SessionFileOptions& options, const
   }
   SessionFile file(std::move(*claim), std::move(*database), std::move(*statements));
   file.chunk_.reserve(kChunkTicks * kPackedTickSize);
+  file.transaction_start_ns_ = 0;
   done = file.AddMeta(meta);
   if (done) {
     done = file.Commit();

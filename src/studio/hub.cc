@@ -62,7 +62,7 @@ Result<std::string> Hub::Join(Role role, ClientLink* link) {
     SendTo(client, event, event.dump());
   }
   if (desk_ != nullptr) {
-    link->SendText(Print(desk_->MakeState(role, MonotonicNs())));
+    link->SendText(Print(desk_->MakeEvent(role, MonotonicNs())));
   }
   BroadcastRoles();
   return id;
@@ -138,7 +138,7 @@ void Hub::SendTo(const Client& client, const Json& event, const std::string& tex
 void Hub::BroadcastStudyState() {
   const std::int64_t now_ns = MonotonicNs();
   for (auto& [id, client] : clients_) {
-    client.link->SendText(Print(desk_->MakeState(client.role, now_ns)));
+    client.link->SendText(Print(desk_->MakeEvent(client.role, now_ns)));
   }
 }
 

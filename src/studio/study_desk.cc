@@ -387,14 +387,19 @@ Result<Json> StudyDesk::Pick(Role role, const Json& command, std::int64_t now_ns
   return Json{{"is_set", is_set}, {"left", missing_.size()}, {"state", MakeState(role, now_ns)}};
 }
 
+Json StudyDesk::MakeEvent(Role role, std::int64_t now_ns) const {
+  Json event{{"event", "study"}};
+  event.update(MakeState(role, now_ns));
+  return event;
+}
+
 Json StudyDesk::MakeState(Role role, std::int64_t now_ns) const {
   const study::Protocol& protocol = folder_.protocol();
   const bool is_experimenter = role == Role::kOperator;
   const bool sees_progress = is_experimenter || !protocol.hidden.progress;
   const std::string& language = session_.language();
   const auto trial = session_.trial();
-  Json state{{"event", "study"},
-             {"view", is_experimenter ? "experimenter" : "participant"},
+  Json state{{"view", is_experimenter ? "experimenter" : "participant"},
              {"title", protocol.title.In(language)},
              {"language", language},
              {"languages", protocol.languages},

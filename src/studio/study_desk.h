@@ -47,8 +47,11 @@ class StudyDesk {
   /** Checks time limits; to be called periodically. @returns whether the state has changed. */
   bool Poll(std::int64_t now_ns);
 
-  /** Makes the event "study" with what a role may see. */
+  /** Makes the state of the session with what a role may see. */
   [[nodiscard]] Json MakeState(Role role, std::int64_t now_ns) const;
+
+  /** Makes the event "study", which has this state. */
+  [[nodiscard]] Json MakeEvent(Role role, std::int64_t now_ns) const;
 
   /** Checks whether a part may be taken now. Errors: kInvalid while no trial runs, and in trials in
    which constraints are picked. */

@@ -331,8 +331,7 @@ void CheckCommandWord(const CLI::App& fit, const std::string& word) {
 }  // namespace
 
 void AddFit(CLI::App* app, int* status) {
-  CLI::App* fit =
-      app->add_subcommand("fit", "Calculate limits, press fits and insertion of ISO 286 fits");
+  CLI::App* fit = app->add_subcommand("fit", "Limits, press fits and insertion of ISO 286 fits");
   auto a = std::make_shared<FitArguments>();
   AddFitArguments(fit, a.get());
   fit->footer(

@@ -168,7 +168,7 @@ void AddExport(CLI::App* app, int* status) {
   CLI::App* command =
       app->add_subcommand("export",
                           "Export a CAD file as .glb, .json or .step, or a record as .csv, .json, "
-                          ".h5, .mcap or .glb, by the extension of X");
+                          ".h5, .mcap or .glb");
   const auto options = std::make_shared<ExportOptions>();
   command->add_option("file", options->load.file, "CAD file or record")->required();
   command->add_option("-o,--output", options->output, "File to write")->required();

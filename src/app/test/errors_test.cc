@@ -100,7 +100,7 @@ TEST(AssembleErrorTest, RecordThatCannotBeWrittenIsNamed) {
   // What somebody else has written is kept.
   const auto letter = folder.Write("letter.txt", "Dear all,\n");
   ExpectError({"assemble", ProductFile("bushing"), "--record", letter.string()},
-              {"letter.txt", "another name"});
+              {"letter.txt", "another file name"});
   EXPECT_EQ(testing::ReadText(letter), "Dear all,\n");
 }
 

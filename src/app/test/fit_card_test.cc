@@ -160,9 +160,9 @@ TEST(FitCommand, CountsMayBeWrittenAsPowersAndNotWithoutEnd) {
     return more;
   };
   EXPECT_EQ(RunHvasJson(with({"1e4"}))["population"]["count"], 10000);
-  ExpectRefusal(with({"1e12"}), {"1e12 is over 100000000"});
-  ExpectRefusal(with({"1.5"}), {"1.5 is not a whole number"});
-  ExpectRefusal(with({"100", "--threads", "100000"}), {"100000 is over 256"});
+  ExpectRefusal(with({"1e12"}), {"1e12 is above the maximum, 100000000"});
+  ExpectRefusal(with({"1.5"}), {"1.5 is not a positive whole number"});
+  ExpectRefusal(with({"100", "--threads", "100000"}), {"100000 is above the maximum, 256"});
   ExpectRefusal(with({"100", "--threads", "0"}), {"0 is not a positive whole number"});
 }
 

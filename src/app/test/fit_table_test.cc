@@ -109,9 +109,9 @@ TEST_F(FitTable, QuestionsAboutAPegThatCannotBeAreRefused) {
   refuse("two_point,a,D=20 d=20 l=10,theta_m,rad", "not below");
   refuse("two_point,a,D=20 d=-19 l=10,theta2,rad", "d is -19, but must be over 0");
   refuse("two_point,a,D=20 d=19.9 l=-10,theta2,rad", "l is -10, but must be at least 0");
-  refuse("two_point,a,D=20 d=19.9 l=nan,theta2,rad", "l is no number");
+  refuse("two_point,a,D=20 d=19.9 l=nan,theta2,rad", "l is not a number");
   refuse("two_point,a,D=20 d=19.9 l=1,theta2,rad", "no two-point contact: l is at least 1.9975");
-  refuse("two_point,a,D=20 d=19.9 l=10 furlong,theta2,rad", "in \"\"furlong\"\"");
+  refuse("two_point,a,D=20 d=19.9 l=10 furlong,theta2,rad", "unit \"\"furlong\"\"");
   refuse("two_point,a,D=20 d=19.9 l=10,theta2,kg", "has no unit");
   refuse("two_point,a,D=20 d=19.9 theta=9 deg,l2,mm", "the largest is 5.73");
   refuse("two_point,a,D=20 d=19.9 d=19 l=10,theta2,rad", "given twice");

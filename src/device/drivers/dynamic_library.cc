@@ -220,7 +220,7 @@ Result<DynamicLibrary> LoadFunctions(const LibrarySearch& search, std::vector<Fi
   const bool is_old = !search.old_function.empty() && library->Has(search.old_function.c_str());
   if (!binder.missing().empty() && is_old) {
     return Fail(ErrorCode::kUnsupported,
-                fmt::format("the library of {} has version {}; version {} is needed", search.title,
+                fmt::format("the library of {} has version {}; {} is needed", search.title,
                             search.old_version, search.version),
                 library->path(), search.remedy);
   }

@@ -336,7 +336,7 @@ class VirtDriver final : public Driver {
     search.version = "4.x";
     // Version 3 has one function for all calls; the others are only in its header.
     search.old_function = "virtCallDLL";
-    search.old_version = "version 3";
+    search.old_version = "3";
     return search;
   }
 };

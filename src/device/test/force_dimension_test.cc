@@ -150,7 +150,7 @@ TEST(ForceDimensionTest, AProbeNamesWhatIsThere) {
   const ProbeReport unplugged = ForceDimensionDriver().Probe(emulator->surroundings(), true);
   ASSERT_EQ(unplugged.problems.size(), 1U);
   EXPECT_EQ(unplugged.problems[0].message,
-            "device 0 of Force Dimension could not be opened: no device answers; look at its "
+            "device 0 of Force Dimension could not be opened: no device responds; check its "
             "cable and power (its error 5)");
 }
 
@@ -170,8 +170,8 @@ TEST(ForceDimensionTest, AMachineWithoutAnythingExplainsItself) {
   const ProbeReport report = ForceDimensionDriver().Probe(machine.surroundings(), true);
   ASSERT_EQ(report.problems.size(), 1U);
   EXPECT_EQ(report.problems[0].message,
-            "the library of Force Dimension (DHD/DRD) (libdrd.so.3*, libdrd.so) is not on this "
-            "machine");
+            "the library of Force Dimension (DHD/DRD) (libdrd.so.3*, libdrd.so) is not "
+            "installed");
   EXPECT_NE(report.problems[0].remedy.find("FORCEDIM_SDK"), std::string::npos);
   EXPECT_TRUE(HasFinding(report, "USB device 1451:* of Force Dimension", false));
 }

@@ -35,8 +35,8 @@ TEST(DynamicLibraryTest, ADependencyThatIsMissingIsNamed) {
   const Error error = OpenError(OpenHapticsDriver(), surroundings);
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
   EXPECT_EQ(error.message,
-            "libHD.so of OpenHaptics (3D Systems) needs libhvas_missing.so, which is not on this "
-            "machine");
+            "libHD.so of OpenHaptics (3D Systems) needs libhvas_missing.so, which is not "
+            "installed");
   EXPECT_NE(error.remedy.find("apt-file search libhvas_missing.so"), std::string::npos);
   const ProbeReport report = OpenHapticsDriver().Probe(surroundings, true);
   const auto finding = std::find_if(report.looked_for.begin(), report.looked_for.end(),
@@ -73,7 +73,8 @@ TEST(DynamicLibraryTest, FunctionsThatAreMissingAreNamed) {
   machine.Put("usr/lib/libdrd.so", ReadFile(StubFolder() / "version3/virtuoseAPI.so"));
   const Error error = OpenError(ForceDimensionDriver(), machine.surroundings());
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
-  EXPECT_NE(error.message.find("lacks dhdGetSDKVersion, dhdGetDeviceCount, "), std::string::npos)
+  EXPECT_NE(error.message.find("has no function dhdGetSDKVersion, dhdGetDeviceCount, "),
+            std::string::npos)
       << error.message;
   EXPECT_EQ(error.message.find("dhdSetWatchdog"), std::string::npos);  // Can be done without.
   EXPECT_NE(error.remedy.find("version 3.5 or later of the SDK is needed"), std::string::npos);

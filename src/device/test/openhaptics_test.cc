@@ -185,8 +185,8 @@ TEST(OpenHapticsTest, AMachineWithoutAnythingExplainsItself) {
     ASSERT_EQ(report.problems.size(), 1U);
     EXPECT_EQ(report.problems[0].code, ErrorCode::kNotFound);
     EXPECT_EQ(report.problems[0].message,
-              "the library of OpenHaptics (3D Systems) (libHD.so.3*, libHD.so) is not on this "
-              "machine");
+              "the library of OpenHaptics (3D Systems) (libHD.so.3*, libHD.so) is not "
+              "installed");
     EXPECT_NE(report.problems[0].where.find(machine.Path("usr/lib")), std::string::npos);
     EXPECT_NE(report.problems[0].remedy.find("GTDD_HOME"), std::string::npos);
     EXPECT_TRUE(HasFinding(report, "libHD.so", false));

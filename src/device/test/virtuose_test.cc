@@ -137,7 +137,7 @@ TEST(VirtuoseTest, ALibraryOfVersion3IsToldFromAForeignOne) {
   ASSERT_FALSE(device.has_value());
   EXPECT_EQ(device.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(device.error().message,
-            "the library of Haption Virtuose (VirtuoseAPI 4) is of version 3; 4.x is needed");
+            "the library of Haption Virtuose (VirtuoseAPI 4) has version 3; 4.x is needed");
   EXPECT_EQ(device.error().where, (StubFolder() / "version3/virtuoseAPI.so").string());
 }
 
@@ -146,8 +146,8 @@ TEST(VirtuoseTest, AMachineWithoutAnythingExplainsItself) {
   const ProbeReport report = VirtuoseDriver().Probe(machine.surroundings(), false);
   ASSERT_EQ(report.problems.size(), 1U);
   EXPECT_EQ(report.problems[0].message,
-            "the library of Haption Virtuose (VirtuoseAPI 4) (virtuoseAPI.so) is not on this "
-            "machine");
+            "the library of Haption Virtuose (VirtuoseAPI 4) (virtuoseAPI.so) is not "
+            "installed");
   EXPECT_NE(report.problems[0].remedy.find("VIRTUOSE_API"), std::string::npos);
 }
 

@@ -23,7 +23,8 @@ TEST_P(KilledSession, LosesAtMostOneSecondAndRunsAgainBitForBitUpToThere) {
       continue;  // before there was a record
     }
     ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
-    ASSERT_TRUE(reader->Verify().has_value());
+    const auto verified = reader->Verify();
+    ASSERT_TRUE(verified.has_value()) << verified.error().ToString();
     EXPECT_GE(reader->tick_count(), ran - 1000);
     EXPECT_LE(reader->tick_count(), ran + 1);
     if (reader->tick_count() > 0) {

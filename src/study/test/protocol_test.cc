@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
                 kHead + "conditions:\n  - {id: A, name: A, method: hybrid, fit: H7/g6}\n"
                         "  - {id: B, name: B, method: hybrid, fit: H7/g6}\n"
                         "blocks:\n  - {id: b, identification: true, question: Which}\n",
-                "11:5", "another's"},
+                "11:5", "another condition has it"},
         Refused{"NotBlind",
                 kHead + "conditions:\n  - {id: A, name: A, method: hybrid, fit: H7/g6}\n"
                         "  - {id: B, name: B, method: hybrid, fit: H7/p6}\n"

@@ -106,7 +106,7 @@ TEST_F(StudySessionTest, RefusesWhatIsNotItsTurnAndSaysWhatIs) {
   Do(Make(Kind::kBegun));
   const auto early = session_.Apply(OfTrial(Kind::kTrialBegun, 0));
   ASSERT_FALSE(early);
-  EXPECT_NE(early.error().remedy.find("agree"), std::string::npos) << early.error().ToString();
+  EXPECT_NE(early.error().remedy.find("consent"), std::string::npos) << early.error().ToString();
   Do(Agree());
   EXPECT_FALSE(session_.Apply(Make(Kind::kTrainingEnded)));  // has not begun
   Do(Make(Kind::kTrainingBegun));
