@@ -223,7 +223,7 @@ def main():
     parser.add_argument("hvas", type=pathlib.Path)
     parser.add_argument("pages", nargs="*", type=pathlib.Path)
     parser.add_argument("--update", action="store_true")
-    given = parser.parse_args()
+    given = parser.parse_intermixed_args()
     pages = given.pages or sorted((ROOT / "docs/tutorials").glob("*.md"))
     if not pages:
         sys.exit("there are no tutorials")

@@ -237,7 +237,7 @@ describe("opening", () => {
     await (await chooser).setFiles("../products/frame_500.step");
     await page.getByTestId("cancel-open").click({ timeout: 20_000 });
     await page.getByTestId("loading").waitFor({ state: "detached" });
-    await page.getByRole("log").filter({ hasText: "opening the file was cancelled" }).waitFor({ state: "attached" });  // the server's last word on this file
+    await page.getByRole("log").filter({ hasText: "opening was cancelled" }).waitFor({ state: "attached" });  // the server's last word on this file
     assert.equal(await page.getByTestId("failure").count(), 0, "nothing is complained about");
     assert.equal((await fetchScene(page)).epoch, epoch);
     assert.equal((await stateOf(page)).hasScene, true);

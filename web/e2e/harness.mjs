@@ -38,7 +38,7 @@ export async function startStudio(args = [], { home = makeFolder() } = {}) {
   await new Promise((resolve, reject) => {
     child.stdout.on("data", (bytes) => {
       said += bytes;
-      if (said.includes("ends it")) {
+      if (said.includes("to end it")) {
         resolve();
       }
     });
@@ -50,7 +50,7 @@ export async function startStudio(args = [], { home = makeFolder() } = {}) {
   return {
     operator,
     viewer: links.at(-1),
-    participant: /participant's: (\S+)/.exec(said)?.[1] ?? null,  // of a study
+    participant: /for the participant: (\S+)/.exec(said)?.[1] ?? null,  // of a study
     origin: new URL(operator).origin,
     /** It stands still, as on a machine that has no time for it; then it goes on. */
     freeze: () => child.kill("SIGSTOP"),

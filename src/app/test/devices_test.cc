@@ -81,62 +81,61 @@ class BareMachine : public ::testing::Test {
 
 TEST_F(BareMachine, WithoutAnyDeviceItExplainsItself) {
   EXPECT_EQ(DescribeProbe(ProbeAll(true), true), R"TEXT(openhaptics: OpenHaptics (3D Systems)
-    none          the library of OpenHaptics (3D Systems) (libHD.so.3*, libHD.so) is not on this
-                  machine
+    none          the library of OpenHaptics (3D Systems) (libHD.so.3*, libHD.so) is not installed
     what to do    install the Touch Device Driver and OpenHaptics Developer Edition of 3D Systems,
-                  and set GTDD_HOME when they are not below /usr or /opt
+                  and set GTDD_HOME to their folder when that is not below /usr or /opt
     not there     USB device 2988:* of 3D Systems in pc/sys/bus/usb/devices
     not there     libHD.so.3*, libHD.so in pc/opt/geomagic_touch_device_driver/lib,
                   pc/opt/OpenHaptics/Developer/lib, pc/usr/local/lib, pc/usr/lib, pc/usr/lib64,
                   pc/usr/lib/x86_64-linux-gnu, pc/usr/lib/aarch64-linux-gnu
 
 forcedimension: Force Dimension (DHD/DRD)
-    none          the library of Force Dimension (DHD/DRD) (libdrd.so.3*, libdrd.so) is not on this
-                  machine
-    what to do    install the SDK of Force Dimension, and set FORCEDIM_SDK to its folder when it is
-                  not below /usr/local
+    none          the library of Force Dimension (DHD/DRD) (libdrd.so.3*, libdrd.so) is not
+                  installed
+    what to do    install the SDK of Force Dimension, and set FORCEDIM_SDK to its folder when that
+                  is not below /usr/local
     not there     USB device 1451:* of Force Dimension in pc/sys/bus/usb/devices
     not there     libdrd.so.3*, libdrd.so in pc/usr/local/lib, pc/usr/lib, pc/usr/lib64,
                   pc/usr/lib/x86_64-linux-gnu, pc/usr/lib/aarch64-linux-gnu
 
 virtuose: Haption Virtuose (VirtuoseAPI 4)
-    none          the library of Haption Virtuose (VirtuoseAPI 4) (virtuoseAPI.so) is not on this
-                  machine
+    none          the library of Haption Virtuose (VirtuoseAPI 4) (virtuoseAPI.so) is not installed
     what to do    install VirtuoseAPI 4 of Haption, and set VIRTUOSE_API to the folder of
-                  virtuoseAPI.so when it is not below /usr or /opt
+                  virtuoseAPI.so when that is not below /usr or /opt
     not there     virtuoseAPI.so in pc/opt/haption, pc/opt/haption/lib, pc/usr/local/lib,
                   pc/usr/lib, pc/usr/lib64, pc/usr/lib/x86_64-linux-gnu,
                   pc/usr/lib/aarch64-linux-gnu
 
 haply: Haply Inverse3 (Inverse Service)
-    none          the Inverse Service is not running (nobody listens there: Connection refused)
+    none          the Inverse Service is not running (no program listens on this address: Connection
+                  refused)
     what to do    start Haply's Inverse Service on this machine (haply-inverse-service), or give its
                   address: haply:HOST:PORT
-    not there     Inverse Service at ws://localhost:10001, ws://localhost:10000; nobody listens
-                  there: Connection refused
+    not there     Inverse Service at ws://localhost:10001, ws://localhost:10000; no program listens
+                  on this address: Connection refused
 
 spacemouse: 3Dconnexion SpaceMouse (spacenavd)
-    none          spacenavd is not running: it has no socket here
+    none          spacenavd is not running: its socket does not exist
     what to do    install and start it: apt install spacenavd; systemctl start spacenavd
     not there     spacenavd's socket in pc/var/run/spnav.sock
 
 gamepad: Gamepad or joystick (Linux evdev)
-    none          no gamepad or joystick is plugged in: pc/dev/input
-    what to do    plug one in, or pair it by Bluetooth
+    none          no gamepad or joystick is connected: pc/dev/input
+    what to do    connect one, or pair it by Bluetooth
 
 network: Network device (HVAS's own UDP protocol)
     none          there is no key for network devices
-    what to do    make one: (umask 077; head -c 32 /dev/urandom > FILE), and give the device's
-                  program the same
+    what to do    make one with (umask 077; head -c 32 /dev/urandom > FILE), and give the device's
+                  program the same file
     not there     key in pc/etc/hvas/network.key
 
 plugin: Plug-in (a shared library for a device that HVAS does not know)
     none          no plug-in is installed
-    what to do    put a plug-in's library there, or name it: plugin:/path/to/it.so
+    what to do    put the library of a plug-in there, or give its path: plugin:/path/to/device.so
     not there     plug-ins in pc/usr/lib/hvas/plugins
 
-No device is usable now. For the one that you have, do what its "what to do" says, and look again.
-Without one, the simulated person works alone or with a device that is emulated:
+No device is usable now. Follow the "what to do" of your device, and run this command again.
+Without a device, the simulated person works alone or with an emulated device:
   hvas assemble FILE
   hvas assemble FILE --device emulated:openhaptics:touch_x
   hvas devices --try emulated:openhaptics --seconds 5
@@ -178,8 +177,8 @@ TEST_F(BareMachine, DeviceThatThisUserMayNotUseIsToldWithTheRule) {
       "    what to do    as root, put the line SUBSYSTEM==\"usb\", ATTR{idVendor}==\"2988\", "
       "MODE=\"0666\" into\n"
       "                  /etc/udev/rules.d/60-hvas-2988.rules, run \"udevadm control --reload\", "
-      "and plug the\n"
-      "                  device in again\n",
+      "and connect\n"
+      "                  the device again\n",
       text);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "    there         USB device 2988:0302 in ", text);
 }
@@ -480,8 +479,8 @@ TEST(AssembleWithDevice, LibraryThatIsMissingIsNamedWithTheRemedy) {
   EXPECT_EQ(ran.status, 1);
   EXPECT_EQ(ran.out, "");
   EXPECT_PRED_FORMAT2(::testing::IsSubstring,
-                      "the library of Haption Virtuose (VirtuoseAPI 4) (virtuoseAPI.so) is not on "
-                      "this machine",
+                      "the library of Haption Virtuose (VirtuoseAPI 4) (virtuoseAPI.so) is not "
+                      "installed",
                       ran.err);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "install VirtuoseAPI 4 of Haption", ran.err);
 }

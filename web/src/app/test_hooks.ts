@@ -100,13 +100,13 @@ function screenOfFace(occurrence: number, face: number): Seen | null {
   if (!port || !matrix || !shape) {
     return null;
   }
-  const triangles = shape.faceGeometry(face).index?.array ?? [];
+  const corners = shape.faceGeometry(face).getAttribute("position").array;
   const middle = shape.box.min.clone();
   const corner = middle.clone();
-  for (let k = 0; k < triangles.length; k += 3) {
+  for (let k = 0; k < corners.length; k += 9) {
     middle.set(0, 0, 0);
-    for (let c = 0; c < 3; c++) {
-      middle.addScaledVector(corner.fromArray(shape.positions, 3 * (triangles[k + c] ?? 0)), 1 / 3);
+    for (let c = 0; c < 9; c += 3) {
+      middle.addScaledVector(corner.fromArray(corners, k + c), 1 / 3);
     }
     const at = port.project(middle.applyMatrix4(matrix).toArray());
     const seen = toClient(at);
