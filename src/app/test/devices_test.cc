@@ -41,14 +41,14 @@ using Lines = std::vector<std::string>;
  told have the same length everywhere. */
 class BareMachine : public ::testing::Test {
  protected:
-  BareMachine() : before_(std::filesystem::current_path()) {
+  void SetUp() override {
     std::filesystem::current_path(folder_.path());
     std::filesystem::create_directory("pc");
     surroundings_.root = "pc";
     ::setenv("COLUMNS", "100", 1);
   }
 
-  ~BareMachine() override {
+  void TearDown() override {
     std::filesystem::current_path(before_);
     ::unsetenv("COLUMNS");
   }
@@ -75,7 +75,7 @@ class BareMachine : public ::testing::Test {
 
  private:
   TemporaryFolder folder_;
-  std::filesystem::path before_;
+  const std::filesystem::path before_{std::filesystem::current_path()};
   Surroundings surroundings_;
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/test/await_true.h"
@@ -36,7 +37,7 @@ class WorkbenchTest : public ::testing::Test {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
   }
 
-  ~WorkbenchTest() override { bench_.Stop(); }
+  void TearDown() override { bench_.Stop(); }
 
   void OpenPeg() {
     const std::size_t start = log_.size();
@@ -123,7 +124,20 @@ class WorkbenchTest : public ::testing::Test {
     for (int i = 0; i < 2000 && !AwaitState(kSeated, start, 0.01); ++i) {
       bench_.Move(hand_, X_WH_, true);
     }
-    ASSERT_TRUE(AwaitState(kSeated, start, 0));
+    ASSERT_TRUE(AwaitState(kSeated, start, 0)) << DescribeHand();
+  }
+
+  /** Where the hand and the part are, for a failure that is not seen again. */
+  std::string DescribeHand() {
+    const haptics::TickOutput& tick = bench_.frame().frame.ticks.at(hand_);
+    const Vec3 lag = tick.X_WT.p() - tick.X_WD.p();
+    const Vec3 behind = X_WH_.p() - tick.X_WH.p();
+    return fmt::format(
+        "{}: depth {:.6f} m, tilt {:.4f} rad, offset {:.6f} m; displayed behind tracked "
+        "{:.4f} m, hand behind pointer {:.4f} m; {} contacts, gate {:#x}; {}",
+        haptics::ToString(tick.state), tick.axis.depth, tick.axis.tilt, tick.axis.offset,
+        lag.norm(), behind.norm(), tick.contact_count, tick.gate_actions,
+        bench_.hands()[hand_]["condition"].dump());
   }
 
   void ReleasePeg() {
