@@ -12,19 +12,23 @@ if(HVAS_PRECOMPILED)
       <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <numbers>
       <numeric> <optional> <set> <span> <sstream> <string> <string_view> <thread> <unordered_map> <utility> <vector>
       <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <nlohmann/json.hpp> <tl/expected.hpp>)
-  # A library and a program, because their code is not placed alike (-fPIC, -fPIE).
+  # A library and programs, because their code is not placed alike (-fPIC, -fPIE); `runs` is not optimised.
   add_library(hvas_precompiled_rooms OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
   add_executable(hvas_precompiled_tests EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
-  foreach(users rooms tests)
+  add_executable(hvas_precompiled_runs EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
+  foreach(users rooms tests runs)
     target_link_libraries(hvas_precompiled_${users} PRIVATE hvas_settings Eigen3::Eigen fmt::fmt)
     target_precompile_headers(hvas_precompiled_${users} PRIVATE ${HVAS_PRECOMPILED_HEADERS})
   endforeach()
-  target_link_libraries(hvas_precompiled_tests PRIVATE GTest::gtest)
-  target_precompile_headers(hvas_precompiled_tests PRIVATE <gtest/gtest.h>)
+  foreach(users tests runs)
+    target_link_libraries(hvas_precompiled_${users} PRIVATE GTest::gtest)
+    target_precompile_headers(hvas_precompiled_${users} PRIVATE <gtest/gtest.h>)
+  endforeach()
   target_compile_options(hvas_precompiled_tests PRIVATE ${HVAS_TEST_OPTIMISATION})
+  target_compile_options(hvas_precompiled_runs PRIVATE -O0)
 endif()
 
-# hvas_precompiled(<target> rooms|tests): what a target takes its precompiled headers from.
+# hvas_precompiled(<target> rooms|tests|runs): what a target takes its precompiled headers from.
 function(hvas_precompiled target users)
   if(HVAS_PRECOMPILED)
     target_precompile_headers(${target} REUSE_FROM hvas_precompiled_${users})
@@ -58,16 +62,22 @@ function(hvas_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s] [COST s]): one GoogleTest program, one ctest
-# entry. Those of the highest cost begin first, so that no long one is left to run alone. Unit tests are fast and need no other room's data; label slower ones
-# `e2e`, or `numeric` where they only compare figures, so that the sanitizer runs can leave them out.
+# hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s] [COST s] [RUNS]): one GoogleTest program, one
+# ctest entry. Those of the highest cost begin first, so that no long one is left to run alone. Unit tests are fast and need no other room's data; label slower ones
+# `e2e`, or `numeric` where they only compare figures, so that the sanitizer runs can leave them out. A test with RUNS only
+# starts programs, which do the work: it is not optimised.
 function(hvas_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;COST" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "RUNS" "TIMEOUT;COST" "SOURCES;DEPS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE HVAS_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  target_compile_options(${name} PRIVATE ${HVAS_TEST_OPTIMISATION})
-  hvas_precompiled(${name} tests)
+  if(ARG_RUNS AND NOT HVAS_SANITIZE)
+    target_compile_options(${name} PRIVATE -O0)
+    hvas_precompiled(${name} runs)
+  else()
+    target_compile_options(${name} PRIVATE ${HVAS_TEST_OPTIMISATION})
+    hvas_precompiled(${name} tests)
+  endif()
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()

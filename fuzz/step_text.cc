@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "cad/step/identities.h"
 #include "cad/step/step_measure.h"
 #include "cad/step/tolerances.h"
 #include "fuzz/target.h"
@@ -40,6 +41,10 @@ void TestOne(std::string_view bytes) {
       Check(measure->name.size() <= 3 * text.size());  // A byte takes up to three in UTF-8.
     }
   }
+  for (const auto& [id, identity] : cad::ReadIdentities(entities)) {
+    Check(id != 0 && !identity.is_empty());
+  }
+  (void)cad::ReadStepHeader(text);
   product::Product product = MakeProduct();
   Diagnostics diagnostics;
   cad::ReadTolerances(text, &product, &diagnostics);

@@ -63,12 +63,28 @@ struct AssemblyStep {
   std::array<int, 3> direction{0, 0, -1};
 };
 
+/** A surface of a placed part, given in the part. */
+struct DrawnSurface {
+  std::string occurrence;
+  std::array<double, 3> point_mm{};  ///< A point of the plane, or of the axis beside the face.
+  std::array<double, 3> axis{};      ///< Outward normal of a plane.
+  double diameter_mm{0};             ///< 0: a plane.
+};
+
+/** A mate that the side file states. */
+struct DrawnUserMate {
+  DrawnSurface a, b;
+  std::string fit;  ///< ISO 286, "thread", or empty.
+};
+
 struct Drawing {
   std::string name;
   std::deque<PartDefinition> parts;           ///< Deques, for references that stay.
   std::deque<AssemblyDefinition> assemblies;  ///< The first is the product.
   std::vector<DrawnFit> fits;
-  std::vector<AssemblyStep> order;  ///< Empty: no order by name given.
+  std::vector<AssemblyStep> order;   ///< Empty: no order by name given.
+  std::vector<DrawnUserMate> mates;  ///< Where the file says nothing about places.
+  std::vector<gp_Trsf> assembled;    ///< Then places by design, of the children of a flat product.
 
   PartDefinition& AddPart(const std::string& part_name, const Solid& solid,
                           const Material& material, const Rgb& color) {
@@ -99,8 +115,12 @@ struct PlacedPart {
 void WriteStep(const Drawing& drawing, const std::string& path);
 
 [[nodiscard]] Drawing DrawBushing();
+/** Three sets of shaft and bushing, all of steel, side by side in one block with three seats. */
+[[nodiscard]] Drawing DrawFitRig();
 [[nodiscard]] Drawing DrawGearPump();
 [[nodiscard]] Drawing DrawFrame500();
+/** Twelve parts in arbitrary poses, with mates that say how they go together. */
+[[nodiscard]] Drawing DrawLooseTwelve();
 
 namespace materials {
 inline const Material kSteel{"Steel C45", 7850};

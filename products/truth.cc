@@ -6,6 +6,16 @@
 #include <set>
 #include <stdexcept>
 
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <gp_Cylinder.hxx>
+#include <gp_Lin.hxx>
+#include <gp_Pln.hxx>
+#include <gp_Vec.hxx>
 #include <nlohmann/json.hpp>
 
 #include "relations.h"
@@ -107,6 +117,64 @@ Json DescribeFits(const Drawing& drawing, bool with_threads) {
   return fits;
 }
 
+/** The number of a face as a reader of the file counts it: in the order of the solid. */
+int FindFaceNumber(const TopoDS_Shape& shape, const DrawnSurface& surface) {
+  constexpr double kClose = 1e-6;  // [mm]
+  const auto& [x, y, z] = surface.point_mm;
+  const TopoDS_Shape point = BRepBuilderAPI_MakeVertex(gp_Pnt(x, y, z)).Vertex();
+  const gp_Dir axis(surface.axis[0], surface.axis[1], surface.axis[2]);
+  int number = 0;
+  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next(), ++number) {
+    const TopoDS_Face face = TopoDS::Face(at.Current());
+    const BRepAdaptor_Surface geometry(face);
+    const double distance = BRepExtrema_DistShapeShape(point, face).Value();
+    if (surface.diameter_mm == 0 && geometry.GetType() == GeomAbs_Plane) {
+      gp_Dir normal = geometry.Plane().Axis().Direction();
+      if (!geometry.Plane().Direct()) normal.Reverse();
+      if (face.Orientation() == TopAbs_REVERSED) normal.Reverse();
+      if (distance < kClose && normal.IsEqual(axis, kClose)) return number;
+    } else if (surface.diameter_mm > 0 && geometry.GetType() == GeomAbs_Cylinder) {
+      const gp_Cylinder cylinder = geometry.Cylinder();
+      const bool is_on_axis = gp_Lin(cylinder.Axis()).Distance(gp_Pnt(x, y, z)) < kClose;
+      if (is_on_axis && std::abs(2 * cylinder.Radius() - surface.diameter_mm) < kClose &&
+          std::abs(2 * distance - surface.diameter_mm) < kClose)
+        return number;
+    }
+  }
+  throw std::runtime_error("no such face of " + surface.occurrence);
+}
+
+Json DescribeUserMates(const Drawing& drawing) {
+  const std::vector<PlacedPart> placed = Flatten(drawing);
+  const auto side = [&placed](const DrawnSurface& surface) {
+    for (const PlacedPart& p : placed) {
+      if (p.name == surface.occurrence)
+        return Json{{"occurrence", p.name}, {"face", FindFaceNumber(p.part->solid.shape, surface)}};
+    }
+    throw std::runtime_error("no such part: " + surface.occurrence);
+  };
+  Json mates = Json::array();
+  for (const DrawnUserMate& mate : drawing.mates) {
+    Json json{{"a", side(mate.a)}, {"b", side(mate.b)}};
+    if (!mate.fit.empty()) json["fit"] = mate.fit;
+    mates.push_back(json);
+  }
+  return mates;
+}
+
+/** Places by design, where the file has others. */
+Json DescribeAssembled(const Drawing& drawing, const std::vector<PlacedPart>& placed) {
+  Json assembled = Json::array();
+  for (std::size_t i = 0; i < drawing.assembled.size(); ++i) {
+    const gp_XYZ p = drawing.assembled[i].TranslationPart();
+    const gp_Vec z = gp_Vec(0, 0, 1).Transformed(drawing.assembled[i]);
+    assembled.push_back({{"occurrence", placed[i].name},
+                         {"position_mm", {Round(p.X(), 1e9), Round(p.Y(), 1e9), Round(p.Z(), 1e9)}},
+                         {"z", {Round(z.X(), 1e9), Round(z.Y(), 1e9), Round(z.Z(), 1e9)}}});
+  }
+  return assembled;
+}
+
 void WriteText(const std::string& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
@@ -150,13 +218,22 @@ std::string WriteTruth(const Drawing& drawing) {
   for (const AssemblyStep& step : drawing.order) {
     json["order"].push_back({{"occurrence", step.occurrence}, {"direction", step.direction}});
   }
+  std::vector<PlacedPart> assembled = placed;
+  if (!drawing.assembled.empty()) {
+    json["assembled"] = DescribeAssembled(drawing, placed);
+    for (std::size_t i = 0; i < assembled.size(); ++i)
+      assembled[i].X_WB = drawing.assembled[i];
+  }
   Json counts;
-  json["mates"] = FindAllMates(placed, ReferenceNames(placed), counts);
+  json["mates"] = FindAllMates(assembled, ReferenceNames(placed), counts);
   json["mate_counts"] = counts;
   return Format(json);
 }
 
 std::string WriteAssignments(const Drawing& drawing) {
+  if (!drawing.mates.empty()) {
+    return Format({{"format", "hvas-assignments-2"}, {"mates", DescribeUserMates(drawing)}});
+  }
   return Format({{"format", "hvas-assignments-1"}, {"fits", DescribeFits(drawing, false)}});
 }
 

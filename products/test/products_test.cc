@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -26,6 +27,7 @@
 #include <nlohmann/json.hpp>
 
 #include "relations.h"
+#include "tools.h"
 #include "truth.h"
 
 namespace hvas::products {
@@ -203,6 +205,10 @@ TEST(Frame500, FilesAreWhatTheProgramWrites) {
   ExpectFilesAsStored(DrawFrame500());
 }
 
+TEST(LooseTwelve, FilesAreWhatTheProgramWrites) {
+  ExpectFilesAsStored(DrawLooseTwelve());
+}
+
 TEST(Bushing, VolumesByHandAndByKernelAgree) {
   ExpectHandVolumes(DrawBushing());
 }
@@ -215,6 +221,10 @@ TEST(Frame500, VolumesByHandAndByKernelAgree) {
   ExpectHandVolumes(DrawFrame500());
 }
 
+TEST(LooseTwelve, VolumesByHandAndByKernelAgree) {
+  ExpectHandVolumes(DrawLooseTwelve());
+}
+
 TEST(Bushing, ReadsBackWithNamesColorsDensitiesAndPlaces) {
   ExpectStepReadsBack(DrawBushing());
 }
@@ -225,6 +235,10 @@ TEST(GearPump, ReadsBackWithNamesColorsDensitiesAndPlaces) {
 
 TEST(Frame500, ReadsBackWithNamesColorsDensitiesAndPlaces) {
   ExpectStepReadsBack(DrawFrame500());
+}
+
+TEST(LooseTwelve, ReadsBackWithNamesColorsDensitiesAndPlaces) {
+  ExpectStepReadsBack(DrawLooseTwelve());
 }
 
 // W7: the bushing is 40 x 80 x 50 mm; the seat, the nose and two end faces are all that touches.
@@ -301,6 +315,32 @@ TEST(Frame500, HasTheCountsOfItsPattern) {
   const int nominal = 8 + 8 + 5 * (8 + 8) + 4 * 8 + 8 + 30 * 10;
   EXPECT_EQ(truth["mate_counts"]["axis_hole_nominal"], nominal);
   EXPECT_EQ(truth["mate_counts"]["axis_hole"], nominal + 30 * 12);
+}
+
+/** A STEP file without the numbers of its occurrences, which the kernel counts over all files that
+ a process writes. */
+std::string WithoutOccurrenceNumbers(const std::string& bytes) {
+  static const std::regex number("NEXT_ASSEMBLY_USAGE_OCCURRENCE\\('[0-9]+'");
+  return std::regex_replace(bytes, number, "NEXT_ASSEMBLY_USAGE_OCCURRENCE(''");
+}
+
+TEST(ToolsX16, AreTheFilesOfTheRepositoryAndValidSolids) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("hvas_tools_{}", ::getpid());
+  std::filesystem::create_directories(folder);
+  const auto tools = DrawTools();
+  EXPECT_EQ(tools.size(), 12);
+  for (const Drawing& tool : tools) {
+    const std::string file = tool.name + ".step";
+    WriteStep(tool, (folder / file).string());
+    EXPECT_EQ(WithoutOccurrenceNumbers(ReadBytes(folder / file)),
+              WithoutOccurrenceNumbers(ReadBytes(kFolder / "tools" / file)))
+        << file;
+    const Solid& solid = tool.parts.front().solid;
+    EXPECT_TRUE(BRepCheck_Analyzer(solid.shape).IsValid()) << file;
+    EXPECT_NEAR(CalcVolumeFinely(solid.shape) / solid.volume_mm3, 1, 1e-5) << file;
+  }
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "app/assembly/assemble.h"
+#include "app/assembly/disassemble.h"
 #include "app/assembly/path.h"
 #include "app/command_tree.h"
 #include "app/completion.h"
@@ -25,6 +26,7 @@
 #include "app/output/text_layout.h"
 #include "app/product/inspect.h"
 #include "app/product/mate.h"
+#include "app/product/tool.h"
 #include "app/recording/export.h"
 #include "app/recording/replay.h"
 #include "app/recording/report.h"
@@ -36,12 +38,15 @@ namespace hvas::app {
 namespace {
 
 constexpr std::array<ExitStatus, 4> kStatuses{{
-    {"0", "Success; for hvas assemble: every part is in its place."},
+    {"0",
+     "Success; for hvas assemble: every part is in its place; for hvas disassemble: "
+     "every part has come out."},
     {"1",
      "An error: for example a file that is missing, damaged or not writable, or a fit that does "
      "not exist. The message names the cause and a remedy."},
     {"2",
-     "A negative result: a part is not in its place (hvas assemble), a record was changed after it "
+     "A negative result: a part is not in its place (hvas assemble) or has not come out "
+     "(hvas disassemble), a tool cannot go on turning (hvas tool), a record was changed after it "
      "was written (hvas report, export and replay), the replay differs from the record (hvas "
      "replay --verify), or the machine misses deadlines (hvas doctor)."},
     {"64",
@@ -133,8 +138,8 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
 
 void SetGroups(CLI::App* app) {
   static const std::vector<std::pair<const char*, std::vector<const char*>>> kGroups{
-      {"Inspect and convert CAD files", {"inspect", "mate", "export", "path"}},
-      {"Assemble", {"studio", "assemble", "replay", "report"}},
+      {"Inspect and convert CAD files", {"inspect", "mate", "export", "path", "tool"}},
+      {"Assemble", {"studio", "assemble", "disassemble", "replay", "report"}},
       {"Calculate fits", {"fit"}},
       {"Run studies with participants", {"study"}},
       {"This machine", {"devices", "doctor"}},
@@ -167,8 +172,10 @@ std::unique_ptr<CLI::App> MakeCommandLine(int* status) {
   AddMate(app.get(), status);
   AddExport(app.get(), status);
   AddPath(app.get(), status);
+  AddTool(app.get(), status);
   AddStudio(app.get(), status);
   AddAssemble(app.get(), status);
+  AddDisassemble(app.get(), status);
   AddReplay(app.get(), status);
   AddReport(app.get(), status);
   AddFit(app.get(), status);

@@ -54,6 +54,9 @@ void EndWatch::Watch(std::chrono::milliseconds patience) {
   ::sigwait(&signals, &signal);
   std::unique_lock lock(mutex_);
   is_told_ = true;
+  if (!is_over_) {
+    stop_.request_stop();
+  }
   changed_.notify_all();
   if (!changed_.wait_for(lock, patience, [this] { return is_over_; })) {
     constexpr std::string_view kWord =

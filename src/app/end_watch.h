@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 namespace hvas::app {
@@ -27,12 +28,16 @@ class EndWatch {
   /** Waits until the user or the system ends the program. */
   void Wait();
 
+  /** Asks for a stop when the user or the system ends the program. */
+  [[nodiscard]] std::stop_token stop() const { return stop_.get_token(); }
+
  private:
   void Watch(std::chrono::milliseconds patience);
 
   sigset_t before_{};  ///< Signals that were not for this thread before.
   std::mutex mutex_;
   std::condition_variable changed_;
+  std::stop_source stop_;
   bool is_told_{false};  ///< It was told to end.
   bool is_over_{false};
   std::thread thread_;

@@ -48,6 +48,7 @@ struct StudioOptions {
   std::uint64_t seed{1};             ///< Any number: the actual sizes of the fits follow from it.
   double rate_hz{1000};              ///< X4 asks for 1 kHz.
   bool opens_browser{true};
+  bool has_workshop{false};      ///< The shipped tools and fixtures are on the table.
   bool is_fresh{false};          ///< Nothing of the work before is gone on with.
   bool new_links{false};         ///< Nor its links.
   std::string study;             ///< A protocol; empty: none.
@@ -69,6 +70,18 @@ std::vector<studio::Example> FindExamples() {
   return examples;
 }
 
+/** Adds the tools and fixtures that are shipped. */
+void AddShippedAccessories(LoadOptions* load) {
+  const std::filesystem::path folder = FindProductsFolder() / "tools";
+  for (const char* name :
+       {"hex_key_4", "hex_key_5", "hammer", "screwdriver", "spanner", "caliper"}) {
+    load->tools.push_back((folder / (std::string(name) + ".step")).string());
+  }
+  for (const char* name : {"vise", "chuck", "tray", "vblock"}) {
+    load->bench.push_back((folder / (std::string(name) + ".step")).string());
+  }
+}
+
 studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
   studio::WorkbenchOptions bench;
   bench.recordings_folder = options.recordings;
@@ -81,9 +94,12 @@ studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
   bench.scenes.last_epoch = static_cast<std::uint32_t>(std::time(nullptr)) & kBelowRecordings;
   bench.rate_hz = options.rate_hz;
   bench.scenes.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
-  bench.scenes.load = [load = options.load](const std::filesystem::path& file,
-                                            const cad::ProgressFn& progress, std::stop_token stop,
-                                            Diagnostics* diagnostics) {
+  LoadOptions load = options.load;
+  if (options.has_workshop) {
+    AddShippedAccessories(&load);
+  }
+  bench.scenes.load = [load](const std::filesystem::path& file, const cad::ProgressFn& progress,
+                             std::stop_token stop, Diagnostics* diagnostics) {
     LoadOptions one = load;
     one.file = file;
     one.progress = progress;
@@ -259,7 +275,7 @@ int RunStudio(const StudioOptions& options) {
   folder->RemoveUploadsBut(work ? work->file : "");
   studio::WorkbenchOptions bench = MakeWorkbench(options);
   bench.work_file = options.study.empty() ? folder->work_file() : std::filesystem::path();
-  studio::Workbench workbench(std::move(bench));
+  studio::Workbench workbench(bench);
   studio::ServerOptions served;
   served.port = options.port;
   served.upload_folder = folder->uploads();
@@ -295,9 +311,9 @@ int RunStudio(const StudioOptions& options) {
   fmt::print("{}Press Ctrl+C to end it.\n", about_certificate);
   std::fflush(stdout);
   if (work) {
-    workbench.Resume(*work);
+    workbench.opener().Resume(*work);
   } else if (!options.load.file.empty()) {
-    workbench.Open(options.load.file, options.load.file.filename().string());
+    workbench.opener().Open(options.load.file, options.load.file.filename().string());
   }
   if (options.opens_browser) {
     OpenBrowser(
@@ -306,7 +322,7 @@ int RunStudio(const StudioOptions& options) {
   end.Wait();
   fmt::print("\n");
   std::fflush(stdout);
-  workbench.SetForcesOff(true);  // whatever else takes its time
+  workbench.live().SetForcesOff(true);  // whatever else takes its time
   workbench.Stop();
   server.Stop();
   return 0;
@@ -360,6 +376,10 @@ void AddStudio(CLI::App* app, int* status) {
   command->add_option("--rate", options->rate_hz, "Rate of the haptic loop [Hz]")
       ->check(CLI::Range(1000.0, 8000.0))
       ->capture_default_str();
+  command->add_flag("--workshop", options->has_workshop,
+                    "Put the shipped tools and fixtures on the table: hexagon keys, hammer, "
+                    "screwdriver, spanner, caliper, vise, chuck, tray and V-block");
+  AddAccessoryOptions(command, &options->load);
   AddLoadOptions(command, &options->load);
   command->footer(
       "The printed links contain a secret. The first browser that opens the first link gets "

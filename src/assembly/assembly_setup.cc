@@ -16,10 +16,6 @@ std::vector<haptics::TickOptions> ListTicks(const std::vector<Hand>& hands) {
   return ticks;
 }
 
-simulation::Persons ListPersons(const std::vector<Hand>& hands) {
-  return {hands.front().person.get(), hands.size() == 1 ? nullptr : hands.back().person.get()};
-}
-
 std::vector<Hand> ListOf(Hand hand) {
   std::vector<Hand> hands;
   hands.push_back(std::move(hand));
@@ -28,20 +24,27 @@ std::vector<Hand> ListOf(Hand hand) {
 
 }  // namespace
 
+RunSetup::RunSetup(std::shared_ptr<const simulation::Model> model, std::vector<Hand> hands)
+    : hands_(std::move(hands)),
+      simulation_(session::MakeSimulation(std::move(model), ListTicks(hands_))) {}
+
+simulation::Persons RunSetup::ListPersons() const {
+  return {hands_.front().person.get(), hands_.size() == 1 ? nullptr : hands_.back().person.get()};
+}
+
+simulation::Execution RunSetup::MakeExecution(double limit_s) {
+  return part_run().MakeExecution(hands_.front().active(), limit_s,
+                                  hands_.size() == 1 ? nullptr : hands_.back().active());
+}
+
 AssemblySetup::AssemblySetup(std::shared_ptr<const simulation::Model> model,
                              std::vector<Hand> hands, simulation::Sink* downstream)
-    : hands_(std::move(hands)),
-      simulation_(session::MakeSimulation(std::move(model), ListTicks(hands_))),
-      run_(simulation_.get(), ListPersons(hands_), downstream) {}
+    : RunSetup(std::move(model), std::move(hands)),
+      run_(&simulation(), ListPersons(), downstream) {}
 
 AssemblySetup::AssemblySetup(std::shared_ptr<const simulation::Model> model, Hand hand,
                              simulation::Sink* downstream)
     : AssemblySetup(std::move(model), ListOf(std::move(hand)), downstream) {}
-
-simulation::Execution AssemblySetup::MakeExecution(double limit_s) {
-  return run_.MakeExecution(hands_.front().active(), limit_s,
-                            hands_.size() == 1 ? nullptr : hands_.back().active());
-}
 
 Result<std::unique_ptr<record::Recorder>> MakeRecorder(const simulation::Model& model,
                                                        const record::RecorderOptions& options,

@@ -17,41 +17,42 @@
 namespace hvas::assembly {
 
 /** What moves one hand of a run: a simulated person, alone or with an emulated device in the hand,
- or whoever holds a real device. */
+ or the user of a real device. */
 struct Hand {
-  std::string address;          ///< The device's, as it was asked for; empty: none.
+  std::string address;          ///< Address of the device, as requested; empty: none.
   device::OpenedDevice opened;  ///< Empty without a device.
   haptics::TickOptions tick;
-  std::unique_ptr<simulation::SimulatedPerson> person;  ///< Null where a real one has this hand.
+  std::unique_ptr<simulation::SimulatedPerson> person;  ///< Null where the user of a device has it.
   std::unique_ptr<simulation::Operator> at_device;      ///< Null without a device.
 
-  /** What gives the samples of this hand; never null in a hand that is made by a function below. */
+  /** Operator of this hand; never null in a hand that one of the functions below has made. */
   [[nodiscard]] simulation::Operator* active() const {
     return at_device != nullptr ? at_device.get() : person.get();
   }
 };
 
-/** Options of the tick for a simulated person without a device: as with a device of six degrees of
- freedom whose forces have no limits. */
+/** Makes the options of the tick for a simulated person without a device: those of a device of six
+ degrees of freedom whose forces have no limits. */
 [[nodiscard]] haptics::TickOptions MakePersonTick(const simulation::RenderOptions& render);
 
-/** The hand of a simulated person without a device. The same habits and seed give the same hand. */
+/** Makes the hand of a simulated person without a device. The same habits and seed give the same
+ hand. */
 [[nodiscard]] Hand MakePersonHand(const simulation::Model& model, const haptics::TickOptions& tick,
                                   const simulation::PersonOptions& habits, std::uint64_t seed);
 
-/** A hand that holds a device: an emulated one in the hand of a simulated person with this seed, a
- real one in the hand of whoever is there.
- @param tick  Of this device: simulation::MakeTickOptions.
+/** Makes a hand that holds a device. A simulated person with this seed holds an emulated one, the
+ user a real one.
+ @param tick  Options for this device, from simulation::MakeTickOptions.
  @param is_live  As in device::OpenAnyDevice. @pre the device is open. */
 [[nodiscard]] Hand MakeDeviceHand(const simulation::Model& model, device::OpenedDevice opened,
                                   const haptics::TickOptions& tick, std::uint64_t seed,
                                   bool is_live);
 
-/** What is asked for of one hand. */
+/** Options of one hand. */
 struct HandOptions {
   std::string device;  ///< An address as device::OpenAnyDevice takes it; empty: none.
   simulation::RenderOptions render;
-  std::uint64_t seed{1};  ///< The simulated person's.
+  std::uint64_t seed{1};  ///< Seed of the simulated person.
   bool is_live{false};    ///< Runs in real time; no real device works without it.
 };
 
@@ -59,17 +60,17 @@ struct HandOptions {
  simulated person. Errors: those of device::OpenAnyDevice. */
 [[nodiscard]] Result<Hand> MakeHand(const simulation::Model& model, const HandOptions& options);
 
-/** How a device is told of. */
+/** Description of a device in a hand, for people. */
 struct DeviceInHand {
   std::size_t hand{0};
-  std::string address;  ///< What was asked for.
+  std::string address;  ///< Address as requested.
   std::string model;
-  std::string profile;  ///< Id of the one that it is rendered by; may be empty.
+  std::string profile;  ///< Id of its profile; may be empty.
   bool is_emulated{false};
-  std::vector<std::string> notes;  ///< How it is rendered to, one sentence each.
+  std::vector<std::string> notes;  ///< Sentences on how forces are rendered with it.
 };
 
-/** The devices in these hands, by hand; hands without one are left out. */
+/** Describes the devices in these hands, in their order; hands without one are omitted. */
 [[nodiscard]] std::vector<DeviceInHand> DescribeDevices(const std::vector<Hand>& hands);
 
 }  // namespace hvas::assembly

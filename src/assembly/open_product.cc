@@ -1,14 +1,22 @@
 #include "assembly/open_product.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "base/units.h"
 #include "mates/assignments.h"
 #include "mates/infer.h"
+#include "mates/side_file.h"
 #include "mates/stated_fits.h"
+#include "product/accessories.h"
+#include "product/welded_units.h"
 
 namespace hvas::assembly {
 namespace {
@@ -29,7 +37,33 @@ Result<void> Check(const OpenOptions& options) {
   return {};
 }
 
-Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnostics* diagnostics) {
+/** Whether a CAD file has a side file. A link that leads nowhere is a mistake to be told, not a
+ side file that is not there. */
+bool HasSideFile(const OpenOptions& options) {
+  std::error_code error;
+  return std::filesystem::exists(
+      std::filesystem::symlink_status(mates::FindAssignmentFile(options.file), error));
+}
+
+/** What the options and the side file do not want welded. */
+Result<std::vector<product::KeptApart>> ListKeptApart(const OpenOptions& options) {
+  std::vector<product::KeptApart> apart;
+  for (const std::string& name : options.apart) {
+    apart.push_back({name, {}});
+  }
+  if (HasSideFile(options)) {
+    const auto side_file = mates::ReadSideFile(mates::FindAssignmentFile(options.file));
+    if (!side_file) {
+      return Unexpected(side_file.error());
+    }
+    apart.insert(apart.end(), side_file->apart.begin(), side_file->apart.end());
+  }
+  return apart;
+}
+
+/** @param inferred  What inference finds in the drawn poses. */
+Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnostics* diagnostics,
+                           Diagnostics* inferred) {
   if (const auto checked = Check(options); !checked) {
     return Unexpected(checked.error());
   }
@@ -46,25 +80,109 @@ Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnos
   if (!product) {
     return product;
   }
-  if (const auto inferred = mates::Infer(&*product, diagnostics, watch); !inferred) {
-    return Unexpected(inferred.error());
+  const auto apart = ListKeptApart(options);
+  if (!apart) {
+    return Unexpected(apart.error());
+  }
+  if (const auto welded = product::WeldUnits(*apart, &*product, diagnostics, watch); !welded) {
+    return Unexpected(welded.error());
+  }
+  if (const auto done = mates::Infer(&*product, inferred, watch); !done) {
+    return Unexpected(done.error());
   }
   return product;
 }
 
 /** What the files themselves state about mates. */
 Result<void> ApplyStated(const OpenOptions& options, Product* product, WorkWatch* watch) {
-  const std::filesystem::path side_file = mates::FindAssignmentFile(options.file);
-  std::error_code error;
-  // A link that leads nowhere is a mistake to be told, not a side file that is not there.
-  if (std::filesystem::exists(std::filesystem::symlink_status(side_file, error))) {
-    const auto applied = mates::ApplyAssignments(side_file, product, watch);
+  if (HasSideFile(options)) {
+    const auto applied =
+        mates::ApplyAssignments(mates::FindAssignmentFile(options.file), product, watch);
     return applied ? Result<void>() : Unexpected(applied.error());
   }
   mates::AssignStatedFits(product, watch);
   if (!watch->MayGoOn()) {
     return Unexpected(
         watch->Explain("assigning the stated fits", options.file.filename().string()));
+  }
+  return {};
+}
+
+/** Where a fixture is put. */
+struct FixturePlace {
+  std::string file;
+  product::Pose X_WA;
+};
+
+Result<FixturePlace> ParseFixture(const std::string& text) {
+  FixturePlace place{text, {}};
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos) {
+    return place;
+  }
+  place.file = text.substr(0, at);
+  std::vector<double> numbers;
+  for (std::size_t begin = at + 1; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    char* rest = nullptr;
+    const double number = std::strtod(word.c_str(), &rest);
+    if (word.empty() || *rest != '\0' || !std::isfinite(number)) {
+      numbers.clear();
+      break;
+    }
+    numbers.push_back(number);
+    begin = end + 1;
+  }
+  if (numbers.size() != 3 && numbers.size() != 4) {
+    return Fail(ErrorCode::kInvalid, "the place of the fixture is not X,Y,Z or X,Y,Z,ANGLE", text,
+                "give millimetres and degrees, as in vise.step@0,0,-30,90");
+  }
+  const double angle = numbers.size() == 4 ? units::FromDeg(numbers[3]) : 0.0;
+  place.X_WA = {
+      Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())),
+      Vec3(units::FromMm(numbers[0]), units::FromMm(numbers[1]), units::FromMm(numbers[2]))};
+  return place;
+}
+
+/** Adds tools and fixtures to a product. Tools are drawn beside it, where they meet nothing. */
+Result<void> AddAccessories(const OpenOptions& options, Product* product, WorkWatch* watch,
+                            Diagnostics* diagnostics) {
+  constexpr double kBeside = 1.0;  // [m] from the product: a choice; it is laid on the table.
+  constexpr double kApart = 0.1;   // [m] from one another, so that they do not overlap: a choice.
+  double edge = product->box_W.high.x() + kBeside;
+  const auto add = [&](const std::string& file, product::AccessoryKind kind,
+                       const product::Pose* X_WA) -> Result<void> {
+    OpenOptions open = options;
+    open.file = file;
+    open.apart.clear();
+    const auto accessory = OpenWithin(open, watch, diagnostics, diagnostics);
+    if (!accessory) {
+      return Unexpected(accessory.error());
+    }
+    const product::Pose beside(Vec3(edge - accessory->box_W.low.x(), product->box_W.centre().y(),
+                                    product->box_W.centre().z()));
+    edge += accessory->box_W.size().x() + kApart;
+    product::AddAccessory(*accessory, kind, X_WA != nullptr ? *X_WA : beside, product);
+    return {};
+  };
+  for (const auto& [files, kind] : {std::pair(&options.tools, product::AccessoryKind::kTool),
+                                    std::pair(&options.bench, product::AccessoryKind::kBench)}) {
+    for (const std::string& file : *files) {
+      if (const auto added = add(file, kind, nullptr); !added) {
+        return added;
+      }
+    }
+  }
+  for (const std::string& text : options.fixtures) {
+    const auto place = ParseFixture(text);
+    if (!place) {
+      return Unexpected(place.error());
+    }
+    const auto added = add(place->file, product::AccessoryKind::kFixture, &place->X_WA);
+    if (!added) {
+      return added;
+    }
   }
   return {};
 }
@@ -77,22 +195,31 @@ WorkWatch MakeWatch(const OpenOptions& options) {
 
 Result<Product> OpenInferred(const OpenOptions& options, Diagnostics* diagnostics) {
   WorkWatch watch = MakeWatch(options);
-  return OpenWithin(options, &watch, diagnostics);
+  return OpenWithin(options, &watch, diagnostics, diagnostics);
 }
 
 Result<Product> OpenProduct(const OpenOptions& options, Diagnostics* diagnostics) {
   WorkWatch watch = MakeWatch(options);
-  auto product = OpenWithin(options, &watch, diagnostics);
+  Diagnostics inferred;
+  auto product = OpenWithin(options, &watch, diagnostics, &inferred);
   if (!product) {
     return product;
   }
   if (const auto applied = ApplyStated(options, &*product, &watch); !applied) {
     return Unexpected(applied.error());
   }
+  // What holds of the drawn poses does not where mates of the user have put the parts elsewhere.
+  const bool is_placed = !product->placement.drawn_poses.empty();
+  for (const Diagnostic& item : (is_placed ? product->placement.diagnostics : inferred).items()) {
+    diagnostics->Add(item);
+  }
   for (const std::string& fit : options.fits) {
     if (const auto assigned = mates::AssignFit(&*product, fit); !assigned) {
       return Unexpected(assigned.error());
     }
+  }
+  if (const auto added = AddAccessories(options, &*product, &watch, diagnostics); !added) {
+    return Unexpected(added.error());
   }
   return product;
 }

@@ -12,7 +12,7 @@
 #include "cad/import.h"
 #include "product/product.h"
 
-/** HVAS for programs that build on it: from a CAD file to the account of each part.
+/** HVAS for programs that build on it: from a CAD file to the results of each part.
 
    hvas::Diagnostics diagnostics;
    hvas::assembly::OpenOptions open;
@@ -24,34 +24,43 @@
    const auto outcome = hvas::assembly::RunAssembly(*model, {});
    if (outcome && outcome->is_complete()) { ... outcome->digest ... }
 
- The whole of it, with what becomes of the errors, is examples/assemble_product.cc. */
+ examples/assemble_product.cc is a complete program with its errors. */
 namespace hvas::assembly {
 
-/** Which file is opened, and what that may take. */
+/** The file to open, and limits of the work on it. */
 struct OpenOptions {
-  std::filesystem::path file;     ///< STEP, STL, OBJ, glTF or 3MF.
-  std::vector<std::string> fits;  ///< "AXIS=FIT", as mates::AssignFit takes them.
-  double length_unit{1e-3};       ///< The unit of files that state none (OBJ, STL) [m], > 0.
-  WorkLimits limits;              ///< What opening the file with all that belongs to it may take.
-  int max_parts{cad::kDefaultMaxParts};  ///< That the file may place, 1 to cad::kLargestMaxParts.
-  /** Keeps what was read, for the next time; FileCache::DefaultDirectory() is the user's own. None:
-   nothing is kept. */
+  std::filesystem::path file;      ///< STEP, STL, OBJ, glTF or 3MF.
+  std::vector<std::string> fits;   ///< "AXIS=FIT", as mates::AssignFit takes them.
+  std::vector<std::string> apart;  ///< What is not to be welded (product::KeptApart); "all".
+  std::vector<std::string> tools;  ///< CAD files of tools that lie on the table (X16).
+  /** CAD files of fixtures: "FILE" as drawn, or "FILE@X,Y,Z" or "FILE@X,Y,Z,ANGLE" [mm, deg], which
+   moves them in W and turns them about z before. */
+  std::vector<std::string> fixtures;
+  std::vector<std::string> bench;        ///< CAD files of fixtures that stand on the table.
+  double length_unit{1e-3};              ///< The unit of files that state none (OBJ, STL) [m], > 0.
+  WorkLimits limits;                     ///< Limits for opening the file, mates included.
+  int max_parts{cad::kDefaultMaxParts};  ///< Largest number of parts, 1 to cad::kLargestMaxParts.
+  /** Directory of the cache; FileCache::DefaultDirectory() is the user's. None: nothing is cached.
+   */
   std::optional<std::filesystem::path> cache_directory;
   cad::ProgressFn progress;  ///< Called by the calling thread; may be null.
   std::stop_token stop;      ///< Ends the opening at once when a stop is asked for.
 };
 
-/** Opens a CAD file: imported, mates inferred, and nothing yet of what its files state about mates.
- All lengths are in metres, poses in the world frame W of the file.
- Errors: kInvalid for options out of range; those of cad::Import; kOutOfResource where a limit is
+/** Imports a CAD file, welds what cannot come apart (product::WeldUnits) but for `apart` and what
+ the side file names so, and infers its mates, without what its files state about mates. All lengths
+ are in metres, poses in the world frame W of the file. Errors: kInvalid for options out of range;
+ those of cad::Import, product::WeldUnits and mates::ReadSideFile; kOutOfResource where a limit is
  reached, and kCancelled after a stop. @pre diagnostics != nullptr. */
 [[nodiscard]] Result<product::Product> OpenInferred(const OpenOptions& options,
                                                     Diagnostics* diagnostics);
 
-/** Opens a CAD file ready to assemble: as OpenInferred, with the mates and fits that its side file
- NAME.hvas.json states (mates::ApplyAssignments), or the fits that it states itself where there is
- no side file, and over them `fits`.
- Errors: those of OpenInferred, mates::ApplyAssignments and mates::AssignFit.
+/** Opens a CAD file ready to assemble. On top of OpenInferred it applies the mates and fits of the
+ side file NAME.hvas.json (mates::ApplyAssignments), which also places the parts where mates of the
+ user say (mates::PlaceByMates), or, where there is no side file, the fits
+ stated in the CAD file; then `fits`, which take precedence; then tools and fixtures as accessories
+ of the product (product/accessories.h), without mates. Errors: those of OpenInferred,
+ mates::ApplyAssignments and mates::AssignFit; those of cad::Import for tools and fixtures.
  @pre diagnostics != nullptr. */
 [[nodiscard]] Result<product::Product> OpenProduct(const OpenOptions& options,
                                                    Diagnostics* diagnostics);

@@ -12,6 +12,7 @@ std::shared_ptr<contact::ShapeCache> MakeShapeCache(
 simulation::CompileOptions MakeCompileOptions(const PrepareOptions& options) {
   simulation::CompileOptions compile;
   compile.seed = options.seed;
+  compile.pairs = options.pairs;
   compile.first_parts = options.first_parts;
   compile.shape_cache = options.shape_cache;
   compile.progress = options.progress;

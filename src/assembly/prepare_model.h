@@ -12,26 +12,28 @@
 #include "base/result.h"
 #include "cad/import.h"
 #include "contact/shape_cache.h"
+#include "fits/pair_choice.h"
 #include "product/product.h"
 #include "simulation/model.h"
 
 namespace hvas::assembly {
 
-/** How a product is prepared. */
+/** Options of the preparation. */
 struct PrepareOptions {
-  std::uint64_t seed{1};                 ///< Draws the actual sizes of the fits.
+  std::uint64_t seed{1};  ///< Draws the actual sizes of the fits.
+  fits::PairChoice pairs{fits::PairChoice::kOfKind};
   std::vector<std::string> first_parts;  ///< Names, paths or ids ("o12"); the others follow.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: contact shapes are always built.
   cad::ProgressFn progress;                          ///< Called by the calling thread; may be null.
   std::stop_token stop;                              ///< Ends the building of contact shapes.
-  std::string name;  ///< The product's in errors; empty: Product::source.
+  std::string name;  ///< Name of the product in errors; empty: Product::source.
 };
 
-/** The contact shapes that are kept in a directory; null where there is none. */
+/** Makes the cache of contact shapes in a directory; null without a directory. */
 [[nodiscard]] std::shared_ptr<contact::ShapeCache> MakeShapeCache(
     const std::optional<std::filesystem::path>& directory);
 
-/** Options as simulation::Compile takes them, and session::LoadModel, which prepares the model of a
+/** Makes options for simulation::Compile, and for session::LoadModel, which prepares the model of a
  record. */
 [[nodiscard]] simulation::CompileOptions MakeCompileOptions(const PrepareOptions& options);
 

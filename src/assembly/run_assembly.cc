@@ -1,15 +1,12 @@
 #include "assembly/run_assembly.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "assembly/assembly_setup.h"
+#include "assembly/recorded_run.h"
 #include "base/check.h"
-#include "record/recorder.h"
-#include "session/session_recorder.h"
-#include "simulation/flight_recorder.h"
 
 namespace hvas::assembly {
 namespace {
@@ -17,64 +14,25 @@ namespace {
 using simulation::Model;
 using simulation::PartResult;
 
-Result<void> Check(const Model& model, const RunOptions& options) {
-  constexpr double kSlowest = 1000;  // [Hz]: X4.
-  constexpr double kFastest = 8000;  // [Hz]: a choice.
-  if (options.devices.empty() || options.devices.size() > 2) {
-    return Fail(ErrorCode::kInvalid, fmt::format("there are no {} hands", options.devices.size()),
-                model.product->source, "ask for one hand or two");
-  }
-  const double rate_hz = options.render.rate_hz;
-  if (!(rate_hz >= kSlowest && rate_hz <= kFastest)) {
-    return Fail(ErrorCode::kInvalid, fmt::format("the haptic loop cannot run at {} Hz", rate_hz),
-                model.product->source, fmt::format("ask for {} to {} Hz", kSlowest, kFastest));
-  }
-  return {};
-}
-
-Result<std::unique_ptr<record::Recorder>> MakeRunRecorder(const Model& model,
-                                                          const RunOptions& options) {
-  static constexpr const char* kConditions[] = {"collision", "constraint", "hybrid"};
-  record::RecorderOptions recorder;
-  recorder.path = options.record;
-  recorder.is_threaded = options.is_realtime;
-  recorder.ring_ticks *= options.devices.size();
-  recorder.replaces = options.is_record_replaced;
-  recorder.on_error = options.on_record_error;
-  return MakeRecorder(
-      model, recorder,
-      {{"condition", kConditions[static_cast<std::size_t>(options.condition)]},
-       {"force_map", haptics::ToString(options.force_map)},
-       {"device", options.devices.front()},
-       {"second_device", options.devices.size() == 1 ? std::string() : options.devices.back()}});
-}
-
-Result<std::vector<Hand>> MakeHands(const Model& model, const RunOptions& options) {
-  std::vector<Hand> hands;
-  for (const std::string& device : options.devices) {
-    auto hand =
-        MakeHand(model, {device, options.render, simulation::SeedOfHand(options.seed, hands.size()),
-                         options.is_realtime});
-    if (!hand) {
-      return Unexpected(hand.error());
-    }
-    hand->tick.condition = options.condition;
-    hand->tick.force_map = options.force_map;
-    hands.push_back(std::move(*hand));
-  }
-  return hands;
+/** Explains why a part is not in its place after a run that was stopped before its turn ended. */
+std::string ExplainMissing(const Model& model, product::OccurrenceId id) {
+  const auto& gaps = model.sequence.gaps;
+  const auto gap =
+      std::find_if(gaps.begin(), gaps.end(),
+                   [id](const simulation::SequenceGap& item) { return item.occurrence == id; });
+  return gap != gaps.end() ? gap->reason : "the run was stopped before its turn ended";
 }
 
 /** Adds the parts that a stopped run did not come to. */
 void AddMissing(const Model& model, std::vector<PartResult>* parts) {
-  for (const product::Occurrence& occurrence : model.product->occurrences) {
+  for (const simulation::Body& body : model.bodies) {
     const bool is_listed = std::any_of(parts->begin(), parts->end(), [&](const PartResult& part) {
-      return part.occurrence == occurrence.id;
+      return part.occurrence == body.occurrence;
     });
-    if (!is_listed) {
+    if (!is_listed && body.role == simulation::BodyRole::kPart) {
       PartResult part;
-      part.occurrence = occurrence.id;
-      part.reason = "the run was stopped before its turn ended";
+      part.occurrence = body.occurrence;
+      part.reason = ExplainMissing(model, body.occurrence);
       parts->push_back(part);
     }
   }
@@ -98,42 +56,12 @@ double CalcTimeLimit(const Model& model) {
 Result<RunOutcome> RunAssembly(const std::shared_ptr<const Model>& model,
                                const RunOptions& options) {
   HVAS_DEMAND(model != nullptr);
-  if (const auto checked = Check(*model, options); !checked) {
-    return Unexpected(checked.error());
+  auto outcome = RunRecorded(*model, options, {}, [&](std::vector<Hand> hands, auto* sink) {
+    return std::make_unique<AssemblySetup>(model, std::move(hands), sink);
+  });
+  if (outcome) {
+    AddMissing(*model, &outcome->parts);
   }
-  auto recorder = MakeRunRecorder(*model, options);
-  if (!recorder) {
-    return Unexpected(recorder.error());
-  }
-  auto hands = MakeHands(*model, options);
-  if (!hands) {
-    return Unexpected(hands.error());
-  }
-  session::SessionRecorder sink(recorder->get(), *model);
-  AssemblySetup setup(model, std::move(*hands), &sink);
-  sink.Begin(&setup.simulation());
-  setup.run().on_part = options.on_part;
-  RunOutcome outcome;
-  outcome.hands = setup.hands().size();
-  outcome.devices = DescribeDevices(setup.hands());
-  if (options.on_begin) {
-    options.on_begin(outcome.devices);
-  }
-  simulation::FlightRecorder flight(options.render.rate_hz, outcome.hands);
-  simulation::Execution execution =
-      setup.MakeExecution(options.limit_s > 0 ? options.limit_s : CalcTimeLimit(*model));
-  execution.flight = &flight;
-  execution.on_frame = options.on_frame;
-  execution.is_done = [&] { return setup.run().is_done() || options.stop.stop_requested(); };
-  outcome.execution =
-      options.is_realtime ? simulation::RunRealtime(execution) : simulation::RunLockstep(execution);
-  outcome.parts = setup.run().results();
-  AddMissing(*model, &outcome.parts);
-  if (const auto finished = (*recorder)->Finish(); !finished) {
-    outcome.record_error = finished.error();
-  }
-  outcome.digest = (*recorder)->Digest();
-  outcome.dropped_ticks = (*recorder)->dropped_ticks();
   return outcome;
 }
 

@@ -13,6 +13,7 @@
 #include "assembly/hand.h"
 #include "base/result.h"
 #include "haptics/options.h"
+#include "haptics/paper_guidance.h"
 #include "simulation/assembly_run.h"
 #include "simulation/device_session.h"
 #include "simulation/executors.h"
@@ -20,14 +21,15 @@
 
 namespace hvas::assembly {
 
-/** How a model is assembled, and who is told of it. */
+/** Options of a run, and its callbacks. */
 struct RunOptions {
-  /** Addresses of the devices, one for each hand, as device::OpenAnyDevice takes them; an empty one
-   is a simulated person without a device. One hand or two. */
+  /** Addresses of the devices, one for each of one or two hands, in the form of
+   device::OpenAnyDevice; an empty address is a simulated person without a device. */
   std::vector<std::string> devices{std::string()};
   std::uint64_t seed{1};  ///< The simulated persons' seed.
   haptics::Condition condition{haptics::Condition::kHybrid};
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
+  haptics::PaperGuidance guidance;  ///< Replaces constants of guidance where it has a value.
   simulation::RenderOptions render;
   /** Three threads by the clock, as a real device needs them, instead of virtual time on the
    calling thread, in which the same options give the same digest. */
@@ -35,7 +37,7 @@ struct RunOptions {
   double limit_s{0};               ///< Session time after which to stop [s]; 0: CalcTimeLimit().
   std::filesystem::path record;    ///< Empty: no file; the digest is made all the same.
   bool is_record_replaced{false};  ///< A finished record that is there.
-  std::stop_token stop;            ///< Ends the run; the account is of what was done until then.
+  std::stop_token stop;            ///< Ends the run; its results are those until then.
 
   // Callbacks, all of which may be null.
 
@@ -50,30 +52,30 @@ struct RunOptions {
   std::function<void(const Error&)> on_record_error;
 };
 
-/** What came of a run. */
+/** Results of a run. */
 struct RunOutcome {
-  /** Each part of the product, in the order of their turns; behind them those that had none, as the
-   run was stopped before. */
+  /** Results of all parts in the order of their turns, then those of parts that had no turn before
+   the run was stopped. */
   std::vector<simulation::PartResult> parts;
   simulation::ExecutionReport execution;
   std::size_t hands{1};
   std::vector<DeviceInHand> devices;
-  std::string digest;              ///< The digest of all that was recorded, 32 hexadecimal digits.
-  std::uint64_t dropped_ticks{0};  ///< That the record lacks; none in virtual time.
+  std::string digest;                 ///< Digest of the recorded data, 32 hexadecimal digits.
+  std::uint64_t dropped_ticks{0};     ///< Ticks missing in the record; 0 in virtual time.
   std::optional<Error> record_error;  ///< Why the record was not written to its end.
 
   /** Every part is in its place. */
   [[nodiscard]] bool is_complete() const;
 };
 
-/** The session time after which a run is stopped as a whole where nobody says when: 120 s for each
- part, and more in proportion where parts are carried around a large product [s]. */
+/** Calculates the default time limit of a run in session time [s]: 120 s for each part, and more in
+ proportion where parts are carried around a large product. */
 [[nodiscard]] double CalcTimeLimit(const simulation::Model& model);
 
-/** Has a model assembled, part by part in its order: parts begin on the table, and each is taken
- up, brought to its place and put in by a simulated person, or by whoever holds the device. All of
- it is recorded, and faults are set aside with the second before them (simulation::FlightRecorder).
- Returns when every part had its turn, at the limit, or after a stop.
+/** Assembles a model part by part in its order: the parts start on the table, and a simulated
+ person, or the user of a device, takes each one, brings it to its place and inserts it. The run is
+ recorded, and ticks around a fault are recorded with the second before it
+ (simulation::FlightRecorder). Returns when every part had its turn, at the limit, or after a stop.
  Errors: kInvalid for other than one hand or two, a rate outside 1000 to 8000 Hz, or a device that
  does not exist; the drivers', where one is not there; those of record::Recorder::Create. A record
  that fails later is RunOutcome::record_error.

@@ -64,7 +64,7 @@ Result<void> WriteAtomically(const std::filesystem::path& file, std::string_view
     return Fail(ErrorCode::kInvalid, "exists and is not a file", file.string(),
                 "choose another name");
   }
-  std::string name = target.string() + ".XXXXXX";  // mkstemp puts letters of its own for the six X.
+  std::string name = target.string() + ".XXXXXX";  // The template that mkstemp(3) completes.
   Descriptor made(::mkstemp(name.data()));
   if (!made.is_open()) {
     return FailWith(errno, file);

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPrefix = "hvas-own-";
-constexpr std::string_view kRandom = "XXXXXX";  // for mkdtemp, which puts letters of its own there
+constexpr std::string_view kRandom = "XXXXXX";  // The end of a template that mkdtemp(3) completes.
 // A younger folder may be of a process that has not locked it yet.
 constexpr std::chrono::minutes kYoungest{1};
 

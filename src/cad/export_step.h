@@ -16,12 +16,12 @@ namespace hvas::cad {
  [m]. */
 using PartMotions = std::vector<std::pair<std::string, spatial::Pose>>;
 
-/** Writes a STEP file anew as AP214, in a process of its own like Import: structure, instances in
- their poses, names, colours, layers and materials; all files that it refers to in one. The bytes
- are the same whenever it is done, where the kernel lets addresses be (see worker_main.cc). Where
- parts are moved, each instance of a subassembly is written with a definition of its own. Errors:
- kUnreadable (no STEP file, or one that OpenCASCADE cannot read or write), kNotFound,
- kOutOfResource, kCancelled. */
+/** Writes a STEP or IGES file anew as AP214, in a process of its own like Import: structure,
+ instances in their poses, names, colours, layers and materials; all files that it refers to in one.
+ The bytes are the same whenever it is done, where the kernel lets addresses be (see
+ worker_main.cc). Where parts are moved, each instance of a subassembly is written with a definition
+ of its own. Errors: kUnreadable (no STEP or IGES file, or one that OpenCASCADE cannot read or
+ write), kNotFound, kOutOfResource, kCancelled. */
 [[nodiscard]] Result<MappedFile> ExportStep(const std::filesystem::path& file,
                                             const ImportControl& control,
                                             const PartMotions& motions = {});

@@ -38,9 +38,8 @@ class MappedFile {
 
 /** What to choose instead of a file that is none of these. */
 inline constexpr const char* kFormats =
-    "choose a STEP file (.step or .stp; AP203, AP214 or AP242), or a mesh (.obj, .stl, .gltf, .glb "
-    "or "
-    ".3mf)";
+    "choose a STEP file (.step or .stp; AP203, AP214 or AP242), an IGES file (.igs or .iges), or a "
+    "mesh (.obj, .stl, .gltf, .glb or .3mf)";
 
 /** Digest of a file's bytes; empty where it cannot be read. */
 [[nodiscard]] std::string DigestOf(const std::filesystem::path& path);

@@ -7,7 +7,6 @@
 namespace hvas::contact {
 namespace {
 
-constexpr std::size_t kMaxPairsPerBody = 8;  // Bits of a face mask; further pairs share the last.
 const std::uint32_t kGroundBody = BodyId{}.value();  // An invalid id: Contact::body.
 constexpr double kScreened = 0.2e-6;                 // [m]; what single precision may be wrong by.
 
@@ -223,8 +222,8 @@ bool BodyQuery::SetMasks(BodyId id, std::uint8_t keep) noexcept {
     if (ignored.body != id) {
       continue;
     }
-    const auto bit =
-        static_cast<std::uint8_t>(1U << std::min<std::size_t>(pair++, kMaxPairsPerBody - 1));
+    const auto bit = static_cast<std::uint8_t>(
+        1U << std::min<std::size_t>(pair++, QueryOptions::kMaxPairsPerBody - 1));
     const auto mark = [&](std::span<const std::uint32_t> faces, std::vector<std::uint8_t>* mask) {
       for (const std::uint32_t f : faces) {
         if (f < kMaxQueryFaces) {

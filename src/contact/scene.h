@@ -60,6 +60,10 @@ struct QueryOptions {
 
   // The times of docs/realtime.md are measured with it; docs/algorithms/sensitivity.md varies it.
   static constexpr std::uint32_t kDefaultPointBudget = 4096;
+
+  /** Pairs of `ignored` with one body that are told apart, by the bits of a face's mask; the last
+   of these and all further ones are one pair. */
+  static constexpr std::size_t kMaxPairsPerBody = 8;
 };
 
 struct QueryStats {

@@ -32,6 +32,11 @@ struct ShapeOptions {
   std::stop_token stop;     ///< Ends the building when a stop is asked for.
 };
 
+// Samples on a part's faces stand a hundredth of its size apart, further where there would be more
+// of them than this: it bounds the memory of a shape. Both are choices.
+inline constexpr double kSpacingsAcross = 100;
+inline constexpr double kMaxFaceSamples = 15000;
+
 /** What a shape takes in memory [bytes]. */
 struct ShapeMemory {
   std::size_t field{0};   ///< Blocks of the distance field, their directory, the coarse grid.

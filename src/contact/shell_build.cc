@@ -13,7 +13,6 @@
 namespace hvas::contact {
 namespace {
 
-constexpr double kMaxFaceSamples = 15000;  // It bounds the memory of a part's shell: a choice.
 // Spacing of edge samples over that of face samples. Between two exact faces contacts slide along
 // the edge to where they belong, else the samples are all there is.
 constexpr double kEdgeRatio = 0.5;
@@ -435,7 +434,7 @@ double ChooseSpacing(const Mesh& mesh) {
     box.Add(a);
     area += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
   }
-  return std::max({box.size().norm() / 100, std::sqrt(area / kMaxFaceSamples), 20e-6});
+  return std::max({box.size().norm() / kSpacingsAcross, std::sqrt(area / kMaxFaceSamples), 20e-6});
 }
 
 void BuildShells(Shape::Data* data) {

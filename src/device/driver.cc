@@ -26,8 +26,11 @@ Result<std::unique_ptr<Device>> OpenDevice(const std::string& address,
   for (const Driver* driver : Drivers()) {
     if (driver->name() == name) {
       auto device = driver->Open(rest, surroundings);
-      if (device) {
-        NoteOpenDevice(device->get());
+      if (device && !NoteOpenDevice(device->get())) {
+        return Fail(ErrorCode::kOutOfResource,
+                    "so many devices are open that the force of another one could not be withdrawn "
+                    "if the program crashed",
+                    address, "close another device first");
       }
       return device;
     }

@@ -15,8 +15,11 @@ namespace {
 
 // More than one person has hands, for tests that open many.
 constexpr std::size_t kMostDevices = 64;
-// Many periods of the slowest loop that hands a wrench on, 1 kHz, for a machine that is busy.
-constexpr std::chrono::milliseconds kHandOn{100};
+// A wrench is handed on by loops of at least 1 kHz. They get many periods, each waited for by
+// itself: one long wait would end at once after a pause of the whole machine, before any of them
+// has run.
+constexpr int kHandOnPeriods = 100;
+constexpr std::chrono::milliseconds kHandOnPeriod{1};
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): the end of the process is
 // global.
@@ -25,6 +28,12 @@ std::atomic<bool> is_withdrawn{false};
 std::terminate_handler terminate_before = nullptr;
 
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
+
+void LetOthersHandOn() noexcept {
+  for (int period = 0; period < kHandOnPeriods; ++period) {
+    std::this_thread::sleep_for(kHandOnPeriod);
+  }
+}
 
 [[noreturn]] void OnTerminate() {
   WithdrawForces();
@@ -53,13 +62,13 @@ void WithdrawForces() noexcept {
     return;
   }
   // A haptic thread that is alive writes zero by itself; then this thread may write without it.
-  std::this_thread::sleep_for(kHandOn);
+  LetOthersHandOn();
   for (const std::atomic<Device*>& slot : open_devices) {
     if (Device* const device = slot.load(); device != nullptr) {
       device->Write({});
     }
   }
-  std::this_thread::sleep_for(kHandOn);
+  LetOthersHandOn();
 }
 
 void WithdrawForcesAtTheEnd() {
@@ -79,13 +88,14 @@ void WithdrawForcesAtTheEnd() {
   }
 }
 
-void NoteOpenDevice(Device* device) noexcept {
+bool NoteOpenDevice(Device* device) noexcept {
   for (std::atomic<Device*>& slot : open_devices) {
     Device* none = nullptr;
     if (slot.compare_exchange_strong(none, device)) {
-      return;
+      return true;
     }
   }
+  return false;
 }
 
 void ForgetDevice(const Device* device) noexcept {

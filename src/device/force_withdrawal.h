@@ -17,8 +17,9 @@ void WithdrawForces() noexcept;
  otherwise, and then lets it end as it would have. To be called once, by main(). */
 void WithdrawForcesAtTheEnd();
 
-/** Open devices, of which WithdrawForces() knows. */
-void NoteOpenDevice(Device* device) noexcept;
+/** Adds a device to those whose forces WithdrawForces() withdraws. @returns false when 64 devices
+ are open already. */
+[[nodiscard]] bool NoteOpenDevice(Device* device) noexcept;
 void ForgetDevice(const Device* device) noexcept;
 
 }  // namespace hvas::device

@@ -8,6 +8,7 @@
 
 #include "session/json_values.h"
 #include "session/recorded_model.h"
+#include "session/session_recorder.h"
 #include "simulation/fit_of_mate.h"
 
 namespace hvas::evidence {
@@ -83,6 +84,8 @@ Result<void> ReadHands(record::Reader* reader, Summary* summary) {
     hand.longest_model_age =
         std::max(hand.longest_model_age, 1e-9 * static_cast<double>(tick.model_age_ns));
     hand.shed_ticks += tick.effort_level > 0 ? 1 : 0;
+    hand.truncated_ticks += (tick.status & session::kTruncatedStatus) != 0 ? 1 : 0;
+    hand.crowded_ticks += (tick.status & session::kCrowdedStatus) != 0 ? 1 : 0;
     reading.bins.Add(tick);
     summary->duration = 1e-9 * static_cast<double>(tick.t_ns);
     return true;
@@ -128,9 +131,11 @@ void DrawFits(Summary* summary) {
   const auto seed = summary->meta.find("seed");
   const std::uint64_t number =
       seed == summary->meta.end() ? 1 : std::strtoull(seed->second.c_str(), nullptr, 10);
+  const auto pairs = session::FindPairChoice(summary->meta).value_or(fits::PairChoice::kAny);
   Diagnostics ignored;  // told of when the session was prepared
   for (const product::Mate& mate : product.mates) {
-    const auto fit = mate.fit ? simulation::MakeFitForce(product, mate, number, &ignored) : nullptr;
+    const auto fit =
+        mate.fit ? simulation::MakeFitForce(product, mate, number, pairs, &ignored) : nullptr;
     if (fit == nullptr) {
       continue;
     }
@@ -138,9 +143,11 @@ void DrawFits(Summary* summary) {
       return product.occurrences[side.occurrence.index()].name;
     };
     const double shaft = fit->shaft_diameter();
+    const auto s = fit->clearances();
+    const auto [least, largest] = std::minmax_element(s.begin(), s.end());
     summary->fits.push_back({name(mate.b) + " in " + name(mate.a), mate.fit->code,
                              mate.fit->nominal_diameter, shaft + 2 * fit->mean_clearance(), shaft,
-                             fit->max_resistance()});
+                             2 * *least, 2 * *largest, fit->max_resistance()});
   }
 }
 

@@ -23,23 +23,27 @@ struct ForceBin {
 /** What happened in one hand. */
 struct HandSummary {
   std::int64_t ticks{0};
-  double period{0};             ///< Time between its ticks [s].
-  std::vector<ForceBin> bins;   ///< They span the whole session.
-  double energy_in{0};          ///< That the hand put into the device, by forces [J].
-  double energy_out{0};         ///< That it was given [J].
-  bool has_energy{false};       ///< Passivity was controlled, and so it was accounted for.
-  double longest_model_age{0};  ///< Since physics had answered last [s].
-  std::int64_t shed_ticks{0};   ///< That left something out to be in time.
+  double period{0};                 ///< Time between its ticks [s].
+  std::vector<ForceBin> bins;       ///< They span the whole session.
+  double energy_in{0};              ///< That the hand put into the device, by forces [J].
+  double energy_out{0};             ///< That it was given [J].
+  bool has_energy{false};           ///< Passivity was controlled, and so it was accounted for.
+  double longest_model_age{0};      ///< Since physics had answered last [s].
+  std::int64_t shed_ticks{0};       ///< That left something out to be in time.
+  std::int64_t truncated_ticks{0};  ///< Ticks in which contact had more than there is room for.
+  std::int64_t crowded_ticks{0};    ///< Ticks in which a loose part stood still for that reason.
 };
 
 /** A fit of the product, and the sizes that were drawn for this session. */
 struct FitSummary {
-  std::string name;     ///< Name of the shaft and the hole.
-  std::string code;     ///< ISO 286.
-  double nominal{0};    ///< Diameter [m].
-  double hole{0};       ///< Actual diameter [m].
-  double shaft{0};      ///< [m]
-  double max_force{0};  ///< Presses it in to its end [N].
+  std::string name;             ///< Name of the shaft and the hole.
+  std::string code;             ///< ISO 286.
+  double nominal{0};            ///< Diameter [m].
+  double hole{0};               ///< Actual diameter [m].
+  double shaft{0};              ///< [m]
+  double least_clearance{0};    ///< Along the length, with the surface; diametral [m].
+  double largest_clearance{0};  ///< Most of it [m].
+  double max_force{0};          ///< Presses it in to its end [N].
 };
 
 /** A recorded session, for people. */

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -23,10 +25,25 @@ Result<void> Check(bool is_valid, const char* name, double value, const char* ra
 /** What press_stroke.h does not see: it knows S and no diameters of single parts. */
 Result<void> Check(const FitForceParameters& p) {
   const auto is_positive = [](double x) { return x > 0 && std::isfinite(x); };
-  Result<void> result =
-      Check(is_positive(p.hole_diameter), "the hole's diameter", p.hole_diameter, "> 0");
+  Result<void> result = Check(!p.hole_diameters.empty() || is_positive(p.hole_diameter),
+                              "the hole's diameter", p.hole_diameter, "> 0");
   if (result) {
-    result = Check(is_positive(p.shaft_diameter), "the shaft's diameter", p.shaft_diameter, "> 0");
+    result = Check(!p.shaft_diameters.empty() || is_positive(p.shaft_diameter),
+                   "the shaft's diameter", p.shaft_diameter, "> 0");
+  }
+  for (const auto* measured : {&p.hole_diameters, &p.shaft_diameters}) {
+    double last = -1;
+    for (const DiameterAtDepth& place : *measured) {
+      if (result) {
+        result = Check(is_positive(place.diameter), "a measured diameter", place.diameter, "> 0");
+      }
+      if (result) {
+        result = Check(place.depth > last && place.depth >= 0 && std::isfinite(place.depth),
+                       "the depth of a measured diameter", place.depth,
+                       "at least 0 and larger than the one before");
+      }
+      last = place.depth;
+    }
   }
   if (result) {
     result =
@@ -61,18 +78,64 @@ PressFitParameters ToPressFit(const FitForceParameters& p) {
   return press;
 }
 
+/** The diameter at each station: measured there, or the same everywhere. */
+std::vector<double> ListDiameters(const std::vector<DiameterAtDepth>& measured, double everywhere,
+                                  const FitForceParameters& p) {
+  std::vector<double> diameters(static_cast<std::size_t>(p.stations) + 1, everywhere);
+  for (std::size_t j = 0; j < diameters.size() && !measured.empty(); ++j) {
+    diameters[j] = InterpolateDiameter(measured, p.length * static_cast<double>(j) / p.stations);
+  }
+  return diameters;
+}
+
+double CalcMean(const std::vector<double>& values) {
+  // Equal values give that value, without a rounding error.
+  const double first = values.front();
+  double sum = 0;
+  for (const double value : values) {
+    sum += value - first;
+  }
+  return first + sum / static_cast<double>(values.size());
+}
+
 }  // namespace
 
+double InterpolateDiameter(std::span<const DiameterAtDepth> measured, double depth) noexcept {
+  const auto next =
+      std::find_if(measured.begin(), measured.end(),
+                   [depth](const DiameterAtDepth& place) { return place.depth >= depth; });
+  if (next == measured.begin()) {
+    return next->diameter;
+  }
+  const DiameterAtDepth& before = *std::prev(next);
+  if (next == measured.end()) {
+    return before.diameter;
+  }
+  const double a = (depth - before.depth) / (next->depth - before.depth);
+  return (1 - a) * before.diameter + a * next->diameter;
+}
+
+std::vector<double> DrawClearances(const FitForceParameters& parameters) {
+  const auto holes = ListDiameters(parameters.hole_diameters, parameters.hole_diameter, parameters);
+  const auto shafts =
+      ListDiameters(parameters.shaft_diameters, parameters.shaft_diameter, parameters);
+  std::vector<double> clearances;
+  std::transform(holes.begin(), holes.end(), shafts.begin(), std::back_inserter(clearances),
+                 std::minus<>());
+  return DrawClearances(clearances, parameters.roughness, parameters.seed);
+}
+
 Result<FitForce> FitForce::Make(const FitForceParameters& parameters) {
-  const FitForceParameters& p = parameters;
+  FitForceParameters p = parameters;
   if (Result<void> check = Check(p); !check) {
     return Unexpected(check.error());
   }
+  p.hole_diameter = CalcMean(ListDiameters(p.hole_diameters, p.hole_diameter, p));
+  p.shaft_diameter = CalcMean(ListDiameters(p.shaft_diameters, p.shaft_diameter, p));
   StrokeLand land;
   land.press = ToPressFit(p);
   land.lead_in_angle = p.lead_in_angle;
-  land.clearances =
-      DrawClearances(p.hole_diameter - p.shaft_diameter, p.roughness, p.stations, p.seed);
+  land.clearances = DrawClearances(p);
   const Result<PressFit> press = CalcPressFit(land.press);
   if (!press) {
     return Unexpected(press.error());

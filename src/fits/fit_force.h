@@ -21,10 +21,24 @@ struct FitFriction {
   double turning{0.15};  ///< nu_ru, about the axis.
 };
 
+/** A diameter that was measured at one place along the mating length. */
+struct DiameterAtDepth {
+  double depth{0};     ///< Depth from the mouth of the hole, parts in their place [m].
+  double diameter{0};  ///< [m]
+};
+
+/** The diameter at a depth: linear between the places of measurement, constant beyond the first and
+ the last (paper W, 2.1). @pre measured is not empty, and its depths ascend. */
+[[nodiscard]] double InterpolateDiameter(std::span<const DiameterAtDepth> measured,
+                                         double depth) noexcept;
+
 /** A shaft and a hole as made. Defaults: steel, roughness Rz 6.3 um; W7's rig. */
 struct FitForceParameters {
-  double hole_diameter{0};     ///< D_h, actual [m], > 0.
-  double shaft_diameter{0};    ///< d_s, actual [m], > 0.
+  double hole_diameter{0};   ///< D_h, actual [m], > 0.
+  double shaft_diameter{0};  ///< d_s, actual [m], > 0.
+  /** Diameters along the length, by ascending depth. Where they are given, they count in place of
+   D_h and d_s, which are their means then. */
+  std::vector<DiameterAtDepth> hole_diameters, shaft_diameters;
   double nominal_diameter{0};  ///< D_F [m], > 0.
   double length{0};            ///< L, mating length [m], > 0.
   double hub_diameter{0};      ///< D_aA, outside [m], > D_F; 0: twice the nominal, as in W7's rig.
@@ -39,11 +53,14 @@ struct FitForceParameters {
   std::uint64_t seed{0};    ///< Seed of B's random values.
 };
 
+/** S at the N + 1 stations of a pair. @pre the parameters are such as FitForce::Make takes. */
+[[nodiscard]] std::vector<double> DrawClearances(const FitForceParameters& parameters);
+
 /** Clearance, forces and stiffness of one pair of parts over its depth.
 
  With l_j = j L / N, j = 0 .. N and B(l_j) = (Rz / 2) random(-1, 1), linear between (W1); c_p is the
  pressure for each metre of diametral interference, G the smoothing loss (press_fit.h):
-     W(4)  S(l) = (D_h - d_s) / 2 + B(l)               radial; negative: interference
+     W(4)  S(l) = (D_h(l) - d_s(l)) / 2 + B(l)         radial; negative: interference
      W(7)  p(l) = 2 c_p max(0, -S - G / 2)
      W(6)  N(l) = pi D_F integral_0^l p                normal force
      W(8), W(9)  F_in(l) = mu_e N(l), and the run-in over a chamfer
@@ -98,7 +115,8 @@ class FitForce {
   /** d_s, actual [m]. */
   [[nodiscard]] double shaft_diameter() const noexcept { return shaft_diameter_; }
 
-  /** (D_h - d_s) / 2, the clearance without roughness [m]; negative: interference. */
+  /** (D_h - d_s) / 2 of the mean diameters, the clearance without roughness [m]; negative:
+   interference. */
   [[nodiscard]] double mean_clearance() const noexcept { return mean_clearance_; }
 
  private:

@@ -49,10 +49,17 @@ Result<void> Check(const StrokeLand& land) {
 
 std::vector<double> DrawClearances(double diametral_clearance, double rz, int stations,
                                    std::uint64_t seed) {
+  const std::vector<double> even(static_cast<std::size_t>(std::max(1, stations)) + 1,
+                                 diametral_clearance);
+  return DrawClearances(even, rz, seed);
+}
+
+std::vector<double> DrawClearances(std::span<const double> diametral_clearances, double rz,
+                                   std::uint64_t seed) {
   Random random(seed);
   std::vector<double> clearances;
-  for (int j = 0; j <= std::max(1, stations); ++j) {
-    clearances.push_back(0.5 * diametral_clearance + 0.5 * rz * random.Uniform(-1, 1));
+  for (const double clearance : diametral_clearances) {
+    clearances.push_back(0.5 * clearance + 0.5 * rz * random.Uniform(-1, 1));
   }
   return clearances;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/result.h"
@@ -26,6 +27,11 @@ struct StrokeLand {
  W4); Rz is the mean of both surfaces'. */
 [[nodiscard]] std::vector<double> DrawClearances(double diametral_clearance, double rz,
                                                  int stations, std::uint64_t seed);
+
+/** S where D_h - d_s differs along the length (paper W, 2.1): one diametral clearance for each
+ station. Equal clearances and seeds give the same S as the function above. */
+[[nodiscard]] std::vector<double> DrawClearances(std::span<const double> diametral_clearances,
+                                                 double rz, std::uint64_t seed);
 
 /** Forces at a depth, >= 0 as a rule [N]. */
 struct StrokeForce {

@@ -136,7 +136,7 @@ int ConstraintSolver::AddContact(const Contact& contact) noexcept {
   return contact_count_++;
 }
 
-int ConstraintSolver::AddBoundedRow(const Vec6& J, const BoundedRow& bounds) noexcept {
+int ConstraintSolver::AddBoundedRow(const Vec6& J, const BoundedRow& bounds, int body) noexcept {
   if (bounded_count_ == kMaxBoundedRows) {
     return -1;
   }
@@ -147,6 +147,7 @@ int ConstraintSolver::AddBoundedRow(const Vec6& J, const BoundedRow& bounds) noe
   row.bias = -bounds.stretch / dt_;
   row.softness = 1 / (dt_ * dt_ * bounds.stiffness);
   bounds_[static_cast<std::size_t>(index)] = {bounds.low * dt_, bounds.high * dt_};
+  bounded_body_[static_cast<std::size_t>(index)] = static_cast<std::size_t>(body);
   return index;
 }
 
@@ -226,10 +227,11 @@ void ConstraintSolver::Push(const Pair& pair, const Row& row, double change) noe
 void ConstraintSolver::RelaxBounded() noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(bounded_count_); ++i) {
     Row& row = bounded_[i];
-    const double residual = row.J.dot(V_[0]) - row.bias + row.softness * row.lambda;
+    Vec6& V = V_[bounded_body_[i]];
+    const double residual = row.J.dot(V) - row.bias + row.softness * row.lambda;
     const double lambda = std::clamp(row.lambda - residual / (row.slack + row.softness),
                                      bounds_[i][0], bounds_[i][1]);
-    V_[0] += (lambda - row.lambda) * row.W;
+    V += (lambda - row.lambda) * row.W;
     row.lambda = lambda;
   }
 }
@@ -327,8 +329,8 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
   for (PatchRows& patch : patches) {
     PrepareRolling(&patch);
   }
-  for (Row& row : std::span(bounded_.data(), static_cast<std::size_t>(bounded_count_))) {
-    PrepareRow({0, kWorld}, &row);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(bounded_count_); ++i) {
+    PrepareRow({bounded_body_[i], kWorld}, &bounded_[i]);
   }
   constexpr double kConverged = 1e-9;  // [m/s or rad/s]: a nanometre a second. A choice.
   for (int sweep = 0; sweep < iterations; ++sweep) {

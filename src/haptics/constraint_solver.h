@@ -25,12 +25,12 @@ namespace hvas::haptics {
 class ConstraintSolver {
  public:
   // Rooms that are made once, so that a step allocates nothing: the held part, that of the
-  // other hand and eight free bodies; twice the contacts of a query; their patches; two rows for
-  // each of two fits. Choices.
-  static constexpr int kMaxBodies = 10;
+  // other hand, eight free bodies and two fasteners; twice the contacts of a query; their patches;
+  // two rows for each of two fits, and one for each fastener. Choices.
+  static constexpr int kMaxBodies = 12;
   static constexpr int kMaxContacts = 128;
   static constexpr int kMaxPatches = 32;
-  static constexpr int kMaxBoundedRows = 4;
+  static constexpr int kMaxBoundedRows = 6;
   static constexpr int kWorld = -1;  ///< Index of what does not move, in place of a body's.
 
   /** A body as it is before the step. */
@@ -101,7 +101,7 @@ class ConstraintSolver {
   /** The contact's index, or -1 when there are too many. */
   int AddContact(const Contact& contact) noexcept;
 
-  /** A resistance to motion J V of body 0: a bristle that is stretched before the step, and pulls
+  /** A resistance to motion J V of a body: a bristle that is stretched before the step, and pulls
    along J with a force between two bounds. Rigid unless it is given a stiffness: dry friction. */
   struct BoundedRow {
     double low{0};   ///< <= 0 [N or N m]
@@ -111,7 +111,7 @@ class ConstraintSolver {
   };
 
   /** Returns the row's index, or -1 when there are too many. */
-  int AddBoundedRow(const Vec6& J, const BoundedRow& bounds) noexcept;
+  int AddBoundedRow(const Vec6& J, const BoundedRow& bounds, int body = 0) noexcept;
 
   /** Solves; returns the velocity of body 0 at its centre of mass. */
   [[nodiscard]] spatial::Twist Solve(int iterations) noexcept;
@@ -224,6 +224,7 @@ class ConstraintSolver {
   int patch_count_{0};
   std::array<Row, kMaxBoundedRows> bounded_;
   std::array<std::array<double, 2>, kMaxBoundedRows> bounds_{};  // [N s]
+  std::array<std::size_t, kMaxBoundedRows> bounded_body_{};
   int bounded_count_{0};
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "haptics/motion_check.h"
@@ -9,9 +10,17 @@
 namespace hvas::haptics {
 namespace {
 
-constexpr double kWakeGap = 20e-6;    // [m]; a loose body is woken by what comes so near
-constexpr double kRestSpeed = 1e-4;   // [m/s]; slower bodies are at rest
+constexpr double kWakeGap = 20e-6;   // [m]; a loose body is woken by what comes so near
+constexpr double kRestSpeed = 1e-4;  // [m/s]; slower bodies are at rest
+// Parts that move at once, those of groups counted each: a choice. Beyond it the contact of two
+// moving bodies is counted twice.
+constexpr std::size_t kMaxFreeParts = 128;
 constexpr double kDepthNoise = 2e-6;  // [m]: what a depth may be wrong by. A choice.
+/** Inertia of a fastener about its axis [kg m^2]: more than real ones have, as the solver needs
+ bodies of about the inertia of the hand with its coupling (2e-5 kg m^2). It takes 1 mN m to speed
+ it up by 10 rad/s^2. A choice. */
+constexpr double kTurnedInertia = 1e-4;
+constexpr double kHeldShare = 0.9;  // Of its friction: less does not move a fastener. A choice.
 
 /** The first share of what is deeper than allowed already must not become deeper. */
 double AllowedDepth(double deepest, const ContactOptions& contact) noexcept {
@@ -63,6 +72,12 @@ void ContactStep::Begin(const HeldPart* held, const HandExchange* other) noexcep
   }
   other_index_ = ConstraintSolver::kWorld;
   has_solved_contact_ = false;
+  // What was not touched in the last tick has been stopped by its friction.
+  for (std::size_t i = turned_count_; i < kMaxTurned; ++i) {
+    turned_[i].rate = 0;
+  }
+  turned_count_ = 0;
+  turned_speed_ = 0;
 }
 
 spatial::Wrench ContactStep::CalcPush(std::uint32_t hold) const noexcept {
@@ -117,8 +132,56 @@ bool ContactStep::IsHeldByOther(contact::BodyId id) const noexcept {
 }
 
 bool ContactStep::IsMovedByOther(contact::BodyId id) const noexcept {
-  return other_ != nullptr && std::any_of(other_->awake.begin(), other_->awake.end(),
-                                          [id](const FreeBody& body) { return body.id == id; });
+  const contact::BodyId leader = bodies_.LeaderOf(id);
+  return other_ != nullptr &&
+         std::any_of(other_->awake.begin(), other_->awake.end(),
+                     [leader](const FreeBody& body) { return body.id == leader; });
+}
+
+bool ContactStep::IsHeldStillByOther(contact::BodyId id) const noexcept {
+  if (other_ == nullptr || other_->held_still == nullptr) {
+    return false;
+  }
+  const std::vector<contact::BodyId>& still = other_->held_still->bodies;
+  return std::find(still.begin(), still.end(), id) != still.end();
+}
+
+bool ContactStep::IsAtRestAt(const RigidGroup& target, const spatial::Pose& X_WB,
+                             const HandExchange* other) noexcept {
+  constexpr double kSamePlace = 1e-6;  // [m], [rad]: parts are put together as exactly. A choice.
+  const spatial::Pose& X_now = scene_.pose(target.leader());
+  if ((X_now.p() - X_WB.p()).norm() > kSamePlace ||
+      spatial::RotationBetween(X_now.q(), X_WB.q()).norm() > kSamePlace) {
+    return false;
+  }
+  const bool is_one = bodies_.group(target.leader()) != nullptr
+                          ? bodies_.group(target.leader())->bodies == target.bodies
+                          : target.bodies.size() == 1;
+  if (!is_one || bodies_.FindAwake(target.leader()) != nullptr) {
+    return false;
+  }
+  const auto has_other = [&](contact::BodyId body) {
+    const std::vector<contact::BodyId>* held =
+        other->displayed.part != nullptr ? &other->displayed.part->bodies : nullptr;
+    return (held != nullptr && std::find(held->begin(), held->end(), body) != held->end()) ||
+           std::any_of(other->awake.begin(), other->awake.end(),
+                       [body](const FreeBody& free) { return free.id == body; });
+  };
+  return other == nullptr || std::none_of(target.bodies.begin(), target.bodies.end(), has_other);
+}
+
+double ContactStep::CalcFreeReach(contact::BodyId id) const noexcept {
+  const RigidGroup* group = bodies_.group(id);
+  if (group == nullptr) {
+    return CalcShapeReach(scene_.shape(id), bodies_.properties(id)->p_BoBcm_B);
+  }
+  double reach = 0;
+  for (const RigidGroup::Member& member : group->members) {
+    const spatial::Box& box = scene_.shape(member.body).box_B();
+    reach = std::max(
+        reach, (member.X_BS * box.centre() - group->p_BoBcm_B).norm() + 0.5 * box.size().norm());
+  }
+  return reach;
 }
 
 TouchingBody ContactStep::Touch(const contact::Contact& c, ConstraintSolver* solver) noexcept {
@@ -129,24 +192,98 @@ TouchingBody ContactStep::Touch(const contact::Contact& c, ConstraintSolver* sol
     other.X_WB = scene_.pose(c.body);
     return other;
   }
-  if (!bodies_.is_loose(c.body)) {
+  if (const TurnedFastener* turned = FindTurned(c.body, solver)) {
+    other.index = turned->index;
+    other.X_WB = scene_.pose(c.body);
     return other;
   }
-  FreeBody* body = bodies_.FindAwake(c.body);
-  if (body == nullptr && !IsMovedByOther(c.body) && effort_.wakes_bodies && c.distance < kWakeGap &&
-      bodies_.Wake(c.body, scene_.pose(c.body), {})) {
-    body = bodies_.FindAwake(c.body);
-    body->index = solver->AddBody(bodies_.MakeSolverBody(*body, options_.gravity_W, options_.dt));
+  if (!bodies_.is_loose(c.body) || IsHeldStillByOther(c.body)) {
+    return other;
+  }
+  const contact::BodyId leader = bodies_.LeaderOf(c.body);
+  FreeBody* body = bodies_.FindAwake(leader);
+  if (body == nullptr && !IsMovedByOther(c.body) && effort_.wakes_bodies && c.distance < kWakeGap) {
+    if (bodies_.Wake(leader, scene_.pose(leader), {})) {
+      body = bodies_.FindAwake(leader);
+      body->index = solver->AddBody(bodies_.MakeSolverBody(*body, options_.gravity_W, options_.dt));
+    } else {
+      account_.is_crowded = true;
+    }
   }
   if (body != nullptr) {
     other.index = body->index;
-    other.X_WB = body->X_WB;
+    other.X_WB = leader == c.body ? body->X_WB : scene_.pose(c.body);
   }
   return other;
 }
 
-void ContactStep::AddQueried(const TouchingBody& body, fits::FrictionSurface surface,
-                             double rolling_arm, ConstraintSolver* solver) noexcept {
+const TurnedFastener* ContactStep::FindTurned(contact::BodyId id,
+                                              ConstraintSolver* solver) noexcept {
+  if (held_ == nullptr || held_->drives.empty()) {
+    return nullptr;
+  }
+  for (std::size_t i = 0; i < turned_count_; ++i) {
+    if (turned_[i].drive->body == id) {
+      return &turned_[i];
+    }
+  }
+  const auto drive = std::find_if(held_->drives.begin(), held_->drives.end(),
+                                  [id](const HeldDrive& one) { return one.body == id; });
+  if (drive == held_->drives.end()) {
+    return nullptr;
+  }
+  if (turned_count_ == kMaxTurned) {
+    account_.is_crowded = true;
+    return nullptr;
+  }
+  Vec6 axis;
+  axis << drive->axis_W, drive->travel * drive->axis_W;
+  Vec6 turn;
+  turn << drive->axis_W, Vec3::Zero();
+  const auto before =
+      std::find_if(turned_.begin() + static_cast<std::ptrdiff_t>(turned_count_), turned_.end(),
+                   [&drive](const TurnedFastener& one) { return one.drive == &*drive; });
+  const double rate = before == turned_.end() ? 0.0 : before->rate;
+  TurnedFastener& turned = turned_[turned_count_++];
+  if (before != turned_.end()) {
+    *before = turned;
+  }
+  turned.drive = &*drive;
+  turned.rate = rate;
+  turned.index =
+      solver->AddBody(drive->p_WQ, rate * axis, axis * axis.transpose() / kTurnedInertia);
+  (void)solver->AddBoundedRow(turn, {-drive->torque, drive->torque}, turned.index);
+  return &turned;
+}
+
+void ContactStep::MoveTurned(const ConstraintSolver& solver) noexcept {
+  for (TurnedFastener& turned : std::span(turned_.data(), turned_count_)) {
+    const HeldDrive& drive = *turned.drive;
+    double force = 0;  // Of the contacts, along the thread [N m].
+    for (std::size_t i = 0; i < static_cast<std::size_t>(held_contacts_); ++i) {
+      if (contacts_[i].body == drive.body) {
+        const Vec3 f = -solver.contact_force(static_cast<int>(i));
+        force += ((contacts_[i].p_WC - drive.p_WQ).cross(f) + drive.travel * f).dot(drive.axis_W);
+      }
+    }
+    // What the solver has not resolved yet would let it creep.
+    const bool is_held = std::abs(force) < kHeldShare * drive.torque;
+    turned.rate = is_held ? 0.0 : solver.velocity(turned.index).w.dot(drive.axis_W);
+    const spatial::Pose& X_WB = scene_.pose(drive.body);
+    const double travel = (X_WB.p() - drive.X_WB_seat.p()).dot(drive.axis_W);
+    const double step = std::max(options_.dt * turned.rate * drive.travel, -std::max(travel, 0.0));
+    const Quat q = spatial::RotationFromVector(options_.dt * turned.rate * drive.axis_W);
+    const double reach = CalcShapeReach(scene_.shape(drive.body), X_WB.Inverse() * drive.p_WQ);
+    turned_speed_ = std::max(turned_speed_, std::abs(turned.rate) * (reach + drive.travel));
+    scene_.SetPose(drive.body, {(q * X_WB.q()).normalized(),
+                                drive.p_WQ + q * (X_WB.p() - drive.p_WQ) + step * drive.axis_W});
+  }
+}
+
+/** @param queried  The body whose shape was queried: `body`, or a member of what is held. */
+void ContactStep::AddQueried(const TouchingBody& body, contact::BodyId queried,
+                             fits::FrictionSurface surface, double rolling_arm,
+                             ConstraintSolver* solver) noexcept {
   const ContactOptions& options = options_.contact;
   const double settling = options_.dt + options.settling_time;
   account_.is_truncated = account_.is_truncated || workspace_.stats().is_truncated;
@@ -158,16 +295,22 @@ void ContactStep::AddQueried(const TouchingBody& body, fits::FrictionSurface sur
     const auto index = static_cast<std::size_t>(solver->contact_count());
     const TouchingBody other = Touch(c, solver);
     const BodyProperties* properties = bodies_.properties(c.body);
-    const fits::FrictionLaw law = fits::FindFriction(
+    fits::FrictionLaw law = fits::FindFriction(
         surface, properties != nullptr ? properties->surface : fits::FrictionSurface::kUnknown,
         options.friction);
+    const ContactPairResponse* stated = pairs_.Find(queried, c.body);
+    if (stated != nullptr && stated->friction) {
+      law.static_coefficient = law.kinetic_coefficient = *stated->friction;
+    }
+    const double compliance =
+        stated != nullptr ? stated->compliance.value_or(options.compliance) : options.compliance;
     ConstraintSolver::Contact contact;
     contact.patch = friction_.AddPair(body, other, law, rolling_arm, solver);
     // A spring with a dashpot: F = (-phi - settling_time phi') / c. A blow sinks in no deeper than
     // a lasting load.
     const double time = c.distance > 0 ? options_.dt : settling;
     contact.velocity_bias = -std::max(c.distance, -options.max_depth) / time;
-    contact.compliance = options.compliance * options_.dt / settling;
+    contact.compliance = compliance * options_.dt / settling;
     contact.recovery_speed = options.recovery_speed;
     if (contact.patch < 0 || !friction_.AddContact(c, contact, solver)) {
       account_.is_truncated = true;
@@ -198,7 +341,8 @@ void ContactStep::AddHeldContacts(const DisplayedPart& displayed,
                                X_WD_ahead * (displayed.X_WD.Inverse() * held.X_WS)};
     scene_.Query(*held.shape, held.X_WS, held.query, &workspace_);
     account_.deepest = std::min(account_.deepest, workspace_.deepest());
-    AddQueried({0, part.body.value(), displayed.X_WD}, part.surface, 0, solver);
+    AddQueried({0, part.body.value(), displayed.X_WD},
+               member == 0 ? part.body : part.members[member - 1].body, part.surface, 0, solver);
   }
   clearance_ = std::min(margin, account_.deepest);
   held_contacts_ = solver->contact_count();
@@ -251,51 +395,78 @@ void ContactStep::AddBodies(ConstraintSolver* solver) noexcept {
 
 void ContactStep::AddFreeContacts(ConstraintSolver* solver) noexcept {
   const ContactOptions& options = options_.contact;
-  std::array<contact::BodyId, FreeBodies::kMaxAwake> done;
+  std::array<contact::BodyId, kMaxFreeParts> done;
+  std::size_t done_count = 0;
+  const auto add_done = [&](contact::BodyId part) {
+    if (done_count < done.size()) {
+      done[done_count++] = part;
+    } else {
+      account_.is_truncated = true;
+    }
+  };
   // Those that are woken on the way come at the end of the list.
   for (std::size_t i = 0; i < bodies_.awake().size(); ++i) {
-    FreeBody& body = bodies_.awake()[i];
-    const contact::Shape& shape = scene_.shape(body.id);
-    const BodyProperties& properties = *bodies_.properties(body.id);
+    const FreeBody body = bodies_.awake()[i];
+    const std::span<const contact::BodyId> together = bodies_.ListTogether(body.id);
+    std::for_each(together.begin(), together.end(), add_done);
+    const spatial::Pose X_WB_ahead = bodies_.Move(body, body.V, options_.dt);
+    const double speed = body.V.v.norm() + body.V.w.norm() * CalcFreeReach(body.id);
     contact::QueryOptions query;
-    query.self = body.id;
-    query.left_out[0] = {done.data(), i};
-    query.left_out[1] = ListHeld();
-    query.point_budget = effort_.point_budget;
-    query.broken_edges = {options.edge_break, bodies_.Move(body, body.V, options_.dt)};
-    const double speed =
-        body.V.v.norm() + body.V.w.norm() * CalcShapeReach(shape, properties.p_BoBcm_B);
     query.margin =
         options.min_margin +
         1.5 * options_.dt * (speed + CalcOtherSpeed() + options_.dt * options_.gravity_W.norm());
-    scene_.Query(shape, body.X_WB, query, &workspace_);
-    body.clearance = std::min(query.margin, workspace_.deepest());
-    AddQueried({body.index, body.id.value(), body.X_WB}, properties.surface, options.rolling_arm,
-               solver);
-    done[i] = body.id;
+    query.left_out = {std::span<const contact::BodyId>(done.data(), done_count), ListHeld()};
+    query.point_budget = effort_.point_budget;
+    double clearance = query.margin;
+    for (std::size_t k = 0; k < bodies_.CountParts(body.id); ++k) {
+      const contact::BodyId part = bodies_.PartOf(body.id, k);
+      const spatial::Pose X_WS = bodies_.PoseOfPart(body.id, k, body.X_WB);
+      query.self = part;
+      query.broken_edges = {options.edge_break, bodies_.PoseOfPart(body.id, k, X_WB_ahead)};
+      scene_.Query(scene_.shape(part), X_WS, query, &workspace_);
+      clearance = std::min(clearance, workspace_.deepest());
+      AddQueried({body.index, part.value(), X_WS}, part, bodies_.properties(part)->surface,
+                 options.rolling_arm, solver);
+    }
+    bodies_.awake()[i].clearance = clearance;
+    if (together.empty()) {
+      add_done(body.id);
+    }
   }
+}
+
+bool ContactStep::IsFreeBodyAt(const FreeBody& body, const spatial::Pose& X_WB,
+                               double tolerance) noexcept {
+  contact::QueryOptions query;
+  query.left_out = {ListHeld(), bodies_.ListTogether(body.id)};
+  for (std::size_t k = 0; k < bodies_.CountParts(body.id); ++k) {
+    query.self = bodies_.PartOf(body.id, k);
+    if (!scene_.IsFree(scene_.shape(query.self), bodies_.PoseOfPart(body.id, k, X_WB), tolerance,
+                       query, &workspace_)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 void ContactStep::MoveFreeBodies(const ConstraintSolver& solver) noexcept {
   const ContactOptions& options = options_.contact;
   for (FreeBody& body : bodies_.awake()) {
-    const contact::Shape& shape = scene_.shape(body.id);
-    const double reach = CalcShapeReach(shape, bodies_.properties(body.id)->p_BoBcm_B);
+    const double reach = CalcFreeReach(body.id);
     body.V = Limited(solver.velocity(body.index), options.max_free_speed,
                      options.max_free_speed / reach);
     const double travel = options_.dt * (body.V.v.norm() + body.V.w.norm() * reach);
-    contact::QueryOptions query;
-    query.self = body.id;
-    query.left_out[0] = ListHeld();
     const double tolerance = AllowedDepth(body.clearance, options);
     const auto at = [&](double share) { return bodies_.Move(body, body.V, share * options_.dt); };
     const double share = FindFreeShare(body.clearance + tolerance, travel, [&](double candidate) {
-      return scene_.IsFree(shape, at(candidate), tolerance, query, &workspace_);
+      return IsFreeBodyAt(body, at(candidate), tolerance);
     });
     body.X_WB = at(share);
     body.V = {share * body.V.w, share * body.V.v};
     body.time_at_rest = travel < kRestSpeed * options_.dt ? body.time_at_rest + options_.dt : 0;
-    scene_.SetPose(body.id, body.X_WB);
+    for (std::size_t k = 0; k < bodies_.CountParts(body.id); ++k) {
+      scene_.SetPose(bodies_.PartOf(body.id, k), bodies_.PoseOfPart(body.id, k, body.X_WB));
+    }
   }
   bodies_.Sleep(options.rest_time);
 }
@@ -304,6 +475,7 @@ void ContactStep::Finish(const ConstraintSolver& solver) noexcept {
   RecordContacts(solver);
   friction_.EndTick(solver, options_.dt);
   PushOtherPart(solver);
+  MoveTurned(solver);
   MoveFreeBodies(solver);
 }
 
@@ -336,7 +508,7 @@ void ContactStep::MoveDisplayed(const spatial::Twist& V_Cm, DisplayedPart* displ
   if (options_.condition != Condition::kConstraint) {
     // Free bodies have moved already; those near have come nearer.
     const double speed = V.v.norm() + V.w.norm() * displayed->reach;
-    double others = 0;
+    double others = turned_speed_;
     for (const FreeBody& body : bodies_.awake()) {
       others = std::max(others, body.V.v.norm());
     }

@@ -6,6 +6,7 @@
 
 #include "contact/scene.h"
 #include "haptics/constraint_solver.h"
+#include "haptics/contact_pairs.h"
 #include "haptics/displayed_part.h"
 #include "haptics/free_bodies.h"
 #include "haptics/friction_memory.h"
@@ -15,6 +16,13 @@
 #include "haptics/tick_output.h"
 
 namespace hvas::haptics {
+
+/** A fastener that the held tool turns in a tick. */
+struct TurnedFastener {
+  const HeldDrive* drive{nullptr};
+  int index{ConstraintSolver::kWorld};  ///< Index in this tick's solver.
+  double rate{0};                       ///< Counter-clockwise about its axis [rad/s].
+};
 
 /** Contacts in one step of a hand: of the held part, of loose parts that move, and of the part that
  the other hand holds, which joins the step as a body with its own response. Finds them, gives them
@@ -36,11 +44,21 @@ class ContactStep {
     bodies_.SetProperties(id, properties);
   }
 
+  void SetPair(const ContactPairResponse& response) { pairs_.Set(response); }
+
   void SetLoose(contact::BodyId id, bool is_loose) noexcept { bodies_.SetLoose(id, is_loose); }
 
   void SetEffort(const Effort& effort) noexcept { effort_ = effort; }
 
   [[nodiscard]] const Effort& effort() const noexcept { return effort_; }
+
+  /** Fasteners that can be turned at once: a tool has two ends. */
+  static constexpr std::size_t kMaxTurned = 2;
+
+  /** Fasteners that the held tool touched in the last tick; their poses are those of the scene. */
+  [[nodiscard]] std::span<const TurnedFastener> turned() const noexcept {
+    return {turned_.data(), turned_count_};
+  }
 
   /** Loose parts that move by themselves now, as this hand has woken them. */
   [[nodiscard]] std::span<const FreeBody> awake() const noexcept { return bodies_.awake(); }
@@ -53,8 +71,37 @@ class ContactStep {
   /** Makes a part loose that goes on at a velocity of its centre of mass. */
   void LetGo(contact::BodyId id, const spatial::Pose& X_WB, const spatial::Twist& V) noexcept {
     bodies_.SetLoose(id, true);
+    account_.is_crowded = account_.is_crowded || bodies_.awake().size() == FreeBodies::kMaxAwake;
     bodies_.WakeFirst(id, X_WB, V);
   }
+
+  /** Makes parts that are together loose; they go on as one body, at a velocity of their common
+   centre of mass. */
+  void LetGo(const RigidGroup& group, const spatial::Pose& X_WB, const spatial::Twist& V) noexcept {
+    bodies_.Join(group);
+    account_.is_crowded = account_.is_crowded || bodies_.awake().size() == FreeBodies::kMaxAwake;
+    bodies_.WakeFirst(group.leader(), X_WB, V);
+  }
+
+  /** Makes parts that are together loose where they are; they sleep. */
+  void Join(const RigidGroup& group) noexcept { bodies_.Join(group); }
+
+  /** Lets loose parts stand still where they are, as in a vice, while the held part is put to
+   them. */
+  void HoldStill(const RigidGroup& target) noexcept { bodies_.HoldStill(target); }
+
+  /** Makes parts loose again that stand still since HoldStill().
+   @param wakes  They may have lost what they stood by: they move. */
+  void LetLoose(const RigidGroup& target, bool wakes) noexcept {
+    if (bodies_.LetLoose(target) && wakes) {
+      bodies_.WakeFirst(target.leader(), scene_.pose(target.leader()), {});
+    }
+  }
+
+  /** Whether loose parts rest at a pose of the first of them, and no other hand has or moves any.
+   */
+  [[nodiscard]] bool IsAtRestAt(const RigidGroup& target, const spatial::Pose& X_WB,
+                                const HandExchange* other) noexcept;
 
   /** Largest distance of a point of the part, with its members, from its centre of mass [m]. */
   [[nodiscard]] static double CalcReach(const HeldPart& part) noexcept;
@@ -92,8 +139,11 @@ class ContactStep {
   /** Adds the depth of a part that is moved without a step to the account. */
   void MeasureDepth(const DisplayedPart& displayed) noexcept;
 
-  /** What the contacts of the held part were since this was asked last. */
-  [[nodiscard]] ContactAccount TakeAccount() noexcept {
+  /** Ends the tick: what Begin was given is used no more.
+   @returns the account of the held part's contacts since the last tick ended. */
+  ContactAccount End() noexcept {
+    held_ = nullptr;
+    other_ = nullptr;
     return std::exchange(account_, ContactAccount());
   }
 
@@ -123,12 +173,19 @@ class ContactStep {
   }
 
   [[nodiscard]] bool IsMovedByOther(contact::BodyId id) const noexcept;
+  [[nodiscard]] bool IsHeldStillByOther(contact::BodyId id) const noexcept;
+  [[nodiscard]] double CalcFreeReach(contact::BodyId id) const noexcept;
   [[nodiscard]] TouchingBody Touch(const contact::Contact& c, ConstraintSolver* solver) noexcept;
-  void AddQueried(const TouchingBody& body, fits::FrictionSurface surface, double rolling_arm,
-                  ConstraintSolver* solver) noexcept;
+  [[nodiscard]] const TurnedFastener* FindTurned(contact::BodyId id,
+                                                 ConstraintSolver* solver) noexcept;
+  void MoveTurned(const ConstraintSolver& solver) noexcept;
+  void AddQueried(const TouchingBody& body, contact::BodyId queried, fits::FrictionSurface surface,
+                  double rolling_arm, ConstraintSolver* solver) noexcept;
   void AddOtherPart(ConstraintSolver* solver) noexcept;
   [[nodiscard]] double CalcOtherSpeed() const noexcept;
   void PushOtherPart(const ConstraintSolver& solver) noexcept;
+  [[nodiscard]] bool IsFreeBodyAt(const FreeBody& body, const spatial::Pose& X_WB,
+                                  double tolerance) noexcept;
   void MoveFreeBodies(const ConstraintSolver& solver) noexcept;
   void RecordContacts(const ConstraintSolver& solver) noexcept;
   void RecordMutual(const contact::Contact& c, const Vec3& f_C_W) noexcept;
@@ -141,12 +198,16 @@ class ContactStep {
   contact::QueryWorkspace workspace_;
   FrictionMemory friction_;
   FreeBodies bodies_;
-  std::array<contact::IgnoredPair, 2 * MateGuide::kMaxMates> ignored_;
+  ContactPairs pairs_;
+  std::array<TurnedFastener, kMaxTurned> turned_;
+  std::size_t turned_count_{0};
+  double turned_speed_{0};  ///< Largest speed of a point of what was turned in this tick [m/s].
+  std::array<contact::IgnoredPair, MateGuide::kPairsPerMate * MateGuide::kMaxMates> ignored_;
   std::array<contact::Contact, ConstraintSolver::kMaxContacts> contacts_;  ///< Those in the solver.
 
-  // Of the present tick.
-  const HeldPart* held_{nullptr};
-  const HandExchange* other_{nullptr};
+  // Values of the present tick.
+  const HeldPart* held_{nullptr};       ///< Null between ticks.
+  const HandExchange* other_{nullptr};  ///< Null between ticks, and where there is one hand.
   ContactAccount account_;
   int held_contacts_{0};  ///< Contacts of the held part in the solver; the first ones.
   double clearance_{0};   ///< Least distance of the held part before the step, or the margin [m].

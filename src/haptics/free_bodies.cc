@@ -21,6 +21,15 @@ void FreeBodies::SetLoose(contact::BodyId id, bool is_loose) noexcept {
     return;
   }
   Entry& entry = entries_[id.index()];
+  if (const RigidGroup* apart = entry.group) {
+    const bool was_loose = entry.is_loose || entry.is_held_still;
+    for (const contact::BodyId body : apart->bodies) {
+      entries_[body.index()].group = nullptr;
+      SetLoose(body, false);
+      entries_[body.index()].is_loose = was_loose && body != id;
+    }
+  }
+  entry.is_held_still = false;
   entry.is_loose = is_loose && entry.properties.mass > 0;
   if (!is_loose) {
     const auto end = awake_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -28,6 +37,45 @@ void FreeBodies::SetLoose(contact::BodyId id, bool is_loose) noexcept {
         std::remove_if(awake_.begin(), end, [id](const FreeBody& body) { return body.id == id; });
     count_ -= static_cast<std::size_t>(end - rest);
   }
+}
+
+void FreeBodies::SetTogether(const RigidGroup& group, bool is_loose) noexcept {
+  for (const contact::BodyId body : group.bodies) {
+    SetLoose(body, false);
+  }
+  for (const contact::BodyId body : group.bodies) {
+    Entry& entry = entries_[body.index()];
+    entry.group = group.bodies.size() > 1 ? &group : nullptr;
+    entry.is_loose = is_loose;
+    entry.is_held_still = !is_loose;
+  }
+}
+
+void FreeBodies::Join(const RigidGroup& group) noexcept {
+  SetTogether(group, true);
+}
+
+void FreeBodies::HoldStill(const RigidGroup& group) noexcept {
+  SetTogether(group, false);
+}
+
+bool FreeBodies::LetLoose(const RigidGroup& group) noexcept {
+  const auto is_still = [this](contact::BodyId body) {
+    return entries_[body.index()].is_held_still;
+  };
+  if (!std::all_of(group.bodies.begin(), group.bodies.end(), is_still)) {
+    return false;
+  }
+  SetTogether(group, true);
+  return true;
+}
+
+FreeBodies::Inertia FreeBodies::InertiaOf(contact::BodyId id) const noexcept {
+  const Entry& entry = entries_[id.index()];
+  if (entry.group != nullptr) {
+    return {entry.group->mass, entry.group->p_BoBcm_B, entry.group->I_BBcm_B};
+  }
+  return {entry.properties.mass, entry.properties.p_BoBcm_B, entry.properties.I_BBcm_B};
 }
 
 bool FreeBodies::Wake(contact::BodyId id, const spatial::Pose& X_WB,
@@ -69,14 +117,14 @@ void FreeBodies::Sleep(double rest_time) noexcept {
 
 ConstraintSolver::Body FreeBodies::MakeSolverBody(const FreeBody& body, const Vec3& gravity_W,
                                                   double dt) const noexcept {
-  const BodyProperties& properties = entries_[body.id.index()].properties;
+  const Inertia inertia = InertiaOf(body.id);
   const Mat3 R_WB = body.X_WB.R();
   ConstraintSolver::Body out;
-  out.mass = properties.mass;
-  out.I_W = R_WB * properties.I_BBcm_B * R_WB.transpose();
-  out.p_WCm = body.X_WB * properties.p_BoBcm_B;
+  out.mass = inertia.mass;
+  out.I_W = R_WB * inertia.I_BBcm_B * R_WB.transpose();
+  out.p_WCm = body.X_WB * inertia.p_BoBcm_B;
   out.V_0 = body.V;
-  out.F_Cm_W.f = properties.mass * gravity_W;
+  out.F_Cm_W.f = inertia.mass * gravity_W;
   // Of its own a body keeps its angular momentum, and never turns with more energy than before.
   const Vec3& w = body.V.w;
   const Vec3 turned = w - dt * out.I_W.ldlt().solve(w.cross(out.I_W * w));
@@ -88,7 +136,7 @@ ConstraintSolver::Body FreeBodies::MakeSolverBody(const FreeBody& body, const Ve
 
 spatial::Pose FreeBodies::Move(const FreeBody& body, const spatial::Twist& V,
                                double time) const noexcept {
-  return MoveAbout(body.X_WB, entries_[body.id.index()].properties.p_BoBcm_B, V, time);
+  return MoveAbout(body.X_WB, InertiaOf(body.id).p_BoBcm_B, V, time);
 }
 
 }  // namespace hvas::haptics

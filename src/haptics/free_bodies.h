@@ -8,6 +8,7 @@
 #include "contact/scene.h"
 #include "fits/friction.h"
 #include "haptics/constraint_solver.h"
+#include "haptics/rigid_group.h"
 
 namespace hvas::haptics {
 
@@ -19,9 +20,9 @@ struct BodyProperties {
   fits::FrictionSurface surface{fits::FrictionSurface::kUnknown};
 };
 
-/** A body that moves by itself. */
+/** A body that moves by itself: a part, or parts that are put together. */
 struct FreeBody {
-  contact::BodyId id;
+  contact::BodyId id;  ///< Leader of a group.
   spatial::Pose X_WB;
   spatial::Twist V;        ///< Velocity of the centre of mass, in W.
   double time_at_rest{0};  ///< [s]
@@ -36,8 +37,8 @@ struct FreeBody {
  Everything but SetProperties is RT-safe. */
 class FreeBodies {
  public:
-  /** Besides what the two hands hold. */
-  static constexpr std::size_t kMaxAwake = ConstraintSolver::kMaxBodies - 2;
+  /** Besides what the two hands hold, and two fasteners that a tool turns. */
+  static constexpr std::size_t kMaxAwake = ConstraintSolver::kMaxBodies - 4;
 
   /** A body that may move, once it is made loose. Not RT-safe: allocates. */
   void SetProperties(contact::BodyId id, const BodyProperties& properties);
@@ -48,8 +49,53 @@ class FreeBodies {
                                                          : nullptr;
   }
 
-  /** Loose: it moves when something touches it. */
+  /** Loose: it moves when something touches it. What it was put together with comes apart. */
   void SetLoose(contact::BodyId id, bool is_loose) noexcept;
+
+  /** Makes parts one body, which is loose. The group outlives its parts' being together. */
+  void Join(const RigidGroup& group) noexcept;
+
+  /** Lets a group that is loose stand still, as in a vice. */
+  void HoldStill(const RigidGroup& group) noexcept;
+
+  /** Makes a group loose that stands still since HoldStill(); false where it does not: a hand has
+   taken of it, or it was put elsewhere. */
+  bool LetLoose(const RigidGroup& group) noexcept;
+
+  /** The parts that this one is put together with, and itself; null: it is by itself. */
+  [[nodiscard]] const RigidGroup* group(contact::BodyId id) const noexcept {
+    return id.is_valid() && id.index() < entries_.size() ? entries_[id.index()].group : nullptr;
+  }
+
+  /** Parts that a body consists of. */
+  [[nodiscard]] std::size_t CountParts(contact::BodyId id) const noexcept {
+    const RigidGroup* parts = group(id);
+    return parts != nullptr ? parts->members.size() : 1;
+  }
+
+  /** Part i of a body that moves, and its pose. */
+  [[nodiscard]] contact::BodyId PartOf(contact::BodyId id, std::size_t i) const noexcept {
+    const RigidGroup* parts = group(id);
+    return parts != nullptr ? parts->members[i].body : id;
+  }
+
+  [[nodiscard]] spatial::Pose PoseOfPart(contact::BodyId id, std::size_t i,
+                                         const spatial::Pose& X_WB) const noexcept {
+    return i == 0 ? X_WB : X_WB * group(id)->members[i].X_BS;
+  }
+
+  /** Bodies of its group; none of a part that is by itself. */
+  [[nodiscard]] std::span<const contact::BodyId> ListTogether(contact::BodyId id) const noexcept {
+    const RigidGroup* parts = group(id);
+    return parts != nullptr ? std::span<const contact::BodyId>(parts->bodies)
+                            : std::span<const contact::BodyId>();
+  }
+
+  /** The body that moves with this one: the leader of its group, or itself. */
+  [[nodiscard]] contact::BodyId LeaderOf(contact::BodyId id) const noexcept {
+    const RigidGroup* parts = group(id);
+    return parts != nullptr ? parts->leader() : id;
+  }
 
   /** Wakes a loose body where it is, at a velocity. False when it is not loose, or too many are
    awake. */
@@ -84,8 +130,20 @@ class FreeBodies {
  private:
   struct Entry {
     BodyProperties properties;
+    const RigidGroup* group{nullptr};
     bool is_loose{false};
+    bool is_held_still{false};
   };
+
+  /** Mass properties of what moves as a body. */
+  struct Inertia {
+    double mass;
+    const Vec3& p_BoBcm_B;
+    const Mat3& I_BBcm_B;
+  };
+
+  [[nodiscard]] Inertia InertiaOf(contact::BodyId id) const noexcept;
+  void SetTogether(const RigidGroup& group, bool is_loose) noexcept;
 
   std::vector<Entry> entries_;
   std::array<FreeBody, kMaxAwake> awake_;

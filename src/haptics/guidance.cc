@@ -42,7 +42,10 @@ EnergyCredit Guidance::AddTo(const DisplayedPart& displayed, double weight, doub
     fit_rows_.Reset();
     return {};
   }
-  const EnergyCredit credit = AddAttraction(displayed, *axis, soft_start, solver);
+  // A tool has no place of its own to be attracted to.
+  const EnergyCredit credit = displayed.part->drives.empty()
+                                  ? AddAttraction(displayed, *axis, soft_start, solver)
+                                  : EnergyCredit();
   if (guide_.is_aligned() && options_.renders_fits) {
     AddFits(displayed, *axis, weight, solver);
   } else {
@@ -73,7 +76,8 @@ EnergyCredit Guidance::AddAttraction(const DisplayedPart& displayed, const MateG
     const double share = start > 0 ? std::min(1.0, std::abs(rest) / start) : 0.0;
     return std::copysign(soft_start * share * strongest, rest);
   };
-  const bool has_fit = options_.renders_fits && part.mates[guide_.axis_index()].fit != nullptr;
+  const bool has_fit = options_.renders_fits && !guidance.attracts_in_fits &&
+                       part.mates[guide_.axis_index()].fit != nullptr;
   const double left = has_fit ? std::clamp(1 - axis.depth / kFitTakesOver, 0.0, 1.0) : 1.0;
   solver->AddWrench({pull(to_turn, start_angle_, guidance.attraction_torque) * a,
                      left * pull(to_go, start_distance_, guidance.attraction_force) * a});
@@ -92,7 +96,7 @@ void Guidance::AddFits(const DisplayedPart& displayed, const MateGeometry& axis,
   fit_axis_.weight_out = weight * options_.gravity_W.normalized().dot(fit_axis_.out_W);
   const spatial::Twist& V = displayed.V;
   const double speed = fit_axis_.out_W.dot(V.v + V.w.cross(fit_axis_.p_CmQ_W));
-  FitLoad load = guide_.CalcFitLoad(part, speed);
+  FitLoad load = guide_.CalcFitLoad(part, speed, options_.paper_factors);
   is_stuck_ = std::min(load.in, load.out) > weight;
   const double friction = options_.contact.friction.kinetic_coefficient * guide_.lateral_force();
   for (double* sum : {&load.in, &load.out, &load.shown_in, &load.shown_out}) {

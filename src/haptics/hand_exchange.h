@@ -31,12 +31,12 @@ struct MutualContact {
 
 /** What one of two hands that work in one scene gives the other, after each of its ticks. */
 struct HandExchange {
-  DisplayedPart displayed;          ///< What it holds, as it stands in the scene.
-  std::uint32_t hold{0};            ///< Number of this hold, counted from 1.
-  HeldResponse response;            ///< The displayed part's.
-  std::span<const FreeBody> awake;  ///< Loose parts that this hand moves.
-  spatial::Wrench
-      F_pushed_W;  ///< Wrench of its last step on the other's part, at that one's centre of mass.
+  DisplayedPart displayed;                ///< What it holds, as it stands in the scene.
+  std::uint32_t hold{0};                  ///< Number of this hold, counted from 1.
+  HeldResponse response;                  ///< The displayed part's.
+  std::span<const FreeBody> awake;        ///< Loose parts that this hand moves.
+  const RigidGroup* held_still{nullptr};  ///< Loose parts that its part is being put to.
+  spatial::Wrench F_pushed_W;      ///< Its last step's on the other's part, at the centre of mass.
   std::uint32_t pushed_hold{0};    ///< The hold of the other hand that F_pushed_W is for.
   bool has_solved_contact{false};  ///< Its last step has solved the contact of the two parts.
   MutualContact contact;           ///< That contact.

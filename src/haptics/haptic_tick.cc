@@ -27,6 +27,7 @@ double CalcVirtualMass(const HeldPart& part, const TickOptions& options) noexcep
 
 HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene, HandRole role) noexcept
     : options_(options),
+      scene_(*scene),
       workspace_(options.workspace),
       force_map_(MakeForceMap(options.device)),
       coupling_(options_),
@@ -44,6 +45,7 @@ void HapticTick::Take(const HeldPart* part, const HandExchange* other) noexcept 
     falling = found != other->awake.end() ? &*found : nullptr;
   }
   displayed_.part = part;
+  taken_ = part;
   displayed_.X_WD = falling != nullptr ? falling->X_WB : part->X_WB_start;
   displayed_.V = {};
   displayed_.reach = ContactStep::CalcReach(*part);
@@ -58,7 +60,63 @@ void HapticTick::Take(const HeldPart* part, const HandExchange* other) noexcept 
   for (const contact::BodyId body : part->bodies) {
     SetLoose(body, false);  // what it lay on or beside is free to move
   }
+  if (part->left_behind != nullptr) {
+    contacts_.LetGo(*part->left_behind, scene_.pose(part->left_behind->leader()), {});
+  }
+  const auto begins_there = [](const auto& place) { return place->starts_in_place; };
+  const auto& places = part->table_places;
+  if (const auto first = std::find_if(places.begin(), places.end(), begins_there);
+      first != places.end()) {
+    GoTo(**first);
+  }
   response_ = {};
+}
+
+// Until a mate has caught the part, it is for the place that it is nearest to.
+void HapticTick::ChoosePlace(const HandExchange* other) noexcept {
+  const HeldPart* now = displayed_.part;
+  if (taken_->table_places.empty()) {
+    return;
+  }
+  const bool is_there =
+      now->target == nullptr || contacts_.IsAtRestAt(*now->target, now->X_WT_target, other);
+  const bool is_bound = state_ == HoldState::kSeated || seating_.leaves_place() ||
+                        guidance_.mates().captured_count() > 0;
+  if (is_there && is_bound) {
+    return;
+  }
+  const Vec3 p_WCm = displayed_.p_WCm();
+  const auto distance_to = [&](const HeldPart& place) {
+    return (place.X_WB_goal * place.p_BoBcm_B - p_WCm).norm();
+  };
+  const HeldPart* nearest = taken_;
+  double least =
+      taken_->mates.empty() ? taken_->table_places.front()->target_range : distance_to(*taken_);
+  for (const std::shared_ptr<const HeldPart>& place : taken_->table_places) {
+    constexpr double kStay = 0.8;  // Share of the distance to the present place: a choice.
+    const double distance = (place.get() == now ? kStay : 1.0) * distance_to(*place);
+    if (distance < std::min(least, place->target_range) &&
+        contacts_.IsAtRestAt(*place->target, place->X_WT_target, other)) {
+      nearest = place.get();
+      least = distance;
+    }
+  }
+  if (nearest != now) {
+    GoTo(*nearest);
+  }
+}
+
+void HapticTick::GoTo(const HeldPart& place) noexcept {
+  if (const HeldPart& before = *displayed_.part; before.target != nullptr) {
+    contacts_.LetLoose(*before.target, before.starts_in_place);
+  }
+  displayed_.part = &place;
+  if (place.target != nullptr) {
+    contacts_.HoldStill(*place.target);
+  }
+  guidance_.Begin(place);
+  seating_.Begin(place);
+  state_ = HoldState::kFree;
 }
 
 LetGo HapticTick::Drop() noexcept {
@@ -73,10 +131,19 @@ LetGo HapticTick::Drop() noexcept {
   drop.to_place = drop.is_in_place ? 0 : Seating::CalcRemainder(displayed_).d_W.norm();
   drop.is_falling = part.falls_when_dropped && !drop.is_in_place && !guidance_.is_stuck();
   contacts_.MoveInScene(part, drop.X_WB);
-  if (drop.is_falling) {
+  if (drop.is_falling && part.group != nullptr) {
+    contacts_.LetGo(*part.group, drop.X_WB, displayed_.V);
+  } else if (drop.is_falling) {
     contacts_.LetGo(part.body, drop.X_WB, displayed_.V);
   }
+  if (part.target != nullptr && drop.is_in_place) {
+    drop.joined = part.joined.get();
+    contacts_.LetGo(*drop.joined, scene_.pose(drop.joined->leader()), {});
+  } else if (part.target != nullptr && !guidance_.is_stuck()) {
+    contacts_.LetLoose(*part.target, part.starts_in_place);
+  }
   displayed_.part = nullptr;
+  taken_ = nullptr;
   seating_.End();
   state_ = HoldState::kEmpty;
   return drop;
@@ -85,6 +152,7 @@ LetGo HapticTick::Drop() noexcept {
 HandExchange HapticTick::Exchange() const noexcept {
   HandExchange exchange;
   exchange.displayed = displayed_;
+  exchange.held_still = displayed_.part != nullptr ? displayed_.part->target.get() : nullptr;
   exchange.hold = hold_;
   exchange.response = response_;
   contacts_.FillExchange(&exchange);
@@ -101,6 +169,9 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
     hand_ = workspace_.Update(state, options_.dt);
   } else {
     workspace_.Lose();
+  }
+  if (displayed_.part != nullptr) {
+    ChoosePlace(other);
   }
   const HeldPart* part = displayed_.part;
   contacts_.Begin(part, other);
@@ -124,7 +195,7 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
       contacts_.MoveInScene(*part, displayed_.X_WD);
     }
   }
-  static_cast<ContactAccount&>(out) = contacts_.TakeAccount();
+  static_cast<ContactAccount&>(out) = contacts_.End();
   out.state = state_;
   out.workspace = workspace_.mapping();
   DeviceOutput::Input input;

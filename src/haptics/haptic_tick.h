@@ -27,6 +27,9 @@ struct LetGo {
   double to_place{0};      ///< Distance of its centre of mass from its place [m].
   /** How far the part was from its place when it was moved exactly there; zero where it was not. */
   Seating::Remainder arrival;
+  /** It has been put to loose parts on the table (X1): they are one loose body now. Null: it was
+   not. */
+  const RigidGroup* joined{nullptr};
 };
 
 /** Which hand this is, of one or two in a scene. */
@@ -57,12 +60,25 @@ class HapticTick {
     contacts_.SetProperties(id, properties);
   }
 
+  /** How the contact of two bodies answers, instead of TickOptions. Allocates: before the first
+   * tick.
+   */
+  void SetPair(const ContactPairResponse& response) { contacts_.SetPair(response); }
+
   /** A loose body moves when something touches it; the part that is taken up, and what is put in
    its place, is not loose. RT-safe. */
   void SetLoose(contact::BodyId id, bool is_loose) noexcept { contacts_.SetLoose(id, is_loose); }
 
+  /** Makes parts one loose body, which sleeps where they are. RT-safe. */
+  void Join(const RigidGroup& group) noexcept { contacts_.Join(group); }
+
   /** Bodies that move by themselves now; their poses are those of the scene. */
   [[nodiscard]] std::span<const FreeBody> awake() const noexcept { return contacts_.awake(); }
+
+  /** Fasteners that the held tool touched in the last tick; their poses are those of the scene. */
+  [[nodiscard]] std::span<const TurnedFastener> turned() const noexcept {
+    return contacts_.turned();
+  }
 
   /** Takes up a part where it lies; the hand's present pose becomes its grip. Where there is
    another hand, none of the part's bodies is loose for it any more: the caller tells it so
@@ -71,7 +87,8 @@ class HapticTick {
    @param other  What the other hand gave; null: there is one hand. RT-safe. */
   void Take(const HeldPart* part, const HandExchange* other = nullptr) noexcept;
 
-  /** The held part has come into its place, or has not left it yet. */
+  /** The held part has come into its place, in the product or on the table, or has not left it yet.
+   */
   [[nodiscard]] bool is_in_place() const noexcept {
     return state_ == HoldState::kSeated || seating_.leaves_place();
   }
@@ -98,6 +115,8 @@ class HapticTick {
   [[nodiscard]] const TickOptions& options() const noexcept { return options_; }
 
  private:
+  void ChoosePlace(const HandExchange* other) noexcept;
+  void GoTo(const HeldPart& place) noexcept;
   void CreditWeight() noexcept;
   [[nodiscard]] double CalcStoredEnergy() const noexcept;
   void Hold(const HandExchange* other, TickOutput* out) noexcept;
@@ -106,6 +125,7 @@ class HapticTick {
   void UpdateState() noexcept;
 
   const TickOptions options_;
+  const contact::Scene& scene_;
   Workspace workspace_;
   ForceMap force_map_;
   ConstraintSolver solver_;
@@ -117,11 +137,12 @@ class HapticTick {
 
   Hand hand_;  ///< Hand at the last valid sample.
   HoldState state_{HoldState::kEmpty};
-  DisplayedPart displayed_;
-  std::uint32_t hold_{0};    ///< Number of the present hold, or the last one.
-  double soft_start_{0};     ///< 0..1 over the first moments of a hold.
-  double weight_felt_{0};    ///< [N]
-  bool has_engaged_{false};  ///< A part was taken or a mate captured since the last tick.
+  DisplayedPart displayed_;         ///< Has the place that the part is for now.
+  const HeldPart* taken_{nullptr};  ///< The part as it was taken, with all its places.
+  std::uint32_t hold_{0};           ///< Number of the present hold, or the last one.
+  double soft_start_{0};            ///< 0..1 over the first moments of a hold.
+  double weight_felt_{0};           ///< [N]
+  bool has_engaged_{false};         ///< A part was taken or a mate captured since the last tick.
   HeldResponse response_;
 };
 

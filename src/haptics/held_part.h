@@ -8,6 +8,8 @@
 #include "contact/shape.h"
 #include "fits/fit_force.h"
 #include "fits/friction.h"
+#include "fits/iso286.h"
+#include "haptics/rigid_group.h"
 #include "mates/capture.h"
 #include "product/product.h"
 #include "spatial/pose.h"
@@ -30,9 +32,9 @@ struct HeldMate {
   mates::CaptureMate capture;  ///< Kind and spans, for recognition.
   double radius{0};            ///< Nominal, of the hole [m]; 0 for planes.
   bool is_stop{false};         ///< A plane that ends the insertion, not one that guides it.
-  std::shared_ptr<const fits::FitForce> fit;  ///< Null for planes and threads.
-  double paper_factor{1};                     ///< k_r or k_s of paper W, by the kind of the fit.
-  contact::BodyId body;                       ///< The placed part in the scene.
+  std::shared_ptr<const fits::FitForce> fit;          ///< Null for planes and threads.
+  fits::FitKind fit_kind{fits::FitKind::kClearance};  ///< Says which factor of PaperFactors counts.
+  contact::BodyId body;                               ///< The placed part in the scene.
   std::shared_ptr<const MateFaces> held_faces;
   std::shared_ptr<const MateFaces> placed_faces;
 };
@@ -45,6 +47,18 @@ struct HeldMember {
   std::shared_ptr<const contact::Shape> shape;
   spatial::Pose X_BS;                     ///< Pose in the frame of the part in the hand.
   std::vector<contact::BodyId> left_out;  ///< The rest of the subassembly, and what it overlaps.
+};
+
+/** A fastener in its place that the part in the hand, a tool, can turn by contact with it (X16). It
+ moves along its thread only, and stands still until contacts turn it harder than its dry friction.
+ */
+struct HeldDrive {
+  contact::BodyId body;
+  spatial::Pose X_WB_seat;     ///< Pose in which it is seated: it goes no further in.
+  Vec3 p_WQ{Vec3::Zero()};     ///< Point of its axis.
+  Vec3 axis_W{Vec3::UnitZ()};  ///< Unit, out of its thread.
+  double travel{0};            ///< Along the axis, counter-clockwise about it [m/rad].
+  double torque{0};            ///< Dry friction in its thread and under its head [N m].
 };
 
 /** Everything the tick needs to know of the part in the hand; built outside the tick, then
@@ -66,7 +80,20 @@ struct HeldPart {
   std::vector<HeldMember> members;        ///< Other parts of a subassembly.
   std::vector<contact::BodyId> bodies;    ///< All that is in the hand: `body`, and the members'.
   fits::FrictionSurface surface{fits::FrictionSurface::kUnknown};
+  std::vector<HeldDrive> drives;   ///< Fasteners that it fits, where it is a tool.
   bool falls_when_dropped{false};  ///< Let go anywhere but in its place, it is a free body.
+
+  // Parts that are put together on the table (X1).
+  std::shared_ptr<const RigidGroup> group;  ///< It and its members, let go; null: a part alone.
+  /** What stays together of the subassembly that it is taken out of; null: none does. */
+  std::shared_ptr<const RigidGroup> left_behind;
+  /** Its places at loose parts on the table: the same part with another goal and other mates. */
+  std::vector<std::shared_ptr<const HeldPart>> table_places;
+  /** Only of a table place: the loose parts that it is put to, which stand still meanwhile. */
+  std::shared_ptr<const RigidGroup> target;
+  spatial::Pose X_WT_target;  ///< Pose of the target's first part.
+  double target_range{0};     ///< Distance from which on the target stands still [m].
+  std::shared_ptr<const RigidGroup> joined;  ///< The target with this part in its place.
 };
 
 }  // namespace hvas::haptics

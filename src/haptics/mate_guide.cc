@@ -95,7 +95,7 @@ MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) n
   g.angle = std::atan2(cross.norm(), held_axis.dot(g.axis_W));
   g.tilt_W = cross.norm() > 1e-12 ? Vec3(g.angle / cross.norm() * cross) : Vec3::Zero();
   const double along = d.dot(g.axis_W);
-  if (mate.capture.kind == MateKind::kSphereSeat) {
+  if (mates::IsCentre(mate.capture.kind)) {
     g.p_WQ = X_WN.p();
     g.offset_W = d;
     g.angle = 0;
@@ -232,18 +232,22 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
       if (g.engaged > 0 && mate.capture.kind == MateKind::kAxisHole) {
         lateral_force_ += k * (r - free);
       }
-      const Mat3& held = mate.capture.kind == MateKind::kSphereSeat ? whole : across;
+      const Mat3& held = mates::IsCentre(mate.capture.kind) ? whole : across;
       solver->AddPointSpring(g.p_WQ, -k * (r - free) * e,
                              k * ((1 - ratio) * held + ratio * e * e.transpose()));
     }
   }
 }
 
+double MateGuide::CalcAxisPlay(const HeldPart& part) const noexcept {
+  return axis_ != nullptr ? FreeRadius(part.mates[axis_index_], *axis_) : 0;
+}
+
 std::size_t MateGuide::CollectIgnored(const HeldPart& part, std::span<contact::IgnoredPair> pairs,
                                       std::size_t member) const noexcept {
   std::size_t written = 0;
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
-  for (std::size_t i = 0; i < count && written + 2 <= pairs.size(); ++i) {
+  for (std::size_t i = 0; i < count && written + kPairsPerMate <= pairs.size(); ++i) {
     const HeldMate& mate = part.mates[i];
     if (!mates_[i].is_aligned || !ReplacesContact(mate) || mate.member != member) {
       continue;
@@ -254,7 +258,8 @@ std::size_t MateGuide::CollectIgnored(const HeldPart& part, std::span<contact::I
   return written;
 }
 
-FitLoad MateGuide::CalcFitLoad(const HeldPart& part, double slip) const noexcept {
+FitLoad MateGuide::CalcFitLoad(const HeldPart& part, double slip,
+                               const PaperFactors& factors) const noexcept {
   FitLoad sum;
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count; ++i) {
@@ -268,8 +273,8 @@ FitLoad MateGuide::CalcFitLoad(const HeldPart& part, double slip) const noexcept
     sum.in += in;
     sum.out += out;
     sum.torque += mate.fit->CalcTorque(depth);
-    sum.shown_in += mate.paper_factor * in;
-    sum.shown_out += mate.paper_factor * out;
+    sum.shown_in += factors.Of(mate.fit_kind) * in;
+    sum.shown_out += factors.Of(mate.fit_kind) * out;
   }
   return sum;
 }

@@ -35,6 +35,7 @@ class MateGuide {
  public:
   /** Room for a held subassembly, with all its parts: a choice. */
   static constexpr std::size_t kMaxMates = 96;
+  static constexpr std::size_t kPairsPerMate = 2;  ///< Pairs that CollectIgnored fills for a mate.
 
   void Reset() noexcept { mates_.fill({}); }
 
@@ -70,7 +71,8 @@ class MateGuide {
 
   /** Sum over aligned fits at their present depths, for a part that slips outwards at a speed
    [m/s]. */
-  [[nodiscard]] FitLoad CalcFitLoad(const HeldPart& part, double slip) const noexcept;
+  [[nodiscard]] FitLoad CalcFitLoad(const HeldPart& part, double slip,
+                                    const PaperFactors& factors = {}) const noexcept;
 
   /** Force with which the bores hold the shaft back, for W5's Coulomb friction [N]. */
   [[nodiscard]] double lateral_force() const noexcept { return lateral_force_; }
@@ -82,6 +84,9 @@ class MateGuide {
   [[nodiscard]] const MateGeometry* axis() const noexcept { return axis_; }
 
   [[nodiscard]] std::size_t axis_index() const noexcept { return axis_index_; }
+
+  /** How far the fit on that axis lets the shaft be off the axis [m]; 0 without an axis. */
+  [[nodiscard]] double CalcAxisPlay(const HeldPart& part) const noexcept;
 
  private:
   struct MateState {

@@ -6,6 +6,7 @@
 #include "contact/scene.h"
 #include "device/device.h"
 #include "fits/friction.h"
+#include "fits/paper_scales.h"
 #include "haptics/safety_gate.h"
 #include "haptics/workspace.h"
 #include "mates/capture.h"
@@ -30,6 +31,20 @@ enum class ForceMapKind {
   return kind == ForceMapKind::kPaper ? "paper" : "published";
 }
 
+/** Factors of ForceMapKind::kPaper. Those of clearance fits are 1: they are shown as they are. */
+struct PaperFactors {
+  double interference{fits::FindPaperScale(fits::FitKind::kInterference).factor};  ///< k_r of W(8).
+  double transition{fits::FindPaperScale(fits::FitKind::kTransition).factor};      ///< k_s of W(9).
+
+  [[nodiscard]] double Of(fits::FitKind kind) const noexcept {
+    return kind == fits::FitKind::kInterference ? interference
+           : kind == fits::FitKind::kTransition ? transition
+                                                : 1;
+  }
+
+  friend bool operator==(const PaperFactors&, const PaperFactors&) = default;
+};
+
 /** Spring and damper between the tracked and the displayed part, X(1) and X(2). Those of a device
  are chosen for it (coupling_rule.h); these are choices, varied in docs/algorithms/sensitivity.md.
  */
@@ -49,7 +64,7 @@ struct GuidanceOptions {
   double k_rot{1e4};                 ///< Full stiffness against tilt [N m/rad].
   double max_force{20};              ///< Guidance never pulls harder [N].
   double max_torque{2};              ///< [N m]
-  double attraction_force{1.0};      ///< K1 F_max of X(9) [N]; until a fit answers.
+  double attraction_force{1.0};      ///< K1 F_max of X(9) [N].
   double attraction_torque{0.15};    ///< Attraction about a free axis [N m].
   double seat_distance{0.15e-3};     ///< Distance from the goal at which a part has arrived [m].
   double seat_angle{0.06};           ///< [rad]
@@ -58,6 +73,9 @@ struct GuidanceOptions {
   /** A part that is let go so near to its place, and can be moved there, is in it [m]. 0: it stays
    where it was let go. */
   double finish_distance{0};
+  /** X(9) goes on where a fit resists, as in paper X. Without it the fit takes over as it engages:
+   what draws a part in holds it back on the way out. */
+  bool attracts_in_fits{false};
 };
 
 /** How contacts answer (docs/algorithms/haptics.md, section 2). Choices, not measured one by one
@@ -98,6 +116,7 @@ struct TickOptions {
   Vec3 gravity_W{0, 0, -9.81};   ///< [m/s^2]
   double max_virtual_mass{1.0};  ///< Inertia that is felt at most; the weight is mapped [kg].
   ForceMapKind force_map{ForceMapKind::kPublished};
+  PaperFactors paper_factors;
   device::DeviceProfile device;
   /** What the device is given at most; without: the device's peaks and usual rates. */
   std::optional<SafetyLimits> limits;

@@ -6,7 +6,7 @@
 namespace hvas::haptics {
 
 PassivityChannel::PassivityChannel(const PassivityLimits& limits) noexcept : limits_(limits) {
-  limits_.delay = std::clamp(limits.delay, 0, kMaxDelay - 1);
+  limits_.delay = std::clamp(limits.delay, 0, kMaxDelay);
 }
 
 const PassivityChannel::Given& PassivityChannel::FindGiven(int ticks_ago) const noexcept {
@@ -155,9 +155,12 @@ void PassivityController::Reset() noexcept {
   torque_.Reset();
 }
 
+double CalcDelayTicks(const device::DeviceProfile& profile, double dt) noexcept {
+  return std::ceil(profile.delay / dt - 1e-6);
+}
+
 PassivityController MakePassivityController(const device::DeviceProfile& profile,
                                             double dt) noexcept {
-  const double ticks = std::ceil(profile.delay / dt - 1e-6);
   constexpr double kHarmless = 0.3;  // [m/s]: a choice, not measured.
   PassivityLimits force;
   force.reserve = 0.5 * profile.mass * kHarmless * kHarmless;
@@ -165,7 +168,8 @@ PassivityController MakePassivityController(const device::DeviceProfile& profile
   force.max_damping = profile.max_damping;
   force.longest_tick = 1.5 * dt;
   force.rate = 400;
-  force.delay = static_cast<int>(std::clamp(ticks, 0.0, double{PassivityChannel::kMaxDelay}));
+  force.delay = static_cast<int>(
+      std::clamp(CalcDelayTicks(profile, dt), 0.0, double{PassivityChannel::kMaxDelay}));
   PassivityLimits torque = force;
   torque.max_force = profile.max_torque;
   torque.rate = 40;

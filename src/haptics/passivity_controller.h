@@ -37,7 +37,7 @@ struct PassivityAccount {
  RT-safe. */
 class PassivityChannel {
  public:
-  static constexpr int kMaxDelay = 31;  ///< Longer ones are taken for this [ticks].
+  static constexpr int kMaxDelay = 30;  ///< Longer ones are taken for this [ticks].
 
   explicit PassivityChannel(const PassivityLimits& limits) noexcept;
 
@@ -74,7 +74,8 @@ class PassivityChannel {
  private:
   /** The window forgets a 32nd of itself at once: a choice. */
   static constexpr std::size_t kBuckets = 32;
-  static constexpr std::size_t kHistory = kMaxDelay + 1;  ///< One more than the largest delay.
+  static constexpr std::size_t kHistory =
+      kMaxDelay + 2;  ///< Forces of the delay, the last and the next.
 
   struct Given {
     Vec3 written{Vec3::Zero()};
@@ -148,6 +149,10 @@ class PassivityController {
   spatial::Pose X_DH_;
   bool has_pose_{false};
 };
+
+/** Delay of a device in ticks of dt [s], rounded up; it may be above PassivityChannel::kMaxDelay.
+ */
+[[nodiscard]] double CalcDelayTicks(const device::DeviceProfile& profile, double dt) noexcept;
 
 /** Makes the controller of a device whose tick takes dt. */
 [[nodiscard]] PassivityController MakePassivityController(const device::DeviceProfile& profile,

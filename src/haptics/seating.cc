@@ -51,10 +51,12 @@ bool Seating::HasArrived(const DisplayedPart& displayed, const TrackedPart& trac
   if (needs_guide && !is_guided) {
     return false;
   }
-  // Along the way in, and across an axis, a part is home or it is not; where only planes or nothing
-  // at all hold it, it is set straight over the last bit, if nothing is there.
+  // Along the way in, and across an axis but for its play, a part is home or it is not; where only
+  // planes or nothing at all hold it, it is set straight over the last bit, if nothing is there.
   const double along = std::abs(d.dot(part.insertion_W));
-  const double tight = mates.axis() != nullptr ? d.norm() : along;
+  const double across = (d - d.dot(part.insertion_W) * part.insertion_W).norm();
+  const double beyond_play = std::max(0.0, across - mates.CalcAxisPlay(part));
+  const double tight = mates.axis() != nullptr ? std::hypot(along, beyond_play) : along;
   if (is_guided && tight > guidance.seat_distance) {
     return false;
   }

@@ -45,11 +45,13 @@ struct TickContext {
 struct ContactAccount {
   /** Deepest contact [m], negative inside; +inf where nothing is near. */
   double deepest{std::numeric_limits<double>::infinity()};
-  int contact_count{0};            ///< Contacts that press.
-  Vec3 p_WC{Vec3::Zero()};         ///< The contact that presses hardest.
-  Vec3 f_C_W{Vec3::Zero()};        ///< Its force on the held part [N].
-  contact::BodyId contact_body;    ///< The body that it is with; invalid for the ground or none.
-  bool is_truncated{false};        ///< A contact query met its budget.
+  int contact_count{0};          ///< Contacts that press.
+  Vec3 p_WC{Vec3::Zero()};       ///< The contact that presses hardest.
+  Vec3 f_C_W{Vec3::Zero()};      ///< Its force on the held part [N].
+  contact::BodyId contact_body;  ///< The body that it is with; invalid for the ground or none.
+  bool is_truncated{false};      ///< A contact query, or the step, had more than it has room for.
+  /** A loose part stood still, though it was pushed or fell: as many as may move did. */
+  bool is_crowded{false};
   std::uint32_t points_tested{0};  ///< Points tested by all contact queries of the tick.
 };
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "mates/assignments.h"
+#include "mates/place_by_mates.h"
 #include "mates/user_mate.h"
 #include "product/names.h"
 
@@ -56,6 +57,12 @@ Result<Mate> MakeAdded(const Product& product, const AddedMate& added) {
   return mate;
 }
 
+Unexpected FailToRemove(const RemovedMate& removed) {
+  return Fail(ErrorCode::kNotFound, fmt::format("there is no mate \"{}\"", removed.mate),
+              removed.where, "write the key of a mate, or remove the entry with hvas mate restore");
+}
+
+/** Removes the mates that are there. Those that are not may be mates of the assembled poses. */
 Result<void> RemoveAll(const SideFile& file, Product* product, MateChanges* changes,
                        WorkWatch* watch) {
   // First all are found, so that numbers and keys mean what they meant before.
@@ -65,12 +72,13 @@ Result<void> RemoveAll(const SideFile& file, Product* product, MateChanges* chan
     }
     const auto mate = std::find_if(product->mates.begin(), product->mates.end(),
                                    [&](const Mate& m) { return m.key == removed.mate; });
-    if (mate == product->mates.end()) {
-      return Fail(ErrorCode::kNotFound, fmt::format("there is no mate \"{}\"", removed.mate),
-                  removed.where,
-                  "write the key of a mate, or remove the entry with hvas mate restore");
+    if (mate != product->mates.end()) {
+      changes->removed.push_back(*mate);
+    } else if (file.added.empty()) {
+      return FailToRemove(removed);
+    } else {
+      product->removed_mates.push_back(removed.mate);
     }
-    changes->removed.push_back(*mate);
   }
   for (const Mate& mate : changes->removed) {
     if (!MayGoOn(watch)) {
@@ -81,6 +89,55 @@ Result<void> RemoveAll(const SideFile& file, Product* product, MateChanges* chan
                   file.path.string(), "keep one of the entries");
     }
   }
+  return {};
+}
+
+/** Adds the mates of a file. @returns their keys. */
+Result<std::vector<std::string>> AddAll(const SideFile& file, Product* product, WorkWatch* watch) {
+  std::vector<std::string> keys;
+  for (const AddedMate& added : file.added) {
+    if (!MayGoOn(watch)) {
+      return Unexpected(watch->Explain("adding mates", added.where));
+    }
+    Result<Mate> mate = MakeAdded(*product, added);
+    if (!mate) {
+      return Unexpected(mate.error());
+    }
+    keys.push_back(mate->key);
+    if (mate->id.index() < product->mates.size()) {
+      product->mates[mate->id.index()].origin = product::MateOrigin::kUser;
+    } else {
+      AddMate(product, *std::move(mate));
+    }
+  }
+  return keys;
+}
+
+/** What placing has found of the mates that a file adds and removes. */
+Result<void> NotePlacement(const SideFile& file, const std::vector<std::string>& added,
+                           Placement placement, const Product& product, MateChanges* changes) {
+  const auto is_among = [](const std::vector<Mate>& mates, const std::string& key) {
+    return std::any_of(mates.begin(), mates.end(),
+                       [&key](const Mate& mate) { return mate.key == key; });
+  };
+  for (Mate& mate : placement.removed) {
+    if (!is_among(changes->removed, mate.key)) {
+      changes->removed.push_back(std::move(mate));
+    }
+  }
+  for (const RemovedMate& removed : file.removed) {
+    if (!is_among(changes->removed, removed.mate)) {
+      return FailToRemove(removed);
+    }
+  }
+  for (const std::string& key : added) {
+    const Result<MateId> id = FindMate(product, key);
+    if (!id) {
+      return Unexpected(id.error());
+    }
+    changes->added.push_back(*id);
+  }
+  changes->contradictions = std::move(placement.contradictions);
   return {};
 }
 
@@ -125,21 +182,17 @@ Result<MateChanges> ApplyMates(const SideFile& file, Product* product, WorkWatch
   if (const auto removed = RemoveAll(file, &changed, &changes, watch); !removed) {
     return Unexpected(removed.error());
   }
-  for (const AddedMate& added : file.added) {
-    if (!MayGoOn(watch)) {
-      return Unexpected(watch->Explain("adding mates", added.where));
-    }
-    Result<Mate> mate = MakeAdded(changed, added);
-    if (!mate) {
-      return Unexpected(mate.error());
-    }
-    MateId id = mate->id;
-    if (id.index() < changed.mates.size()) {
-      changed.mates[id.index()].origin = product::MateOrigin::kUser;
-    } else {
-      id = AddMate(&changed, *std::move(mate));
-    }
-    changes.added.push_back(id);
+  const auto added = AddAll(file, &changed, watch);
+  if (!added) {
+    return Unexpected(added.error());
+  }
+  Result<Placement> placement = PlaceByMates(&changed, watch);
+  if (!placement) {
+    return Unexpected(placement.error());
+  }
+  if (const auto noted = NotePlacement(file, *added, *std::move(placement), changed, &changes);
+      !noted) {
+    return Unexpected(noted.error());
   }
   *product = std::move(changed);
   return changes;

@@ -23,6 +23,7 @@ using product::FitConditions;
 using product::FitKind;
 using product::Mate;
 using product::MateKind;
+using product::MeasuredDiameter;
 using product::Occurrence;
 using product::Product;
 
@@ -138,16 +139,26 @@ Unexpected FailToFind(const Product& product, const FitEntry& entry) {
       entry.where, std::move(remedy));
 }
 
-Result<void> CheckMeasured(const char* name, std::optional<double> measured, double drawn,
-                           double nominal, const std::string& where) {
-  if (!measured || std::abs(*measured - drawn) <= kMostMeasured * drawn ||
-      std::abs(*measured - nominal) <= kMostMeasured * nominal) {
-    return {};
+Result<void> CheckMeasured(const char* name, const std::vector<MeasuredDiameter>& measured,
+                           double drawn, double nominal, const std::string& where) {
+  for (const auto& [depth, diameter] : measured) {
+    if (std::abs(diameter - drawn) > kMostMeasured * drawn &&
+        std::abs(diameter - nominal) > kMostMeasured * nominal) {
+      return Fail(
+          ErrorCode::kInvalid,
+          fmt::format("the measured diameter of the {}, {:g} mm, is far from the drawn {:g} mm",
+                      name, units::ToMm(diameter), units::ToMm(drawn)),
+          where, "give the diameter in mm, or another mate");
+    }
   }
-  return Fail(ErrorCode::kInvalid,
-              fmt::format("the measured diameter of the {}, {:g} mm, is far from the drawn {:g} mm",
-                          name, units::ToMm(*measured), units::ToMm(drawn)),
-              where, "give the diameter in mm, or another mate");
+  return {};
+}
+
+void Override(const std::vector<MeasuredDiameter>& measured,
+              std::vector<MeasuredDiameter>* target) {
+  if (!measured.empty()) {
+    *target = measured;
+  }
 }
 
 template <typename T>
@@ -158,8 +169,8 @@ void Override(const std::optional<T>& value, std::optional<T>* target) {
 }
 
 void Merge(const FitConditions& from, FitConditions* to) {
-  Override(from.hole_diameter, &to->hole_diameter);
-  Override(from.shaft_diameter, &to->shaft_diameter);
+  Override(from.hole_diameters, &to->hole_diameters);
+  Override(from.shaft_diameters, &to->shaft_diameters);
   Override(from.hole_roughness, &to->hole_roughness);
   Override(from.shaft_roughness, &to->shaft_roughness);
   Override(from.friction, &to->friction);
@@ -184,10 +195,10 @@ Result<void> ApplyEntry(const FitEntry& entry, const std::string& reason, Mate* 
     mate->fit = *std::move(fit);
   }
   const double nominal = NominalOf(*mate);
-  Result<void> checked = CheckMeasured("hole", entry.conditions.hole_diameter,
+  Result<void> checked = CheckMeasured("hole", entry.conditions.hole_diameters,
                                        2 * mate->hole_radius, nominal, entry.where);
   if (checked) {
-    checked = CheckMeasured("shaft", entry.conditions.shaft_diameter, 2 * mate->shaft_radius,
+    checked = CheckMeasured("shaft", entry.conditions.shaft_diameters, 2 * mate->shaft_radius,
                             nominal, entry.where);
   }
   Merge(entry.conditions, &mate->conditions);
@@ -198,10 +209,10 @@ Result<void> ApplyEntry(const FitEntry& entry, const std::string& reason, Mate* 
 
 bool IsCalled(const Product& product, product::OccurrenceId id, std::string_view name) {
   const Occurrence& occurrence = product.occurrences[id.index()];
-  const std::string_view path = occurrence.path;
-  return occurrence.name == name || path == name ||
-         (path.size() > name.size() && path.ends_with(name) &&
-          path[path.size() - name.size() - 1] == '/' && !name.empty());
+  return product::IsCalledByPath(occurrence.name, occurrence.path, name) ||
+         std::any_of(
+             occurrence.bodies.begin(), occurrence.bodies.end(),
+             [&name](const std::string& path) { return product::IsCalledByPath({}, path, name); });
 }
 
 Result<int> ApplyFits(const SideFile& file, const MateChanges& changes, Product* product,
@@ -264,6 +275,9 @@ Result<MateChanges> ApplySideFile(const SideFile& file, Product* product, WorkWa
     return Unexpected(count.error());
   }
   changes->fits = *count;
+  if (const auto applied = ApplyRelations(file, &changed); !applied) {
+    return Unexpected(applied.error());
+  }
   *product = std::move(changed);
   return changes;
 }

@@ -8,13 +8,15 @@
 
 #include "base/result.h"
 #include "base/work_watch.h"
+#include "mates/place_by_mates.h"
 #include "mates/side_file.h"
 #include "product/product.h"
 
 /** What people say about mates, over what inference proposes: CAD files rarely carry fits. */
 namespace hvas::mates {
 
-/** True for an occurrence's name, its path, and the end of its path ("tier 1/post 1"). */
+/** True for an occurrence's name, its path, and the end of its path ("tier 1/post 1"), and for
+ those of the bodies that it is welded of. */
 [[nodiscard]] bool IsCalled(const product::Product& product, product::OccurrenceId id,
                             std::string_view name);
 
@@ -24,12 +26,15 @@ namespace hvas::mates {
 
 /** What a side file did. */
 struct MateChanges {
-  std::vector<product::Mate> removed;  ///< Mates as they were, with the ids they had.
-  std::vector<product::MateId> added;  ///< Ordered as SideFile::added.
-  int fits{0};                         ///< Mates that got a fit or conditions.
+  std::vector<product::Mate> removed;             ///< Mates as they were, with the ids they had.
+  std::vector<product::MateId> added;             ///< Ordered as SideFile::added.
+  int fits{0};                                    ///< Mates that got a fit or conditions.
+  std::vector<MateContradiction> contradictions;  ///< Mates of the user that exclude each other.
 };
 
-/** Takes out the mates that a side file removes and adds those that it adds; ids and joints follow.
+/** Takes out the mates that a side file removes, adds those that it adds, and places the parts by
+ them (PlaceByMates); ids and joints follow. A removed mate is one of the drawn or of the assembled
+ poses.
  A mate to be added that is there already becomes the user's. Errors name the file, the line, the
  entry and a remedy; then nothing is changed. @pre product has its inferred mates. */
 [[nodiscard]] Result<MateChanges> ApplyMates(const SideFile& file, product::Product* product,
@@ -47,6 +52,10 @@ struct MateChanges {
  @returns how many mates got a fit or conditions. */
 [[nodiscard]] Result<int> ApplyFits(const SideFile& file, const MateChanges& changes,
                                     product::Product* product, WorkWatch* watch = nullptr);
+
+/** Sets the relations and contact pairs that a side file states, instead of those there were.
+ Errors as those of ApplyMates; refused are also relations that the two elements cannot have. */
+[[nodiscard]] Result<void> ApplyRelations(const SideFile& file, product::Product* product);
 
 /** All that a product gets from its files: mates removed and added, the fits that the CAD file
  states (see AssignStatedFits), and over them those of the side file. All of it, or an error and

@@ -32,7 +32,7 @@ MateDeviation CalcDeviation(const CaptureMate& mate, const Pose& X_WM, const Pos
   const Vec3 zhat_N_W = X_WN.q() * Vec3::UnitZ();
   const Vec3 p_MN_W = X_WN.p() - X_WM.p();
   MateDeviation deviation;
-  if (mate.kind == MateKind::kSphereSeat) {
+  if (IsCentre(mate.kind)) {
     deviation.distance = p_MN_W.norm();
     return deviation;
   }

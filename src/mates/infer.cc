@@ -19,8 +19,8 @@
 #include "mates/mate_key.h"
 #include "mates/pair_search.h"
 #include "mates/propose_fit.h"
-#include "mates/same_place.h"
 #include "mates/surface_pairs.h"
+#include "product/same_place.h"
 
 namespace hvas::mates {
 namespace {
@@ -58,7 +58,7 @@ class Inference {
         watch_(watch),
         cos_angle_(std::cos(limits.angle)),
         fasteners_(ClassifyOccurrences(*product)),
-        original_of_(FindOriginals(*product)) {}
+        original_of_(product::FindOriginals(*product)) {}
 
   std::vector<DrawnOddity> Run() {
     FindPairs();
@@ -179,13 +179,40 @@ class Inference {
     }
   }
 
+  /** Whether some other planes of a pair face each other the other way round, so that one part is
+   between walls of the other one: parallel ones, or those of a dovetail or polygon. */
+  [[nodiscard]] bool IsBetweenWalls(const Pair& pair, const PlaneHit& hit) const {
+    constexpr double kOpposed = -0.45;  // Dovetails have flanks of up to 60 deg, polygons 60 deg.
+    const Vec3& nhat = FeatureOf(pair.a, hit.a).axis_B;
+    const auto opposes = [&](const PlaneHit& other) {
+      return nhat.dot(FeatureOf(pair.a, other.a).axis_B) <= kOpposed;
+    };
+    return std::any_of(pair.hits.planes.begin(), pair.hits.planes.end(), opposes) ||
+           std::any_of(pair.hits.walls.begin(), pair.hits.walls.end(), opposes);
+  }
+
+  /** Planes of a pair that touch, or that hold one part between walls of the other one. */
+  [[nodiscard]] std::vector<const PlaneHit*> ListMatedPlanes(const Pair& pair) const {
+    std::vector<const PlaneHit*> hits;
+    for (const PlaneHit& hit : pair.hits.planes) {
+      hits.push_back(&hit);
+    }
+    for (const PlaneHit& hit : pair.hits.walls) {
+      if (IsBetweenWalls(pair, hit)) {
+        hits.push_back(&hit);
+      }
+    }
+    return hits;
+  }
+
   [[nodiscard]] std::vector<PlaneGroup> GroupPlanes(const Pair& pair) const {
     const double gap = limits_.plane_gap * ScaleOf(pair);
     std::vector<PlaneGroup> groups;
-    for (const PlaneHit& hit : pair.hits.planes) {
+    for (const PlaneHit* const plane : ListMatedPlanes(pair)) {
       if (!MayGoOn(watch_)) {
         break;
       }
+      const PlaneHit& hit = *plane;
       const auto found = std::find_if(groups.begin(), groups.end(), [&](const PlaneGroup& group) {
         const Vec3& nhat = FeatureOf(pair.a, group.largest->a).axis_B;
         return nhat.dot(FeatureOf(pair.a, hit.a).axis_B) >= cos_angle_ &&

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "mates/mate_kind.h"
 
 namespace hvas::mates {
 namespace {
@@ -27,7 +28,7 @@ const Feature& FeatureOf(const Product& product, const Connector& connector) {
 double CalcOffset(const Product& product, const Mate& mate) {
   const Feature& feature = FeatureOf(product, mate.b);
   const Vec3 d = mate.b.X_BM.p() - feature.origin_B;
-  return mate.kind == MateKind::kSphereSeat ? d.norm() : feature.axis_B.cross(d).norm();
+  return IsCentre(mate.kind) ? d.norm() : feature.axis_B.cross(d).norm();
 }
 
 /** Of the plane of b from that of a; positive: a gap. */
@@ -51,6 +52,11 @@ double CalcScale(const Product& product, const Mate& mate) {
     return box.is_empty() ? 0.0 : box.size().norm();
   };
   return CalcLengthScale(std::min(size(mate.a), size(mate.b)));
+}
+
+/** Planes that do not touch are the walls of a slot, or the sides of what is in it. */
+bool IsTouching(const Product& product, const Mate& mate, const InferenceLimits& limits) {
+  return std::abs(CalcGap(product, mate)) < limits.plane_gap * CalcScale(product, mate);
 }
 
 /** What is printed as zero has no sign. */
@@ -104,7 +110,9 @@ double CalcConfidence(const Product& product, const Mate& mate, const InferenceL
       return CalcAxisConfidence(product, mate, limits, part_a, part_b);
     case MateKind::kFaceFace:
       return CalcRising(mate.overlap, 0.25 * CalcSmallerArea(product, mate), 0.5) *
-             CalcFalling(std::abs(CalcGap(product, mate)), limits.plane_gap * scale, 0.7);
+             (IsTouching(product, mate, limits)
+                  ? CalcFalling(std::abs(CalcGap(product, mate)), limits.plane_gap * scale, 0.7)
+                  : CalcFalling(std::abs(CalcGap(product, mate)), limits.wall_gap * scale, 0.5));
     case MateKind::kConeSeat: {
       const double tilt =
           std::abs(FeatureOf(product, mate.a).half_angle - FeatureOf(product, mate.b).half_angle);
@@ -139,7 +147,8 @@ std::string DescribeEvidence(const Product& product, const Mate& mate) {
     case MateKind::kFaceFace: {
       const double smaller = CalcSmallerArea(product, mate);
       const double share = smaller > 0 ? std::min(1.0, mate.overlap / smaller) : 0.0;
-      return fmt::format("touching {:.2f} mm2, {:.0f} % of the smaller face, {:.2f} um apart",
+      return fmt::format("{} {:.2f} mm2, {:.0f} % of the smaller face, {:.2f} um apart",
+                         IsTouching(product, mate, {}) ? "touching" : "between walls, facing",
                          1e6 * mate.overlap, 100 * share,
                          DropSignOfZero(ToUm(CalcGap(product, mate)), 0.005));
     }

@@ -20,6 +20,7 @@ struct InferenceLimits {
   double area{0.05e-6};              ///< Least overlap [m^2].
   double cone_angle{1.745329252e-2};  ///< Difference of the half angles of two cones (1 deg) [rad].
   double cone_gap{0.25e-3};           ///< Gap of cones, normal to them, also as overlap [m].
+  double wall_gap{0.3e-3};   ///< Gap of faces that hold a part between them, on one side [m].
   double near_gap{0.12e-3};  ///< Faces that nearly touch, or overlap, are reported this far [m].
   bool reuse_equal_pairs{true};  ///< Look only once at pairs of equal parts that lie equally.
 };

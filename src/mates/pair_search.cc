@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "mates/build_mate.h"
-#include "mates/same_place.h"
+#include "product/same_place.h"
 
 namespace hvas::mates {
 namespace {
@@ -142,11 +142,12 @@ const PairHits& PairSearch::Find(product::OccurrenceId a, product::OccurrenceId 
     Search(occurrence_a.part, occurrence_b.part, X_AB, &last_);
     return last_;
   }
-  const PairKey key{occurrence_a.part.value(), occurrence_b.part.value(), PlaceCell(X_AB.p().x()),
-                    PlaceCell(X_AB.p().y()), PlaceCell(X_AB.p().z())};
+  const PairKey key{occurrence_a.part.value(), occurrence_b.part.value(),
+                    product::PlaceCell(X_AB.p().x()), product::PlaceCell(X_AB.p().y()),
+                    product::PlaceCell(X_AB.p().z())};
   std::vector<Known>& known = known_[key];
   for (const Known& entry : known) {
-    if (IsSamePose(entry.X_AB, X_AB)) {
+    if (product::IsSamePose(entry.X_AB, X_AB)) {
       return entry.hits;
     }
   }
@@ -167,7 +168,7 @@ void PairSearch::Search(PartId id_a, PartId id_b, const Pose& X_AB, PairHits* hi
                         product_.parts[id_b.index()],
                         X_AB,
                         CalcLengthScale(std::min(a.size, b.size))};
-  const double margin = limits_.near_gap * context.scale;
+  const double margin = std::max(limits_.near_gap, limits_.wall_gap) * context.scale;
   const double hole_margin = std::max(margin, kAlignedGap * context.scale);
   const Box box_b = spatial::Transform(X_AB, context.b.box_B);
   const Box common{context.a.box_B.low.cwiseMax(box_b.low),
@@ -370,9 +371,10 @@ void PairSearch::TestPlanes(const Context& context, const SearchFeature& a, cons
   const Feature& plane_b = *b.own->feature;
   const double touch = limits_.plane_gap * context.scale;
   const double near = std::max(touch, limits_.near_gap * context.scale);
+  const double far = std::max(near, limits_.wall_gap * context.scale);
   // A first look that allows for the tilt over the distance of the two reference points.
   const Vec3 between = b.origin - plane_a.origin_B;
-  if (std::abs(plane_a.axis_B.dot(between)) >= near + limits_.angle * between.norm()) {
+  if (std::abs(plane_a.axis_B.dot(between)) >= far + limits_.angle * between.norm()) {
     return;
   }
   // In the frame of the finer one (a base plate has many neighbours), near the other only.
@@ -397,7 +399,12 @@ void PairSearch::TestPlanes(const Context& context, const SearchFeature& a, cons
   const PlaneHit hit{a.id, b.own->id, overlap.area, gap, centroid};
   if (std::abs(gap) < touch) {
     hits->planes.push_back(hit);
-  } else if (std::abs(gap) < near) {
+    return;
+  }
+  if (gap > -near && gap < far) {
+    hits->walls.push_back(hit);
+  }
+  if (std::abs(gap) < near) {
     std::optional<PlaneHit>& largest = gap > 0 ? hits->nearest : hits->overlapping;
     if (!largest || hit.area > largest->area) {
       largest = hit;

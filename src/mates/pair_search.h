@@ -53,12 +53,13 @@ struct PairHits {
   std::vector<HoleHit> holes;
   std::vector<SeatHit> seats;
   std::vector<PlaneHit> planes;         ///< That touch.
+  std::vector<PlaneHit> walls;          ///< That do not, but could hold a part between them.
   std::optional<PlaneHit> nearest;      ///< The planes with the largest area that nearly touch.
   std::optional<PlaneHit> overlapping;  ///< The hit of those that lie inside each other.
 
   [[nodiscard]] bool is_empty() const {
-    return axes.empty() && holes.empty() && seats.empty() && planes.empty() && !nearest &&
-           !overlapping;
+    return axes.empty() && holes.empty() && seats.empty() && planes.empty() && walls.empty() &&
+           !nearest && !overlapping;
   }
 };
 

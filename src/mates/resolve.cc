@@ -51,7 +51,7 @@ struct Scale {
 Scale CalcScale(std::span<const MateConstraint> mates, const Pose& X_WB) {
   Scale scale;
   const auto is_axis = [](const MateConstraint& mate) { return IsAxial(mate.kind); };
-  const auto is_centre = [](const MateConstraint& mate) { return !HoldsDirection(mate.kind); };
+  const auto is_centre = [](const MateConstraint& mate) { return IsCentre(mate.kind); };
   const bool has_axis = std::any_of(mates.begin(), mates.end(), is_axis);
   const bool has_centre = std::any_of(mates.begin(), mates.end(), is_centre);
   Vec3 mean_B = Vec3::Zero();
@@ -108,20 +108,15 @@ Equations Linearise(std::span<const MateConstraint> mates, const Pose& X_WB, con
   Equations equations;
   for (const MateConstraint& mate : mates) {
     const Pose X_WN = X_WB * mate.X_BN;
-    const Mat3 R_WM = mate.X_WM.R();
-    const Vec3 turn_W = CalcTurn(mate, AxisOf(X_WN));
-    const Vec3 p_NM_W = mate.X_WM.p() - X_WN.p();
     const Vec3 arm_W = (X_WN.p() - scale.p_WR) / scale.length;
-    // Tilts about the in-plane axes of M.
-    for (Eigen::Index k = 0; HoldsDirection(mate.kind) && k < 2; ++k) {
-      const Vec3 axis_W = R_WM.col(k);
-      equations.Add(axis_W, Vec3::Zero(), scale.length * axis_W.dot(turn_W));
-    }
-    // Shifts: across the axis, out of the plane, or both.
-    for (Eigen::Index k = HoldsAcross(mate.kind) ? 0 : 2; k < (HoldsAlong(mate.kind) ? 3 : 2);
-         ++k) {
-      const Vec3 axis_W = R_WM.col(k);
-      equations.Add(arm_W.cross(axis_W), axis_W, axis_W.dot(p_NM_W));
+    const MateEquations of_mate = CalcEquations(mate, X_WN);
+    for (std::size_t i = 0; i < of_mate.count; ++i) {
+      const MateEquation& equation = of_mate.items[i];
+      if (equation.is_tilt) {
+        equations.Add(equation.axis_W, Vec3::Zero(), scale.length * equation.right);
+      } else {
+        equations.Add(arm_W.cross(equation.axis_W), equation.axis_W, equation.right);
+      }
     }
   }
   return equations;
@@ -296,6 +291,27 @@ MateConstraint MakeConstraint(const product::Mate& mate, product::OccurrenceId h
   const product::Connector& placed_side = holds_b ? mate.a : mate.b;
   const product::Connector& held_side = holds_b ? mate.b : mate.a;
   return {mate.kind, X_WP * placed_side.X_BM, held_side.X_BM};
+}
+
+MateEquations CalcEquations(const MateConstraint& mate, const Pose& X_WN) noexcept {
+  MateEquations equations;
+  const auto add = [&equations](const Vec3& axis_W, double right, bool is_tilt) {
+    equations.items[equations.count++] = {axis_W, right, is_tilt};
+  };
+  const Mat3 R_WM = mate.X_WM.R();
+  const Vec3 turn_W = CalcTurn(mate, AxisOf(X_WN));
+  const Vec3 p_NM_W = mate.X_WM.p() - X_WN.p();
+  // Tilts about the in-plane axes of M.
+  for (Eigen::Index k = 0; HoldsDirection(mate.kind) && k < 2; ++k) {
+    const Vec3 axis_W = R_WM.col(k);
+    add(axis_W, axis_W.dot(turn_W), true);
+  }
+  // Shifts: across the axis, out of the plane, or both.
+  for (Eigen::Index k = HoldsAcross(mate.kind) ? 0 : 2; k < (HoldsAlong(mate.kind) ? 3 : 2); ++k) {
+    const Vec3 axis_W = R_WM.col(k);
+    add(axis_W, axis_W.dot(p_NM_W), false);
+  }
+  return equations;
 }
 
 double CalcResidual(std::span<const MateConstraint> mates, const Pose& X_WB) noexcept {

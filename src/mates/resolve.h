@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "product/product.h"
@@ -34,6 +35,22 @@ struct MateConstraint {
 /** A mate with one part held and the other placed at X_WP. @pre held is one of its occurrences. */
 [[nodiscard]] MateConstraint MakeConstraint(const product::Mate& mate, product::OccurrenceId held,
                                             const Pose& X_WP) noexcept;
+
+/** One linearised equation of a mate between its frames M and N. */
+struct MateEquation {
+  Vec3 axis_W;      ///< The axis of a tilt, or the direction of a shift of the origin of N.
+  double right{0};  ///< Tilt [rad] or shift [m] that fulfils it.
+  bool is_tilt{false};
+};
+
+/** The equations of a mate, tilts first. */
+struct MateEquations {
+  std::array<MateEquation, 5> items;
+  std::size_t count{0};
+};
+
+/** Linearises a mate at a pose of N. */
+[[nodiscard]] MateEquations CalcEquations(const MateConstraint& mate, const Pose& X_WN) noexcept;
 
 /** Motions that a set of mates leaves. The basis is orthonormal with angles times `length` and
  velocities taken at `p_WR`; pure translations come first. */

@@ -24,6 +24,18 @@ constexpr std::size_t kLargestFile = 16'000'000;  // [bytes]: 100,000 fits. A ch
 constexpr std::array<std::string_view, 2> kFormats{"hvas-assignments-1", kSideFileFormat};
 constexpr std::array<std::string_view, 4> kMateKinds{"axis_hole", "face_face", "cone_seat",
                                                      "sphere_seat"};
+static_assert(kMateKinds.size() == product::kMateKinds.size(), "a kind of mate has no name here");
+
+// Edges have no name in a side file: relations of them are inferred only.
+constexpr std::array<std::string_view, 7> kRelationNames{
+    "parallel", "perpendicular", "angle", "flush", "distance", "tangent", "hole_to_hole"};
+constexpr std::array kStatedKinds{
+    product::RelationKind::kParallel,  product::RelationKind::kPerpendicular,
+    product::RelationKind::kAngle,     product::RelationKind::kFlush,
+    product::RelationKind::kDistance,  product::RelationKind::kTangent,
+    product::RelationKind::kHoleToHole};
+static_assert(kRelationNames.size() == kStatedKinds.size(), "a kind of relation has no name here");
+constexpr std::array<std::string_view, 1> kComplianceRules{"by_moduli"};
 
 // What is larger is a slip of the pen or of the unit: choices, but absolute zero and the largest
 // number of a face, which is 2^32 - 2.
@@ -32,7 +44,11 @@ constexpr double kLargestRoughness_um = 1000;
 constexpr double kLargestFriction = 2;
 constexpr double kColdest_c = -273.15;
 constexpr double kHottest_c = 1500;
+constexpr double kLargestDistance_mm = 100'000;
+constexpr double kLargestAngle_deg = 180;
+constexpr double kLargestCompliance_um = 1000;  // [um/N]: softer than any solid part.
 constexpr double kMostFaces = 4294967294;
+constexpr std::size_t kMostPlaces = 1000;  // of a measured diameter: one each 0.1 mm of 100 mm
 
 constexpr SideFileKey Text(std::string_view name, bool is_required = false) {
   return {name, Type::kText, is_required, 0, 0, false, false, {}};
@@ -51,6 +67,10 @@ constexpr SideFileKey Diameter(std::string_view name) {
   return Number(name, 0, kLargestDiameter_mm, true);
 }
 
+constexpr SideFileKey Diameters(std::string_view name) {
+  return {name, Type::kDiameters, false, 0, kLargestDiameter_mm, true, false, {}};
+}
+
 constexpr SideFileKey Index(std::string_view name) {
   return {name, Type::kIndex, false, 0, kMostFaces, false, false, {}};
 }
@@ -64,17 +84,19 @@ constexpr SideFileKey Choice(std::string_view name, std::span<const std::string_
   return {name, Type::kText, is_required, 0, 0, false, false, choices};
 }
 
-constexpr std::array kDocumentKeys{Choice("format", kFormats, true), Note(),
-                                   Of(Type::kList, "fits", false), Of(Type::kList, "mates", false),
-                                   Of(Type::kList, "removed", false)};
+constexpr std::array kDocumentKeys{
+    Choice("format", kFormats, true),   Note(),
+    Of(Type::kList, "fits", false),     Of(Type::kList, "mates", false),
+    Of(Type::kList, "removed", false),  Of(Type::kList, "relations", false),
+    Of(Type::kList, "contacts", false), Of(Type::kList, "apart", false)};
 
 constexpr std::array kFitKeys{Text("mate"),
                               Text("hole"),
                               Text("shaft"),
                               Diameter("diameter_mm"),
                               Text("fit"),
-                              Diameter("hole_diameter_mm"),
-                              Diameter("shaft_diameter_mm"),
+                              Diameters("hole_diameter_mm"),
+                              Diameters("shaft_diameter_mm"),
                               Number("hole_rz_um", 0, kLargestRoughness_um),
                               Number("shaft_rz_um", 0, kLargestRoughness_um),
                               Number("friction", 0, kLargestFriction),
@@ -88,6 +110,22 @@ constexpr std::array kMateKeys{Choice("kind", kMateKinds, false), Of(Type::kObje
 constexpr std::array kSideKeys{Text("occurrence", true), Index("face"), Index("feature")};
 
 constexpr std::array kRemovedKeys{Text("mate", true), Note()};
+
+constexpr std::array kRelationKeys{Choice("kind", kRelationNames, true),
+                                   Of(Type::kObject, "a", true),
+                                   Of(Type::kObject, "b", true),
+                                   Number("angle_deg", 0, kLargestAngle_deg),
+                                   Number("distance_mm", -kLargestDistance_mm, kLargestDistance_mm),
+                                   Note()};
+
+constexpr std::array kContactKeys{Text("a", true),
+                                  Text("b", true),
+                                  Number("compliance_um_per_n", 0, kLargestCompliance_um, true),
+                                  Choice("compliance", kComplianceRules, false),
+                                  Number("friction", 0, kLargestFriction),
+                                  Note()};
+
+constexpr std::array kApartKeys{Text("unit", true), Note()};
 
 /** One object of the file with its place in it. */
 struct Place {
@@ -113,12 +151,34 @@ std::string DescribeType(const SideFileKey& key) {
                          key.is_low_excluded ? "above" : "of at least", key.low, key.high);
     case Type::kIndex:
       return "the number of a face or feature, as hvas inspect lists it";
+    case Type::kDiameters:
+      return fmt::format(
+          "a number above 0 and at most {:g}, or 1 to {} places [depth_mm, diameter_mm] such as "
+          "[[0, 40.004], [50, 40.007]], by ascending depth",
+          key.high, kMostPlaces);
     case Type::kObject:
       return R"(an object such as {"occurrence": "housing", "face": 3})";
     case Type::kList:
       break;
   }
   return "a list [...]";
+}
+
+/** True for places [depth_mm, diameter_mm] by ascending depth. */
+bool IsListOfPlaces(const SideFileKey& key, const ordered_json& value) {
+  double last = -1;
+  const auto is_place = [&](const ordered_json& place) {
+    if (!place.is_array() || place.size() != 2 || !place[0].is_number() || !place[1].is_number()) {
+      return false;
+    }
+    const auto depth = place[0].get<double>();
+    const auto diameter = place[1].get<double>();
+    const bool ascends = depth >= 0 && depth > last && depth <= key.high;
+    last = depth;
+    return ascends && diameter > 0 && diameter <= key.high;
+  };
+  return value.is_array() && !value.empty() && value.size() <= kMostPlaces &&
+         std::all_of(value.begin(), value.end(), is_place);
 }
 
 bool IsOfType(const SideFileKey& key, const ordered_json& value) {
@@ -135,6 +195,8 @@ bool IsOfType(const SideFileKey& key, const ordered_json& value) {
       return value.is_number() && is_in_range(value.get<double>());
     case Type::kIndex:
       return value.is_number_integer() && is_in_range(value.get<double>());
+    case Type::kDiameters:
+      return value.is_number() ? is_in_range(value.get<double>()) : IsListOfPlaces(key, value);
     case Type::kObject:
       return value.is_object();
     case Type::kList:
@@ -192,6 +254,23 @@ std::optional<double> NumberAt(const ordered_json& object, const char* key, doub
   return found == object.end() ? std::nullopt : std::optional(found->get<double>() * unit);
 }
 
+/** The diameters of a key: one for the whole length, or by place. */
+std::vector<product::MeasuredDiameter> DiametersAt(const ordered_json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end()) {
+    return {};
+  }
+  if (found->is_number()) {
+    return {{0, found->get<double>() * units::kMetresPerMillimetre}};
+  }
+  std::vector<product::MeasuredDiameter> diameters;
+  for (const ordered_json& place : *found) {
+    diameters.push_back({place[0].get<double>() * units::kMetresPerMillimetre,
+                         place[1].get<double>() * units::kMetresPerMillimetre});
+  }
+  return diameters;
+}
+
 std::optional<std::uint32_t> IndexAt(const ordered_json& object, const char* key) {
   const auto found = object.find(key);
   return found == object.end() ? std::nullopt : std::optional(found->get<std::uint32_t>());
@@ -209,8 +288,8 @@ Result<FitEntry> ReadFit(const ordered_json& item, const Place& place) {
   entry.fit = TextAt(item, "fit");
   entry.diameter = NumberAt(item, "diameter_mm", units::kMetresPerMillimetre);
   product::FitConditions& conditions = entry.conditions;
-  conditions.hole_diameter = NumberAt(item, "hole_diameter_mm", units::kMetresPerMillimetre);
-  conditions.shaft_diameter = NumberAt(item, "shaft_diameter_mm", units::kMetresPerMillimetre);
+  conditions.hole_diameters = DiametersAt(item, "hole_diameter_mm");
+  conditions.shaft_diameters = DiametersAt(item, "shaft_diameter_mm");
   conditions.hole_roughness = NumberAt(item, "hole_rz_um", units::kMetresPerMicrometre);
   conditions.shaft_roughness = NumberAt(item, "shaft_rz_um", units::kMetresPerMicrometre);
   conditions.friction = NumberAt(item, "friction", 1);
@@ -247,6 +326,20 @@ Result<SideEntry> ReadSide(const ordered_json& item, const Place& place) {
   return side;
 }
 
+/** Reads the sides "a" and "b" of an entry. */
+Result<void> ReadSides(const ordered_json& item, const Place& place, SideEntry* a, SideEntry* b) {
+  for (const auto& [key, side] : {std::pair("a", a), std::pair("b", b)}) {
+    Place inner = place;
+    inner.pointer += std::string("/") + key;
+    Result<SideEntry> read = ReadSide(item[key], inner);
+    if (!read) {
+      return Unexpected(read.error());
+    }
+    *side = *std::move(read);
+  }
+  return {};
+}
+
 Result<AddedMate> ReadMate(const ordered_json& item, const Place& place) {
   if (const auto checked = CheckObject(item, SideFileObject::kMate, place); !checked) {
     return Unexpected(checked.error());
@@ -259,14 +352,8 @@ Result<AddedMate> ReadMate(const ordered_json& item, const Place& place) {
       kind != kMateKinds.end()) {
     mate.kind = static_cast<product::MateKind>(kind - kMateKinds.begin());
   }
-  for (const auto& [key, side] : {std::pair("a", &mate.a), std::pair("b", &mate.b)}) {
-    Place inner = place;
-    inner.pointer += std::string("/") + key;
-    Result<SideEntry> read = ReadSide(item[key], inner);
-    if (!read) {
-      return Unexpected(read.error());
-    }
-    *side = *std::move(read);
+  if (const auto read = ReadSides(item, place, &mate.a, &mate.b); !read) {
+    return Unexpected(read.error());
   }
   return mate;
 }
@@ -276,6 +363,64 @@ Result<RemovedMate> ReadRemoved(const ordered_json& item, const Place& place) {
     return Unexpected(checked.error());
   }
   return RemovedMate{TextAt(item, "mate"), place.Where()};
+}
+
+Result<StatedRelation> ReadRelation(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kRelation, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  StatedRelation relation;
+  relation.where = place.Where();
+  const std::string name = TextAt(item, "kind");
+  const auto kind = std::find(kRelationNames.begin(), kRelationNames.end(), name);
+  relation.kind = kStatedKinds[static_cast<std::size_t>(kind - kRelationNames.begin())];
+  relation.angle = NumberAt(item, "angle_deg", units::FromDeg(1));
+  relation.distance = NumberAt(item, "distance_mm", units::kMetresPerMillimetre);
+  const bool needs_angle = relation.kind == product::RelationKind::kAngle;
+  const bool needs_distance = relation.kind == product::RelationKind::kDistance;
+  if (relation.angle.has_value() != needs_angle ||
+      relation.distance.has_value() != needs_distance) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("the relation \"{}\" {}", name,
+                            needs_angle      ? "needs \"angle_deg\" alone"
+                            : needs_distance ? "needs \"distance_mm\" alone"
+                                             : "has neither an angle nor a distance"),
+                relation.where, R"(write "angle_deg" for an angle, "distance_mm" for a distance)");
+  }
+  if (const auto read = ReadSides(item, place, &relation.a, &relation.b); !read) {
+    return Unexpected(read.error());
+  }
+  return relation;
+}
+
+Result<StatedContact> ReadContact(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kContact, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  StatedContact contact;
+  contact.where = place.Where();
+  contact.a = TextAt(item, "a");
+  contact.b = TextAt(item, "b");
+  contact.compliance = NumberAt(item, "compliance_um_per_n", units::kMetresPerMicrometre);
+  contact.is_by_moduli = item.contains("compliance");
+  contact.friction = NumberAt(item, "friction", 1);
+  if (contact.compliance.has_value() == contact.is_by_moduli &&
+      (contact.is_by_moduli || !contact.friction)) {
+    return Fail(ErrorCode::kInvalid,
+                contact.is_by_moduli ? "the compliance is given twice"
+                                     : "the entry has no data for its contact",
+                contact.where,
+                R"(write one of "compliance_um_per_n": 0.5 and "compliance": "by_moduli", )"
+                R"(or "friction": 0.2)");
+  }
+  return contact;
+}
+
+Result<product::KeptApart> ReadApart(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kApart, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  return product::KeptApart{TextAt(item, "unit"), place.Where()};
 }
 
 /** Reads the list under `key`, if it is there; `name` is what its entries are called. */
@@ -326,6 +471,12 @@ std::span<const SideFileKey> KeysOf(SideFileObject object) {
       return kMateKeys;
     case SideFileObject::kSide:
       return kSideKeys;
+    case SideFileObject::kRelation:
+      return kRelationKeys;
+    case SideFileObject::kContact:
+      return kContactKeys;
+    case SideFileObject::kApart:
+      return kApartKeys;
     case SideFileObject::kRemoved:
       break;
   }
@@ -368,6 +519,15 @@ Result<SideFile> ParseSideFile(std::string_view text, const std::filesystem::pat
   }
   if (read) {
     read = ReadList(top, "removed", "removed", ReadRemoved, &result.removed);
+  }
+  if (read) {
+    read = ReadList(top, "relations", "relation", ReadRelation, &result.relations);
+  }
+  if (read) {
+    read = ReadList(top, "contacts", "contact", ReadContact, &result.contacts);
+  }
+  if (read) {
+    read = ReadList(top, "apart", "apart", ReadApart, &result.apart);
   }
   if (!read) {
     return Unexpected(read.error());

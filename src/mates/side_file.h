@@ -12,6 +12,7 @@
 
 #include "base/result.h"
 #include "product/product.h"
+#include "product/welded_units.h"
 
 /** The file NAME.hvas.json beside a CAD file: what people say about its mates (docs/side-file.md).
  Here is its language; `mates/assignments.h` gives it its effect. */
@@ -20,9 +21,16 @@ namespace hvas::mates {
 inline constexpr std::string_view kSideFileFormat = "hvas-assignments-2";
 
 /** The kinds of objects in the file. */
-enum class SideFileObject { kDocument, kFit, kMate, kSide, kRemoved };
+enum class SideFileObject { kDocument, kFit, kMate, kSide, kRemoved, kRelation, kContact, kApart };
 
-enum class SideFileType { kText, kNumber, kIndex, kObject, kList };
+enum class SideFileType {
+  kText,
+  kNumber,
+  kIndex,
+  kDiameters,  ///< A number, or a list of [depth_mm, diameter_mm] by ascending depth.
+  kObject,
+  kList
+};
 
 /** A key that an object may have, as in data/schemas/assignments.schema.json. */
 struct SideFileKey {
@@ -69,11 +77,32 @@ struct RemovedMate {
   std::string where;
 };
 
+/** "relations": one beside the mates (mates/relations.h). */
+struct StatedRelation {
+  product::RelationKind kind{product::RelationKind::kParallel};
+  SideEntry a, b;
+  std::optional<double> angle;     ///< [rad]
+  std::optional<double> distance;  ///< [m]
+  std::string where;
+};
+
+/** "contacts": how the surfaces of two parts answer where they touch. */
+struct StatedContact {
+  std::string a, b;                  ///< Occurrences.
+  std::optional<double> compliance;  ///< Compliance of one contact point [m/N].
+  bool is_by_moduli{false};          ///< The compliance follows from the materials.
+  std::optional<double> friction;    ///< Coulomb coefficient.
+  std::string where;
+};
+
 struct SideFile {
   std::filesystem::path path;
   std::vector<FitEntry> fits;
   std::vector<AddedMate> added;
   std::vector<RemovedMate> removed;
+  std::vector<StatedRelation> relations;
+  std::vector<StatedContact> contacts;
+  std::vector<product::KeptApart> apart;  ///< What is not to be welded.
 };
 
 /** Where a CAD file's side file stands: "pump.step" has "pump.hvas.json" beside it. */

@@ -16,6 +16,8 @@
 #include "mates/judge.h"
 #include "mates/limits.h"
 #include "mates/mate_key.h"
+#include "mates/mate_kind.h"
+#include "mates/place_bodies.h"
 #include "mates/propose_fit.h"
 #include "mates/resolve.h"
 #include "mates/surface_pairs.h"
@@ -29,6 +31,7 @@ using product::FeatureKind;
 using product::Mate;
 using product::MateId;
 using product::MateKind;
+using product::OccurrenceId;
 using product::Part;
 using product::Pose;
 using product::Product;
@@ -141,21 +144,29 @@ std::optional<Error> CheckSizes(const Product& product, MateKind kind, const Fea
                                 const Feature& b, double scale) {
   const InferenceLimits limits;
   const std::string where = product.source;
-  if (kind == MateKind::kAxisHole || kind == MateKind::kSphereSeat) {
-    const double most = CalcLargestPlay(limits, scale, std::min(a.radius, b.radius));
-    if (std::abs(a.radius - b.radius) >= most) {
-      return Error{ErrorCode::kInvalid,
-                   fmt::format("radii of {:.3f} and {:.3f} mm cannot mate: they may differ by at "
-                               "most {:.3f} mm",
-                               ToMm(a.radius), ToMm(b.radius), ToMm(most)),
-                   where, "choose the faces that touch each other"};
+  switch (kind) {
+    case MateKind::kAxisHole:
+    case MateKind::kSphereSeat: {
+      const double most = CalcLargestPlay(limits, scale, std::min(a.radius, b.radius));
+      if (std::abs(a.radius - b.radius) >= most) {
+        return Error{ErrorCode::kInvalid,
+                     fmt::format("radii of {:.3f} and {:.3f} mm cannot mate: they may differ by at "
+                                 "most {:.3f} mm",
+                                 ToMm(a.radius), ToMm(b.radius), ToMm(most)),
+                     where, "choose the faces that touch each other"};
+      }
+      break;
     }
-  }
-  if (kind == MateKind::kConeSeat && std::abs(a.half_angle - b.half_angle) > limits.cone_angle) {
-    return Error{ErrorCode::kInvalid,
-                 fmt::format("cones of {:.2f} and {:.2f} deg (half angles) cannot mate",
-                             units::ToDeg(a.half_angle), units::ToDeg(b.half_angle)),
-                 where, "choose cones with equal angles"};
+    case MateKind::kConeSeat:
+      if (std::abs(a.half_angle - b.half_angle) > limits.cone_angle) {
+        return Error{ErrorCode::kInvalid,
+                     fmt::format("cones of {:.2f} and {:.2f} deg (half angles) cannot mate",
+                                 units::ToDeg(a.half_angle), units::ToDeg(b.half_angle)),
+                     where, "choose cones with equal angles"};
+      }
+      break;
+    case MateKind::kFaceFace:
+      break;
   }
   return std::nullopt;
 }
@@ -194,8 +205,7 @@ Pose CalcMatedPose(MateKind kind, const Feature& a, const Pose& X_WA, const Feat
   if (kind == MateKind::kFaceFace || (kind == MateKind::kAxisHole && axis_b.dot(target) < 0)) {
     target = -target;  // A shaft goes in by the end that it is drawn nearer with.
   }
-  const Quat turn =
-      kind == MateKind::kSphereSeat ? Quat::Identity() : spatial::RotationTaking(axis_b, target);
+  const Quat turn = IsCentre(kind) ? Quat::Identity() : spatial::RotationTaking(axis_b, target);
   const Quat q_WB = (turn * X_WB.q()).normalized();
   Vec3 goal = origin_a;
   Vec3 point_B = b.origin_B;
@@ -206,6 +216,54 @@ Pose CalcMatedPose(MateKind kind, const Feature& a, const Pose& X_WA, const Feat
   return {q_WB, goal - q_WB * point_B};
 }
 
+bool IsBetweenSameParts(const Mate& x, const Mate& y) {
+  return std::minmax(x.a.occurrence, x.b.occurrence) == std::minmax(y.a.occurrence, y.b.occurrence);
+}
+
+/** True where mates have moved one of the two parts against the other: then what inference finds
+ between them holds for these poses only. */
+bool IsMovedApart(const Product& product, const Mate& mate) {
+  const std::vector<Pose>& drawn = product.placement.drawn_poses;
+  if (drawn.empty()) {
+    return false;
+  }
+  const std::size_t a = mate.a.occurrence.index();
+  const std::size_t b = mate.b.occurrence.index();
+  const Pose before = drawn[a].Inverse() * drawn[b];
+  const Pose now = product.occurrences[a].X_WB.Inverse() * product.occurrences[b].X_WB;
+  constexpr double kMoved = 1e-9;  // [m], and [rad]: well above rounding.
+  return (before.p() - now.p()).norm() > kMoved ||
+         spatial::RotationBetween(before.q(), now.q()).norm() > kMoved;
+}
+
+/** True where the mates that do not give way can be fulfilled with the new one, each of the user's
+ shafts by either end. */
+bool CanAgree(const Product& product, const Mate& mate) {
+  const bool are_inferred_free = IsMovedApart(product, mate);
+  BodyProblem problem;
+  problem.is_fixed = {true, false};
+  const OccurrenceId held = mate.b.occurrence;
+  const auto add = [&](const Mate& other) {
+    problem.mates.push_back(MakeBodyMate(product, other));
+    BodyMate& added = problem.mates.back();
+    const bool holds_b = other.b.occurrence == held;
+    added.a = holds_b ? 0 : 1;
+    added.b = holds_b ? 1 : 0;
+    added.is_sense_open =
+        other.kind == MateKind::kAxisHole && other.origin == product::MateOrigin::kUser;
+  };
+  for (const Mate& other : product.mates) {
+    const bool is_user = other.origin == product::MateOrigin::kUser;
+    const bool gives_way = other.kind == MateKind::kFaceFace || are_inferred_free;
+    if (IsBetweenSameParts(other, mate) && (is_user || !gives_way)) {
+      add(other);
+    }
+  }
+  add(mate);
+  problem.mates.back().is_sense_open = mate.kind == MateKind::kAxisHole;
+  return PlaceBodies(problem, std::vector<bool>(problem.mates.size(), true)).is_fulfilled;
+}
+
 /** An error where the other mates of the two parts cannot be fulfilled together with this one. */
 std::optional<Error> CheckContradiction(const Product& product, const Mate& mate) {
   const Pose& X_WA = product.occurrences[mate.a.occurrence.index()].X_WB;
@@ -213,8 +271,7 @@ std::optional<Error> CheckContradiction(const Product& product, const Mate& mate
   std::vector<MateConstraint> constraints;
   std::string others;
   for (const Mate& other : product.mates) {
-    if (std::minmax(other.a.occurrence, other.b.occurrence) ==
-        std::minmax(mate.a.occurrence, mate.b.occurrence)) {
+    if (IsBetweenSameParts(other, mate)) {
       constraints.push_back(MakeConstraint(other, mate.b.occurrence, X_WA));
       others += fmt::format("{}m{}", others.empty() ? "" : ", ", other.id.value());
     }
@@ -226,7 +283,7 @@ std::optional<Error> CheckContradiction(const Product& product, const Mate& mate
   // Drawn play of 1 % of the limits of inference is no contradiction.
   constexpr double kAgree = 1e-6;  // [m]
   const Resolution resolution = Resolve(constraints, X_WB);
-  if (resolution.is_converged || resolution.residual < kAgree) {
+  if (resolution.is_converged || resolution.residual < kAgree || CanAgree(product, mate)) {
     return std::nullopt;
   }
   return Error{ErrorCode::kInvalid,
@@ -234,6 +291,50 @@ std::optional<Error> CheckContradiction(const Product& product, const Mate& mate
                            others, ToMm(resolution.residual)),
                product.occurrences[mate.b.occurrence.index()].path,
                "remove those mates first, or choose other surfaces"};
+}
+
+const Feature& FeatureOfSide(const Product& product, const MateSide& side) {
+  return product.part_of(side.occurrence).features[side.feature.index()];
+}
+
+bool IsMated(const Product& product, MateKind kind, const MateSide& a, const MateSide& b) {
+  const double scale = CalcLengthScale(std::min(SizeOf(product, a), SizeOf(product, b)));
+  return IsDrawnMated(kind, FeatureOfSide(product, a), FeatureOfSide(product, b),
+                      a.X_WB.Inverse() * b.X_WB, scale);
+}
+
+/** A mate of two surfaces in the product's poses, but for its key and evidence. */
+Mate MakeFrames(const Product& product, MateKind kind, const MateSide& a, MateSide b) {
+  if (!IsMated(product, kind, a, b)) {
+    b.X_WB =
+        CalcMatedPose(kind, FeatureOfSide(product, a), a.X_WB, FeatureOfSide(product, b), b.X_WB);
+  }
+  Mate mate = BuildMate(product, kind, a, b);
+  if (kind == MateKind::kFaceFace) {
+    const PlaneOverlap overlap = CalcPlaneOverlap(product, mate);
+    mate.overlap = overlap.area;
+    if (overlap.area > 0) {
+      MoveFrames(product, a, b, a.X_WB * (mate.a.X_BM * overlap.p_MQ), &mate);
+    }
+  } else if (kind == MateKind::kSphereSeat) {
+    mate.overlap = CalcSphereOverlap(product, mate);
+  } else if (kind == MateKind::kAxisHole) {
+    mate.fit = ProposeFit(MakeFitEvidence(product, mate, ClassifyOccurrences(product)));
+  }
+  return mate;
+}
+
+/** Makes a mate the user's, with what follows from that. */
+void MakeUsers(const Product& product, Mate* mate) {
+  mate->origin = product::MateOrigin::kUser;
+  mate->confidence = 1;
+  mate->evidence = "given by the user: " + DescribeEvidence(product, *mate);
+  mate->surfaces = FindSurfacePairs(product, *mate);
+}
+
+MateSide SideOf(const Product& product, const product::Connector& connector) {
+  return {connector.occurrence, connector.feature,
+          product.occurrences[connector.occurrence.index()].X_WB};
 }
 
 }  // namespace
@@ -248,41 +349,26 @@ Result<Mate> MakeMate(const Product& product, const Pick& pick_a, const Pick& pi
     return Fail(ErrorCode::kInvalid, "a part cannot be mated with itself", NameOf(product, pick_a),
                 "choose surfaces of two parts");
   }
-  const auto feature_of = [&product](const MateSide& side) -> const Feature& {
-    return product.part_of(side.occurrence).features[side.feature.index()];
+  const auto kind_of = [&product](const MateSide& side) {
+    return FeatureOfSide(product, side).kind;
   };
-  std::optional<MateKind> kind = FindKind(feature_of(*a).kind, feature_of(*b).kind);
+  std::optional<MateKind> kind = FindKind(kind_of(*a), kind_of(*b));
   if (!kind) {
-    kind = FindKind(feature_of(*b).kind, feature_of(*a).kind);
+    kind = FindKind(kind_of(*b), kind_of(*a));
     if (!kind) {
-      return Unexpected(ExplainKinds(product, *a, feature_of(*a).kind, *b, feature_of(*b).kind));
+      return Unexpected(ExplainKinds(product, *a, kind_of(*a), *b, kind_of(*b)));
     }
     std::swap(*a, *b);
   }
   if (*kind == MateKind::kFaceFace && b->occurrence < a->occurrence) {
     std::swap(*a, *b);  // As inference has it.
   }
-  const Feature& feature_a = feature_of(*a);
-  const Feature& feature_b = feature_of(*b);
   const double scale = CalcLengthScale(std::min(SizeOf(product, *a), SizeOf(product, *b)));
-  if (auto error = CheckSizes(product, *kind, feature_a, feature_b, scale)) {
+  if (auto error = CheckSizes(product, *kind, FeatureOfSide(product, *a),
+                              FeatureOfSide(product, *b), scale)) {
     return Unexpected(*error);
   }
-  if (!IsDrawnMated(*kind, feature_a, feature_b, a->X_WB.Inverse() * b->X_WB, scale)) {
-    b->X_WB = CalcMatedPose(*kind, feature_a, a->X_WB, feature_b, b->X_WB);
-  }
-  Mate mate = BuildMate(product, *kind, *a, *b);
-  if (*kind == MateKind::kFaceFace) {
-    const PlaneOverlap overlap = CalcPlaneOverlap(product, mate);
-    mate.overlap = overlap.area;
-    if (overlap.area > 0) {
-      MoveFrames(product, *a, *b, a->X_WB * (mate.a.X_BM * overlap.p_MQ), &mate);
-    }
-  } else if (*kind == MateKind::kSphereSeat) {
-    mate.overlap = CalcSphereOverlap(product, mate);
-  } else if (*kind == MateKind::kAxisHole) {
-    mate.fit = ProposeFit(MakeFitEvidence(product, mate, ClassifyOccurrences(product)));
-  }
+  Mate mate = MakeFrames(product, *kind, *a, *b);
   mate.key = CalcKey(product, mate);
   const auto same = std::find_if(product.mates.begin(), product.mates.end(),
                                  [&mate](const Mate& other) { return other.key == mate.key; });
@@ -292,15 +378,24 @@ Result<Mate> MakeMate(const Product& product, const Pick& pick_a, const Pick& pi
   if (auto error = CheckContradiction(product, mate)) {
     return Unexpected(*error);
   }
-  mate.origin = product::MateOrigin::kUser;
-  mate.confidence = 1;
-  mate.evidence = "given by the user: " + DescribeEvidence(product, mate);
-  mate.surfaces = FindSurfacePairs(product, mate);
+  MakeUsers(product, &mate);
   return mate;
+}
+
+Mate RemakeMate(const Product& product, const Mate& mate) {
+  Mate remade = MakeFrames(product, mate.kind, SideOf(product, mate.a), SideOf(product, mate.b));
+  remade.key = mate.key;
+  MakeUsers(product, &remade);
+  return remade;
+}
+
+bool IsMated(const Product& product, const Mate& mate) {
+  return IsMated(product, mate.kind, SideOf(product, mate.a), SideOf(product, mate.b));
 }
 
 MateId AddMate(Product* product, Mate mate) {
   mate.id = MateId(product->mates.size());
+  std::erase(product->removed_mates, mate.key);
   product->mates.push_back(std::move(mate));
   BuildJoints(product);
   return product->mates.back().id;
@@ -342,6 +437,7 @@ Result<Mate> RemoveMate(Product* product, std::string_view text) {
     return Unexpected(id.error());
   }
   Mate removed = std::move(product->mates[id->index()]);
+  product->removed_mates.push_back(removed.key);
   product->mates.erase(product->mates.begin() + static_cast<std::ptrdiff_t>(id->index()));
   for (std::size_t i = id->index(); i < product->mates.size(); ++i) {
     product->mates[i].id = MateId(i);

@@ -29,10 +29,20 @@ struct Pick {
  Fails, with a remedy, where the picks do not exist, belong to no feature (a face of a fillet or a
  free form), are of one occurrence, or of kinds or sizes that cannot mate (two holes, a plane and a
  shaft, a shaft far larger or smaller than the hole, cones of different angles), and where it
- contradicts the other mates of the two parts, as two axes square to each other would. A mate that
- is there already is returned as it is: with its id, which is below mates.size(), and its origin. */
+ contradicts the other mates of the two parts, as two axes square to each other would. Contacts of
+ planes that inference found give way: parts may be drawn lying on each other by accident. A mate
+ that is there already is returned as it is: with its id, which is below mates.size(), and its
+ origin. */
 [[nodiscard]] Result<product::Mate> MakeMate(const product::Product& product, const Pick& a,
                                              const Pick& b);
+
+/** Makes a mate of two features anew, in the poses that the product has now; as the user's. Its id
+ is the one that it would get next. */
+[[nodiscard]] product::Mate RemakeMate(const product::Product& product, const product::Mate& mate);
+
+/** True where the product's poses fulfil a mate within the limits of inference, a shaft engaged in
+ its hole. */
+[[nodiscard]] bool IsMated(const product::Product& product, const product::Mate& mate);
 
 /** Adds a mate at the end and keeps ids and joints true. @returns its id. */
 product::MateId AddMate(product::Product* product, product::Mate mate);
@@ -42,7 +52,8 @@ product::MateId AddMate(product::Product* product, product::Mate mate);
 [[nodiscard]] Result<product::MateId> FindMate(const product::Product& product,
                                                std::string_view text);
 
-/** Removes the mate that a text names (see FindMate) and keeps ids and joints true: the ids of the
+/** Removes the mate that a text names (see FindMate), which inference leaves out from then on
+ (Product::removed_mates), and keeps ids and joints true: the ids of the
  mates after it go down by one, keys stay. @returns the mate, as it was. */
 [[nodiscard]] Result<product::Mate> RemoveMate(product::Product* product, std::string_view text);
 

@@ -126,9 +126,10 @@ Coverage CalcCoverage(const std::vector<const AxisFace*>& faces, double shortest
   return coverage;
 }
 
+constexpr std::size_t kMostFaces = 64;  // Beyond that it is a pattern of some kind, no bore.
+
 /** The smallest of the largest gaps at any station along the axis [rad]. */
 double CalcLeastGap(const std::vector<AxisFace>& faces) {
-  constexpr std::size_t kMostFaces = 64;  // Beyond that it is a pattern of some kind, no bore.
   double least = units::kTurn;
   if (faces.size() > kMostFaces) {
     return least;
@@ -269,7 +270,8 @@ void RemoveShielded(double tolerance, std::vector<Feature>* features) {
                   features->end());
 }
 
-std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double tolerance) {
+std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double tolerance,
+                                      RecognitionLimits* limits) {
   std::vector<Feature> found;
   for (AxisGroup& group : GroupFaces(part, kind, tolerance)) {
     std::sort(group.faces.begin(), group.faces.end(), [](const AxisFace& a, const AxisFace& b) {
@@ -281,10 +283,13 @@ std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double
       if (run.empty()) {
         return;
       }
+      const bool is_limited = run.size() > kMostFaces;
       const double gap = run.size() > 1 ? CalcLeastGap(run) : units::kTurn;
       Feature feature = MakeFeature(part, group.surface, std::move(run));
       if (feature.coverage >= kLeastCoverage || gap <= kLargestGap) {
         found.push_back(std::move(feature));
+      } else if (is_limited) {
+        limits->Add("more than 64 faces on one axis");
       }
       run = {};
     };
@@ -320,12 +325,12 @@ double DistanceToAxis(const Vec3& p, const Vec3& origin, const Vec3& axis) {
   return (p - origin).cross(axis).norm();
 }
 
-std::vector<Feature> FindCylinders(const Part& part, double tolerance) {
-  return FindAxisFeatures(part, SurfaceKind::kCylinder, tolerance);
+std::vector<Feature> FindCylinders(const Part& part, double tolerance, RecognitionLimits* limits) {
+  return FindAxisFeatures(part, SurfaceKind::kCylinder, tolerance, limits);
 }
 
-std::vector<Feature> FindCones(const Part& part, double tolerance) {
-  return FindAxisFeatures(part, SurfaceKind::kCone, tolerance);
+std::vector<Feature> FindCones(const Part& part, double tolerance, RecognitionLimits* limits) {
+  return FindAxisFeatures(part, SurfaceKind::kCone, tolerance, limits);
 }
 
 }  // namespace hvas::product

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "product/product.h"
+#include "product/recognition_limits.h"
 
 namespace hvas::product {
 
@@ -19,11 +20,13 @@ namespace hvas::product {
  turn, or, at one station along the axis, no gap between them is above 160 deg. Of the latter those
  are left out that a narrower bore, or a thicker shaft, of the same axis stands before (the bottoms
  of splines). By their first face.
- @param tolerance Of radii and positions [m]. */
-[[nodiscard]] std::vector<Feature> FindCylinders(const Part& part, double tolerance);
+ @param tolerance Of radii and positions [m]. @param limits Gets the limits that were reached. */
+[[nodiscard]] std::vector<Feature> FindCylinders(const Part& part, double tolerance,
+                                                 RecognitionLimits* limits);
 
 /** Conical seats and tapers by the same rule: conical faces of one axis, apex, half angle and
  sense. */
-[[nodiscard]] std::vector<Feature> FindCones(const Part& part, double tolerance);
+[[nodiscard]] std::vector<Feature> FindCones(const Part& part, double tolerance,
+                                             RecognitionLimits* limits);
 
 }  // namespace hvas::product

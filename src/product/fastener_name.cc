@@ -1,31 +1,15 @@
 #include "product/fastener_name.h"
 
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <string>
 
 #include "base/units.h"
+#include "product/ascii.h"
 
 namespace hvas::product {
 namespace {
-
-bool IsDigit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-bool IsLetter(char c) {
-  return (c >= 'a' && c <= 'z');
-}
-
-std::string ToLower(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return lower;
-}
 
 /** True where the word stands for itself: not inside another word ("nut" in "minute"). A plural s
  and digits may follow. */

@@ -6,10 +6,14 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "base/check.h"
 #include "product/axis_features.h"
 #include "product/face_adjacency.h"
 #include "product/forms.h"
+#include "product/recognition_limits.h"
 #include "product/sphere_features.h"
 #include "product/threads.h"
 
@@ -220,20 +224,27 @@ void AddInnerConstraints(Part* part, double tolerance) {
 
 }  // namespace
 
-void BuildFeatures(Part* part) {
+void BuildFeatures(Part* part, Diagnostics* diagnostics) {
   HVAS_DEMAND(part != nullptr);
   part->features.clear();
   part->forms.clear();
   part->inner_constraints.clear();
   const double tolerance = Tolerance(*part);
   const FaceAdjacency adjacency(*part, tolerance);
-  for (auto&& found : {FindCylinders(*part, tolerance), FindPlanes(*part, tolerance),
-                       FindCones(*part, tolerance), FindSpheres(*part, adjacency, tolerance)}) {
+  RecognitionLimits limits;
+  for (auto&& found :
+       {FindCylinders(*part, tolerance, &limits), FindPlanes(*part, tolerance),
+        FindCones(*part, tolerance, &limits), FindSpheres(*part, adjacency, tolerance)}) {
     part->features.insert(part->features.end(), found.begin(), found.end());
   }
   AddInnerConstraints(part, tolerance);
-  MarkThreads(part, tolerance);
-  part->forms = FindForms(*part, adjacency, tolerance);
+  MarkThreads(part, tolerance, &limits);
+  part->forms = FindForms(*part, adjacency, tolerance, &limits);
+  if (diagnostics != nullptr && !limits.items().empty()) {
+    diagnostics->Note("limit-features", part->name,
+                      fmt::format("features beyond the limits of recognition are left out: {}",
+                                  fmt::join(limits.items(), ", ")));
+  }
 }
 
 }  // namespace hvas::product

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/diagnostics.h"
 #include "product/product.h"
 
 namespace hvas::product {
@@ -13,7 +14,9 @@ namespace hvas::product {
  first face. `coverage` of a sphere is 2 pi times its share of the whole one. Threads are marked by
  helical faces, the part's name and hexagons. Inner constraints tie each feature to the part's
  references (its largest plane, its largest cylinder or cone, and the first feature on the same axis
- or centre), not all to all. Deterministic. @pre part != nullptr; its faces and mesh agree. */
-void BuildFeatures(Part* part);
+ or centre), not all to all. Deterministic. @pre part != nullptr; its faces and mesh agree.
+ @param diagnostics Gets a note ("limit-features") where a limit ended the recognition; may be null.
+ */
+void BuildFeatures(Part* part, Diagnostics* diagnostics = nullptr);
 
 }  // namespace hvas::product

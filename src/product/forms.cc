@@ -10,7 +10,8 @@
 
 namespace hvas::product {
 
-std::vector<Form> FindForms(const Part& part, const FaceAdjacency& adjacency, double tolerance) {
+std::vector<Form> FindForms(const Part& part, const FaceAdjacency& adjacency, double tolerance,
+                            RecognitionLimits* limits) {
   // Positions of a pattern come from drawings; a few roundings of its decimals are no difference.
   constexpr double kPatternTolerance = 10e-6;  // [m]
   const RingSet rings = FindRings(part, adjacency, tolerance);
@@ -22,11 +23,11 @@ std::vector<Form> FindForms(const Part& part, const FaceAdjacency& adjacency, do
   };
   const std::vector<Form> chamfers = FindEdgeChamfers(part, adjacency, forms);
   const std::vector<Form> patterns =
-      FindHolePatterns(forms, std::max(tolerance, kPatternTolerance));
+      FindHolePatterns(forms, std::max(tolerance, kPatternTolerance), limits);
   const std::vector<Form> slots = FindSlots(part, adjacency, partials, tolerance);
   append(slots);
-  append(FindPockets(part, adjacency, rings, partials, slots));
-  append(FindSeats(part));
+  append(FindPockets(part, adjacency, rings, partials, slots, limits));
+  append(FindSeats(part, limits));
   append(FindFillets(part, adjacency, rings, partials, slots));
   append(chamfers);
   append(patterns);

@@ -4,6 +4,7 @@
 
 #include "product/face_adjacency.h"
 #include "product/product.h"
+#include "product/recognition_limits.h"
 
 namespace hvas::product {
 
@@ -25,8 +26,9 @@ namespace hvas::product {
  the strip | angle | | pattern | centre | along the holes | bolt circle; 0 for rows and grids | - |
  count: holes |
 
- @param tolerance The part's own, as BuildFeatures has it [m]. */
+ @param tolerance The part's own, as BuildFeatures has it [m].
+ @param limits Gets the limits that were reached. */
 [[nodiscard]] std::vector<Form> FindForms(const Part& part, const FaceAdjacency& adjacency,
-                                          double tolerance);
+                                          double tolerance, RecognitionLimits* limits);
 
 }  // namespace hvas::product

@@ -71,12 +71,15 @@ class PatternFinder {
   PatternFinder(const std::vector<Form>& forms, Group group, double tolerance)
       : forms_(forms), group_(std::move(group)), tolerance_(tolerance) {}
 
-  std::vector<Form> Find() {
+  std::vector<Form> Find(RecognitionLimits* limits) {
     if (group_.spots.size() < kLeast) {
       return {};
     }
     TryCircles(Centroid(), false, group_.spots.size());
     TryGrid();
+    if (group_.spots.size() > kMostForCircles) {
+      limits->Add("more than 400 equal holes for patterns on circles");
+    }
     for (const Form& form : forms_) {
       const bool is_round =
           IsHole(form.kind) || form.kind == FormKind::kBoss || form.kind == FormKind::kShaft;
@@ -90,6 +93,9 @@ class PatternFinder {
     }
     TryCircles(Centroid(), false, kLeast);
     TrySeparateCircles();
+    if (group_.spots.size() > kMostForRows) {
+      limits->Add("more than 60 equal holes for patterns in rows");
+    }
     while (group_.spots.size() >= kLeast && group_.spots.size() <= kMostForRows && TryRow()) {
     }
     return std::move(patterns_);
@@ -369,10 +375,11 @@ class PatternFinder {
 
 }  // namespace
 
-std::vector<Form> FindHolePatterns(const std::vector<Form>& forms, double tolerance) {
+std::vector<Form> FindHolePatterns(const std::vector<Form>& forms, double tolerance,
+                                   RecognitionLimits* limits) {
   std::vector<Form> patterns;
   for (Group& group : CollectGroups(forms, tolerance)) {
-    const std::vector<Form> found = PatternFinder(forms, std::move(group), tolerance).Find();
+    const std::vector<Form> found = PatternFinder(forms, std::move(group), tolerance).Find(limits);
     patterns.insert(patterns.end(), found.begin(), found.end());
   }
   return patterns;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace hvas::product {
 namespace {
@@ -24,15 +25,16 @@ bool MeetsBox(const Box& box, const Vec3& p, const Vec3& dir, double reach) {
   return low <= high;
 }
 
-/** Moeller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997. */
-bool MeetsTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& dir,
-                   double reach) {
+/** Moeller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997. @returns the
+ distance to the triangle; none where the ray does not meet it. */
+std::optional<double> MeetTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p,
+                                   const Vec3& dir, double reach) {
   const Vec3 u = b - a;
   const Vec3 v = c - a;
   const Vec3 h = dir.cross(v);
   const double det = u.dot(h);
   if (std::abs(det) < 1e-30) {
-    return false;
+    return std::nullopt;
   }
   const Vec3 s = p - a;
   const double beta = s.dot(h) / det;
@@ -40,26 +42,51 @@ bool MeetsTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, c
   const double gamma = dir.dot(q) / det;
   const double t = v.dot(q) / det;
   constexpr double kAtStart = 1e-9;  // [m]: the face that a ray begins on is not met.
-  return beta >= 0 && gamma >= 0 && beta + gamma <= 1 && t > kAtStart && t <= reach;
+  const bool is_met = beta >= 0 && gamma >= 0 && beta + gamma <= 1 && t > kAtStart && t <= reach;
+  return is_met ? std::optional(t) : std::nullopt;
 }
 
-}  // namespace
-
-bool IsBlocked(const Part& part, const Vec3& p, const Vec3& dir, double reach) {
+/** Visits the triangles that a ray meets, in no order, until the visitor returns false.
+ @param visit  bool(std::uint32_t triangle, double distance). */
+template <typename Visit>
+void ForEachHit(const Part& part, const Vec3& p, const Vec3& dir, double reach,
+                const Visit& visit) {
   for (const Face& face : part.faces) {
     if (face.triangle_count == 0 || !MeetsBox(face.box_B, p, dir, reach)) {
       continue;
     }
     for (std::uint32_t t = face.first_triangle; t < face.first_triangle + face.triangle_count;
          ++t) {
-      const auto& triangle = part.mesh.triangles[t];
-      if (MeetsTriangle(part.mesh.vertices[triangle[0]], part.mesh.vertices[triangle[1]],
-                        part.mesh.vertices[triangle[2]], p, dir, reach)) {
-        return true;
+      const auto& [a, b, c] = part.mesh.triangles[t];
+      const std::vector<Vec3>& vertices = part.mesh.vertices;
+      const auto distance = MeetTriangle(vertices[a], vertices[b], vertices[c], p, dir, reach);
+      if (distance && !visit(t, *distance)) {
+        return;
       }
     }
   }
-  return false;
+}
+
+}  // namespace
+
+bool IsBlocked(const Part& part, const Vec3& p, const Vec3& dir, double reach) {
+  bool is_blocked = false;
+  ForEachHit(part, p, dir, reach, [&](std::uint32_t /*triangle*/, double /*distance*/) {
+    is_blocked = true;
+    return false;
+  });
+  return is_blocked;
+}
+
+std::optional<RayHit> FindFirstHit(const Part& part, const Vec3& p, const Vec3& dir, double reach) {
+  std::optional<RayHit> first;
+  ForEachHit(part, p, dir, reach, [&](std::uint32_t triangle, double distance) {
+    if (!first || distance < first->distance) {
+      first = RayHit{distance, triangle};
+    }
+    return true;
+  });
+  return first;
 }
 
 }  // namespace hvas::product

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "base/check.h"
+
 namespace hvas {
 namespace {
 
@@ -63,9 +65,33 @@ const char* ToString(InnerConstraintKind kind) {
   return NameOf(kNames, kind);
 }
 
+namespace {
+
+/** A null pointer for a number that is no kind. */
+constexpr const char* FindMateKindName(MateKind kind) {
+  switch (kind) {
+    case MateKind::kAxisHole:
+      return "axis_hole";
+    case MateKind::kFaceFace:
+      return "face_face";
+    case MateKind::kConeSeat:
+      return "cone_seat";
+    case MateKind::kSphereSeat:
+      return "sphere_seat";
+  }
+  return nullptr;
+}
+
+static_assert(FindMateKindName(kMateKinds.back()) != nullptr &&
+                  FindMateKindName(static_cast<MateKind>(kMateKinds.size())) == nullptr,
+              "kMateKinds has to list every kind of mate");
+
+}  // namespace
+
 const char* ToString(MateKind kind) {
-  constexpr std::array kNames{"axis_hole", "face_face", "cone_seat", "sphere_seat"};
-  return NameOf(kNames, kind);
+  const char* const name = FindMateKindName(kind);
+  HVAS_DEMAND(name != nullptr);
+  return name;
 }
 
 const char* ToString(MateOrigin origin) {

@@ -250,7 +250,8 @@ std::vector<Form> FindSlots(const Part& part, const FaceAdjacency& adjacency,
 }
 
 std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, const RingSet& set,
-                              const std::vector<Ring>& partials, const std::vector<Form>& slots) {
+                              const std::vector<Ring>& partials, const std::vector<Form>& slots,
+                              RecognitionLimits* limits) {
   std::vector<bool> is_inner_round(part.faces.size(), false);
   const auto mark = [&](const std::vector<Ring>& rings) {
     for (const Ring& ring : rings) {
@@ -276,7 +277,14 @@ std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, 
     }
     const auto walls = FindWalls(adjacency, set, is_inner_round, floor);
     const double reach = part.box_B.size().norm();
-    if (!walls || walls->size() < 2 || ++tried > kMostPockets || !IsClear(part, floor, reach)) {
+    if (!walls || walls->size() < 2) {
+      continue;
+    }
+    if (++tried > kMostPockets) {
+      limits->Add("more than 500 pockets");
+      break;
+    }
+    if (!IsClear(part, floor, reach)) {
       continue;
     }
     const Vec3& up = NormalOf(part, floor);
@@ -304,7 +312,7 @@ std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, 
   return pockets;
 }
 
-std::vector<Form> FindSeats(const Part& part) {
+std::vector<Form> FindSeats(const Part& part, RecognitionLimits* limits) {
   std::vector<double> areas;
   for (const Feature& feature : part.features) {
     if (feature.kind == FeatureKind::kPlane) {
@@ -314,6 +322,9 @@ std::vector<Form> FindSeats(const Part& part) {
   std::sort(areas.rbegin(), areas.rend());
   if (areas.empty()) {
     return {};
+  }
+  if (areas.size() > kMostSeats && areas[kMostSeats] >= kLeastSeat * areas.front()) {
+    limits->Add("more than 48 planes for seats");
   }
   const double least =
       std::max(kLeastSeat * areas.front(), areas.size() > kMostSeats ? areas[kMostSeats - 1] : 0.0);

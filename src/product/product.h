@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "base/id.h"
+#include "product/contact_pair.h"
+#include "product/identity.h"
+#include "product/ids.h"
+#include "product/relation.h"
 #include "product/tolerance.h"
 #include "spatial/box.h"
 #include "spatial/pose.h"
@@ -24,13 +27,6 @@ using spatial::Box;
 using spatial::Pose;
 using spatial::Surface;
 using spatial::SurfaceKind;
-
-using SubassemblyId = Id<struct SubassemblyTag>;
-using PartId = Id<struct PartTag>;              ///< A shape; shared by its occurrences.
-using OccurrenceId = Id<struct OccurrenceTag>;  ///< A part at a place.
-using FeatureId = Id<struct FeatureTag>;        ///< Index into Part::features.
-using FaceId = Id<struct FaceTag>;              ///< Index into Part::faces (layer J).
-using MateId = Id<struct MateTag>;
 
 struct Color {
   float r{0.7F}, g{0.7F}, b{0.72F};
@@ -178,6 +174,7 @@ struct Part {
   std::vector<Dimension> dimensions;                     ///< Where the file states any.
   std::vector<GeometricTolerance> geometric_tolerances;  ///< Where the file states any.
   std::string shape_hash;  ///< Hash of faces and mesh; equal for equal geometry.
+  Identity identity{};     ///< Where the file states any.
 };
 
 /** A node of the tree: the product itself (the root), or a subassembly. */
@@ -187,6 +184,7 @@ struct Subassembly {
   std::string name;
   std::vector<SubassemblyId> subassemblies;
   std::vector<OccurrenceId> occurrences;  ///< Its direct parts.
+  Identity identity{};                    ///< Where the file states any.
 };
 
 struct Occurrence {
@@ -195,10 +193,17 @@ struct Occurrence {
   SubassemblyId parent;
   std::string name;  ///< UTF-8; not unique in general.
   std::string path;  ///< Names from the root, joined by '/', made unique by '#2', '#3', ...
-  Pose X_WB;         ///< The assembled pose, as drawn.
+  Pose X_WB;         ///< The assembled pose: as drawn, or where mates of the user put it.
+  /** Paths that the bodies in it have in the file, where it is several (product/welded_units.h);
+   else empty. */
+  std::vector<std::string> bodies{};
 };
 
 enum class MateKind { kAxisHole, kFaceFace, kConeSeat, kSphereSeat };
+
+/** All kinds of mates, in the order of their numbers. */
+inline constexpr std::array kMateKinds{MateKind::kAxisHole, MateKind::kFaceFace,
+                                       MateKind::kConeSeat, MateKind::kSphereSeat};
 
 /** How the faces of an axis-hole mate answer to each other. */
 enum class FitKind { kClearance, kTransition, kInterference, kThread };
@@ -212,10 +217,18 @@ struct Fit {
   std::string reason;          ///< Why this fit, in a few words.
 };
 
+/** A diameter that was measured at one place along a mate. */
+struct MeasuredDiameter {
+  double depth{0};     ///< Depth from the mouth of the hole, parts in their place [m].
+  double diameter{0};  ///< [m]
+};
+
 /** What somebody measured or knows about one mate, over what the fit would have drawn or looked up.
  */
 struct FitConditions {
-  std::optional<double> hole_diameter, shaft_diameter;            ///< Measured at 20 C [m].
+  /** Diameters measured at 20 C, by ascending depth; empty: not measured. One stands for the whole
+   length. */
+  std::vector<MeasuredDiameter> hole_diameters, shaft_diameters;
   std::optional<double> hole_roughness, shaft_roughness;          ///< Rz [m].
   std::optional<double> friction;                                 ///< Coulomb coefficient.
   std::optional<double> hole_temperature_c, shaft_temperature_c;  ///< [deg C]
@@ -284,6 +297,12 @@ struct Alignment {
   Connector b;
 };
 
+/** What mates of the user have made of the drawn poses (X12, mates/place_by_mates.h). */
+struct MatePlacement {
+  std::vector<Pose> drawn_poses;  ///< Indexed by OccurrenceId; empty: all stay as drawn.
+  Diagnostics diagnostics;        ///< What is found in the assembled poses in place of the drawn.
+};
+
 struct Product {
   std::string name;
   std::string source;  ///< File name without directories.
@@ -294,6 +313,11 @@ struct Product {
   std::vector<Joint> joints;  ///< The mates by pairs of parts.
   std::vector<Alignment> alignments;
   Box box_W;
+  std::vector<std::string> removed_mates;    ///< Keys that inference leaves out; not serialised.
+  MatePlacement placement;                   ///< Not serialised: what is read is as drawn.
+  FileHeader header{};                       ///< Where the file has one.
+  std::vector<Relation> relations{};         ///< Stated by the user (docs/side-file.md).
+  std::vector<ContactPair> contact_pairs{};  ///< Stated by the user.
 
   [[nodiscard]] const Part& part_of(OccurrenceId id) const {
     return parts[occurrences[id.index()].part.index()];

@@ -40,24 +40,75 @@ HVAS_FIELDS(Form, kind, features, faces, origin_B, axis_B, diameter, depth, angl
 HVAS_FIELDS(InnerConstraint, kind, a, b)
 HVAS_FIELDS(Dimension, kind, name, nominal, upper, lower, fit, faces, entity)
 HVAS_FIELDS(GeometricTolerance, kind, name, magnitude, datums, faces, entity)
-HVAS_FIELDS(Part, id, name, color, material, mass, solid_count, has_brep, box_B, mesh, faces,
-            display_mesh, features, forms, inner_constraints, dimensions, geometric_tolerances,
-            shape_hash)
-HVAS_FIELDS(Subassembly, id, parent, name, subassemblies, occurrences)
-HVAS_FIELDS(Occurrence, id, part, parent, name, path, X_WB)
+HVAS_FIELDS(Identity, id, description, version, version_description, designer, organisation,
+            created)
+HVAS_FIELDS(FileHeader, format, name, description, time_stamp, authors, organisations, preprocessor,
+            originating_system, authorisation, schema)
+HVAS_FIELDS(RelationSide, occurrence, feature, second, element, origin_B, axis_B, radius, is_inward)
+HVAS_FIELDS(Relation, kind, a, b, magnitude, is_stated, free_translations, free_rotations, residual)
+HVAS_FIELDS(ContactPair, a, b, compliance, friction)
 HVAS_FIELDS(Fit, kind, code, nominal_diameter, is_proposed, reason)
-HVAS_FIELDS(FitConditions, hole_diameter, shaft_diameter, hole_roughness, shaft_roughness, friction,
-            hole_temperature_c, shaft_temperature_c)
+HVAS_FIELDS(MeasuredDiameter, depth, diameter)
+HVAS_FIELDS(FitConditions, hole_diameters, shaft_diameters, hole_roughness, shaft_roughness,
+            friction, hole_temperature_c, shaft_temperature_c)
 HVAS_FIELDS(Connector, occurrence, feature, X_BM)
 HVAS_FIELDS(SurfaceConstraint, kind, a, b)
 HVAS_FIELDS(Mate, id, key, kind, a, b, hole_low, hole_high, shaft_low, shaft_high, hole_radius,
             shaft_radius, overlap, fit, conditions, surfaces, origin, confidence, evidence)
 HVAS_FIELDS(Joint, a, b, mates, free_translations, free_rotations, pattern_count)
 HVAS_FIELDS(Alignment, a, b)
-HVAS_FIELDS(Product, name, source, parts, subassemblies, occurrences, mates, joints, alignments,
-            box_W)
 HVAS_FIELDS(Diagnostic, severity, code, entity, message, remedy)
 #undef HVAS_FIELDS
+
+// What older formats have not stands behind the rest (VisitExtension, VisitBodies), so that records
+// of these can be read.
+template <typename A, Is<Part> T>
+void Visit(A& archive, T& value) {
+  auto& [id, name, color, material, mass, solid_count, has_brep, box_B, mesh, faces, display_mesh,
+         features, forms, inner_constraints, dimensions, geometric_tolerances, shape_hash,
+         identity] = value;
+  archive(id, name, color, material, mass, solid_count, has_brep, box_B, mesh, faces, display_mesh,
+          features, forms, inner_constraints, dimensions, geometric_tolerances, shape_hash);
+}
+
+template <typename A, Is<Occurrence> T>
+void Visit(A& archive, T& value) {
+  auto& [id, part, parent, name, path, X_WB, bodies] = value;
+  archive(id, part, parent, name, path, X_WB);
+}
+
+template <typename A, Is<Subassembly> T>
+void Visit(A& archive, T& value) {
+  auto& [id, parent, name, subassemblies, occurrences, identity] = value;
+  archive(id, parent, name, subassemblies, occurrences);
+}
+
+template <typename A, Is<Product> T>
+void Visit(A& archive, T& value) {
+  auto& [name, source, parts, subassemblies, occurrences, mates, joints, alignments, box_W,
+         removed_mates, placement, header, relations, contact_pairs] = value;
+  archive(name, source, parts, subassemblies, occurrences, mates, joints, alignments, box_W);
+}
+
+/** The fields that format 2 adds. */
+template <typename A, Is<Product> T>
+void VisitExtension(A& archive, T& product) {
+  for (auto& part : product.parts) {
+    archive(part.identity);
+  }
+  for (auto& subassembly : product.subassemblies) {
+    archive(subassembly.identity);
+  }
+  archive(product.header, product.relations, product.contact_pairs);
+}
+
+/** The fields that format 3 adds. */
+template <typename A, Is<Product> T>
+void VisitBodies(A& archive, T& product) {
+  for (auto& occurrence : product.occurrences) {
+    archive(occurrence.bodies);
+  }
+}
 
 // The last enumerator of each kind: larger numbers are no enumerators.
 constexpr Severity LastOf(Severity /*kind*/) {
@@ -93,7 +144,15 @@ constexpr GeometricToleranceKind LastOf(GeometricToleranceKind /*kind*/) {
 }
 
 constexpr MateKind LastOf(MateKind /*kind*/) {
-  return MateKind::kSphereSeat;
+  return product::kMateKinds.back();
+}
+
+constexpr RelationKind LastOf(RelationKind /*kind*/) {
+  return kRelationKinds.back();
+}
+
+constexpr ElementKind LastOf(ElementKind /*kind*/) {
+  return ElementKind::kEdge;
 }
 
 constexpr FitKind LastOf(FitKind /*kind*/) {
@@ -265,6 +324,8 @@ void WriteProduct(const Product& product, ByteWriter* writer) {
   writer->bytes().reserve(writer->bytes().size() + size);
   Writer visitor(writer);
   visitor(product);
+  VisitExtension(visitor, product);
+  VisitBodies(visitor, product);
 }
 
 void WriteDiagnostics(const Diagnostics& diagnostics, ByteWriter* writer) {
@@ -272,10 +333,17 @@ void WriteDiagnostics(const Diagnostics& diagnostics, ByteWriter* writer) {
   visitor(diagnostics.items());
 }
 
-Product ReadProduct(ByteReader* reader) {
+Product ReadProduct(ByteReader* reader, std::uint32_t format) {
   Product product;
   Reader visitor(reader);
   visitor(product);
+  if (format > kFirstProductFormat) {
+    VisitExtension(visitor, product);
+  }
+  constexpr std::uint32_t kFormatWithBodies = 3;  // A definition: the first that has them.
+  if (format >= kFormatWithBodies) {
+    VisitBodies(visitor, product);
+  }
   if (!reader->has_failed() && Validate(product)) {
     return product;
   }
@@ -307,11 +375,11 @@ Result<Product> DeserialiseProduct(std::span<const std::byte> bytes) {
   ByteReader reader(bytes);
   std::uint32_t format = 0;
   reader.Plain(&format, 1);
-  if (reader.has_failed() || format != kProductFormat) {
+  if (reader.has_failed() || format < kFirstProductFormat || format > kProductFormat) {
     return Fail(ErrorCode::kUnreadable, "the data are not a product of this version of HVAS", {},
                 "read the CAD file again");
   }
-  Product product = ReadProduct(&reader);
+  Product product = ReadProduct(&reader, format);
   if (!reader.is_finished()) {
     return Fail(ErrorCode::kUnreadable, "the data of the product are damaged", {},
                 "read the CAD file again");

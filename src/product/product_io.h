@@ -15,9 +15,14 @@
 namespace hvas::product {
 
 /** The version is raised whenever the bytes change: a field, an enumerator, their order. */
-inline constexpr std::uint32_t kProductFormat = 1;
+inline constexpr std::uint32_t kProductFormat = 3;
 
-/** All of a product. Equal products give equal bytes. */
+/** The oldest version that can be read. It has no identities, header, relations and contact pairs;
+ versions before 3 have no `Occurrence::bodies`. */
+inline constexpr std::uint32_t kFirstProductFormat = 1;
+
+/** All of a product but Product::removed_mates and Product::placement, which only editing needs:
+ the poses of the bytes are the assembled ones. Equal products give equal bytes. */
 void WriteProduct(const Product& product, ByteWriter* writer);
 
 void WriteDiagnostics(const Diagnostics& diagnostics, ByteWriter* writer);
@@ -25,7 +30,7 @@ void WriteDiagnostics(const Diagnostics& diagnostics, ByteWriter* writer);
 /** The product that WriteProduct made the bytes from, bit for bit; a failed reader where they are
  anything else. Takes any bytes: every index of a product that was read leads to something, and its
  tree is one. */
-[[nodiscard]] Product ReadProduct(ByteReader* reader);
+[[nodiscard]] Product ReadProduct(ByteReader* reader, std::uint32_t format = kProductFormat);
 
 /** Reads diagnostics as ReadProduct() does a product. */
 [[nodiscard]] Diagnostics ReadDiagnostics(ByteReader* reader);

@@ -27,7 +27,7 @@ struct Line {
   std::vector<std::size_t> features;
 };
 
-std::vector<Line> CollectLines(const Part& part, double tolerance) {
+std::vector<Line> CollectLines(const Part& part, double tolerance, RecognitionLimits* limits) {
   constexpr std::size_t kMost = 300;  // More axes than any fastener has.
   std::vector<Line> lines;
   for (std::size_t i = 0; i < part.features.size(); ++i) {
@@ -41,6 +41,7 @@ std::vector<Line> CollectLines(const Part& part, double tolerance) {
     });
     if (line == lines.end()) {
       if (lines.size() >= kMost) {
+        limits->Add("more than 300 axes for threads");
         continue;
       }
       lines.push_back({feature.origin_B, Canonical(feature.axis_B), {}});
@@ -469,8 +470,8 @@ void MarkByShape(const std::vector<Line>& lines, double tolerance, Part* part) {
 
 }  // namespace
 
-void MarkThreads(Part* part, double tolerance) {
-  const std::vector<Line> lines = CollectLines(*part, tolerance);
+void MarkThreads(Part* part, double tolerance, RecognitionLimits* limits) {
+  const std::vector<Line> lines = CollectLines(*part, tolerance, limits);
   bool is_modelled = false;
   const bool has_freeform = std::any_of(part->faces.begin(), part->faces.end(), [](const Face& f) {
     return f.surface.kind == SurfaceKind::kFreeform;

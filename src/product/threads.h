@@ -1,6 +1,7 @@
 #pragma once
 
 #include "product/product.h"
+#include "product/recognition_limits.h"
 
 namespace hvas::product {
 
@@ -15,7 +16,8 @@ namespace hvas::product {
  name the shank that stands on a hexagonal head or on a head with a hexagonal socket, and the bore
  of a hexagonal nut. Of several shank diameters it is the one at the end away from the head. The
  pitch is what the name states, else the coarse pitch of ISO 261 for the drawn diameter. @pre
- features of the part are there; part != nullptr. */
-void MarkThreads(Part* part, double tolerance);
+ features of the part are there; part != nullptr.
+ @param limits Gets the limits that were reached. */
+void MarkThreads(Part* part, double tolerance, RecognitionLimits* limits);
 
 }  // namespace hvas::product

@@ -114,6 +114,12 @@ bool IsValid(const Product& product, const Mate& mate) {
                      });
 }
 
+bool IsValid(const Product& product, const RelationSide& side) {
+  return IsIn(side.occurrence, product.occurrences) &&
+         IsInOrNone(side.feature, product.part_of(side.occurrence).features) &&
+         IsInOrNone(side.second, product.part_of(side.occurrence).features);
+}
+
 }  // namespace
 
 bool Validate(const Product& product) {
@@ -137,6 +143,15 @@ bool Validate(const Product& product) {
          std::all_of(product.alignments.begin(), product.alignments.end(),
                      [&product](const Alignment& alignment) {
                        return IsValid(product, alignment.a) && IsValid(product, alignment.b);
+                     }) &&
+         std::all_of(product.relations.begin(), product.relations.end(),
+                     [&product](const Relation& relation) {
+                       return IsValid(product, relation.a) && IsValid(product, relation.b);
+                     }) &&
+         std::all_of(product.contact_pairs.begin(), product.contact_pairs.end(),
+                     [&product](const ContactPair& pair) {
+                       return IsIn(pair.a, product.occurrences) &&
+                              IsIn(pair.b, product.occurrences);
                      });
 }
 

@@ -25,13 +25,21 @@ Unexpected Refuse(const std::string& what, const std::string& field) {
 }
 
 Json MakePartJson(const PartState& part) {
-  return {{"placement", kPlacements.at(static_cast<std::size_t>(part.placement))},
-          {"X_WB", MakeJson(part.X_WB)}};
+  Json json{{"placement", kPlacements.at(static_cast<std::size_t>(part.placement))},
+            {"X_WB", MakeJson(part.X_WB)}};
+  if (part.leader.is_valid()) {
+    json["leader"] = part.leader.value();
+  }
+  return json;
 }
 
-void ReadPart(JsonFields* fields, PartState* part) {
+void ReadPart(JsonFields* fields, std::size_t part_count, PartState* part) {
   (*fields)("placement", part->placement, kPlacements);
   (*fields)("X_WB", part->X_WB);
+  part->leader = product::OccurrenceId();
+  if (fields->has("leader")) {
+    fields->IdBelow("leader", part_count, &part->leader);
+  }
 }
 
 /** Whether two poses are the same to the last bit, the signs of zeros included. */
@@ -44,7 +52,7 @@ bool HasSameBits(const spatial::Pose& a, const spatial::Pose& b) {
 }
 
 bool IsSame(const PartState& a, const PartState& b) {
-  return a.placement == b.placement && HasSameBits(a.X_WB, b.X_WB);
+  return a.placement == b.placement && a.leader == b.leader && HasSameBits(a.X_WB, b.X_WB);
 }
 
 Json MakeStepJson(const SequenceStep& step) {
@@ -129,7 +137,7 @@ Result<std::vector<PartState>> ParseParts(const Json& json) {
   std::vector<PartState> parts;
   for (const Json& part : json) {
     JsonFields fields(part);
-    ReadPart(&fields, &parts.emplace_back());
+    ReadPart(&fields, json.size(), &parts.emplace_back());
     if (!fields.refused().empty()) {
       return Refuse(fmt::format("Part {}", parts.size() - 1), fields.refused());
     }
@@ -147,8 +155,11 @@ record::Command MakeCommand(const GivenCommand& given, const std::vector<PartSta
       changed.push_back(std::move(part));
     }
   }
-  const Json json{
+  Json json{
       {"hand", given.hand}, {"step", MakeStepJson(given.step)}, {"parts", std::move(changed)}};
+  if (given.can_join) {
+    json["can_join"] = true;
+  }
   return {given.t_ns, given.number, is_take ? kTakeKind : kPlaceKind, json.dump()};
 }
 
@@ -169,12 +180,15 @@ Result<GivenCommand> ParseCommand(const record::Command& command,
   JsonFields step = fields.Inner("step");
   given.step = ReadStep(&step, before.size());
   fields.Take(step);
+  if (fields.has("can_join")) {
+    fields("can_join", given.can_join);
+  }
   given.parts = before;
   for (const Json& part : fields.Array("parts")) {
     JsonFields inner(part);
     std::size_t occurrence = 0;
     inner.Index("occurrence", before.size(), &occurrence);
-    ReadPart(&inner, &given.parts[occurrence]);
+    ReadPart(&inner, before.size(), &given.parts[occurrence]);
     fields.Take(inner);
   }
   if (!fields.refused().empty()) {

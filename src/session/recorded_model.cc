@@ -1,5 +1,7 @@
 #include "session/recorded_model.h"
 
+#include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,6 +14,7 @@ namespace hvas::session {
 namespace {
 
 constexpr const char* kSeed = "seed";
+constexpr const char* kPairs = "pairs";
 constexpr const char* kSteps = "steps";
 constexpr const char* kFingerprint = "fingerprint";
 
@@ -33,11 +36,28 @@ std::string CalcFingerprint(const simulation::Model& model) {
     digest.AddInt(overlap.a.value());
     digest.AddInt(overlap.b.value());
   }
+  for (const simulation::FaceRelief& relief : model.sequence.reliefs) {
+    digest.AddInt(relief.occurrence.value());
+    digest.AddInt(relief.face);
+    digest.AddDouble(relief.depth);
+  }
   digest.AddDouble(model.table_z);
   return digest.Hex();
 }
 
+std::optional<fits::PairChoice> FindPairChoice(const std::string& name) {
+  const auto found = std::find(fits::kPairChoices.begin(), fits::kPairChoices.end(), name);
+  return found == fits::kPairChoices.end()
+             ? std::nullopt
+             : std::optional(static_cast<fits::PairChoice>(found - fits::kPairChoices.begin()));
+}
+
 }  // namespace
+
+std::optional<fits::PairChoice> FindPairChoice(const record::Meta& meta) {
+  const auto found = meta.find(kPairs);
+  return found == meta.end() ? fits::PairChoice::kAny : FindPairChoice(found->second);
+}
 
 record::Meta MakeModelMeta(const simulation::Model& model) {
   Json parts = Json::array();
@@ -49,12 +69,14 @@ record::Meta MakeModelMeta(const simulation::Model& model) {
   return {{"product", model.product->name},
           {"source", model.product->source},
           {"seed", std::to_string(model.seed)},
+          {kPairs, std::string(fits::ToString(model.pairs))},
           {"model_json", parts.dump()}};
 }
 
 void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
   recorder->AddAttachment({kProductAttachment, product::SerialiseProduct(*model.product)});
   const Json json{{kSeed, model.seed},
+                  {kPairs, fits::ToString(model.pairs)},
                   {kSteps, MakeStepsJson(model.sequence.steps)},
                   {kFingerprint, CalcFingerprint(model)}};
   const std::string text = json.dump();
@@ -117,12 +139,21 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
   if (!fields.has(kSeed) || !json[kSeed].is_number_unsigned()) {
     fields.Refuse(kSeed);
   }
+  // Older records have no choice: their pairs were drawn from the zones once.
+  const auto pairs = !fields.has(kPairs) ? fits::PairChoice::kAny
+                     : json[kPairs].is_string()
+                         ? FindPairChoice(json[kPairs].get_ref<const std::string&>())
+                         : std::nullopt;
+  if (!pairs) {
+    fields.Refuse(kPairs);
+  }
   if (!fields.refused().empty()) {
     return Fail(ErrorCode::kUnreadable,
                 "the model in the record has no valid \"" + fields.refused() + "\"",
                 reader->path().string(), "restore the file from a copy");
   }
   options.seed = json[kSeed].get<std::uint64_t>();
+  options.pairs = pairs.value_or(fits::PairChoice::kAny);
   options.steps = std::move(*steps);
   auto model = simulation::Compile(std::make_shared<product::Product>(std::move(*product)), options,
                                    diagnostics);

@@ -19,6 +19,10 @@ inline constexpr const char* kModelAttachment = "model.json";
 /** What a record's meta says of a model. */
 [[nodiscard]] record::Meta MakeModelMeta(const simulation::Model& model);
 
+/** The choice of pairs in a record's meta: that of older records is kAny. None where it is no
+ choice. */
+[[nodiscard]] std::optional<fits::PairChoice> FindPairChoice(const record::Meta& meta);
+
 /** Puts into a record what LoadModel takes out of it: the product with its mates and fits, the
  seed, the order of assembly, and a fingerprint. */
 void AttachModel(const simulation::Model& model, record::Recorder* recorder);
@@ -30,7 +34,7 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder);
 [[nodiscard]] Result<std::optional<product::Product>> FindProduct(record::Reader* reader);
 
 /** A record's model, compiled anew.
- @param options  How; the seed is that of the record.
+ @param options  How; the seed and the choice of pairs are those of the record.
  Warns where it is not the one that was recorded, as another version of HVAS prepares it.
  Errors: as LoadProduct() and simulation::Compile(). */
 [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> LoadModel(

@@ -15,10 +15,6 @@
 namespace hvas::session {
 namespace {
 
-// Of the status, above the gate's bits.
-constexpr std::uint32_t kTruncatedStatus = 1u << 16;
-constexpr std::uint32_t kStoppedStatus = 1u << 17;
-
 const char* ToString(simulation::SimulationEvent::Kind kind) {
   switch (kind) {
     case simulation::SimulationEvent::Kind::kTaken:
@@ -54,7 +50,7 @@ std::uint32_t FlagsOf(const device::DeviceState& device) noexcept {
 
 std::uint32_t StatusOf(const haptics::TickOutput& out) noexcept {
   return out.gate_actions | (out.is_truncated ? kTruncatedStatus : 0u) |
-         (out.context.is_stopped ? kStoppedStatus : 0u);
+         (out.context.is_stopped ? kStoppedStatus : 0u) | (out.is_crowded ? kCrowdedStatus : 0u);
 }
 
 }  // namespace

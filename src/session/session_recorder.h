@@ -9,6 +9,11 @@
 
 namespace hvas::session {
 
+// Bits of TickRecord::status, above the gate's (docs/record.md).
+inline constexpr std::uint32_t kTruncatedStatus = 1u << 16;  ///< ContactAccount::is_truncated.
+inline constexpr std::uint32_t kStoppedStatus = 1u << 17;    ///< TickContext::is_stopped.
+inline constexpr std::uint32_t kCrowdedStatus = 1u << 18;    ///< ContactAccount::is_crowded.
+
 /** Puts a session into a record, so that it can be run again from the file alone: a model, one or
  more stretches of it (simulations that follow one another in session time), and what the loops of
  each produce. */

@@ -135,7 +135,7 @@ struct AllFields {
   static void Visit(F& f, haptics::GuidanceOptions& value) {
     auto& [capture, ramp_time, k_lin, k_rot, max_force, max_torque, attraction_force,
            attraction_torque, seat_distance, seat_angle, loose_seat_distance, seat_time,
-           finish_distance] = value;
+           finish_distance, attracts_in_fits] = value;
     VisitInner(f, "capture", capture);
     f("ramp_time_s", ramp_time);
     f("k_lin_n_per_m", k_lin);
@@ -257,13 +257,15 @@ struct AllFields {
     VisitInner(f, "turn_buzz", turn_buzz);
   }
 
-  /** All but the limits and whether fits are rendered, which may be missing. */
+  /** All but the fields that may be missing. */
   template <typename F>
   static void Visit(F& f, haptics::TickOptions& value) {
     auto& [condition, renders_fits, workspace, coupling, guidance, contact, gravity_W,
-           max_virtual_mass, force_map, device, limits, controls_passivity, p_HG, dt] = value;
+           max_virtual_mass, force_map, paper_factors, device, limits, controls_passivity, p_HG,
+           dt] = value;
     static_cast<void>(limits);
     static_cast<void>(renders_fits);
+    static_cast<void>(paper_factors);
     f("condition", condition, kConditions);
     VisitInner(f, "workspace", workspace);
     VisitInner(f, "coupling", coupling);
@@ -291,6 +293,9 @@ std::string FindUnsound(haptics::TickOptions* options) {
 constexpr const char* kLimits = "limits";
 constexpr const char* kRendersFits = "renders_fits";          // Only where they are not.
 constexpr const char* kFinishDistance = "finish_distance_m";  // Only where parts are moved home.
+constexpr const char* kAttractsInFits = "attracts_in_fits";   // Only where it does.
+constexpr const char* kPaperK_r = "paper_k_r";                // Only where it is not the usual one.
+constexpr const char* kPaperK_s = "paper_k_s";
 
 }  // namespace
 
@@ -308,6 +313,13 @@ Json MakeTickOptionsJson(const haptics::TickOptions& options) {
   if (copy.guidance.finish_distance > 0) {
     maker(kFinishDistance, copy.guidance.finish_distance);
   }
+  if (copy.guidance.attracts_in_fits) {
+    maker(kAttractsInFits, copy.guidance.attracts_in_fits);
+  }
+  if (copy.paper_factors != haptics::PaperFactors()) {
+    maker(kPaperK_r, copy.paper_factors.interference);
+    maker(kPaperK_s, copy.paper_factors.transition);
+  }
   return json;
 }
 
@@ -323,6 +335,13 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   }
   if (fields.has(kFinishDistance)) {
     fields(kFinishDistance, options.guidance.finish_distance);
+  }
+  if (fields.has(kAttractsInFits)) {
+    fields(kAttractsInFits, options.guidance.attracts_in_fits);
+  }
+  if (fields.has(kPaperK_r) || fields.has(kPaperK_s)) {
+    fields(kPaperK_r, options.paper_factors.interference);
+    fields(kPaperK_s, options.paper_factors.transition);
   }
   const std::string refused = fields.refused().empty() ? FindUnsound(&options) : fields.refused();
   if (!refused.empty()) {

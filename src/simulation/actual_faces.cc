@@ -155,6 +155,17 @@ class Collector {
     }
   }
 
+  void Relieve(const FaceRelief& relief) {
+    contact::FaceOffset& offset = faces_[relief.occurrence.index()].offsets[relief.face];
+    const auto lower = [&relief](double value) {
+      return std::max(-contact::FaceOffsets::kLargest, value - relief.depth);
+    };
+    offset.uniform = offset.stations.empty() ? lower(offset.uniform) : offset.uniform;
+    for (double& station : offset.stations) {
+      station = lower(station);
+    }
+  }
+
   [[nodiscard]] std::vector<std::shared_ptr<const contact::FaceOffsets>> Make(
       Diagnostics* diagnostics) const {
     std::vector<std::shared_ptr<const contact::FaceOffsets>> made(faces_.size());
@@ -200,6 +211,9 @@ std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
   }
   for (const Mate* mate : sized) {
     collector.Add(*mate, *input.fits[mate->id.index()], diagnostics);
+  }
+  for (const FaceRelief& relief : input.sequence->reliefs) {
+    collector.Relieve(relief);
   }
   return collector.Make(diagnostics);
 }

@@ -17,7 +17,7 @@ struct ActualFacesInput {
   const product::Product* product{nullptr};
   std::vector<std::shared_ptr<const contact::Shape>> shapes;
   std::vector<std::shared_ptr<const fits::FitForce>> fits;  ///< Null where there is none.
-  const Sequence* sequence{nullptr};  ///< Says which end of a hole is its mouth.
+  const Sequence* sequence{nullptr};  ///< Says which end of a hole is its mouth, and has reliefs.
 };
 
 /** The faces of the parts as made, so that contact has the clearance that the fits say. A fit that
@@ -26,7 +26,8 @@ struct ActualFacesInput {
  mate (by id) that gives it a size; a further mate on it moves the other face, or, where both have
  their size, neither. Faces that also have a mate with interference, a thread or no fit stay as
  drawn whatever other mates say: what answers for them there takes them so. So do offsets beyond
- FaceOffsets::kLargest, with a diagnostic. Returned by OccurrenceId; null: as drawn. */
+ FaceOffsets::kLargest, with a diagnostic. All faces give way by
+ Sequence::reliefs. Returned by OccurrenceId; null: as drawn. */
 [[nodiscard]] std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
     const ActualFacesInput& input, Diagnostics* diagnostics);
 

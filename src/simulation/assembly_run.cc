@@ -7,12 +7,15 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "simulation/table_subassembly.h"
 
 namespace hvas::simulation {
 
 using product::OccurrenceId;
 
 namespace {
+
+constexpr int kMostTries = 3;  // Of a part by simulated persons: one, and two more. A choice.
 
 bool IsSinglePart(const SequenceStep& step) {
   return step.kind == SequenceStep::Kind::kInsert && step.members.empty();
@@ -21,7 +24,7 @@ bool IsSinglePart(const SequenceStep& step) {
 }  // namespace
 
 AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream)
-    : simulation_(simulation), physics_(simulation->physics()), downstream_(downstream) {
+    : PartRun(simulation, downstream) {
   for (std::size_t hand = 0; hand < persons.size(); ++hand) {
     if (persons[hand] != nullptr) {
       workers_.push_back({persons[hand], hand, nullptr, 0});
@@ -31,123 +34,49 @@ AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* d
     workers_.emplace_back();
   }
   last_worker_ = workers_.size() - 1;
-  const Model& model = simulation_->model();
-  total_ = model.bodies.size();
-  dropped_.resize(total_);
-  is_finished_.resize(model.sequence.steps.size());
-  for (const Body& body : model.bodies) {
-    lift_height_ = std::max(lift_height_, 1.2 * body.shape->box_B().size().norm());
-  }
+  turns_.resize(model().sequence.steps.size());
 }
 
-Execution AssemblyRun::MakeExecution(Operator* hand, double limit_s, Operator* second_hand) {
-  Execution execution;
-  execution.simulation = simulation_;
-  execution.hand = hand;
-  execution.second_hand = second_hand;
-  execution.sink = this;
-  execution.advance = [this] { Advance(); };
-  execution.is_done = [this] { return is_done_; };
-  execution.limit_ns = std::llround(1e9 * limit_s);
-  return execution;
-}
-
-void AssemblyRun::OnTick(std::size_t hand, const device::DeviceState& device,
-                         const haptics::TickOutput& out) noexcept {
-  if (downstream_ != nullptr) {
-    downstream_->OnTick(hand, device, out);
+void AssemblyRun::OnDropped(const SimulationEvent& dropped) {
+  if (dropped.was_seated) {
+    return;
   }
-}
-
-void AssemblyRun::OnFlight(const std::vector<FlightTick>& ticks) {
-  if (downstream_ != nullptr) {
-    downstream_->OnFlight(ticks);
-  }
-}
-
-void AssemblyRun::OnEvent(const SimulationEvent& event) {
-  if (event.kind == SimulationEvent::Kind::kDropped) {
-    dropped_[event.occurrence.index()] = event;
-    GoBackTo(event);
-  }
-  states_[event.hand] = event.state;
-  if (downstream_ != nullptr) {
-    downstream_->OnEvent(event);
-  }
-}
-
-void AssemblyRun::GoBackTo(const SimulationEvent& dropped) {
-  const auto& steps = simulation_->model().sequence.steps;
+  // What was put together on the table comes out together.
+  const std::vector<OccurrenceId> out = ListTogether(physics().parts(), dropped.occurrence);
+  const auto& steps = model().sequence.steps;
   const std::size_t next = next_step();
-  for (std::size_t i = 0; !dropped.was_seated && i < next; ++i) {
-    if (IsSinglePart(steps[i]) && steps[i].occurrence == dropped.occurrence) {
-      is_finished_[i] = false;
+  for (std::size_t i = next; i-- > 0;) {
+    if (IsSinglePart(steps[i]) &&
+        std::find(out.begin(), out.end(), steps[i].occurrence) != out.end() &&
+        physics().placement(steps[i].occurrence) != Placement::kPlaced) {
+      turns_[i].is_finished = false;
       is_done_ = false;
       next_step_ = i;
       workers_.front().step = nullptr;  // real hands take parts out, and are the only worker
-      return;
     }
   }
 }
 
-PersonTask AssemblyRun::MakeTask(const SequenceStep& step) const {
-  const Model& model = simulation_->model();
-  const Body& body = model.bodies[step.occurrence.index()];
-  const spatial::Pose X_BG(CombineMass(model, step).p_BoBcm_B);
-  PersonTask task;
-  task.occurrence = step.occurrence;
-  task.p_BG = X_BG.p();
-  task.X_WG_start = physics_.pose(step.occurrence) * X_BG;
-  task.X_WG_goal = body.X_WB_goal * X_BG;
-  task.X_WG_goal = {task.X_WG_goal.q(), task.X_WG_goal.p() + step.offset_W};
-  task.extraction_W = step.extraction_W;
-  task.engage_distance = step.engage_distance;
-  task.centre_W = model.centre_W;
-  task.transfer_radius = model.transfer_radius;
-  task.lift_height = lift_height_;
-  return task;
+OccurrenceId AssemblyRun::LeaderOf(OccurrenceId id) const {
+  return physics().parts()[id.index()].leader;
 }
 
-std::string AssemblyRun::DescribeOverlaps(OccurrenceId id) const {
-  const Model& model = simulation_->model();
-  const DrawnOverlap* deepest = nullptr;
-  int count = 0;
-  for (const DrawnOverlap& overlap : model.sequence.overlaps) {
-    if (overlap.a == id || overlap.b == id) {
-      ++count;
-      deepest = deepest == nullptr || overlap.depth > deepest->depth ? &overlap : deepest;
-    }
-  }
-  if (deepest == nullptr) {
-    return {};
-  }
-  const OccurrenceId other = deepest->a == id ? deepest->b : deepest->a;
-  return fmt::format("overlaps {}{} as drawn, by {:.3f} mm: contact between them is left out",
-                     model.product->occurrences[other.index()].path,
-                     count > 1 ? fmt::format(" and {} more", count - 1) : "",
-                     units::ToMm(deepest->depth));
-}
-
-PartResult& AssemblyRun::ResultOf(OccurrenceId id) {
-  for (PartResult& result : results_) {
-    if (result.occurrence == id) {
-      return result;
-    }
-  }
-  results_.emplace_back();
-  results_.back().occurrence = id;
-  return results_.back();
+const std::optional<SimulationEvent>& AssemblyRun::DropOf(OccurrenceId id) const {
+  const OccurrenceId leader = LeaderOf(id);
+  return dropped_[leader.is_valid() ? leader.index() : id.index()];
 }
 
 std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& worker) const {
   const SimulatedPerson* person = worker.person;
-  const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
-  if (!dropped) {
-    return person != nullptr ? "could not be taken up" : "was not taken up";
+  const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
+  if (!dropped && person == nullptr) {
+    return "was not taken up";
   }
-  if (const OccurrenceId missing = physics_.FindMissingPartner(step); missing.is_valid()) {
-    return fmt::format("{}, which it goes to, is not in its place",
-                       simulation_->model().product->occurrences[missing.index()].path);
+  if (const OccurrenceId missing = physics().FindMissingPartner(step); missing.is_valid()) {
+    return fmt::format("{}, which it goes to, is not in its place", PathOf(missing));
+  }
+  if (!dropped) {
+    return "could not be taken up";
   }
   const HoldMetrics& metrics = dropped->metrics;
   const std::string depth = metrics.insertion > 0 ? fmt::format(", {:.2f} mm into its hole at most",
@@ -156,65 +85,68 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& 
   const std::string tries = person != nullptr
                                 ? fmt::format("gave up after {} searches", person->searches())
                                 : std::string("was let go elsewhere");
-  if (!metrics.hardest.is_valid()) {
-    return fmt::format("{}{}; nothing was met", tries, depth);
+  return fmt::format("{}{}; {}", tries, depth, DescribeHardest(metrics));
+}
+
+std::size_t AssemblyRun::IndexOf(const SequenceStep& step) const {
+  return static_cast<std::size_t>(&step - model().sequence.steps.data());
+}
+
+std::string AssemblyRun::FinishTurn(const SequenceStep& step, const Worker& worker,
+                                    bool was_seated) {
+  Turn& turn = turns_[IndexOf(step)];
+  turn.is_finished = true;
+  turn.is_seated = was_seated;
+  turn.neighbours_in_place = CountNeighboursInPlace(step);
+  if (was_seated) {
+    const bool is_unit = !step.members.empty() && step.kind == SequenceStep::Kind::kInsert;
+    const std::size_t leader = step.occurrence.index();
+    has_touched_[leader] = is_unit ? turn.neighbours_in_place > 0 : has_touched_[leader];
+    return {};
   }
-  return fmt::format("{}{}; {} stood in the way with up to {:.1f} N", tries, depth,
-                     simulation_->model().product->occurrences[metrics.hardest.index()].path,
-                     metrics.hardest_force);
+  if (turn.tries <= 1) {
+    turn.reason = ExplainFailure(step, worker);
+    return turn.reason;
+  }
+  return fmt::format("{}; tried {} times", turn.reason, turn.tries);
+}
+
+std::string AssemblyRun::MakeNote(OccurrenceId id) const {
+  const std::string overlaps = DescribeOverlaps(id);
+  const bool floats = model().sequence.neighbours[id.index()].empty() && CountParts(model()) > 1;
+  return floats ? overlaps + (overlaps.empty() ? "" : "; ") + "touches no other part as drawn"
+                : overlaps;
 }
 
 void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
-  const Model& model = simulation_->model();
+  const Model& model = this->model();
   PartResult& result = ResultOf(step.occurrence);
-  const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
+  const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
   const bool was_seated = dropped && dropped->was_seated;
-  if (dropped) {
-    const HoldMetrics& metrics = dropped->metrics;
-    result.hand = dropped->hand;
-    result.time += 1e-9 * static_cast<double>(dropped->t_ns - metrics.t_taken_ns);
-    result.path += metrics.path;
-    result.peak_true = std::max(result.peak_true, metrics.peak_true);
-    result.peak_felt = std::max(result.peak_felt, metrics.peak_felt);
-    result.fit_true = std::max(result.fit_true, metrics.fit_true);
-    result.fit_felt = std::max(result.fit_felt, metrics.fit_felt);
-    result.deepest = std::max(result.deepest, metrics.deepest);
-    result.insertion = std::max(result.insertion, metrics.insertion);
-    result.arrival = metrics.arrival;
-    result.arrival_angle = metrics.arrival_angle;
-  }
-  const std::string reason = was_seated ? std::string() : ExplainFailure(step, worker);
+  AddHold(step.occurrence);
+  const std::string reason = FinishTurn(step, worker, was_seated);
   result.reason = reason;
-  result.note = DescribeOverlaps(step.occurrence);
+  result.note = MakeNote(step.occurrence);
+  int mates = 0;
   for (const product::MateId id : model.mates_of[step.occurrence.index()]) {
     const product::Mate& mate = model.product->mates[id.index()];
     const OccurrenceId other =
         mate.a.occurrence == step.occurrence ? mate.b.occurrence : mate.a.occurrence;
-    const bool is_new = step.kind == SequenceStep::Kind::kInsert && step.members.empty();
-    result.mates += is_new && physics_.placement(other) == Placement::kPlaced ? 1 : 0;
+    mates += physics().placement(other) == Placement::kPlaced ? 1 : 0;
   }
+  result.mates = IsSinglePart(step) ? mates : result.mates;
   for (const OccurrenceId member : step.members) {
     PartResult& other = ResultOf(member);
     other.reason = reason.empty() ? other.reason : "its subassembly " + reason;
   }
   Update(step.occurrence);
-  is_finished_[static_cast<std::size_t>(&step - model.sequence.steps.data())] = true;
   if (on_part) {
     const auto seated = std::count_if(results_.begin(), results_.end(),
                                       [](const PartResult& part) { return part.is_seated; });
-    on_part(
-        {results_.size(), static_cast<std::size_t>(seated), total_, dropped ? dropped->t_ns : 0},
-        ResultOf(step.occurrence));
+    on_part({results_.size(), static_cast<std::size_t>(seated), CountParts(model),
+             dropped ? dropped->t_ns : 0},
+            ResultOf(step.occurrence));
   }
-}
-
-void AssemblyRun::Update(OccurrenceId id) {
-  PartResult& result = ResultOf(id);
-  result.is_seated = physics_.placement(id) == Placement::kPlaced;
-  const spatial::Pose& X_WB = physics_.pose(id);
-  const spatial::Pose& X_goal = simulation_->model().bodies[id.index()].X_WB_goal;
-  result.pose_error = (X_WB.p() - X_goal.p()).norm();
-  result.pose_error_angle = spatial::RotationBetween(X_goal.q(), X_WB.q()).norm();
 }
 
 bool AssemblyRun::HasFinished(const Worker& worker) const {
@@ -225,7 +157,7 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
   const OccurrenceId id = worker.step->occurrence;
   const std::optional<SimulationEvent>& dropped = dropped_[id.index()];
   return (dropped && dropped->was_seated) ||
-         (IsSinglePart(*worker.step) && physics_.placement(id) == Placement::kPlaced);
+         (IsSinglePart(*worker.step) && physics().placement(id) == Placement::kPlaced);
 }
 
 bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker) const {
@@ -236,12 +168,12 @@ bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker
 
 bool AssemblyRun::IsInPlaceAlready(const SequenceStep& step) const {
   return IsSinglePart(step) && !dropped_[step.occurrence.index()] &&
-         physics_.placement(step.occurrence) == Placement::kPlaced;
+         physics().placement(step.occurrence) == Placement::kPlaced;
 }
 
 spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
   constexpr double kRoom = 5e-3;  // [m] to each side, for searching and for error
-  const Body& body = simulation_->model().bodies[step.occurrence.index()];
+  const Body& body = model().bodies[step.occurrence.index()];
   const spatial::Box place = spatial::Transform(body.X_WB_goal, body.shape->box_B());
   const Vec3 way = step.engage_distance * step.extraction_W;
   spatial::Box box = place;
@@ -272,19 +204,25 @@ bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
   // Of a subassembly only that moves which has got into it.
   SequenceStep possible = step;
   std::erase_if(possible.members,
-                [this](OccurrenceId id) { return physics_.placement(id) == Placement::kLoose; });
-  for (std::size_t hand = 0; hand < simulation_->hand_count(); ++hand) {
+                [this](OccurrenceId id) { return physics().placement(id) == Placement::kLoose; });
+  if (IsSinglePart(step) && LeaderOf(step.occurrence).is_valid()) {
+    possible = MakeTableStep(model(), physics().parts(), step.occurrence, TakeExtent::kWhole);
+  }
+  for (std::size_t hand = 0; hand < hand_count(); ++hand) {
     if (worker->person == nullptr || hand == worker->hand) {
-      physics_.Prepare(possible, hand);
+      physics().Prepare(possible, hand);
     }
   }
   if (worker->person != nullptr) {
-    dropped_[step.occurrence.index()].reset();
+    dropped_[possible.occurrence.index()].reset();
     worker->finished_before = worker->person->finished_count();
     if (!worker->person->Assign(MakeTask(possible))) {
       return false;
     }
   }
+  Turn& turn = turns_[IndexOf(step)];
+  turn.is_finished = false;
+  turn.tries += worker->person != nullptr ? 1 : 0;
   worker->step = &step;
   last_worker_ = static_cast<std::size_t>(worker - workers_.data());
   return true;
@@ -294,21 +232,77 @@ std::size_t AssemblyRun::next_step() const {
   std::size_t next = next_step_;
   for (const Worker& worker : workers_) {
     if (worker.step != nullptr) {
-      const auto& steps = simulation_->model().sequence.steps;
-      next = std::min(next, static_cast<std::size_t>(worker.step - steps.data()));
+      next = std::min(next, IndexOf(*worker.step));
     }
   }
   return next;
 }
 
 void AssemblyRun::FinishAll() {
-  for (const SequenceGap& gap : simulation_->model().sequence.gaps) {
+  for (const SequenceGap& gap : model().sequence.gaps) {
     ResultOf(gap.occurrence).reason = gap.reason;
   }
-  for (const product::Occurrence& occurrence : simulation_->model().product->occurrences) {
-    Update(occurrence.id);
+  for (const Body& body : model().bodies) {
+    if (body.role == BodyRole::kPart) {
+      Update(body.occurrence);
+    }
   }
   is_done_ = true;
+}
+
+bool AssemblyRun::HasFreePerson() const {
+  return std::any_of(workers_.begin(), workers_.end(), [](const Worker& worker) {
+    return worker.person != nullptr && worker.step == nullptr;
+  });
+}
+
+const SequenceStep* AssemblyRun::FindStepToRepeat(bool is_at_end) const {
+  const auto& steps = model().sequence.steps;
+  const std::size_t end = std::min({next_step_, end_step_, steps.size()});
+  // What goes into a subassembly that is on its shelf has to wait until this is in its place.
+  std::size_t begin = first_step_;
+  for (std::size_t i = begin; i < end && !is_at_end; ++i) {
+    begin = steps[i].kind == SequenceStep::Kind::kPark ? i + 1 : begin;
+  }
+  for (std::size_t i = begin; i < end; ++i) {
+    const SequenceStep& step = steps[i];
+    const Turn& turn = turns_[i];
+    if (!turn.is_finished || turn.is_seated || step.kind != SequenceStep::Kind::kInsert ||
+        turn.tries >= (is_at_end ? kMostTries : kMostTries - 1) ||
+        physics().placement(step.occurrence) == Placement::kPlaced ||
+        physics().FindMissingPartner(step).is_valid()) {
+      continue;
+    }
+    const bool is_held_better = CountNeighboursInPlace(step) > turn.neighbours_in_place;
+    if (is_held_better || (is_at_end && turn.tries < kMostTries - 1)) {
+      return &step;
+    }
+  }
+  return nullptr;
+}
+
+bool AssemblyRun::DoNext(const SequenceStep& step) {
+  if (turns_[next_step_].is_finished || IsInPlaceAlready(step)) {
+    return true;
+  }
+  Worker* worker = FindWorkerFor(step);
+  if (worker == nullptr) {
+    return false;
+  }
+  if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
+    physics().PlaceInFixture(step.occurrence);
+    has_touched_[step.occurrence.index()] = true;
+    Update(step.occurrence);
+    ResultOf(step.occurrence).note = MakeNote(step.occurrence);
+    return true;
+  }
+  const bool is_refused = worker->person != nullptr && step.kind == SequenceStep::Kind::kInsert &&
+                          physics().FindMissingPartner(step).is_valid();
+  if (is_refused || IsDoneByAnother(step, *worker)) {
+    FinishStep(step, *worker);
+    return true;
+  }
+  return Begin(step, worker);
 }
 
 void AssemblyRun::Advance() {
@@ -320,23 +314,19 @@ void AssemblyRun::Advance() {
       FinishStep(*std::exchange(worker.step, nullptr), worker);
     }
   }
-  const auto& steps = simulation_->model().sequence.steps;
-  for (; next_step_ < std::min(end_step_, steps.size()); ++next_step_) {
-    const SequenceStep& step = steps[next_step_];
-    if (is_finished_[next_step_] || IsInPlaceAlready(step)) {
-      continue;
-    }
-    Worker* worker = FindWorkerFor(step);
-    if (worker == nullptr) {
-      return;
-    }
-    if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
-      physics_.PlaceInFixture(step.occurrence);
-      Update(step.occurrence);
-      ResultOf(step.occurrence).note = DescribeOverlaps(step.occurrence);
-    } else if (IsDoneByAnother(step, *worker)) {
-      FinishStep(step, *worker);
-    } else if (!Begin(step, worker)) {
+  const auto& steps = model().sequence.steps;
+  for (;;) {
+    const bool is_at_end = next_step_ >= std::min(end_step_, steps.size());
+    if (const SequenceStep* again = HasFreePerson() ? FindStepToRepeat(is_at_end) : nullptr) {
+      Worker* worker = FindWorkerFor(*again);
+      if (worker == nullptr || !Begin(*again, worker)) {
+        return;
+      }
+    } else if (is_at_end) {
+      break;
+    } else if (DoNext(steps[next_step_])) {
+      ++next_step_;
+    } else {
       return;
     }
   }
@@ -345,10 +335,6 @@ void AssemblyRun::Advance() {
   if (is_idle) {
     FinishAll();
   }
-}
-
-spatial::Pose StartOfHand(const Model& model) {
-  return spatial::Pose(model.centre_W + Vec3(0, 0, 1.1 * model.transfer_radius));
 }
 
 }  // namespace hvas::simulation

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "haptics/coupling_rule.h"
+#include "haptics/passivity_controller.h"
 #include "simulation/assembly_run.h"
 
 namespace hvas::simulation {
@@ -133,6 +134,13 @@ std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,
     notes.push_back("it senses deflections: the hand moves as fast as it is deflected");
   } else if (!can.senses_rotation) {
     notes.push_back("it senses no rotation: parts keep how they are turned");
+  }
+  const double delay = haptics::CalcDelayTicks(options.device, options.dt);
+  if (options.controls_passivity && delay > haptics::PassivityChannel::kMaxDelay) {
+    notes.push_back(fmt::format(
+        "its delay is {:.0f} ticks; the passivity controller takes it for {}, so that energy may "
+        "reach the hand unnoticed",
+        delay, haptics::PassivityChannel::kMaxDelay));
   }
   notes.push_back(
       fmt::format("1 mm of the device is {:.3g} mm of the scene", options.workspace.mapping.scale));

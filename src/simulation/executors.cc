@@ -111,6 +111,7 @@ class HapticLoop {
     hand.person->Apply(hand.last.F_H_D);
     report_->slowest.Add({t_ns_, i, compute_ns, hand.last.occurrence, hand.last.state,
                           hand.last.points_tested, hand.last.contact_count});
+    report_->contact_limits.Add(hand.last);
     if (execution_.log != nullptr) {
       execution_.log->SetComputeOfLast(compute_ns);
     }
@@ -170,6 +171,7 @@ class StatusTeller {
     now_.late_wake_ups = report.late_wake_ups;
     now_.overruns = report.overruns;
     now_.lost_events = simulation.lost_events();
+    now_.contact_limits = report.contact_limits;
     now_.effort_level = effort_level;
     status_->Write(now_);
     now_.wake_up = {};

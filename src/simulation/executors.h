@@ -40,6 +40,18 @@ class SlowTicks {
   std::size_t count_{0};
 };
 
+/** Counts of the ticks of a hand in which the room for contact did not suffice (docs/limits.md). */
+struct ContactLimits {
+  std::uint64_t truncated_ticks{0};  ///< Ticks with haptics::ContactAccount::is_truncated.
+  std::uint64_t crowded_ticks{0};    ///< Ticks with haptics::ContactAccount::is_crowded.
+
+  /** Counts a tick. RT-safe. */
+  void Add(const haptics::ContactAccount& account) noexcept {
+    truncated_ticks += account.is_truncated ? 1 : 0;
+    crowded_ticks += account.is_crowded ? 1 : 0;
+  }
+};
+
 /** What an executor measured. Times of compute are thread CPU times; wake-up is apart, because the
  host may steal either. */
 struct ExecutionReport {
@@ -54,6 +66,7 @@ struct ExecutionReport {
   std::uint64_t overruns{0};        ///< Compute alone took longer than a period.
   std::uint64_t missed_periods{0};  ///< Realtime only: passed over after a stall.
   std::uint64_t lost_events{0};     ///< Simulation::lost_events().
+  ContactLimits contact_limits;     ///< Ticks of all hands in which contact was incomplete.
   LatencyHistogram frame_age;       ///< Realtime only: of what is published, in session time.
   /** Realtime only: ticks by what had to be left out (kEffortLevels). */
   std::array<std::uint64_t, kEffortLevels.size()> ticks_at_level{};
@@ -69,6 +82,7 @@ struct LoopStatus {
   std::uint64_t late_wake_ups{0};
   std::uint64_t overruns{0};
   std::uint64_t lost_events{0};
+  ContactLimits contact_limits;  ///< Ticks since the beginning.
   int effort_level{0};
   bool is_fifo{false};  ///< Thread runs under SCHED_FIFO (RealtimeGrant).
   bool is_memory_locked{false};

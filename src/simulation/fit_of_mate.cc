@@ -9,13 +9,17 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "fits/actual_size.h"
 #include "fits/friction.h"
 #include "fits/iso286.h"
 #include "fits/materials.h"
+#include "product/names.h"
 
 namespace hvas::simulation {
 namespace {
+
+using product::FitKind;
 
 constexpr double kReferenceTemperature_c = 20;  // ISO 1
 constexpr double kThickestRatio = 0.95;         // of inner to outer radius that is believed
@@ -123,16 +127,6 @@ Result<Zones> FindZones(const std::string& code, double nominal) {
   return Zones{limits->hole, limits->shaft};
 }
 
-/** Actual diameter of one side at 20 C: measured, or drawn by chance from its zone, or as drawn in
- the file. Takes from `random` what the zone asks for even where a measured size makes it vain, so
- that what comes after is the same. */
-double ChooseDiameter(const std::optional<double>& measured,
-                      const std::optional<fits::Limits>& zone, double nominal, double drawn,
-                      Random* random) {
-  const double by_chance = zone ? nominal + fits::DrawDeviation(*zone, random) : drawn;
-  return measured.value_or(by_chance);
-}
-
 /** The diameter at the temperature that is stated; expansion is free and uniform. */
 double Expand(double diameter, const std::optional<double>& temperature_c,
               const product::Material& material) {
@@ -140,9 +134,24 @@ double Expand(double diameter, const std::optional<double>& temperature_c,
   return diameter * (1 + material.thermal_expansion * rise);
 }
 
+bool HasTemperature(const product::FitConditions& conditions) {
+  return conditions.hole_temperature_c || conditions.shaft_temperature_c;
+}
+
 bool HasSizes(const product::FitConditions& conditions) {
-  return conditions.hole_diameter || conditions.shaft_diameter || conditions.hole_temperature_c ||
-         conditions.shaft_temperature_c;
+  return !conditions.hole_diameters.empty() || !conditions.shaft_diameters.empty() ||
+         HasTemperature(conditions);
+}
+
+std::vector<fits::DiameterAtDepth> ListMeasured(
+    const std::vector<product::MeasuredDiameter>& measured,
+    const std::optional<double>& temperature_c, const product::Material& material) {
+  std::vector<fits::DiameterAtDepth> diameters;
+  diameters.reserve(measured.size());
+  for (const auto& [depth, diameter] : measured) {
+    diameters.push_back({depth, Expand(diameter, temperature_c, material)});
+  }
+  return diameters;
 }
 
 }  // namespace
@@ -152,11 +161,25 @@ fits::FrictionSurface SurfaceOf(const product::Material& material) {
   return match ? fits::SurfaceOf(match->material->group) : fits::FrictionSurface::kUnknown;
 }
 
+fits::FitKind ToFitsKind(product::FitKind kind) {
+  switch (kind) {
+    case FitKind::kInterference:
+      return fits::FitKind::kInterference;
+    case FitKind::kTransition:
+      return fits::FitKind::kTransition;
+    case FitKind::kClearance:
+    case FitKind::kThread:
+      break;
+  }
+  return fits::FitKind::kClearance;
+}
+
 std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& product,
                                                    const product::Mate& mate, std::uint64_t seed,
+                                                   fits::PairChoice pairs,
                                                    Diagnostics* diagnostics) {
   const product::FitConditions& conditions = mate.conditions;
-  if (!mate.fit || mate.fit->kind == product::FitKind::kThread ||
+  if (!mate.fit || mate.fit->kind == FitKind::kThread ||
       (mate.fit->code.empty() && !HasSizes(conditions))) {
     return nullptr;
   }
@@ -177,12 +200,10 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
   const product::Part& shaft = product.part_of(mate.b.occurrence);
   const product::Feature& hole_feature = hub.features[mate.a.feature.index()];
   const product::Feature& shaft_feature = shaft.features[mate.b.feature.index()];
-  parameters.hole_diameter = Expand(
-      ChooseDiameter(conditions.hole_diameter, zones->hole, nominal, 2 * mate.hole_radius, &random),
-      conditions.hole_temperature_c, hub.material);
-  parameters.shaft_diameter = Expand(ChooseDiameter(conditions.shaft_diameter, zones->shaft,
-                                                    nominal, 2 * mate.shaft_radius, &random),
-                                     conditions.shaft_temperature_c, shaft.material);
+  parameters.hole_diameters =
+      ListMeasured(conditions.hole_diameters, conditions.hole_temperature_c, hub.material);
+  parameters.shaft_diameters =
+      ListMeasured(conditions.shaft_diameters, conditions.shaft_temperature_c, shaft.material);
   parameters.friction = ChooseFriction(conditions.friction, hub.material, shaft.material);
   // The profile of the pair is the mean of the two: equal sides give their own.
   parameters.roughness = 0.5 * (conditions.hole_roughness.value_or(parameters.roughness) +
@@ -199,7 +220,23 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
   parameters.lead_in_angle =
       std::min(lead_in > 0 ? lead_in : FindChamferAngle(hub, hole_feature),
                kSteepestLeadIn * std::atan(1 / std::max(parameters.friction.in, 1e-12)));
-  parameters.seed = random.NextBits();
+  fits::PairToDraw pair;
+  pair.hole = {zones->hole, 2 * mate.hole_radius,
+               Expand(1, conditions.hole_temperature_c, hub.material)};
+  pair.shaft = {zones->shaft, 2 * mate.shaft_radius,
+                Expand(1, conditions.shaft_temperature_c, shaft.material)};
+  pair.kind = ToFitsKind(mate.fit->kind);
+  const bool has_kind = !mate.fit->code.empty() && !HasTemperature(conditions);
+  pair.choice = has_kind ? pairs : fits::PairChoice::kAny;
+  if (!fits::DrawPair(pair, &random, &parameters)) {
+    diagnostics->Note(
+        kFitNotShown, entity,
+        fmt::format("none of {} pairs drawn for {} at {:g} mm shows a {} fit along its length "
+                    "with a roughness of Rz {:g} um",
+                    fits::kMostPairsDrawn, mate.fit->code, units::ToMm(nominal),
+                    product::ToString(mate.fit->kind), units::ToUm(parameters.roughness)),
+        "state a smaller roughness or another fit");
+  }
   const auto force = fits::FitForce::Make(parameters);
   if (!force) {
     diagnostics->Warn("fit-undefined", entity, force.error().message,

@@ -6,6 +6,7 @@
 #include "base/diagnostics.h"
 #include "fits/fit_force.h"
 #include "fits/friction.h"
+#include "fits/pair_choice.h"
 #include "product/product.h"
 
 namespace hvas::simulation {
@@ -13,12 +14,18 @@ namespace hvas::simulation {
 /** What a part's surface is, by the standard material that its own was matched to. */
 [[nodiscard]] fits::FrictionSurface SurfaceOf(const product::Material& material);
 
+/** Code of the note about a fit whose kind no pair shows. */
+inline constexpr const char* kFitNotShown = "fit-not-shown";
+
+/** The kind of a fit, as the room `fits` calls it. @pre the fit is no thread. */
+[[nodiscard]] fits::FitKind ToFitsKind(product::FitKind kind);
+
 /** The fit of an axis-hole mate as forces over depth, from Mate::fit and Mate::conditions. Of each
  side:
 
  | | |
  |---|---|
- | diameter at 20 C | measured, or drawn by seed and mate from the zone of its class, or as drawn |
+ | diameter at 20 C | measured, or by seed, mate and choice of pairs from its class, or as drawn |
  | temperature T | times 1 + alpha (T - 20 C), alpha that of the part's material (free expansion) |
  | roughness Rz | stated, or the default; the pair has the mean of both |
  | elasticity | of the part's material |
@@ -27,10 +34,15 @@ namespace hvas::simulation {
  Friction is the stated coefficient for everything, or else that of the pair of materials: static to
  press in, to break loose and to turn, kinetic to slip outwards. A chamfer at an end of the shaft,
  or else of the hole, leads in. Null for planes, for threads, where neither a code nor a size is
- known, and, with a diagnostic, where the code or the size is not defined by the standard. */
+ known, and, with a diagnostic, where the code or the size is not defined by the standard.
+
+ Where sizes or surface are drawn again (fits::PairChoice) and none of kMostPairsDrawn pairs shows
+ the kind of the fit, the last one stays, with the note kFitNotShown. Nothing is drawn again where
+ a temperature is stated, which changes the kind on purpose. */
 [[nodiscard]] std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& product,
                                                                  const product::Mate& mate,
                                                                  std::uint64_t seed,
+                                                                 fits::PairChoice pairs,
                                                                  Diagnostics* diagnostics);
 
 }  // namespace hvas::simulation

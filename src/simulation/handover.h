@@ -8,6 +8,7 @@
 #include "base/ring.h"
 #include "base/triple_buffer.h"
 #include "contact/scene.h"
+#include "haptics/contact_step.h"
 #include "haptics/free_bodies.h"
 #include "haptics/tick_output.h"
 #include "simulation/simulation_event.h"
@@ -29,6 +30,8 @@ struct HandReport {
   haptics::TickOutput out;
   std::array<MovingPart, haptics::FreeBodies::kMaxAwake> moving;
   std::size_t moving_count{0};
+  std::array<MovingPart, haptics::ContactStep::kMaxTurned> turned;  ///< Fasteners under a tool.
+  std::size_t turned_count{0};
 };
 
 /** Everything that passes between the haptic and the physics loop, without a lock. */
@@ -55,8 +58,8 @@ class Handover {
   [[nodiscard]] bool TryPopEvent(SimulationEvent* event) noexcept { return events_.TryPop(event); }
 
   Ring<TickCommand> commands;  ///< Written by physics, read by haptics.
-  std::deque<TripleBuffer<HandReport>>
-      reports;  ///< Written by haptics, read by physics; one for each hand.
+  /** Written by haptics, read by physics; one for each hand. */
+  std::deque<TripleBuffer<HandReport>> reports;
   std::atomic<std::int64_t> physics_t_ns{0};         ///< Session time that physics has seen.
   std::atomic<std::uint64_t> lost_safety_events{0};  ///< Counted by the haptic loop.
 

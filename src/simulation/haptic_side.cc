@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "simulation/fit_of_mate.h"
 #include "simulation/load_shedder.h"
 
 namespace hvas::simulation {
@@ -20,18 +21,34 @@ HapticSide::HapticSide(const Model& model, const haptics::TickOptions* options, 
     for (Hand& hand : hands_) {
       hand.tick.SetProperties(id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
                                    SurfaceOf(model.product->part_of(body.occurrence).material)});
-      hand.tick.SetLoose(id, true);
+      hand.tick.SetLoose(id, body.role != BodyRole::kFixture);
+    }
+  }
+  for (const product::ContactPair& pair : model.product->contact_pairs) {
+    const auto find = [&model](product::OccurrenceId id) {
+      const auto body = std::find_if(model.bodies.begin(), model.bodies.end(),
+                                     [id](const Body& item) { return item.occurrence == id; });
+      return contact::BodyId(static_cast<std::size_t>(body - model.bodies.begin()));
+    };
+    for (Hand& hand : hands_) {
+      hand.tick.SetPair({find(pair.a), find(pair.b), pair.compliance, pair.friction});
     }
   }
   scene_.SetGround(model.table_z);
 }
 
-void HapticSide::Restore(const std::vector<PartState>& parts) {
+void HapticSide::Restore(const std::vector<PartState>& parts,
+                         const std::vector<const haptics::RigidGroup*>& together) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const contact::BodyId id(i);
     scene_.SetPose(id, parts[i].X_WB);
     for (Hand& hand : hands_) {
       hand.tick.SetLoose(id, parts[i].placement == Placement::kLoose);
+    }
+  }
+  for (const haptics::RigidGroup* group : together) {
+    for (Hand& hand : hands_) {
+      hand.tick.Join(*group);
     }
   }
 }
@@ -66,6 +83,9 @@ void HapticSide::ApplyTake(const TickCommand& command, std::int64_t t_ns) noexce
     for (const contact::BodyId body : command.part->bodies) {
       other->tick.SetLoose(body, false);
     }
+    if (command.part->left_behind != nullptr) {
+      other->tick.Join(*command.part->left_behind);
+    }
   } else {
     hand.tick.Take(command.part);
   }
@@ -87,7 +107,12 @@ void HapticSide::ApplyTake(const TickCommand& command, std::int64_t t_ns) noexce
 void HapticSide::LetGo(Hand* hand, std::int64_t t_ns) noexcept {
   const haptics::HeldPart& part = *hand->tick.held();
   const haptics::LetGo let_go = hand->tick.Drop();
-  if (Hand* other = FindOther(*hand); other != nullptr && let_go.is_falling) {
+  const haptics::RigidGroup* together =
+      let_go.joined != nullptr || !let_go.is_falling ? let_go.joined : part.group.get();
+  Hand* other = FindOther(*hand);
+  if (other != nullptr && together != nullptr) {
+    other->tick.Join(*together);
+  } else if (other != nullptr && let_go.is_falling) {
     other->tick.SetLoose(part.body, true);
   }
   hand->metrics.arrival = let_go.arrival.d_W.norm();
@@ -99,7 +124,10 @@ void HapticSide::LetGo(Hand* hand, std::int64_t t_ns) noexcept {
   event.occurrence = part.occurrence;
   event.state = haptics::HoldState::kEmpty;
   event.X_WB = let_go.X_WB;
-  event.was_seated = let_go.is_in_place;
+  event.was_seated = let_go.is_in_place && let_go.joined == nullptr;
+  if (let_go.joined != nullptr) {
+    event.onto = product::OccurrenceId(let_go.joined->leader().index());
+  }
   event.to_place = let_go.to_place;
   event.metrics = hand->metrics;
   handover_.PushOwnership(event);
@@ -160,9 +188,16 @@ haptics::TickOutput HapticSide::RunTick(Hand* hand, const device::DeviceState& d
   }
   UpdateMetrics(hand, device.t_ns, out);
   ReportChanges(hand, device, out);
-  HandReport report{device.t_ns, device.is_gripping && device.is_valid, out, {}, 0};
+  HandReport report;
+  report.t_ns = device.t_ns;
+  report.is_gripping = device.is_gripping && device.is_valid;
+  report.out = out;
   for (const haptics::FreeBody& body : hand->tick.awake()) {
     report.moving[report.moving_count++] = {body.id, body.X_WB};
+  }
+  for (const haptics::TurnedFastener& turned : hand->tick.turned()) {
+    const contact::BodyId body = turned.drive->body;
+    report.turned[report.turned_count++] = {body, scene_.pose(body)};
   }
   handover_.reports[hand->index].Write(report);
   return out;

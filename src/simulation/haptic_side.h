@@ -39,8 +39,10 @@ class HapticSide {
   /** Keeps in `log` what goes into the ticks. Only before the loops run. */
   void KeepLog(TickLog* log) { log_ = log; }
 
-  /** Goes on from where all parts were. Only before the loops run. */
-  void Restore(const std::vector<PartState>& parts);
+  /** Goes on from where all parts were. Only before the loops run.
+   @param together  Loose parts that are together; they outlive this object. */
+  void Restore(const std::vector<PartState>& parts,
+               const std::vector<const haptics::RigidGroup*>& together);
 
   /** Runs tick i of a log again, with the commands that came before it; ticks in their order, on a
    simulation that did nothing else. */

@@ -5,10 +5,12 @@
 #include <limits>
 #include <utility>
 
+#include "base/units.h"
 #include "fits/paper_scales.h"
 #include "mates/capture.h"
 #include "mates/resolve.h"
 #include "simulation/fit_of_mate.h"
+#include "simulation/tool_reach.h"
 
 namespace hvas::simulation {
 namespace {
@@ -16,29 +18,44 @@ namespace {
 using product::MateKind;
 using product::OccurrenceId;
 
-constexpr double kApproach = 0.01;   // [m] before its place, where a part's mates are resolved from
-constexpr double kStopCosine = 0.5;  // a plane facing the way in ends it; one along it guides
+constexpr double kApproach = 0.01;  // [m] before its place, where a part's mates are resolved from
 
-double PaperFactorOf(const product::Mate& mate) {
-  if (!mate.fit || mate.fit->kind == product::FitKind::kThread) {
-    return 1;
-  }
-  switch (mate.fit->kind) {
-    case product::FitKind::kInterference:
-      return fits::FindPaperScale(fits::FitKind::kInterference).factor;
-    case product::FitKind::kTransition:
-      return fits::FindPaperScale(fits::FitKind::kTransition).factor;
-    default:
-      return fits::FindPaperScale(fits::FitKind::kClearance).factor;
-  }
+/** The mate by which the hand is guided onto a fastener's axis. It answers for no faces: contact
+ stays, and turns the fastener. */
+haptics::HeldMate MakeDriveMate(const ToolMate& mate, OccurrenceId fastener,
+                                const spatial::Pose& X_WF) {
+  static const auto no_faces = std::make_shared<const haptics::MateFaces>();
+  const auto frame = [](const Vec3& z, const Vec3& p) {
+    return spatial::Pose(spatial::FrameFromZ(z), p);
+  };
+  haptics::HeldMate held;
+  held.X_WM = X_WF * frame(mate.fastener.axis_B, mate.fastener.origin_B);
+  held.X_BN = frame(-mate.tool.axis_B, mate.tool.origin_B);
+  held.capture.kind = MateKind::kAxisHole;
+  held.capture.placed_high = mate.fastener.depth;
+  held.capture.held_low = -mate.tool.depth;
+  held.radius = 0.5 * mate.fastener.width;
+  held.body = contact::BodyId(fastener.index());
+  held.held_faces = no_faces;
+  held.placed_faces = no_faces;
+  return held;
 }
 
 }  // namespace
 
-std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep& step) const {
+bool IsStop(const product::Mate& mate, const Vec3& axis_W, const Vec3& insertion_W) {
+  constexpr double kStopCosine = 0.5;  // A plane along the way in guides.
+  return mate.kind == MateKind::kFaceFace && std::abs(axis_W.dot(insertion_W)) > kStopCosine;
+}
+
+std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep& step,
+                                                             bool can_join) {
   const OccurrenceId id = step.occurrence;
   const Body& body = model_.bodies[id.index()];
+  const PartState& state = parts_[id.index()];
   const dynamics::MassProperties mass = CombineMass(model_, step);
+  const bool is_on_table = state.leader.is_valid() && state.placement == Placement::kLoose;
+  const bool is_table_group = state.leader.is_valid() && !step.members.empty();
   auto held = std::make_shared<haptics::HeldPart>();
   held->occurrence = id;
   held->body = contact::BodyId(id.index());
@@ -47,10 +64,12 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
   held->p_BoBcm_B = mass.p_BoBcm_B;
   held->I_BBcm_B = mass.I_BBcm_B;
   held->surface = SurfaceOf(model_.product->part_of(id).material);
-  held->falls_when_dropped = step.members.empty() && step.kind != SequenceStep::Kind::kPark;
-  held->starts_in_place = step.kind == SequenceStep::Kind::kRemove;
-  const bool lies_on_table = step.members.empty() && !held->starts_in_place;
-  held->X_WB_start = lies_on_table ? CalcPoseAboveTable(id) : parts_[id.index()].X_WB;
+  held->falls_when_dropped =
+      (step.members.empty() || is_table_group) && step.kind != SequenceStep::Kind::kPark;
+  held->starts_in_place = step.kind == SequenceStep::Kind::kRemove && !is_on_table;
+  const bool lies_on_table =
+      is_on_table ? is_table_group : step.members.empty() && !held->starts_in_place;
+  held->X_WB_start = lies_on_table ? CalcPoseAboveTable(step) : state.X_WB;
   held->insertion_W = -step.extraction_W;
   held->left_out = ListLeftOut(id, step);
   AddMembers(step, held.get());
@@ -62,16 +81,64 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
     held->X_WB_goal = {body.X_WB_goal.q(), body.X_WB_goal.p() + step.offset_W};
     return held;
   }
-  for (std::size_t member = 0; member <= step.members.size(); ++member) {
-    AddMates(step, member, held.get());
-  }
-  held->lacks_partners = held->mates.empty() && FindMissingPartner(step).is_valid();
-  if (held->starts_in_place) {
-    held->X_WB_goal = held->X_WB_start;
+  if (body.role == BodyRole::kTool) {
+    held->lacks_partners = true;
+    AddDrives(step, held.get());
     return held;
   }
-  held->X_WB_goal = CalcPlace(*held);
+  if (is_table_group) {
+    held->group = GroupOf(ListTogether(parts_, id));
+  }
+  AddMates(step, Placement::kPlaced, nullptr, held.get());
+  held->lacks_partners = held->mates.empty() && FindMissingPartner(step).is_valid();
+  held->X_WB_goal = held->starts_in_place ? held->X_WB_start : CalcPlace(*held);
+  if (can_join) {
+    AddTablePlaces(step, held.get());
+  }
   return held;
+}
+
+void HeldPartMaker::AddTablePlaces(const SequenceStep& step, haptics::HeldPart* held) {
+  constexpr double kRoom =
+      0.03;  // [m] from where the target stands still before it is met: a choice
+  std::vector<OccurrenceId> taken{step.occurrence};
+  taken.insert(taken.end(), step.members.begin(), step.members.end());
+  const auto reach_of = [this](const std::vector<OccurrenceId>& ids) {
+    double reach = 0;
+    for (const OccurrenceId id : ids) {
+      reach += model_.bodies[id.index()].shape->box_B().size().norm();
+    }
+    return reach;
+  };
+  const haptics::HeldPart in_product = *held;
+  for (const TablePlace& place : ListTablePlaces(model_, parts_, step)) {
+    auto there = std::make_shared<haptics::HeldPart>(in_product);
+    there->mates.clear();
+    there->lacks_partners = false;
+    there->insertion_W = place.insertion_W;
+    there->X_WB_goal = place.X_WB_goal;
+    there->starts_in_place = place.starts_in_place;
+    there->target = GroupOf(place.target);
+    there->X_WT_target = parts_[place.target.front().index()].X_WB;
+    there->target_range = reach_of(taken) + reach_of(place.target) + kRoom;
+    std::vector<OccurrenceId> all = place.target;
+    all.insert(all.end(), taken.begin(), taken.end());
+    std::sort(all.begin() + 1, all.end());
+    there->joined = GroupOf(all);
+    AddMates(step, Placement::kLoose, &place.target, there.get());
+    if (place.starts_in_place && place.target.size() > 1) {
+      held->left_behind = there->target;
+    }
+    held->table_places.push_back(std::move(there));
+  }
+}
+
+void HeldPartMaker::AddMates(const SequenceStep& step, Placement placement,
+                             const std::vector<OccurrenceId>* target,
+                             haptics::HeldPart* held) const {
+  for (std::size_t member = 0; member <= step.members.size(); ++member) {
+    AddMatesOf(step, member, placement, target, held);
+  }
 }
 
 spatial::Pose HeldPartMaker::CalcPlace(const haptics::HeldPart& held) const {
@@ -88,6 +155,38 @@ spatial::Pose HeldPartMaker::CalcPlace(const haptics::HeldPart& held) const {
   return mates::ResolveToward(constraints, X_before, X_WB_drawn).X_WB;
 }
 
+void HeldPartMaker::AddDrives(const SequenceStep& step, haptics::HeldPart* held) const {
+  const Body& tool = model_.bodies[step.occurrence.index()];
+  if (tool.role != BodyRole::kTool) {
+    return;
+  }
+  // It has no place to go to: one far away, at the same height, which it never reaches.
+  constexpr double kFarAway = 100;  // [m]
+  held->insertion_W = Vec3::UnitX();
+  held->X_WB_goal = {held->X_WB_start.q(), held->X_WB_start.p() + kFarAway * Vec3::UnitX()};
+  for (const Body& fastener : model_.bodies) {
+    const PartState& state = parts_[fastener.occurrence.index()];
+    if (fastener.role != BodyRole::kPart || state.placement != Placement::kPlaced) {
+      continue;
+    }
+    const auto mates = ListToolMates(fastener.drives, tool.drives);
+    if (mates.empty()) {
+      continue;
+    }
+    for (const ToolMate& mate : mates) {
+      held->mates.push_back(MakeDriveMate(mate, fastener.occurrence, state.X_WB));
+    }
+    haptics::HeldDrive drive;
+    drive.body = contact::BodyId(fastener.occurrence.index());
+    drive.X_WB_seat = fastener.X_WB_goal;
+    drive.p_WQ = fastener.X_WB_goal * mates.front().fastener.origin_B;
+    drive.axis_W = fastener.X_WB_goal.q() * -mates.front().fastener.axis_B;
+    drive.travel = FindLead(model_.product->part_of(fastener.occurrence)) / units::kTurn;
+    drive.torque = model_.accessories.fastener_torque;
+    held->drives.push_back(drive);
+  }
+}
+
 void HeldPartMaker::AddMembers(const SequenceStep& step, haptics::HeldPart* held) const {
   const spatial::Pose X_BW = model_.bodies[step.occurrence.index()].X_WB_goal.Inverse();
   for (const OccurrenceId id : step.members) {
@@ -101,8 +200,9 @@ void HeldPartMaker::AddMembers(const SequenceStep& step, haptics::HeldPart* held
   }
 }
 
-void HeldPartMaker::AddMates(const SequenceStep& step, std::size_t member,
-                             haptics::HeldPart* held) const {
+void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Placement placement,
+                               const std::vector<OccurrenceId>* target,
+                               haptics::HeldPart* held) const {
   const OccurrenceId id = member == 0 ? step.occurrence : step.members[member - 1];
   const spatial::Pose X_BS = member == 0 ? spatial::Pose() : held->members[member - 1].X_BS;
   for (const product::MateId mate_id : model_.mates_of[id.index()]) {
@@ -113,7 +213,9 @@ void HeldPartMaker::AddMates(const SequenceStep& step, std::size_t member,
     const bool is_own =
         other == step.occurrence ||
         std::find(step.members.begin(), step.members.end(), other) != step.members.end();
-    if (is_own || parts_[other.index()].placement != Placement::kPlaced) {
+    const bool is_meant =
+        target == nullptr || std::find(target->begin(), target->end(), other) != target->end();
+    if (is_own || !is_meant || parts_[other.index()].placement != placement) {
       continue;
     }
     const mates::MateConstraint constraint =
@@ -125,10 +227,14 @@ void HeldPartMaker::AddMates(const SequenceStep& step, std::size_t member,
     entry.member = member;
     entry.capture = mates::MakeCaptureMate(mate, id);
     entry.radius = mate.hole_radius;
-    const double facing = std::abs((constraint.X_WM.q() * Vec3::UnitZ()).dot(held->insertion_W));
-    entry.is_stop = mate.kind == MateKind::kFaceFace && facing > kStopCosine;
+    entry.is_stop = IsStop(mate, constraint.X_WM.q() * Vec3::UnitZ(), held->insertion_W);
+    if (mate.kind == MateKind::kFaceFace && !entry.is_stop) {
+      entry.capture.reach += step.engage_distance;  // A wall guides from where the way in begins.
+    }
     entry.fit = compiled.fit;
-    entry.paper_factor = PaperFactorOf(mate);
+    if (mate.fit && mate.fit->kind != product::FitKind::kThread) {
+      entry.fit_kind = ToFitsKind(mate.fit->kind);
+    }
     entry.body = contact::BodyId(other.index());
     entry.held_faces = is_a ? compiled.faces_a : compiled.faces_b;
     entry.placed_faces = is_a ? compiled.faces_b : compiled.faces_a;
@@ -153,14 +259,19 @@ std::vector<contact::BodyId> HeldPartMaker::ListLeftOut(OccurrenceId id,
   return bodies;
 }
 
-spatial::Pose HeldPartMaker::CalcPoseAboveTable(OccurrenceId id) const {
+spatial::Pose HeldPartMaker::CalcPoseAboveTable(const SequenceStep& step) const {
   // Free bodies are hulls with few corners; the exact shape may reach a little below the table.
   constexpr double kGap = 10e-6;  // [m]
-  const spatial::Pose& X_WB = parts_[id.index()].X_WB;
+  const spatial::Pose& X_WB = parts_[step.occurrence.index()].X_WB;
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Vec3& vertex : model_.product->part_of(id).mesh.vertices) {
-    lowest = std::min(lowest, (X_WB * vertex).z());
-  }
+  const auto add = [&](OccurrenceId id) {
+    const spatial::Pose& X_WS = parts_[id.index()].X_WB;
+    for (const Vec3& vertex : model_.product->part_of(id).mesh.vertices) {
+      lowest = std::min(lowest, (X_WS * vertex).z());
+    }
+  };
+  add(step.occurrence);
+  std::for_each(step.members.begin(), step.members.end(), add);
   const double lift = std::max(0.0, model_.table_z + kGap - lowest);
   return {X_WB.q(), X_WB.p() + Vec3(0, 0, lift)};
 }
@@ -183,18 +294,25 @@ OccurrenceId HeldPartMaker::FindMissingPartner(const SequenceStep& step) const {
            std::find(step.members.begin(), step.members.end(), id) != step.members.end();
   };
   OccurrenceId missing;
+  const auto is_held_by = [&](OccurrenceId other) {
+    if (is_own(other) || parts_[other.index()].placement == Placement::kPlaced) {
+      return !is_own(other);
+    }
+    missing = missing.is_valid() || !is_before(other) ? missing : other;
+    return false;
+  };
   for (std::size_t i = 0; i <= step.members.size(); ++i) {
     const OccurrenceId id = i == 0 ? step.occurrence : step.members[i - 1];
+    // Partners of mates come first, so that the one that is missing is one of them if possible.
     for (const product::MateId mate_id : model_.mates_of[id.index()]) {
       const product::Mate& mate = model_.product->mates[mate_id.index()];
-      const OccurrenceId other = mate.a.occurrence == id ? mate.b.occurrence : mate.a.occurrence;
-      if (is_own(other) || !is_before(other)) {
-        continue;
-      }
-      if (parts_[other.index()].placement == Placement::kPlaced) {
+      if (is_held_by(mate.a.occurrence == id ? mate.b.occurrence : mate.a.occurrence)) {
         return {};
       }
-      missing = missing.is_valid() ? missing : other;
+    }
+    const std::vector<OccurrenceId>& touching = model_.sequence.neighbours[id.index()];
+    if (std::any_of(touching.begin(), touching.end(), is_held_by)) {
+      return {};
     }
   }
   return missing;

@@ -23,86 +23,69 @@ struct Template {
   Curve variance;  // [N^2]
 };
 
-/** True where the pair is what its class is called. */
-bool IsOfKind(const fits::FitForce& fit, fits::FitKind kind) {
-  const auto [least, most] = std::minmax_element(fit.clearances().begin(), fit.clearances().end());
-  switch (kind) {
-    case fits::FitKind::kClearance:
-      return *least > 0;
-    case fits::FitKind::kInterference:
-      return *most < 0;
-    case fits::FitKind::kTransition:
-      break;
-  }
-  return *least < 0 && *most > 0;
+/** Draws pairs of a fit with the size and length of paper W's rig. */
+PairSource MakeRigSource(const char* name, fits::PairChoice choice) {
+  // Names of this file, at a size that the standard has.
+  const fits::FitLimits limits =
+      *fits::CalcFitLimits(*fits::ParseFit(name), fits::kPaperRig.diameter);
+  fits::PairToDraw pair;
+  pair.hole.zone = limits.hole;
+  pair.shaft.zone = limits.shaft;
+  pair.kind = limits.kind;
+  pair.choice = choice;
+  return [pair](std::uint64_t seed) {
+    Random random(seed);
+    fits::FitForceParameters parameters;
+    parameters.nominal_diameter = fits::kPaperRig.diameter;
+    parameters.length = fits::kPaperRig.length;
+    static_cast<void>(fits::DrawPair(pair, &random, &parameters));
+    // Sizes of standard classes are in the range of every parameter.
+    return ShownPair{std::make_shared<fits::FitForce>(*fits::FitForce::Make(parameters)),
+                     pair.kind};
+  };
 }
 
-/** Draws what is shown, and what is perceived of it. */
-class Experiment {
+/** What is perceived of a pair, and what training leaves of it. */
+class Perception {
  public:
-  explicit Experiment(const IdentificationOptions& options)
-      : options_(options), random_(options.seed) {
-    for (const char* name : kShownFitNames) {
-      // Both are constants of this file's.
-      limits_.push_back(*fits::CalcFitLimits(*fits::ParseFit(name), fits::kPaperRig.diameter));
-      kinds_.push_back(limits_.back().kind);
-    }
-  }
+  explicit Perception(const ObserverOptions& options) : options_(options), random_(options.seed) {}
 
   /** What the observer perceives of one insertion; `felt_end` is what is shown at full depth. */
-  Curve Perceive(int shown, double* felt_end) {
-    const fits::FitForce fit = DrawFit(static_cast<std::size_t>(shown));
-    const fits::FitKind kind = kinds_[static_cast<std::size_t>(shown)];
+  Curve Perceive(const ShownPair& pair, double* felt_end) {
+    const fits::FitForce& fit = *pair.fit;
     const double beside = std::hypot(random_.Normal(), random_.Normal()) * options_.aim_error;
     const double bias = 1 + options_.observer.weber * random_.Normal();
     const auto felt = [&](double depth) {
       const double side = options_.friction * options_.coupling_stiffness *
                           std::max(0.0, beside - fit.CalcRadialPlay(depth));
-      return CalcFeltForce(fit, kind, depth, side, options_.map, options_.device);
+      return CalcFeltForce(fit, pair.kind, depth, side, options_.map, options_.device,
+                           options_.paper_factors);
     };
     Curve curve;
     for (int i = 0; i < options_.observer.looks; ++i) {
-      const double f = felt(fits::kPaperRig.length * (i + 0.5) / options_.observer.looks);
+      const double f = felt(fit.length() * (i + 0.5) / options_.observer.looks);
       curve.push_back(bias * f + std::sqrt(CalcVariance(f * f)) * random_.Normal());
     }
-    *felt_end = felt(fits::kPaperRig.length);
+    *felt_end = felt(fit.length());
     return curve;
   }
 
-  std::array<Template, kShownFits> Train() {
-    std::array<Template, kShownFits> templates;
+  Template Learn(const PairSource& source) {
+    Template t;
     double ignored = 0;
-    for (int shown = 0; shown < kShownFits; ++shown) {
-      Template& t = templates[static_cast<std::size_t>(shown)];
-      t.mean.assign(static_cast<std::size_t>(options_.observer.looks), 0.0);
-      t.variance = t.mean;
-      for (int i = 0; i < options_.training; ++i) {
-        const Curve curve = Perceive(shown, &ignored);
-        for (std::size_t k = 0; k < curve.size(); ++k) {
-          t.mean[k] += curve[k] / options_.training;
-          t.variance[k] += curve[k] * curve[k] / options_.training;
-        }
-      }
-      for (std::size_t k = 0; k < t.mean.size(); ++k) {
-        t.variance[k] = std::max(CalcVariance(0), t.variance[k] - t.mean[k] * t.mean[k]);
-      }
-    }
-    return templates;
-  }
-
-  /** Of the nearest template, in units of how far its curves stray. */
-  [[nodiscard]] std::size_t Answer(const Curve& curve,
-                                   const std::array<Template, kShownFits>& templates) const {
-    std::array<double, kShownFits> distance{};
-    for (std::size_t j = 0; j < templates.size(); ++j) {
-      const Template& t = templates[j];
+    t.mean.assign(static_cast<std::size_t>(options_.observer.looks), 0.0);
+    t.variance = t.mean;
+    for (int i = 0; i < options_.training; ++i) {
+      const Curve curve = Perceive(source(random_.NextBits()), &ignored);
       for (std::size_t k = 0; k < curve.size(); ++k) {
-        const double d = curve[k] - t.mean[k];
-        distance[j] += d * d / t.variance[k] + std::log(t.variance[k]);
+        t.mean[k] += curve[k] / options_.training;
+        t.variance[k] += curve[k] * curve[k] / options_.training;
       }
     }
-    return static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) -
-                                    distance.begin());
+    for (std::size_t k = 0; k < t.mean.size(); ++k) {
+      t.variance[k] = std::max(CalcVariance(0), t.variance[k] - t.mean[k] * t.mean[k]);
+    }
+    return t;
   }
 
  private:
@@ -112,54 +95,37 @@ class Experiment {
     return o.weber * o.weber * square + o.threshold * o.threshold;
   }
 
-  fits::FitForce DrawFit(std::size_t shown) {
-    const fits::FitLimits& limits = limits_[shown];
-    for (;;) {
-      fits::FitForceParameters p;
-      p.nominal_diameter = fits::kPaperRig.diameter;
-      p.length = fits::kPaperRig.length;
-      p.hole_diameter = p.shaft_diameter = fits::kPaperRig.diameter;
-      if (options_.sizes != ShownSizes::kOnePair) {
-        p.hole_diameter += fits::DrawDeviation(limits.hole, &random_);
-        p.shaft_diameter += fits::DrawDeviation(limits.shaft, &random_);
-      } else if (kinds_[shown] != fits::FitKind::kTransition) {
-        p.hole_diameter += 0.5 * (limits.hole.lower + limits.hole.upper);
-        p.shaft_diameter += 0.5 * (limits.shaft.lower + limits.shaft.upper);
-      }
-      p.seed = random_.NextBits();
-      // Sizes of standard classes are in the range of every parameter.
-      fits::FitForce fit = *fits::FitForce::Make(p);
-      if (options_.sizes != ShownSizes::kOfKind || IsOfKind(fit, kinds_[shown])) {
-        return fit;
-      }
-    }
-  }
-
-  IdentificationOptions options_;
+  ObserverOptions options_;
   Random random_;
-  std::vector<fits::FitLimits> limits_;
-  std::vector<fits::FitKind> kinds_;
 };
 
-Result<void> Check(const IdentificationOptions& o) {
-  const auto fail = [](const char* what, double value, const char* range) {
-    return Fail(ErrorCode::kInvalid, fmt::format("{} is {:g}, but must be {}", what, value, range),
-                "identification", "give a number in that range");
-  };
-  if (o.trials < 1 || o.trials > 1'000'000) {
-    return fail("the number of trials", o.trials, "1 to 1,000,000");
+/** Distance of a curve to a template, in units of how far the template's curves stray. */
+double CalcDistance(const Curve& curve, const Template& t) {
+  double distance = 0;
+  for (std::size_t k = 0; k < curve.size(); ++k) {
+    const double d = curve[k] - t.mean[k];
+    distance += d * d / t.variance[k] + std::log(t.variance[k]);
   }
+  return distance;
+}
+
+Result<void> FailRange(const char* what, double value, const char* range) {
+  return Fail(ErrorCode::kInvalid, fmt::format("{} is {:g}, but must be {}", what, value, range),
+              "identification", "give a number in that range");
+}
+
+Result<void> Check(const ObserverOptions& o) {
   if (o.training < 1 || o.training > 1'000'000) {
-    return fail("the number of insertions in training", o.training, "1 to 1,000,000");
+    return FailRange("the number of insertions in training", o.training, "1 to 1,000,000");
   }
   if (o.observer.looks < 1 || o.observer.looks > 1000) {
-    return fail("the number of looks", o.observer.looks, "1 to 1000");
+    return FailRange("the number of looks", o.observer.looks, "1 to 1000");
   }
   if (!(o.observer.weber >= 0 && o.observer.weber < 1)) {
-    return fail("the observer's Weber fraction", o.observer.weber, "at least 0 and below 1");
+    return FailRange("the observer's Weber fraction", o.observer.weber, "at least 0 and below 1");
   }
   if (!(o.observer.threshold > 0 && std::isfinite(o.observer.threshold))) {
-    return fail("the observer's threshold [N]", o.observer.threshold, "over 0");
+    return FailRange("the observer's threshold [N]", o.observer.threshold, "over 0");
   }
   return {};
 }
@@ -186,21 +152,25 @@ ShareInterval CalcShareInterval(int right, int trials) noexcept {
 
 double CalcFeltForce(const fits::FitForce& fit, fits::FitKind kind, double depth,
                      double side_friction, haptics::ForceMapKind map,
-                     const device::DeviceProfile& device) {
+                     const device::DeviceProfile& device, const haptics::PaperFactors& factors) {
   const double force = fit.CalcAxialResistance(depth);
   if (map == haptics::ForceMapKind::kPaper) {
-    return std::min(fits::FindPaperScale(kind).factor * force + side_friction,
+    return std::min(factors.Of(kind) * force + side_friction,
                     haptics::kLargestFeltShare * device.max_force);
   }
   return haptics::MakeForceMap(device).Felt(force + side_friction);
 }
 
 struct FitObserver::State {
-  explicit State(const IdentificationOptions& options)
-      : experiment(options), templates(experiment.Train()) {}
+  State(const ObserverOptions& options, const std::vector<PairSource>& alternatives)
+      : perception(options) {
+    for (const PairSource& source : alternatives) {
+      templates.push_back(perception.Learn(source));
+    }
+  }
 
-  Experiment experiment;
-  std::array<Template, kShownFits> templates;
+  Perception perception;
+  std::vector<Template> templates;
 };
 
 FitObserver::FitObserver(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -209,27 +179,42 @@ FitObserver::FitObserver(FitObserver&&) noexcept = default;
 FitObserver& FitObserver::operator=(FitObserver&&) noexcept = default;
 FitObserver::~FitObserver() = default;
 
-Result<FitObserver> FitObserver::Train(const IdentificationOptions& options) {
+Result<FitObserver> FitObserver::Train(const ObserverOptions& options,
+                                       const std::vector<PairSource>& alternatives) {
   if (Result<void> check = Check(options); !check) {
     return Unexpected(check.error());
   }
-  return FitObserver(std::make_unique<State>(options));
+  return FitObserver(std::make_unique<State>(options, alternatives));
 }
 
-int FitObserver::Answer(int shown, double* felt_end) {
+std::size_t FitObserver::Answer(const ShownPair& pair, double* felt_end) {
   double end = 0;
-  const Curve curve = state_->experiment.Perceive(shown, &end);
+  const Curve curve = state_->perception.Perceive(pair, &end);
   if (felt_end != nullptr) {
     *felt_end = end;
   }
-  return static_cast<int>(state_->experiment.Answer(curve, state_->templates));
+  const auto& templates = state_->templates;
+  const auto nearest =
+      std::min_element(templates.begin(), templates.end(), [&](const auto& a, const auto& b) {
+        return CalcDistance(curve, a) < CalcDistance(curve, b);
+      });
+  return static_cast<std::size_t>(nearest - templates.begin());
 }
 
 Result<Identification> Identify(const IdentificationOptions& options) {
-  auto observer = FitObserver::Train(options);
+  if (options.trials < 1 || options.trials > 1'000'000) {
+    return Unexpected(FailRange("the number of trials", options.trials, "1 to 1,000,000").error());
+  }
+  std::vector<PairSource> sources;
+  sources.reserve(kShownFitNames.size());
+  for (const char* name : kShownFitNames) {
+    sources.push_back(MakeRigSource(name, options.pairs));
+  }
+  auto observer = FitObserver::Train(options, sources);
   if (!observer) {
     return Unexpected(observer.error());
   }
+  Random random(~options.seed);  // not the stream of the observer
   Identification result;
   for (int shown = 0; shown < kShownFits; ++shown) {
     const auto i = static_cast<std::size_t>(shown);
@@ -237,8 +222,8 @@ Result<Identification> Identify(const IdentificationOptions& options) {
     double squares = 0;
     for (int trial = 0; trial < options.trials; ++trial) {
       double felt_end = 0;
-      const int answered = observer->Answer(shown, &felt_end);
-      ++result.counts[i][static_cast<std::size_t>(answered)];
+      const std::size_t answered = observer->Answer(sources[i](random.NextBits()), &felt_end);
+      ++result.counts[i][answered];
       sum += felt_end;
       squares += felt_end * felt_end;
     }

@@ -2,11 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "base/result.h"
 #include "fits/fit_force.h"
 #include "fits/iso286.h"
+#include "fits/pair_choice.h"
 #include "haptics/options.h"
 
 /** Blind identification of fits (W12) by a simulated observer, to compare ways of showing forces
@@ -34,26 +37,31 @@ struct Observer {
   int looks{10};  ///< Looks at the force of one insertion, evenly over the depth, 1 to 1000.
 };
 
-/** Which pairs of parts are shown. Their surfaces are drawn anew every time. */
-enum class ShownSizes {
-  kOnePair,  ///< One pair of each fit, as in paper W: in mid zone; H7/k6: hole and shaft of one
-             ///< size.
-  kOfKind,   ///< Drawn from the zones until they are what their class is called: S > 0 throughout,
-             ///< S < 0 throughout, or both, as paper W, 3.3, assumes of transition fits.
-  kAny,      ///< Drawn from the zones: many an H7/k6 has clearance or interference throughout.
-};
-
-struct IdentificationOptions {
-  int trials{1000};       ///< Trials of each fit, 1 to 1,000,000.
-  int training{500};      ///< Insertions of each fit, told which, from which the templates are.
+/** What limits and moves the hand of an observer, and how forces are shown to it. */
+struct ObserverOptions {
+  int training{500};      ///< Insertions of each alternative, told which, for the templates.
   std::uint64_t seed{1};  ///< Any number.
   haptics::ForceMapKind map{haptics::ForceMapKind::kPublished};
+  haptics::PaperFactors paper_factors;  ///< Used with the paper's map.
   device::DeviceProfile device;
   Observer observer;
-  ShownSizes sizes{ShownSizes::kOnePair};
   double aim_error{0.7e-3};         ///< Error of the hand beside the axis, each way [m].
   double coupling_stiffness{1000};  ///< [N/m]; presses the shaft aside, W(5).
   double friction{0.15};            ///< Force of its side on the hole [N].
+};
+
+/** A pair of parts that is shown. */
+struct ShownPair {
+  std::shared_ptr<const fits::FitForce> fit;
+  fits::FitKind kind{fits::FitKind::kClearance};
+};
+
+/** Draws a pair of one alternative by a seed. */
+using PairSource = std::function<ShownPair(std::uint64_t seed)>;
+
+struct IdentificationOptions : ObserverOptions {
+  int trials{1000};                                    ///< Trials of each fit, 1 to 1,000,000.
+  fits::PairChoice pairs{fits::PairChoice::kOnePair};  ///< Surfaces are drawn anew every time.
 };
 
 struct Identification {
@@ -78,21 +86,24 @@ struct ShareInterval {
  side [N]. The same as in the tick while it slides (HapticTick). */
 [[nodiscard]] double CalcFeltForce(const fits::FitForce& fit, fits::FitKind kind, double depth,
                                    double side_friction, haptics::ForceMapKind map,
-                                   const device::DeviceProfile& device);
+                                   const device::DeviceProfile& device,
+                                   const haptics::PaperFactors& factors = {});
 
-/** The observer, trained, to be shown fits in any order. Repeats exactly. */
+/** The observer, trained, to be shown pairs in any order. Repeats exactly. */
 class FitObserver {
  public:
-  /** Errors: kInvalid for options out of their ranges. */
-  [[nodiscard]] static Result<FitObserver> Train(const IdentificationOptions& options);
+  /** Trains an observer with pairs of each alternative. Errors: kInvalid for options out of their
+   ranges. @pre at least one alternative. */
+  [[nodiscard]] static Result<FitObserver> Train(const ObserverOptions& options,
+                                                 const std::vector<PairSource>& alternatives);
 
   FitObserver(FitObserver&&) noexcept;
   FitObserver& operator=(FitObserver&&) noexcept;
   ~FitObserver();
 
-  /** Shows a pair of a fit, and has the observer say which it was: places in kShownFitNames.
+  /** Shows a pair, and has the observer say which alternative it is: an index.
    @param felt_end  Receives the force at full depth [N]; may be null. */
-  int Answer(int shown, double* felt_end = nullptr);
+  std::size_t Answer(const ShownPair& pair, double* felt_end = nullptr);
 
  private:
   struct State;

@@ -10,8 +10,13 @@
 
 #include "base/units.h"
 #include "dynamics/world.h"
+#include "mates/fasteners.h"
+#include "mates/place_bodies.h"
+#include "product/accessories.h"
 #include "simulation/actual_faces.h"
+#include "simulation/extraction.h"
 #include "simulation/fit_of_mate.h"
+#include "simulation/model_limits.h"
 #include "simulation/shapes.h"
 #include "simulation/thread_faces.h"
 
@@ -91,6 +96,24 @@ void GiveActualFaces(Model* model, Diagnostics* diagnostics) {
   }
 }
 
+/** Parts get through what a way is free with: planning and contact agree. */
+void RelieveWays(Model* model, Diagnostics* diagnostics) {
+  constexpr int kRounds = 3;  // What gives way at one place may meet the next: a choice.
+  for (int round = 0; round < kRounds; ++round) {
+    contact::Scene scene;
+    const SequenceInput input = MakeSequenceInput(*model, &scene);
+    Extraction extraction(input, &model->sequence);
+    for (const Body& body : model->bodies) {
+      scene.SetOffsets(contact::BodyId(body.occurrence.index()), body.faces);
+    }
+    if (!extraction.RelieveWays(model->sequence.steps)) {
+      return;
+    }
+    model->sequence.reliefs = extraction.ListReliefs();
+    GiveActualFaces(model, diagnostics);
+  }
+}
+
 /** Lays the loose parts out in rows on the table, as drawn, and lets them come to rest. */
 Result<void> LayOut(Model* model) {
   const Product& product = *model->product;
@@ -99,14 +122,19 @@ Result<void> LayOut(Model* model) {
   const double radius = 0.5 * product.box_W.size().norm();
   model->transfer_radius = radius + reach + kTransferGap;
   model->table_z = model->centre_W.z() - model->transfer_radius - reach - kTransferGap;
-  std::vector<std::size_t> order(model->bodies.size());
+  std::vector<std::size_t> order;
   double area = 0;
   const auto cell = [&](std::size_t i) {
     return model->bodies[i].shape->box_B().size().norm() + kTableGap;
   };
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    order[i] = i;
-    area += cell(i) * cell(i);
+  const auto& fixtures = model->accessories.fixtures;
+  const std::size_t standing = fixtures.size() - model->accessories.bench_count;
+  for (std::size_t i = 0; i < model->bodies.size(); ++i) {
+    const auto end = fixtures.begin() + static_cast<std::ptrdiff_t>(standing);
+    if (std::find(fixtures.begin(), end, OccurrenceId(i)) == end) {
+      order.push_back(i);
+      area += cell(i) * cell(i);
+    }
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t x, std::size_t y) { return cell(x) > cell(y); });
@@ -145,7 +173,46 @@ Result<void> LayOut(Model* model) {
   for (std::size_t k = 0; k < ids.size(); ++k) {
     model->bodies[members[k]].X_WB_start = world.pose(ids[k]);
   }
+  for (std::size_t k = standing; k < fixtures.size(); ++k) {
+    Body& body = model->bodies[fixtures[k].index()];
+    body.X_WB_goal = body.X_WB_start;
+  }
   return {};
+}
+
+/** Says which bodies are tools and fixtures, and finds the forms by which tools turn fasteners. */
+void GiveRoles(Model* model) {
+  const Product& product = *model->product;
+  Accessories& accessories = model->accessories;
+  accessories.tools = ListAccessories(product, product::AccessoryKind::kTool);
+  accessories.fixtures = ListAccessories(product, product::AccessoryKind::kFixture);
+  const auto bench = ListAccessories(product, product::AccessoryKind::kBench);
+  accessories.fixtures.insert(accessories.fixtures.end(), bench.begin(), bench.end());
+  accessories.bench_count = bench.size();
+  for (const OccurrenceId id : accessories.tools) {
+    model->bodies[id.index()].role = BodyRole::kTool;
+  }
+  for (const OccurrenceId id : accessories.fixtures) {
+    model->bodies[id.index()].role = BodyRole::kFixture;
+  }
+  if (accessories.tools.empty()) {
+    return;
+  }
+  const auto fasteners = mates::ClassifyOccurrences(product);
+  std::map<product::PartId, std::vector<product::DriveForm>> drives;
+  for (Body& body : model->bodies) {
+    if (body.role == BodyRole::kTool ||
+        fasteners[body.occurrence.index()] != mates::FastenerKind::kNone) {
+      const product::PartId part = product.occurrences[body.occurrence.index()].part;
+      const auto [entry, is_new] = drives.try_emplace(part);
+      if (is_new) {
+        constexpr double kTolerance = 2e-6;  // [m]: that of a part's features.
+        product::RecognitionLimits limits;
+        entry->second = product::FindDriveForms(product.parts[part.index()], kTolerance, &limits);
+      }
+      body.drives = entry->second;
+    }
+  }
 }
 
 /** The order that was asked for, in place of the one that was found. */
@@ -165,6 +232,23 @@ Result<void> PutInOrder(const CompileOptions& options, Model* model) {
 }
 
 }  // namespace
+
+SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene) {
+  SequenceInput input;
+  input.product = model.product.get();
+  input.scene = scene;
+  input.tools = model.accessories.tools;
+  input.fixtures = model.accessories.fixtures;
+  for (const Body& body : model.bodies) {
+    (void)scene->Add(body.shape, body.X_WB_goal);
+    input.shapes.push_back(body.shape);
+  }
+  for (const ModelMate& mate : model.mates) {
+    input.faces_a.push_back(mate.faces_a);
+    input.faces_b.push_back(mate.faces_b);
+  }
+  return input;
+}
 
 dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& step) {
   const Body& leader = model.bodies[step.occurrence.index()];
@@ -248,6 +332,7 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   auto model = std::make_shared<Model>();
   model->product = product;
   model->seed = options.seed;
+  model->pairs = options.pairs;
   report("contact shapes", 0);
   const auto shapes =
       BuildShapes(*product, {options.shape, options.shape_cache.get(), options.threads,
@@ -261,10 +346,16 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
     diagnostics->Warn("shape-cache", problem->where, problem->message, problem->remedy);
   }
   for (const product::Occurrence& occurrence : product->occurrences) {
-    model->bodies.push_back({occurrence.id, (*shapes)[occurrence.part.index()],
-                             MakeMass(product->part_of(occurrence.id)), occurrence.X_WB,
-                             occurrence.X_WB, nullptr});
+    model->bodies.push_back({occurrence.id,
+                             (*shapes)[occurrence.part.index()],
+                             MakeMass(product->part_of(occurrence.id)),
+                             occurrence.X_WB,
+                             occurrence.X_WB,
+                             nullptr,
+                             BodyRole::kPart,
+                             {}});
   }
+  GiveRoles(model.get());
 
   report("mates", 0);
   std::map<std::pair<product::PartId, product::FeatureId>,
@@ -281,7 +372,6 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
     return entry;
   };
   model->mates_of.resize(product->occurrences.size());
-  SequenceInput input;
   for (const product::Mate& mate : product->mates) {
     ModelMate compiled;
     compiled.id = mate.id;
@@ -291,23 +381,18 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
       compiled.faces_a = WidenForThread(*product, mate, mate.a, *compiled.faces_a);
       compiled.faces_b = WidenForThread(*product, mate, mate.b, *compiled.faces_b);
     }
-    compiled.fit = MakeFitForce(*product, mate, options.seed, diagnostics);
-    input.faces_a.push_back(compiled.faces_a);
-    input.faces_b.push_back(compiled.faces_b);
+    compiled.fit = MakeFitForce(*product, mate, options.seed, options.pairs, diagnostics);
     model->mates.push_back(std::move(compiled));
-    model->mates_of[mate.a.occurrence.index()].push_back(mate.id);
-    model->mates_of[mate.b.occurrence.index()].push_back(mate.id);
+    if (!mates::IsContradicted(*product, mate)) {
+      model->mates_of[mate.a.occurrence.index()].push_back(mate.id);
+      model->mates_of[mate.b.occurrence.index()].push_back(mate.id);
+    }
   }
 
   contact::Scene scene;
-  for (const Body& body : model->bodies) {
-    (void)scene.Add(body.shape, body.X_WB_goal);
-  }
-  input.product = product.get();
-  input.scene = &scene;
+  SequenceInput input = MakeSequenceInput(*model, &scene);
   input.progress = [&report](double fraction) { report("order of assembly", fraction); };
   model->sequence = PlanSequence(input);
-  GiveActualFaces(model.get(), diagnostics);
   report("layout", 0);
   if (const auto laid_out = LayOut(model.get()); !laid_out) {
     return Unexpected(laid_out.error());
@@ -315,8 +400,24 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   if (const auto ordered = PutInOrder(options, model.get()); !ordered) {
     return Unexpected(ordered.error());
   }
+  GiveActualFaces(model.get(), diagnostics);
+  RelieveWays(model.get(), diagnostics);
+  ReportModelLimits(*model, diagnostics);
   report("ready", 1);
   return std::shared_ptr<const Model>(std::move(model));
+}
+
+std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,
+                                       fits::PairChoice pairs, Diagnostics* diagnostics) {
+  auto drawn = std::make_shared<Model>(model);
+  drawn->seed = seed;
+  drawn->pairs = pairs;
+  for (ModelMate& mate : drawn->mates) {
+    mate.fit = MakeFitForce(*drawn->product, drawn->product->mates[mate.id.index()], seed, pairs,
+                            diagnostics);
+  }
+  GiveActualFaces(drawn.get(), diagnostics);
+  return drawn;
 }
 
 }  // namespace hvas::simulation

@@ -13,11 +13,29 @@
 #include "contact/shape_cache.h"
 #include "dynamics/world.h"
 #include "fits/fit_force.h"
+#include "fits/pair_choice.h"
 #include "haptics/held_part.h"
+#include "product/drive_forms.h"
 #include "product/product.h"
 #include "simulation/sequence.h"
 
 namespace hvas::simulation {
+
+/** What an occurrence is to the assembly (X16). */
+enum class BodyRole : std::uint8_t {
+  kPart,     ///< Part of the product.
+  kTool,     ///< It is held, and turns fasteners; no step of the assembly puts it in.
+  kFixture,  ///< It stands where it was put, and is met.
+};
+
+/** Tools and fixtures among the occurrences of a product, as its tree has them
+ (product/accessories.h). */
+struct Accessories {
+  std::vector<product::OccurrenceId> tools;
+  std::vector<product::OccurrenceId> fixtures;  ///< Those of the bench come last.
+  std::size_t bench_count{0};                   ///< Fixtures that are laid out on the table.
+  double fastener_torque{0.5};  ///< Dry friction of fasteners that tools turn [N m]. A choice.
+};
 
 /** A part as the loops see it. */
 struct Body {
@@ -27,6 +45,9 @@ struct Body {
   spatial::Pose X_WB_goal;        ///< Place as drawn.
   spatial::Pose X_WB_start;       ///< Lying on the table.
   std::shared_ptr<const contact::FaceOffsets> faces;  ///< Faces as made; null: as drawn.
+  BodyRole role{BodyRole::kPart};
+  /** Forms for tools, where the model has tools and this is a tool or a fastener. */
+  std::vector<product::DriveForm> drives;
 };
 
 /** A mate with what the loops need besides its geometry. */
@@ -39,6 +60,7 @@ struct ModelMate {
 
 struct CompileOptions {
   std::uint64_t seed{1};  ///< Draws the actual sizes of the fits.
+  fits::PairChoice pairs{fits::PairChoice::kOfKind};
   /** Parts that come first, as Reorder() takes them; the others follow in the order that is found.
    */
   std::vector<std::string> first_parts;
@@ -58,17 +80,34 @@ struct Model {
   std::vector<ModelMate> mates;                        ///< Indexed by MateId.
   std::vector<std::vector<product::MateId>> mates_of;  ///< Indexed by OccurrenceId.
   Sequence sequence;
+  Accessories accessories;
   double table_z{0};            ///< [m]
   Vec3 centre_W{Vec3::Zero()};  ///< The product's.
   double transfer_radius{0};    ///< A part carried this far from the centre meets nothing [m].
   std::uint64_t seed{1};
+  fits::PairChoice pairs{fits::PairChoice::kOfKind};
 };
+
+/** Counts the bodies that belong to the product: neither tools nor fixtures. */
+[[nodiscard]] inline std::size_t CountParts(const Model& model) {
+  return model.bodies.size() - model.accessories.tools.size() - model.accessories.fixtures.size();
+}
 
 /** Builds shapes, fits, the order of assembly and the layout of the parts on the table.
  Errors: kInvalid when the product has no parts or a shape cannot be built; those of Reorder(). */
 Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
                                              const CompileOptions& options,
                                              Diagnostics* diagnostics);
+
+/** Makes the same model with other actual sizes of its fits: equal to what Compile makes with this
+ seed and choice of pairs, without its work. */
+[[nodiscard]] std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,
+                                                     fits::PairChoice pairs,
+                                                     Diagnostics* diagnostics);
+
+/** What the planners of a model's order and of its disassembly need.
+ @param scene  Gets all parts at their drawn poses; outlives the result. */
+[[nodiscard]] SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene);
 
 /** Mass of what moves in a step, about the leading part's frame, with its members as drawn. */
 [[nodiscard]] dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& step);

@@ -21,6 +21,8 @@ enum class Placement : std::uint8_t {
 struct PartState {
   Placement placement{Placement::kLoose};
   spatial::Pose X_WB;
+  /** Leader of the parts that it was put together with on the table (X1); invalid: of none. */
+  product::OccurrenceId leader{};
 };
 
 /** What a viewer needs: poses of all parts and of the hands. */
@@ -28,6 +30,8 @@ struct Frame {
   std::int64_t t_ns{0};
   std::vector<spatial::Pose> X_WB;         ///< Indexed by OccurrenceId.
   std::vector<haptics::TickOutput> ticks;  ///< One for each hand.
+  /** What each hand has besides the part of its tick: the rest of a subassembly. */
+  std::vector<std::vector<product::OccurrenceId>> members;
 };
 
 /** A command of the physics loop to the ticks, with all that the loop knew then: enough to give it
@@ -38,6 +42,7 @@ struct GivenCommand {
   TickCommand::Kind kind{TickCommand::Kind::kPlace};
   std::size_t hand{0};           ///< The hand that takes.
   SequenceStep step;             ///< What is taken; of what is placed the occurrence alone.
+  bool can_join{false};          ///< What is taken may be put to loose parts on the table.
   std::vector<PartState> parts;  ///< Indexed by OccurrenceId.
 };
 

@@ -23,6 +23,8 @@ PhysicsSide::PhysicsSide(std::shared_ptr<const Model> model, const haptics::Tick
       hands_(hands) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     parts_[i].X_WB = model_->bodies[i].X_WB_start;
+    parts_[i].placement =
+        model_->bodies[i].role == BodyRole::kFixture ? Placement::kPlaced : Placement::kLoose;
   }
   for (std::size_t i = 0; i < hands; ++i) {
     hands_[i].reports_energy = options[i].controls_passivity;
@@ -48,7 +50,7 @@ TickCommand PhysicsSide::RemakeCommand(const GivenCommand& given,
   command.hand = given.hand;
   if (given.kind == TickCommand::Kind::kTake) {
     Hand& hand = hands_[given.hand];
-    *held_before = std::exchange(hand.held, maker_.Make(given.step));
+    *held_before = std::exchange(hand.held, maker_.Make(given.step, given.can_join));
     command.part = hand.held.get();
     command.X_WB = hand.held->X_WB_start;
   } else {
@@ -88,11 +90,36 @@ void PhysicsSide::HandleReport(std::size_t index) {
     TakeNearest(index, report.out.X_WH.p());
   }
   for (std::size_t i = 0; i < report.moving_count; ++i) {
-    PartState& part = parts_[report.moving[i].body.index()];
-    if (part.placement == Placement::kLoose) {
-      part.X_WB = report.moving[i].X_WB;
+    const OccurrenceId id(report.moving[i].body.index());
+    if (placement(id) == Placement::kLoose) {
+      MoveTogether(id, report.moving[i].X_WB);
     }
   }
+  for (std::size_t i = 0; i < report.turned_count; ++i) {
+    PartState& part = parts_[report.turned[i].body.index()];
+    if (part.placement == Placement::kPlaced) {
+      part.X_WB = report.turned[i].X_WB;
+    }
+  }
+}
+
+void PhysicsSide::MoveTogether(OccurrenceId id, const spatial::Pose& X_WB) {
+  const std::shared_ptr<const haptics::RigidGroup> group = maker_.GroupOf(ListTogether(parts_, id));
+  for (const haptics::RigidGroup::Member& member : group->members) {
+    const bool leads = member.body == group->leader();
+    parts_[member.body.index()].X_WB = leads ? X_WB : X_WB * member.X_BS;
+  }
+}
+
+std::vector<const haptics::RigidGroup*> PhysicsSide::ListLooseGroups() {
+  std::vector<const haptics::RigidGroup*> groups;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const OccurrenceId id(i);
+    if (parts_[i].leader == id && parts_[i].placement == Placement::kLoose) {
+      groups.push_back(maker_.GroupOf(ListTogether(parts_, id)).get());
+    }
+  }
+  return groups;
 }
 
 void PhysicsSide::ReportEnergy(std::size_t index, Sink* sink) {
@@ -123,12 +150,14 @@ void PhysicsSide::PublishFrame() {
     const haptics::TickOutput& tick = handover_.reports[i].value().out;
     const Hand& hand = hands_[i];
     frame.ticks[i] = tick;
+    frame.members[i].clear();
     if (hand.held == nullptr || tick.occurrence != hand.held->occurrence) {
       continue;
     }
     frame.X_WB[tick.occurrence.index()] = tick.X_WD;
     for (const haptics::HeldMember& member : hand.held->members) {
       frame.X_WB[member.occurrence.index()] = tick.X_WD * member.X_BS;
+      frame.members[i].push_back(member.occurrence);
     }
   }
   frames_.Publish();
@@ -142,6 +171,8 @@ void PhysicsSide::HandleDrop(const SimulationEvent& event) {
     part.X_WB = X_WB;
     if (event.was_seated && !is_shelf) {
       part.placement = Placement::kPlaced;
+    } else if (part.leader.is_valid() || event.onto.is_valid()) {
+      part.placement = Placement::kLoose;
     } else if (is_shelf || !hand.held_step.members.empty()) {
       part.placement = Placement::kParked;  // a subassembly does not fall apart
     } else {
@@ -152,10 +183,25 @@ void PhysicsSide::HandleDrop(const SimulationEvent& event) {
   for (const haptics::HeldMember& member : hand.held->members) {
     settle(member.occurrence, event.X_WB * member.X_BS);
   }
+  std::vector<OccurrenceId> all =
+      event.onto.is_valid() ? ListTogether(parts_, event.onto) : std::vector<OccurrenceId>();
+  // Where the other hand has taken of them meanwhile, they have come apart again.
+  const bool are_there = std::all_of(all.begin(), all.end(), [this](OccurrenceId id) {
+    return placement(id) == Placement::kLoose;
+  });
+  if (event.onto.is_valid() && are_there) {
+    for (const contact::BodyId body : hand.held->bodies) {
+      all.emplace_back(body.index());
+    }
+    JoinParts(all, event.onto, &parts_);
+  }
   hand.held = nullptr;
 }
 
 void PhysicsSide::PlaceInFixture(OccurrenceId id) {
+  if (parts_[id.index()].leader.is_valid()) {
+    SeparatePart(id, &parts_);
+  }
   PartState& part = parts_[id.index()];
   part.placement = Placement::kPlaced;
   part.X_WB = model_->bodies[id.index()].X_WB_goal;
@@ -165,14 +211,14 @@ void PhysicsSide::PlaceInFixture(OccurrenceId id) {
   command.X_WB = part.X_WB;
   SequenceStep step;
   step.occurrence = id;
-  Send(command, step);
+  Send(command, step, false);
 }
 
-void PhysicsSide::Send(const TickCommand& command, const SequenceStep& step) {
+void PhysicsSide::Send(const TickCommand& command, const SequenceStep& step, bool can_join) {
   ++given_commands_;
   if (on_command_) {
     on_command_({given_commands_, handover_.physics_t_ns.load(std::memory_order_relaxed),
-                 command.kind, command.hand, step, parts_});
+                 command.kind, command.hand, step, can_join, parts_});
   }
   waiting_commands_.push_back(command);
   FlushCommands();
@@ -206,7 +252,10 @@ bool PhysicsSide::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
     return false;
   }
   const auto is_free = [&](OccurrenceId id) {
-    const Placement placement = parts_[id.index()].placement;
+    const auto& [placement, X_WB, leader] = parts_[id.index()];
+    if (leader.is_valid() && placement == Placement::kLoose) {
+      return step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
+    }
     if (step.kind == SequenceStep::Kind::kRemove) {
       return placement == Placement::kPlaced;
     }
@@ -224,6 +273,10 @@ void PhysicsSide::TakeNearest(std::size_t index, const Vec3& p_WH) {
     return;
   }
   if (const OccurrenceId loose = FindNearest(p_WH, Placement::kLoose); loose.is_valid()) {
+    if (parts_[loose.index()].leader.is_valid()) {
+      Take(index, MakeTableStep(*model_, parts_, loose, TakeExtent::kWhole));
+      return;
+    }
     const SequenceStep* insertion = FindInsertion(model_->sequence, loose);
     SequenceStep step;
     step.occurrence = loose;
@@ -232,6 +285,10 @@ void PhysicsSide::TakeNearest(std::size_t index, const Vec3& p_WH) {
   }
   const OccurrenceId placed =
       hand.takes_out ? FindNearest(p_WH, Placement::kPlaced) : OccurrenceId();
+  if (placed.is_valid() && parts_[placed.index()].leader.is_valid()) {
+    Take(index, MakeTableStep(*model_, parts_, placed, TakeExtent::kWhole));
+    return;
+  }
   if (const SequenceStep* insertion = FindInsertion(model_->sequence, placed)) {
     SequenceStep step = *insertion;
     step.kind = SequenceStep::Kind::kRemove;
@@ -244,7 +301,7 @@ void PhysicsSide::TakeNearest(std::size_t index, const Vec3& p_WH) {
 void PhysicsSide::Take(std::size_t index, const SequenceStep& step) {
   Hand& hand = hands_[index];
   hand.held_step = step;
-  hand.held = maker_.Make(step);
+  hand.held = maker_.Make(step, hand.can_join);
   if (log_ != nullptr) {
     log_->Keep(hand.held);
   }
@@ -253,7 +310,10 @@ void PhysicsSide::Take(std::size_t index, const SequenceStep& step) {
   command.hand = index;
   command.part = hand.held.get();
   command.X_WB = hand.held->X_WB_start;
-  Send(command, step);
+  Send(command, step, hand.can_join);
+  if (step.members.empty() && parts_[step.occurrence.index()].leader.is_valid()) {
+    SeparatePart(step.occurrence, &parts_);  // taken alone out of its subassembly
+  }
   const auto mark_held = [this](OccurrenceId id) {
     parts_[id.index()].placement = Placement::kHeld;
   };

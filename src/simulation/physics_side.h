@@ -65,6 +65,13 @@ class PhysicsSide {
    out again (X16). Only before the loops run. */
   void AllowTakingOut(std::size_t hand) { hands_[hand].takes_out = true; }
 
+  /** Lets what this hand takes be put to loose parts on the table, which makes a subassembly (X1).
+   Only before the loops run. */
+  void AllowJoining(std::size_t hand) { hands_[hand].can_join = true; }
+
+  /** Loose parts that are together; they live as long as this object. */
+  [[nodiscard]] std::vector<const haptics::RigidGroup*> ListLooseGroups();
+
   /** Sets what is called with each command before a tick can carry it out. Only before the loops
    * run.
    */
@@ -91,15 +98,18 @@ class PhysicsSide {
     std::optional<SequenceStep> prepared;
     bool is_waiting_for_grip_to_open{false};
     bool takes_out{false};
+    bool can_join{false};
     bool reports_energy{false};
     std::int64_t next_energy_ns{0};
   };
 
-  void Send(const TickCommand& command, const SequenceStep& step);
+  void Send(const TickCommand& command, const SequenceStep& step, bool can_join);
   void FlushCommands();
   void HandleDrop(const SimulationEvent& event);
   void HandleReport(std::size_t hand);
   void ReportEnergy(std::size_t hand, Sink* sink);
+  /** Moves a loose part with all that it is together with; it leads them. */
+  void MoveTogether(product::OccurrenceId id, const spatial::Pose& X_WB);
   void PublishFrame();
   void TakeNearest(std::size_t hand, const Vec3& p_WH);
   void Take(std::size_t hand, const SequenceStep& step);

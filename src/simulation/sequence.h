@@ -8,6 +8,7 @@
 #include "contact/scene.h"
 #include "haptics/held_part.h"
 #include "product/product.h"
+#include "simulation/neighbours.h"
 
 namespace hvas::simulation {
 
@@ -35,6 +36,13 @@ struct DrawnOverlap {
   double depth{0};  ///< [m]
 };
 
+/** How far a face gives way where it lies in another part as drawn, or would on its way in. */
+struct FaceRelief {
+  product::OccurrenceId occurrence;
+  std::uint32_t face{0};  ///< Index in its part.
+  double depth{0};        ///< [m]
+};
+
 /** A part that cannot be brought in, and why. */
 struct SequenceGap {
   product::OccurrenceId occurrence;
@@ -45,11 +53,17 @@ struct Sequence {
   std::vector<SequenceStep> steps;  ///< Steps in the order of assembly.
   std::vector<SequenceGap> gaps;
   std::vector<DrawnOverlap> overlaps;
+  std::vector<DrawnOverlap> relieved;  ///< Overlaps that have contact: faces give way there.
+  std::vector<FaceRelief> reliefs;  ///< Reliefs of faces, one of each.
+  Neighbours neighbours;            ///< Neighbours of all parts in the assembled product.
 };
 
 /** The move by which a part goes to its place, alone or with what moves with it; null where it has
  none: it is put into a fixture, or cannot be brought in. */
 [[nodiscard]] const SequenceStep* FindInsertion(const Sequence& sequence, product::OccurrenceId id);
+
+/** The part that stays in the fixture. */
+[[nodiscard]] product::OccurrenceId FindBase(const Sequence& sequence);
 
 struct SequenceInput {
   const product::Product* product{nullptr};
@@ -57,6 +71,10 @@ struct SequenceInput {
       nullptr};  ///< All parts at their drawn poses; body index = occurrence index.
   std::vector<std::shared_ptr<const haptics::MateFaces>> faces_a;  ///< Indexed by MateId.
   std::vector<std::shared_ptr<const haptics::MateFaces>> faces_b;
+  /** Indexed by OccurrenceId; empty: no face gives way. */
+  std::vector<std::shared_ptr<const contact::Shape>> shapes;
+  std::vector<product::OccurrenceId> tools;     ///< They are not there.
+  std::vector<product::OccurrenceId> fixtures;  ///< They stay where they are.
   std::function<void(double fraction)> progress;
 };
 

@@ -14,6 +14,7 @@ constexpr double kRestTime = 1.0;         // [s] without pressing, before it dra
 constexpr double kSlackTime = 0.08;       // [s] in which the arm goes slack
 constexpr double kReleaseTime = 0.2;      // [s]
 constexpr double kShortestReach = 0.35;   // [s]
+constexpr double kPutDownGap = 2e-3;      // [m] above the table, where a part is let go
 constexpr double kStandOff = 6e-3;        // [m] before anything engages, where approach ends
 constexpr double kSlowShare = 0.4;    // of the speed of insertion; slower than that presses harder
 constexpr double kStillSpeed = 1e-3;  // [m/s] that counts as not moving
@@ -73,8 +74,9 @@ void SimulatedPerson::Begin(const PersonTask& task) noexcept {
     aim_offset_[k] = options_.aim_error * random_.Normal();
     aim_turn_[k] = options_.aim_error_angle * random_.Normal();
   }
+  const spatial::Pose& X_WG = task.takes_out ? task.X_WG_goal : task.X_WG_start;
   StartReaches(Phase::kReach);
-  AddReach(task.X_WG_start.p(), task.X_WG_start.q(), 1.5 * options_.carry_speed, false);
+  AddReach(X_WG.p(), X_WG.q(), 1.5 * options_.carry_speed, false);
 }
 
 void SimulatedPerson::StartReaches(Phase phase) noexcept {
@@ -149,38 +151,55 @@ bool SimulatedPerson::HasCome() noexcept {
   return !is_at_device_ || calm_s_ > kCalmTime || waited_s_ > kMostWait;
 }
 
-void SimulatedPerson::PlanCarry() noexcept {
-  const Vec3 lifted = task_.X_WG_start.p() + Vec3(0, 0, task_.lift_height);
-  const Vec3 out = (lifted - task_.centre_W).normalized();
-  // Where the way in crosses the sphere on which nothing is met.
-  const Vec3 d = task_.extraction_W;
+Vec3 SimulatedPerson::CalcLifted() const noexcept {
+  return task_.X_WG_start.p() + Vec3(0, 0, task_.lift_height);
+}
+
+Vec3 SimulatedPerson::CalcPointAside(double distance) const noexcept {
+  return task_.centre_W + distance * (CalcLifted() - task_.centre_W).normalized();
+}
+
+double SimulatedPerson::CalcWayToSphere() const noexcept {
   const Vec3 from_centre = task_.X_WG_goal.p() - task_.centre_W;
-  const double b = from_centre.dot(d);
+  const double b = from_centre.dot(task_.extraction_W);
   const double discriminant =
       b * b - from_centre.squaredNorm() + task_.transfer_radius * task_.transfer_radius;
-  const double way =
-      std::max(task_.engage_distance + 2 * kStandOff, -b + std::sqrt(std::max(0.0, discriminant)));
-  const Quat& q = task_.X_WG_goal.q();
+  return std::max(task_.engage_distance + 2 * kStandOff,
+                  -b + std::sqrt(std::max(0.0, discriminant)));
+}
+
+void SimulatedPerson::PlanCarry() noexcept {
   StartReaches(Phase::kCarry);
-  AddReach(lifted, task_.X_WG_start.q(), options_.carry_speed, false);
-  AddReach(task_.centre_W + task_.transfer_radius * out, task_.X_WG_start.q(), options_.carry_speed,
+  AddReach(CalcLifted(), task_.X_WG_start.q(), options_.carry_speed, false);
+  AddReach(CalcPointAside(task_.transfer_radius), task_.X_WG_start.q(), options_.carry_speed,
            false);
-  AddReach(task_.X_WG_goal.p() + way * d, q, options_.carry_speed, true);
+  AddReach(task_.X_WG_goal.p() + CalcWayToSphere() * task_.extraction_W, task_.X_WG_goal.q(),
+           options_.carry_speed, true);
+}
+
+void SimulatedPerson::PlanPutDown() noexcept {
+  const Vec3& d = task_.extraction_W;
+  const double travel = (p_ref_ - task_.X_WG_goal.p()).dot(d);
+  const double way = std::max(0.0, CalcWayToSphere() - travel);
+  const Quat& q = task_.X_WG_start.q();
+  StartReaches(Phase::kPutDown);
+  AddReach(p_ref_ + way * d, q_ref_, options_.carry_speed, false);
+  AddReach(CalcPointAside(task_.transfer_radius), q, options_.carry_speed, true);
+  AddReach(CalcLifted(), q, options_.carry_speed, false);
+  AddReach(task_.X_WG_start.p() + Vec3(0, 0, kPutDownGap), q, options_.approach_speed, false);
 }
 
 void SimulatedPerson::PlanReturn() noexcept {
   const Vec3 d = task_.extraction_W;
-  const Vec3 lifted = task_.X_WG_start.p() + Vec3(0, 0, task_.lift_height);
-  const Vec3 out = (lifted - task_.centre_W).normalized();
-  const Quat q = q_ref_;
   const double way = task_.engage_distance + kStandOff + 2 * task_.transfer_radius;
+  const Quat q = q_ref_;
   gave_up_ = true;
   StartReaches(Phase::kGiveUp);
   AddReach(p_ref_ + way * d, q, options_.carry_speed, false);
-  AddReach(task_.centre_W + way * out, q, options_.carry_speed, true);
-  AddReach(lifted, task_.X_WG_start.q(), options_.carry_speed, false);
-  AddReach(task_.X_WG_start.p() + Vec3(0, 0, 2e-3), task_.X_WG_start.q(), options_.approach_speed,
-           false);
+  AddReach(CalcPointAside(way), q, options_.carry_speed, true);
+  AddReach(CalcLifted(), task_.X_WG_start.q(), options_.carry_speed, false);
+  AddReach(task_.X_WG_start.p() + Vec3(0, 0, kPutDownGap), task_.X_WG_start.q(),
+           options_.approach_speed, false);
 }
 
 void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
@@ -197,16 +216,13 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     phase_time_s_ = 0;
     return;
   }
-  // A long way in takes its time.
-  const double patience_s =
-      std::max(options_.patience_s, 3 * task_.engage_distance / options_.insert_speed);
-  if (phase_time_s_ > patience_s) {
+  if (phase_time_s_ > CalcPatience()) {
     PlanReturn();
     return;
   }
   // Where no mate guides it and it has missed once, it looks, lays the part on with a light touch,
   // and gives way inside.
-  const bool is_by_eye = input.sees_part && !is_guided_;
+  const bool is_by_eye = input.sees_part && (!is_guided_ || task_.is_guided_by_planes);
   const bool is_careful = is_by_eye && search_count_ > 0;
   const bool is_watched = is_by_eye || (is_at_device_ && input.sees_part);
   const double travel = is_watched ? seen_travel : hand_travel;
@@ -236,6 +252,8 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     const bool is_left_behind = input.sees_part && stretch > options_.most_stretch;
     travel_ =
         is_left_behind ? std::max(travel_, hand_travel + stretch - options_.most_stretch) : travel_;
+    // It follows a hand that is pushed back, but not one that leaves.
+    travel_ = std::min(travel_, task_.engage_distance + kStandOff + 3 * kBackOff);
     const bool is_stuck =
         is_left_behind || (speed < kStillSpeed && (is_careful || IsPressing(input)));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
@@ -259,6 +277,11 @@ const Vec3& SimulatedPerson::MotionOf(const OperatorInput& input) const noexcept
   return input.sees_part && (is_at_device_ || !is_guided_) ? v_part_W_ : V_H_.v;
 }
 
+double SimulatedPerson::CalcPatience() const noexcept {
+  // A long way in takes its time.
+  return std::max(options_.patience_s, 3 * task_.engage_distance / options_.insert_speed);
+}
+
 double SimulatedPerson::PushLimit() const noexcept {
   return is_guided_ ? options_.push_limit : options_.unguided_limit;
 }
@@ -278,14 +301,36 @@ void SimulatedPerson::AdjustPush(const OperatorInput& input, double speed, doubl
   push_ = std::max(is_light ? options_.light_push : options_.first_push, push_ + change * dt_);
 }
 
+void SimulatedPerson::BeginWithdraw(double travel, double push) noexcept {
+  phase_ = Phase::kWithdraw;
+  phase_time_s_ = 0;
+  push_ = push;
+  travel_ = travel;
+  stuck_time_s_ = 0;
+}
+
 void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
   const Vec3& d = task_.extraction_W;
   const double hand_travel = (X_WH_.p() - task_.X_WG_goal.p()).dot(d);
-  if (hand_travel > task_.engage_distance + 2 * kStandOff || phase_time_s_ > options_.patience_s) {
+  const bool is_out = hand_travel > task_.engage_distance + 2 * kStandOff;
+  const bool is_too_long = phase_time_s_ > CalcPatience();
+  if (task_.takes_out && is_out) {
+    PlanPutDown();
+    return;
+  }
+  if (task_.takes_out && is_too_long) {
+    gave_up_ = true;
+    phase_ = Phase::kSettle;
+    phase_time_s_ = 0;
+    return;
+  }
+  if (is_out || is_too_long) {
     PlanReturn();
     return;
   }
-  AdjustPush(input, MotionOf(input).dot(d), options_.insert_speed, false);
+  const double speed = MotionOf(input).dot(d);
+  stuck_time_s_ = speed < kStillSpeed ? stuck_time_s_ + dt_ : 0;
+  AdjustPush(input, speed, options_.insert_speed, false);
   travel_ = std::min(travel_ + options_.insert_speed * dt_, hand_travel + LeadOf(input));
   const Vec3 along = p_ref_ - task_.X_WG_goal.p();
   p_ref_ += (travel_ - along.dot(d)) * d;
@@ -324,6 +369,10 @@ void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
 
 void SimulatedPerson::StartSearch(const Vec3& d, double travel, bool is_by_eye) noexcept {
   const bool is_first = ++search_count_ == 1;
+  is_outside_ = travel > task_.engage_distance + kStandOff;
+  if (is_outside_) {
+    grip_offset_W_ = p_part_W_ - X_WH_.p();  // It hung otherwise when the approach began.
+  }
   is_backing_off_ = true;
   rocking_.setZero();
   // What touch has taught becomes belief.
@@ -372,8 +421,20 @@ void SimulatedPerson::LearnLoad(const spatial::Wrench& F_H_W) noexcept {
       phase_ == Phase::kApproach || (phase_ == Phase::kInsert && !is_guided_);
   const bool is_free =
       is_at_device_ && is_on_its_way && (p_part_W_ - X_WH_.p() - grip_offset_W_).norm() < kFollows;
-  if (phase_ == Phase::kCarry || phase_ == Phase::kGrasp || is_free) {
+  const bool is_carrying =
+      phase_ == Phase::kCarry || phase_ == Phase::kGrasp || phase_ == Phase::kPutDown;
+  // What lies in its place does not hang in the hand before it is lifted: where it does not come,
+  // what pulls down is taken for its weight.
+  const bool is_lifting =
+      phase_ == Phase::kWithdraw && task_.takes_out && stuck_time_s_ > kStuckBeforeSearch;
+  // What it took for the weight before was not: here nothing touches the part.
+  const bool is_hanging =
+      phase_ == Phase::kInsert && is_outside_ && (is_backing_off_ || look_time_s_ > 0);
+  if (is_carrying || is_free || is_hanging) {
     carried_force_ += (F_H_W.f - carried_force_) * (dt_ / kLearnTime);
+  } else if (is_lifting) {
+    const Vec3 down(0, 0, std::min(0.0, F_H_W.f.z()));
+    carried_force_ += (down - carried_force_) * (dt_ / kLearnTime);
   } else if (!is_gripping_) {
     carried_force_ -= carried_force_ * (dt_ / 0.05);
   }
@@ -414,6 +475,7 @@ void SimulatedPerson::BeginInsert() noexcept {
   rocking_.setZero();
   look_time_s_ = 0;
   is_backing_off_ = false;
+  is_outside_ = false;
 }
 
 void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
@@ -440,7 +502,12 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       }
       break;
     case Phase::kGrasp:
-      if (phase_time_s_ > kGraspTime) {
+      if (phase_time_s_ <= kGraspTime) {
+        break;
+      }
+      if (task_.takes_out) {
+        BeginWithdraw(0, options_.first_push);
+      } else {
         PlanCarry();
       }
       break;
@@ -463,10 +530,7 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
     case Phase::kRest:
       p_ref_ += (X_WH_.p() - p_ref_) * (dt_ / kSlackTime);
       if (phase_time_s_ > kRestTime) {
-        phase_ = Phase::kWithdraw;
-        phase_time_s_ = 0;
-        push_ = 0;
-        travel_ = (p_ref_ - task_.X_WG_goal.p()).dot(task_.extraction_W);
+        BeginWithdraw((p_ref_ - task_.X_WG_goal.p()).dot(task_.extraction_W), 0);
       }
       break;
     case Phase::kWithdraw:
@@ -486,6 +550,7 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
         finished_count_.fetch_add(1, std::memory_order_release);
       }
       break;
+    case Phase::kPutDown:
     case Phase::kGiveUp:
       if (FollowReaches()) {
         phase_ = Phase::kRelease;

@@ -10,15 +10,19 @@
 namespace hvas::simulation {
 
 /** What the person has been told about one part: where it lies, where it should go and which way
- * in. */
+ in; or, for a part to be taken out, where it is, which way out and where to put it down. */
 struct PersonTask {
   product::OccurrenceId occurrence;
   spatial::Pose
       X_WG_start;  ///< Grip frame, lying on the table: at the centre of mass, turned as the part.
-  spatial::Pose X_WG_goal;
+  spatial::Pose X_WG_goal;  ///< Grip frame of the part in its place.
+  /** The part is in its place: it is drawn out and put down at X_WG_start. */
+  bool takes_out{false};
   Vec3 p_BG{Vec3::Zero()};  ///< The grip in the part.
   Vec3 extraction_W{Vec3::UnitZ()};
   double engage_distance{0};  ///< [m] from the goal, where insertion begins.
+  /** Only planes guide it: what they leave free the eye has to find. */
+  bool is_guided_by_planes{false};
   /** [m] from the goal, where it stops, rests, draws the part out again and brings it back;
    negative: it goes all the way in. */
   double turn_back{-1};
@@ -127,7 +131,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
     kWithdraw,  ///< Draws it out again, feeling.
     kSettle,    ///< Heard it seat: waits a moment.
     kRelease,
-    kGiveUp,  ///< Brings the part back to the table.
+    kPutDown,  ///< Carries a part that has been drawn out around the product to the table.
+    kGiveUp,   ///< Brings the part back to the table.
   };
 
   /** One straight or circular reach, minimum jerk in time. */
@@ -150,7 +155,15 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
    up, and what hangs on a soft coupling swings. Waits for it, but not for ever. */
   [[nodiscard]] bool HasCome() noexcept;
   void PlanCarry() noexcept;
+  void PlanPutDown() noexcept;
   void PlanReturn() noexcept;
+  /** Where the part is clear of the others on the table. */
+  [[nodiscard]] Vec3 CalcLifted() const noexcept;
+  /** Point over the table at which nothing is met, at this distance from the product's centre. */
+  [[nodiscard]] Vec3 CalcPointAside(double distance) const noexcept;
+  /** Distance from the goal at which the way in crosses the sphere on which nothing is met [m]. */
+  [[nodiscard]] double CalcWayToSphere() const noexcept;
+  void BeginWithdraw(double travel, double push) noexcept;
   void BeginApproach(const OperatorInput& input) noexcept;
   void BeginInsert() noexcept;
   void StepInsert(const OperatorInput& input) noexcept;
@@ -159,6 +172,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] const Vec3& MotionOf(const OperatorInput& input) const noexcept;
   /** Watches the part through what may stretch between it and the hand. */
   void Watch(const OperatorInput& input) noexcept;
+  /** Time after which it gives up moving a part in or out [s]. */
+  [[nodiscard]] double CalcPatience() const noexcept;
   [[nodiscard]] double PushLimit() const noexcept;
   /** Does what it can: more force would not come of waiting. */
   [[nodiscard]] bool IsPressing(const OperatorInput& input) const noexcept;
@@ -230,6 +245,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   double tremor_phase_[3]{};
   double t_s_{0};
   double dt_{1e-3};           ///< Time of the present sample [s].
+  bool is_outside_{false};    ///< The last try ended before the part came to where it engages.
   bool is_at_device_{false};  ///< Something else than this arm moves the hand.
 };
 

@@ -9,6 +9,7 @@ namespace {
 Frame MakeFirstFrame(const Model& model, std::size_t hands) {
   Frame frame;
   frame.ticks.resize(hands);
+  frame.members.resize(hands);
   for (const Body& body : model.bodies) {
     frame.X_WB.push_back(body.X_WB_start);
   }
@@ -44,7 +45,7 @@ void Simulation::KeepLog(TickLog* log) {
 
 void Simulation::Restore(const std::vector<PartState>& parts) {
   physics_.Restore(parts);
-  haptics_.Restore(physics_.parts());
+  haptics_.Restore(physics_.parts(), physics_.ListLooseGroups());
 }
 
 void Simulation::ReplayCommand(const GivenCommand& given, std::int64_t t_ns) {

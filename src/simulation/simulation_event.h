@@ -49,6 +49,7 @@ struct SimulationEvent {
   spatial::Pose X_WB;             ///< kDropped: where the part was let go.
   bool was_seated{false};         ///< kDropped: it is in its place.
   double to_place{0};             ///< kDropped: distance of its centre of mass from there [m].
+  product::OccurrenceId onto;     ///< kDropped: leads the loose parts that it was put to (X1).
   HoldMetrics metrics;            ///< kDropped: the whole hold's.
   std::uint32_t gate_actions{0};  ///< kSafety: those that are new.
   device::Condition condition{device::Condition::kReady};  ///< kDevice

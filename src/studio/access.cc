@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -183,6 +184,7 @@ std::string Access::AddLink(Role role) {
   auto& links = known_.links;
   if (links.size() >= kMaxLinks) {
     links.erase(links.begin() + kRoles.size());
+    fmt::print(stderr, "warning: the oldest of {} links lets nobody in any more\n", kMaxLinks);
   }
   links.push_back({MakeToken(), role, ""});
   return links.back().token;
@@ -195,6 +197,8 @@ SavedAccess::Browser* Access::AddBrowser() {
     const auto oldest = std::find_if(browsers.begin(), browsers.end(),
                                      [](const auto& one) { return !IsSingleUse(one.role); });
     browsers.erase(oldest == browsers.end() ? browsers.begin() : oldest);
+    fmt::print(stderr, "warning: the oldest of {} browsers has to open its link again\n",
+               kMaxBrowsers);
   }
   browsers.push_back({MakeToken(), Role::kViewer});
   return &browsers.back();

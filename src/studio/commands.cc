@@ -57,6 +57,8 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       Entry<protocol::ForcesCommand>(&Hub::DoForces),
       Entry<protocol::DemoCommand>(&Hub::DoDemo),
       Entry<protocol::NextCommand>(&Hub::DoNext),
+      Entry<protocol::PlanRemovalCommand>(&Hub::DoPlanRemoval),
+      Entry<protocol::TakeOutCommand>(&Hub::DoTakeOut),
       Entry<protocol::UndoCommand>(&Hub::DoUndo),
       Entry<protocol::RedoCommand>(&Hub::DoRedo),
       Entry<protocol::ResetCommand>(&Hub::DoReset),
@@ -82,7 +84,7 @@ Result<Json> Hub::DoOpen(const protocol::OpenCommand& command) {
     if (found == examples_.end()) {
       return Fail(ErrorCode::kNotFound, "there is no such example", *command.example, "");
     }
-    workbench_->Open(found->file, found->name);
+    workbench_->opener().Open(found->file, found->name);
     return Json::object();
   }
   if (!command.upload) {
@@ -93,25 +95,27 @@ Result<Json> Hub::DoOpen(const protocol::OpenCommand& command) {
   if (found == uploads_.end()) {
     return Fail(ErrorCode::kNotFound, "there is no such upload", "", "send the file again");
   }
-  workbench_->Open(found->second.file, found->second.name);
+  workbench_->opener().Open(found->second.file, found->second.name);
   return Json::object();
 }
 
 Result<Json> Hub::DoCancel() {
-  workbench_->Cancel();
+  workbench_->opener().Cancel();
   return Json::object();
 }
 
 Result<Json> Hub::DoTake(const protocol::TakeCommand& command) {
-  const auto X_WH = workbench_->Take(command.hand, product::OccurrenceId(command.occurrence));
-  if (!X_WH) {
-    return Unexpected(X_WH.error());
+  const auto taken = workbench_->hands().Take(
+      command.hand, product::OccurrenceId(command.occurrence),
+      command.alone ? simulation::TakeExtent::kAlone : simulation::TakeExtent::kWhole);
+  if (!taken) {
+    return Unexpected(taken.error());
   }
-  return Json{{"hand", ToJson(*X_WH)}};
+  return ToJson(*taken);
 }
 
 Result<Json> Hub::DoRelease(const protocol::ReleaseCommand& command) {
-  return Done(workbench_->Release(command.hand));
+  return Done(workbench_->hands().Release(command.hand));
 }
 
 Result<Json> Hub::DoForces(const Caller& caller, const protocol::ForcesCommand& command) {
@@ -119,67 +123,72 @@ Result<Json> Hub::DoForces(const Caller& caller, const protocol::ForcesCommand& 
     return Fail(ErrorCode::kInvalid, "only the user in control can switch the forces on", "forces",
                 "ask for control first");
   }
-  workbench_->SetForcesOff(command.off);
+  workbench_->live().SetForcesOff(command.off);
   Broadcast({{"event", "forces"}, {"off", command.off}, {"by", caller.id}});
   return Json::object();
 }
 
 Result<Json> Hub::DoDemo(const protocol::DemoCommand& command) {
-  return Done(workbench_->SetDemo(command.on));
+  if (command.on) {
+    return Done(workbench_->demo().Start());
+  }
+  workbench_->demo().Stop();
+  return Json::object();
 }
 
 Result<Json> Hub::DoNext() {
-  return Done(workbench_->DoNext());
+  return Done(workbench_->demo().DoNext());
 }
 
 Result<Json> Hub::DoUndo() {
-  return Done(workbench_->Undo());
+  return Done(workbench_->edits().Undo());
 }
 
 Result<Json> Hub::DoRedo() {
-  return Done(workbench_->Redo());
+  return Done(workbench_->edits().Redo());
 }
 
 Result<Json> Hub::DoReset() {
-  return Done(workbench_->Reset());
+  return Done(workbench_->edits().Reset());
 }
 
 Result<Json> Hub::DoHands(const protocol::HandsCommand& command) {
-  return Done(workbench_->SetHandCount(command.count));
+  return Done(workbench_->hands().SetCount(command.count));
 }
 
 Result<Json> Hub::DoDevices() {
-  workbench_->SearchDevices();
-  return workbench_->devices();
+  workbench_->hands().SearchDevices();
+  return workbench_->hands().DescribeDevices();
 }
 
 Result<Json> Hub::DoUse(const protocol::UseCommand& command) {
-  return Done(workbench_->UseDevice(command.hand, command.device, command.scale));
+  return Done(workbench_->hands().UseDevice(command.hand, command.device, command.scale));
 }
 
 Result<Json> Hub::DoRecord(const protocol::RecordCommand& command) {
-  return Done(command.on ? workbench_->StartRecording(command.name) : workbench_->StopRecording());
+  WorkbenchRecordings& recordings = workbench_->recordings();
+  return Done(command.on ? recordings.Start(command.name) : recordings.Stop());
 }
 
 Result<Json> Hub::DoRenameRecording(const protocol::RenameRecordingCommand& command) {
-  return Done(workbench_->RenameRecording(command.recording, command.name));
+  return Done(workbench_->recordings().Rename(command.recording, command.name));
 }
 
 Result<Json> Hub::DoDeleteRecording(const protocol::DeleteRecordingCommand& command) {
-  return Done(workbench_->DeleteRecording(command.recording));
+  return Done(workbench_->recordings().Delete(command.recording));
 }
 
 template <typename Fields>
 Result<Json> Hub::DoEdit(const Fields& command) {
-  return Done(workbench_->Change(MakeEdit(command)));
+  return Done(workbench_->edits().Change(MakeEdit(command)));
 }
 
 Result<Json> Hub::DoMeasure(const protocol::MeasureCommand& command) {
-  const auto scene = workbench_->scene();
+  const auto scene = workbench_->live().scene();
   if (scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
   }
-  return Measure(*scene->model, workbench_->state(), command.a, command.b);
+  return Measure(*scene->model, workbench_->live().state(), command.a, command.b);
 }
 
 Result<Json> Hub::RequestLease(const Caller& caller, const std::vector<std::size_t>& hands) {
@@ -212,7 +221,7 @@ Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& co
   std::set_intersection(own.begin(), own.end(), hands.begin(), hands.end(),
                         std::back_inserter(given));
   if (given.empty()) {
-    return Fail(ErrorCode::kInvalid, "only whoever has the lease can pass it on or let it go",
+    return Fail(ErrorCode::kInvalid, "only the client that has the lease can give it or release it",
                 protocol::kLeaseActions[static_cast<std::size_t>(command.action)],
                 "ask for the lease first");
   }

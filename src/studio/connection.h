@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <utility>
@@ -11,6 +12,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 #include <boost/beast/websocket/teardown.hpp>
+#include <fmt/format.h>
 
 namespace hvas::studio {
 
@@ -113,7 +115,12 @@ class Connection {
  private:
   struct Slot {
     Slot(boost::asio::ip::tcp::socket socket, std::shared_ptr<ConnectionTable> given)
-        : stream(std::move(socket)), table(std::move(given)), number(table->Add(&stream)) {}
+        : stream(std::move(socket)), table(std::move(given)), number(table->Add(&stream)) {
+      if (number == 0) {
+        fmt::print(stderr, "warning: {} browsers are connected; a new connection was closed\n",
+                   ConnectionTable::kMost);
+      }
+    }
 
     ~Slot() { table->Remove(number); }
 

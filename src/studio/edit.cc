@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "mates/assignments.h"
+#include "mates/place_by_mates.h"
 #include "mates/user_mate.h"
 #include "studio/commands.h"
 
@@ -39,11 +40,12 @@ Edit MakeEdit(const protocol::AddMateCommand& command) {
     if (!mate) {
       return Unexpected(mate.error());
     }
-    const product::MateId id = mate->id.index() < product->mates.size()
-                                   ? mate->id
-                                   : mates::AddMate(product, std::move(*mate));
+    const auto id = mates::AddMateAndPlace(product, std::move(*mate));
+    if (!id) {
+      return Unexpected(id.error());
+    }
     return fit.empty() ? Result<void>()
-                       : mates::AssignFit(product, fmt::format("m{}={}", id.value(), fit));
+                       : mates::AssignFit(product, fmt::format("m{}={}", id->value(), fit));
   };
   return Edit{"add mate",
               {{"command", command.kName},
@@ -58,7 +60,7 @@ Edit MakeEdit(const protocol::RemoveMateCommand& command) {
   return Edit{"remove mate",
               {{"command", command.kName}, {"mate", command.mate}},
               [name](product::Product* product) -> Result<void> {
-                const auto removed = mates::RemoveMate(product, name);
+                const auto removed = mates::RemoveMateAndPlace(product, name);
                 return removed ? Result<void>() : Result<void>(Unexpected(removed.error()));
               }};
 }

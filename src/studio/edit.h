@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "base/result.h"
 #include "product/product.h"
+#include "studio/json.h"
 
 namespace hvas::studio {
 
@@ -16,8 +15,8 @@ using ChangeFn = std::function<Result<void>(product::Product*)>;
 
 /** A change of the product that a client has requested. */
 struct Edit {
-  std::string what;                ///< Description in the undo list.
-  nlohmann::ordered_json command;  ///< Command to repeat it from; null: it cannot be repeated.
+  std::string what;  ///< Description in the undo list.
+  Json command;      ///< Command to repeat it from; null: it cannot be repeated.
   ChangeFn change;
 };
 
@@ -34,9 +33,9 @@ struct RemoveMateCommand;
 
 /** Makes the edit of a command assign_fit, add_mate or remove_mate as JSON. Errors: kInvalid for
  another command, or one that lacks a field. */
-[[nodiscard]] Result<Edit> MakeEdit(const nlohmann::ordered_json& command);
+[[nodiscard]] Result<Edit> MakeEdit(const Json& command);
 
 /** Combines commands into one change that applies them in order. Errors: the first of MakeEdit. */
-[[nodiscard]] Result<ChangeFn> CombineEdits(const std::vector<nlohmann::ordered_json>& commands);
+[[nodiscard]] Result<ChangeFn> CombineEdits(const std::vector<Json>& commands);
 
 }  // namespace hvas::studio

@@ -5,7 +5,6 @@
 namespace hvas::studio {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using simulation::SimulationEvent;
 
 const char* CodeOf(ErrorCode code) {

@@ -146,6 +146,8 @@ Json MakeStatus(const simulation::LoopStatus& status) {
           {"late_ticks", status.late_wake_ups},
           {"overruns", status.overruns},
           {"lost_events", status.lost_events},
+          {"truncated_ticks", status.contact_limits.truncated_ticks},
+          {"crowded_ticks", status.contact_limits.crowded_ticks},
           {"effort_level", status.effort_level},
           {"scheduling", scheduling},
           {"is_memory_locked", status.is_memory_locked},

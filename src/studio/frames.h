@@ -5,7 +5,8 @@
 
 #include "simulation/executors.h"
 #include "studio/frame_codec.h"
-#include "studio/workbench.h"
+#include "studio/json.h"
+#include "studio/open_scene.h"
 
 namespace hvas::studio {
 

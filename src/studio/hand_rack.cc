@@ -12,8 +12,6 @@
 namespace hvas::studio {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /** Describes the pointer in the form of a device. */
 device::DeviceInfo MakePointerInfo() {
   device::DeviceInfo info;

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "base/result.h"
+#include "studio/json.h"
 #include "studio/live_hand.h"
 
 namespace hvas::studio {
@@ -40,8 +39,7 @@ class HandRack {
 
   /** Makes the field "hands" of docs/protocol.md.
    @param hands  Tick options of the run, for what the hands render; may be empty. */
-  [[nodiscard]] nlohmann::ordered_json Describe(
-      const std::vector<const haptics::TickOptions*>& hands) const;
+  [[nodiscard]] Json Describe(const std::vector<const haptics::TickOptions*>& hands) const;
 
  private:
   struct Slot {
@@ -65,11 +63,11 @@ class DeviceSearch {
   void Run();
 
   /** Makes the field "devices" of docs/protocol.md, from the result of the last search. */
-  [[nodiscard]] nlohmann::ordered_json Describe() const;
+  [[nodiscard]] Json Describe() const;
 
  private:
   mutable std::mutex mutex_;
-  nlohmann::ordered_json found_ = nlohmann::ordered_json::array();
+  Json found_ = Json::array();
   bool is_searching_{false};
 };
 

@@ -6,14 +6,13 @@
 
 namespace hvas::studio {
 
-using Json = nlohmann::ordered_json;
-
 void History::Remember(SceneSnapshot before, const std::string& what) {
   const std::lock_guard lock(mutex_);
   undo_.push_back({std::move(before), what});
   redo_.clear();
   if (undo_.size() > kMaxMoments) {
     undo_.erase(undo_.begin());
+    ++forgotten_;
   }
 }
 
@@ -44,6 +43,7 @@ void History::Clear() {
   const std::lock_guard lock(mutex_);
   undo_.clear();
   redo_.clear();
+  forgotten_ = 0;
 }
 
 Json History::Describe() const {
@@ -51,7 +51,10 @@ Json History::Describe() const {
   const auto last = [](const std::vector<Moment>& moments) {
     return moments.empty() ? Json(nullptr) : Json(moments.back().what);
   };
-  return {{"event", "history"}, {"undo", last(undo_)}, {"redo", last(redo_)}};
+  return {{"event", "history"},
+          {"undo", last(undo_)},
+          {"redo", last(redo_)},
+          {"forgotten", forgotten_}};
 }
 
 }  // namespace hvas::studio

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "base/result.h"
+#include "studio/json.h"
 #include "studio/live_run.h"
 #include "studio/open_scene.h"
 
@@ -41,7 +40,7 @@ class History {
   void Clear();
 
   /** Makes the event "history" of docs/protocol.md. */
-  [[nodiscard]] nlohmann::ordered_json Describe() const;
+  [[nodiscard]] Json Describe() const;
 
  private:
   struct Moment {
@@ -52,6 +51,7 @@ class History {
   mutable std::mutex mutex_;
   std::vector<Moment> undo_;
   std::vector<Moment> redo_;
+  std::size_t forgotten_{0};  ///< Undo steps that were dropped since the list was cleared.
 };
 
 }  // namespace hvas::studio

@@ -79,18 +79,19 @@ Json Hub::MakeHello(const std::string& id, const Client& client) const {
   for (const Example& example : desk_ == nullptr ? examples_ : std::vector<Example>()) {
     examples.push_back({{"id", example.id}, {"name", example.name}, {"about", example.about}});
   }
-  return {{"event", "hello"},
-          {"version", protocol::kVersion},
-          {"role", ToString(client.role)},
-          {"client", id},
-          {"has_lease", leases_[0] == id},
-          {"hands", MakeHands()},
-          {"has_study", desk_ != nullptr},
-          {"recording", IsShielded(client.role) ? Json(nullptr) : workbench_->recording()},
-          {"examples", std::move(examples)},
-          {"forces_off", workbench_->forces_off()},
-          {"has_scene", workbench_->scene() != nullptr},
-          {"demo", workbench_->is_demo()}};
+  return {
+      {"event", "hello"},
+      {"version", protocol::kVersion},
+      {"role", ToString(client.role)},
+      {"client", id},
+      {"has_lease", leases_[0] == id},
+      {"hands", MakeHands()},
+      {"has_study", desk_ != nullptr},
+      {"recording", IsShielded(client.role) ? Json(nullptr) : workbench_->recordings().Describe()},
+      {"examples", std::move(examples)},
+      {"forces_off", workbench_->live().forces_off()},
+      {"has_scene", workbench_->live().scene() != nullptr},
+      {"demo", workbench_->live().is_demo()}};
 }
 
 void Hub::Broadcast(Json event) {
@@ -177,7 +178,7 @@ void Hub::BroadcastRoles() {
 }
 
 Json Hub::MakeHands() const {
-  Json hands = workbench_->hands();
+  Json hands = workbench_->hands().Describe();
   for (std::size_t i = 0; i < hands.size(); ++i) {
     hands[i]["lease"] = leases_[i].empty() ? Json(nullptr) : Json(leases_[i]);
   }
@@ -222,7 +223,7 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
   const Result<Json> command = ParseCommand(text);
   Result<Json> result = command;
   // Switching the forces off is exempt from the rate limit (N6).
-  const bool is_urgent = command && IsForcesOff(*command) && !workbench_->forces_off();
+  const bool is_urgent = command && IsForcesOff(*command) && !workbench_->live().forces_off();
   if (!MaySend(&found->second, now_ns) && !is_urgent) {
     result = Fail(ErrorCode::kOutOfResource, "too many commands", "",
                   "send fewer commands for each second");
@@ -288,17 +289,17 @@ void Hub::OnBinary(const std::string& id, std::string_view bytes) {
   const bool may_grip = desk_ == nullptr || desk_->CheckTake().has_value();
   for (const protocol::HandInput& input : frames->inputs) {
     if (input.hand < leases_.size() && leases_[input.hand] == id) {
-      workbench_->Move(input.hand, PoseOf(input), may_grip && (input.buttons & kGrip) != 0);
+      workbench_->hands().Move(input.hand, PoseOf(input), may_grip && (input.buttons & kGrip) != 0);
     }
   }
   PublishFrame();
 }
 
 void Hub::PublishFrame() {
-  if (workbench_->scene() == nullptr) {
+  if (workbench_->live().scene() == nullptr) {
     return;
   }
-  const LiveFrame frame = workbench_->frame();
+  const LiveFrame frame = workbench_->live().frame();
   for (auto& [id, client] : clients_) {
     if (client.serial != frame.serial && client.sent_seq - client.seen_seq < kMaxUnseen) {
       client.serial = frame.serial;
@@ -325,13 +326,13 @@ void Hub::PublishStatus() {
   if (desk_ != nullptr && desk_->Poll(MonotonicNs())) {
     BroadcastStudyState();
   }
-  if (const auto status = workbench_->TakeStatus()) {
+  if (const auto status = workbench_->live().TakeStatus()) {
     status_ = MakeStatus(*status);
   }
   status_["clients"] = clients_.size();
   status_["hands"] = Json::array();
-  const LiveFrame frame = workbench_->frame();
-  const Json hands = workbench_->hands();
+  const LiveFrame frame = workbench_->live().frame();
+  const Json hands = workbench_->hands().Describe();
   for (std::size_t i = 0; i < std::min(hands.size(), frame.frame.ticks.size()); ++i) {
     Json now = MakeHandStatus(frame, i);
     now["limit_n"] = hands[i]["device"]["max_force_n"];

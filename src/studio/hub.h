@@ -132,6 +132,8 @@ class Hub {
   Result<Json> DoForces(const Caller& caller, const protocol::ForcesCommand& command);
   Result<Json> DoDemo(const protocol::DemoCommand& command);
   Result<Json> DoNext();
+  Result<Json> DoPlanRemoval(const Caller& caller, const protocol::PlanRemovalCommand& command);
+  Result<Json> DoTakeOut(const Caller& caller, const protocol::TakeOutCommand& command);
   Result<Json> DoUndo();
   Result<Json> DoRedo();
   Result<Json> DoReset();

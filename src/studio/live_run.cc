@@ -49,6 +49,16 @@ bool IsHeld(const simulation::PartState& part) {
 
 }  // namespace
 
+LiveState MakeStart(const simulation::Model& model) {
+  LiveState state;
+  for (const simulation::Body& body : model.bodies) {
+    state.parts.push_back(body.role == simulation::BodyRole::kFixture
+                              ? simulation::PartState{Placement::kPlaced, body.X_WB_goal}
+                              : simulation::PartState{Placement::kLoose, body.X_WB_start});
+  }
+  return state;
+}
+
 LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState& start,
                  const LiveOptions& options, LiveListeners listeners)
     : listeners_(std::move(listeners)),
@@ -57,11 +67,15 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
       hands_(MakeHands(options, *model)),
       simulation_(session::MakeSimulation(std::move(model), TicksOf(hands_))),
       assembly_(simulation_.get(), PersonsOf(hands_), this),
+      plan_(options.disassembly),
       begin_ns_(MonotonicNs()) {
   if (!start.parts.empty()) {
     simulation_->Restore(start.parts);
   }
   for (std::size_t i = 0; i < hands_.size(); ++i) {
+    if (trial_ == nullptr && !options.has_person) {
+      simulation_->physics().AllowJoining(i);
+    }
     if (!hands_[i]->follows_pointer()) {
       simulation_->physics().AwaitOpenGrip(i);
       if (trial_ == nullptr) {
@@ -75,7 +89,16 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
   if (trial_ != nullptr) {
     trial_->Begin(simulation_.get());
   }
+  simulation_->StopForces(options.forces_off);
   assembly_.Resume(start.next_step);
+  if (plan_ != nullptr) {
+    simulation::Sink* const downstream = this;
+    disassembly_.emplace(simulation_.get(), plan_.get(), hands_.front()->person(), downstream);
+    disassembly_->on_part = [this](const simulation::AssemblyProgress& progress,
+                                   const simulation::PartResult& /*part*/) {
+      listeners_.on_removal(progress.tried == progress.total);
+    };
+  }
   observed_ = {simulation_->physics().parts(), start.next_step};
   thread_ = std::thread([this, options] { Run(options); });
 }
@@ -87,7 +110,7 @@ LiveRun::~LiveRun() {
 
 void LiveRun::Run(const LiveOptions& options) {
   simulation::FlightRecorder flight(options.rate_hz, hands_.size());
-  simulation::Execution execution = assembly_.MakeExecution(
+  simulation::Execution execution = part_run().MakeExecution(
       hands_.front()->active(), kForEver, hands_.size() == 1 ? nullptr : hands_.back()->active());
   execution.advance = [this] { Advance(); };
   execution.is_done = [this] { return is_stopping_.load(); };
@@ -182,12 +205,30 @@ void LiveRun::Advance() {
     }
     tasks_.clear();
   }
-  assembly_.Advance();
+  part_run().Advance();
   Observe();
 }
 
+simulation::PartRun& LiveRun::part_run() {
+  return disassembly_ ? static_cast<simulation::PartRun&>(*disassembly_) : assembly_;
+}
+
+std::size_t LiveRun::FindNextStep(const std::vector<simulation::PartState>& parts) const {
+  if (!disassembly_) {
+    return assembly_.next_step();
+  }
+  using Kind = simulation::SequenceStep::Kind;
+  const auto& steps = model().sequence.steps;
+  const auto open = std::find_if(steps.begin(), steps.end(), [&parts](const auto& step) {
+    return (step.kind == Kind::kBase || step.kind == Kind::kInsert) &&
+           parts[step.occurrence.index()].placement != Placement::kPlaced;
+  });
+  return static_cast<std::size_t>(open - steps.begin());
+}
+
 void LiveRun::Observe() {
-  LiveState now{simulation_->physics().parts(), assembly_.next_step()};
+  LiveState now{simulation_->physics().parts(), 0};
+  now.next_step = FindNextStep(now.parts);
   LiveState before;
   {
     const std::lock_guard lock(mutex_);
@@ -201,8 +242,9 @@ void LiveRun::Observe() {
     before_take_ = has_closed ? before : before_take_;
   }
   for (std::size_t i = 0; i < now.parts.size(); ++i) {
-    if (before.parts[i].placement != now.parts[i].placement) {
-      listeners_.on_placement(product::OccurrenceId(i), now.parts[i].placement);
+    if (before.parts[i].placement != now.parts[i].placement ||
+        before.parts[i].leader != now.parts[i].leader) {
+      listeners_.on_placement(product::OccurrenceId(i), now.parts[i]);
     }
   }
   if (before.next_step != now.next_step) {

@@ -13,6 +13,7 @@
 
 #include "base/triple_buffer.h"
 #include "simulation/assembly_run.h"
+#include "simulation/disassembly_run.h"
 #include "simulation/executors.h"
 #include "studio/live_hand.h"
 #include "studio/live_trial.h"
@@ -26,11 +27,16 @@ struct LiveState {
   std::size_t next_step{0};
 };
 
+/** The initial state: all parts and tools lie on the table, fixtures stand where they belong. */
+[[nodiscard]] LiveState MakeStart(const simulation::Model& model);
+
 /** Callbacks of a run. All but on_frame are called on the physics thread. */
 struct LiveListeners {
   std::function<void(const simulation::SimulationEvent&)> on_event;
-  std::function<void(product::OccurrenceId, simulation::Placement)> on_placement;
+  std::function<void(product::OccurrenceId, const simulation::PartState&)> on_placement;
   std::function<void(std::size_t step)> on_step;
+  /** Called after each removal of a disassembly. */
+  std::function<void(bool is_last)> on_removal;
   /** Called on the publish thread. */
   std::function<void(const simulation::Frame&, std::int64_t clock_ns, const PeakForces&)> on_frame;
 };
@@ -40,8 +46,11 @@ struct LiveOptions {
   std::vector<HandSetup> hands{1};  ///< One or two.
   std::uint64_t seed{1};            ///< Any number: the simulated person's hand follows from it.
   double rate_hz{1000};             ///< X4 asks for 1 kHz.
+  bool forces_off{false};           ///< No force from the first tick on.
   std::shared_ptr<Recording> recording;  ///< Receives all events; may be null.
   std::shared_ptr<LiveTrial> trial;      ///< Trial of a study; may be null.
+  /** Plan that the simulated person carries out instead of the assembly; may be null. */
+  std::shared_ptr<const simulation::DisassemblyPlan> disassembly;
 };
 
 /** One section of a live assembly: a simulation of a model that runs in real time until this object
@@ -84,6 +93,9 @@ class LiveRun final : private simulation::Sink {
   void OnFlight(const std::vector<simulation::FlightTick>& ticks) override;
   void Advance();
   void Observe();
+  [[nodiscard]] simulation::PartRun& part_run();
+  /** The first step whose part is not in its place, or that of the assembly. */
+  [[nodiscard]] std::size_t FindNextStep(const std::vector<simulation::PartState>& parts) const;
   void Run(const LiveOptions& options);
 
   LiveListeners listeners_;
@@ -92,6 +104,8 @@ class LiveRun final : private simulation::Sink {
   std::vector<std::unique_ptr<LiveHand>> hands_;
   std::unique_ptr<simulation::Simulation> simulation_;
   simulation::AssemblyRun assembly_;
+  std::shared_ptr<const simulation::DisassemblyPlan> plan_;
+  std::optional<simulation::DisassemblyRun> disassembly_;  ///< Takes the place of assembly_.
   TripleBuffer<simulation::LoopStatus> status_;
   std::array<std::atomic<double>, 2> peak_felt_{};
   /** MonotonicNs() at session time 0, by the newest tick: periods that the loop missed are no

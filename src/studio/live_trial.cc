@@ -4,6 +4,7 @@
 
 #include "assembly/assembly_setup.h"
 #include "study/simulated_participant.h"
+#include "study/trial_pair.h"
 
 namespace hvas::studio {
 
@@ -22,6 +23,7 @@ Result<std::shared_ptr<LiveTrial>> LiveTrial::Make(const Plan& plan, const simul
     trial->recorder_ = std::move(*recorder);
     trial->recording_.emplace(trial->recorder_.get(), model);
   }
+  trial->pair_ = study::DescribePair(model, step);
   const simulation::SequenceStep& own = model.sequence.steps[step];
   trial->watch_.emplace(own.occurrence, own.extraction_W, plan.mating_window, period_s,
                         trial->recording_ ? &*trial->recording_ : nullptr);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "record/recorder.h"
 #include "session/session_recorder.h"
 #include "study/protocol.h"
+#include "study/trial_result.h"
 #include "study/trial_watch.h"
 
 namespace hvas::studio {
@@ -19,6 +21,7 @@ class LiveTrial final : public simulation::Sink {
     study::Condition condition;
     std::string part;              ///< Part that the participant assembles.
     double mating_window{3};       ///< See study::Protocol [s].
+    std::uint64_t pair_seed{1};    ///< Draws the pair of parts (study::DrawPair).
     std::filesystem::path record;  ///< File of the record; empty: none.
     bool has_person{false};        ///< The simulated person does the trial.
   };
@@ -49,10 +52,14 @@ class LiveTrial final : public simulation::Sink {
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
 
+  /** The pair of parts of the trial; nothing where no mate of the part has a fit. */
+  [[nodiscard]] const std::optional<study::TrialPair>& pair() const { return pair_; }
+
  private:
   explicit LiveTrial(const Plan& plan) : plan_(plan) {}
 
   Plan plan_;
+  std::optional<study::TrialPair> pair_;
   std::unique_ptr<record::Recorder> recorder_;
   std::optional<session::SessionRecorder> recording_;
   std::optional<study::TrialWatch> watch_;

@@ -4,7 +4,8 @@
 
 #include "base/result.h"
 #include "simulation/model.h"
-#include "studio/workbench.h"
+#include "studio/json.h"
+#include "studio/live_run.h"
 
 namespace hvas::studio {
 

@@ -8,7 +8,11 @@ using product::OccurrenceId;
 using simulation::Placement;
 using simulation::SequenceStep;
 
-SequenceStep FindStep(const simulation::Model& model, const LiveState& state, OccurrenceId id) {
+SequenceStep FindStep(const simulation::Model& model, const LiveState& state, OccurrenceId id,
+                      simulation::TakeExtent extent) {
+  if (state.parts[id.index()].leader.is_valid()) {
+    return MakeTableStep(model, state.parts, id, extent);
+  }
   const auto& steps = model.sequence.steps;
   for (std::size_t i = state.next_step; i < steps.size(); ++i) {
     const SequenceStep& step = steps[i];

@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "base/diagnostics.h"
 #include "simulation/model.h"
 #include "simulation/simulation.h"
+#include "studio/json.h"
 
 namespace hvas::studio {
 
@@ -26,7 +25,7 @@ struct OpenScene {
   std::string name;            ///< Display name of the file.
   std::string digest;          ///< CalcProductDigest of the product as opened.
   /** Commands of the edits since it was opened, in order. */
-  std::vector<nlohmann::ordered_json> edits;
+  std::vector<Json> edits;
 };
 
 /** Largest force since the previous query, by hand [N]. */

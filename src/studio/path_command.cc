@@ -11,14 +11,16 @@
 namespace hvas::studio {
 namespace {
 
-Json MakePoints(const sweep::Path& path, const Vec3& p_BoBcm_B) {
+Json MakePoints(const PathLog::HeldPath& held, const Vec3& p_BoBcm_B) {
   Json points = Json::array();
   Json poses = Json::array();
-  for (const spatial::Pose& X_WB : path) {
+  for (const spatial::Pose& X_WB : held.path) {
     points.push_back(ToJson(Vec3(X_WB * p_BoBcm_B)));
     poses.push_back(ToJson(X_WB));
   }
-  return {{"points_m", std::move(points)}, {"poses", std::move(poses)}};
+  return {{"points_m", std::move(points)},
+          {"poses", std::move(poses)},
+          {"frames_per_pose", held.stride}};
 }
 
 Result<Json> Describe(const Result<std::shared_ptr<const SweptGlb>>& swept) {
@@ -33,7 +35,7 @@ Result<Json> Describe(const Result<std::shared_ptr<const SweptGlb>>& swept) {
 }  // namespace
 
 Result<Json> Hub::DoPath(const Caller& caller, const protocol::PathCommand& command) {
-  const auto scene = workbench_->scene();
+  const auto scene = workbench_->live().scene();
   if (scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
   }
@@ -43,20 +45,21 @@ Result<Json> Hub::DoPath(const Caller& caller, const protocol::PathCommand& comm
     return Fail(ErrorCode::kNotFound, "there is no such part",
                 fmt::format("o{}", command.occurrence), "");
   }
-  sweep::Path path = workbench_->paths().PathOf(id);
-  if (path.empty()) {
+  PathLog::HeldPath held = workbench_->paths().PathOf(id);
+  if (held.path.empty()) {
     return Fail(ErrorCode::kNotFound, "this part has not been held yet",
                 product.occurrences[id.index()].name, "move it, or let the simulated person do so");
   }
   if (command.as == protocol::PathForm::kPoints) {
-    return MakePoints(path, product.part_of(id).mass.p_BoBcm_B);
+    return MakePoints(held, product.part_of(id).mass.p_BoBcm_B);
   }
-  const auto done = [bench = workbench_, to = caller.id, reply_to = IdOf(caller.command)](
-                        const Result<std::shared_ptr<const SweptGlb>>& swept) {
-    bench->on_event(MakeDeferredReply(to, reply_to, Describe(swept)));
-  };
+  const auto done =
+      [events = &workbench_->events(), to = caller.id,
+       reply_to = IdOf(caller.command)](const Result<std::shared_ptr<const SweptGlb>>& swept) {
+        events->Publish(MakeDeferredReply(to, reply_to, Describe(swept)));
+      };
   const auto posted = workbench_->sweeper().Post(
-      {scene->model, id, std::move(path), units::FromMm(command.resolution_mm), done});
+      {scene->model, id, std::move(held.path), units::FromMm(command.resolution_mm), done});
   return posted ? Result<Json>(MakeDeferredResult()) : Unexpected(posted.error());
 }
 

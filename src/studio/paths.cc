@@ -7,6 +7,7 @@
 
 #include "base/digest.h"
 #include "cad/glb.h"
+#include "product/wall.h"
 #include "simulation/shapes.h"
 
 namespace hvas::studio {
@@ -26,13 +27,13 @@ bool HasMoved(const Pose& from, const Pose& to) {
 Result<std::shared_ptr<const SweptGlb>> Compute(const Sweeper::Task& task,
                                                 const std::stop_token& stop) {
   const product::Occurrence& occurrence = task.model->product->occurrences[task.occurrence.index()];
+  const product::Part& part = task.model->product->part_of(task.occurrence);
   sweep::SweepOptions options;
   options.resolution = task.resolution;
+  options.thinnest_wall = product::CalcThinnestWall(part).value_or(0);
   options.threads = 1;  // the other cores are left to the loops of the hand
   options.stop = stop;
-  const auto swept =
-      sweep::Sweep(simulation::MakeShapeSource(task.model->product->part_of(task.occurrence)),
-                   task.path, options);
+  const auto swept = sweep::Sweep(simulation::MakeShapeSource(part), task.path, options);
   if (!swept) {
     Error error = swept.error();
     error.where = occurrence.name;
@@ -59,10 +60,16 @@ void PathLog::Add(const simulation::Frame& frame) {
     if (!id.is_valid() || id.index() >= frame.X_WB.size()) {
       continue;
     }
-    if (is_new) {
-      holds_[id] = {};
+    std::vector<OccurrenceId> moved{id};
+    if (hand < frame.members.size()) {
+      moved.insert(moved.end(), frame.members[hand].begin(), frame.members[hand].end());
     }
-    Append(frame.X_WB[id.index()], &holds_[id]);
+    for (const OccurrenceId part : moved) {
+      if (is_new) {
+        holds_[part] = {};
+      }
+      Append(frame.X_WB[part.index()], &holds_[part]);
+    }
   }
 }
 
@@ -92,15 +99,15 @@ void PathLog::Clear() {
   held_.clear();
 }
 
-sweep::Path PathLog::PathOf(OccurrenceId id) const {
+PathLog::HeldPath PathLog::PathOf(OccurrenceId id) const {
   const std::lock_guard lock(mutex_);
   const auto found = holds_.find(id);
   if (found == holds_.end()) {
     return {};
   }
-  sweep::Path path = found->second.path;
-  path.push_back(found->second.newest);
-  return path;
+  HeldPath held = found->second;
+  held.path.push_back(found->second.newest);
+  return held;
 }
 
 Result<std::string> MakeGlb(const sweep::SurfaceMesh& mesh, const std::string& name) {

@@ -29,13 +29,16 @@ class PathLog {
   void Add(const simulation::Frame& frame);
   void Clear();
 
-  /** Path of a part; empty for a part that was never held. */
-  [[nodiscard]] sweep::Path PathOf(product::OccurrenceId id) const;
+  /** Path of a part in its last hold. */
+  struct HeldPath {
+    sweep::Path path;       ///< Empty for a part that was never held.
+    std::size_t stride{1};  ///< One frame is kept of so many in which the part moved.
+  };
+
+  [[nodiscard]] HeldPath PathOf(product::OccurrenceId id) const;
 
  private:
-  struct Hold {
-    sweep::Path path;
-    std::size_t stride{1};  ///< One frame is kept of so many in which the part moved.
+  struct Hold : HeldPath {
     std::size_t passed{0};  ///< Frames since the last one that was kept.
     spatial::Pose newest;
   };

@@ -35,7 +35,7 @@ Recording::Recording(std::unique_ptr<record::Recorder> recorder,
 Result<std::shared_ptr<Recording>> Recording::Start(const std::filesystem::path& file,
                                                     const std::string& name,
                                                     std::shared_ptr<const OpenScene> scene,
-                                                    const nlohmann::ordered_json& scene_json,
+                                                    const Json& scene_json,
                                                     std::function<void()> on_failed) {
   record::RecorderOptions options;
   options.path = file;
@@ -85,7 +85,7 @@ void Recording::AddFrame(const LiveFrame& frame) {
   recorder_->AddFrame({t_ns, BytesOf(bytes)});
 }
 
-void Recording::AddClientEvent(const nlohmann::ordered_json& event) {
+void Recording::AddClientEvent(const Json& event) {
   const std::string name = event.value("event", "");
   if (is_on_ &&
       std::find(kClientEvents.begin(), kClientEvents.end(), name) != kClientEvents.end()) {
@@ -99,7 +99,7 @@ Result<void> Recording::Stop() {
   return recorder_->Finish();
 }
 
-nlohmann::ordered_json Recording::Describe() const {
+Json Recording::Describe() const {
   return {{"on", is_on_.load()},
           {"id", id_},
           {"name", name_},

@@ -9,10 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "record/recorder.h"
 #include "session/session_recorder.h"
+#include "studio/json.h"
 #include "studio/open_scene.h"
 
 namespace hvas::studio {
@@ -34,7 +33,7 @@ class Recording final : public simulation::Sink {
   static Result<std::shared_ptr<Recording>> Start(const std::filesystem::path& file,
                                                   const std::string& name,
                                                   std::shared_ptr<const OpenScene> scene,
-                                                  const nlohmann::ordered_json& scene_json,
+                                                  const Json& scene_json,
                                                   std::function<void()> on_failed);
 
   /** Begins with a run. @pre its state is restored, and its loops do not run yet. */
@@ -48,7 +47,7 @@ class Recording final : public simulation::Sink {
   /** Adds a frame as clients get it. Called on the publish thread. */
   void AddFrame(const LiveFrame& frame);
   /** Adds an event as clients get it. Any thread but the haptic one may call it. */
-  void AddClientEvent(const nlohmann::ordered_json& event);
+  void AddClientEvent(const Json& event);
 
   /** Closes the file. A run may keep this as its sink; nothing is written any more.
    Errors: those of writing the file. */
@@ -60,7 +59,7 @@ class Recording final : public simulation::Sink {
   [[nodiscard]] const OpenScene* scene() const { return scene_.get(); }
 
   /** Makes the field "recording" of docs/protocol.md. */
-  [[nodiscard]] nlohmann::ordered_json Describe() const;
+  [[nodiscard]] Json Describe() const;
 
  private:
   Recording(std::unique_ptr<record::Recorder> recorder, std::shared_ptr<const OpenScene> scene,

@@ -21,8 +21,6 @@
 namespace hvas::studio {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kSuffix = ".hvasrec";
 constexpr const char* kNamesFile = "names.json";
 constexpr std::int64_t kNsPerMs = 1'000'000;  // A definition.

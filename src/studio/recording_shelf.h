@@ -5,9 +5,8 @@
 #include <mutex>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "record/reader.h"
+#include "studio/json.h"
 
 namespace hvas::studio {
 
@@ -23,13 +22,13 @@ class RecordingShelf {
   [[nodiscard]] Result<std::filesystem::path> MakePath(const std::string& product) const;
 
   /** Makes the field "recordings" of docs/protocol.md, newest first. Other files are skipped. */
-  [[nodiscard]] nlohmann::ordered_json List();
+  [[nodiscard]] Json List();
 
   /** Path of a recording. Errors: kNotFound. */
   [[nodiscard]] Result<std::filesystem::path> Find(const std::string& id) const;
 
   /** Makes the description from which a page plays a recording (docs/protocol.md). */
-  [[nodiscard]] Result<nlohmann::ordered_json> Describe(const std::string& id) const;
+  [[nodiscard]] Result<Json> Describe(const std::string& id) const;
 
   /** Reads all frames as clients got them, one after the other. */
   [[nodiscard]] Result<std::string> ReadFrames(const std::string& id) const;
@@ -58,7 +57,7 @@ class RecordingShelf {
   struct Entry {
     std::filesystem::file_time_type written;
     std::uintmax_t bytes{0};
-    nlohmann::ordered_json description;  ///< Null for what is no record.
+    Json description;  ///< Null for what is no record.
   };
 
   std::filesystem::path folder_;

@@ -47,8 +47,8 @@ Response MakeGlbResponse(std::string_view bytes, const std::string& digest,
   return response;
 }
 
-Result<Response> MakeSceneResponse(const Workbench& workbench, bool is_shielded) {
-  const SceneSnapshot now = workbench.MakeSnapshot();
+Result<Response> MakeSceneResponse(const LiveScene& live, bool is_shielded) {
+  const SceneSnapshot now = live.MakeSnapshot();
   if (now.scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example");
   }
@@ -56,8 +56,8 @@ Result<Response> MakeSceneResponse(const Workbench& workbench, bool is_shielded)
                                        : MakeSceneJson(*now.scene, now.state));
 }
 
-Result<Response> MakeModelResponse(const Workbench& workbench, std::string_view name) {
-  const auto scene = workbench.scene();
+Result<Response> MakeModelResponse(const LiveScene& live, std::string_view name) {
+  const auto scene = live.scene();
   if (scene == nullptr || name != scene->glb_hash + ".glb") {
     return Fail(ErrorCode::kNotFound, "this model is no longer open", std::string(name),
                 "request /api/scene again");
@@ -65,8 +65,8 @@ Result<Response> MakeModelResponse(const Workbench& workbench, std::string_view 
   return MakeGlbResponse(*scene->glb, scene->glb_hash, scene);
 }
 
-Result<Response> MakePathResponse(Workbench* workbench, std::string_view name) {
-  const auto swept = workbench->sweeper().Find(name.substr(0, name.find(".glb")));
+Result<Response> MakePathResponse(const Sweeper& sweeper, std::string_view name) {
+  const auto swept = sweeper.Find(name.substr(0, name.find(".glb")));
   if (swept == nullptr || name != swept->id + ".glb") {
     return Fail(ErrorCode::kNotFound, "this swept volume is no longer available", std::string(name),
                 "compute it again");
@@ -135,22 +135,22 @@ Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bo
   constexpr std::string_view kPath = "/api/path/";
   constexpr std::string_view kRecording = "/api/recording/";
   if (path == "/api/scene") {
-    return MakeSceneResponse(*workbench, is_shielded);
+    return MakeSceneResponse(workbench->live(), is_shielded);
   }
   if (is_shielded && !path.starts_with(kModel)) {
     return FailNotFound(path);
   }
   if (path == "/api/recordings") {
-    return MakeOwnedResponse(workbench->shelf().List());
+    return MakeOwnedResponse(workbench->recordings().shelf().List());
   }
   if (path.starts_with(kModel)) {
-    return MakeModelResponse(*workbench, path.substr(kModel.size()));
+    return MakeModelResponse(workbench->live(), path.substr(kModel.size()));
   }
   if (path.starts_with(kPath)) {
-    return MakePathResponse(workbench, path.substr(kPath.size()));
+    return MakePathResponse(workbench->sweeper(), path.substr(kPath.size()));
   }
   if (path.starts_with(kRecording)) {
-    return MakeRecordingResponse(&workbench->shelf(), path.substr(kRecording.size()));
+    return MakeRecordingResponse(&workbench->recordings().shelf(), path.substr(kRecording.size()));
   }
   return FailNotFound(path);
 }

@@ -4,18 +4,17 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "studio/history.h"
+#include "studio/json.h"
 
 namespace hvas::studio {
 
 /** Saved work on a product: edits and state of assembly, from which a later start resumes. */
 struct SavedWork {
-  std::filesystem::path file;                 ///< CAD file of the product.
-  std::string name;                           ///< Display name of the product.
-  std::string digest;                         ///< CalcProductDigest of the product as opened.
-  std::vector<nlohmann::ordered_json> edits;  ///< Commands of edits, in order.
+  std::filesystem::path file;  ///< CAD file of the product.
+  std::string name;            ///< Display name of the product.
+  std::string digest;          ///< CalcProductDigest of the product as opened.
+  std::vector<Json> edits;     ///< Commands of edits, in order.
   LiveState state;
 };
 

@@ -10,8 +10,27 @@
 
 namespace hvas::studio {
 
-using Json = nlohmann::ordered_json;
 using SharedScene = std::shared_ptr<const OpenScene>;
+
+namespace {
+
+/** Replaces what mates of the user have made of the poses before by what they make of them now. */
+Diagnostics ReplacePlacement(const Diagnostics& before, const product::Product& product) {
+  Diagnostics now;
+  for (const Diagnostic& item : before.items()) {
+    if (!item.code.starts_with("mate-")) {
+      now.Add(item);
+    }
+  }
+  for (const Diagnostic& item : product.placement.diagnostics.items()) {
+    if (item.code.starts_with("mate-")) {
+      now.Add(item);
+    }
+  }
+  return now;
+}
+
+}  // namespace
 
 Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const std::string& name,
                                        const cad::ProgressFn& progress,
@@ -45,8 +64,10 @@ Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const 
   return scene;
 }
 
-SharedScene SceneBuilder::MakeCopy(const OpenScene& before) {
+SharedScene SceneBuilder::MakeCopy(const OpenScene& before,
+                                   std::shared_ptr<const simulation::Model> model) {
   auto scene = std::make_shared<OpenScene>(before);
+  scene->model = std::move(model);
   scene->epoch = ++last_epoch_;
   return scene;
 }
@@ -74,6 +95,7 @@ Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const Edit& ed
     return Unexpected(changed.error());
   }
   auto scene = std::make_shared<OpenScene>(before);
+  scene->diagnostics = ReplacePlacement(before.diagnostics, product);
   auto model = Compile(std::move(product), edit.what, progress, &scene->diagnostics);
   if (!model) {
     return Unexpected(model.error());

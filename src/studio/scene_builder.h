@@ -12,6 +12,7 @@
 #include "contact/shape_cache.h"
 #include "product/product.h"
 #include "studio/edit.h"
+#include "studio/json.h"
 #include "studio/open_scene.h"
 
 namespace hvas::studio {
@@ -44,11 +45,11 @@ class SceneBuilder {
 
   /** Applies edits of OpenScene to a scene. Errors: those of the first edit that fails. */
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> ApplyEdits(
-      const OpenScene& opened, const std::vector<nlohmann::ordered_json>& edits,
-      const cad::ProgressFn& progress);
+      const OpenScene& opened, const std::vector<Json>& edits, const cad::ProgressFn& progress);
 
-  /** Copies a scene under a new epoch. */
-  [[nodiscard]] std::shared_ptr<const OpenScene> MakeCopy(const OpenScene& before);
+  /** Copies a scene under a new epoch, with another model of the same product. */
+  [[nodiscard]] std::shared_ptr<const OpenScene> MakeCopy(
+      const OpenScene& before, std::shared_ptr<const simulation::Model> model);
 
   /** Applies an edit to the product of a scene; the meshes stay. Errors: those of the edit, and of
    compiling the model. */

@@ -63,6 +63,23 @@ Json SubassembliesOf(const product::Product& product) {
   return all;
 }
 
+/** "first, second", of those that are there. */
+std::string Join(const std::string& first, const std::string& second) {
+  return first + (first.empty() || second.empty() ? "" : ", ") + second;
+}
+
+/** What the file states of a part as an item of a company's data; many files repeat the name. */
+void AddIdentity(const product::Part& part, Json* occurrence) {
+  const product::Identity& identity = part.identity;
+  const std::string number = Join(identity.id, identity.version);
+  if (!number.empty() && number != part.name) {
+    (*occurrence)["number"] = number;
+  }
+  if (const std::string designer = Join(identity.designer, identity.created); !designer.empty()) {
+    (*occurrence)["designer"] = designer;
+  }
+}
+
 Json OccurrencesOf(const Model& model, const LiveState& state) {
   Json all = Json::array();
   for (const product::Occurrence& occurrence : model.product->occurrences) {
@@ -86,6 +103,10 @@ Json OccurrencesOf(const Model& model, const LiveState& state) {
          {"material", part.material.name.empty() ? part.material.standard : part.material.name},
          {"p_BoBcm_m", ToJson(body.mass.p_BoBcm_B)},
          {"is_base", is_base}});
+    if (const auto leader = state.parts[occurrence.id.index()].leader; leader.is_valid()) {
+      all.back()["leader"] = leader.value();
+    }
+    AddIdentity(part, &all.back());
   }
   return all;
 }
@@ -103,6 +124,7 @@ Json FitOf(const Model& model, const product::Mate& mate) {
             {"clearance_min_um", nullptr},
             {"clearance_max_um", nullptr},
             {"clearance_actual_um", nullptr},
+            {"clearance_along_um", nullptr},
             {"is_proposed", fit.is_proposed},
             {"reason", fit.reason}};
   if (const auto code = fits::ParseFit(fit.code)) {
@@ -112,8 +134,10 @@ Json FitOf(const Model& model, const product::Mate& mate) {
     }
   }
   if (const auto& force = model.mates[mate.id.index()].fit; force != nullptr) {
-    constexpr double kMouth = 0;  // where the effect of roughness is smallest
-    json["clearance_actual_um"] = units::ToUm(2 * force->CalcClearance(kMouth));
+    const auto s = force->clearances();
+    const auto [least, largest] = std::minmax_element(s.begin(), s.end());
+    json["clearance_actual_um"] = units::ToUm(2 * force->mean_clearance());
+    json["clearance_along_um"] = {units::ToUm(2 * *least), units::ToUm(2 * *largest)};
   }
   return json;
 }

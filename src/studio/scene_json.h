@@ -1,6 +1,8 @@
 #pragma once
 
-#include "studio/workbench.h"
+#include "studio/json.h"
+#include "studio/live_run.h"
+#include "studio/open_scene.h"
 
 namespace hvas::studio {
 

@@ -8,6 +8,7 @@
 #include "mates/user_mate.h"
 #include "studio/commands.h"
 #include "study/simulated_participant.h"
+#include "study/trial_pair.h"
 
 namespace hvas::studio {
 namespace {
@@ -85,7 +86,7 @@ Result<std::unique_ptr<StudyDesk>> StudyDesk::Open(study::StudyFolder folder, Wo
 }
 
 void StudyDesk::Start() {
-  bench_->Open(options_.product, folder_.protocol().title.en);
+  bench_->opener().Open(options_.product, folder_.protocol().title.en);
 }
 
 Result<void> StudyDesk::RecordEvent(StudyEvent event) {
@@ -232,7 +233,7 @@ Result<void> StudyDesk::AddNote(const Json& command) {
 Result<void> StudyDesk::Abort(const std::string& reason) {
   StudyEvent event;
   event.kind = Kind::kAborted;
-  event.text = reason.substr(0, kLongestNote);
+  event.text = reason;
   const auto recorded = RecordEvent(event);
   if (recorded) {
     last_abort_ = event.text;
@@ -251,14 +252,20 @@ const Condition* StudyDesk::FindCurrentCondition() const {
 }
 
 bool StudyDesk::IsPicking() const {
-  return trial_ != nullptr && trial_->plan().condition.method == study::Method::kPicking;
+  return trial_ != nullptr &&
+         (trial_->plan().condition.method == study::Method::kPicking || !missing_.empty());
 }
 
 void StudyDesk::BeginOnBench() {
   LiveTrial::Plan plan;
   plan.condition = *FindCurrentCondition();
-  plan.part = folder_.protocol().part;
+  const auto trial = session_.trial();
+  plan.part = folder_.protocol().PartOf(plan.condition,
+                                        trial && session_.BlockOf(*trial).is_identification);
   plan.mating_window = folder_.protocol().mating_window;
+  // Pairs of the training are none of those of the trials.
+  const std::size_t index = trial ? *trial : session_.schedule().size() + training_runs_++;
+  plan.pair_seed = study::CalcPairSeed(folder_.seed(), session_.participant(), index);
   plan.has_person = options_.has_person;
   if (options_.keeps_records && session_.phase() == Phase::kRunning) {
     plan.record = folder_.RecordFile(id_, *session_.trial());
@@ -267,13 +274,13 @@ void StudyDesk::BeginOnBench() {
   }
   ending_.reset();
   hold_.clear();
-  bench_->BeginTrial(plan);
+  bench_->trials().Begin(plan);
 }
 
 void StudyDesk::EndOnBench(Outcome outcome) {
   if (trial_ != nullptr && !ending_) {
     ending_ = outcome;
-    bench_->EndTrial();
+    bench_->trials().End();
   }
 }
 
@@ -294,6 +301,7 @@ Result<void> StudyDesk::FinishTrial() {
   event.kind = Kind::kTrialEnded;
   event.trial = *session_.trial();
   event.result = over->watch().MakeResult();
+  event.result.pair = over->pair();
   event.result.outcome = outcome;
   if (outcome == Outcome::kTimedOut && event.result.time) {
     event.result.time = std::min(*event.result.time, over->plan().condition.time_limit);
@@ -307,9 +315,9 @@ bool StudyDesk::OnBenchEvent(const Json& event, std::int64_t /*now_ns*/) {
     return !std::exchange(is_open_, true);
   }
   if (name == "trial_begun") {
-    trial_ = bench_->trial();
-    part_ = bench_->trial_part();
-    missing_ = bench_->trial_constraints();
+    trial_ = bench_->trials().trial();
+    part_ = bench_->trials().part();
+    missing_ = bench_->trials().ListConstraints();
     if (!session_.is_running()) {
       EndOnBench(Outcome::kNotDone);  // aborted, or the training ended, before the run began
     }
@@ -373,7 +381,7 @@ Result<Json> StudyDesk::Pick(Role role, const Json& command, std::int64_t now_ns
   if (!IsPicking() || ending_) {
     return FailNotNow("picking", "surfaces can be picked only in trials with that method");
   }
-  const auto scene = bench_->scene();
+  const auto scene = bench_->live().scene();
   const auto mate = mates::MakeMate(*scene->model->product, {a.occurrence, a.face, {}},
                                     {b.occurrence, b.face, {}});
   const auto found = mate ? std::find(missing_.begin(), missing_.end(), mate->id) : missing_.end();
@@ -381,7 +389,7 @@ Result<Json> StudyDesk::Pick(Role role, const Json& command, std::int64_t now_ns
   if (is_set) {
     missing_.erase(found);
   }
-  if (is_set && missing_.empty()) {
+  if (is_set && missing_.empty() && trial_->plan().condition.method == study::Method::kPicking) {
     EndOnBench(Outcome::kDone);
   }
   return Json{{"is_set", is_set}, {"left", missing_.size()}, {"state", MakeState(role, now_ns)}};
@@ -402,6 +410,8 @@ Json StudyDesk::MakeState(Role role, std::int64_t now_ns) const {
   Json state{{"view", is_experimenter ? "experimenter" : "participant"},
              {"title", protocol.title.In(language)},
              {"language", language},
+             {"has_end_sound", protocol.display.has_end_sound},
+             {"stereo", study::kStereos[static_cast<std::size_t>(protocol.display.stereo)]},
              {"languages", protocol.languages},
              {"phase", study::ToString(session_.phase())},
              {"is_running", session_.is_running()},
@@ -439,9 +449,16 @@ void StudyDesk::AddTrialAtHand(std::int64_t now_ns, bool sees_all, Json* state) 
   s["instruction"] =
       OrNull(is_training && !protocol.training.text.empty() ? protocol.training.text.In(language)
                                                             : condition->instruction.In(language));
-  s["method"] = condition->method == study::Method::kPicking ? "picking" : "hand";
+  // A part whose axis is picked first is taken by the hand after that.
+  const bool begins_with_picking = condition->method == study::Method::kPicking ||
+                                   condition->constraints == study::Constraints::kPicked;
+  const bool is_picking = trial_ != nullptr ? IsPicking() : begins_with_picking;
+  s["method"] = is_picking ? "picking" : "hand";
   s["occurrence"] = part_ ? Json(part_->value()) : Json(nullptr);
-  if (!protocol.hidden.condition && !sees_all) {
+  const auto trial = session_.trial();
+  const bool is_told =
+      !protocol.hidden.condition || (trial && session_.BlockOf(*trial).tells_condition);
+  if (is_told && !sees_all) {
     s["condition_name"] = condition->name.In(language);
   }
   if (!sees_all && protocol.hidden.time && !is_training) {

@@ -98,6 +98,7 @@ class StudyDesk {
   std::shared_ptr<LiveTrial> trial_;      ///< Trial on the workbench; null: none.
   std::optional<study::Outcome> ending_;  ///< Outcome of the trial; none while it runs.
   std::int64_t training_since_ns_{0};
+  std::size_t training_runs_{0};          ///< Runs of the training in this start of the program.
   std::vector<product::MateId> missing_;  ///< Constraints that have not been picked yet.
   std::optional<product::OccurrenceId> part_;
 };

@@ -1,12 +1,13 @@
-// Hands of the workbench: devices, taking and releasing of parts.
+#include "studio/workbench_hands.h"
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "studio/event_json.h"
 #include "studio/next_step.h"
-#include "studio/workbench.h"
 
 namespace hvas::studio {
 namespace {
@@ -14,19 +15,6 @@ namespace {
 using product::OccurrenceId;
 using simulation::Placement;
 using simulation::SequenceStep;
-
-Error MakeDemoError() {
-  return {ErrorCode::kInvalid, "the simulated person is working", "",
-          "stop the simulated person first"};
-}
-
-Error MakeNoProductError() {
-  return {ErrorCode::kNotFound, "no product is open", "", "open a file or an example first"};
-}
-
-const std::string& NameOf(const simulation::Model& model, OccurrenceId id) {
-  return model.product->occurrences[id.index()].name;
-}
 
 /** Explains why a part cannot be taken; none where it can. */
 std::optional<Error> ExplainUnavailable(Placement placement, const std::string& name) {
@@ -40,66 +28,51 @@ std::optional<Error> ExplainUnavailable(Placement placement, const std::string& 
   }
 }
 
-/** Description of a release for the undo list; null where nothing has changed. */
-const char* DescribeRelease(const SceneSnapshot& before,
-                            const simulation::SimulationEvent& dropped) {
-  const bool was_placed =
-      before.state.parts[dropped.occurrence.index()].placement == Placement::kPlaced;
-  if (dropped.was_seated) {
-    return was_placed ? nullptr : "insert";
+Json ListIds(const std::vector<OccurrenceId>& ids) {
+  Json list = Json::array();
+  for (const OccurrenceId id : ids) {
+    list.push_back(id.value());
   }
-  return was_placed ? "take out" : "move";
-}
-
-bool IsHolding(const LiveRun& run) {
-  for (std::size_t hand = 0; hand < run.hand_count(); ++hand) {
-    if (run.is_holding(hand)) {
-      return true;
-    }
-  }
-  return false;
+  return list;
 }
 
 }  // namespace
 
-Result<void> Workbench::CheckIdle() const {
-  const std::lock_guard lock(mutex_);
-  if (scene_ == nullptr) {
-    return Unexpected(MakeNoProductError());
+Json ToJson(const TakenParts& taken) {
+  Json places = Json::array();
+  for (const simulation::TablePlace& place : taken.table_places) {
+    places.push_back({{"target", ListIds(place.target)},
+                      {"goal", ToJson(place.X_WB_goal)},
+                      {"way_in", ToJson(place.insertion_W)},
+                      {"distance_m", place.engage_distance},
+                      {"is_there", place.starts_in_place}});
   }
-  if (is_demo_) {
-    return Unexpected(MakeDemoError());
-  }
-  if (run_ != nullptr && IsHolding(*run_)) {
-    return Fail(ErrorCode::kInvalid, "the hand holds a part", "", "release it first");
-  }
-  return {};
+  return {{"hand", ToJson(taken.X_WH)},
+          {"occurrence", taken.step.occurrence.value()},
+          {"members", ListIds(taken.step.members)},
+          {"way_in", ToJson(Vec3(-taken.step.extraction_W))},
+          {"table_places", std::move(places)}};
 }
 
-Result<std::shared_ptr<LiveRun>> Workbench::RunForHand(std::size_t hand) const {
-  const std::lock_guard lock(mutex_);
-  if (scene_ == nullptr) {
-    return Unexpected(MakeNoProductError());
+Result<std::shared_ptr<LiveRun>> WorkbenchHands::FindRun(std::size_t hand) const {
+  auto run = live_->FindRunForHands();
+  if (!run) {
+    return run;
   }
-  if (is_demo_) {
-    return Unexpected(MakeDemoError());
-  }
-  if (run_ == nullptr) {
-    return Fail(ErrorCode::kInvalid, "the product is being changed", "", "try again");
-  }
-  if (hand >= run_->hand_count()) {
+  if (hand >= (*run)->hand_count()) {
     return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
                 "switch to two hands first");
   }
-  if (!run_->hand(hand).follows_pointer()) {
+  if (!(*run)->hand(hand).follows_pointer()) {
     return Fail(ErrorCode::kInvalid, "a device moves this hand", fmt::format("hand {}", hand),
                 "take the part with the device, or assign the pointer to the hand");
   }
-  return run_;
+  return run;
 }
 
-Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
-  const auto run = RunForHand(hand);
+Result<TakenParts> WorkbenchHands::Take(std::size_t hand, OccurrenceId id,
+                                        simulation::TakeExtent extent) {
+  const auto run = FindRun(hand);
   if (!run) {
     return Unexpected(run.error());
   }
@@ -111,9 +84,9 @@ Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
     return Fail(ErrorCode::kInvalid, "the hand holds a part", "", "release it first");
   }
   const LiveState state = (*run)->state();
-  const SequenceStep step = FindStep(model, state, id);
+  const SequenceStep step = FindStep(model, state, id, extent);
   const simulation::PartState& part = state.parts[step.occurrence.index()];
-  const auto gone = ExplainUnavailable(part.placement, NameOf(model, id));
+  const auto gone = ExplainUnavailable(part.placement, model.product->occurrences[id.index()].name);
   const bool is_there = step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
   if (gone && (!is_there || part.placement == Placement::kHeld)) {
     return Unexpected(*gone);
@@ -121,89 +94,85 @@ Result<spatial::Pose> Workbench::Take(std::size_t hand, OccurrenceId id) {
   // The hand goes upright to the part, because the part later turns with the hand.
   const spatial::Pose X_WH(part.X_WB * simulation::CombineMass(model, step).p_BoBcm_B);
   (*run)->Take(hand, step, X_WH);
-  return X_WH;
+  return TakenParts{X_WH, step, ListTablePlaces(model, state.parts, step)};
 }
 
-void Workbench::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
-  if (const auto run = RunForHand(hand)) {
+void WorkbenchHands::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
+  if (const auto run = FindRun(hand)) {
     (*run)->Move(hand, X_WH, is_gripping);
   }
 }
 
-Result<void> Workbench::Release(std::size_t hand) {
-  const auto run = RunForHand(hand);
+Result<void> WorkbenchHands::Release(std::size_t hand) {
+  const auto run = FindRun(hand);
   if (!run) {
     return Unexpected(run.error());
   }
-  const auto& hands = frame().frame.ticks;
+  const auto hands = live_->frame().frame.ticks;
   (*run)->Move(hand, hand < hands.size() ? hands[hand].X_WH : spatial::Pose(), false);
   return {};
 }
 
-Result<void> Workbench::SetHandCount(std::size_t count) {
+Result<void> WorkbenchHands::SetCount(std::size_t count) {
   if (count != 1 && count != HandRack::kMaxHands) {
     return Fail(ErrorCode::kInvalid, "the number of hands has to be 1 or 2", "count", "");
   }
-  auto idle = CheckHands();
-  if (idle) {
-    Post([this, count] {
+  auto possible = CheckChange();
+  if (possible) {
+    worker_->Post([this, count](const std::stop_token& /*stop*/) {
       if (rack_.count() != count) {
+        is_changing_ = true;
         rack_.SetCount(count);
-        RestartWithHands();
+        Restart();
       }
     });
   }
-  return idle;
+  return possible;
 }
 
-Result<void> Workbench::UseDevice(std::size_t hand, const std::string& address, double scale) {
-  auto idle = CheckHands();
-  if (idle) {
-    Post([this, hand, address, scale] {
+Result<void> WorkbenchHands::UseDevice(std::size_t hand, const std::string& address, double scale) {
+  auto possible = CheckChange();
+  if (possible) {
+    worker_->Post([this, hand, address, scale](const std::stop_token& /*stop*/) {
+      is_changing_ = true;
       if (const auto used = rack_.Use(hand, address, scale); !used) {
-        Publish({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
+        is_changing_ = false;
+        events_->Publish({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
         return;
       }
-      RestartWithHands();
+      Restart();
     });
   }
-  return idle;
+  return possible;
 }
 
-Result<void> Workbench::CheckHands() const {
-  auto idle = CheckIdle();
-  return scene() == nullptr ? Result<void>() : idle;
+Result<void> WorkbenchHands::CheckChange() const {
+  auto idle = live_->CheckIdle();
+  return live_->scene() == nullptr ? Result<void>() : idle;
 }
 
-void Workbench::RestartWithHands() {
-  if (scene() != nullptr) {
-    Restart(false);
+void WorkbenchHands::Restart() {
+  if (live_->scene() != nullptr) {
+    live_->Restart(false);
   } else {
+    is_changing_ = false;
     PublishHands();
   }
 }
 
-void Workbench::SearchDevices() {
+void WorkbenchHands::SearchDevices() {
   if (device_search_.Begin()) {
-    Post([this] {
+    worker_->Post([this](const std::stop_token& /*stop*/) {
       device_search_.Run();
-      Json event = devices();
+      Json event = DescribeDevices();
       event["event"] = "devices";
-      Publish(std::move(event));
+      events_->Publish(event);
     });
   }
 }
 
-Json Workbench::devices() const {
-  return device_search_.Describe();
-}
-
-Json Workbench::hands() const {
-  std::shared_ptr<LiveRun> run;
-  {
-    const std::lock_guard lock(mutex_);
-    run = run_;
-  }
+Json WorkbenchHands::Describe() const {
+  const std::shared_ptr<LiveRun> run = live_->run();
   std::vector<const haptics::TickOptions*> options;
   for (std::size_t i = 0; run != nullptr && i < run->hand_count(); ++i) {
     options.push_back(&run->hand(i).tick_options());
@@ -211,41 +180,28 @@ Json Workbench::hands() const {
   return rack_.Describe(options);
 }
 
-void Workbench::PublishHands() const {
-  Publish({{"event", "hands"}, {"hands", hands()}});
+void WorkbenchHands::PublishHands() const {
+  events_->Publish({{"event", "hands"}, {"hands", Describe()}});
 }
 
-void Workbench::HandleHold(const OpenScene& scene, const simulation::SimulationEvent& event) {
-  using Kind = simulation::SimulationEvent::Kind;
-  if (is_demo_ || (event.kind != Kind::kTaken && event.kind != Kind::kDropped)) {
-    return;
-  }
-  std::optional<SceneSnapshot> before;
-  {
-    const std::lock_guard lock(mutex_);
-    before = std::exchange(before_take_[event.hand], std::nullopt);
-    resumed_ = nullptr;
-    if (event.kind == Kind::kTaken && run_ != nullptr) {
-      before_take_[event.hand] = SceneSnapshot{scene_, run_->state_before_take()};
-    }
-  }
-  const char* what =
-      event.kind == Kind::kDropped && before ? DescribeRelease(*before, event) : nullptr;
-  if (what != nullptr) {
-    Remember(std::move(*before),
-             fmt::format("{} {}", what, NameOf(*scene.model, event.occurrence)));
-  }
+void WorkbenchHands::ConfigureRun(const OpenScene& /*scene*/, LiveOptions* live) {
+  live->hands = rack_.setups();
+  is_changing_ = false;  // the run before has ended
 }
 
-void Workbench::HandleDevice(const simulation::SimulationEvent& event) {
-  if (event.kind != simulation::SimulationEvent::Kind::kDevice) {
-    return;
+void WorkbenchHands::OnRunBegun() {
+  PublishHands();
+}
+
+void WorkbenchHands::OnEvent(const simulation::SimulationEvent& event) {
+  if (event.kind != simulation::SimulationEvent::Kind::kDevice || is_changing_) {
+    return;  // what a device reports as its run ends is not about the device that replaces it
   }
   const std::string text = rack_.SetState(event.hand, event.condition, event.vendor_code);
-  Publish({{"event", "device"},
-           {"hand", event.hand},
-           {"condition", device::ToString(event.condition)},
-           {"text", text}});
+  events_->Publish({{"event", "device"},
+                    {"hand", event.hand},
+                    {"condition", device::ToString(event.condition)},
+                    {"text", text}});
   PublishHands();
 }
 

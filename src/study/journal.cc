@@ -51,6 +51,11 @@ Json MakeResultJson(const TrialResult& result) {
   json["peak_felt_n"] = result.peak_felt;
   json["peak_true_n"] = result.peak_true;
   json["insertion_m"] = result.insertion;
+  if (result.pair) {
+    json["pair"] = {{"hole_diameter_m", result.pair->hole_diameter},
+                    {"shaft_diameter_m", result.pair->shaft_diameter},
+                    {"clearances_m", result.pair->clearances}};
+  }
   json["mating"] = std::move(mating);
   return json;
 }
@@ -76,6 +81,12 @@ TrialResult ParseResult(const Json& json) {
   result.peak_felt = json.at("peak_felt_n").get<double>();
   result.peak_true = json.at("peak_true_n").get<double>();
   result.insertion = json.at("insertion_m").get<double>();
+  if (json.contains("pair")) {
+    const Json& pair = json.at("pair");
+    result.pair = TrialPair{pair.at("hole_diameter_m").get<double>(),
+                            pair.at("shaft_diameter_m").get<double>(),
+                            pair.at("clearances_m").get<std::vector<double>>()};
+  }
   for (const Json& s : json.at("mating")) {
     const auto at = [&](std::size_t i) { return s.at(i).get<double>(); };
     result.mating.push_back({at(0), Vec3(at(1), at(2), at(3)), Vec3(at(4), at(5), at(6))});

@@ -20,6 +20,9 @@ constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]: a thousand page
 constexpr int kMaxTrials = 5000;                     // for one participant
 constexpr double kMaxSeconds = 86400;                // A day.
 constexpr std::array<std::string_view, 2> kForceMaps{"published", "paper"};
+constexpr std::array<std::string_view, 3> kPairs{"one_pair", "of_kind", "any"};  // fits::PairChoice
+constexpr double kMaxDiameter_mm = 100'000;                                      // as in side files
+constexpr Bounds kDiameters_mm{0.001, kMaxDiameter_mm};                          // [mm]
 constexpr std::array<std::string_view, 3> kHidden{"condition", "time", "progress"};
 
 /** Whether a text is a valid id: ids become names of files and columns. */
@@ -59,6 +62,7 @@ class ProtocolReader {
     ReadBlocks(&fields);
     ReadQuestions(&fields);
     ReadHidden(&fields);
+    ReadDisplay(&fields);
     fields.Finish();
     CheckTrials(fields);
   }
@@ -132,7 +136,9 @@ class ProtocolReader {
       condition.instruction = ReadText(&one, "instruction", false);
       static_cast<void>(one.Require("method"));
       condition.method = one.WordOr("method", kMethods, condition.method);
+      ReadConstraints(&one, &condition);
       ReadRendering(&one, &condition);
+      condition.part = one.TextOr("part", "");
       condition.answer = one.TextOr("answer", "");
       if (one.Has("published_mean_s")) {
         condition.published_mean = one.NumberOr("published_mean_s", {0.01, kMaxSeconds}, 1);
@@ -149,6 +155,101 @@ class ProtocolReader {
     }
   }
 
+  void ReadConstraints(YamlFields* fields, Condition* condition) {
+    condition->constraints = fields->WordOr("constraints", kConstraints, condition->constraints);
+    const bool has_hand_and_mates =
+        condition->method == Method::kConstraint || condition->method == Method::kHybrid;
+    if (condition->constraints == Constraints::kPicked && !has_hand_and_mates) {
+      document_->Refuse(
+          fields->Get("constraints"),
+          fmt::format("\"constraints: picked\" of {} needs a hand and mates", fields->entity()),
+          "use it with the method constraint_only or hybrid");
+    }
+  }
+
+  /** k_r and k_s of paper W. */
+  void ReadPaperFactors(YamlFields* fields, haptics::PaperFactors* factors) {
+    const YAML::Node node = fields->Get("paper_factors");
+    if (!node.IsDefined()) {
+      return;
+    }
+    YamlFields these(document_, node, fmt::format("the paper's factors of {}", fields->entity()));
+    factors->interference = these.NumberOr("k_r", {0, 1}, factors->interference);
+    factors->transition = these.NumberOr("k_s", {0, 1}, factors->transition);
+    these.Finish();
+  }
+
+  /** K1 to K3 of paper X. */
+  void ReadGuidance(YamlFields* fields, haptics::PaperGuidance* guidance) {
+    const YAML::Node node = fields->Get("guidance");
+    if (!node.IsDefined()) {
+      return;
+    }
+    YamlFields these(document_, node, fmt::format("the guidance of {}", fields->entity()));
+    const auto read = [&these](const char* key, Bounds bounds, std::optional<double>* value) {
+      if (these.Has(key)) {
+        *value = these.NumberOr(key, bounds, bounds.low);
+      }
+    };
+    read("k1", {0, haptics::kLargestK1}, &guidance->k1);
+    read("k2_n_per_m", {haptics::kSmallestK2, haptics::kLargestK2}, &guidance->k2);
+    read("k3", {0, haptics::kLargestK3}, &guidance->k3);
+    guidance->attracts_in_fits = these.FlagOr("in_fits", guidance->attracts_in_fits);
+    these.Finish();
+  }
+
+  /** What is measured or known of the parts. */
+  void ReadSizes(YamlFields* fields, product::FitConditions* sizes) {
+    if (fields->Has("friction")) {
+      sizes->friction = fields->NumberOr("friction", {0, 2}, 0);
+    }
+    const YAML::Node node = fields->Get("sizes");
+    if (!node.IsDefined()) {
+      return;
+    }
+    YamlFields these(document_, node, fmt::format("the sizes of {}", fields->entity()));
+    ReadDiameters(&these, "hole_diameter_mm", &sizes->hole_diameters);
+    ReadDiameters(&these, "shaft_diameter_mm", &sizes->shaft_diameters);
+    if (these.Has("hole_rz_um")) {
+      sizes->hole_roughness = units::FromUm(these.NumberOr("hole_rz_um", {0, 1000}, 0));
+    }
+    if (these.Has("shaft_rz_um")) {
+      sizes->shaft_roughness = units::FromUm(these.NumberOr("shaft_rz_um", {0, 1000}, 0));
+    }
+    these.Finish();
+  }
+
+  /** One diameter, or places [depth_mm, diameter_mm] by ascending depth (paper W, 2.1). */
+  void ReadDiameters(YamlFields* fields, const std::string& key,
+                     std::vector<product::MeasuredDiameter>* diameters) {
+    if (!fields->Has(key)) {
+      return;
+    }
+    const YAML::Node node = fields->Get(key);
+    diameters->clear();
+    if (node.IsScalar()) {
+      diameters->push_back(
+          {0, units::FromMm(fields->NumberOr(key, kDiameters_mm, kMaxDiameter_mm))});
+      return;
+    }
+    const std::string entity = fmt::format("\"{}\" of {}", key, fields->entity());
+    for (const YAML::Node& place : ListOf(document_, node, entity)) {
+      const auto numbers = NumbersOf(place);
+      const double last = diameters->empty() ? -1 : units::ToMm(diameters->back().depth);
+      if (numbers.size() != 2 || !(numbers[0] >= 0 && numbers[0] > last) ||
+          !(numbers[1] >= kDiameters_mm.low && numbers[1] <= kDiameters_mm.high)) {
+        document_->Refuse(place, entity + " has a place that is not valid",
+                          "write a diameter in mm, or places [depth_mm, diameter_mm] by ascending "
+                          "depth: [[0, 40.004], [50, 40.007]]");
+        return;
+      }
+      diameters->push_back({units::FromMm(numbers[0]), units::FromMm(numbers[1])});
+    }
+    if (diameters->empty()) {
+      document_->Refuse(node, entity + " has no place", "write at least one place");
+    }
+  }
+
   /** What the defaults may have, too. */
   void ReadRendering(YamlFields* fields, Condition* condition) {
     condition->fit = fields->TextOr("fit", condition->fit);
@@ -157,8 +258,12 @@ class ProtocolReader {
                         fmt::format("\"{}\" of {} is not a fit", condition->fit, fields->entity()),
                         "write a fit of ISO 286, for example H7/g6");
     }
+    condition->pairs = fields->WordOr("pairs", kPairs, condition->pairs);
+    ReadSizes(fields, &condition->sizes);
     condition->renders_fits = fields->FlagOr("fit_force", condition->renders_fits);
     condition->force_map = fields->WordOr("force_map", kForceMaps, condition->force_map);
+    ReadPaperFactors(fields, &condition->paper_factors);
+    ReadGuidance(fields, &condition->guidance);
     condition->coupling = fields->NumberOr("coupling_n_per_m", {50, 5000}, condition->coupling);
     condition->time_limit = fields->NumberOr("time_limit_s", {1, 3600}, condition->time_limit);
     if (const YAML::Node node = fields->Get("capture"); node.IsDefined()) {
@@ -186,6 +291,17 @@ class ProtocolReader {
       return std::nullopt;
     }
     return static_cast<std::size_t>(found - all.begin());
+  }
+
+  void ReadDisplay(YamlFields* fields) {
+    const YAML::Node node = fields->Get("display");
+    if (!node.IsDefined()) {
+      return;
+    }
+    YamlFields display(document_, node, "\"display\"");
+    protocol_->display.has_end_sound = display.FlagOr("end_sound", true);
+    protocol_->display.stereo = display.WordOr("stereo", kStereos, Stereo::kNone);
+    display.Finish();
   }
 
   void ReadTraining(YamlFields* fields) {
@@ -221,6 +337,7 @@ class ProtocolReader {
       block.order =
           one.WordOr("order", kOrders, block.is_identification ? Order::kRandom : block.order);
       block.keeps_repetitions_together = one.FlagOr("together", !block.is_identification);
+      block.tells_condition = one.FlagOr("tells_condition", false);
       block.question = ReadText(&one, "question", block.is_identification);
       ReadConditionsOf(&one, &block);
       one.Finish();
@@ -258,6 +375,11 @@ class ProtocolReader {
   }
 
   void CheckIdentification(const YamlFields& fields, const Block& block) {
+    if (block.tells_condition) {
+      document_->Refuse(fields.node(),
+                        fmt::format("{} is blind and tells the condition", fields.entity()),
+                        "omit \"tells_condition\"");
+    }
     std::set<std::string> answers;
     for (const std::size_t index : block.conditions) {
       const Condition& condition = protocol_->conditions[index];

@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "base/result.h"
+#include "fits/pair_choice.h"
 #include "haptics/options.h"
+#include "haptics/paper_guidance.h"
 #include "mates/capture.h"
+#include "product/product.h"
 
 /** Protocol of a study (N9): conditions, trials and their order, questions, consent. The file is
  YAML or JSON; docs/studies.md and data/schemas/study.schema.json define its format. */
@@ -45,16 +48,31 @@ inline constexpr std::array<std::string_view, 4> kMethods{
   return kMethods[static_cast<std::size_t>(method)];
 }
 
+/** How the mates come about that guide the part of a trial. */
+enum class Constraints : std::uint8_t {
+  kRecognised,  ///< They are recognised while the part moves, by distance and angle (X8).
+  kPicked,      ///< The axis is picked first, by two surfaces (X14, paper X, condition 2).
+};
+
+inline constexpr std::array<std::string_view, 2> kConstraints{"recognised", "picked"};
+
 struct Condition {
   std::string id;
   LocalText name;         ///< Shown to the experimenter and in the report.
   LocalText instruction;  ///< Instruction for the participant.
   Method method{Method::kHybrid};
-  std::string fit;          ///< Fit of the part, as an ISO 286 code; empty: the product's.
-  bool renders_fits{true};  ///< Whether the resistance of the fit is rendered (W5).
-  std::string answer;       ///< Name of the response in identification; empty: `fit`.
+  Constraints constraints{Constraints::kRecognised};  ///< Used with kConstraint and kHybrid.
+  std::string part;  ///< Part that is assembled; empty: that of the protocol.
+  std::string fit;   ///< Fit of the part, as an ISO 286 code; empty: the product's.
+  /** How the pair of each trial is drawn. */
+  fits::PairChoice pairs{fits::PairChoice::kOfKind};
+  product::FitConditions sizes;  ///< Measured sizes, roughness and friction; empty: the product's.
+  bool renders_fits{true};       ///< Whether the resistance of the fit is rendered (W5).
+  std::string answer;            ///< Name of the response in identification; empty: `fit`.
   mates::CaptureThresholds capture;
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
+  haptics::PaperFactors paper_factors;  ///< Used with the paper's force map.
+  haptics::PaperGuidance guidance;
   double coupling{1000};                        ///< Upper limit of the coupling's stiffness [N/m].
   double time_limit{120};                       ///< Time limit of a trial [s].
   std::optional<double> published_mean;         ///< Mean time that the source reports [s].
@@ -86,6 +104,8 @@ struct Block {
   /** Blind identification (W12): the trials are shuffled, and after each the participant names the
    condition. */
   bool is_identification{false};
+  /** Whether the participant is told the name of the condition, even where it is hidden. */
+  bool tells_condition{false};
   LocalText question;  ///< Question of identification.
 };
 
@@ -129,13 +149,26 @@ struct Hidden {
   bool progress{false};  ///< Number of trials.
 };
 
+/** How the picture for the participant is shown to both eyes. */
+enum class Stereo : std::uint8_t { kNone, kSide, kAnaglyph };
+
+inline constexpr std::array<std::string_view, 3> kStereos{"none", "side", "anaglyph"};
+
+/** What the participant's page shows besides the scene. */
+struct Display {
+  bool has_end_sound{true};  ///< A sound when the part is in its place (W7).
+  Stereo stereo{Stereo::kNone};
+};
+
 struct Protocol {
   std::string id;
   LocalText title;
   std::string about;
   std::string source;   ///< Citation for the published values of the conditions.
   std::string product;  ///< File relative to the protocol's folder, or the name of an example.
-  std::string part;     ///< Part to assemble; parts that precede it are in their place already.
+  /** Part to assemble where the condition has none of its own; parts that precede it are in their
+   place already. */
+  std::string part;
   int participants{1};  ///< Planned number of participants.
   std::vector<std::string> languages{"en"};
   LocalText consent;
@@ -144,6 +177,7 @@ struct Protocol {
   std::vector<Block> blocks;
   std::vector<Question> questions;
   Hidden hidden;
+  Display display;
   double mating_window{3};  ///< Time before a trial's end for which wrenches are kept [s] (X15).
 
   std::filesystem::path file;
@@ -151,6 +185,14 @@ struct Protocol {
   std::string digest;  ///< Digest of `text`.
 
   [[nodiscard]] const Condition* FindCondition(std::string_view condition_id) const;
+
+  /** The part that is assembled in a condition. In identification it is that of the protocol, as
+   the place of another one would tell the answer. */
+  [[nodiscard]] const std::string& PartOf(const Condition& condition,
+                                          bool is_identification) const {
+    return is_identification || condition.part.empty() ? part : condition.part;
+  }
+
   /** Counts the trials of a participant. */
   [[nodiscard]] int CountTrials() const;
 };

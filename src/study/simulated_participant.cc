@@ -11,6 +11,7 @@
 #include "session/session_recorder.h"
 #include "simulation/executors.h"
 #include "study/schedule.h"
+#include "study/trial_pair.h"
 #include "study/trial_watch.h"
 
 namespace hvas::study {
@@ -80,8 +81,10 @@ void ApplyCondition(const Condition& condition, haptics::TickOptions* tick) {
                                                               : haptics::Condition::kHybrid;
   tick->renders_fits = condition.renders_fits;
   tick->force_map = condition.force_map;
+  tick->paper_factors = condition.paper_factors;
   tick->guidance.capture = condition.capture;
   tick->coupling.k_lin = condition.coupling;
+  haptics::Apply(condition.guidance, tick);
 }
 
 haptics::TickOptions MakeTickOptions(const Condition& condition) {
@@ -122,22 +125,40 @@ std::vector<product::MateId> ListConstraints(const simulation::Model& model, std
   return constraints;
 }
 
+std::vector<product::MateId> ListPickedConstraints(const Condition& condition,
+                                                   const simulation::Model& model,
+                                                   std::size_t step) {
+  const bool is_axis_alone = condition.constraints == Constraints::kPicked;
+  if (condition.method != Method::kPicking && !is_axis_alone) {
+    return {};
+  }
+  std::vector<product::MateId> picked = ListConstraints(model, step);
+  if (is_axis_alone) {
+    std::erase_if(picked, [&model](product::MateId id) {
+      return model.product->mates[id.index()].kind != product::MateKind::kAxisHole;
+    });
+  }
+  return picked;
+}
+
 Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& condition,
                                       const Skill& skill, std::uint64_t seed,
                                       const std::filesystem::path& record) {
   const simulation::Model& model = *setup.model;
   const simulation::SequenceStep& step = model.sequence.steps[setup.step];
   Random random(seed);
+  const auto picked = static_cast<int>(ListPickedConstraints(condition, model, setup.step).size());
   if (condition.method == Method::kPicking) {
     TrialResult result;
-    result.time = DrawPickingTime(static_cast<int>(ListConstraints(model, setup.step).size()),
-                                  skill, &random);
+    result.time = DrawPickingTime(picked, skill, &random);
     result.outcome = *result.time < condition.time_limit ? Outcome::kDone : Outcome::kTimedOut;
     result.time = std::min(*result.time, condition.time_limit);
     return result;
   }
   const std::uint64_t person_seed = random.NextBits();  // Drawn before the habits, always.
   const simulation::PersonOptions habits = MakePerson(skill, &random);
+  // The axis is picked before the part is taken.
+  const double picking_time = picked > 0 ? DrawPickingTime(picked, skill, &random) : 0;
   assembly::Hand hand =
       assembly::MakePersonHand(model, MakeTickOptions(condition), habits, person_seed);
   std::unique_ptr<record::Recorder> recorder;
@@ -162,7 +183,8 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
     sink->Begin(&trial.simulation());
   }
   trial.run().Only(setup.step, 1);
-  simulation::Execution execution = trial.MakeExecution(condition.time_limit);
+  simulation::Execution execution =
+      trial.MakeExecution(std::max(0.0, condition.time_limit - picking_time));
   const auto begin_ns = std::llround(1e9 * skill.reaction_s);
   std::int64_t now_ns = 0;
   execution.advance = [&] {
@@ -180,36 +202,30 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
     }
   }
   TrialResult result = watch.MakeResult();
+  result.pair = DescribePair(model, setup.step);
   if (!watch.is_seated() && !trial.run().is_done()) {
     result.outcome = Outcome::kTimedOut;
     result.time = 1e-9 * static_cast<double>(report.session_ns);
   }
+  if (result.time) {
+    *result.time += picking_time;
+  }
   return result;
 }
 
-Result<int> FindShownFit(const std::string& fit) {
-  const auto& names = simulation::kShownFitNames;
-  const auto found = std::find(names.begin(), names.end(), fit);
-  if (found == names.end()) {
-    return Fail(ErrorCode::kUnsupported,
-                fmt::format("the simulated observer does not know the fit {}", fit),
-                "identification",
-                fmt::format("use {}, or run the study with people", fmt::join(names, ", ")));
-  }
-  return static_cast<int>(found - names.begin());
-}
-
-Result<simulation::FitObserver> MakeObserver(const Skill& skill, const Condition& condition,
-                                             std::uint64_t seed) {
-  simulation::IdentificationOptions options;
+Result<simulation::FitObserver> MakeObserver(
+    const Skill& skill, const Condition& condition,
+    const std::vector<simulation::PairSource>& alternatives, std::uint64_t seed) {
+  simulation::ObserverOptions options;
   options.seed = seed;
   options.training = kObserverTraining;
   options.map = condition.force_map;
+  options.paper_factors = condition.paper_factors;
   options.observer.weber = skill.weber;
   options.observer.threshold = skill.threshold;
   options.coupling_stiffness = condition.coupling;
   options.aim_error *= skill.aim;
-  return simulation::FitObserver::Train(options);
+  return simulation::FitObserver::Train(options, alternatives);
 }
 
 }  // namespace hvas::study

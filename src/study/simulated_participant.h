@@ -75,13 +75,18 @@ void ApplyCondition(const Condition& condition, haptics::TickOptions* tick);
 [[nodiscard]] std::vector<product::MateId> ListConstraints(const simulation::Model& model,
                                                            std::size_t step);
 
-/** Makes the observer of this participant for blind identification. Errors: as FindShownFit. */
-[[nodiscard]] Result<simulation::FitObserver> MakeObserver(const Skill& skill,
-                                                           const Condition& condition,
-                                                           std::uint64_t seed);
+/** Lists the mates that a participant has to pick in a trial: all constraints of the part where
+ nothing else brings it to its place, the axes among them where picked mates guide the part, none
+ where mates are recognised. */
+[[nodiscard]] std::vector<product::MateId> ListPickedConstraints(const Condition& condition,
+                                                                 const simulation::Model& model,
+                                                                 std::size_t step);
 
-/** Finds the index of a fit among those that the observer knows. Errors: kUnsupported for
- others. */
-[[nodiscard]] Result<int> FindShownFit(const std::string& fit);
+/** Makes the observer of this participant for blind identification.
+ @param condition  Gives the force map and the coupling.
+ @param alternatives  The pairs of each condition that can be the answer. */
+[[nodiscard]] Result<simulation::FitObserver> MakeObserver(
+    const Skill& skill, const Condition& condition,
+    const std::vector<simulation::PairSource>& alternatives, std::uint64_t seed);
 
 }  // namespace hvas::study

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "study/simulated_participant.h"
+#include "study/trial_pair.h"
 
 namespace hvas::study {
 namespace {
@@ -20,39 +21,60 @@ using Kind = StudyEvent::Kind;
 constexpr std::uint64_t kTrialStream = 1000;    // plus the index of the trial
 constexpr std::uint64_t kObserverStream = 102;  // No other stream has this number.
 
-/** Models, indexed by condition. */
-using Setups = std::vector<TrialSetup>;
+/** Models of a study's trials; conditions with equal fits share one. */
+class Setups {
+ public:
+  /** @param seed  Draws a pair of each condition: one whose kind of fit no pair shows is refused
+   before anybody begins. */
+  static Result<Setups> Make(const Protocol& protocol, const ModelSource& models,
+                             std::uint64_t seed) {
+    Setups setups;
+    for (const Block& block : protocol.blocks) {
+      for (const std::size_t condition : block.conditions) {
+        const auto added = setups.Add(protocol, condition, block.is_identification, models, seed);
+        if (!added) {
+          return Unexpected(added.error());
+        }
+      }
+    }
+    return setups;
+  }
 
-Result<Setups> MakeSetups(const Protocol& protocol, const ModelSource& models) {
-  std::map<std::string, std::shared_ptr<const simulation::Model>> by_fit;
-  Setups setups;
-  for (const Condition& condition : protocol.conditions) {
-    auto& model = by_fit[condition.fit];
+  [[nodiscard]] const TrialSetup& Of(std::size_t condition, bool is_identification) const {
+    return setups_.at({condition, is_identification});
+  }
+
+ private:
+  Result<void> Add(const Protocol& protocol, std::size_t index, bool is_identification,
+                   const ModelSource& models, std::uint64_t seed) {
+    const Condition& condition = protocol.conditions[index];
+    const std::string& part = protocol.PartOf(condition, is_identification);
+    auto& model = models_[MakeFitKey(condition, part)];
     if (model == nullptr) {
-      auto made = models(condition.fit);
+      auto made = models(condition, part);
       if (!made) {
         return Unexpected(made.error());
       }
       model = std::move(*made);
     }
-    const auto step = FindPartStep(*model, protocol.part);
+    const auto step = FindPartStep(*model, part);
     if (!step) {
       return Unexpected(step.error());
     }
-    setups.push_back({model, *step, protocol.mating_window});
-  }
-  for (const Block& block : protocol.blocks) {
-    for (const std::size_t condition : block.conditions) {
-      if (!block.is_identification) {
-        continue;
-      }
-      if (const auto known = FindShownFit(protocol.conditions[condition].fit); !known) {
-        return Unexpected(known.error());
-      }
+    if (const auto pair = DrawPair(*model, *step, condition, seed); !pair) {
+      return Unexpected(pair.error());
     }
+    if (is_identification && !FindFittedMate(*model, *step)) {
+      return Fail(ErrorCode::kInvalid, "no mate of the part has a fit that can be identified",
+                  "condition " + condition.id, "write a \"fit\" for the condition");
+    }
+    setups_[{index, is_identification}] = {model, *step, protocol.mating_window};
+    return {};
   }
-  return setups;
-}
+
+  std::map<std::string, std::shared_ptr<const simulation::Model>> models_;
+  std::map<std::pair<std::size_t, bool>, TrialSetup> setups_;  ///< By condition and kind of block.
+};
 
 /** Runs the session of one participant. */
 class Walk {
@@ -68,13 +90,13 @@ class Walk {
         skill_(DrawSkill(participant, folder.seed())) {}
 
   Result<void> Run() {
-    if (const auto applied = ApplyAll(journal_->events(), &session_); !applied) {
+    if (auto applied = ApplyAll(journal_->events(), &session_); !applied) {
       return applied;
     }
     *trials_done_ += session_.done().size();
     for (Phase phase = session_.phase(); phase != Phase::kDone && phase != Phase::kDeclined;
          phase = session_.phase()) {
-      if (const auto done = Step(phase); !done) {
+      if (auto done = Step(phase); !done) {
         return done;
       }
     }
@@ -133,7 +155,7 @@ class Walk {
   }
 
   Result<void> Tell(const StudyEvent& event) {
-    if (const auto applied = session_.Apply(event); !applied) {
+    if (auto applied = session_.Apply(event); !applied) {
       return applied;
     }
     return journal_->Append(event);
@@ -142,9 +164,14 @@ class Walk {
   Result<TrialResult> RunTrial(std::size_t trial) {
     const PlannedTrial& planned = session_.schedule()[trial];
     const Block& block = session_.BlockOf(trial);
+    const auto setup = DrawSetup(trial);
+    if (!setup) {
+      return Unexpected(setup.error());
+    }
     if (block.is_identification) {
       TrialResult result;  // the observer gets the force of an insertion; nothing moves
       result.outcome = Outcome::kDone;
+      result.pair = DescribePair(*setup->model, setup->step);
       return result;
     }
     const bool is_kept = records_ == KeptRecords::kAll || (records_ == KeptRecords::kLast &&
@@ -156,7 +183,7 @@ class Walk {
             : std::filesystem::path();
     std::error_code ignored;
     std::filesystem::remove(record, ignored);  // record of an interrupted trial
-    return RunSimulatedTrial(setups_[planned.condition], session_.ConditionOf(trial), skill_,
+    return RunSimulatedTrial(*setup, session_.ConditionOf(trial), skill_,
                              SeedOf(kTrialStream + trial), record);
   }
 
@@ -164,13 +191,9 @@ class Walk {
   Result<std::string> Identify(std::size_t trial) {
     const Block& block = session_.BlockOf(trial);
     if (observed_block_ != &block) {
-      auto observer = MakeObserver(skill_, session_.ConditionOf(trial),
-                                   SeedOf(kObserverStream + session_.schedule()[trial].block));
-      if (!observer) {
-        return Unexpected(observer.error());
+      if (auto made = TrainObserver(trial); !made) {
+        return Unexpected(made.error());
       }
-      observer_.emplace(std::move(*observer));
-      observed_block_ = &block;
       for (std::size_t before = 0; before < trial; ++before) {
         if (&session_.BlockOf(before) == &block) {
           static_cast<void>(Answer(before));
@@ -180,17 +203,44 @@ class Walk {
     return Answer(trial);
   }
 
-  std::string Answer(std::size_t trial) {
-    const int shown = *FindShownFit(session_.ConditionOf(trial).fit);
-    const std::string fit =
-        simulation::kShownFitNames[static_cast<std::size_t>(observer_->Answer(shown))];
-    for (const std::size_t condition : session_.BlockOf(trial).conditions) {
-      if (folder_.protocol().conditions[condition].fit == fit) {
-        return AnswerNameOf(folder_.protocol().conditions[condition]);
-      }
+  Result<void> TrainObserver(std::size_t trial) {
+    const Block& block = session_.BlockOf(trial);
+    std::vector<simulation::PairSource> alternatives;
+    for (const std::size_t condition : block.conditions) {
+      const TrialSetup& setup = setups_.Of(condition, true);
+      alternatives.push_back(
+          MakePairSource(setup.model, setup.step, folder_.protocol().conditions[condition]));
     }
-    // An answer that this block does not offer counts as any other wrong one.
-    return AnswerNameOf(folder_.protocol().conditions[session_.BlockOf(trial).conditions.front()]);
+    auto observer = MakeObserver(skill_, session_.ConditionOf(trial), alternatives,
+                                 SeedOf(kObserverStream + session_.schedule()[trial].block));
+    if (!observer) {
+      return Unexpected(observer.error());
+    }
+    observer_.emplace(std::move(*observer));
+    observed_block_ = &block;
+    return {};
+  }
+
+  Result<std::string> Answer(std::size_t trial) {
+    const auto setup = DrawSetup(trial);
+    if (!setup) {
+      return Unexpected(setup.error());
+    }
+    const std::size_t answer = observer_->Answer(FindShownPair(*setup->model, setup->step));
+    return AnswerNameOf(folder_.protocol().conditions[session_.BlockOf(trial).conditions[answer]]);
+  }
+
+  /** Draws the pair of a trial. */
+  [[nodiscard]] Result<TrialSetup> DrawSetup(std::size_t trial) const {
+    TrialSetup setup =
+        setups_.Of(session_.schedule()[trial].condition, session_.BlockOf(trial).is_identification);
+    auto drawn = DrawPair(*setup.model, setup.step, session_.ConditionOf(trial),
+                          CalcPairSeed(folder_.seed(), session_.participant(), trial));
+    if (!drawn) {
+      return Unexpected(drawn.error());
+    }
+    setup.model = std::move(*drawn);
+    return setup;
   }
 
   [[nodiscard]] std::uint64_t SeedOf(std::uint64_t stream) const {
@@ -212,7 +262,7 @@ class Walk {
 
 Result<void> RunSimulatedStudy(const StudyFolder& folder, const ModelSource& models,
                                const SimulatedStudyOptions& options) {
-  const auto setups = MakeSetups(folder.protocol(), models);
+  const auto setups = Setups::Make(folder.protocol(), models, folder.seed());
   if (!setups) {
     return Unexpected(setups.error());
   }

@@ -11,10 +11,10 @@
 
 namespace hvas::study {
 
-/** Makes the model of a study's product with a fit of the part; empty: the product's own fit. Equal
- fits have to give equal models. */
-using ModelSource =
-    std::function<Result<std::shared_ptr<const simulation::Model>>(const std::string& fit)>;
+/** Makes the model of a study's product with the fit of a condition on a part (ApplyFit). Equal
+ keys (MakeFitKey) have to give equal models. */
+using ModelSource = std::function<Result<std::shared_ptr<const simulation::Model>>(
+    const Condition& condition, const std::string& part)>;
 
 /** Which trials leave a record. */
 enum class KeptRecords : std::uint8_t {
@@ -35,8 +35,8 @@ struct SimulatedStudyOptions {
  Complete participants stay as they are; incomplete ones are resumed. Questions stay unanswered,
  because simulated participants have no opinions. Equal protocols, seeds and numbers give equal
  journals on any number of threads.
- Errors: those of models, of the folder and its journals; kUnsupported for fits in identification
- that the observer does not know. */
+ Errors: those of models, of DrawPair, of the folder and its journals; kInvalid where a condition of
+ identification has no fit. */
 [[nodiscard]] Result<void> RunSimulatedStudy(const StudyFolder& folder, const ModelSource& models,
                                              const SimulatedStudyOptions& options);
 

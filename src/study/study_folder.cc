@@ -229,10 +229,28 @@ Result<void> ApplyAll(const std::vector<StudyEvent>& events, StudySession* sessi
   return {};
 }
 
+namespace {
+
+/** The columns of a pair. Clearances are of the diameter, as tolerances are, with the surface. */
+std::string FormatPair(const std::optional<TrialPair>& pair) {
+  if (!pair || pair->clearances.empty()) {
+    return ",,,,,";
+  }
+  const auto& s = pair->clearances;
+  const auto [least, most] = std::minmax_element(s.begin(), s.end());
+  return fmt::format("{:.6f},{:.6f},{:.3f},{:.3f},{:.3f},", units::ToMm(pair->hole_diameter),
+                     units::ToMm(pair->shaft_diameter), 2 * units::ToUm(*least),
+                     units::ToUm(pair->hole_diameter - pair->shaft_diameter),
+                     2 * units::ToUm(*most));
+}
+
+}  // namespace
+
 std::string MakeTrialsCsv(const std::vector<Participant>& participants) {
   std::string csv =
       "participant,simulated,block,condition,repetition,trial,outcome,time_s,collisions,"
-      "peak_force_n,peak_true_force_n,insertion_mm,answer,is_right\r\n";
+      "peak_force_n,peak_true_force_n,insertion_mm,hole_mm,shaft_mm,least_clearance_um,"
+      "mean_clearance_um,largest_clearance_um,answer,is_right\r\n";
   for (const Participant& participant : participants) {
     const StudySession& session = *participant.session;
     for (const DoneTrial& done : session.done()) {
@@ -247,6 +265,7 @@ std::string MakeTrialsCsv(const std::vector<Participant>& participants) {
       csv += r.time ? fmt::format("{},{},{},{},{},", *r.time, r.collisions, r.peak_felt,
                                   r.peak_true, units::ToMm(r.insertion))
                     : ",,,,,";
+      csv += FormatPair(r.pair);
       csv += fmt::format("{},{}\r\n", Cell(done.answer), is_answered ? (is_right ? "1" : "0") : "");
     }
   }

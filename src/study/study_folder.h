@@ -86,7 +86,9 @@ class StudyFolder {
 
 /** Makes a CSV table (RFC 4180) with one row for each trial of each participant:
  participant,simulated,block,condition,repetition,trial,outcome,time_s,collisions,peak_force_n,
- peak_true_force_n,insertion_mm,answer,is_right. Missing values are empty cells. */
+ peak_true_force_n,insertion_mm, the pair's hole_mm,shaft_mm,least_clearance_um,mean_clearance_um,
+ largest_clearance_um (diametral; least and largest with the surface), answer,is_right. Missing
+ values are empty cells. */
 [[nodiscard]] std::string MakeTrialsCsv(const std::vector<Participant>& participants);
 
 /** Makes a CSV table of all answers: participant,simulated,question,after_trial,value. */

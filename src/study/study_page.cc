@@ -107,7 +107,7 @@ class StudyPage {
       html += fmt::format(
           "<tr><td class=\"l\">{}: {}</td><td class=\"l\">{}</td><td>{}</td><td>{}</td><td>{}</td>"
           "<td>{}</td><td>{:g}</td></tr>",
-          c.id, Escape(c.name.en), Escape(DescribeMethod(c.method)),
+          c.id, Escape(c.name.en), Escape(DescribeMethod(c)),
           Escape(c.fit.empty() ? "as drawn" : c.fit),
           !has_mates                                     ? "-"
           : !c.renders_fits                              ? "not felt"
@@ -124,7 +124,12 @@ class StudyPage {
     return html + "</tbody></table></div></section>";
   }
 
-  static std::string DescribeMethod(Method method) {
+  static std::string DescribeMethod(const Condition& condition) {
+    const bool is_picked = condition.constraints == Constraints::kPicked;
+    return ToText(condition.method) + (is_picked ? "; the axis is picked first" : "");
+  }
+
+  static std::string ToText(Method method) {
     switch (method) {
       case Method::kPicking:
         return "constraints set with the mouse";

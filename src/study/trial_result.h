@@ -27,6 +27,13 @@ struct MatingSample {
   Vec3 torque{Vec3::Zero()};  ///< Torque about Ho [N m].
 };
 
+/** The pair of parts of a trial: of the fit that is felt most. */
+struct TrialPair {
+  double hole_diameter{0};         ///< Mean over the length [m].
+  double shaft_diameter{0};        ///< Mean over the length [m].
+  std::vector<double> clearances;  ///< S(l) at equal steps from the mouth inwards, radial [m].
+};
+
 /** Measurements of one trial. */
 struct TrialResult {
   Outcome outcome{Outcome::kNotDone};
@@ -34,10 +41,11 @@ struct TrialResult {
    seated, or to its end [s]. None where nothing was moved: identification by a simulated
  observer. */
   std::optional<double> time;
-  int collisions{0};    ///< Number of contacts that began before a mate guided the part.
-  double peak_felt{0};  ///< Largest force rendered to the hand [N].
-  double peak_true{0};  ///< Largest unscaled force on the part [N].
-  double insertion{0};  ///< Insertion depth [m].
+  int collisions{0};              ///< Number of contacts that began before a mate guided the part.
+  double peak_felt{0};            ///< Largest force rendered to the hand [N].
+  double peak_true{0};            ///< Largest unscaled force on the part [N].
+  double insertion{0};            ///< Insertion depth [m].
+  std::optional<TrialPair> pair;  ///< None where nothing is fitted, or an older version wrote it.
   std::vector<MatingSample> mating;
 };
 

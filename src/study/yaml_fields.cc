@@ -201,4 +201,17 @@ std::vector<YAML::Node> ListOf(YamlDocument* document, const YAML::Node& node,
   return {node.begin(), node.end()};
 }
 
+std::vector<double> NumbersOf(const YAML::Node& node) {
+  std::vector<double> numbers;
+  for (std::size_t i = 0; node.IsSequence() && i < node.size(); ++i) {
+    double number = 0;
+    if (!node[i].IsScalar() || !YAML::convert<double>::decode(node[i], number) ||
+        !std::isfinite(number)) {
+      return {};
+    }
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
 }  // namespace hvas::study

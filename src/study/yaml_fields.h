@@ -95,4 +95,7 @@ class YamlFields {
 [[nodiscard]] std::vector<YAML::Node> ListOf(YamlDocument* document, const YAML::Node& node,
                                              const std::string& entity);
 
+/** Numbers of a sequence; none where the node is anything else. */
+[[nodiscard]] std::vector<double> NumbersOf(const YAML::Node& node);
+
 }  // namespace hvas::study

@@ -27,6 +27,10 @@ using Path = std::vector<spatial::Pose>;
  part rests, poses that differ by less than an eighth of it are left out. */
 [[nodiscard]] Path Resample(const Path& path, const spatial::Box& box_B, double step);
 
+/** The largest displacement of a point of a box between two poses [m]; a corner has it. */
+[[nodiscard]] double CalcLargestMove(const spatial::Pose& from, const spatial::Pose& to,
+                                     const spatial::Box& box_B);
+
 /** Way of a point of B [m], with arcs as the chords between the poses. */
 [[nodiscard]] double CalcLength(const Path& path, const Vec3& p_BQ);
 

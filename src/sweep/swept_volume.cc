@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@ using spatial::Pose;
 
 constexpr double kMostCells = 20e6;   // 80 MB of distances: a choice.
 constexpr double kCellsAcross = 100;  // of the largest extent, when no resolution is given
+constexpr double kChosenCells = 4e6;  // at most, for a thin wall: some seconds; a choice
 constexpr int kBrickNodes = 8;        // along an axis
 constexpr double kBandCells = 3;      // on both sides of the surface, where values are right
 constexpr double kStep = 0.5;         // of a cell, that points move between samples
@@ -217,6 +219,20 @@ Result<void> Check(const contact::ShapeSource& part, const Path& path,
   return {};
 }
 
+/** Bound of the error for one of the resolution: a distance changes by no more than the way, linear
+ between nodes, by half a cell's diagonal, and by half a step between samples. */
+constexpr double kErrorPerCell = 0.5 * std::numbers::sqrt3 + 0.5 * kStep;
+
+/** A hundredth of the extent; finer where a wall needs that and there is room for the cells. */
+double ChooseResolution(const Box& box_W, double thinnest_wall) {
+  const double usual = box_W.size().maxCoeff() / kCellsAcross;
+  if (!(thinnest_wall > 0)) {
+    return usual;
+  }
+  const double possible = std::cbrt(box_W.size().prod() / kChosenCells);
+  return std::min(usual, std::max(thinnest_wall / (2 * kErrorPerCell), possible));
+}
+
 /** Errors (kOutOfResource): too many cells. */
 Result<Grid> MakeGridAround(const Box& box_W, double resolution) {
   const Box around = box_W.Expanded((kBandCells + 1) * resolution);
@@ -245,7 +261,7 @@ Result<SweptVolume> Sweep(const contact::ShapeSource& part, const Path& path,
   SweptVolume swept;
   swept.resolution = options.resolution > 0
                          ? options.resolution
-                         : BoxAlong(path, box_B).size().maxCoeff() / kCellsAcross;
+                         : ChooseResolution(BoxAlong(path, box_B), options.thinnest_wall);
   const double step = kStep * swept.resolution;
   const Path fine = Resample(path, box_B, step);
   auto grid = MakeGridAround(BoxAlong(fine, box_B), swept.resolution);
@@ -276,8 +292,7 @@ Result<SweptVolume> Sweep(const contact::ShapeSource& part, const Path& path,
                 "choose a finer resolution");
   }
   swept.volume = CalcVolume(swept.mesh);
-  // A distance changes by no more than the way: linear between nodes, by half a cell's diagonal.
-  swept.error = 0.5 * std::sqrt(3.0) * swept.resolution + 0.5 * step;
+  swept.error = kErrorPerCell * swept.resolution;
   return swept;
 }
 

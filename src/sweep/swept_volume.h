@@ -12,7 +12,10 @@ namespace hvas::sweep {
 
 struct SweepOptions {
   double resolution{0};  ///< Edge of a cell of the grid [m]; 0: chosen from part and path.
-  unsigned threads{0};   ///< 0: one a core. No matter for the result.
+  /** Thinnest wall of the part [m], which a chosen resolution resolves as far as a grid has room;
+   0: not known. */
+  double thinnest_wall{0};
+  unsigned threads{0};                            ///< 0: one a core. No matter for the result.
   std::function<void(double fraction)> progress;  ///< Called by the calling thread.
   std::stop_token stop;
 };

@@ -3,8 +3,8 @@
 
 A code as X9, W12 or N4 has to be a row of docs/requirements.md; an equation as X(9) or W(7) has to be
 within the numbers that docs/references.md gives for that paper; a standard (ISO 286-1) and a paper
-(Whitney, J. Dyn. Syst. 104, 1982) have to stand there. Prints each line that offends; exit status 1
-when there is one.
+(Whitney, J. Dyn. Syst. 104, 1982) have to stand there. Each requirement of the papers needs a test whose
+name begins with its code. Prints each line that offends; exit status 1 when there is one.
 """
 
 import re
@@ -22,6 +22,7 @@ PAPER = re.compile(r"\b([A-Z][a-z\u00e9\u00e1]+)(?:, [A-Z]\w+)*(?:\sand\s+[A-Z]\
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 QUOTED = re.compile(r"`[^`]*`")
 ROW = re.compile(r"^\| ([XWN]\d+) \|")
+TEST_NAME = re.compile(r"^TEST(?:_F|_P)?\(\s*\w+,\s*([XW]\d+)[A-Z]", re.MULTILINE)
 SPAN = re.compile(r"^\| ([XW]) \|.*\| (\d+) to (\d+) \|")
 
 
@@ -59,6 +60,12 @@ def find_strays(path, rows, spans, references):
                     yield line, f"{' '.join(match.group().split())} does not stand in {where}"
 
 
+def list_untested(rows, sources):
+    """Codes of the papers' requirements that begin no test's name."""
+    tested = {code for source in sources for code in TEST_NAME.findall(source)}
+    return sorted((row for row in rows if row[0] in "XW" and row not in tested), key=lambda row: (row[0], int(row[1:])))
+
+
 def main():
     root = parse_root(__doc__)
     rows, spans = read_rows(root / "docs/requirements.md"), read_spans(root / "docs/references.md")
@@ -74,6 +81,8 @@ def main():
         if (root / name).is_file() and name != "docs/references.md"
         for line, what in find_strays(root / name, rows, spans, references)
     ]
+    sources = [(root / name).read_text(errors="replace") for name in names if name.endswith("_test.cc")]
+    problems += [f"{row} of docs/requirements.md begins no test's name" for row in list_untested(rows, sources)]
     return report(problems, f"codes: {len(rows)} requirements, {sum(map(len, spans.values()))} equations, no stray")
 
 

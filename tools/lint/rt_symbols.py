@@ -38,12 +38,12 @@ ROOTS = [
     r"hvas::simulation::SimulatedPerson::Step\(.*",  # virtual: the operator of a headless run
     r"hvas::simulation::SimulatedPerson::Intend\(.*",
     r"hvas::simulation::DeviceOperator::(Step|Apply)\(.*",
-    r"hvas::device::(VendorDevice|NetworkDevice)::(Read|Write)\(.*",  # virtual, as those below
+    # Virtual: Device::Read and Device::Write of every driver.
+    r"hvas::device::(\(anonymous namespace\)::)?\w+::(Read\(\)|Write\(hvas::spatial::Wrench const&\))",
     r"hvas::device::\(anonymous namespace\)::(Hd|Dhd|Virt)Device::(ReadVendor|WriteVendor|Tick)\(.*",
-    r"hvas::device::\(anonymous namespace\)::(Gamepad|SpaceMouse|Inverse3|PluginDevice)::(Read|Write)\(.*",
     r"hvas::device::SampleGuard::\w+\(.*",
     r"hvas::simulation::FlightRecorder::(Keep|Trigger)\(.*",
-    r"hvas::simulation::AssemblyRun::OnTick\(.*",  # virtual: the sink of every run
+    r"hvas::simulation::PartRun::OnTick\(.*",  # virtual: the sink of every run
     r"hvas::session::SessionRecorder::OnTick\(.*",  # virtual: the sink that records
     r"hvas::study::TrialWatch::OnTick\(.*",  # virtual: the account of a trial
     r"hvas::studio::(LiveRun|LiveTrial|Recording)::OnTick\(.*",  # virtual: the sinks of a live run

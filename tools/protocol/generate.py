@@ -53,13 +53,7 @@ def cpp_struct(name, fields, lines):
 def make_cpp(schema):
     magic = struct.unpack("<I", schema["magic"].encode())[0]
     lines = [
-        "// Made from protocol.json by tools/protocol/generate.py.",
-        "#pragma once",
-        "",
-        "#include <array>",
-        "#include <cstdint>",
-        "#include <type_traits>",
-        "",
+        *messages.cpp_head("array", "cstdint", "type_traits"),
         "namespace hvas::studio::protocol {",
         "",
         f"inline constexpr std::uint32_t kMagic = {magic:#x};",
@@ -127,7 +121,7 @@ def ts_item(name, fields, lines):
 def make_ts(schema):
     magic = struct.unpack("<I", schema["magic"].encode())[0]
     lines = [
-        "// Made from protocol.json by tools/protocol/generate.py.",
+        messages.MADE,
         "",
         f"export const kMagic = {magic:#x};",
         f"export const kVersion = {schema['version']};",

@@ -12,6 +12,14 @@ RIGHTS = {"lease": "kLease", "hand": "kHand", "operator": "kOperator", "anybody"
 MARKS = ("<!-- {} of protocol.json -->", "<!-- end of {} -->")
 
 
+MADE = "// Made from protocol.json by tools/protocol/generate.py."
+
+
+def cpp_head(*includes):
+    """The first lines of a generated header."""
+    return [MADE, "#pragma once", "", *(f"#include <{name}>" for name in includes), ""]
+
+
 def alternatives(kind):
     return [one.strip() for one in kind.split("|")]
 
@@ -134,7 +142,7 @@ def ts_member(key, item):
 
 
 def make_ts(schema):
-    lines = ["// Made from protocol.json by tools/protocol/generate.py.", ""]
+    lines = [MADE, ""]
     for name, told in schema["types"].items():
         ts_name(name, told, lines)
     lines.append('export type StudyCommand = { command: "study" } & (')
@@ -172,6 +180,8 @@ def cpp_words(schema, name):
 
 
 def cpp_literal(value):
+    if isinstance(value, bool):
+        return "true" if value else "false"
     return f'"{value}"' if isinstance(value, str) else str(value)
 
 
@@ -245,24 +255,16 @@ def cpp_study_rules(schema, lines):
 
 def make_cpp(schema):
     lines = [
-        "// Made from protocol.json by tools/protocol/generate.py.",
-        "#pragma once",
-        "",
-        "#include <array>",
-        "#include <cstdint>",
-        "#include <optional>",
-        "#include <string>",
-        "#include <utility>",
-        "",
+        *cpp_head("array", "cstdint", "optional", "string", "utility"),
         '#include "studio/json_fields.h"',
         "",
         "namespace hvas::studio::protocol {",
         "",
         "/** Who may send a command. */",
         "enum class Right : std::uint8_t {",
-        "  kLease,     ///< Whoever has the lease of hand 0.",
-        "  kHand,      ///< Whoever has that of the hand which the command names.",
-        "  kOperator,  ///< No viewer.",
+        "  kLease,     ///< The client with the lease of hand 0.",
+        "  kHand,      ///< The client with the lease of the hand that the command names.",
+        "  kOperator,  ///< An operator.",
         "  kAnybody,",
         "};",
         "",

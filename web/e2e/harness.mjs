@@ -452,7 +452,8 @@ export async function takeOutByMouse(page, occurrence, goal, height = 0.12) {
 export async function insertByMouse(page, occurrence, goal, height = 0.12) {
   await takeByMouse(page, occurrence);
   await moveMouseTo(page, [goal[0], goal[1], goal[2] + height]);
-  await waitForRest(page, occurrence);
+  // A round part may go on turning slowly about its axis.
+  await waitForStill(page, async () => ({ p: (await poseOf(page, occurrence)).p }));
   await moveMouseTo(page, [goal[0], goal[1], goal[2] - 0.01]);
   // What is seated is let go after a while, and is in its place then.
   await waitForState(page, ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed");

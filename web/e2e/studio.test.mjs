@@ -145,6 +145,22 @@ describe("what the simulated person has put together", () => {
     assert.deepEqual(complaints, []);
   });
 
+  it("X16: a part is got out by the simulated person, with what has to come out first", async () => {
+    await page.getByTestId("part-1").click();  // the bushing, with the shaft in it
+    await page.getByTestId("plan-removal").click();
+    await page.getByTestId("removals").waitFor();
+    await takePicture(page, "removal_plan");
+    assert.match(await page.getByTestId("removals").innerText(), /mm of way/);
+    await page.getByTestId("take-out").click();
+    await page.getByTestId("demo-runs").waitFor();
+    await page.getByTestId("demo-runs").waitFor({ state: "detached", timeout: 90_000 });
+    await waitForPlacement(page, 1, "loose");
+    assert.deepEqual(complaints, []);
+    await page.keyboard.press("Control+z");
+    await waitForPlacement(page, 1, "placed");
+    await waitForPlacement(page, kShaft, "placed");
+  });
+
   it("comes apart again with the mouse alone: a shaft is drawn out of its bore", async () => {
     const { goal } = (await fetchScene(page)).occurrences[kShaft];
     await takeOutByMouse(page, kShaft, goal.p);

@@ -70,6 +70,7 @@ function makeMate(m, occurrences, features) {
           clearance_min_um: m.fit.kind === "interference" ? -35 : 9,
           clearance_max_um: m.fit.kind === "interference" ? -1 : 50,
           clearance_actual_um: m.fit.kind === "interference" ? -18 : 31,
+          clearance_along_um: m.fit.kind === "interference" ? [-23.4, -12.1] : [25.2, 36.9],
           is_proposed: m.fit.is_proposed,
           reason: m.fit.reason,
         }

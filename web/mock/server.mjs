@@ -205,7 +205,7 @@ const commands = {
     }
     open(file);
   },
-  take: ({ occurrence }) => ({ hand: simulation.take(occurrence) }),
+  take: ({ occurrence }) => ({ hand: simulation.take(occurrence), occurrence, members: [], way_in: [0, 0, -1], table_places: [] }),
   release: () => simulation.release(),
   forces({ off }) {
     forcesOff = off;
@@ -256,7 +256,7 @@ new WebSocketServer({ server, path: "/ws" }).on("connection", (socket, upgrade) 
   if (study !== null) {
     send(client, study.state(role));
   }
-  broadcast({ event: "history", undo: null, redo: null });
+  broadcast({ event: "history", undo: null, redo: null, forgotten: 0 });
   simulation?.nextStep();
   socket.on("message", async (data, isBinary) => {
     if (isBinary) {
@@ -321,6 +321,8 @@ setInterval(
       overruns: 0,
       is_memory_locked: true,
       lost_events: 0,
+      truncated_ticks: 0,
+      crowded_ticks: 0,
       clients: clients.size,
       effort_level: 0,
       ...rates(simulation?.hand),

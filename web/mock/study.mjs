@@ -263,6 +263,8 @@ export class MockStudy {
       method,
       occurrence: isAtHand ? this.occurrence : null,
       elapsed_s: isTask && this.startedMs !== null ? (Date.now() - this.startedMs) / 1e3 : null,
+      has_end_sound: true,
+      stereo: "none",
       limit_s: isAtHand ? (isTraining ? TRAINING_S : LIMIT_S) : null,
       question: this.question(),
     };

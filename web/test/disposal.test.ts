@@ -27,7 +27,7 @@ const kLabels = ["x", "-x", "y", "-y", "z", "-z"] as const;
 const onePath = (count: number): ShownPath => ({
   occurrence: 1,
   kind: "points",
-  points: { points_m: Array.from({ length: count }, (_, k) => [0.01 * k, 0, 0] as const), poses: [] },
+  points: { points_m: Array.from({ length: count }, (_, k) => [0.01 * k, 0, 0] as const), poses: [], frames_per_pose: 1 },
   swept: null,
 });
 
@@ -82,10 +82,14 @@ describe("a view", () => {
     const made = await makeView();
     made.draw();
     made.port.dispose();
-    change(made, 1);
-    made.store.live.scene.value = { ...toyScene, epoch: 4 };
-    made.view.showsWorkshop.value = true;
-    await new Promise((resolve) => setTimeout(resolve, 50));
+    const other = await makeView();  // Where it has followed, the ended one has had the time to.
+    for (const each of [made, other]) {
+      change(each, 1);
+      each.store.live.scene.value = { ...toyScene, epoch: 4 };
+      each.view.showsWorkshop.value = true;
+    }
+    await vi.waitFor(() => expect(other.port.workshop.isShown).toBe(true), { timeout: 20_000 });
+    other.port.dispose();
     made.draw();
     expect(made.port.product.parts).toBeNull();
     expect(memory.kept.size).toBe(0);

@@ -13,6 +13,7 @@ function fit(code: string, clearanceUm: number): Fit {
     clearance_min_um: clearanceUm - 5,
     clearance_max_um: clearanceUm + 5,
     clearance_actual_um: clearanceUm,
+    clearance_along_um: [clearanceUm - 6, clearanceUm + 6],
     is_proposed: true,
     reason: "",
   };

@@ -3,7 +3,7 @@ import type { Studio } from "../src/model/studio";
 import { makeStore } from "../src/model/store";
 import { makeViewState } from "../src/model/view_state";
 import type { HandInput } from "../src/protocol/frames";
-import type { HandSetup } from "../src/protocol/messages";
+import type { HandSetup, TakeReply } from "../src/protocol/messages";
 import { HandControl } from "../src/view3d/hand_control";
 import type { Eye } from "../src/view3d/mouse_hand";
 import type { SceneView } from "../src/view3d/scene_view";
@@ -22,6 +22,10 @@ function setup(hand: number, address = "pointer", isEmulated = false): HandSetup
   return { hand, device: { ...device, max_force_n: 8, scale: 1, notes: [] }, condition: "ready", lease: null };
 }
 
+function takeReply(occurrence: number): TakeReply {
+  return { hand: toyScene.occurrences[occurrence]!.start, occurrence, members: [], way_in: [0, 0, -1], table_places: [] };
+}
+
 /** A page with two hands, of which the server has been told what is listed. */
 function makePage() {
   const store = makeStore();
@@ -37,7 +41,7 @@ function makePage() {
     store,
     command: async (command: { command: string; occurrence?: number }) => {
       commands.push(command);
-      return command.command === "take" ? { hand: toyScene.occurrences[command.occurrence!]!.start } : {};
+      return command.command === "take" ? takeReply(command.occurrence!) : {};
     },
     sendInput: (sent: readonly HandInput[]) => inputs.push(sent),
     rest: vi.fn(),

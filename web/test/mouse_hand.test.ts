@@ -18,7 +18,7 @@ const goal: Pose = { p: [0, 0, 0.05], q: [1, 0, 0, 0] };
 function take(): MouseHand {
   const hand = new MouseHand();
   const step = { kind: "insert", occurrence: 4, members: [], way_in: [0, 0, -1] as Vec3, distance_m: 0.05 } as const;
-  hand.begin({ occurrence: 4, X_WB: start, goal, step: { ...step, members: [] }, radius: 0.03, clearance: 0.05 }, start);
+  hand.begin({ occurrence: 4, X_WB: start, goal, step: { ...step, members: [] }, radius: 0.03, clearance: 0.05, members: [], tablePlaces: [] }, start);
   return hand;
 }
 

@@ -33,13 +33,13 @@ describe("a path", () => {
   });
 
   it("is written as a table with a line for each point", () => {
-    const lines = pathCsv({ points_m: points, poses }).trim().split("\n");
+    const lines = pathCsv({ points_m: points, poses, frames_per_pose: 1 }).trim().split("\n");
     expect(lines).toHaveLength(4);
     expect(lines[2]?.split(",").map(Number)).toEqual([0.3, 0.4, 0, 0.3, 0.4, 0, half, 0, 0, half]);
   });
 
   it("is asked for once in each form, and forgotten for the next part", async () => {
-    const { studio, asked } = studioThat((as) => (as === "points" ? { points_m: points, poses } : swept));
+    const { studio, asked } = studioThat((as) => (as === "points" ? { points_m: points, poses, frames_per_pose: 1 } : swept));
     const paths = new PartPaths(studio);
     await paths.show(1, "points");
     await paths.show(1, "swept");

@@ -28,6 +28,8 @@ const told: ParticipantState = {
   occurrence: 2,
   elapsed_s: null,
   limit_s: 120,
+  has_end_sound: true,
+  stereo: "none",
   question: null,
 };
 const watched: ExperimenterState = {

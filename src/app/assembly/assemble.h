@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/product/load_product.h"
-#include "assembly/run_assembly.h"
+#include "app/assembly/run_command.h"
 
 namespace CLI {
 class App;
@@ -12,13 +11,9 @@ class App;
 
 namespace hvas::app {
 
-struct AssembleOptions {
-  LoadOptions load;
+struct AssembleOptions : RunCommandOptions {
   std::vector<std::string> order;  ///< Parts to begin with, by name, path or id.
-  std::string device;              ///< Address of the device in the hand; empty: none.
   std::string second_device;       ///< Address for the other hand; empty: there is no other hand.
-  assembly::RunOptions run;        ///< All but the devices, and who is told.
-  bool is_json{false};
 };
 
 /** Lays the parts of a product out on a table and lets a simulated person, or two, or whoever has

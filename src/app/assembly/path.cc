@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +15,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/assembly/path_clearance.h"
+#include "app/assembly/poses.h"
 #include "app/output/json_flag.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
@@ -21,6 +25,7 @@
 #include "base/atomic_file.h"
 #include "base/units.h"
 #include "mates/assignments.h"
+#include "product/wall.h"
 #include "simulation/shapes.h"
 #include "studio/paths.h"
 #include "sweep/stl.h"
@@ -42,6 +47,7 @@ struct PathOptions {
   std::vector<double> rotate_deg;  ///< An axis, and an angle [deg].
   std::vector<double> about_mm;
   bool is_swept{false};
+  bool has_clearances{false};
   double resolution_mm{0};
   std::filesystem::path output;
   bool is_forced{false};
@@ -54,6 +60,16 @@ Vec3 VectorOf(const std::vector<double>& numbers) {
 
 /** What can be known to fail before the work. */
 Result<void> Check(const PathOptions& options) {
+  if (!options.rotate_deg.empty() && !(VectorOf(options.rotate_deg).norm() > 0)) {
+    return Fail(ErrorCode::kInvalid, "the direction of the axis has length zero", "--rotate",
+                "give a direction and an angle, for example --rotate 0,0,1,90");
+  }
+  if (options.output.empty()) {
+    return options.has_clearances && !options.is_swept
+               ? Result<void>()
+               : Fail(ErrorCode::kInvalid, "there is no file to write", "--output",
+                      "add -o with a file name, or ask for --clearance");
+  }
   const std::string format = options.output.extension().string();
   const bool is_mesh = format == ".stl" || format == ".glb";
   const bool is_table = format == ".csv" || format == ".json";
@@ -71,10 +87,6 @@ Result<void> Check(const PathOptions& options) {
       std::filesystem::exists(std::filesystem::symlink_status(options.output, error))) {
     return Fail(ErrorCode::kInvalid, "the file exists already", options.output.string(),
                 "choose another name, or replace it with --force");
-  }
-  if (!options.rotate_deg.empty() && !(VectorOf(options.rotate_deg).norm() > 0)) {
-    return Fail(ErrorCode::kInvalid, "the direction of the axis has length zero", "--rotate",
-                "give a direction and an angle, for example --rotate 0,0,1,90");
   }
   return {};
 }
@@ -140,9 +152,11 @@ Json MakeJson(const TimedPath& path, const Occurrence& occurrence, const Vec3& p
 }
 
 Result<sweep::SweptVolume> SweepPart(const PathOptions& options, const Product& product,
-                                     const Occurrence& occurrence, const sweep::Path& path) {
+                                     const Occurrence& occurrence, const sweep::Path& path,
+                                     std::optional<double> thinnest_wall) {
   sweep::SweepOptions sweeping;
   sweeping.resolution = units::FromMm(options.resolution_mm);
+  sweeping.thinnest_wall = thinnest_wall.value_or(0);
   if (!options.load.is_quiet && IsWatched()) {
     sweeping.progress = [](double fraction) { ShowProgress("sweep", fraction); };
   }
@@ -179,6 +193,20 @@ Json DescribeSwept(const sweep::SweptVolume& swept) {
       {"low_mm", corner_mm(box_W.low)},           {"high_mm", corner_mm(box_W.high)}};
 }
 
+/** Where the other parts stand while the part goes along its path. */
+Result<std::map<product::OccurrenceId, spatial::Pose>> FindOthers(const PathOptions& options,
+                                                                  const Product& product,
+                                                                  const TimedPath& path) {
+  if (!options.record.empty()) {
+    return ReadPosesBeside(options.record, product, path.t_ns.front());
+  }
+  std::map<product::OccurrenceId, spatial::Pose> others;
+  for (const Occurrence& other : product.occurrences) {
+    others[other.id] = other.X_WB;
+  }
+  return others;
+}
+
 void Print(const Json& summary) {
   fmt::print("{}: {} poses, {:.1f} mm\n", summary["occurrence"].get<std::string>(),
              summary["poses"].get<std::size_t>(), summary["length_mm"].get<double>());
@@ -186,6 +214,16 @@ void Print(const Json& summary) {
     fmt::print("swept volume {:.1f} mm^3, surface within {:.3f} mm, {} triangles\n",
                summary["volume_mm3"].get<double>(), summary["error_mm"].get<double>(),
                summary["triangles"].get<std::size_t>());
+    const double unresolved_mm = 2 * summary["error_mm"].get<double>();
+    if (summary.value("thinnest_wall_mm", unresolved_mm) < unresolved_mm) {
+      fmt::print(
+          "the part's thinnest wall is {:.3f} mm: walls thinner than {:.3f} mm may have holes "
+          "(choose a smaller --resolution-mm)\n",
+          summary["thinnest_wall_mm"].get<double>(), unresolved_mm);
+    }
+  }
+  if (summary.contains("clearances")) {
+    PrintClearances(summary);
   }
 }
 
@@ -213,13 +251,30 @@ Result<void> WritePath(const PathOptions& options) {
                {"poses", path->X_WB.size()},
                {"length_mm", units::ToMm(sweep::CalcLength(path->X_WB, part.mass.p_BoBcm_B))},
                {"output", options.output.string()}};
+  if (options.has_clearances) {
+    const auto others = FindOthers(options, *product, *path);
+    if (!others) {
+      return Unexpected(others.error());
+    }
+    const auto clearances = DescribeClearances(options.load, *product, *id, path->X_WB, *others);
+    if (!clearances) {
+      return Unexpected(clearances.error());
+    }
+    summary.update(*clearances);
+  }
   Result<void> written;
-  if (options.is_swept) {
-    const auto swept = SweepPart(options, *product, occurrence, path->X_WB);
+  if (options.output.empty()) {
+    summary.erase("output");
+  } else if (options.is_swept) {
+    const std::optional<double> thinnest_wall = product::CalcThinnestWall(part);
+    const auto swept = SweepPart(options, *product, occurrence, path->X_WB, thinnest_wall);
     if (!swept) {
       return Unexpected(swept.error());
     }
     summary.update(DescribeSwept(*swept));
+    if (thinnest_wall) {
+      summary["thinnest_wall_mm"] = units::ToMm(*thinnest_wall);
+    }
     written = WriteSwept(options, occurrence, *swept);
   } else {
     written = WriteAtomically(options.output,
@@ -238,8 +293,8 @@ Result<void> WritePath(const PathOptions& options) {
 }  // namespace
 
 void AddPath(CLI::App* app, int* status) {
-  CLI::App* command = app->add_subcommand(
-      "path", "Write the path of a part, as poses or as the volume that it sweeps");
+  CLI::App* command =
+      app->add_subcommand("path", "Write a part's path or swept volume; find clearances");
   const auto options = std::make_shared<PathOptions>();
   command->add_option("file", options->load.file, "CAD file")->required();
   command->add_option("--part", options->part, "Name, path or end of the path of an occurrence")
@@ -272,11 +327,15 @@ void AddPath(CLI::App* app, int* status) {
   CLI::Option* swept =
       command->add_flag("--swept", options->is_swept, "Write the swept volume as a closed mesh");
   command
-      ->add_option("--resolution-mm", options->resolution_mm,
-                   "Cell size of the swept volume [mm]; default: a hundredth of its extent")
+      ->add_option(
+          "--resolution-mm", options->resolution_mm,
+          "Cell size of the swept volume [mm]; default: a hundredth of its extent, or less where "
+          "the part has thin walls")
       ->check(CLI::PositiveNumber)
       ->needs(swept);
-  command->add_option("-o,--output", options->output, "File to write")->required();
+  command->add_flag("--clearance", options->has_clearances,
+                    "Find the parts that it comes nearest to on the path, how near and where");
+  command->add_option("-o,--output", options->output, "File to write");
   command->add_flag("--force", options->is_forced, "Replace an existing file");
   AddJsonFlag(command, &options->is_json, "path");
   AddLoadOptions(command, &options->load);
@@ -290,6 +349,7 @@ void AddPath(CLI::App* app, int* status) {
       "  hvas assemble pump.step --record run.hvasrec\n"
       "  hvas path pump.step --part 'bushing 1' --record run.hvasrec -o way.csv\n"
       "  hvas path pump.step --part 'bushing 1' --record run.hvasrec --swept -o way.stl\n"
+      "  hvas path pump.step --part 'bushing 1' --record run.hvasrec --clearance\n"
       "  hvas path pump.step --part cover --translate 0,0,80 --swept --resolution-mm 0.5 -o "
       "up.glb\n"
       "  hvas path pump.step --part lever --rotate 0,0,1,90 --about 10,0,0 --swept -o turn.stl");

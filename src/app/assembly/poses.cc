@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -135,40 +136,98 @@ Result<Poses> ReadPoseFile(std::string_view text, const std::string& name, const
   return poses;
 }
 
-Result<Poses> ReadRecord(const std::filesystem::path& file, const Product& product) {
-  const std::string name = file.filename().string();
+/** The events of a record, and the parts that it speaks of. */
+struct RecordedEvents {
+  std::vector<record::Event> events;
+  std::map<std::uint32_t, OccurrenceId> ids;  // By their numbers in the record.
+  bool is_disassembly{false};
+};
+
+Result<RecordedEvents> ReadRecordedEvents(const std::filesystem::path& file,
+                                          const Product& product) {
   auto reader = record::Reader::Open(file);
   if (!reader) {
     return Unexpected(reader.error());
   }
-  const auto ids = MatchParts(reader->meta(), name, product);
+  const record::Meta& meta = reader->meta();
+  auto ids = MatchParts(meta, file.filename().string(), product);
   if (!ids) {
     return Unexpected(ids.error());
   }
-  const auto events = reader->ReadEvents();
+  auto events = reader->ReadEvents();
   if (!events) {
     return Unexpected(events.error());
   }
+  const auto task = meta.find("task");
+  return RecordedEvents{std::move(*events), std::move(*ids),
+                        task != meta.end() && task->second == "disassembly"};
+}
+
+/** Where a part was let go, by its event. */
+Result<Pose> ReadDrop(const record::Event& event, const std::string& name) {
+  const Json details = Json::parse(event.json, nullptr, false);
+  const auto read = [&](const char* key) {
+    return details.is_object() && details.contains(key) ? details[key] : Json();
+  };
+  const auto p = ReadPosition(read("position_m"), 1);
+  const auto q = ReadRotation(read("rotation_wxyz"));
+  if (!p || !q) {
+    return Fail(ErrorCode::kUnreadable, "the record does not contain where parts were released",
+                name, "record the session again");
+  }
+  return Pose(*q, *p);
+}
+
+Result<Poses> ReadRecord(const std::filesystem::path& file, const Product& product) {
+  const auto record = ReadRecordedEvents(file, product);
+  if (!record) {
+    return Unexpected(record.error());
+  }
   Poses poses;
-  for (const record::Event& event : *events) {
-    const auto id = ids->find(event.occurrence);
-    const Json details = Json::parse(event.json, nullptr, false);
-    if (event.kind != "dropped" || id == ids->end() || !details.is_object()) {
+  for (const record::Event& event : record->events) {
+    const auto id = record->ids.find(event.occurrence);
+    if (event.kind != "dropped" || id == record->ids.end()) {
       continue;
     }
-    const auto p = ReadPosition(details.contains("position_m") ? details["position_m"] : Json(), 1);
-    const auto q =
-        ReadRotation(details.contains("rotation_wxyz") ? details["rotation_wxyz"] : Json());
-    if (!p || !q) {
-      return Fail(ErrorCode::kUnreadable, "the record does not contain where parts were released",
-                  name, "record the session again");
+    const auto pose = ReadDrop(event, file.filename().string());
+    if (!pose) {
+      return Unexpected(pose.error());
     }
-    poses[id->second] = Pose(*q, *p);
+    poses[id->second] = *pose;
   }
   return poses;
 }
 
+/** Where the file has an occurrence. */
+const Pose& DrawnPose(const Product& product, OccurrenceId id) {
+  const std::vector<Pose>& drawn = product.placement.drawn_poses;
+  return drawn.empty() ? product.occurrences[id.index()].X_WB : drawn[id.index()];
+}
+
+/** Moves all bodies of the file that an occurrence is made of. */
+void AddMotion(const product::Occurrence& occurrence, const Pose& motion,
+               cad::PartMotions* motions) {
+  if (occurrence.bodies.empty()) {
+    motions->emplace_back(occurrence.path, motion);
+  }
+  for (const std::string& path : occurrence.bodies) {
+    motions->emplace_back(path, motion);
+  }
+}
+
 }  // namespace
+
+cad::PartMotions ListPlacedMotions(const Product& product) {
+  cad::PartMotions motions;
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    const Pose motion = occurrence.X_WB * DrawnPose(product, occurrence.id).Inverse();
+    constexpr double kMoved = 1e-12;  // [m], and [rad]: rounding.
+    if (motion.p().norm() > kMoved || spatial::RotationVector(motion.q()).norm() > kMoved) {
+      AddMotion(occurrence, motion, &motions);
+    }
+  }
+  return motions;
+}
 
 Result<std::map<std::uint32_t, OccurrenceId>> MatchParts(const record::Meta& meta,
                                                          const std::string& name,
@@ -210,7 +269,7 @@ Result<cad::PartMotions> ApplyPoses(const std::filesystem::path& file, Product* 
   cad::PartMotions motions;
   for (const auto& [id, X_WB] : *poses) {
     product::Occurrence& occurrence = product->occurrences[id.index()];
-    motions.emplace_back(occurrence.path, X_WB * occurrence.X_WB.Inverse());
+    AddMotion(occurrence, X_WB * DrawnPose(*product, id).Inverse(), &motions);
     occurrence.X_WB = X_WB;
   }
   product->box_W = {};
@@ -220,6 +279,39 @@ Result<cad::PartMotions> ApplyPoses(const std::filesystem::path& file, Product* 
     }
   }
   return motions;
+}
+
+Result<std::map<OccurrenceId, Pose>> ReadPosesBeside(const std::filesystem::path& file,
+                                                     const Product& product, std::int64_t t_ns) {
+  const auto record = ReadRecordedEvents(file, product);
+  if (!record) {
+    return Unexpected(record.error());
+  }
+  Poses poses;
+  for (const auto& [number, id] : record->ids) {
+    poses[id] = product.occurrences[id.index()].X_WB;
+  }
+  // The first event of a part says where it was before.
+  std::set<OccurrenceId> moved;
+  for (const record::Event& event : record->events) {
+    const auto id = record->ids.find(event.occurrence);
+    if (id == record->ids.end()) {
+      continue;
+    }
+    const bool is_later = event.t_ns >= t_ns;
+    if (event.kind == "taken" && moved.insert(id->second).second && is_later &&
+        !record->is_disassembly) {
+      poses.erase(id->second);  // it is on the table until then
+    }
+    if (event.kind == "dropped" && !is_later) {
+      const auto pose = ReadDrop(event, file.filename().string());
+      if (!pose) {
+        return Unexpected(pose.error());
+      }
+      poses[id->second] = *pose;
+    }
+  }
+  return poses;
 }
 
 }  // namespace hvas::app

@@ -9,13 +9,10 @@
 #include "app/output/text_layout.h"
 
 namespace hvas::app {
-namespace {
 
 double ToUs(std::int64_t time_ns) {
   return 1e-3 * static_cast<double>(time_ns);
 }
-
-}  // namespace
 
 nlohmann::ordered_json MakeLatencyJson(const LatencyHistogram& histogram) {
   return {{"median", ToUs(histogram.Quantile(0.5))},

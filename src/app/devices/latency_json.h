@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,6 +8,9 @@
 #include "base/histogram.h"
 
 namespace hvas::app {
+
+/** Converts nanoseconds to microseconds. */
+[[nodiscard]] double ToUs(std::int64_t time_ns);
 
 /** Quantiles of a histogram [us]: count, median, p99, p999, max. */
 [[nodiscard]] nlohmann::ordered_json MakeLatencyJson(const LatencyHistogram& histogram);

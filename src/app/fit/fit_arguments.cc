@@ -311,6 +311,10 @@ void AddPlotArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--curve", a->curve,
                   "Write force over depth, pressing in and pulling out: .svg or .csv")
       ->group(group);
+  fit->add_option("--along", a->along,
+                  "Table of one pair's diameters along its length: depth_mm, hole_mm, shaft_mm "
+                  "(CSV); the curve then shows this pair in place of a tight one")
+      ->group(group);
   fit->add_option("--step", a->step_mm, "Step of the curve's depth [mm]; default: a 200th of it")
       ->check(Positive())
       ->group(group);
@@ -446,6 +450,7 @@ Result<void> CheckEffects(const CLI::App& fit) {
                                        {"--stations", batch},
                                        {"--threads", batch},
                                        {"--step", {"--curve"}},
+                                       {"--along", {"--curve"}},
                                        {"--at", {"--jamming"}},
                                        {"--load", {"--jamming"}}};
   const auto has = [&fit](const char* name) { return fit.count(name) > 0; };
@@ -535,6 +540,15 @@ Result<FitPopulationOptions> MakePopulationOptions(const FitArguments& arguments
     options.cpk = arguments.cpk > 0 ? arguments.cpk : arguments.cp;
   } else if (arguments.spread == "uniform") {
     options.spread = SizeSpread::kUniform;
+  }
+  if (!arguments.along.empty()) {
+    if (arguments.fits.size() != 1) {
+      return Fail(ErrorCode::kInvalid, "diameters along the length go with one fit only", {},
+                  "give one fit, or omit --along");
+    }
+    if (Result<void> read = ReadDiametersAlong(arguments.along, &options); !read) {
+      return Unexpected(read.error());
+    }
   }
   options.depths = options.stations;
   return options;

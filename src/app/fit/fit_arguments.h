@@ -36,6 +36,7 @@ struct FitArguments {
   std::string spread{"paper"};
   double cp{0}, cpk{0};
   std::string sizes;
+  std::string along;
   std::optional<double> hub_c, shaft_c;
   double room_c{20};
   double join_speed_mm_s{20};

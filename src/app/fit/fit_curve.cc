@@ -59,6 +59,27 @@ Result<fits::PressStroke> MakeTightStroke(FitCurve* curve) {
   });
 }
 
+/** A pair that was measured along its length, with B from the seed. */
+Result<fits::PressStroke> MakeMeasuredStroke(FitCurve* curve) {
+  Random random(curve->options.seed);
+  const FitPopulationOptions& options = curve->options;
+  return MakeStroke(curve->cards, [&](std::size_t /*fit*/, fits::StrokeLand* land) {
+    land->press = WithDrawnRoughness(land->press);
+    std::vector<double> clearances;
+    double sum = 0;
+    for (int j = 0; j <= options.stations; ++j) {
+      const double depth = land->press.length * j / options.stations;
+      clearances.push_back(fits::InterpolateDiameter(options.hole_along, depth) -
+                           fits::InterpolateDiameter(options.shaft_along, depth));
+      sum += clearances.back();
+    }
+    curve->pair_clearances.push_back(sum / static_cast<double>(clearances.size()));
+    land->clearances = fits::DrawClearances(
+        clearances, 0.5 * (land->press.hub_roughness + land->press.shaft_roughness),
+        random.NextBits());
+  });
+}
+
 /** The batch at any depth: linear between its steps. */
 fits::ForceBand InterpolateBand(const fits::Population& batch, double depth) {
   const double end = batch.bands.back().depth;
@@ -144,7 +165,9 @@ PlotPanel MakeForcePanel(const FitCurve& curve) {
 /** On its own scale, for the steps of a rough transition fit. */
 PlotPanel MakePairPanel(const FitCurve& curve) {
   PlotPanel panel;
-  panel.title = "Tight pair (first quartile): diametral clearance";
+  panel.title = curve.options.hole_along.empty()
+                    ? "Tight pair (first quartile): diametral clearance"
+                    : "Measured pair: mean diametral clearance";
   for (std::size_t k = 0; k < curve.pair_clearances.size(); ++k) {
     panel.title +=
         fmt::format("{} {:+.1f} um", k > 0 ? "," : "", units::ToUm(curve.pair_clearances[k]));
@@ -202,7 +225,8 @@ Result<FitCurve> MakeFitCurve(const std::vector<FitCard>& cards,
   const Result<fits::PressStroke> least = MakeStrokeAt(cards, 1);
   const Result<fits::PressStroke> mean = MakeStrokeAt(cards, 0.5);
   const Result<fits::PressStroke> most = MakeStrokeAt(cards, 0);
-  const Result<fits::PressStroke> pair = MakeTightStroke(&curve);
+  const Result<fits::PressStroke> pair =
+      curve.options.hole_along.empty() ? MakeTightStroke(&curve) : MakeMeasuredStroke(&curve);
   for (const auto* stroke : {&least, &mean, &most, &pair}) {
     if (!*stroke) {
       return Unexpected(stroke->error());

@@ -25,22 +25,9 @@ using simulation::kPaperRight;
 using simulation::kPaperTrials;
 using simulation::kShownFitNames;
 using simulation::kShownFits;
-using simulation::ShownSizes;
 
 constexpr const char* kWhat =
     "simulated: an observer with published thresholds of force, not people";
-
-const char* ToString(ShownSizes sizes) {
-  switch (sizes) {
-    case ShownSizes::kOnePair:
-      return "one-pair";
-    case ShownSizes::kOfKind:
-      return "of-kind";
-    case ShownSizes::kAny:
-      break;
-  }
-  return "any";
-}
 
 double CalcPaperShare(std::size_t fit) {
   return static_cast<double>(kPaperRight[fit]) / kPaperTrials;
@@ -56,7 +43,7 @@ nlohmann::ordered_json ToJson(const IdentificationOptions& options, const Identi
                               {"weber_fraction", options.observer.weber},
                               {"threshold_n", options.observer.threshold},
                               {"looks", options.observer.looks},
-                              {"sizes", ToString(options.sizes)}};
+                              {"sizes", fits::ToString(options.pairs)}};
   for (int fit = 0; fit < kShownFits; ++fit) {
     const auto i = static_cast<std::size_t>(fit);
     const auto interval = simulation::CalcShareInterval(result.counts[i][i], options.trials);
@@ -78,7 +65,7 @@ nlohmann::ordered_json ToJson(const IdentificationOptions& options, const Identi
 void PrintText(const IdentificationOptions& options, const Identification& result) {
   fmt::print("{}", Fold(fmt::format("{}\n{} insertions of each fit, force map: {}, sizes: {}\n\n",
                                     kWhat, options.trials, haptics::ToString(options.map),
-                                    ToString(options.sizes))));
+                                    fits::ToString(options.pairs))));
   TextTable table({"shown\n", "right\n%", "95 %\nof right", "as g6\n", "as p6\n", "as k6\n",
                    "felt at end\nN", "right in\npaper W, %"});
   for (int fit = 0; fit < kShownFits; ++fit) {
@@ -131,12 +118,7 @@ void AddFitIdentify(CLI::App* fit, int* status) {
       ->capture_default_str();
   command->add_option("--looks", options->observer.looks, "Perceptions in one insertion")
       ->capture_default_str();
-  const Choices<ShownSizes> sizes{{ToString(ShownSizes::kOnePair), ShownSizes::kOnePair},
-                                  {ToString(ShownSizes::kOfKind), ShownSizes::kOfKind},
-                                  {ToString(ShownSizes::kAny), ShownSizes::kAny}};
-  AddChoice(command, "--sizes", &options->sizes, sizes,
-            "Sizes: one-pair (as in the paper), of-kind (drawn until S has the sign of its kind), "
-            "or any (drawn)");
+  AddPairsOption(command, &options->pairs);
   AddForceMapOption(command, &options->map);
   AddJsonFlag(command, is_json.get(), "fit_identify");
   command->footer(

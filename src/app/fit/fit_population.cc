@@ -93,6 +93,45 @@ Result<void> ReadSizes(const std::string& file, FitPopulationOptions* options) {
   return {};
 }
 
+Result<void> ReadDiametersAlong(const std::string& file, FitPopulationOptions* options) {
+  const Result<CsvTable> table = CsvTable::Read(file, CsvTable::kAnyDelimiter);
+  if (!table) {
+    return Unexpected(table.error());
+  }
+  if (const auto complete = table->Require({"depth_mm", "hole_mm", "shaft_mm"}); !complete) {
+    return complete;
+  }
+  for (std::size_t i = 0; i < table->row_count(); ++i) {
+    const auto refuse = [&](const char* what) {
+      return Fail(ErrorCode::kInvalid, what, fmt::format("{}, line {}", file, table->LineOf(i)),
+                  "write depths from the mouth by ascending depth, and diameters above 0, in mm");
+    };
+    const std::optional<double> depth_mm = ParseNumber(table->Get(i, "depth_mm"));
+    if (!depth_mm || !(*depth_mm >= 0)) {
+      return refuse("the depth is no number of at least 0");
+    }
+    for (const auto& [column, along] : {std::pair("hole_mm", &options->hole_along),
+                                        std::pair("shaft_mm", &options->shaft_along)}) {
+      if (table->Get(i, column).empty()) {
+        continue;
+      }
+      const std::optional<double> value_mm = ParseNumber(table->Get(i, column));
+      if (!value_mm || !std::isfinite(*value_mm) || !(*value_mm > 0)) {
+        return refuse("the diameter is no number above 0");
+      }
+      if (!along->empty() && along->back().depth >= units::FromMm(*depth_mm)) {
+        return refuse("the depth is not larger than the one before");
+      }
+      along->push_back({units::FromMm(*depth_mm), units::FromMm(*value_mm)});
+    }
+  }
+  if (options->hole_along.empty() || options->shaft_along.empty()) {
+    return Fail(ErrorCode::kInvalid, "the table lacks diameters of the hole or of the shaft", file,
+                "give at least one of each");
+  }
+  return {};
+}
+
 Result<fits::Population> DrawPopulation(const std::vector<FitCard>& cards,
                                         const FitPopulationOptions& options) {
   if (options.spread == SizeSpread::kMeasured && cards.size() > 1) {

@@ -8,6 +8,7 @@
 
 #include "app/fit/fit_card.h"
 #include "base/result.h"
+#include "fits/fit_force.h"
 #include "fits/population.h"
 
 namespace hvas::app {
@@ -31,7 +32,15 @@ struct FitPopulationOptions {
   double cp{1};                       ///< The tolerance is six deviations wide (ISO 22514-2).
   double cpk{1};                      ///< Sizes lie in the middle of the tolerance.
   std::vector<double> holes, shafts;  ///< Measured diameters [m], of the one fit.
+  /** Diameters of one pair, measured along its length; empty: no such pair. */
+  std::vector<fits::DiameterAtDepth> hole_along, shaft_along;
 };
+
+/** Reads the diameters of one pair along its length: a table with the columns depth_mm, hole_mm and
+ shaft_mm, by ascending depth; cells of a side that is not measured there are empty.
+ Errors: kNotFound, kInvalid with the row. */
+[[nodiscard]] Result<void> ReadDiametersAlong(const std::string& file,
+                                              FitPopulationOptions* options);
 
 /** The measured diameters of a table with the columns hole_mm and shaft_mm; of either at least one.
  Errors: kNotFound, kInvalid with the row. */

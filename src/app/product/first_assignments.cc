@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/product/product_json.h"
 #include "base/units.h"
 #include "mates/side_file.h"
 #include "product/names.h"
@@ -33,19 +34,7 @@ Json MakeEntry(const Product& product, const Mate& mate) {
   Json entry{{"mate", mate.key}};
   const product::Fit& fit = *mate.fit;
   entry["fit"] = fit.kind == product::FitKind::kThread ? "thread" : fit.code;
-  const auto add = [&entry](const char* key, const std::optional<double>& value, double scale) {
-    if (value) {
-      entry[key] = scale * *value;
-    }
-  };
-  const product::FitConditions& conditions = mate.conditions;
-  add("hole_diameter_mm", conditions.hole_diameter, units::ToMm(1));
-  add("shaft_diameter_mm", conditions.shaft_diameter, units::ToMm(1));
-  add("hole_rz_um", conditions.hole_roughness, units::ToUm(1));
-  add("shaft_rz_um", conditions.shaft_roughness, units::ToUm(1));
-  add("friction", conditions.friction, 1);
-  add("hole_temperature_c", conditions.hole_temperature_c, 1);
-  add("shaft_temperature_c", conditions.shaft_temperature_c, 1);
+  entry.update(ConditionsToJson(mate.conditions));
   entry["note"] = fmt::format("{}{}, {:.6g} mm: {} <- {}{}", fit.is_proposed ? "proposed " : "",
                               ToString(fit.kind), units::ToMm(fit.nominal_diameter), path(mate.a),
                               path(mate.b), fit.reason.empty() ? "" : " (" + fit.reason + ")");

@@ -15,6 +15,7 @@
 #include "app/product/product_json.h"
 #include "app/product/product_text.h"
 #include "base/atomic_file.h"
+#include "mates/relations.h"
 #include "mates/side_file.h"
 
 namespace hvas::app {
@@ -33,7 +34,7 @@ Result<void> KeepLists(const std::filesystem::path& file, nlohmann::ordered_json
     return Unexpected(read.error());
   }
   const auto old = nlohmann::ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
-  for (const char* list : {"mates", "removed"}) {
+  for (const char* list : {"mates", "removed", "relations", "contacts"}) {
     if (old.is_object() && old.contains(list)) {
       (*document)[list] = old[list];
     }
@@ -63,7 +64,7 @@ Result<void> WriteAssignments(const InspectOptions& options, const Product& prod
 
 Result<void> Inspect(const InspectOptions& options) {
   Diagnostics diagnostics;
-  const Result<Product> product = LoadProduct(options.load, &diagnostics);
+  Result<Product> product = LoadProduct(options.load, &diagnostics);
   if (!product) {
     return Unexpected(product.error());
   }
@@ -73,6 +74,9 @@ Result<void> Inspect(const InspectOptions& options) {
   const Result<Selection> selection = Selection::Make(*product, options.selection);
   if (!selection) {
     return Unexpected(selection.error());
+  }
+  if (selection->Has(Section::kRelations)) {
+    product->relations = mates::ListRelations(*product, &diagnostics);
   }
   if (options.is_json) {
     // Names that are no UTF-8 in the file must not cost the whole answer.
@@ -92,8 +96,8 @@ int RunInspect(const InspectOptions& options) {
 }
 
 void AddInspect(CLI::App* app, int* status) {
-  CLI::App* command = app->add_subcommand(
-      "inspect", "Show the content of a CAD file: tree, parts, features, mates, fits");
+  CLI::App* command =
+      app->add_subcommand("inspect", "Show a CAD file: tree, parts, features, mates, fits");
   const auto options = std::make_shared<InspectOptions>();
   SelectionOptions& selection = options->selection;
   command->add_option("file", options->load.file, "CAD file")->required();
@@ -107,9 +111,7 @@ void AddInspect(CLI::App* app, int* status) {
   command->add_option("--occurrence", selection.occurrences,
                       "Only this occurrence or subassembly: name, path or end of the path");
   command->add_option("--mate", selection.mates, "Only this mate: id (m12) or key");
-  command
-      ->add_option("--kind", selection.kinds,
-                   "Only mates of this kind: axis-hole, face-face, cone-seat, sphere-seat")
+  command->add_option("--kind", selection.kinds, "Only mates of this kind: " + ListMateKinds())
       ->delimiter(',');
   command->add_flag("--all", options->is_all, "Do not shorten long lists");
   command
@@ -126,6 +128,7 @@ void AddInspect(CLI::App* app, int* status) {
       "  hvas inspect pump.step\n"
       "  hvas inspect pump.step --only mates,fits --occurrence housing --all\n"
       "  hvas inspect pump.step --only faces --part bracket\n"
+      "  hvas inspect pump.step --only identity,relations,surfaces\n"
       "  hvas inspect pump.step --json | jq .summary\n"
       "  hvas inspect pump.step --write-assignments");
   command->callback([options, status] { *status = RunInspect(*options); });

@@ -45,6 +45,10 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options) {
   command->add_flag("!--no-cache", options->is_cache_used,
                     "Do not use the caches on disk: read and prepare everything again");
   AddUnitOption(command, &options->length_unit);
+  command->add_option("--apart", options->apart,
+                      "Name or path of a unit, or of one of its bodies, that is not to be welded "
+                      "into one body, or of copies of a part that are not to be left out; all: of "
+                      "everything; may be repeated");
   command
       ->add_option("--time-limit", options->limits.time,
                    "Time limit for opening and preparing the file [s]")
@@ -60,6 +64,20 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options) {
                    "Limit of parts in the file, each instance counted")
       ->check(CLI::Range(1, static_cast<int>(cad::kLargestMaxParts)))
       ->capture_default_str();
+}
+
+void AddFixtureOption(CLI::App* command, LoadOptions* options) {
+  command->add_option("--fixture", options->fixtures,
+                      "CAD file of a fixture, with its place: FILE, FILE@X,Y,Z or FILE@X,Y,Z,ANGLE "
+                      "about z [mm, deg]; may be repeated");
+}
+
+void AddAccessoryOptions(CLI::App* command, LoadOptions* options) {
+  command->add_option("--tool", options->tools,
+                      "CAD file of a tool that lies on the table; may be repeated");
+  AddFixtureOption(command, options);
+  command->add_option("--bench", options->bench,
+                      "CAD file of a fixture that stands on the table; may be repeated");
 }
 
 std::optional<std::filesystem::path> CacheDirectory(const LoadOptions& options) {

@@ -22,9 +22,15 @@ struct LoadOptions : assembly::OpenOptions {
   bool is_cache_used{true};  ///< Keeps and takes what was read and prepared on disk.
 };
 
-/** Adds --strict, --quiet, --no-cache, --unit, --time-limit, --memory-limit and --max-parts to a
- command. */
+/** Adds --strict, --quiet, --no-cache, --unit, --apart, --time-limit, --memory-limit and
+ --max-parts to a command. */
 void AddLoadOptions(CLI::App* command, LoadOptions* options);
+
+/** Adds --fixture to a command. */
+void AddFixtureOption(CLI::App* command, LoadOptions* options);
+
+/** Adds --tool, --fixture and --bench to a command that brings a product to the loops. */
+void AddAccessoryOptions(CLI::App* command, LoadOptions* options);
 
 /** The directory for what is kept between runs; none where the user wants none. */
 [[nodiscard]] std::optional<std::filesystem::path> CacheDirectory(const LoadOptions& options);

@@ -71,8 +71,21 @@ Result<Opened> Open(const MateOptions& options) {
   return opened;
 }
 
-/** Writes the side file if a product with it is whole, and puts that into `opened`. */
-Result<void> Commit(Opened* opened) {
+/** The last mate of a file must not contradict those before it. */
+Result<void> CheckLast(const Product& product, const mates::MateChanges& changes) {
+  const std::string& key = product.mates[changes.added.back().index()].key;
+  for (const mates::MateContradiction& contradiction : changes.contradictions) {
+    if (contradiction.mate == key) {
+      return Fail(ErrorCode::kInvalid, contradiction.message, product.source,
+                  "remove those mates first, or choose other surfaces");
+    }
+  }
+  return {};
+}
+
+/** Writes the side file if a product with it is whole, and puts that into `opened`.
+ @param is_checked  Whether the last mate must not contradict the others. */
+Result<void> Commit(Opened* opened, bool is_checked = false) {
   Product product = opened->inferred;
   Result<mates::MateChanges> changes = mates::ApplySideFile(opened->document.contents(), &product);
   if (!changes) {
@@ -80,6 +93,11 @@ Result<void> Commit(Opened* opened) {
     // Its lines are those of a file that is not to be.
     error.where = opened->document.contents().path.string();
     return Unexpected(std::move(error));
+  }
+  if (is_checked) {
+    if (auto agrees = CheckLast(product, *changes); !agrees) {
+      return agrees;
+    }
   }
   opened->product = std::move(product);
   opened->changes = *std::move(changes);
@@ -156,7 +174,7 @@ Result<void> Add(const MateOptions& options) {
     entry["fit"] = options.fit;
   }
   opened->document.Append("mates", entry);
-  if (auto written = Commit(&*opened); !written) {
+  if (auto written = Commit(&*opened, /*is_checked=*/true); !written) {
     return written;
   }
   const Mate& mate = opened->product.mates[opened->changes.added.back().index()];
@@ -191,14 +209,16 @@ Result<std::string> RemoveOne(const std::string& key, const std::string& file, O
   const std::string what = Describe(opened->product, opened->product.mates[mate->index()]);
   const std::string note = what.substr(std::min(what.size(), key.size() + 1));
   auto& added = opened->changes.added;
+  const bool is_added = std::find(added.begin(), added.end(), *mate) != added.end();
   if (const auto mine = std::find(added.begin(), added.end(), *mate); mine != added.end()) {
     undo = DescribeUndo(
         opened->document.Take("mates", static_cast<std::size_t>(mine - added.begin())), file);
     added.erase(mine);
   }
   const auto is_it = [&key](const Mate& other) { return other.key == key; };
+  // Where mates of the user have put the parts, inference finds others than in the drawn poses.
   const bool is_inferred =
-      std::any_of(opened->inferred.mates.begin(), opened->inferred.mates.end(), is_it);
+      !is_added || std::any_of(opened->inferred.mates.begin(), opened->inferred.mates.end(), is_it);
   const bool is_removed =
       std::any_of(opened->changes.removed.begin(), opened->changes.removed.end(), is_it);
   if (is_inferred && !is_removed) {

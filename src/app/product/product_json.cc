@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/product/relations_report.h"
 #include "base/units.h"
 #include "mates/infer.h"
 #include "product/names.h"
@@ -188,6 +189,7 @@ Json OccurrenceToJson(const product::Occurrence& occurrence) {
           {"subassembly", occurrence.parent.value()},
           {"name", occurrence.name},
           {"path", occurrence.path},
+          {"bodies", occurrence.bodies},
           {"position_mm", ToMmJson(occurrence.X_WB.p())},
           {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}}};
 }
@@ -212,16 +214,33 @@ Json ToJson(const product::Fit& fit) {
           {"reason", fit.reason}};
 }
 
-/** Only what is known; the keys are those of the side file. */
-Json ToJson(const product::FitConditions& conditions) {
+/** One number for the whole length, or places [depth_mm, diameter_mm]. */
+Json ToJson(const std::vector<product::MeasuredDiameter>& measured) {
+  if (measured.size() == 1) {
+    return ToMm(measured.front().diameter);
+  }
+  Json json = Json::array();
+  for (const auto& [depth, diameter] : measured) {
+    json.push_back({ToMm(depth), ToMm(diameter)});
+  }
+  return json;
+}
+
+}  // namespace
+
+Json ConditionsToJson(const product::FitConditions& conditions) {
   Json json = Json::object();
   const auto add = [&json](const char* key, const std::optional<double>& value, double scale) {
     if (value) {
       json[key] = scale * *value;
     }
   };
-  add("hole_diameter_mm", conditions.hole_diameter, ToMm(1));
-  add("shaft_diameter_mm", conditions.shaft_diameter, ToMm(1));
+  if (!conditions.hole_diameters.empty()) {
+    json["hole_diameter_mm"] = ToJson(conditions.hole_diameters);
+  }
+  if (!conditions.shaft_diameters.empty()) {
+    json["shaft_diameter_mm"] = ToJson(conditions.shaft_diameters);
+  }
   add("hole_rz_um", conditions.hole_roughness, units::ToUm(1));
   add("shaft_rz_um", conditions.shaft_roughness, units::ToUm(1));
   add("friction", conditions.friction, 1);
@@ -229,6 +248,8 @@ Json ToJson(const product::FitConditions& conditions) {
   add("shaft_temperature_c", conditions.shaft_temperature_c, 1);
   return json;
 }
+
+namespace {
 
 Json MateToJson(const product::Mate& mate) {
   Json json{{"id", mate.id.value()},         {"key", mate.key},
@@ -256,7 +277,7 @@ Json MateToJson(const product::Mate& mate) {
   json["hole_diameter_mm"] = ToMm(2 * mate.hole_radius);
   json["shaft_diameter_mm"] = ToMm(2 * mate.shaft_radius);
   json["fit"] = mate.fit ? ToJson(*mate.fit) : Json();
-  json["conditions"] = ToJson(mate.conditions);
+  json["conditions"] = ConditionsToJson(mate.conditions);
   return json;
 }
 
@@ -274,6 +295,10 @@ Json Summarise(const Product& product, const Diagnostics& diagnostics) {
     return std::count_if(product.mates.begin(), product.mates.end(),
                          [kind](const product::Mate& mate) { return mate.kind == kind; });
   };
+  Json mates_of_kind = Json::object();
+  for (const product::MateKind kind : product::kMateKinds) {
+    mates_of_kind[ToString(kind)] = count(kind);
+  }
   const mates::Linkage linkage = mates::CalcLinkage(product);
   const ToleranceCounts tolerances = CountTolerances(product);
   return {{"name", product.name},
@@ -286,11 +311,7 @@ Json Summarise(const Product& product, const Diagnostics& diagnostics) {
           {"size_mm", ToMmJson(product.box_W.size())},
           {"linked_parts", linkage.linked_parts},
           {"linked_groups", linkage.components},
-          {"mates",
-           {{"axis_hole", count(product::MateKind::kAxisHole)},
-            {"face_face", count(product::MateKind::kFaceFace)},
-            {"cone_seat", count(product::MateKind::kConeSeat)},
-            {"sphere_seat", count(product::MateKind::kSphereSeat)}}},
+          {"mates", std::move(mates_of_kind)},
           {"joints", product.joints.size()},
           {"alignments", product.alignments.size()},
           {"tolerances",
@@ -376,6 +397,8 @@ Json GroupFits(const Product& product, const Selection& selection) {
   return groups;
 }
 
+}  // namespace
+
 Json DiagnosticsToJson(const Diagnostics& diagnostics) {
   Json notes = Json::array();
   for (const Diagnostic& item : diagnostics.items()) {
@@ -387,8 +410,6 @@ Json DiagnosticsToJson(const Diagnostics& diagnostics) {
   }
   return notes;
 }
-
-}  // namespace
 
 ToleranceCounts CountTolerances(const Product& product) {
   ToleranceCounts counts;
@@ -448,6 +469,7 @@ Json ToJson(const Product& product, const Diagnostics& diagnostics, const Select
   if (selection.Has(Section::kDiagnostics)) {
     json["diagnostics"] = DiagnosticsToJson(diagnostics);
   }
+  AddRequestedSections(product, selection, &json);
   return json;
 }
 

@@ -23,11 +23,17 @@ struct ToleranceCounts {
 
 [[nodiscard]] ToleranceCounts CountTolerances(const product::Product& product);
 
+/** Lists what is odd: severity, code, entity, message and remedy of each. */
+[[nodiscard]] nlohmann::ordered_json DiagnosticsToJson(const Diagnostics& diagnostics);
+
 /** The product as one JSON object: format, summary (always of the whole product) and the sections
  that are selected. Keys carry their unit; keys keep this order. */
 [[nodiscard]] nlohmann::ordered_json ToJson(const product::Product& product,
                                             const Diagnostics& diagnostics,
                                             const Selection& selection);
+
+/** What is known of a mate beyond its fit; the keys are those of the side file. */
+[[nodiscard]] nlohmann::ordered_json ConditionsToJson(const product::FitConditions& conditions);
 
 /** Mates as in the section "mates". */
 [[nodiscard]] nlohmann::ordered_json MatesToJson(const std::vector<product::Mate>& mates);

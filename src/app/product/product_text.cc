@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
 #include "app/product/product_json.h"
+#include "app/product/relations_report.h"
 #include "base/units.h"
 #include "mates/infer.h"
 #include "product/names.h"
@@ -281,8 +283,16 @@ std::string DescribeConditions(const product::FitConditions& conditions) {
                            const char* unit) {
     text += value ? fmt::format("; {} {:.6g}{}", words, scale * *value, unit) : "";
   };
-  add("measured hole", conditions.hole_diameter, ToMm(1), " mm");
-  add("measured shaft", conditions.shaft_diameter, ToMm(1), " mm");
+  const auto add_measured = [&text](const char* words,
+                                    const std::vector<product::MeasuredDiameter>& measured) {
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      text += i == 0 ? fmt::format("; {} ", words) : std::string(", ");
+      text += fmt::format("{:.6g} mm", ToMm(measured[i].diameter));
+      text += measured.size() > 1 ? fmt::format(" at {:g} mm", ToMm(measured[i].depth)) : "";
+    }
+  };
+  add_measured("measured hole", conditions.hole_diameters);
+  add_measured("measured shaft", conditions.shaft_diameters);
   add("hole Rz", conditions.hole_roughness, units::ToUm(1), " um");
   add("shaft Rz", conditions.shaft_roughness, units::ToUm(1), " um");
   add("friction", conditions.friction, 1, "");
@@ -293,17 +303,23 @@ std::string DescribeConditions(const product::FitConditions& conditions) {
 
 std::string DescribeMate(const Mate& mate, bool with_evidence) {
   std::string text;
-  if (mate.kind == MateKind::kFaceFace) {
-    text = fmt::format("{:.2f} mm2", ToMm2(mate.overlap));
-  } else if (mate.kind == MateKind::kAxisHole) {
-    text = fmt::format("hole {:.4g} mm, shaft {:.4g} mm, engaged {:.2f} mm",
-                       ToMm(2 * mate.hole_radius), ToMm(2 * mate.shaft_radius), ToMm(mate.overlap));
-  } else if (mate.kind == MateKind::kConeSeat) {
-    text = fmt::format("diameter {:.4g} mm, engaged {:.2f} mm", ToMm(2 * mate.hole_radius),
-                       ToMm(mate.overlap));
-  } else {
-    text = fmt::format("diameter {:.4g} mm, {:.2f} mm2", ToMm(2 * mate.hole_radius),
-                       ToMm2(mate.overlap));
+  switch (mate.kind) {
+    case MateKind::kFaceFace:
+      text = fmt::format("{:.2f} mm2", ToMm2(mate.overlap));
+      break;
+    case MateKind::kAxisHole:
+      text =
+          fmt::format("hole {:.4g} mm, shaft {:.4g} mm, engaged {:.2f} mm",
+                      ToMm(2 * mate.hole_radius), ToMm(2 * mate.shaft_radius), ToMm(mate.overlap));
+      break;
+    case MateKind::kConeSeat:
+      text = fmt::format("diameter {:.4g} mm, engaged {:.2f} mm", ToMm(2 * mate.hole_radius),
+                         ToMm(mate.overlap));
+      break;
+    case MateKind::kSphereSeat:
+      text = fmt::format("diameter {:.4g} mm, {:.2f} mm2", ToMm(2 * mate.hole_radius),
+                         ToMm2(mate.overlap));
+      break;
   }
   if (mate.fit) {
     text +=
@@ -462,6 +478,20 @@ void PrintDiagnostics(const Diagnostics& diagnostics, bool is_all) {
   limit.PrintRest();
 }
 
+/** What a summary calls several mates of a rare kind; empty for the kinds that it names always. */
+std::string_view RarePluralOf(MateKind kind) {
+  switch (kind) {
+    case MateKind::kAxisHole:
+    case MateKind::kFaceFace:
+      return "";
+    case MateKind::kConeSeat:
+      return "cone seats";
+    case MateKind::kSphereSeat:
+      return "sphere seats";
+  }
+  return "";
+}
+
 /** "2 axis-hole and 2 face mates", and the rarer kinds where there are any. */
 std::string CountMates(const Product& product) {
   const auto count = [&product](MateKind kind) {
@@ -469,11 +499,11 @@ std::string CountMates(const Product& product) {
                          [kind](const Mate& mate) { return mate.kind == kind; });
   };
   std::string rare;
-  if (const auto cones = count(MateKind::kConeSeat); cones > 0) {
-    rare += fmt::format(", {} cone seats", cones);
-  }
-  if (const auto spheres = count(MateKind::kSphereSeat); spheres > 0) {
-    rare += fmt::format(", {} sphere seats", spheres);
+  for (const MateKind kind : product::kMateKinds) {
+    const std::string_view plural = RarePluralOf(kind);
+    if (const auto found = count(kind); found > 0 && !plural.empty()) {
+      rare += fmt::format(", {} {}", found, plural);
+    }
   }
   return fmt::format("{} axis-hole and {} face mates{}", count(MateKind::kAxisHole),
                      count(MateKind::kFaceFace), rare);
@@ -531,6 +561,7 @@ void PrintText(const Product& product, const Diagnostics& diagnostics, const Sel
   if (selection.Has(Section::kTolerances)) {
     PrintTolerances(product, selection, is_all);
   }
+  PrintRequestedSections(product, selection, is_all);
   if (selection.Has(Section::kDiagnostics)) {
     PrintDiagnostics(diagnostics, is_all);
   }

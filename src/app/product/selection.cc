@@ -78,29 +78,39 @@ Result<std::vector<bool>> SelectParts(const Product& product,
 
 /** Kinds of mates as people write them, "axis-hole" or "axis_hole". */
 Result<std::vector<bool>> SelectKinds(const std::vector<std::string>& names) {
-  constexpr std::array kKinds{product::MateKind::kAxisHole, product::MateKind::kFaceFace,
-                              product::MateKind::kConeSeat, product::MateKind::kSphereSeat};
-  std::vector<bool> selected(kKinds.size(), names.empty());
+  const auto& kinds = product::kMateKinds;
+  std::vector<bool> selected(kinds.size(), names.empty());
   for (std::string name : names) {
     std::replace(name.begin(), name.end(), '-', '_');
     const auto kind =
-        std::find_if(kKinds.begin(), kKinds.end(), [&](auto k) { return name == ToString(k); });
-    if (kind == kKinds.end()) {
+        std::find_if(kinds.begin(), kinds.end(), [&](auto k) { return name == ToString(k); });
+    if (kind == kinds.end()) {
       return Fail(ErrorCode::kNotFound, fmt::format("there is no kind of mate \"{}\"", name),
-                  "--kind", "write axis-hole, face-face, cone-seat or sphere-seat");
+                  "--kind", "write " + ListMateKinds(" or "));
     }
-    selected[static_cast<std::size_t>(kind - kKinds.begin())] = true;
+    selected[static_cast<std::size_t>(kind - kinds.begin())] = true;
   }
   return selected;
 }
 
 }  // namespace
 
+std::string ListMateKinds(std::string_view before_last) {
+  std::string list;
+  for (const product::MateKind kind : product::kMateKinds) {
+    const bool is_last = kind == product::kMateKinds.back();
+    list += list.empty() ? "" : is_last ? before_last : std::string_view(", ");
+    list += ToString(kind);
+  }
+  std::replace(list.begin(), list.end(), '_', '-');
+  return list;
+}
+
 Selection::Selection(const Product& product)
     : parts_(product.parts.size(), true),
       occurrences_(product.occurrences.size(), true),
       mates_(product.mates.size(), true) {
-  sections_.fill(true);
+  std::fill(sections_.begin(), sections_.begin() + static_cast<int>(Section::kIdentity), true);
 }
 
 Result<Selection> Selection::Make(const Product& product, const SelectionOptions& options) {

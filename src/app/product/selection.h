@@ -20,10 +20,14 @@ enum class Section {
   kFits,
   kTolerances,
   kDiagnostics,
+  kIdentity,  ///< The first of the sections that are shown only where they are asked for.
+  kRelations,
+  kSurfaces,
 };
 
-inline constexpr std::array<std::string_view, 9> kSectionNames{
-    "tree", "parts", "features", "faces", "mates", "joints", "fits", "tolerances", "diagnostics"};
+inline constexpr std::array<std::string_view, 12> kSectionNames{
+    "tree", "parts",      "features",    "faces",    "mates",     "joints",
+    "fits", "tolerances", "diagnostics", "identity", "relations", "surfaces"};
 
 /** What a person asks to see; empty lists ask for everything. */
 struct SelectionOptions {
@@ -34,10 +38,13 @@ struct SelectionOptions {
   std::vector<std::string> kinds;        ///< Kinds of mates: "axis-hole", ...
 };
 
+/** "axis-hole, face-face, cone-seat, sphere-seat": all kinds of mates as people write them. */
+[[nodiscard]] std::string ListMateKinds(std::string_view before_last = ", ");
+
 /** What of a product is to be shown. */
 class Selection {
  public:
-  /** Everything of a product. */
+  /** Everything of a product but the sections that have to be asked for. */
   explicit Selection(const product::Product& product);
 
   /** Occurrences that fit all that is asked for, their parts, and the mates at them. A mate that is

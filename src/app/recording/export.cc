@@ -130,6 +130,9 @@ Result<void> ExportProduct(const ExportOptions& options, const std::string& form
     }
     motions = std::move(*moved);
   }
+  if (!product->placement.drawn_poses.empty()) {
+    motions = ListPlacedMotions(*product);
+  }
   if (format == ".glb") {
     const Result<std::string> glb = cad::MakeGlb(*product, options.is_fine);
     return glb ? WriteAtomically(options.output, *glb) : Unexpected(glb.error());

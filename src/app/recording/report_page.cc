@@ -91,6 +91,11 @@ std::set<std::uint32_t> FindSeated(const Summary& summary) {
   return seated;
 }
 
+/** The session took a product apart: parts were to leave their place. */
+bool IsDisassembly(const Summary& summary) {
+  return MetaOf(summary, "task") == "disassembly";
+}
+
 std::string MakeHead(const Summary& summary) {
   const std::string name = Escape(MetaOf(summary, "product"));
   std::set<std::uint32_t> taken;
@@ -103,16 +108,17 @@ std::string MakeHead(const Summary& summary) {
     peak_true = std::max(peak_true, hold.peak_true);
     collisions += hold.collisions;
   }
+  const bool is_apart = IsDisassembly(summary);
   const std::size_t seated = FindSeated(summary).size();
-  std::string html = fmt::format("<h1>{}</h1><p class=\"soft\">Assembly of {}, {}</p>", name,
-                                 Escape(MetaOf(summary, "source")),
-                                 FormatDate(MetaOf(summary, record::kMetaStarted)));
+  const std::size_t done = is_apart ? taken.size() - seated : seated;
+  std::string html = fmt::format(
+      "<h1>{}</h1><p class=\"soft\">{} of {}, {}</p>", name, is_apart ? "Disassembly" : "Assembly",
+      Escape(MetaOf(summary, "source")), FormatDate(MetaOf(summary, record::kMetaStarted)));
   html += fmt::format(
-      "<p class=\"verdict\">{} of {} parts that were taken up came to their place"
-      "{}.</p>",
-      seated == taken.size() ? fmt::format("<span class=\"good\">All {}</span>", seated)
-                             : fmt::format("<span class=\"bad\">{}</span>", seated),
-      taken.size(),
+      "<p class=\"verdict\">{} of {} parts that were taken up {} their place{}.</p>",
+      done == taken.size() ? fmt::format("<span class=\"good\">All {}</span>", done)
+                           : fmt::format("<span class=\"bad\">{}</span>", done),
+      taken.size(), is_apart ? "left" : "came to",
       summary.is_complete ? "" : "; the record is incomplete, or the session still runs");
   if (!summary.damage.empty()) {
     html += fmt::format(
@@ -200,7 +206,8 @@ std::string MakeSequence(const Summary& summary) {
         1e-9 * static_cast<double>(hold.start_ns),
         1e-9 * static_cast<double>(hold.end_ns - hold.start_ns), hold.path, hold.peak_true,
         hold.peak_felt, ToMm(hold.insertion), hold.collisions,
-        1e-9 * static_cast<double>(hold.contact_ns), hold.is_seated ? "good" : "bad",
+        1e-9 * static_cast<double>(hold.contact_ns),
+        hold.is_seated == IsDisassembly(summary) ? "bad" : "good",
         hold.is_seated ? "in place" : "let go");
   }
   return html +
@@ -238,18 +245,39 @@ std::string MakeFits(const Summary& summary) {
   std::string html =
       "<h2>Fits and sizes</h2><div class=\"scroll\"><table><thead><tr><th>Shaft in hole</th>"
       "<th class=\"l\">Fit</th><th>Nominal<br>[mm]</th><th>Hole<br>[mm]</th><th>Shaft<br>[mm]</th>"
-      "<th>Play<br>[&micro;m]</th><th>Force to press in<br>[N]</th></tr></thead><tbody>";
+      "<th>Actual clearance<br>[&micro;m]</th><th>With the surface<br>[&micro;m]</th><th>Force to "
+      "press in<br>[N]</th></tr></thead><tbody>";
   for (const evidence::FitSummary& fit : summary.fits) {
     html += fmt::format(
         "<tr><td>{}</td><td class=\"l\">{}</td><td>{:g}</td><td>{:.4f}</td><td>{:.4f}</td>"
-        "<td>{:+.1f}</td><td>{:.4g}</td></tr>",
+        "<td>{:+.1f}</td><td>{:+.1f} to {:+.1f}</td><td>{:.4g}</td></tr>",
         Escape(fit.name), Escape(fit.code), ToMm(fit.nominal), ToMm(fit.hole), ToMm(fit.shaft),
-        1e6 * (fit.hole - fit.shaft), fit.max_force);
+        units::ToUm(fit.hole - fit.shaft), units::ToUm(fit.least_clearance),
+        units::ToUm(fit.largest_clearance), fit.max_force);
   }
   return html + fmt::format(
                     "</tbody></table></div><p><small>Diameters as drawn from their tolerances for "
-                    "this session (seed {}); negative play is interference.</small></p>",
+                    "this session (seed {}), or as measured; clearances are diametral, of the mean "
+                    "diameters, and of the places with the least and the most of the surface; "
+                    "negative is interference.</small></p>",
                     Escape(MetaOf(summary, "seed")));
+}
+
+/** What contact left out for lack of room; empty where it left out nothing. */
+std::string MakeContactLimits(const Summary& summary) {
+  std::int64_t truncated = 0;
+  std::int64_t crowded = 0;
+  for (const evidence::HandSummary& hand : summary.hands) {
+    truncated += hand.truncated_ticks;
+    crowded += hand.crowded_ticks;
+  }
+  if (truncated + crowded == 0) {
+    return {};
+  }
+  return fmt::format(
+      "<p><small>Contact had more points or contacts than a tick has room for in {} ticks, and a "
+      "loose part stood still because as many as may move did in {}.</small></p>",
+      truncated, crowded);
 }
 
 std::string MakeLoops(const Summary& summary) {
@@ -273,7 +301,8 @@ std::string MakeLoops(const Summary& summary) {
          fmt::format(
              "</tbody></table></div><p><small>Energy is accounted for with a device that "
              "shows forces, of the last stretch. Ticks that the record lacks: {}.</small></p>",
-             dropped.empty() ? "unknown, because the record is incomplete" : Escape(dropped));
+             dropped.empty() ? "unknown, because the record is incomplete" : Escape(dropped)) +
+         MakeContactLimits(summary);
 }
 
 /** What an event says, in words. */

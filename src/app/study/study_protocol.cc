@@ -9,6 +9,7 @@
 
 #include "app/shipped_files.h"
 #include "assembly/prepare_model.h"
+#include "study/trial_pair.h"
 
 namespace hvas::app {
 namespace {
@@ -60,26 +61,26 @@ Result<fs::path> FindProductOf(const study::Protocol& protocol) {
   return file;
 }
 
-study::ModelSource MakeModelSource(const study::Protocol& protocol, const fs::path& product,
-                                   const LoadOptions& load, std::uint64_t seed) {
+study::ModelSource MakeModelSource(const fs::path& product, const LoadOptions& load,
+                                   std::uint64_t seed) {
   LoadOptions options = load;
   options.file = product;
-  return [options, part = protocol.part,
-          seed](const std::string& fit) -> Result<std::shared_ptr<const simulation::Model>> {
-    LoadOptions one = options;
-    if (!fit.empty()) {
-      one.fits.push_back(part + "=" + fit);
-    }
-    Diagnostics diagnostics;
-    auto loaded = LoadProduct(one, &diagnostics);
-    if (!loaded) {
-      return Unexpected(loaded.error());
-    }
-    assembly::PrepareOptions prepare;
-    prepare.seed = seed;
-    prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(one));
-    return assembly::PrepareModel(std::move(*loaded), prepare, &diagnostics);
-  };
+  return
+      [options, seed](const study::Condition& condition,
+                      const std::string& part) -> Result<std::shared_ptr<const simulation::Model>> {
+        Diagnostics diagnostics;
+        auto loaded = LoadProduct(options, &diagnostics);
+        if (!loaded) {
+          return Unexpected(loaded.error());
+        }
+        if (const auto applied = study::ApplyFit(condition, part, &*loaded); !applied) {
+          return Unexpected(applied.error());
+        }
+        assembly::PrepareOptions prepare;
+        prepare.seed = seed;
+        prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(options));
+        return assembly::PrepareModel(std::move(*loaded), prepare, &diagnostics);
+      };
 }
 
 }  // namespace hvas::app

@@ -17,10 +17,9 @@ namespace hvas::app {
 /** The CAD file of a protocol: beside it, or an example by its name. Errors: kNotFound. */
 [[nodiscard]] Result<std::filesystem::path> FindProductOf(const study::Protocol& protocol);
 
-/** Compiles the protocol's product with a part's fit. @param load  All but the file and the fits.
+/** Compiles a product with a part's fit. @param load  All but the file and the fits.
  @param seed  Draws the actual sizes. */
-[[nodiscard]] study::ModelSource MakeModelSource(const study::Protocol& protocol,
-                                                 const std::filesystem::path& product,
+[[nodiscard]] study::ModelSource MakeModelSource(const std::filesystem::path& product,
                                                  const LoadOptions& load, std::uint64_t seed);
 
 }  // namespace hvas::app

@@ -151,8 +151,7 @@ Result<void> RunSimulated(const RunOptions& options) {
                    static_cast<double>(done) / static_cast<double>(total));
     };
   }
-  const study::ModelSource models =
-      MakeModelSource(*protocol, *product, options.load, options.seed);
+  const study::ModelSource models = MakeModelSource(*product, options.load, options.seed);
   if (const auto done = study::RunSimulatedStudy(*folder, models, simulated); !done) {
     return done;
   }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <csignal>
 #include <map>
-#include <numbers>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -14,10 +13,8 @@
 #include "app/test/run_hvas.h"
 #include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
-#include "fits/iso286.h"
 #include "haptics/haptic_tick.h"
 #include "record/reader.h"
-#include "simulation/fit_of_mate.h"
 
 namespace hvas::app {
 namespace {
@@ -25,245 +22,9 @@ namespace {
 using hvas::testing::TemporaryFolder;
 using nlohmann::json;
 using record::TickRecord;
+using testing::ExpectAllSeated;
 using testing::ProductFile;
 using testing::RunHvasJson;
-
-constexpr std::uint32_t kShaft = 2;  // its occurrence in bushing.step
-constexpr auto kMating = static_cast<std::uint8_t>(haptics::HoldState::kMating);
-
-/** Assembles the rig of W7 with a fit of its shaft. */
-json AssembleBushing(const std::string& fit, int seed, const std::string& record = {}) {
-  std::vector<std::string> arguments{"assemble", ProductFile("bushing"), "--fit", "shaft=" + fit,
-                                     "--seed",   std::to_string(seed)};
-  if (!record.empty()) {
-    arguments.insert(arguments.end(), {"--record", record});
-  }
-  return RunHvasJson(arguments);
-}
-
-void ExpectAllSeated(const json& run, std::size_t count) {
-  EXPECT_EQ(run["seated"], count);
-  ASSERT_EQ(run["parts"].size(), count);
-  for (const json& part : run["parts"]) {
-    EXPECT_TRUE(part["seated"].get<bool>()) << part.dump(1);
-    EXPECT_EQ(part["reason"], "");
-    EXPECT_LT(part["pose_error_um"].get<double>(), 1) << part["name"];
-    EXPECT_LT(part["pose_error_urad"].get<double>(), 1) << part["name"];
-    EXPECT_LE(part["arrival_um"].get<double>(), 3000) << part["name"];
-    EXPECT_EQ(part["arrival_um"].get<double>() > 0, part["time_s"].get<double>() > 0)
-        << part["name"] << ": the hand brings nothing exactly to its place";
-    EXPECT_LE(part["deepest_um"].get<double>(), 50) << part["name"];
-    EXPECT_GE(part["peak_true_n"].get<double>(), 0);
-    EXPECT_LE(part["peak_felt_n"].get<double>(), 7.9 + 1e-9) << part["name"];
-  }
-}
-
-LoadOptions BushingOptions(std::vector<std::string> fits) {
-  LoadOptions options;
-  options.file = ProductFile("bushing");
-  options.fits = std::move(fits);
-  options.is_quiet = true;
-  return options;
-}
-
-/** The fit that a run of the rig draws for the shaft in the bushing. */
-std::shared_ptr<const fits::FitForce> DrawnFit(const std::string& fit, int seed) {
-  Diagnostics diagnostics;
-  const auto product = LoadProduct(BushingOptions({"shaft=" + fit}), &diagnostics);
-  for (const product::Mate& mate : product->mates) {
-    if (mate.kind == product::MateKind::kAxisHole && mate.b.occurrence.value() == kShaft) {
-      return simulation::MakeFitForce(*product, mate, static_cast<std::uint64_t>(seed),
-                                      &diagnostics);
-    }
-  }
-  return nullptr;
-}
-
-/** A record's shaft on its way in. */
-struct Insertion {
-  struct Point {
-    double depth;  // [m]
-    double axial;  // against the way in, weight left out, true [N]
-    double felt;   // the same of what the hand got, weight included [N]
-  };
-
-  std::vector<Point> points;  // where the depth grows
-  double largest_jump{0};     // of the felt force in a millisecond [N]
-  double deepest{0};          // [m]
-};
-
-Insertion ReadInsertion(const std::filesystem::path& file) {
-  constexpr double kSlowest = 2e-6;  // [m] in a tick, to count as sliding
-  Insertion insertion;
-  auto reader = record::Reader::Open(file);
-  EXPECT_TRUE(reader.has_value());
-  const auto product = [] {
-    Diagnostics diagnostics;
-    return *LoadProduct(BushingOptions({}), &diagnostics);
-  }();
-  const double weight = product.part_of(product::OccurrenceId(kShaft)).mass.mass * 9.81;
-  Vec3 last_force = Vec3::Zero();
-  std::int64_t last_ns = -1;
-  double last_depth = 0;
-  const auto visited = reader->ForEachTick({}, [&](const TickRecord& tick) {
-    EXPECT_TRUE(last_ns < 0 || tick.t_ns == last_ns + 1'000'000);
-    last_ns = tick.t_ns;
-    insertion.largest_jump =
-        std::max(insertion.largest_jump, (tick.F_felt_W.f - last_force).norm());
-    last_force = tick.F_felt_W.f;
-    insertion.deepest = std::max(insertion.deepest, -tick.deepest);
-    if (tick.held == kShaft && tick.state == kMating) {
-      if (tick.depth > last_depth + kSlowest) {
-        // The shaft goes down: what resists points up.
-        insertion.points.push_back({tick.depth, tick.F_true_W.f.z() + weight, tick.F_felt_W.f.z()});
-      }
-      last_depth = std::max(last_depth, tick.depth);
-    }
-    return true;
-  });
-  EXPECT_TRUE(visited.has_value());
-  return insertion;
-}
-
-/** Mean axial force in each millimetre of depth between 1 and 46 mm. */
-std::vector<double> CalcProfile(const Insertion& insertion) {
-  std::vector<double> sums(45, 0.0);
-  std::vector<int> counts(45, 0);
-  for (const Insertion::Point& point : insertion.points) {
-    const int bin = static_cast<int>(std::floor(point.depth * 1e3)) - 1;
-    if (bin >= 0 && bin < 45) {
-      sums[static_cast<std::size_t>(bin)] += point.axial;
-      ++counts[static_cast<std::size_t>(bin)];
-    }
-  }
-  for (std::size_t i = 0; i < 45; ++i) {
-    EXPECT_GT(counts[i], 0) << "no sliding at " << i + 1 << " mm";
-    sums[i] /= std::max(1, counts[i]);
-  }
-  return sums;
-}
-
-class BushingTest : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(BushingTest, EveryPartGoesInExactlyWithoutAJumpOfForce) {  // W7
-  const TemporaryFolder folder;
-  const std::string file = (folder / "session.hvasrec").string();
-  const json run = AssembleBushing(GetParam(), 1, file);
-  ExpectAllSeated(run, 3);
-  const Insertion insertion = ReadInsertion(file);
-  EXPECT_LE(insertion.largest_jump, 0.5);
-  EXPECT_LE(insertion.deepest, 50e-6);
-  // The record is whole and is what the digest says.
-  auto reader = record::Reader::Open(file);
-  ASSERT_TRUE(reader.has_value());
-  EXPECT_TRUE(reader->is_complete());
-  const auto digest = reader->Verify();
-  ASSERT_TRUE(digest.has_value()) << digest.error().ToString();
-  EXPECT_EQ(*digest, run["digest"]);
-  EXPECT_EQ(reader->tick_count(), run["ticks"]);
-  EXPECT_EQ(reader->meta().at("seed"), "1");
-  EXPECT_EQ(reader->meta().at("condition"), "hybrid");
-  EXPECT_EQ(json::parse(reader->meta().at("model_json")).size(), 3u);
-}
-
-TEST_P(BushingTest, EqualSeedsGiveEqualDigestsAndOthersDoNot) {
-  const TemporaryFolder folder;
-  const json first = AssembleBushing(GetParam(), 5);
-  // With or without a file, the digest is that of the session.
-  const json second = AssembleBushing(GetParam(), 5, (folder / "session").string());
-  const json other = AssembleBushing(GetParam(), 6);
-  EXPECT_EQ(first["digest"], second["digest"]);
-  EXPECT_EQ(first["parts"], second["parts"]);
-  EXPECT_NE(first["digest"], other["digest"]);
-}
-
-INSTANTIATE_TEST_SUITE_P(Fits, BushingTest, ::testing::Values("H7/g6", "H7/k6", "H7/p6"),
-                         [](const auto& instance) {
-                           return std::string(instance.param).substr(3);
-                         });
-
-TEST(FitForceTest, ClearanceFitIsSmallAndSteady) {  // W10: 0..0.3 N
-  const TemporaryFolder folder;
-  const auto file = folder / "session";
-  (void)AssembleBushing("H7/g6", 1, file.string());
-  const std::vector<double> profile = CalcProfile(ReadInsertion(file));
-  // From a depth on where the hand's own speed has settled. True newtons.
-  const auto [least, most] = std::minmax_element(profile.begin() + 14, profile.end());
-  EXPECT_LT(std::max(std::abs(*least), std::abs(*most)), 1.0);
-  EXPECT_LT(*most - *least, 0.6);
-}
-
-TEST(FitForceTest, InterferenceFitGrowsSmoothlyWithDepth) {  // W10, W(9)
-  const TemporaryFolder folder;
-  const auto file = folder / "session";
-  const json run = AssembleBushing("H7/p6", 1, file.string());
-  const Insertion insertion = ReadInsertion(file);
-  const std::vector<double> profile = CalcProfile(insertion);
-  const double rise = (profile.back() - profile.front()) / 44;
-  EXPECT_GT(rise, 50);  // [N/mm]
-  for (std::size_t i = 1; i < profile.size(); ++i) {
-    EXPECT_GT(profile[i] - profile[i - 1], 0.2 * rise) << i << " mm: a step of a stair";
-    EXPECT_LT(profile[i] - profile[i - 1], 3 * rise) << i << " mm: a jump";
-  }
-  // The force is that of the sizes which the seed draws, at every depth (W(9)).
-  const auto fit = DrawnFit("H7/p6", 1);
-  for (const Insertion::Point& point : insertion.points) {
-    if (point.depth > 2e-3) {
-      const double expected = fit->CalcAxialResistance(point.depth);
-      EXPECT_NEAR(point.axial, expected, 0.05 * expected + 20) << point.depth;
-    }
-  }
-  // And those lie in the zones of ISO 286: W(6) with the largest interference and every roughness
-  // peak inwards is an upper bound, and the mean of the drawn interference gives the order.
-  const auto limits = fits::CalcFitLimits(*fits::ParseFit("H7/p6"), 40e-3);
-  ASSERT_TRUE(limits.has_value());
-  const auto force = [&](double interference) {  // diametral [m]
-    const double wall = 1 - 0.5 * 0.5;           // c_0 = 20 mm / 40 mm
-    return 0.15 * std::numbers::pi * 210e9 * wall * 0.5 * interference * fit->length();
-  };
-  const double peak = run["parts"][2]["peak_true_n"];
-  EXPECT_LT(peak, force(-limits->min_clearance + 6.3e-6));
-  EXPECT_GT(peak, force(std::max(0.0, -limits->max_clearance - 6.3e-6)));
-  EXPECT_NEAR(peak, fit->max_resistance(), 0.05 * fit->max_resistance());
-  // In the hand it stays within what the device can show, and grows as well.
-  const double felt_rise = insertion.points.back().felt - insertion.points.front().felt;
-  EXPECT_GT(felt_rise, 2);
-  EXPECT_LT(felt_rise, 7.9);
-}
-
-TEST(FitForceTest, TransitionFitRisesInStairs) {  // W10
-  // A seed that draws sizes between which the roughness makes contact here and there.
-  constexpr int kSeed = 2;
-  const auto fit = DrawnFit("H7/k6", kSeed);
-  ASSERT_NE(fit, nullptr);
-  ASSERT_GT(fit->max_resistance(), 100);
-  ASSERT_GT(fit->mean_clearance(), 0) << "no stairs to be expected";
-  const TemporaryFolder folder;
-  const auto file = folder / "session";
-  (void)AssembleBushing("H7/k6", kSeed, file.string());
-  const std::vector<double> profile = CalcProfile(ReadInsertion(file));
-  const double total = profile.back() - profile.front();
-  EXPECT_GT(total, 100);
-  // Level for 2 mm and more, then up by a tenth of the whole within 6 mm: count such stairs.
-  int stairs = 0;
-  int level = 0;
-  double level_force = 0;
-  for (std::size_t i = 1; i < profile.size(); ++i) {
-    if (std::abs(profile[i] - profile[i - 1]) < 0.01 * total) {
-      ++level;
-      level_force = profile[i];
-    } else if (level >= 2) {
-      const std::size_t ahead = std::min(profile.size() - 1, i + 5);
-      stairs += profile[ahead] - level_force > 0.1 * total ? 1 : 0;
-      level = 0;
-    } else {
-      level = 0;
-    }
-    // A fit never pulls (W(9)).
-    EXPECT_GT(profile[i] - profile[i - 1], -0.02 * total) << i << " mm";
-  }
-  EXPECT_GE(stairs, 2);
-}
 
 TEST(AssembleTest, GearPumpGoesTogetherCompletely) {  // N10
   const json run = RunHvasJson({"assemble", ProductFile("gear_pump")});
@@ -340,7 +101,7 @@ TEST(AssembleTest, GuidedBushingStopsAtTheCoverThatWasPutOnTooSoon) {  // N3
   EXPECT_TRUE(run_with("constraint", "34")["seated"].get<bool>());
 }
 
-TEST(AssembleTest, RealtimeCountsWhatItMissed) {  // X4; no time is asserted: the host has the say
+TEST(AssembleTest, X4RealtimeCountsWhatItMissed) {  // no time is asserted: the host has the say
   const TemporaryFolder folder;
   const std::string file = (folder / "session").string();
   const json run = RunHvasJson(
@@ -398,6 +159,31 @@ TEST(AssembleTest, KilledProcessLeavesARecordThatMissesLessThanASecond) {
   });
   EXPECT_GE(before_ns, 2'000'000'000);
   EXPECT_GT(next_ns - 1'000'000, before_ns);
+}
+
+TEST(AssembleTest, EndedProcessReportsWhatWasDoneUntilThen) {
+  const TemporaryFolder folder;
+  const auto file = folder / "session";
+  const auto output = folder / "run.json";
+  const pid_t child = testing::StartHvas(
+      {"assemble", ProductFile("bushing"), "--json", "--realtime", "--record", file.string()},
+      output.string());
+  ASSERT_GT(child, 0);
+  ASSERT_TRUE(hvas::testing::AwaitTrue([&] { return LastTick(file) >= 1'000'000'000; }));
+  ASSERT_EQ(::kill(child, SIGTERM), 0);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  const json run = json::parse(testing::ReadText(output));
+  ASSERT_EQ(run["parts"].size(), 3U);
+  EXPECT_TRUE(run["parts"][0]["seated"].get<bool>());
+  EXPECT_TRUE(run["parts"][0]["touched"].get<bool>());
+  EXPECT_FALSE(run["parts"][2]["seated"].get<bool>());
+  EXPECT_EQ(run["parts"][2]["reason"], "the run was stopped before its turn ended");
+  auto reader = record::Reader::Open(file);
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_TRUE(reader->is_complete());
 }
 
 }  // namespace

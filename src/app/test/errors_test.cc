@@ -42,7 +42,8 @@ TEST_P(BadFileTest, ErrorNamesTheFileAndWhatToDo) {
   ExpectError({command, "no such file.step"}, {"no such file.step", "(check the path)"});
   ExpectError({command, folder.path().string()}, {folder.path().string(), "not a file", "STEP"});
   const auto text = folder.Write("letter.step", "Dear all,\nthis is no product.\n");
-  ExpectError({command, text.string()}, {"letter.step", "neither a STEP file nor a mesh", "AP242"});
+  ExpectError({command, text.string()},
+              {"letter.step", "neither a STEP file, nor an IGES file, nor a mesh", "AP242"});
   const auto nothing = folder.Write("nothing.step", "");
   ExpectError({command, nothing.string()}, {"nothing.step"});
   const auto empty =

@@ -139,7 +139,7 @@ void CheckPrimitive(const Glb& glb, const json& primitive, double* volume, std::
   }
 }
 
-TEST(ExportGlb, IsValidAndHoldsEveryPartFacePoseAndId) {  // X3
+TEST(ExportGlb, X3IsValidAndHoldsEveryPartFacePoseAndId) {
   const TemporaryFolder folder;
   const std::string file = (folder / "pump.glb").string();
   const Ran ran = RunHvas({"export", ProductFile("gear_pump"), "-o", file});

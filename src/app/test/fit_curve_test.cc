@@ -1,3 +1,4 @@
+#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -59,6 +60,24 @@ TEST(FitCommand, CurveEndsAtTheClosedFormWhateverTheStep) {
 }
 
 // N4: the same bytes with any number of threads: card, curve and plot.
+// W1b: a shaft that tapers by 20 um has the force of the integral, 5 times 3711.01 N, and no more.
+TEST(FitCommand, CurveOfAPairMeasuredAlongItsLength) {
+  const TemporaryFolder folder;
+  const std::string table = folder / "pair.csv";
+  const auto run = [&](const char* text) {
+    std::ofstream(table) << text;
+    return RunHvas({"fit", "40 H7/p6", "--length", "50", "--hub", "80", "--mu", "0.15", "--rz", "0",
+                    "--curve", folder / "curve.csv", "--along", table});
+  };
+  ASSERT_EQ(run("depth_mm,hole_mm,shaft_mm\n0,40.010,40.010\n50,,40.030\n").status, 0);
+  const auto rows = ReadNumbers(ReadText(folder / "curve.csv"));
+  EXPECT_NEAR(rows.back()[7], 5 * 3711.01, 0.1);
+  EXPECT_NEAR(rows[rows.size() / 2][7], 5 * 3711.01 / 4, 0.1);
+  const Ran refused = run("depth_mm,hole_mm,shaft_mm\n5,40,40\n4,40,40\n");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("line 3"), std::string::npos) << refused.err;
+}
+
 TEST(FitCommand, SameBytesWithAnyNumberOfThreads) {
   const TemporaryFolder folder;
   const auto run = [&](const char* threads) {

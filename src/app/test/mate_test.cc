@@ -53,7 +53,7 @@ class MateTest : public ::testing::Test {
   std::vector<std::string> keys_;
 };
 
-TEST_F(MateTest, RemovedMatesAreGoneUntilTheyAreRestored) {  // X12
+TEST_F(MateTest, X12RemovedMatesAreGoneUntilTheyAreRestored) {
   const json before = List();
   const std::string said = Run({"mate", "remove", rig_, "m0", keys_[3]});
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "hvas mate restore", said);
@@ -69,7 +69,7 @@ TEST_F(MateTest, RemovedMatesAreGoneUntilTheyAreRestored) {  // X12
   EXPECT_EQ(List(), before);
 }
 
-TEST_F(MateTest, AddedMatesTakeTheirFitAndGoWhenTheyAreRemoved) {  // X12
+TEST_F(MateTest, X12AddedMatesTakeTheirFitAndGoWhenTheyAreRemoved) {
   Run({"mate", "remove", rig_, "m2"});
   const json features = RunHvasJson({"inspect", rig_, "--only", "features,tree"});
   const auto feature = [&features](std::size_t part, const char* kind, double radius_mm) {

@@ -39,7 +39,7 @@ std::string SeedFile(const std::string& name) {
 
 class MeshFileTest : public ::testing::TestWithParam<MeshFile> {};
 
-TEST_P(MeshFileTest, OpensLikeAnyOther) {  // X1, X2
+TEST_P(MeshFileTest, X1OpensLikeAnyOther) {  // X2
   const MeshFile& drawn = GetParam();
   const json opened = RunHvasJson({"inspect", SeedFile(drawn.name)});
   const json& summary = opened["summary"];
@@ -189,7 +189,7 @@ class TrianglePegTest : public ::testing::TestWithParam<Tessellation> {
   std::string file_;
 };
 
-TEST_P(TrianglePegTest, HasItsFacesAndMates) {  // X2, X3, W3
+TEST_P(TrianglePegTest, X2HasItsFacesAndMates) {  // X3, W3
   const json opened = RunHvasJson({"inspect", file_});
   ASSERT_EQ(opened["parts"].size(), 2U);
   const auto faces = [&opened](std::size_t part, const char* kind) {

@@ -95,7 +95,7 @@ struct Stl {
   bool is_closed{true};
 };
 
-TEST_F(PathCommandTest, RecordedPathIsWrittenAsPoints) {  // X13: discrete points
+TEST_F(PathCommandTest, X13RecordedPathIsWrittenAsPoints) {  // discrete points
   Record();
   const json summary = RunHvasJson(ForShaft({"--record", In("run.hvasrec")}, "way.csv"));
   const auto rows = ReadTable(ReadText(In("way.csv")));
@@ -116,7 +116,7 @@ TEST_F(PathCommandTest, RecordedPathIsWrittenAsPoints) {  // X13: discrete point
   EXPECT_NEAR(path["points_m"].back()[2], rows.back()[3], 1e-12);
 }
 
-TEST_F(PathCommandTest, SweptVolumeOfARecordHoldsThePart) {  // X13: swept volume
+TEST_F(PathCommandTest, X13SweptVolumeOfARecordHoldsThePart) {  // swept volume
   Record();
   const json summary = RunHvasJson(
       ForShaft({"--record", In("run.hvasrec"), "--swept", "--resolution-mm", "6"}, "way.stl"));
@@ -127,14 +127,14 @@ TEST_F(PathCommandTest, SweptVolumeOfARecordHoldsThePart) {  // X13: swept volum
   EXPECT_EQ(summary["resolution_mm"], 6.0);
 }
 
-TEST_F(PathCommandTest, TurnOfTheRoundShaftAboutItsAxisSweepsTheShaft) {  // X13: rotation
+TEST_F(PathCommandTest, X13TurnOfTheRoundShaftAboutItsAxisSweepsTheShaft) {  // rotation
   const json summary = RunHvasJson(
       ForShaft({"--rotate", "0,0,1,270", "--swept", "--resolution-mm", "1.5"}, "turn.glb"));
   EXPECT_NEAR(summary["volume_mm3"].get<double>() / 142'528.8, 1, 0.005);
   EXPECT_EQ(ReadText(In("turn.glb")).substr(0, 4), "glTF");
 }
 
-TEST_F(PathCommandTest, StraightWaySweepsItsSectionTimesTheWay) {  // X13: translation
+TEST_F(PathCommandTest, X13StraightWaySweepsItsSectionTimesTheWay) {  // translation
   const auto volume_after = [&](const std::string& way_mm) {
     return RunHvasJson(ForShaft(
         {"--translate", "0,0," + way_mm, "--swept", "--resolution-mm", "1.5", "--force"},

@@ -71,7 +71,7 @@ std::uint64_t RecordTwoHands(const std::shared_ptr<const simulation::Model>& mod
   return report.ticks;
 }
 
-TEST(SessionReplayTest, EveryTickOfBothHandsRunsAgainFromTheFile) {  // X4, N6, N7
+TEST(SessionReplayTest, X4EveryTickOfBothHandsRunsAgainFromTheFile) {  // N6, N7
   const hvas::testing::TemporaryFolder folder;
   const auto file = folder / "session";
   const std::uint64_t periods = RecordTwoHands(Bushing(), file);

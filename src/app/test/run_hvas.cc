@@ -98,6 +98,23 @@ pid_t Start(const std::vector<std::string>& arguments, const std::string& out,
 
 }  // namespace
 
+void ExpectAllSeated(const nlohmann::json& run, std::size_t count) {
+  EXPECT_EQ(run["seated"], count);
+  ASSERT_EQ(run["parts"].size(), count);
+  for (const nlohmann::json& part : run["parts"]) {
+    EXPECT_TRUE(part["seated"].get<bool>()) << part.dump(1);
+    EXPECT_EQ(part["reason"], "");
+    EXPECT_LT(part["pose_error_um"].get<double>(), 1) << part["name"];
+    EXPECT_LT(part["pose_error_urad"].get<double>(), 1) << part["name"];
+    EXPECT_LE(part["arrival_um"].get<double>(), 3000) << part["name"];
+    EXPECT_EQ(part["arrival_um"].get<double>() > 0, part["time_s"].get<double>() > 0)
+        << part["name"] << ": the hand brings nothing exactly to its place";
+    EXPECT_LE(part["deepest_um"].get<double>(), 50) << part["name"];
+    EXPECT_GE(part["peak_true_n"].get<double>(), 0);
+    EXPECT_LE(part["peak_felt_n"].get<double>(), 7.9 + 1e-9) << part["name"];
+  }
+}
+
 std::string ReadText(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::stringstream text;
@@ -187,12 +204,23 @@ std::string WithoutControls(const std::string& text) {
   return lines + line;
 }
 
-pid_t StartHvas(const std::vector<std::string>& arguments) {
-  return Start(arguments, "/dev/null", "/dev/null");
+pid_t StartHvas(const std::vector<std::string>& arguments, const std::string& output) {
+  return Start(arguments, output, "/dev/null");
 }
 
 std::string ProductFile(const std::string& name) {
   return (std::filesystem::path(HVAS_SOURCE_DIR) / "products" / (name + ".step")).string();
+}
+
+std::string WriteShortStudy(const std::string& id, const std::filesystem::path& folder) {
+  const std::filesystem::path studies = std::filesystem::path(HVAS_SOURCE_DIR) / "data/studies";
+  const std::string text = ReadText(studies / (id + ".yaml"));
+  const std::string shortened =
+      std::regex_replace(text, std::regex("repetitions: [0-9]+"), "repetitions: 1");
+  EXPECT_NE(shortened, text) << id << " shows each of its blocks once";
+  const std::filesystem::path file = folder / (id + "-short.yaml");
+  std::ofstream(file, std::ios::binary) << shortened;
+  return file.string();
 }
 
 }  // namespace hvas::app::testing

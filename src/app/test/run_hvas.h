@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -40,11 +41,20 @@ struct Ran {
  these texts on standard error. */
 Ran ExpectRefusal(const std::vector<std::string>& arguments, const std::vector<std::string>& texts);
 
-/** Starts `hvas` with its output thrown away. */
-[[nodiscard]] pid_t StartHvas(const std::vector<std::string>& arguments);
+/** Starts `hvas` with its standard output going to a file or device, and its errors thrown away. */
+[[nodiscard]] pid_t StartHvas(const std::vector<std::string>& arguments,
+                              const std::string& output = "/dev/null");
 
 /** The example product's STEP file. */
 [[nodiscard]] std::string ProductFile(const std::string& name);
+
+/** Writes a shipped study whose blocks are shown once each into a file.
+ @returns the file. */
+[[nodiscard]] std::string WriteShortStudy(const std::string& id,
+                                          const std::filesystem::path& folder);
+
+/** Expects that `hvas assemble --json` has put all parts exactly in their place. */
+void ExpectAllSeated(const nlohmann::json& run, std::size_t count);
 
 [[nodiscard]] std::string ReadText(const std::filesystem::path& file);
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "app/command_line.h"
@@ -14,6 +15,7 @@
 #include "app/test/run_hvas.h"
 #include "base/test/temporary_folder.h"
 #include "mates/side_file.h"
+#include "product/names.h"
 
 namespace hvas::app {
 namespace {
@@ -67,6 +69,13 @@ void ExpectSameKeys(const json& schema, const json& object, SideFileObject kind)
         EXPECT_EQ(property[key.is_low_excluded ? "exclusiveMinimum" : "minimum"], key.low) << name;
         EXPECT_EQ(property["maximum"], key.high) << name;
         break;
+      case SideFileType::kDiameters: {
+        const json one = Resolve(schema, property["oneOf"][0]);
+        EXPECT_EQ(one["exclusiveMinimum"], key.low) << name;
+        EXPECT_EQ(one["maximum"], key.high) << name;
+        EXPECT_EQ(property["oneOf"][1]["type"], "array") << name;
+        break;
+      }
       case SideFileType::kObject:
         EXPECT_EQ(property["type"], "object") << name;
         break;
@@ -112,6 +121,31 @@ TEST(SideFileSchema, HasTheKeysTypesAndRangesOfTheReader) {
   ExpectSameKeys(schema, schema["$defs"]["mate"], SideFileObject::kMate);
   ExpectSameKeys(schema, schema["$defs"]["side"], SideFileObject::kSide);
   ExpectSameKeys(schema, schema["$defs"]["removed"], SideFileObject::kRemoved);
+  ExpectSameKeys(schema, schema["$defs"]["relation"], SideFileObject::kRelation);
+  ExpectSameKeys(schema, schema["$defs"]["contact"], SideFileObject::kContact);
+  ExpectSameKeys(schema, schema["$defs"]["apart"], SideFileObject::kApart);
+}
+
+// The compiler names the sources that lack a kind of mate; this test names the other files.
+TEST(Schemas, HaveAllKindsOfMates) {
+  std::vector<std::string> kinds;
+  for (const product::MateKind kind : product::kMateKinds) {
+    kinds.emplace_back(ToString(kind));
+  }
+  const json inspect = ReadSchema("inspect");
+  const json& counts = inspect["$defs"]["summary"]["properties"]["mates"];
+  std::vector<std::string> counted;
+  for (const auto& item : counts["properties"].items()) {
+    counted.push_back(item.key());
+  }
+  EXPECT_EQ(counts["required"], json(kinds));
+  EXPECT_EQ(std::set<std::string>(counted.begin(), counted.end()),
+            std::set<std::string>(kinds.begin(), kinds.end()));
+  EXPECT_EQ(inspect["$defs"]["mate"]["properties"]["kind"]["enum"], json(kinds));
+  EXPECT_EQ(ReadSchema("assignments")["$defs"]["mate"]["properties"]["kind"]["enum"], json(kinds));
+  const json protocol = json::parse(testing::ReadText(HVAS_SOURCE_DIR "/src/studio/protocol.json"));
+  EXPECT_EQ(protocol["types"]["Mate"]["fields"]["kind"],
+            fmt::format("'{}'", fmt::join(kinds, "' | '")));
 }
 
 TEST(SideFileSchema, SaysTheSameAsTheReaderOnGoodAndBadFiles) {
@@ -165,9 +199,14 @@ TEST(InspectSchema, RealOutputIsValidAndHasEverySection) {
   for (const char* name : {"bushing", "gear_pump"}) {
     const json document = RunHvasJson({"inspect", ProductFile(name)});
     EXPECT_EQ(Validate(schema, document), std::vector<std::string>{}) << name;
+    const std::set<std::string> on_demand{"meshes", "header", "identities", "relations",
+                                          "surface_relations"};
     for (const auto& [section, property] : schema["properties"].items()) {
-      EXPECT_EQ(document.contains(section), section != "meshes") << section;
+      EXPECT_EQ(document.contains(section), !on_demand.contains(section)) << section;
     }
+    const json more =
+        RunHvasJson({"inspect", ProductFile(name), "--only", "identity,relations,surfaces"});
+    EXPECT_EQ(Validate(schema, more), std::vector<std::string>{}) << name;
     for (const char* section : {"parts", "occurrences", "features", "forms", "faces", "mates",
                                 "joints", "fits", "inner_constraints"}) {
       EXPECT_FALSE(document[section].empty()) << section;
@@ -200,12 +239,15 @@ class JsonRuns {
     const std::string bushing = ProductFile("bushing");
     Add({"assemble", bushing, "--record", record}, "assemble");
     Add({"assemble", bushing, "--limit", "5"}, "assemble", 2);
+    Add({"disassemble", bushing}, "disassemble");
+    Add({"disassemble", bushing, "--limit", "5"}, "disassemble", 2);
     Add({"replay", record}, "replay");
     Add({"inspect", bushing}, "inspect");
     Add({"mate", "list", bushing}, "mate_list");
     Add({"path", bushing, "--part", "shaft", "--record", record, "-o", way}, "path");
     Add({"path", bushing, "--part", "shaft", "--translate", "0,0,20", "--swept", "-o", swept},
         "path");
+    Add({"tool", ProductFile("gear_pump")}, "tool");
     Add({"devices"}, "devices");
     Add({"doctor", "--seconds", "0.2"}, "doctor", kAnyStatus);
     Add({"fit", "40", "H7"}, "fit");
@@ -227,7 +269,9 @@ class JsonRuns {
     Add({"study", "analyse", "--table", answers}, "study_identification");
     Add({"study", "power", "--means", "0,1", "--sd", "1", "--test", "wilcoxon", "--runs", "200"},
         "study_power");
-    Add({"study", "run", "fit-2016", "--simulated", "1", "-o", study}, "study_summary");
+    Add({"study", "run", testing::WriteShortStudy("fit-2016", folder_.path()), "--simulated", "1",
+         "-o", study},
+        "study_summary");
     Add({"study", "list", study}, "study_summary");
   }
 

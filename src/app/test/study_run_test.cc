@@ -24,12 +24,12 @@ class StudyRunTest : public ::testing::Test {
   hvas::testing::TemporaryFolder scratch_;
 };
 
-TEST_F(StudyRunTest, XiaGivesTheSameAgainAndDeletesAParticipant) {
+TEST_F(StudyRunTest, XiaFindsWhatThePaperFound) {
   const auto json = RunHvasJson({"study", "run", "xia-2011", "--simulated", "2", "--records",
-                                 "none", "-o", Folder("one"), "--json"});
+                                 "none", "-o", Folder("xia"), "--json"});
   EXPECT_EQ(Validate(ReadSchema("study_summary"), json), std::vector<std::string>{});
   EXPECT_EQ(Validate(ReadSchema("study_summary"),
-                     RunHvasJson({"study", "list", Folder("one"), "--json"})),
+                     RunHvasJson({"study", "list", Folder("xia"), "--json"})),
             std::vector<std::string>{});
   EXPECT_NE(json["what"].get<std::string>().find("simulated"), std::string::npos);
   ASSERT_EQ(json["conditions"].size(), 3U);
@@ -44,8 +44,18 @@ TEST_F(StudyRunTest, XiaGivesTheSameAgainAndDeletesAParticipant) {
   // What paper X found: contact alone takes the longest.
   EXPECT_GT(json["conditions"][0]["mean_time_s"], json["conditions"][1]["mean_time_s"]);
   EXPECT_GT(json["conditions"][0]["mean_time_s"], json["conditions"][2]["mean_time_s"]);
-  const auto again = RunHvasJson({"study", "run", "xia-2011", "--simulated", "2", "--records",
-                                  "none", "--threads", "1", "-o", Folder("two"), "--json"});
+}
+
+TEST_F(StudyRunTest, StudyGivesTheSameAgainAndDeletesAParticipant) {
+  const std::string study = WriteShortStudy("xia-2011", scratch_.path());
+  const auto json = RunHvasJson({"study", "run", study, "--simulated", "2", "--records", "none",
+                                 "-o", Folder("one"), "--json"});
+  ASSERT_EQ(json["conditions"].size(), 3U);
+  for (const auto& condition : json["conditions"]) {
+    EXPECT_EQ(condition["trials"], 2);
+  }
+  const auto again = RunHvasJson({"study", "run", study, "--simulated", "2", "--records", "none",
+                                  "--threads", "1", "-o", Folder("two"), "--json"});
   EXPECT_EQ(again["conditions"], json["conditions"]);
   for (const char* file : {"participants/P01.jsonl", "participants/P02.jsonl", "trials.csv",
                            "answers.csv", "report.html", "study.json"}) {
@@ -66,6 +76,7 @@ TEST_F(StudyRunTest, XiaGivesTheSameAgainAndDeletesAParticipant) {
 TEST_F(StudyRunTest, FitsRunFromConsentToTheReport) {
   const auto json =
       RunHvasJson({"study", "run", "fit-2016", "--simulated", "2", "-o", Folder("fits"), "--json"});
+  EXPECT_EQ(Validate(ReadSchema("study_summary"), json), std::vector<std::string>{});
   ASSERT_EQ(json["conditions"].size(), 6U);
   for (const auto& participant : json["participants"]) {
     EXPECT_EQ(participant["phase"], "done");

@@ -78,6 +78,9 @@ TEST(Width, OfAssemblyAndPathIs80) {
   const std::string record = (folder / "run.hvasrec").string();
   ExpectWithin80({"assemble", ProductFile("bushing"), "--record", record});
   ExpectWithin80({"assemble", ProductFile("bushing"), "--limit", "5"});
+  ExpectWithin80({"disassemble", ProductFile("gear_pump"), "--part", "oil seal"});
+  ExpectWithin80({"disassemble", ProductFile("bushing"), "--limit", "5"});
+  ExpectWithin80({"tool", ProductFile("gear_pump")});
   const std::string way = (folder / "way.csv").string();
   ExpectWithin80(
       {"path", ProductFile("bushing"), "--part", "shaft", "--record", record, "-o", way});

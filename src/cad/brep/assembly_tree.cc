@@ -21,7 +21,9 @@
 #include <TDF_LabelSequence.hxx>
 #include <TDF_Tool.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
@@ -61,15 +63,16 @@ using FaceEntities = NCollection_DataMap<TopoDS_Shape, std::uint64_t, TopTools_S
 /** Walks an XCAF document and fills a product. */
 class TreeBuilder {
  public:
-  TreeBuilder(const Handle(TDocStd_Document) & document, const ImportOptions& options,
-              const ReadWatch& watch, Product* product, Diagnostics* diagnostics,
-              const FaceEntityFn& entity_of)
-      : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+  TreeBuilder(const CadDocument& document, const ImportOptions& options, const ReadWatch& watch,
+              Product* product, Diagnostics* diagnostics)
+      : shapes_(XCAFDoc_DocumentTool::ShapeTool(document.document->Main())),
         options_(options),
         watch_(watch),
         product_(product),
         diagnostics_(diagnostics),
-        entity_of_(entity_of) {}
+        entity_of_(document.entity_of),
+        identity_of_(document.identity_of),
+        lost_faces_(document.lost_faces) {}
 
   Result<void> Build();
 
@@ -82,6 +85,8 @@ class TreeBuilder {
     std::optional<Color> instance_color;
     FaceColors face_colors;
     FaceEntities entities;  // Of scaled faces only: entity_of_ knows the others.
+    // Of each face of the part, the number in TopExp::MapShapes; 0: none.
+    std::vector<int> face_order;
     Diagnostics notes;
   };
 
@@ -91,7 +96,8 @@ class TreeBuilder {
     std::map<std::string, int> used;
   };
 
-  SubassemblyId AddSubassembly(SubassemblyId parent, const std::string& name);
+  SubassemblyId AddSubassembly(SubassemblyId parent, const std::string& name,
+                               const TDF_Label& definition);
   std::string ClaimPath(SubassemblyId parent, const std::string& name);
   void Visit(const TDF_Label& definition, const TDF_Label& instance, SubassemblyId parent,
              const gp_Trsf& X_WP);
@@ -105,12 +111,14 @@ class TreeBuilder {
   bool BuildPart(PartSource* source, Part* part) const;
   [[nodiscard]] std::vector<std::vector<std::size_t>> GroupSources(
       const std::vector<std::size_t>& wanted) const;
-  void CopyGeometry(const Part& base, const PartSource& source, Part* part) const;
+  void CopyGeometry(const Part& base, const std::vector<int>& base_order, const PartSource& source,
+                    Part* part) const;
   [[nodiscard]] bool AreAlike(std::size_t a, std::size_t b) const;
   std::vector<PartId> ShareParts(const std::vector<EqualShape>& equal,
                                  const std::vector<bool>& is_built);
   std::vector<bool> BuildSources(const std::vector<std::size_t>& wanted);
   void BuildParts();
+  void ReportLostFaces() const;
   void AssignParts(const std::vector<PartId>& part_of, const std::vector<EqualShape>& equal);
 
   Handle(XCAFDoc_ShapeTool) shapes_;
@@ -119,17 +127,24 @@ class TreeBuilder {
   Product* product_;
   Diagnostics* diagnostics_;
   const FaceEntityFn& entity_of_;
+  const IdentityFn& identity_of_;
+  const std::vector<LostFaces>& lost_faces_;
   std::vector<PartSource> sources_;                     // One for each of product_->parts.
   std::map<std::string, std::optional<PartId>> known_;  // By entry, scale and colour.
   std::vector<Siblings> siblings_;                      // One for each subassembly.
 };
 
-SubassemblyId TreeBuilder::AddSubassembly(SubassemblyId parent, const std::string& name) {
+/** @param definition  Null for a root that the document does not have. */
+SubassemblyId TreeBuilder::AddSubassembly(SubassemblyId parent, const std::string& name,
+                                          const TDF_Label& definition) {
   const SubassemblyId id(product_->subassemblies.size());
   Subassembly subassembly;
   subassembly.id = id;
   subassembly.parent = parent;
   subassembly.name = name;
+  if (identity_of_ && !definition.IsNull()) {
+    subassembly.identity = identity_of_(definition);
+  }
   siblings_.push_back({parent.is_valid() ? ClaimPath(parent, name) : name, {}});
   product_->subassemblies.push_back(std::move(subassembly));
   if (parent.is_valid()) {
@@ -149,7 +164,7 @@ void TreeBuilder::Visit(const TDF_Label& definition, const TDF_Label& instance,
     return;
   }
   if (XCAFDoc_ShapeTool::IsAssembly(definition)) {
-    const SubassemblyId id = AddSubassembly(parent, InstanceName(instance, definition));
+    const SubassemblyId id = AddSubassembly(parent, InstanceName(instance, definition), definition);
     VisitComponents(definition, id, X_WP);
   } else {
     AddLeaf(definition, instance, parent, X_WP);
@@ -218,8 +233,11 @@ std::optional<PartId> TreeBuilder::FindPart(const TDF_Label& definition, const T
     Part part;
     part.id = *id;
     part.name = name;
+    if (identity_of_) {
+      part.identity = identity_of_(definition);
+    }
     product_->parts.push_back(std::move(part));
-    sources_.push_back({definition, shape, scale, color, {}, {}, {}});
+    sources_.push_back({definition, shape, scale, color, {}, {}, {}, {}});
     if (scale != 1) {
       diagnostics_->Note("baked-scale", name,
                          fmt::format("an instance is {} by {}; it is imported as a part of its own",
@@ -264,7 +282,10 @@ void TreeBuilder::Prepare(PartSource* source, Part* part) {
 
 bool TreeBuilder::BuildPart(PartSource* source, Part* part) const {
   Diagnostics* diagnostics = &source->notes;
-  const FaceColorFn color_of = [source](const TopoDS_Face& face) -> std::optional<Color> {
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(source->shape, TopAbs_FACE, faces);
+  const FaceColorFn color_of = [source, &faces](const TopoDS_Face& face) -> std::optional<Color> {
+    source->face_order.push_back(faces.FindIndex(face));
     const Color* color = source->face_colors.Seek(face);
     return color != nullptr ? std::optional(*color) : std::nullopt;
   };
@@ -275,7 +296,7 @@ bool TreeBuilder::BuildPart(PartSource* source, Part* part) const {
   try {
     OCC_CATCH_SIGNALS
     if (BuildPartShape(source->shape, options_, color_of, part, diagnostics, entity_of)) {
-      product::BuildFeatures(part);
+      product::BuildFeatures(part, diagnostics);
       return true;
     }
     diagnostics->Warn("no-mesh", part->name, "the part could not be meshed and is omitted",
@@ -326,25 +347,33 @@ std::vector<std::vector<std::size_t>> TreeBuilder::GroupSources(
   return result;
 }
 
-/** A part with the geometry of another, looks and material of its own. */
-void TreeBuilder::CopyGeometry(const Part& base, const PartSource& source, Part* part) const {
+/** A part with the geometry of another, looks and material of its own.
+ @param base_order  PartSource::face_order of the other. */
+void TreeBuilder::CopyGeometry(const Part& base, const std::vector<int>& base_order,
+                               const PartSource& source, Part* part) const {
   Part copy = base;
   copy.id = part->id;
   copy.name = part->name;
   copy.color = part->color;
   copy.material = part->material;
+  copy.identity = part->identity;
   const double ratio = part->material.density / base.material.density;
   copy.mass.mass *= ratio;
   copy.mass.I_BBcm_B *= ratio;
-  std::size_t index = 0;
-  for (TopExp_Explorer it(source.shape, TopAbs_FACE); it.More() && index < copy.faces.size();
-       it.Next(), ++index) {
-    const Color* color = source.face_colors.Seek(it.Current());
-    copy.faces[index].color = color != nullptr ? std::optional(*color) : std::nullopt;
-    const std::uint64_t* entity = source.entities.Seek(it.Current());
-    copy.faces[index].entity = entity != nullptr ? *entity
-                               : entity_of_      ? entity_of_(TopoDS::Face(it.Current()))
-                                                 : 0;
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(source.shape, TopAbs_FACE, faces);
+  for (std::size_t i = 0; i < copy.faces.size(); ++i) {
+    const int number = i < base_order.size() ? base_order[i] : 0;
+    if (number < 1 || number > faces.Extent()) {
+      continue;
+    }
+    const TopoDS_Shape& face = faces(number);
+    const Color* color = source.face_colors.Seek(face);
+    copy.faces[i].color = color != nullptr ? std::optional(*color) : std::nullopt;
+    const std::uint64_t* entity = source.entities.Seek(face);
+    copy.faces[i].entity = entity != nullptr ? *entity
+                           : entity_of_      ? entity_of_(TopoDS::Face(face))
+                                             : 0;
   }
   copy.features.clear();
   copy.forms.clear();
@@ -403,7 +432,8 @@ std::vector<PartId> TreeBuilder::ShareParts(const std::vector<EqualShape>& equal
       part_of[i] = PartId(i);
       looks.push_back(i);
       if (base != i) {
-        CopyGeometry(product_->parts[base], sources_[i], &product_->parts[i]);
+        CopyGeometry(product_->parts[base], sources_[base].face_order, sources_[i],
+                     &product_->parts[i]);
       }
     }
     shared += base != i && !sources_[i].shape.IsPartner(sources_[base].shape) ? 1U : 0U;
@@ -442,7 +472,32 @@ std::vector<bool> TreeBuilder::BuildSources(const std::vector<std::size_t>& want
   return {is_built.begin(), is_built.end()};
 }
 
+/** Warns of faces of the file that OpenCASCADE made nothing of, by the part that has the rest of
+ their shell. */
+void TreeBuilder::ReportLostFaces() const {
+  for (const LostFaces& entry : lost_faces_) {
+    std::string name = product_->source;
+    for (std::size_t i = 0; i < sources_.size() && !entry.sibling.IsNull(); ++i) {
+      TopTools_IndexedMapOfShape faces;
+      TopExp::MapShapes(sources_[i].shape, TopAbs_FACE, faces);
+      const bool is_owner =
+          std::any_of(faces.cbegin(), faces.cend(),
+                      [&](const TopoDS_Shape& face) { return face.IsPartner(entry.sibling); });
+      if (is_owner) {
+        name = product_->parts[i].name;
+        break;
+      }
+    }
+    diagnostics_->Warn("lost-faces", name,
+                       fmt::format("{} of {} faces of the shell #{} of the file could not be read "
+                                   "and are omitted",
+                                   entry.lost, entry.total, entry.entity),
+                       "heal the part in the CAD system and export it again");
+  }
+}
+
 void TreeBuilder::BuildParts() {
+  ReportLostFaces();
   const std::set<std::uint32_t> skipped(options_.skipped_parts.begin(),
                                         options_.skipped_parts.end());
   std::vector<TopoDS_Shape> shapes;
@@ -486,11 +541,11 @@ Result<void> TreeBuilder::Build() {
   if (roots.Length() == 1 && XCAFDoc_ShapeTool::IsAssembly(roots.First())) {
     const std::string name = NameOf(roots.First());
     product_->name = name.empty() ? product_->name : name;
-    const SubassemblyId root = AddSubassembly({}, product_->name);
+    const SubassemblyId root = AddSubassembly({}, product_->name, roots.First());
     const gp_Trsf X_WR = XCAFDoc_ShapeTool::GetLocation(roots.First()).Transformation();
     VisitComponents(roots.First(), root, X_WR);
   } else {
-    const SubassemblyId root = AddSubassembly({}, product_->name);
+    const SubassemblyId root = AddSubassembly({}, product_->name, TDF_Label());
     for (const TDF_Label& label : roots) {
       Visit(label, label, root, gp_Trsf());
     }
@@ -519,10 +574,10 @@ Result<void> TreeBuilder::Build() {
 
 }  // namespace
 
-Result<void> BuildProduct(const Handle(TDocStd_Document) & document, const ImportOptions& options,
-                          const ReadWatch& watch, Product* product, Diagnostics* diagnostics,
-                          const FaceEntityFn& entity_of) {
-  return TreeBuilder(document, options, watch, product, diagnostics, entity_of).Build();
+Result<void> BuildProduct(const CadDocument& document, const ImportOptions& options,
+                          const ReadWatch& watch, Product* product, Diagnostics* diagnostics) {
+  product->header = document.header;
+  return TreeBuilder(document, options, watch, product, diagnostics).Build();
 }
 
 }  // namespace hvas::cad

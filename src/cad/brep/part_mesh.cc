@@ -8,12 +8,9 @@
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepBuilderAPI_Copy.hxx>
-#include <BRepMesh_Context.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
-#include <IMeshData_Face.hxx>
-#include <IMeshData_Model.hxx>
 #include <Poly_Triangulation.hxx>
 #include <ShapeUpgrade_ShapeDivideAngle.hxx>
 #include <TopExp_Explorer.hxx>
@@ -23,76 +20,64 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "cad/brep/mesh_context.h"
 
 namespace hvas::cad {
 namespace {
 
-constexpr double kDisplayDeflection = 1e-3;  // Of the diagonal.
-constexpr double kDisplayAngle = 0.35;       // [rad], 20 degrees: round to the eye. A choice.
-constexpr double kCoarser = 4;               // From one try to the next.
-constexpr int kRetries = 3;                  // 4^3: 64 times coarser, then it is refused.
+constexpr double kDisplayDeflection = 1e-3;     // Of the diagonal.
+constexpr double kDisplayAngle = 0.35;          // [rad], 20 degrees: round to the eye. A choice.
+constexpr double kCoarser = 4;                  // From one try to the next.
+constexpr std::size_t kMostPieceNodes = 20000;  // Of one face that was cut: a choice.
+constexpr int kRetries = 3;                     // 4^3: 64 times coarser, then it is refused.
 
-// Largest deflection inside faces over that of edges. Contact does not take distances from the mesh
-// of an analytic face, so that angles limit it alone.
-constexpr double kFreeformInterior = 2;
-constexpr double kAnalyticInterior = 25;
-constexpr double kAnalyticAngle = 0.3;  // [rad], inside spheres and tori.
+/** What a try to mesh a shape may take. */
+struct MeshEffort {
+  bool is_threaded{false};
+  std::size_t max_nodes{0};  // Inside freeform faces: a node more is two triangles more.
+};
 
-/** Lets faces have deflections of their own inside, whereas edges are divided the same for all. */
-class FaceLevels : public BRepMesh_Context {
- public:
-  FaceLevels(const TopTools_MapOfShape& analytic, double deflection_mm)
-      : analytic_(analytic), deflection_mm_(deflection_mm) {}
+/** What came of one try to mesh a shape. */
+struct Meshed {
+  std::size_t count{0};          // Triangles.
+  bool is_bound_reached{false};  // Some faces would have more.
 
-  Standard_Boolean PreProcessModel() override {
-    if (!BRepMesh_Context::PreProcessModel()) {
-      return Standard_False;
-    }
-    // The edges have their points by now. Freeform faces go by the angle inside.
-    ChangeParameters().Angle = std::max(GetParameters().Angle, kAnalyticAngle);
-    for (int i = 0; i < GetModel()->FacesNb(); ++i) {
-      const auto& face = GetModel()->GetFace(i);
-      const double factor =
-          analytic_.Contains(face->GetFace()) ? kAnalyticInterior : kFreeformInterior;
-      face->SetDeflection(std::max(face->GetDeflection(), factor * deflection_mm_));
-    }
-    return Standard_True;
+  [[nodiscard]] bool IsOver(std::size_t max_triangles) const {
+    return is_bound_reached || count > max_triangles;
   }
-
- private:
-  const TopTools_MapOfShape& analytic_;
-  double deflection_mm_;
 };
 
 /** Meshes anew, several faces at a time unless there is to be one thread only; every face comes out
- as it would alone. @param analytic  Null: no face is coarser inside than at its edges.
- @returns the number of triangles. */
-std::size_t MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level, bool is_threaded,
-                     const TopTools_MapOfShape* analytic, double interior_factor = 1) {
+ as it would alone, but where the bound is reached. @param analytic  Null: no face is coarser inside
+ than at its edges. */
+Meshed MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level, const MeshEffort& effort,
+                const TopTools_MapOfShape* analytic, double interior_factor = 1) {
   BRepTools::Clean(shape);  // Else a finer mesh keeps what it can of the coarser one.
   BRepMesh_IncrementalMesh mesher;
   mesher.SetShape(shape);
   IMeshTools_Parameters& parameters = mesher.ChangeParameters();
   parameters.Deflection = units::ToMm(level.deflection);
   parameters.Angle = level.angle;
-  parameters.InParallel = is_threaded;
+  parameters.InParallel = effort.is_threaded;
   if (interior_factor > 1) {
     parameters.DeflectionInterior = interior_factor * parameters.Deflection;
     parameters.AngleInterior = 1;
   }
-  Handle(IMeshTools_Context) context = new BRepMesh_Context;
   if (analytic != nullptr) {
     parameters.AngleInterior = parameters.Angle;
-    context = new FaceLevels(*analytic, parameters.Deflection);
   }
+  const opencascade::handle<MeshContext> context =
+      new MeshContext(analytic, parameters.Deflection, effort.max_nodes);
   mesher.Perform(context);
-  std::size_t count = 0;
+  Meshed meshed;
+  meshed.is_bound_reached = context->is_bound_reached();
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
     TopLoc_Location location;
     const auto triangulation = BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
-    count += triangulation.IsNull() ? 0U : static_cast<std::size_t>(triangulation->NbTriangles());
+    meshed.count +=
+        triangulation.IsNull() ? 0U : static_cast<std::size_t>(triangulation->NbTriangles());
   }
-  return count;
+  return meshed;
 }
 
 /** The triangles that the present mesh of a shape would become at a finer level: on a surface that
@@ -147,6 +132,23 @@ MeshLevel Coarsen(const MeshLevel& level) {
   return {kCoarser * level.deflection, std::min(1.6 * level.angle, 0.5)};
 }
 
+/** Meshes at a level, and coarser as long as that makes more triangles than there may be; `level`
+ becomes that of the mesh. A try ends as soon as it is known to be in vain. The last one stays: it
+ works at one face after the other, because which faces have got the nodes that there are must not
+ depend on the threads. */
+Meshed MeshWithin(const TopoDS_Shape& shape, std::size_t max_triangles,
+                  const ImportOptions& options, const TopTools_MapOfShape* analytic,
+                  MeshLevel* level) {
+  MeshEffort effort{options.threads != 1, max_triangles / 2};
+  Meshed meshed = MeshOnce(shape, *level, effort, analytic);
+  for (int i = 0; i < kRetries && meshed.IsOver(max_triangles); ++i) {
+    *level = Coarsen(*level);
+    effort.is_threaded = effort.is_threaded && i + 1 < kRetries;
+    meshed = MeshOnce(shape, *level, effort, analytic);
+  }
+  return meshed;
+}
+
 }  // namespace
 
 bool IsMeshed(const TopoDS_Face& face) {
@@ -156,12 +158,7 @@ bool IsMeshed(const TopoDS_Face& face) {
 
 MeshLevel MeshForDisplay(const TopoDS_Shape& shape, double diagonal, const ImportOptions& options) {
   MeshLevel level{std::max(options.min_deflection, kDisplayDeflection * diagonal), kDisplayAngle};
-  const bool is_threaded = options.threads != 1;
-  std::size_t count = MeshOnce(shape, level, is_threaded, nullptr);
-  for (int i = 0; i < kRetries && 2 * count > options.max_triangles; ++i) {
-    level = Coarsen(level);
-    count = MeshOnce(shape, level, is_threaded, nullptr);
-  }
+  MeshWithin(shape, options.max_triangles / 2, options, nullptr, &level);
   return level;
 }
 
@@ -185,13 +182,9 @@ MeshLevel MeshForContact(const TopoDS_Shape& shape, double diagonal, const MeshL
   if (forecast.Calc(display, level) > most) {
     level.angle = Coarsen(level).angle;
   }
-  const bool is_threaded = options.threads != 1;
-  std::size_t count = MeshOnce(shape, level, is_threaded, &analytic);
-  for (int i = 0; i < kRetries && count > options.max_triangles; ++i) {
-    level = Coarsen(level);
-    count = MeshOnce(shape, level, is_threaded, &analytic);
-  }
-  if (count > options.max_triangles) {
+  const Meshed meshed = MeshWithin(shape, options.max_triangles, options, &analytic, &level);
+  const std::size_t count = meshed.count;
+  if (meshed.IsOver(options.max_triangles)) {
     diagnostics->Warn("large-mesh", name, fmt::format("the mesh has {} triangles", count),
                       "simplify the part; contact with it will be slow");
   } else if (level.deflection > wanted) {
@@ -238,14 +231,15 @@ std::vector<TopoDS_Face> MeshInPieces(const TopoDS_Face& face, const MeshLevel& 
   std::size_t least_undone = std::numeric_limits<std::size_t>::max();
   constexpr std::array<std::pair<double, double>, 6> kWays{
       {{90, 1}, {50, 1}, {35, 1}, {90, 2}, {90, 4}, {90, 16}}};  // Cut [deg], coarser by.
+  constexpr MeshEffort kPieceEffort{/*is_threaded=*/false, kMostPieceNodes};
   for (const auto& [cut_deg, coarser] : kWays) {
     // A copy does not know how the neighbours divided their edges; the way out when that is the
     // snag.
     const TopoDS_Shape source = coarser > 1 ? BRepBuilderAPI_Copy(face).Shape() : face;
     ShapeUpgrade_ShapeDivideAngle divide(units::FromDeg(cut_deg), source);
     divide.Perform();
-    MeshOnce(divide.Result(), {coarser * level.deflection, level.angle}, /*is_threaded=*/false,
-             nullptr, coarser > 1 ? 100 : 1);
+    MeshOnce(divide.Result(), {coarser * level.deflection, level.angle}, kPieceEffort, nullptr,
+             coarser > 1 ? 100 : 1);
     std::vector<TopoDS_Face> pieces;
     std::size_t undone = 0;
     for (TopExp_Explorer it(divide.Result(), TopAbs_FACE); it.More(); it.Next()) {

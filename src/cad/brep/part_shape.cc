@@ -13,6 +13,8 @@
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_DataMapOfShapeShape.hxx>
+#include <TopTools_MapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
@@ -21,6 +23,7 @@
 
 #include "base/units.h"
 #include "cad/brep/brep_surface.h"
+#include "cad/brep/sew_faces.h"
 #include "cad/brep/solid_measure.h"
 #include "cad/triangles/recognise.h"
 #include "cad/triangles/shape_hash.h"
@@ -39,15 +42,22 @@ constexpr double kRelativeRecognitionTolerance = 1e-6;  // Of the part's diagona
 constexpr double kSquareMetres = units::kMetresPerMillimetre * units::kMetresPerMillimetre;
 constexpr double kLeastGap = 100;  // Hole in a mesh, in deflections squared.
 
-/** What a part is made of: its solids, turned right side out; without any the solids inside its
- closed shells; else its loose faces. */
+// Sewing takes time that grows faster than the number of faces. A choice.
+constexpr std::size_t kMostSewnFaces = 2000;
+constexpr double kSewing_mm = 0.01;  // The gap of surfaces that are meant to meet, as in IGES.
+
+/** What a part is made of: its solids, turned right side out, also those that closed shells and
+ surfaces that can be sewn enclose; behind them its loose faces. */
 struct Body {
   TopoDS_Compound shape;
   gp_Pnt centre;         // What it is measured about.
   SolidMeasure measure;  // Areas of all faces; the rest is zero where there is no solid.
   int solid_count{0};
   int reversed_count{0};
-  bool is_closed_shell{false};
+  int closed_shell_count{0};    // Of the solids: those that the file has as surfaces only.
+  std::size_t loose_count{0};   // Faces at the end of `shape` that enclose nothing.
+  std::size_t unsewn_count{0};  // Of these: faces that are too many to be sewn.
+  TopTools_DataMapOfShapeShape originals;  // The faces of the file that sewn ones come from.
 };
 
 void AddSolid(TopoDS_Shape solid, bool is_threaded, Body* body) {
@@ -62,6 +72,76 @@ void AddSolid(TopoDS_Shape solid, bool is_threaded, Body* body) {
   ++body->solid_count;
 }
 
+/** The faces of a shape that are not in a solid, but for those that a solid has as well; closed
+ shells among them become solids of the body. */
+std::vector<TopoDS_Shape> CollectLooseFaces(const TopoDS_Shape& shape, bool is_threaded,
+                                            Body* body) {
+  TopTools_MapOfShape known;
+  for (TopExp_Explorer it(body->shape, TopAbs_FACE); it.More(); it.Next()) {
+    known.Add(it.Current().Oriented(TopAbs_FORWARD));
+  }
+  std::vector<TopoDS_Shape> loose;
+  const auto add_loose = [&](const TopoDS_Shape& face) {
+    if (known.Add(face.Oriented(TopAbs_FORWARD))) {
+      loose.push_back(face);
+    }
+  };
+  for (TopExp_Explorer it(shape, TopAbs_SHELL, TopAbs_SOLID); it.More(); it.Next()) {
+    TopExp_Explorer first(it.Current(), TopAbs_FACE);
+    const bool is_new = first.More() && !known.Contains(first.Current().Oriented(TopAbs_FORWARD));
+    if (is_new && BRep_Tool::IsClosed(it.Current())) {
+      TopoDS_Solid solid;
+      BRep_Builder().MakeSolid(solid);
+      BRep_Builder().Add(solid, it.Current());
+      AddSolid(solid, is_threaded, body);
+      ++body->closed_shell_count;
+      for (; first.More(); first.Next()) {
+        known.Add(first.Current().Oriented(TopAbs_FORWARD));
+      }
+      continue;
+    }
+    for (; first.More(); first.Next()) {
+      add_loose(first.Current());
+    }
+  }
+  for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) {
+    add_loose(it.Current());
+  }
+  return loose;
+}
+
+/** Sews loose faces: what closes becomes a solid of the body. @returns the faces that stay loose.
+ */
+std::vector<TopoDS_Shape> SewLooseFaces(const std::vector<TopoDS_Shape>& loose, bool is_threaded,
+                                        Body* body) {
+  if (loose.size() > kMostSewnFaces) {
+    body->unsewn_count = loose.size();
+    return loose;
+  }
+  const SewnFaces sewn = SewFaces(loose, kSewing_mm);
+  if (sewn.solids.empty()) {
+    return loose;
+  }
+  for (const TopoDS_Shape& solid : sewn.solids) {
+    AddSolid(solid, is_threaded, body);
+    ++body->closed_shell_count;
+  }
+  TopTools_MapOfShape closed;
+  for (TopExp_Explorer it(body->shape, TopAbs_FACE); it.More(); it.Next()) {
+    closed.Add(it.Current());
+  }
+  std::vector<TopoDS_Shape> open;
+  for (const TopoDS_Shape& face : loose) {
+    const TopoDS_Shape modified = sewn.modified(face);
+    if (!closed.Contains(modified)) {
+      open.push_back(face);
+    } else if (!modified.IsSame(face)) {
+      body->originals.Bind(modified, face);
+    }
+  }
+  return open;
+}
+
 Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre, bool is_threaded) {
   Body body;
   body.centre = centre;
@@ -70,23 +150,14 @@ Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre, bool is_thread
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
     AddSolid(it.Current(), is_threaded, &body);
   }
-  if (body.solid_count > 0) {
-    return body;
+  std::vector<TopoDS_Shape> loose = CollectLooseFaces(shape, is_threaded, &body);
+  if (loose.size() > 1) {
+    loose = SewLooseFaces(loose, is_threaded, &body);
   }
-  for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next()) {
-    if (BRep_Tool::IsClosed(it.Current())) {
-      TopoDS_Solid solid;
-      builder.MakeSolid(solid);
-      builder.Add(solid, it.Current());
-      AddSolid(solid, is_threaded, &body);
-    }
-  }
-  body.is_closed_shell = body.solid_count > 0;
-  if (body.solid_count == 0) {
-    builder.Add(body.shape, shape);
-    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-      body.measure.face_areas_mm2.push_back(MeasureArea(it.Current()));
-    }
+  body.loose_count = loose.size();
+  for (const TopoDS_Shape& face : loose) {
+    builder.Add(body.shape, face);
+    body.measure.face_areas_mm2.push_back(MeasureArea(face));
   }
   return body;
 }
@@ -117,16 +188,32 @@ void CopyToDisplay(Part* part, Face* face) {
   }
 }
 
-/** Gives the part's faces area, box and triangles. @returns the number of faces without any.
- @pre The shape is meshed for contact, and AddDisplayMesh was called. */
-int AddContactMesh(const Body& body, const MeshLevel& level, Part* part) {
-  int unmeshed = 0;
+/** What was lost of the faces of a part. */
+struct FaceLoss {
+  int unmeshed{0};            // Faces without triangles.
+  double unmeshed_area{0};    // Their area [m^2].
+  double shown_only_area{0};  // Of the loose faces beside solids [m^2].
+  double area{0};             // Of all faces [m^2].
+};
+
+/** Gives the part's faces area, box and triangles. Faces that enclose nothing have none where there
+ are solids, whose contact they would spoil: they are shown. @pre The shape is meshed for contact,
+ and AddDisplayMesh was called. */
+FaceLoss AddContactMesh(const Body& body, const MeshLevel& level, Part* part) {
+  FaceLoss loss;
+  const std::size_t first_loose =
+      body.solid_count > 0 ? part->faces.size() - body.loose_count : part->faces.size();
   std::size_t index = 0;
   for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
     const TopoDS_Face& source = TopoDS::Face(it.Current());
     Face& face = part->faces[index];
     face.area = kSquareMetres * body.measure.face_areas_mm2[index];
+    loss.area += face.area;
     face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
+    if (index >= first_loose) {
+      loss.shown_only_area += face.area;
+      continue;
+    }
     const std::size_t first_vertex = part->mesh.vertices.size();
     const bool is_whole = IsMeshed(source);
     if (is_whole) {
@@ -147,9 +234,10 @@ int AddContactMesh(const Body& body, const MeshLevel& level, Part* part) {
     }
     const bool is_gap = !is_whole && face.triangle_count == 0 &&
                         face.area > kLeastGap * level.deflection * level.deflection;
-    unmeshed += is_gap ? 1 : 0;
+    loss.unmeshed += is_gap ? 1 : 0;
+    loss.unmeshed_area += is_gap ? face.area : 0;
   }
-  return unmeshed;
+  return loss;
 }
 
 /** Gives a face its surface, or leaves it freeform when the triangles do not lie on it. */
@@ -213,7 +301,18 @@ double CalcMeshVolume(const product::Mesh& mesh, const Vec3& about) {
 }
 
 /** Tells of what later stages will feel: no solid or volume, several solids, holes in the mesh. */
-void CheckPart(const Part& part, int unmeshed, Diagnostics* diagnostics) {
+void CheckPart(const Part& part, const Body& body, const FaceLoss& loss, Diagnostics* diagnostics) {
+  const auto share = [&loss](double area) { return 100 * area / std::max(loss.area, 1e-30); };
+  if (part.solid_count > 0 && body.loose_count > 0) {
+    diagnostics->Warn(
+        "loose-faces", part.name,
+        fmt::format("{} of {} faces ({:.3g} % of the area) belong to no solid{}; they are shown, "
+                    "but have no contact and no mass",
+                    body.loose_count, part.faces.size(), share(loss.shown_only_area),
+                    body.unsewn_count > 0 ? " and are too many to be sewn" : ""),
+        "close the surfaces to a solid in the CAD system, or leave them out of the export");
+  }
+
   if (part.solid_count == 0) {
     diagnostics->Warn("no-solid", part.name, "the part has surfaces but no solid; it has no mass",
                       "export the part as a solid body");
@@ -227,11 +326,11 @@ void CheckPart(const Part& part, int unmeshed, Diagnostics* diagnostics) {
         fmt::format("the part has {} solids, which move as one rigid body", part.solid_count),
         "export the solids as parts of a subassembly to move them separately");
   }
-  if (unmeshed > 0) {
-    diagnostics->Warn(
-        "unmeshed-face", part.name,
-        fmt::format("{} of {} faces could not be meshed", unmeshed, part.faces.size()),
-        "heal the part in the CAD system and export it again");
+  if (loss.unmeshed > 0) {
+    diagnostics->Warn("unmeshed-face", part.name,
+                      fmt::format("{} of {} faces ({:.3g} % of the area) could not be meshed",
+                                  loss.unmeshed, part.faces.size(), share(loss.unmeshed_area)),
+                      "heal the part in the CAD system and export it again");
   }
   const double mesh_volume = CalcMeshVolume(part.mesh, part.mass.p_BoBcm_B);
   if (part.solid_count > 0 &&
@@ -280,28 +379,30 @@ std::optional<MeshLevel> BuildPartShape(const TopoDS_Shape& shape, const ImportO
   }
   const MeshLevel level =
       MeshForContact(body.shape, diagonal, display, is_analytic, options, part->name, diagnostics);
-  const int unmeshed = AddContactMesh(body, level, part);
+  const FaceLoss loss = AddContactMesh(body, level, part);
   std::size_t index = 0;
   for (TopExp_Explorer it(body.shape, TopAbs_FACE); it.More(); it.Next(), ++index) {
     const TopoDS_Face& source = TopoDS::Face(it.Current());
     Face& face = part->faces[index];
     SetSurface(source, surfaces[index], level.deflection, *part, &face, diagnostics);
-    face.color = color_of(source);
-    face.entity = entity_of ? entity_of(source) : 0;
+    const TopoDS_Shape* original = body.originals.Seek(source);
+    const TopoDS_Face& known = original != nullptr ? TopoDS::Face(*original) : source;
+    face.color = color_of(known);
+    face.entity = entity_of ? entity_of(known) : 0;
   }
   BRepTools::Clean(body.shape);  // The triangles are ours now.
   if (part->mesh.triangles.empty()) {
     return std::nullopt;
   }
   SetMass(body, part);
-  if (body.is_closed_shell) {
+  if (body.closed_shell_count > 0) {
     diagnostics->Note("closed-shell", part->name, "closed surfaces are treated as a solid");
   } else if (body.reversed_count > 0) {
     diagnostics->Note(
         "reversed-solid", part->name,
         fmt::format("{} solids were inside out and were reversed", body.reversed_count));
   }
-  CheckPart(*part, unmeshed, diagnostics);
+  CheckPart(*part, body, loss, diagnostics);
   part->shape_hash = CalcShapeHash(*part);
   return level;
 }

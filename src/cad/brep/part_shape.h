@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "base/diagnostics.h"
+#include "cad/brep/cad_document.h"
 #include "cad/brep/part_mesh.h"
-#include "cad/brep/step_document.h"
 #include "cad/import.h"
 #include "product/product.h"
 

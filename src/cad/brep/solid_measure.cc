@@ -19,7 +19,8 @@
 namespace hvas::cad {
 namespace {
 
-constexpr double kIntegrationError = 1e-10;  // Relative.
+constexpr double kIntegrationError =
+    1e-10;  // Relative; with 1e-8, which is a third faster, volumes of gears err by 1e-4.
 
 /** Whether the fixed quadrature is exact on a face: an analytic surface between curves that are
  lines or conics in its parameters. */

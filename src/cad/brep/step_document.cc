@@ -5,15 +5,11 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Interface_Static.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
-#include <Message_Printer.hxx>
-#include <Message_ProgressIndicator.hxx>
 #include <Message_ProgressScope.hxx>
-#include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <STEPConstruct_ExternRefs.hxx>
@@ -21,59 +17,34 @@
 #include <StepBasic_ProductDefinition.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepRepr_NextAssemblyUsageOccurrence.hxx>
+#include <StepShape_ConnectedFaceSet.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <StepShape_OrientedClosedShell.hxx>
 #include <TCollection_HAsciiString.hxx>
+#include <TDF_LabelMapHasher.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_TShape.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
-#include <XCAFApp_Application.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <fmt/format.h>
 
 #include "base/regular_file.h"
+#include "cad/brep/occt_session.h"
 #include "cad/scene/placed_parts.h"
+#include "cad/step/identities.h"
+#include "cad/step/step_text.h"
 #include "cad/step/text_encoding.h"
 
 namespace hvas::cad {
 namespace {
 
-/** Hands OpenCASCADE's progress on. */
-class Indicator : public Message_ProgressIndicator {
- public:
-  explicit Indicator(const ProgressFn* progress) : progress_(progress) {}
-
- private:
-  void Show(const Message_ProgressScope& /*scope*/, const Standard_Boolean /*force*/) override {
-    const double fraction = GetPosition();
-    if (*progress_ && fraction >= shown_ + 0.01) {
-      shown_ = fraction;
-      (*progress_)("transfer", fraction);
-    }
-  }
-
-  const ProgressFn* progress_;
-  double shown_{0};
-};
-
-void InitialiseOnce() {
-  static const bool is_done = [] {
-    STEPCAFControl_Controller::Init();
-    // Its messages go to std::cout; what matters in them comes back as a status.
-    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
-    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-    return true;
-  }();
-  static_cast<void>(is_done);
-}
-
 /** Tells OpenCASCADE what the bytes in strings are: it decodes anything as UTF-8, and spoils what
  is not. As Latin-1 they come through as they are, for CleanName to see to. */
-void SetEncoding(const std::filesystem::path& file) {
-  const std::string text = ReadRegularFile(file).value_or(std::string());
+void SetEncoding(const std::string& text) {
   Interface_Static::SetCVal("read.step.codepage", IsUtf8(text) ? "UTF8" : "iso8859-1");
 }
 
@@ -190,14 +161,78 @@ FaceEntityFn IndexFaces(const STEPCAFControl_Reader& reader) {
   };
 }
 
+/** The shells of the file with faces that were not transferred. */
+std::vector<LostFaces> ListLostFaces(const STEPCAFControl_Reader& reader) {
+  std::vector<LostFaces> list;
+  const Handle(StepData_StepModel) model = reader.Reader().StepModel();
+  const Handle(Transfer_TransientProcess) process =
+      reader.Reader().WS()->TransferReader()->TransientProcess();
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const auto shell = Handle(StepShape_ConnectedFaceSet)::DownCast(model->Value(i));
+    if (shell.IsNull() || shell->IsKind(STANDARD_TYPE(StepShape_OrientedClosedShell)) ||
+        shell->CfsFaces().IsNull()) {
+      continue;
+    }
+    LostFaces entry{static_cast<std::uint64_t>(std::max(model->IdentLabel(shell), 0)),
+                    0,
+                    shell->NbCfsFaces(),
+                    {}};
+    for (int k = 1; k <= entry.total; ++k) {
+      const TopoDS_Shape shape = TransferBRep::ShapeResult(process, shell->CfsFacesValue(k));
+      const TopExp_Explorer face(shape, TopAbs_FACE);
+      if (shape.IsNull() || !face.More()) {
+        ++entry.lost;
+      } else if (entry.sibling.IsNull()) {
+        entry.sibling = face.Current();
+      }
+    }
+    if (entry.lost > 0) {
+      list.push_back(std::move(entry));
+    }
+  }
+  return list;
+}
+
+/** The identities of the definitions in the document, by their labels. */
+IdentityFn IndexIdentities(const STEPCAFControl_Reader& reader, std::string step_text) {
+  const StepText text(std::move(step_text));
+  const std::map<std::uint64_t, product::Identity> identities = ReadIdentities(text);
+  if (identities.empty()) {
+    return {};
+  }
+  const auto by_label =
+      std::make_shared<NCollection_DataMap<TDF_Label, product::Identity, TDF_LabelMapHasher>>();
+  const Handle(StepData_StepModel) model = reader.Reader().StepModel();
+  const Handle(Transfer_TransientProcess) process =
+      reader.Reader().WS()->TransferReader()->TransientProcess();
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Standard_Transient) entity = model->Value(i);
+    if (!entity->IsKind(STANDARD_TYPE(StepBasic_ProductDefinition))) {
+      continue;
+    }
+    const int id = model->IdentLabel(entity);
+    const auto found = identities.find(static_cast<std::uint64_t>(std::max(id, 0)));
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, entity);
+    TDF_Label label;
+    if (found != identities.end() && !shape.IsNull() &&
+        reader.GetShapeLabelMap().Find(shape, label)) {
+      by_label->Bind(label, found->second);
+    }
+  }
+  return [by_label](const TDF_Label& label) {
+    const product::Identity* identity = by_label->Seek(label);
+    return identity != nullptr ? *identity : product::Identity();
+  };
+}
+
 }  // namespace
 
-Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& file,
-                                                  std::size_t max_parts, const ReadWatch& watch,
-                                                  Diagnostics* diagnostics,
-                                                  FaceEntityFn* entity_of) {
-  InitialiseOnce();
-  SetEncoding(file);
+Result<CadDocument> ReadStepDocument(const std::filesystem::path& file, std::size_t max_parts,
+                                     const ReadWatch& watch, Diagnostics* diagnostics,
+                                     bool with_entities) {
+  InitialiseOpenCascade();
+  std::string text = ReadRegularFile(file).value_or(std::string());
+  SetEncoding(text);
   const std::string name = file.filename().string();
   STEPCAFControl_Reader reader;
   reader.SetColorMode(true);
@@ -220,11 +255,11 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
   if (const auto checked = CheckReferredFiles(reader, file); !checked) {
     return Unexpected(checked.error());
   }
-  Handle(TDocStd_Document) document;
-  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
-  const opencascade::handle<Indicator> indicator = new Indicator(&watch.progress);
-  if (!reader.Transfer(document, indicator->Start())) {
-    CloseDocument(document);
+  CadDocument result;
+  result.document = MakeDocument();
+  const opencascade::handle<TransferProgress> indicator = new TransferProgress(&watch.progress);
+  if (!reader.Transfer(result.document, indicator->Start())) {
+    CloseDocument(result.document);
     return Fail(ErrorCode::kUnreadable, "the STEP file has no product that can be read", name,
                 "export the file again from the CAD system");
   }
@@ -232,14 +267,13 @@ Result<Handle(TDocStd_Document)> ReadStepDocument(const std::filesystem::path& f
   if (watch.referred_files != nullptr) {
     *watch.referred_files = ListReferredFiles(reader, file);
   }
-  if (entity_of != nullptr) {
-    *entity_of = IndexFaces(reader);
+  if (with_entities) {
+    result.entity_of = IndexFaces(reader);
   }
-  return document;
-}
-
-void CloseDocument(const Handle(TDocStd_Document) & document) {
-  XCAFApp_Application::GetApplication()->Close(document);
+  result.lost_faces = ListLostFaces(reader);
+  result.header = ReadStepHeader(text);
+  result.identity_of = IndexIdentities(reader, std::move(text));
+  return result;
 }
 
 }  // namespace hvas::cad

@@ -16,10 +16,14 @@
 #include "base/regular_file.h"
 #include "base/units.h"
 #include "cad/brep/assembly_tree.h"
+#include "cad/brep/iges_document.h"
+#include "cad/brep/occt_session.h"
 #include "cad/brep/step_document.h"
+#include "cad/iges/iges_text.h"
 #include "cad/input_file.h"
 #include "cad/scene/mesh_document.h"
 #include "cad/scene/mesh_format.h"
+#include "cad/step/identities.h"
 #include "cad/step/tolerances.h"
 #include "cad/triangles/tessellated.h"
 
@@ -41,6 +45,14 @@ void CheckSize(const Product& product, Diagnostics* diagnostics) {
 /** The bytes of a file; empty where they cannot be had. */
 std::string ReadText(const std::filesystem::path& file) {
   return ReadRegularFile(file).value_or(std::string());
+}
+
+/** A product with the names that it has where the file gives none. */
+Product NameAfter(const std::filesystem::path& file) {
+  Product product;
+  product.name = file.stem().string();
+  product.source = file.filename().string();
+  return product;
 }
 
 /** The text of a file that states tolerances; empty where it states none, or cannot be had. */
@@ -66,18 +78,14 @@ void AddTolerances(std::string text, Product* product, Diagnostics* diagnostics)
 Result<Product> ReadSolids(const std::filesystem::path& file, const ImportOptions& options,
                            const ReadWatch& watch, Diagnostics* diagnostics) {
   std::string tolerance_text = options.with_tolerances ? ReadToleranceText(file) : std::string();
-  FaceEntityFn entity_of;
-  const auto document = ReadStepDocument(file, options.max_parts, watch, diagnostics,
-                                         tolerance_text.empty() ? nullptr : &entity_of);
+  const auto document =
+      ReadStepDocument(file, options.max_parts, watch, diagnostics, !tolerance_text.empty());
   if (!document) {
     return Unexpected(document.error());
   }
-  Product product;
-  product.name = file.stem().string();
-  product.source = file.filename().string();
-  const Result<void> built =
-      BuildProduct(*document, options, watch, &product, diagnostics, entity_of);
-  CloseDocument(*document);
+  Product product = NameAfter(file);
+  const Result<void> built = BuildProduct(*document, options, watch, &product, diagnostics);
+  CloseDocument(document->document);
   if (!built) {
     const auto missing =
         std::count_if(diagnostics->items().begin(), diagnostics->items().end(),
@@ -110,9 +118,8 @@ Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions&
     }
     return solids;
   }
-  Product product;
-  product.name = file.stem().string();
-  product.source = file.filename().string();
+  Product product = NameAfter(file);
+  product.header = ReadStepHeader(text);
   std::string tolerance_text =
       options.with_tolerances && MayHoldTolerances(text) ? text : std::string();
   if (const auto read = ReadTessellated(std::move(text), options, watch, &product, diagnostics);
@@ -127,6 +134,22 @@ Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions&
   return product;
 }
 
+Result<Product> ReadIges(const std::filesystem::path& file, const ImportOptions& options,
+                         const ReadWatch& watch, Diagnostics* diagnostics) {
+  const auto document = ReadIgesDocument(file, options.max_parts, watch, diagnostics);
+  if (!document) {
+    return Unexpected(document.error());
+  }
+  Product product = NameAfter(file);
+  const Result<void> built = BuildProduct(*document, options, watch, &product, diagnostics);
+  CloseDocument(document->document);
+  if (!built) {
+    return Unexpected(built.error());
+  }
+  CheckSize(product, diagnostics);
+  return product;
+}
+
 /** The one place where formats are told apart: by content, whatever the file is called. */
 Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOptions& options,
                               const ReadWatch& watch, Diagnostics* diagnostics) {
@@ -135,6 +158,9 @@ Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOpt
   if (head.find("ISO-10303-21") != std::string::npos) {
     return ReadStep(file, options, watch, diagnostics);
   }
+  if (IsIgesFile(file, head)) {
+    return ReadIges(file, options, watch, diagnostics);
+  }
   if (const std::optional<MeshFormat> format = FindMeshFormat(file, head)) {
     Result<Product> product = ReadMeshFile(file, *format, options, watch, diagnostics);
     if (product) {
@@ -142,7 +168,8 @@ Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOpt
     }
     return product;
   }
-  return Fail(ErrorCode::kUnreadable, "the file is neither a STEP file nor a mesh",
+  return Fail(ErrorCode::kUnreadable,
+              "the file is neither a STEP file, nor an IGES file, nor a mesh",
               file.filename().string(), kFormats);
 }
 

@@ -26,8 +26,8 @@ struct ReadWatch {
  goes to `diagnostics` and does not stop the import. Parts without a face are left out; parts
  without a solid have no mass. The density of a part that states none, or an absurd one, is assumed.
 
- Formats, told apart by content: STEP (AP203, AP214, AP242); OBJ, STL, glTF 2, GLB and 3MF as
- cad/mesh_document.h has it.
+ Formats, told apart by content: STEP (AP203, AP214, AP242); IGES 5.3; OBJ, STL, glTF 2, GLB and 3MF
+ as cad/mesh_document.h has it.
 
  Errors: kNotFound (no such file), kUnreadable (no format that is known, damaged, or without a
  solid), kOutOfResource. Not re-entrant inside: concurrent calls wait for each other.

@@ -14,7 +14,10 @@
 #include <TDocStd_Document.hxx>
 #include <fmt/format.h>
 
+#include "base/regular_file.h"
+#include "cad/brep/iges_document.h"
 #include "cad/brep/step_document.h"
+#include "cad/iges/iges_text.h"
 #include "cad/limits.h"
 #include "cad/process/move_components.h"
 #include "cad/process/worker_io.h"
@@ -53,6 +56,11 @@ std::string Write(const opencascade::handle<TDocStd_Document>& document, const s
   return "";
 }
 
+Result<CadDocument> ReadStep(const std::filesystem::path& file, std::size_t max_parts,
+                             const ReadWatch& watch, Diagnostics* diagnostics) {
+  return ReadStepDocument(file, max_parts, watch, diagnostics);
+}
+
 /** Moves parts as a file says: a line each, with a motion and a path.
  @returns what went wrong; empty when all are where they should be. */
 std::string Move(const opencascade::handle<TDocStd_Document>& document, const std::string& name,
@@ -83,14 +91,18 @@ int WorkerExportStep(const std::vector<std::string>& arguments) {
   const std::filesystem::path file = arguments.front();
   std::string problem;
   try {
-    Diagnostics ignored;  // Reading it for the product has told them.
-    const auto document = ReadStepDocument(file, kLargestMaxParts, {SendStage, {}, nullptr},
-                                           &ignored);  // Reading it has checked.
+    Diagnostics ignored;                 // Reading it for the product has told them.
+    constexpr std::size_t kHead = 4096;  // [bytes] in which a format's mark is looked for.
+    const auto read = IsIgesFile(file, ReadFileHead(file, kHead).value_or(std::string()))
+                          ? ReadIgesDocument
+                          : ReadStep;
+    const auto document = read(file, kLargestMaxParts, {SendStage, {}, nullptr},
+                               &ignored);  // Reading it has checked.
     problem = !document               ? document.error().message
-              : arguments.size() == 3 ? Move(*document, file.stem().string(), arguments[2])
+              : arguments.size() == 3 ? Move(document->document, file.stem().string(), arguments[2])
                                       : "";
     if (problem.empty()) {
-      problem = Write(*document, file.filename().string());
+      problem = Write(document->document, file.filename().string());
     }
   } catch (const Standard_Failure& failure) {
     problem = fmt::format("OpenCASCADE failed: {}", failure.GetMessageString());

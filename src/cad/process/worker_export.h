@@ -5,7 +5,7 @@
 
 namespace hvas::cad {
 
-/** `hvas-cad export-step FILE [--motions FILE]`: reads a STEP file and writes it to
+/** `hvas-cad export-step FILE [--motions FILE]`: reads a STEP or IGES file and writes it to
  kOutputDescriptor as one STEP file, with parts moved if so told, or one line that says why not.
  @returns The exit status. */
 [[nodiscard]] int WorkerExportStep(const std::vector<std::string>& arguments);

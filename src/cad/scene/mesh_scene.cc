@@ -79,6 +79,22 @@ float ToSrgb(float linear) {
   return static_cast<float>(u <= 0.0031308 ? 12.92 * u : 1.055 * std::pow(u, 1 / 2.4) - 0.055);
 }
 
+/** Whether a tree of nodes has more levels than are visited. */
+bool IsDeeperThanVisited(const aiNode& root) {
+  std::vector<std::pair<const aiNode*, int>> open{{&root, 0}};
+  while (!open.empty()) {
+    const auto [node, depth] = open.back();
+    open.pop_back();
+    if (depth > kDeepestNode) {
+      return true;
+    }
+    for (unsigned i = 0; i < node->mNumChildren; ++i) {
+      open.emplace_back(node->mChildren[i], depth + 1);
+    }
+  }
+  return false;
+}
+
 class SceneBuilder {
  public:
   SceneBuilder(const aiScene& scene, const SceneConventions& conventions,
@@ -397,6 +413,12 @@ Result<void> SceneBuilder::Build() {
   }
   if (is_too_large_) {
     return FailTooManyParts(options_.max_parts, product_->source);
+  }
+  if (IsDeeperThanVisited(*scene_.mRootNode)) {
+    diagnostics_->Warn(
+        "limit-depth", product_->source,
+        fmt::format("what is nested deeper than {} levels is left out", kDeepestNode),
+        "export the product with fewer levels");
   }
   if (const double bytes = kBytesPerTriangle * triangles_;
       bytes > static_cast<double>(options_.max_bytes)) {

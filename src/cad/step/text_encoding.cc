@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <optional>
 
@@ -18,6 +19,10 @@ constexpr std::array<char16_t, 32> kWindows{
     0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
     0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
     0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
+
+bool StartsWith(std::string_view text, std::string_view start) {
+  return text.substr(0, start.size()) == start;
+}
 
 void AppendUtf8(char32_t c, std::string* out) {
   const auto put = [out](char32_t byte) { out->push_back(static_cast<char>(byte)); };
@@ -131,7 +136,85 @@ std::string Tidy(std::string text) {
                                     : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
+/** Takes `digits` hexadecimal digits from the front of a text. */
+std::optional<char32_t> TakeHex(std::string_view* text, std::size_t digits) {
+  std::uint32_t value = 0;
+  const char* begin = text->data();
+  if (text->size() < digits) {
+    return std::nullopt;
+  }
+  const auto parsed = std::from_chars(begin, begin + digits, value, 16);
+  if (parsed.ec != std::errc() || parsed.ptr != begin + digits) {
+    return std::nullopt;
+  }
+  text->remove_prefix(digits);
+  return value;
+}
+
+/** Takes the code units behind "\X2\" or "\X4\" up to "\X0\". @returns false where they do not
+ end so. */
+bool TakeCodeUnits(std::string_view* text, std::size_t digits, std::string* out) {
+  std::u16string units;
+  while (const auto unit = TakeHex(text, digits)) {
+    if (*unit < 0x10000) {
+      units.push_back(static_cast<char16_t>(*unit));
+    } else {  // A pair of surrogates.
+      units.push_back(static_cast<char16_t>(0xD800 + (((*unit - 0x10000) >> 10) & 0x3FF)));
+      units.push_back(static_cast<char16_t>(0xDC00 + ((*unit - 0x10000) & 0x3FF)));
+    }
+  }
+  *out += Utf16ToUtf8(units);
+  if (!StartsWith(*text, "\\X0\\")) {
+    return false;
+  }
+  text->remove_prefix(4);
+  return true;
+}
+
+/** Takes one escape from the front of a text. @returns false where there is none. */
+bool TakeEscape(std::string_view* text, std::string* out) {
+  std::string_view rest = *text;
+  std::string decoded;
+  bool is_escape = false;
+  if (StartsWith(rest, "\\X2\\") || StartsWith(rest, "\\X4\\")) {
+    const std::size_t digits = rest[2] == '2' ? 4 : 8;
+    rest.remove_prefix(4);
+    is_escape = TakeCodeUnits(&rest, digits, &decoded);
+  } else if (StartsWith(rest, "\\X\\")) {
+    rest.remove_prefix(3);
+    if (const auto byte = TakeHex(&rest, 2)) {
+      AppendUtf8(*byte, &decoded);
+      is_escape = true;
+    }
+  } else if (StartsWith(rest, "\\S\\") && rest.size() > 3 && ByteAt(rest, 3) < 0x80) {
+    AppendUtf8(ByteAt(rest, 3) + 0x80U, &decoded);
+    rest.remove_prefix(4);
+    is_escape = true;
+  } else if (StartsWith(rest, "\\\\")) {
+    decoded = "\\";
+    rest.remove_prefix(2);
+    is_escape = true;
+  }
+  if (is_escape) {
+    *out += decoded;
+    *text = rest;
+  }
+  return is_escape;
+}
+
 }  // namespace
+
+std::string DecodeStepText(std::string_view text) {
+  std::string decoded;
+  while (!text.empty()) {
+    if (text.front() == '\\' && TakeEscape(&text, &decoded)) {
+      continue;
+    }
+    decoded.push_back(text.front());
+    text.remove_prefix(1);
+  }
+  return decoded;
+}
 
 bool IsUtf8(std::string_view bytes) {
   for (std::size_t i = 0; i < bytes.size();) {

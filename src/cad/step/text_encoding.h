@@ -19,4 +19,8 @@ namespace hvas::cad {
  has Latin-1 in it. */
 [[nodiscard]] std::string CleanName(std::string_view name);
 
+/** The bytes of a string of ISO 10303-21 with its escapes (section 6.4.3) as UTF-8: \X2\, \X4\,
+ \X\hh and \S\c of ISO 8859-1, and doubled backslashes. What is no escape stays as it is. */
+[[nodiscard]] std::string DecodeStepText(std::string_view text);
+
 }  // namespace hvas::cad

@@ -111,10 +111,9 @@ class ToleranceReader {
   bool ReadSizes(EntityId representation, Dimension* dimension);
   void ReadLimits(EntityId range, Dimension* dimension);
   void ReadGeometric(EntityId id, const StepEntity& entity);
-  void ReadDatums(const StepValue& value, int depth, int* steps,
-                  std::vector<std::string>* datums) const;
+  void ReadDatums(const StepValue& value, int depth, int* steps, std::vector<std::string>* datums);
   [[nodiscard]] std::vector<EntityId> ToAspects(EntityId id) const;
-  [[nodiscard]] std::vector<EntityId> CollectFaces(const std::vector<EntityId>& aspects) const;
+  [[nodiscard]] std::vector<EntityId> CollectFaces(const std::vector<EntityId>& aspects);
   [[nodiscard]] EntityId ShapeOf(const std::vector<EntityId>& aspects) const;
   void IndexFaces();
   [[nodiscard]] std::size_t ChooseOwner(const std::set<std::size_t>& parts) const;
@@ -126,6 +125,8 @@ class ToleranceReader {
   const StepText& text_;
   Product* product_;
   Diagnostics* diagnostics_;
+  bool has_more_aspects_{false};  // Than kMaxAspects.
+  bool has_more_datums_{false};   // Than kMaxDatumSteps, or deeper than kMaxDatumDepth.
   std::vector<EntityId> dimension_ids_;
   std::vector<EntityId> tolerance_ids_;
   std::map<EntityId, std::vector<EntityId>> items_of_;           // Aspect to faces.
@@ -338,8 +339,9 @@ void ToleranceReader::ReadLimits(EntityId range, Dimension* dimension) {
 }
 
 void ToleranceReader::ReadDatums(const StepValue& value, int depth, int* steps,
-                                 std::vector<std::string>* datums) const {
+                                 std::vector<std::string>* datums) {
   if (depth > kMaxDatumDepth || ++*steps > kMaxDatumSteps) {
+    has_more_datums_ = true;
     return;
   }
   if (value.kind == Kind::kTyped || value.kind == Kind::kList) {
@@ -412,7 +414,7 @@ std::vector<EntityId> ToleranceReader::ToAspects(EntityId id) const {
   return aspects.empty() ? std::vector<EntityId>{id} : aspects;
 }
 
-std::vector<EntityId> ToleranceReader::CollectFaces(const std::vector<EntityId>& aspects) const {
+std::vector<EntityId> ToleranceReader::CollectFaces(const std::vector<EntityId>& aspects) {
   std::vector<EntityId> open = aspects;
   std::set<EntityId> seen(aspects.begin(), aspects.end());
   std::vector<EntityId> faces;
@@ -427,6 +429,7 @@ std::vector<EntityId> ToleranceReader::CollectFaces(const std::vector<EntityId>&
                    [&seen](EntityId id) { return seen.insert(id).second; });
     }
   }
+  has_more_aspects_ = has_more_aspects_ || open.size() >= kMaxAspects;
   return faces;
 }
 
@@ -568,6 +571,19 @@ void ToleranceReader::Report() {
         fmt::format("{} dimensions or tolerances have no readable value ({}{}) and are omitted",
                     damaged_.size(), names, damaged_.size() > kMaxNamed ? ", ..." : ""),
         "check the dimensions in the CAD system and export the file again");
+  }
+  if (has_more_aspects_) {
+    diagnostics_->Warn(
+        "limit-aspects", product_->source,
+        fmt::format("a dimension or tolerance is about {} or more aspects of the shape; it counts "
+                    "for the faces of the first ones only",
+                    kMaxAspects));
+  }
+  if (has_more_datums_) {
+    diagnostics_->Warn("limit-datums", product_->source,
+                       fmt::format("a tolerance has more than {} references to datums, or nests "
+                                   "them deeper than {} levels; the rest is left out",
+                                   kMaxDatumSteps, kMaxDatumDepth));
   }
   if (homeless_ > 0) {
     diagnostics_->Note(

@@ -72,7 +72,8 @@ Product Build(DocumentBuilder* builder, Diagnostics* diagnostics, unsigned threa
   Product product;
   ImportOptions options;
   options.threads = threads;
-  const Result<void> result = BuildProduct(builder->document(), options, {}, &product, diagnostics);
+  const Result<void> result =
+      BuildProduct({builder->document(), {}, {}, {}}, options, {}, &product, diagnostics);
   EXPECT_TRUE(result.has_value()) << result.error().ToString();
   return product;
 }

@@ -268,6 +268,14 @@ std::string MakeDoublingGltf(std::size_t levels) {
   return Gltf(std::to_string(levels), nodes);
 }
 
+std::string MakeNestedGltf(std::size_t levels) {
+  std::string nodes = R"({"mesh":0})";
+  for (std::size_t i = 0; i < levels; ++i) {
+    nodes += fmt::format(R"(,{{"children":[{}]}})", i);
+  }
+  return Gltf(fmt::format("{},{}", levels, levels + 1), nodes + R"(,{"mesh":0})");
+}
+
 std::string MakeStretchedGltf(std::size_t count) {
   std::string nodes;
   for (std::size_t i = 0; i < count; ++i) {

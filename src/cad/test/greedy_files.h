@@ -25,6 +25,9 @@ namespace hvas::cad::testing {
 /** glTF with a node that has a box, and `levels` nodes that hold the one before twice. */
 [[nodiscard]] std::string MakeDoublingGltf(std::size_t levels);
 
+/** glTF with a box, and another one below `levels` nodes that each hold the next. */
+[[nodiscard]] std::string MakeNestedGltf(std::size_t levels);
+
 /** glTF with `count` boxes, each stretched otherwise, so that none can be shared. */
 [[nodiscard]] std::string MakeStretchedGltf(std::size_t count);
 

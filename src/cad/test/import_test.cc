@@ -108,7 +108,7 @@ void ExpectConsistent(const Part& part) {
   EXPECT_LT(sum.norm(), 1e-12) << "the mesh is not closed";
 }
 
-TEST(ReadCad, KeepsTheTreeSharesPartsAndNamesThemInUtf8) {  // X1, X2.
+TEST(ReadCad, X1KeepsTheTreeSharesPartsAndNamesThemInUtf8) {  // X2.
   const TemporaryFolder folder;
   WriteAssembly(folder / "a.step", "MM");
   Diagnostics diagnostics;
@@ -321,7 +321,8 @@ TEST(ReadCad, LeavesCurvesOutAndKeepsSurfacesWithoutMass) {
 /** Builds a product from a document in memory, for what a STEP file of OpenCASCADE cannot hold. */
 Product BuildInMemory(DocumentBuilder* builder, Diagnostics* diagnostics) {
   Product product;
-  const Result<void> result = BuildProduct(builder->document(), {}, {}, &product, diagnostics);
+  const Result<void> result =
+      BuildProduct({builder->document(), {}, {}, {}}, {}, {}, &product, diagnostics);
   EXPECT_TRUE(result.has_value()) << result.error().ToString();
   return product;
 }

@@ -208,5 +208,19 @@ TEST(GreedyFileTest, ProductThatTakesTooMuchIsNotHandedOver) {
   ExpectHas(result->product.error().remedy, "--memory-limit");
 }
 
+TEST(ImportLimitsTest, WhatIsNestedTooDeepInGltfIsLeftOutAndReported) {
+  const TemporaryFolder folder;
+  for (const std::size_t levels : {400, 600}) {
+    SCOPED_TRACE(levels);
+    const bool is_deep = levels > 500;
+    Diagnostics diagnostics;
+    const auto product =
+        Import(folder.Write("nested.gltf", testing::MakeNestedGltf(levels)), {}, &diagnostics, {});
+    ASSERT_TRUE(product) << product.error().ToString();
+    EXPECT_EQ(product->occurrences.size(), is_deep ? 1u : 2u);
+    EXPECT_EQ(testing::CountCode(diagnostics, "limit-depth"), is_deep ? 1 : 0);
+  }
+}
+
 }  // namespace
 }  // namespace hvas::cad

@@ -385,6 +385,20 @@ TEST(TrianglePart, TellsACrackFromAnOpening) {
   EXPECT_EQ(diagnostics.items().front().code, "no-solid");
 }
 
+TEST(TrianglePart, MoreShellsThanAreLookedAtForCavitiesAreReported) {
+  for (const int count : {500, 501}) {
+    TriangleSoup soup;
+    for (int i = 0; i < count; ++i) {
+      TriangleSoup box = testing::MakeBox({1e-3, 1e-3, 1e-3});
+      testing::Move(spatial::Pose(Vec3(2e-3 * i, 0, 0)), &box);
+      testing::Append(box, &soup);
+    }
+    Diagnostics diagnostics;
+    EXPECT_EQ(Build(soup, &diagnostics).solid_count, count);
+    EXPECT_EQ(testing::CountCode(diagnostics, "limit-shells"), count > 500 ? 1 : 0);
+  }
+}
+
 TEST(TrianglePart, TakesAnyTriangles) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();

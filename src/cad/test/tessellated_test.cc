@@ -129,6 +129,45 @@ TEST(Tessellated, IsWhatAFileWithoutSolidsIsReadBy) {
   EXPECT_EQ(product->occurrences.size(), 2U);
 }
 
+int CountDeep(const std::string& step) {
+  Product product;
+  Diagnostics diagnostics;
+  EXPECT_TRUE(ReadTessellated(step, {}, {}, &product, &diagnostics));
+  return testing::CountCode(diagnostics, "limit-depth");
+}
+
+TEST(Tessellated, ShellsInShellsBeyondTheLimitAreReported) {
+  for (const int levels : {4, 5}) {
+    std::string step = MakeStep(10);
+    std::string shells;
+    for (int i = 0; i < levels; ++i) {
+      shells += fmt::format("#{}=TESSELLATED_SHELL('',({}),$);\n", 100 + i,
+                            i + 1 < levels ? fmt::format("#{}", 101 + i) : "");
+    }
+    step.insert(step.find("#24="), shells);
+    step.replace(step.find("(#11,#12,#13)"), 13, "(#11,#12,#13,#100)");
+    EXPECT_EQ(CountDeep(step), levels > 4 ? 1 : 0) << levels;
+  }
+}
+
+TEST(Tessellated, ProductsInProductsBeyondTheLimitAreReported) {
+  for (const int levels : {50, 102}) {
+    std::string step = MakeStep(10);
+    std::string products;
+    for (int i = 0; i < levels; ++i) {
+      products += fmt::format(
+          "#{0}=PRODUCT_DEFINITION('','',#41,$);\n"
+          "#{1}=NEXT_ASSEMBLY_USAGE_OCCURRENCE('{1}','','',#{0},#{2},$);\n",
+          1000 + i, 2000 + i, i + 1 < levels ? 1001 + i : 42);
+    }
+    step.insert(step.find("#60="), products);
+    step.insert(step.find("#60="),  // One that is not nested.
+                "#3000=PRODUCT_DEFINITION('','',#41,$);\n"
+                "#3001=NEXT_ASSEMBLY_USAGE_OCCURRENCE('x','','',#3000,#32,$);\n");
+    EXPECT_EQ(CountDeep(step), levels > 100 ? 1 : 0) << levels;
+  }
+}
+
 TEST(Tessellated, TakesAnyText) {
   const std::string step = MakeStep(10);
   Random random(5);

@@ -244,6 +244,19 @@ TEST(Tolerances, CirclesOfReferencesEnd) {
       "#56=DATUM_SYSTEM('',$,#80,.F.,(#56,#52,#54,#56,#52,#56,#56,#56,#56,#56,#56,#56))");
   Diagnostics diagnostics;
   EXPECT_EQ(ReadPart(text, &diagnostics).dimensions.size(), 3u);
+  EXPECT_EQ(testing::CountCode(diagnostics, "limit-datums"), 1);
+}
+
+TEST(Tolerances, MoreAspectsThanAreLookedAtAreReported) {
+  constexpr int kCount = 100'000;
+  std::string aspects;
+  for (int i = 0; i < kCount; ++i) {
+    aspects +=
+        fmt::format("#{}=SHAPE_ASPECT_RELATIONSHIP('','',#11,#{});\n", 1000 + i, 1000 + kCount + i);
+  }
+  Diagnostics diagnostics;
+  (void)ReadPart(WithReplaced(MakeText(), "#60=", aspects + "#60="), &diagnostics);
+  EXPECT_EQ(testing::CountCode(diagnostics, "limit-aspects"), 1);
 }
 
 TEST(Tolerances, NoDamageToATextCrashesOrHangs) {

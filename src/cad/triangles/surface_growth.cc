@@ -93,14 +93,14 @@ Vec3 RadialDirection(const Surface& surface, const Vec3& p) {
 }
 
 bool IsPlausible(const Surface& surface, double extent) {
-  constexpr double kLargestRadius = 200;  // In extents.
+  constexpr double kMostExtents = 200;  // In extents.
   switch (surface.kind) {
     case SurfaceKind::kCone:
       return surface.second > units::FromDeg(0.2) && surface.second < units::FromDeg(89);
     case SurfaceKind::kTorus:
-      return surface.second < 0.999 * surface.radius && surface.radius < kLargestRadius * extent;
+      return surface.second < 0.999 * surface.radius && surface.radius < kMostExtents * extent;
     default:
-      return surface.radius < kLargestRadius * extent;
+      return surface.radius < kMostExtents * extent;
   }
 }
 

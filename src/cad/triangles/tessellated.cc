@@ -78,6 +78,8 @@ class TessellationReader {
   const ReadWatch& watch_;
   Product* product_;
   Diagnostics* diagnostics_;
+  bool has_deep_products_{false};  // Deeper than kDeepest.
+  bool has_deep_shells_{false};    // Deeper than AddItem goes.
 
   std::set<Id> shapes_;                         // Tessellated representations.
   std::map<Id, std::set<Id>> related_;          // Representations that stand for each other.
@@ -305,6 +307,7 @@ void TessellationReader::AddItem(Id item, const ShapeUnits& units, std::optional
                                  int depth, TriangleSoup* soup) {
   constexpr int kDeepestItem = 4;  // Levels of sets in sets: a choice.
   if (depth > kDeepestItem) {
+    has_deep_shells_ = true;
     return;
   }
   for (const StepRecord& record : text_.Find(item)) {
@@ -408,6 +411,7 @@ Pose TessellationReader::PoseOf(const Use& use) const {
 
 void TessellationReader::Visit(Id definition, const std::string& name, SubassemblyId parent,
                                const Pose& X_WP, int depth, ProductTree* tree) {
+  has_deep_products_ = has_deep_products_ || depth > kDeepest;
   if (depth > kDeepest || product_->occurrences.size() > options_.max_parts) {
     return;
   }
@@ -467,6 +471,14 @@ Result<void> TessellationReader::Read() {
   if (product_->occurrences.empty()) {
     return Fail(ErrorCode::kUnreadable, "the file has no triangles", product_->source,
                 "export the parts as solids");
+  }
+  if (has_deep_products_ || has_deep_shells_) {
+    diagnostics_->Warn("limit-depth", product_->source,
+                       fmt::format("{} nested too deep are left out",
+                                   !has_deep_shells_    ? "products"
+                                   : has_deep_products_ ? "products, and shells in shells,"
+                                                        : "shells in shells"),
+                       "export the product with fewer levels");
   }
   diagnostics_->Warn("no-brep", product_->source,
                      "the file has triangles and no solids; surfaces are those given in the file "

@@ -104,6 +104,14 @@ void ReportDefects(const WeldedMesh& mesh, const Part& part, Diagnostics* diagno
         fmt::format("{} triangles and {} whole shells were inside out and were reversed",
                     defects.flipped, defects.turned_shells));
   }
+  if (defects.has_unknown_cavities) {
+    diagnostics->Warn(
+        "limit-shells", part.name,
+        fmt::format("the mesh has {} shells, which are too many to look for cavities: "
+                    "all count as outer ones",
+                    mesh.shells.size()),
+        "export the bodies as parts of their own");
+  }
   std::size_t open_shells = 0;
   for (const MeshShell& shell : mesh.shells) {
     open_shells += shell.is_closed ? 0U : 1U;
@@ -165,7 +173,7 @@ bool BuildTrianglePart(const TriangleSoup& soup, Part* part, Diagnostics* diagno
   ReportDefects(mesh, *part, diagnostics);
   ReportFit(*part, diagnostics);
   part->shape_hash = CalcShapeHash(*part);
-  product::BuildFeatures(part);
+  product::BuildFeatures(part, diagnostics);
   return true;
 }
 

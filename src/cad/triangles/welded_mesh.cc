@@ -329,6 +329,7 @@ void OrientShells(WeldedMesh* mesh) {
   for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
     members[mesh->shell[t]].push_back(t);
   }
+  mesh->defects.has_unknown_cavities = count > kMaxNestedShells;
   std::vector<bool> is_turned(count, false);
   for (std::size_t s = 0; s < count; ++s) {
     MeshShell& shell = mesh->shells[s];

@@ -48,6 +48,7 @@ struct MeshDefects {
   std::size_t shared_edges{0};  ///< Edges of more than two.
   std::size_t flipped{0};       ///< Triangles turned to agree with their neighbours.
   std::size_t turned_shells{0};
+  bool has_unknown_cavities{false};  ///< It has too many shells for them to be looked for.
 };
 
 /** Triangles with shared vertices and known neighbours, outward where they close. */

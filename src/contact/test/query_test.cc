@@ -66,7 +66,7 @@ Quat RandomRotation(Random* random) {
 }
 
 // Test C of the contact study: a shaft pressed 0.1 mm into a bore, the direction turning.
-TEST_F(QueryTest, ShaftInBoreHasTheExactDepthAndNormal) {
+TEST_F(QueryTest, X6ShaftInBoreHasTheExactDepthAndNormal) {
   Scene scene;
   scene.Add(FittedBushing(), {});
   const auto shaft = FittedShaft();
@@ -125,7 +125,7 @@ struct BallCase {
   std::uint32_t face;
 };
 
-TEST_F(QueryTest, BallMeetsEveryKindOfFaceAtTheExactDepth) {
+TEST_F(QueryTest, X6BallMeetsEveryKindOfFaceAtTheExactDepth) {
   const double r = 5e-3;
   const double out = r - 20e-6;
   const double slope = std::atan2(10e-3, 30e-3);

@@ -1,9 +1,13 @@
 #include "device/emulation/emulated_device.h"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "device/driver.h"
+#include "device/emulation/emulator.h"
 #include "device/test/tick_time.h"
 
 namespace hvas::device {
@@ -121,6 +125,14 @@ TEST(EmulatedDeviceTest, EachFaultShowsItselfAndEnds) {
     EXPECT_GT(device.Sense().sequence, during.sequence);
     EXPECT_NEAR((device.Sense().X_DH.p() - device.truth().X_DH.p()).norm(), 0, 1e-4);
   }
+}
+
+TEST(Emulators, EveryDriverHasOne) {
+  std::vector<std::string> drivers;
+  for (const Driver* driver : Drivers()) {
+    drivers.emplace_back(driver->name());
+  }
+  EXPECT_EQ(EmulatedDrivers(), drivers);
 }
 
 }  // namespace

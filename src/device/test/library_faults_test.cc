@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(Drivers, LibraryFaultsTest,
                          ::testing::Values(&kOpenHaptics, &kForceDimension, &kVirtuose),
                          [](const auto& entry) { return entry.param->name; });
 
-TEST_P(LibraryFaultsTest, TheHandRestsInAWallOfNominalStiffnessWhereThePhysicsSay) {  // X4, N6
+TEST_P(LibraryFaultsTest, X4TheHandRestsInAWallOfNominalStiffnessWhereThePhysicsSay) {  // N6
   const double k = profile().max_stiffness;
   Rig rig(which(), profile());
   const Law wall = Wall(k, 2);

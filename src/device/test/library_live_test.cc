@@ -10,8 +10,11 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <stdexcept>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "base/test/await_true.h"
 #include "device/force_withdrawal.h"
@@ -117,19 +120,46 @@ void Come(End end) {
   }
 }
 
-/** Runs a process with force on the hand to its end, and returns the force that its device was
- given last [N]; NaN when there was none before. The haptic thread goes on or stands still. */
-double ForceAfter(const LibraryCase& which, End end, bool has_loop) {
-  struct Shared {
+/** A process with force on a hand that comes to an end, and what is seen of its device. */
+class EndingProcess {
+ public:
+  /** Starts it. Its haptic thread goes on or stands still when the end comes. */
+  EndingProcess(const LibraryCase& which, End end, bool has_loop) : end_(end), has_loop_(has_loop) {
+    void* memory =
+        ::mmap(nullptr, sizeof(Seen), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    seen_ = new (memory) Seen;
+    child_ = ::fork();
+    if (child_ == 0) {
+      Run(which);
+    }
+  }
+
+  ~EndingProcess() { ::munmap(seen_, sizeof(Seen)); }
+
+  EndingProcess(const EndingProcess&) = delete;
+  EndingProcess& operator=(const EndingProcess&) = delete;
+
+  /** Waits for the end, and returns the force that the device was given last [N]; NaN when there
+   was none before. */
+  double LastForce() {
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status)) << "it ends as it would have";
+    return seen_->before > 0.4 ? seen_->last.load() : std::nan("");
+  }
+
+  [[nodiscard]] std::string Describe() const {
+    return "end " + std::to_string(static_cast<int>(end_)) +
+           (has_loop_ ? ", with a haptic loop" : ", without a haptic loop");
+  }
+
+ private:
+  struct Seen {
     std::atomic<double> before{0};
     std::atomic<double> last{0};
   };
 
-  void* memory =
-      ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  auto* shared = new (memory) Shared;
-  const pid_t child = ::fork();
-  if (child == 0) {
+  [[noreturn]] void Run(const LibraryCase& which) {
     WithdrawForcesAtTheEnd();
     const auto emulator = StartLive(which);
     auto device = OpenDevice(emulator->address(), emulator->surroundings());
@@ -145,38 +175,42 @@ double ForceAfter(const LibraryCase& which, End end, bool has_loop) {
     for (int k = 0; k < kMostTicks && force() < 0.4; ++k) {
       tick();
     }
-    shared->before = force();
-    std::thread([&] {  // whoever looks at the motors from outside
+    seen_->before = force();
+    seen_->last = force();
+    // The observer of the motors pauses between looks: it must not keep their mutex from others.
+    std::thread([&] {
       for (;;) {
-        shared->last = force();
+        seen_->last = force();
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
       }
-    })
-        .detach();
-    if (has_loop) {
+    }).detach();
+    if (has_loop_) {
       std::thread([&] {
         for (;;) {
           tick();
         }
       }).detach();
     }
-    Come(end);
+    Come(end_);
     ::_exit(2);
   }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFSIGNALED(status)) << "it ends as it would have";
-  const double last = shared->before > 0.4 ? shared->last.load() : std::nan("");
-  ::munmap(memory, sizeof(Shared));
-  return last;
-}
+
+  const End end_;
+  const bool has_loop_;
+  Seen* seen_;
+  pid_t child_;
+};
 
 TEST_P(LibraryLiveTest, NoEndOfTheProcessLeavesAForceOnTheHand) {
+  std::vector<std::unique_ptr<EndingProcess>> processes;
   for (const End end : {End::kTerminate, End::kTick, End::kAbort, End::kSegmentationFault,
                         End::kInterrupt, End::kTermination}) {
     for (const bool has_loop : {true, false}) {
-      EXPECT_EQ(ForceAfter(*GetParam(), end, has_loop), 0)
-          << static_cast<int>(end) << (has_loop ? ", with" : ", without") << " a haptic loop";
+      processes.push_back(std::make_unique<EndingProcess>(*GetParam(), end, has_loop));
     }
+  }
+  for (const auto& process : processes) {
+    EXPECT_EQ(process->LastForce(), 0) << process->Describe();
   }
 }
 

@@ -48,7 +48,7 @@ TEST(RateControlTest, SpeedGrowsWithTheDeflectionAndKeepsItsDirection) {
   EXPECT_NEAR(rate.V_DH().v.x() / rate.V_DH().v.y(), -0.75, 1e-12);
 }
 
-TEST(RateControlTest, ThePoseStaysInItsBoxAndAfterAPauseNothingLeaps) {  // X5
+TEST(RateControlTest, X5ThePoseStaysInItsBoxAndAfterAPauseNothingLeaps) {
   RateControl rate(Vec3(0.2, 0.1, 0.3));
   for (int i = 0; i < 1000; ++i) {
     rate.Step({Vec3(1, -1, 1), Vec3::Zero()}, 0.01);
@@ -84,7 +84,7 @@ HandIntent Wanting(const spatial::Pose& X_DR) {
   return hand;
 }
 
-TEST_P(RateDeviceTest, APersonBringsThePoseToWhereItShouldBe) {  // X5
+TEST_P(RateDeviceTest, X5APersonBringsThePoseToWhereItShouldBe) {
   WireRig rig(driver(), OptionsOf(GetParam().name));
   ASSERT_TRUE(rig.is_open());
   const DeviceInfo& info = rig.device().info();

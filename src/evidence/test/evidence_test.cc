@@ -161,6 +161,28 @@ TEST_F(EvidenceTest, SummaryHasTheWholeSession) {
   EXPECT_EQ(summary->product->occurrences.size(), 2u);
 }
 
+TEST_F(EvidenceTest, SummaryCountsTicksInWhichContactHadNoRoom) {
+  record::RecorderOptions options;
+  options.path = out / "crowded";
+  const auto model = simulation::testing::PegInBlockModel();
+  const auto recorder = record::Recorder::Create(options, session::MakeModelMeta(*model));
+  session::SessionRecorder sink(recorder->get(), *model);
+  haptics::TickOutput tick;
+  for (const auto& [is_truncated, is_crowded] :
+       {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
+    tick.is_truncated = is_truncated;
+    tick.is_crowded = is_crowded;
+    (*recorder)->AddTick(session::MakeTickRecord(0, {}, tick, 0));
+  }
+  ASSERT_TRUE((*recorder)->Finish().has_value());
+  auto crowded = record::Reader::Open(options.path);
+  const auto summary = Summarise(&*crowded);
+  ASSERT_TRUE(summary.has_value());
+  ASSERT_EQ(summary->hands.size(), 1u);
+  EXPECT_EQ(summary->hands[0].truncated_ticks, 2);
+  EXPECT_EQ(summary->hands[0].crowded_ticks, 1);
+}
+
 TEST_F(EvidenceTest, FileThatCannotBeWrittenIsNamedAndLeavesNothing) {
   const auto file = out / "missing" / "x.csv";
   for (const auto write : {&WriteCsv, &WriteJson, &WriteHdf5, &WriteMcap, &WritePathGlb}) {

@@ -47,7 +47,7 @@ TEST(CalcSizeProbabilities, SumToOneAreSymmetricAndPeakInTheMiddle) {
   }
 }
 
-TEST(DrawDeviation, FrequenciesFollowTheProbabilities) {
+TEST(DrawDeviation, W2FrequenciesFollowTheProbabilities) {
   const Limits limits{units::FromUm(-25), units::FromUm(-9)};  // 40 g6
   const std::vector<double> probabilities = CalcSizeProbabilities(16);
   std::vector<int> counts(17, 0);

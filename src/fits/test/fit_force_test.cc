@@ -93,7 +93,7 @@ TEST(FitForce, MeanOverRandomSurfacesMatchesTheMonteCarloFigures) {
   EXPECT_NEAR(mean(-3.15), 11696, 40);
 }
 
-TEST(FitForce, ClearanceStaysWithinHalfTheRoughness) {
+TEST(FitForce, W1ClearanceStaysWithinHalfTheRoughness) {
   double least = 0;
   double most = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -125,7 +125,7 @@ TEST(FitForce, ClearanceIsLinearBetweenStations) {
 }
 
 // W5, W6: grows with depth, flat where S >= 0; the same on the way out, being a function of depth.
-TEST(FitForce, ResistanceNeverFallsAndRestsWhereThereIsClearance) {
+TEST(FitForce, W6ResistanceNeverFallsAndRestsWhereThereIsClearance) {
   int flat = 0;
   int rising = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -294,6 +294,39 @@ TEST(FitForce, RefusesWhatIsNoFit) {
   EXPECT_TRUE(fails([](FitForceParameters* p) { p->lead_in_angle = 1.5; }));
   EXPECT_TRUE(fails([](FitForceParameters* p) { p->roughness = -1e-6; }));
   EXPECT_TRUE(fails([](FitForceParameters* p) { p->stations = 0; }));
+}
+
+// W1b, paper W, 2.1: diameters that are measured at a few places count with their values between.
+TEST(FitForce, DiametersAlongTheLengthAreInterpolated) {
+  FitForceParameters p = MakeRig(0);
+  p.hole_diameters = {{10e-3, 40.002e-3}, {30e-3, 40.010e-3}};
+  p.shaft_diameters = {{0, 40.000e-3}, {50e-3, 40.010e-3}};
+  const FitForce fit = *FitForce::Make(p);
+  EXPECT_NEAR(fit.CalcClearance(0), 0.5 * 2e-6, 1e-12);      // constant before the first place
+  EXPECT_NEAR(fit.CalcClearance(10e-3), 0.5 * 0e-6, 1e-12);  // 40.002 - 40.002
+  EXPECT_NEAR(fit.CalcClearance(20e-3), 0.5 * 2e-6, 1e-12);  // 40.006 - 40.004
+  EXPECT_NEAR(fit.CalcClearance(50e-3), 0.5 * 0e-6, 1e-12);  // 40.010 - 40.010
+  EXPECT_NEAR(fit.CalcAxialResistance(50e-3), 0, 1e-6);
+}
+
+// A cone in a cylinder: the interference grows along the length, so the force is its integral.
+TEST(FitForce, TaperedShaftHasTheForceOfTheIntegral) {
+  FitForceParameters p = MakeRig(0);
+  p.shaft_diameters = {{0, 40.000e-3}, {50e-3, 40.020e-3}};
+  const FitForce fit = *FitForce::Make(p);
+  // Radial interference 0 to 10 um, 5 um in the mean: 3711.01 N each.
+  EXPECT_NEAR(fit.CalcAxialResistance(50e-3), 5 * 3711.01, 0.1);
+  EXPECT_NEAR(fit.CalcAxialResistance(25e-3), 5 * 3711.01 / 4, 0.1);
+}
+
+TEST(FitForce, RefusesPlacesThatDoNotAscend) {
+  FitForceParameters p = MakeRig(0);
+  p.hole_diameters = {{10e-3, 40e-3}, {10e-3, 40e-3}};
+  EXPECT_FALSE(FitForce::Make(p));
+  p.hole_diameters = {{-1e-3, 40e-3}};
+  EXPECT_FALSE(FitForce::Make(p));
+  p.hole_diameters = {{0, 0}};
+  EXPECT_FALSE(FitForce::Make(p));
 }
 
 }  // namespace

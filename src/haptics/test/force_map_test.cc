@@ -79,7 +79,7 @@ TEST(ForceMap, SlopeIsContinuousAtTheJoint) {
 }
 
 // W9: one statement about the device fixes the map.
-TEST(ForceMap, FeelsTheLargestTrueForceAsTheLargestFeltOne) {
+TEST(ForceMap, W9FeelsTheLargestTrueForceAsTheLargestFeltOne) {
   for (const double largest_true : {8.0, 100.0, 77931.13, 1e5, 1e7}) {
     for (const double largest_felt : {0.36, 2.97, 7.11}) {
       const ForceMap map(largest_true, largest_felt);
@@ -107,7 +107,7 @@ TEST(ForceMap, LinearLimitAgreesWithNewtonsMethod) {
 }
 
 // W10's press fit: of what a table of W(8) gives, the hand can tell 1 % at any depth from the next.
-TEST(ForceMap, PressForcesStayWithinTheDeviceAndApart) {
+TEST(ForceMap, W9PressForcesStayWithinTheDeviceAndApart) {
   const ForceMap map(100e3, 7.11);
   for (const double force : {100.0, 3711.01, 39893.3, 77931.13}) {
     EXPECT_LT(map.Felt(force), 7.11);

@@ -2,8 +2,10 @@
 
 #include "haptics/free_bodies.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -56,6 +58,61 @@ TEST(FreeBodies, DroppedBlockComesToRestAndStays) {
   EXPECT_EQ(table.tick->awake().size(), 1);
 }
 
+/** How deep a block of 2 kg rests in a fixed one, whose contact has this compliance [m]. */
+double CalcRestDepth(std::optional<double> compliance) {
+  Table table(0.3, 100);
+  const Vec3 half(0.03, 0.02, 0.01);
+  const auto base = table.AddFixed(Build(Block(Vec3(0.05, 0.05, 0.01))), Pose(Vec3(0, 0, 0.01)));
+  const auto shape = Build(Block(half));
+  const auto id = table.AddLoose(shape, Pose(Vec3(0, 0, 0.031)), 2, BoxInertia(2, half));
+  table.tick->SetPair({id, base, compliance, std::nullopt});
+  table.Drop(id, shape, 2, BoxInertia(2, half));
+  table.Wait(1);
+  return 0.03 - table.scene.pose(id).p().z();
+}
+
+TEST(FreeBodies, X11StatedComplianceOfAPairDecidesHowDeepItRests) {
+  const double usual = CalcRestDepth(std::nullopt);
+  EXPECT_GT(usual, 0.1e-6);
+  EXPECT_EQ(CalcRestDepth(5e-7), usual) << "that of all contacts";
+  EXPECT_NEAR(CalcRestDepth(2e-6) / usual, 4, 0.4);
+}
+
+/** How far a block slides in a second down a fixed slope of 20 degrees [m]. */
+double CalcSlide(std::optional<double> friction) {
+  Table table(0.3, 100);
+  const Vec3 half(0.03, 0.02, 0.01);
+  const Quat slope(Eigen::AngleAxisd(20 * std::numbers::pi / 180, Vec3::UnitY()));
+  const auto base =
+      table.AddFixed(Build(Block(Vec3(0.2, 0.1, 0.01))), Pose(slope, Vec3(0, 0, 0.2)));
+  const auto shape = Build(Block(half));
+  const Pose X_start(slope, Vec3(0, 0, 0.2) + slope * Vec3(-0.1, 0, 0.0201));
+  const auto id = table.AddLoose(shape, X_start, 0.2, BoxInertia(0.2, half));
+  table.tick->SetPair({base, id, std::nullopt, friction});
+  table.Drop(id, shape, 0.2, BoxInertia(0.2, half));
+  table.Wait(0.5);
+  return (table.scene.pose(id).p() - X_start.p()).norm();
+}
+
+TEST(FreeBodies, X11StatedFrictionOfAPairDecidesWhetherItSlides) {
+  EXPECT_GT(CalcSlide(std::nullopt), 0.02) << "0.3 is less than tan 20 deg";
+  EXPECT_LT(CalcSlide(0.6), 1e-3);
+}
+
+TEST(ContactPairs, FindEitherOrderAndTheLastOneStated) {
+  const contact::BodyId a(1);
+  const contact::BodyId b(2);
+  ContactPairs pairs;
+  EXPECT_EQ(pairs.Find(a, b), nullptr);
+  pairs.Set({b, a, 1e-6, std::nullopt});
+  pairs.Set({a, contact::BodyId(3), 3e-6, std::nullopt});
+  ASSERT_NE(pairs.Find(a, b), nullptr);
+  EXPECT_EQ(pairs.Find(a, b)->compliance, 1e-6);
+  pairs.Set({a, b, 2e-6, 0.4});
+  EXPECT_EQ(pairs.Find(b, a)->compliance, 2e-6);
+  EXPECT_EQ(pairs.Find(b, contact::BodyId(3)), nullptr);
+}
+
 // A hull would come to lie on top of the pin. Down there, around it, it does not creep either.
 TEST(FreeBodies, BushingDroppedOverAPinGoesDown) {
   Table table(0.3, 100);  // It does not fall asleep.
@@ -105,6 +162,34 @@ TEST(FreeBodies, PushedPartPushesBack) {
     }
   }
   EXPECT_NEAR(table.scene.pose(id).p().x(), hand.last().X_WD.p().x() + 0.035, 20e-6);
+}
+
+// A plate that falls on so many feet wakes as many as may move beside it; the last one bears it as
+// if it were fixed.
+TEST(FreeBodies, OneMoreThanMayMoveIsReportedInTheTick) {
+  constexpr double kHeight = 10e-3;
+  const Vec3 half_foot(5e-3, 5e-3, 0.5 * kHeight);
+  const Vec3 half_plate(80e-3, 5e-3, 3e-3);
+  const auto foot = Build(Block(half_foot));
+  const auto plate = Build(Block(half_plate));
+  for (const std::size_t feet : {FreeBodies::kMaxAwake - 1, FreeBodies::kMaxAwake}) {
+    SCOPED_TRACE(feet);
+    Table table(0.3, 100);  // It does not fall asleep.
+    for (std::size_t i = 0; i < feet; ++i) {
+      const double x = -70e-3 + 20e-3 * static_cast<double>(i);
+      (void)table.AddLoose(foot, Pose(Vec3(x, 0, 0.5 * kHeight)), 0.01,
+                           BoxInertia(0.01, half_foot));
+    }
+    const Pose X_WB(Vec3(0, 0, kHeight + half_plate.z() + 0.5e-3));
+    const auto id = table.AddLoose(plate, X_WB, 0.2, BoxInertia(0.2, half_plate));
+    table.Drop(id, plate, 0.2, BoxInertia(0.2, half_plate));
+    ScriptedHand hand(table.tick.get(), Pose(Vec3(1, 0, 1)));
+    hand.Wait(0.1);
+    EXPECT_EQ(table.tick->awake().size(), FreeBodies::kMaxAwake);
+    EXPECT_EQ(std::any_of(hand.samples.begin(), hand.samples.end(),
+                          [](const testing::Sample& sample) { return sample.out.is_crowded; }),
+              feet == FreeBodies::kMaxAwake);
+  }
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ void InsertHalfWay(Rig* rig) {
 
 // X8, X10, W7: from anywhere within the capture limits the shaft comes onto the axis, is not lost
 // again on the way, and pulls the hand without a jump.
-TEST(Guidance, CaptureBringsTheShaftOntoTheAxis) {
+TEST(Guidance, X10CaptureBringsTheShaftOntoTheAxis) {
   double largest_jump = 0;
   double largest_overshoot = 0;
   double largest_rest = 0;
@@ -126,7 +126,7 @@ TEST(Insertion, AxialForceIsTheFitsResistance) {
 
 // W4, W10: a clearance fit is felt as friction of the side that touches only, 0 to 0.3 N for a hand
 // 2 mm beside the axis, and not at all on it.
-TEST(Insertion, ClearanceFitIsLight) {
+TEST(Insertion, W4ClearanceFitIsLight) {
   for (const double offset : {0.0, 2e-3}) {
     Rig rig(MakeFit("H7/g6"), Above(10e-3, offset));
     Insert(&rig);
@@ -170,7 +170,7 @@ Curve CalcCurve(const std::vector<Sample>& samples) {
 }
 
 // W5, W10: interference is smooth and grows with the depth, 0 to 7 N on this device.
-TEST(Insertion, InterferenceFitRisesSmoothly) {
+TEST(Insertion, W5InterferenceFitRisesSmoothly) {
   Rig rig(MakeFit("H7/p6"), Above(10e-3));
   Insert(&rig);
   const Curve curve = CalcCurve(rig.hand->samples);
@@ -184,7 +184,7 @@ TEST(Insertion, InterferenceFitRisesSmoothly) {
 }
 
 // W6, W10: a transition fit goes in stairs: flat where S >= 0, rising where S < 0.
-TEST(Insertion, TransitionFitRisesInStairs) {
+TEST(Insertion, W6TransitionFitRisesInStairs) {
   const auto fit = MakeFit("H7/k6");
   Rig rig(fit, Above(10e-3));
   Insert(&rig);

@@ -62,7 +62,7 @@ TEST(HapticTick, EmptyHandFeelsNothing) {
 }
 
 // X5, X11: the weight is felt, through the one map of all forces (N4).
-TEST(HapticTick, WeightIsFeltThroughTheMap) {
+TEST(HapticTick, X11WeightIsFeltThroughTheMap) {
   const TickOptions options;
   const ForceMap map = MakeForceMap(options.device);
   for (const double mass : {0.01, 0.2, 0.94, 20.0}) {
@@ -79,7 +79,7 @@ TEST(HapticTick, WeightIsFeltThroughTheMap) {
 }
 
 // X11: a part that is held beside its centre of mass turns the hand, on the far side too.
-TEST(HapticTick, WeightBesideTheGripIsATorque) {
+TEST(HapticTick, X11WeightBesideTheGripIsATorque) {
   for (const double lever : {-30e-3, 50e-3}) {
     BlockRig rig(BallShape(), 0.26, Pose(Vec3(0, 0, 0.5)));
     ScriptedHand hand(rig.tick.get(), Pose(Vec3(-lever, 0, 0.5)));
@@ -228,7 +228,7 @@ TEST(HapticTick, DisplayedPartStaysWithinFiftyMicrometres) {
 }
 
 // X11: friction when sliding along a face is mu times what presses, against the motion.
-TEST(HapticTick, SlidingAlongAFaceIsResistedByFriction) {
+TEST(HapticTick, X11SlidingAlongAFaceIsResistedByFriction) {
   for (const Vec3& direction :
        {Vec3(1, 0, 0), Vec3(-0.6, 0.8, 0), Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)}) {
     BlockRig rig(CubeShape(), 0.26, Standing(20.5e-3), Strong());

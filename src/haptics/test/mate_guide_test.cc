@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "haptics/test/rig.h"
 #include "mates/capture.h"
+#include "mates/mate_kind.h"
 #include "spatial/test/random_pose.h"
 
 namespace hvas::haptics {
@@ -93,8 +94,7 @@ TEST(CalcMateGeometry, AgreesWithRecognition) {
   double worst_angle = 0;
   double worst_distance = 0;
   for (int draw = 0; draw < 1000; ++draw) {
-    for (const MateKind kind :
-         {MateKind::kAxisHole, MateKind::kFaceFace, MateKind::kConeSeat, MateKind::kSphereSeat}) {
+    for (const MateKind kind : product::kMateKinds) {
       HeldMate mate;
       mate.capture = {kind,
                       random.Uniform(-0.05, 0),
@@ -113,7 +113,7 @@ TEST(CalcMateGeometry, AgreesWithRecognition) {
       worst_angle = std::max(worst_angle, std::abs(g.angle - deviation.angle));
       worst_distance = std::max(worst_distance, std::abs(g.distance - deviation.distance));
 
-      if (kind == MateKind::kSphereSeat) {
+      if (mates::IsCentre(kind)) {
         EXPECT_EQ(g.tilt_W, Vec3::Zero());
         EXPECT_NEAR((g.p_WQ - g.offset_W - mate.X_WM.p()).norm(), 0, 1e-13);
         continue;
@@ -150,7 +150,7 @@ TEST(CalcMateGeometry, EngagedLengthIsTheInsertionDepth) {
 }
 
 // W7: captured at 5 mm and 10 degrees; released at half as much again.
-TEST(MateGuide, CapturesAndReleasesWithHysteresis) {
+TEST(MateGuide, X8CapturesAndReleasesWithHysteresis) {
   const GuidanceOptions options;
   const HeldPart part = MakePart({MakeAxisMate(nullptr, contact::BodyId(0))});
   const auto at_offset = [](double share) { return Above(5e-3, share * 5e-3); };
@@ -258,7 +258,7 @@ std::shared_ptr<const fits::FitForce> MakeClearance(double radial) {
 }
 
 // W4, W(5): free inside the clearance space.
-TEST(MateGuide, ClearanceSpaceIsFree) {
+TEST(MateGuide, W4ClearanceSpaceIsFree) {
   FullGuide full(MakePart({MakeAxisMate(MakeClearance(15e-6), contact::BodyId(0))}));
   for (const double r : {0.0, 5e-6, 14.9e-6}) {
     for (const double angle : {0.0, 1.0, 2.5}) {
@@ -271,7 +271,7 @@ TEST(MateGuide, ClearanceSpaceIsFree) {
 }
 
 // W(5): F = -k (r - S) e_r outside it, with no jump where it begins.
-TEST(MateGuide, SpringsAnswerBeyondTheClearanceSpace) {
+TEST(MateGuide, W4SpringsAnswerBeyondTheClearanceSpace) {
   const double play = 15e-6;
   FullGuide full(MakePart({MakeAxisMate(MakeClearance(play), contact::BodyId(0))}));
   for (const double r : {15.01e-6, 20e-6, 100e-6}) {
@@ -286,7 +286,7 @@ TEST(MateGuide, SpringsAnswerBeyondTheClearanceSpace) {
 }
 
 // W5: an interference fit holds the shaft on its axis from the first micrometre.
-TEST(MateGuide, InterferenceLeavesNoPlay) {
+TEST(MateGuide, W5InterferenceLeavesNoPlay) {
   FullGuide full(MakePart({MakeAxisMate(MakeClearance(-10e-6), contact::BodyId(0))}));
   const Vec6 F = full.Force(Above(-20e-3, 1e-6));
   EXPECT_NEAR(F[3], -full.options.k_lin * 1e-6, 1e-6);
@@ -377,7 +377,7 @@ TEST(MateGuide, ConeSeatGuidesAcrossAndLeavesTheWayInToContact) {
 }
 
 // Guidance never pulls harder than it may, however far the part is.
-TEST(MateGuide, PullIsBounded) {
+TEST(MateGuide, X10PullIsBounded) {
   const GuidanceOptions options;
   const HeldPart part = MakePart({MakeAxisMate(nullptr, contact::BodyId(0))});
   MateGuide guide;
@@ -431,7 +431,7 @@ TEST(MateGuide, FacesAreIgnoredOnlyWhenAligned) {
 }
 
 // W8, W9: the axial resistance is that of the fit at the depth, and none without a fit.
-TEST(MateGuide, AxialResistanceIsTheFitsAtTheDepth) {
+TEST(MateGuide, W5AxialResistanceIsTheFitsAtTheDepth) {
   const GuidanceOptions options;
   const auto fit = MakeFit("H7/p6");
   const HeldPart part =

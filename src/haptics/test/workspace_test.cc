@@ -27,7 +27,7 @@ WorkspaceOptions Box(double edge) {
   return options;
 }
 
-TEST(WorkspaceTest, InsideTheBoxItIsTheMappingAlone) {  // X5
+TEST(WorkspaceTest, X5InsideTheBoxItIsTheMappingAlone) {
   const WorkspaceOptions options = Box(0.2);
   Workspace workspace(options);
   DeviceState state = At(Vec3(0.05, -0.07, 0.02), spatial::RotationFromVector(Vec3(0.2, 0, 0.1)));

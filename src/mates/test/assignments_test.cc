@@ -154,8 +154,10 @@ TEST_F(Assignments, ConditionsAreSetInSiByKeyNumberAndNames) {
   EXPECT_EQ(*count, 2);
   const product::FitConditions& first = product_.mates[0].conditions;
   const product::FitConditions& second = product_.mates[1].conditions;
-  EXPECT_DOUBLE_EQ(*second.hole_diameter, 6.01e-3);
-  EXPECT_DOUBLE_EQ(*second.shaft_diameter, 5.995e-3);
+  ASSERT_EQ(second.hole_diameters.size(), 1U);
+  EXPECT_DOUBLE_EQ(second.hole_diameters[0].diameter, 6.01e-3);
+  ASSERT_EQ(second.shaft_diameters.size(), 1U);
+  EXPECT_DOUBLE_EQ(second.shaft_diameters[0].diameter, 5.995e-3);
   EXPECT_DOUBLE_EQ(*second.hole_roughness, 3.2e-6);
   EXPECT_DOUBLE_EQ(*second.shaft_roughness, 1.6e-6);
   EXPECT_FALSE(second.friction.has_value());

@@ -98,7 +98,7 @@ TEST(CalcDeviation, FacesGiveHeightAndInPlaneGapBeyondTheirReach) {
 
 // W7: captured at 10 deg and 5 mm (axis), 3 mm (face), and 30 mm before the span, for which the
 // papers have no number; X5 leaves only beyond 1.5 times that.
-TEST(IsCaptured, TakesAtTheThresholdsAndReleasesBeyondTheHysteresis) {
+TEST(IsCaptured, X8TakesAtTheThresholdsAndReleasesBeyondTheHysteresis) {
   const CaptureThresholds thresholds;
   const auto axis = [&](double angle_deg, double distance_mm, double gap_mm, bool was) {
     return IsCaptured(MateKind::kAxisHole,

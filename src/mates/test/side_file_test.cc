@@ -10,6 +10,7 @@
 #include "base/test/odd_files.h"
 #include "base/test/temporary_folder.h"
 #include "mates/located_json.h"
+#include "product/names.h"
 
 namespace hvas::mates {
 namespace {
@@ -99,10 +100,17 @@ TEST(SideFile, EveryNumberIsCheckedForTypeAndRange) {
                                        "[1]",      "{}",        "-1",   "1e30"};
   for (const SideFileObject object : {SideFileObject::kFit, SideFileObject::kSide}) {
     for (const SideFileKey& key : KeysOf(object)) {
-      if (key.type != SideFileType::kNumber && key.type != SideFileType::kIndex) {
+      if (key.type != SideFileType::kNumber && key.type != SideFileType::kIndex &&
+          key.type != SideFileType::kDiameters) {
         continue;
       }
       std::vector<std::string> wrong = never;
+      if (key.type == SideFileType::kDiameters) {
+        wrong.insert(wrong.end(),
+                     {"[]", "[[0]]", "[[0, 0]]", "[[0, -1]]", "[[-1, 40]]", "[[0, 40, 1]]",
+                      "[[0, \"40\"]]", "[[5, 40], [5, 40]]", "[[5, 40], [4, 40]]", "[[0, 40], 41]",
+                      "[[0, 1e30]]", "[[1e30, 40]]"});
+      }
       if (key.type == SideFileType::kIndex) {
         wrong.insert(wrong.end(), {"1.5", "4294967295", "18446744073709551615",
                                    "99999999999999999999", "-9223372036854775808"});
@@ -130,6 +138,18 @@ TEST(SideFile, EveryNumberIsCheckedForTypeAndRange) {
         EXPECT_FALSE(read.error().remedy.empty()) << pair;
       }
     }
+  }
+}
+
+TEST(SideFile, EveryKindOfMateIsReadByItsName) {
+  for (const product::MateKind kind : product::kMateKinds) {
+    const auto read = ParseSideFile(
+        fmt::format(R"({{"format": "{}", "mates": [{{"kind": "{}", "a": {{"occurrence": "x", )"
+                    R"("face": 1}}, "b": {{"occurrence": "y", "face": 2}}}}]}})",
+                    kSideFileFormat, ToString(kind)),
+        "x.hvas.json");
+    ASSERT_TRUE(read.has_value()) << read.error().ToString();
+    EXPECT_EQ(read->added.at(0).kind, kind);
   }
 }
 

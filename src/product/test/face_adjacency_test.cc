@@ -5,31 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include "product/test/flat_face.h"
+
 namespace hvas::product {
 namespace {
 
-constexpr double kTolerance = 2e-6;  // [m]
+using testing::AddFlatFace;
 
-/** Appends a flat face of a polygon, as seen from outside. */
-void AddPolygon(Part* part, const std::vector<Vec3>& points) {
-  Face face;
-  face.surface.kind = SurfaceKind::kPlane;
-  face.surface.origin = points[0];
-  face.surface.axis = (points[1] - points[0]).cross(points[2] - points[0]).normalized();
-  face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
-  const auto first = static_cast<std::uint32_t>(part->mesh.vertices.size());
-  for (const Vec3& p : points) {
-    part->mesh.vertices.push_back(p);
-    face.box_B.Add(p);
-    part->box_B.Add(p);
-  }
-  for (std::uint32_t i = 2; i < points.size(); ++i) {
-    part->mesh.triangles.push_back({first, first + i - 1, first + i});
-    face.area += 0.5 * (points[i - 1] - points[0]).cross(points[i] - points[0]).norm();
-  }
-  face.triangle_count = static_cast<std::uint32_t>(points.size()) - 2;
-  part->faces.push_back(face);
-}
+constexpr double kTolerance = 2e-6;  // [m]
 
 /** An L extruded along z; `noise` moves each face's own vertices. */
 Part MakeAngle(double noise) {
@@ -40,9 +23,9 @@ Part MakeAngle(double noise) {
     const Vec3& a = profile[i];
     const Vec3& b = profile[(i + 1) % profile.size()];
     const Vec3 shift = noise * Vec3(std::sin(7.0 * static_cast<double>(i)), 0.4, -0.5);
-    AddPolygon(&part, {a + shift, b + shift, b + up + shift, a + up + shift});
+    AddFlatFace({a + shift, b + shift, b + up + shift, a + up + shift}, &part);
   }
-  AddPolygon(&part, {{0, 3, 0}, {1, 3, 0}, {1, 1, 0}, {3, 1, 0}, {3, 0, 0}, {0, 0, 0}});
+  AddFlatFace({{0, 3, 0}, {1, 3, 0}, {1, 1, 0}, {3, 1, 0}, {3, 0, 0}, {0, 0, 0}}, &part);
   return part;  // Open at the top.
 }
 

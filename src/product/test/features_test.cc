@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "product/hole_patterns.h"
+
 namespace hvas::product {
 namespace {
 
@@ -250,6 +252,68 @@ TEST(ProductDepth, CountsLevelsOfSubassemblies) {
   EXPECT_EQ(product.depth(), 1);
   product.occurrences[0].parent = SubassemblyId(1);
   EXPECT_EQ(product.depth(), 2);
+}
+
+std::vector<std::string> ListNotes(Part part) {
+  Diagnostics diagnostics;
+  part.name = "part";
+  BuildFeatures(&part, &diagnostics);
+  std::vector<std::string> notes;
+  for (const Diagnostic& item : diagnostics.items()) {
+    EXPECT_EQ(item.code, "limit-features");
+    EXPECT_EQ(item.entity, "part");
+    notes.push_back(item.message);
+  }
+  return notes;
+}
+
+TEST(Features, FacesOnOneAxisBeyondTheLimitAreReported) {
+  for (const int count : {64, 65}) {
+    Part part;
+    for (int i = 0; i < count; ++i) {  // Lands along a bore, all on one side.
+      AddCylinder(&part, 0, 5e-3, -1, 0.02 * i, 0.01, 0, 10e-3);
+    }
+    EXPECT_EQ(ListNotes(part).size(), count > 64 ? 1u : 0u) << count;
+  }
+}
+
+TEST(Features, AxesBeyondTheLimitOfThreadsAreReported) {
+  for (const int count : {300, 301}) {
+    Part part;
+    for (int i = 0; i < count; ++i) {
+      AddCylinder(&part, 10e-3 * i, 2e-3, -1, 0, 2 * std::numbers::pi, 0, 5e-3);
+    }
+    EXPECT_EQ(ListNotes(part).size(), count > 300 ? 1u : 0u) << count;
+  }
+}
+
+TEST(Features, HolesBeyondTheLimitsOfPatternsAreReported) {
+  const auto count_limits = [](int count) {
+    std::vector<Form> holes(static_cast<std::size_t>(count));
+    double x = 0;
+    for (Form& hole : holes) {  // No two steps are equal: there is no row or grid.
+      x += 10e-3 + 0.1e-3 * static_cast<double>(&hole - holes.data());
+      hole.kind = FormKind::kThroughHole;
+      hole.axis_B = Vec3::UnitZ();
+      hole.origin_B = Vec3(x, 0, 0);
+    }
+    RecognitionLimits limits;
+    (void)FindHolePatterns(holes, 10e-6, &limits);
+    return limits.items().size();
+  };
+  EXPECT_EQ(count_limits(60), 0u);
+  EXPECT_EQ(count_limits(61), 1u) << "no rows";
+  EXPECT_EQ(count_limits(401), 2u) << "neither circles nor rows";
+}
+
+TEST(Features, PlanesBeyondTheLimitOfSeatsAreReported) {
+  for (const int count : {48, 49}) {
+    Part part;
+    for (int i = 0; i < count; ++i) {
+      AddSquare(&part, 0, 0.1 * i, 10e-3, 1);
+    }
+    EXPECT_EQ(ListNotes(part).size(), count > 48 ? 1u : 0u) << count;
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "product/names.h"
 #include "product/validate.h"
 
 namespace hvas::product {
@@ -96,8 +97,13 @@ Product FullProduct() {
   product.subassemblies.resize(2);
   product.subassemblies[0] = {SubassemblyId(0), {}, "root", {SubassemblyId(1)}, {OccurrenceId(1)}};
   product.subassemblies[1] = {SubassemblyId(1), SubassemblyId(0), "sub", {}, {OccurrenceId(0)}};
-  product.occurrences.push_back(
-      {OccurrenceId(0), PartId(0), SubassemblyId(1), "pin", "root/sub/pin", SomePose(1)});
+  product.occurrences.push_back({OccurrenceId(0),
+                                 PartId(0),
+                                 SubassemblyId(1),
+                                 "pin",
+                                 "root/sub/pin",
+                                 SomePose(1),
+                                 {"root/sub/pin/SOLID", "root/sub/pin/SHELL"}});
   product.occurrences.push_back(
       {OccurrenceId(1), PartId(0), SubassemblyId(0), "pin", "root/pin#2", SomePose(2)});
   Mate mate;
@@ -114,7 +120,7 @@ Product FullProduct() {
   mate.shaft_radius = 6;
   mate.overlap = 7;
   mate.fit = Fit{FitKind::kInterference, "H7/p6", 0.02, false, "stated"};
-  mate.conditions = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};
+  mate.conditions = {{{0.01, 0.1}, {0.02, 0.11}}, {{0.03, 0.2}}, 0.3, 0.4, 0.5, 0.6, 0.7};
   mate.surfaces.push_back({SurfaceConstraintKind::kSameCone, FaceId(0), FaceId(1)});
   mate.origin = MateOrigin::kUser;
   mate.confidence = 0.75;
@@ -123,6 +129,23 @@ Product FullProduct() {
   product.joints.push_back({OccurrenceId(0), OccurrenceId(1), {MateId(0)}, 1, 2, 3});
   product.alignments.push_back({mate.b, mate.a});
   product.box_W = {Vec3(-5, -6, -7), Vec3(8, 9, 10)};
+  product.parts[0].identity = {"P-1", "a pin", "B", "longer", "A. Smith", "Works", "2024-05-31"};
+  product.subassemblies[1].identity.id = "S-1";
+  product.header = {"STEP",     "a.step",      "model",     "2024-05-31T12:30:00",
+                    "A. Smith", "Works, Mill", "converter", "CAD 1",
+                    "nobody",   "AP214"};
+  Relation relation;
+  relation.kind = RelationKind::kTangent;
+  relation.a = {OccurrenceId(0), FeatureId(0),  FeatureId(1), ElementKind::kEdge,
+                Vec3(1, 2, 3),   Vec3::UnitX(), 0.5,          true};
+  relation.b.occurrence = OccurrenceId(1);
+  relation.magnitude = 0.25;
+  relation.is_stated = true;
+  relation.free_translations = 1;
+  relation.free_rotations = 2;
+  relation.residual = 1e-6;
+  product.relations.push_back(relation);
+  product.contact_pairs.push_back({OccurrenceId(0), OccurrenceId(1), 1e-7, std::nullopt});
   return product;
 }
 
@@ -130,6 +153,38 @@ Product RoundTrip(const Product& product) {
   auto read = DeserialiseProduct(SerialiseProduct(product));
   EXPECT_TRUE(read.has_value());
   return read.value_or(Product{});
+}
+
+constexpr std::size_t kTextSize = sizeof(std::uint64_t);  // A text or list without content.
+
+/** The bytes as a program of format 2 wrote them: without what VisitBodies adds. */
+std::vector<std::byte> SerialiseSecondFormat(Product product) {
+  for (Occurrence& occurrence : product.occurrences) {
+    occurrence.bodies.clear();
+  }
+  std::vector<std::byte> bytes = SerialiseProduct(product);
+  bytes.resize(bytes.size() - kTextSize * product.occurrences.size());
+  bytes.at(0) = std::byte{2};
+  return bytes;
+}
+
+/** The bytes as a program of format 1 wrote them: without what VisitExtension adds. */
+std::vector<std::byte> SerialiseFirstFormat(Product product) {
+  for (Part& part : product.parts) {
+    part.identity = {};
+  }
+  for (Subassembly& subassembly : product.subassemblies) {
+    subassembly.identity = {};
+  }
+  product.header = {};
+  product.relations.clear();
+  product.contact_pairs.clear();
+  const std::size_t identities = product.parts.size() + product.subassemblies.size();
+  const std::size_t extension = kTextSize * (7 * identities + 10 + 2);
+  std::vector<std::byte> bytes = SerialiseSecondFormat(product);
+  bytes.resize(bytes.size() - extension);
+  bytes.at(0) = std::byte{1};
+  return bytes;
 }
 
 void ExpectEqual(const Mesh& a, const Mesh& b) {
@@ -158,6 +213,47 @@ void ExpectEqual(const std::optional<Color>& a, const std::optional<Color>& b) {
   if (a) {
     EXPECT_TRUE(a->r == b->r && a->g == b->g && a->b == b->b);
   }
+}
+
+TEST(ProductIo, X2KeepsIdentitiesHeaderRelationsAndContactPairs) {
+  const Product b = RoundTrip(FullProduct());
+  const Identity& identity = b.parts.at(0).identity;
+  EXPECT_EQ(identity.id, "P-1");
+  EXPECT_EQ(identity.description, "a pin");
+  EXPECT_EQ(identity.version, "B");
+  EXPECT_EQ(identity.version_description, "longer");
+  EXPECT_EQ(identity.designer, "A. Smith");
+  EXPECT_EQ(identity.organisation, "Works");
+  EXPECT_EQ(identity.created, "2024-05-31");
+  EXPECT_EQ(b.subassemblies.at(1).identity.id, "S-1");
+  EXPECT_EQ(b.header.originating_system, "CAD 1");
+  EXPECT_EQ(b.header.schema, "AP214");
+  const Relation& relation = b.relations.at(0);
+  EXPECT_EQ(relation.kind, RelationKind::kTangent);
+  EXPECT_EQ(relation.a.element, ElementKind::kEdge);
+  EXPECT_EQ(relation.a.second, FeatureId(1));
+  EXPECT_EQ(relation.a.radius, 0.5);
+  EXPECT_TRUE(relation.a.is_inward && relation.is_stated);
+  EXPECT_EQ(relation.magnitude, 0.25);
+  EXPECT_EQ(relation.free_translations, 1);
+  EXPECT_EQ(relation.residual, 1e-6);
+  EXPECT_EQ(b.contact_pairs.at(0).compliance, 1e-7);
+  EXPECT_FALSE(b.contact_pairs.at(0).friction.has_value());
+}
+
+TEST(ProductIo, X2ReadsProductsOfTheFirstFormatThatRecordsHold) {
+  const auto read = DeserialiseProduct(SerialiseFirstFormat(FullProduct()));
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->mates.size(), 1u);
+  EXPECT_TRUE(read->parts.at(0).identity.is_empty());
+  EXPECT_TRUE(read->relations.empty());
+}
+
+TEST(ProductIo, X2ReadsProductsOfTheSecondFormatThatRecordsHold) {
+  const auto read = DeserialiseProduct(SerialiseSecondFormat(FullProduct()));
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->relations.size(), FullProduct().relations.size());
+  EXPECT_TRUE(read->occurrences.at(0).bodies.empty());
 }
 
 // The writer's list of fields is made to be complete by the compiler; here each is looked at once
@@ -256,7 +352,7 @@ TEST(ProductIo, KeepsTreeAndMatesToTheLastBit) {
     const Occurrence& o = b.occurrences.at(i);
     EXPECT_TRUE(o.id == a.occurrences[i].id && o.part == a.occurrences[i].part &&
                 o.parent == a.occurrences[i].parent && o.name == a.occurrences[i].name &&
-                o.path == a.occurrences[i].path);
+                o.path == a.occurrences[i].path && o.bodies == a.occurrences[i].bodies);
     ExpectEqual(o.X_WB, a.occurrences[i].X_WB);
   }
   ASSERT_EQ(b.mates.size(), 1u);
@@ -273,7 +369,12 @@ TEST(ProductIo, KeepsTreeAndMatesToTheLastBit) {
   EXPECT_TRUE(n.fit->kind == m.fit->kind && n.fit->code == m.fit->code &&
               n.fit->nominal_diameter == m.fit->nominal_diameter &&
               n.fit->is_proposed == m.fit->is_proposed && n.fit->reason == m.fit->reason);
-  EXPECT_TRUE(n.conditions.hole_diameter == 0.1 && n.conditions.shaft_diameter == 0.2 &&
+  ASSERT_EQ(n.conditions.hole_diameters.size(), 2u);
+  ASSERT_EQ(n.conditions.shaft_diameters.size(), 1u);
+  EXPECT_TRUE(n.conditions.hole_diameters[1].depth == 0.02 &&
+              n.conditions.hole_diameters[1].diameter == 0.11 &&
+              n.conditions.shaft_diameters[0].depth == 0.03 &&
+              n.conditions.shaft_diameters[0].diameter == 0.2 &&
               n.conditions.hole_roughness == 0.3 && n.conditions.shaft_roughness == 0.4 &&
               n.conditions.friction == 0.5 && n.conditions.hole_temperature_c == 0.6 &&
               n.conditions.shaft_temperature_c == 0.7);
@@ -288,6 +389,15 @@ TEST(ProductIo, KeepsTreeAndMatesToTheLastBit) {
   ASSERT_EQ(b.alignments.size(), 1u);
   ExpectEqual(b.alignments[0].a, m.b);
   ExpectEqual(b.alignments[0].b, m.a);
+}
+
+TEST(ProductIo, KeepsEveryKindOfMate) {
+  for (const MateKind kind : kMateKinds) {
+    Product product = FullProduct();
+    product.mates[0].kind = kind;
+    ASSERT_EQ(RoundTrip(product).mates.size(), 1U) << ToString(kind);
+    EXPECT_EQ(RoundTrip(product).mates[0].kind, kind);
+  }
 }
 
 TEST(ProductIo, KeepsAnEmptyProductAndOddNumbers) {

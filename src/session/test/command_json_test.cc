@@ -135,7 +135,7 @@ TEST(TickOptionsJson, BringsAllOptionsBack) {
   }
 }
 
-TEST(TickOptionsJson, SaysWhereFitsAreNotRenderedAndReadsOlderOnesThatDoNotSay) {  // W8: A3
+TEST(TickOptionsJson, W8SaysWhereFitsAreNotRenderedAndReadsOlderOnesThatDoNotSay) {  // A3
   haptics::TickOptions options;
   EXPECT_FALSE(MakeTickOptionsJson(options).contains("renders_fits"));
   EXPECT_TRUE(ParseTickOptions(MakeTickOptionsJson(options))->renders_fits);
@@ -223,6 +223,28 @@ TEST(CommandJson, BringsACommandBackFromWhatHasChanged) {
     ExpectEqual(back->parts[i].X_WB, given.parts[i].X_WB);
   }
   EXPECT_TRUE(std::signbit(back->parts[17].X_WB.p().x()));
+}
+
+TEST(CommandJson, X1BringsBackWhatIsTogether) {
+  Numbers numbers;
+  const std::vector<PartState> before = MakeParts(&numbers, 5);
+  GivenCommand given;
+  given.kind = simulation::TickCommand::Kind::kTake;
+  given.step.occurrence = product::OccurrenceId(3);
+  given.can_join = true;
+  given.parts = before;
+  given.parts[1].leader = product::OccurrenceId(1);
+  given.parts[4].leader = product::OccurrenceId(1);
+  const auto back = ParseCommand(MakeCommand(given, before), before, 1);
+  ASSERT_TRUE(back.has_value()) << back.error().ToString();
+  EXPECT_TRUE(back->can_join);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_EQ(back->parts[i].leader, given.parts[i].leader);
+  }
+  const auto apart = ParseCommand(MakeCommand(*back, given.parts), given.parts, 1);
+  EXPECT_EQ(apart->parts[4].leader, product::OccurrenceId(1)) << "nothing has changed since";
+  given.parts[4].leader = product::OccurrenceId(5);
+  EXPECT_FALSE(ParseCommand(MakeCommand(given, before), before, 1)) << "there is no such part";
 }
 
 TEST(CommandJson, RefusesWhatPointsOutsideTheModel) {

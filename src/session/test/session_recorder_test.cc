@@ -96,6 +96,7 @@ TEST(RecordedModelTest, IsMadeAgainFromTheFileAlone) {
   const auto file = folder / "session";
   simulation::CompileOptions options = simulation::testing::FastOptions();
   options.seed = 77;
+  options.pairs = fits::PairChoice::kOnePair;
   Diagnostics diagnostics;
   options.steps = PegInBlockModel()->sequence.steps;
   ASSERT_EQ(options.steps.size(), 2u);
@@ -110,6 +111,7 @@ TEST(RecordedModelTest, IsMadeAgainFromTheFileAlone) {
   const auto back = LoadModel(&*reader, simulation::testing::FastOptions(), &diagnostics);
   ASSERT_TRUE(back.has_value()) << back.error().ToString();
   EXPECT_EQ((*back)->seed, 77u);
+  EXPECT_EQ((*back)->pairs, fits::PairChoice::kOnePair);
   EXPECT_EQ((*back)->sequence.steps[0].occurrence, model->sequence.steps[0].occurrence);
   EXPECT_EQ((*back)->table_z, model->table_z);
   for (std::size_t i = 0; i < model->bodies.size(); ++i) {

@@ -118,7 +118,7 @@ TEST(DeviceSessionTest, TheSameSeedGivesTheSameBytes) {
   EXPECT_EQ(digests[0], digests[1]);
 }
 
-TEST(DeviceSessionTest, RunsAtTheRateOfTheDevice) {  // X4: 1 to 8 kHz
+TEST(DeviceSessionTest, X4RunsAtTheRateOfTheDevice) {  // 1 to 8 kHz
   for (const double rate_hz : {2000.0, 4000.0, 8000.0}) {
     SCOPED_TRACE(rate_hz);
     RenderOptions render;
@@ -239,6 +239,18 @@ TEST(DeviceSessionTest, SaysHowADeviceIsRenderedTo) {  // N8: no lies about what
   EXPECT_LE(touch.coupling.k_lin, 0.5 * info.profile.max_stiffness);
   const std::string about_torque = DescribeRendering(info, touch).front();
   EXPECT_NE(about_torque.find("no torques"), std::string::npos) << about_torque;
+
+  constexpr int kMostTicks = haptics::PassivityChannel::kMaxDelay;
+  for (const int ticks : {kMostTicks, kMostTicks + 1}) {
+    haptics::TickOptions late = touch;
+    late.device.delay = ticks * late.dt;
+    const std::vector<std::string> notes = DescribeRendering(info, late);
+    EXPECT_EQ(std::any_of(notes.begin(), notes.end(),
+                          [](const std::string& note) {
+                            return note.find("its delay is 31 ticks") != std::string::npos;
+                          }),
+              ticks > kMostTicks);
+  }
 
   info.capabilities.force_axes = 0;
   const haptics::TickOptions mouse = MakeTickOptions(info, *model, {});

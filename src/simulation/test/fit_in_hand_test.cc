@@ -33,10 +33,10 @@ struct Moment {
 class Trial {
  public:
   Trial(std::shared_ptr<const fits::FitForce> fit, double turn_back, std::uint64_t seed,
-        const haptics::TickOptions& options = {}, double paper_factor = 1)
+        const haptics::TickOptions& options = {}, fits::FitKind kind = fits::FitKind::kClearance)
       : rig_(std::move(fit), Above(40e-3, 0.12), options),
         person_({}, seed, spatial::Pose(Vec3(0, 0, 0.3))) {
-    rig_.part.mates[0].paper_factor = paper_factor;
+    rig_.part.mates[0].fit_kind = kind;
     // The rig takes its part at once; here the person does.
     (void)rig_.tick->Drop();
     const spatial::Pose X_BG(rig_.part.p_BoBcm_B);
@@ -298,7 +298,7 @@ TEST(FitInHand, PaperMapShowsThePapersRange) {
   options.force_map = haptics::ForceMapKind::kPaper;
   const auto fit = MakeFit("H7/p6", 0);
   const double factor = fits::FindPaperScale(fits::FitKind::kInterference).factor;
-  Trial trial(fit, 3e-3, 8, options, factor);
+  Trial trial(fit, 3e-3, 8, options, fits::FitKind::kInterference);
   const std::vector<Moment> moments = trial.Run(60);
   double most = 0;
   for (const Moment& m : moments) {
@@ -317,7 +317,7 @@ TEST(FitInHand, FeelsWhatTheObserverIsShown) {
       haptics::TickOptions options;
       options.force_map = map;
       const auto fit = MakeFit(kind == fits::FitKind::kInterference ? "H7/p6" : "H7/k6");
-      Trial trial(fit, 5e-3, 9, options, fits::FindPaperScale(kind).factor);
+      Trial trial(fit, 5e-3, 9, options, kind);
       const std::vector<Moment> moments = trial.Run(40);
       int compared = 0;
       for (std::size_t i = 1; i < moments.size(); ++i) {

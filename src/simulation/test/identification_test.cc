@@ -7,11 +7,13 @@
 namespace hvas::simulation {
 namespace {
 
-Identification Show(haptics::ForceMapKind map, ShownSizes sizes, std::uint64_t seed = 1,
+using fits::PairChoice;
+
+Identification Show(haptics::ForceMapKind map, PairChoice sizes, std::uint64_t seed = 1,
                     const Observer& observer = {}) {
   IdentificationOptions options;
   options.map = map;
-  options.sizes = sizes;
+  options.pairs = sizes;
   options.seed = seed;
   options.observer = observer;
   return *Identify(options);
@@ -24,7 +26,7 @@ double PaperShare(int fit) {
 // N4, W12: with one map for all fits, and a hand no better than published, every fit is told more
 // often than by the paper's people: of one pair as there, and of pairs drawn from the zones.
 TEST(Identification, PublishedMapBeatsThePapersPeople) {
-  for (const ShownSizes sizes : {ShownSizes::kOnePair, ShownSizes::kOfKind}) {
+  for (const PairChoice sizes : {PairChoice::kOnePair, PairChoice::kOfKind}) {
     for (const std::uint64_t seed : {1, 2, 3}) {
       const Identification result = Show(haptics::ForceMapKind::kPublished, sizes, seed);
       for (int fit = 0; fit < kShownFits; ++fit) {
@@ -42,22 +44,22 @@ TEST(Identification, PublishedMapBeatsThePapersPeople) {
 // much worse: a small force times a large factor feels like a large force times a small one.
 TEST(Identification, PapersFactorsConfuseTransitionFits) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const auto share = [seed](haptics::ForceMapKind map, ShownSizes sizes) {
+    const auto share = [seed](haptics::ForceMapKind map, PairChoice sizes) {
       return Show(map, sizes, seed).CalcShare(2);
     };
     using haptics::ForceMapKind;
-    EXPECT_GT(share(ForceMapKind::kPublished, ShownSizes::kOnePair),
-              share(ForceMapKind::kPaper, ShownSizes::kOnePair) + 0.02);
-    EXPECT_GT(share(ForceMapKind::kPublished, ShownSizes::kOfKind),
-              share(ForceMapKind::kPaper, ShownSizes::kOfKind) + 0.1);
+    EXPECT_GT(share(ForceMapKind::kPublished, PairChoice::kOnePair),
+              share(ForceMapKind::kPaper, PairChoice::kOnePair) + 0.02);
+    EXPECT_GT(share(ForceMapKind::kPublished, PairChoice::kOfKind),
+              share(ForceMapKind::kPaper, PairChoice::kOfKind) + 0.1);
   }
 }
 
 // The two ends: who feels exactly tells one pair of each without fail, who feels nothing guesses.
 TEST(Identification, ObserverIsBetweenPerfectAndBlind) {
-  const Identification sharp = Show(haptics::ForceMapKind::kPublished, ShownSizes::kOnePair, 1,
+  const Identification sharp = Show(haptics::ForceMapKind::kPublished, PairChoice::kOnePair, 1,
                                     {.weber = 0.001, .threshold = 0.001, .looks = 10});
-  const Identification numb = Show(haptics::ForceMapKind::kPublished, ShownSizes::kOnePair, 1,
+  const Identification numb = Show(haptics::ForceMapKind::kPublished, PairChoice::kOnePair, 1,
                                    {.weber = 0.1, .threshold = 1e6, .looks = 10});
   double guessed = 0;
   for (int fit = 0; fit < kShownFits; ++fit) {
@@ -68,9 +70,9 @@ TEST(Identification, ObserverIsBetweenPerfectAndBlind) {
 }
 
 TEST(Identification, RepeatsBySeedAndCountsEveryTrial) {
-  const Identification a = Show(haptics::ForceMapKind::kPublished, ShownSizes::kAny, 7);
-  const Identification b = Show(haptics::ForceMapKind::kPublished, ShownSizes::kAny, 7);
-  const Identification c = Show(haptics::ForceMapKind::kPublished, ShownSizes::kAny, 8);
+  const Identification a = Show(haptics::ForceMapKind::kPublished, PairChoice::kAny, 7);
+  const Identification b = Show(haptics::ForceMapKind::kPublished, PairChoice::kAny, 7);
+  const Identification c = Show(haptics::ForceMapKind::kPublished, PairChoice::kAny, 8);
   EXPECT_EQ(a.counts, b.counts);
   EXPECT_EQ(a.mean_felt, b.mean_felt);
   EXPECT_NE(a.mean_felt, c.mean_felt);

@@ -14,7 +14,7 @@ using testing::Session;
 
 constexpr std::int64_t kPeriodNs = 1'000'000;
 
-TEST(LoadShedderTest, LevelsLeaveOutMoreAndMoreAndPointsFirst) {  // X4
+TEST(LoadShedderTest, X4LevelsLeaveOutMoreAndMoreAndPointsFirst) {
   for (std::size_t i = 1; i < kEffortLevels.size(); ++i) {
     EXPECT_LT(kEffortLevels[i].point_budget, kEffortLevels[i - 1].point_budget);
     EXPECT_LE(kEffortLevels[i].iterations, kEffortLevels[i - 1].iterations);
@@ -138,6 +138,28 @@ TEST(TickLogTest, EveryTickRunsAgainBitForBit) {  // N9
     largest = std::max(largest, out.F_H_D.f.norm());
   }
   EXPECT_GT(largest, 1);  // something was felt
+}
+
+TEST(ContactLimitsTest, TicksOfARunAreCounted) {
+  haptics::ContactAccount account;
+  account.is_truncated = true;
+  ContactLimits limits;
+  limits.Add(account);
+  account.is_crowded = true;
+  limits.Add(account);
+  limits.Add({});
+  EXPECT_EQ(limits.truncated_ticks, 2u);
+  EXPECT_EQ(limits.crowded_ticks, 1u);
+}
+
+TEST(ContactLimitsTest, RunWithFewPointsReportsTicksWithIncompleteContact) {
+  const auto truncated = [](int effort_level) {
+    Session session(PegInBlockModel());
+    session.simulation.haptics().SetEffortLevel(effort_level);
+    return RunLockstep(session.MakeExecution(5)).contact_limits.truncated_ticks;
+  };
+  EXPECT_EQ(truncated(0), 0u);
+  EXPECT_GT(truncated(3), 0u);
 }
 
 }  // namespace

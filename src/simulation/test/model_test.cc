@@ -28,7 +28,7 @@ haptics::MateFaces CollectOfHole(const contact::ShapeSource& source) {
   return {};
 }
 
-TEST(CollectMateFacesTest, NeighboursOfABoreAreTheFacesThatShareItsEdges) {  // X9
+TEST(CollectMateFacesTest, X9NeighboursOfABoreAreTheFacesThatShareItsEdges) {
   // Bushing: 0 bottom, 1 outside, 2 top, 3 bore. Cup: 4 floor.
   const haptics::MateFaces through =
       CollectOfHole(contact::testing::Bushing(5e-3, 10e-3, 20e-3, 20e-6));

@@ -11,7 +11,7 @@ using testing::Session;
 
 constexpr int kLimit_s = 4;  // long enough to take the peg up and, in time, to put it in
 
-TEST(RealtimeTest, ThreeLoopsShareASession) {  // X4; meant for the thread sanitizer
+TEST(RealtimeTest, X4ThreeLoopsShareASession) {  // meant for the thread sanitizer
   Session session(PegInBlockModel());
   int physics_steps = 0;
   Execution execution = session.MakeExecution(kLimit_s);
@@ -58,7 +58,7 @@ class TicksOfHands final : public Sink {
   bool has_taken{false};
 };
 
-TEST(RealtimeTest, TwoHandsShareASession) {  // X3, X4; meant for the thread sanitizer
+TEST(RealtimeTest, X3TwoHandsShareASession) {  // X4; meant for the thread sanitizer
   const auto model = PegInBlockModel();
   Simulation simulation(model, haptics::TickOptions(), haptics::TickOptions());
   SimulatedPerson left({}, 1, StartOfHand(*model));

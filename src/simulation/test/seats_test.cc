@@ -87,7 +87,43 @@ std::vector<MateKind> KindsOf(const Product& product) {
   return kinds;
 }
 
+/** The same shape with the triangles of each face one after the other, as parts have them. */
+contact::ShapeSource SortByFace(const contact::ShapeSource& source) {
+  contact::ShapeSource sorted = source;
+  sorted.triangles.clear();
+  sorted.triangle_face.clear();
+  for (std::uint32_t face = 0; face < source.faces.size(); ++face) {
+    for (std::size_t t = 0; t < source.triangles.size(); ++t) {
+      if (source.triangle_face[t] == face) {
+        sorted.triangles.push_back(source.triangles[t]);
+        sorted.triangle_face.push_back(face);
+      }
+    }
+  }
+  return sorted;
+}
+
+/** A frame on a floor, and a block in its window with this clearance between opposite walls. */
+Product BlockInWindow(double clearance) {
+  Product product;
+  product.name = "rig";
+  const auto frame = testing::AddPart(
+      &product, "frame",
+      SortByFace(contact::testing::Frame(Vec3(20e-3, 15e-3, 10e-3), {8e-3, 5e-3})));
+  const auto floor =
+      testing::AddPart(&product, "floor", contact::testing::Block(Vec3(15e-3, 12e-3, 2e-3)));
+  const double play = 0.5 * clearance;
+  const auto block = testing::AddPart(
+      &product, "block", contact::testing::Block(Vec3(8e-3 - play, 5e-3 - play, 12e-3)));
+  testing::Place(&product, frame, "frame");
+  testing::Place(&product, floor, "floor", Pose(Vec3(0, 0, -12e-3)));
+  testing::Place(&product, block, "block", Pose(Vec3(0, 0, 2e-3)));
+  testing::Complete(&product);
+  return product;
+}
+
 void ExpectAssembles(Product product) {
+  const std::size_t count = product.occurrences.size();
   Diagnostics diagnostics;
   const auto model = Compile(std::make_shared<const Product>(std::move(product)),
                              testing::FastOptions(), &diagnostics);
@@ -96,7 +132,7 @@ void ExpectAssembles(Product product) {
     Session session(*model, seed);
     (void)RunLockstep(session.MakeExecution(kSeatLimit_s));
     ASSERT_TRUE(session.run.is_done());
-    ASSERT_EQ(session.run.results().size(), 2U);
+    ASSERT_EQ(session.run.results().size(), count);
     for (const PartResult& part : session.run.results()) {
       EXPECT_TRUE(part.is_seated) << "seed " << seed << ": " << part.reason;
       EXPECT_LT(part.pose_error, 1e-6);
@@ -117,6 +153,20 @@ TEST(SeatsTest, ABallGoesIntoItsSocket) {
   Product product = BallInSocket();
   ASSERT_EQ(KindsOf(product), (std::vector<MateKind>{MateKind::kSphereSeat}));
   ExpectAssembles(std::move(product));
+}
+
+TEST(SeatsTest, X8BlockGoesIntoItsWindowHoweverTheClearanceIsDrawn) {
+  for (const double clearance : {0.0, 50e-6, 0.2e-3, -40e-6}) {
+    SCOPED_TRACE(clearance);
+    Product product = BlockInWindow(clearance);
+    EXPECT_EQ(KindsOf(product).size(), 6U) << "floor to frame, floor to block, and four walls";
+    ExpectAssembles(std::move(product));
+  }
+}
+
+TEST(SeatsTest, X2PlanesThatHoldNothingBetweenThemHaveToTouch) {
+  Product product = BlockInWindow(1e-3);
+  EXPECT_EQ(KindsOf(product).size(), 2U) << "the floor's";
 }
 
 }  // namespace

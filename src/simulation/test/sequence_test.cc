@@ -61,7 +61,7 @@ struct Planned {
 
 using Names = std::vector<std::string>;
 
-TEST(SequenceTest, PegComesOutAlongItsBoreHoweverTheProductLies) {  // X17
+TEST(SequenceTest, X17PegComesOutAlongItsBoreHoweverTheProductLies) {
   for (const Vec3& turn : {Vec3(0, 0, 0), Vec3(0.4, -0.2, 1.1), Vec3(2.5, 0.3, 0)}) {
     const Pose X_WP(spatial::RotationFromVector(turn), Vec3(0.1, -0.05, 0.2));
     const Planned planned(testing::PegInBlock(X_WP));
@@ -78,7 +78,7 @@ TEST(SequenceTest, PegComesOutAlongItsBoreHoweverTheProductLies) {  // X17
   }
 }
 
-TEST(SequenceTest, PartUnderALidGoesInBeforeTheLid) {  // X17, N10
+TEST(SequenceTest, X17PartUnderALidGoesInBeforeTheLid) {  // N10
   const Planned planned(testing::CoinUnderLid());
   EXPECT_EQ(planned.order(), (Names{"cup", "coin", "lid"}));
   EXPECT_TRUE(planned.sequence.gaps.empty());
@@ -87,7 +87,7 @@ TEST(SequenceTest, PartUnderALidGoesInBeforeTheLid) {  // X17, N10
   }
 }
 
-TEST(SequenceTest, EveryStepOfAnOrderIsFreeOfThePartsBeforeIt) {  // X17
+TEST(SequenceTest, X17EveryStepOfAnOrderIsFreeOfThePartsBeforeIt) {
   // Moved out again in the found order turned round, no part meets one that is still there.
   Planned planned(testing::CoinUnderLid());
   contact::QueryWorkspace workspace;
@@ -184,7 +184,7 @@ TEST(SequenceTest, PartHeldAlongTwoAxesHasNoWayOutAndTheReasonNamesWhatHoldsIt) 
   ASSERT_TRUE(product.mates.empty());
   AddAxisMate(&product, wall, key, Vec3::UnitX());
   AddAxisMate(&product, base, key, Vec3::UnitZ());
-  AddAxisMate(&product, base, wall, Vec3::UnitZ());
+  AddAxisMate(&product, base, wall, Vec3::UnitY());
   const Planned planned(product);
   ASSERT_EQ(planned.sequence.gaps.size(), 1u);
   EXPECT_EQ(planned.sequence.gaps[0].occurrence, key);
@@ -192,6 +192,58 @@ TEST(SequenceTest, PartHeldAlongTwoAxesHasNoWayOutAndTheReasonNamesWhatHoldsIt) 
   EXPECT_PRED_FORMAT2(IsSubstring, "cross/base", planned.sequence.gaps[0].reason);
   // The rest of the product is still planned.
   EXPECT_EQ(planned.order(), (Names{"base", "wall"}));
+}
+
+TEST(SequenceTest, PartsThatHoldEachOtherComeOutTogether) {  // Wilson and Latombe 1994
+  // The same, but the wall leaves the base along the axis of the key: both go in as one body.
+  Product product;
+  product.name = "pair";
+  const auto small =
+      testing::AddPart(&product, "small", contact::testing::Block(Vec3::Constant(3e-3)));
+  const auto middle =
+      testing::AddPart(&product, "middle", contact::testing::Block(Vec3::Constant(5e-3)));
+  const auto large =
+      testing::AddPart(&product, "large", contact::testing::Block(Vec3::Constant(8e-3)));
+  const auto key = testing::Place(&product, small, "key", Pose(Vec3(0, 0, 30e-3)));
+  const auto wall = testing::Place(&product, middle, "wall", Pose(Vec3(30e-3, 0, 30e-3)));
+  const auto base = testing::Place(&product, large, "base");
+  testing::Complete(&product);
+  AddAxisMate(&product, wall, key, Vec3::UnitX());
+  AddAxisMate(&product, base, key, Vec3::UnitZ());
+  AddAxisMate(&product, base, wall, Vec3::UnitZ());
+  const Planned planned(product);
+  EXPECT_TRUE(planned.sequence.gaps.empty());
+  EXPECT_EQ(planned.order(), (Names{"wall", "key", "wall", "base", "wall"}));
+  ASSERT_EQ(planned.sequence.steps.size(), 5U);
+  EXPECT_EQ(planned.sequence.steps[2].kind, SequenceStep::Kind::kPark);
+  EXPECT_EQ(planned.sequence.steps[4].members, std::vector<OccurrenceId>{key});
+}
+
+TEST(SequenceTest, PartThatBlocksMostOthersIsGivenUp) {  // N10
+  // The plug has no way out, and both pins have a mate with it that leaves them none.
+  Product product;
+  product.name = "captive";
+  const auto small =
+      testing::AddPart(&product, "small", contact::testing::Block(Vec3::Constant(3e-3)));
+  const auto middle =
+      testing::AddPart(&product, "middle", contact::testing::Block(Vec3::Constant(5e-3)));
+  const auto large =
+      testing::AddPart(&product, "large", contact::testing::Block(Vec3::Constant(8e-3)));
+  const auto base = testing::Place(&product, large, "base");
+  const auto plug = testing::Place(&product, middle, "plug", Pose(Vec3(0, 0, 30e-3)));
+  testing::Place(&product, small, "pin 1", Pose(Vec3(30e-3, 0, 30e-3)));
+  testing::Place(&product, small, "pin 2", Pose(Vec3(-30e-3, 0, 30e-3)));
+  testing::Complete(&product);
+  AddAxisMate(&product, base, plug, Vec3::UnitX());
+  AddAxisMate(&product, base, plug, Vec3::UnitZ());
+  for (const std::size_t pin : {2, 3}) {
+    AddAxisMate(&product, plug, OccurrenceId(pin), Vec3::UnitY());
+    AddAxisMate(&product, base, OccurrenceId(pin), Vec3::UnitX());
+  }
+  const Planned planned(product);
+  ASSERT_EQ(planned.sequence.gaps.size(), 1U);
+  EXPECT_EQ(planned.sequence.gaps[0].occurrence, plug);
+  EXPECT_EQ(planned.order(), (Names{"base", "pin 2", "pin 1"}));
 }
 
 TEST(SequenceTest, DrawnOverlapIsReportedOnceWithItsDepthAndDoesNotBlock) {
@@ -258,6 +310,68 @@ TEST(SequenceTest, EqualProductsGiveEqualOrders) {
   }
   // Among equals the one first in the file comes off first.
   EXPECT_EQ(first.order(), (Names{"plate", "peg 5", "peg 4", "peg 3", "peg 2", "peg 1"}));
+}
+
+/** A plate over a base, held by a small bracket alone that stands on the base. */
+Product PlateOnBracket() {
+  Product product;
+  product.name = "shelf";
+  const auto base =
+      testing::AddPart(&product, "base", contact::testing::Block(Vec3(40e-3, 40e-3, 5e-3)));
+  const auto bracket =
+      testing::AddPart(&product, "bracket", contact::testing::Block(Vec3::Constant(4e-3)));
+  const auto plate =
+      testing::AddPart(&product, "plate", contact::testing::Block(Vec3(20e-3, 4e-3, 4e-3)));
+  testing::Place(&product, base, "base");
+  testing::Place(&product, bracket, "bracket", Pose(Vec3(30e-3, 0, 9e-3)));
+  testing::Place(&product, plate, "plate", Pose(Vec3(6e-3, 0, 10e-3)));
+  testing::Complete(&product);
+  return product;
+}
+
+TEST(SequenceTest, PartThatHoldsAnotherOneGoesInBeforeIt) {  // connected assembly
+  // The plate touches the bracket alone. By size alone the bracket would go in last.
+  const Planned planned(PlateOnBracket());
+  EXPECT_EQ(planned.order(), (Names{"base", "bracket", "plate"}));
+  const Neighbours& neighbours = planned.sequence.neighbours;
+  EXPECT_EQ(neighbours[0], std::vector<OccurrenceId>{OccurrenceId(1)});
+  EXPECT_EQ(neighbours[1], (std::vector<OccurrenceId>{OccurrenceId(0), OccurrenceId(2)}));
+  EXPECT_EQ(neighbours[2], std::vector<OccurrenceId>{OccurrenceId(1)});
+}
+
+TEST(SequenceTest, PartThatTouchesNothingHasNoNeighbours) {
+  Product product;
+  product.name = "apart";
+  const auto base =
+      testing::AddPart(&product, "base", contact::testing::Block(Vec3::Constant(9e-3)));
+  const auto cube =
+      testing::AddPart(&product, "cube", contact::testing::Block(Vec3::Constant(3e-3)));
+  testing::Place(&product, base, "base");
+  testing::Place(&product, cube, "on it", Pose(Vec3(0, 0, 12.05e-3)));
+  testing::Place(&product, cube, "above", Pose(Vec3(0, 0, 30e-3)));
+  testing::Complete(&product);
+  product.mates.clear();
+  const Planned planned(product);
+  EXPECT_EQ(planned.sequence.neighbours[1], std::vector<OccurrenceId>{OccurrenceId(0)});
+  EXPECT_TRUE(planned.sequence.neighbours[2].empty());
+  EXPECT_EQ(planned.sequence.steps.size(), 3U);
+}
+
+TEST(CutPartsTest, PartsBetweenOthersAreFound) {
+  // 0 - 1 - 2, a triangle 2 3 4, and 5 by itself.
+  const auto ids = [](std::initializer_list<std::size_t> list) {
+    std::vector<OccurrenceId> result;
+    for (const std::size_t i : list) {
+      result.emplace_back(i);
+    }
+    return result;
+  };
+  const Neighbours neighbours{ids({1}), ids({0, 2}), ids({1, 3, 4}), ids({2, 4}), ids({2, 3}), {}};
+  EXPECT_EQ(ListCutParts(ids({0, 1, 2, 3, 4, 5}), neighbours), ids({1, 2}));
+  EXPECT_EQ(ListCutParts(ids({4, 3, 2, 1}), neighbours), ids({2}));
+  EXPECT_EQ(ListCutParts(ids({3, 4, 2}), neighbours), ids({}));
+  EXPECT_TRUE(AreConnected(ids({0, 1, 2}), neighbours));
+  EXPECT_FALSE(AreConnected(ids({0, 2}), neighbours));
 }
 
 TEST(ReorderTest, NamedPartsComeFirstInTheOrderGiven) {

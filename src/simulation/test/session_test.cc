@@ -102,7 +102,7 @@ TEST(SessionTest, LimitStopsARunInTheMiddle) {
   EXPECT_EQ(report.ticks, 1000u);
 }
 
-TEST(SessionTest, ConditionsOfTheExperimentRunToTheirEnd) {  // X14
+TEST(SessionTest, X14ConditionsOfTheExperimentRunToTheirEnd) {
   for (const auto condition : {haptics::Condition::kConstraint, haptics::Condition::kCollision}) {
     haptics::TickOptions options;
     options.condition = condition;
@@ -304,7 +304,7 @@ TEST(SimulationTest, FramesShowEveryPartWhereItIs) {
   EXPECT_EQ(frame.X_WB[1].p(), hand.out.X_WD.p());
 }
 
-TEST(SessionTest, WhoMissesWhereNothingStopsThePartLooksAndComesAgain) {  // X14: constraint only
+TEST(SessionTest, X14WhoMissesWhereNothingStopsThePartLooksAndComesAgain) {  // constraint only
   haptics::TickOptions options;
   options.condition = haptics::Condition::kConstraint;
   options.guidance.capture.axis_distance = 3e-3;

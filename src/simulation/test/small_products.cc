@@ -210,6 +210,31 @@ CompileOptions FastOptions() {
   return options;
 }
 
+Product PegInCarrierInCup() {
+  constexpr double kCupBore = 20e-3;
+  constexpr double kCupFloor = 5e-3;
+  Product product;
+  product.name = "cup";
+  const PartId cup =
+      AddPart(&product, "cup", contact::testing::Cup(kCupBore, 28e-3, kCupFloor, 30e-3));
+  const PartId carrier =
+      AddPart(&product, "carrier", contact::testing::Bushing(kBoreRadius, kCupBore, 24e-3, 10e-6));
+  const PartId peg = AddPart(&product, "peg", contact::testing::Shaft(kBoreRadius, kPegLength));
+  Place(&product, cup, "cup");
+  Place(&product, carrier, "carrier", Pose(Vec3(0, 0, kCupFloor)));
+  Place(&product, peg, "peg", Pose(Vec3(0, 0, kCupFloor + 2e-3)));
+  Complete(&product);
+  return product;
+}
+
+const std::shared_ptr<const Model>& PegInCarrierInCupModel() {
+  static const std::shared_ptr<const Model> model = [] {
+    Diagnostics diagnostics;
+    return *Compile(std::make_shared<Product>(PegInCarrierInCup()), FastOptions(), &diagnostics);
+  }();
+  return model;
+}
+
 const std::shared_ptr<const Model>& PegInBlockModel() {
   static const std::shared_ptr<const Model> model = [] {
     Diagnostics diagnostics;

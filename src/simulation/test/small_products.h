@@ -51,6 +51,13 @@ Product CollarUnderClamp();
 /** The clamped peg with a cap on its top, beside the clamp. */
 Product CappedCollarUnderClamp();
 
+/** A cup, a carrier with a through bore that stands on its floor, and a peg in the bore, 2 mm above
+ the floor. Carrier and peg can be put together on the table and go in as one body. */
+Product PegInCarrierInCup();
+
+/** The model of PegInCarrierInCup, compiled once in a program. */
+const std::shared_ptr<const Model>& PegInCarrierInCupModel();
+
 /** The model of PegInBlock, compiled once in a program. */
 const std::shared_ptr<const Model>& PegInBlockModel();
 

@@ -67,6 +67,30 @@ TEST(Subassembly, IsPutTogetherFirstAndGoesInAsOneBody) {
   EXPECT_GT(sequence.steps[4].extraction_W.z(), 0.999);
 }
 
+// X17: the same where the file names no subassembly, as exports from other systems do.
+TEST(Subassembly, IsFoundWhereTheFileIsFlat) {
+  Product product = PinInCarrierInCup();
+  product.subassemblies.resize(1);
+  product.subassemblies[0].subassemblies.clear();
+  product.subassemblies[0].occurrences.clear();
+  for (product::Occurrence& occurrence : product.occurrences) {
+    occurrence.parent = product::SubassemblyId(0);
+    product.subassemblies[0].occurrences.push_back(occurrence.id);
+  }
+  Diagnostics diagnostics;
+  const auto model = *Compile(std::make_shared<Product>(product), FastOptions(), &diagnostics);
+  const Sequence& named = PinInCarrierInCupModel()->sequence;
+  EXPECT_TRUE(model->sequence.gaps.empty());
+  ASSERT_EQ(model->sequence.steps.size(), named.steps.size());
+  for (std::size_t i = 0; i < named.steps.size(); ++i) {
+    SCOPED_TRACE(i);
+    EXPECT_EQ(model->sequence.steps[i].kind, named.steps[i].kind);
+    EXPECT_EQ(model->sequence.steps[i].occurrence, named.steps[i].occurrence);
+    EXPECT_EQ(model->sequence.steps[i].members, named.steps[i].members);
+    EXPECT_GT(model->sequence.steps[i].extraction_W.dot(named.steps[i].extraction_W), 0.999);
+  }
+}
+
 // The mass that the hand carries is that of both parts, about their common centre.
 TEST(Subassembly, HasTheMassOfItsMembers) {
   const Model& model = *PinInCarrierInCupModel();

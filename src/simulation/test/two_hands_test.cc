@@ -153,7 +153,7 @@ TEST(TwoHandsTest, PhysicsThatStandsStillForHalfAMinuteMissesNoPart) {
   EXPECT_EQ(hands.simulation.physics().placement(kSecond), Placement::kHeld);
 }
 
-TEST(TwoHandsTest, PartsPushAgainstEachOtherWithOneForce) {  // X7
+TEST(TwoHandsTest, X7PartsPushAgainstEachOtherWithOneForce) {
   TwoHands hands(Blocks());
   hands.TakeBlocksUp();
   for (const haptics::TickOutput& out : hands.out) {
@@ -187,7 +187,7 @@ TEST(TwoHandsTest, PartsPushAgainstEachOtherWithOneForce) {  // X7
   EXPECT_LT(CalcMismatch(hands), 0.03);
 }
 
-TEST(TwoHandsTest, OneRunsIntoTheOtherWithoutGettingIntoIt) {  // X7
+TEST(TwoHandsTest, X7OneRunsIntoTheOtherWithoutGettingIntoIt) {
   for (const std::size_t fast : {0u, 1u}) {
     SCOPED_TRACE(fast);
     TwoHands hands(Blocks());
@@ -202,7 +202,7 @@ TEST(TwoHandsTest, OneRunsIntoTheOtherWithoutGettingIntoIt) {  // X7
   }
 }
 
-TEST(TwoHandsTest, OneHandPressesWhatTheOtherHasOnTheTable) {  // X7
+TEST(TwoHandsTest, X7OneHandPressesWhatTheOtherHasOnTheTable) {
   for (const std::size_t upper : {0u, 1u}) {
     SCOPED_TRACE(upper);
     const std::size_t lower = 1 - upper;
@@ -232,7 +232,7 @@ TEST(TwoHandsTest, OneHandPressesWhatTheOtherHasOnTheTable) {  // X7
   }
 }
 
-TEST(TwoHandsTest, WhatOneHandHoldsTheOtherCannotTake) {  // X3
+TEST(TwoHandsTest, X3WhatOneHandHoldsTheOtherCannotTake) {
   TwoHands hands(Blocks());
   hands.Take(0, kFirst);
   ASSERT_EQ(hands.simulation.physics().placement(kFirst), Placement::kHeld);
@@ -257,7 +257,7 @@ TEST(TwoHandsTest, WhatOneHandHoldsTheOtherCannotTake) {  // X3
   EXPECT_EQ(told, expected);
 }
 
-TEST(TwoHandsTest, EitherHandPushesALoosePart) {  // X7
+TEST(TwoHandsTest, X7EitherHandPushesALoosePart) {
   for (const std::size_t hand : {0u, 1u}) {
     SCOPED_TRACE(hand);
     TwoHands hands(Blocks());
@@ -284,7 +284,7 @@ TEST(TwoHandsTest, EitherHandPushesALoosePart) {  // X7
   }
 }
 
-TEST(TwoHandsTest, OneHandCatchesWhatTheOtherDrops) {  // X3
+TEST(TwoHandsTest, X3OneHandCatchesWhatTheOtherDrops) {
   for (const std::size_t dropper : {0u, 1u}) {
     SCOPED_TRACE(dropper);
     TwoHands hands(Blocks());

@@ -275,10 +275,14 @@ TEST(AccessTest, BrowserThatHasLookedOnSteersAgainByItsOwnLink) {
 TEST(AccessTest, ManyWhoLookOnDriveNobodyOutWhoSteers) {
   Access access({}, kPort, false);
   const std::string steers = ComeBy(&access, access.token(Role::kOperator));
+  ::testing::internal::CaptureStderr();
   for (std::size_t i = 0; i < 3 * Access::kMaxBrowsers; ++i) {
     ComeBy(&access, access.token(Role::kViewer));
     (void)access.MakeInvitation(Role::kOperator);
   }
+  const std::string warnings = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(warnings.find("the oldest of 64 links"), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("the oldest of 64 browsers"), std::string::npos) << warnings;
   EXPECT_EQ(access.RoleOfCookie(steers), Role::kOperator);
   EXPECT_EQ(ComeBy(&access, access.token(Role::kOperator), steers), steers);
   EXPECT_LE(access.Keep().browsers.size(), Access::kMaxBrowsers);

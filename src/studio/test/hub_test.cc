@@ -73,7 +73,7 @@ class HubTest : public ::testing::Test {
   }
 
   void OpenPeg() {
-    bench_.Open("peg.step", "peg");
+    bench_.opener().Open("peg.step", "peg");
     ASSERT_TRUE(log_.Await("scene"));
   }
 
@@ -126,7 +126,7 @@ TEST_F(HubTest, FirstOperatorSteers) {
 }
 
 TEST_F(HubTest, WhoeverComesAfterItLearnsThatTheFileCouldNotBeOpened) {
-  bench_.Open("missing", "missing.step");
+  bench_.opener().Open("missing", "missing.step");
   ASSERT_TRUE(log_.Await("failed"));
   FakeLink late;
   Join(Role::kOperator, &late);
@@ -145,8 +145,9 @@ TEST_F(HubTest, OnlyWhoeverHasTheLeaseCommands) {  // N11: one operator
   Join(Role::kOperator, &first);
   const std::string other = Join(Role::kOperator, &second);
   const std::string looking = Join(Role::kViewer, &viewer);
-  for (const char* command : {"open", "cancel", "take", "release", "demo", "next", "undo", "redo",
-                              "reset", "hands", "use", "assign_fit", "add_mate", "remove_mate"}) {
+  for (const char* command :
+       {"open", "cancel", "take", "release", "demo", "next", "undo", "redo", "reset", "hands",
+        "use", "assign_fit", "add_mate", "remove_mate", "plan_removal", "take_out"}) {
     const Json fields{{"command", command}, {"example", "peg"}, {"on", true}, {"occurrence", 1}};
     EXPECT_TRUE(IsError(Ask(other, &second, fields), "invalid")) << command;
     const Json refused = Ask(looking, &viewer, fields);
@@ -162,13 +163,13 @@ TEST_F(HubTest, AnybodySwitchesTheForcesOffButOnlyWhoeverSteersSwitchesThemOn) {
   const std::string hand = Join(Role::kOperator, &steering);
   const std::string looking = Join(Role::kViewer, &viewer);
   EXPECT_TRUE(Ask(looking, &viewer, {{"command", "forces"}, {"off", true}})["ok"]);
-  EXPECT_TRUE(bench_.forces_off());
+  EXPECT_TRUE(bench_.live().forces_off());
   EXPECT_EQ(steering.Last("forces")["off"], true);
   EXPECT_EQ(steering.Last("forces")["by"], looking);
   EXPECT_TRUE(IsError(Ask(looking, &viewer, {{"command", "forces"}, {"off", false}}), "invalid"));
-  EXPECT_TRUE(bench_.forces_off());
+  EXPECT_TRUE(bench_.live().forces_off());
   EXPECT_TRUE(Ask(hand, &steering, {{"command", "forces"}, {"off", false}})["ok"]);
-  EXPECT_FALSE(bench_.forces_off());
+  EXPECT_FALSE(bench_.live().forces_off());
 }
 
 TEST_F(HubTest, ForcesAreSwitchedOffHoweverManyCommandsCameBefore) {  // N6
@@ -178,7 +179,7 @@ TEST_F(HubTest, ForcesAreSwitchedOffHoweverManyCommandsCameBefore) {  // N6
     hub_.OnText(id, R"({"id": 1, "command": "status"})", now_ns_);
   }
   hub_.OnText(id, R"({"id": 2, "command": "forces", "off": true})", now_ns_);
-  EXPECT_TRUE(bench_.forces_off());
+  EXPECT_TRUE(bench_.live().forces_off());
 }
 
 TEST_F(HubTest, LeaseIsGivenReleasedAndAskedFor) {
@@ -395,6 +396,8 @@ TEST_F(HubTest, CommandsWithoutAProductSayWhatToDo) {
        {Json{{"command", "take"}, {"occurrence", 0}}, Json{{"command", "release"}},
         Json{{"command", "demo"}, {"on", true}}, Json{{"command", "next"}},
         Json{{"command", "undo"}}, Json{{"command", "redo"}}, Json{{"command", "reset"}},
+        Json{{"command", "plan_removal"}, {"occurrence", 1}},
+        Json{{"command", "take_out"}, {"occurrence", 1}},
         Json{{"command", "assign_fit"}, {"mate", 0}, {"fit", "H7/g6"}},
         Json{{"command", "add_mate"}, {"a", face}, {"b", face}},
         Json{{"command", "remove_mate"}, {"mate", 0}}, Json{{"command", "measure"}, {"a", face}}}) {
@@ -480,7 +483,7 @@ TEST_F(HubTest, WhoeverHasLeftIsNotHeard) {
   hub_.Leave(id);
   EXPECT_TRUE(link.texts.empty());
   EXPECT_TRUE(link.reason.empty());
-  EXPECT_FALSE(bench_.forces_off());
+  EXPECT_FALSE(bench_.live().forces_off());
 }
 
 }  // namespace

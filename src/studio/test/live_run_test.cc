@@ -25,7 +25,7 @@ class Listener {
         condition_ = event.condition;
       }
     };
-    listeners.on_placement = [](product::OccurrenceId, simulation::Placement) {};
+    listeners.on_placement = [](product::OccurrenceId, const simulation::PartState&) {};
     listeners.on_step = [](std::size_t) {};
     listeners.on_frame = [this](const simulation::Frame& frame, std::int64_t clock_ns,
                                 const PeakForces&) {

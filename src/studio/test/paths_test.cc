@@ -25,15 +25,15 @@ simulation::Frame FrameAt(OccurrenceId held, const Vec3& p_WB) {
   return frame;
 }
 
-TEST(PathLogTest, KeepsTheWayOfThePartInTheHand) {  // X13: the path is recorded
+TEST(PathLogTest, X13KeepsTheWayOfThePartInTheHand) {  // the path is recorded
   PathLog log;
   for (int i = 0; i < 100; ++i) {
     log.Add(FrameAt(OccurrenceId(1), Vec3(1e-3 * i, 0, 0)));
   }
-  const sweep::Path path = log.PathOf(OccurrenceId(1));
+  const sweep::Path path = log.PathOf(OccurrenceId(1)).path;
   EXPECT_NEAR(sweep::CalcLength(path, Vec3::Zero()), 99e-3, 1e-12);
   EXPECT_EQ(path.back().p().x(), 99e-3);
-  EXPECT_TRUE(log.PathOf(OccurrenceId(0)).empty());
+  EXPECT_TRUE(log.PathOf(OccurrenceId(0)).path.empty());
 }
 
 TEST(PathLogTest, EachHoldBeginsAnewAndTheLastOneStays) {
@@ -43,12 +43,12 @@ TEST(PathLogTest, EachHoldBeginsAnewAndTheLastOneStays) {
   log.Add(FrameAt(OccurrenceId(1), Vec3(3, 0, 0)));
   log.Add(FrameAt(OccurrenceId(1), Vec3(4, 0, 0)));
   log.Add(FrameAt(OccurrenceId(0), Vec3(5, 0, 0)));
-  const sweep::Path path = log.PathOf(OccurrenceId(1));
+  const sweep::Path path = log.PathOf(OccurrenceId(1)).path;
   EXPECT_EQ(path.front().p().x(), 3);
   EXPECT_EQ(path.back().p().x(), 4);
-  EXPECT_EQ(log.PathOf(OccurrenceId(0)).front().p().x(), 5);
+  EXPECT_EQ(log.PathOf(OccurrenceId(0)).path.front().p().x(), 5);
   log.Clear();
-  EXPECT_TRUE(log.PathOf(OccurrenceId(1)).empty());
+  EXPECT_TRUE(log.PathOf(OccurrenceId(1)).path.empty());
 }
 
 TEST(PathLogTest, LongHoldsAreKeptWithFewerPoses) {
@@ -58,7 +58,7 @@ TEST(PathLogTest, LongHoldsAreKeptWithFewerPoses) {
     const double angle = 2 * std::numbers::pi * i / kFrames;
     log.Add(FrameAt(OccurrenceId(1), Vec3(std::cos(angle), std::sin(angle), 0)));
   }
-  const sweep::Path path = log.PathOf(OccurrenceId(1));
+  const sweep::Path path = log.PathOf(OccurrenceId(1)).path;
   EXPECT_LE(path.size(), PathLog::kMaxPoses + 1);
   EXPECT_GT(path.size(), PathLog::kMaxPoses / 4);
   EXPECT_NEAR(sweep::CalcLength(path, Vec3::Zero()), 2 * std::numbers::pi, 1e-4);
@@ -69,7 +69,7 @@ TEST(PathLogTest, PartThatRestsInTheHandNeedsNoMemory) {
   for (int i = 0; i < 1000; ++i) {
     log.Add(FrameAt(OccurrenceId(1), Vec3(1e-9 * i, 0, 0)));
   }
-  EXPECT_LE(log.PathOf(OccurrenceId(1)).size(), 2u);
+  EXPECT_LE(log.PathOf(OccurrenceId(1)).path.size(), 2u);
 }
 
 TEST(SweptGlbTest, HasTheMeshWithItsNormals) {
@@ -118,7 +118,7 @@ class PathCommandTest : public ::testing::Test {
   }
 
   void OpenPeg() {
-    bench_.Open("peg.step", "peg");
+    bench_.opener().Open("peg.step", "peg");
     ASSERT_TRUE(log_.Await("scene"));
   }
 
@@ -126,7 +126,7 @@ class PathCommandTest : public ::testing::Test {
   void PutPegIn() {
     ASSERT_TRUE(log_.Await(
         [](const Json& event) { return event["event"] == "step" && event["index"] == 1; }));
-    ASSERT_TRUE(bench_.DoNext());
+    ASSERT_TRUE(bench_.demo().DoNext());
     ASSERT_TRUE(log_.Await([](const Json& event) {
       return event["event"] == "dropped" && event["was_seated"] == true;
     }));
@@ -140,7 +140,7 @@ class PathCommandTest : public ::testing::Test {
   std::int64_t now_ns_{0};
 };
 
-TEST_F(PathCommandTest, PathIsGivenAsPointsAndAsSweptVolume) {  // X13
+TEST_F(PathCommandTest, X13PathIsGivenAsPointsAndAsSweptVolume) {
   OpenPeg();
   PutPegIn();
   const Json points = Ask({{"occurrence", 1}, {"as", "points"}});

@@ -1,9 +1,7 @@
 // What the server sends is what src/studio/protocol.json says, in a session that uses all commands.
 
-#include <chrono>
 #include <set>
 #include <string>
-#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -99,12 +97,12 @@ class ProtocolTest : public ::testing::Test {
 };
 
 TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
-  bench_.Open("missing", "missing.step");
+  bench_.opener().Open("missing", "missing.step");
   PumpUntil("failed");
   EXPECT_FALSE(Do({{"command", "open"}, {"example", "peg"}}).is_null());
   PumpUntil("scene");
   PumpUntil("history");
-  const SceneSnapshot now = bench_.MakeSnapshot();
+  const SceneSnapshot now = bench_.live().MakeSnapshot();
   EXPECT_EQ(testing::FindFault("Scene", MakeSceneJson(*now.scene, now.state)), "");
   EXPECT_EQ(testing::FindFault("Scene", MakeShieldedSceneJson(*now.scene, now.state)), "");
 
@@ -116,15 +114,15 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   PumpUntil("dropped");
   EXPECT_FALSE(Do({{"command", "next"}}).is_null());
   PumpUntil("dropped");
-  ASSERT_TRUE(hvas::testing::AwaitTrue([&] { return !bench_.is_demo(); }));
+  ASSERT_TRUE(hvas::testing::AwaitTrue([&] { return !bench_.live().is_demo(); }));
   EXPECT_FALSE(Do({{"command", "path"}, {"occurrence", 1}, {"as", "points"}}).is_null());
   EXPECT_FALSE(Do({{"command", "path"}, {"occurrence", 1}, {"as", "swept"}}).is_null());
   EXPECT_FALSE(Do({{"command", "record"}, {"on", false}}).is_null());
   PumpUntil("recordings");
-  const Json list = bench_.shelf().List();
+  const Json list = bench_.recordings().shelf().List();
   EXPECT_EQ(testing::FindFault("RecordingList", list), "");
   const std::string id = list["recordings"][0]["id"];
-  const auto detail = bench_.shelf().Describe(id);
+  const auto detail = bench_.recordings().shelf().Describe(id);
   ASSERT_TRUE(detail.has_value());
   EXPECT_EQ(testing::FindFault("RecordingDetail", *detail), "");
   EXPECT_FALSE((*detail)["events"].empty());
@@ -153,10 +151,10 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   EXPECT_FALSE(Do({{"command", "forces"}, {"off", true}}).is_null());
   EXPECT_FALSE(DoAs("c2", &other_link_, {{"command", "lease"}, {"action", "request"}}).is_null());
   EXPECT_FALSE(Do({{"command", "lease"}, {"action", "give"}, {"to", "c2"}}).is_null());
-  for (int i = 0; i < 100 && link_.events.count("status") == 0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_TRUE(hvas::testing::AwaitTrue([this] {
     hub_.PublishStatus();
-  }
+    return link_.events.count("status") > 0;
+  }));
   EXPECT_FALSE(Do({{"command", "status"}}).is_null());
 
   std::set<std::string> events = link_.events;

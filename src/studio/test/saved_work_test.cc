@@ -43,16 +43,17 @@ class KeptWorkTest : public ::testing::Test {
   };
 
   static void Open(Bench* one) {
-    one->bench.Open("peg.step", "peg");
+    one->bench.opener().Open("peg.step", "peg");
     ASSERT_TRUE(one->log.Await("scene"));
-    ASSERT_TRUE(AwaitTrue([&] { return one->bench.state().next_step > 0; }));  // the base is placed
+    ASSERT_TRUE(
+        AwaitTrue([&] { return one->bench.live().state().next_step > 0; }));  // the base is placed
   }
 
   static void AssignFit(Bench* one, const char* fit) {
     const std::size_t start = one->log.size();
     const auto edit = MakeEdit({{"command", "assign_fit"}, {"mate", 0U}, {"fit", fit}});
     ASSERT_TRUE(edit.has_value());
-    ASSERT_TRUE(one->bench.Change(*edit));
+    ASSERT_TRUE(one->bench.edits().Change(*edit));
     ASSERT_TRUE(one->log.Await("scene", start));
   }
 
@@ -78,25 +79,25 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
   Bench killed(file_);
   Open(&killed);
   AssignFit(&killed, "H7/h6");
-  ASSERT_TRUE(killed.bench.DoNext());
+  ASSERT_TRUE(killed.bench.demo().DoNext());
   ASSERT_TRUE(AwaitTrue([this] { return KeptPlacement() == Placement::kPlaced; }));
-  ASSERT_TRUE(AwaitTrue([&] { return !killed.bench.is_demo(); }));
+  ASSERT_TRUE(AwaitTrue([&] { return !killed.bench.live().is_demo(); }));
   ASSERT_TRUE(AwaitTrue([&] {
     const auto work = LoadWork(file_);
-    return work && work->state.next_step == killed.bench.state().next_step;
+    return work && work->state.next_step == killed.bench.live().state().next_step;
   }));
   const auto work = LoadWork(CopyAsAfterKill());
   ASSERT_TRUE(work.has_value()) << work.error().ToString();
 
   Bench next(folder_ / "next.json");
-  next.bench.Resume(*work);
+  next.bench.opener().Resume(*work);
   const auto resumed = next.log.Await("resumed");
   ASSERT_TRUE(resumed);
   EXPECT_EQ(testing::FindEventFault(*resumed), "");
   EXPECT_EQ((*resumed)["is_resumed"], true);
   EXPECT_EQ((*resumed)["edits"], 1);
-  const LiveState before = killed.bench.state();
-  const LiveState after = next.bench.state();
+  const LiveState before = killed.bench.live().state();
+  const LiveState after = next.bench.live().state();
   ASSERT_EQ(after.parts.size(), before.parts.size());
   for (std::size_t i = 0; i < before.parts.size(); ++i) {
     EXPECT_EQ(after.parts[i].placement, before.parts[i].placement) << i;
@@ -104,7 +105,7 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
     EXPECT_EQ(after.parts[i].X_WB.q().coeffs(), before.parts[i].X_WB.q().coeffs()) << i;
   }
   EXPECT_EQ(after.next_step, before.next_step);
-  const auto& mate = next.bench.scene()->model->product->mates[0];
+  const auto& mate = next.bench.live().scene()->model->product->mates[0];
   ASSERT_TRUE(mate.fit.has_value());
   EXPECT_EQ(mate.fit->code, "H7/h6");
   EXPECT_EQ(next.bench.MakeCatchUpEvents().back()["event"], "resumed");
@@ -117,19 +118,19 @@ TEST_F(KeptWorkTest, WhatWasUndoneIsNotDoneAgain) {
   Open(&one);
   AssignFit(&one, "H7/h6");
   ASSERT_TRUE(AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
-  ASSERT_TRUE(one.bench.Undo());
+  ASSERT_TRUE(one.bench.edits().Undo());
   EXPECT_TRUE(AwaitTrue([this] { return LoadWork(file_)->edits.empty(); }));
 }
 
 TEST_F(KeptWorkTest, PartInTheHandIsWhereItWasBefore) {
   Bench one(file_);
   Open(&one);
-  const spatial::Pose X_WB = one.bench.state().parts[kKeptPeg.index()].X_WB;
-  const auto X_WH = one.bench.Take(0, kKeptPeg);
-  ASSERT_TRUE(X_WH.has_value());
+  const spatial::Pose X_WB = one.bench.live().state().parts[kKeptPeg.index()].X_WB;
+  const auto taken = one.bench.hands().Take(0, kKeptPeg);
+  ASSERT_TRUE(taken.has_value());
   ASSERT_TRUE(AwaitTrue([&] {
-    one.bench.Move(0, *X_WH, true);
-    return one.bench.state().parts[kKeptPeg.index()].placement == Placement::kHeld;
+    one.bench.hands().Move(0, taken->X_WH, true);
+    return one.bench.live().state().parts[kKeptPeg.index()].placement == Placement::kHeld;
   }));
   ASSERT_TRUE(one.log.Await("taken"));
   one.bench.Stop();
@@ -148,12 +149,12 @@ TEST_F(KeptWorkTest, WorkOnAnotherProductIsSetAside) {
   work->digest = "of another";
   ASSERT_TRUE(SaveWork(file_, *work));
   Bench next(file_);
-  next.bench.Resume(*work);
+  next.bench.opener().Resume(*work);
   const auto resumed = next.log.Await("resumed");
   ASSERT_TRUE(resumed);
   EXPECT_EQ((*resumed)["is_resumed"], false);
   EXPECT_EQ(LoadWork(file_.string() + ".before")->digest, "of another");
-  EXPECT_NE(next.bench.scene(), nullptr);
+  EXPECT_NE(next.bench.live().scene(), nullptr);
 }
 
 TEST_F(KeptWorkTest, DamagedFilesAreRefused) {

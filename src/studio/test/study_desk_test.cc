@@ -9,10 +9,13 @@
 
 #include "base/scratch_folder.h"
 #include "base/test/await_true.h"
+#include "simulation/test/small_products.h"
 #include "studio/hub.h"
 #include "studio/scene_json.h"
 #include "studio/test/protocol_schema.h"
 #include "studio/test/small_bench.h"
+#include "study/simulated_study.h"
+#include "study/trial_pair.h"
 
 namespace hvas::studio {
 namespace {
@@ -66,11 +69,12 @@ class StudyDeskTest : public ::testing::Test {
 
   ~StudyDeskTest() override { bench_.Stop(); }
 
-  void Open(bool has_person) {
+  void Open(bool has_person, const std::string& text = kProtocol,
+            const std::string& name = "study") {
     desk_.reset();
-    const auto protocol = study::ParseProtocol(kProtocol, "desk.yaml");
+    const auto protocol = study::ParseProtocol(text, "desk.yaml");
     ASSERT_TRUE(protocol) << protocol.error().ToString();
-    auto folder = study::StudyFolder::Create(scratch_.path() / "study", *protocol, 1);
+    auto folder = study::StudyFolder::Create(scratch_.path() / name, *protocol, 1);
     ASSERT_TRUE(folder) << folder.error().ToString();
     StudyDesk::Options options;
     options.participant = "P01";
@@ -101,6 +105,18 @@ class StudyDeskTest : public ::testing::Test {
     }
   }
 
+  /** The participant picks the two surfaces of a mate. @returns the answer. */
+  Json PickMate(product::MateId id) {
+    const auto scene = bench_.live().scene();
+    const product::Mate& mate = scene->model->product->mates[id.index()];
+    const auto face_of = [&](const product::Connector& side) {
+      const product::Part& part = scene->model->product->part_of(side.occurrence);
+      return Json{{"occurrence", side.occurrence.value()},
+                  {"face", part.features[side.feature.index()].faces.front().value()}};
+    };
+    return Ask(participant_, {{"action", "pick"}, {"a", face_of(mate.a)}, {"b", face_of(mate.b)}});
+  }
+
   Json Ask(const std::string& id, Json command) {
     FakeLink& link = id == participant_ ? participant_link_ : experimenter_link_;
     command["id"] = ++last_id_;
@@ -125,8 +141,8 @@ class StudyDeskTest : public ::testing::Test {
 
   /** Of the trial on the bench [s]. */
   void AwaitElapsed(double seconds) {
-    ASSERT_TRUE(
-        hvas::testing::AwaitTrue([&] { return bench_.trial()->watch().elapsed_s() >= seconds; }));
+    ASSERT_TRUE(hvas::testing::AwaitTrue(
+        [&] { return bench_.trials().trial()->watch().elapsed_s() >= seconds; }));
   }
 
   std::string Phase() {
@@ -215,29 +231,22 @@ TEST_F(StudyDeskTest, ExperimenterAloneIsToldOfTheParticipantsLink) {
   }
 }
 
-TEST_F(StudyDeskTest, ConstraintsArePickedAndTheTrialIsDone) {  // W8: A1
+TEST_F(StudyDeskTest, W8ConstraintsArePickedAndTheTrialIsDone) {  // A1
   BeginTrials();
   ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
   PumpUntil("trial_begun");
   EXPECT_EQ(desk_->MakeState(Role::kParticipant, now_ns_)["method"], "picking");
   EXPECT_FALSE(desk_->CheckTake());
   AwaitElapsed(0.01);
-  const auto scene = bench_.scene();
   const Json wrong = Ask(participant_, {{"action", "pick"},
                                         {"a", {{"occurrence", 0}, {"face", 0}}},
                                         {"b", {{"occurrence", 0}, {"face", 1}}}});
   EXPECT_EQ(wrong["result"]["is_set"], false);
-  const auto constraints = bench_.trial_constraints();
+  const auto constraints = bench_.trials().ListConstraints();
   ASSERT_FALSE(constraints.empty());
   Json last;
   for (const product::MateId id : constraints) {
-    const product::Mate& mate = scene->model->product->mates[id.index()];
-    const auto face_of = [&](const product::Connector& side) {
-      const product::Part& part = scene->model->product->part_of(side.occurrence);
-      return Json{{"occurrence", side.occurrence.value()},
-                  {"face", part.features[side.feature.index()].faces.front().value()}};
-    };
-    last = Ask(participant_, {{"action", "pick"}, {"a", face_of(mate.a)}, {"b", face_of(mate.b)}});
+    last = PickMate(id);
     EXPECT_EQ(last["result"]["is_set"], true) << last.dump();
   }
   EXPECT_EQ(last["result"]["left"], 0);
@@ -248,12 +257,34 @@ TEST_F(StudyDeskTest, ConstraintsArePickedAndTheTrialIsDone) {  // W8: A1
   EXPECT_GT(state["done"][0]["time_s"].get<double>(), 0);
 }
 
-TEST_F(StudyDeskTest, BlindFitsDoNotReachTheParticipant) {  // W12
+TEST_F(StudyDeskTest, X14ThePickedAxisGuidesThePartThatIsTakenAfterIt) {  // condition 2
+  std::string text = kProtocol;
+  const std::string method = "method: constraints_by_picking";
+  text.replace(text.find(method), method.size(), "method: constraint_only, constraints: picked");
+  Open(false, text, "picked");
+  BeginTrials();
+  EXPECT_EQ(desk_->MakeState(Role::kParticipant, now_ns_)["method"], "picking");
+  ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
+  PumpUntil("trial_begun");
+  EXPECT_FALSE(desk_->CheckTake());
+  const auto constraints = bench_.trials().ListConstraints();
+  ASSERT_EQ(constraints.size(), 1U);  // of axis and face, the axis
+  const Json picked = PickMate(constraints.front());
+  EXPECT_EQ(picked["result"]["is_set"], true) << picked.dump();
+  EXPECT_EQ(picked["result"]["left"], 0);
+  EXPECT_EQ(picked["result"]["state"]["method"], "hand");
+  EXPECT_EQ(Phase(), "running");  // the part is still to be put in its place
+  EXPECT_TRUE(desk_->CheckTake());
+  EXPECT_EQ(PickMate(constraints.front())["ok"], false);
+}
+
+TEST_F(StudyDeskTest, W12BlindFitsDoNotReachTheParticipant) {
   BeginTrials();
   for (int trial = 0; trial < 3; ++trial) {
     ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
     PumpUntil("trial_begun");
-    const std::string scene = MakeShieldedSceneJson(*bench_.scene(), bench_.state()).dump();
+    const std::string scene =
+        MakeShieldedSceneJson(*bench_.live().scene(), bench_.live().state()).dump();
     for (const char* secret : {"H7/", "clearance", "interference", "Ctight", "Tight"}) {
       EXPECT_EQ(scene.find(secret), std::string::npos) << secret;
     }
@@ -288,10 +319,59 @@ TEST_F(StudyDeskTest, BlindFitsDoNotReachTheParticipant) {  // W12
   EXPECT_TRUE(does_experimenter_see);
 }
 
+// A person, live, and the simulated participant of the same number and seed get the same pairs.
+TEST_F(StudyDeskTest, W12LiveAndSimulatedTrialsHaveTheSamePairs) {
+  BeginTrials();
+  for (int trial = 0; trial < 3; ++trial) {
+    ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
+    PumpUntil("trial_begun");
+    ASSERT_EQ(Do(experimenter_, {{"action", "next"}}), "running");
+    PumpUntil("trial_over");
+    if (trial > 0) {
+      Do(participant_, {{"action", "answer"}, {"question", "identify"}, {"value", "H7/p6"}});
+    }
+  }
+  const auto live = (*study::StudyFolder::Open(scratch_.path() / "study")).ReadParticipant("P01");
+  ASSERT_TRUE(live) << live.error().ToString();
+  const auto folder = study::StudyFolder::Create(scratch_.path() / "simulated",
+                                                 *study::ParseProtocol(kProtocol, "desk.yaml"), 1);
+  const auto models =
+      [](const study::Condition& condition,
+         const std::string& part) -> Result<std::shared_ptr<const simulation::Model>> {
+    auto product = std::make_shared<product::Product>(simulation::testing::PegInBlock());
+    if (const auto applied = study::ApplyFit(condition, part, product.get()); !applied) {
+      return Unexpected(applied.error());
+    }
+    Diagnostics diagnostics;
+    return simulation::Compile(product, simulation::testing::FastOptions(), &diagnostics);
+  };
+  const auto run = study::RunSimulatedStudy(*folder, models, {});
+  ASSERT_TRUE(run) << run.error().ToString();
+  const auto simulated = folder->ReadParticipant("P01");
+  const auto& live_trials = live->session->done();
+  const auto& simulated_trials = simulated->session->done();
+  ASSERT_EQ(live_trials.size(), 3U);
+  ASSERT_EQ(simulated_trials.size(), 3U);
+  for (std::size_t i = 1; i < 3; ++i) {  // the first one is done by picking, with the product's fit
+    ASSERT_TRUE(live_trials[i].result.pair.has_value()) << i;
+    ASSERT_TRUE(simulated_trials[i].result.pair.has_value()) << i;
+    const study::TrialPair& a = *live_trials[i].result.pair;
+    const study::TrialPair& b = *simulated_trials[i].result.pair;
+    EXPECT_EQ(a.hole_diameter, b.hole_diameter);
+    EXPECT_EQ(a.shaft_diameter, b.shaft_diameter);
+    EXPECT_EQ(a.clearances, b.clearances);
+    EXPECT_EQ(a.clearances.size(), 21U);
+  }
+  EXPECT_NE(live_trials[1].result.pair->clearances, live_trials[2].result.pair->clearances);
+}
+
 TEST_F(StudyDeskTest, TimesOutByTheTickClockAndAbortsCountForNothing) {
   BeginTrials();
   ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
   PumpUntil("trial_begun");
+  const std::string too_long =
+      Do(experimenter_, {{"action", "abort"}, {"reason", std::string(4001, 'x')}});
+  EXPECT_NE(too_long.find("reason"), std::string::npos) << too_long;
   ASSERT_EQ(Do(experimenter_, {{"action", "abort"}, {"reason", "telephone"}}), "paused");
   PumpUntil("trial_over");
   ASSERT_EQ(Do(experimenter_, {{"action", "note"}, {"text", "rang twice"}}), "paused");

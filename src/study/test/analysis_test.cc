@@ -35,7 +35,7 @@ AnalysisOptions OptionsOfPaper() {
   return options;
 }
 
-TEST(Analysis, OfPaperWsTableSaysWhatThePaperSays) {
+TEST(Analysis, W11OfPaperWsTableSaysWhatThePaperSays) {
   const auto analysis = Analyse(PaperTable(), OptionsOfPaper());
   ASSERT_TRUE(analysis);
   EXPECT_NEAR(*analysis->friedman->p, 0.0128149, 5e-8);

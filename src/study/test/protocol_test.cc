@@ -64,6 +64,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"UnknownMethod",
                 kHead + "conditions:\n  - id: A\n    name: A\n    method: magic\n" + kBlocks,
                 "10:13", "\"magic\""},
+        Refused{"PicksWithoutMates",
+                kHead +
+                    "conditions:\n  - {id: A, name: A, method: collision_only, constraints: "
+                    "picked}\n" +
+                    kBlocks,
+                "8:59", "needs a hand and mates"},
         Refused{"MissingMethod", kHead + "conditions:\n  - id: A\n    name: A\n" + kBlocks, "8:5",
                 "no \"method\""},
         Refused{"UnknownCondition",
@@ -134,7 +140,7 @@ Result<Protocol> ReadShipped(const std::string& name) {
   return ReadProtocol(HVAS_SOURCE_DIR "/data/studies/" + name);
 }
 
-TEST(ShippedProtocols, XiaHasThreeConditionsTenTimes) {  // X14, X15
+TEST(ShippedProtocols, X14XiaHasThreeConditionsTenTimes) {  // X15
   const auto protocol = ReadShipped("xia-2011.yaml");
   ASSERT_TRUE(protocol) << protocol.error().ToString();
   ASSERT_EQ(protocol->conditions.size(), 3U);
@@ -146,7 +152,7 @@ TEST(ShippedProtocols, XiaHasThreeConditionsTenTimes) {  // X14, X15
   EXPECT_DOUBLE_EQ(*protocol->FindCondition("hybrid")->published_mean, 9.4);
 }
 
-TEST(ShippedProtocols, FitsHaveSixExperimentsAndBlindIdentification) {  // W7, W8, W11, W12
+TEST(ShippedProtocols, W7FitsHaveSixExperimentsAndBlindIdentification) {  // W8, W11, W12
   const auto protocol = ReadShipped("fit-2016.yaml");
   ASSERT_TRUE(protocol) << protocol.error().ToString();
   EXPECT_EQ(protocol->participants, 15);

@@ -102,7 +102,7 @@ TEST(Schedule, RepetitionsApartAreARoundEach) {
   }
 }
 
-TEST(Schedule, IdentificationShowsEachEquallyOftenInAnOrderOfOnesOwn) {  // W12
+TEST(Schedule, W12IdentificationShowsEachEquallyOftenInAnOrderOfOnesOwn) {
   const Protocol protocol = Make("repetitions: 15, identification: true, question: Which");
   std::set<std::string> orders;
   for (int participant = 1; participant <= 20; ++participant) {

@@ -146,7 +146,7 @@ TEST_F(SimulatedStudyTest, TablesHaveARowATrial) {
   EXPECT_EQ(CollectAnswers(protocol, 1, *participants).size(), 8U);
 }
 
-TEST(PickingTime, HasTheMeanOfTheKeystrokeLevelModel) {  // W8: A1
+TEST(PickingTime, W8HasTheMeanOfTheKeystrokeLevelModel) {  // A1
   // Of two constraints: H + 2 (2 M + 3 P + 3 K), each time lognormal about its median.
   const double sum = 0.4 + 2 * (2 * 1.35 + 3 * 1.1 + 3 * 0.2);
   const double expected = sum * std::exp(0.5 * 0.2 * 0.2);

@@ -64,7 +64,7 @@ class StudySessionTest : public ::testing::Test {
   StudySession session_{&protocol_, 1, 1};
 };
 
-TEST_F(StudySessionTest, GoesFromConsentToTheLastAnswer) {
+TEST_F(StudySessionTest, W11GoesFromConsentToTheLastAnswer) {
   EXPECT_EQ(session_.phase(), Phase::kWaiting);
   BeginTrials();
   EXPECT_EQ(session_.language(), "de");

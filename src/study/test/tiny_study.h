@@ -12,6 +12,7 @@
 #include "base/scratch_folder.h"
 #include "simulation/test/small_products.h"
 #include "study/simulated_study.h"
+#include "study/trial_pair.h"
 
 namespace hvas::study::testing {
 
@@ -57,8 +58,20 @@ inline Protocol MakeTinyProtocol() {
   return *protocol;
 }
 
-inline Result<std::shared_ptr<const simulation::Model>> PegModel(const std::string& /*fit*/) {
-  return simulation::testing::PegInBlockModel();
+/** The model of a peg in a block with the fit of a condition; compiled once for each key. */
+inline Result<std::shared_ptr<const simulation::Model>> PegModel(
+    const Condition& condition, const std::string& /*part*/ = "peg") {
+  static std::map<std::string, std::shared_ptr<const simulation::Model>> known;
+  auto& model = known[MakeFitKey(condition, "peg")];
+  if (model == nullptr) {
+    auto product = std::make_shared<product::Product>(simulation::testing::PegInBlock());
+    if (const auto applied = ApplyFit(condition, "peg", product.get()); !applied) {
+      return Unexpected(applied.error());
+    }
+    Diagnostics diagnostics;
+    model = *simulation::Compile(product, simulation::testing::FastOptions(), &diagnostics);
+  }
+  return model;
 }
 
 inline std::string ReadAll(const std::filesystem::path& file) {

@@ -46,7 +46,7 @@ TEST(PathTest, ScrewIsTheSameSeenFromAnywhere) {  // frame invariance
   }
 }
 
-TEST(PathTest, RotationKeepsEveryPointAtItsDistanceFromTheAxis) {  // X13: about an axis
+TEST(PathTest, X13RotationKeepsEveryPointAtItsDistanceFromTheAxis) {  // about an axis
   const Vec3 p_WQ(0.1, 0.2, 0);
   const Vec3 axis = Vec3(1, 2, 3).normalized();
   const Pose X_WB(Quat(0.8, 0.6, 0, 0), Vec3(0.05, 0, 0.1));

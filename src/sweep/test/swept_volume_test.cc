@@ -44,7 +44,7 @@ Convergence Converge(const ShapeSource& part, const Path& path, double volume, d
 
 // Volumes against closed forms, and how they converge.
 
-TEST(SweptVolumeTest, BlockMovedAlongItsEdgeIsALongerBlock) {  // X13: translation
+TEST(SweptVolumeTest, X13BlockMovedAlongItsEdgeIsALongerBlock) {  // translation
   const Vec3 half(0.01, 0.015, 0.02);
   const Path path = MakeTranslation(Pose(Vec3(0.1, 0, 0)), Vec3(0, 0, 0.06));
   const double volume = 0.02 * 0.03 * (0.04 + 0.06);
@@ -53,7 +53,7 @@ TEST(SweptVolumeTest, BlockMovedAlongItsEdgeIsALongerBlock) {  // X13: translati
   EXPECT_GT(error.order(), 1.5);
 }
 
-TEST(SweptVolumeTest, BlockMovedAcrossIsAPrism) {  // X13: no steps along the slanted sides
+TEST(SweptVolumeTest, X13BlockMovedAcrossIsAPrism) {  // no steps along the slanted sides
   const Vec3 half(0.01, 0.015, 0.02);
   const Vec3 d(0.03, 0.02, 0.05);
   const Pose X_WB(spatial::RotationFromVector(Vec3(0.3, -0.2, 0.5)), Vec3(0, 0.1, 0));
@@ -81,7 +81,7 @@ Path TurnAboutZ(double angle) {
   return MakeRotation(Pose(Vec3(0.03, 0, 0)), Vec3::Zero(), Vec3::UnitZ(), angle);
 }
 
-TEST(SweptVolumeTest, ShaftTurnedAboutAParallelAxisFollowsPappus) {  // X13: rotation about an axis
+TEST(SweptVolumeTest, X13ShaftTurnedAboutAParallelAxisFollowsPappus) {  // rotation about an axis
   constexpr double kRadius = 0.008;
   constexpr double kLength = 0.02;
   constexpr double kAngle = 1.5 * std::numbers::pi;
@@ -205,6 +205,23 @@ TEST(SweptVolumeTest, ResolutionIsChosenFromTheExtent) {
                            MakeTranslation(Pose(), Vec3(0.08, 0, 0)), options);
   ASSERT_TRUE(swept);
   EXPECT_NEAR(swept->resolution, 0.9e-3, 1e-12);  // a hundredth of 90 mm
+}
+
+TEST(SweptVolumeTest, X13AThinWallIsResolvedWhereTheGridHasRoomForIt) {
+  // A sheet of 0.8 mm goes 2 mm along its normal, beside one that goes far.
+  const ShapeSource sheet = contact::testing::Block(Vec3(0.02, 0.0004, 0.02));
+  const Path across = MakeTranslation(Pose(), Vec3(0.002, 0, 0));
+  SweepOptions options;
+  options.thinnest_wall = 0.8e-3;
+  const auto swept = Sweep(sheet, across, options);
+  ASSERT_TRUE(swept);
+  EXPECT_LE(2 * swept->error, 0.8e-3 * (1 + 1e-9));
+  EXPECT_TRUE(testing::IsClosed(swept->mesh));
+  EXPECT_NEAR(swept->volume, 0.042 * 0.0008 * 0.04, 0.01 * 0.042 * 0.0008 * 0.04);
+  options.thinnest_wall = 1e-6;  // finer than there is room for
+  const auto coarse = Sweep(sheet, across, options);
+  ASSERT_TRUE(coarse);
+  EXPECT_GT(2 * coarse->error, 1e-6);
 }
 
 // What cannot be done.

@@ -1,6 +1,6 @@
 /** The mates of what is selected, or of the step at hand, with their state. */
 
-import type { Mate } from "../protocol/messages";
+import type { Diagnostic, Mate } from "../protocol/messages";
 import { mateKey } from "../model/fit_mates";
 import { chooseCardMate, select } from "../model/view_state";
 import { canSteer, store, studio, view } from "./app_state";
@@ -31,6 +31,15 @@ function partners(mate: Mate, of: ReadonlySet<number>): string {
     return name(of.has(mate.a) ? mate.b : mate.a);
   }
   return `${name(mate.a)} / ${name(mate.b)}`;
+}
+
+/** What mates of the user make of the poses, of the parts in question; contradictions always. */
+function placementNotes(of: ReadonlySet<number>): readonly Diagnostic[] {
+  const paths = new Set([...of].map((id) => store.occurrences.value.get(id)?.path));
+  return (store.scene.value?.diagnostics ?? []).filter(
+    ({ code, entity }) =>
+      code === "mate-contradiction" || (code === "mate-freedom" && (of.size === 0 || paths.has(entity))),
+  );
 }
 
 export function ConstraintList() {
@@ -79,6 +88,11 @@ export function ConstraintList() {
           );
         })}
       </ul>
+      {placementNotes(parts).slice(0, kShown).map((note) => (
+        <p class="quiet" key={`${note.code} ${note.entity} ${note.message}`} data-testid={note.code}>
+          {note.code === "mate-freedom" ? `${note.entity}: ${note.message}` : note.message}
+        </p>
+      ))}
       {mates.length > kShown ? <p class="quiet">{t("mates.more", { n: mates.length - kShown })}</p> : null}
     </section>
   );

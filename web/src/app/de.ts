@@ -151,6 +151,7 @@ export const de: Record<MessageKey, string> = {
   "fit.limits": "Spiel",
   "fit.limitsInterference": "Übermaß",
   "fit.actual": "Istmaß (Startwert {seed})",
+  "fit.along": "Mit der Oberfläche",
   "fit.axialTrue": "Axialkraft, wahr",
   "fit.axialFelt": "Axialkraft, gefühlt",
   "fit.felt": "In der Hand gefühlt",

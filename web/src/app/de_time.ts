@@ -49,6 +49,8 @@ export const deTime: Record<keyof typeof enTime, string> = {
   "rates.physics": "Physik-Takt",
   "rates.late": "Späte Takte",
   "rates.lostEvents": "Verlorene Ereignisse",
+  "rates.truncated": "Takte mit unvollständigem Kontakt",
+  "rates.crowded": "Takte, in denen ein loses Teil stehen bleiben musste",
   "rates.computeP99": "Rechenzeit, p99",
   "rates.wakeUpP99": "Aufwachen, p99",
   "rates.scheduling": "Scheduling",

@@ -151,6 +151,7 @@ export const en = {
   "fit.limits": "Clearance",
   "fit.limitsInterference": "Interference",
   "fit.actual": "Actual (seed {seed})",
+  "fit.along": "With the surface",
   "fit.axialTrue": "Axial force, true",
   "fit.axialFelt": "Axial force, felt",
   "fit.felt": "Felt in the hand",

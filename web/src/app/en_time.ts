@@ -47,6 +47,8 @@ export const enTime = {
   "rates.physics": "Physics rate",
   "rates.late": "Late ticks",
   "rates.lostEvents": "Lost events",
+  "rates.truncated": "Ticks with incomplete contact",
+  "rates.crowded": "Ticks in which a loose part had to stand still",
   "rates.computeP99": "Compute, p99",
   "rates.wakeUpP99": "Wake-up, p99",
   "rates.scheduling": "Scheduling",

@@ -54,15 +54,19 @@ function MateChoice({ parts, mates, mate }: { parts: readonly number[]; mates: r
 }
 
 /** Clearance is told as such, and as interference where both limits are below zero. A thread has no limits by ISO 286. */
-function limits(fit: Fit): { label: string; text: string; actual: string } {
-  const { clearance_min_um: min, clearance_max_um: max, clearance_actual_um: actual } = fit;
+function limits(fit: Fit): { label: string; text: string; actual: string; along: string } {
+  const { clearance_min_um: min, clearance_max_um: max, clearance_actual_um: actual, clearance_along_um: along } = fit;
   const isTight = max !== null && max <= 0;
   const sign = isTight ? -1 : 1;
-  const [low, high] = [sign * (min ?? 0), sign * (max ?? 0)].sort((a, b) => a - b);
+  const range = (ends: readonly number[], decimals: number) => {
+    const [low, high] = ends.map((end) => sign * end).sort((a, b) => a - b);
+    return `${number(low ?? 0, decimals)} … ${number(high ?? 0, decimals)} µm`;
+  };
   return {
     label: t(isTight ? "fit.limitsInterference" : "fit.limits"),
-    text: min === null || max === null ? "–" : `${number(low ?? 0, 0)} … ${number(high ?? 0, 0)} µm`,
+    text: min === null || max === null ? "–" : range([min, max], 0),
     actual: actual === null ? "–" : `${number(sign * actual, 1)} µm`,
+    along: along === null ? "–" : range(along, 1),
   };
 }
 
@@ -163,6 +167,8 @@ export function FitCard({ parts }: { parts: readonly number[] }) {
           {told !== null ? <dd>{told.text}</dd> : null}
           {told !== null ? <dt>{t("fit.actual", { seed: store.scene.value?.seed ?? "" })}</dt> : null}
           {told !== null ? <dd>{told.actual}</dd> : null}
+          {told !== null ? <dt>{t("fit.along")}</dt> : null}
+          {told !== null ? <dd>{told.along}</dd> : null}
           <FitForces parts={parts} />
         </dl>
         {canSteer() && mate.kind === "axis_hole" ? <FitChoice mate={mate} key={mateKey(mate)} /> : null}

@@ -10,6 +10,7 @@ import { number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
 import { isInPlace } from "./progress";
 import { Procedure } from "./procedure";
+import { RemovalCard } from "./removal_card";
 import { RunCard } from "./run_card";
 import { StepsCard } from "./steps_card";
 import { SummaryCard } from "./summary_card";
@@ -38,6 +39,10 @@ function Selected({ part }: { part: Occurrence }) {
       <dl class="facts">
         <dt>{t("inspect.material")}</dt>
         <dd>{part.material || "–"}</dd>
+        {part.number ? <dt>{t("inspect.number")}</dt> : null}
+        {part.number ? <dd data-testid="selected-number">{part.number}</dd> : null}
+        {part.designer ? <dt>{t("inspect.designer")}</dt> : null}
+        {part.designer ? <dd>{part.designer}</dd> : null}
         <dt>{t("inspect.mass")}</dt>
         <dd>{massText(part.mass_kg)}</dd>
         <dt>{t("inspect.state")}</dt>
@@ -74,6 +79,7 @@ export function Inspector() {
         </section>
       )}
       {parts.length > 0 ? <FitCard parts={parts} key={`fit${parts.join()}`} /> : null}
+      {part !== null && isInPlace(part.id) && !part.is_base ? <RemovalCard part={part} key={`out${part.id}`} /> : null}
       <StepsCard />
       <SummaryCard />
       <Procedure />

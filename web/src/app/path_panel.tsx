@@ -53,6 +53,7 @@ export function PathPanel() {
               [t("path.turning"), `${number((pathTurning(points.poses) * 180) / Math.PI, 1)}°`],
             ]}
           />
+          {points.frames_per_pose > 1 ? <p class="quiet">{t("path.thinned", { n: points.frames_per_pose })}</p> : null}
           <p class="card-buttons">
             <button type="button" class="small-button" data-testid="path-csv" onClick={() => saveText(pathCsv(points), `${file}.csv`, "text/csv")}>
               CSV

@@ -69,6 +69,8 @@ export function Rates() {
     [t("rates.physics"), `${number(status.physics_hz, 0)} Hz`],
     [t("rates.late"), number(status.late_ticks, 0)],
     [t("rates.lostEvents"), number(status.lost_events, 0)],
+    [t("rates.truncated"), number(status.truncated_ticks, 0)],
+    [t("rates.crowded"), number(status.crowded_ticks, 0)],
     [t("rates.computeP99"), microseconds(status.compute_p99_us)],
     [t("rates.wakeUpP99"), microseconds(status.wake_up_p99_us)],
     [t("rates.scheduling"), status.scheduling],

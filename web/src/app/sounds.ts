@@ -24,6 +24,9 @@ class Sounds {
     if (order.indexOf(now) <= order.indexOf(before)) {
       return;
     }
+    if (view.hasOnlyEndSound.peek() && now !== "seated") {
+      return;
+    }
     if (now === "captured") {
       this.tone(660, 0.09, "sine", 0.7);
       this.tone(990, 0.12, "sine", 0.5, 0.06);
@@ -38,6 +41,9 @@ class Sounds {
 
   /** Contacts click as hard as they push; a fit that lets go and holds again creaks. */
   onFrame(contacts: number, newtons: number, axial: number, now: number): void {
+    if (view.hasOnlyEndSound.peek()) {
+      return;
+    }
     const isTouching = contacts > 0 && newtons > 0.15;
     if (isTouching && !this.wasTouching) {
       this.knock(900, 0.05, Math.min(1, 0.15 + newtons / 12));

@@ -171,6 +171,7 @@ export function exposeHooks(): void {
       recording: store.recording.value?.id ?? null,
       plotSpan: ui.plotSpan.value,
       placements: Object.fromEntries(store.placements.value),
+      leaders: Object.fromEntries(store.leaders.value),
       forcesOff: store.forcesOff.value,
       safety: store.safety.value,
       demo: store.demo.value,

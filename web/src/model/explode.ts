@@ -71,13 +71,15 @@ function spanOf(box: Box, direction: Vec3): { low: number; high: number } {
 /** How far from its place, against its way in, a part is beyond all of the placed ones; with some room. */
 export function clearanceOf(step: Step, boxes: ReadonlyMap<number, Box>, placed: readonly number[]): number {
   const out = scale(unit(step.way_in), -1);
-  const own = boxes.get(step.occurrence);
-  if (own === undefined) {
+  const moved = [step.occurrence, ...step.members];
+  const own = moved.flatMap((id) => boxes.get(id) ?? []).map((box) => spanOf(box, out));
+  if (own.length === 0) {
     return step.distance_m;
   }
-  const { low, high } = spanOf(own, out);
+  const low = Math.min(...own.map((span) => span.low));
+  const high = Math.max(...own.map((span) => span.high));
   const outermost = placed
-    .filter((id) => id !== step.occurrence)
+    .filter((id) => !moved.includes(id))
     .flatMap((id) => boxes.get(id) ?? [])
     .reduce((most, box) => Math.max(most, spanOf(box, out).high), -Infinity);
   const room = 0.25 * (high - low) + 0.006;

@@ -7,7 +7,7 @@ import { FrameCursor, type RecordedFrames } from "../protocol/recorded_frames";
 import { addToLog, countLimits, kRunsLength, runOf, tell } from "./event_log";
 import { isSameHeld, summarize } from "./held";
 import { recordedMarks, type Mark } from "./marks";
-import type { HeldSummary, LimitCounts, LogEntry, Run, StepCount, Work } from "./store";
+import { leadersOf, withLeader, type HeldSummary, type LimitCounts, type LogEntry, type Run, type StepCount, type Work } from "./store";
 import type { Trace } from "./trace";
 
 export const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8] as const;
@@ -24,6 +24,7 @@ export interface RecordedRun {
 
 interface Then {
   placements: ReadonlyMap<number, Placement>;
+  leaders: ReadonlyMap<number, number>;
   step: StepCount;
   runs: readonly Run[];
   log: readonly LogEntry[];
@@ -44,6 +45,7 @@ export class Playback implements Work {
   private readonly then = computed(() => this.replayTo(this.passed.value));
   readonly held = this.heldNow;
   readonly placements = computed(() => this.then.value.placements);
+  readonly leaders = computed(() => this.then.value.leaders);
   readonly step = computed(() => this.then.value.step);
   readonly runs = computed(() => this.then.value.runs);
   readonly log = computed(() => this.then.value.log);
@@ -128,6 +130,7 @@ export class Playback implements Work {
   private replayTo(passed: number): Then {
     const scene = this.scene.value!;
     const placements = new Map(scene.occurrences.map((o) => [o.id, o.placement]));
+    let leaders = leadersOf(scene);
     let step: StepCount = { index: scene.next_step, total: scene.steps.length };
     const runs: Run[] = [];
     let log: readonly LogEntry[] = [];
@@ -135,6 +138,7 @@ export class Playback implements Work {
     for (const event of this.events.slice(0, passed)) {
       if (event.event === "placement" && event.occurrence !== undefined && event.placement !== undefined) {
         placements.set(event.occurrence, event.placement);
+        leaders = withLeader(leaders, event.occurrence, event.leader);
       } else if (event.event === "step" && event.index !== undefined) {
         step = { index: event.index, total: event.total ?? step.total };
       }
@@ -148,6 +152,6 @@ export class Playback implements Work {
         log = addToLog(log, { at: new Date(this.startedMs + event.t_ns / 1e6), timeS: event.t_ns / 1e9, ...told });
       }
     }
-    return { placements, step, runs: runs.slice(0, kRunsLength), log, limits };
+    return { placements, leaders, step, runs: runs.slice(0, kRunsLength), log, limits };
   }
 }

@@ -85,6 +85,8 @@ export interface History {
 export interface Work {
   readonly scene: ReadonlySignal<Scene | null>;
   readonly placements: ReadonlySignal<ReadonlyMap<number, Placement>>;
+  /** By part that was put together with others on the table: the part that leads them. */
+  readonly leaders: ReadonlySignal<ReadonlyMap<number, number>>;
   /** What each hand holds; changes with its state, not with its pose. */
   readonly held: ReadonlySignal<readonly HeldSummary[]>;
   readonly step: ReadonlySignal<StepCount | null>;
@@ -101,10 +103,33 @@ export interface Recording {
   sinceMs: number;
 }
 
+/** What is put together with a part on the table, and the part itself. */
+export function togetherWith(leaders: ReadonlyMap<number, number>, id: number): number[] {
+  const leader = leaders.get(id);
+  return leader === undefined ? [id] : [...leaders].filter(([, of]) => of === leader).map(([member]) => member);
+}
+
+/** Without the part where it is by itself. */
+export function withLeader(leaders: ReadonlyMap<number, number>, id: number, leader: number | undefined): ReadonlyMap<number, number> {
+  const next = new Map(leaders);
+  if (leader === undefined) {
+    next.delete(id);
+  } else {
+    next.set(id, leader);
+  }
+  return next;
+}
+
+/** As a scene says it. */
+export function leadersOf(scene: Scene): ReadonlyMap<number, number> {
+  return new Map(scene.occurrences.flatMap((o) => (o.leader === undefined ? [] : [[o.id, o.leader] as const])));
+}
+
 function makeLiveWork() {
   return {
     scene: signal<Scene | null>(null),
     placements: signal<ReadonlyMap<number, Placement>>(new Map()),
+    leaders: signal<ReadonlyMap<number, number>>(new Map()),
     held: signal<readonly HeldSummary[]>([]),
     step: signal<StepCount | null>(null),
     runs: signal<readonly Run[]>([]),
@@ -120,6 +145,7 @@ export function makeStore() {
     computed(() => (replay.value ?? live)[name].value as Work[K]["value"]);
   const scene = shown("scene");
   const placements = shown("placements");
+  const leaders = shown("leaders");
   const held = shown("held");
   const step = shown("step");
   const link = signal<LinkState>("starting");
@@ -151,6 +177,7 @@ export function makeStore() {
     replay,
     scene,
     placements,
+    leaders,
     held,
     step,
     runs: shown("runs"),
@@ -202,8 +229,12 @@ export function makeStore() {
       const own = clients.value.find((c) => c.id === client.value);
       return own?.hands ?? (hasLease.value ? [0] : []);
     }),
-    /** By occurrence. */
-    heldBy: computed<ReadonlyMap<number, HeldSummary>>(() => new Map(held.value.map((h) => [h.occurrence, h]))),
+    /** By occurrence, with what was put together with a held part and is in the hand as well. */
+    heldBy: computed<ReadonlyMap<number, HeldSummary>>(() => {
+      const isHeld = (id: number) => placements.value.get(id) === "held";
+      const all = held.value.flatMap((h) => [h.occurrence, ...togetherWith(leaders.value, h.occurrence).filter(isHeld)].map((id) => [id, h] as const));
+      return new Map(all);
+    }),
   };
 }
 

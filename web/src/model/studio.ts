@@ -11,7 +11,7 @@ import { withTrouble } from "./hands";
 import { isSameHeld, summarize } from "./held";
 import { Recordings } from "./recordings";
 import { exchangeToken, readError } from "./session";
-import { makeStore } from "./store";
+import { leadersOf, makeStore, withLeader } from "./store";
 import { StudyModel } from "./study";
 import { asServerError, uploadFile } from "./upload";
 
@@ -166,6 +166,7 @@ export class Studio {
     batch(() => {
       const { live } = this.store;
       live.placements.value = new Map(scene.occurrences.map((o) => [o.id, o.placement]));
+      live.leaders.value = leadersOf(scene);
       live.step.value = { index: scene.next_step, total: scene.steps.length };
       live.scene.value = scene;
       this.store.loading.value = null;
@@ -297,6 +298,7 @@ export class Studio {
     switch (event.event) {
       case "placement":
         live.placements.value = new Map(live.placements.value).set(event.occurrence, event.placement);
+        live.leaders.value = withLeader(live.leaders.value, event.occurrence, event.leader);
         break;
       case "taken":
         // What was cut stays so until the hand takes anew.
@@ -310,8 +312,7 @@ export class Studio {
       case "step":
         live.step.value = { index: event.index, total: event.total };
         break;
-      default:
-        // One that is only told, or an event of a newer server.
+      default: // One that is only told, or an event of a newer server.
         break;
     }
   }

@@ -62,6 +62,8 @@ export function makeViewState() {
     /** What Q and E turn it by [rad]. */
     keyTurn: signal((5 * Math.PI) / 180),
     isMuted: signal(false),
+    /** In studies, where the other sounds would tell of forces. */
+    hasOnlyEndSound: signal(false),
     /** Commands may have a single letter, digit or sign for their key (WCAG 2.1.4). */
     hasSingleKeys: signal(true),
     theme: signal<ThemeChoice>("system"),

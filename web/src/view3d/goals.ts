@@ -25,9 +25,9 @@ export function goalBoxes(scene: Scene, parts: Parts): Map<number, Box> {
 }
 
 /** The part, with what is held as one with it, in its place; and itself in its own frame. */
-export function ghostsOf(occurrence: number, scene: Scene, parts: Parts): { goal: GhostPart[]; tracked: GhostPart[] } {
+export function ghostsOf(occurrence: number, held: readonly number[], scene: Scene, parts: Parts): { goal: GhostPart[]; tracked: GhostPart[] } {
   const step = scene.steps.find((s) => s.occurrence === occurrence && s.kind !== "base");
-  const goal = [occurrence, ...(step?.members ?? [])].flatMap((id) => {
+  const goal = [...new Set([occurrence, ...held, ...(step?.members ?? [])])].flatMap((id) => {
     const shape = parts.shapeOf(id);
     const pose = scene.occurrences.find((o) => o.id === id)?.goal;
     return shape !== null && pose !== undefined ? [{ shape, pose }] : [];

@@ -3,16 +3,21 @@
 
 import { isPointerHand } from "../model/hands";
 import { toQuat, toVec3, type Pose } from "../model/math";
+import { togetherWith } from "../model/store";
 import type { Studio } from "../model/studio";
 import type { ViewState } from "../model/view_state";
 import { kMaxHands, type LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
-import type { Occurrence } from "../protocol/messages";
+import type { TablePlace } from "../protocol/messages";
 import { Lifetime } from "./lifetime";
 import { MouseHand, type Eye } from "./mouse_hand";
 import type { SceneView } from "./scene_view";
 
 interface Taken {
+  /** Of parts that were put together, the one that leads them. */
+  occurrence: number;
+  members: readonly number[];
+  tablePlaces: readonly TablePlace[];
   X_WB: Pose;
   X_WH: Pose;
 }
@@ -69,7 +74,7 @@ export class HandControl {
 
   /** The mouse goes over to the hand that has this part, where it is one that it leads. */
   turnTo(occurrence: number): void {
-    const led = this.led.find(({ mouse }) => mouse.occurrence === occurrence);
+    const led = this.led.find(({ mouse }) => mouse.holds(occurrence));
     if (led !== undefined) {
       this.view.hand.value = led.hand;
     }
@@ -90,8 +95,9 @@ export class HandControl {
     return held?.hand === this.view.hand.peek() && this.canTake(occurrence);
   }
 
-  /** @return Whether the hand holds the part now. */
-  async take(occurrence: number): Promise<boolean> {
+  /** @param isAlone  Without what it was put together with on the table.
+   @return Whether the hand holds the part now. */
+  async take(occurrence: number, isAlone = false): Promise<boolean> {
     const part = this.product.occurrence(occurrence);
     const scene = this.product.scene;
     if (part === null || scene === null || !this.canTake(occurrence)) {
@@ -100,23 +106,34 @@ export class HandControl {
     const { hand, mouse } = this.led[this.view.hand.peek()]!;
     this.view.explode.value = 0;
     this.view.apart.value = null;
-    const taken = this.isLeftInHand(occurrence) ? this.takeOver(hand) : await this.takeUp(hand, part);
-    if (taken === null) {
+    const taken = this.isLeftInHand(occurrence) ? this.takeOver(hand) : await this.takeUp(hand, part.id, isAlone);
+    const led = taken === null ? null : this.product.occurrence(taken.occurrence);
+    if (taken === null || led === null) {
       return false;
     }
-    const step = scene.steps.find((s) => s.occurrence === occurrence && s.kind === "insert") ?? null;
-    const radius = this.product.parts?.shapeOf(occurrence)?.sphere.radius ?? 0.05;
+    const { members, tablePlaces, X_WB, X_WH } = taken;
+    const own = scene.steps.find((s) => s.occurrence === led.id && s.kind === "insert") ?? null;
+    const step = own === null ? null : { ...own, members };
+    const radius = this.product.parts?.shapeOf(led.id)?.sphere.radius ?? 0.05;
     const clearance = step === null ? 0 : this.product.clearance(step);
-    mouse.begin({ occurrence, X_WB: taken.X_WB, goal: part.goal, step, radius, clearance }, taken.X_WH);
+    mouse.begin({ occurrence: led.id, members, tablePlaces, X_WB, goal: led.goal, step, radius, clearance }, X_WH);
     return true;
   }
 
-  private async takeUp(hand: number, part: Occurrence): Promise<Taken | null> {
+  private async takeUp(hand: number, occurrence: number, isAlone: boolean): Promise<Taken | null> {
     this.isTaking = true;
-    const X_WB = this.product.poseOf(part.id) ?? part.start;
-    const answer = await this.studio.command({ command: "take", hand, occurrence: part.id });
+    const lying = new Map(togetherWith(this.studio.store.leaders.peek(), occurrence).map((id) => [id, this.lyingAt(id)]));
+    const answer = await this.studio.command({ command: "take", hand, occurrence, ...(isAlone ? { alone: true } : {}) });
     this.isTaking = false;
-    return answer === null ? null : { X_WB, X_WH: answer.hand };
+    if (answer === null) {
+      return null;
+    }
+    const X_WB = lying.get(answer.occurrence) ?? this.lyingAt(answer.occurrence);
+    return { occurrence: answer.occurrence, members: answer.members, tablePlaces: answer.table_places, X_WB, X_WH: answer.hand };
+  }
+
+  private lyingAt(occurrence: number): Pose {
+    return this.product.poseOf(occurrence) ?? this.product.occurrence(occurrence)!.start;
   }
 
   private takeOver(hand: number): Taken | null {
@@ -124,8 +141,12 @@ export class HandControl {
     if (state === undefined) {
       return null;
     }
+    const together = togetherWith(this.studio.store.leaders.peek(), state.occurrence);
     // The grip is between the hand and the part that it tracks.
     return {
+      occurrence: state.occurrence,
+      members: together.filter((id) => id !== state.occurrence),
+      tablePlaces: [],
       X_WB: { p: toVec3(state.p_WT_m), q: toQuat(state.q_WT) },
       X_WH: { p: toVec3(state.p_WH_m), q: toQuat(state.q_WH) },
     };

@@ -23,7 +23,8 @@ import {
   type Vec3,
 } from "../model/math";
 import type { HandInput, HandState } from "../protocol/frames";
-import type { Step } from "../protocol/messages";
+import type { Step, TablePlace } from "../protocol/messages";
+import { nearestPlace, placeOnTable, type Place } from "./hand_places";
 
 const kFine = 0.2;
 /** The way in catches the hand when it is seen this near to it [px]. */
@@ -57,11 +58,18 @@ export interface TakenPart {
   radius: number;
   /** How far out along the way in the part is clear of all that stands there [m]. */
   clearance: number;
+  /** What moves with it. */
+  members: readonly number[];
+  /** Its places at loose parts on the table. */
+  tablePlaces: readonly TablePlace[];
 }
 
 interface Hold {
   part: TakenPart;
   X_HB: Pose;
+  /** The one in the product first. */
+  places: readonly Place[];
+  /** The one that the pointer is nearest to. */
   goal: Pose;
   way: Line | null;
   /** Where the pointer leads it, before any help. */
@@ -86,6 +94,11 @@ export class MouseHand {
     return this.hold?.part.occurrence ?? null;
   }
 
+  /** Whether the part is in the hand, or moves with what is. */
+  holds(occurrence: number): boolean {
+    return this.hold !== null && (this.hold.part.occurrence === occurrence || this.hold.part.members.includes(occurrence));
+  }
+
   get isDragging(): boolean {
     return this.grabbed !== null;
   }
@@ -98,11 +111,13 @@ export class MouseHand {
   begin(part: TakenPart, hand: Pose): void {
     const X_HB = compose(inverse(hand), part.X_WB);
     const goal = compose(part.goal, inverse(X_HB));
+    const inProduct = { goal, way: part.step?.kind === "insert" ? wayInLine(goal, part.step.way_in, part.clearance) : null };
+    const onTable = part.tablePlaces.map((place) => placeOnTable(place, X_HB, part.radius));
     this.hold = {
       part,
       X_HB,
-      goal,
-      way: part.step?.kind === "insert" ? wayInLine(goal, part.step.way_in, part.clearance) : null,
+      places: [inProduct, ...onTable],
+      ...(onTable.find((_, k) => part.tablePlaces[k]!.is_there) ?? inProduct),
       free: hand,
       sent: hand,
       start: hand.p,
@@ -186,6 +201,9 @@ export class MouseHand {
       return null;
     }
     hold.wasSeen ||= isOurs;
+    if (!isOurs || live.state < kCaptured) {
+      goToPlace(hold, nearestPlace(hold.places, hold.free.p, eye));
+    }
     this.turnTowardsGoal(hold, seconds);
     const wanted = this.wantedPlace(hold, live, eye);
     // Quick over the table, careful where it matters.
@@ -247,6 +265,15 @@ export class MouseHand {
     }
     const length = 2 * hold.part.radius;
     return { p: hold.sent.p, d, low: -length, high: length };
+  }
+}
+
+/** Until a mate has caught the part, it is for the place that the pointer is nearest to. */
+function goToPlace(hold: Hold, place: Place): void {
+  if (place.way !== hold.way) {
+    hold.goal = place.goal;
+    hold.way = place.way;
+    hold.isCaught = false;
   }
 }
 

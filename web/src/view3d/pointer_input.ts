@@ -2,6 +2,7 @@
 
 import type { Ray as ThreeRay } from "three";
 import type { Ray } from "../model/assist";
+import { togetherWith } from "../model/store";
 import type { Studio } from "../model/studio";
 import { groupAround } from "../model/tree";
 import { select, type ViewState } from "../model/view_state";
@@ -111,7 +112,7 @@ export class PointerInput {
     if (hit !== null) {
       hand.turnTo(hit.occurrence);
     }
-    const isOnHeld = hit !== null && hand.mouse.occurrence === hit.occurrence;
+    const isOnHeld = hit !== null && hand.mouse.holds(hit.occurrence);
     if (event.button === 2) {
       this.rightPress = { x: event.clientX, y: event.clientY };
     }
@@ -165,7 +166,7 @@ export class PointerInput {
       case "press":
         if (gesture.takes && Math.hypot(x - gesture.x, y - gesture.y) > kClickPx && gesture.hit !== null) {
           this.gesture = { kind: "taking", x: gesture.x, y: gesture.y };
-          void this.takeAndDrag(gesture.hit.occurrence, gesture.x, gesture.y);
+          void this.takeAndDrag(gesture.hit.occurrence, event.altKey, gesture.x, gesture.y);
         }
         break;
       case "drag":
@@ -184,8 +185,8 @@ export class PointerInput {
     }
   }
 
-  private async takeAndDrag(occurrence: number, x: number, y: number): Promise<void> {
-    const hasTaken = await this.viewport.hand.take(occurrence);
+  private async takeAndDrag(occurrence: number, isAlone: boolean, x: number, y: number): Promise<void> {
+    const hasTaken = await this.viewport.hand.take(occurrence, isAlone);
     if (this.gesture.kind === "taking") {
       this.gesture = hasTaken ? { kind: "drag" } : { kind: "none" };
     }
@@ -243,7 +244,7 @@ export class PointerInput {
       select(view, groupAround(scene, hit.occurrence, view.selected.peek()), isAdding);
       return;
     }
-    select(view, [hit.occurrence], isAdding);
+    select(view, event.altKey ? [hit.occurrence] : togetherWith(this.studio.store.leaders.peek(), hit.occurrence), isAdding);
     if (mode === "face") {
       view.selectedFace.value = { occurrence: hit.occurrence, face: hit.face };
     }
@@ -275,10 +276,10 @@ export class PointerInput {
     if (hit === null) {
       return;
     }
-    if (tool === "hand" && this.viewport.hand.mouse.occurrence === hit.occurrence) {
+    if (tool === "hand" && this.viewport.hand.mouse.holds(hit.occurrence)) {
       this.viewport.hand.release();
     } else if (tool === "hand") {
-      void this.viewport.hand.take(hit.occurrence);
+      void this.viewport.hand.take(hit.occurrence, event.altKey);
     } else if (tool === "select") {
       this.viewport.fit([hit.occurrence]);
     }
@@ -311,7 +312,7 @@ export class PointerInput {
     const hit = this.pick();
     const { view, hand, canvas } = this.viewport;
     view.hovered.value = hit?.occurrence ?? null;
-    const isHeld = hit !== null && hand.mouse.occurrence === hit.occurrence;
+    const isHeld = hit !== null && hand.mouse.holds(hit.occurrence);
     const canDrag = isHeld || (hit !== null && view.tool.peek() === "hand" && this.canDrag(hit.occurrence));
     canvas.style.cursor = canDrag ? "grab" : hit !== null ? "pointer" : "default";
   }

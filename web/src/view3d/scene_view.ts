@@ -15,6 +15,7 @@ import { ArrowScale, FeelLayer } from "./feel_layer";
 import { ExplodeLayer } from "./explode_layer";
 import { cornersOf, ghostsOf, goalBoxes } from "./goals";
 import { loadShapes } from "./glb";
+import { heldWith, posesInHand } from "./held_members";
 import { Lifetime } from "./lifetime";
 import { MarkLayer } from "./mark_layer";
 import type { Palette } from "./palette";
@@ -248,7 +249,7 @@ export class SceneView {
       extrapolator.take({ p: toVec3(hand.p_WD_m), q: toQuat(hand.q_WD) }, live.sentMs);
       const pose = extrapolator.at(nowMs);
       if (pose !== null) {
-        this.place(hand.occurrence, pose);
+        posesInHand(this.store, hand.occurrence, pose).forEach(([part, at]) => this.place(part, at));
       }
     }
   }
@@ -258,7 +259,7 @@ export class SceneView {
     const shows = this.view.showsForces.peek() && isWhole;
     this.feels.forEach((feel, k) => {
       const hand = live?.hands.find((h) => h.hand === k && h.state > 0 && h.occurrence !== kNone) ?? null;
-      const key = hand === null ? "" : `${hand.occurrence}`;
+      const key = hand === null ? "" : [hand.occurrence, ...heldWith(this.store, hand.occurrence)].join();
       if (key !== this.heldKeys[k]) {
         this.heldKeys[k] = key;
         this.showGhosts(feel, hand);
@@ -286,7 +287,7 @@ export class SceneView {
       feel.setHeld([], []);
       return;
     }
-    const { goal, tracked } = ghostsOf(hand.occurrence, this.scene, this.parts);
+    const { goal, tracked } = ghostsOf(hand.occurrence, heldWith(this.store, hand.occurrence), this.scene, this.parts);
     feel.setHeld(goal, tracked);
   }
 

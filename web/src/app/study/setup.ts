@@ -6,18 +6,17 @@ import { clearPicks, showAll } from "../../model/view_state";
 import { store, studio, ui, view, viewport } from "../app_state";
 import { language, pickLanguage } from "../i18n";
 
-/** No arrows and no sounds of forces: a fit is told by the hand alone. No help of the page's own either:
- what guides the part is what the condition says. */
+/** No arrows and no sounds of forces: a fit is told by the hand alone. The sound at the end is the protocol's choice. No
+ help of the page's own either: what guides the part is what the condition says. */
 function setUpView(): void {
   view.showsForces.value = false;
-  view.isMuted.value = true;
+  view.hasOnlyEndSound.value = true;
   view.assists.value = false;
   view.letsGoWhenSeated.value = true;
   view.showsWorkshop.value = false;
   view.showsCube.value = false;
   view.showsEdges.value = true;
   view.showsGrid.value = true;
-  view.stereo.value = "none";
   view.isOrthographic.value = false;
   view.section.value = null;
   view.explode.value = 0;
@@ -31,7 +30,6 @@ function beginTask(): void {
   view.selected.value = [];
   showAll(view);
   clearPicks(view);
-  view.tool.value = studio.study.isPicking.peek() ? "mate" : "hand";
   viewport.peek()?.lookAnew();
 }
 
@@ -63,8 +61,18 @@ export function useParticipantSetup(onPicked: (isSet: boolean) => void): void {
         }
       }),
       effect(() => {
+        const state = studio.study.state.value;
+        view.isMuted.value = !(state?.has_end_sound ?? false);
+        view.stereo.value = state?.stereo ?? "none";
+      }),
+      effect(() => {
         if (studio.study.isTask.value && store.scene.value !== null) {
           untracked(beginTask);
+        }
+      }),
+      effect(() => {
+        if (studio.study.isTask.value) {
+          view.tool.value = studio.study.isPicking.value ? "mate" : "hand";
         }
       }),
       effect(() => sendPicks(onPicked)),

@@ -2,6 +2,7 @@
 
 import { Vector3, type Group } from "three";
 import { compose, inverse, toQuat, toVec3, type Pose } from "../../model/math";
+import type { HeldSummary } from "../../model/store";
 import type { Studio } from "../../model/studio";
 import { kGrabPulse, kRefusedPulse, Vibration } from "../../model/vibration";
 import type { HandInput } from "../../protocol/frames";
@@ -20,6 +21,14 @@ interface Hold {
   X_CH: Pose;
   sent: Pose;
   wasTracked: boolean;
+}
+
+/** What the server's hand has been given. */
+interface TakenInRoom {
+  hand: number;
+  /** Of parts that were put together, the one that leads them. */
+  occurrence: number;
+  X_WH: Pose;
 }
 
 export class VrHands {
@@ -115,14 +124,14 @@ export class VrHands {
       return;
     }
     this.asking.add(hand);
-    const taken = left !== undefined ? this.takeOver(left.hand) : await this.takeUp(free ?? 0, occurrence);
+    const taken = left !== undefined ? this.takeOver(left) : await this.takeUp(free ?? 0, occurrence);
     if (taken === null) {
       this.asking.delete(hand);
       hand.pulse(kRefusedPulse);
       return;
     }
     this.holds.set(hand, {
-      occurrence,
+      occurrence: taken.occurrence,
       hand: taken.hand,
       X_CH: compose(inverse(hand.poseIn(this.world)), taken.X_WH),
       sent: taken.X_WH,
@@ -135,20 +144,20 @@ export class VrHands {
     }
   }
 
-  private async takeUp(hand: number, occurrence: number): Promise<{ hand: number; X_WH: Pose } | null> {
+  private async takeUp(hand: number, occurrence: number): Promise<TakenInRoom | null> {
     const answer = await this.studio.command({ command: "take", hand, occurrence });
-    return answer === null ? null : { hand, X_WH: answer.hand };
+    return answer === null ? null : { hand, occurrence: answer.occurrence, X_WH: answer.hand };
   }
 
   /** What has been in the hand since before, or changes from one of the user's hands to the other. */
-  private takeOver(hand: number): { hand: number; X_WH: Pose } | null {
+  private takeOver({ hand, occurrence }: HeldSummary): TakenInRoom | null {
     const live = this.port.live?.hands.find((h) => h.hand === hand);
     for (const [other, hold] of this.holds) {
       if (hold.hand === hand) {
         this.holds.delete(other);
       }
     }
-    return live === undefined ? null : { hand, X_WH: { p: toVec3(live.p_WH_m), q: toQuat(live.q_WH) } };
+    return live === undefined ? null : { hand, occurrence, X_WH: { p: toVec3(live.p_WH_m), q: toQuat(live.q_WH) } };
   }
 
   /** The server's hand for one of the user's: with two, the right one is the first. */

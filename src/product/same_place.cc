@@ -1,4 +1,4 @@
-#include "mates/same_place.h"
+#include "product/same_place.h"
 
 #include <algorithm>
 #include <array>
@@ -6,13 +6,8 @@
 #include <map>
 #include <string>
 
-namespace hvas::mates {
+namespace hvas::product {
 namespace {
-
-using product::Occurrence;
-using product::OccurrenceId;
-using product::Pose;
-using product::Product;
 
 constexpr double kSamePose = 1e-9;   // [m], and as a part of the rotation.
 constexpr double kPlaceGrid = 1e-6;  // [m]: the grid of a mate's key.
@@ -62,4 +57,4 @@ std::vector<OccurrenceId> FindOriginals(const Product& product) {
   return original_of;
 }
 
-}  // namespace hvas::mates
+}  // namespace hvas::product

@@ -5,10 +5,10 @@
 
 #include "product/product.h"
 
-namespace hvas::mates {
+namespace hvas::product {
 
 /** Whether two poses differ by rounding only: within 1 nm, and 1e-9 of the rotation. */
-[[nodiscard]] bool IsSamePose(const product::Pose& X, const product::Pose& Y);
+[[nodiscard]] bool IsSamePose(const Pose& X, const Pose& Y);
 
 /** The micrometre that a coordinate lies in, for tables of poses. */
 [[nodiscard]] std::int64_t PlaceCell(double value);
@@ -16,6 +16,6 @@ namespace hvas::mates {
 /** Finds for each occurrence the earlier one, if any, that has the same shape at the same place:
  files hold copies that somebody pasted and forgot. An original is never a copy itself. Takes time
  with the number of occurrences, however many lie at one place. */
-[[nodiscard]] std::vector<product::OccurrenceId> FindOriginals(const product::Product& product);
+[[nodiscard]] std::vector<OccurrenceId> FindOriginals(const Product& product);
 
-}  // namespace hvas::mates
+}  // namespace hvas::product

@@ -1,0 +1,177 @@
+#include "app/assembly/run_command.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/assembly/rendering_options.h"
+#include "app/assembly/run_report.h"
+#include "app/output/progress.h"
+#include "app/output/text_layout.h"
+#include "assembly/prepare_model.h"
+#include "base/clock.h"
+#include "record/recorder.h"
+
+namespace hvas::app {
+namespace {
+
+using simulation::Model;
+using simulation::PartResult;
+
+Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
+                                               const std::vector<std::string>& first_parts,
+                                               Diagnostics* diagnostics, bool is_watched) {
+  auto product = LoadProduct(options.load, diagnostics);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  assembly::PrepareOptions prepare;
+  prepare.seed = options.run.seed;
+  prepare.pairs = options.pairs;
+  prepare.first_parts = first_parts;
+  prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
+  if (is_watched) {
+    prepare.progress = ShowProgress;
+  }
+  auto model = assembly::PrepareModel(std::move(*product), prepare, diagnostics);
+  if (!model) {
+    return model;
+  }
+  if (const auto strict = CheckStrict(options.load, *diagnostics); !strict) {
+    return Unexpected(strict.error());
+  }
+  return model;
+}
+
+/** Prints how forces are rendered with each device. */
+void ShowNotes(const std::vector<assembly::DeviceInHand>& devices) {
+  for (const assembly::DeviceInHand& device : devices) {
+    const char* whose = devices.size() == 1 ? "" : NameOfHand(device.hand);
+    for (const std::string& note : device.notes) {
+      fmt::print(stderr, "hvas: {}{}{}: {}\n", whose, devices.size() == 1 ? "" : ": ", device.model,
+                 note);
+    }
+  }
+}
+
+void ShowPart(const Model& model, const TurnWords& words, std::int64_t start_ns,
+              const simulation::AssemblyProgress& progress, const PartResult& part) {
+  const auto wall_ns = static_cast<double>(std::max<std::int64_t>(1, MonotonicNs() - start_ns));
+  ShowProgress(
+      fmt::format("part {} of {}, {} {}, {:.1f} x real time; {}{},", progress.tried, progress.total,
+                  progress.done, words.done, static_cast<double>(progress.t_ns) / wall_ns,
+                  words.is_done(part) ? "" : words.failed,
+                  Shorten(model.product->occurrences[part.occurrence.index()].path, 40)),
+      static_cast<double>(progress.tried) / static_cast<double>(progress.total));
+}
+
+}  // namespace
+
+bool IsShown(const RunCommandOptions& options) {
+  return !options.load.is_quiet && IsWatched();
+}
+
+Result<PreparedRun> PrepareRun(const RunCommandOptions& options,
+                               const std::vector<std::string>& first_parts) {
+  if (!options.run.record.empty()) {
+    const auto target = record::CheckTarget(options.run.record, options.run.is_record_replaced);
+    if (!target) {
+      return Unexpected(target.error());
+    }
+  }
+  Diagnostics diagnostics;
+  const std::int64_t start_ns = MonotonicNs();
+  auto model = MakeModel(options, first_parts, &diagnostics, IsShown(options));
+  if (!model) {
+    return Unexpected(model.error());
+  }
+  for (const Diagnostic& item : diagnostics.items()) {
+    if (item.code == "shape-cache" || item.code == "cache-unwritable" ||
+        item.code.starts_with("limit-") || item.code.starts_with("mate-")) {
+      fmt::print(stderr, "hvas: {}: {}{}\n", item.entity, item.message,
+                 item.remedy.empty() ? "" : " (" + item.remedy + ")");
+    }
+  }
+  return PreparedRun{std::move(*model), start_ns};
+}
+
+assembly::RunOptions MakeRunOptions(const RunCommandOptions& options,
+                                    const std::shared_ptr<const Model>& model,
+                                    const TurnWords& words) {
+  assembly::RunOptions run = options.run;
+  run.devices = {options.device};
+  if (IsShown(options)) {
+    run.on_begin = ShowNotes;
+    run.on_part = [model, words, start_ns = MonotonicNs()](const auto& progress,
+                                                           const PartResult& part) {
+      ShowPart(*model, words, start_ns, progress, part);
+    };
+  }
+  run.on_record_error = [name = words.run](const Error& error) {
+    fmt::print(stderr, "\nhvas: {} (the {} continues)\n", error.ToString(), name);
+  };
+  return run;
+}
+
+SessionReport MakeSessionReport(const RunCommandOptions& options, assembly::RunOutcome outcome,
+                                std::int64_t preparation_ns) {
+  SessionReport report;
+  report.run = std::move(outcome);
+  report.preparation_ns = preparation_ns;
+  report.seed = options.run.seed;
+  report.is_realtime = options.run.is_realtime;
+  report.force_map = options.run.force_map;
+  return report;
+}
+
+void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options) {
+  command
+      ->add_option("--seed", options->run.seed,
+                   "Seed for the person's motion and the parts' actual sizes")
+      ->capture_default_str();
+  command->add_option("--fit", options->load.fits,
+                      "Assign a fit: AXIS=FIT, for example m12=H7/p6; AXIS is the id of a mate, "
+                      "the name of a part, or 'all'");
+  AddPairsOption(command, &options->pairs);
+  AddConditionOption(command, &options->run.condition);
+  AddForceMapOption(command, &options->run.force_map);
+  AddGuidanceOptions(command, &options->run.guidance);
+  command->add_option(
+      "--device", options->device,
+      "Address of the device for the hand (`hvas devices` lists them); emulated:DRIVER[:PROFILE] "
+      "for an emulated one, held by the simulated person");
+}
+
+void AddRunOptions(CLI::App* command, RunCommandOptions* options) {
+  command
+      ->add_option("--scale", options->run.render.scale,
+                   "Scale: millimetres of the scene for one millimetre of the device; default 0: "
+                   "chosen by the sizes of both")
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_option("--rate", options->run.render.rate_hz, "Rate of the haptic loop [Hz]")
+      ->check(CLI::Range(1000.0, 8000.0))
+      ->capture_default_str();
+  command->add_flag(
+      "--realtime", options->run.is_realtime,
+      "Run in real time instead of virtual time, with three threads at --rate, 100 and 30 Hz");
+  CLI::Option* record =
+      command->add_option("--record", options->run.record, "Record the session to this file");
+  command->add_flag("--force", options->run.is_record_replaced, "Replace an existing record")
+      ->needs(record);
+  command
+      ->add_option("--limit", options->run.limit_s,
+                   "Stop after this session time [s]; default 0: 120 s for each part")
+      ->check([](const std::string& text) {
+        double limit_s = 0;
+        const char* end = text.data() + text.size();
+        const auto [rest, code] = std::from_chars(text.data(), end, limit_s);
+        const bool is_time = code == std::errc() && rest == end && limit_s >= 0 && limit_s <= 1e9;
+        return is_time ? std::string() : "must be a time in seconds, 0 or more";
+      });
+}
+
+}  // namespace hvas::app

@@ -1,0 +1,456 @@
+#include "product/welded_units.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "product/bought_name.h"
+#include "product/enclosure.h"
+#include "product/fastener_name.h"
+#include "product/rolling_bearing.h"
+#include "product/same_place.h"
+
+namespace hvas::product {
+namespace {
+
+constexpr std::string_view kEverything = "all";
+constexpr std::size_t kMostNamed = 6;  // Bodies that a note names: a choice.
+constexpr std::size_t kMostBodies =
+    400;  // of a bought unit; more is a product of its own. A choice.
+constexpr std::size_t kFewestComponents = 3;  // that make designators a board's. A choice.
+
+bool IsCalled(const Product& product, OccurrenceId id, std::string_view wanted) {
+  const Occurrence& occurrence = product.occurrences[id.index()];
+  return IsCalledByPath(occurrence.name, occurrence.path, wanted) ||
+         std::any_of(occurrence.bodies.begin(), occurrence.bodies.end(),
+                     [&](const std::string& path) { return IsCalledByPath({}, path, wanted); });
+}
+
+bool IsKeptApart(const Product& product, const Weld& weld, const std::vector<KeptApart>& apart) {
+  if (apart.empty()) {
+    return false;
+  }
+  const WeldName name = FindName(product, weld);
+  return std::any_of(apart.begin(), apart.end(), [&](const KeptApart& kept) {
+    const std::string& wanted = kept.name;
+    return wanted == kEverything || IsCalledByPath(name.name, name.path, wanted) ||
+           std::any_of(weld.members.begin(), weld.members.end(),
+                       [&](OccurrenceId id) { return IsCalled(product, id, wanted); });
+  });
+}
+
+Box BoxInWorld(const Product& product, OccurrenceId id) {
+  return spatial::Transform(product.occurrences[id.index()].X_WB, product.part_of(id).box_B);
+}
+
+/** The names that CAD systems and readers give to bodies that have none of their own. */
+bool IsBodyName(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kNames{"solid", "shell",   "compound", "compsolid",
+                                                   "body",  "surface", "brep",     "face"};
+  std::string text;
+  for (const char c : name) {
+    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) {
+      text += static_cast<char>(c | 0x20);
+    } else if (!(c >= '0' && c <= '9') && c != ' ' && c != '_' && c != ':' && c != '#' &&
+               c != '-' && c != '.') {
+      return false;
+    }
+  }
+  return std::find(kNames.begin(), kNames.end(), text) != kNames.end();
+}
+
+class UnitSearch {
+ public:
+  UnitSearch(const Product& product, const std::vector<KeptApart>& apart, WorkWatch* watch)
+      : product_(product),
+        apart_(apart),
+        watch_(watch),
+        is_free_(product.occurrences.size(), true) {}
+
+  std::vector<Weld> Run() {
+    AddComponents();
+    AddNamedUnits(SubassemblyId(0));
+    for (const auto& members : FindRollingBearings(product_, is_free_, watch_)) {
+      Add({members, WeldReason::kRollingBearing});
+    }
+    AddBodiesOfParts();
+    AddEnclosed();
+    std::sort(welds_.begin(), welds_.end(),
+              [](const Weld& a, const Weld& b) { return a.members.front() < b.members.front(); });
+    return std::move(welds_);
+  }
+
+ private:
+  [[nodiscard]] const Subassembly& NodeOf(SubassemblyId id) const {
+    return product_.subassemblies[id.index()];
+  }
+
+  bool Add(Weld weld) {
+    std::sort(weld.members.begin(), weld.members.end());
+    const bool is_free = std::all_of(weld.members.begin(), weld.members.end(),
+                                     [this](OccurrenceId id) { return is_free_[id.index()]; });
+    if (weld.members.size() < 2 || !is_free || IsKeptApart(product_, weld, apart_)) {
+      return false;
+    }
+    for (const OccurrenceId id : weld.members) {
+      is_free_[id.index()] = false;
+    }
+    welds_.push_back(std::move(weld));
+    return true;
+  }
+
+  void ListBelow(SubassemblyId node, std::vector<OccurrenceId>* ids) const {
+    const std::vector<OccurrenceId>& own = NodeOf(node).occurrences;
+    ids->insert(ids->end(), own.begin(), own.end());
+    for (const SubassemblyId child : NodeOf(node).subassemblies) {
+      ListBelow(child, ids);
+    }
+  }
+
+  /** Levels of subassemblies below a node. */
+  [[nodiscard]] int CountLevels(SubassemblyId node) const {
+    int levels = 0;
+    for (const SubassemblyId child : NodeOf(node).subassemblies) {
+      levels = std::max(levels, 1 + CountLevels(child));
+    }
+    return levels;
+  }
+
+  [[nodiscard]] bool IsFastener(OccurrenceId id) const {
+    const Occurrence& occurrence = product_.occurrences[id.index()];
+    return ClassifyName(product_.part_of(id).name) != FastenerKind::kNone ||
+           ClassifyName(occurrence.name) != FastenerKind::kNone ||
+           (IsBodyName(occurrence.name) &&
+            ClassifyName(NodeOf(occurrence.parent).name) != FastenerKind::kNone);
+  }
+
+  /** Rule 3, from the root downwards. */
+  void AddNamedUnits(SubassemblyId node) {
+    for (const SubassemblyId child : NodeOf(node).subassemblies) {
+      const BoughtName bought = ClassifyBoughtName(NodeOf(child).name);
+      std::vector<OccurrenceId> members;
+      if (bought != BoughtName::kNone && CountLevels(child) <= 1) {
+        ListBelow(child, &members);
+        std::sort(members.begin(), members.end());
+      }
+      const bool may_be_unit = members.size() >= 2 && members.size() <= kMostBodies &&
+                               (bought == BoughtName::kDesignation ||
+                                std::none_of(members.begin(), members.end(),
+                                             [this](OccurrenceId id) { return IsFastener(id); })) &&
+                               !IsAssembledAround(members);
+      if (!may_be_unit || !Add({members, WeldReason::kBoughtUnit})) {
+        AddNamedUnits(child);
+      }
+    }
+  }
+
+  /** Whether a fastener from outside holds two members together, or a part from outside lies so
+   between members that it has no straight way out. */
+  [[nodiscard]] bool IsAssembledAround(const std::vector<OccurrenceId>& members) const {
+    Box box;
+    for (const OccurrenceId id : members) {
+      box.Add(BoxInWorld(product_, id));
+    }
+    for (const Occurrence& other : product_.occurrences) {
+      if (!MayGoOn(watch_)) {
+        return true;
+      }
+      if (std::binary_search(members.begin(), members.end(), other.id)) {
+        continue;
+      }
+      const Box other_box = BoxInWorld(product_, other.id);
+      if (!other_box.Overlaps(box)) {
+        continue;
+      }
+      if (IsFastener(other.id) ? CountHeld(product_, other.id, members) >= 2
+                               : box.Contains(other_box.low) && box.Contains(other_box.high) &&
+                                     !HasStraightWayOut(product_, other.id, members)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /** Components of a circuit board: nodes with reference designators beside a board. */
+  void AddComponents() {
+    for (const Subassembly& node : product_.subassemblies) {
+      std::vector<SubassemblyId> components;
+      bool has_board = false;
+      for (const SubassemblyId child : node.subassemblies) {
+        if (IsReferenceDesignator(NodeOf(child).name)) {
+          components.push_back(child);
+        } else {
+          has_board = has_board || IsCircuitBoard(NodeOf(child).name);
+        }
+      }
+      for (const OccurrenceId id : node.occurrences) {
+        has_board = has_board || IsCircuitBoard(product_.occurrences[id.index()].name) ||
+                    IsCircuitBoard(product_.part_of(id).name);
+      }
+      if (!has_board || components.size() < kFewestComponents) {
+        continue;
+      }
+      for (const SubassemblyId component : components) {
+        std::vector<OccurrenceId> members;
+        ListBelow(component, &members);
+        std::sort(members.begin(), members.end());
+        if (members.size() <= kMostBodies && AreConnected(members)) {
+          Add({members, WeldReason::kComponent});
+        }
+      }
+    }
+  }
+
+  /** Whether the boxes of all touch, one by one; 2 % of the whole count as touching. */
+  [[nodiscard]] bool AreConnected(const std::vector<OccurrenceId>& members) const {
+    constexpr double kTouching = 0.02;  // Part of the whole: a choice.
+    Box all;
+    std::vector<Box> boxes;
+    for (const OccurrenceId id : members) {
+      boxes.push_back(BoxInWorld(product_, id));
+      all.Add(boxes.back());
+    }
+    const double slack = kTouching * (all.is_empty() ? 0.0 : all.size().norm());
+    std::vector<bool> is_reached(boxes.size(), false);
+    std::vector<std::size_t> open{0};
+    std::size_t reached = boxes.empty() ? 0 : 1;
+    is_reached[0] = true;
+    while (!open.empty()) {
+      const Box near = boxes[open.back()].Expanded(slack);
+      open.pop_back();
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (!is_reached[i] && near.Overlaps(boxes[i])) {
+          is_reached[i] = true;
+          ++reached;
+          open.push_back(i);
+        }
+      }
+    }
+    return reached == boxes.size();
+  }
+
+  /** Rule 1: bodies that one part of the file is drawn with. */
+  void AddBodiesOfParts() {
+    for (const Subassembly& node : product_.subassemblies) {
+      if (node.occurrences.size() < 2) {
+        continue;
+      }
+      const bool are_bodies =
+          node.subassemblies.empty() &&
+          std::all_of(node.occurrences.begin(), node.occurrences.end(), [this](OccurrenceId id) {
+            return IsBodyName(product_.occurrences[id.index()].name);
+          });
+      if (are_bodies && node.parent.is_valid() && ClassifyName(node.name) != FastenerKind::kNone &&
+          AreConnected(node.occurrences)) {
+        Add({node.occurrences, WeldReason::kBodiesOfPart});
+      } else if (node.parent.is_valid() || are_bodies) {
+        AddSurfaces(node, are_bodies);
+      }
+    }
+  }
+
+  /** Gives each solid of a node the bodies without volume that belong to it: those that lie in its
+   box, or, among bodies of one part, those whose box touches that of the solid. */
+  void AddSurfaces(const Subassembly& node, bool are_bodies) {
+    constexpr double kInside = 0.01;  // Part of the box that a surface may stand out. A choice.
+    std::map<OccurrenceId, std::vector<OccurrenceId>> surfaces_of;
+    for (const OccurrenceId id : node.occurrences) {
+      if (product_.part_of(id).mass.volume > 0) {
+        continue;
+      }
+      const Box surface = BoxInWorld(product_, id);
+      OccurrenceId best;
+      double best_size = 0;
+      for (const OccurrenceId solid : node.occurrences) {
+        if (!(product_.part_of(solid).mass.volume > 0) || !is_free_[solid.index()]) {
+          continue;
+        }
+        const Box box = BoxInWorld(product_, solid);
+        const double size = box.size().norm();
+        const Box near = box.Expanded(kInside * size);
+        const bool is_inside = near.Contains(surface.low) && near.Contains(surface.high);
+        if ((is_inside || (are_bodies && near.Overlaps(surface))) &&
+            (!best.is_valid() || size < best_size)) {
+          best = solid;
+          best_size = size;
+        }
+      }
+      if (best.is_valid()) {
+        surfaces_of[best].push_back(id);
+      }
+    }
+    for (auto& [solid, members] : surfaces_of) {
+      members.push_back(solid);
+      Add({members, WeldReason::kBodiesOfPart});
+    }
+  }
+
+  /** Rule 4: parts in a closed cavity. */
+  void AddEnclosed() {
+    for (const auto& [inner, outer] : FindEnclosed(product_, watch_)) {
+      if (!is_free_[inner.index()] || IsFastener(inner)) {
+        continue;
+      }
+      const auto unit = std::find_if(welds_.begin(), welds_.end(), [outer = outer](const Weld& w) {
+        return std::binary_search(w.members.begin(), w.members.end(), outer);
+      });
+      if (unit == welds_.end()) {
+        Add({{inner, outer}, WeldReason::kEnclosed});
+      } else if (Weld grown = *unit;
+                 !IsKeptApart(product_, {{inner, outer}, grown.reason}, apart_)) {
+        grown.members.push_back(inner);
+        std::sort(grown.members.begin(), grown.members.end());
+        *unit = std::move(grown);
+        is_free_[inner.index()] = false;
+      }
+    }
+  }
+
+  const Product& product_;
+  const std::vector<KeptApart>& apart_;
+  WorkWatch* watch_;
+  std::vector<bool> is_free_;
+  std::vector<Weld> welds_;
+};
+
+/** Whether each name is that of something in the product. */
+Result<void> CheckNames(const Product& product, const std::vector<KeptApart>& apart) {
+  for (const auto& [wanted, where] : apart) {
+    const auto is_called = [&product, &name = wanted](const Occurrence& occurrence) {
+      return IsCalled(product, occurrence.id, name) ||
+             ("/" + occurrence.path).find("/" + name + "/") != std::string::npos;
+    };
+    const bool is_known =
+        wanted == kEverything ||
+        std::any_of(product.occurrences.begin(), product.occurrences.end(), is_called);
+    if (!is_known) {
+      return Fail(ErrorCode::kInvalid,
+                  "nothing in the product is called \"" + wanted + "\", which is to stay apart",
+                  where.empty() ? product.source : where,
+                  "take a name or a path from hvas inspect");
+    }
+  }
+  return {};
+}
+
+std::string JoinNames(const Product& product, const Weld& weld) {
+  std::vector<std::pair<std::string, int>> names;
+  for (const OccurrenceId id : weld.members) {
+    const std::string& name = product.occurrences[id.index()].name;
+    const auto known = std::find_if(names.begin(), names.end(),
+                                    [&name](const auto& item) { return item.first == name; });
+    if (known == names.end()) {
+      names.emplace_back(name, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i) {
+    text += (i == 0 ? "" : ", ") +
+            (names[i].second > 1 ? std::to_string(names[i].second) + " x " : std::string()) +
+            names[i].first;
+  }
+  return names.size() > kMostNamed
+             ? text + " and " + std::to_string(names.size() - kMostNamed) + " more"
+             : text;
+}
+
+/** One note for each unit and those that have the same parts for the same reason. */
+void ReportUnits(const Product& product, const std::vector<Weld>& welds, Diagnostics* diagnostics) {
+  std::map<std::pair<WeldReason, std::vector<PartId>>, std::vector<const Weld*>> groups;
+  for (const Weld& weld : welds) {
+    std::vector<PartId> parts;
+    for (const OccurrenceId id : weld.members) {
+      parts.push_back(product.occurrences[id.index()].part);
+    }
+    groups[{weld.reason, parts}].push_back(&weld);
+  }
+  std::map<OccurrenceId, const std::vector<const Weld*>*> in_order;
+  for (const auto& [key, group] : groups) {
+    in_order[group.front()->members.front()] = &group;
+  }
+  for (const auto& [first, group] : in_order) {
+    const Weld& weld = *group->front();
+    diagnostics->Note(
+        "welded-unit", FindName(product, weld).path,
+        "is one body of " + std::to_string(weld.members.size()) + " parts (" +
+            JoinNames(product, weld) + "), because " + ToString(weld.reason) +
+            (group->size() > 1 ? "; so are " + std::to_string(group->size() - 1) + " more of these"
+                               : ""),
+        "list it under \"apart\" in the side file, or name it with --apart, to "
+        "assemble its parts");
+  }
+}
+
+void ReportDuplicates(const Product& product, const std::vector<Weld>& welds,
+                      Diagnostics* diagnostics) {
+  for (const Weld& weld : welds) {
+    const std::size_t count = weld.members.size() - 1;
+    diagnostics->Note("duplicate-part", product.occurrences[weld.members.front().index()].path,
+                      count == 1
+                          ? std::string("a copy of this part has the same pose and is left "
+                                        "out of the assembly")
+                          : std::to_string(count) +
+                                " copies of this part have the same pose and are left out of "
+                                "the assembly",
+                      "delete the copies in the CAD system, or name the part with --apart or under "
+                      "\"apart\" in the side file");
+  }
+}
+
+}  // namespace
+
+bool IsCalledByPath(const std::string& name, const std::string& path, std::string_view wanted) {
+  return !wanted.empty() && (name == wanted || path == wanted ||
+                             (path.size() > wanted.size() && path.ends_with(wanted) &&
+                              path[path.size() - wanted.size() - 1] == '/'));
+}
+
+std::vector<Weld> FindDuplicates(const Product& product, const std::vector<KeptApart>& apart) {
+  const std::vector<OccurrenceId> original_of = FindOriginals(product);
+  std::map<OccurrenceId, std::vector<OccurrenceId>> copies;
+  for (std::size_t i = 0; i < original_of.size(); ++i) {
+    if (original_of[i].is_valid()) {
+      copies[original_of[i]].push_back(OccurrenceId(i));
+    }
+  }
+  std::vector<Weld> welds;
+  for (const auto& [original, others] : copies) {
+    Weld weld{{original}, WeldReason::kDuplicate};
+    weld.members.insert(weld.members.end(), others.begin(), others.end());
+    if (!IsKeptApart(product, weld, apart)) {
+      welds.push_back(std::move(weld));
+    }
+  }
+  return welds;
+}
+
+std::vector<Weld> FindWelds(const Product& product, const std::vector<KeptApart>& apart,
+                            WorkWatch* watch) {
+  return UnitSearch(product, apart, watch).Run();
+}
+
+Result<void> WeldUnits(const std::vector<KeptApart>& apart, Product* product,
+                       Diagnostics* diagnostics, WorkWatch* watch) {
+  if (const auto checked = CheckNames(*product, apart); !checked) {
+    return checked;
+  }
+  const std::vector<Weld> duplicates = FindDuplicates(*product, apart);
+  ReportDuplicates(*product, duplicates, diagnostics);
+  ApplyWelds(duplicates, product);
+  const std::vector<Weld> units = FindWelds(*product, apart, watch);
+  if (!MayGoOn(watch)) {
+    return Unexpected(watch->Explain("finding bought units", product->source));
+  }
+  ReportUnits(*product, units, diagnostics);
+  ApplyWelds(units, product);
+  return {};
+}
+
+}  // namespace hvas::product

@@ -1,0 +1,796 @@
+#include "simulation/extraction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "mates/place_bodies.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::Mate;
+using product::MateKind;
+using product::OccurrenceId;
+
+constexpr double kDepthTolerance = 50e-6;  // [m]; drawn surfaces may touch this deep
+constexpr double kReliefFrom = 5e-6;       // [m]; contact gives way by this much by itself
+constexpr double kReliefRoom = 10e-6;      // [m] that is left between faces that give way: a choice
+constexpr double kWayRelief = kDepthTolerance + 10e-6;              // [m]; a way is free with less
+constexpr double kMostRelief = 2 * contact::FaceOffsets::kLargest;  // [m] of two faces
+constexpr int kReliefRounds = 8;  // In each, the deepest contacts of a query give way: a choice.
+constexpr double kShortestStep = 0.25e-3;  // [m] between looks along a way
+constexpr double kLongestStep = 2e-3;      // [m]; longer ones could pass through a thin wall.
+constexpr double kParallel = 1e-3;         // sine or cosine that counts as zero
+
+}  // namespace
+
+Extraction::Extraction(const SequenceInput& input, const Sequence* known)
+    : input_(input),
+      product_(*input.product),
+      is_present_(product_.occurrences.size(), true),
+      is_in_unit_(product_.occurrences.size(), false),
+      mates_of_(product_.occurrences.size()),
+      memories_(product_.occurrences.size()) {
+  for (const Mate& mate : product_.mates) {
+    if (mates::IsContradicted(product_, mate)) {
+      continue;
+    }
+    const product::Pose& X_WA = product_.occurrences[mate.a.occurrence.index()].X_WB;
+    const product::Pose& X_WB = product_.occurrences[mate.b.occurrence.index()].X_WB;
+    const Vec3 axis_a = (X_WA * mate.a.X_BM).q() * Vec3::UnitZ();
+    const Vec3 axis_b = (X_WB * mate.b.X_BM).q() * Vec3::UnitZ();
+    const product::Part& part = product_.part_of(mate.a.occurrence);
+    const double cosine = mate.kind == MateKind::kConeSeat
+                              ? std::cos(part.features[mate.a.feature.index()].half_angle)
+                              : 1.0;
+    mates_of_[mate.a.occurrence.index()].push_back(
+        {&mate, mate.b.occurrence, axis_a, true, cosine});
+    mates_of_[mate.b.occurrence.index()].push_back(
+        {&mate, mate.a.occurrence, axis_b, false, cosine});
+  }
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    boxes_.push_back(spatial::Transform(occurrence.X_WB, product_.part_of(occurrence.id).box_B));
+  }
+  overlapped_.resize(product_.occurrences.size());
+  if (known == nullptr) {
+    FindOverlaps(kMostRelief);
+    RelieveDrawn();
+    FindOverlaps(kDepthTolerance);
+    return;
+  }
+  for (const DrawnOverlap& overlap : known->overlaps) {
+    LeaveOut(overlap);
+  }
+  std::set<OccurrenceId> parts;
+  for (const FaceRelief& relief : known->reliefs) {
+    reliefs_[{relief.occurrence, relief.face}] = relief.depth;
+    parts.insert(relief.occurrence);
+  }
+  GiveOffsets(parts);
+}
+
+void Extraction::LeaveOut(const DrawnOverlap& overlap) {
+  overlaps_.push_back(overlap);
+  overlapped_[overlap.a.index()].emplace_back(overlap.b.index());
+  overlapped_[overlap.b.index()].emplace_back(overlap.a.index());
+}
+
+void Extraction::SetPresent(const Unit& unit, bool is_present) {
+  for (const OccurrenceId id : unit) {
+    is_present_[id.index()] = is_present;
+    input_.scene->SetEnabled(contact::BodyId(id.index()), is_present);
+  }
+}
+
+void Extraction::SetUnit(const Unit& unit, bool is_in_unit) {
+  for (const OccurrenceId id : unit) {
+    is_in_unit_[id.index()] = is_in_unit;
+  }
+}
+
+double Extraction::SizeOf(OccurrenceId id) const {
+  const product::Part& part = product_.part_of(id);
+  return part.mass.volume > 0 ? part.mass.volume : part.box_B.size().prod();
+}
+
+std::string Extraction::Describe(OccurrenceId id) const {
+  return id.is_valid() ? product_.occurrences[id.index()].path : std::string("the table");
+}
+
+std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
+  std::vector<Vec3> directions;
+  const auto add = [&directions](const Vec3& d) {
+    for (const Vec3& known : directions) {
+      if (known.dot(d) > 1 - kParallel * kParallel) {
+        return;
+      }
+    }
+    directions.push_back(d);
+  };
+  for (const OccurrenceId id : unit) {
+    for (const MateView& view : mates_of_[id.index()]) {
+      if (!IsAround(view.other)) {
+        continue;
+      }
+      switch (view.mate->kind) {
+        case MateKind::kAxisHole:
+          add(view.axis_W);
+          add(-view.axis_W);
+          break;
+        case MateKind::kFaceFace:
+          add(-view.axis_W);  // away from the partner's face
+          break;
+        case MateKind::kConeSeat:
+        case MateKind::kSphereSeat:
+          add(view.is_a ? Vec3(-view.axis_W) : view.axis_W);  // z points out of the seat
+          break;
+      }
+    }
+  }
+  for (const Vec3& d : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0),
+                        Vec3(0, 0, -1)}) {
+    add(d);
+  }
+  // From above is how people assemble: try the upward ways out first.
+  std::stable_sort(directions.begin(), directions.end(),
+                   [](const Vec3& x, const Vec3& y) { return x.z() > y.z() + 1e-9; });
+  return directions;
+}
+
+bool Extraction::IsAllowed(const MateView& view, const Vec3& direction) {
+  const double along = view.axis_W.dot(direction);
+  switch (view.mate->kind) {
+    case MateKind::kAxisHole:
+      return std::abs(along) >= 1 - kParallel;
+    case MateKind::kFaceFace:
+      return along <= kParallel;  // the outward normal points into the partner
+    case MateKind::kConeSeat:
+      // Up to the half angle from the axis; steeper ways run into the other side of the seat.
+      return (view.is_a ? -along : along) >= view.cos_half_angle - kParallel;
+    case MateKind::kSphereSeat:
+      return true;  // how far the socket reaches around the ball is left to contact
+  }
+  return true;
+}
+
+bool Extraction::MatesAllow(const Unit& unit, const Vec3& direction) const {
+  return std::all_of(unit.begin(), unit.end(), [&](OccurrenceId id) {
+    const std::vector<MateView>& views = mates_of_[id.index()];
+    return std::all_of(views.begin(), views.end(), [&](const MateView& view) {
+      return !IsAround(view.other) || IsAllowed(view, direction);
+    });
+  });
+}
+
+double Extraction::CalcExitDistance(const Unit& unit, const Vec3& direction) const {
+  spatial::Box box;
+  for (const OccurrenceId id : unit) {
+    box.Add(boxes_[id.index()]);
+  }
+  double farthest = 0;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    if (!IsAround(OccurrenceId(i))) {
+      continue;
+    }
+    // Distance after which the boxes are apart for good: the earliest over the three axes.
+    double apart = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+      const double d = direction[k];
+      if (std::abs(d) < 1e-9) {
+        const bool overlaps = boxes_[i].low[k] < box.high[k] && box.low[k] < boxes_[i].high[k];
+        apart = overlaps ? apart : 0.0;
+        continue;
+      }
+      const double gap = d > 0 ? boxes_[i].high[k] - box.low[k] : box.high[k] - boxes_[i].low[k];
+      apart = std::min(apart, std::max(0.0, gap / std::abs(d)));
+    }
+    farthest = std::max(farthest, std::isfinite(apart) ? apart : 0.0);
+  }
+  return farthest;
+}
+
+double Extraction::CalcWallTravel(const MateView& view, OccurrenceId id,
+                                  const Vec3& direction) const {
+  const auto span = [&](const product::Connector& connector) {
+    const product::Part& part = product_.part_of(connector.occurrence);
+    const product::Pose& X_WB = product_.occurrences[connector.occurrence.index()].X_WB;
+    std::pair<double, double> lowest_and_highest(std::numeric_limits<double>::infinity(),
+                                                 -std::numeric_limits<double>::infinity());
+    for (const product::FaceId face_id : part.features[connector.feature.index()].faces) {
+      const product::Face& face = part.faces[face_id.index()];
+      for (std::uint32_t t = 0; t < face.triangle_count; ++t) {
+        for (const std::uint32_t v : part.mesh.triangles[face.first_triangle + t]) {
+          const double along = direction.dot(X_WB * part.mesh.vertices[v]);
+          lowest_and_highest.first = std::min(lowest_and_highest.first, along);
+          lowest_and_highest.second = std::max(lowest_and_highest.second, along);
+        }
+      }
+    }
+    return lowest_and_highest;
+  };
+  const Mate& mate = *view.mate;
+  const bool is_own_a = mate.a.occurrence == id;
+  const auto own = span(is_own_a ? mate.a : mate.b);
+  const auto other = span(is_own_a ? mate.b : mate.a);
+  return std::max(0.0, other.second - own.first);
+}
+
+double Extraction::CalcEngagement(const Unit& unit, const Vec3& direction) const {
+  double farthest = 0;
+  bool is_guided = false;
+  for (const OccurrenceId id : unit) {
+    for (const MateView& view : mates_of_[id.index()]) {
+      const Mate& mate = *view.mate;
+      const bool is_wall =
+          mate.kind == MateKind::kFaceFace && std::abs(view.axis_W.dot(direction)) < kParallel;
+      if (IsAround(view.other) && is_wall) {
+        is_guided = true;
+        farthest = std::max(farthest, CalcWallTravel(view, id, direction));
+      }
+      if (!IsAround(view.other) || mate.kind != MateKind::kAxisHole) {
+        continue;
+      }
+      is_guided = true;
+      const bool is_shaft = !view.is_a;
+      const double sense = view.axis_W.dot(direction) * (is_shaft ? 1.0 : -1.0);
+      const double travel =
+          sense > 0 ? mate.hole_high - mate.shaft_low : mate.shaft_high - mate.hole_low;
+      farthest = std::max(farthest, travel);
+    }
+  }
+  return is_guided ? farthest : std::min(CalcExitDistance(unit, direction), 20e-3);
+}
+
+std::vector<contact::IgnoredPair> Extraction::CollectIgnored(OccurrenceId id) const {
+  std::vector<contact::IgnoredPair> ignored;
+  for (const MateView& view : mates_of_[id.index()]) {
+    if (!IsAround(view.other) || view.mate->kind != MateKind::kAxisHole) {
+      continue;
+    }
+    const auto& own = (view.is_a ? input_.faces_a : input_.faces_b)[view.mate->id.index()];
+    const auto& other = (view.is_a ? input_.faces_b : input_.faces_a)[view.mate->id.index()];
+    const contact::BodyId body(view.other.index());
+    ignored.push_back({body, own->mating, other->with_neighbours});
+    ignored.push_back({body, own->with_neighbours, other->mating});
+  }
+  return ignored;
+}
+
+void Extraction::FindOverlaps(double depth) {
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    const contact::BodyId self(occurrence.id.index());
+    const std::vector<contact::IgnoredPair> ignored = CollectIgnored(occurrence.id);
+    contact::QueryOptions query;
+    query.margin = -depth;
+    query.ignored = ignored;
+    query.self = self;
+    // A query reports a limited number of contacts: ask again without those found until none is
+    // left.
+    for (bool is_clear = false; !is_clear;) {
+      const std::vector<contact::BodyId> left_out = overlapped_[self.index()];
+      query.left_out[0] = left_out;
+      input_.scene->Query(input_.scene->shape(self), occurrence.X_WB, query, &workspace_);
+      std::map<contact::BodyId, double> depths;
+      for (const contact::Contact& contact : workspace_.contacts()) {
+        if (contact.body.is_valid() && contact.distance < -depth) {
+          double& deepest = depths[contact.body];
+          deepest = std::max(deepest, -contact.distance);
+        }
+      }
+      is_clear = depths.empty();
+      for (const auto& [body, deepest] : depths) {
+        LeaveOut({occurrence.id, OccurrenceId(body.index()), deepest});
+      }
+    }
+  }
+}
+
+void Extraction::RelieveDrawn() {
+  if (input_.shapes.empty()) {
+    return;
+  }
+  for (int round = 0; round < kReliefRounds; ++round) {
+    std::set<OccurrenceId> parts;
+    for (const product::Occurrence& occurrence : product_.occurrences) {
+      const std::vector<contact::IgnoredPair> ignored = CollectIgnored(occurrence.id);
+      contact::QueryOptions query;
+      query.margin = -kReliefFrom;
+      query.ignored = ignored;
+      query.left_out[0] = overlapped_[occurrence.id.index()];
+      query.self = contact::BodyId(occurrence.id.index());
+      input_.scene->Query(input_.scene->shape(query.self), occurrence.X_WB, query, &workspace_);
+      for (const contact::Contact& contact : workspace_.contacts()) {
+        NoteRelieved(occurrence.id, contact);
+      }
+      std::map<Face, double> depths;
+      AddContacts(occurrence.id, kMostRelief, &depths);
+      parts.merge(Relieve(depths));
+    }
+    if (parts.empty()) {
+      return;
+    }
+    GiveOffsets(parts);
+  }
+}
+
+void Extraction::NoteRelieved(OccurrenceId self, const contact::Contact& contact) {
+  if (!contact.body.is_valid() || contact.distance >= -kDepthTolerance) {
+    return;
+  }
+  const OccurrenceId other(contact.body.index());
+  const auto found =
+      std::find_if(relieved_.begin(), relieved_.end(), [&](const DrawnOverlap& known) {
+        return (known.a == self && known.b == other) || (known.a == other && known.b == self);
+      });
+  if (found == relieved_.end()) {
+    relieved_.push_back({self, other, -contact.distance});
+  } else {
+    found->depth = std::max(found->depth, -contact.distance);
+  }
+}
+
+void Extraction::AddContacts(OccurrenceId self, double most, std::map<Face, double>* depths) const {
+  for (const contact::Contact& contact : workspace_.contacts()) {
+    if (!contact.body.is_valid() || contact.distance >= -kReliefFrom || contact.distance < -most) {
+      continue;
+    }
+    const double half = 0.5 * (kReliefRoom - contact.distance);
+    for (const Face& face : {Face{self, contact.held_face},
+                             Face{OccurrenceId(contact.body.index()), contact.scene_face}}) {
+      if (face.face < product_.part_of(face.occurrence).faces.size()) {
+        double& depth = (*depths)[face];
+        depth = std::max(depth, half);
+      }
+    }
+  }
+}
+
+std::set<OccurrenceId> Extraction::Relieve(const std::map<Face, double>& depths) {
+  std::set<OccurrenceId> parts;
+  for (const auto& [face, depth] : depths) {
+    double& relief = reliefs_[face];
+    const double before = relief;
+    relief = std::min(relief + depth, contact::FaceOffsets::kLargest);
+    if (relief > before) {
+      parts.insert(face.occurrence);
+    }
+  }
+  return parts;
+}
+
+void Extraction::GiveOffsets(const std::set<OccurrenceId>& parts) {
+  for (const OccurrenceId id : parts) {
+    std::vector<contact::FaceOffset> offsets(product_.part_of(id).faces.size());
+    for (auto entry = reliefs_.lower_bound({id, 0});
+         entry != reliefs_.end() && entry->first.occurrence == id; ++entry) {
+      offsets[entry->first.face].uniform = -entry->second;
+    }
+    // Offsets within the largest one are never refused.
+    if (auto made = contact::FaceOffsets::Make(input_.shapes[id.index()], offsets)) {
+      input_.scene->SetOffsets(contact::BodyId(id.index()), std::move(*made));
+    }
+  }
+}
+
+std::vector<FaceRelief> Extraction::ListReliefs() const {
+  std::vector<FaceRelief> list;
+  for (const auto& [face, depth] : reliefs_) {
+    list.push_back({face.occurrence, face.face, depth});
+  }
+  return list;
+}
+
+bool Extraction::LeaveOutRelieved(const Unit& parts) {
+  const auto is_among = [&parts](OccurrenceId id) {
+    return std::find(parts.begin(), parts.end(), id) != parts.end();
+  };
+  const auto is_blocked_by = [this](OccurrenceId id, OccurrenceId other) {
+    const std::vector<Attempt>& attempts = memories_[id.index()].attempts;
+    return std::any_of(attempts.begin(), attempts.end(), [other](const Attempt& attempt) {
+      return attempt.blocker && attempt.blocker->occurrence == other;
+    });
+  };
+  const auto kept =
+      std::stable_partition(relieved_.begin(), relieved_.end(), [&](const DrawnOverlap& pair) {
+        return !is_among(pair.a) || !is_among(pair.b) ||
+               (!is_blocked_by(pair.a, pair.b) && !is_blocked_by(pair.b, pair.a));
+      });
+  const bool has_any = kept != relieved_.end();
+  std::for_each(kept, relieved_.end(), [this](const DrawnOverlap& pair) { LeaveOut(pair); });
+  relieved_.erase(kept, relieved_.end());
+  if (has_any) {
+    Forget(parts);
+  }
+  return has_any;
+}
+
+bool Extraction::RelieveWays(const std::vector<SequenceStep>& steps) {
+  const std::map<Face, double> before = reliefs_;
+  Unit all;
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    all.push_back(occurrence.id);
+  }
+  SetPresent(all, false);
+  SetPresent(input_.fixtures, true);
+  for (const SequenceStep& step : steps) {
+    Unit unit{step.occurrence};
+    unit.insert(unit.end(), step.members.begin(), step.members.end());
+    if (step.kind == SequenceStep::Kind::kInsert) {
+      SetUnit(unit, true);
+      RelieveWay(unit, step.extraction_W);
+      SetUnit(unit, false);
+    }
+    SetPresent(unit, step.kind != SequenceStep::Kind::kPark);
+  }
+  return reliefs_ != before;
+}
+
+void Extraction::RelieveWay(const Unit& unit, const Vec3& direction) {
+  const std::vector<Member> members = ListMembers(unit);
+  const double step = CalcStep(unit);
+  const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
+  std::map<Face, double> deepest;
+  for (int i = 0; i <= last; ++i) {
+    for (const Member& member : members) {
+      contact::QueryOptions query;
+      query.margin = -kReliefFrom;
+      query.ignored = member.ignored;
+      query.left_out[0] = member.left_out;
+      query.self = contact::BodyId(member.id.index());
+      const product::Pose& X_WB = product_.occurrences[member.id.index()].X_WB;
+      const spatial::Pose X(X_WB.q(), X_WB.p() + i * step * direction);
+      const contact::Shape& shape = input_.scene->shape(query.self);
+      if (!input_.scene->IsFree(shape, X, kReliefFrom, query, &workspace_)) {
+        input_.scene->Query(shape, X, query, &workspace_);
+        AddContacts(member.id, kWayRelief, &deepest);
+      }
+    }
+  }
+  (void)Relieve(deepest);
+}
+
+std::vector<Extraction::Member> Extraction::ListMembers(const Unit& unit) const {
+  std::vector<Member> members;
+  for (const OccurrenceId id : unit) {
+    Member member{id, CollectIgnored(id), overlapped_[id.index()]};
+    for (const OccurrenceId other : unit) {
+      member.left_out.emplace_back(other.index());
+    }
+    members.push_back(std::move(member));
+  }
+  return members;
+}
+
+double Extraction::CalcStep(const Unit& unit) const {
+  double step = kLongestStep;
+  for (const OccurrenceId id : unit) {
+    const contact::Shape& shape = input_.scene->shape(contact::BodyId(id.index()));
+    step = std::min(step, std::max(kShortestStep, 0.01 * shape.box_B().size().norm()));
+  }
+  return step;
+}
+
+std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& direction,
+                                                double from,
+                                                std::span<const contact::BodyId> excepted) {
+  const std::vector<Member> members = ListMembers(unit);
+  const double step = CalcStep(unit);
+  const double exit = CalcExitDistance(unit, direction);
+  const int last = static_cast<int>(exit / step);
+  for (int i = static_cast<int>(std::lround(from / step)); i <= last; ++i) {
+    const double s = i * step;
+    for (const Member& member : members) {
+      contact::QueryOptions query;
+      query.margin = -kDepthTolerance;
+      query.ignored = member.ignored;
+      query.left_out[0] = member.left_out;
+      query.left_out[1] = excepted;
+      query.self = contact::BodyId(member.id.index());
+      const product::Pose& X_WB = product_.occurrences[member.id.index()].X_WB;
+      const spatial::Pose X(X_WB.q(), X_WB.p() + s * direction);
+      if (!input_.scene->IsFree(input_.scene->shape(query.self), X, kDepthTolerance, query,
+                                &workspace_)) {
+        const auto contacts = workspace_.contacts();
+        return Obstacle{
+            contacts.empty() ? OccurrenceId() : OccurrenceId(contacts[0].body.index()), s, {}};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string Extraction::ExplainTooWide(OccurrenceId id, OccurrenceId other,
+                                       const Vec3& direction) const {
+  constexpr double kCollinear = 20e-6;  // [m] between axes that count as one
+  if (!other.is_valid()) {
+    return {};
+  }
+  const product::Pose& X_WB = product_.occurrences[id.index()].X_WB;
+  const product::Pose& X_WO = product_.occurrences[other.index()].X_WB;
+  std::string text;
+  double least = 0;  // The narrowest place tells it best.
+  for (const product::Feature& own : product_.part_of(id).features) {
+    const Vec3 axis_W = X_WB.q() * own.axis_B;
+    if (std::abs(axis_W.dot(direction)) < 1 - kParallel) {
+      continue;
+    }
+    for (const product::Feature& its : product_.part_of(other).features) {
+      const bool is_pair =
+          (own.kind == product::FeatureKind::kShaft && its.kind == product::FeatureKind::kHole) ||
+          (own.kind == product::FeatureKind::kHole && its.kind == product::FeatureKind::kShaft);
+      const Vec3 between = X_WO * its.origin_B - X_WB * own.origin_B;
+      const bool is_own_shaft = own.kind == product::FeatureKind::kShaft;
+      const double excess = is_own_shaft ? own.radius - its.radius : its.radius - own.radius;
+      if (!is_pair || excess < kDepthTolerance - 1e-9 ||
+          between.cross(axis_W).norm() > kCollinear ||
+          std::abs((X_WO.q() * its.axis_B).dot(axis_W)) < 1 - kParallel ||
+          (least > 0 && excess > least)) {
+        continue;
+      }
+      least = excess;
+      const double own_mm = units::ToMm(2 * own.radius);
+      const double its_mm = units::ToMm(2 * its.radius);
+      text = is_own_shaft
+                 ? fmt::format("its diameter of {:.3f} mm does not pass the hole of {:.3f} mm",
+                               own_mm, its_mm)
+                 : fmt::format("its hole of {:.3f} mm does not pass the diameter of {:.3f} mm",
+                               own_mm, its_mm);
+    }
+  }
+  return text;
+}
+
+SequenceStep Extraction::MakeStep(const Unit& unit, const Vec3& direction) const {
+  SequenceStep step;
+  step.occurrence = unit.front();
+  step.members.assign(unit.begin() + 1, unit.end());
+  step.extraction_W = direction;
+  step.engage_distance = CalcEngagement(unit, direction);
+  return step;
+}
+
+std::optional<SequenceStep> Extraction::TryRemove(const Unit& unit, Memory* memory) {
+  SetUnit(unit, true);
+  std::ptrdiff_t mates_around = 0;
+  for (const OccurrenceId id : unit) {
+    mates_around += std::count_if(mates_of_[id.index()].begin(), mates_of_[id.index()].end(),
+                                  [this](const MateView& view) { return IsAround(view.other); });
+  }
+  const auto still_blocked = [this](const Attempt& attempt) {
+    return attempt.blocker && attempt.blocker->occurrence.is_valid() &&
+           IsAround(attempt.blocker->occurrence);
+  };
+  std::optional<SequenceStep> step;
+  const bool is_unchanged =
+      !memory->attempts.empty() && mates_around == memory->mates_around &&
+      std::all_of(memory->attempts.begin(), memory->attempts.end(), still_blocked);
+  if (!is_unchanged) {
+    std::vector<Attempt> tried;
+    for (const Vec3& direction : CollectDirections(unit)) {
+      if (!MatesAllow(unit, direction)) {
+        continue;
+      }
+      const auto known = std::find_if(
+          memory->attempts.begin(), memory->attempts.end(),
+          [&](const Attempt& a) { return a.direction == direction && still_blocked(a); });
+      if (known != memory->attempts.end()) {
+        tried.push_back(*known);
+        continue;
+      }
+      const std::optional<Obstacle> blocker = FindBlocker(unit, direction, 0, {});
+      if (!blocker) {
+        step = MakeStep(unit, direction);
+        break;
+      }
+      tried.push_back({direction, blocker});
+    }
+    if (tried.empty()) {
+      tried.push_back({Vec3::Zero(), std::nullopt});
+    }
+    *memory = {std::move(tried), mates_around};
+  }
+  SetUnit(unit, false);
+  if (step) {
+    SetPresent(unit, false);
+  }
+  return step;
+}
+
+std::string Extraction::ExplainStuck(OccurrenceId id) const {
+  const Attempt* farthest = nullptr;
+  for (const Attempt& attempt : memories_[id.index()].attempts) {
+    if (attempt.blocker &&
+        (farthest == nullptr || attempt.blocker->travelled > farthest->blocker->travelled)) {
+      farthest = &attempt;
+    }
+  }
+  if (farthest != nullptr) {
+    return "no free path: " + ExplainObstacle(id, *farthest->blocker, farthest->direction);
+  }
+  std::set<OccurrenceId> partners;
+  for (const MateView& view : mates_of_[id.index()]) {
+    if (is_present_[view.other.index()]) {
+      partners.insert(view.other);
+    }
+  }
+  std::string names;
+  for (const OccurrenceId partner : partners) {
+    names += (names.empty() ? "" : " and ") + Describe(partner);
+  }
+  return fmt::format("its mates with {} leave no straight way out", names);
+}
+
+std::string Extraction::ExplainObstacle(OccurrenceId id, const Obstacle& obstacle,
+                                        const Vec3& direction) const {
+  const std::string why = ExplainTooWide(id, obstacle.occurrence, direction);
+  return fmt::format("meets {} after {:.1f} mm along its best way out{}{}",
+                     Describe(obstacle.occurrence), units::ToMm(obstacle.travelled),
+                     why.empty() ? "" : ", as drawn: ", why);
+}
+
+std::vector<Vec3> Extraction::ListDirections(const Unit& unit) {
+  SetUnit(unit, true);
+  std::vector<Vec3> directions = CollectDirections(unit);
+  SetUnit(unit, false);
+  return directions;
+}
+
+std::vector<Vec3> Extraction::CollectContactNormals(OccurrenceId id) {
+  constexpr double kNear = 0.1e-3;    // [m]; faces closer than this as drawn touch
+  constexpr double kSame = 1 - 1e-4;  // cosine of the angle between normals that are one
+  constexpr std::size_t kMost =
+      16;  // normals; those of a ball in its socket are as many as one likes
+  const std::vector<contact::IgnoredPair> ignored = CollectIgnored(id);
+  contact::QueryOptions query;
+  query.margin = kNear;
+  query.ignored = ignored;
+  query.left_out[0] = overlapped_[id.index()];
+  query.self = contact::BodyId(id.index());
+  input_.scene->Query(input_.scene->shape(query.self), product_.occurrences[id.index()].X_WB, query,
+                      &workspace_);
+  std::vector<Vec3> normals;
+  for (const contact::Contact& contact : workspace_.contacts()) {
+    const bool is_known = std::any_of(normals.begin(), normals.end(), [&](const Vec3& known) {
+      return known.dot(contact.nhat_W) > kSame;
+    });
+    if (!is_known && normals.size() < kMost) {
+      normals.push_back(contact.nhat_W);
+    }
+  }
+  return normals;
+}
+
+std::vector<Vec3> Extraction::ListContactDirections(OccurrenceId id) {
+  constexpr std::size_t kMost = 24;  // directions
+  constexpr double kLeast = 0.05;    // sine of the angle between normals that have an edge
+  SetUnit({id}, true);
+  const std::vector<Vec3> normals = CollectContactNormals(id);
+  SetUnit({id}, false);
+  std::vector<Vec3> directions;
+  const auto add = [&](const Vec3& d) {
+    const double length = d.norm();
+    const bool is_free =
+        length > kLeast && std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) {
+          return n.dot(d) >= -kParallel * length;
+        });
+    const bool is_known = std::any_of(directions.begin(), directions.end(), [&](const Vec3& known) {
+      return known.dot(d) > (1 - kParallel * kParallel) * length;
+    });
+    if (is_free && !is_known && directions.size() < kMost) {
+      directions.push_back(d / length);
+    }
+  };
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& n : normals) {
+    sum += n;
+  }
+  add(sum);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    add(normals[i]);
+    for (std::size_t k = i + 1; k < normals.size(); ++k) {
+      add(normals[i] + normals[k]);
+      add(normals[i].cross(normals[k]));
+      add(normals[k].cross(normals[i]));
+    }
+  }
+  std::stable_sort(directions.begin(), directions.end(),
+                   [](const Vec3& x, const Vec3& y) { return x.z() > y.z() + 1e-9; });
+  return directions;
+}
+
+std::vector<Obstacle> Extraction::ListObstacles(const Unit& unit, const Vec3& direction,
+                                                OccurrenceId fixed) {
+  std::vector<Obstacle> obstacles;
+  std::vector<contact::BodyId> known;
+  const auto add = [&](const Obstacle& obstacle) {
+    const contact::BodyId body(obstacle.occurrence.index());
+    if (std::find(known.begin(), known.end(), body) == known.end()) {
+      known.push_back(body);
+      obstacles.push_back(obstacle);
+    }
+    return fixed.is_valid() && obstacle.occurrence == fixed;
+  };
+  SetUnit(unit, true);
+  bool is_blocked = false;
+  for (const OccurrenceId id : unit) {
+    for (const MateView& view : mates_of_[id.index()]) {
+      if (!is_blocked && IsAround(view.other) && !IsAllowed(view, direction)) {
+        is_blocked = add({view.other, 0, view.mate->id});
+      }
+    }
+  }
+  double from = 0;
+  while (!is_blocked) {
+    const std::optional<Obstacle> blocker = FindBlocker(unit, direction, from, known);
+    if (!blocker) {
+      break;
+    }
+    from = blocker->travelled;
+    is_blocked = add(*blocker) || !blocker->occurrence.is_valid();
+  }
+  SetUnit(unit, false);
+  return obstacles;
+}
+
+double Extraction::CalcWayLength(const Unit& unit, const Vec3& direction) {
+  SetUnit(unit, true);
+  const double length = CalcExitDistance(unit, direction);
+  SetUnit(unit, false);
+  return length;
+}
+
+double Extraction::CalcEngageDistance(const Unit& unit, const Vec3& direction) {
+  SetUnit(unit, true);
+  const double distance = CalcEngagement(unit, direction);
+  SetUnit(unit, false);
+  return distance;
+}
+
+std::optional<SequenceStep> Extraction::TryRemove(const Unit& unit) {
+  Memory memory;
+  return TryRemove(unit, &memory);
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveAlong(const Unit& unit, const Vec3& direction) {
+  SetUnit(unit, true);
+  std::optional<SequenceStep> step;
+  if (MatesAllow(unit, direction) && !FindBlocker(unit, direction, 0, {})) {
+    step = MakeStep(unit, direction);
+  }
+  SetUnit(unit, false);
+  if (step) {
+    SetPresent(unit, false);
+  }
+  return step;
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveOne(Unit* rest, const Unit& deferred) {
+  for (const bool is_deferred : {false, true}) {
+    for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
+      const OccurrenceId id = (*rest)[i];
+      if (std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred) {
+        continue;
+      }
+      if (auto step = TryRemove({id}, &memories_[id.index()])) {
+        rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
+        return step;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+void Extraction::Forget(const Unit& parts) {
+  for (const OccurrenceId id : parts) {
+    memories_[id.index()] = {};
+  }
+}
+
+}  // namespace hvas::simulation

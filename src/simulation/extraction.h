@@ -1,0 +1,201 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contact/face_offsets.h"
+#include "contact/scene.h"
+#include "simulation/sequence.h"
+
+namespace hvas::simulation {
+
+/** Parts that move as one: a single part, or what is there of a subassembly. The first leads. */
+using Unit = std::vector<product::OccurrenceId>;
+
+/** A part that stands in the way of a unit along a direction. */
+struct Obstacle {
+  product::OccurrenceId occurrence;  ///< Invalid: the table.
+  double travelled{0};               ///< Length of the way before it is met [m].
+  product::MateId mate;              ///< Mate that forbids the direction; invalid: contact.
+};
+
+/** Finds the straight ways along which parts can be drawn out of a product while others are in
+ their place. A part can be drawn out along a direction when no mate with a part that is present
+ forbids it and when it meets no part that is present until their boxes are apart. */
+class Extraction {
+ public:
+  /** @param input  Outlives this object; all its parts are present.
+   @param known  Has the overlaps and reliefs found before; null: they are found here. */
+  Extraction(const SequenceInput& input, const Sequence* known);
+
+  /** Pairs of parts that interpenetrate as drawn; contact between them is omitted. */
+  [[nodiscard]] const std::vector<DrawnOverlap>& overlaps() const { return overlaps_; }
+
+  /** Lets the faces give way that parts meet on their ways by less than what a way is free with.
+   The scene has the parts as made. Presence of parts changes. Returns false where there is none. */
+  bool RelieveWays(const std::vector<SequenceStep>& steps);
+
+  /** Faces that give way: where parts lie in one another as drawn by up to half a millimetre, and
+   those of RelieveWays(). */
+  [[nodiscard]] std::vector<FaceRelief> ListReliefs() const;
+
+  /** Pairs of parts that lie in one another as drawn and whose faces give way there. */
+  [[nodiscard]] const std::vector<DrawnOverlap>& relieved() const { return relieved_; }
+
+  [[nodiscard]] bool is_present(product::OccurrenceId id) const { return is_present_[id.index()]; }
+
+  void SetPresent(const Unit& unit, bool is_present);
+
+  /** Volume, or that of the box of a part without one [m^3]. */
+  [[nodiscard]] double SizeOf(product::OccurrenceId id) const;
+
+  [[nodiscard]] std::string Describe(product::OccurrenceId id) const;
+
+  /** Lists the directions that are worth a try for parts that are present, upward ones first. */
+  [[nodiscard]] std::vector<Vec3> ListDirections(const Unit& unit);
+
+  /** Lists directions that the contacts of a part as drawn leave free: along the normals of touched
+   faces, between them, and along the edges of two of them, which are the edges of the cone of free
+   motion. At most 24, upward ones first. */
+  [[nodiscard]] std::vector<Vec3> ListContactDirections(product::OccurrenceId id);
+
+  /** Lists all parts present that stand in the way of a unit along a direction, those with a mate
+   that forbids it first. The search ends at `fixed`, which is then the last one; invalid: it never
+   ends early. */
+  [[nodiscard]] std::vector<Obstacle> ListObstacles(const Unit& unit, const Vec3& direction,
+                                                    product::OccurrenceId fixed);
+
+  /** Distance along a way out until the boxes of a unit and of all parts present are apart [m]. */
+  [[nodiscard]] double CalcWayLength(const Unit& unit, const Vec3& direction);
+
+  /** Distance along a way out until nothing is engaged any more [m]. */
+  [[nodiscard]] double CalcEngageDistance(const Unit& unit, const Vec3& direction);
+
+  /** Takes a unit out along the first direction that is free; it is not present then. The step is
+   an insertion, by the reverse of that direction. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemove(const Unit& unit);
+
+  /** Takes a unit out along this direction if it is free; it is not present then. The step is as
+   that of TryRemove. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveAlong(const Unit& unit, const Vec3& direction);
+
+  /** Takes out the first of these parts that can go, the last of them excepted, and erases it from
+   them. Parts that could not go before are tried again only when something has changed.
+   @param deferred  Sorted; parts that are tried after all others. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveOne(Unit* rest, const Unit& deferred = {});
+
+  /** Leaves out the contact between those of these parts that lie in one another as drawn, where
+   faces that give way do not suffice to let them out. Returns false where there are none. */
+  bool LeaveOutRelieved(const Unit& parts);
+
+  /** Forgets what TryRemoveOne has tried with these parts. */
+  void Forget(const Unit& parts);
+
+  /** Explains why TryRemoveOne did not find a way out for a part. */
+  [[nodiscard]] std::string ExplainStuck(product::OccurrenceId id) const;
+
+  /** Explains that a part meets an obstacle, with both diameters where a shaft of one would have to
+   pass a smaller hole of the other. */
+  [[nodiscard]] std::string ExplainObstacle(product::OccurrenceId id, const Obstacle& obstacle,
+                                            const Vec3& direction) const;
+
+ private:
+  struct MateView {
+    const product::Mate* mate;
+    product::OccurrenceId other;
+    Vec3 axis_W;  // axis, or outward normal of this part's face
+    bool is_a;
+    double cos_half_angle;  // of a conical seat
+  };
+
+  /** A part of a unit on its way. */
+  struct Member {
+    product::OccurrenceId id;
+    std::vector<contact::IgnoredPair> ignored;
+    std::vector<contact::BodyId> left_out;
+  };
+
+  struct Attempt {
+    Vec3 direction;
+    std::optional<Obstacle> blocker;  // none: the mates forbid it
+  };
+
+  /** What was tried last, so that it is tried again only when something has changed. */
+  struct Memory {
+    std::vector<Attempt> attempts;
+    std::ptrdiff_t mates_around{-1};
+  };
+
+  struct Face {
+    product::OccurrenceId occurrence;
+    std::uint32_t face{0};
+
+    auto operator<=>(const Face&) const = default;
+  };
+
+  /** Finds the parts that lie in one another deeper than this [m]. */
+  void FindOverlaps(double depth);
+  void LeaveOut(const DrawnOverlap& overlap);
+  /** Lets faces give way where parts lie in one another as drawn, as far as faces can. */
+  void RelieveDrawn();
+  /** Adds the faces of the contacts of the last query, both with half of their depth, at most
+   `most` [m]. */
+  void AddContacts(product::OccurrenceId self, double most, std::map<Face, double>* depths) const;
+  /** Lets faces give way by these depths [m]; returns the parts whose faces do. */
+  std::set<product::OccurrenceId> Relieve(const std::map<Face, double>& depths);
+  /** Lets the faces give way that a unit meets on its way out. */
+  void RelieveWay(const Unit& unit, const Vec3& direction);
+  void NoteRelieved(product::OccurrenceId self, const contact::Contact& contact);
+  [[nodiscard]] std::vector<Member> ListMembers(const Unit& unit) const;
+  /** Distance between looks along a way [m]. */
+  [[nodiscard]] double CalcStep(const Unit& unit) const;
+  void GiveOffsets(const std::set<product::OccurrenceId>& parts);
+
+  [[nodiscard]] bool IsAround(product::OccurrenceId id) const {
+    return is_present_[id.index()] && !is_in_unit_[id.index()];
+  }
+
+  void SetUnit(const Unit& unit, bool is_in_unit);
+  [[nodiscard]] std::vector<contact::IgnoredPair> CollectIgnored(product::OccurrenceId id) const;
+  [[nodiscard]] SequenceStep MakeStep(const Unit& unit, const Vec3& direction) const;
+  /** Normals of the faces that a part touches, out of them. */
+  [[nodiscard]] std::vector<Vec3> CollectContactNormals(product::OccurrenceId id);
+  [[nodiscard]] std::vector<Vec3> CollectDirections(const Unit& unit) const;
+  /** Whether a mate leaves this direction free. */
+  [[nodiscard]] static bool IsAllowed(const MateView& view, const Vec3& direction);
+  [[nodiscard]] bool MatesAllow(const Unit& unit, const Vec3& direction) const;
+  [[nodiscard]] double CalcExitDistance(const Unit& unit, const Vec3& direction) const;
+  /** Distance along a way out until a wall and what it guides are past each other [m]. */
+  [[nodiscard]] double CalcWallTravel(const MateView& view, product::OccurrenceId id,
+                                      const Vec3& direction) const;
+  [[nodiscard]] double CalcEngagement(const Unit& unit, const Vec3& direction) const;
+  /** Finds the first part that a unit meets, from `from` on [m], these excepted. */
+  [[nodiscard]] std::optional<Obstacle> FindBlocker(const Unit& unit, const Vec3& direction,
+                                                    double from,
+                                                    std::span<const contact::BodyId> excepted);
+  [[nodiscard]] std::optional<SequenceStep> TryRemove(const Unit& unit, Memory* memory);
+  /** Where a shaft of one part would have to pass a smaller hole of the other: says so, with both
+   diameters. Else empty. */
+  [[nodiscard]] std::string ExplainTooWide(product::OccurrenceId id, product::OccurrenceId other,
+                                           const Vec3& direction) const;
+
+  const SequenceInput& input_;
+  const product::Product& product_;
+  std::vector<bool> is_present_;
+  std::vector<bool> is_in_unit_;
+  std::vector<std::vector<MateView>> mates_of_;
+  std::vector<spatial::Box> boxes_;
+  std::vector<DrawnOverlap> overlaps_;
+  std::vector<std::vector<contact::BodyId>> overlapped_;  // by occurrence
+  std::vector<Memory> memories_;                          // by occurrence
+  std::map<Face, double> reliefs_;                        // [m]
+  std::vector<DrawnOverlap> relieved_;                    // Pairs whose faces give way as drawn.
+  contact::QueryWorkspace workspace_;
+};
+
+}  // namespace hvas::simulation

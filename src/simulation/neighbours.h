@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "contact/scene.h"
+#include "product/product.h"
+
+namespace hvas::simulation {
+
+/** Parts that hold each part in the assembled product, sorted; indexed by OccurrenceId. */
+using Neighbours = std::vector<std::vector<product::OccurrenceId>>;
+
+/** Finds for each part the parts that it has a mate with, or touches as drawn to 0.1 mm.
+ @param scene  All parts at their drawn poses; body index = occurrence index.
+ @param tools  Parts that hold nothing and are not held. */
+[[nodiscard]] Neighbours FindNeighbours(const product::Product& product,
+                                        const contact::Scene& scene,
+                                        const std::vector<product::OccurrenceId>& tools);
+
+/** Lists those of some parts whose removal would leave others, which are connected with them now,
+ without a connection through neighbours: the cut vertices of their graph (Tarjan, SIAM J. Computing
+ 1(2), 1972), sorted. */
+[[nodiscard]] std::vector<product::OccurrenceId> ListCutParts(
+    const std::vector<product::OccurrenceId>& parts, const Neighbours& neighbours);
+
+/** Whether some parts are connected with each other through neighbours among them. */
+[[nodiscard]] bool AreConnected(const std::vector<product::OccurrenceId>& parts,
+                                const Neighbours& neighbours);
+
+}  // namespace hvas::simulation

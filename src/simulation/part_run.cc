@@ -1,0 +1,209 @@
+#include "simulation/part_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+
+namespace hvas::simulation {
+
+using product::OccurrenceId;
+
+PartRun::PartRun(Simulation* simulation, Sink* downstream)
+    : dropped_(simulation->model().bodies.size()),
+      has_touched_(simulation->model().bodies.size(), false),
+      simulation_(simulation),
+      downstream_(downstream) {
+  for (const Body& body : simulation_->model().bodies) {
+    lift_height_ = std::max(lift_height_, 1.2 * body.shape->box_B().size().norm());
+  }
+}
+
+Execution PartRun::MakeExecution(Operator* hand, double limit_s, Operator* second_hand) {
+  Execution execution;
+  execution.simulation = simulation_;
+  execution.hand = hand;
+  execution.second_hand = second_hand;
+  execution.sink = this;
+  execution.advance = [this] { Advance(); };
+  execution.is_done = [this] { return is_done_; };
+  execution.limit_ns = std::llround(1e9 * limit_s);
+  return execution;
+}
+
+void PartRun::OnTick(std::size_t hand, const device::DeviceState& device,
+                     const haptics::TickOutput& out) noexcept {
+  if (downstream_ != nullptr) {
+    downstream_->OnTick(hand, device, out);
+  }
+}
+
+void PartRun::OnFlight(const std::vector<FlightTick>& ticks) {
+  if (downstream_ != nullptr) {
+    downstream_->OnFlight(ticks);
+  }
+}
+
+void PartRun::OnEvent(const SimulationEvent& event) {
+  if (event.kind == SimulationEvent::Kind::kDropped) {
+    dropped_[event.occurrence.index()] = event;
+    if (event.was_seated) {
+      SequenceStep alone;
+      alone.occurrence = event.occurrence;
+      has_touched_[event.occurrence.index()] = CountNeighboursInPlace(alone) > 0;
+    }
+    OnDropped(event);
+  }
+  states_[event.hand] = event.state;
+  if (downstream_ != nullptr) {
+    downstream_->OnEvent(event);
+  }
+}
+
+bool PartRun::IsGuidedByPlanes(const SequenceStep& step) const {
+  const Model& model = this->model();
+  const auto has_axis = [&](OccurrenceId id) {
+    const auto& mates = model.mates_of[id.index()];
+    return std::any_of(mates.begin(), mates.end(), [&](product::MateId mate_id) {
+      const product::Mate& mate = model.product->mates[mate_id.index()];
+      const OccurrenceId other = mate.a.occurrence == id ? mate.b.occurrence : mate.a.occurrence;
+      return mate.kind != product::MateKind::kFaceFace &&
+             physics().placement(other) == Placement::kPlaced;
+    });
+  };
+  return !has_axis(step.occurrence) &&
+         std::none_of(step.members.begin(), step.members.end(), has_axis);
+}
+
+PersonTask PartRun::MakeTask(const SequenceStep& step) const {
+  const Model& model = this->model();
+  const Body& body = model.bodies[step.occurrence.index()];
+  const spatial::Pose X_BG(CombineMass(model, step).p_BoBcm_B);
+  PersonTask task;
+  task.occurrence = step.occurrence;
+  task.p_BG = X_BG.p();
+  task.takes_out = step.kind == SequenceStep::Kind::kRemove;
+  if (task.takes_out) {
+    task.X_WG_start = body.X_WB_start * X_BG;
+    task.X_WG_goal = physics().pose(step.occurrence) * X_BG;
+  } else {
+    task.X_WG_start = physics().pose(step.occurrence) * X_BG;
+    task.X_WG_goal = body.X_WB_goal * X_BG;
+    task.X_WG_goal = {task.X_WG_goal.q(), task.X_WG_goal.p() + step.offset_W};
+  }
+  task.extraction_W = step.extraction_W;
+  task.engage_distance = step.engage_distance;
+  task.is_guided_by_planes = !task.takes_out && IsGuidedByPlanes(step);
+  task.centre_W = model.centre_W;
+  task.transfer_radius = model.transfer_radius;
+  task.lift_height = lift_height_;
+  return task;
+}
+
+std::string PartRun::DescribeOverlaps(OccurrenceId id, const std::vector<DrawnOverlap>& overlaps,
+                                      const std::string& consequence) const {
+  const DrawnOverlap* deepest = nullptr;
+  int count = 0;
+  for (const DrawnOverlap& overlap : overlaps) {
+    if (overlap.a == id || overlap.b == id) {
+      ++count;
+      deepest = deepest == nullptr || overlap.depth > deepest->depth ? &overlap : deepest;
+    }
+  }
+  if (deepest == nullptr) {
+    return {};
+  }
+  const OccurrenceId other = deepest->a == id ? deepest->b : deepest->a;
+  return fmt::format("overlaps {}{} as drawn, by {:.3f} mm: {}", PathOf(other),
+                     count > 1 ? fmt::format(" and {} more", count - 1) : "",
+                     units::ToMm(deepest->depth), consequence);
+}
+
+std::string PartRun::DescribeOverlaps(OccurrenceId id) const {
+  const Sequence& sequence = model().sequence;
+  const std::string left_out =
+      DescribeOverlaps(id, sequence.overlaps, "contact between them is left out");
+  const std::string relieved =
+      DescribeOverlaps(id, sequence.relieved, "their faces give way there by that much");
+  return left_out + (left_out.empty() || relieved.empty() ? "" : "; ") + relieved;
+}
+
+std::size_t PartRun::CountNeighboursInPlace(const SequenceStep& step) const {
+  const Neighbours& neighbours = model().sequence.neighbours;
+  const auto is_own = [&step](OccurrenceId id) {
+    return id == step.occurrence ||
+           std::find(step.members.begin(), step.members.end(), id) != step.members.end();
+  };
+  const auto count = [&](OccurrenceId id) {
+    const std::vector<OccurrenceId>& others = neighbours[id.index()];
+    return std::count_if(others.begin(), others.end(), [&](OccurrenceId other) {
+      return !is_own(other) && physics().placement(other) == Placement::kPlaced;
+    });
+  };
+  auto sum = count(step.occurrence);
+  for (const OccurrenceId member : step.members) {
+    sum += count(member);
+  }
+  return static_cast<std::size_t>(sum);
+}
+
+PartResult& PartRun::ResultOf(OccurrenceId id) {
+  for (PartResult& result : results_) {
+    if (result.occurrence == id) {
+      return result;
+    }
+  }
+  results_.emplace_back();
+  results_.back().occurrence = id;
+  return results_.back();
+}
+
+void PartRun::AddHold(OccurrenceId id) {
+  const std::optional<SimulationEvent>& dropped = dropped_[id.index()];
+  if (!dropped) {
+    return;
+  }
+  PartResult& result = ResultOf(id);
+  const HoldMetrics& metrics = dropped->metrics;
+  result.hand = dropped->hand;
+  result.time += 1e-9 * static_cast<double>(dropped->t_ns - metrics.t_taken_ns);
+  result.path += metrics.path;
+  result.peak_true = std::max(result.peak_true, metrics.peak_true);
+  result.peak_felt = std::max(result.peak_felt, metrics.peak_felt);
+  result.fit_true = std::max(result.fit_true, metrics.fit_true);
+  result.fit_felt = std::max(result.fit_felt, metrics.fit_felt);
+  result.deepest = std::max(result.deepest, metrics.deepest);
+  result.insertion = std::max(result.insertion, metrics.insertion);
+  result.arrival = metrics.arrival;
+  result.arrival_angle = metrics.arrival_angle;
+}
+
+void PartRun::Update(OccurrenceId id) {
+  PartResult& result = ResultOf(id);
+  result.is_seated = physics().placement(id) == Placement::kPlaced;
+  result.has_touched = result.is_seated && has_touched_[id.index()];
+  const spatial::Pose& X_WB = physics().pose(id);
+  const spatial::Pose& X_goal = model().bodies[id.index()].X_WB_goal;
+  result.pose_error = (X_WB.p() - X_goal.p()).norm();
+  result.pose_error_angle = spatial::RotationBetween(X_goal.q(), X_WB.q()).norm();
+}
+
+const std::string& PartRun::PathOf(OccurrenceId id) const {
+  return model().product->occurrences[id.index()].path;
+}
+
+std::string PartRun::DescribeHardest(const HoldMetrics& metrics) const {
+  if (!metrics.hardest.is_valid()) {
+    return "nothing was met";
+  }
+  return fmt::format("{} stood in the way with up to {:.1f} N",
+                     PathOf(OccurrenceId(metrics.hardest.index())), metrics.hardest_force);
+}
+
+spatial::Pose StartOfHand(const Model& model) {
+  return spatial::Pose(model.centre_W + Vec3(0, 0, 1.1 * model.transfer_radius));
+}
+
+}  // namespace hvas::simulation

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulation/executors.h"
+#include "simulation/simulated_person.h"
+#include "simulation/simulation.h"
+
+namespace hvas::simulation {
+
+/** How one part fared. */
+struct PartResult {
+  product::OccurrenceId occurrence;
+  bool is_seated{false};
+  std::string reason;   ///< Why not, when it is not seated.
+  std::string note;     ///< What was odd about it although it is; may be empty.
+  double time{0};       ///< Time from taking it up to letting go [s].
+  double path{0};       ///< [m]
+  double peak_true{0};  ///< [N]
+  double peak_felt{0};  ///< [N]
+  double fit_true{0};   ///< Largest axial force of its fits, true [N].
+  double fit_felt{0};   ///< Largest axial force of its fits, as felt [N].
+  double deepest{0};    ///< Deepest penetration met [m].
+  double insertion{0};  ///< Longest that a mate's shaft was in its hole [m].
+  std::size_t hand{0};  ///< That let go of it last.
+  int mates{0};         ///< Mates with parts that were in place.
+  /** It was put into a fixture, or had a mate with a part in its place, or touched one, when it got
+   to its own place. */
+  bool has_touched{false};
+  /** Distance from its place to which the hand brought it, before it was moved exactly there [m].
+   */
+  double arrival{0};
+  double arrival_angle{0};  ///< [rad]
+  /** Distance of the origin from the file's pose [m]: what the resolver of the mates leaves, as a
+   seated part stands where they say. */
+  double pose_error{0};
+  double pose_error_angle{0};  ///< [rad]
+};
+
+/** How far an assembly has come. */
+struct AssemblyProgress {
+  std::size_t tried{0};  ///< Parts that have had their turn.
+  std::size_t done{0};   ///< Parts that are where they were to go, of those tried.
+  std::size_t total{0};
+  std::int64_t t_ns{0};  ///< Session time.
+};
+
+/** The simulated persons, by hand; null where a real one has that hand, or there is none. */
+using Persons = std::array<SimulatedPerson*, 2>;
+
+/** A run of a simulation in which parts have their turn one after the other, with the results of
+ each: the base of AssemblyRun and DisassemblyRun. As a Sink the run stands between the loops and
+ the record. */
+class PartRun : public Sink {
+ public:
+  /** @param downstream  Gets everything too; may be null. */
+  PartRun(Simulation* simulation, Sink* downstream);
+
+  void OnTick(std::size_t hand, const device::DeviceState& device,
+              const haptics::TickOutput& out) noexcept override;
+  void OnEvent(const SimulationEvent& event) override;
+  void OnFlight(const std::vector<FlightTick>& ticks) override;
+
+  /** Describes this run for an executor: advanced until it is done, with these in the hands.
+   @param limit_s  Of session time [s].
+   @param second_hand  Of a simulation with two; else null. */
+  [[nodiscard]] Execution MakeExecution(Operator* hand, double limit_s,
+                                        Operator* second_hand = nullptr);
+
+  /** Gives a worker who is free the next part. To be called after every physics step, on its
+   * thread. */
+  virtual void Advance() = 0;
+
+  [[nodiscard]] bool is_done() const { return is_done_; }
+
+  [[nodiscard]] const std::vector<PartResult>& results() const { return results_; }
+
+  /** Called after every step with the result of the part that moved. */
+  std::function<void(const AssemblyProgress&, const PartResult&)> on_part;
+
+ protected:
+  /** Called with each event of a part that was let go, after the last one of this part has been
+   kept. */
+  virtual void OnDropped(const SimulationEvent& dropped) = 0;
+
+  [[nodiscard]] const Model& model() const { return simulation_->model(); }
+
+  [[nodiscard]] PhysicsSide& physics() { return simulation_->physics(); }
+
+  [[nodiscard]] const PhysicsSide& physics() const { return simulation_->physics(); }
+
+  [[nodiscard]] std::size_t hand_count() const { return simulation_->hand_count(); }
+
+  [[nodiscard]] PartResult& ResultOf(product::OccurrenceId id);
+  /** Adds what the last hold of a part amounted to, if there was one, to its result. */
+  void AddHold(product::OccurrenceId id);
+  /** Sets where a part is now in its result. */
+  void Update(product::OccurrenceId id);
+  [[nodiscard]] const std::string& PathOf(product::OccurrenceId id) const;
+  [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id) const;
+  /** Counts the parts in their place that hold what moves in a step, where it is to go. */
+  [[nodiscard]] std::size_t CountNeighboursInPlace(const SequenceStep& step) const;
+  /** Names the part that was pressed hardest in a hold, with the force. */
+  [[nodiscard]] std::string DescribeHardest(const HoldMetrics& metrics) const;
+  /** Whether no mate with a part in its place but planes guides what moves in a step. */
+  [[nodiscard]] bool IsGuidedByPlanes(const SequenceStep& step) const;
+  /** The task of a person who puts in or takes out what moves in a step. */
+  [[nodiscard]] PersonTask MakeTask(const SequenceStep& step) const;
+
+  std::array<haptics::HoldState, 2> states_{};           ///< One for each hand.
+  std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
+  std::vector<bool> has_touched_;  ///< PartResult::has_touched, by OccurrenceId.
+  std::vector<PartResult> results_;
+  bool is_done_{false};
+
+ private:
+  /** Names the deepest of those overlaps that a part has, and what follows from them. */
+  [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id,
+                                             const std::vector<DrawnOverlap>& overlaps,
+                                             const std::string& consequence) const;
+
+  Simulation* simulation_;
+  Sink* downstream_;
+  double lift_height_{0.05};
+};
+
+/** Where a person stands who has all parts on the table in front: the first pose of the hand. */
+[[nodiscard]] spatial::Pose StartOfHand(const Model& model);
+
+}  // namespace hvas::simulation

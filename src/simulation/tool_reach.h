@@ -1,0 +1,90 @@
+#pragma once
+
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "contact/scene.h"
+#include "product/drive_forms.h"
+#include "product/product.h"
+
+namespace hvas::simulation {
+
+/** A tool's drive on the drive of a fastener (X16; docs/algorithms/tools.md). */
+struct ToolMate {
+  product::DriveForm fastener;  ///< Drive in the fastener's frame.
+  product::DriveForm tool;      ///< Drive in the tool's frame.
+  double engaged{0};            ///< Length of the flats that are in one another [m].
+  double play{0};               ///< Angle by which the tool turns without the fastener [rad].
+  double pitch{0};              ///< Angle between two ways to put it on [rad].
+};
+
+/** The angle by which a bit turns in a recess of the same kind, from one stop to the other [rad];
+ none where it does not go in, or would turn without taking the fastener with it. */
+[[nodiscard]] std::optional<double> CalcDrivePlay(const product::DriveForm& recess,
+                                                  const product::DriveForm& bit);
+
+/** The mate of two drives; none where they do not fit one another. */
+[[nodiscard]] std::optional<ToolMate> MakeToolMate(const product::DriveForm& fastener,
+                                                   const product::DriveForm& tool);
+
+/** All ways in which drives of a tool fit those of a fastener. */
+[[nodiscard]] std::vector<ToolMate> ListToolMates(const std::vector<product::DriveForm>& fastener,
+                                                  const std::vector<product::DriveForm>& tool);
+
+/** Travel of a fastener's thread in a turn [m]; 0 where it is not known. */
+[[nodiscard]] double FindLead(const product::Part& fastener);
+
+/** Pose of the tool on a fastener, drawn out along the axis by `lift` [m] and turned about the axis
+ by `angle` [rad], counter-clockwise as seen by the user. At angle 0 flats are parallel. */
+[[nodiscard]] spatial::Pose CalcToolPose(const ToolMate& mate, const spatial::Pose& X_WF,
+                                         double angle, double lift);
+
+/** Angles in which a tool on a fastener can be swung, from one part in its way to the next. */
+struct FreeArc {
+  double from{0};           ///< [rad], as CalcToolPose takes it.
+  double to{0};             ///< Larger than `from`.
+  contact::BodyId at_from;  ///< Body that ends it; invalid where nothing does.
+  contact::BodyId at_to;
+  bool is_full{false};     ///< The whole turn is free.
+  bool can_put_on{false};  ///< Nothing is in the way along the axis, at some angle of it.
+  /** It can be swung by a pitch, taken off, put on again where it began, and so on without end. */
+  bool can_go_on{false};
+
+  [[nodiscard]] double angle() const { return to - from; }
+};
+
+/** Where a tool can be put on a fastener and swung. */
+struct ToolReach {
+  std::vector<FreeArc> arcs;
+  contact::BodyId obstacle;             ///< Where there is no arc: the body that is met at angle 0.
+  contact::BodyId obstacle_along_axis;  ///< The body first met in putting on; invalid: none.
+  double lever{0};           ///< Largest distance of a point of the tool from the axis [m].
+  bool is_truncated{false};  ///< A contact query reached its limit: an obstacle may be missed.
+
+  /** The arc to work in: one that lets it go on, else the widest; null: it cannot be put on. */
+  [[nodiscard]] const FreeArc* FindBest() const;
+};
+
+struct ReachQuery {
+  const contact::Scene* scene{nullptr};
+  contact::BodyId fastener;                     ///< Left out.
+  std::span<const contact::BodyId> left_out{};  ///< Further bodies that do not count.
+  const contact::Shape* tool{nullptr};
+  const product::Part* tool_part{nullptr};
+  /** Bodies that are no deeper than this in the tool do not stop it: what touches as drawn [m]. */
+  double tolerance{5e-6};
+  /** Shortest step of any point of the tool: an obstacle thinner than it, met between two steps,
+   may be missed by this depth [m]. */
+  double shortest_step{50e-6};
+};
+
+/** Swings a tool on a fastener around the whole turn, and tries to put it on along the axis. Steps
+ are as long as the distance to the nearest body allows (conservative advancement), and at least
+ ReachQuery::shortest_step. @pre all pointers are set. */
+[[nodiscard]] ToolReach CalcToolReach(const ReachQuery& query, const ToolMate& mate,
+                                      const spatial::Pose& X_WF);
+
+}  // namespace hvas::simulation

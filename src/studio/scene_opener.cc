@@ -1,0 +1,124 @@
+#include "studio/scene_opener.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "studio/event_json.h"
+
+namespace hvas::studio {
+namespace {
+
+using simulation::Placement;
+
+/** @param begun  Snapshot after resuming; without parts where the saved state was not restored. */
+Json MakeResumedEvent(const SceneSnapshot& begun) {
+  const auto& parts = begun.state.parts;
+  return {{"event", "resumed"},
+          {"is_resumed", !parts.empty()},
+          {"seated",
+           std::count_if(parts.begin(), parts.end(),
+                         [](const auto& part) { return part.placement == Placement::kPlaced; })},
+          {"edits", begun.scene->edits.size()}};
+}
+
+}  // namespace
+
+void SceneOpener::Open(const std::filesystem::path& file, const std::string& name) {
+  Post([this, file, name] { DoOpen(file, name, nullptr); });
+}
+
+void SceneOpener::Resume(const SavedWork& work) {
+  Post([this, work] { DoOpen(work.file, work.name, &work); });
+}
+
+void SceneOpener::Post(std::function<void()> job) {
+  {
+    const std::lock_guard lock(mutex_);
+    opening_.request_stop();  // a newer request replaces the one in progress
+    opening_ = {};
+  }
+  parts_.worker->Post([job = std::move(job)](const std::stop_token& /*stop*/) { job(); });
+}
+
+void SceneOpener::Cancel() {
+  const std::lock_guard lock(mutex_);
+  opening_.request_stop();
+}
+
+void SceneOpener::DoOpen(const std::filesystem::path& file, const std::string& name,
+                         const SavedWork* kept) {
+  std::stop_token stop;
+  {
+    const std::lock_guard lock(mutex_);
+    stop = opening_.get_token();
+  }
+  const auto scene =
+      parts_.builder->Open(file, name, MakeProgressListener(parts_.events, name), stop);
+  if (!scene) {
+    const Json failed{{"event", "failed"}, {"file", name}, {"error", ToJson(scene.error())}};
+    {
+      const std::lock_guard lock(mutex_);
+      failure_ = failed;
+    }
+    parts_.events->Publish(failed);
+    return;
+  }
+  parts_.edits->ClearHistory();
+  const SceneSnapshot begun =
+      kept != nullptr ? RestoreWork(*kept, *scene) : SceneSnapshot{*scene, {}};
+  const Json resumed = kept != nullptr ? MakeResumedEvent(begun) : Json(nullptr);
+  {
+    const std::lock_guard lock(mutex_);
+    failure_ = nullptr;
+    resumed_ = resumed;
+  }
+  if (kept != nullptr && begun.state.parts.empty()) {
+    parts_.saver->BackUp();
+  }
+  parts_.live->Show(begun.scene, begun.state, false);
+  parts_.paths->Clear();  // paths of the previous product, whose last frame has come
+  parts_.edits->PublishHistory();
+  if (!resumed.is_null()) {
+    parts_.events->Publish(resumed);
+  }
+}
+
+SceneSnapshot SceneOpener::RestoreWork(const SavedWork& kept,
+                                       const std::shared_ptr<const OpenScene>& opened) {
+  if (opened->digest != kept.digest || opened->model->bodies.size() != kept.state.parts.size()) {
+    return {opened, {}};
+  }
+  SceneSnapshot begun{opened, kept.state};
+  if (!kept.edits.empty()) {
+    auto edited = parts_.builder->ApplyEdits(*opened, kept.edits,
+                                             MakeProgressListener(parts_.events, kept.name));
+    if (!edited) {
+      return {opened, {}};
+    }
+    begun.scene = std::move(*edited);
+  }
+  const std::size_t steps = begun.scene->model->sequence.steps.size();
+  begun.state.next_step = std::min(begun.state.next_step, steps);
+  return begun;
+}
+
+void SceneOpener::OnHold(const simulation::SimulationEvent& /*event*/,
+                         const std::optional<SceneSnapshot>& /*before*/) {
+  const std::lock_guard lock(mutex_);
+  resumed_ = nullptr;
+}
+
+std::vector<Json> SceneOpener::MakeCatchUpEvents() const {
+  const bool is_open = parts_.live->scene() != nullptr;
+  std::vector<Json> news;
+  const std::lock_guard lock(mutex_);
+  if (!is_open && !failure_.is_null()) {
+    news.push_back(failure_);
+  }
+  if (!resumed_.is_null()) {
+    news.push_back(resumed_);
+  }
+  return news;
+}
+
+}  // namespace hvas::studio

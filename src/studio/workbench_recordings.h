@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "base/job_thread.h"
+#include "base/result.h"
+#include "studio/event_bus.h"
+#include "studio/json.h"
+#include "studio/live_scene.h"
+#include "studio/recording.h"
+#include "studio/recording_shelf.h"
+#include "studio/scene_observer.h"
+
+namespace hvas::studio {
+
+/** Recordings of the work: the one in progress, which has one scene, and those on the shelf. Any
+ thread may call any function; all but Finish() return at once, and leave slow work to the worker.
+ */
+class WorkbenchRecordings final : public SceneObserver {
+ public:
+  /** @param folder  See RecordingShelf. */
+  WorkbenchRecordings(const std::filesystem::path& folder, LiveScene* live, EventBus* events,
+                      JobThread* worker);
+
+  /** Records the work on this scene from now on. Reports by the event "recording". Errors: kInvalid
+   while a hand holds a part, and while a recording is in progress. */
+  [[nodiscard]] Result<void> Start(const std::string& name);
+
+  /** Finishes the recording in progress in the background. Errors: kInvalid where there is none. */
+  [[nodiscard]] Result<void> Stop();
+
+  /** Finishes the recording in progress, and waits for its file; does nothing where there is none.
+   Reports by the events "recording" and "failed". */
+  void Finish();
+
+  /** Description of the recording in progress; null where there is none. */
+  [[nodiscard]] Json Describe() const;
+
+  [[nodiscard]] Result<void> Rename(const std::string& id, const std::string& name);
+
+  /** Deletes a recording. Errors: kInvalid for the one in progress; those of RecordingShelf. */
+  [[nodiscard]] Result<void> Delete(const std::string& id);
+
+  [[nodiscard]] RecordingShelf& shelf() { return shelf_; }
+
+ private:
+  void ConfigureRun(const OpenScene& scene, LiveOptions* live) override;
+  [[nodiscard]] std::shared_ptr<Recording> recording() const;
+  void DoStart(const std::filesystem::path& file, const std::string& name);
+  /** Finishes the recording in progress if writing has failed. */
+  void FinishFailed();
+  void PublishRecording(Json recording) const;
+
+  LiveScene* const live_;
+  EventBus* const events_;
+  JobThread* const worker_;
+  RecordingShelf shelf_;
+
+  mutable std::mutex mutex_;              ///< Protects what follows.
+  std::shared_ptr<Recording> recording_;  ///< Null while nothing is recorded.
+};
+
+}  // namespace hvas::studio

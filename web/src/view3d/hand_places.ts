@@ -1,0 +1,43 @@
+/** Where a part in a hand may go: to its place in the product, or to loose parts on the table that it fits. */
+
+import { pointAtLine, wayInLine, type Line, type Ray } from "../model/assist";
+import { compose, inverse, type Pose, type Vec3 } from "../model/math";
+import type { TablePlace } from "../protocol/messages";
+
+/** A place on the table is meant when its way in is seen this near to the pointer [px]. */
+const kTablePx = 90;
+/** Of the part's radius: how far out it is clear of the loose parts that it goes to. */
+const kTableRoom = 0.5;
+
+/** What is needed of the eye. */
+interface Sight {
+  rayTo(p: Vec3): Ray;
+  metresPerPixel(p: Vec3): number;
+}
+
+/** A place of what the hand has; of the hand, not of the part. */
+export interface Place {
+  goal: Pose;
+  way: Line | null;
+}
+
+/** @param radius  Of the part [m]. */
+export function placeOnTable(place: TablePlace, X_HB: Pose, radius: number): Place {
+  const goal = compose(place.goal, inverse(X_HB));
+  return { goal, way: wayInLine(goal, place.way_in, place.distance_m + kTableRoom * radius) };
+}
+
+/** The place whose way in is seen nearest to a point; the first one, in the product, where none is near. */
+export function nearestPlace(places: readonly Place[], at: Vec3, eye: Sight): Place {
+  const ray = eye.rayTo(at);
+  const pixelsTo = ({ way }: Place): number => {
+    if (way === null) {
+      return Infinity;
+    }
+    const snap = pointAtLine(ray, way);
+    return snap.off / eye.metresPerPixel(snap.p);
+  };
+  const seen = places.map(pixelsTo);
+  const least = Math.min(...seen);
+  return least < kTablePx ? places[seen.indexOf(least)]! : places[0]!;
+}
