@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
-
 #include "mates/mate_kind.h"
+#include "mates/singular_values.h"
 
 namespace hvas::mates {
 namespace {
@@ -236,13 +235,7 @@ Rows MakeRows(const EquationList& list) {
 
 /** Rank of a matrix against the largest singular value of `whole`. */
 int CountRank(const Eigen::MatrixXd& matrix, double largest) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix);
-  const auto& values = svd.singularValues();
-  int rank = 0;
-  while (rank < values.size() && values[rank] > kRankTolerance * largest) {
-    ++rank;
-  }
-  return rank;
+  return static_cast<int>(CalcSingularValues(matrix).CountAbove(kRankTolerance * largest));
 }
 
 }  // namespace
@@ -355,10 +348,7 @@ Resolution ResolveAll(std::span<const MateConstraint> mates,
     for (std::size_t i = 0; i < list.items().size(); ++i) {
       right[static_cast<Eigen::Index>(i)] = -list.items()[i].value;
     }
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd(MakeRows(list),
-                                          Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold(kRankTolerance);
-    Vec6 step = svd.solve(right);
+    Vec6 step = CalcSingularValues(MakeRows(list)).Solve(right, kRankTolerance);
     bool is_better = false;
     for (int halving = 0; halving <= kMaxHalvings && !is_better; ++halving, step *= 0.5) {
       const Quat turn = spatial::RotationFromVector(Vec3(step.head<3>() / length));

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SVD>
+#include <Eigen/QR>
 #include <Eigen/Sparse>
 
 #include "mates/mate_kind.h"
+#include "mates/singular_values.h"
 
 namespace hvas::mates {
 namespace {
@@ -134,18 +135,13 @@ class TogetherEquations {
  */
 BodyFreedom SplitMotions(const Matrix& motions, double length, const Vec3& p_RB_W) {
   BodyFreedom freedom;
-  const Eigen::JacobiSVD<Matrix> all(motions, Eigen::ComputeFullU);
-  Eigen::Index rank = 0;
-  while (rank < all.singularValues().size() && all.singularValues()[rank] > kRankTolerance) {
-    ++rank;
-  }
+  const SingularValues all = CalcSingularValues(motions);
+  const Eigen::Index rank = all.CountAbove(kRankTolerance);
   if (rank == 0) {
     return freedom;
   }
-  const Matrix basis = all.matrixU().leftCols(rank);
-  const Matrix turning = basis.topRows(3);
-  const Eigen::JacobiSVD<Matrix> turns(turning, Eigen::ComputeFullV);
-  const Matrix split = basis * turns.matrixV();
+  const Matrix basis = all.U.leftCols(rank);
+  const Matrix split = basis * CalcSingularValues(basis.topRows(3)).V;
   for (Eigen::Index k = 0; k < rank; ++k) {
     const Vec3 w = split.col(k).head<3>() / length;
     const Vec3 v = split.col(k).tail<3>();
@@ -161,13 +157,10 @@ BodyFreedom SplitMotions(const Matrix& motions, double length, const Vec3& p_RB_
 
 /** Motions of all bodies that the equations leave, as columns. */
 Matrix CalcNullspace(const SparseMatrix& equations) {
-  const Eigen::BDCSVD<Matrix> svd(Matrix(equations), Eigen::ComputeFullV);
-  const Vector& values = svd.singularValues();
-  Eigen::Index rank = 0;
-  while (rank < values.size() && values[rank] > kRankTolerance * values[0]) {
-    ++rank;
-  }
-  return svd.matrixV().rightCols(equations.cols() - rank);
+  Eigen::ColPivHouseholderQR<Matrix> qr(Matrix(equations.transpose()));
+  qr.setThreshold(kRankTolerance);
+  const Matrix Q = qr.householderQ();
+  return Q.rightCols(equations.cols() - qr.rank());
 }
 
 std::vector<BodyFreedom> CalcFreedomsTogether(std::span<const BodyMate> mates,

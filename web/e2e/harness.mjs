@@ -454,9 +454,11 @@ export async function insertByMouse(page, occurrence, goal, height = 0.12) {
   await moveMouseTo(page, [goal[0], goal[1], goal[2] + height]);
   // A round part may go on turning slowly about its axis.
   await waitForStill(page, async () => ({ p: (await poseOf(page, occurrence)).p }));
+  const before = (await stateOf(page)).leaders[occurrence];
   await moveMouseTo(page, [goal[0], goal[1], goal[2] - 0.01]);
-  // What is seated is let go after a while, and is in its place then.
-  await waitForState(page, ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed");
+  // What is seated is let go after a while: it is in its place then, or one with the part on the table that has it.
+  await waitForState(page, ({ held, placements, leaders }) =>
+    held[0]?.state === "seated" || placements[occurrence] === "placed" || leaders[occurrence] !== before);
 }
 
 /** Goes on with Tab until the focus is there; a selector. */

@@ -121,7 +121,7 @@ class WorkbenchFixture : public ::testing::Test {
 
   /** Describes the hand and the part, for a failure that is not seen again. */
   std::string DescribeHand() {
-    const haptics::TickOutput& tick = bench_.live().frame().frame.ticks.at(hand_);
+    const haptics::TickOutput tick = bench_.live().frame().frame.ticks.at(hand_);
     const Vec3 lag = tick.X_WT.p() - tick.X_WD.p();
     const Vec3 behind = X_WH_.p() - tick.X_WH.p();
     return fmt::format(
