@@ -52,6 +52,9 @@ bool KickDetector::FindWindow(double span, Window* window) const noexcept {
         break;
       }
       const bool is_between = gap > 0 && late > kRounding;
+      if (is_between && gap > span) {
+        return false;  // Where the handle was between samples so far apart is unknown.
+      }
       p[found] = is_between ? Vec3(sample.p + late / gap * (newer.p - sample.p)) : sample.p;
     }
   }

@@ -31,7 +31,8 @@ enum class Kick : std::uint8_t {
  is zero under any constant force of the hand, whatever its size, and h^2 (change of force) / mass
  after a change. A hand changes its force slowly, and a motor's force is known; what changes fast
  and against that force is a force of the wrong sign. h is 4 to 12 ms: the shorter, the larger e has
- to be to stand out of the encoders' steps; the longer, the more a hand explains. RT-safe. */
+ to be to stand out of the encoders' steps; the longer, the more a hand explains. A position between
+ two samples that are further apart than h is not known, so that h tells nothing. RT-safe. */
 class KickDetector {
  public:
   explicit KickDetector(const KickThresholds& thresholds) noexcept : thresholds_(thresholds) {}

@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "haptics/coupling_rule.h"
+#include "haptics/kick_detector.h"
 #include "haptics/test/values.h"
 #include "haptics/test/wall_rig.h"
 
@@ -186,6 +187,24 @@ TEST(Kick, OrdinaryWorkRaisesNoAlarm) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
       EXPECT_EQ(Do(seed, work), 0u) << static_cast<int>(work) << ", seed " << seed;
     }
+  }
+}
+
+// A machine that pauses samples late; of what the hand did meanwhile, nothing is known.
+TEST(Kick, HandThatWorksWhileSamplesPauseRaisesNoAlarm) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    KickDetector detector({});
+    const double reach = random.Uniform(5e-3, 0.03);
+    const double hz = random.Uniform(0.5, 1.5);
+    int alarms = 0;
+    double dt = 1e-3;
+    for (double t = 0; t < 20; t += dt) {
+      const Vec3 p(reach * std::sin(2 * M_PI * hz * t), 0, 0);
+      alarms += detector.Update(p, Vec3(1, 0, 0), dt) != Kick::kNone ? 1 : 0;
+      dt = random.Uniform(0, 1) < 0.02 ? random.Uniform(5e-3, 0.1) : 1e-3;
+    }
+    EXPECT_EQ(alarms, 0) << "seed " << seed;
   }
 }
 

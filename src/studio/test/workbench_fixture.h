@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <memory>
@@ -113,7 +114,14 @@ class WorkbenchFixture : public ::testing::Test {
     MovePeg(above(0.08), 1.2);
     MovePeg(above(0.03), 0.6);
     MovePeg(above(-0.001), 2.0, kSeated);
+    // A hand that took it a little beside where it was seen presses on, as a person does.
+    constexpr double kPress = 10e-6;  // Of each input [m].
+    constexpr double kFarthest = 8e-3;
+    double pressed = 0;
     for (int i = 0; i < 2000 && !AwaitState(kSeated, start, 0.01); ++i) {
+      const double more = std::min(kPress, kFarthest - pressed);
+      pressed += more;
+      X_WH_ = {X_WH_.q(), Vec3(X_WH_.p() - more * up)};
       bench_.hands().Move(hand_, X_WH_, true);
     }
     ASSERT_TRUE(AwaitState(kSeated, start, 0)) << DescribeHand();
