@@ -255,7 +255,7 @@ Result<std::unique_ptr<studio::StudyDesk>> OpenDesk(const StudioOptions& options
 
 int RunStudio(const StudioOptions& options) {
   if (!options.load.file.empty()) {
-    if (const auto input = cad::CheckInputFile(options.load.file); !input) {
+    if (const auto input = cad::CheckInput(options.load.file); !input) {
       return ReportFailure(input.error());
     }
   }

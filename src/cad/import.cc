@@ -196,7 +196,7 @@ Result<Product> Finish(ImportResult result, const ImportControl& control,
 Result<Product> Import(const std::filesystem::path& file, const ImportOptions& options,
                        Diagnostics* diagnostics, const ImportControl& control) {
   HVAS_DEMAND(diagnostics != nullptr);
-  auto path = CheckInputFile(file);
+  auto path = CheckInput(file);
   if (!path) {
     return Unexpected(path.error());
   }

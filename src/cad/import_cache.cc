@@ -9,6 +9,7 @@
 
 #include "base/digest.h"
 #include "cad/input_file.h"
+#include "cad/mesh_folder.h"
 #include "product/product_io.h"
 
 namespace hvas::cad {
@@ -55,7 +56,7 @@ std::string KeyOf(const fs::path& worker, const fs::path& file, const ImportOpti
   }
   digest.AddDouble(length_unit);
   digest.AddText(file.filename().string());  // It is in the product.
-  digest.AddText(DigestOf(file));
+  digest.AddText(fs::is_directory(file) ? DigestOfMeshes(file) : DigestOf(file));
   return digest.Hex();
 }
 

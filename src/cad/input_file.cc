@@ -10,6 +10,7 @@
 
 #include "base/digest.h"
 #include "base/regular_file.h"
+#include "cad/mesh_folder.h"
 
 namespace hvas::cad {
 
@@ -69,6 +70,11 @@ Result<fs::path> CheckInputFile(const fs::path& file) {
     return Fail(ErrorCode::kNotFound, "there is no such file", file.string(), "check the path");
   }
   return path;
+}
+
+Result<fs::path> CheckInput(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error) ? FindMeshFolder(path) : CheckInputFile(path);
 }
 
 std::string DigestOf(const fs::path& path) {

@@ -36,10 +36,15 @@ class MappedFile {
  Errors: kNotFound, kUnreadable. */
 [[nodiscard]] Result<std::filesystem::path> CheckInputFile(const std::filesystem::path& file);
 
+/** As CheckInputFile(); a folder of meshes is taken too, and its path is that of FindMeshFolder()
+ (cad/mesh_folder.h). */
+[[nodiscard]] Result<std::filesystem::path> CheckInput(const std::filesystem::path& path);
+
 /** What to choose instead of a file that is none of these. */
 inline constexpr const char* kFormats =
-    "choose a STEP file (.step or .stp; AP203, AP214 or AP242), an IGES file (.igs or .iges), or a "
-    "mesh (.obj, .stl, .gltf, .glb or .3mf)";
+    "choose a STEP file (.step or .stp; AP203, AP214 or AP242), an IGES file (.igs or .iges), a "
+    "mesh "
+    "(.obj, .stl, .gltf, .glb or .3mf), or a folder of meshes";
 
 /** Digest of a file's bytes; empty where it cannot be read. */
 [[nodiscard]] std::string DigestOf(const std::filesystem::path& path);

@@ -485,6 +485,9 @@ std::span<const SideFileKey> KeysOf(SideFileObject object) {
 
 std::filesystem::path FindAssignmentFile(const std::filesystem::path& product_file) {
   std::filesystem::path file = product_file;
+  if (!file.has_filename()) {
+    file = file.parent_path();  // A folder that ends in a slash.
+  }
   return file.replace_extension(".hvas.json");
 }
 

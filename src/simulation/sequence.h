@@ -54,8 +54,8 @@ struct Sequence {
   std::vector<SequenceGap> gaps;
   std::vector<DrawnOverlap> overlaps;
   std::vector<DrawnOverlap> relieved;  ///< Overlaps that have contact: faces give way there.
-  std::vector<FaceRelief> reliefs;  ///< Reliefs of faces, one of each.
-  Neighbours neighbours;            ///< Neighbours of all parts in the assembled product.
+  std::vector<FaceRelief> reliefs;     ///< Reliefs of faces, one of each.
+  Neighbours neighbours;               ///< Neighbours of all parts in the assembled product.
 };
 
 /** The move by which a part goes to its place, alone or with what moves with it; null where it has

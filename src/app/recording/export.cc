@@ -52,7 +52,7 @@ std::string FormatOf(const std::filesystem::path& file) {
 /** What can be known to fail before the work. */
 Result<void> Check(const ExportOptions& options, const std::string& format) {
   const std::string name = options.output.string();
-  if (const auto input = cad::CheckInputFile(options.load.file); !input) {
+  if (const auto input = cad::CheckInput(options.load.file); !input) {
     return Unexpected(input.error());
   }
   if (IsRecord(options.load.file)) {

@@ -22,6 +22,7 @@
 #include "cad/iges/iges_text.h"
 #include "cad/input_file.h"
 #include "cad/scene/mesh_document.h"
+#include "cad/scene/mesh_folder_document.h"
 #include "cad/scene/mesh_format.h"
 #include "cad/step/identities.h"
 #include "cad/step/tolerances.h"
@@ -173,6 +174,15 @@ Result<Product> ReadByContent(const std::filesystem::path& file, const ImportOpt
               file.filename().string(), kFormats);
 }
 
+Result<Product> ReadFolder(const std::filesystem::path& folder, const ImportOptions& options,
+                           const ReadWatch& watch, Diagnostics* diagnostics) {
+  Result<Product> product = ReadMeshFolder(folder, options, watch, diagnostics);
+  if (product) {
+    CheckSize(*product, diagnostics);
+  }
+  return product;
+}
+
 /** The only place where exceptions of other libraries end. */
 Result<Product> ReadGuarded(const std::filesystem::path& file, const ImportOptions& options,
                             const ReadWatch& watch, Diagnostics* diagnostics) {
@@ -180,7 +190,8 @@ Result<Product> ReadGuarded(const std::filesystem::path& file, const ImportOptio
       "export the file again from the CAD system, if necessary in parts";
   const std::string name = file.filename().string();
   try {
-    return ReadByContent(file, options, watch, diagnostics);
+    return std::filesystem::is_directory(file) ? ReadFolder(file, options, watch, diagnostics)
+                                               : ReadByContent(file, options, watch, diagnostics);
   } catch (const Standard_OutOfMemory&) {
     return Fail(ErrorCode::kOutOfResource, "memory ran out while reading it", name, kRemedy);
   } catch (const Standard_Failure& failure) {
@@ -200,7 +211,7 @@ Result<Product> ReadGuarded(const std::filesystem::path& file, const ImportOptio
 
 Result<Product> ReadCad(const std::filesystem::path& file, const ImportOptions& options,
                         Diagnostics* diagnostics, const ReadWatch& watch) {
-  const Result<std::filesystem::path> path = CheckInputFile(file);
+  const Result<std::filesystem::path> path = CheckInput(file);
   if (!path) {
     return Unexpected(path.error());
   }

@@ -27,7 +27,7 @@ struct ReadWatch {
  without a solid have no mass. The density of a part that states none, or an absurd one, is assumed.
 
  Formats, told apart by content: STEP (AP203, AP214, AP242); IGES 5.3; OBJ, STL, glTF 2, GLB and 3MF
- as cad/mesh_document.h has it.
+ as cad/mesh_document.h has it; a folder of such meshes (cad/mesh_folder_document.h).
 
  Errors: kNotFound (no such file), kUnreadable (no format that is known, damaged, or without a
  solid), kOutOfResource. Not re-entrant inside: concurrent calls wait for each other.

@@ -449,5 +449,43 @@ TEST(Model3mf, ReadsUnitAndNamesFromAnyText) {
   EXPECT_EQ(model.names.at(3), "a < b");
 }
 
+TEST(MeshFolder, IsAProductWithAPartForEachFile) {
+  const TemporaryFolder folder;
+  const std::filesystem::path inner = folder.path() / "cart";
+  std::filesystem::create_directories(inner);
+  WriteFile(inner / "10.obj", ToObj(MakeBush(), 1, ""));
+  WriteFile(inner / "2.OBJ", ToObj(testing::MakeBox({0.02, 0.03, 0.04}), 1, ""));
+  WriteFile(inner / "2.stl", "solid of the same part\n");  // The same part in another format.
+  WriteFile(inner / "axle.stl", "no mesh at all");
+  WriteFile(inner / "notes.txt", "not a part");
+  for (const std::filesystem::path& path : {inner, folder.path()}) {  // The only folder in it.
+    Diagnostics diagnostics;
+    const auto product = Read(path, &diagnostics);
+    ASSERT_TRUE(product) << product.error().ToString();
+    EXPECT_EQ(product->name, "cart");
+    ASSERT_EQ(product->occurrences.size(), 2u);
+    EXPECT_EQ(product->occurrences[0].path, "cart/2");
+    EXPECT_EQ(product->occurrences[1].path, "cart/10");
+    EXPECT_NEAR(product->parts[0].mass.volume, 24e-6, 1e-9);
+    EXPECT_EQ(CountCode(diagnostics, "assumed-unit"), 1);
+    EXPECT_EQ(CountCode(diagnostics, "part-skipped"), 1);
+  }
+}
+
+TEST(MeshFolder, WithoutMeshesOrWithSeveralFoldersOfThemSaysWhatToChoose) {
+  const TemporaryFolder folder;
+  Diagnostics diagnostics;
+  const auto empty = Read(folder.path(), &diagnostics);
+  ASSERT_FALSE(empty);
+  EXPECT_NE(empty.error().message.find("without mesh files"), std::string::npos);
+  for (const char* name : {"a", "b"}) {
+    std::filesystem::create_directories(folder.path() / name);
+    WriteFile(folder.path() / name / "0.obj", ToObj(MakeBush(), 1, ""));
+  }
+  const auto several = Read(folder.path(), &diagnostics);
+  ASSERT_FALSE(several);
+  EXPECT_NE(several.error().remedy.find("/a"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hvas::cad
