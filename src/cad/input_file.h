@@ -36,8 +36,8 @@ class MappedFile {
  Errors: kNotFound, kUnreadable. */
 [[nodiscard]] Result<std::filesystem::path> CheckInputFile(const std::filesystem::path& file);
 
-/** As CheckInputFile(); a folder of meshes is taken too, and its path is that of FindMeshFolder()
- (cad/mesh_folder.h). */
+/** Checks a file as CheckInputFile() does, or a folder of meshes as FindMeshFolder() does
+ (cad/mesh_folder.h). @returns its absolute path. Errors: those of both. */
 [[nodiscard]] Result<std::filesystem::path> CheckInput(const std::filesystem::path& path);
 
 /** What to choose instead of a file that is none of these. */

@@ -20,7 +20,7 @@ struct SingularValues {
   [[nodiscard]] Eigen::VectorXd Solve(const Eigen::VectorXd& b, double tolerance) const;
 };
 
-/** By Jacobi rotations, for matrices of up to some hundred rows and columns. */
+/** Decomposes a matrix by Jacobi rotations; for matrices of up to some hundred rows and columns. */
 [[nodiscard]] SingularValues CalcSingularValues(const Eigen::MatrixXd& A);
 
 }  // namespace hvas::mates
