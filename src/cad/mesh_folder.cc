@@ -110,15 +110,15 @@ Result<fs::path> FindMeshFolder(const fs::path& folder) {
   if (holders.size() == 1) {
     return holders.front();
   }
-  return Fail(
-      ErrorCode::kUnreadable,
-      holders.empty()
-          ? std::string("this is a folder without mesh files (.obj, .stl, .gltf, .glb, .3mf)")
-          : fmt::format("this is a folder with {} folders of mesh files", holders.size()),
-      folder.string(),
-      holders.empty() ? std::string(kFormats)
-                      : fmt::format("choose one of them, as {}",
-                                    std::min_element(holders.begin(), holders.end())->string()));
+  return Fail(ErrorCode::kUnreadable,
+              holders.empty()
+                  ? std::string("this is a folder, not a file, and no mesh files are in it")
+                  : fmt::format("this is a folder with {} folders of mesh files", holders.size()),
+              folder.string(),
+              holders.empty()
+                  ? std::string(kFormats)
+                  : fmt::format("choose one of them, as {}",
+                                std::min_element(holders.begin(), holders.end())->string()));
 }
 
 std::string DigestOfMeshes(const fs::path& folder) {

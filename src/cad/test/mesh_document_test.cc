@@ -477,7 +477,7 @@ TEST(MeshFolder, WithoutMeshesOrWithSeveralFoldersOfThemSaysWhatToChoose) {
   Diagnostics diagnostics;
   const auto empty = Read(folder.path(), &diagnostics);
   ASSERT_FALSE(empty);
-  EXPECT_NE(empty.error().message.find("without mesh files"), std::string::npos);
+  EXPECT_NE(empty.error().message.find("no mesh files are in it"), std::string::npos);
   for (const char* name : {"a", "b"}) {
     std::filesystem::create_directories(folder.path() / name);
     WriteFile(folder.path() / name / "0.obj", ToObj(MakeBush(), 1, ""));
