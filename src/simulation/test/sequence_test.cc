@@ -168,19 +168,38 @@ void AddAxisMate(Product* product, OccurrenceId a, OccurrenceId b, const Vec3& a
   product->mates.push_back(mate);
 }
 
-TEST(SequenceTest, PartHeldAlongTwoAxesHasNoWayOutAndTheReasonNamesWhatHoldsIt) {  // N10
+/** A product without mates of cubes that do not touch, of three sizes. */
+struct Cubes {
+  explicit Cubes(const std::string& name) {
+    product.name = name;
+    const auto add = [this](const std::string& part, double half_edge) {
+      return testing::AddPart(&product, part, contact::testing::Block(Vec3::Constant(half_edge)));
+    };
+    small = add("small", 3e-3);
+    middle = add("middle", 5e-3);
+    large = add("large", 8e-3);
+  }
+
   Product product;
-  product.name = "cross";
-  const auto small =
-      testing::AddPart(&product, "small", contact::testing::Block(Vec3::Constant(3e-3)));
-  const auto middle =
-      testing::AddPart(&product, "middle", contact::testing::Block(Vec3::Constant(5e-3)));
-  const auto large =
-      testing::AddPart(&product, "large", contact::testing::Block(Vec3::Constant(8e-3)));
-  const auto key = testing::Place(&product, small, "key", Pose(Vec3(0, 0, 30e-3)));
-  const auto wall = testing::Place(&product, middle, "wall", Pose(Vec3(30e-3, 0, 30e-3)));
-  const auto base = testing::Place(&product, large, "base");
-  testing::Complete(&product);
+  product::PartId small, middle, large;
+};
+
+/** A base, a key above it and a wall beside the key: `AddAxisMate` says what holds them. */
+struct KeyAndWall : Cubes {
+  explicit KeyAndWall(const std::string& name) : Cubes(name) {
+    key = testing::Place(&product, small, "key", Pose(Vec3(0, 0, 30e-3)));
+    wall = testing::Place(&product, middle, "wall", Pose(Vec3(30e-3, 0, 30e-3)));
+    base = testing::Place(&product, large, "base");
+    testing::Complete(&product);
+  }
+
+  OccurrenceId key, wall, base;
+};
+
+TEST(SequenceTest, PartHeldAlongTwoAxesHasNoWayOutAndTheReasonNamesWhatHoldsIt) {  // N10
+  KeyAndWall parts("cross");
+  Product& product = parts.product;
+  const OccurrenceId key = parts.key, wall = parts.wall, base = parts.base;
   ASSERT_TRUE(product.mates.empty());
   AddAxisMate(&product, wall, key, Vec3::UnitX());
   AddAxisMate(&product, base, key, Vec3::UnitZ());
@@ -196,18 +215,9 @@ TEST(SequenceTest, PartHeldAlongTwoAxesHasNoWayOutAndTheReasonNamesWhatHoldsIt) 
 
 TEST(SequenceTest, PartsThatHoldEachOtherComeOutTogether) {  // Wilson and Latombe 1994
   // The same, but the wall leaves the base along the axis of the key: both go in as one body.
-  Product product;
-  product.name = "pair";
-  const auto small =
-      testing::AddPart(&product, "small", contact::testing::Block(Vec3::Constant(3e-3)));
-  const auto middle =
-      testing::AddPart(&product, "middle", contact::testing::Block(Vec3::Constant(5e-3)));
-  const auto large =
-      testing::AddPart(&product, "large", contact::testing::Block(Vec3::Constant(8e-3)));
-  const auto key = testing::Place(&product, small, "key", Pose(Vec3(0, 0, 30e-3)));
-  const auto wall = testing::Place(&product, middle, "wall", Pose(Vec3(30e-3, 0, 30e-3)));
-  const auto base = testing::Place(&product, large, "base");
-  testing::Complete(&product);
+  KeyAndWall parts("pair");
+  Product& product = parts.product;
+  const OccurrenceId key = parts.key, wall = parts.wall, base = parts.base;
   AddAxisMate(&product, wall, key, Vec3::UnitX());
   AddAxisMate(&product, base, key, Vec3::UnitZ());
   AddAxisMate(&product, base, wall, Vec3::UnitZ());
@@ -221,18 +231,12 @@ TEST(SequenceTest, PartsThatHoldEachOtherComeOutTogether) {  // Wilson and Latom
 
 TEST(SequenceTest, PartThatBlocksMostOthersIsGivenUp) {  // N10
   // The plug has no way out, and both pins have a mate with it that leaves them none.
-  Product product;
-  product.name = "captive";
-  const auto small =
-      testing::AddPart(&product, "small", contact::testing::Block(Vec3::Constant(3e-3)));
-  const auto middle =
-      testing::AddPart(&product, "middle", contact::testing::Block(Vec3::Constant(5e-3)));
-  const auto large =
-      testing::AddPart(&product, "large", contact::testing::Block(Vec3::Constant(8e-3)));
-  const auto base = testing::Place(&product, large, "base");
-  const auto plug = testing::Place(&product, middle, "plug", Pose(Vec3(0, 0, 30e-3)));
-  testing::Place(&product, small, "pin 1", Pose(Vec3(30e-3, 0, 30e-3)));
-  testing::Place(&product, small, "pin 2", Pose(Vec3(-30e-3, 0, 30e-3)));
+  Cubes cubes("captive");
+  Product& product = cubes.product;
+  const auto base = testing::Place(&product, cubes.large, "base");
+  const auto plug = testing::Place(&product, cubes.middle, "plug", Pose(Vec3(0, 0, 30e-3)));
+  testing::Place(&product, cubes.small, "pin 1", Pose(Vec3(30e-3, 0, 30e-3)));
+  testing::Place(&product, cubes.small, "pin 2", Pose(Vec3(-30e-3, 0, 30e-3)));
   testing::Complete(&product);
   AddAxisMate(&product, base, plug, Vec3::UnitX());
   AddAxisMate(&product, base, plug, Vec3::UnitZ());
