@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <LinearMath/btConvexHullComputer.h>
 #include <btBulletDynamicsCommon.h>
 
 #include "dynamics/hull.h"
+#include "spatial/decompose.h"
 
 namespace hvas::dynamics {
 namespace {
@@ -56,12 +56,12 @@ struct PrincipalFrame {
 };
 
 PrincipalFrame CalcPrincipalFrame(const MassProperties& properties) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(properties.I_BBcm_B);
-  Mat3 R_BP = solver.eigenvectors();
+  const spatial::Eigensystem inertia = spatial::CalcEigensystem(properties.I_BBcm_B);
+  Mat3 R_BP = inertia.vectors;
   if (R_BP.determinant() < 0) {
     R_BP.col(2) = -R_BP.col(2);
   }
-  return {{Quat(R_BP).normalized(), properties.p_BoBcm_B}, solver.eigenvalues()};
+  return {{Quat(R_BP).normalized(), properties.p_BoBcm_B}, inertia.values};
 }
 
 // The hull of the points, moved inwards by its margin, so that with the margin around it the faces

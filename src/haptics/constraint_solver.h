@@ -4,6 +4,8 @@
 #include <limits>
 #include <span>
 
+#include <Eigen/Cholesky>
+
 #include "spatial/pose.h"
 
 namespace hvas::haptics {

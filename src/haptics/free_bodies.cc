@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 namespace hvas::haptics {
 
 spatial::Pose MoveAbout(const spatial::Pose& X_WB, const Vec3& p_BQ, const spatial::Twist& V_Q,

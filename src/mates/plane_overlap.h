@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "base/work_watch.h"
 

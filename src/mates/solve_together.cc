@@ -141,7 +141,7 @@ BodyFreedom SplitMotions(const Matrix& motions, double length, const Vec3& p_RB_
     return freedom;
   }
   const Matrix basis = all.U.leftCols(rank);
-  const Matrix split = basis * CalcSingularValues(basis.topRows(3)).V;
+  const Matrix split = basis.lazyProduct(CalcSingularValues(basis.topRows(3)).V);
   for (Eigen::Index k = 0; k < rank; ++k) {
     const Vec3 w = split.col(k).head<3>() / length;
     const Vec3 v = split.col(k).tail<3>();
@@ -155,12 +155,21 @@ BodyFreedom SplitMotions(const Matrix& motions, double length, const Vec3& p_RB_
   return freedom;
 }
 
-/** Motions of all bodies that the equations leave, as columns. */
+/** Motions of all bodies that the equations leave, as columns: those of Q beyond the rank, to which
+ the reflections are applied one by one. */
 Matrix CalcNullspace(const SparseMatrix& equations) {
   Eigen::ColPivHouseholderQR<Matrix> qr(Matrix(equations.transpose()));
   qr.setThreshold(kRankTolerance);
-  const Matrix Q = qr.householderQ();
-  return Q.rightCols(equations.cols() - qr.rank());
+  const Eigen::Index rows = equations.cols();
+  const Eigen::Index columns = rows - qr.rank();
+  Matrix motions = Matrix::Zero(rows, columns);
+  motions.bottomRows(columns).setIdentity();
+  Vector workspace(columns);
+  for (Eigen::Index k = qr.hCoeffs().size(); k-- > 0 && columns > 0;) {
+    motions.bottomRows(rows - k).applyHouseholderOnTheLeft(qr.matrixQR().col(k).tail(rows - k - 1),
+                                                           qr.hCoeffs()[k], workspace.data());
+  }
+  return motions;
 }
 
 std::vector<BodyFreedom> CalcFreedomsTogether(std::span<const BodyMate> mates,

@@ -10,8 +10,6 @@
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <Precision.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
@@ -23,6 +21,7 @@
 
 #include "base/units.h"
 #include "cad/brep/brep_surface.h"
+#include "spatial/decompose.h"
 
 namespace hvas::cad {
 namespace {
@@ -143,9 +142,7 @@ Outline MakeOutline(const TopoDS_Shape& shape) {
     C += q * q.transpose();
     outline.size = std::max(outline.size, q.norm());
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(C / static_cast<double>(outline.points.size()),
-                                                  Eigen::EigenvaluesOnly);
-  outline.moments = eigen.eigenvalues();
+  outline.moments = spatial::CalcEigensystem(C / static_cast<double>(outline.points.size())).values;
   return outline;
 }
 
@@ -166,13 +163,13 @@ std::optional<Pose> FindMotion(const Outline& from, const Outline& to) {
   for (std::size_t i = 0; i < from.points.size(); ++i) {
     H += (from.points[i] - from.centroid) * (to.points[i] - to.centroid).transpose();
   }
-  const Eigen::JacobiSVD<Mat3> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (svd.singularValues()[1] < 1e-9 * svd.singularValues()[0]) {
+  const spatial::SingularValues3 svd = spatial::CalcSingularValues(H);
+  if (svd.values[1] < 1e-9 * svd.values[0]) {
     return std::nullopt;
   }
-  const Mat3 VU = svd.matrixV() * svd.matrixU().transpose();
+  const Mat3 VU = svd.V * svd.U.transpose();
   const Vec3 signs(1, 1, VU.determinant() < 0 ? -1 : 1);
-  const Mat3 R = svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose();
+  const Mat3 R = svd.V * signs.asDiagonal() * svd.U.transpose();
   const Pose X(Quat(R).normalized(), to.centroid - R * from.centroid);
   for (std::size_t i = 0; i < from.points.size(); ++i) {
     if ((X * from.points[i] - to.points[i]).norm() > tolerance) {

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/SVD>
 #include <assimp/material.h>
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
@@ -22,6 +21,7 @@
 #include "cad/step/text_encoding.h"
 #include "cad/triangles/triangle_part.h"
 #include "fits/materials.h"
+#include "spatial/decompose.h"
 
 namespace hvas::cad {
 namespace {
@@ -66,11 +66,10 @@ struct Polar {
 };
 
 Polar Decompose(const Mat3& A) {
-  const Eigen::JacobiSVD<Mat3> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Mat3 R = svd.matrixU() * svd.matrixV().transpose();
+  const spatial::SingularValues3 svd = spatial::CalcSingularValues(A);
+  const Mat3 R = svd.U * svd.V.transpose();
   const double sign = R.determinant() < 0 ? -1 : 1;
-  return {sign * R,
-          sign * svd.matrixV() * svd.singularValues().asDiagonal() * svd.matrixV().transpose()};
+  return {sign * R, sign * svd.V * svd.values.asDiagonal() * svd.V.transpose()};
 }
 
 /** Linear light to sRGB (IEC 61966-2-1), which glTF asks for and screens do. */

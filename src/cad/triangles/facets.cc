@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
+#include "spatial/decompose.h"
 
 namespace hvas::cad {
 namespace {
@@ -92,8 +92,7 @@ class FacetGrower {
         C += mesh_.area[t] * q * q.transpose();
       }
     }
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(C);
-    const Vec3 axis = eigen.eigenvectors().col(0);
+    const Vec3 axis = spatial::CalcEigensystem(C).vectors.col(0);
     *p = centre;
     *nhat = axis.dot(*nhat) < 0 ? Vec3(-axis) : axis;
   }

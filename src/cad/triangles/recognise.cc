@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
+#include "spatial/decompose.h"
 
 namespace hvas::cad {
 namespace {
@@ -16,6 +16,9 @@ using Samples = std::span<const SurfaceSample>;
 // Beyond this many times the patch's size a radius is a plane within any tolerance of interest, and
 // the fit is only noise.
 constexpr double kLargestRadius = 1e3;
+
+// Of the sum of squares of points, squared: below it their moments are rounding.
+constexpr double kSingular = 1e-15;
 
 struct Extent {
   Vec3 centroid{Vec3::Zero()};
@@ -38,27 +41,31 @@ struct Circle {
   double x, y, radius;
 };
 
-/** Algebraic least-squares circle (Kasa), exact for exact data. */
+/** Algebraic least-squares circle (Kasa), exact for exact data. About the mean of the points, q,
+ its centre solves the normal equations sum(q q^T) c = sum(|q|^2 q) / 2. */
 std::optional<Circle> FitCircle(const std::vector<Eigen::Vector2d>& points) {
-  Mat3 A = Mat3::Zero();
-  Vec3 b = Vec3::Zero();
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& point : points) {
-    const Vec3 row(point.x(), point.y(), 1);
-    A += row * row.transpose();
-    b += point.squaredNorm() * row;
+    mean += point;
   }
-  const Eigen::FullPivLU<Mat3> lu(A);
-  if (!lu.isInvertible()) {
-    return std::nullopt;
+  mean /= static_cast<double>(points.size());
+  double xx = 0, xy = 0, yy = 0;
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& point : points) {
+    const Eigen::Vector2d q = point - mean;
+    xx += q.x() * q.x();
+    xy += q.x() * q.y();
+    yy += q.y() * q.y();
+    b += 0.5 * q.squaredNorm() * q;
   }
-  const Vec3 solution = lu.solve(b);
-  const double x = 0.5 * solution.x();
-  const double y = 0.5 * solution.y();
-  const double square = solution.z() + x * x + y * y;
-  if (square <= 0) {
-    return std::nullopt;
+  const double determinant = xx * yy - xy * xy;
+  const double square_of_radii = (xx + yy) / static_cast<double>(points.size());
+  if (!(determinant > kSingular * (xx + yy) * (xx + yy))) {
+    return std::nullopt;  // All points are on one line.
   }
-  return Circle{x, y, std::sqrt(square)};
+  const double x = (yy * b.x() - xy * b.y()) / determinant;
+  const double y = (xx * b.y() - xy * b.x()) / determinant;
+  return Circle{mean.x() + x, mean.y() + y, std::sqrt(square_of_radii + x * x + y * y)};
 }
 
 std::optional<Surface> FitPlane(Samples samples, const Vec3& centroid) {
@@ -66,11 +73,10 @@ std::optional<Surface> FitPlane(Samples samples, const Vec3& centroid) {
   for (const SurfaceSample& sample : samples) {
     C += (sample.p - centroid) * (sample.p - centroid).transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(C);
   Surface surface;
   surface.kind = SurfaceKind::kPlane;
   surface.origin = centroid;
-  surface.axis = eigen.eigenvectors().col(0).normalized();
+  surface.axis = spatial::CalcEigensystem(C).vectors.col(0).normalized();
   return surface;
 }
 
@@ -79,8 +85,7 @@ std::optional<Surface> FitCylinder(Samples samples, const Vec3& centroid) {
   for (const SurfaceSample& sample : samples) {
     C += sample.nhat * sample.nhat.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(C);
-  const Vec3 axis = eigen.eigenvectors().col(0).normalized();
+  const Vec3 axis = spatial::CalcEigensystem(C).vectors.col(0).normalized();
   const Mat3 R = spatial::FrameFromZ(axis).toRotationMatrix();
   std::vector<Eigen::Vector2d> points;
   points.reserve(samples.size());
@@ -99,29 +104,25 @@ std::optional<Surface> FitCylinder(Samples samples, const Vec3& centroid) {
   return surface;
 }
 
+/** Algebraic least-squares sphere, exact for exact data. The samples' mean is the centroid: their
+ sum of q vanishes, so the equations of the centre and of the radius are apart. */
 std::optional<Surface> FitSphere(Samples samples, const Vec3& centroid) {
-  Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d b = Eigen::Vector4d::Zero();
+  Mat3 A = Mat3::Zero();
+  Vec3 b = Vec3::Zero();
   for (const SurfaceSample& sample : samples) {
     const Vec3 q = sample.p - centroid;
-    const Eigen::Vector4d row(q.x(), q.y(), q.z(), 1);
-    A += row * row.transpose();
-    b += q.squaredNorm() * row;
+    A += q * q.transpose();
+    b += 0.5 * q.squaredNorm() * q;
   }
-  const Eigen::FullPivLU<Eigen::Matrix4d> lu(A);
-  if (!lu.isInvertible()) {
-    return std::nullopt;
-  }
-  const Eigen::Vector4d solution = lu.solve(b);
-  const Vec3 centre = 0.5 * solution.head<3>();
-  const double square = solution.w() + centre.squaredNorm();
-  if (square <= 0) {
+  const std::optional<Vec3> centre = spatial::SolveNormalEquations(A, b);
+  if (!centre) {
     return std::nullopt;
   }
   Surface surface;
   surface.kind = SurfaceKind::kSphere;
-  surface.origin = centroid + centre;
-  surface.radius = std::sqrt(square);
+  surface.origin = centroid + *centre;
+  surface.radius =
+      std::sqrt(A.trace() / static_cast<double>(samples.size()) + centre->squaredNorm());
   return surface;
 }
 
@@ -140,19 +141,17 @@ std::optional<Surface> FitCone(Samples samples, const Vec3& centroid) {
     A += nn;
     b += nn * (sample.p - centroid);
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(C);
-  const Eigen::FullPivLU<Mat3> lu(A);
-  if (!lu.isInvertible()) {
+  const std::optional<Vec3> apex = spatial::SolveNormalEquations(A, b);
+  if (!apex) {
     return std::nullopt;
   }
-  const Vec3 apex = lu.solve(b);
-  Vec3 axis = eigen.eigenvectors().col(0).normalized();
-  if (axis.dot(apex) > 0) {  // The samples are centred on the origin: point from the apex to them.
+  Vec3 axis = spatial::CalcEigensystem(C).vectors.col(0).normalized();
+  if (axis.dot(*apex) > 0) {  // The samples are centred on the origin: point from the apex to them.
     axis = -axis;
   }
   Surface surface;
   surface.kind = SurfaceKind::kCone;
-  surface.origin = centroid + apex;
+  surface.origin = centroid + *apex;
   surface.axis = axis;
   surface.second = std::asin(std::clamp(std::abs(mean.dot(axis)), 0.0, 1.0));
   return surface;
@@ -165,8 +164,7 @@ std::optional<Surface> FitTorus(Samples samples, const Vec3& centroid, double si
     line << sample.nhat, ((sample.p - centroid) / size).cross(sample.nhat);
     C += line * line.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Mat6> eigen(C);
-  const Vec6 complex = eigen.eigenvectors().col(0);
+  const Vec6 complex = spatial::CalcLeastEigenvector(C);
   const Vec3 direction = complex.tail<3>();  // Pairs with the moment of a line.
   const double norm = direction.norm();
   if (norm < 1e-6) {

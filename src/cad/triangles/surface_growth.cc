@@ -5,11 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "base/units.h"
 #include "cad/triangles/recognise.h"
 #include "cad/triangles/surface_fit.h"
+#include "spatial/decompose.h"
 
 namespace hvas::cad {
 namespace {
@@ -65,8 +64,7 @@ double CalcBend(std::span<const Vec3> points) {
   for (const Vec3& p : points) {
     C += (p - centre) * (p - centre).transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(C);
-  const Vec3 nhat = eigen.eigenvectors().col(0);
+  const Vec3 nhat = spatial::CalcEigensystem(C).vectors.col(0);
   double low = 0;
   double high = 0;
   for (const Vec3& p : points) {
