@@ -1,12 +1,18 @@
 // Included by the sources of the server only: Boost.Beast takes long to compile.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
@@ -96,20 +102,12 @@ class Connection {
 
   template <typename Buffers, typename Handler>
   void async_read_some(const Buffers& buffers, Handler&& handler) {
-    if (tls_ != nullptr) {
-      tls_->async_read_some(buffers, std::forward<Handler>(handler));
-    } else {
-      slot_->stream.async_read_some(buffers, std::forward<Handler>(handler));
-    }
+    Read(BufferList<boost::asio::mutable_buffer>(buffers), Erase(std::forward<Handler>(handler)));
   }
 
   template <typename Buffers, typename Handler>
   void async_write_some(const Buffers& buffers, Handler&& handler) {
-    if (tls_ != nullptr) {
-      tls_->async_write_some(buffers, std::forward<Handler>(handler));
-    } else {
-      slot_->stream.async_write_some(buffers, std::forward<Handler>(handler));
-    }
+    Write(BufferList<boost::asio::const_buffer>(buffers), Erase(std::forward<Handler>(handler)));
   }
 
  private:
@@ -131,6 +129,48 @@ class Connection {
     std::shared_ptr<ConnectionTable> table;
     std::uint64_t number;
   };
+
+  using Done = std::function<void(boost::beast::error_code, std::size_t)>;
+
+  /** The first buffers of a sequence: an operation may transfer less than it is asked to. */
+  template <typename Buffer>
+  class BufferList {
+   public:
+    using value_type = Buffer;
+
+    template <typename Buffers>
+    explicit BufferList(const Buffers& buffers) {
+      const auto end = boost::asio::buffer_sequence_end(buffers);
+      for (auto it = boost::asio::buffer_sequence_begin(buffers);
+           it != end && count_ < items_.size(); ++it) {
+        items_[count_++] = *it;
+      }
+    }
+
+    [[nodiscard]] const Buffer* begin() const { return items_.data(); }
+
+    [[nodiscard]] const Buffer* end() const { return items_.data() + count_; }
+
+   private:
+    std::array<Buffer, 8> items_{};  // a message has a header and few pieces of a body
+    std::size_t count_{0};
+  };
+
+  /** One type for the handlers of all operations, so that those of the transport are compiled once.
+   It is called once, and what it holds is released before. */
+  template <typename Handler>
+  static Done Erase(Handler&& handler) {
+    using Held = std::decay_t<Handler>;
+    return [held = std::make_shared<std::optional<Held>>(std::forward<Handler>(handler))](
+               boost::beast::error_code error, std::size_t bytes) {
+      Held called = std::move(**held);
+      held->reset();
+      called(error, bytes);
+    };
+  }
+
+  void Read(const BufferList<boost::asio::mutable_buffer>& buffers, Done done);
+  void Write(const BufferList<boost::asio::const_buffer>& buffers, Done done);
 
   std::unique_ptr<Slot> slot_;
   std::unique_ptr<Tls> tls_;  ///< TLS layer over the seat's stream; null: plain TCP.

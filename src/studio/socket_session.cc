@@ -141,7 +141,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
                         });
   }
 
-  websocket::stream<Connection> socket_;
+  websocket::stream<Connection, /*deflateSupported=*/false> socket_;
   std::shared_ptr<ServerShared> shared_;
   Role role_;
   std::string id_;

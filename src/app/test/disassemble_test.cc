@@ -34,11 +34,13 @@ std::vector<std::string> NamesOf(const json& parts) {
   return names;
 }
 
-TEST(DisassembleTest, X16GearPumpIsTakenApartAndEachPartFollowsThoseItWaitedFor) {
-  const json run = RunHvasJson({"disassemble", ProductFile("gear_pump")});
-  EXPECT_EQ(run["out"], 37);
-  EXPECT_EQ(run["parts"].size(), 37u);
-  EXPECT_PRED_FORMAT2(IsSubstring, "housing", run["base"].get<std::string>());
+/** Every part of a product comes off its base, after those that it waited for, by the forces of the
+ fits. */
+void ExpectIsTakenApart(const std::string& product, std::size_t parts, const std::string& base) {
+  const json run = RunHvasJson({"disassemble", ProductFile(product)});
+  EXPECT_EQ(run["out"], parts);
+  EXPECT_EQ(run["parts"].size(), parts);
+  EXPECT_PRED_FORMAT2(IsSubstring, base, run["base"].get<std::string>());
   std::vector<std::string> gone;
   for (const json& part : run["parts"]) {
     EXPECT_TRUE(part["out"].get<bool>()) << part.dump(1);
@@ -57,6 +59,15 @@ TEST(DisassembleTest, X16GearPumpIsTakenApartAndEachPartFollowsThoseItWaitedFor)
       EXPECT_LT(met, 5) << part["name"];
     }
   }
+}
+
+TEST(DisassembleTest, X16BushingIsTakenApart) {
+  ExpectIsTakenApart("bushing", 2, "housing");
+}
+
+// Of the label `release`, as app_disassembly_test.
+TEST(DisassembleReleaseTest, X16GearPumpIsTakenApartAndEachPartFollowsThoseItWaitedFor) {
+  ExpectIsTakenApart("gear_pump", 37, "housing");
 }
 
 TEST(DisassembleTest, X16OilSealComesOutAfterTheSmallestSetAndTheRecordRunsAgain) {

@@ -23,6 +23,8 @@ namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 using Tcp = asio::ip::tcp;
 
+using Socket = websocket::stream<Tcp::socket, /*deflateSupported=*/false>;
+
 constexpr std::size_t kMaxMessage = 1 << 20;  // [bytes], far above any message: a choice.
 
 /** A connection whose handshake has been made: reads all the time, writes one message at a time.
@@ -34,7 +36,7 @@ class Stream : public std::enable_shared_from_this<Stream> {
     websocket_.read_message_max(kMaxMessage);
   }
 
-  [[nodiscard]] websocket::stream<Tcp::socket>& websocket() { return websocket_; }
+  [[nodiscard]] Socket& websocket() { return websocket_; }
 
   void Start() {
     is_open_ = true;
@@ -95,7 +97,7 @@ class Stream : public std::enable_shared_from_this<Stream> {
                            });
   }
 
-  websocket::stream<Tcp::socket> websocket_;
+  Socket websocket_;
   boost::beast::flat_buffer buffer_;
   std::deque<std::string> incoming_;
   std::deque<std::string> outgoing_;  // the first is on its way
