@@ -235,7 +235,8 @@ describe("opening", () => {
     await page.getByTestId("menu.file").click();
     await page.getByTestId("menu-open").click();
     await (await chooser).setFiles("../products/frame_500.step");
-    await page.getByTestId("cancel-open").click({ timeout: 20_000 });
+    await page.getByTestId("loading").locator('[role="progressbar"]:not([aria-label="Sending"])').waitFor();
+    await page.getByTestId("cancel-open").click();
     await page.getByTestId("loading").waitFor({ state: "detached" });
     await page.getByRole("log").filter({ hasText: "opening was cancelled" }).waitFor({ state: "attached" });  // the server's last word on this file
     assert.equal(await page.getByTestId("failure").count(), 0, "nothing is complained about");

@@ -37,7 +37,7 @@ function useDrop(root: { current: HTMLElement | null }): void {
       mark(false);
       const file = event.dataTransfer?.files[0];
       if (file !== undefined && canSteer()) {
-        void studio.openUpload(file);
+        void studio.opening.upload(file);
       }
     };
     addEventListener("dragover", over);

@@ -226,7 +226,7 @@ export const de: Record<MessageKey, string> = {
   "empty.title": "Etwas montieren",
   "empty.drop": "CAD-Datei hier ablegen",
   "empty.or": "oder eine wählen",
-  "empty.formats": "STEP, STL, OBJ, glTF oder 3MF, bis 256 MB",
+  "empty.formats": "STEP, IGES, STL, OBJ, glTF oder 3MF, bis 256 MB",
   "empty.examples": "oder mit einem Beispiel beginnen",
   "empty.needsLease": "Wer die Steuerung hat, kann ein Produkt öffnen. Sie sehen zu.",
   "empty.waiting": "Warten auf den Server…",

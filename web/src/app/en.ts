@@ -226,7 +226,7 @@ export const en = {
   "empty.title": "Assemble something",
   "empty.drop": "Drop a CAD file here",
   "empty.or": "or choose one",
-  "empty.formats": "STEP, STL, OBJ, glTF or 3MF, up to 256 MB",
+  "empty.formats": "STEP, IGES, STL, OBJ, glTF or 3MF, up to 256 MB",
   "empty.examples": "or begin with an example",
   "empty.needsLease": "Only the user in control can open a product. You are watching.",
   "empty.waiting": "Waiting for the server…",

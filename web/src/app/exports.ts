@@ -6,7 +6,7 @@ import { store, studio, ui, viewport } from "./app_state";
 import { t } from "./i18n";
 import { shownSpan, traceOf } from "./time_source";
 
-export const acceptedFiles = ".step,.stp,.iges,.igs,.glb,.gltf,.obj,.stl";
+export const acceptedFiles = ".step,.stp,.iges,.igs,.glb,.gltf,.obj,.stl,.3mf";
 
 export function chooseFile(): void {
   const input = document.createElement("input");
@@ -15,7 +15,7 @@ export function chooseFile(): void {
   input.onchange = () => {
     const file = input.files?.[0];
     if (file !== undefined) {
-      void studio.openUpload(file);
+      void studio.opening.upload(file);
     }
   };
   input.click();

@@ -95,7 +95,7 @@ export function LoadingDrawer() {
       <p class="drawer-row">
         <span>{stageName(now.stage)}</span>
         <span class="figures">{number(percent, 0)} %</span>
-        <button type="button" class="small-button" data-testid="cancel-open" onClick={() => studio.cancelOpening()}>
+        <button type="button" class="small-button" data-testid="cancel-open" onClick={() => studio.opening.cancel()}>
           {t("load.cancel")}
         </button>
       </p>

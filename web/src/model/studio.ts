@@ -9,24 +9,24 @@ import { CollisionCounter } from "./collisions";
 import { addToLog, countLimits, isAlarm, kAlarms, kRunsLength, runOf, tell, type Told } from "./event_log";
 import { withTrouble } from "./hands";
 import { isSameHeld, summarize } from "./held";
+import { ProductOpening } from "./product_opening";
 import { Recordings } from "./recordings";
 import { exchangeToken, readError } from "./session";
 import { leadersOf, makeStore, withLeader } from "./store";
 import { StudyModel } from "./study";
-import { asServerError, uploadFile } from "./upload";
 
 /** An alarm is shown this long at least, and as long as its cause lasts. */
 const kAlarmShownMs = 5000;
 
 export class Studio {
   readonly store = makeStore();
+  readonly opening = new ProductOpening(this.store, this);
   readonly recordings = new Recordings(this.store, this);
   readonly study = new StudyModel(this.store, this, globalThis.navigator?.languages ?? []);
   private connection: Connection | null = null;
   private readonly collisions = new CollisionCounter();
   private noticeId = 0;
   private alarmedAt = 0;
-  private uploading: AbortController | null = null;
 
   /** Exchanges the token, where there is one, and connects. */
   async start(token: string | null): Promise<void> {
@@ -81,32 +81,6 @@ export class Studio {
 
   notify(text: string, isError = false): void {
     this.store.notice.value = { text, isError, id: ++this.noticeId };
-  }
-
-  async openUpload(file: File): Promise<void> {
-    this.uploading = new AbortController();
-    this.store.failure.value = null;
-    try {
-      const upload = await uploadFile(file, this.uploading.signal, (fraction) => {
-        this.store.upload.value = { file: file.name, fraction };
-      });
-      await this.command({ command: "open", upload });
-    } catch (error) {
-      if (!this.uploading.signal.aborted) {
-        this.store.failure.value = asServerError(error, file.name);
-      }
-    } finally {
-      this.store.upload.value = null;
-      this.uploading = null;
-    }
-  }
-
-  cancelOpening(): void {
-    this.uploading?.abort();
-    if (this.store.loading.value !== null) {
-      void this.command({ command: "cancel" });
-      this.store.loading.value = null;
-    }
   }
 
   /** What the frames say of the hands, told to the store when it differs from what is known. */
