@@ -334,7 +334,8 @@ void AddStudio(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
       "studio", "Assemble a product by hand in a browser, with a mouse, headset or haptic device");
   const auto options = std::make_shared<StudioOptions>();
-  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file to open");
+  command->add_option("file", options->load.file,
+                      "STEP, IGES or mesh file, or a folder of meshes, to open");
   command->add_option("--port", options->port, "Port to listen on; default: any free port")
       ->check(CLI::Range(1, 65535));
   CLI::Option* listen = command->add_option("--listen", options->listen,

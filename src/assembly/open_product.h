@@ -29,7 +29,7 @@ namespace hvas::assembly {
 
 /** The file to open, and limits of the work on it. */
 struct OpenOptions {
-  std::filesystem::path file;      ///< STEP, STL, OBJ, glTF or 3MF.
+  std::filesystem::path file;      ///< STEP, IGES, a mesh file or a folder of meshes.
   std::vector<std::string> fits;   ///< "AXIS=FIT", as mates::AssignFit takes them.
   std::vector<std::string> apart;  ///< What is not to be welded (product::KeptApart); "all".
   std::vector<std::string> tools;  ///< CAD files of tools that lie on the table (X16).

@@ -80,6 +80,9 @@ struct HelixSums {
 
   [[nodiscard]] double pitch() const { return bb > 0 ? units::kTurn * std::abs(ab / bb) : 0; }
 
+  /** The parameter h is -ab / bb, positive for a right-handed thread. */
+  [[nodiscard]] bool is_left_handed() const { return ab > 0; }
+
   /** Whether the normals fit the pitch, and would not fit a surface of revolution (a = 0). */
   [[nodiscard]] bool IsHelical() const {
     const double rest = bb > 0 ? aa - ab * ab / bb : aa;
@@ -500,6 +503,17 @@ void MarkThreads(Part* part, double tolerance, RecognitionLimits* limits) {
       MarkByShape(lines, tolerance, part);
       break;
   }
+}
+
+bool IsLeftHanded(const Part& part, const Feature& feature) {
+  Line line{feature.origin_B, Canonical(feature.axis_B), {}};
+  for (std::size_t i = 0; i < part.features.size(); ++i) {
+    if (&part.features[i] == &feature) {
+      line.features.push_back(i);
+    }
+  }
+  const auto helix = FindHelix(part, line);
+  return helix && helix->is_left_handed();
 }
 
 }  // namespace hvas::product

@@ -20,4 +20,8 @@ namespace hvas::product {
  @param limits Gets the limits that were reached. */
 void MarkThreads(Part* part, double tolerance, RecognitionLimits* limits);
 
+/** Whether a screw with the helical faces about the axis of a feature goes in when it is turned
+ counterclockwise; false where there are no such faces. */
+[[nodiscard]] bool IsLeftHanded(const Part& part, const Feature& feature);
+
 }  // namespace hvas::product

@@ -52,7 +52,8 @@ void AddAssemble(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
       "assemble", "Let a simulated person assemble a product part by part, and record the session");
   const auto options = std::make_shared<AssembleOptions>();
-  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file")->required();
+  command->add_option("file", options->load.file, "STEP, IGES or mesh file, or a folder of meshes")
+      ->required();
   command
       ->add_option("--order", options->order,
                    "Parts to assemble first, by name, path or id (o12), separated by commas; the "

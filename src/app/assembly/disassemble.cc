@@ -62,7 +62,8 @@ void AddDisassemble(CLI::App* app, int* status) {
   CLI::App* command =
       app->add_subcommand("disassemble", "Let a simulated person take a product apart");
   const auto options = std::make_shared<DisassembleOptions>();
-  command->add_option("file", options->load.file, "STEP, STL, OBJ, glTF or 3MF file")->required();
+  command->add_option("file", options->load.file, "STEP, IGES or mesh file, or a folder of meshes")
+      ->required();
   command->add_option("--part", options->part,
                       "The part to get out, by name, path or id (o12): the smallest set of parts "
                       "in its way comes first; without it, all parts come off the base");

@@ -15,6 +15,7 @@
 #include "app/output/terminal.h"
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
+#include "app/product/joint_forms.h"
 #include "app/product/product_json.h"
 #include "app/product/relations_report.h"
 #include "base/units.h"
@@ -557,6 +558,7 @@ void PrintText(const Product& product, const Diagnostics& diagnostics, const Sel
   }
   if (selection.Has(Section::kFits)) {
     PrintFits(product, selection, is_all);
+    PrintJointForms(product, selection, is_all);
   }
   if (selection.Has(Section::kTolerances)) {
     PrintTolerances(product, selection, is_all);

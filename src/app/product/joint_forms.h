@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/product/selection.h"
+#include "product/product.h"
+
+/** Joints of several features in `hvas inspect`: threads and prismatic fits (section `fits`). */
+namespace hvas::app {
+
+/** Adds "threads" and "prismatic_fits". */
+void AddJointForms(const product::Product& product, const Selection& selection,
+                   nlohmann::ordered_json* json);
+
+/** Prints both for people, as far as there are any. */
+void PrintJointForms(const product::Product& product, const Selection& selection, bool is_all);
+
+}  // namespace hvas::app

@@ -1,0 +1,106 @@
+#include "fits/threads.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace hvas::fits {
+namespace {
+
+TEST(Threads, DiametersAndAreasAreThoseOfTheTables) {
+  // d2, D1, d3 [mm], A_s [mm^2]: DIN 13-1 and ISO 898-1.
+  const struct {
+    double d, pitch, d2, minor, core, area;
+  } rows[] = {{3e-3, 0, 2.675, 2.459, 2.387, 5.03},    {6e-3, 0, 5.350, 4.917, 4.773, 20.1},
+              {8e-3, 0, 7.188, 6.647, 6.466, 36.6},    {8e-3, 1e-3, 7.350, 6.917, 6.773, 39.2},
+              {12e-3, 0, 10.863, 10.106, 9.853, 84.3}, {16e-3, 0, 14.701, 13.835, 13.546, 157},
+              {24e-3, 0, 22.051, 20.752, 20.319, 353}};
+
+  for (const auto& row : rows) {
+    const Thread* thread = FindThread(row.d, row.pitch);
+    ASSERT_NE(thread, nullptr) << row.d;
+    EXPECT_NEAR(1e3 * thread->pitch_diameter(), row.d2, 1e-3);
+    EXPECT_NEAR(1e3 * thread->minor_diameter(), row.minor, 1e-3);
+    EXPECT_NEAR(1e3 * thread->core_diameter(), row.core, 1e-3);
+    EXPECT_NEAR(1e6 * thread->stress_area() / row.area, 1, 5e-3);
+  }
+}
+
+TEST(Threads, AreNamedOnceAndDrilledBetweenCoreAndPitchDiameter) {
+  std::set<std::string> names;
+  for (const Thread& thread : ListThreads()) {
+    EXPECT_TRUE(names.insert(thread.designation).second) << thread.designation;
+    EXPECT_GT(thread.tap_drill, thread.core_diameter()) << thread.designation;
+    EXPECT_LT(thread.tap_drill, thread.pitch_diameter() + 0.15 * thread.pitch)
+        << thread.designation;
+    if (thread.clearance_fine > 0) {
+      EXPECT_LT(thread.diameter, thread.clearance_fine) << thread.designation;
+      EXPECT_LT(thread.clearance_fine, thread.clearance_medium) << thread.designation;
+      EXPECT_LT(thread.clearance_medium, thread.clearance_coarse) << thread.designation;
+    }
+  }
+}
+
+TEST(Threads, AreFoundByDiameterAndPitch) {
+  EXPECT_EQ(FindThread(3e-3, 0)->designation, "M3");
+  EXPECT_EQ(FindThread(2.98e-3, 0.5e-3)->designation, "M3");
+  EXPECT_EQ(FindThread(8e-3, 1e-3)->designation, "M8x1");
+  EXPECT_EQ(FindThread(8e-3, 1.2e-3)->designation, "M8");
+  EXPECT_EQ(FindThread(6.35e-3, 0)->designation, "1/4-20 UNC");
+  EXPECT_EQ(FindThread(6.35e-3, 0.9e-3)->designation, "1/4-28 UNF");
+  EXPECT_EQ(FindThread(4.6e-3, 0), nullptr);
+  EXPECT_EQ(FindThread(0.3, 0), nullptr);
+}
+
+TEST(Threads, HolesOfAScrewAreToldByTheirDiameter) {
+  const Thread& m3 = *FindThread(3e-3, 0);
+  EXPECT_EQ(ClassifyThreadHole(m3, 2.0e-3), ThreadHole::kUndersized);
+  EXPECT_EQ(ClassifyThreadHole(m3, 2.387e-3), ThreadHole::kCore);
+  EXPECT_EQ(ClassifyThreadHole(m3, 2.5e-3), ThreadHole::kCore);
+  EXPECT_EQ(ClassifyThreadHole(m3, 2.9e-3), ThreadHole::kNominal);
+  EXPECT_EQ(ClassifyThreadHole(m3, 3.0e-3), ThreadHole::kNominal);
+  EXPECT_EQ(ClassifyThreadHole(m3, 3.2e-3), ThreadHole::kClearance);
+  EXPECT_EQ(ClassifyThreadHole(m3, 3.6e-3), ThreadHole::kClearance);
+  EXPECT_EQ(ClassifyThreadHole(m3, 5.0e-3), ThreadHole::kWide);
+}
+
+TEST(Threads, PreloadIsThatOfVdi2230) {
+  // Published tables by VDI 2230 for property class 8.8, fine threads [kN].
+  const struct {
+    double d, pitch, friction, preload;
+  } rows[] = {{8e-3, 1e-3, 0.10, 20.7},     {8e-3, 1e-3, 0.12, 20.2},
+              {8e-3, 1e-3, 0.14, 19.7},     {10e-3, 1.25e-3, 0.12, 31.6},
+              {12e-3, 1.25e-3, 0.12, 48.0}, {14e-3, 1.5e-3, 0.12, 64.8},
+              {16e-3, 1.5e-3, 0.14, 85.5}};
+
+  for (const auto& row : rows) {
+    const Tightening t =
+        CalcTightening(*FindThread(row.d, row.pitch), 640e6, row.friction, row.friction, row.d);
+    EXPECT_NEAR(1e-3 * t.preload / row.preload, 1, 0.01) << row.d << " " << row.friction;
+  }
+}
+
+TEST(Threads, TighteningTorqueIsThatOfVdi2230) {
+  // Table A1 of VDI 2230-1 for shanks of property class 8.8 with coarse threads, 0.12 in the thread
+  // and under a hexagonal head (ISO 4014: D_K from the washer face and the medium hole) [N m].
+  const struct {
+    double d, yield, head, torque;
+  } rows[] = {{6e-3, 640e6, 7.75e-3, 10.1},
+              {8e-3, 640e6, 10.3e-3, 24.6},
+              {10e-3, 640e6, 12.8e-3, 48},
+              {12e-3, 640e6, 15.1e-3, 84},
+              {16e-3, 640e6, 20.0e-3, 206}};
+
+  for (const auto& row : rows) {
+    const Tightening t = CalcTightening(*FindThread(row.d, 0), row.yield, 0.12, 0.12, row.head);
+    EXPECT_NEAR(t.torque / row.torque, 1, 0.02) << row.d;
+  }
+  // Without friction all of the torque is in the pitch: work of a turn is force times pitch, 0.16
+  // standing for 1 / (2 pi).
+  const Thread& m8 = *FindThread(8e-3, 0);
+  const Tightening smooth = CalcTightening(m8, 640e6, 0, 0, 10e-3);
+  EXPECT_NEAR(smooth.torque * 2 * 3.14159265 / (smooth.preload * m8.pitch), 1, 0.01);
+}
+
+}  // namespace
+}  // namespace hvas::fits

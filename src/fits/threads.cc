@@ -1,0 +1,122 @@
+#include "fits/threads.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+
+namespace hvas::fits {
+namespace {
+
+struct MetricThread {
+  double diameter_mm, pitch_mm, tap_drill_mm, fine_mm, medium_mm, coarse_mm;
+};
+
+struct FineThread {
+  double diameter_mm, pitch_mm;
+};
+
+struct InchThread {
+  const char* designation;
+  double diameter_mm;
+  int threads_per_inch;
+  double tap_drill_mm, fine_mm, medium_mm, coarse_mm;
+};
+
+#include "fits/thread_tables.inc"
+
+std::vector<Thread> MakeThreads() {
+  using units::FromMm;
+  std::vector<Thread> threads;
+  for (const MetricThread& row : kCoarseThreads) {
+    threads.push_back({fmt::format("M{:g}", row.diameter_mm), FromMm(row.diameter_mm),
+                       FromMm(row.pitch_mm), FromMm(row.tap_drill_mm), FromMm(row.fine_mm),
+                       FromMm(row.medium_mm), FromMm(row.coarse_mm)});
+  }
+  for (const FineThread& row : kFineThreads) {
+    const auto coarse =
+        std::find_if(std::begin(kCoarseThreads), std::end(kCoarseThreads),
+                     [&row](const MetricThread& c) { return c.diameter_mm == row.diameter_mm; });
+    threads.push_back({fmt::format("M{:g}x{:g}", row.diameter_mm, row.pitch_mm),
+                       FromMm(row.diameter_mm), FromMm(row.pitch_mm),
+                       FromMm(row.diameter_mm - row.pitch_mm), FromMm(coarse->fine_mm),
+                       FromMm(coarse->medium_mm), FromMm(coarse->coarse_mm)});
+  }
+  for (const InchThread& row : kInchThreads) {
+    threads.push_back({row.designation, FromMm(row.diameter_mm),
+                       units::kMetresPerInch / row.threads_per_inch, FromMm(row.tap_drill_mm),
+                       FromMm(row.fine_mm), FromMm(row.medium_mm), FromMm(row.coarse_mm)});
+  }
+  return threads;
+}
+
+}  // namespace
+
+double Thread::stress_area() const {
+  const double mean = 0.5 * (pitch_diameter() + core_diameter());
+  return 0.25 * std::numbers::pi * mean * mean;
+}
+
+std::span<const Thread> ListThreads() {
+  static const std::vector<Thread> threads = MakeThreads();
+  return threads;
+}
+
+const Thread* FindThread(double diameter, double pitch) {
+  constexpr double kNear = 0.02;  // Of the diameter: screws are drawn below it by their tolerance.
+  const Thread* best = nullptr;
+  double least = 0;
+  for (const Thread& thread : ListThreads()) {
+    const double off = std::abs(diameter - thread.diameter) / thread.diameter;
+    if (off > kNear) {
+      continue;
+    }
+    // Of the same size the coarse one comes first in the list, and stays where no pitch is known.
+    const double score = pitch > 0 ? std::abs(pitch - thread.pitch) / thread.pitch + off : off;
+    if (best == nullptr || score < least - 1e-9) {
+      best = &thread;
+      least = score;
+    }
+  }
+  return best;
+}
+
+ThreadHole ClassifyThreadHole(const Thread& thread, double hole) {
+  constexpr double kRounding = 1e-5;  // Of a drawn diameter, where it is written in hundredths [m].
+  constexpr double kWidest = 1.05;    // Of the coarse series: somebody's own round figure.
+  const double drilled = std::max(thread.tap_drill, thread.minor_diameter());
+  const double widest =
+      thread.clearance_coarse > 0 ? thread.clearance_coarse : 1.2 * thread.diameter;
+  if (hole < thread.core_diameter() - kRounding) {
+    return ThreadHole::kUndersized;
+  }
+  if (hole <= drilled + kRounding) {
+    return ThreadHole::kCore;
+  }
+  if (hole <= thread.diameter + kRounding) {
+    return ThreadHole::kNominal;
+  }
+  return hole <= kWidest * widest ? ThreadHole::kClearance : ThreadHole::kWide;
+}
+
+Tightening CalcTightening(const Thread& thread, double yield_stress, double mu_thread,
+                          double mu_head, double head_diameter) {
+  constexpr double kUse = 0.9;           // Of the yield point: nu of VDI 2230-1.
+  constexpr double kFlankAngle = 1.155;  // 1 / cos 30 deg: the flanks of a profile of 60 deg.
+  const double d2 = thread.pitch_diameter();
+  const double d0 = 0.5 * (d2 + thread.core_diameter());
+  const double twist =
+      1.5 * (d2 / d0) * (thread.pitch / (std::numbers::pi * d2) + kFlankAngle * mu_thread);
+  Tightening tightening;
+  tightening.preload =
+      kUse * yield_stress * thread.stress_area() / std::sqrt(1 + 3 * twist * twist);
+  tightening.torque = tightening.preload *
+                      (0.16 * thread.pitch + 0.58 * d2 * mu_thread + 0.5 * head_diameter * mu_head);
+  return tightening;
+}
+
+}  // namespace hvas::fits

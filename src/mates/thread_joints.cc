@@ -1,0 +1,124 @@
+#include "mates/thread_joints.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <string_view>
+
+#include "product/fastener_name.h"
+#include "product/threads.h"
+
+namespace hvas::mates {
+namespace {
+
+using product::Feature;
+using product::Mate;
+using product::Part;
+using product::ThreadKind;
+
+// Property class 8.8 of ISO 898-1 up to M16: R_p0.2 [Pa]; a usual friction of lightly oiled steel.
+constexpr double kYieldStress = 640e6;
+constexpr double kFriction = 0.12;
+// Mean diameter of the contact under a head, of the screw's diameter: 1.27 to 1.30 for ISO 4014 and
+// ISO 4762 with a medium hole.
+constexpr double kHeadContact = 1.28;
+
+std::string ToLower(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(c < 0x80 ? std::tolower(c) : c); });
+  return lower;
+}
+
+template <std::size_t kCount>
+bool HasOneOf(std::string_view text, const std::array<std::string_view, kCount>& words) {
+  const std::string lower = ToLower(text);
+  return std::any_of(words.begin(), words.end(), [&lower](std::string_view word) {
+    return lower.find(word) != std::string::npos;
+  });
+}
+
+bool IsSelfTappingByName(std::string_view name) {
+  // ISO 1479 to 1483, 7049 to 7051 and their DIN predecessors are tapping screws.
+  static constexpr std::array<std::string_view, 14> kWords{
+      "self-tapping", "self tapping", "selftapping",  "tapping screw", "wood screw",
+      "woodscrew",    "plastite",     "blechschraub", "din 7981",      "din7981",
+      "din 7982",     "din7982",      "iso 7049",     "iso7049"};
+  return HasOneOf(name, kWords);
+}
+
+bool IsPlastic(const product::Material& material) {
+  static constexpr std::array<std::string_view, 14> kWords{
+      "plastic", "abs", "pla", "petg",         "nylon", "polyamid", "pa6",
+      "pa12",    "pom", "pvc", "polycarbonat", "peek",  "hdpe",     "polypropyl"};
+  return !material.name.empty() && HasOneOf(material.name, kWords) && material.density < 2000;
+}
+
+const fits::Thread* FindStandard(const Part& hub, const Part& screw, const Mate& mate,
+                                 double pitch) {
+  for (const Part* part : {&screw, &hub}) {
+    if (const auto size = product::ParseThreadSize(part->name)) {
+      if (const fits::Thread* thread = fits::FindThread(size->diameter, size->pitch)) {
+        return thread;
+      }
+    }
+  }
+  const fits::Thread* thread = fits::FindThread(2 * mate.shaft_radius, pitch);
+  return thread != nullptr ? thread : fits::FindThread(2 * mate.hole_radius, pitch);
+}
+
+ThreadJoint MakeJoint(const product::Product& product, const Mate& mate) {
+  const Part& hub = product.part_of(mate.a.occurrence);
+  const Part& screw = product.part_of(mate.b.occurrence);
+  const Feature& hole = hub.features[mate.a.feature.index()];
+  const Feature& shaft = screw.features[mate.b.feature.index()];
+  const Feature& drawn = shaft.thread == ThreadKind::kModelled ? shaft : hole;
+  ThreadJoint joint;
+  joint.mate = mate.id;
+  joint.engaged = mate.overlap;
+  joint.is_modelled = drawn.thread == ThreadKind::kModelled;
+  if (joint.is_modelled) {
+    const Part& part = &drawn == &shaft ? screw : hub;
+    joint.is_left_handed = product::IsLeftHanded(part, drawn);
+  }
+  joint.pitch = joint.is_modelled ? drawn.thread_pitch : 0;
+  const double known_pitch =
+      joint.is_modelled ? drawn.thread_pitch : std::max(shaft.thread_pitch, hole.thread_pitch);
+  joint.thread = FindStandard(hub, screw, mate, known_pitch);
+  joint.diameter = 2 * mate.shaft_radius;
+  const bool is_bought_nut = product::ClassifyName(hub.name) == product::FastenerKind::kNut;
+  if (IsSelfTappingByName(screw.name) ||
+      (IsPlastic(hub.material) && !is_bought_nut && hole.thread == ThreadKind::kNone)) {
+    joint.kind = ThreadJointKind::kSelfTapping;
+  }
+  if (joint.thread != nullptr) {
+    joint.diameter = joint.thread->diameter;
+    joint.pitch = joint.is_modelled ? joint.pitch : joint.thread->pitch;
+    joint.hole = fits::ClassifyThreadHole(*joint.thread, 2 * mate.hole_radius);
+    if (joint.kind == ThreadJointKind::kThreaded) {
+      joint.tightening = fits::CalcTightening(*joint.thread, kYieldStress, kFriction, kFriction,
+                                              kHeadContact * joint.diameter);
+    }
+  }
+  joint.turns = joint.pitch > 0 ? joint.engaged / joint.pitch : 0;
+  return joint;
+}
+
+}  // namespace
+
+std::vector<ThreadJoint> FindThreadJoints(const product::Product& product) {
+  std::vector<ThreadJoint> joints;
+  for (const Mate& mate : product.mates) {
+    if (mate.fit && mate.fit->kind == product::FitKind::kThread) {
+      joints.push_back(MakeJoint(product, mate));
+    }
+  }
+  return joints;
+}
+
+const char* ToString(ThreadJointKind kind) {
+  return kind == ThreadJointKind::kThreaded ? "threaded" : "self_tapping";
+}
+
+}  // namespace hvas::mates
