@@ -20,6 +20,7 @@
 #include "mates/pair_search.h"
 #include "mates/propose_fit.h"
 #include "mates/surface_pairs.h"
+#include "mates/unit_doubt.h"
 #include "product/same_place.h"
 
 namespace hvas::mates {
@@ -343,6 +344,7 @@ Result<void> Infer(Product* product, Diagnostics* diagnostics, WorkWatch* watch,
     return Unexpected(watch->Explain("finding the mates", product->source));
   }
   ReportOddities(*product, oddities, inference.original_of(), diagnostics);
+  ReportDoubtfulUnit(*product, diagnostics);
   return {};
 }
 

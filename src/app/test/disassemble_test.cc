@@ -62,7 +62,7 @@ void ExpectIsTakenApart(const std::string& product, std::size_t parts, const std
 }
 
 TEST(DisassembleTest, X16BushingIsTakenApart) {
-  ExpectIsTakenApart("bushing", 2, "housing");
+  ExpectIsTakenApart("bushing", 2, "chuck");
 }
 
 // Of the label `release`, as app_disassembly_test.
