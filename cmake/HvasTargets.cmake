@@ -29,6 +29,7 @@ if(HVAS_PRECOMPILED)
   foreach(users texts tests)
     target_compile_options(hvas_precompiled_${users} PRIVATE ${HVAS_LIGHT_OPTIMISATION})
   endforeach()
+  target_precompile_headers(hvas_precompiled_texts PRIVATE <CLI/CLI.hpp>)
   target_compile_options(hvas_precompiled_runs PRIVATE -O0)
 endif()
 
@@ -75,7 +76,7 @@ endfunction()
 # hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s] [COST s] [RUNS]): one GoogleTest program, one
 # ctest entry. Those of the highest cost begin first, so that no long one is left to run alone. Unit tests are fast and need no other room's data; label slower ones
 # `e2e`, or `numeric` where they only compare figures, so that the sanitizer runs can leave them out. A test with RUNS only
-# starts programs, which do the work: it is not optimised.
+# starts programs or calls rooms, which do the work: it is not optimised.
 function(hvas_test name)
   cmake_parse_arguments(ARG "RUNS" "TIMEOUT;COST" "SOURCES;DEPS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

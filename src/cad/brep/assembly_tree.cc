@@ -43,6 +43,7 @@
 #include "cad/scene/placed_parts.h"
 #include "cad/scene/product_tree.h"
 #include "cad/step/material.h"
+#include "product/body_names.h"
 #include "product/features.h"
 
 namespace hvas::cad {
@@ -553,6 +554,7 @@ Result<void> TreeBuilder::Build() {
   if (product_->occurrences.size() > options_.max_parts) {
     return FailTooManyParts(options_.max_parts, product_->source);
   }
+  product::NameSoleBodies(product_);
   BuildParts();
   if (product_->occurrences.empty()) {
     return Fail(ErrorCode::kUnreadable, "the file has no solid part", product_->source,
