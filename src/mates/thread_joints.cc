@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <string_view>
 
+#include "product/ascii.h"
 #include "product/fastener_name.h"
 #include "product/threads.h"
 
@@ -24,16 +24,9 @@ constexpr double kFriction = 0.12;
 // ISO 4762 with a medium hole.
 constexpr double kHeadContact = 1.28;
 
-std::string ToLower(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(c < 0x80 ? std::tolower(c) : c); });
-  return lower;
-}
-
 template <std::size_t kCount>
 bool HasOneOf(std::string_view text, const std::array<std::string_view, kCount>& words) {
-  const std::string lower = ToLower(text);
+  const std::string lower = product::ToLower(text);
   return std::any_of(words.begin(), words.end(), [&lower](std::string_view word) {
     return lower.find(word) != std::string::npos;
   });

@@ -84,7 +84,7 @@ Json ToJson(const PrismaticFit& fit) {
           {"reason", fit.fit.reason}};
 }
 
-/** What most threads are not. */
+/** Hand and kind of a joint where they are unusual; else empty. */
 std::string DescribeOdd(const ThreadJoint& joint) {
   std::string text = joint.is_left_handed ? "left-handed" : "";
   if (joint.kind == ThreadJointKind::kSelfTapping) {
