@@ -13,6 +13,7 @@ as roots below. Needs functions that were not stripped of relocations, hence obj
 """
 
 import collections
+import multiprocessing
 import pathlib
 import re
 import subprocess
@@ -142,9 +143,10 @@ def read_calls(path):
 
 def check_reachable(objects):
     calls = collections.defaultdict(set)
-    for path in objects.values():
-        for function, targets in read_calls(path).items():
-            calls[function] |= targets
+    with multiprocessing.Pool() as pool:
+        for read in pool.imap(read_calls, objects.values()):
+            for function, targets in read.items():
+                calls[function] |= targets
     plain = demangle({n.split("@/")[0] for f, ts in calls.items() for n in (f, *ts)})
 
     def pretty(name):

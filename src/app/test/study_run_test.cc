@@ -24,7 +24,10 @@ class StudyRunTest : public ::testing::Test {
   hvas::testing::TemporaryFolder scratch_;
 };
 
-TEST_F(StudyRunTest, XiaFindsWhatThePaperFound) {
+// Of the label `release`, as app_study_xia_test.
+using StudyRunReleaseTest = StudyRunTest;
+
+TEST_F(StudyRunReleaseTest, XiaFindsWhatThePaperFound) {
   const auto json = RunHvasJson({"study", "run", "xia-2011", "--simulated", "2", "--records",
                                  "none", "-o", Folder("xia"), "--json"});
   EXPECT_EQ(Validate(ReadSchema("study_summary"), json), std::vector<std::string>{});
