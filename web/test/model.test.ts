@@ -187,6 +187,21 @@ describe("the session", () => {
     return studio;
   }
 
+  it("keeps what it is told while the scene is on its way, which may be older", async () => {
+    let answer: (value: unknown) => void = () => {};
+    const onTheWay = new Promise((resolve) => (answer = resolve));
+    vi.stubGlobal("fetch", (path: string) => (path === "/api/scene" ? onTheWay : Promise.resolve({ ok: true, status: 200, json: async () => ({}) })));
+    const studio = new Studio();
+    await studio.start("token");
+    FakeWorker.last.say({ event: "hello", version: 1, role: "operator", client: "c5", has_lease: true, examples: [], forces_off: false, has_scene: true });
+    FakeWorker.last.say({ event: "placement", occurrence: 1, placement: "placed" });
+    FakeWorker.last.say({ event: "step", index: 1, total: 2 });
+    answer({ ok: true, status: 200, json: async () => structuredClone(scene) });
+    await vi.waitFor(() => expect(studio.store.scene.value).not.toBeNull());
+    expect(studio.store.placements.value.get(1)).toBe("placed");
+    expect(studio.store.step.value).toEqual({ index: 1, total: 2 });
+  });
+
   it("mirrors what the server says", async () => {
     const { store } = await start();
     expect(store.expected.value?.occurrence).toBe(1);

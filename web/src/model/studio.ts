@@ -25,6 +25,9 @@ export class Studio {
   readonly study = new StudyModel(this.store, this, globalThis.navigator?.languages ?? []);
   private connection: Connection | null = null;
   private readonly collisions = new CollisionCounter();
+  /** What was told of the assembly while its scene was on its way: the scene may be older than that. */
+  private toldSince: ServerEvent[] = [];
+  private scenesOnTheWay = 0;
   private noticeId = 0;
   private alarmedAt = 0;
 
@@ -127,6 +130,16 @@ export class Studio {
   }
 
   private async fetchScene(): Promise<void> {
+    this.scenesOnTheWay += 1;
+    try {
+      await this.readScene();
+    } finally {
+      this.scenesOnTheWay -= 1;
+      this.toldSince = this.scenesOnTheWay > 0 ? this.toldSince : [];
+    }
+  }
+
+  private async readScene(): Promise<void> {
     const answer = await fetch("/api/scene");
     if (answer.status === 404) {
       this.store.live.scene.value = null;
@@ -143,6 +156,7 @@ export class Studio {
       live.leaders.value = leadersOf(scene);
       live.step.value = { index: scene.next_step, total: scene.steps.length };
       live.scene.value = scene;
+      this.toldSince.filter(isOfPlaces).forEach((event) => this.applyAssembly(event));
       this.store.loading.value = null;
       this.store.failure.value = null;
     });
@@ -159,6 +173,10 @@ export class Studio {
     this.store.live.scene.peek()?.occurrences.find((o) => o.id === occurrence)?.name ?? `${occurrence}`;
 
   private onEvent(event: ServerEvent): void {
+    if (this.scenesOnTheWay > 0) {
+      // Another product has other parts: what was told before concerns none of them.
+      this.toldSince = event.event === "scene" ? [] : [...this.toldSince, event];
+    }
     batch(() => this.apply(event));
   }
 
@@ -290,4 +308,8 @@ export class Studio {
         break;
     }
   }
+}
+
+function isOfPlaces(event: ServerEvent): boolean {
+  return event.event === "placement" || event.event === "step";
 }
