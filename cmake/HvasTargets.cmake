@@ -1,11 +1,17 @@
-# Code that reads and writes texts, and that of tests, which call the rooms, takes a quarter less time to compile at -O1 than
-# at -O2, and is not what takes time when it runs.
-set(HVAS_LIGHT_OPTIMISATION)
+# How the sources of a target are compiled, by what they are: `rooms`; `texts`, code that reads and writes texts; `tests`, which
+# call the rooms; `runs`, tests that only start programs or call rooms that do the work. Texts and tests take a quarter less
+# time to compile at -O1 than at -O2, and are not what takes time when they run.
+set(HVAS_KINDS rooms texts tests runs)
+set(HVAS_OPTIONS_rooms)
+set(HVAS_OPTIONS_texts)
 if(CMAKE_BUILD_TYPE STREQUAL RelWithDebInfo)
-  set(HVAS_LIGHT_OPTIMISATION -O1)
+  set(HVAS_OPTIONS_texts -O1)
 endif()
-# What most sources include of others' headers, compiled once for rooms, for rooms of texts and for tests. A source must not
-# rely on it: the preset `clang` compiles each source by itself without it.
+set(HVAS_OPTIONS_tests ${HVAS_OPTIONS_texts})
+set(HVAS_OPTIONS_runs -O0)
+
+# What most sources include of others' headers, compiled once for each kind. A source must not rely on it: the preset `clang`
+# compiles each source by itself without it.
 option(HVAS_PRECOMPILED "Compile the headers of libraries once" OFF)
 if(HVAS_PRECOMPILED)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cc CONTENT "int main() {}\n")
@@ -13,30 +19,29 @@ if(HVAS_PRECOMPILED)
       <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <numbers>
       <numeric> <optional> <set> <span> <sstream> <string> <string_view> <thread> <unordered_map> <utility> <vector>
       <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <nlohmann/json.hpp> <tl/expected.hpp>)
-  # A library and programs, because their code is not placed alike (-fPIC, -fPIE); `runs` is not optimised.
-  add_library(hvas_precompiled_rooms OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
-  add_library(hvas_precompiled_texts OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
-  add_executable(hvas_precompiled_tests EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
-  add_executable(hvas_precompiled_runs EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
-  foreach(users rooms texts tests runs)
-    target_link_libraries(hvas_precompiled_${users} PRIVATE hvas_settings Eigen3::Eigen fmt::fmt)
-    target_precompile_headers(hvas_precompiled_${users} PRIVATE ${HVAS_PRECOMPILED_HEADERS})
+  # Libraries and programs, because their code is not placed alike (-fPIC, -fPIE).
+  foreach(kind rooms texts)
+    add_library(hvas_precompiled_${kind} OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
   endforeach()
-  foreach(users tests runs)
-    target_link_libraries(hvas_precompiled_${users} PRIVATE GTest::gtest)
-    target_precompile_headers(hvas_precompiled_${users} PRIVATE <gtest/gtest.h>)
+  foreach(kind tests runs)
+    add_executable(hvas_precompiled_${kind} EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cc)
+    target_link_libraries(hvas_precompiled_${kind} PRIVATE GTest::gtest)
   endforeach()
-  foreach(users texts tests)
-    target_compile_options(hvas_precompiled_${users} PRIVATE ${HVAS_LIGHT_OPTIMISATION})
+  foreach(kind ${HVAS_KINDS})
+    target_link_libraries(hvas_precompiled_${kind} PRIVATE hvas_settings Eigen3::Eigen fmt::fmt)
+    target_compile_options(hvas_precompiled_${kind} PRIVATE ${HVAS_OPTIONS_${kind}})
+    target_precompile_headers(hvas_precompiled_${kind} PRIVATE ${HVAS_PRECOMPILED_HEADERS})
   endforeach()
   target_precompile_headers(hvas_precompiled_texts PRIVATE <CLI/CLI.hpp>)
-  target_compile_options(hvas_precompiled_runs PRIVATE -O0)
+  target_precompile_headers(hvas_precompiled_tests PRIVATE <gtest/gtest.h>)
+  target_precompile_headers(hvas_precompiled_runs PRIVATE <gtest/gtest.h>)
 endif()
 
-# hvas_precompiled(<target> rooms|texts|tests|runs): what a target takes its precompiled headers from.
-function(hvas_precompiled target users)
+# hvas_compile_as(<target> rooms|texts|tests|runs): the optimisation and the precompiled headers of this kind.
+function(hvas_compile_as target kind)
+  target_compile_options(${target} PRIVATE ${HVAS_OPTIONS_${kind}})
   if(HVAS_PRECOMPILED)
-    target_precompile_headers(${target} REUSE_FROM hvas_precompiled_${users})
+    target_precompile_headers(${target} REUSE_FROM hvas_precompiled_${kind})
   endif()
 endfunction()
 
@@ -48,10 +53,9 @@ function(hvas_library name)
   add_library(hvas::${name} ALIAS hvas_${name})
   target_link_libraries(hvas_${name} PUBLIC hvas_settings ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
   if(ARG_TEXTS)
-    target_compile_options(hvas_${name} PRIVATE ${HVAS_LIGHT_OPTIMISATION})
-    hvas_precompiled(hvas_${name} texts)
+    hvas_compile_as(hvas_${name} texts)
   else()
-    hvas_precompiled(hvas_${name} rooms)
+    hvas_compile_as(hvas_${name} rooms)
   endif()
 endfunction()
 
@@ -83,11 +87,9 @@ function(hvas_test name)
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE HVAS_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   if(ARG_RUNS AND NOT HVAS_SANITIZE)
-    target_compile_options(${name} PRIVATE -O0)
-    hvas_precompiled(${name} runs)
+    hvas_compile_as(${name} runs)
   else()
-    target_compile_options(${name} PRIVATE ${HVAS_LIGHT_OPTIMISATION})
-    hvas_precompiled(${name} tests)
+    hvas_compile_as(${name} tests)
   endif()
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)

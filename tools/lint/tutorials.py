@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Runs the commands of the tutorials, and compares what they print with what the pages show.
+"""Runs the commands of the README and the tutorials, and compares what they print with what the pages show.
 
-    tutorials.py HVAS [PAGE...]       PAGE: as docs/tutorials/headless.md; all of docs/tutorials/ without
+    tutorials.py HVAS [PAGE...]       PAGE: as docs/tutorials/headless.md; without, README.md and all of docs/tutorials/
     tutorials.py HVAS --update [...]  writes what the commands print into the pages; parts that "..." stands for stay out
 
 A block that begins with ```console is run: lines that begin with "$ " are commands (also over several lines, with a
@@ -224,9 +224,7 @@ def main():
     parser.add_argument("pages", nargs="*", type=pathlib.Path)
     parser.add_argument("--update", action="store_true")
     given = parser.parse_intermixed_args()
-    pages = given.pages or sorted((ROOT / "docs/tutorials").glob("*.md"))
-    if not pages:
-        sys.exit("there are no tutorials")
+    pages = given.pages or [ROOT / "README.md", *sorted((ROOT / "docs/tutorials").glob("*.md"))]
     faults = []
     for page in pages:
         began = time.monotonic()

@@ -260,8 +260,8 @@ Feel Classify(const Insertion& insertion) {
   return flat > kLeastPlateaus * all ? Feel::kStairs : Feel::kSlope;
 }
 
-// W6, W10, W12: each seed draws its pair; all runs of seeds 1 to this one feel as their kind of
-// fit.
+// W6, W10, W12: each seed draws its pair; all runs of the seeds 1 to `last_seed` feel as their kind
+// of fit.
 void ExpectThreeKindsOfCurve(int last_seed) {
   const TemporaryFolder folder;
   const auto file = folder / "session";
@@ -279,7 +279,6 @@ TEST(FitForceTest, W6ThreeKindsOfFitAreThreeKindsOfCurve) {
   ExpectThreeKindsOfCurve(2);
 }
 
-// Of the label `release`, as app_bushing_seeds_test.
 TEST(FitForceReleaseTest, W6ThreeKindsOfFitAreThreeKindsOfCurveForTwentySeeds) {
   ExpectThreeKindsOfCurve(20);
 }

@@ -65,7 +65,6 @@ TEST(DisassembleTest, X16BushingIsTakenApart) {
   ExpectIsTakenApart("bushing", 2, "chuck");
 }
 
-// Of the label `release`, as app_disassembly_test.
 TEST(DisassembleReleaseTest, X16GearPumpIsTakenApartAndEachPartFollowsThoseItWaitedFor) {
   ExpectIsTakenApart("gear_pump", 37, "housing");
 }

@@ -24,7 +24,6 @@ class StudyRunTest : public ::testing::Test {
   hvas::testing::TemporaryFolder scratch_;
 };
 
-// Of the label `release`, as app_study_xia_test.
 using StudyRunReleaseTest = StudyRunTest;
 
 TEST_F(StudyRunReleaseTest, XiaFindsWhatThePaperFound) {
