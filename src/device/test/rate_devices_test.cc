@@ -37,8 +37,9 @@ TEST(RateControlTest, SmallDeflectionsDoNothingAndFullOnesMoveAtFullSpeed) {
 
 TEST(RateControlTest, SpeedGrowsWithTheDeflectionAndKeepsItsDirection) {
   double before = 0;
-  for (double norm = RateControl::kDeadZone; norm <= 1; norm += 0.01) {
-    const double share = RateControl::Response(norm);
+  for (int step = 0; step <= 100; ++step) {
+    const double share =
+        RateControl::Response(RateControl::kDeadZone + (1 - RateControl::kDeadZone) * step / 100);
     EXPECT_GE(share, before);
     before = share;
   }
