@@ -32,6 +32,13 @@ const PlacedAxisHit* ChooseTightest(const std::vector<const PlacedAxisHit*>& gro
   return best;
 }
 
+/** Length that two engagements on one axis share along it [m]; negative: the gap between them. */
+double CalcSharedLength(const PlacedAxisHit& a, const PlacedAxisHit& b) {
+  const double first = a.axis_W.dot(b.CalcPoint(b.low) - a.origin_W);
+  const double last = a.axis_W.dot(b.CalcPoint(b.high) - a.origin_W);
+  return std::min(a.high, std::max(first, last)) - std::max(a.low, std::min(first, last));
+}
+
 }  // namespace
 
 AxisRules::AxisRules(const InferenceLimits& limits, const std::vector<PlacedAxisHit>& hits,
@@ -116,7 +123,20 @@ std::vector<const PlacedAxisHit*> AxisRules::ChooseWorking(std::size_t begin,
   std::vector<const PlacedAxisHit*> chosen;
   chosen.reserve(groups.size());
   for (const auto& group : groups) {
+    const std::size_t first = chosen.size();
     chosen.push_back(ChooseTightest(group));
+    // A pin passes several bores of one part, one behind the other: the knuckles of a hinge, the
+    // ears of a clevis.
+    for (const PlacedAxisHit* hit : group) {
+      const bool is_alike =
+          std::abs(hit->play() - chosen[first]->play()) < limits_.axis_distance * hit->scale;
+      if (is_alike && std::none_of(chosen.begin() + static_cast<std::ptrdiff_t>(first),
+                                   chosen.end(), [&](const PlacedAxisHit* other) {
+                                     return CalcSharedLength(*other, *hit) > 0;
+                                   })) {
+        chosen.push_back(hit);
+      }
+    }
   }
   return chosen;
 }

@@ -46,9 +46,10 @@ class AxisRules {
   AxisRules(const InferenceLimits& limits, const std::vector<PlacedAxisHit>& hits,
             WorkWatch* watch = nullptr);
 
-  /** Keeps of the hits [begin, end), which belong to one pair of parts, the working one of each
+  /** Keeps of the hits [begin, end), which belong to one pair of parts, the working ones of each
    axis: none where a third part (a bushing) lies between, nor for a wide passage around a shaft
-   that another part guides; the tightest of the long engagements. */
+   that another part guides; the tightest of the long engagements, and those as tight as it that lie
+   before or behind it. */
   [[nodiscard]] std::vector<const PlacedAxisHit*> ChooseWorking(std::size_t begin,
                                                                 std::size_t end) const;
 

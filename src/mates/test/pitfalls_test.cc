@@ -147,6 +147,21 @@ struct Tapped {
 
 class PitfallF : public ::testing::TestWithParam<Tapped> {};
 
+TEST(PitfallE, APinThroughSeveralBoresOfOnePartHasAMateWithEachOfThem) {
+  Product product;
+  Part* leaf = AddRound(&product, "leaf with two knuckles", FeatureKind::kHole, 2e-3, 0, 20e-3);
+  AddCylinder(leaf, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 2e-3, 40e-3, 60e-3);
+  // A passage that is wider by more than the bores differ does not guide beside them.
+  AddCylinder(leaf, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 2.2e-3, 65e-3, 80e-3);
+  AddRound(&product, "pin", FeatureKind::kShaft, 2e-3, -1e-3, 90e-3);
+  AddInPlace(&product);
+  InferInto(&product);
+  ASSERT_EQ(CountMates(product, MateKind::kAxisHole), 2);
+  EXPECT_NEAR(product.mates[0].overlap, 20e-3, 1e-12);
+  EXPECT_NEAR(product.mates[1].overlap, 20e-3, 1e-12);
+  EXPECT_NE(product.mates[0].a.feature, product.mates[1].a.feature);
+}
+
 TEST_P(PitfallF, AScrewInATappedHoleIsAThreadNeverAPressFit) {
   const Tapped& tapped = GetParam();
   Product product;
