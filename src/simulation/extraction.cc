@@ -29,6 +29,41 @@ constexpr double kShortestStep = 0.25e-3;  // [m] between looks along a way
 constexpr double kLongestStep = 2e-3;      // [m]; longer ones could pass through a thin wall.
 constexpr double kParallel = 1e-3;         // sine or cosine that counts as zero
 
+/** Adds a direction if none that is known is within a milliradian of it. */
+void AddDirection(const Vec3& d, std::vector<Vec3>* directions) {
+  if (std::none_of(directions->begin(), directions->end(),
+                   [&](const Vec3& known) { return known.dot(d) > 1 - kParallel * kParallel; })) {
+    directions->push_back(d);
+  }
+}
+
+/** Lists the normals of the planes of a part that have most area, as lines in its frame: the
+ directions in which it was drawn, however it lies in the product. */
+std::vector<Vec3> ListPlaneLines(const product::Part& part) {
+  constexpr std::size_t kMost = 3;             // Lines: those of a box. A choice.
+  std::vector<std::pair<double, Vec3>> lines;  // Area [m^2] and direction.
+  for (const product::Feature& feature : part.features) {
+    if (feature.kind != product::FeatureKind::kPlane) {
+      continue;
+    }
+    const auto known = std::find_if(lines.begin(), lines.end(), [&](const auto& line) {
+      return std::abs(line.second.dot(feature.axis_B)) > 1 - kParallel * kParallel;
+    });
+    if (known != lines.end()) {
+      known->first += feature.area;
+    } else {
+      lines.emplace_back(feature.area, feature.axis_B);
+    }
+  }
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::vector<Vec3> directions;
+  for (std::size_t i = 0; i < std::min(kMost, lines.size()); ++i) {
+    directions.push_back(lines[i].second);
+  }
+  return directions;
+}
+
 }  // namespace
 
 Extraction::Extraction(const SequenceInput& input, const Sequence* known)
@@ -38,6 +73,14 @@ Extraction::Extraction(const SequenceInput& input, const Sequence* known)
       is_in_unit_(product_.occurrences.size(), false),
       mates_of_(product_.occurrences.size()),
       memories_(product_.occurrences.size()) {
+  std::map<product::PartId, std::vector<Vec3>> lines_of_part;
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    const auto [entry, is_new] = lines_of_part.try_emplace(occurrence.part);
+    if (is_new) {
+      entry->second = ListPlaneLines(product_.part_of(occurrence.id));
+    }
+    plane_lines_.push_back(entry->second);
+  }
   for (const Mate& mate : product_.mates) {
     if (mates::IsContradicted(product_, mate)) {
       continue;
@@ -106,14 +149,8 @@ std::string Extraction::Describe(OccurrenceId id) const {
 
 std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
   std::vector<Vec3> directions;
-  const auto add = [&directions](const Vec3& d) {
-    for (const Vec3& known : directions) {
-      if (known.dot(d) > 1 - kParallel * kParallel) {
-        return;
-      }
-    }
-    directions.push_back(d);
-  };
+  std::vector<Vec3> normals;  // Of the faces that others hold.
+  const auto add = [&directions](const Vec3& d) { AddDirection(d, &directions); };
   for (const OccurrenceId id : unit) {
     for (const MateView& view : mates_of_[id.index()]) {
       if (!IsAround(view.other)) {
@@ -126,6 +163,7 @@ std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
           break;
         case MateKind::kFaceFace:
           add(-view.axis_W);  // away from the partner's face
+          AddDirection(view.axis_W, &normals);
           break;
         case MateKind::kConeSeat:
         case MateKind::kSphereSeat:
@@ -137,6 +175,24 @@ std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
   for (const Vec3& d : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0),
                         Vec3(0, 0, -1)}) {
     add(d);
+  }
+  // Along the edges of two faces that are held: out of a slot, whichever way it was drawn.
+  constexpr std::size_t kMostNormals = 8;  // A choice: those of a prism and its ends.
+  for (std::size_t i = 0; i < std::min(kMostNormals, normals.size()); ++i) {
+    for (std::size_t k = i + 1; k < std::min(kMostNormals, normals.size()); ++k) {
+      const Vec3 edge = normals[i].cross(normals[k]);
+      if (edge.norm() > kParallel) {
+        add(edge.normalized());
+        add(-edge.normalized());
+      }
+    }
+  }
+  for (const OccurrenceId id : unit) {
+    for (const Vec3& line_B : plane_lines_[id.index()]) {
+      const Vec3 line_W = product_.occurrences[id.index()].X_WB.q() * line_B;
+      add(line_W);
+      add(-line_W);
+    }
   }
   // From above is how people assemble: try the upward ways out first.
   std::stable_sort(directions.begin(), directions.end(),

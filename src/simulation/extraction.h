@@ -189,6 +189,7 @@ class Extraction {
   std::vector<bool> is_present_;
   std::vector<bool> is_in_unit_;
   std::vector<std::vector<MateView>> mates_of_;
+  std::vector<std::vector<Vec3>> plane_lines_;  // By occurrence, in its frame.
   std::vector<spatial::Box> boxes_;
   std::vector<DrawnOverlap> overlaps_;
   std::vector<std::vector<contact::BodyId>> overlapped_;  // by occurrence
