@@ -47,7 +47,7 @@ void TestOne(std::string_view bytes) {
   (void)cad::ReadStepHeader(text);
   product::Product product = MakeProduct();
   Diagnostics diagnostics;
-  cad::ReadTolerances(text, &product, &diagnostics);
+  cad::ReadTolerances(entities, &product, &diagnostics);
   for (const product::Dimension& dimension : product.parts[0].dimensions) {
     Check(std::isfinite(dimension.nominal));
     for (const product::FaceId face : dimension.faces) {

@@ -14,7 +14,7 @@ void TestOne(std::string_view bytes) {
   product.source = "fuzz.stp";
   Diagnostics diagnostics;
   const auto read =
-      cad::ReadTessellated(std::string(bytes), cad::ImportOptions(), {}, &product, &diagnostics);
+      cad::ReadTessellated(cad::StepText(std::string(bytes)), {}, {}, &product, &diagnostics);
   if (!read) {
     Check(!read.error().message.empty());
     return;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "cad/encoding.h"
 #include "mates/assignments.h"
 #include "mates/infer.h"
 #include "mates/side_file.h"
@@ -24,9 +25,13 @@ namespace {
 using product::Product;
 
 Result<void> Check(const OpenOptions& options) {
-  if (!(options.length_unit > 0) || !std::isfinite(options.length_unit)) {
-    return Fail(ErrorCode::kInvalid, fmt::format("{} m is no length unit", options.length_unit),
+  if (const double unit = options.length_unit.value_or(1); !(unit > 0) || !std::isfinite(unit)) {
+    return Fail(ErrorCode::kInvalid, fmt::format("{} m is no length unit", unit),
                 options.file.filename().string(), "give a length above 0, as 0.001");
+  }
+  if (!options.encoding.empty() && !cad::IsEncoding(options.encoding)) {
+    return Fail(ErrorCode::kInvalid, fmt::format("{} is no encoding", options.encoding),
+                options.file.filename().string(), "give a name that iconv -l lists, as CP1251");
   }
   if (options.max_parts < 1 ||
       static_cast<std::size_t>(options.max_parts) > cad::kLargestMaxParts) {
@@ -73,10 +78,7 @@ Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnos
   control.cache_directory = options.cache_directory;
   control.stop = options.stop;
   control.progress = options.progress;
-  cad::ImportOptions import;
-  import.length_unit = options.length_unit;
-  import.max_parts = static_cast<std::size_t>(options.max_parts);
-  auto product = cad::Import(options.file, import, diagnostics, control);
+  auto product = cad::Import(options.file, MakeImportOptions(options), diagnostics, control);
   if (!product) {
     return product;
   }
@@ -156,6 +158,7 @@ Result<void> AddAccessories(const OpenOptions& options, Product* product, WorkWa
     OpenOptions open = options;
     open.file = file;
     open.apart.clear();
+    open.length_unit.reset();  // It is that of the product's file.
     const auto accessory = OpenWithin(open, watch, diagnostics, diagnostics);
     if (!accessory) {
       return Unexpected(accessory.error());
@@ -192,6 +195,14 @@ WorkWatch MakeWatch(const OpenOptions& options) {
 }
 
 }  // namespace
+
+cad::ImportOptions MakeImportOptions(const OpenOptions& options) {
+  cad::ImportOptions import;
+  import.length_unit = options.length_unit;
+  import.encoding = options.encoding;
+  import.max_parts = static_cast<std::size_t>(options.max_parts);
+  return import;
+}
 
 Result<Product> OpenInferred(const OpenOptions& options, Diagnostics* diagnostics) {
   WorkWatch watch = MakeWatch(options);

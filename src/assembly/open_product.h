@@ -36,8 +36,10 @@ struct OpenOptions {
   /** CAD files of fixtures: "FILE" as drawn, or "FILE@X,Y,Z" or "FILE@X,Y,Z,ANGLE" [mm, deg], which
    moves them in W and turns them about z before. */
   std::vector<std::string> fixtures;
-  std::vector<std::string> bench;        ///< CAD files of fixtures that stand on the table.
-  double length_unit{1e-3};              ///< The unit of files that state none (OBJ, STL) [m], > 0.
+  std::vector<std::string> bench;  ///< CAD files of fixtures that stand on the table.
+  /** The unit of length of the file, whatever it states [m], > 0 (cad::ImportOptions). */
+  std::optional<double> length_unit;
+  std::string encoding;                  ///< Encoding of names in STEP files; empty: it is guessed.
   WorkLimits limits;                     ///< Limits for opening the file, mates included.
   int max_parts{cad::kDefaultMaxParts};  ///< Largest number of parts, 1 to cad::kLargestMaxParts.
   /** Directory of the cache; FileCache::DefaultDirectory() is the user's. None: nothing is cached.
@@ -46,6 +48,9 @@ struct OpenOptions {
   cad::ProgressFn progress;  ///< Called by the calling thread; may be null.
   std::stop_token stop;      ///< Ends the opening at once when a stop is asked for.
 };
+
+/** What of these options concerns the import. */
+[[nodiscard]] cad::ImportOptions MakeImportOptions(const OpenOptions& options);
 
 /** Imports a CAD file, welds what cannot come apart (product::WeldUnits) but for `apart` and what
  the side file names so, and infers its mates, without what its files state about mates. All lengths

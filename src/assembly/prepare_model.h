@@ -25,7 +25,7 @@ struct PrepareOptions {
   std::vector<std::string> first_parts;  ///< Names, paths or ids ("o12"); the others follow.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: contact shapes are always built.
   cad::ProgressFn progress;                          ///< Called by the calling thread; may be null.
-  std::stop_token stop;                              ///< Ends the building of contact shapes.
+  std::stop_token stop;                              ///< Ends the preparation.
   std::string name;  ///< Name of the product in errors; empty: Product::source.
 };
 

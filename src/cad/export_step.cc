@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/descriptor.h"
+#include "cad/import_arguments.h"
 #include "cad/worker.h"
 
 namespace hvas::cad {
@@ -58,8 +59,8 @@ Unexpected Explain(const WorkerRun& run, const std::string& name) {
 
 }  // namespace
 
-Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportControl& control,
-                              const PartMotions& motions) {
+Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportOptions& options,
+                              const ImportControl& control, const PartMotions& motions) {
   const Result<std::filesystem::path> path = CheckInputFile(file);
   if (!path) {
     return Unexpected(path.error());
@@ -70,10 +71,11 @@ Result<MappedFile> ExportStep(const std::filesystem::path& file, const ImportCon
   }
   WorkerCall call;
   call.program = *worker;
-  call.arguments = {"export-step", path->string()};
+  call.arguments = MakeArguments(options);
+  call.arguments.insert(call.arguments.begin(), {"export-step", path->string()});
   const MotionFile motion_file(motions);
   if (!motions.empty()) {
-    call.arguments.insert(call.arguments.end(), {"--motions", motion_file.name()});
+    call.arguments.insert(call.arguments.begin() + 2, {"--motions", motion_file.name()});
   }
   const auto limit_ns = static_cast<std::int64_t>(control.limits.time * kNsPerSecond);
   call.deadline_ns = MonotonicNs() + limit_ns;

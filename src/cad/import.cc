@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "base/clock.h"
+#include "cad/import_arguments.h"
 #include "cad/import_cache.h"
 #include "cad/import_result.h"
 #include "cad/input_file.h"
@@ -72,24 +73,8 @@ class Attempts {
 };
 
 std::vector<std::string> Attempts::Arguments() const {
-  std::vector<std::string> arguments{"import", file_.string()};
-  const auto add = [&arguments](const char* option, const auto& value) {
-    arguments.insert(arguments.end(), {option, fmt::format("{}", value)});
-  };
-  add("--relative-deflection", options_.relative_deflection);
-  add("--min-deflection", options_.min_deflection);
-  add("--max-angle", options_.max_angle);
-  add("--length-unit", options_.length_unit);
-  add("--max-triangles", options_.max_triangles);
-  add("--max-parts", options_.max_parts);
-  add("--max-bytes", options_.max_bytes);
-  add("--threads", options_.threads);
-  if (!options_.with_tolerances) {
-    arguments.emplace_back("--no-tolerances");
-  }
-  for (const std::uint32_t part : options_.skipped_parts) {
-    add("--skip-part", part);
-  }
+  std::vector<std::string> arguments = MakeArguments(options_);
+  arguments.insert(arguments.begin(), {"import", file_.string()});
   return arguments;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,8 +32,12 @@ struct ImportOptions {
   double relative_deflection{4e-5};  ///< Part of the diagonal of the part's box.
   double min_deflection{2e-6};       ///< No finer than this [m].
   double max_angle{0.2};  ///< Largest angle between the normals of neighbouring triangles [rad].
-  std::size_t max_triangles{200000};         ///< A part with more is meshed again, coarser.
-  double length_unit{1e-3};                  ///< Unit of files that state none (OBJ, STL) [m].
+  std::size_t max_triangles{200000};  ///< A part with more is meshed again, coarser.
+  /** The unit of length of the file, whatever it states [m]; none: what it states, or millimetres
+   where it states none (OBJ, STL). */
+  std::optional<double> length_unit;
+  /** Encoding of names in STEP files, as IsEncoding() knows it; empty: GuessEncoding(). */
+  std::string encoding;
   bool with_tolerances{true};                ///< Reads dimensions, tolerances and fits.
   std::vector<std::uint32_t> skipped_parts;  ///< Left out, by their numbers as PartFn gets them.
   std::size_t max_parts{kDefaultMaxParts};   ///< That the file may place, copies counted.

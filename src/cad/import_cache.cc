@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // To be raised whenever entries are named or written differently.
-constexpr std::int64_t kVersion = 2;
+constexpr std::int64_t kVersion = 3;
 constexpr const char* kExtension = ".hvasproduct";
 constexpr std::size_t kKeyLength = 32;  // Hex digits of 128 bits.
 
@@ -34,9 +34,8 @@ void AddWorker(const fs::path& worker, Digest* digest) {
 }
 
 std::string KeyOf(const fs::path& worker, const fs::path& file, const ImportOptions& options) {
-  // Whoever adds an option has to add it here, to the arguments of the process (import.cc), and to
-  // what the process makes of them (worker_import.cc).
-  const auto& [relative_deflection, min_deflection, max_angle, max_triangles, length_unit,
+  // A new option has to be added here and to the arguments of the process (import_arguments.cc).
+  const auto& [relative_deflection, min_deflection, max_angle, max_triangles, length_unit, encoding,
                with_tolerances, skipped_parts, max_parts, threads, max_bytes] = options;
   static_cast<void>(threads);    // The result does not depend on it.
   static_cast<void>(max_bytes);  // Nor on this one, where there is a result.
@@ -54,7 +53,8 @@ std::string KeyOf(const fs::path& worker, const fs::path& file, const ImportOpti
   for (const std::uint32_t part : skipped_parts) {
     digest.AddInt(part);
   }
-  digest.AddDouble(length_unit);
+  digest.AddDouble(length_unit.value_or(0));
+  digest.AddText(encoding);
   digest.AddText(file.filename().string());  // It is in the product.
   digest.AddText(fs::is_directory(file) ? DigestOfMeshes(file) : DigestOf(file));
   return digest.Hex();

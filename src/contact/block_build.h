@@ -22,16 +22,17 @@ inline constexpr double kBandVoxels = 4.0;               ///< The distance that 
 
 struct Zone {
   std::uint32_t code{zone::kFar};
-  NearList list;  ///< What zone::kList has, with the distances from the zone's centre.
+  std::uint32_t begin{0};  ///< First entry of what zone::kList has, in Block::listed.
+  std::uint32_t end{0};
 };
 
 /** A block of the field before it is laid down. */
 struct Block {
   std::int32_t top{0};  ///< Its place in the field's directory.
   Vec3 origin{Vec3::Zero()};
-  NearList list;  ///< What may be closest within it.
   std::array<std::int16_t, kBlockNodes> nodes{};
   std::array<Zone, kZonesPerBlock> zones;
+  NearList listed;              ///< The lists of all zones, with distances from each zone's centre.
   bool is_near{false};          ///< Some node is near the surface; else the block is not needed.
   bool is_inside{false};        ///< Where it is not near: on which side.
   std::uint32_t face{kNoFace};  ///< That gives all distances in the block by its FaceForm.
@@ -42,11 +43,25 @@ class BlockBuilder {
  public:
   BlockBuilder(const Shape::Data& data, const NearSearch& search);
 
-  /** Starts from block->origin and block->list, which is cleared. */
-  void Build(Block* block);
+  /** Fills a new block, which has its place and origin.
+   @param list  What may be closest within it; not empty. */
+  void Build(const NearList& list, Block* block);
 
  private:
   using Index3 = std::array<int, 3>;
+
+  // An entry of the list that is cut down.
+  struct Candidate {
+    NearTriangle entry{kNoFace, 0};
+    std::size_t face{0};  // Its number among the faces of the list.
+    bool is_kept{false};
+  };
+
+  // Of the distance of a face from a point [m].
+  struct Bounds {
+    double low;
+    double high;
+  };
 
   void BuildOctant(const Index3& low, NearList* octant);
   void BuildZone(const Index3& zone, const NearList& octant);
@@ -54,8 +69,10 @@ class BlockBuilder {
                 int zones);
   bool AgreesWithFace(const NearList& list, const Vec3& centre, double half);
   void DropFarFaces(const Vec3& centre, double half, NearList* list);
-  void DropHidden(const Vec3& centre, NearList* list) const;
-  void KeepClosest(const Vec3& centre, NearList* list) const;
+  void DropHidden(const Vec3& centre, NearList* list);
+  void KeepClosest(const Vec3& centre, NearList* list);
+  [[nodiscard]] bool MayBeClosest(const Candidate& candidate, const Vec3& c, double radius,
+                                  const Bounds& bounds, double* least) const;
   void FillFarZone(const Index3& zone, double distance);
   void FillNodes(const Index3& zone, const Vec3& centre);
   void SetNode(int i, int j, int k, double phi);
@@ -75,6 +92,9 @@ class BlockBuilder {
   Block* block_{nullptr};
   NearList octant_;
   NearList list_;  // Of the zone at hand.
+  NearList kept_;  // What is listed of it.
+  std::vector<TrianglePoint> points_;
+  std::vector<Candidate> candidates_;
   std::uint32_t hint_{kNoFace};
 };
 

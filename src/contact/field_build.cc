@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
+#include <functional>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 
 #include "base/digest.h"
 #include "base/parallel.h"
@@ -26,72 +31,131 @@ constexpr double kLargestVoxel = 2e-3;
 
 using Index3 = std::array<int, 3>;
 
-// Walks a grid of cells as an octree and hands each cell's list to `leaf`: of what is closest
-// within the cell, or to its centre only. `skip` may settle a whole region at once.
-enum class LeafNeeds { kCell, kCentre };
+// A grid of cubic cells.
+struct Grid {
+  Vec3 origin;
+  double side;
+  Index3 count;
 
-template <typename Leaf, typename Skip>
-class Descent {
- public:
-  Descent(const NearSearch& search, const Vec3& origin, double side, const Index3& count,
-          LeafNeeds needs, Leaf leaf, Skip skip)
-      : search_(search),
-        origin_(origin),
-        side_(side),
-        count_(count),
-        needs_(needs),
-        leaf_(leaf),
-        skip_(skip) {}
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) *
+           static_cast<std::size_t>(count[2]);
+  }
 
-  void Run() {
-    int width = 1;
-    while (width < std::max({count_[0], count_[1], count_[2]})) {
-      width *= 2;
+  [[nodiscard]] std::size_t IndexOf(const Index3& cell) const {
+    return static_cast<std::size_t>((cell[2] * count[1] + cell[1]) * count[0] + cell[0]);
+  }
+
+  [[nodiscard]] Vec3 CentreOf(const Index3& low, int width) const {
+    return origin + side * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5 * width));
+  }
+
+  [[nodiscard]] bool Has(const Index3& cell) const {
+    return cell[0] < count[0] && cell[1] < count[1] && cell[2] < count[2];
+  }
+};
+
+// A cube of a grid's cells, with what may be closest to some point of it.
+struct Region {
+  Index3 low{0, 0, 0};
+  int width{1};  // A power of two.
+  Vec3 centre{Vec3::Zero()};
+  double radius{0};  // Of the ball around it.
+  NearList list;
+};
+
+// Calls work(cell) for those of the region's cells that the grid has.
+template <typename Work>
+void ForEachCell(const Grid& grid, const Region& region, const Work& work) {
+  for (int z = region.low[2]; z < std::min(region.low[2] + region.width, grid.count[2]); ++z) {
+    for (int y = region.low[1]; y < std::min(region.low[1] + region.width, grid.count[1]); ++y) {
+      for (int x = region.low[0]; x < std::min(region.low[0] + region.width, grid.count[0]); ++x) {
+        work(Index3{x, y, z});
+      }
     }
-    Visit({0, 0, 0}, width, search_.MakeFullList());
+  }
+}
+
+// A grid as an octree. `settle` says of a region whether nothing below it is to be visited.
+class Octree {
+ public:
+  Octree(const NearSearch& search, const Grid& grid) : search_(search), grid_(grid) {}
+
+  // Divides the grid into regions that threads may descend into on their own: descending into one
+  // after the other visits what descending into the whole grid would, in the same order.
+  template <typename Settle>
+  [[nodiscard]] std::vector<Region> Divide(const Settle& settle) const {
+    constexpr int kAcross = 8;  // Regions along the longest side of the grid: a choice.
+    Region whole;
+    while (whole.width < std::max({grid_.count[0], grid_.count[1], grid_.count[2]})) {
+      whole.width *= 2;
+    }
+    Narrow(search_.MakeFullList(), &whole);
+    std::vector<Region> regions;
+    if (!settle(whole)) {
+      Descend(whole, std::max(1, whole.width / kAcross), settle,
+              [&](const Region& region) { regions.push_back(region); });
+    }
+    return regions;
+  }
+
+  // Calls leaf(region) for the regions of `width` cells in another one, depth first.
+  template <typename Settle, typename Leaf>
+  void Descend(const Region& region, int width, const Settle& settle, const Leaf& leaf) const {
+    if (region.width <= width) {
+      leaf(region);
+      return;
+    }
+    Region octant;
+    octant.width = region.width / 2;
+    for (int i = 0; i < 8; ++i) {
+      octant.low = {region.low[0] + octant.width * (i & 1),
+                    region.low[1] + octant.width * ((i >> 1) & 1),
+                    region.low[2] + octant.width * (i >> 2)};
+      if (!grid_.Has(octant.low)) {
+        continue;
+      }
+      Narrow(region.list, &octant);
+      if (!settle(octant)) {
+        Descend(octant, width, settle, leaf);
+      }
+    }
   }
 
  private:
-  void Visit(const Index3& low, int width, const NearList& parent) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (low[k] >= count_[k]) {
-        return;
-      }
-    }
-    const Vec3 centre =
-        origin_ + side_ * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5 * width));
-    const bool is_point = width == 1 && needs_ == LeafNeeds::kCentre;
-    const double radius = is_point ? 0 : kHalfDiagonal * side_ * width;
-    NearList list;
-    search_.Filter(parent, centre, radius, false, &list);
-    if (skip_(low, width, centre, radius, list)) {
-      return;
-    }
-    if (width == 1) {
-      leaf_(low, centre, list);
-      return;
-    }
-    const int half = width / 2;
-    for (int i = 0; i < 8; ++i) {
-      Visit({low[0] + half * (i & 1), low[1] + half * ((i >> 1) & 1), low[2] + half * (i >> 2)},
-            half, list);
-    }
+  // Gives a region its list, cut down from that of a larger one.
+  void Narrow(const NearList& list, Region* region) const {
+    region->centre = grid_.CentreOf(region->low, region->width);
+    region->radius = kHalfDiagonal * grid_.side * region->width;
+    search_.Filter(list, region->centre, region->radius, &region->list);
   }
 
   const NearSearch& search_;
-  Vec3 origin_;
-  double side_;
-  Index3 count_;
-  LeafNeeds needs_;
-  Leaf leaf_;
-  Skip skip_;
+  const Grid& grid_;
 };
 
-template <typename Leaf, typename Skip>
-void Descend(const NearSearch& search, const Vec3& origin, double side, const Index3& count,
-             LeafNeeds needs, Leaf leaf, Skip skip) {
-  Descent<Leaf, Skip>(search, origin, side, count, needs, leaf, skip).Run();
-}
+// Hands values on in the order of their numbers, in whatever order threads put them in.
+template <typename T>
+class InOrder {
+ public:
+  InOrder(std::size_t count, std::function<void(const T&)> take)
+      : waiting_(count), take_(std::move(take)) {}
+
+  void Put(std::size_t number, T value) {
+    const std::lock_guard lock(mutex_);
+    waiting_[number] = std::move(value);
+    for (; next_ < waiting_.size() && waiting_[next_]; ++next_) {
+      take_(*waiting_[next_]);
+      waiting_[next_].reset();
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::optional<T>> waiting_;
+  std::size_t next_{0};
+  std::function<void(const T&)> take_;
+};
 
 // Calls work(i) for i < count in runs of equal length; MakeWorker gives each run its own.
 template <typename MakeWorker>
@@ -108,32 +172,30 @@ void ForEachInRuns(std::size_t count, const ShapeOptions& options, MakeWorker ma
   });
 }
 
-// Finds values that were added before, by their bytes.
-class Pool {
+// Finds the numbers of values that were added before.
+class Numbers {
  public:
-  // The number of the first value with these bytes; `number` when there was none.
-  std::uint32_t FindOrAdd(std::vector<std::byte> bytes, std::uint32_t number) {
-    auto& bucket = numbers_[Checksum64(bytes)];
-    for (const std::uint32_t candidate : bucket) {
-      if (values_[candidate] == bytes) {
-        return candidate;
+  // The number of the value with this checksum that is_same(number) knows again; `number`, from now
+  // on, where there is none.
+  template <typename IsSame>
+  std::uint32_t FindOrAdd(std::uint64_t checksum, std::uint32_t number, const IsSame& is_same) {
+    const auto [begin, end] = numbers_.equal_range(checksum);
+    for (auto entry = begin; entry != end; ++entry) {
+      if (is_same(entry->second)) {
+        return entry->second;
       }
     }
-    bucket.push_back(number);
-    values_.resize(std::max<std::size_t>(values_.size(), number + 1U));
-    values_[number] = std::move(bytes);
+    numbers_.emplace(checksum, number);
     return number;
   }
 
  private:
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> numbers_;
-  std::vector<std::vector<std::byte>> values_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> numbers_;
 };
 
 template <typename T>
-void Append(std::span<const T> values, std::vector<std::byte>* bytes) {
-  const auto raw = std::as_bytes(values);
-  bytes->insert(bytes->end(), raw.begin(), raw.end());
+std::uint64_t ChecksumOf(const T& values) {
+  return Checksum64(std::as_bytes(std::span(values)));
 }
 
 // Lays blocks down in the field, equal ones once.
@@ -148,36 +210,32 @@ class Layer {
   }
 
   void Add(const Block& block) {
-    std::int32_t& entry = data_.field.top[static_cast<std::size_t>(block.top)];
-    if (!block.is_near) {
-      entry = block.is_inside ? kTopInside : kTopOutside;
-      return;
-    }
-    if (block.face != kNoFace) {
-      entry = kTopFace - static_cast<std::int32_t>(block.face);
-      return;
-    }
     std::array<std::uint32_t, kZonesPerBlock> codes{};
     for (std::size_t z = 0; z < kZonesPerBlock; ++z) {
       const Zone& zone = block.zones[z];
-      codes[z] = zone.code == zone::kList ? zone::kList | AddList(zone.list) : zone.code;
+      codes[z] = zone.code == zone::kList ? zone::kList | AddList(block, zone) : zone.code;
     }
-    std::vector<std::byte> bytes;
-    bytes.reserve(sizeof(block.nodes) + sizeof(codes));
-    Append(std::span<const std::int16_t>(block.nodes), &bytes);
-    Append(std::span<const std::uint32_t>(codes), &bytes);
-    const std::uint32_t number = blocks_.FindOrAdd(std::move(bytes), count_);
-    entry = static_cast<std::int32_t>(number);
-    if (number == count_) {
-      ++count_;
-      data_.field.nodes.insert(data_.field.nodes.end(), block.nodes.begin(), block.nodes.end());
-      data_.exact.zones.insert(data_.exact.zones.end(), codes.begin(), codes.end());
+    auto& nodes = data_.field.nodes;
+    auto& zones = data_.exact.zones;
+    const std::array checksums{ChecksumOf(block.nodes), ChecksumOf(codes)};
+    const auto count = static_cast<std::uint32_t>(zones.size() / kZonesPerBlock);
+    const std::uint32_t number =
+        blocks_.FindOrAdd(ChecksumOf(checksums), count, [&](std::uint32_t other) {
+          const auto first = static_cast<std::ptrdiff_t>(other);
+          return std::equal(codes.begin(), codes.end(), zones.begin() + kZonesPerBlock * first) &&
+                 std::equal(block.nodes.begin(), block.nodes.end(),
+                            nodes.begin() + kBlockNodes * first);
+        });
+    data_.field.top[static_cast<std::size_t>(block.top)] = static_cast<std::int32_t>(number);
+    if (number == count) {
+      nodes.insert(nodes.end(), block.nodes.begin(), block.nodes.end());
+      zones.insert(zones.end(), codes.begin(), codes.end());
     }
   }
 
   void Finish() {
-    for (NearList& list : lists_) {
-      PackList(std::move(list));
+    for (std::size_t list = 0; list + 1 < data_.exact.list_begin.size(); ++list) {
+      Pack(list);
     }
     data_.field.nodes.resize(data_.field.nodes.size() + 2);  // Pairs are read as one word.
     data_.field.nodes.shrink_to_fit();
@@ -186,136 +244,149 @@ class Layer {
  private:
   static constexpr double kListReach = 8;  // Largest distance that is told apart, in voxels.
 
-  // Zones with the same triangles share a list: its distances are the least in any of them.
-  std::uint32_t AddList(NearList list) {
-    std::sort(list.begin(), list.end(),
+  // Zones with the same triangles share a list: its distances are the least in any of them. Until
+  // Finish(), the table has a list's triangles by number, and their distances are beside it.
+  std::uint32_t AddList(const Block& block, const Zone& zone) {
+    ExactTable& exact = data_.exact;
+    list_.assign(block.listed.begin() + zone.begin, block.listed.begin() + zone.end);
+    std::sort(list_.begin(), list_.end(),
               [](const NearTriangle& a, const NearTriangle& b) { return a.triangle < b.triangle; });
-    std::vector<std::uint32_t> triangles;
-    for (const NearTriangle& entry : list) {
-      triangles.push_back(entry.triangle);
+    triangles_.clear();
+    for (const NearTriangle& entry : list_) {
+      triangles_.push_back(entry.triangle);
     }
-    std::vector<std::byte> bytes;
-    Append(std::span<const std::uint32_t>(triangles), &bytes);
+    const auto count = static_cast<std::uint32_t>(exact.list_begin.size() - 1);
     const std::uint32_t number =
-        pool_.FindOrAdd(std::move(bytes), static_cast<std::uint32_t>(lists_.size()));
-    if (number == lists_.size()) {
-      lists_.push_back(std::move(list));
-    } else {
-      for (std::size_t i = 0; i < list.size(); ++i) {
-        double& least = lists_[number][i].distance;
-        least = std::min(least, list[i].distance);
-      }
+        lists_.FindOrAdd(ChecksumOf(triangles_), count, [&](std::uint32_t other) {
+          return std::equal(triangles_.begin(), triangles_.end(),
+                            exact.listed.begin() + exact.list_begin[other],
+                            exact.listed.begin() + exact.list_begin[other + 1]);
+        });
+    if (number == count) {
+      exact.listed.insert(exact.listed.end(), triangles_.begin(), triangles_.end());
+      exact.list_begin.push_back(static_cast<std::uint32_t>(exact.listed.size()));
+      distances_.resize(exact.listed.size(), std::numeric_limits<double>::infinity());
+    }
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      double& least = distances_[exact.list_begin[number] + i];
+      least = std::min(least, list_[i].distance);
     }
     return number;
   }
 
-  void PackList(NearList list) {
+  // Gives a list's entries their form in the table.
+  void Pack(std::size_t list) {
     ExactTable& exact = data_.exact;
-    std::sort(list.begin(), list.end(), [](const NearTriangle& a, const NearTriangle& b) {
-      return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
-    });
-    const double most = static_cast<double>((1U << exact.distance_bits) - 1U);
-    for (const NearTriangle& entry : list) {
-      const double units = std::floor(entry.distance * (1 - 1e-9) / exact.distance_unit);
-      exact.listed.push_back(entry.triangle << exact.distance_bits |
-                             static_cast<std::uint32_t>(std::min(units, most)));
+    const std::size_t begin = exact.list_begin[list];
+    list_.clear();
+    for (std::size_t i = begin; i < exact.list_begin[list + 1]; ++i) {
+      list_.push_back({exact.listed[i], distances_[i]});
     }
-    exact.list_begin.push_back(static_cast<std::uint32_t>(exact.listed.size()));
+    std::sort(list_.begin(), list_.end(), IsNearer);
+    const double most = static_cast<double>((1U << exact.distance_bits) - 1U);
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      const double units = std::floor(list_[i].distance * (1 - 1e-9) / exact.distance_unit);
+      exact.listed[begin + i] = list_[i].triangle << exact.distance_bits |
+                                static_cast<std::uint32_t>(std::min(units, most));
+    }
   }
 
   Shape::Data& data_;
-  std::uint32_t count_{0};
-  Pool blocks_;
-  Pool pool_;  // Of lists, by their triangles.
-  std::vector<NearList> lists_;
+  Numbers blocks_;
+  Numbers lists_;
+  std::vector<double> distances_;
+  NearList list_;  // That is added or packed.
+  std::vector<std::uint32_t> triangles_;
 };
 
-// The blocks that may come near the surface, with what is near them; the directory says already
-// where the others are.
-std::vector<Block> FindBlocks(const NearSearch& search, Shape::Data* data) {
+Vec3 ToVec3(const float* p) {
+  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+}
+
+// Descends to the blocks near the surface. Each is laid down in its turn and goes: only what the
+// directory says is there of all at once.
+void BuildBlocks(const NearSearch& search, const ShapeOptions& options, Shape::Data* data) {
   const FieldView& view = data->field.view;
-  const double side = kBlockCells * data->voxel;
-  const Vec3 origin(static_cast<double>(view.origin[0]), static_cast<double>(view.origin[1]),
-                    static_cast<double>(view.origin[2]));
-  const Index3 count{view.blocks[0], view.blocks[1], view.blocks[2]};
+  const Grid grid{ToVec3(view.origin),
+                  kBlockCells * data->voxel,
+                  {view.blocks[0], view.blocks[1], view.blocks[2]}};
   auto& top = data->field.top;
-  top.assign(static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) *
-                 static_cast<std::size_t>(count[2]),
-             kTopOutside);
-  const auto index_of = [&](int x, int y, int z) {
-    return static_cast<std::size_t>((z * count[1] + y) * count[0] + x);
-  };
-  std::vector<Block> blocks;
-  const auto leaf = [&](const Index3& low, const Vec3& centre, const NearList& list) {
-    Block block;
-    block.top = static_cast<std::int32_t>(index_of(low[0], low[1], low[2]));
-    block.origin = centre - Vec3::Constant(0.5 * side);
-    block.list = list;
-    blocks.push_back(std::move(block));
-  };
-  const auto skip = [&](const Index3& low, int width, const Vec3& centre, double radius,
-                        const NearList& list) {
-    const NearTriangle least = LeastOf(list);
-    if (least.distance <= CalcBlockReach(data->voxel) + radius) {
+  top.assign(grid.size(), kTopOutside);
+  const auto settle = [&](const Region& region) {
+    const NearTriangle least = LeastOf(region.list);
+    if (least.distance <= CalcBlockReach(data->voxel) + region.radius) {
       return false;
     }
-    if (search.FindSigned(list, centre, 0, least.triangle).distance < 0) {
-      for (int z = low[2]; z < std::min(low[2] + width, count[2]); ++z) {
-        for (int y = low[1]; y < std::min(low[1] + width, count[1]); ++y) {
-          for (int x = low[0]; x < std::min(low[0] + width, count[0]); ++x) {
-            top[index_of(x, y, z)] = kTopInside;
-          }
-        }
-      }
+    if (search.FindSigned(region.list, region.centre, 0, least.triangle).distance < 0) {
+      ForEachCell(grid, region, [&](const Index3& cell) { top[grid.IndexOf(cell)] = kTopInside; });
     }
     return true;
   };
-  Descend(search, origin, side, count, LeafNeeds::kCell, leaf, skip);
-  return blocks;
-}
-
-void BuildBlocks(const NearSearch& search, const ShapeOptions& options, Shape::Data* data) {
-  std::vector<Block> blocks = FindBlocks(search, data);
-  ForEachInRuns(blocks.size(), options, [&] {
-    return [&, builder = BlockBuilder(*data, search)](std::size_t i) mutable {
-      builder.Build(&blocks[i]);
-    };
-  });
+  const Octree octree(search, grid);
+  std::vector<Region> regions = octree.Divide(settle);
   Layer layer(data);
-  for (Block& block : blocks) {
-    layer.Add(block);
-    block = {};
-  }
+  InOrder<std::deque<Block>> finished(regions.size(), [&](const std::deque<Block>& blocks) {
+    for (const Block& block : blocks) {
+      layer.Add(block);
+    }
+  });
+  ForEachIndex(regions.size(), options.threads, [&](std::size_t i) {
+    const Region region = std::exchange(regions[i], {});
+    BlockBuilder builder(*data, search);
+    std::deque<Block> blocks;
+    octree.Descend(region, 1, settle, [&](const Region& cell) {
+      if (options.stop.stop_requested()) {
+        return;
+      }
+      Block& block = blocks.emplace_back();
+      const std::size_t index = grid.IndexOf(cell.low);
+      block.top = static_cast<std::int32_t>(index);
+      block.origin = cell.centre - Vec3::Constant(0.5 * grid.side);
+      builder.Build(cell.list, &block);
+      if (!block.is_near) {
+        top[index] = block.is_inside ? kTopInside : kTopOutside;
+        blocks.pop_back();
+      } else if (block.face != kNoFace) {
+        top[index] = kTopFace - static_cast<std::int32_t>(block.face);
+        blocks.pop_back();
+      }
+    });
+    finished.Put(i, std::move(blocks));
+  });
   layer.Finish();
 }
 
-void BuildCoarse(const NearSearch& search, Shape::Data* data) {
+void BuildCoarse(const NearSearch& search, const ShapeOptions& options, Shape::Data* data) {
   FieldView& view = data->field.view;
   const Vec3 size = data->box_B.size();
   const double cell = std::max(4 * data->voxel, size.norm() / 56);
   view.coarse_cell = static_cast<float>(cell);
-  Index3 count{};
-  Vec3 origin;
+  Grid grid;
+  grid.side = static_cast<double>(view.coarse_cell);
   for (int k = 0; k < 3; ++k) {
-    count[static_cast<std::size_t>(k)] = static_cast<int>(std::ceil(size[k] / cell)) + 5;
-    view.coarse_count[k] = count[static_cast<std::size_t>(k)];
-    view.coarse_origin[k] = static_cast<float>(-0.5 * (view.coarse_count[k] - 1) * cell);
-    origin[k] = static_cast<double>(view.coarse_origin[k]);
+    const int count = static_cast<int>(std::ceil(size[k] / cell)) + 5;
+    grid.count[static_cast<std::size_t>(k)] = count;
+    view.coarse_count[k] = count;
+    view.coarse_origin[k] = static_cast<float>(-0.5 * (count - 1) * cell);
   }
-  const double side = static_cast<double>(view.coarse_cell);
-  data->field.coarse.assign(static_cast<std::size_t>(count[0]) *
-                                static_cast<std::size_t>(count[1]) *
-                                static_cast<std::size_t>(count[2]),
-                            0.0F);
-  Descend(
-      search, origin - Vec3::Constant(0.5 * side), side, count, LeafNeeds::kCentre,
-      [&](const Index3& low, const Vec3& centre, const NearList& list) {
-        const double phi = search.FindSigned(list, centre, 0, LeastOf(list).triangle).distance;
-        data->field
-            .coarse[static_cast<std::size_t>((low[2] * count[1] + low[1]) * count[0] + low[0])] =
-            static_cast<float>(phi);
-      },
-      [](const Index3&, int, const Vec3&, double, const NearList&) { return false; });
+  // Its nodes are the centres of the cells.
+  grid.origin = ToVec3(view.coarse_origin) - Vec3::Constant(0.5 * grid.side);
+  auto& coarse = data->field.coarse;
+  coarse.assign(grid.size(), 0.0F);
+  const auto settle = [](const Region&) { return false; };
+  const Octree octree(search, grid);
+  const std::vector<Region> regions = octree.Divide(settle);
+  ForEachIndex(regions.size(), options.threads, [&](std::size_t i) {
+    octree.Descend(regions[i], 2, settle, [&](const Region& region) {
+      std::uint32_t hint = LeastOf(region.list).triangle;
+      ForEachCell(grid, region, [&](const Index3& at) {
+        const Vec3 p = grid.CentreOf(at, 1);
+        const Nearest nearest = search.FindSigned(region.list, p, (p - region.centre).norm(), hint);
+        hint = nearest.triangle;
+        coarse[grid.IndexOf(at)] = static_cast<float>(nearest.distance);
+      });
+    });
+  });
 }
 
 double CalcTrilinear(const FieldView& view, int block, const Index3& cell) {
@@ -449,7 +520,7 @@ void BuildField(const ShapeOptions& options, Shape::Data* data) {
   if (options.stop.stop_requested()) {
     return;
   }
-  BuildCoarse(search, data);
+  BuildCoarse(search, options, data);
   data->field.Bind();
   MeasureSlack(options, data);
   data->field.Bind();

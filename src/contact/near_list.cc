@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "spatial/box.h"
 
@@ -24,17 +25,8 @@ NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
     const Vec3 half = 0.5 * box.size();
     boxes_.push_back({{c.x(), c.y(), c.z()}, {half.x(), half.y(), half.z()}, half.norm()});
   }
-  std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t v : mesh.triangles[t]) {
-      around[v].push_back(t);
-    }
-  }
   FindRimBends();
-  surroundings_.reserve(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    surroundings_.push_back(SurroundingsOf(t, around));
-  }
+  FindSurroundings();
 }
 
 // A vertex with two rim edges, each seen from both sides or once where the mesh is open, is one
@@ -74,23 +66,41 @@ void NearSearch::FindRimBends() {
   }
 }
 
-NearSearch::Surroundings NearSearch::SurroundingsOf(
-    std::uint32_t triangle, const std::vector<std::vector<std::uint32_t>>& around) const {
-  Surroundings result{0, 0};
-  double cosine = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    result.rims =
-        static_cast<std::uint8_t>(result.rims | (mesh_.IsRim(triangle, k) ? 1U << k : 0U));
-    for (const std::uint32_t t : around[mesh_.triangles[triangle][k]]) {
-      if (mesh_.face[t] == mesh_.face[triangle] && !mesh_.NormalOf(t).isZero()) {
-        cosine = std::min(cosine, mesh_.NormalOf(triangle).dot(mesh_.NormalOf(t)));
-      }
+void NearSearch::FindSurroundings() {
+  constexpr double kLeastCosine = 0.7;  // 45 degrees; beyond, the bend is no bound.
+  // The triangles at each vertex, one vertex after the other.
+  std::vector<std::uint32_t> begin(mesh_.vertices.size() + 1, 0);
+  for (const auto& triangle : mesh_.triangles) {
+    for (const std::uint32_t v : triangle) {
+      ++begin[v + 1];
     }
   }
-  constexpr double kLeastCosine = 0.7;  // 45 degrees; beyond, the bend is no bound.
-  result.bend = cosine < kLeastCosine ? std::numeric_limits<double>::infinity()
-                                      : std::sqrt(std::max(0.0, 1 - cosine * cosine)) / cosine;
-  return result;
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> at_vertex(begin.back());
+  std::vector<std::uint32_t> next = begin;
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh_.triangles[t]) {
+      at_vertex[next[v]++] = t;
+    }
+  }
+  surroundings_.reserve(mesh_.triangles.size());
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    Surroundings result{0, 0};
+    double cosine = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.rims = static_cast<std::uint8_t>(result.rims | (mesh_.IsRim(t, k) ? 1U << k : 0U));
+      const std::uint32_t v = mesh_.triangles[t][k];
+      for (std::uint32_t i = begin[v]; i < begin[v + 1]; ++i) {
+        const std::uint32_t other = at_vertex[i];
+        if (mesh_.face[other] == mesh_.face[t] && !mesh_.NormalOf(other).isZero()) {
+          cosine = std::min(cosine, mesh_.NormalOf(t).dot(mesh_.NormalOf(other)));
+        }
+      }
+    }
+    result.bend = cosine < kLeastCosine ? std::numeric_limits<double>::infinity()
+                                        : std::sqrt(std::max(0.0, 1 - cosine * cosine)) / cosine;
+    surroundings_.push_back(result);
+  }
 }
 
 // The closest point of a rim lies between the ends of the edge as the point itself does, but for
@@ -151,31 +161,34 @@ NearList NearSearch::MakeFullList() const {
 
 // First by the triangles' boxes; then by their distance where the box is large against `radius`, so
 // says little.
-void NearSearch::Filter(const NearList& list, const Vec3& c, double radius, bool is_exact,
-                        NearList* out) const {
+void NearSearch::Filter(const NearList& list, const Vec3& c, double radius, NearList* out) const {
   const auto calc_exact = [&](std::uint32_t triangle) {
     return (mesh_.ClosestOn(triangle, c).q - c).norm();
   };
   const auto limit_of = [&](double least) { return (least + 2 * radius) * kSlack + kRounding; };
+  // What was nearest to the larger region's centre is near this one.
+  double least = calc_exact(LeastOf(list).triangle);
+  double limit = limit_of(least);
+  const double first_limit = limit * limit;
   out->resize(list.size());
   NearTriangle lowest{kNoFace, std::numeric_limits<double>::infinity()};
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::uint32_t triangle = list[i].triangle;
-    const NearTriangle entry{triangle, boxes_[triangle].CalcSquaredDistance(c)};
-    (*out)[i] = entry;
-    if (entry.distance < lowest.distance) {
-      lowest = entry;
-    }
+  std::size_t count = 0;
+  for (const NearTriangle& candidate : list) {
+    const NearTriangle entry{candidate.triangle, boxes_[candidate.triangle].CalcSquaredDistance(c)};
+    (*out)[count] = entry;
+    count += entry.distance <= first_limit ? 1 : 0;
+    lowest = entry.distance < lowest.distance ? entry : lowest;
   }
-  double least = calc_exact(lowest.triangle);
-  double limit = limit_of(least);
+  out->resize(count);
+  least = std::min(least, calc_exact(lowest.triangle));
+  limit = limit_of(least);
   std::size_t kept = 0;
   for (const NearTriangle& entry : *out) {
     if (entry.distance > limit * limit) {
       continue;
     }
     double distance = std::sqrt(entry.distance);
-    if (is_exact || boxes_[entry.triangle].radius > 0.5 * radius) {
+    if (boxes_[entry.triangle].radius > 0.5 * radius) {
       distance = calc_exact(entry.triangle);
       if (distance < least) {
         least = distance;
@@ -187,13 +200,12 @@ void NearSearch::Filter(const NearList& list, const Vec3& c, double radius, bool
     }
   }
   out->resize(kept);
-  out->erase(std::remove_if(out->begin(), out->end(),
-                            [&](const NearTriangle& entry) { return entry.distance > limit; }),
-             out->end());
+  std::erase_if(*out, [&](const NearTriangle& entry) { return entry.distance > limit; });
 }
 
-Nearest NearSearch::Find(const NearList& list, const Vec3& p, double offset,
-                         std::uint32_t hint) const {
+template <bool is_sorted>
+Nearest NearSearch::FindIn(const NearList& list, const Vec3& p, double offset,
+                           std::uint32_t hint) const {
   double squared = std::numeric_limits<double>::infinity();
   double limit = squared;
   double limit_squared = squared;
@@ -210,17 +222,35 @@ Nearest NearSearch::Find(const NearList& list, const Vec3& p, double offset,
   };
   look(hint);
   for (const NearTriangle& entry : list) {
-    if (entry.distance - offset <= limit && entry.triangle != hint &&
-        boxes_[entry.triangle].CalcSquaredDistance(p) <= limit_squared) {
+    if (entry.distance - offset > limit) {
+      if constexpr (is_sorted) {
+        break;
+      }
+      continue;
+    }
+    if (entry.triangle != hint && boxes_[entry.triangle].CalcSquaredDistance(p) <= limit_squared) {
       look(entry.triangle);
     }
   }
   return nearest;
 }
 
+Nearest NearSearch::Find(const NearList& list, const Vec3& p, double offset,
+                         std::uint32_t hint) const {
+  return FindIn<false>(list, p, offset, hint);
+}
+
 Nearest NearSearch::FindSigned(const NearList& list, const Vec3& p, double offset,
                                std::uint32_t hint) const {
-  Nearest nearest = Find(list, p, offset, hint);
+  return GiveSign(p, FindIn<false>(list, p, offset, hint));
+}
+
+Nearest NearSearch::FindSignedInSorted(const NearList& list, const Vec3& p, double offset,
+                                       std::uint32_t hint) const {
+  return GiveSign(p, FindIn<true>(list, p, offset, hint));
+}
+
+Nearest NearSearch::GiveSign(const Vec3& p, Nearest nearest) const {
   const TriangleFeature feature = nearest.point.feature;
   bool is_inside = (p - nearest.point.q).dot(mesh_.Pseudonormal(nearest.triangle, feature)) < 0;
   if (mesh_.IsOpenAt(nearest.triangle, feature)) {

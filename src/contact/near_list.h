@@ -21,6 +21,11 @@ inline constexpr double kSlack = 1 + 1e-9;
 
 using NearList = std::vector<NearTriangle>;
 
+/** An order of entries by distance. */
+[[nodiscard]] inline bool IsNearer(const NearTriangle& a, const NearTriangle& b) {
+  return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
+}
+
 struct Nearest {
   double distance{0};  ///< Signed where so said.
   std::uint32_t triangle{kNoFace};
@@ -39,16 +44,19 @@ class NearSearch {
 
   [[nodiscard]] NearList MakeFullList() const;
 
-  /** Keeps, of the triangles given, those that may be closest to some point within `radius` of c.
-   The distances written are lower bounds of those from c, and exact where `is_exact` asks for it.
- */
-  void Filter(const NearList& list, const Vec3& c, double radius, bool is_exact,
-              NearList* out) const;
+  /** Keeps, of the triangles given, those that may be closest to some point within `radius` of c,
+   with lower bounds of their distances from c. @pre the list is not empty. */
+  void Filter(const NearList& list, const Vec3& c, double radius, NearList* out) const;
 
   /** The closest triangle to p, from a list with lower bounds of the distances to a point that p is
    `offset` away from (kAnywhere: unknown). Begins with the triangle `hint`. Not signed. */
   [[nodiscard]] Nearest Find(const NearList& list, const Vec3& p, double offset,
                              std::uint32_t hint) const;
+
+  /** False where the triangle's box is further from p than `distance`. */
+  [[nodiscard]] bool MayReach(std::uint32_t triangle, const Vec3& p, double distance) const {
+    return boxes_[triangle].CalcSquaredDistance(p) <= distance * distance;
+  }
 
   /** False where no point within `radius` of c has, of the triangle's face, its closest point in
    the triangle. @param point  The triangle's closest point to c.
@@ -60,7 +68,16 @@ class NearSearch {
   [[nodiscard]] Nearest FindSigned(const NearList& list, const Vec3& p, double offset,
                                    std::uint32_t hint) const;
 
+  /** Finds that in a list that is sorted by IsNearer. */
+  [[nodiscard]] Nearest FindSignedInSorted(const NearList& list, const Vec3& p, double offset,
+                                           std::uint32_t hint) const;
+
  private:
+  template <bool is_sorted>
+  [[nodiscard]] Nearest FindIn(const NearList& list, const Vec3& p, double offset,
+                               std::uint32_t hint) const;
+  [[nodiscard]] Nearest GiveSign(const Vec3& p, Nearest nearest) const;
+
   // A box around a triangle: tells most that are too far away at a tenth of the exact distance's
   // cost.
   struct TriangleBox {
@@ -82,9 +99,7 @@ class NearSearch {
     std::uint8_t rims;  // Bit k: edge k is on the face's rim.
   };
 
-  [[nodiscard]] Surroundings SurroundingsOf(
-      std::uint32_t triangle, const std::vector<std::vector<std::uint32_t>>& around) const;
-
+  void FindSurroundings();
   void FindRimBends();
   [[nodiscard]] bool CanRimBeClosest(std::uint32_t triangle, std::size_t k, const Vec3& c,
                                      double radius, double limit) const;

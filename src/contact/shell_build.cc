@@ -46,7 +46,8 @@ class Sampler {
 
   bool TryAdd(const Sample& sample, double radius) {
     const auto cell = CellOf(sample.p);
-    for (std::int64_t i = 0; i < 27; ++i) {
+    for (std::int64_t n = 0; n < 27; ++n) {
+      const std::int64_t i = (n + 13) % 27;  // Its own cell, where most are refused, comes first.
       const auto found =
           cells_.find(Key({cell[0] + i % 3 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i / 9 - 1}));
       for (std::uint32_t s = found == cells_.end() ? kNoFace : found->second; s != kNoFace;

@@ -5,7 +5,6 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -67,6 +66,7 @@ PressFitParameters ToPressFit(const FitForceParameters& p) {
   press.hub_diameter = p.hub_diameter == 0 ? 2 * p.nominal_diameter : p.hub_diameter;
   press.shaft_bore = p.shaft_bore;
   press.length = p.length;
+  press.breadth = p.breadth;
   press.interference = p.shaft_diameter - p.hole_diameter;
   press.hub_roughness = press.shaft_roughness = p.roughness;
   press.smoothing = p.smoothing;
@@ -148,7 +148,8 @@ Result<FitForce> FitForce::Make(const FitForceParameters& parameters) {
   fit.friction_ = p.friction;
   fit.length_ = p.length;
   fit.step_ = p.length / p.stations;
-  fit.diameter_ = p.nominal_diameter;
+  fit.outline_ = press->outline;
+  fit.torque_radius_ = p.breadth > 0 ? 0 : 0.5 * p.nominal_diameter;
   fit.mean_clearance_ = 0.5 * (p.hole_diameter - p.shaft_diameter);
   fit.shaft_diameter_ = p.shaft_diameter;
   fit.pressure_per_interference_ = press->pressure_per_interference;
@@ -206,12 +207,12 @@ double FitForce::CalcReleaseForce(double depth, double speed) const noexcept {
 }
 
 double FitForce::CalcTorque(double depth) const noexcept {
-  return friction_.turning * CalcNormalForce(depth) * 0.5 * diameter_;
+  return friction_.turning * CalcNormalForce(depth) * torque_radius_;
 }
 
 double FitForce::CalcRadialStiffness(double depth) const noexcept {
   const double l = depth > 0 ? std::min(depth, length_) : 0.0;
-  return std::numbers::pi * diameter_ * pressure_per_interference_ * l;
+  return outline_ * pressure_per_interference_ * l;
 }
 
 double FitForce::CalcTiltStiffness(double depth) const noexcept {

@@ -43,6 +43,9 @@ struct FitForceParameters {
   double length{0};            ///< L, mating length [m], > 0.
   double hub_diameter{0};      ///< D_aA, outside [m], > D_F; 0: twice the nominal, as in W7's rig.
   double shaft_bore{0};        ///< D_iI [m], < D_F.
+  /** Breadth of flat walls across the way [m] (PressFitParameters::breadth); 0: round. Widths count
+   as diameters, and S is the gap at each wall of a tongue in the middle. */
+  double breadth{0};
   PressMaterial hub;
   PressMaterial shaft;
   double roughness{6.3e-6};  ///< Rz, mean of both surfaces [m], >= 0; B is within half of it.
@@ -62,9 +65,9 @@ struct FitForceParameters {
  pressure for each metre of diametral interference, G the smoothing loss (press_fit.h):
      W(4)  S(l) = (D_h(l) - d_s(l)) / 2 + B(l)         radial; negative: interference
      W(7)  p(l) = 2 c_p max(0, -S - G / 2)
-     W(6)  N(l) = pi D_F integral_0^l p                normal force
+     W(6)  N(l) = pi D_F integral_0^l p                normal force; flat walls: 2 b integral_0^l p
      W(8), W(9)  F_in(l) = mu_e N(l), and the run-in over a chamfer
-                 F_out(l) = nu_ll N(l), then nu_rl N(l);  T(l) = nu_ru N(l) D_F / 2
+                 F_out(l) = nu_ll N(l), then nu_rl N(l);  T(l) = nu_ru N(l) D_F / 2, flat: 0
  In true newtons; they are what has to be overcome to move, and the limits of what holds the shaft
  at rest. Where S >= 0, N does not grow: the stairs of a transition fit.
 
@@ -100,7 +103,8 @@ class FitForce {
 
   /** Stiffness of the engaged length beyond its play, across the axis [N/m] and against tilt
    [N m/rad]. Every ring is a bed of springs with the stiffness of its uniform pressure, 2 c_p for
-   each metre of radius: k = pi D_F c_p l, k_t = k l^2 / 12. An estimate, of the right order. */
+   each metre of radius: k = pi D_F c_p l, k_t = k l^2 / 12; flat walls: k = 2 b c_p l. An estimate,
+   of the right order. */
   [[nodiscard]] double CalcRadialStiffness(double depth) const noexcept;
   [[nodiscard]] double CalcTiltStiffness(double depth) const noexcept;
 
@@ -133,7 +137,8 @@ class FitForce {
   FitFriction friction_;
   double length_{0};
   double step_{0};
-  double diameter_{0};
+  double outline_{0};        // pi D_F or 2 b [m].
+  double torque_radius_{0};  // D_F / 2; 0 for flat walls [m].
   double mean_clearance_{0};
   double shaft_diameter_{0};
   double pressure_per_interference_{0};  // c_p [Pa/m].

@@ -153,7 +153,8 @@ constexpr std::array<Aliases, 44> kAliases{{
     {"PA66 dry",
      "ABS|ABS plastic|acrylonitrile butadiene styrene|PLA|polylactic acid|PETG|PET|ASA|HIPS|"
      "polycarbonate|PC ABS|makrolon|lexan|acrylic|PMMA|plexiglas|plexiglass|plastic|plastics|"
-     "kunststoff|plastique|plastica|пластик|Пластик|пластмасса|polymer|polystyrene|PVC|"
+     "kunststoff|polypropylene|polypropylen|HDPE|LDPE|polyethylene|polyethylen|plastique|plastica|"
+     "пластик|Пластик|пластмасса|polymer|polystyrene|PVC|"
      "polyvinyl chloride|epoxy|resin|photopolymer|PBT|PPS|PSU|PEI|ultem|nylon carbon "
      "fiber|PA66GF30|PA66 GF30|PA6GF30|PA6 GF30|PA12GF30",
      true},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <thread>
 
@@ -150,11 +149,10 @@ Result<PreparedLand> Prepare(const PopulationLand& land, double end, int depth_c
                          fit->pressure_per_interference;
   p.half_roughness_um =
       static_cast<float>(units::ToUm(0.25 * (press.hub_roughness + press.shaft_roughness)));
-  // p = (p / U) 2 max(0, -S); F grows by mu pi D p dl.
+  // p = (p / U) 2 max(0, -S); F grows by mu O p dl, O the outline.
   const double interval = press.length / land.stations;
-  p.force_per_interval =
-      static_cast<float>(press.friction_in * std::numbers::pi * press.joint_diameter * interval *
-                         2 * fit->pressure_per_interference * units::FromUm(1));
+  p.force_per_interval = static_cast<float>(press.friction_in * fit->outline * interval * 2 *
+                                            fit->pressure_per_interference * units::FromUm(1));
   p.clearance = {land.hole.bounds().lower - land.shaft.bounds().upper,
                  land.hole.bounds().upper - land.shaft.bounds().lower};
   for (int d = 0; d <= depth_count; ++d) {

@@ -66,6 +66,7 @@ Result<void> Check(const PressFitParameters& p) {
        {"the hub's outer diameter", p.hub_diameter, p.joint_diameter, kInfinity, false, Unit::kMm},
        {"the shaft's bore", p.shaft_bore, 0, p.joint_diameter, true, Unit::kMm},
        {"the joint's length", p.length, 0, kInfinity, false, Unit::kMm},
+       {"the joint's breadth", p.breadth, 0, kInfinity, true, Unit::kMm},
        {"the hub's roughness", p.hub_roughness, 0, kInfinity, true, Unit::kUm},
        {"the shaft's roughness", p.shaft_roughness, 0, kInfinity, true, Unit::kUm},
        {"the hub's Young's modulus", p.hub.youngs_modulus, 0, kInfinity, false, Unit::kMpa},
@@ -77,13 +78,22 @@ Result<void> Check(const PressFitParameters& p) {
        {"the friction against turning", p.friction_torque, 0, kInfinity, true, Unit::kPure}});
 }
 
-/** What both sides give way: diametral strain for each pascal. */
+/** What both sides give way: diametral strain, or strain of the width, for each pascal. */
 struct Compliance {
   double hub{0};    // K_A / E_A
   double shaft{0};  // K_I / E_I
 };
 
+/** 1 / E' of plane strain. */
+double CalcPlaneCompliance(const PressMaterial& material) {
+  return (1 - material.poisson_ratio * material.poisson_ratio) / material.youngs_modulus;
+}
+
 Compliance CalcCompliance(const PressFitParameters& p) {
+  if (p.breadth > 0) {
+    const double walls = (p.hub_diameter - p.joint_diameter) / p.joint_diameter;
+    return {walls * CalcPlaneCompliance(p.hub), CalcPlaneCompliance(p.shaft)};
+  }
   const double qa2 = std::pow(p.joint_diameter / p.hub_diameter, 2);
   const double qi2 = std::pow(p.shaft_bore / p.joint_diameter, 2);
   return {((1 + qa2) / (1 - qa2) + p.hub.poisson_ratio) / p.hub.youngs_modulus,
@@ -92,6 +102,13 @@ Compliance CalcCompliance(const PressFitParameters& p) {
 
 double CalcSmoothingLoss(const PressFitParameters& p) {
   return GetSmoothingFactor(p.smoothing) * (p.hub_roughness + p.shaft_roughness);
+}
+
+/** Slabs in compression yield where the pressure is their strength: by Tresca; in plane strain a
+ little later by von Mises, which is left out on the safe side. */
+ElasticLimit CalcFlatLimit(const PressMaterial& m) {
+  const double limit = m.yield_strength > 0 ? m.yield_strength : m.tensile_strength;
+  return limit > 0 ? ElasticLimit{limit, limit} : ElasticLimit{kInfinity, kInfinity};
 }
 
 ElasticLimit CalcHubLimit(const PressFitParameters& p) {
@@ -195,18 +212,28 @@ Result<PressFit> CalcPressFit(const PressFitParameters& parameters) {
   fit.pressure = fit.pressure_per_interference * fit.effective_interference;
   fit.hub_expansion = fit.pressure * p.joint_diameter * compliance.hub;
   fit.shaft_contraction = fit.pressure * p.joint_diameter * compliance.shaft;
-  const double qa2 = std::pow(p.joint_diameter / p.hub_diameter, 2);
-  const double qi2 = std::pow(p.shaft_bore / p.joint_diameter, 2);
-  fit.hub_bore = {fit.pressure * (1 + qa2) / (1 - qa2), -fit.pressure};
-  fit.shaft_surface = {-fit.pressure * (1 + qi2) / (1 - qi2), -fit.pressure};
-  fit.shaft_governing = qi2 > 0 ? RingStress{-2 * fit.pressure / (1 - qi2), 0} : fit.shaft_surface;
-  fit.hub_limit = CalcHubLimit(p);
-  fit.shaft_limit = CalcShaftLimit(p);
   fit.is_hub_brittle = IsBrittle(p.hub);
-  const double normal_force = std::numbers::pi * p.joint_diameter * p.length * fit.pressure;
+  if (p.breadth > 0) {
+    fit.outline = 2 * p.breadth;
+    fit.hub_bore = fit.shaft_surface = fit.shaft_governing = {0, -fit.pressure};
+    fit.hub_limit = CalcFlatLimit(p.hub);
+    fit.shaft_limit = CalcFlatLimit(p.shaft);
+  } else {
+    fit.outline = std::numbers::pi * p.joint_diameter;
+    const double qa2 = std::pow(p.joint_diameter / p.hub_diameter, 2);
+    const double qi2 = std::pow(p.shaft_bore / p.joint_diameter, 2);
+    fit.hub_bore = {fit.pressure * (1 + qa2) / (1 - qa2), -fit.pressure};
+    fit.shaft_surface = {-fit.pressure * (1 + qi2) / (1 - qi2), -fit.pressure};
+    fit.shaft_governing =
+        qi2 > 0 ? RingStress{-2 * fit.pressure / (1 - qi2), 0} : fit.shaft_surface;
+    fit.hub_limit = CalcHubLimit(p);
+    fit.shaft_limit = CalcShaftLimit(p);
+  }
+  const double normal_force = fit.outline * p.length * fit.pressure;
   fit.press_in_force = p.friction_in * normal_force;
   fit.push_out_force = p.friction_release * normal_force;
-  fit.torque = p.friction_torque * normal_force * p.joint_diameter / 2;
+  // Walls hold against turning by their form, not by friction.
+  fit.torque = p.breadth > 0 ? 0 : p.friction_torque * normal_force * p.joint_diameter / 2;
   return fit;
 }
 

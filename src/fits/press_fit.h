@@ -35,10 +35,13 @@ struct PressMaterial {
 
 /** A hub A outside, a shaft I inside, joined at the diameter D_F. */
 struct PressFitParameters {
-  double joint_diameter{0};   ///< D_F [m], > 0.
-  double hub_diameter{0};     ///< D_aA, outside [m], > D_F.
-  double shaft_bore{0};       ///< D_iI [m], 0 for a solid shaft, < D_F.
-  double length{0};           ///< l_F, of the joint [m], > 0.
+  double joint_diameter{0};  ///< D_F [m], > 0.
+  double hub_diameter{0};    ///< D_aA, outside [m], > D_F.
+  double shaft_bore{0};      ///< D_iI [m], 0 for a solid shaft, < D_F.
+  double length{0};          ///< l_F, of the joint [m], > 0.
+  /** Flat walls, as of a tongue in a slot: their breadth b across the way [m]. The diameters are
+   widths then: D_F of the joint, D_aA with both walls, and there is no bore. 0: round. */
+  double breadth{0};
   double interference{0};     ///< U, diametral, before smoothing [m]; <= 0: none.
   double hub_roughness{0};    ///< Rz_A [m], >= 0.
   double shaft_roughness{0};  ///< Rz_I [m], >= 0.
@@ -71,6 +74,7 @@ struct PressFit {
   double effective_interference{0};     ///< U_w = max(0, U - G), diametral [m].
   double pressure{0};                   ///< p [Pa].
   double pressure_per_interference{0};  ///< p / U_w [Pa/m], of the geometry alone.
+  double outline{0};                    ///< Length of the joint across its way [m]: pi D_F, or 2 b.
   double hub_expansion{0};              ///< Diametral, of the hub's bore [m].
   double shaft_contraction{0};  ///< Diametral, of the shaft's outside [m]; the two make U_w.
   RingStress hub_bore;
@@ -107,6 +111,10 @@ inline constexpr double kBrittleSafety = 3;
      Q_A = D_F / D_aA, Q_I = D_iI / D_F,
      K_A = (1 + Q_A^2) / (1 - Q_A^2) + nu_A,  K_I = (1 + Q_I^2) / (1 - Q_I^2) - nu_I,
      p = (U_w / D_F) / (K_A / E_A + K_I / E_I),  F = mu pi D_F l_F p,  T = nu pi D_F^2 l_F p / 2.
+ Flat walls: slabs that are pressed across in plane strain, w of the tongue and t of both walls,
+     p = U_w / (w / E_I' + t / E_A'),  E' = E / (1 - nu^2),  F = mu 2 b l_F p,
+ with w = D_F, t = D_aA - D_F (Johnson, Contact Mechanics, 1985, 4.3 with a free edge). The walls
+ are held from behind: legs of a slot that bend give more way, so that this force is an upper bound.
  Errors: kInvalid, naming the parameter out of its range. */
 [[nodiscard]] Result<PressFit> CalcPressFit(const PressFitParameters& parameters);
 

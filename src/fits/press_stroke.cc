@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -87,7 +86,7 @@ Result<PressStroke> PressStroke::Make(std::vector<StrokeLand> lands) {
               std::tan(source.lead_in_angle),
               p.friction_in,
               p.friction_release,
-              std::numbers::pi * p.joint_diameter * fit->pressure_per_interference,
+              fit->outline * fit->pressure_per_interference,
               p.length / static_cast<double>(source.clearances.size() - 1),
               std::move(source.clearances),
               {0}};

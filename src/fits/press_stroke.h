@@ -41,10 +41,11 @@ struct StrokeForce {
 };
 
 /** Forces over depth, exact: no steps in depth. With n(z) the interference of a land at the depth z
- of its hole, diametral and after smoothing, and p / U of Lame's rings:
+ of its hole, diametral and after smoothing, O the outline (PressFit::outline) and p / U of Lame's
+ rings or flat walls:
 
-     body   mu pi D (p / U) integral of n over the engaged length
-     ramp   mu' pi D (p / U) integral of n over the chamfer, along which n falls to nothing over
+     body   mu O (p / U) integral of n over the engaged length
+     ramp   mu' O (p / U) integral of n over the chamfer, along which n falls to nothing over
             n / (2 tan a) in front of the edge;
             mu' = (mu + tan a) / (1 - mu tan a) inwards, (mu - tan a) / (1 + mu tan a) outwards
 
@@ -74,7 +75,7 @@ class PressStroke {
     double tan_lead_in;
     double friction_in;
     double friction_release;
-    double force_per_area;  // pi D p / U, of the integral of diametral interference [N/m^2].
+    double force_per_area;  // O p / U, of the integral of diametral interference [N/m^2].
     double step;
     std::vector<double> s;         // Radial, smoothed [m].
     std::vector<double> integral;  // Of max(0, -s) up to each [m^2].

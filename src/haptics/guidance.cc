@@ -60,7 +60,7 @@ EnergyCredit Guidance::AddAttraction(const DisplayedPart& displayed, const MateG
   // as it engages: what pulls the part in would hold it back on the way out.
   const HeldPart& part = *displayed.part;
   const GuidanceOptions& guidance = options_.guidance;
-  const Vec3& a = axis.axis_W;
+  const Vec3& a = axis.way_W;
   const double to_go = a.dot(part.X_WB_goal * part.p_BoBcm_B - displayed.p_WCm());
   const double to_turn = a.dot(spatial::RotationBetween(displayed.X_WD.q(), part.X_WB_goal.q()));
   EnergyCredit credit;
@@ -89,8 +89,8 @@ void Guidance::AddFits(const DisplayedPart& displayed, const MateGeometry& axis,
   // W5, W8, W9: the fit resists motion along and about the axis up to what physics says at this
   // depth, felt through the map; at rest it holds, and never pushes.
   const HeldPart& part = *displayed.part;
-  const bool is_out = axis.axis_W.dot(part.insertion_W) <= 0;
-  fit_axis_.out_W = is_out ? axis.axis_W : Vec3(-axis.axis_W);
+  const bool is_out = axis.way_W.dot(part.insertion_W) <= 0;
+  fit_axis_.out_W = is_out ? axis.way_W : Vec3(-axis.way_W);
   fit_axis_.p_CmQ_W = axis.p_WQ - displayed.p_WCm();
   fit_axis_.radius = part.mates[guide_.axis_index()].radius;
   fit_axis_.weight_out = weight * options_.gravity_W.normalized().dot(fit_axis_.out_W);
@@ -126,7 +126,7 @@ GuidedAxis Guidance::DescribeAxis(const HeldPart& part) const noexcept {
   GuidedAxis axis;
   axis.mate = mate.id;
   axis.p_WQ = geometry->p_WQ;
-  axis.axis_W = geometry->axis_W;
+  axis.axis_W = geometry->way_W;
   axis.tilt = geometry->angle;
   axis.offset = geometry->distance;
   axis.depth = geometry->depth;

@@ -214,11 +214,19 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
   return out;
 }
 
+double HapticTick::CalcFeltWeight(const HeldPart& part) const noexcept {
+  // Of the device's force: the rest is what the hand lifts, moves and presses with. A choice; a
+  // part of 44 kg is felt so with the usual device, and what is heavier hangs in a hoist.
+  constexpr double kMostWeight = 0.5;
+  return std::min(force_map_.Felt(part.mass * options_.gravity_W.norm()),
+                  kMostWeight * options_.device.max_force);
+}
+
 void HapticTick::CreditWeight() noexcept {
   // What the hand is owed on the part's way to its place: weight that goes down with it.
   const HeldPart& part = *displayed_.part;
   const double drop = part.X_WB_start.p().z() - part.X_WB_goal.p().z();
-  const double weight = force_map_.Felt(part.mass * options_.gravity_W.norm());
+  const double weight = CalcFeltWeight(part);
   output_.AddCredit(weight * std::max(0.0, drop) / options_.workspace.mapping.scale);
 }
 
@@ -262,7 +270,7 @@ void HapticTick::Step(const HandExchange* other, TickOutput* out) noexcept {
   coupling_.AddTo(displayed_, &solver_);
   const Vec3 down_W = options_.gravity_W.normalized();
   const double weight_true = part.mass * options_.gravity_W.norm();
-  weight_felt_ = soft_start_ * force_map_.Felt(weight_true);
+  weight_felt_ = soft_start_ * CalcFeltWeight(part);
   solver_.AddWrench({Vec3::Zero(), weight_felt_ * down_W});
   solver_.AddWrench(contacts_.CalcPush(hold_));
   const EnergyCredit credit = guidance_.AddTo(displayed_, weight_true, soft_start_, &solver_);

@@ -117,6 +117,8 @@ class HapticTick {
  private:
   void ChoosePlace(const HandExchange* other) noexcept;
   void GoTo(const HeldPart& place) noexcept;
+  /** Weight of a part as the hand feels it [N]. */
+  [[nodiscard]] double CalcFeltWeight(const HeldPart& part) const noexcept;
   void CreditWeight() noexcept;
   [[nodiscard]] double CalcStoredEnergy() const noexcept;
   void Hold(const HandExchange* other, TickOutput* out) noexcept;

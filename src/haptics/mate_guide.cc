@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mates/mate_kind.h"
 
@@ -29,11 +30,16 @@ double FreeRadius(const HeldMate& mate, const MateGeometry& geometry) noexcept {
   return clearance * std::min(1.0, geometry.engaged / kOpening);
 }
 
-/** Tilt that the clearance leaves: 2 S over the engaged length. A length of less than a diameter
- holds no tilt by itself; there the guidance does (X14). */
+/** Engaged length from which on the play alone holds a tilt [m]. */
+double HoldingLength(const HeldMate& mate) noexcept {
+  return mate.breadth > 0 ? mate.breadth : 2 * mate.radius;
+}
+
+/** Tilt that the clearance leaves: 2 S over the engaged length. A length of less than a diameter,
+ or than the breadth of walls, holds no tilt by itself; there the guidance does (X14). */
 double FreeTilt(const HeldMate& mate, const MateGeometry& geometry) noexcept {
   return geometry.engaged > 0
-             ? 2 * FreeRadius(mate, geometry) / std::max(geometry.engaged, 2 * mate.radius)
+             ? 2 * FreeRadius(mate, geometry) / std::max(geometry.engaged, HoldingLength(mate))
              : 0;
 }
 
@@ -48,7 +54,8 @@ double FullStiffness(const HeldMate& mate, const MateGeometry& g, double most) n
 double FullRotStiffness(const HeldMate& mate, const MateGeometry& g, double most) noexcept {
   return mate.fit == nullptr || g.engaged <= 0
              ? most
-             : std::min(most, mate.fit->CalcTiltStiffness(std::max(g.engaged, 2 * mate.radius)));
+             : std::min(most,
+                        mate.fit->CalcTiltStiffness(std::max(g.engaged, HoldingLength(mate))));
 }
 
 /** Geometric ramp: most of the way is made where the mate is as stiff as the hand. */
@@ -69,7 +76,7 @@ bool IsGuide(const HeldMate& mate) noexcept {
 /** True where the mate takes the place of contact between its faces. Cones and spheres do not: they
  seat the part, and only contact knows when it is there. */
 bool ReplacesContact(const HeldMate& mate) noexcept {
-  return mate.capture.kind == MateKind::kAxisHole ||
+  return mates::HasFit(mate.capture.kind) ||
          (mate.capture.kind == MateKind::kFaceFace && !mate.is_stop);
 }
 
@@ -82,6 +89,41 @@ spatial::Pose WithoutOvershoot(const HeldPart& part, const spatial::Pose& X_WT) 
   return {X_WT.q(), X_WT.p() - overshoot * part.insertion_W};
 }
 
+/** What the spans of a mate share along its way, from the placed origin [m]. */
+struct Engagement {
+  double low{0};  // Where the sides meet, where they share nothing.
+  double high{0};
+  double depth{0};  // Negative by how far they are apart.
+};
+
+/** @param along  Of the held origin. @param cosine  Of the held way to the placed one. */
+Engagement CalcEngagement(const mates::CaptureMate& mate, double along, double cosine) noexcept {
+  const double held_low = along + cosine * mate.held_low;
+  const double held_high = along + cosine * mate.held_high;
+  return {std::clamp(mate.placed_low, held_low, held_high),
+          std::clamp(mate.placed_high, held_low, held_high),
+          std::min(mate.placed_high, held_high) - std::max(mate.placed_low, held_low)};
+}
+
+/** Along x the spans; along z the offset from the middle of the play, which is where it is drawn,
+ or nearer to the middle of the slot where the fit leaves less than is drawn. */
+void AddPrismaticGeometry(const HeldMate& mate, const spatial::Pose& X_WN,
+                          MateGeometry* g) noexcept {
+  const Vec3 d = X_WN.p() - mate.X_WM.p();
+  const Vec3 held_way = X_WN.q() * Vec3::UnitX();
+  g->way_W = mate.X_WM.q() * Vec3::UnitX();
+  const double cosine = std::max(0.1, held_way.dot(g->way_W));
+  const double along = d.dot(g->way_W);
+  const Engagement engagement = CalcEngagement(mate.capture, along, cosine);
+  g->engaged = engagement.high - engagement.low;
+  g->depth = engagement.depth;
+  const double middle = 0.5 * (engagement.low + engagement.high);
+  g->p_WQ = X_WN.p() + (middle - along) / cosine * held_way;
+  const double free = FreeRadius(mate, *g);
+  const double across = (g->p_WQ - mate.X_WM.p()).dot(g->axis_W);
+  g->offset_W = (across + std::clamp(mate.shift, -free, free)) * g->axis_W;
+}
+
 }  // namespace
 
 MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) noexcept {
@@ -89,6 +131,7 @@ MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) n
   const bool is_plane = mate.capture.kind == MateKind::kFaceFace;
   const spatial::Pose X_WN = X_WB * mate.X_BN;
   g.axis_W = mate.X_WM.q() * Vec3::UnitZ();
+  g.way_W = g.axis_W;
   const Vec3 held_axis = X_WN.q() * Vec3(0, 0, is_plane ? -1 : 1);
   const Vec3 d = X_WN.p() - mate.X_WM.p();
   const Vec3 cross = held_axis.cross(g.axis_W);
@@ -103,18 +146,16 @@ MateGeometry CalcMateGeometry(const HeldMate& mate, const spatial::Pose& X_WB) n
   } else if (is_plane) {
     g.p_WQ = X_WN.p();
     g.offset_W = along * g.axis_W;
+  } else if (mate.capture.kind == MateKind::kPrismatic) {
+    AddPrismaticGeometry(mate, X_WN, &g);
   } else {
     // Where the axes meet, as recognition has it: the end of the held span that faces the placed
     // one, or the middle of what they share. Further off, a tilt would count as an offset.
     const double cosine = std::max(0.1, held_axis.dot(g.axis_W));
-    const double held_low = along + cosine * mate.capture.held_low;
-    const double held_high = along + cosine * mate.capture.held_high;
-    const double low = std::clamp(mate.capture.placed_low, held_low, held_high);
-    const double high = std::clamp(mate.capture.placed_high, held_low, held_high);
-    g.engaged = high - low;
-    g.depth =
-        std::min(mate.capture.placed_high, held_high) - std::max(mate.capture.placed_low, held_low);
-    g.p_WQ = X_WN.p() + (0.5 * (low + high) - along) / cosine * held_axis;
+    const Engagement engagement = CalcEngagement(mate.capture, along, cosine);
+    g.engaged = engagement.high - engagement.low;
+    g.depth = engagement.depth;
+    g.p_WQ = X_WN.p() + (0.5 * (engagement.low + engagement.high) - along) / cosine * held_axis;
     g.offset_W = g.p_WQ - mate.X_WM.p();
     g.offset_W -= g.offset_W.dot(g.axis_W) * g.axis_W;
   }
@@ -165,7 +206,7 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
     ++captured_count_;
     UpdateAlignment(mate, &state);
     is_aligned_ = is_aligned_ || state.is_aligned;
-    if (kind == MateKind::kAxisHole) {
+    if (mates::HasFit(kind)) {
       if (axis_ == nullptr || g.engaged > insertion_depth_) {
         axis_ = &state.geometry;
         axis_index_ = i;
@@ -201,7 +242,7 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const Mat3 along = g.axis_W * g.axis_W.transpose();
     const Mat3 whole = Mat3::Identity();
     const Mat3 across = whole - along;
-    const double tilt_free = mate.capture.kind == MateKind::kAxisHole ? FreeTilt(mate, g) : 0;
+    const double tilt_free = mates::HasFit(mate.capture.kind) ? FreeTilt(mate, g) : 0;
     const double tilt = g.tilt_W.norm();
     if (mates::HoldsDirection(mate.capture.kind) && (tilt > tilt_free || tilt_free == 0)) {
       const double excess = tilt - tilt_free;
@@ -229,10 +270,12 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
           r - free, options.max_force);
       const double ratio = r > 0 ? free / r : 0.0;
       const Vec3 e = r > 0 ? Vec3(g.offset_W / r) : Vec3::Zero();
-      if (g.engaged > 0 && mate.capture.kind == MateKind::kAxisHole) {
+      if (g.engaged > 0 && mates::HasFit(mate.capture.kind)) {
         lateral_force_ += k * (r - free);
       }
-      const Mat3& held = mates::IsCentre(mate.capture.kind) ? whole : across;
+      const Mat3& held = mates::IsCentre(mate.capture.kind)      ? whole
+                         : mates::HoldsAcross(mate.capture.kind) ? across
+                                                                 : along;
       solver->AddPointSpring(g.p_WQ, -k * (r - free) * e,
                              k * ((1 - ratio) * held + ratio * e * e.transpose()));
     }
@@ -240,7 +283,12 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
 }
 
 double MateGuide::CalcAxisPlay(const HeldPart& part) const noexcept {
-  return axis_ != nullptr ? FreeRadius(part.mates[axis_index_], *axis_) : 0;
+  if (axis_ == nullptr) {
+    return 0;
+  }
+  const HeldMate& mate = part.mates[axis_index_];
+  return mates::HoldsAcross(mate.capture.kind) ? FreeRadius(mate, *axis_)
+                                               : std::numeric_limits<double>::infinity();
 }
 
 std::size_t MateGuide::CollectIgnored(const HeldPart& part, std::span<contact::IgnoredPair> pairs,

@@ -12,7 +12,8 @@ namespace hvas::haptics {
 
 /** Where the held part stands to one mate. */
 struct MateGeometry {
-  Vec3 axis_W{Vec3::UnitZ()};  ///< Axis or outward normal of the placed side.
+  Vec3 axis_W{Vec3::UnitZ()};  ///< Axis or outward normal of the placed side; prismatic: across.
+  Vec3 way_W{Vec3::UnitZ()};   ///< Along which it is engaged: the axis; prismatic: the way out.
   Vec3 p_WQ{Vec3::Zero()};     ///< The held side's point that the mate acts on.
   Vec3 offset_W{
       Vec3::Zero()};  ///< Vector from where Q belongs to Q: across the axis, or along the normal.
@@ -77,15 +78,16 @@ class MateGuide {
   /** Force with which the bores hold the shaft back, for W5's Coulomb friction [N]. */
   [[nodiscard]] double lateral_force() const noexcept { return lateral_force_; }
 
-  /** Deepest engagement of a captured axis mate [m]. */
+  /** Deepest engagement of a captured mate that has a fit, of a shaft or a tongue [m]. */
   [[nodiscard]] double insertion_depth() const noexcept { return insertion_depth_; }
 
-  /** Axis of the first captured axis mate, or null. */
+  /** The captured mate of shaft or tongue that is engaged deepest, or null. */
   [[nodiscard]] const MateGeometry* axis() const noexcept { return axis_; }
 
   [[nodiscard]] std::size_t axis_index() const noexcept { return axis_index_; }
 
-  /** How far the fit on that axis lets the shaft be off the axis [m]; 0 without an axis. */
+  /** How far the fit on that axis lets the shaft be off the axis [m]; 0 without an axis, infinite
+   for a tongue, which may lie anywhere along the walls. */
   [[nodiscard]] double CalcAxisPlay(const HeldPart& part) const noexcept;
 
  private:

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "fits/iso286.h"
 #include "mates/make_fit.h"
+#include "mates/mate_kind.h"
 #include "mates/stated_fits.h"
 #include "product/names.h"
 
@@ -80,6 +81,11 @@ Result<Fit> MakeSideFit(const fits::ToleranceClass& side, const Mate& mate,
 /** The fit for one mate from what somebody wrote. @param nominal  Where it is stated [m]. */
 Result<Fit> MakeFit(std::string_view text, const Mate& mate, std::optional<double> nominal,
                     std::string reason) {
+  if (text == "thread" && mate.kind == MateKind::kPrismatic) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("mate m{} is prismatic and cannot be a thread", mate.id.value()), {},
+                "write a fit of widths, as H7/g6");
+  }
   if (text == "thread") {
     return Fit{FitKind::kThread, "", nominal.value_or(NominalOf(mate)), false, std::move(reason)};
   }
@@ -105,16 +111,22 @@ bool IsMate(const Mate& mate, std::string_view text) {
   return !mate.key.empty() && mate.key == text;
 }
 
+/** The kind of the mates that an entry identifies by names. */
+MateKind KindOf(const FitEntry& entry) {
+  return entry.width || entry.has_widths ? MateKind::kPrismatic : MateKind::kAxisHole;
+}
+
 bool Matches(const Product& product, const Mate& mate, const FitEntry& entry) {
   if (!entry.mate.empty()) {
     return IsMate(mate, entry.mate);
   }
+  const std::optional<double> size = entry.width ? entry.width : entry.diameter;
   const auto is_near = [&](double radius) {
-    return std::abs(2 * radius - *entry.diameter) <= kSameDiameter * *entry.diameter;
+    return std::abs(2 * radius - *size) <= kSameDiameter * *size;
   };
-  return mate.kind == MateKind::kAxisHole && IsCalled(product, mate.a.occurrence, entry.hole) &&
+  return mate.kind == KindOf(entry) && IsCalled(product, mate.a.occurrence, entry.hole) &&
          IsCalled(product, mate.b.occurrence, entry.shaft) &&
-         (!entry.diameter || is_near(mate.hole_radius) || is_near(mate.shaft_radius));
+         (!size || is_near(mate.hole_radius) || is_near(mate.shaft_radius));
 }
 
 Unexpected FailToFind(const Product& product, const FitEntry& entry) {
@@ -132,11 +144,20 @@ Unexpected FailToFind(const Product& product, const FitEntry& entry) {
       remedy = fmt::format("\"{}\" may be \"{}\"; {}", *name, nearest, kSeeMates);
     }
   }
-  return Fail(
-      ErrorCode::kNotFound,
-      fmt::format("no axis-hole mate of hole \"{}\" and shaft \"{}\"{}", entry.hole, entry.shaft,
-                  entry.diameter ? fmt::format(" with {:g} mm", units::ToMm(*entry.diameter)) : ""),
-      entry.where, std::move(remedy));
+  const bool is_prismatic = KindOf(entry) == MateKind::kPrismatic;
+  const std::optional<double> size = entry.width ? entry.width : entry.diameter;
+  FitEntry prismatic = entry;
+  prismatic.has_widths = true;
+  if (!is_prismatic && !size &&
+      std::any_of(product.mates.begin(), product.mates.end(),
+                  [&](const Mate& mate) { return Matches(product, mate, prismatic); })) {
+    remedy = R"(add "width_mm" for their slot and tongue)";
+  }
+  return Fail(ErrorCode::kNotFound,
+              fmt::format("no {} mate of hole \"{}\" and shaft \"{}\"{}",
+                          is_prismatic ? "prismatic" : "axis-hole", entry.hole, entry.shaft,
+                          size ? fmt::format(" with {:g} mm", units::ToMm(*size)) : ""),
+              entry.where, std::move(remedy));
 }
 
 Result<void> CheckMeasured(const char* name, const std::vector<MeasuredDiameter>& measured,
@@ -144,11 +165,10 @@ Result<void> CheckMeasured(const char* name, const std::vector<MeasuredDiameter>
   for (const auto& [depth, diameter] : measured) {
     if (std::abs(diameter - drawn) > kMostMeasured * drawn &&
         std::abs(diameter - nominal) > kMostMeasured * nominal) {
-      return Fail(
-          ErrorCode::kInvalid,
-          fmt::format("the measured diameter of the {}, {:g} mm, is far from the drawn {:g} mm",
-                      name, units::ToMm(diameter), units::ToMm(drawn)),
-          where, "give the diameter in mm, or another mate");
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("the measured size of the {}, {:g} mm, is far from the drawn {:g} mm",
+                              name, units::ToMm(diameter), units::ToMm(drawn)),
+                  where, "give the size in mm, or another mate");
     }
   }
   return {};
@@ -179,14 +199,24 @@ void Merge(const FitConditions& from, FitConditions* to) {
 }
 
 Result<void> ApplyEntry(const FitEntry& entry, const std::string& reason, Mate* mate) {
-  if (mate->kind != MateKind::kAxisHole) {
+  if (!HasFit(mate->kind)) {
     return Fail(
         ErrorCode::kInvalid,
         fmt::format("mate \"{}\" is {}, a kind without a fit", entry.mate, ToString(mate->kind)),
-        entry.where, "give an axis-hole mate");
+        entry.where, "give an axis-hole or prismatic mate");
+  }
+  const bool is_prismatic = mate->kind == MateKind::kPrismatic;
+  if (is_prismatic ? entry.has_diameters : entry.has_widths) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("mate \"{}\" is {} and has no {}", mate->key, ToString(mate->kind),
+                            is_prismatic ? "diameters" : "widths"),
+                entry.where,
+                is_prismatic ? R"(write "hole_width_mm" and "shaft_width_mm")"
+                             : R"(write "hole_diameter_mm" and "shaft_diameter_mm")");
   }
   if (!entry.fit.empty()) {
-    Result<Fit> fit = MakeFit(entry.fit, *mate, entry.diameter, reason);
+    Result<Fit> fit =
+        MakeFit(entry.fit, *mate, is_prismatic ? entry.width : entry.diameter, reason);
     if (!fit) {
       Error error = fit.error();
       error.where = entry.where;
@@ -301,12 +331,13 @@ Result<void> AssignFit(Product* product, std::string_view assignment) {
   std::vector<std::pair<std::size_t, Fit>> changes;
   for (std::size_t i = 0; i < product->mates.size(); ++i) {
     const Mate& mate = product->mates[i];
-    const bool is_thread = mate.fit && mate.fit->kind == FitKind::kThread;
+    const bool is_thread =
+        mate.fit && (mate.fit->kind == FitKind::kThread || mate.fit->kind == FitKind::kInsert);
     const bool is_named =
         IsMate(mate, axis) ||
         (!is_thread && (axis == "all" || IsCalled(*product, mate.a.occurrence, axis) ||
                         IsCalled(*product, mate.b.occurrence, axis)));
-    if (mate.kind != MateKind::kAxisHole || !is_named) {
+    if (!HasFit(mate.kind) || !is_named) {
       continue;
     }
     Result<Fit> fit =
@@ -319,10 +350,11 @@ Result<void> AssignFit(Product* product, std::string_view assignment) {
     changes.emplace_back(i, *std::move(fit));
   }
   if (changes.empty()) {
-    return Fail(
-        ErrorCode::kNotFound, fmt::format("\"{}\" does not identify an axis-hole mate", axis),
-        fmt::format("--fit {}", assignment),
-        "hvas inspect lists mates and occurrences; threads can be given by their mate only");
+    return Fail(ErrorCode::kNotFound,
+                fmt::format("\"{}\" does not identify an axis-hole or prismatic mate", axis),
+                fmt::format("--fit {}", assignment),
+                "hvas inspect lists mates and occurrences; threads and inserts can be given by "
+                "their mate only");
   }
   for (auto& [mate, fit] : changes) {
     product->mates[mate].fit = std::move(fit);

@@ -10,9 +10,30 @@ double CalcAxisDistance(const Vec3& axis, const Vec3& p_on_axis, const Vec3& q) 
   return axis.cross(q - p_on_axis).norm();
 }
 
+/** Whether an engagement centres: a pilot of a flange, short as it is, and a thread. */
+bool DoesCentre(const PlacedAxisHit& hit) {
+  // Choices: what a printed pilot or one of H9/d9 may have, and the shortest that is turned.
+  constexpr double kCentringPlay = 0.1e-3;  // [m] of the radius.
+  constexpr double kCentringRatio = 0.02;   // Of the radius; the smaller one counts.
+  constexpr double kCentringLength = 0.05;  // Of the diameter.
+  return hit.play() <= std::min(kCentringPlay * hit.scale, kCentringRatio * hit.hole_radius) &&
+         hit.length() >= kCentringLength * 2 * hit.hole_radius;
+}
+
+/** Whether a shaft has so much play that it only passes. */
+bool DoesPass(const PlacedAxisHit& hit) {
+  constexpr double kPassingPlay = 0.05;  // Of the radius; H11/c11 has 0.037 at 6 mm. A choice.
+  return hit.play() > kPassingPlay * hit.hole_radius;
+}
+
 /** The tightest of the long engagements: of those that are half as long as the longest or more, the
- one with the smallest difference of radii, then the longest. */
-const PlacedAxisHit* ChooseTightest(const std::vector<const PlacedAxisHit*>& group) {
+ one with the smallest difference of radii, then the longest. Where some of them centre, those that
+ the shaft only passes do not count. */
+const PlacedAxisHit* ChooseTightest(std::vector<const PlacedAxisHit*> group) {
+  if (std::any_of(group.begin(), group.end(),
+                  [](const PlacedAxisHit* hit) { return DoesCentre(*hit); })) {
+    std::erase_if(group, [](const PlacedAxisHit* hit) { return DoesPass(*hit); });
+  }
   double longest = 0;
   for (const PlacedAxisHit* hit : group) {
     longest = std::max(longest, hit->length());

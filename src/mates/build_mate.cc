@@ -106,6 +106,8 @@ Mate BuildMate(const Product& product, MateKind kind, const MateSide& a, const M
       mate.shaft_radius = FeatureOf(product, b).radius;
       break;
     }
+    case MateKind::kPrismatic:
+      break;  // Of two planes on each side: JoinWalls().
   }
   return mate;
 }

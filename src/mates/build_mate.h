@@ -30,7 +30,8 @@ struct AxialSpans {
                                         const product::Feature& second, const product::Pose& X_AB);
 
 /** A mate of the kind that the two features make, with connectors, spans and radii as `Mate` says:
- hole and shaft, seat and taper, socket and ball (in this order), or two planes. The frames coincide
+ hole and shaft, seat and taper, socket and ball (in this order), or two planes; prismatic mates are
+ made of several (prismatic_fits.h). The frames coincide
  in the given poses, whatever play these leave. Without key, surfaces, fit and evidence. For planes
  the frames stand where the middle of `a` falls on its own plane; see `MoveFrames`. */
 [[nodiscard]] product::Mate BuildMate(const product::Product& product, product::MateKind kind,

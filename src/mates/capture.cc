@@ -23,9 +23,33 @@ CaptureMate MakeCaptureMate(const product::Mate& mate, product::OccurrenceId hel
   capture.held_high = holds_shaft ? mate.shaft_high : mate.hole_high;
   if (mate.kind == MateKind::kFaceFace) {
     capture.reach = std::sqrt(std::max(0.0, mate.overlap) / std::numbers::pi);
+  } else if (mate.kind == MateKind::kPrismatic) {
+    capture.reach = mate.breadth;
   }
   return capture;
 }
+
+namespace {
+
+/** @param X_MN  Held connector in the placed one, along whose x axes the sides meet. */
+MateDeviation CalcPrismaticDeviation(const CaptureMate& mate, const Pose& X_MN,
+                                     double angle) noexcept {
+  constexpr double kLeastCosine = 0.1;  // Ways that are nearly square to each other meet nowhere.
+  const Vec3 way_M = X_MN.q() * Vec3::UnitX();
+  const double cosine = std::max(kLeastCosine, way_M.x());
+  const double low = X_MN.p().x() + cosine * mate.held_low;
+  const double high = X_MN.p().x() + cosine * mate.held_high;
+  const double meeting =
+      0.5 * (std::clamp(mate.placed_low, low, high) + std::clamp(mate.placed_high, low, high));
+  const Vec3 p_MQ = X_MN.p() + (meeting - X_MN.p().x()) / cosine * way_M;
+  MateDeviation deviation;
+  deviation.angle = angle;
+  deviation.distance = std::hypot(p_MQ.z(), std::max(0.0, std::abs(p_MQ.y()) - mate.reach));
+  deviation.gap = std::max({0.0, mate.placed_low - high, low - mate.placed_high});
+  return deviation;
+}
+
+}  // namespace
 
 MateDeviation CalcDeviation(const CaptureMate& mate, const Pose& X_WM, const Pose& X_WN) noexcept {
   const Vec3 zhat_M_W = X_WM.q() * Vec3::UnitZ();
@@ -37,9 +61,12 @@ MateDeviation CalcDeviation(const CaptureMate& mate, const Pose& X_WM, const Pos
     return deviation;
   }
   const bool is_axis = IsAxial(mate.kind);
-  const double cosine = (is_axis ? 1.0 : -1.0) * zhat_M_W.dot(zhat_N_W);
+  const double cosine = (mate.kind == MateKind::kFaceFace ? -1.0 : 1.0) * zhat_M_W.dot(zhat_N_W);
   // atan2 is accurate for parallel and opposed directions, where acos is not.
   deviation.angle = std::atan2(zhat_M_W.cross(zhat_N_W).norm(), cosine);
+  if (mate.kind == MateKind::kPrismatic) {
+    return CalcPrismaticDeviation(mate, X_WM.Inverse() * X_WN, deviation.angle);
+  }
   const double along = zhat_M_W.dot(p_MN_W);
   if (!is_axis) {
     const Vec3 p_MNFlat_W = p_MN_W - along * zhat_M_W;
@@ -64,10 +91,10 @@ MateDeviation CalcDeviation(const CaptureMate& mate, const Pose& X_WM, const Pos
 
 double CalcCaptureRatio(MateKind kind, const MateDeviation& deviation,
                         const CaptureThresholds& thresholds) noexcept {
-  const bool is_axis = IsAxial(kind);
   const double distance_limit =
       kind != MateKind::kFaceFace ? thresholds.axis_distance : thresholds.face_distance;
-  const double gap_limit = is_axis ? thresholds.axial_gap : thresholds.in_plane_gap;
+  const double gap_limit =
+      HasFit(kind) || IsAxial(kind) ? thresholds.axial_gap : thresholds.in_plane_gap;
   return std::max({deviation.angle / thresholds.angle, deviation.distance / distance_limit,
                    deviation.gap / gap_limit});
 }

@@ -12,9 +12,11 @@ namespace hvas::mates {
 /** What recognition needs to know of a mate, from the side that is held. */
 struct CaptureMate {
   product::MateKind kind{product::MateKind::kFaceFace};
-  double placed_low{0}, placed_high{0};  ///< Axial span of the placed side [m]; 0 for planes.
-  double held_low{0}, held_high{0};      ///< Axial span of the held side [m]; 0 for planes.
-  double reach{0};  ///< Planes: radius of a disc as large as the drawn overlap [m].
+  double placed_low{0},
+      placed_high{0};                ///< Span of the placed side along its way [m]; 0 for planes.
+  double held_low{0}, held_high{0};  ///< Span of the held side along its way [m]; 0 for planes.
+  double reach{0};  ///< Planes: radius of a disc as large as the drawn overlap; prismatic: the
+                    ///< breadth of the contact [m].
 };
 
 /** The mate as seen with `held` in the hand: a hole may be held over its shaft, or a shaft in front
@@ -24,13 +26,15 @@ struct CaptureMate {
 /** Distances between the sides of a mate, all >= 0. */
 struct MateDeviation {
   double angle{0};  ///< Angle of the axes, or of one normal and the other's opposite: X(7) [rad].
-  double distance{0};  ///< Distance of the axes where they meet, X(8), or of the planes [m].
+  double distance{0};  ///< Distance of the axes where they meet, X(8), or of the planes [m];
+                       ///< prismatic: also that along y by which the walls miss each other.
   double gap{0};       ///< Gap of the spans along the axis, 0 when they overlap; or in the plane,
                        ///< 0 while the face's centre is within the reach of the other's [m].
 };
 
-/** @param X_WM  Connector of the placed side. @param X_WN  Connector of the held side. Axis-hole
- and cone seat: both z axes point the same way when assembled; face-face: they oppose each other. A
+/** @param X_WM  Connector of the placed side. @param X_WN  Connector of the held side. Axis-hole,
+ cone seat and prismatic: both z axes point the same way when assembled; face-face: they oppose each
+ other. The spans of axis-hole mates are along z, those of prismatic ones along x. A
  sphere seat has a distance only, that of the centres.
 
  The axes' distance is that of the held axis from the placed one, at the end of the held span that

@@ -1,10 +1,15 @@
 #include "mates/fasteners.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <string_view>
 #include <vector>
+
+#include "product/axis_features.h"
+#include "product/words.h"
 
 namespace hvas::mates {
 namespace {
@@ -87,6 +92,29 @@ FastenerKind ClassifyByNames(const Product& product, const Occurrence& occurrenc
   return FastenerKind::kNone;
 }
 
+/** Whether a shaft has a bore along most of it, of more than a third of its radius. */
+bool IsHollow(const Product& product, const product::Connector& shaft) {
+  const Part& part = product.part_of(shaft.occurrence);
+  const Feature& outside = part.features[shaft.feature.index()];
+  const double length = outside.span_high - outside.span_low;
+  return std::any_of(part.features.begin(), part.features.end(), [&](const Feature& hole) {
+    constexpr double kThinnestBore = 0.35;  // Of the shaft's radius; M3 in 6 mm has 0.4: a choice.
+    constexpr double kMostOf = 0.6;         // Part of the length; bores may be blind: a choice.
+    return hole.kind == FeatureKind::kHole && hole.radius < outside.radius &&
+           hole.radius > kThinnestBore * outside.radius && IsOnAxis(outside, hole) &&
+           hole.span_high - hole.span_low > kMostOf * length;
+  });
+}
+
+/** What gives when something goes through it, or goes through something, by its name. */
+bool IsFlexible(const Product& product, OccurrenceId id) {
+  constexpr std::array<std::string_view, 12> kWords{"cable",       "wire",     "kabel", "leitung",
+                                                    "hose",        "schlauch", "clip",  "zip tie",
+                                                    "kabelbinder", "grommet",  "strap", "rope"};
+  return product::HasOneOf(product::FoldName(product.part_of(id).name), kWords) ||
+         product::HasOneOf(product::FoldName(product.occurrences[id.index()].name), kWords);
+}
+
 }  // namespace
 
 FastenerKind ClassifyShape(const Part& part) {
@@ -141,6 +169,14 @@ FitEvidence MakeFitEvidence(const Product& product, const product::Mate& mate,
   evidence.shaft_radius = mate.shaft_radius;
   evidence.hole_part = fasteners[mate.a.occurrence.index()];
   evidence.shaft_part = fasteners[mate.b.occurrence.index()];
+  const auto is_toothed = [&product](const product::Connector& side) {
+    return product::IsToothed(product.part_of(side.occurrence).features[side.feature.index()]);
+  };
+  evidence.is_toothed = is_toothed(mate.a) || is_toothed(mate.b);
+  evidence.may_pass = true;
+  evidence.is_hollow = IsHollow(product, mate.b);
+  evidence.is_flexible =
+      IsFlexible(product, mate.a.occurrence) || IsFlexible(product, mate.b.occurrence);
   evidence.hole_thread = thread_of(mate.a);
   evidence.shaft_thread = thread_of(mate.b);
   return evidence;

@@ -18,6 +18,7 @@
 #include "mates/judge.h"
 #include "mates/mate_key.h"
 #include "mates/pair_search.h"
+#include "mates/prismatic_fits.h"
 #include "mates/propose_fit.h"
 #include "mates/surface_pairs.h"
 #include "mates/unit_doubt.h"
@@ -231,6 +232,7 @@ class Inference {
   }
 
   void AddPlanes(const Pair& pair) {
+    const std::size_t first = product_->mates.size();
     for (const PlaneGroup& group : GroupPlanes(pair)) {
       const MateSide a = SideOf(pair.a, group.largest->a);
       const MateSide b = SideOf(pair.b, group.largest->b);
@@ -244,6 +246,7 @@ class Inference {
       mate.surfaces = FindSurfacePairs(*product_, mate, features, watch_);
       product_->mates.push_back(std::move(mate));
     }
+    JoinWalls(product_, first);
   }
 
   /** Holes in line with nothing through both, one hint for a pair and axis; none where the parts

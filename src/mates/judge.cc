@@ -42,6 +42,11 @@ double CalcConeGap(const Product& product, const Mate& mate) {
   return (mate.hole_radius - mate.shaft_radius) * std::cos(FeatureOf(product, mate.a).half_angle);
 }
 
+/** What a prismatic mate is made of: its walls are as sure as faces with their mean gap. */
+double CalcWallGap(const Mate& mate) {
+  return mate.hole_radius - mate.shaft_radius;
+}
+
 double CalcSmallerArea(const Product& product, const Mate& mate) {
   return std::min(FeatureOf(product, mate.a).area, FeatureOf(product, mate.b).area);
 }
@@ -130,6 +135,9 @@ double CalcConfidence(const Product& product, const Mate& mate, const InferenceL
                         0.5) *
              CalcFalling(CalcOffset(product, mate), limits.axis_distance * scale, 0.8);
     }
+    case MateKind::kPrismatic:
+      return CalcRising(mate.overlap * mate.breadth, 0.25 * CalcSmallerArea(product, mate), 0.5) *
+             CalcFalling(std::abs(CalcWallGap(mate)), limits.wall_gap * scale, 0.5);
   }
   return 0;
 }
@@ -167,6 +175,10 @@ std::string DescribeEvidence(const Product& product, const Mate& mate) {
           ToMm(mate.hole_radius), ToMm(mate.shaft_radius),
           whole > 0 ? 100 * mate.overlap / whole : 0.0, ToUm(CalcOffset(product, mate)));
     }
+    case MateKind::kPrismatic:
+      return fmt::format("widths {:.3f}/{:.3f} mm, engaged {:.2f} mm by {:.2f} mm",
+                         ToMm(2 * mate.hole_radius), ToMm(2 * mate.shaft_radius),
+                         ToMm(mate.overlap), ToMm(mate.breadth));
   }
   return {};
 }

@@ -28,15 +28,22 @@ void AddVector(const Vec3& v, Digest* digest) {
   }
 }
 
-void AddSide(const Product& product, const product::Connector& side, Digest* digest) {
-  digest->AddText(product.occurrences[side.occurrence.index()].path);
-  const Feature& feature = product.part_of(side.occurrence).features[side.feature.index()];
+void AddFeature(const Feature& feature, Digest* digest) {
   digest->AddInt(static_cast<std::int64_t>(feature.kind));
   AddVector(feature.origin_B, digest);
   AddVector(feature.axis_B, digest);
   for (const double value :
        {feature.radius, feature.half_angle, feature.span_low, feature.span_high}) {
     digest->AddInt(Round(value));
+  }
+}
+
+void AddSide(const Product& product, const product::Connector& side, Digest* digest) {
+  digest->AddText(product.occurrences[side.occurrence.index()].path);
+  const auto& features = product.part_of(side.occurrence).features;
+  AddFeature(features[side.feature.index()], digest);
+  if (side.opposite.is_valid()) {
+    AddFeature(features[side.opposite.index()], digest);
   }
 }
 

@@ -14,6 +14,7 @@ namespace hvas::mates {
       return true;
     case product::MateKind::kFaceFace:
     case product::MateKind::kSphereSeat:
+    case product::MateKind::kPrismatic:
       return false;
   }
   return false;
@@ -27,6 +28,7 @@ namespace hvas::mates {
     case product::MateKind::kAxisHole:
     case product::MateKind::kFaceFace:
     case product::MateKind::kConeSeat:
+    case product::MateKind::kPrismatic:
       return false;
   }
   return false;
@@ -37,7 +39,7 @@ namespace hvas::mates {
   return !IsCentre(kind);
 }
 
-/** The origins agree across z: all but planes. */
+/** The origins agree across z: all but planes and what is between walls. */
 [[nodiscard]] constexpr bool HoldsAcross(product::MateKind kind) noexcept {
   switch (kind) {
     case product::MateKind::kAxisHole:
@@ -45,6 +47,7 @@ namespace hvas::mates {
     case product::MateKind::kSphereSeat:
       return true;
     case product::MateKind::kFaceFace:
+    case product::MateKind::kPrismatic:
       return false;
   }
   return false;
@@ -56,8 +59,24 @@ namespace hvas::mates {
     case product::MateKind::kFaceFace:
     case product::MateKind::kConeSeat:
     case product::MateKind::kSphereSeat:
+    case product::MateKind::kPrismatic:
       return true;
     case product::MateKind::kAxisHole:
+      return false;
+  }
+  return false;
+}
+
+/** One side slides into the other, by a fit that says how tightly: shafts in holes, tongues in
+ slots. */
+[[nodiscard]] constexpr bool HasFit(product::MateKind kind) noexcept {
+  switch (kind) {
+    case product::MateKind::kAxisHole:
+    case product::MateKind::kPrismatic:
+      return true;
+    case product::MateKind::kFaceFace:
+    case product::MateKind::kConeSeat:
+    case product::MateKind::kSphereSeat:
       return false;
   }
   return false;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mates/build_mate.h"
+#include "product/axis_features.h"
 #include "product/same_place.h"
 
 namespace hvas::mates {
@@ -181,7 +182,8 @@ void PairSearch::Search(PartId id_a, PartId id_b, const Pose& X_AB, PairHits* hi
     if (feature.box.Overlaps(close)) {
       features_a.push_back(&feature);
     }
-    if (feature.kind == FeatureKind::kHole && feature.box.Overlaps(close_to_holes)) {
+    if (feature.kind == FeatureKind::kHole && feature.box.Overlaps(close_to_holes) &&
+        !product::IsToothed(*feature.feature)) {
       holes_a.push_back(&feature);
     }
   }
@@ -195,7 +197,8 @@ void PairSearch::Search(PartId id_a, PartId id_b, const Pose& X_AB, PairHits* hi
     if (moved.box.Overlaps(close)) {
       features_b.push_back(moved);
     }
-    if (feature.kind == FeatureKind::kHole && moved.box.Overlaps(close_to_holes)) {
+    if (feature.kind == FeatureKind::kHole && moved.box.Overlaps(close_to_holes) &&
+        !product::IsToothed(*feature.feature)) {
       holes_b.push_back(moved);
     }
   }
@@ -261,6 +264,21 @@ bool IsAround(const Part& hole_part, const Feature& hole, const Part& shaft_part
                              shaft.radius - kSame, limit));
 }
 
+/** Whether teeth allow a hole and a shaft to be one in the other: splines with equal teeth; the
+ bottoms of a hub's teeth on a shaft that is drawn smooth; and a hub that is drawn smooth on teeth,
+ not larger than they are, as the bore around a gear is. */
+bool DoTeethFit(const Feature& hole, const Feature& shaft) {
+  constexpr double kSame = 1e-6;         // [m]: equal radii differ by rounding alone. A choice.
+  constexpr double kSmoothRatio = 0.02;  // Of the radius, for a shaft without teeth: a choice.
+  const bool has_hole = product::IsToothed(hole);
+  const bool has_shaft = product::IsToothed(shaft);
+  if (has_hole && has_shaft) {
+    return hole.faces.size() == shaft.faces.size();
+  }
+  return (!has_hole || std::abs(hole.radius - shaft.radius) <= kSmoothRatio * shaft.radius) &&
+         (!has_shaft || hole.radius <= shaft.radius + kSame);
+}
+
 bool DoEngage(const Feature& hole, const Feature& shaft, const Pose& X_HS,
               const InferenceLimits& limits, double scale, AxisHit* hit) {
   if (std::abs(hole.radius - shaft.radius) >=
@@ -313,7 +331,7 @@ void PairSearch::TestPair(const Context& context, const SearchFeature& a, const 
     AxisHit hit{is_first, seat_id, body_id};
     const Part& hole_part = is_first ? context.a : context.b;
     const Part& shaft_part = is_first ? context.b : context.a;
-    if (DoEngage(seat, body, X_SB, limits_, context.scale, &hit) &&
+    if (DoTeethFit(seat, body) && DoEngage(seat, body, X_SB, limits_, context.scale, &hit) &&
         !IsAround(hole_part, seat, shaft_part, body, X_SB, hit,
                   limits_.axis_distance * context.scale)) {
       hits->axes.push_back(hit);
@@ -401,7 +419,8 @@ void PairSearch::TestPlanes(const Context& context, const SearchFeature& a, cons
     hits->planes.push_back(hit);
     return;
   }
-  if (gap > -near && gap < far) {
+  const double smaller_area = std::min(plane_a.area, plane_b.area);
+  if (gap > -near && gap < far && overlap.area > limits_.wall_area_ratio * smaller_area) {
     hits->walls.push_back(hit);
   }
   if (std::abs(gap) < near) {

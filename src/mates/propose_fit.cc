@@ -1,5 +1,6 @@
 #include "mates/propose_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -39,19 +40,26 @@ std::optional<fits::FitLimits> FindLimits(std::string_view code, double nominal)
   return limits ? std::optional(*limits) : std::nullopt;
 }
 
+/** A running fit that is proposed. */
+struct ClearanceChoice {
+  std::string code;    // Empty where ISO 286 has none for the size.
+  bool is_wide{true};  // False where the drawn clearance is larger than that of any code.
+};
+
 /** The closest running fit that may have the drawn clearance, or the widest that the size has. */
-std::string ChooseClearanceCode(double nominal, double clearance) {
+ClearanceChoice ChooseClearance(double nominal, double clearance) {
   constexpr double kRounding = 1e-9;  // [m]: far below a step of ISO 286.
-  std::string widest;
+  ClearanceChoice choice;
   for (const std::string_view code : {"H7/g6", "H8/f7", "H9/d9", "H11/c11"}) {
     if (const auto limits = FindLimits(code, nominal)) {
-      widest = code;
-      if (limits->max_clearance + kRounding >= clearance) {
+      choice.code = code;
+      choice.is_wide = limits->max_clearance + kRounding >= clearance;
+      if (choice.is_wide) {
         break;
       }
     }
   }
-  return widest;
+  return choice;
 }
 
 /** The lightest press fit that is one at this size: H7/p6 may have clearance below 3 mm. */
@@ -94,9 +102,6 @@ std::optional<std::string> FindThreadReason(const FitEvidence& evidence, double 
   if (is_smaller && is_screw) {
     return "a screw is never a press fit";
   }
-  if (is_smaller && evidence.shaft_part == FastenerKind::kNut) {
-    return "a nut or insert in its pocket, melted in or pulled in";
-  }
   return std::nullopt;
 }
 
@@ -108,19 +113,44 @@ Fit ProposeFit(const FitEvidence& evidence) {
   if (std::optional<std::string> reason = FindThreadReason(evidence, clearance)) {
     return MakeThread(evidence.shaft_radius, std::move(*reason));
   }
+  const double nominal = 2 * evidence.hole_radius;
+  const ClearanceChoice choice = ChooseClearance(nominal, std::max(0.0, clearance));
+  const bool is_larger = clearance > 2 * kEqual;
+  if (evidence.is_toothed) {
+    return {FitKind::kInsert, "", d, true, "a hub that is pushed on the teeth of a shaft"};
+  }
+  if (evidence.is_flexible) {
+    return {is_larger ? FitKind::kPassage : FitKind::kInsert, "", nominal, true,
+            "a cable, hose or clip gives"};
+  }
+  if (evidence.shaft_part == FastenerKind::kNut && choice.is_wide) {
+    return {FitKind::kInsert, "", d, true,
+            "a nut or insert in its bore, melted, pressed or drawn in"};
+  }
+  if (!choice.is_wide && evidence.may_pass) {
+    return {FitKind::kPassage, "", nominal, true,
+            "drawn clearance of " + Describe(clearance) + " is more than that of " + choice.code};
+  }
+  if (clearance >= -2 * kEqual && evidence.may_pass &&
+      evidence.shaft_part == FastenerKind::kScrew) {
+    return {FitKind::kPassage, "", nominal, true, "a screw in a through hole"};
+  }
   if (-clearance > kThreadInterference * d && d <= kLargestDrawnThread) {
+    if (evidence.is_hollow) {
+      return {FitKind::kInsert, "", d, true,
+              "drawn interference of " + Describe(-clearance) + " of a hollow part is an insert's"};
+    }
     return MakeThread(evidence.shaft_radius, "drawn interference of " + Describe(-clearance) +
                                                  " is a thread's, not a press fit's");
   }
-  const double nominal = 2 * evidence.hole_radius;
   if (clearance < -2 * kEqual) {
     return {FitKind::kInterference, ChoosePressCode(nominal), nominal, true,
             "drawn interference of " + Describe(-clearance)};
   }
   if (clearance <= 2 * kEqual) {
-    return {FitKind::kClearance, ChooseClearanceCode(nominal, 0), nominal, true, "drawn equal"};
+    return {FitKind::kClearance, choice.code, nominal, true, "drawn equal"};
   }
-  return {FitKind::kClearance, ChooseClearanceCode(nominal, clearance), nominal, true,
+  return {FitKind::kClearance, choice.code, nominal, true,
           "drawn clearance of " + Describe(clearance)};
 }
 

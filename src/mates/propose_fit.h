@@ -15,25 +15,37 @@ struct FitEvidence {
   FastenerKind hole_part{FastenerKind::kNone};
   FastenerKind shaft_part{FastenerKind::kNone};
   bool nut_on_shaft{false};  ///< A nut sits on the same shaft: other holes are through holes.
+  bool is_flexible{false};   ///< A cable, hose or clip: what gives has no fit.
+  bool is_toothed{false};    ///< A hub on the teeth of a shaft, such as a horn on its spline.
+  bool is_hollow{false};     ///< The shaft has a bore all along: a ring, bushing or insert.
+  bool may_pass{false};  ///< A round shaft may go through a hole without a fit; a width has one.
   product::ThreadKind hole_thread{product::ThreadKind::kNone};
   product::ThreadKind shaft_thread{product::ThreadKind::kNone};
 };
 
-/** Proposes a fit where the file does not give one:
+/** Proposes a fit where the file does not give one, by the first row that holds:
 
  | drawn | names, shapes and threads | fit |
  |---|---|---|
  | any | nut on a screw | thread |
  | any | threaded hole, with a screw or a threaded shaft in it | thread |
- | hole not larger | nut on a rod; threaded hole; screw or threaded shaft, no nut behind it | thread
- | | hole smaller | screw or nut as the shaft: screwed, melted or pulled in, never pressed | thread
- | | interference above 1.5 % of d, d <= 12 mm | any | thread | | interference above 1 um (radius) |
- none | the lightest press fit of H7/p6, H7/r6, H7/s6 | | equal within 1 um | none, or a through
- hole | H7/g6 | | clearance | any other | the tightest of H7/g6, H8/f7, H9/d9, H11/c11 that may have
- it |
+ | hole not larger | nut on a rod; threaded hole | thread |
+ | hole not larger | screw or threaded shaft, no nut behind it | thread |
+ | hole smaller | screw | thread |
+ | any | teeth on one side or both | insert |
+ | hole larger | flexible (a cable, hose or clip) | passage |
+ | hole not larger | flexible | insert |
+ | play of a proposed code, or less | nut or insert as the shaft | insert |
+ | more play than the widest code | a shaft that may pass | passage |
+ | hole not smaller | a screw that may pass | passage |
+ | interference above 1.5 % of d, d <= 12 mm | hollow shaft | insert |
+ | interference above 1.5 % of d, d <= 12 mm | any | thread |
+ | interference above 1 um (radius) | none | the lightest press fit of H7/p6, r6, s6 |
+ | equal within 1 um | any | H7/g6 |
+ | clearance | any | the tightest of H7/g6, H8/f7, H9/d9, H11/c11 that may have it |
 
- The code is empty where ISO 286 has none for the size. The nominal diameter is the drawn hole's,
- that of the shaft for threads. */
+ The code is empty for threads, inserts and passages, and where ISO 286 has none for the size. The
+ nominal diameter is the drawn hole's, that of the shaft for threads and inserts. */
 [[nodiscard]] product::Fit ProposeFit(const FitEvidence& evidence);
 
 }  // namespace hvas::mates

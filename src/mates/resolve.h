@@ -13,6 +13,7 @@
      face-face:  z_N = -z_M,  p_MN . z_M = 0      (3 equations)
      cone seat:  z_N = +z_M,  p_MN = 0            (5 equations)
      sphere seat:  p_MN = 0                       (3 equations)
+     prismatic:  z_N = +z_M,  p_MN . z_M = 0      (3 equations)
  Stacked over all mates, with angles times a characteristic length L of the set, the equations'
  Jacobian by the held part's twist has a nullspace: the free twists. Directions which the mates
  determine only by less than kRankTolerance count as free: two axes drawn parallel within 0.1 deg

@@ -22,8 +22,8 @@ using Type = SideFileType;
 constexpr std::size_t kLargestFile = 16'000'000;  // [bytes]: 100,000 fits. A choice.
 
 constexpr std::array<std::string_view, 2> kFormats{"hvas-assignments-1", kSideFileFormat};
-constexpr std::array<std::string_view, 4> kMateKinds{"axis_hole", "face_face", "cone_seat",
-                                                     "sphere_seat"};
+constexpr std::array<std::string_view, 5> kMateKinds{"axis_hole", "face_face", "cone_seat",
+                                                     "sphere_seat", "prismatic"};
 static_assert(kMateKinds.size() == product::kMateKinds.size(), "a kind of mate has no name here");
 
 // Edges have no name in a side file: relations of them are inferred only.
@@ -94,9 +94,12 @@ constexpr std::array kFitKeys{Text("mate"),
                               Text("hole"),
                               Text("shaft"),
                               Diameter("diameter_mm"),
+                              Diameter("width_mm"),
                               Text("fit"),
                               Diameters("hole_diameter_mm"),
                               Diameters("shaft_diameter_mm"),
+                              Diameters("hole_width_mm"),
+                              Diameters("shaft_width_mm"),
                               Number("hole_rz_um", 0, kLargestRoughness_um),
                               Number("shaft_rz_um", 0, kLargestRoughness_um),
                               Number("friction", 0, kLargestFriction),
@@ -287,9 +290,18 @@ Result<FitEntry> ReadFit(const ordered_json& item, const Place& place) {
   entry.shaft = TextAt(item, "shaft");
   entry.fit = TextAt(item, "fit");
   entry.diameter = NumberAt(item, "diameter_mm", units::kMetresPerMillimetre);
+  entry.width = NumberAt(item, "width_mm", units::kMetresPerMillimetre);
+  entry.has_diameters = item.contains("hole_diameter_mm") || item.contains("shaft_diameter_mm");
+  entry.has_widths = item.contains("hole_width_mm") || item.contains("shaft_width_mm");
+  if ((entry.has_diameters || entry.diameter) && (entry.has_widths || entry.width)) {
+    return Fail(ErrorCode::kInvalid, "the entry has diameters and widths", entry.where,
+                "write diameters for a hole and a shaft, or widths for a slot and a tongue");
+  }
   product::FitConditions& conditions = entry.conditions;
-  conditions.hole_diameters = DiametersAt(item, "hole_diameter_mm");
-  conditions.shaft_diameters = DiametersAt(item, "shaft_diameter_mm");
+  conditions.hole_diameters =
+      DiametersAt(item, entry.has_widths ? "hole_width_mm" : "hole_diameter_mm");
+  conditions.shaft_diameters =
+      DiametersAt(item, entry.has_widths ? "shaft_width_mm" : "shaft_diameter_mm");
   conditions.hole_roughness = NumberAt(item, "hole_rz_um", units::kMetresPerMicrometre);
   conditions.shaft_roughness = NumberAt(item, "shaft_rz_um", units::kMetresPerMicrometre);
   conditions.friction = NumberAt(item, "friction", 1);
@@ -297,12 +309,13 @@ Result<FitEntry> ReadFit(const ordered_json& item, const Place& place) {
   conditions.shaft_temperature_c = NumberAt(item, "shaft_temperature_c", 1);
   const bool has_names = item.contains("hole") && item.contains("shaft");
   const bool has_a_name = item.contains("hole") || item.contains("shaft");
-  if (item.contains("mate") ? has_a_name || entry.diameter.has_value() : !has_names) {
+  const bool has_a_size = entry.diameter || entry.width;
+  if (item.contains("mate") ? has_a_name || has_a_size : !has_names) {
     return Fail(ErrorCode::kInvalid, "the entry does not identify a mate", entry.where,
                 R"(write "mate": "KEY" alone, or "hole": "..." and "shaft": "...")");
   }
   const bool says_something = std::any_of(item.begin(), item.end(), [&item](const auto& value) {
-    constexpr std::array kWhich{"mate", "hole", "shaft", "diameter_mm", "note"};
+    constexpr std::array kWhich{"mate", "hole", "shaft", "diameter_mm", "width_mm", "note"};
     return std::none_of(kWhich.begin(), kWhich.end(), [&](const char* key) {
       return item.contains(key) && &item[key] == &value;
     });

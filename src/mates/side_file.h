@@ -46,12 +46,16 @@ struct SideFileKey {
 
 [[nodiscard]] std::span<const SideFileKey> KeysOf(SideFileObject object);
 
-/** "fits": what is known of the fit of some axis-hole mates. */
+/** "fits": what is known of the fit of some axis-hole or prismatic mates. As in ISO 286-1, a slot
+ is a hole and a tongue a shaft. */
 struct FitEntry {
   std::string mate;                ///< A key or "m12"; empty: by hole and shaft.
   std::string hole;                ///< An occurrence's name, path or end of path.
   std::string shaft;               ///< Occurrence and feature of the shaft.
   std::optional<double> diameter;  ///< Diameter of hole or shaft [m].
+  std::optional<double> width;     ///< Width of slot or tongue, of a prismatic mate [m].
+  bool has_diameters{false};       ///< A diameter was measured.
+  bool has_widths{false};          ///< A width was measured.
   std::string fit;                 ///< "H7/g6", "H7", "g6", "thread", or empty.
   product::FitConditions conditions;
   std::string where;  ///< "FILE:LINE, fit 3".

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mates/make_fit.h"
+#include "mates/mate_kind.h"
 
 namespace hvas::mates {
 namespace {
@@ -75,7 +76,7 @@ std::optional<Fit> FindFit(const Product& product, const Mate& mate, WorkWatch* 
 int AssignStatedFits(Product* product, WorkWatch* watch) {
   int count = 0;
   for (Mate& mate : product->mates) {
-    if (mate.kind != product::MateKind::kAxisHole) {
+    if (!HasFit(mate.kind)) {
       continue;
     }
     if (std::optional<Fit> fit = FindFit(*product, mate, watch)) {

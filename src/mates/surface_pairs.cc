@@ -280,6 +280,8 @@ std::vector<SurfaceConstraint> FindSurfacePairs(const Product& product, const Ma
       case MateKind::kFaceFace:
         AddPlanePairs(a, faces_a, b, faces_b, mate.overlap, watch, &pairs);
         break;
+      case MateKind::kPrismatic:
+        break;  // It has the pairs of the walls that it is made of.
     }
   }
   return pairs;

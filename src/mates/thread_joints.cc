@@ -5,9 +5,10 @@
 #include <optional>
 #include <string_view>
 
-#include "product/ascii.h"
+#include "fits/materials.h"
 #include "product/fastener_name.h"
 #include "product/threads.h"
+#include "product/words.h"
 
 namespace hvas::mates {
 namespace {
@@ -24,28 +25,18 @@ constexpr double kFriction = 0.12;
 // ISO 4762 with a medium hole.
 constexpr double kHeadContact = 1.28;
 
-template <std::size_t kCount>
-bool HasOneOf(std::string_view text, const std::array<std::string_view, kCount>& words) {
-  const std::string lower = product::ToLower(text);
-  return std::any_of(words.begin(), words.end(), [&lower](std::string_view word) {
-    return lower.find(word) != std::string::npos;
-  });
-}
-
 bool IsSelfTappingByName(std::string_view name) {
   // ISO 1479 to 1483, 7049 to 7051 and their DIN predecessors are tapping screws.
-  static constexpr std::array<std::string_view, 14> kWords{
-      "self-tapping", "self tapping", "selftapping",  "tapping screw", "wood screw",
-      "woodscrew",    "plastite",     "blechschraub", "din 7981",      "din7981",
-      "din 7982",     "din7982",      "iso 7049",     "iso7049"};
-  return HasOneOf(name, kWords);
+  static constexpr std::array<std::string_view, 16> kWords{
+      "self tapping", "tapping screw", "wood screw", "plastite", "blechschraube", "blechschrauben",
+      "din 7981",     "din 7982",      "din 7983",   "iso 1479", "iso 1481",      "iso 1482",
+      "iso 1483",     "iso 7049",      "iso 7050",   "iso 7051"};
+  return product::HasOneOf(product::FoldName(name), kWords);
 }
 
 bool IsPlastic(const product::Material& material) {
-  static constexpr std::array<std::string_view, 14> kWords{
-      "plastic", "abs", "pla", "petg",         "nylon", "polyamid", "pa6",
-      "pa12",    "pom", "pvc", "polycarbonat", "peek",  "hdpe",     "polypropyl"};
-  return !material.name.empty() && HasOneOf(material.name, kWords) && material.density < 2000;
+  const auto match = fits::FindMaterial(material.name);
+  return match && match->material->group == "polymer";
 }
 
 const fits::Thread* FindStandard(const Part& hub, const Part& screw, const Mate& mate,

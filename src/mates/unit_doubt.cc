@@ -29,14 +29,15 @@ struct DrawnFastener {
 struct UnitError {
   double factor;
   const char* words;
+  const char* unit;  // The name of the right one, as --unit has it.
 };
 
-constexpr std::array kUnitErrors{UnitError{25.4, "inches in place of millimetres"},
-                                 UnitError{1000, "metres in place of millimetres"},
-                                 UnitError{10, "centimetres in place of millimetres"},
-                                 UnitError{1 / 25.4, "millimetres in place of inches"},
-                                 UnitError{1e-3, "millimetres in place of metres"},
-                                 UnitError{0.1, "millimetres in place of centimetres"}};
+constexpr std::array kUnitErrors{UnitError{25.4, "inches in place of millimetres", "mm"},
+                                 UnitError{1000, "metres in place of millimetres", "mm"},
+                                 UnitError{10, "centimetres in place of millimetres", "mm"},
+                                 UnitError{1 / 25.4, "millimetres in place of inches", "in"},
+                                 UnitError{1e-3, "millimetres in place of metres", "m"},
+                                 UnitError{0.1, "millimetres in place of centimetres", "cm"}};
 
 std::vector<DrawnFastener> ListFasteners(const product::Product& product) {
   std::vector<DrawnFastener> fasteners;
@@ -96,7 +97,9 @@ void ReportDoubtfulUnit(const product::Product& product, Diagnostics* diagnostic
           "other unit all {} different fasteners are usual ones, this one of {:.4g} mm",
           units::ToMm(first.drawn), error->words, fasteners.size(),
           units::ToMm(first.drawn / error->factor)),
-      "export the product again with the unit in which it was drawn");
+      fmt::format("open it with --unit {}, or export the product again with the unit in which it "
+                  "was drawn",
+                  error->unit));
 }
 
 }  // namespace hvas::mates

@@ -166,6 +166,7 @@ std::optional<Error> CheckSizes(const Product& product, MateKind kind, const Fea
       }
       break;
     case MateKind::kFaceFace:
+    case MateKind::kPrismatic:
       break;
   }
   return std::nullopt;

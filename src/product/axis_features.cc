@@ -150,6 +150,27 @@ double CalcLeastGap(const std::vector<AxisFace>& faces) {
   return least;
 }
 
+constexpr std::size_t kLeastTeeth = 12;  // Of a spline; fewer are a polygon or keys. A choice.
+constexpr std::size_t kMostTeeth = 400;  // Beyond that a knurl holds nothing. A choice.
+
+/** Whether faces are the ends of teeth: short arcs, evenly around the axis. */
+bool AreTeeth(const std::vector<AxisFace>& faces) {
+  constexpr double kUneven = 1.5;  // Largest gap, of the mean one: a choice.
+  if (faces.size() < kLeastTeeth || faces.size() > kMostTeeth) {
+    return false;
+  }
+  std::vector<const AxisFace*> pointers;
+  for (const AxisFace& face : faces) {
+    pointers.push_back(&face);
+  }
+  const std::vector<Arc> arcs = MergeArcs(pointers);
+  const bool are_short = std::all_of(arcs.begin(), arcs.end(),
+                                     [](const Arc& arc) { return arc.second < kShortestArc; });
+  const Coverage coverage = CalcCoverage(pointers);
+  const double mean_gap = (units::kTurn - coverage.sum) / static_cast<double>(arcs.size());
+  return are_short && arcs.size() >= kLeastTeeth && coverage.largest_gap < kUneven * mean_gap;
+}
+
 /** Whether two cylinders or cones are one, looked at near the face that the second is under. */
 bool IsSameSurface(const Surface& a, const Surface& b, const Box& box_b, double tolerance) {
   if (a.kind != b.kind || a.outward != b.outward || !IsParallel(a.axis, b.axis)) {
@@ -271,7 +292,8 @@ void RemoveShielded(double tolerance, std::vector<Feature>* features) {
 }
 
 std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double tolerance,
-                                      RecognitionLimits* limits) {
+                                      RecognitionLimits* limits,
+                                      std::vector<Feature>* toothed = nullptr) {
   std::vector<Feature> found;
   for (AxisGroup& group : GroupFaces(part, kind, tolerance)) {
     std::sort(group.faces.begin(), group.faces.end(), [](const AxisFace& a, const AxisFace& b) {
@@ -285,9 +307,12 @@ std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double
       }
       const bool is_limited = run.size() > kMostFaces;
       const double gap = run.size() > 1 ? CalcLeastGap(run) : units::kTurn;
+      const bool is_toothed = toothed != nullptr && AreTeeth(run);
       Feature feature = MakeFeature(part, group.surface, std::move(run));
       if (feature.coverage >= kLeastCoverage || gap <= kLargestGap) {
         found.push_back(std::move(feature));
+      } else if (is_toothed) {
+        toothed->push_back(std::move(feature));
       } else if (is_limited) {
         limits->Add("more than 64 faces on one axis");
       }
@@ -325,8 +350,15 @@ double DistanceToAxis(const Vec3& p, const Vec3& origin, const Vec3& axis) {
   return (p - origin).cross(axis).norm();
 }
 
-std::vector<Feature> FindCylinders(const Part& part, double tolerance, RecognitionLimits* limits) {
-  return FindAxisFeatures(part, SurfaceKind::kCylinder, tolerance, limits);
+std::vector<Feature> FindCylinders(const Part& part, double tolerance, RecognitionLimits* limits,
+                                   std::vector<Feature>* toothed) {
+  return FindAxisFeatures(part, SurfaceKind::kCylinder, tolerance, limits, toothed);
+}
+
+bool IsToothed(const Feature& feature) {
+  return IsCylinder(feature.kind) && feature.faces.size() >= kLeastTeeth &&
+         feature.coverage < kLeastCoverage &&
+         feature.coverage < kShortestArc * static_cast<double>(feature.faces.size());
 }
 
 std::vector<Feature> FindCones(const Part& part, double tolerance, RecognitionLimits* limits) {

@@ -20,9 +20,15 @@ namespace hvas::product {
  turn, or, at one station along the axis, no gap between them is above 160 deg. Of the latter those
  are left out that a narrower bore, or a thicker shaft, of the same axis stands before (the bottoms
  of splines). By their first face.
- @param tolerance Of radii and positions [m]. @param limits Gets the limits that were reached. */
+ @param tolerance Of radii and positions [m]. @param limits Gets the limits that were reached.
+ @param toothed Gets those that only the ends of teeth lie on: splines, gears, knurls. */
 [[nodiscard]] std::vector<Feature> FindCylinders(const Part& part, double tolerance,
-                                                 RecognitionLimits* limits);
+                                                 RecognitionLimits* limits,
+                                                 std::vector<Feature>* toothed);
+
+/** Whether a hole or shaft consists of the ends of teeth alone: twelve or more short arcs, which
+ leave gaps. */
+[[nodiscard]] bool IsToothed(const Feature& feature);
 
 /** Conical seats and tapers by the same rule: conical faces of one axis, apex, half angle and
  sense. */

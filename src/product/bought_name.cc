@@ -6,33 +6,10 @@
 #include <vector>
 
 #include "product/ascii.h"
+#include "product/words.h"
 
 namespace hvas::product {
 namespace {
-
-/** Runs of letters and runs of digits: "LM8UU-2" is lm, 8, uu, 2. `begin` and `end` are positions
- in the text. */
-struct Token {
-  std::string text;
-  std::size_t begin{0};
-  std::size_t end{0};
-};
-
-std::vector<Token> Split(const std::string& text) {
-  std::vector<Token> tokens;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto is_kind = IsDigit(text[i]) ? IsDigit : IsLetter;
-    std::size_t end = i;
-    while (end < text.size() && is_kind(text[end])) {
-      ++end;
-    }
-    if (end > i) {
-      tokens.push_back({text.substr(i, end - i), i, end});
-    }
-    i = std::max(end, i + 1);
-  }
-  return tokens;
-}
 
 template <std::size_t kCount>
 bool IsOneOf(const std::array<std::string_view, kCount>& words, std::string_view word) {
@@ -88,13 +65,20 @@ constexpr std::array<std::string_view, 21> kWords{
     "gland",    "led",         "module",    "modul",   "fan",    "luefter",   "sensor"};
 
 // What is drawn around a bought unit, or a collection of loose parts.
-constexpr std::array<std::string_view, 48> kOtherWords{
-    "mount",    "mounting",  "bracket", "holder", "halter", "halterung", "support",  "adapter",
-    "adaptor",  "plate",     "platte",  "cover",  "deckel", "housing",   "gehaeuse", "case",
-    "box",      "enclosure", "clamp",   "block",  "bock",   "frame",     "rahmen",   "arm",
-    "horn",     "hub",       "cap",     "spacer", "screw",  "bolt",      "nut",      "washer",
-    "schraube", "mutter",    "kit",     "set",    "seat",   "shaft",     "welle",    "hole",
-    "tool",     "cage",      "puller",  "press",  "brk",    "hinge",     "bezel",    "panel"};
+constexpr std::array<std::string_view, 60> kOtherWords{
+    "guard",   "grill",     "grille",   "shroud",  "duct",     "stand",     "lid",     "tray",
+    "carrier", "carriage",  "rail",     "base",    "mount",    "mounting",  "bracket", "holder",
+    "halter",  "halterung", "support",  "adapter", "adaptor",  "plate",     "platte",  "cover",
+    "deckel",  "housing",   "gehaeuse", "case",    "box",      "enclosure", "clamp",   "block",
+    "bock",    "frame",     "rahmen",   "arm",     "horn",     "hub",       "cap",     "spacer",
+    "screw",   "bolt",      "nut",      "washer",  "schraube", "mutter",    "kit",     "set",
+    "seat",    "shaft",     "welle",    "hole",    "tool",     "cage",      "puller",  "press",
+    "brk",     "hinge",     "bezel",    "panel"};
+
+// What is put on the shaft of a bought unit afterwards.
+constexpr std::array<std::string_view, 14> kMountedWords{
+    "horn",     "ruderhorn", "servohorn", "palonnier", "arm",      "pulley",  "riemenscheibe",
+    "sprocket", "propeller", "prop",      "coupling",  "kupplung", "coupler", "wheel"};
 
 constexpr std::array<std::string_view, 7> kAssemblyWords{
     "assembly", "assy", "asm", "assem", "baugruppe", "ensamblaje", "assemblage"};
@@ -103,7 +87,7 @@ constexpr std::array<std::string_view, 7> kAssemblyWords{
 constexpr std::array<std::string_view, 12> kSealWords{"zz", "z",   "rs",  "rz",  "dd", "llu",
                                                       "vv", "ddu", "rsr", "rsh", "uu", "lb"};
 
-bool IsAlone(const std::string& text, const Token& token) {
+bool IsAlone(const std::string& text, const Word& token) {
   return (token.begin == 0 || !IsLetter(text[token.begin - 1])) &&
          (token.end >= text.size() || !IsLetter(text[token.end]));
 }
@@ -127,10 +111,10 @@ bool IsBearingNumber(const std::string& digits) {
 }
 
 /** "608zz", "6204-2rs", "f688zz", "mr105", "lm8uu", "lmk12luu". */
-bool IsBearing(const std::string& text, const std::vector<Token>& tokens) {
+bool IsBearing(const std::string& text, const std::vector<Word>& tokens) {
   for (std::size_t i = 0; i < tokens.size(); ++i) {
-    const Token& token = tokens[i];
-    const Token* next = i + 1 < tokens.size() ? &tokens[i + 1] : nullptr;
+    const Word& token = tokens[i];
+    const Word* next = i + 1 < tokens.size() ? &tokens[i + 1] : nullptr;
     const bool is_number_next =
         next != nullptr && IsDigit(next->text.front()) && next->begin == token.end;
     if ((token.text == "mr" || token.text == "smr") && is_number_next && next->text.size() >= 2 &&
@@ -147,7 +131,7 @@ bool IsBearing(const std::string& text, const std::vector<Token>& tokens) {
     }
     // A number alone may be anything: the seals have to follow, or the f of a flange to precede.
     const bool has_flange = i > 0 && tokens[i - 1].text == "f" && tokens[i - 1].end == token.begin;
-    const Token* seal = next;
+    const Word* seal = next;
     if (seal != nullptr && (seal->text == "2" || seal->text == "1") && i + 2 < tokens.size()) {
       seal = &tokens[i + 2];
     }
@@ -161,11 +145,11 @@ bool IsBearing(const std::string& text, const std::vector<Token>& tokens) {
 }
 
 /** Hobby and robot servos: "sg90", "mg996r", "ds3218", "xl-330", "ax12". */
-bool IsServo(const std::string& text, const std::vector<Token>& tokens) {
+bool IsServo(const std::string& text, const std::vector<Word>& tokens) {
   constexpr std::array<std::string_view, 12> kSeries{"sg", "mg", "ds", "xl", "xc", "xm",
                                                      "xh", "xw", "ax", "mx", "hs", "sts"};
   for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
-    const Token& number = tokens[i + 1];
+    const Word& number = tokens[i + 1];
     const bool is_near = number.begin <= tokens[i].end + 1;
     const bool is_size = number.text.size() >= 2 && number.text.size() <= 4;
     const bool starts = tokens[i].begin == 0 || !IsLetter(text[tokens[i].begin - 1]);
@@ -193,12 +177,12 @@ bool IsServo(const std::string& text, const std::vector<Token>& tokens) {
 }  // namespace
 
 BoughtName ClassifyBoughtName(std::string_view name) {
-  const std::string text = ToLower(name);
-  const std::vector<Token> tokens = Split(text);
+  const std::string text = FoldName(name);
+  const std::vector<Word> tokens = SplitWords(text);
   bool is_assembly = false;
   bool has_bought_word = false;
   bool has_word = false;
-  for (const Token& token : tokens) {
+  for (const Word& token : tokens) {
     if (IsOneOf(kOtherWords, token.text)) {
       return BoughtName::kNone;
     }
@@ -212,26 +196,36 @@ BoughtName ClassifyBoughtName(std::string_view name) {
   return has_word && !is_assembly ? BoughtName::kWord : BoughtName::kNone;
 }
 
+bool IsMountedOnUnit(std::string_view name) {
+  return HasOneOf(FoldName(name), kMountedWords);
+}
+
+bool IsServoName(std::string_view name) {
+  constexpr std::array<std::string_view, 3> kServos{"servo", "servomotor", "dynamixel"};
+  const std::string text = FoldName(name);
+  return HasOneOf(text, kServos) || IsServo(text, SplitWords(text));
+}
+
 bool IsReferenceDesignator(std::string_view name) {
   constexpr std::array<std::string_view, 28> kLetters{
       "r",  "c",   "l",  "u",  "q",  "d",  "x",  "y",  "j",  "p",  "k",  "f",   "t",    "ic",
       "cn", "con", "sw", "tp", "rn", "fb", "bt", "ds", "jp", "rv", "vr", "led", "xtal", "ant"};
-  const std::string text = ToLower(name);
-  const std::vector<Token> tokens = Split(text);
+  const std::string text = FoldName(name);
+  const std::vector<Word> tokens = SplitWords(text);
   return tokens.size() > 1 && tokens[0].begin == 0 && tokens[1].begin == tokens[0].end &&
          IsDigit(tokens[1].text.front()) && tokens[1].text.size() <= 4 &&
          std::find(kLetters.begin(), kLetters.end(), tokens[0].text) != kLetters.end();
 }
 
 bool IsCircuitBoard(std::string_view name) {
-  const std::string text = ToLower(name);
+  const std::string text = FoldName(name);
   if (text.starts_with("board") || text.starts_with("pcb")) {
     return true;
   }
   constexpr std::array<std::string_view, 5> kBoards{"board", "pcb", "platine", "leiterplatte",
                                                     "pcba"};
-  const std::vector<Token> tokens = Split(text);
-  return std::any_of(tokens.begin(), tokens.end(), [&kBoards](const Token& token) {
+  const std::vector<Word> tokens = SplitWords(text);
+  return std::any_of(tokens.begin(), tokens.end(), [&kBoards](const Word& token) {
     return std::find(kBoards.begin(), kBoards.end(), token.text) != kBoards.end();
   });
 }

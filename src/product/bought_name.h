@@ -17,6 +17,13 @@ enum class BoughtName {
  case does not matter. */
 [[nodiscard]] BoughtName ClassifyBoughtName(std::string_view name);
 
+/** Whether a name is that of a part which is put on the shaft of a motor or servo afterwards:
+ "horn", "servo arm", "pulley", "propeller", "coupling", "wheel". */
+[[nodiscard]] bool IsMountedOnUnit(std::string_view name);
+
+/** Whether a name is that of a servo: "servo", "SG90", "mg996r", "XL-330". */
+[[nodiscard]] bool IsServoName(std::string_view name);
+
 /** Whether a name is a reference designator of a component on a circuit board ("R57", "C15 main",
  "SW1"): letters that are in use for components, and a
  number. */

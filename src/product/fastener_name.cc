@@ -1,32 +1,18 @@
 #include "product/fastener_name.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "base/units.h"
 #include "product/ascii.h"
+#include "product/words.h"
 
 namespace hvas::product {
 namespace {
-
-/** True where the word stands for itself: not inside another word ("nut" in "minute"). A plural s
- and digits may follow. */
-bool HasWord(std::string_view text, std::string_view word) {
-  for (std::size_t at = text.find(word); at != std::string_view::npos;
-       at = text.find(word, at + 1)) {
-    const bool starts = at == 0 || !IsLetter(text[at - 1]);
-    std::size_t end = at + word.size();
-    if (end < text.size() && text[end] == 's') {
-      ++end;
-    }
-    if (starts && (end >= text.size() || !IsLetter(text[end]))) {
-      return true;
-    }
-  }
-  return false;
-}
 
 /** "m3", "m2.5x8": a thread size between M1 and M64 that is not part of a longer word. */
 bool HasThreadSize(std::string_view text) {
@@ -48,58 +34,73 @@ bool HasThreadSize(std::string_view text) {
   return false;
 }
 
-/** "din 912", "iso_4762", "din-7991", "iso4762". */
-bool HasStandard(std::string_view text, std::string_view body, std::string_view number) {
-  for (std::size_t at = text.find(body); at != std::string_view::npos;
-       at = text.find(body, at + 1)) {
-    std::size_t begin = at + body.size();
-    while (begin < text.size() && !IsDigit(text[begin]) && !IsLetter(text[begin])) {
-      ++begin;
-    }
-    std::size_t end = begin;
-    while (end < text.size() && IsDigit(text[end])) {
-      ++end;
-    }
-    if (text.substr(begin, end - begin) == number) {
+// The standards of screws and nuts met most in drawings.
+constexpr std::array<std::string_view, 30> kScrewStandards{
+    "din 84",   "din 912",  "din 913",  "din 914",   "din 916",   "din 931",
+    "din 933",  "din 963",  "din 965",  "din 6912",  "din 7981",  "din 7982",
+    "din 7984", "din 7985", "din 7991", "iso 1207",  "iso 2009",  "iso 2010",
+    "iso 4014", "iso 4017", "iso 4026", "iso 4027",  "iso 4029",  "iso 4762",
+    "iso 7045", "iso 7046", "iso 7380", "iso 10642", "iso 14579", "iso 14583"};
+constexpr std::array<std::string_view, 11> kNutStandards{
+    "din 439",  "din 555",  "din 562",  "din 934",  "din 985",  "din 1587",
+    "iso 4032", "iso 4033", "iso 4035", "iso 7040", "iso 10511"};
+
+constexpr std::array<std::string_view, 13> kNutWords{
+    "nut",    "locknut", "wingnut", "hexnut",         "heat set",      "helicoil", "rivnut",
+    "tuerca", "ecrou",   "porca",   "gewindeeinsatz", "gewindebuchse", "nutsert"};
+constexpr std::array<std::string_view, 15> kScrewWords{
+    "screw",    "bolt",     "bhcs",         "shcs",         "fhcs",
+    "stud",     "hexbolt",  "grub screw",   "set screw",    "cap screw",
+    "tornillo", "parafuso", "machinescrew", "gewindestift", "gewindestange"};
+// German compounds have the noun at their end: Zylinderschraube, Sechskantmutter.
+constexpr std::array<std::string_view, 2> kScrewEnds{"schraube", "schrauben"};
+constexpr std::array<std::string_view, 2> kNutEnds{"mutter", "muttern"};
+
+// What makes an insert one with a thread; others are of foam, or hold a lens.
+constexpr std::array<std::string_view, 6> kInsertWords{"threaded", "thread", "heat",
+                                                       "brass",    "press",  "knurled"};
+
+// What a fastener's name or a thread's size stands before, where it is something else: "nut
+// holder", "screw hole", "M4 spacer".
+constexpr std::array<std::string_view, 37> kOtherThings{
+    "washer", "spacer",   "standoff", "plate",    "bracket", "holder", "mount", "housing",
+    "cover",  "hole",     "block",    "terminal", "driver",  "trap",   "guide", "clamp",
+    "seat",   "retainer", "key",      "post",     "boss",    "tower",  "box",   "case",
+    "tray",   "jig",      "knob",     "bearing",  "gear",    "pulley", "ring",  "spring",
+    "hub",    "arm",      "frame",    "carrier",  "scheibe"};
+
+/** Whether one of the words is there, or a compound that ends in one of `ends`, and not just before
+ the name of another thing ("nut holder"). */
+template <std::size_t kCount, std::size_t kEnds>
+bool HasFastenerWord(std::string_view text, const std::vector<Word>& words,
+                     const std::array<std::string_view, kCount>& fasteners,
+                     const std::array<std::string_view, kEnds>& ends) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string_view word = words[i].text;
+    const bool is_fastener =
+        std::any_of(ends.begin(), ends.end(),
+                    [word](std::string_view end) { return word.ends_with(end); }) ||
+        std::any_of(fasteners.begin(), fasteners.end(), [&](std::string_view fastener) {
+          // A fastener of two words ends with this one.
+          const std::size_t begin = fastener.find(' ') != std::string_view::npos && i > 0
+                                        ? words[i - 1].begin
+                                        : words[i].begin;
+          return HasWord(text.substr(begin, words[i].end - begin), fastener);
+        });
+    if (is_fastener && (i + 1 == words.size() || !HasOneOf(words[i + 1].text, kOtherThings))) {
       return true;
     }
   }
   return false;
 }
 
-struct Standard {
-  std::string_view body;
-  std::string_view number;
-  FastenerKind kind;
-};
-
-// The screw and nut standards met most in drawings.
-constexpr std::array kStandards{
-    Standard{"din", "84", FastenerKind::kScrew},    Standard{"din", "912", FastenerKind::kScrew},
-    Standard{"din", "913", FastenerKind::kScrew},   Standard{"din", "914", FastenerKind::kScrew},
-    Standard{"din", "916", FastenerKind::kScrew},   Standard{"din", "931", FastenerKind::kScrew},
-    Standard{"din", "933", FastenerKind::kScrew},   Standard{"din", "963", FastenerKind::kScrew},
-    Standard{"din", "965", FastenerKind::kScrew},   Standard{"din", "6912", FastenerKind::kScrew},
-    Standard{"din", "7984", FastenerKind::kScrew},  Standard{"din", "7985", FastenerKind::kScrew},
-    Standard{"din", "7991", FastenerKind::kScrew},  Standard{"iso", "1207", FastenerKind::kScrew},
-    Standard{"iso", "2009", FastenerKind::kScrew},  Standard{"iso", "2010", FastenerKind::kScrew},
-    Standard{"iso", "4014", FastenerKind::kScrew},  Standard{"iso", "4017", FastenerKind::kScrew},
-    Standard{"iso", "4026", FastenerKind::kScrew},  Standard{"iso", "4027", FastenerKind::kScrew},
-    Standard{"iso", "4029", FastenerKind::kScrew},  Standard{"iso", "4762", FastenerKind::kScrew},
-    Standard{"iso", "7045", FastenerKind::kScrew},  Standard{"iso", "7046", FastenerKind::kScrew},
-    Standard{"iso", "7380", FastenerKind::kScrew},  Standard{"iso", "10642", FastenerKind::kScrew},
-    Standard{"iso", "14579", FastenerKind::kScrew}, Standard{"iso", "14583", FastenerKind::kScrew},
-    Standard{"din", "439", FastenerKind::kNut},     Standard{"din", "555", FastenerKind::kNut},
-    Standard{"din", "562", FastenerKind::kNut},     Standard{"din", "934", FastenerKind::kNut},
-    Standard{"din", "985", FastenerKind::kNut},     Standard{"din", "1587", FastenerKind::kNut},
-    Standard{"iso", "4032", FastenerKind::kNut},    Standard{"iso", "4033", FastenerKind::kNut},
-    Standard{"iso", "4035", FastenerKind::kNut},    Standard{"iso", "7040", FastenerKind::kNut},
-    Standard{"iso", "10511", FastenerKind::kNut},
-};
-
-constexpr std::array<std::string_view, 4> kNutWords{"nut", "insert", "heatset", "locknut"};
-constexpr std::array<std::string_view, 9> kScrewWords{
-    "screw", "bolt", "bhcs", "shcs", "fhcs", "stud", "grubscrew", "setscrew", "capscrew"};
+/** "Heat-set insert", "insert M3", "Insert"; not "foam insert". */
+bool IsThreadedInsert(std::string_view text, const std::vector<Word>& words) {
+  const auto letters = std::count_if(words.begin(), words.end(),
+                                     [](const Word& word) { return IsLetter(word.text.front()); });
+  return HasWord(text, "insert") &&
+         (letters == 1 || HasThreadSize(text) || HasOneOf(text, kInsertWords));
+}
 
 struct CoarsePitch {
   double diameter_mm;
@@ -204,7 +205,7 @@ std::optional<ThreadSize> ParseInch(std::string_view text) {
 }  // namespace
 
 std::optional<ThreadSize> ParseThreadSize(std::string_view name) {
-  const std::string text = ToLower(name);
+  const std::string text = FoldName(name);
   const auto metric = ParseMetric(text);
   return metric ? metric : ParseInch(text);
 }
@@ -219,28 +220,17 @@ double FindCoarsePitch(double diameter, double tolerance) {
 }
 
 FastenerKind ClassifyName(std::string_view name) {
-  const std::string text = ToLower(name);
-  for (const std::string_view word : kNutWords) {
-    if (HasWord(text, word)) {
-      return FastenerKind::kNut;
-    }
-  }
-  if (text.find("heat-set") != std::string::npos || text.find("heat set") != std::string::npos ||
-      text.find("heat_set") != std::string::npos) {
+  const std::string text = FoldName(name);
+  const std::vector<Word> words = SplitWords(text);
+  if (HasFastenerWord(text, words, kNutWords, kNutEnds) || IsThreadedInsert(text, words) ||
+      HasOneOf(text, kNutStandards)) {
     return FastenerKind::kNut;
   }
-  for (const std::string_view word : kScrewWords) {
-    if (HasWord(text, word)) {
-      return FastenerKind::kScrew;
-    }
+  if (HasFastenerWord(text, words, kScrewWords, kScrewEnds) || HasOneOf(text, kScrewStandards)) {
+    return FastenerKind::kScrew;
   }
-  for (const Standard& standard : kStandards) {
-    if (HasStandard(text, standard.body, standard.number)) {
-      return standard.kind;
-    }
-  }
-  return HasThreadSize(text) && !HasWord(text, "washer") ? FastenerKind::kScrew
-                                                         : FastenerKind::kNone;
+  return HasThreadSize(text) && !HasOneOf(text, kOtherThings) ? FastenerKind::kScrew
+                                                              : FastenerKind::kNone;
 }
 
 }  // namespace hvas::product

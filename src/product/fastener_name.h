@@ -8,8 +8,9 @@ namespace hvas::product {
 /** What the names of a part say about it. */
 enum class FastenerKind { kNone, kScrew, kNut };
 
-/** Reads names as "Screw", "bolt", "M3x16", "DIN 912", "ISO4762", "BHCS", "nut", "heat-set insert";
- nuts and threaded inserts are kNut. ASCII case does not matter. */
+/** Reads names as "Screw", "bolt", "M3x16", "DIN 912", "ISO4762", "BHCS", "nut", "heat-set insert",
+ "Zylinderschraube", "tuerca"; nuts and threaded inserts are kNut. What only goes with a fastener is
+ kNone: "nut holder", "screw hole", "M4 spacer". Letters' case does not matter. */
 [[nodiscard]] FastenerKind ClassifyName(std::string_view name);
 
 /** A thread's size; `pitch` is 0 where it is not known. */

@@ -232,14 +232,17 @@ void BuildFeatures(Part* part, Diagnostics* diagnostics) {
   const double tolerance = Tolerance(*part);
   const FaceAdjacency adjacency(*part, tolerance);
   RecognitionLimits limits;
+  std::vector<Feature> toothed;
   for (auto&& found :
-       {FindCylinders(*part, tolerance, &limits), FindPlanes(*part, tolerance),
+       {FindCylinders(*part, tolerance, &limits, &toothed), FindPlanes(*part, tolerance),
         FindCones(*part, tolerance, &limits), FindSpheres(*part, adjacency, tolerance)}) {
     part->features.insert(part->features.end(), found.begin(), found.end());
   }
   AddInnerConstraints(part, tolerance);
   MarkThreads(part, tolerance, &limits);
   part->forms = FindForms(*part, adjacency, tolerance, &limits);
+  // Teeth make no forms and no threads: they only tell where a hub sits on its shaft.
+  part->features.insert(part->features.end(), toothed.begin(), toothed.end());
   if (diagnostics != nullptr && !limits.items().empty()) {
     diagnostics->Note("limit-features", part->name,
                       fmt::format("features beyond the limits of recognition are left out: {}",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace hvas::product {
@@ -87,6 +88,28 @@ std::optional<RayHit> FindFirstHit(const Part& part, const Vec3& p, const Vec3& 
     return true;
   });
   return first;
+}
+
+std::vector<Crossing> ListCrossings(const Part& part, const Vec3& p, const Vec3& dir,
+                                    double reach) {
+  constexpr double kSameEdge = 1e-9;  // [m]: rounding, far below any wall. A choice.
+  std::vector<Crossing> crossings;
+  ForEachHit(part, p, dir, reach, [&](std::uint32_t triangle, double distance) {
+    const auto& [a, b, c] = part.mesh.triangles[triangle];
+    const std::vector<Vec3>& vertices = part.mesh.vertices;
+    const Vec3 normal = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
+    crossings.push_back({distance, normal.dot(dir) < 0});
+    return true;
+  });
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    return std::pair(a.distance, a.is_entering) < std::pair(b.distance, b.is_entering);
+  });
+  const auto end =
+      std::unique(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+        return a.is_entering == b.is_entering && b.distance - a.distance < kSameEdge;
+      });
+  crossings.erase(end, crossings.end());
+  return crossings;
 }
 
 }  // namespace hvas::product

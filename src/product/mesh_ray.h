@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "product/product.h"
 
@@ -21,5 +22,16 @@ struct RayHit {
  meets none. Triangles that the ray starts on do not count. */
 [[nodiscard]] std::optional<RayHit> FindFirstHit(const Part& part, const Vec3& p, const Vec3& dir,
                                                  double reach);
+
+/** Where a line enters a part or leaves it. */
+struct Crossing {
+  double distance{0};      ///< Distance from the start of the line [m].
+  bool is_entering{true};  ///< True where the line goes into the material.
+};
+
+/** All crossings of a ray from `p` along `dir` within `reach` [m], the nearest first. One that an
+ edge of two triangles is met at counts once. */
+[[nodiscard]] std::vector<Crossing> ListCrossings(const Part& part, const Vec3& p, const Vec3& dir,
+                                                  double reach);
 
 }  // namespace hvas::product

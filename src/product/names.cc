@@ -78,6 +78,8 @@ constexpr const char* FindMateKindName(MateKind kind) {
       return "cone_seat";
     case MateKind::kSphereSeat:
       return "sphere_seat";
+    case MateKind::kPrismatic:
+      return "prismatic";
   }
   return nullptr;
 }
@@ -105,7 +107,8 @@ const char* ToString(SurfaceConstraintKind kind) {
 }
 
 const char* ToString(FitKind kind) {
-  constexpr std::array kNames{"clearance", "transition", "interference", "thread"};
+  constexpr std::array kNames{"clearance", "transition", "interference",
+                              "thread",    "insert",     "passage"};
   return NameOf(kNames, kind);
 }
 

@@ -33,4 +33,14 @@ double Product::mass() const {
   return sum;
 }
 
+std::vector<FaceId> FacesOf(const Product& product, const Connector& side) {
+  const std::vector<Feature>& features = product.part_of(side.occurrence).features;
+  std::vector<FaceId> faces = features[side.feature.index()].faces;
+  if (side.opposite.is_valid()) {
+    const std::vector<FaceId>& more = features[side.opposite.index()].faces;
+    faces.insert(faces.end(), more.begin(), more.end());
+  }
+  return faces;
+}
+
 }  // namespace hvas::product

@@ -199,28 +199,42 @@ struct Occurrence {
   std::vector<std::string> bodies{};
 };
 
-enum class MateKind { kAxisHole, kFaceFace, kConeSeat, kSphereSeat };
+enum class MateKind { kAxisHole, kFaceFace, kConeSeat, kSphereSeat, kPrismatic };
 
 /** All kinds of mates, in the order of their numbers. */
 inline constexpr std::array kMateKinds{MateKind::kAxisHole, MateKind::kFaceFace,
-                                       MateKind::kConeSeat, MateKind::kSphereSeat};
+                                       MateKind::kConeSeat, MateKind::kSphereSeat,
+                                       MateKind::kPrismatic};
 
-/** How the faces of an axis-hole mate answer to each other. */
-enum class FitKind { kClearance, kTransition, kInterference, kThread };
+/** How the faces of an axis-hole or prismatic mate answer to each other. */
+enum class FitKind {
+  kClearance,
+  kTransition,
+  kInterference,
+  kThread,
+  kInsert,   ///< Melted, pressed or drawn in, or held by its spring: no fit of ISO 286.
+  kPassage,  ///< A shaft that goes through with more play than any fit of ISO 286 has.
+};
 
-/** A fit on an axis-hole mate. `code` is an ISO 286 code such as "H7/g6"; empty for threads. */
+/** Whether ISO 286 has fits of this kind. */
+[[nodiscard]] constexpr bool IsIsoFit(FitKind kind) {
+  return kind <= FitKind::kInterference;
+}
+
+/** A fit on an axis-hole or prismatic mate. `code` is an ISO 286 code such as "H7/g6"; empty for
+ other kinds. */
 struct Fit {
   FitKind kind{FitKind::kClearance};
   std::string code;
-  double nominal_diameter{0};  ///< [m]
+  double nominal_diameter{0};  ///< Diameter, or width of a prismatic mate [m].
   bool is_proposed{true};      ///< False where the file, a side file or the user says so.
   std::string reason;          ///< Why this fit, in a few words.
 };
 
-/** A diameter that was measured at one place along a mate. */
+/** A diameter, or width of a prismatic mate, that was measured at one place along a mate. */
 struct MeasuredDiameter {
   double depth{0};     ///< Depth from the mouth of the hole, parts in their place [m].
-  double diameter{0};  ///< [m]
+  double diameter{0};  ///< Diameter or width [m].
 };
 
 /** What somebody measured or knows about one mate, over what the fit would have drawn or looked up.
@@ -241,6 +255,7 @@ struct Connector {
   OccurrenceId occurrence;
   FeatureId feature;
   Pose X_BM;
+  FeatureId opposite{};  ///< Prismatic: the plane that opposes `feature`; else invalid.
 };
 
 enum class SurfaceConstraintKind { kCoaxial, kCoplanar, kSameCone, kConcentric };
@@ -259,18 +274,22 @@ enum class MateOrigin { kInferred, kUser };
  Axis-hole: `a` is the hole, `b` the shaft; both frames have their origin at the same world point
  on the axis in the assembled pose, and spans along z from there. Face-face: both frames have
  their origin at the centre of the overlap. Cone seat: `a` is the seat, `b` the taper; frames at the
- middle of the contact, on the axis. Sphere seat: `a` is the socket; frames at the centre. */
+ middle of the contact, on the axis. Sphere seat: `a` is the socket; frames at the centre.
+ Prismatic: `a` has the slot, `b` the tongue between its walls; both frames have their origin in the
+ middle of the slot, z across from the first wall to the opposite one, x the way out of the tongue,
+ and spans along x from there. */
 struct Mate {
   MateId id;        ///< Its index in Product::mates.
   std::string key;  ///< 10 hex digits of what it ties; the same however many other mates there are.
   MateKind kind{MateKind::kFaceFace};
   Connector a;
   Connector b;
-  double hole_low{0}, hole_high{0};    ///< Axial span of the hole [m]; 0 for planes.
-  double shaft_low{0}, shaft_high{0};  ///< Axial span of the shaft, assembled [m].
-  double hole_radius{0}, shaft_radius{0};
-  double overlap{0};       ///< Engaged length [m], or overlapping area [m^2].
-  std::optional<Fit> fit;  ///< Axis-hole only.
+  double hole_low{0}, hole_high{0};        ///< Axial span of the hole or slot [m]; 0 for planes.
+  double shaft_low{0}, shaft_high{0};      ///< Axial span of the shaft or tongue, assembled [m].
+  double hole_radius{0}, shaft_radius{0};  ///< Prismatic: half the widths of slot and tongue [m].
+  double overlap{0};                       ///< Engaged length [m], or overlapping area [m^2].
+  double breadth{0};       ///< Prismatic: extent of the contact across the way, in the wall [m].
+  std::optional<Fit> fit;  ///< Axis-hole and prismatic only.
   FitConditions conditions;
   std::vector<SurfaceConstraint> surfaces;
   MateOrigin origin{MateOrigin::kInferred};
@@ -328,5 +347,9 @@ struct Product {
   [[nodiscard]] double volume() const;  ///< Volume of all occurrences [m^3].
   [[nodiscard]] double mass() const;    ///< Mass of all occurrences [kg].
 };
+
+/** The faces of a side of a mate: those of its feature, and of the opposite one where it has one.
+ */
+[[nodiscard]] std::vector<FaceId> FacesOf(const Product& product, const Connector& side);
 
 }  // namespace hvas::product

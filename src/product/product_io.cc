@@ -51,17 +51,28 @@ HVAS_FIELDS(Fit, kind, code, nominal_diameter, is_proposed, reason)
 HVAS_FIELDS(MeasuredDiameter, depth, diameter)
 HVAS_FIELDS(FitConditions, hole_diameters, shaft_diameters, hole_roughness, shaft_roughness,
             friction, hole_temperature_c, shaft_temperature_c)
-HVAS_FIELDS(Connector, occurrence, feature, X_BM)
 HVAS_FIELDS(SurfaceConstraint, kind, a, b)
-HVAS_FIELDS(Mate, id, key, kind, a, b, hole_low, hole_high, shaft_low, shaft_high, hole_radius,
-            shaft_radius, overlap, fit, conditions, surfaces, origin, confidence, evidence)
 HVAS_FIELDS(Joint, a, b, mates, free_translations, free_rotations, pattern_count)
 HVAS_FIELDS(Alignment, a, b)
 HVAS_FIELDS(Diagnostic, severity, code, entity, message, remedy)
 #undef HVAS_FIELDS
 
-// What older formats have not stands behind the rest (VisitExtension, VisitBodies), so that records
-// of these can be read.
+// What older formats have not stands behind the rest (VisitExtension, VisitBodies, VisitPrismatic),
+// so that records of these can be read.
+template <typename A, Is<Connector> T>
+void Visit(A& archive, T& value) {
+  auto& [occurrence, feature, X_BM, opposite] = value;
+  archive(occurrence, feature, X_BM);
+}
+
+template <typename A, Is<Mate> T>
+void Visit(A& archive, T& value) {
+  auto& [id, key, kind, a, b, hole_low, hole_high, shaft_low, shaft_high, hole_radius, shaft_radius,
+         overlap, breadth, fit, conditions, surfaces, origin, confidence, evidence] = value;
+  archive(id, key, kind, a, b, hole_low, hole_high, shaft_low, shaft_high, hole_radius,
+          shaft_radius, overlap, fit, conditions, surfaces, origin, confidence, evidence);
+}
+
 template <typename A, Is<Part> T>
 void Visit(A& archive, T& value) {
   auto& [id, name, color, material, mass, solid_count, has_brep, box_B, mesh, faces, display_mesh,
@@ -107,6 +118,14 @@ template <typename A, Is<Product> T>
 void VisitBodies(A& archive, T& product) {
   for (auto& occurrence : product.occurrences) {
     archive(occurrence.bodies);
+  }
+}
+
+/** The fields that format 4 adds. */
+template <typename A, Is<Product> T>
+void VisitPrismatic(A& archive, T& product) {
+  for (auto& mate : product.mates) {
+    archive(mate.a.opposite, mate.b.opposite, mate.breadth);
   }
 }
 
@@ -156,7 +175,7 @@ constexpr ElementKind LastOf(ElementKind /*kind*/) {
 }
 
 constexpr FitKind LastOf(FitKind /*kind*/) {
-  return FitKind::kThread;
+  return FitKind::kPassage;
 }
 
 constexpr SurfaceConstraintKind LastOf(SurfaceConstraintKind /*kind*/) {
@@ -326,6 +345,7 @@ void WriteProduct(const Product& product, ByteWriter* writer) {
   visitor(product);
   VisitExtension(visitor, product);
   VisitBodies(visitor, product);
+  VisitPrismatic(visitor, product);
 }
 
 void WriteDiagnostics(const Diagnostics& diagnostics, ByteWriter* writer) {
@@ -343,6 +363,10 @@ Product ReadProduct(ByteReader* reader, std::uint32_t format) {
   constexpr std::uint32_t kFormatWithBodies = 3;  // A definition: the first that has them.
   if (format >= kFormatWithBodies) {
     VisitBodies(visitor, product);
+  }
+  constexpr std::uint32_t kFormatWithPrismatic = 4;  // A definition: the first that has them.
+  if (format >= kFormatWithPrismatic) {
+    VisitPrismatic(visitor, product);
   }
   if (!reader->has_failed() && Validate(product)) {
     return product;

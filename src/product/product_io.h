@@ -15,10 +15,10 @@
 namespace hvas::product {
 
 /** The version is raised whenever the bytes change: a field, an enumerator, their order. */
-inline constexpr std::uint32_t kProductFormat = 3;
+inline constexpr std::uint32_t kProductFormat = 4;
 
 /** The oldest version that can be read. It has no identities, header, relations and contact pairs;
- versions before 3 have no `Occurrence::bodies`. */
+ versions before 3 have no `Occurrence::bodies`, those before 4 no prismatic mates. */
 inline constexpr std::uint32_t kFirstProductFormat = 1;
 
 /** All of a product but Product::removed_mates and Product::placement, which only editing needs:

@@ -102,11 +102,16 @@ bool IsTree(const Product& product) {
 
 bool IsValid(const Product& product, const Connector& connector) {
   return IsIn(connector.occurrence, product.occurrences) &&
-         IsInOrNone(connector.feature, product.part_of(connector.occurrence).features);
+         IsInOrNone(connector.feature, product.part_of(connector.occurrence).features) &&
+         IsInOrNone(connector.opposite, product.part_of(connector.occurrence).features);
 }
 
 bool IsValid(const Product& product, const Mate& mate) {
+  const auto has_walls = [](const Connector& side) {
+    return side.feature.is_valid() && side.opposite.is_valid();
+  };
   return IsValid(product, mate.a) && IsValid(product, mate.b) &&
+         (mate.kind != MateKind::kPrismatic || (has_walls(mate.a) && has_walls(mate.b))) &&
          std::all_of(mate.surfaces.begin(), mate.surfaces.end(),
                      [&product, &mate](const SurfaceConstraint& surface) {
                        return IsInOrNone(surface.a, product.part_of(mate.a.occurrence).faces) &&

@@ -251,7 +251,7 @@ class Welding {
         merged.bodies.insert(merged.bodies.end(), member.bodies.begin(), member.bodies.end());
       }
     }
-    if (weld.reason != WeldReason::kDuplicate) {
+    if (!DoesLeaveOut(weld.reason)) {
       merged.part = FindPart(weld, name);
     }
     merged.name = name.name;
@@ -356,12 +356,13 @@ const char* ToString(WeldReason reason) {
       "they are a rolling bearing",
       "their subassembly has the name of a unit that is bought as one piece",
       "they are one component of a circuit board",
-      "some are enclosed by another one"};
+      "some are enclosed by another one",
+      "only one of them can be there"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
 
 OccurrenceId FindAnchor(const Product& product, const Weld& weld) {
-  if (weld.reason == WeldReason::kDuplicate) {
+  if (DoesLeaveOut(weld.reason)) {
     return weld.members.front();
   }
   const auto size_of = [&product](OccurrenceId id) {
@@ -378,7 +379,7 @@ WeldName FindName(const Product& product, const Weld& weld) {
   const Occurrence& anchor = product.occurrences[name.anchor.index()];
   name.name = anchor.name;
   name.path = anchor.path;
-  if (weld.reason == WeldReason::kDuplicate) {
+  if (DoesLeaveOut(weld.reason)) {
     return name;
   }
   // The deepest node above all members is the end of what their ways from the root share.
@@ -399,6 +400,13 @@ WeldName FindName(const Product& product, const Weld& weld) {
     return id.index() != 0 && names_it(id) && CountOccurrences(product, id) == weld.members.size();
   });
   node = highest != shared.end() ? *highest : node;
+  if (weld.reason == WeldReason::kBoughtUnit) {
+    // A unit that a part of its node is put on afterwards has the name of the node, too.
+    const auto named = std::find_if(shared.begin(), shared.end(), [&](SubassemblyId id) {
+      return id.index() != 0 && names_it(id);
+    });
+    name.name = named != shared.end() ? product.subassemblies[named->index()].name : name.name;
+  }
   if (!node.is_valid() || node.index() == 0 ||
       CountOccurrences(product, node) != weld.members.size()) {
     return name;

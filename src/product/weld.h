@@ -15,7 +15,13 @@ enum class WeldReason {
   kBoughtUnit,      ///< A subassembly whose name says that it is bought as one piece.
   kComponent,       ///< The bodies of one component on a circuit board.
   kEnclosed,        ///< A part in a closed cavity of another one.
+  kVariant,         ///< Parts where only one can be: all but the first are left out.
 };
+
+/** Whether the members after the first are left out, instead of being put together with it. */
+[[nodiscard]] constexpr bool DoesLeaveOut(WeldReason reason) {
+  return reason == WeldReason::kDuplicate || reason == WeldReason::kVariant;
+}
 
 /** Reads as the end of "is one body of 4 parts (...): ". */
 [[nodiscard]] const char* ToString(WeldReason reason);
@@ -43,7 +49,8 @@ struct WeldName {
 /** Replaces the members of each weld by one occurrence of one part, and leaves out subassemblies
  and parts that nothing is left of. The part has the frame of the anchor, the faces, triangles and
  mass of all members, and features found anew; of members without volume, beside members with one,
- the triangles are kept for display only. Duplicates leave the part of the first one as it is. Welds
+ the triangles are kept for display only. Duplicates and variants leave the part of the first one as
+ it is. Welds
  of equal parts in equal relative poses share one part. `Occurrence::bodies` lists the members'
  paths.
  @pre No occurrence is in two welds, and the product has no mates yet. */

@@ -14,6 +14,8 @@
 #include "product/fastener_name.h"
 #include "product/rolling_bearing.h"
 #include "product/same_place.h"
+#include "product/variants.h"
+#include "product/words.h"
 
 namespace hvas::product {
 namespace {
@@ -62,6 +64,15 @@ bool IsBodyName(std::string_view name) {
     }
   }
   return std::find(kNames.begin(), kNames.end(), text) != kNames.end();
+}
+
+/** The names of bodies that a fastener is drawn with: those without a meaning, and its portions. */
+bool IsPortionOfFastener(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kPortions{"thread", "gewinde", "head",  "kopf",
+                                                      "shank",  "schaft",  "helix", "core"};
+  constexpr std::array<std::string_view, 5> kWholes{"screw", "bolt", "nut", "washer", "insert"};
+  const std::string folded = FoldName(name);
+  return IsBodyName(name) || (HasOneOf(folded, kPortions) && !HasOneOf(folded, kWholes));
 }
 
 class UnitSearch {
@@ -137,6 +148,7 @@ class UnitSearch {
       if (bought != BoughtName::kNone && CountLevels(child) <= 1) {
         ListBelow(child, &members);
         std::sort(members.begin(), members.end());
+        RemoveMounted(IsServoName(NodeOf(child).name), &members);
       }
       const bool may_be_unit = members.size() >= 2 && members.size() <= kMostBodies &&
                                (bought == BoughtName::kDesignation ||
@@ -146,6 +158,48 @@ class UnitSearch {
       if (!may_be_unit || !Add({members, WeldReason::kBoughtUnit})) {
         AddNamedUnits(child);
       }
+    }
+  }
+
+  /** Whether a part of a servo has the holes of a horn: five or more of one size in a row or on a
+   circle, in a small part. */
+  [[nodiscard]] static bool HasFormOfHorn(const Part& part, double volume_of_unit) {
+    constexpr int kFewestHoles = 5;        // A lid has four screws: a choice.
+    constexpr double kLargestHorn = 0.25;  // Of the volume of the unit: a choice.
+    return part.mass.volume < kLargestHorn * volume_of_unit &&
+           std::any_of(part.forms.begin(), part.forms.end(), [](const Form& form) {
+             return form.kind == FormKind::kHolePattern && form.count >= kFewestHoles;
+           });
+  }
+
+  /** Takes out what is put on the shaft of a unit afterwards, such as the horn of a servo, if it
+   can go straight away from the others, and the fasteners through it. */
+  void RemoveMounted(bool is_servo, std::vector<OccurrenceId>* members) const {
+    double volume = 0;
+    for (const OccurrenceId id : *members) {
+      volume += product_.part_of(id).mass.volume;
+    }
+    std::vector<OccurrenceId> mounted;
+    for (const OccurrenceId id : *members) {
+      if (IsMountedOnUnit(product_.occurrences[id.index()].name) ||
+          IsMountedOnUnit(product_.part_of(id).name) ||
+          (is_servo && HasFormOfHorn(product_.part_of(id), volume))) {
+        mounted.push_back(id);
+      }
+    }
+    std::vector<OccurrenceId> rest;
+    for (const OccurrenceId id : *members) {
+      const bool is_out = std::find(mounted.begin(), mounted.end(), id) != mounted.end() ||
+                          (IsFastener(id) && CountHeld(product_, id, mounted) > 0);
+      if (!is_out) {
+        rest.push_back(id);
+      }
+    }
+    const bool can_come_off = std::all_of(mounted.begin(), mounted.end(), [&](OccurrenceId id) {
+      return HasStraightWayOut(product_, id, rest);
+    });
+    if (!mounted.empty() && can_come_off) {
+      *members = std::move(rest);
     }
   }
 
@@ -240,22 +294,25 @@ class UnitSearch {
       if (node.occurrences.size() < 2) {
         continue;
       }
-      const bool are_bodies =
-          node.subassemblies.empty() &&
-          std::all_of(node.occurrences.begin(), node.occurrences.end(), [this](OccurrenceId id) {
-            return IsBodyName(product_.occurrences[id.index()].name);
-          });
-      if (are_bodies && node.parent.is_valid() && ClassifyName(node.name) != FastenerKind::kNone &&
-          AreConnected(node.occurrences)) {
+      const auto are_all = [&](bool (*is_kind)(std::string_view)) {
+        return node.subassemblies.empty() &&
+               std::all_of(node.occurrences.begin(), node.occurrences.end(), [&](OccurrenceId id) {
+                 return is_kind(product_.occurrences[id.index()].name);
+               });
+      };
+      const bool is_fastener =
+          node.parent.is_valid() && ClassifyName(node.name) != FastenerKind::kNone;
+      if (is_fastener && are_all(IsPortionOfFastener) && AreConnected(node.occurrences)) {
         Add({node.occurrences, WeldReason::kBodiesOfPart});
-      } else if (node.parent.is_valid() || are_bodies) {
-        AddSurfaces(node, are_bodies);
+      } else {
+        AddSurfaces(node, are_all(IsBodyName));
       }
     }
   }
 
   /** Gives each solid of a node the bodies without volume that belong to it: those that lie in its
-   box, or, among bodies of one part, those whose box touches that of the solid. */
+   box, or, among bodies of one part, those whose box touches that of the solid. At the root, where
+   all parts of a flat file are, only fasteners have such. */
   void AddSurfaces(const Subassembly& node, bool are_bodies) {
     constexpr double kInside = 0.01;  // Part of the box that a surface may stand out. A choice.
     std::map<OccurrenceId, std::vector<OccurrenceId>> surfaces_of;
@@ -267,7 +324,8 @@ class UnitSearch {
       OccurrenceId best;
       double best_size = 0;
       for (const OccurrenceId solid : node.occurrences) {
-        if (!(product_.part_of(solid).mass.volume > 0) || !is_free_[solid.index()]) {
+        const bool may_have = node.parent.is_valid() || are_bodies || IsFastener(solid);
+        if (!may_have || !(product_.part_of(solid).mass.volume > 0) || !is_free_[solid.index()]) {
           continue;
         }
         const Box box = BoxInWorld(product_, solid);
@@ -404,6 +462,32 @@ void ReportDuplicates(const Product& product, const std::vector<Weld>& welds,
   }
 }
 
+/** The variants that are to be left out, each with the part that stays; warns of them. */
+std::vector<Weld> LeaveOutVariants(const Product& product, const std::vector<KeptApart>& apart,
+                                   WorkWatch* watch, Diagnostics* diagnostics) {
+  std::map<OccurrenceId, Weld> welds;
+  for (const auto& [first, second, shared] : FindVariants(product, watch)) {
+    if (IsKeptApart(product, {{first, second}, WeldReason::kVariant}, apart)) {
+      continue;
+    }
+    diagnostics->Warn(
+        "variant-part", product.occurrences[second.index()].path,
+        "shares " + std::to_string(std::lround(100 * shared)) + " % of its volume, or of that of " +
+            product.occurrences[first.index()].path +
+            ", with it: one of them can be there, so this one is left out of the assembly",
+        "delete one of them in the CAD system, or name it with --apart or under \"apart\" in the "
+        "side file");
+    welds.try_emplace(first, Weld{{first}, WeldReason::kVariant})
+        .first->second.members.push_back(second);
+  }
+  std::vector<Weld> list;
+  for (auto& [first, weld] : welds) {
+    std::sort(weld.members.begin(), weld.members.end());
+    list.push_back(std::move(weld));
+  }
+  return list;
+}
+
 }  // namespace
 
 bool IsCalledByPath(const std::string& name, const std::string& path, std::string_view wanted) {
@@ -444,6 +528,8 @@ Result<void> WeldUnits(const std::vector<KeptApart>& apart, Product* product,
   const std::vector<Weld> duplicates = FindDuplicates(*product, apart);
   ReportDuplicates(*product, duplicates, diagnostics);
   ApplyWelds(duplicates, product);
+  const std::vector<Weld> variants = LeaveOutVariants(*product, apart, watch, diagnostics);
+  ApplyWelds(variants, product);
   const std::vector<Weld> units = FindWelds(*product, apart, watch);
   if (!MayGoOn(watch)) {
     return Unexpected(watch->Explain("finding bought units", product->source));

@@ -30,9 +30,10 @@ struct KeptApart {
 [[nodiscard]] std::vector<Weld> FindDuplicates(const Product& product,
                                                const std::vector<KeptApart>& apart);
 
-/** Makes one occurrence of each unit that FindDuplicates() and FindWelds() find, and notes it:
- "duplicate-part" and "welded-unit", one note for each unit and those equal to it.
- Errors: kInvalid for a name in `apart` that nothing in the product has; those of the watch.
+/** Makes one occurrence of each unit that FindDuplicates(), FindVariants() and FindWelds() find,
+ and reports it: "duplicate-part", "variant-part" (a warning) and "welded-unit", one note for each
+ unit and those equal to it. Errors: kInvalid for a name in `apart` that nothing in the product has;
+ those of the watch.
  @pre The product has no mates yet. */
 [[nodiscard]] Result<void> WeldUnits(const std::vector<KeptApart>& apart, Product* product,
                                      Diagnostics* diagnostics, WorkWatch* watch = nullptr);

@@ -2,15 +2,13 @@
 
 #include <zstd.h>
 
-#include "base/check.h"
-
 namespace hvas::record {
 namespace {
 
 // Above it a session takes hardly less room and the writer several times as long.
 constexpr int kLevel = 3;
 
-/** Of rows of bytes, each so wide. */
+/** Gives rows of bytes as columns, or columns as rows. @param width  Of a row that is given. */
 std::vector<std::byte> Transpose(std::span<const std::byte> rows, std::size_t width) {
   const std::size_t count = rows.size() / width;
   std::vector<std::byte> columns(rows.size());
@@ -40,13 +38,6 @@ std::vector<std::byte> Decompress(std::span<const std::byte> block, std::size_t 
     return {};
   }
   return bytes;
-}
-
-std::vector<std::byte> CompressTicks(std::span<const std::byte> packed, std::size_t tick_size) {
-  HVAS_DEMAND(tick_size > 0 && packed.size() % tick_size == 0);
-  // Byte by byte of all ticks in a row: sign, exponent and first digits of a number hardly ever
-  // change within a millisecond.
-  return Compress(Transpose(packed, tick_size));
 }
 
 std::vector<std::byte> DecompressTicks(std::span<const std::byte> block, std::size_t tick_size,

@@ -14,13 +14,9 @@ namespace hvas::record {
 [[nodiscard]] std::vector<std::byte> Decompress(std::span<const std::byte> block,
                                                 std::size_t limit);
 
-/** Compresses ticks, each of `tick_size` bytes: what changes little from one to the next comes
- together, and takes little room.
- @pre a whole number of ticks. */
-[[nodiscard]] std::vector<std::byte> CompressTicks(std::span<const std::byte> packed,
-                                                   std::size_t tick_size);
-
-/** The packed ticks; empty where the block is not one of `count` ticks. Takes any bytes. */
+/** The packed ticks, each of `tick_size` bytes, of a block of schema 3 or 4, which has the first
+ bytes of all ticks, then all second bytes, and so on; empty where the block is not one of `count`
+ ticks. Takes any bytes. */
 [[nodiscard]] std::vector<std::byte> DecompressTicks(std::span<const std::byte> block,
                                                      std::size_t tick_size, std::size_t count);
 

@@ -2,6 +2,8 @@
 
 #include <bit>
 #include <cstring>
+#include <type_traits>
+#include <utility>
 
 #include "base/check.h"
 
@@ -41,6 +43,32 @@ class ByteReader {
 // A pose as plain numbers: p, then q as w, x, y, z.
 using FlatPose = std::array<double, 7>;
 
+// Notes what a writer would write.
+class NumberLister {
+ public:
+  template <typename T>
+  void operator()(const T& /*value*/) {
+    static_assert(std::is_arithmetic_v<T>);
+    if constexpr (std::is_floating_point_v<T>) {
+      numbers_.push_back(sizeof(T) == sizeof(double) ? PackedNumber::kDouble
+                                                     : PackedNumber::kFloat);
+    } else {
+      constexpr std::array kIntegers{PackedNumber::kByte, PackedNumber::kShort,
+                                     PackedNumber::kInteger, PackedNumber::kLong};
+      numbers_.push_back(kIntegers[std::bit_width(sizeof(T)) - 1]);
+    }
+  }
+
+  void operator()(const FlatPose& pose) {
+    numbers_.insert(numbers_.end(), pose.size(), PackedNumber::kDouble);
+  }
+
+  [[nodiscard]] std::vector<PackedNumber>& numbers() { return numbers_; }
+
+ private:
+  std::vector<PackedNumber> numbers_;
+};
+
 FlatPose Flatten(const spatial::Pose& pose) {
   const Quat& q = pose.q();
   return {pose.p().x(), pose.p().y(), pose.p().z(), q.w(), q.x(), q.y(), q.z()};
@@ -50,7 +78,8 @@ spatial::Pose Unflatten(const FlatPose& v) {
   return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
 }
 
-// These two alone know the order of the fields. `F` is a ByteWriter or a ByteReader.
+// These two alone know the order of the fields. `F` is a ByteWriter, a ByteReader or a
+// NumberLister, which allocates.
 template <typename F, typename Tick, typename Poses>
 void VisitFieldsOf1(F& f, Tick& tick, Poses& poses) noexcept {
   const auto vector = [&f](auto& v) {
@@ -148,6 +177,16 @@ TickRecord Unpack(std::span<const std::byte> bytes, std::int64_t schema) noexcep
 
 TickRecord Unpack(std::span<const std::byte, kPackedTickSize> bytes) noexcept {
   return Unpack(bytes, kSchemaVersion);
+}
+
+std::vector<PackedNumber> ListPackedNumbers() {
+  const TickRecord tick;
+  const std::array<FlatPose, 3> poses{};
+  NumberLister lister;
+  VisitFieldsOf1(lister, tick, poses);
+  VisitFieldsOf2(lister, tick);
+  lister(tick.commands);
+  return std::move(lister.numbers());
 }
 
 }  // namespace hvas::record

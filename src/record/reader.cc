@@ -11,6 +11,7 @@
 #include "record/packing.h"
 #include "record/seal_check.h"
 #include "record/session_digest.h"
+#include "record/tick_coding.h"
 
 namespace hvas::record {
 namespace {
@@ -124,8 +125,10 @@ Result<std::vector<std::byte>> Reader::UnpackChunk(const Statement& row) const {
   const std::int64_t count = row.ReadInt(1);
   std::vector<std::byte> packed;
   if (count > 0 && count <= kChunkTicks && IsWhole(block, row.ReadInt(2))) {
-    packed = schema_ < 3 ? std::vector<std::byte>(block.begin(), block.end())
-                         : DecompressTicks(block, size, static_cast<std::size_t>(count));
+    const auto ticks = static_cast<std::size_t>(count);
+    packed = schema_ < 3   ? std::vector<std::byte>(block.begin(), block.end())
+             : schema_ < 5 ? DecompressTicks(block, size, ticks)
+                           : DecodeTicks(block, ticks);
   }
   if (packed.empty() || packed.size() != static_cast<std::size_t>(count) * size) {
     return Damaged(fmt::format("Chunk {}", row.ReadInt(0)));

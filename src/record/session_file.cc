@@ -10,6 +10,7 @@
 #include "base/digest.h"
 #include "record/compression.h"
 #include "record/session_digest.h"
+#include "record/tick_coding.h"
 
 namespace hvas::record {
 namespace {
@@ -222,7 +223,7 @@ Result<void> SessionFile::WriteChunk() {
   if (chunk_ticks_ == 0) {
     return {};
   }
-  const std::vector<std::byte> block = CompressTicks(chunk_, kPackedTickSize);
+  const std::vector<std::byte> block = EncodeTicks(chunk_);
   const std::span<const std::byte> bytes(block);
   const auto checksum = static_cast<std::int64_t>(Checksum64(bytes));
   ledger_.Add(RowTable::kChunk,

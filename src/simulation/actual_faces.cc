@@ -1,9 +1,14 @@
 #include "simulation/actual_faces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
+
+#include "mates/mate_kind.h"
+#include "mates/prismatic_fits.h"
+#include "simulation/mate_way.h"
 
 namespace hvas::simulation {
 namespace {
@@ -27,25 +32,28 @@ Overlap FindOverlap(const product::Product& product, const Mate& mate) {
           std::min(mate.hole_high, along + mate.shaft_high)};
 }
 
-bool Moves(const SequenceStep& step, OccurrenceId id) {
-  return step.occurrence == id ||
-         std::find(step.members.begin(), step.members.end(), id) != step.members.end();
-}
-
 /** True where the shaft comes in from the end of larger z: the side on which it lies before. */
 bool IsMouthHigh(const ActualFacesInput& input, const Mate& mate) {
   const product::Occurrence& hole = input.product->occurrences[mate.a.occurrence.index()];
   const Vec3 z_W = (hole.X_WB * mate.a.X_BM).q() * Vec3::UnitZ();
-  // The last move of one without the other joins them; after it they move together.
-  const auto& steps = input.sequence->steps;
-  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-    const bool moves_hole = Moves(*step, mate.a.occurrence);
-    if (step->kind == SequenceStep::Kind::kInsert &&
-        moves_hole != Moves(*step, mate.b.occurrence)) {
-      return (step->extraction_W.dot(z_W) > 0) != moves_hole;
-    }
-  }
-  return true;
+  const Vec3 way_W = FindWayOut(*input.sequence, mate);
+  return way_W.isZero() || way_W.dot(z_W) > 0;
+}
+
+/** The offsets of a slot's first wall and of the opposite one, for a tongue that is `tongue` larger
+ on each side and lies where it is drawn. Walls are planes: the least clearance counts for all of
+ their length. Where the fit leaves none, it answers for the force, and contact just lets the tongue
+ pass. */
+std::array<double, 2> SlotOffsets(const product::Product& product, const Mate& mate,
+                                  const fits::FitForce* fit, double tongue) {
+  constexpr double kRoom = 5e-6;  // [m] at each wall: half of what faces that give way leave.
+  const double drawn_gap = mate.hole_radius - mate.shaft_radius;
+  const double play =
+      std::max(kRoom, fit != nullptr ? fit->CalcRadialPlay(fit->length()) : drawn_gap);
+  const double drawn_shift = mates::CalcDrawnShift(product, mate);
+  // The tongue stays within its play where it is drawn beside it, as in the tick's guidance.
+  const double excess = drawn_shift - std::clamp(drawn_shift, -play, play);
+  return {drawn_gap + excess - tongue - play, drawn_gap - excess - tongue - play};
 }
 
 /** The hole's offsets at equal steps of z over the overlap, for a shaft that is `shaft` larger. */
@@ -67,17 +75,18 @@ struct PartFaces {
   std::vector<contact::FaceOffset> offsets;
   std::vector<bool> is_given;
 
-  [[nodiscard]] bool IsFree(const product::Feature& feature) const {
-    return std::none_of(feature.faces.begin(), feature.faces.end(),
+  [[nodiscard]] bool IsFree(const std::vector<product::FaceId>& faces) const {
+    return std::none_of(faces.begin(), faces.end(),
                         [this](product::FaceId f) { return is_given[f.index()]; });
   }
 };
 
-/** Gives the faces of a hole or shaft a profile over z of its connector. */
-void Give(const product::Part& part, const product::Connector& connector, const Overlap& overlap,
+/** Gives faces of one side of a mate an offset, or a hole or shaft a profile over z. */
+void Give(const product::Part& part, const product::Connector& connector,
+          const std::vector<product::FaceId>& given, const Overlap& overlap,
           const std::vector<double>& stations, PartFaces* faces) {
   const Vec3 z_B = connector.X_BM.q() * Vec3::UnitZ();
-  for (const product::FaceId id : part.features[connector.feature.index()].faces) {
+  for (const product::FaceId id : given) {
     const spatial::Surface& surface = part.faces[id.index()].surface;
     contact::FaceOffset& offset = faces->offsets[id.index()];
     faces->is_given[id.index()] = true;
@@ -121,38 +130,63 @@ class Collector {
    a mate without a fit. Another mate must not make them larger than they are drawn. */
   void KeepAsDrawn(const Mate& mate) {
     for (const product::Connector* connector : {&mate.a, &mate.b}) {
-      const product::Part& part = input_.product->part_of(connector->occurrence);
-      for (const product::FaceId id : part.features[connector->feature.index()].faces) {
+      for (const product::FaceId id : FacesOf(*input_.product, *connector)) {
         faces_[connector->occurrence.index()].is_given[id.index()] = true;
       }
     }
   }
 
+  /** Widens a hole that is drawn narrower than the shaft that is pressed into it, so that the end
+   of the shaft passes its mouth: the fit answers for the force. */
+  void LetPass(const Mate& mate) {
+    constexpr double kRoom = 5e-6;  // [m]: half of what faces that give way leave, as at a tongue.
+    const double narrower = mate.shaft_radius - mate.hole_radius;
+    if (narrower <= 0 || narrower + kRoom > contact::FaceOffsets::kLargest) {
+      return;
+    }
+    for (const product::FaceId id : FacesOf(*input_.product, mate.a)) {
+      contact::FaceOffset& offset = faces_[mate.a.occurrence.index()].offsets[id.index()];
+      offset.uniform = std::min(offset.uniform, -narrower - kRoom);
+    }
+  }
+
   void Add(const Mate& mate, const fits::FitForce& fit, Diagnostics* diagnostics) {
-    const product::Part& hub = input_.product->part_of(mate.a.occurrence);
-    const product::Part& shaft = input_.product->part_of(mate.b.occurrence);
+    const product::Product& product = *input_.product;
     PartFaces& hole_faces = faces_[mate.a.occurrence.index()];
-    PartFaces& shaft_faces = faces_[mate.b.occurrence.index()];
-    const product::Feature& bore = hub.features[mate.a.feature.index()];
-    const product::Feature& side = shaft.features[mate.b.feature.index()];
-    const Overlap overlap = FindOverlap(*input_.product, mate);
+    const std::vector<product::FaceId> bore = FacesOf(product, mate.a);
+    const std::vector<product::FaceId> side = FacesOf(product, mate.b);
+    const Overlap overlap = FindOverlap(product, mate);
     if (!(overlap.high > overlap.low) || !hole_faces.IsFree(bore)) {
       return;
     }
-    const bool is_new = shaft_faces.IsFree(side);
-    const double offset = is_new ? 0.5 * fit.shaft_diameter() - mate.shaft_radius
-                                 : shaft_faces.offsets[side.faces.front().index()].uniform;
+    const double offset = ShaftOffset(mate, &fit);
     const std::vector<double> stations = HoleStations(mate, fit, offset, IsMouthHigh(input_, mate));
     if (IsTooLarge({offset}) || IsTooLarge(stations)) {
-      diagnostics->Warn("fit-far-from-drawing", fmt::format("mate m{}", mate.id.value()),
-                        "its actual sizes are more than 0.25 mm from the drawn radii",
-                        "contact takes these faces as drawn; draw them nearer to their size");
+      WarnTooLarge(mate, diagnostics);
       return;
     }
-    Give(hub, mate.a, overlap, stations, &hole_faces);
-    if (is_new) {
-      Give(shaft, mate.b, overlap, {offset}, &shaft_faces);
+    Give(product.part_of(mate.a.occurrence), mate.a, bore, overlap, stations, &hole_faces);
+    GiveShaft(mate, offset);
+  }
+
+  /** @param fit  Null where the mate has none. */
+  void AddPrismatic(const Mate& mate, const fits::FitForce* fit, Diagnostics* diagnostics) {
+    const product::Product& product = *input_.product;
+    PartFaces& slot_faces = faces_[mate.a.occurrence.index()];
+    if (!slot_faces.IsFree(FacesOf(product, mate.a))) {
+      return;
     }
+    const double offset = ShaftOffset(mate, fit);
+    const auto [low, high] = SlotOffsets(product, mate, fit, offset);
+    if (IsTooLarge({offset, low, high})) {
+      WarnTooLarge(mate, diagnostics);
+      return;
+    }
+    const product::Part& part = product.part_of(mate.a.occurrence);
+    const std::vector<product::Feature>& features = part.features;
+    Give(part, mate.a, features[mate.a.feature.index()].faces, {}, {low}, &slot_faces);
+    Give(part, mate.a, features[mate.a.opposite.index()].faces, {}, {high}, &slot_faces);
+    GiveShaft(mate, offset);
   }
 
   void Relieve(const FaceRelief& relief) {
@@ -188,6 +222,32 @@ class Collector {
   }
 
  private:
+  /** How far the shaft's or tongue's faces move: to their size, or as an earlier mate has moved
+   * them.
+   */
+  [[nodiscard]] double ShaftOffset(const Mate& mate, const fits::FitForce* fit) const {
+    const PartFaces& faces = faces_[mate.b.occurrence.index()];
+    const std::vector<product::FaceId> side = FacesOf(*input_.product, mate.b);
+    if (!faces.IsFree(side)) {
+      return faces.offsets[side.front().index()].uniform;
+    }
+    return fit != nullptr ? 0.5 * fit->shaft_diameter() - mate.shaft_radius : 0.0;
+  }
+
+  void GiveShaft(const Mate& mate, double offset) {
+    PartFaces& faces = faces_[mate.b.occurrence.index()];
+    const std::vector<product::FaceId> side = FacesOf(*input_.product, mate.b);
+    if (faces.IsFree(side)) {
+      Give(input_.product->part_of(mate.b.occurrence), mate.b, side, {}, {offset}, &faces);
+    }
+  }
+
+  static void WarnTooLarge(const Mate& mate, Diagnostics* diagnostics) {
+    diagnostics->Warn("fit-far-from-drawing", fmt::format("mate m{}", mate.id.value()),
+                      "its actual sizes are more than 0.25 mm from the drawn radii",
+                      "contact takes these faces as drawn; draw them nearer to their size");
+  }
+
   const ActualFacesInput& input_;
   std::vector<PartFaces> faces_;
 };
@@ -200,17 +260,25 @@ std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
   std::vector<const Mate*> sized;
   for (const Mate& mate : input.product->mates) {
     const auto& fit = input.fits[mate.id.index()];
-    if (mate.kind != product::MateKind::kAxisHole) {
+    if (!mates::HasFit(mate.kind)) {
       continue;
     }
-    if (fit != nullptr && LeavesRoom(*fit)) {
+    if (mate.kind == product::MateKind::kPrismatic || (fit != nullptr && LeavesRoom(*fit))) {
       sized.push_back(&mate);
     } else {
       collector.KeepAsDrawn(mate);
+      if (fit != nullptr) {
+        collector.LetPass(mate);
+      }
     }
   }
   for (const Mate* mate : sized) {
-    collector.Add(*mate, *input.fits[mate->id.index()], diagnostics);
+    const fits::FitForce* fit = input.fits[mate->id.index()].get();
+    if (mate->kind == product::MateKind::kPrismatic) {
+      collector.AddPrismatic(*mate, fit, diagnostics);
+    } else {
+      collector.Add(*mate, *fit, diagnostics);
+    }
   }
   for (const FaceRelief& relief : input.sequence->reliefs) {
     collector.Relieve(relief);

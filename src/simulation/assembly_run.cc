@@ -17,6 +17,19 @@ namespace {
 
 constexpr int kMostTries = 3;  // Of a part by simulated persons: one, and two more. A choice.
 
+/** Whether a part hangs together with the base, or with a fixture, through neighbours. */
+bool IsConnectedWithBase(const Model& model, OccurrenceId id) {
+  std::vector<OccurrenceId> all;
+  for (const Body& body : model.bodies) {
+    all.push_back(body.occurrence);
+  }
+  const auto connected = ListConnected(id, all, model.sequence.neighbours);
+  const OccurrenceId base = FindBase(model.sequence);
+  return std::any_of(connected.begin(), connected.end(), [&](OccurrenceId other) {
+    return other == base || model.bodies[other.index()].role == BodyRole::kFixture;
+  });
+}
+
 bool IsSinglePart(const SequenceStep& step) {
   return step.kind == SequenceStep::Kind::kInsert && step.members.empty();
 }
@@ -24,7 +37,7 @@ bool IsSinglePart(const SequenceStep& step) {
 }  // namespace
 
 AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream)
-    : PartRun(simulation, downstream) {
+    : PartRun(simulation, downstream), passages_(simulation->model()) {
   for (std::size_t hand = 0; hand < persons.size(); ++hand) {
     if (persons[hand] != nullptr) {
       workers_.push_back({persons[hand], hand, nullptr, 0});
@@ -111,11 +124,32 @@ std::string AssemblyRun::FinishTurn(const SequenceStep& step, const Worker& work
   return fmt::format("{}; tried {} times", turn.reason, turn.tries);
 }
 
+std::string AssemblyRun::ExplainUntouched(OccurrenceId id) const {
+  if (model().sequence.neighbours[id.index()].empty()) {
+    return CountParts(model()) > 1 ? "touches no other part as drawn" : "";
+  }
+  if (has_touched_[id.index()] || physics().placement(id) != Placement::kPlaced) {
+    return {};
+  }
+  return IsConnectedWithBase(model(), id)
+             ? "nothing that it touches was in its place when it was put in"
+             : "it is not connected with the base as drawn, nor is what it touches";
+}
+
+std::string AssemblyRun::ExplainPassage(OccurrenceId id) const {
+  constexpr double kTold = 0.2e-3;  // [m]; less is what clearances and stretched contacts leave
+  const Passage& passage = passages_.passage(id);
+  return passage.depth > kTold ? fmt::format("went through {}, {:.2f} mm deeper than drawn",
+                                             PathOf(passage.through), units::ToMm(passage.depth))
+                               : std::string();
+}
+
 std::string AssemblyRun::MakeNote(OccurrenceId id) const {
-  const std::string overlaps = DescribeOverlaps(id);
-  const bool floats = model().sequence.neighbours[id.index()].empty() && CountParts(model()) > 1;
-  return floats ? overlaps + (overlaps.empty() ? "" : "; ") + "touches no other part as drawn"
-                : overlaps;
+  std::string note;
+  for (const std::string& item : {DescribeOverlaps(id), ExplainUntouched(id), ExplainPassage(id)}) {
+    note += (note.empty() || item.empty() ? "" : "; ") + item;
+  }
+  return note;
 }
 
 void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
@@ -127,6 +161,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   const std::string reason = FinishTurn(step, worker, was_seated);
   result.reason = reason;
   result.note = MakeNote(step.occurrence);
+  result.passage = passages_.passage(step.occurrence);
   int mates = 0;
   for (const product::MateId id : model.mates_of[step.occurrence.index()]) {
     const product::Mate& mate = model.product->mates[id.index()];
@@ -308,6 +343,9 @@ bool AssemblyRun::DoNext(const SequenceStep& step) {
 void AssemblyRun::Advance() {
   if (is_done_) {
     return;
+  }
+  for (std::size_t hand = 0; hand < hand_count(); ++hand) {
+    passages_.Look(physics(), hand);
   }
   for (Worker& worker : workers_) {
     if (worker.step != nullptr && HasFinished(worker)) {

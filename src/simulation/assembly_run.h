@@ -76,6 +76,10 @@ class AssemblyRun final : public PartRun {
    */
   [[nodiscard]] std::string FinishTurn(const SequenceStep& step, const Worker& worker,
                                        bool was_seated);
+  /** Explains why a part touches nothing when it gets to its place; empty where it does. */
+  [[nodiscard]] std::string ExplainUntouched(product::OccurrenceId id) const;
+  /** Explains what a part went through on its way; empty where that is nothing. */
+  [[nodiscard]] std::string ExplainPassage(product::OccurrenceId id) const;
   /** What is odd about a part's place. */
   [[nodiscard]] std::string MakeNote(product::OccurrenceId id) const;
   /** A step that has failed and is to be tried again now; null: none.
@@ -97,6 +101,7 @@ class AssemblyRun final : public PartRun {
   std::vector<Worker> workers_;
   std::size_t last_worker_;  ///< That began a step last.
   std::vector<Turn> turns_;  ///< One for each step.
+  PassageWatch passages_;
   std::size_t next_step_{0};
   std::size_t first_step_{0};
   std::size_t end_step_{std::numeric_limits<std::size_t>::max()};

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "mates/mate_kind.h"
 #include "mates/place_bodies.h"
 
 namespace hvas::simulation {
@@ -93,10 +94,11 @@ Extraction::Extraction(const SequenceInput& input, const Sequence* known)
     const double cosine = mate.kind == MateKind::kConeSeat
                               ? std::cos(part.features[mate.a.feature.index()].half_angle)
                               : 1.0;
+    const Vec3 way_W = (X_WA * mate.a.X_BM).q() * Vec3::UnitX();
     mates_of_[mate.a.occurrence.index()].push_back(
-        {&mate, mate.b.occurrence, axis_a, true, cosine});
+        {&mate, mate.b.occurrence, axis_a, -way_W, true, cosine});
     mates_of_[mate.b.occurrence.index()].push_back(
-        {&mate, mate.a.occurrence, axis_b, false, cosine});
+        {&mate, mate.a.occurrence, axis_b, way_W, false, cosine});
   }
   for (const product::Occurrence& occurrence : product_.occurrences) {
     boxes_.push_back(spatial::Transform(occurrence.X_WB, product_.part_of(occurrence.id).box_B));
@@ -169,6 +171,12 @@ std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
         case MateKind::kSphereSeat:
           add(view.is_a ? Vec3(-view.axis_W) : view.axis_W);  // z points out of the seat
           break;
+        case MateKind::kPrismatic:
+          for (const Vec3& way_W : {view.way_W, Vec3(view.axis_W.cross(view.way_W))}) {
+            add(way_W);
+            add(-way_W);
+          }
+          break;
       }
     }
   }
@@ -212,6 +220,8 @@ bool Extraction::IsAllowed(const MateView& view, const Vec3& direction) {
       return (view.is_a ? -along : along) >= view.cos_half_angle - kParallel;
     case MateKind::kSphereSeat:
       return true;  // how far the socket reaches around the ball is left to contact
+    case MateKind::kPrismatic:
+      return std::abs(along) <= kParallel;  // Where the slot ends is left to contact.
   }
   return true;
 }
@@ -285,7 +295,8 @@ double Extraction::CalcEngagement(const Unit& unit, const Vec3& direction) const
     for (const MateView& view : mates_of_[id.index()]) {
       const Mate& mate = *view.mate;
       const bool is_wall =
-          mate.kind == MateKind::kFaceFace && std::abs(view.axis_W.dot(direction)) < kParallel;
+          (mate.kind == MateKind::kFaceFace || mate.kind == MateKind::kPrismatic) &&
+          std::abs(view.axis_W.dot(direction)) < kParallel;
       if (IsAround(view.other) && is_wall) {
         is_guided = true;
         farthest = std::max(farthest, CalcWallTravel(view, id, direction));
@@ -307,7 +318,7 @@ double Extraction::CalcEngagement(const Unit& unit, const Vec3& direction) const
 std::vector<contact::IgnoredPair> Extraction::CollectIgnored(OccurrenceId id) const {
   std::vector<contact::IgnoredPair> ignored;
   for (const MateView& view : mates_of_[id.index()]) {
-    if (!IsAround(view.other) || view.mate->kind != MateKind::kAxisHole) {
+    if (!IsAround(view.other) || !mates::HasFit(view.mate->kind)) {
       continue;
     }
     const auto& own = (view.is_a ? input_.faces_a : input_.faces_b)[view.mate->id.index()];
@@ -493,7 +504,7 @@ void Extraction::RelieveWay(const Unit& unit, const Vec3& direction) {
   const double step = CalcStep(unit);
   const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
   std::map<Face, double> deepest;
-  for (int i = 0; i <= last; ++i) {
+  for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
     for (const Member& member : members) {
       contact::QueryOptions query;
       query.margin = -kReliefFrom;
@@ -542,6 +553,9 @@ std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& di
   const int last = static_cast<int>(exit / step);
   for (int i = static_cast<int>(std::lround(from / step)); i <= last; ++i) {
     const double s = i * step;
+    if (input_.stop.stop_requested()) {
+      return Obstacle{OccurrenceId(), s, {}};  // No way is found any more.
+    }
     for (const Member& member : members) {
       contact::QueryOptions query;
       query.margin = -kDepthTolerance;
@@ -810,8 +824,7 @@ double Extraction::CalcEngageDistance(const Unit& unit, const Vec3& direction) {
 }
 
 std::optional<SequenceStep> Extraction::TryRemove(const Unit& unit) {
-  Memory memory;
-  return TryRemove(unit, &memory);
+  return TryRemove(unit, &unit_memories_[unit]);
 }
 
 std::optional<SequenceStep> Extraction::TryRemoveAlong(const Unit& unit, const Vec3& direction) {
@@ -827,17 +840,15 @@ std::optional<SequenceStep> Extraction::TryRemoveAlong(const Unit& unit, const V
   return step;
 }
 
-std::optional<SequenceStep> Extraction::TryRemoveOne(Unit* rest, const Unit& deferred) {
-  for (const bool is_deferred : {false, true}) {
-    for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
-      const OccurrenceId id = (*rest)[i];
-      if (std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred) {
-        continue;
-      }
-      if (auto step = TryRemove({id}, &memories_[id.index()])) {
-        rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
-        return step;
-      }
+std::optional<SequenceStep> Extraction::TryRemoveOne(Unit* rest, const Unit& staying) {
+  for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
+    const OccurrenceId id = (*rest)[i];
+    if (std::binary_search(staying.begin(), staying.end(), id)) {
+      continue;
+    }
+    if (auto step = TryRemove({id}, &memories_[id.index()])) {
+      rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
+      return step;
     }
   }
   return std::nullopt;
@@ -847,6 +858,7 @@ void Extraction::Forget(const Unit& parts) {
   for (const OccurrenceId id : parts) {
     memories_[id.index()] = {};
   }
+  unit_memories_.clear();
 }
 
 }  // namespace hvas::simulation

@@ -77,7 +77,8 @@ class Extraction {
   [[nodiscard]] double CalcEngageDistance(const Unit& unit, const Vec3& direction);
 
   /** Takes a unit out along the first direction that is free; it is not present then. The step is
-   an insertion, by the reverse of that direction. */
+   an insertion, by the reverse of that direction. A unit that could not go before is tried again
+   only when something has changed. */
   [[nodiscard]] std::optional<SequenceStep> TryRemove(const Unit& unit);
 
   /** Takes a unit out along this direction if it is free; it is not present then. The step is as
@@ -86,14 +87,14 @@ class Extraction {
 
   /** Takes out the first of these parts that can go, the last of them excepted, and erases it from
    them. Parts that could not go before are tried again only when something has changed.
-   @param deferred  Sorted; parts that are tried after all others. */
-  [[nodiscard]] std::optional<SequenceStep> TryRemoveOne(Unit* rest, const Unit& deferred = {});
+   @param staying  Sorted; parts that are not tried. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveOne(Unit* rest, const Unit& staying = {});
 
   /** Leaves out the contact between those of these parts that lie in one another as drawn, where
    faces that give way do not suffice to let them out. Returns false where there are none. */
   bool LeaveOutRelieved(const Unit& parts);
 
-  /** Forgets what TryRemoveOne has tried with these parts. */
+  /** Forgets what TryRemoveOne has tried with these parts, and TryRemove with any unit. */
   void Forget(const Unit& parts);
 
   /** Explains why TryRemoveOne did not find a way out for a part. */
@@ -108,7 +109,8 @@ class Extraction {
   struct MateView {
     const product::Mate* mate;
     product::OccurrenceId other;
-    Vec3 axis_W;  // axis, or outward normal of this part's face
+    Vec3 axis_W;  // axis, or outward normal of this part's face, or across the walls
+    Vec3 way_W;   // way out of this part by a prismatic mate
     bool is_a;
     double cos_half_angle;  // of a conical seat
   };
@@ -194,8 +196,9 @@ class Extraction {
   std::vector<DrawnOverlap> overlaps_;
   std::vector<std::vector<contact::BodyId>> overlapped_;  // by occurrence
   std::vector<Memory> memories_;                          // by occurrence
-  std::map<Face, double> reliefs_;                        // [m]
-  std::vector<DrawnOverlap> relieved_;                    // Pairs whose faces give way as drawn.
+  std::map<Unit, Memory> unit_memories_;
+  std::map<Face, double> reliefs_;      // [m]
+  std::vector<DrawnOverlap> relieved_;  // Pairs whose faces give way as drawn.
   contact::QueryWorkspace workspace_;
 };
 

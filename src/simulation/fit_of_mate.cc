@@ -14,6 +14,7 @@
 #include "fits/friction.h"
 #include "fits/iso286.h"
 #include "fits/materials.h"
+#include "mates/prismatic_fits.h"
 #include "product/names.h"
 
 namespace hvas::simulation {
@@ -154,6 +155,36 @@ std::vector<fits::DiameterAtDepth> ListMeasured(
   return diameters;
 }
 
+/** What is round about a shaft in a hole. */
+void AddRings(const product::Product& product, const product::Mate& mate,
+              fits::FitForceParameters* parameters) {
+  const product::Part& hub = product.part_of(mate.a.occurrence);
+  const product::Part& shaft = product.part_of(mate.b.occurrence);
+  const product::Feature& hole_feature = hub.features[mate.a.feature.index()];
+  const product::Feature& shaft_feature = shaft.features[mate.b.feature.index()];
+  const double nominal = parameters->nominal_diameter;
+  parameters->hub_diameter =
+      nominal / std::clamp(mate.hole_radius / FindHubRadius(hub, hole_feature), kThinnestRatio,
+                           kThickestRatio);
+  parameters->shaft_bore =
+      nominal * std::min(FindBoreRadius(shaft, shaft_feature) / mate.shaft_radius, kThickestRatio);
+  const double lead_in = FindChamferAngle(shaft, shaft_feature);
+  parameters->lead_in_angle = lead_in > 0 ? lead_in : FindChamferAngle(hub, hole_feature);
+}
+
+/** What is flat about a tongue in a slot. Walls that are thicker than the contact is large give way
+ as a half space does, whose mean under a square of side s is 0.95 p s / E' (Timoshenko and Goodier,
+ Theory of Elasticity, 1970, article 139): as a slab of about the thickness s. */
+void AddWalls(const product::Product& product, const product::Mate& mate,
+              fits::FitForceParameters* parameters) {
+  const double side = std::sqrt(mate.overlap * mate.breadth);
+  const double thickness = std::min(mates::CalcWallThickness(product, mate), 2 * side);
+  parameters->breadth = mate.breadth;
+  parameters->hub_diameter = parameters->nominal_diameter +
+                             std::max(thickness, kThinnestRatio * parameters->nominal_diameter);
+  parameters->lead_in_angle = mates::FindLeadIn(product, mate).angle;
+}
+
 }  // namespace
 
 fits::FrictionSurface SurfaceOf(const product::Material& material) {
@@ -169,6 +200,8 @@ fits::FitKind ToFitsKind(product::FitKind kind) {
       return fits::FitKind::kTransition;
     case FitKind::kClearance:
     case FitKind::kThread:
+    case FitKind::kInsert:
+    case FitKind::kPassage:
       break;
   }
   return fits::FitKind::kClearance;
@@ -179,7 +212,7 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
                                                    fits::PairChoice pairs,
                                                    Diagnostics* diagnostics) {
   const product::FitConditions& conditions = mate.conditions;
-  if (!mate.fit || mate.fit->kind == FitKind::kThread ||
+  if (!mate.fit || !product::IsIsoFit(mate.fit->kind) ||
       (mate.fit->code.empty() && !HasSizes(conditions))) {
     return nullptr;
   }
@@ -198,8 +231,6 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
   parameters.nominal_diameter = nominal;
   const product::Part& hub = product.part_of(mate.a.occurrence);
   const product::Part& shaft = product.part_of(mate.b.occurrence);
-  const product::Feature& hole_feature = hub.features[mate.a.feature.index()];
-  const product::Feature& shaft_feature = shaft.features[mate.b.feature.index()];
   parameters.hole_diameters =
       ListMeasured(conditions.hole_diameters, conditions.hole_temperature_c, hub.material);
   parameters.shaft_diameters =
@@ -211,14 +242,13 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
   parameters.length = mate.overlap;
   parameters.hub = ToPressMaterial(hub.material);
   parameters.shaft = ToPressMaterial(shaft.material);
-  parameters.hub_diameter =
-      nominal / std::clamp(mate.hole_radius / FindHubRadius(hub, hole_feature), kThinnestRatio,
-                           kThickestRatio);
-  parameters.shaft_bore =
-      nominal * std::min(FindBoreRadius(shaft, shaft_feature) / mate.shaft_radius, kThickestRatio);
-  const double lead_in = FindChamferAngle(shaft, shaft_feature);
+  if (mate.kind == product::MateKind::kPrismatic) {
+    AddWalls(product, mate, &parameters);
+  } else {
+    AddRings(product, mate, &parameters);
+  }
   parameters.lead_in_angle =
-      std::min(lead_in > 0 ? lead_in : FindChamferAngle(hub, hole_feature),
+      std::min(parameters.lead_in_angle,
                kSteepestLeadIn * std::atan(1 / std::max(parameters.friction.in, 1e-12)));
   fits::PairToDraw pair;
   pair.hole = {zones->hole, 2 * mate.hole_radius,

@@ -20,8 +20,8 @@ inline constexpr const char* kFitNotShown = "fit-not-shown";
 /** The kind of a fit, as the room `fits` calls it. @pre the fit is no thread. */
 [[nodiscard]] fits::FitKind ToFitsKind(product::FitKind kind);
 
-/** The fit of an axis-hole mate as forces over depth, from Mate::fit and Mate::conditions. Of each
- side:
+/** The fit of an axis-hole or prismatic mate as forces over depth, from Mate::fit and
+ Mate::conditions. Widths of a prismatic mate count as diameters. Of each side:
 
  | | |
  |---|---|
@@ -29,7 +29,8 @@ inline constexpr const char* kFitNotShown = "fit-not-shown";
  | temperature T | times 1 + alpha (T - 20 C), alpha that of the part's material (free expansion) |
  | roughness Rz | stated, or the default; the pair has the mean of both |
  | elasticity | of the part's material |
- | walls | hub: its outside about the hole; shaft: its bore, where it has one |
+ | walls | hub: its outside about the hole; shaft: its bore, where it has one; slot: what is behind
+ its walls |
 
  Friction is the stated coefficient for everything, or else that of the pair of materials: static to
  press in, to break loose and to turn, kinetic to slip outwards. A chamfer at an end of the shaft,

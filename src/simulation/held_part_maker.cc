@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "fits/paper_scales.h"
 #include "mates/capture.h"
+#include "mates/prismatic_fits.h"
 #include "mates/resolve.h"
 #include "simulation/fit_of_mate.h"
 #include "simulation/tool_reach.h"
@@ -39,6 +40,14 @@ haptics::HeldMate MakeDriveMate(const ToolMate& mate, OccurrenceId fastener,
   held.held_faces = no_faces;
   held.placed_faces = no_faces;
   return held;
+}
+
+/** A prismatic mate with the way by which a step takes the inner part out of the outer one; others
+ as they are. @param way_W  That way as the parts stand. @param q_DW  Rotation of the standing part
+ to where it is drawn. */
+product::Mate TurnToStep(const product::Product& product, const product::Mate& mate,
+                         const Vec3& way_W, const Quat& q_DW) {
+  return mate.kind == MateKind::kPrismatic ? mates::TurnToWay(product, mate, q_DW * way_W) : mate;
 }
 
 }  // namespace
@@ -206,10 +215,10 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
   const OccurrenceId id = member == 0 ? step.occurrence : step.members[member - 1];
   const spatial::Pose X_BS = member == 0 ? spatial::Pose() : held->members[member - 1].X_BS;
   for (const product::MateId mate_id : model_.mates_of[id.index()]) {
-    const product::Mate& mate = model_.product->mates[mate_id.index()];
+    const product::Mate& drawn = model_.product->mates[mate_id.index()];
     const ModelMate& compiled = model_.mates[mate_id.index()];
-    const bool is_a = mate.a.occurrence == id;
-    const OccurrenceId other = is_a ? mate.b.occurrence : mate.a.occurrence;
+    const bool is_a = drawn.a.occurrence == id;
+    const OccurrenceId other = is_a ? drawn.b.occurrence : drawn.a.occurrence;
     const bool is_own =
         other == step.occurrence ||
         std::find(step.members.begin(), step.members.end(), other) != step.members.end();
@@ -218,8 +227,11 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
     if (is_own || !is_meant || parts_[other.index()].placement != placement) {
       continue;
     }
-    const mates::MateConstraint constraint =
-        mates::MakeConstraint(mate, id, parts_[other.index()].X_WB);
+    const spatial::Pose& X_WO = parts_[other.index()].X_WB;
+    const product::Mate mate =
+        TurnToStep(*model_.product, drawn, is_a ? held->insertion_W : Vec3(-held->insertion_W),
+                   model_.bodies[other.index()].X_WB_goal.q() * X_WO.q().conjugate());
+    const mates::MateConstraint constraint = mates::MakeConstraint(mate, id, X_WO);
     haptics::HeldMate entry;
     entry.id = mate_id;
     entry.X_WM = constraint.X_WM;
@@ -227,12 +239,16 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
     entry.member = member;
     entry.capture = mates::MakeCaptureMate(mate, id);
     entry.radius = mate.hole_radius;
+    entry.breadth = mate.breadth;
+    if (mate.kind == MateKind::kPrismatic) {
+      entry.shift = (is_a ? -1 : 1) * mates::CalcDrawnShift(*model_.product, mate);
+    }
     entry.is_stop = IsStop(mate, constraint.X_WM.q() * Vec3::UnitZ(), held->insertion_W);
     if (mate.kind == MateKind::kFaceFace && !entry.is_stop) {
       entry.capture.reach += step.engage_distance;  // A wall guides from where the way in begins.
     }
     entry.fit = compiled.fit;
-    if (mate.fit && mate.fit->kind != product::FitKind::kThread) {
+    if (mate.fit && product::IsIsoFit(mate.fit->kind)) {
       entry.fit_kind = ToFitsKind(mate.fit->kind);
     }
     entry.body = contact::BodyId(other.index());
@@ -278,7 +294,13 @@ spatial::Pose HeldPartMaker::CalcPoseAboveTable(const SequenceStep& step) const 
 
 OccurrenceId HeldPartMaker::FindMissingPartner(const SequenceStep& step) const {
   const auto& steps = model_.sequence.steps;
+  const auto& gaps = model_.sequence.gaps;
   const auto is_before = [&](OccurrenceId id) {
+    const bool is_given_up = std::any_of(
+        gaps.begin(), gaps.end(), [id](const SequenceGap& gap) { return gap.occurrence == id; });
+    if (is_given_up) {
+      return true;
+    }
     for (const SequenceStep& other : steps) {
       if (other.occurrence == step.occurrence && other.kind == SequenceStep::Kind::kInsert) {
         return false;

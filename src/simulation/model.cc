@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -12,10 +13,12 @@
 #include "dynamics/world.h"
 #include "mates/fasteners.h"
 #include "mates/place_bodies.h"
+#include "mates/prismatic_fits.h"
 #include "product/accessories.h"
 #include "simulation/actual_faces.h"
 #include "simulation/extraction.h"
 #include "simulation/fit_of_mate.h"
+#include "simulation/mate_way.h"
 #include "simulation/model_limits.h"
 #include "simulation/shapes.h"
 #include "simulation/thread_faces.h"
@@ -79,6 +82,21 @@ double PlaceOnShelf(Model* model) {
   return reach;
 }
 
+/** Draws the actual sizes of the fits. The way of a prismatic mate is that of the step that joins
+ * it.
+ */
+void MakeFits(Model* model, Diagnostics* diagnostics) {
+  for (ModelMate& compiled : model->mates) {
+    const product::Mate& mate = model->product->mates[compiled.id.index()];
+    const Vec3 way_W = FindWayOut(model->sequence, mate);
+    compiled.fit = MakeFitForce(*model->product,
+                                mate.kind == product::MateKind::kPrismatic && way_W.norm() > 0
+                                    ? mates::TurnToWay(*model->product, mate, way_W)
+                                    : mate,
+                                model->seed, model->pairs, diagnostics);
+  }
+}
+
 /** Contact has the clearance that the fits say, where they leave any. */
 void GiveActualFaces(Model* model, Diagnostics* diagnostics) {
   ActualFacesInput input;
@@ -97,11 +115,12 @@ void GiveActualFaces(Model* model, Diagnostics* diagnostics) {
 }
 
 /** Parts get through what a way is free with: planning and contact agree. */
-void RelieveWays(Model* model, Diagnostics* diagnostics) {
+void RelieveWays(const std::stop_token& stop, Model* model, Diagnostics* diagnostics) {
   constexpr int kRounds = 3;  // What gives way at one place may meet the next: a choice.
   for (int round = 0; round < kRounds; ++round) {
     contact::Scene scene;
-    const SequenceInput input = MakeSequenceInput(*model, &scene);
+    SequenceInput input = MakeSequenceInput(*model, &scene);
+    input.stop = stop;
     Extraction extraction(input, &model->sequence);
     for (const Body& body : model->bodies) {
       scene.SetOffsets(contact::BodyId(body.occurrence.index()), body.faces);
@@ -276,7 +295,8 @@ dynamics::WorldOptions TableOptions(const Model& model) {
   return options;
 }
 
-haptics::MateFaces CollectMateFaces(const product::Part& part, const product::Feature& feature) {
+haptics::MateFaces CollectMateFaces(const product::Part& part,
+                                    const std::vector<product::FaceId>& mating) {
   // Faces share an edge where two of their vertices coincide; meshes of neighbouring CAD faces meet
   // in the same points.
   using Key = std::array<std::int64_t, 3>;
@@ -296,7 +316,7 @@ haptics::MateFaces CollectMateFaces(const product::Part& part, const product::Fe
   };
   haptics::MateFaces faces;
   std::set<Key> own;
-  for (const product::FaceId id : feature.faces) {
+  for (const product::FaceId id : mating) {
     faces.mating.push_back(id.value());
     own.merge(vertices_of(id.index()));
   }
@@ -329,6 +349,9 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
       options.progress(stage, fraction);
     }
   };
+  const auto cancelled = [&product] {
+    return Fail(ErrorCode::kCancelled, "preparing the product was cancelled", product->source);
+  };
   auto model = std::make_shared<Model>();
   model->product = product;
   model->seed = options.seed;
@@ -358,16 +381,15 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   GiveRoles(model.get());
 
   report("mates", 0);
-  std::map<std::pair<product::PartId, product::FeatureId>,
+  std::map<std::tuple<product::PartId, product::FeatureId, product::FeatureId>,
            std::shared_ptr<const haptics::MateFaces>>
       faces_of;
   const auto faces = [&](const product::Connector& connector) {
     const product::PartId part = product->occurrences[connector.occurrence.index()].part;
-    auto& entry = faces_of[{part, connector.feature}];
+    auto& entry = faces_of[{part, connector.feature, connector.opposite}];
     if (entry == nullptr) {
       entry = std::make_shared<haptics::MateFaces>(
-          CollectMateFaces(product->parts[part.index()],
-                           product->parts[part.index()].features[connector.feature.index()]));
+          CollectMateFaces(product->parts[part.index()], FacesOf(*product, connector)));
     }
     return entry;
   };
@@ -381,7 +403,6 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
       compiled.faces_a = WidenForThread(*product, mate, mate.a, *compiled.faces_a);
       compiled.faces_b = WidenForThread(*product, mate, mate.b, *compiled.faces_b);
     }
-    compiled.fit = MakeFitForce(*product, mate, options.seed, options.pairs, diagnostics);
     model->mates.push_back(std::move(compiled));
     if (!mates::IsContradicted(*product, mate)) {
       model->mates_of[mate.a.occurrence.index()].push_back(mate.id);
@@ -392,7 +413,11 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   contact::Scene scene;
   SequenceInput input = MakeSequenceInput(*model, &scene);
   input.progress = [&report](double fraction) { report("order of assembly", fraction); };
+  input.stop = options.shape.stop;
   model->sequence = PlanSequence(input);
+  if (input.stop.stop_requested()) {
+    return cancelled();
+  }
   report("layout", 0);
   if (const auto laid_out = LayOut(model.get()); !laid_out) {
     return Unexpected(laid_out.error());
@@ -400,8 +425,12 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   if (const auto ordered = PutInOrder(options, model.get()); !ordered) {
     return Unexpected(ordered.error());
   }
+  MakeFits(model.get(), diagnostics);
   GiveActualFaces(model.get(), diagnostics);
-  RelieveWays(model.get(), diagnostics);
+  RelieveWays(input.stop, model.get(), diagnostics);
+  if (input.stop.stop_requested()) {
+    return cancelled();
+  }
   ReportModelLimits(*model, diagnostics);
   report("ready", 1);
   return std::shared_ptr<const Model>(std::move(model));
@@ -412,10 +441,7 @@ std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,
   auto drawn = std::make_shared<Model>(model);
   drawn->seed = seed;
   drawn->pairs = pairs;
-  for (ModelMate& mate : drawn->mates) {
-    mate.fit = MakeFitForce(*drawn->product, drawn->product->mates[mate.id.index()], seed, pairs,
-                            diagnostics);
-  }
+  MakeFits(drawn.get(), diagnostics);
   GiveActualFaces(drawn.get(), diagnostics);
   return drawn;
 }

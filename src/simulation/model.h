@@ -67,9 +67,9 @@ struct CompileOptions {
   /** The whole order of assembly, as a record keeps it, in place of the one that is found; empty:
    that one. */
   std::vector<SequenceStep> steps;
-  contact::ShapeOptions shape;
+  contact::ShapeOptions shape;                       ///< Its `stop` ends all of the preparation.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
-  int threads{2};  ///< The cores of the machine that it was made on: a choice.
+  unsigned threads{0};                               ///< That build shapes; 0: one a core.
   std::function<void(const std::string& stage, double fraction)> progress;
 };
 
@@ -94,7 +94,8 @@ struct Model {
 }
 
 /** Builds shapes, fits, the order of assembly and the layout of the parts on the table.
- Errors: kInvalid when the product has no parts or a shape cannot be built; those of Reorder(). */
+ Errors: kInvalid when the product has no parts or a shape cannot be built; those of Reorder();
+ kCancelled after a stop. */
 Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
                                              const CompileOptions& options,
                                              Diagnostics* diagnostics);
@@ -115,8 +116,8 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
 /** The world of dynamics in which a model's loose parts lie. */
 [[nodiscard]] dynamics::WorldOptions TableOptions(const Model& model);
 
-/** Faces of a feature and the faces that share an edge with them. */
+/** Faces of a mate's side and the faces that share an edge with them. */
 [[nodiscard]] haptics::MateFaces CollectMateFaces(const product::Part& part,
-                                                  const product::Feature& feature);
+                                                  const std::vector<product::FaceId>& mating);
 
 }  // namespace hvas::simulation

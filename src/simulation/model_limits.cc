@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "haptics/mate_guide.h"
+#include "mates/mate_kind.h"
 #include "simulation/held_part_maker.h"
 
 namespace hvas::simulation {
@@ -43,7 +44,7 @@ void CountMates(const Model& model, const SequenceStep& step, OccurrenceId held,
         model.bodies[other.index()].X_WB_goal.q() * (placed.X_BM.q() * Vec3::UnitZ());
     const bool is_guide =
         mate.kind == product::MateKind::kFaceFace && !IsStop(mate, axis_W, step.extraction_W);
-    if (!is_guide && mate.kind != product::MateKind::kAxisHole) {
+    if (!is_guide && !mates::HasFit(mate.kind)) {
       continue;
     }
     if (const std::size_t number = ++replacing[other]; number > count->replacing) {

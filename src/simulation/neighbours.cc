@@ -150,6 +150,31 @@ std::vector<OccurrenceId> ListCutParts(const std::vector<OccurrenceId>& parts,
   return cut;
 }
 
+std::vector<OccurrenceId> ListConnected(OccurrenceId id, const std::vector<OccurrenceId>& parts,
+                                        const Neighbours& neighbours) {
+  std::vector<bool> is_open(neighbours.size(), false);
+  for (const OccurrenceId part : parts) {
+    is_open[part.index()] = true;
+  }
+  std::vector<bool> is_found(neighbours.size(), false);
+  std::vector<OccurrenceId> next{id};
+  is_found[id.index()] = true;
+  while (!next.empty()) {
+    const OccurrenceId from = next.back();
+    next.pop_back();
+    for (const OccurrenceId to : neighbours[from.index()]) {
+      if (is_open[to.index()] && !is_found[to.index()]) {
+        is_found[to.index()] = true;
+        next.push_back(to);
+      }
+    }
+  }
+  std::vector<OccurrenceId> connected;
+  std::copy_if(parts.begin(), parts.end(), std::back_inserter(connected),
+               [&is_found](OccurrenceId part) { return is_found[part.index()]; });
+  return connected;
+}
+
 bool AreConnected(const std::vector<OccurrenceId>& parts, const Neighbours& neighbours) {
   return CutSearch(parts, neighbours).trees() <= 1;
 }

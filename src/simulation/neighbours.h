@@ -23,6 +23,12 @@ using Neighbours = std::vector<std::vector<product::OccurrenceId>>;
 [[nodiscard]] std::vector<product::OccurrenceId> ListCutParts(
     const std::vector<product::OccurrenceId>& parts, const Neighbours& neighbours);
 
+/** Lists those of some parts that are connected with one of them through neighbours among them,
+ that one included; in the order of the parts given. */
+[[nodiscard]] std::vector<product::OccurrenceId> ListConnected(
+    product::OccurrenceId id, const std::vector<product::OccurrenceId>& parts,
+    const Neighbours& neighbours);
+
 /** Whether some parts are connected with each other through neighbours among them. */
 [[nodiscard]] bool AreConnected(const std::vector<product::OccurrenceId>& parts,
                                 const Neighbours& neighbours);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "mates/mate_kind.h"
 
 namespace hvas::simulation {
 
@@ -69,8 +70,7 @@ bool PartRun::IsGuidedByPlanes(const SequenceStep& step) const {
     return std::any_of(mates.begin(), mates.end(), [&](product::MateId mate_id) {
       const product::Mate& mate = model.product->mates[mate_id.index()];
       const OccurrenceId other = mate.a.occurrence == id ? mate.b.occurrence : mate.a.occurrence;
-      return mate.kind != product::MateKind::kFaceFace &&
-             physics().placement(other) == Placement::kPlaced;
+      return mates::HoldsAcross(mate.kind) && physics().placement(other) == Placement::kPlaced;
     });
   };
   return !has_axis(step.occurrence) &&

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "simulation/executors.h"
+#include "simulation/passage_watch.h"
 #include "simulation/simulated_person.h"
 #include "simulation/simulation.h"
 
@@ -26,6 +27,7 @@ struct PartResult {
   double fit_true{0};   ///< Largest axial force of its fits, true [N].
   double fit_felt{0};   ///< Largest axial force of its fits, as felt [N].
   double deepest{0};    ///< Deepest penetration met [m].
+  Passage passage;      ///< What it passed through, beyond what is drawn.
   double insertion{0};  ///< Longest that a mate's shaft was in its hole [m].
   std::size_t hand{0};  ///< That let go of it last.
   int mates{0};         ///< Mates with parts that were in place.

@@ -45,6 +45,16 @@ class PhysicsSide {
   /** Something is in this hand, or on its way into it. */
   [[nodiscard]] bool is_holding(std::size_t hand) const { return hands_[hand].held != nullptr; }
 
+  /** What is in this hand, or on its way into it; null: nothing. */
+  [[nodiscard]] const haptics::HeldPart* held(std::size_t hand) const {
+    return hands_[hand].held.get();
+  }
+
+  /** The last tick of this hand that has been reported. */
+  [[nodiscard]] const haptics::TickOutput& tick(std::size_t hand) const {
+    return handover_.reports[hand].value().out;
+  }
+
   /** Puts a part in its place without a hand: the base in its fixture. */
   void PlaceInFixture(product::OccurrenceId id);
 

@@ -29,6 +29,13 @@ class Planner {
   /** Takes apart the parts given, with nothing else there; appends the steps that put them
    together, those of subassemblies first. */
   void PlanLevel(Unit parts, Sequence* sequence);
+  /** Takes out of `rest` what can go next, or gives up a part. */
+  void TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
+                   std::vector<SequenceStep>* removed, Sequence* sequence);
+  /** Finds a part that comes out of `rest` as one body with those that would hang in the air
+   without it, and plans them. */
+  [[nodiscard]] bool TakeOutWithHanging(const Unit& connecting, Unit* rest,
+                                        std::vector<SequenceStep>* removed, Sequence* sequence);
   /** Finds a subassembly that comes out of `rest` as one body, and plans it. */
   [[nodiscard]] bool TakeOutSubassembly(Unit* rest, std::vector<SequenceStep>* removed,
                                         Sequence* sequence);
@@ -44,6 +51,11 @@ class Planner {
   void GiveUpOne(BlockingGraph* graph, Unit* rest, Sequence* sequence);
   /** Parts of which others would hang in the air if they came out before them, sorted. */
   [[nodiscard]] Unit ListConnecting(const Unit& rest) const;
+  /** Parts of `rest` that are connected with what stays only by this one: what stays are the base
+   and the fixtures, or the largest part where it is not connected with those. */
+  [[nodiscard]] Unit ListHanging(OccurrenceId id, const Unit& rest) const;
+  /** `rest`, and the fixtures. */
+  [[nodiscard]] Unit WithFixtures(const Unit& rest) const;
   [[nodiscard]] Unit PresentBelow(product::SubassemblyId id) const;
 
   const SequenceInput& input_;
@@ -66,6 +78,26 @@ Unit Planner::PresentBelow(product::SubassemblyId id) const {
     unit.insert(unit.end(), below.begin(), below.end());
   }
   return unit;
+}
+
+bool Planner::TakeOutWithHanging(const Unit& connecting, Unit* rest,
+                                 std::vector<SequenceStep>* removed, Sequence* sequence) {
+  for (const OccurrenceId id : *rest) {
+    if (id == rest->back() || !std::binary_search(connecting.begin(), connecting.end(), id)) {
+      continue;
+    }
+    Unit unit = ListHanging(id, *rest);
+    if (unit.empty()) {
+      continue;
+    }
+    unit.push_back(id);
+    std::optional<SequenceStep> step = extraction_.TryRemove(unit);
+    if (step) {
+      PutAside(unit, std::move(*step), rest, removed, sequence);
+      return true;
+    }
+  }
+  return false;
 }
 
 bool Planner::TakeOutSubassembly(Unit* rest, std::vector<SequenceStep>* removed,
@@ -157,10 +189,63 @@ void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, Sequence* sequence) {
   std::erase(*rest, id);
 }
 
-Unit Planner::ListConnecting(const Unit& rest) const {
+Unit Planner::WithFixtures(const Unit& rest) const {
   Unit all = rest;
   all.insert(all.end(), input_.fixtures.begin(), input_.fixtures.end());
-  return ListCutParts(all, neighbours_);
+  return all;
+}
+
+Unit Planner::ListConnecting(const Unit& rest) const {
+  return ListCutParts(WithFixtures(rest), neighbours_);
+}
+
+Unit Planner::ListHanging(OccurrenceId id, const Unit& rest) const {
+  Unit others = ListConnected(id, WithFixtures(rest), neighbours_);
+  std::erase(others, id);
+  Unit hanging = others;
+  std::erase_if(hanging, [&rest](OccurrenceId part) {
+    return std::find(rest.begin(), rest.end(), part) == rest.end();
+  });
+  Unit standing = input_.fixtures;
+  if (!hanging.empty()) {
+    standing.push_back(hanging.back());  // the base, where it is among them: the largest
+  }
+  for (const OccurrenceId stands : standing) {
+    for (const OccurrenceId part : ListConnected(stands, others, neighbours_)) {
+      std::erase(hanging, part);
+    }
+  }
+  return hanging;
+}
+
+void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
+                          std::vector<SequenceStep>* removed, Sequence* sequence) {
+  // Always the smallest that can go, but none that others hang on: what lies on a part goes before
+  // the part, or with it.
+  const Unit connecting = ListConnecting(*rest);
+  std::optional<SequenceStep> step = extraction_.TryRemoveOne(rest, connecting);
+  if (!step && (TakeOutWithHanging(connecting, rest, removed, sequence) ||
+                TakeOutSubassembly(rest, removed, sequence))) {
+    return;
+  }
+  if (!step) {
+    step = extraction_.TryRemoveOne(rest);
+  }
+  if (step) {
+    removed->push_back(std::move(*step));
+    return;
+  }
+  if (extraction_.LeaveOutRelieved(*rest)) {
+    graph->reset();
+    return;
+  }
+  if (!*graph) {
+    graph->emplace(&extraction_, *rest);
+  }
+  (*graph)->Keep(*rest);
+  if (!TakeOutBody(&**graph, rest, removed, sequence)) {
+    GiveUpOne(&**graph, rest, sequence);
+  }
 }
 
 void Planner::PlanLevel(Unit rest, Sequence* sequence) {
@@ -171,27 +256,11 @@ void Planner::PlanLevel(Unit rest, Sequence* sequence) {
   extraction_.Forget(rest);
   std::vector<SequenceStep> removed;
   std::optional<BlockingGraph> graph;
-  while (rest.size() > 1) {
-    // Always the smallest that can go, but none that others hang on: what lies on a part goes
-    // before the part.
-    if (std::optional<SequenceStep> step = extraction_.TryRemoveOne(&rest, ListConnecting(rest))) {
-      removed.push_back(std::move(*step));
-    } else if (!TakeOutSubassembly(&rest, &removed, sequence)) {
-      if (extraction_.LeaveOutRelieved(rest)) {
-        graph.reset();
-        continue;
-      }
-      if (!graph) {
-        graph.emplace(&extraction_, rest);
-      }
-      graph->Keep(rest);
-      if (!TakeOutBody(&*graph, &rest, &removed, sequence)) {
-        GiveUpOne(&*graph, &rest, sequence);
-      }
-    }
+  while (rest.size() > 1 && !input_.stop.stop_requested()) {
+    TakeOutNext(&graph, &rest, &removed, sequence);
     if (input_.progress) {
-      input_.progress(static_cast<double>(++planned_) /
-                      static_cast<double>(product_.occurrences.size()));
+      input_.progress(std::min(
+          1.0, static_cast<double>(++planned_) / static_cast<double>(product_.occurrences.size())));
     }
   }
   SequenceStep base;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,7 @@ struct SequenceInput {
   std::vector<product::OccurrenceId> tools;     ///< They are not there.
   std::vector<product::OccurrenceId> fixtures;  ///< They stay where they are.
   std::function<void(double fraction)> progress;
+  std::stop_token stop;  ///< Ends the planning early; the sequence is then incomplete.
 };
 
 /** Takes the product apart along straight lines that its mates leave free, nothing in the way, and

@@ -1,8 +1,10 @@
 #include "simulation/shapes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <set>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -25,26 +27,64 @@ contact::ShapeSource MakeShapeSource(const product::Part& part) {
   return source;
 }
 
+namespace {
+
+// Parts in the order in which they are built: large ones first, so that none is left over for the
+// end; each with the share of the cores that its triangles are of all that are left.
+struct PlannedPart {
+  std::size_t part;
+  unsigned threads;
+};
+
+std::vector<PlannedPart> PlanParts(const product::Product& product, unsigned cores) {
+  std::vector<PlannedPart> planned;
+  for (std::size_t i = 0; i < product.parts.size(); ++i) {
+    planned.push_back({i, 1});
+  }
+  const auto size_of = [&product](const PlannedPart& item) {
+    return product.parts[item.part].mesh.triangles.size();
+  };
+  std::stable_sort(planned.begin(), planned.end(), [&](const PlannedPart& a, const PlannedPart& b) {
+    return size_of(a) > size_of(b);
+  });
+  std::size_t left = 0;
+  for (auto item = planned.rbegin(); item != planned.rend(); ++item) {
+    const std::size_t size = size_of(*item);
+    left += size;
+    const double share =
+        static_cast<double>(size) / static_cast<double>(std::max<std::size_t>(left, 1));
+    item->threads = static_cast<unsigned>(std::max(1.0, std::ceil(share * cores)));
+  }
+  return planned;
+}
+
+}  // namespace
+
 Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
     const product::Product& product, const ShapesControl& control) {
   std::vector<std::shared_ptr<const contact::Shape>> shapes(product.parts.size());
   std::vector<Error> errors(product.parts.size());
-  const auto build = [&](std::size_t i) {
+  const unsigned cores =
+      control.threads > 0 ? control.threads : std::max(1U, std::thread::hardware_concurrency());
+  const std::vector<PlannedPart> planned = PlanParts(product, cores);
+  const auto build = [&](std::size_t k) {
+    const std::size_t i = planned[k].part;
+    contact::ShapeOptions options = control.shape;
+    options.threads = planned[k].threads;
     const contact::ShapeSource source = MakeShapeSource(product.parts[i]);
-    auto shape = control.cache != nullptr ? control.cache->LoadOrBuild(source, control.shape)
-                                          : contact::Shape::Build(source, control.shape);
+    auto shape = control.cache != nullptr ? control.cache->LoadOrBuild(source, options)
+                                          : contact::Shape::Build(source, options);
     if (shape) {
       shapes[i] = *shape;
     } else {
       errors[i] = shape.error();
     }
   };
-  ForEachIndex(shapes.size(), static_cast<unsigned>(std::max(1, control.threads)), build,
-               [&](std::size_t done) {
-                 if (control.progress) {
-                   control.progress(static_cast<double>(done) / static_cast<double>(shapes.size()));
-                 }
-               });
+  ForEachIndex(shapes.size(), cores, build, [&](std::size_t done) {
+    if (control.progress) {
+      control.progress(static_cast<double>(done) / static_cast<double>(shapes.size()));
+    }
+  });
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (shapes[i] == nullptr) {
       Error error = errors[i];

@@ -17,12 +17,12 @@ namespace hvas::simulation {
 struct ShapesControl {
   contact::ShapeOptions shape;                    ///< Its `stop` ends the building of all.
   contact::ShapeCache* cache{nullptr};            ///< Null: shapes are always built.
-  int threads{2};                                 ///< Parts that are built at a time.
+  unsigned threads{0};                            ///< Threads that build shapes; 0: one a core.
   std::function<void(double fraction)> progress;  ///< Called on the calling thread; may be null.
 };
 
-/** The shape of each part of a product, by PartId: parts side by side, and blocks of a part side by
- side where one is left. Errors: those of contact::Shape::Build, with the part; one fails all. */
+/** The shape of each part of a product, by PartId: parts side by side, and blocks of a large part
+ side by side. Errors: those of contact::Shape::Build, with the part; one fails all. */
 Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
     const product::Product& product, const ShapesControl& control);
 

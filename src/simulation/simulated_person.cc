@@ -35,6 +35,9 @@ constexpr double kYieldReach = 2e-3;        // [m], no further than this
 constexpr double kYieldTurn = 0.05;         // [rad]
 constexpr double kSearchPitch = 0.5e-3;     // [m] of radius a try
 constexpr double kLearnTime = 0.3;          // [s] in which a weight is learned
+constexpr double kSwings = 5e-3;            // [m] from its hand; no weight stretches it further
+constexpr double kSeenBeside = 1e-3;        // [m] beside the hand, where a part is seen to hang so
+constexpr double kCorrectTime = 0.15;       // [s] in which the hand corrects that
 constexpr double kAtHand = 0.002;           // [m]; close enough to take something up
 constexpr double kFollows = 0.5e-3;         // [m]; a part that meets nothing is as near to its hand
 constexpr double kCalm = 0.02;              // [m/s]; slow enough for it
@@ -87,6 +90,7 @@ void SimulatedPerson::StartReaches(Phase phase) noexcept {
   reach_time_s_ = 0;
   waited_s_ = 0;
   calm_s_ = 0;
+  swinging_s_ = 0;
 }
 
 void SimulatedPerson::AddReach(const Vec3& p_to, const Quat& q_to, double speed,
@@ -144,11 +148,17 @@ bool SimulatedPerson::IsTurning(double lag) const noexcept {
          V_H_.w.norm() > kTurning;
 }
 
-bool SimulatedPerson::HasCome() noexcept {
+bool SimulatedPerson::HasCome(const OperatorInput& input) noexcept {
   waited_s_ += dt_;
-  const bool is_calm = V_H_.v.norm() < kCalm && v_part_W_.norm() < kCalm && !IsTurning(kTurned);
-  calm_s_ = is_calm ? calm_s_ + dt_ : 0;
-  return !is_at_device_ || calm_s_ > kCalmTime || waited_s_ > kMostWait;
+  if (is_at_device_) {
+    const bool is_calm = V_H_.v.norm() < kCalm && v_part_W_.norm() < kCalm && !IsTurning(kTurned);
+    calm_s_ = is_calm ? calm_s_ + dt_ : 0;
+    return calm_s_ > kCalmTime || waited_s_ > kMostWait;
+  }
+  // What hangs at its hand needs no wait, but what swings does.
+  const bool is_swinging = input.sees_part && (p_part_W_ - X_WH_.p()).norm() > kSwings;
+  swinging_s_ = is_swinging ? kCalmTime : std::max(0.0, swinging_s_ - dt_);
+  return swinging_s_ <= 0 || waited_s_ > kMostWait;
 }
 
 Vec3 SimulatedPerson::CalcLifted() const noexcept {
@@ -243,7 +253,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     const double speed = -MotionOf(input).dot(d);
     const double wanted_speed = is_careful ? kCarefulSpeed : options_.insert_speed;
     const bool is_slow = speed < kSlowShare * wanted_speed;
-    AdjustPush(input, speed, wanted_speed, is_careful && !is_inside);
+    AdjustPush(CalcAddedForce(input), speed, wanted_speed, is_careful && !is_inside);
     push_ = is_careful ? std::min(push_, options_.careful_push) : push_;
     const double lead = LeadOf(input);
     travel_ = std::max(travel_ - wanted_speed * dt_, hand_travel - lead);
@@ -288,14 +298,18 @@ double SimulatedPerson::PushLimit() const noexcept {
 
 bool SimulatedPerson::IsPressing(const OperatorInput& input) const noexcept {
   constexpr double kNearly = 0.9;  // Share of the limit that is as good as all of it: a choice.
-  return is_at_device_ ? push_ >= PushLimit() || input.F_H_D.f.norm() >= kNearly * PushLimit()
+  return is_at_device_ ? push_ >= PushLimit() || CalcAddedForce(input) >= kNearly * PushLimit()
                        : push_ > options_.first_push;
 }
 
-void SimulatedPerson::AdjustPush(const OperatorInput& input, double speed, double wanted_speed,
+double SimulatedPerson::CalcAddedForce(const OperatorInput& input) const noexcept {
+  return (input.workspace.X_WD.q() * input.F_H_D.f - carried_force_).norm();
+}
+
+void SimulatedPerson::AdjustPush(double resistance, double speed, double wanted_speed,
                                  bool is_light) noexcept {
   const bool is_slow = speed < kSlowShare * wanted_speed;
-  const bool is_at_limit = input.F_H_D.f.norm() >= PushLimit();
+  const bool is_at_limit = resistance >= PushLimit();
   const double change =
       is_slow && !is_at_limit && !is_light ? options_.push_rate : -options_.push_rate;
   push_ = std::max(is_light ? options_.light_push : options_.first_push, push_ + change * dt_);
@@ -330,7 +344,7 @@ void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
   }
   const double speed = MotionOf(input).dot(d);
   stuck_time_s_ = speed < kStillSpeed ? stuck_time_s_ + dt_ : 0;
-  AdjustPush(input, speed, options_.insert_speed, false);
+  AdjustPush(input.F_H_D.f.norm(), speed, options_.insert_speed, false);
   travel_ = std::min(travel_ + options_.insert_speed * dt_, hand_travel + LeadOf(input));
   const Vec3 along = p_ref_ - task_.X_WG_goal.p();
   p_ref_ += (travel_ - along.dot(d)) * d;
@@ -459,9 +473,28 @@ void SimulatedPerson::BeginApproach(const OperatorInput& input) noexcept {
   hold_offset_W_ = is_at_device_ ? Vec3(grip_offset_W_.dot(d) * d - grip_offset_W_) : Vec3::Zero();
   travel_ = task_.engage_distance + kStandOff;
   StartReaches(Phase::kApproach);
-  AddReach(task_.X_WG_goal.p() + travel_ * d + hold_offset_W_ + aim_offset_,
-           spatial::RotationFromVector(aim_turn_) * task_.X_WG_goal.q(), options_.approach_speed,
-           false);
+  AddReach(CalcApproachEnd(), spatial::RotationFromVector(aim_turn_) * task_.X_WG_goal.q(),
+           options_.approach_speed, false);
+}
+
+Vec3 SimulatedPerson::CalcApproachEnd() const noexcept {
+  const double travel = task_.engage_distance + kStandOff;
+  return task_.X_WG_goal.p() + travel * task_.extraction_W + hold_offset_W_ + aim_offset_;
+}
+
+void SimulatedPerson::CorrectHold(const OperatorInput& input) noexcept {
+  // At a device it aims with what it holds from the beginning.
+  if (is_at_device_ || !input.sees_part) {
+    return;
+  }
+  const Vec3& d = task_.extraction_W;
+  const Vec3 hanging = p_part_W_ - X_WH_.p();
+  const Vec3 beside = hanging - hanging.dot(d) * d;
+  const bool is_seen = beside.norm() > kSeenBeside || hold_offset_W_ != Vec3::Zero();
+  if (is_seen && beside.norm() < kSwings) {
+    hold_offset_W_ -= dt_ / kCorrectTime * (hold_offset_W_ + beside);
+    reaches_[0].p_to = CalcApproachEnd();
+  }
 }
 
 void SimulatedPerson::BeginInsert() noexcept {
@@ -512,7 +545,7 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       }
       break;
     case Phase::kCarry:
-      if (FollowReaches() && HasCome()) {
+      if (FollowReaches() && HasCome(input)) {
         BeginApproach(input);
       }
       break;
@@ -520,8 +553,10 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       if (input.hears_seated) {
         phase_ = Phase::kSettle;
         phase_time_s_ = 0;
-      } else if (FollowReaches() && HasCome()) {
+      } else if (FollowReaches() && HasCome(input)) {
         BeginInsert();
+      } else {
+        CorrectHold(input);
       }
       break;
     case Phase::kInsert:

@@ -153,7 +153,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] bool IsTurning(double lag) const noexcept;
   /** Whether the hand, and what it holds, has come to where the reaches end: a device may hold it
    up, and what hangs on a soft coupling swings. Waits for it, but not for ever. */
-  [[nodiscard]] bool HasCome() noexcept;
+  [[nodiscard]] bool HasCome(const OperatorInput& input) noexcept;
   void PlanCarry() noexcept;
   void PlanPutDown() noexcept;
   void PlanReturn() noexcept;
@@ -177,10 +177,16 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] double PushLimit() const noexcept;
   /** Does what it can: more force would not come of waiting. */
   [[nodiscard]] bool IsPressing(const OperatorInput& input) const noexcept;
-  /** Presses or pulls harder while little moves, but not beyond what the device pushes back with.
+  /** Force on the hand besides the load that the arm holds up [N]: what pressing is felt by. */
+  [[nodiscard]] double CalcAddedForce(const OperatorInput& input) const noexcept;
+  /** Presses or pulls harder while little moves, but not beyond its limit.
+   @param resistance  What the hand feels of it [N].
    @param speed  The way it wants to go [m/s]. */
-  void AdjustPush(const OperatorInput& input, double speed, double wanted_speed,
-                  bool is_light) noexcept;
+  void AdjustPush(double resistance, double speed, double wanted_speed, bool is_light) noexcept;
+  /** Where the approach ends: the hand's goal just before the part engages. */
+  [[nodiscard]] Vec3 CalcApproachEnd() const noexcept;
+  /** Corrects the hand's goal across the way in where the part is seen to hang beside the hand. */
+  void CorrectHold(const OperatorInput& input) noexcept;
   /** Offset that moves to and fro, harder the longer the part sticks. */
   void Rock(const Vec3& d, bool is_slow) noexcept;
   /** Gives way across the way in, and in how it is turned, to what holds the hand back. */
@@ -214,7 +220,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   bool is_gripping_{false};
   Vec3 carried_force_{Vec3::Zero()};  ///< Slowly learned load that the arm holds up.
   Vec3 grip_offset_W_{Vec3::Zero()};  ///< Vector from the hand to the grip point, when carried [m].
-  /** Correction of the hand's goal for how the part is held at a device, across the way in [m]. */
+  /** Correction of the hand's goal for how the part hangs in it, across the way in [m]. */
   Vec3 hold_offset_W_{Vec3::Zero()};
   Vec3 p_part_W_{Vec3::Zero()};    ///< Grip as seen at a device.
   Vec3 v_part_W_{Vec3::Zero()};    ///< [m/s]
@@ -227,8 +233,9 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   int reach_index_{0};
   double reach_time_s_{0};
   double phase_time_s_{0};
-  double waited_s_{0};  ///< Goal of the hand at the end of the reaches.
-  double calm_s_{0};    ///< Part of that time without motion.
+  double waited_s_{0};    ///< Goal of the hand at the end of the reaches.
+  double calm_s_{0};      ///< Part of that time without motion.
+  double swinging_s_{0};  ///< Time to wait until what swings counts as still.
 
   double travel_{0};       ///< Reference distance still to go along the way in [m].
   double push_{0};         ///< Force that the hand is ready to press with [N].

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "mates/mate_kind.h"
 #include "mates/resolve.h"
 
 namespace hvas::simulation {
@@ -55,7 +56,7 @@ std::optional<SequenceStep> FindWayIn(const Model& model, const std::vector<Occu
     for (const product::MateId mate_id : model.mates_of[id.index()]) {
       const product::Mate& mate = model.product->mates[mate_id.index()];
       const OccurrenceId other = PartnerOf(mate, id);
-      const bool is_axis = mate.kind != product::MateKind::kFaceFace;
+      const bool is_axis = mates::HoldsAcross(mate.kind);
       if (!Contains(target, other) || (way && !is_axis)) {
         continue;
       }

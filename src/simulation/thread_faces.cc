@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "mates/mate_kind.h"
+
 namespace hvas::simulation {
 namespace {
 
@@ -11,8 +13,9 @@ constexpr double kDrawnOverlap = 20e-6;  // [m] of radius; less is drawn at its 
 }  // namespace
 
 bool IsDrawnThread(const product::Mate& mate) {
-  return mate.fit && mate.fit->kind == product::FitKind::kThread &&
-         mate.shaft_radius > mate.hole_radius + kDrawnOverlap;
+  const bool has_kind = mate.fit && (mate.fit->kind == product::FitKind::kThread ||
+                                     mate.fit->kind == product::FitKind::kInsert);
+  return has_kind && mate.shaft_radius > mate.hole_radius + kDrawnOverlap;
 }
 
 std::shared_ptr<const haptics::MateFaces> WidenForThread(const product::Product& product,
@@ -25,12 +28,11 @@ std::shared_ptr<const haptics::MateFaces> WidenForThread(const product::Product&
   };
   std::set<std::uint32_t> stops;
   for (const product::Mate& other : product.mates) {
-    if (other.kind != product::MateKind::kFaceFace || !joins_same_parts(other)) {
+    if (mates::HoldsAcross(other.kind) || !joins_same_parts(other)) {
       continue;
     }
     const product::Connector& own = other.a.occurrence == side.occurrence ? other.a : other.b;
-    for (const product::FaceId id :
-         product.part_of(side.occurrence).features[own.feature.index()].faces) {
+    for (const product::FaceId id : product::FacesOf(product, own)) {
       stops.insert(id.value());
     }
   }

@@ -7,8 +7,8 @@
 
 namespace hvas::simulation {
 
-/** True where a mate is a thread whose screw is drawn wider than its hole: at the outer diameter in
- a hole of the core's. */
+/** True where a mate is a thread whose screw is drawn wider than its hole, at the outer diameter in
+ a hole of the core's; or an insert that is drawn wider than its bore. */
 [[nodiscard]] bool IsDrawnThread(const product::Mate& mate);
 
 /** What a thread takes out of contact on one side of its mate: its faces and all next to them,

@@ -111,8 +111,8 @@ Json OccurrencesOf(const Model& model, const LiveState& state) {
   return all;
 }
 
-/** Describes the fit with its limits by ISO 286 and the size drawn from the population;
- diametral. */
+/** Describes the fit with its limits by ISO 286 and the size drawn from the population; diametral,
+ or of the width. */
 Json FitOf(const Model& model, const product::Mate& mate) {
   if (!mate.fit) {
     return nullptr;
@@ -148,13 +148,13 @@ Json MatesOf(const Model& model) {
   for (const product::Mate& mate : product.mates) {
     const auto faces_of = [&](const product::Connector& side) {
       Json faces = Json::array();
-      for (const product::FaceId face :
-           product.part_of(side.occurrence).features[side.feature.index()].faces) {
+      for (const product::FaceId face : FacesOf(product, side)) {
         faces.push_back(face.value());
       }
       return faces;
     };
     const spatial::Pose X_WM = model.bodies[mate.a.occurrence.index()].X_WB_goal * mate.a.X_BM;
+    const Vec3 along = mate.kind == product::MateKind::kPrismatic ? Vec3::UnitX() : Vec3::UnitZ();
     all.push_back({{"id", mate.id.value()},
                    {"key", mate.key},
                    {"kind", ToString(mate.kind)},
@@ -164,7 +164,7 @@ Json MatesOf(const Model& model) {
                    {"faces_b", faces_of(mate.b)},
                    {"origin", ToString(mate.origin)},
                    {"p_m", ToJson(X_WM.p())},
-                   {"axis", ToJson(Vec3(X_WM.q() * Vec3::UnitZ()))},
+                   {"axis", ToJson(Vec3(X_WM.q() * along))},
                    {"confidence", mate.confidence},
                    {"evidence", mate.evidence},
                    {"fit", FitOf(model, mate)}});

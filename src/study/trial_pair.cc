@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "fits/iso286.h"
 #include "mates/assignments.h"
+#include "mates/mate_kind.h"
 #include "simulation/fit_of_mate.h"
 #include "study/schedule.h"
 #include "study/simulated_participant.h"
@@ -25,8 +26,7 @@ constexpr std::uint64_t kPairStream = 103;  // No other stream of random numbers
 constexpr double kReading = 0.5e-6;         // [m] half the last digit of a size in micrometres
 
 bool HasFit(const Mate& mate) {
-  return mate.kind == product::MateKind::kAxisHole && mate.fit &&
-         mate.fit->kind != product::FitKind::kThread;
+  return mates::HasFit(mate.kind) && mate.fit && product::IsIsoFit(mate.fit->kind);
 }
 
 std::string Where(const Condition& condition, const Mate& mate) {

@@ -46,7 +46,7 @@ class FieldFiller {
       return;
     }
     NearList near;
-    field_.search_.Filter(list, centre, radius + grid_.spacing, /*is_exact=*/false, &near);
+    field_.search_.Filter(list, centre, radius + grid_.spacing, &near);
     if (range.longest() <= kListNodes) {
       FillLeaf(range, {centre, contact::LeastOf(near).triangle, std::move(near)});
       return;

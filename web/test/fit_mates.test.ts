@@ -53,6 +53,11 @@ describe("the card of a fit", () => {
     expect(matesWithFit(all, [kCover, kBushing, kShaft])).toEqual([]);
   });
 
+  it("can be about a tongue in a slot as about a shaft in a hole", () => {
+    const slot = mate(4, kCover, kPlate, { kind: "prismatic" });
+    expect(matesWithFit([...all, slot], [kPlate])).toEqual([bare, slot]);
+  });
+
   it("begins with the mate that guides, else the tightest, else any", () => {
     expect(firstMate([running, pressed], null)).toBe(pressed);
     expect(firstMate([running, pressed], running.id)).toBe(running);

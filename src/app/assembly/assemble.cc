@@ -19,28 +19,29 @@ constexpr int kNotAllSeated = 2;  // The exit status where a part is not in its 
 }  // namespace
 
 int RunAssemble(const AssembleOptions& options) {
-  const auto prepared = PrepareRun(options, options.order);
-  if (!prepared) {
-    return ReportFailure(prepared.error());
+  const EndWatch end;  // What was done until the program is ended is printed.
+  PreparationProgress progress;
+  const auto model = PrepareRun(options, options.order, end.stop(), &progress);
+  if (!model) {
+    return ReportUnprepared(options, progress, model.error());
   }
-  const std::int64_t preparation_ns = MonotonicNs() - prepared->start_ns;
+  const std::int64_t preparation_ns = MonotonicNs() - progress.start_ns;
   assembly::RunOptions run_options = MakeRunOptions(
-      options, prepared->model,
+      options, *model,
       {"assembly", "in place", "NOT IN PLACE: ", [](const auto& part) { return part.is_seated; }});
   if (!options.second_device.empty()) {
     run_options.devices.push_back(options.second_device);
   }
-  const EndWatch end;  // A run that is ended has a result: what was done until then.
   run_options.stop = end.stop();
-  auto run = assembly::RunAssembly(prepared->model, run_options);
+  auto run = assembly::RunAssembly(*model, run_options);
   if (!run) {
     return ReportFailure(run.error());
   }
   const SessionReport report = MakeSessionReport(options, std::move(*run), preparation_ns);
   if (options.is_json) {
-    PrintAssemblyJson(*prepared->model, report);
+    PrintAssemblyJson(**model, report);
   } else {
-    PrintAssemblyTable(*prepared->model, report);
+    PrintAssemblyTable(**model, report);
   }
   if (report.run.record_error) {
     return ReportFailure(*report.run.record_error);
@@ -68,7 +69,7 @@ void AddAssemble(CLI::App* app, int* status) {
           "where their paths are apart; with a real device, its user chooses the parts")
       ->needs("--device");
   AddRunOptions(command, options.get());
-  AddJsonFlag(command, &options->is_json, "assemble");
+  AddJsonFlag(command, &options->is_json, "assemble or preparation");
   AddAccessoryOptions(command, &options->load);
   AddLoadOptions(command, &options->load);
   command->footer(

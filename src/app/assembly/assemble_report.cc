@@ -34,13 +34,17 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
                               {"name", PathOf(model, part.occurrence)},
                               {"seated", part.is_seated}};
   json.update(MakeHoldJson(part));
-  json.update({{"insertion_mm", units::ToMm(part.insertion)},
-               {"mates", part.mates},
-               {"touched", part.has_touched},
-               {"arrival_um", units::ToUm(part.arrival)},
-               {"arrival_urad", 1e6 * part.arrival_angle},
-               {"pose_error_um", units::ToUm(part.pose_error)},
-               {"pose_error_urad", 1e6 * part.pose_error_angle}});
+  const simulation::Passage& passage = part.passage;
+  json.update(
+      {{"beyond_drawn_um", units::ToUm(passage.depth)},
+       {"beyond_drawn_in", passage.through.is_valid() ? PathOf(model, passage.through) : ""},
+       {"insertion_mm", units::ToMm(part.insertion)},
+       {"mates", part.mates},
+       {"touched", part.has_touched},
+       {"arrival_um", units::ToUm(part.arrival)},
+       {"arrival_urad", 1e6 * part.arrival_angle},
+       {"pose_error_um", units::ToUm(part.pose_error)},
+       {"pose_error_urad", 1e6 * part.pose_error_angle}});
   return json;
 }
 

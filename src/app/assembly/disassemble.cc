@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/assembly/disassemble_report.h"
+#include "app/end_watch.h"
 #include "app/output/json_flag.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
@@ -21,36 +22,38 @@ constexpr int kNotAllOut = 2;  // The exit status where a part has not come out.
 }  // namespace
 
 int RunDisassemble(const DisassembleOptions& options) {
-  const auto prepared = PrepareRun(options, {});
-  if (!prepared) {
-    return ReportFailure(prepared.error());
+  const EndWatch end;  // What was done until the program is ended is printed.
+  PreparationProgress preparation;
+  const auto model = PrepareRun(options, {}, end.stop(), &preparation);
+  if (!model) {
+    return ReportUnprepared(options, preparation, model.error());
   }
   std::function<void(double fraction)> progress;
   if (IsShown(options)) {
     progress = [](double fraction) { ShowProgress("order of disassembly", fraction); };
   }
-  const auto plan = assembly::PlanDisassembly(*prepared->model, options.part, progress);
+  const auto plan = assembly::PlanDisassembly(**model, options.part, progress);
   if (progress) {
     progress(1);  // A plan for one part ends before all parts were looked at.
   }
   if (!plan) {
     return ReportFailure(plan.error());
   }
-  const std::int64_t preparation_ns = MonotonicNs() - prepared->start_ns;
-  auto run = assembly::RunDisassembly(
-      prepared->model, *plan,
-      MakeRunOptions(options, prepared->model,
-                     {"disassembly", "out",
-                      "NOT OUT: ", [](const auto& part) { return part.reason.empty(); }}));
+  const std::int64_t preparation_ns = MonotonicNs() - preparation.start_ns;
+  assembly::RunOptions run_options = MakeRunOptions(
+      options, *model,
+      {"disassembly", "out", "NOT OUT: ", [](const auto& part) { return part.reason.empty(); }});
+  run_options.stop = end.stop();
+  auto run = assembly::RunDisassembly(*model, *plan, run_options);
   if (!run) {
     return ReportFailure(run.error());
   }
   const bool is_complete = run->is_complete();
   const SessionReport report = MakeSessionReport(options, std::move(run->run), preparation_ns);
   if (options.is_json) {
-    PrintDisassemblyJson(*prepared->model, *plan, report);
+    PrintDisassemblyJson(**model, *plan, report);
   } else {
-    PrintDisassemblyTable(*prepared->model, *plan, report);
+    PrintDisassemblyTable(**model, *plan, report);
   }
   if (report.run.record_error) {
     return ReportFailure(*report.run.record_error);
@@ -69,7 +72,7 @@ void AddDisassemble(CLI::App* app, int* status) {
                       "in its way comes first; without it, all parts come off the base");
   AddFitAndDeviceOptions(command, options.get());
   AddRunOptions(command, options.get());
-  AddJsonFlag(command, &options->is_json, "disassemble");
+  AddJsonFlag(command, &options->is_json, "disassemble or preparation");
   AddAccessoryOptions(command, &options->load);
   AddLoadOptions(command, &options->load);
   command->footer(

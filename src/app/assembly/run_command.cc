@@ -7,10 +7,12 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/assembly/rendering_options.h"
 #include "app/assembly/run_report.h"
 #include "app/output/progress.h"
+#include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
 #include "assembly/prepare_model.h"
 #include "base/clock.h"
@@ -24,19 +26,34 @@ using simulation::PartResult;
 
 Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
                                                const std::vector<std::string>& first_parts,
-                                               Diagnostics* diagnostics, bool is_watched) {
-  auto product = LoadProduct(options.load, diagnostics);
+                                               const std::stop_token& stop,
+                                               PreparationProgress* progress,
+                                               Diagnostics* diagnostics) {
+  const cad::ProgressFn note = [progress, is_shown = IsShown(options)](std::string_view stage,
+                                                                       double fraction) {
+    if (fraction < 1) {  // A stage also ends so where it was stopped.
+      progress->stage = stage;
+      progress->fraction = fraction;
+    }
+    if (is_shown) {
+      ShowProgress(stage, fraction);
+    }
+  };
+  LoadOptions load = options.load;
+  load.stop = stop;
+  load.progress = note;
+  auto product = LoadProduct(load, diagnostics);
   if (!product) {
     return Unexpected(product.error());
   }
+  progress->parts = product->occurrences.size();
   assembly::PrepareOptions prepare;
   prepare.seed = options.run.seed;
   prepare.pairs = options.pairs;
   prepare.first_parts = first_parts;
   prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
-  if (is_watched) {
-    prepare.progress = ShowProgress;
-  }
+  prepare.stop = stop;
+  prepare.progress = note;
   auto model = assembly::PrepareModel(std::move(*product), prepare, diagnostics);
   if (!model) {
     return model;
@@ -75,8 +92,10 @@ bool IsShown(const RunCommandOptions& options) {
   return !options.load.is_quiet && IsWatched();
 }
 
-Result<PreparedRun> PrepareRun(const RunCommandOptions& options,
-                               const std::vector<std::string>& first_parts) {
+Result<std::shared_ptr<const Model>> PrepareRun(const RunCommandOptions& options,
+                                                const std::vector<std::string>& first_parts,
+                                                const std::stop_token& stop,
+                                                PreparationProgress* progress) {
   if (!options.run.record.empty()) {
     const auto target = record::CheckTarget(options.run.record, options.run.is_record_replaced);
     if (!target) {
@@ -84,10 +103,10 @@ Result<PreparedRun> PrepareRun(const RunCommandOptions& options,
     }
   }
   Diagnostics diagnostics;
-  const std::int64_t start_ns = MonotonicNs();
-  auto model = MakeModel(options, first_parts, &diagnostics, IsShown(options));
+  progress->start_ns = MonotonicNs();
+  auto model = MakeModel(options, first_parts, stop, progress, &diagnostics);
   if (!model) {
-    return Unexpected(model.error());
+    return model;
   }
   for (const Diagnostic& item : diagnostics.items()) {
     if (item.code == "shape-cache" || item.code == "cache-unwritable" ||
@@ -96,7 +115,26 @@ Result<PreparedRun> PrepareRun(const RunCommandOptions& options,
                  item.remedy.empty() ? "" : " (" + item.remedy + ")");
     }
   }
-  return PreparedRun{std::move(*model), start_ns};
+  return model;
+}
+
+int ReportUnprepared(const RunCommandOptions& options, const PreparationProgress& progress,
+                     const Error& error) {
+  const bool is_ended =
+      error.code == ErrorCode::kCancelled || error.code == ErrorCode::kOutOfResource;
+  if (options.is_json && is_ended) {
+    nlohmann::ordered_json json{
+        {"source", options.load.file.filename().string()},
+        {"reason", error.message},
+        {"stage", progress.stage},
+        {"stage_fraction", progress.fraction},
+        {"preparation_s", 1e-9 * static_cast<double>(MonotonicNs() - progress.start_ns)}};
+    if (progress.parts) {
+      json["parts"] = *progress.parts;
+    }
+    PrintJson(json);
+  }
+  return ReportFailure(error);
 }
 
 assembly::RunOptions MakeRunOptions(const RunCommandOptions& options,

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -34,19 +36,29 @@ struct TurnWords {
   bool (*is_done)(const simulation::PartResult& part);
 };
 
-/** A model that is ready for a run. */
-struct PreparedRun {
-  std::shared_ptr<const simulation::Model> model;
-  std::int64_t start_ns{0};  ///< When its preparation began, on the monotonic clock.
+/** How far a preparation has come. */
+struct PreparationProgress {
+  std::int64_t start_ns{0};          ///< When it began, on the monotonic clock.
+  std::string stage;                 ///< The last one that was reported; empty: none was.
+  double fraction{0};                ///< The share of this stage that is done, from 0 to 1.
+  std::optional<std::size_t> parts;  ///< Occurrences of the product, once it is read.
 };
 
 /** Whether progress is shown. */
 [[nodiscard]] bool IsShown(const RunCommandOptions& options);
 
 /** Checks that the record can be written, opens the file and prepares its model.
- @param first_parts  As in assembly::PrepareOptions. */
-[[nodiscard]] Result<PreparedRun> PrepareRun(const RunCommandOptions& options,
-                                             const std::vector<std::string>& first_parts);
+ @param first_parts  As in assembly::PrepareOptions.
+ @param stop  Ends the preparation: kCancelled.
+ @param progress  Says how far it came, also after an error. */
+[[nodiscard]] Result<std::shared_ptr<const simulation::Model>> PrepareRun(
+    const RunCommandOptions& options, const std::vector<std::string>& first_parts,
+    const std::stop_token& stop, PreparationProgress* progress);
+
+/** Reports a preparation that failed; with --json, where it was stopped or reached a limit, also
+ how far it came (preparation.schema.json). @returns the exit status for it. */
+int ReportUnprepared(const RunCommandOptions& options, const PreparationProgress& progress,
+                     const Error& error);
 
 /** Makes the options of the run, with callbacks that print its progress. */
 [[nodiscard]] assembly::RunOptions MakeRunOptions(

@@ -226,6 +226,7 @@ Result<FitCardOptions> MakeOptions(const FitArguments& a, std::size_t k) {
   fits::PressFitParameters& p = options.press;
   p.joint_diameter = fit->nominal;
   p.length = units::FromMm(Pick(a.length_mm, k, 0));
+  p.breadth = units::FromMm(a.breadth_mm);
   p.hub_diameter = a.hub_mm.empty() ? 2 * fit->nominal : units::FromMm(Pick(a.hub_mm, k, 0));
   p.shaft_bore = units::FromMm(Pick(a.bore_mm, k, 0));
   p.hub_roughness = units::FromUm(a.hub_rz_um >= 0 ? a.hub_rz_um : a.rz_um);
@@ -356,6 +357,12 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   add_list("--bore", &a->bore_mm, "Bore of a hollow shaft [mm]")->check(NotNegative());
   add_list("--start", &a->start_mm, "Depth of the shaft at which the fit begins to engage [mm]")
       ->check(NotNegative());
+  fit->add_option(
+         "--breadth", a->breadth_mm,
+         "Breadth of flat walls across the way [mm]: the sizes are the widths of a slot and "
+         "a tongue, and --hub that of the part with the slot, both walls included")
+      ->check(Positive())
+      ->transform(Millimetres());
   fit->add_option("--chamfer", a->chamfer_deg,
                   "Angle of the lead-in chamfer from the axis [deg]; default: a sharp edge")
       ->check(Positive());
@@ -419,6 +426,7 @@ Result<void> CheckEffects(const CLI::App& fit) {
   static const std::vector<const char*> batch{"--population", "--curve"};
   static const std::vector<Need> needs{{"--hub", {"--length"}},
                                        {"--bore", {"--length"}},
+                                       {"--breadth", {"--length"}},
                                        {"--material", {"--length"}},
                                        {"--hub-material", {"--length"}},
                                        {"--shaft-material", {"--length"}},
@@ -463,6 +471,9 @@ Result<void> CheckEffects(const CLI::App& fit) {
     }
   }
   static const std::vector<std::pair<const char*, std::vector<const char*>>> overruled{
+      {"--bore", {"--breadth"}},
+      {"--hub-temp", {"--breadth"}},
+      {"--shaft-temp", {"--breadth"}},
       {"--oiled", {"--mu"}},
       {"--shrunk", {"--mu"}},
       {"--material", {"--hub-material", "--shaft-material"}},

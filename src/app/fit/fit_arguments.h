@@ -21,6 +21,7 @@ namespace hvas::app {
 struct FitArguments {
   std::vector<std::string> fits;
   std::vector<double> length_mm, hub_mm, bore_mm, start_mm;
+  double breadth_mm{0};  // 0: round.
   double chamfer_deg{0};
   std::string material, hub_material, shaft_material;
   double chamfer_width_mm{0};

@@ -225,9 +225,13 @@ std::string FitCard::Title() const {
 std::string FitCard::JointText() const {
   const fits::PressFitParameters& p = options.press;
   const LengthText lengths(options.unit);
-  std::string text =
-      fmt::format("joint {} long, hub {} {}, shaft {}", lengths.Size(p.length),
-                  lengths.Size(p.hub_diameter), options.hub_material, options.shaft_material);
+  std::string text = "joint " + lengths.Size(p.length) + " long";
+  if (p.breadth > 0) {
+    text += " and " + lengths.Size(p.breadth) + " broad between flat walls";
+  }
+  text += fmt::format(", {} {} {}, {} {}", p.breadth > 0 ? "slot in" : "hub",
+                      lengths.Size(p.hub_diameter), options.hub_material,
+                      p.breadth > 0 ? "tongue" : "shaft", options.shaft_material);
   if (p.shaft_bore > 0) {
     text += fmt::format(" with a bore of {}", lengths.Size(p.shaft_bore));
   }
@@ -289,8 +293,7 @@ namespace {
 /** What keeps it sliding out after it has broken loose, at full depth [N]. */
 double SlideOut(const FitCard& card, const fits::PressFit& press) {
   const fits::PressFitParameters& p = card.options.press;
-  return card.options.friction_slip * std::numbers::pi * p.joint_diameter * p.length *
-         press.pressure;
+  return card.options.friction_slip * press.outline * p.length * press.pressure;
 }
 
 /** The class of the ABC system in a fit of ANSI B4.1; empty where a side has none. */
@@ -317,7 +320,8 @@ std::string LimitsText(const FitCard& card) {
   side("hole", HoleClass(fit), card.hole);
   side("shaft", ShaftClass(fit), card.shaft);
   if (card.limits) {
-    text += fmt::format("  diametral clearance {} to {} {}: {} fit\n",
+    text += fmt::format("  {}clearance {} to {} {}: {} fit\n",
+                        card.options.press.breadth > 0 ? "" : "diametral ",
                         lengths.SignedSmall(card.limits->min_clearance),
                         lengths.SignedSmall(card.limits->max_clearance), lengths.small_unit(),
                         ToString(mates::ToKind(card.limits->kind)));
@@ -446,6 +450,7 @@ ordered_json ToJson(const FitCard& card) {
                      {"start_mm", units::ToMm(card.options.start)},
                      {"hub_mm", units::ToMm(p.hub_diameter)},
                      {"bore_mm", units::ToMm(p.shaft_bore)},
+                     {"breadth_mm", units::ToMm(p.breadth)},
                      {"chamfer_deg", units::ToDeg(card.options.lead_in_angle)},
                      {"hub_material", card.options.hub_material},
                      {"shaft_material", card.options.shaft_material},

@@ -10,6 +10,7 @@
 
 #include "app/product/product_json.h"
 #include "base/units.h"
+#include "mates/mate_kind.h"
 #include "mates/side_file.h"
 #include "product/names.h"
 
@@ -34,7 +35,7 @@ Json MakeEntry(const Product& product, const Mate& mate) {
   Json entry{{"mate", mate.key}};
   const product::Fit& fit = *mate.fit;
   entry["fit"] = fit.kind == product::FitKind::kThread ? "thread" : fit.code;
-  entry.update(ConditionsToJson(mate.conditions));
+  entry.update(ConditionsToJson(mate));
   entry["note"] = fmt::format("{}{}, {:.6g} mm: {} <- {}{}", fit.is_proposed ? "proposed " : "",
                               ToString(fit.kind), units::ToMm(fit.nominal_diameter), path(mate.a),
                               path(mate.b), fit.reason.empty() ? "" : " (" + fit.reason + ")");
@@ -48,7 +49,7 @@ Json MakeFirstAssignments(const Product& product) {
   for (const Mate& mate : product.mates) {
     const bool has_fit =
         mate.fit && (mate.fit->kind == product::FitKind::kThread || !mate.fit->code.empty());
-    if (mate.kind == product::MateKind::kAxisHole && has_fit) {
+    if (mates::HasFit(mate.kind) && has_fit) {
       mates.push_back(&mate);
     }
   }
@@ -58,7 +59,7 @@ Json MakeFirstAssignments(const Product& product) {
   Json document{
       {"format", mates::kSideFileFormat},
       {"note", "Fits of " + product.source +
-                   "; proposed fits are guesses from the drawn diameters and have to be checked."},
+                   "; proposed fits are guesses from the drawn sizes and have to be checked."},
       {"fits", Json::array()}};
   for (const Mate* mate : mates) {
     document["fits"].push_back(MakeEntry(product, *mate));

@@ -1,6 +1,8 @@
 #include "app/product/joint_forms.h"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
 #include "base/units.h"
+#include "mates/fastened_joints.h"
 #include "mates/prismatic_fits.h"
 #include "mates/thread_joints.h"
 #include "product/names.h"
@@ -18,9 +21,10 @@ namespace hvas::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using mates::PrismaticFit;
+using mates::FastenedJoint;
 using mates::ThreadJoint;
 using mates::ThreadJointKind;
+using product::Mate;
 using product::Product;
 using units::ToMm;
 
@@ -46,12 +50,49 @@ std::vector<ThreadJoint> ListThreads(const Product& product, const Selection& se
   return joints;
 }
 
-std::vector<PrismaticFit> ListPrismatic(const Product& product, const Selection& selection) {
-  std::vector<PrismaticFit> fits = mates::FindPrismaticFits(product);
-  std::erase_if(fits, [&](const PrismaticFit& fit) {
-    return !selection.Has(fit.low) && !selection.Has(fit.high);
-  });
+std::vector<const Mate*> ListPrismatic(const Product& product, const Selection& selection) {
+  std::vector<const Mate*> fits;
+  for (const Mate& mate : product.mates) {
+    if (mate.kind == product::MateKind::kPrismatic && selection.Has(mate.id)) {
+      fits.push_back(&mate);
+    }
+  }
   return fits;
+}
+
+/** Those of which a mate of a fastener with one of the two parts is selected. */
+std::vector<FastenedJoint> ListFastened(const Product& product, const Selection& selection) {
+  std::vector<FastenedJoint> joints = mates::FindFastenedJoints(product);
+  std::erase_if(joints, [&](const FastenedJoint& joint) {
+    return std::none_of(product.mates.begin(), product.mates.end(), [&](const product::Mate& mate) {
+      const bool is_in = mate.a.occurrence == joint.a || mate.a.occurrence == joint.b;
+      return is_in && selection.Has(mate.id) &&
+             std::find(joint.fasteners.begin(), joint.fasteners.end(), mate.b.occurrence) !=
+                 joint.fasteners.end();
+    });
+  });
+  return joints;
+}
+
+Json ToJson(const FastenedJoint& joint) {
+  Json fasteners = Json::array();
+  for (const product::OccurrenceId id : joint.fasteners) {
+    fasteners.push_back(id.value());
+  }
+  return {{"a", joint.a.value()},
+          {"b", joint.b.value()},
+          {"fasteners", std::move(fasteners)},
+          {"diameter_mm", ToMm(joint.diameter)},
+          {"circle_diameter_mm",
+           joint.circle_diameter > 0 ? Json(ToMm(joint.circle_diameter)) : Json()},
+          {"pilot", joint.pilot ? Json(joint.pilot->value()) : Json()},
+          {"free_translations", joint.free_translations},
+          {"free_rotations", joint.free_rotations}};
+}
+
+Vec3 WayOutOf(const Product& product, const Mate& mate) {
+  const product::Occurrence& outer = product.occurrences[mate.a.occurrence.index()];
+  return (outer.X_WB * mate.a.X_BM).q() * Vec3::UnitX();
 }
 
 Json ToJson(const ThreadJoint& joint) {
@@ -70,18 +111,24 @@ Json ToJson(const ThreadJoint& joint) {
           {"preload_n", is_tightened ? Json(joint.tightening.preload) : Json()}};
 }
 
-Json ToJson(const PrismaticFit& fit) {
-  return {{"outer", fit.outer.value()},
-          {"inner", fit.inner.value()},
-          {"mates", {fit.low.value(), fit.high.value()}},
-          {"across", {fit.across_W.x(), fit.across_W.y(), fit.across_W.z()}},
-          {"outer_width_mm", ToMm(fit.outer_width)},
-          {"inner_width_mm", ToMm(fit.inner_width)},
-          {"clearance_mm", ToMm(fit.clearance())},
-          {"engaged_mm2", 1e6 * fit.engaged},
-          {"kind", ToString(fit.fit.kind)},
-          {"code", fit.fit.code},
-          {"reason", fit.fit.reason}};
+Json ToJson(const Product& product, const Mate& mate) {
+  const mates::LeadIn lead_in = mates::FindLeadIn(product, mate);
+  const product::Fit fit = mate.fit.value_or(product::Fit{});
+  const Vec3 way_W = WayOutOf(product, mate);
+  return {{"mate", mate.id.value()},
+          {"outer", mate.a.occurrence.value()},
+          {"inner", mate.b.occurrence.value()},
+          {"way_out", {way_W.x(), way_W.y(), way_W.z()}},
+          {"outer_width_mm", ToMm(2 * mate.hole_radius)},
+          {"inner_width_mm", ToMm(2 * mate.shaft_radius)},
+          {"clearance_mm", ToMm(2 * (mate.hole_radius - mate.shaft_radius))},
+          {"engaged_mm", ToMm(mate.overlap)},
+          {"breadth_mm", ToMm(mate.breadth)},
+          {"lead_in_deg", units::ToDeg(lead_in.angle)},
+          {"lead_in_mm", ToMm(lead_in.width)},
+          {"kind", ToString(fit.kind)},
+          {"code", fit.code},
+          {"reason", fit.reason}};
 }
 
 /** Hand and kind of a joint where they are unusual; else empty. */
@@ -117,19 +164,44 @@ void PrintThreads(const std::vector<ThreadJoint>& joints, bool is_all) {
   limit.PrintRest();
 }
 
-void PrintPrismatic(const Product& product, const std::vector<PrismaticFit>& fits, bool is_all) {
+void PrintPrismatic(const Product& product, const std::vector<const Mate*>& fits, bool is_all) {
   fmt::print("\nPrismatic fits (slot and tongue, pocket and block, sandwich)\n");
-  TextTable table({"mates", "outer part, inner part", "width\nmm", "clearance\nmm", "fit"}, 2);
+  TextTable table({"mate", "outer part, inner part", "width\nmm", "clearance\nmm", "engaged\nmm",
+                   "lead-in\nmm", "fit"},
+                  2);
   ListLimit limit(is_all);
-  for (const PrismaticFit& fit : fits) {
+  for (const Mate* mate : fits) {
+    if (!limit.Next()) {
+      continue;
+    }
+    const double lead_in = mates::FindLeadIn(product, *mate).width;
+    const product::Fit fit = mate->fit.value_or(product::Fit{});
+    table.Add(
+        {fmt::format("m{}", mate->id.value()),
+         fmt::format("{}, {}", Shorten(product.occurrences[mate->a.occurrence.index()].name, 10),
+                     Shorten(product.occurrences[mate->b.occurrence.index()].name, 10)),
+         fmt::format("{:.3f}", ToMm(2 * mate->hole_radius)),
+         fmt::format("{:.3f}", ToMm(2 * (mate->hole_radius - mate->shaft_radius))),
+         fmt::format("{:.2f}", ToMm(mate->overlap)),
+         lead_in > 0 ? fmt::format("{:.2f}", ToMm(lead_in)) : std::string("-"),
+         fmt::format("{}{}{}", ToString(fit.kind), fit.code.empty() ? "" : " ", fit.code)});
+  }
+  fmt::print("{}", table.ToText(2));
+  limit.PrintRest();
+}
+
+void PrintFastened(const Product& product, const std::vector<FastenedJoint>& joints, bool is_all) {
+  fmt::print("\nFastened joints (parts held together by screws or pins)\n");
+  TextTable table({"parts", "fasteners", "of\nmm", "circle\nmm", "pilot"}, 2);
+  ListLimit limit(is_all);
+  for (const FastenedJoint& joint : joints) {
     if (limit.Next()) {
-      table.Add({fmt::format("m{} m{}", fit.low.value(), fit.high.value()),
-                 fmt::format("{}, {}", Shorten(product.occurrences[fit.outer.index()].name, 14),
-                             Shorten(product.occurrences[fit.inner.index()].name, 14)),
-                 fmt::format("{:.3f}", ToMm(fit.outer_width)),
-                 fmt::format("{:.3f}", ToMm(fit.clearance())),
-                 fmt::format("{}{}{}", ToString(fit.fit.kind), fit.fit.code.empty() ? "" : " ",
-                             fit.fit.code)});
+      table.Add(
+          {fmt::format("{}, {}", Shorten(product.occurrences[joint.a.index()].name, 14),
+                       Shorten(product.occurrences[joint.b.index()].name, 14)),
+           std::to_string(joint.fasteners.size()), fmt::format("{:.2f}", ToMm(joint.diameter)),
+           joint.circle_diameter > 0 ? fmt::format("{:.2f}", ToMm(joint.circle_diameter)) : "-",
+           joint.pilot ? fmt::format("m{}", joint.pilot->value()) : "-"});
     }
   }
   fmt::print("{}", table.ToText(2));
@@ -144,8 +216,12 @@ void AddJointForms(const Product& product, const Selection& selection, Json* jso
     threads.push_back(ToJson(joint));
   }
   Json& prismatic = (*json)["prismatic_fits"] = Json::array();
-  for (const PrismaticFit& fit : ListPrismatic(product, selection)) {
-    prismatic.push_back(ToJson(fit));
+  for (const Mate* mate : ListPrismatic(product, selection)) {
+    prismatic.push_back(ToJson(product, *mate));
+  }
+  Json& fastened = (*json)["fastened_joints"] = Json::array();
+  for (const FastenedJoint& joint : ListFastened(product, selection)) {
+    fastened.push_back(ToJson(joint));
   }
 }
 
@@ -154,9 +230,13 @@ void PrintJointForms(const Product& product, const Selection& selection, bool is
   if (!joints.empty()) {
     PrintThreads(joints, is_all);
   }
-  const std::vector<PrismaticFit> fits = ListPrismatic(product, selection);
+  const std::vector<const Mate*> fits = ListPrismatic(product, selection);
   if (!fits.empty()) {
     PrintPrismatic(product, fits, is_all);
+  }
+  const std::vector<FastenedJoint> fastened = ListFastened(product, selection);
+  if (!fastened.empty()) {
+    PrintFastened(product, fastened, is_all);
   }
 }
 

@@ -26,15 +26,21 @@ const std::map<std::string, double>& LengthUnits() {
   return metres;
 }
 
-void AddUnitOption(CLI::App* command, double* length_unit) {
+/** Options that take the place of what the file states, or does not. */
+void AddFileOptions(CLI::App* command, LoadOptions* options) {
   command
       ->add_option_function<std::string>(
           "--unit",
-          [length_unit](const std::string& name) { *length_unit = LengthUnits().at(name); },
-          "Length unit of OBJ and STL files, which do not state one: mm (default), cm, m, in or "
-          "ft; it has no effect on other formats")
+          [options](const std::string& name) { options->length_unit = LengthUnits().at(name); },
+          "Length unit of the file, whatever it states: mm, cm, m, in or ft; default: what it "
+          "states, and mm for OBJ and STL files, which state none")
       ->check(CLI::IsMember(&LengthUnits()))
       ->type_name("UNIT");
+  command
+      ->add_option("--encoding", options->encoding,
+                   "Encoding of the names in a STEP file, as iconv names it, for example CP1251, "
+                   "GBK or ISO-8859-2; default: UTF-8, or what the text looks like")
+      ->type_name("NAME");
 }
 
 }  // namespace
@@ -44,7 +50,7 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options) {
   command->add_flag("--quiet,-q", options->is_quiet, "No progress");
   command->add_flag("!--no-cache", options->is_cache_used,
                     "Do not use the caches on disk: read and prepare everything again");
-  AddUnitOption(command, &options->length_unit);
+  AddFileOptions(command, options);
   command->add_option("--apart", options->apart,
                       "Name or path of a unit, or of one of its bodies, that is not to be welded "
                       "into one body, or of copies of a part that are not to be left out; all: of "

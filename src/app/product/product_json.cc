@@ -12,6 +12,7 @@
 #include "app/product/relations_report.h"
 #include "base/units.h"
 #include "mates/infer.h"
+#include "mates/mate_kind.h"
 #include "product/names.h"
 
 namespace hvas::app {
@@ -204,7 +205,11 @@ Json SubassemblyToJson(const product::Subassembly& subassembly) {
 }
 
 Json ToJson(const product::Connector& connector) {
-  return {{"occurrence", connector.occurrence.value()}, {"feature", connector.feature.value()}};
+  Json json{{"occurrence", connector.occurrence.value()}, {"feature", connector.feature.value()}};
+  if (connector.opposite.is_valid()) {
+    json["opposite"] = connector.opposite.value();
+  }
+  return json;
 }
 
 Json ToJson(const product::Fit& fit) {
@@ -229,7 +234,9 @@ Json ToJson(const std::vector<product::MeasuredDiameter>& measured) {
 
 }  // namespace
 
-Json ConditionsToJson(const product::FitConditions& conditions) {
+Json ConditionsToJson(const product::Mate& mate) {
+  const product::FitConditions& conditions = mate.conditions;
+  const bool is_prismatic = mate.kind == product::MateKind::kPrismatic;
   Json json = Json::object();
   const auto add = [&json](const char* key, const std::optional<double>& value, double scale) {
     if (value) {
@@ -237,10 +244,11 @@ Json ConditionsToJson(const product::FitConditions& conditions) {
     }
   };
   if (!conditions.hole_diameters.empty()) {
-    json["hole_diameter_mm"] = ToJson(conditions.hole_diameters);
+    json[is_prismatic ? "hole_width_mm" : "hole_diameter_mm"] = ToJson(conditions.hole_diameters);
   }
   if (!conditions.shaft_diameters.empty()) {
-    json["shaft_diameter_mm"] = ToJson(conditions.shaft_diameters);
+    json[is_prismatic ? "shaft_width_mm" : "shaft_diameter_mm"] =
+        ToJson(conditions.shaft_diameters);
   }
   add("hole_rz_um", conditions.hole_roughness, units::ToUm(1));
   add("shaft_rz_um", conditions.shaft_roughness, units::ToUm(1));
@@ -256,9 +264,10 @@ Json MateToJson(const product::Mate& mate) {
   Json json{{"id", mate.id.value()},         {"key", mate.key},
             {"kind", ToString(mate.kind)},   {"origin", ToString(mate.origin)},
             {"confidence", mate.confidence}, {"evidence", mate.evidence}};
-  const bool is_axis_hole = mate.kind == product::MateKind::kAxisHole;
-  json[is_axis_hole ? "hole" : "a"] = ToJson(mate.a);
-  json[is_axis_hole ? "shaft" : "b"] = ToJson(mate.b);
+  const bool is_prismatic = mate.kind == product::MateKind::kPrismatic;
+  const bool has_fit = mates::HasFit(mate.kind);
+  json[has_fit ? "hole" : "a"] = ToJson(mate.a);
+  json[has_fit ? "shaft" : "b"] = ToJson(mate.b);
   Json surfaces = Json::array();
   for (const product::SurfaceConstraint& surface : mate.surfaces) {
     surfaces.push_back(
@@ -272,13 +281,16 @@ Json MateToJson(const product::Mate& mate) {
   } else {
     json["engaged_mm"] = ToMm(mate.overlap);
   }
-  if (!is_axis_hole) {
+  if (!has_fit) {
     return json;
   }
-  json["hole_diameter_mm"] = ToMm(2 * mate.hole_radius);
-  json["shaft_diameter_mm"] = ToMm(2 * mate.shaft_radius);
+  json[is_prismatic ? "hole_width_mm" : "hole_diameter_mm"] = ToMm(2 * mate.hole_radius);
+  json[is_prismatic ? "shaft_width_mm" : "shaft_diameter_mm"] = ToMm(2 * mate.shaft_radius);
+  if (is_prismatic) {
+    json["breadth_mm"] = ToMm(mate.breadth);
+  }
   json["fit"] = mate.fit ? ToJson(*mate.fit) : Json();
-  json["conditions"] = ConditionsToJson(mate.conditions);
+  json["conditions"] = ConditionsToJson(mate);
   return json;
 }
 

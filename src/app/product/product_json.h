@@ -33,7 +33,7 @@ struct ToleranceCounts {
                                             const Selection& selection);
 
 /** What is known of a mate beyond its fit; the keys are those of the side file. */
-[[nodiscard]] nlohmann::ordered_json ConditionsToJson(const product::FitConditions& conditions);
+[[nodiscard]] nlohmann::ordered_json ConditionsToJson(const product::Mate& mate);
 
 /** Mates as in the section "mates". */
 [[nodiscard]] nlohmann::ordered_json MatesToJson(const std::vector<product::Mate>& mates);

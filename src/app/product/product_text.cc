@@ -321,6 +321,11 @@ std::string DescribeMate(const Mate& mate, bool with_evidence) {
       text = fmt::format("diameter {:.4g} mm, {:.2f} mm2", ToMm(2 * mate.hole_radius),
                          ToMm2(mate.overlap));
       break;
+    case MateKind::kPrismatic:
+      text = fmt::format("slot {:.5g} mm, tongue {:.5g} mm, engaged {:.2f} mm by {:.2f} mm",
+                         ToMm(2 * mate.hole_radius), ToMm(2 * mate.shaft_radius),
+                         ToMm(mate.overlap), ToMm(mate.breadth));
+      break;
   }
   if (mate.fit) {
     text +=
@@ -489,6 +494,8 @@ std::string_view RarePluralOf(MateKind kind) {
       return "cone seats";
     case MateKind::kSphereSeat:
       return "sphere seats";
+    case MateKind::kPrismatic:
+      return "prismatic";
   }
   return "";
 }

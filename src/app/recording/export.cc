@@ -20,6 +20,7 @@
 #include "app/product/product_json.h"
 #include "app/product/selection.h"
 #include "app/recording/export_record.h"
+#include "assembly/open_product.h"
 #include "base/atomic_file.h"
 #include "cad/export_step.h"
 #include "cad/glb.h"
@@ -94,7 +95,8 @@ Result<void> WriteStep(const ExportOptions& options, const Product& product,
   if (!options.load.is_quiet && IsWatched()) {
     control.progress = ShowProgress;
   }
-  const Result<cad::MappedFile> step = cad::ExportStep(options.load.file, control, motions);
+  const Result<cad::MappedFile> step = cad::ExportStep(
+      options.load.file, assembly::MakeImportOptions(options.load), control, motions);
   if (!step) {
     return Unexpected(step.error());
   }

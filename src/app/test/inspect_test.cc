@@ -49,10 +49,12 @@ TEST_P(InspectTest, X1SummaryIsAsDrawn) {  // X2
     return mate["kind"] == "face_face" &&
            mate["evidence"].get<std::string>().rfind("touching", 0) == 0;
   });
-  EXPECT_EQ(touching, truth_["mate_counts"]["face_face"]);
-  // Besides, the key of the pump is between the walls of its hub's groove, 30 um from each.
-  const int walls = std::string(GetParam()) == "gear_pump" ? 2 : 0;
-  EXPECT_EQ(summary["mates"]["face_face"].get<int>() - touching, walls);
+  // The key of the pump is between two walls that it touches, of its shaft, and two of its hub, 30
+  // um from each: two prismatic mates.
+  const bool has_key = std::string(GetParam()) == "gear_pump";
+  EXPECT_EQ(touching, truth_["mate_counts"]["face_face"].get<int>() - (has_key ? 2 : 0));
+  EXPECT_EQ(summary["mates"]["face_face"].get<int>() - touching, 0);
+  EXPECT_EQ(summary["mates"]["prismatic"], has_key ? 2 : 0);
   EXPECT_EQ(summary["linked_parts"], truth_["occurrences"]);
   EXPECT_EQ(summary["linked_groups"], 1);
   EXPECT_EQ(summary["warnings"], 0) << inspected_["diagnostics"].dump(1);
@@ -137,11 +139,11 @@ TEST_P(InspectTest, IdsReferToWhatTheyShould) {
     EXPECT_NEAR(norm, 1, 1e-12);
   }
   for (const json& mate : inspected_["mates"]) {
-    const bool is_axis = mate["kind"] == "axis_hole";
-    for (const char* side : {is_axis ? "hole" : "a", is_axis ? "shaft" : "b"}) {
+    const bool has_fit = mate["kind"] == "axis_hole" || mate["kind"] == "prismatic";
+    for (const char* side : {has_fit ? "hole" : "a", has_fit ? "shaft" : "b"}) {
       EXPECT_LT(mate[side]["occurrence"].get<std::size_t>(), size("occurrences"));
     }
-    const bool is_length = is_axis || mate["kind"] == "cone_seat";
+    const bool is_length = has_fit || mate["kind"] == "cone_seat";
     EXPECT_GT(mate[is_length ? "engaged_mm" : "overlap_mm2"].get<double>(), 0);
   }
 }

@@ -31,6 +31,7 @@ struct MeshFile {
   double volume_mm3;
   int face_mates;
   bool is_unit_stated;
+  double unit_mm;  // In the file.
 };
 
 std::string SeedFile(const std::string& name) {
@@ -54,11 +55,11 @@ TEST_P(MeshFileTest, X1OpensLikeAnyOther) {  // X2
   }
 }
 
-TEST_P(MeshFileTest, TakesTheStatedUnitOnlyWhereTheFileHasNone) {
+TEST_P(MeshFileTest, TakesTheUserUnitForThatOfTheFile) {
   const MeshFile& drawn = GetParam();
   const json as_mm = RunHvasJson({"inspect", SeedFile(drawn.name)});
   const json as_inch = RunHvasJson({"inspect", SeedFile(drawn.name), "--unit", "in"});
-  const double scale = drawn.is_unit_stated ? 1 : kMmPerInch;
+  const double scale = kMmPerInch / drawn.unit_mm;
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(as_inch["summary"]["size_mm"][axis].get<double>() /
                     as_mm["summary"]["size_mm"][axis].get<double>(),
@@ -81,12 +82,13 @@ TEST_P(MeshFileTest, TakesTheStatedUnitOnlyWhereTheFileHasNone) {
 
 INSTANTIATE_TEST_SUITE_P(
     Formats, MeshFileTest,
-    ::testing::Values(MeshFile{"ring_text.stl", 1, 1, kRingVolumeMm3, 0, false},
-                      MeshFile{"ring_binary.stl", 1, 1, kRingVolumeMm3, 0, false},
-                      MeshFile{"ring_plate.obj", 2, 2, kRingVolumeMm3 + kPlateVolumeMm3, 1, false},
-                      MeshFile{"rings.gltf", 2, 1, 2 * kRingVolumeMm3, 1, true},
-                      MeshFile{"rings.glb", 2, 1, 2 * kRingVolumeMm3, 1, true},
-                      MeshFile{"rings.3mf", 2, 1, 2 * kRingVolumeMm3, 1, true}),
+    ::testing::Values(MeshFile{"ring_text.stl", 1, 1, kRingVolumeMm3, 0, false, 1},
+                      MeshFile{"ring_binary.stl", 1, 1, kRingVolumeMm3, 0, false, 1},
+                      MeshFile{"ring_plate.obj", 2, 2, kRingVolumeMm3 + kPlateVolumeMm3, 1, false,
+                               1},
+                      MeshFile{"rings.gltf", 2, 1, 2 * kRingVolumeMm3, 1, true, 1000},
+                      MeshFile{"rings.glb", 2, 1, 2 * kRingVolumeMm3, 1, true, 1000},
+                      MeshFile{"rings.3mf", 2, 1, 2 * kRingVolumeMm3, 1, true, 1}),
     [](const auto& instance) {
       std::string name = instance.param.name;
       for (char& c : name) {

@@ -239,6 +239,8 @@ class JsonRuns {
     const std::string bushing = ProductFile("bushing");
     Add({"assemble", bushing, "--record", record}, "assemble");
     Add({"assemble", bushing, "--limit", "5"}, "assemble", 2);
+    Add({"assemble", bushing, "--no-cache", "--time-limit", "0.001"}, "preparation", 1);
+    Add({"disassemble", bushing, "--no-cache", "--time-limit", "0.001"}, "preparation", 1);
     Add({"disassemble", bushing}, "disassemble");
     Add({"disassemble", bushing, "--limit", "5"}, "disassemble", 2);
     Add({"replay", record}, "replay");

@@ -136,6 +136,9 @@ TEST(OpenProductTest, RefusesOptionsOutOfRange) {
   options = OptionsFor(ProductFile("bushing.step"));
   options.max_parts = -1;
   ExpectRefused(Open(options), ErrorCode::kInvalid, "parts");
+  options = OptionsFor(ProductFile("bushing.step"));
+  options.encoding = "CP125l";
+  ExpectRefused(Open(options), ErrorCode::kInvalid, "CP125l");
 }
 
 TEST(OpenProductTest, KeepsWhatWasReadInItsCacheOnly) {

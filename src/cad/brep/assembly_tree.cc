@@ -37,6 +37,7 @@
 
 #include "base/parallel.h"
 #include "base/units.h"
+#include "cad/brep/curve_part.h"
 #include "cad/brep/equal_shapes.h"
 #include "cad/brep/part_shape.h"
 #include "cad/brep/xcaf_labels.h"
@@ -133,6 +134,7 @@ class TreeBuilder {
   std::vector<PartSource> sources_;                     // One for each of product_->parts.
   std::map<std::string, std::optional<PartId>> known_;  // By entry, scale and colour.
   std::vector<Siblings> siblings_;                      // One for each subassembly.
+  bool has_faces_{false};  // Of any part; where there are none, curves are shown.
 };
 
 /** @param definition  Null for a root that the document does not have. */
@@ -227,9 +229,17 @@ std::optional<PartId> TreeBuilder::FindPart(const TDF_Label& definition, const T
   const std::string name = InstanceName(definition, definition);
   std::optional<PartId> id;
   const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(definition);
-  if (shape.IsNull() || CountContent(shape).faces == 0) {
-    diagnostics_->Note("no-face", name, "the part has only curves or points and is omitted");
+  const ShapeContent content = shape.IsNull() ? ShapeContent() : CountContent(shape);
+  if (content.faces == 0 && (has_faces_ || content.free_curves == 0)) {
+    diagnostics_->Note(
+        "no-face", name,
+        fmt::format("the part has no faces, only {} curves; it is omitted", content.free_curves));
   } else {
+    if (content.faces > 0 && content.free_curves > 0) {
+      diagnostics_->Note(
+          "free-curves", name,
+          fmt::format("{} curves that bound no face are omitted", content.free_curves));
+    }
     id = PartId(product_->parts.size());
     Part part;
     part.id = *id;
@@ -296,7 +306,10 @@ bool TreeBuilder::BuildPart(PartSource* source, Part* part) const {
   };
   try {
     OCC_CATCH_SIGNALS
-    if (BuildPartShape(source->shape, options_, color_of, part, diagnostics, entity_of)) {
+    if (faces.IsEmpty()
+            ? BuildCurvePart(source->shape, options_, part, diagnostics)
+            : BuildPartShape(source->shape, options_, color_of, part, diagnostics, entity_of)
+                  .has_value()) {
       product::BuildFeatures(part, diagnostics);
       return true;
     }
@@ -539,6 +552,11 @@ void TreeBuilder::AssignParts(const std::vector<PartId>& part_of,
 Result<void> TreeBuilder::Build() {
   TDF_LabelSequence roots;
   shapes_->GetFreeShapes(roots);
+  TDF_LabelSequence definitions;
+  shapes_->GetShapes(definitions);
+  has_faces_ = std::any_of(definitions.begin(), definitions.end(), [](const TDF_Label& label) {
+    return TopExp_Explorer(XCAFDoc_ShapeTool::GetShape(label), TopAbs_FACE).More();
+  });
   if (roots.Length() == 1 && XCAFDoc_ShapeTool::IsAssembly(roots.First())) {
     const std::string name = NameOf(roots.First());
     product_->name = name.empty() ? product_->name : name;
@@ -558,12 +576,13 @@ Result<void> TreeBuilder::Build() {
   BuildParts();
   if (product_->occurrences.empty()) {
     return Fail(ErrorCode::kUnreadable, "the file has no solid part", product_->source,
-                "export the assembly with solids, not only curves, points or references");
+                "export the assembly with solids, not only points or references");
   }
   if (std::none_of(product_->parts.begin(), product_->parts.end(),
                    [](const Part& part) { return part.solid_count > 0; })) {
     diagnostics_->Warn("surfaces-only", product_->source,
-                       "the file has surfaces but no solids; its parts have no mass",
+                       has_faces_ ? "the file has surfaces but no solids; its parts have no mass"
+                                  : "the file has curves but no solids; its parts have no mass",
                        "export the assembly with solids");
   }
   for (const product::Occurrence& occurrence : product_->occurrences) {

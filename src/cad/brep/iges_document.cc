@@ -1,6 +1,7 @@
 #include "cad/brep/iges_document.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <BRep_Builder.hxx>
 #include <IGESBasic_SubfigureDef.hxx>
 #include <IGESCAFControl.hxx>
 #include <IGESControl_Reader.hxx>
@@ -29,11 +31,13 @@
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Iterator.hxx>
 #include <TopoDS_Shape.hxx>
 #include <TopoDS_TShape.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
+#include <UnitsMethods.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
@@ -42,6 +46,7 @@
 #include <fmt/format.h>
 
 #include "base/regular_file.h"
+#include "base/units.h"
 #include "cad/brep/occt_session.h"
 #include "cad/brep/sew_faces.h"
 #include "cad/iges/iges_text.h"
@@ -337,11 +342,21 @@ void DocumentBuilder::Report() const {
 }
 
 Result<void> DocumentBuilder::Build(const std::vector<TopoDS_Shape>& roots, std::size_t max_parts) {
-  const TDF_Label root = AddGroup(roots, "");
+  TDF_Label root = AddGroup(roots, "");
+  if (root.IsNull() && curves_ > 0) {  // Curves are omitted only where there is anything else.
+    const BRep_Builder builder;
+    TopoDS_Compound curves;
+    builder.MakeCompound(curves);
+    for (const TopoDS_Shape& shape : roots) {
+      builder.Add(curves, shape);
+    }
+    root = AddPart(curves, file_);
+    curves_ = 0;
+  }
   Report();
   if (root.IsNull()) {
-    return Fail(ErrorCode::kUnreadable, "the IGES file has no surfaces or solids", file_,
-                "export solids or trimmed surfaces, not only curves and points");
+    return Fail(ErrorCode::kUnreadable, "the IGES file has no solids, surfaces or curves", file_,
+                "export solids or trimmed surfaces");
   }
   if (const auto checked = CheckPlaced(CountPlaced(uses_, {NumberOf(root)}), max_parts, file_);
       !checked) {
@@ -375,6 +390,24 @@ void ReportDamaged(const Handle(IGESData_IGESModel) & model, Interface_CheckIter
   }
 }
 
+/** Gives a model another unit of length [m]. */
+Result<void> SetLengthUnit(double unit, const std::string& file,
+                           const Handle(IGESData_IGESModel) & model) {
+  constexpr int kUnits = 11;          // Flags of IGES 5.3, section 2.2.4.3.14; 3 is a name.
+  constexpr double kSameUnit = 1e-9;  // Relative.
+  for (int flag = 1; flag <= kUnits; ++flag) {
+    const double known = units::FromMm(UnitsMethods::GetLengthFactorValue(flag));
+    if (flag != 3 && std::abs(known - unit) < kSameUnit * unit) {
+      IGESData_GlobalSection global = model->GlobalSection();
+      global.SetUnitFlag(flag);
+      model->SetGlobalSection(global);
+      return {};
+    }
+  }
+  return Fail(ErrorCode::kUnsupported, fmt::format("IGES has no unit of {} m", unit), file,
+              "give mm, cm, m, in or ft");
+}
+
 product::FileHeader MakeHeader(const IGESData_GlobalSection& global) {
   product::FileHeader header;
   header.format = "IGES";
@@ -391,8 +424,9 @@ product::FileHeader MakeHeader(const IGESData_GlobalSection& global) {
 
 }  // namespace
 
-Result<CadDocument> ReadIgesDocument(const std::filesystem::path& file, std::size_t max_parts,
-                                     const ReadWatch& watch, Diagnostics* diagnostics) {
+Result<CadDocument> ReadIgesDocument(const std::filesystem::path& file,
+                                     const ImportOptions& options, const ReadWatch& watch,
+                                     Diagnostics* diagnostics) {
   const std::string name = file.filename().string();
   const auto text = ReadRegularFile(file);
   if (!text) {
@@ -411,6 +445,11 @@ Result<CadDocument> ReadIgesDocument(const std::filesystem::path& file, std::siz
                 "export the file again from the CAD system");
   }
   const Handle(IGESData_IGESModel) model = reader.IGESModel();
+  if (options.length_unit) {
+    if (const auto set = SetLengthUnit(*options.length_unit, name, model); !set) {
+      return Unexpected(set.error());
+    }
+  }
   int damaged = 0;
   ReportDamaged(model, reader.WS()->ModelCheckList(), name, &damaged, diagnostics);
   const opencascade::handle<TransferProgress> indicator = new TransferProgress(&watch.progress);
@@ -436,7 +475,7 @@ Result<CadDocument> ReadIgesDocument(const std::filesystem::path& file, std::siz
   result.document = MakeDocument();
   const EntityLabels labels(model, process);
   const auto built = DocumentBuilder(result.document, labels, sewing_mm, name, diagnostics)
-                         .Build(roots, max_parts);
+                         .Build(roots, options.max_parts);
   if (!built) {
     CloseDocument(result.document);
     return Unexpected(built.error());

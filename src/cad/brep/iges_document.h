@@ -17,9 +17,11 @@ namespace hvas::cad {
  directory.
 
  Errors: those of CheckIgesText(); kUnreadable where OpenCASCADE can read nothing; kUnsupported for
- far more than `max_parts`. May throw what OpenCASCADE throws. */
+ far more than `options.max_parts`, and for an `options.length_unit` that IGES does not have. May
+ throw what OpenCASCADE throws. */
 [[nodiscard]] Result<CadDocument> ReadIgesDocument(const std::filesystem::path& file,
-                                                   std::size_t max_parts, const ReadWatch& watch,
+                                                   const ImportOptions& options,
+                                                   const ReadWatch& watch,
                                                    Diagnostics* diagnostics);
 
 }  // namespace hvas::cad

@@ -26,7 +26,7 @@ namespace {
 // Largest deflection inside faces over that of edges. Contact does not take distances from the mesh
 // of an analytic face, so that angles limit it alone.
 constexpr double kAnalyticInterior = 25;
-constexpr double kAnalyticAngle = 0.3;  // [rad], inside spheres and tori.
+constexpr double kAnalyticAngle = 0.3;  // [rad], inside spheres and tori, also drawn as splines.
 
 /** The nodes that all faces of a shape may have together. Threads share it. */
 struct NodeBudget {
@@ -67,7 +67,8 @@ class CountingSplitter : public Splitter {
       nullptr};  // The algorithm hands its splitter out as const.
 };
 
-/** The algorithm of OpenCASCADE for freeform faces, within a budget. */
+/** The algorithm of OpenCASCADE for faces that are drawn freely, within a budget. Analytic ones
+ among them have the angle inside that those have which are drawn as what they are. */
 template <typename Splitter>
 class BoundedAlgo
     : public BRepMesh_DelaunayDeflectionControlMeshAlgo<CountingSplitter<Splitter>,
@@ -76,7 +77,17 @@ class BoundedAlgo
                                                           BRepMesh_DelaunayBaseMeshAlgo>;
 
  public:
-  explicit BoundedAlgo(const NodeBudget& budget) : budget_(budget) {}
+  BoundedAlgo(const NodeBudget& budget, const TopTools_MapOfShape* analytic)
+      : budget_(budget), analytic_(analytic) {}
+
+  void Perform(const IMeshData::IFaceHandle& face, const IMeshTools_Parameters& parameters,
+               const Message_ProgressRange& range) override {
+    IMeshTools_Parameters own = parameters;
+    if (analytic_ != nullptr && analytic_->Contains(face->GetFace())) {
+      own.AngleInterior = std::max(own.AngleInterior, kAnalyticAngle);
+    }
+    Base::Perform(face, own, range);
+  }
 
  protected:
   void postProcessMesh(BRepMesh_Delaun& mesher, const Message_ProgressRange& /*range*/) override {
@@ -87,6 +98,7 @@ class BoundedAlgo
 
  private:
   NodeBudget budget_;
+  const TopTools_MapOfShape* analytic_;
 };
 
 /** Meshes planes with few points at their edges as OpenCASCADE does, and others by a triangulation
@@ -125,7 +137,8 @@ class PlaneAlgo : public IMeshTools_MeshAlgo {
 
 class AlgoFactory : public BRepMesh_MeshAlgoFactory {
  public:
-  explicit AlgoFactory(const NodeBudget& budget) : budget_(budget) {}
+  AlgoFactory(const NodeBudget& budget, const TopTools_MapOfShape* analytic)
+      : budget_(budget), analytic_(analytic) {}
 
   Handle(IMeshTools_MeshAlgo) GetAlgo(const GeomAbs_SurfaceType type,
                                       const IMeshTools_Parameters& parameters) const override {
@@ -138,14 +151,15 @@ class AlgoFactory : public BRepMesh_MeshAlgoFactory {
       case GeomAbs_Torus:
         return BRepMesh_MeshAlgoFactory::GetAlgo(type, parameters);
       case GeomAbs_SurfaceOfRevolution:
-        return new BoundedAlgo<BRepMesh_BoundaryParamsRangeSplitter>(budget_);
+        return new BoundedAlgo<BRepMesh_BoundaryParamsRangeSplitter>(budget_, analytic_);
       default:
-        return new BoundedAlgo<BRepMesh_NURBSRangeSplitter>(budget_);
+        return new BoundedAlgo<BRepMesh_NURBSRangeSplitter>(budget_, analytic_);
     }
   }
 
  private:
   NodeBudget budget_;
+  const TopTools_MapOfShape* analytic_;
 };
 
 }  // namespace
@@ -169,7 +183,7 @@ Standard_Boolean MeshContext::PreProcessModel() {
 }
 
 Standard_Boolean MeshContext::DiscretizeFaces(const Message_ProgressRange& range) {
-  SetFaceDiscret(new BRepMesh_FaceDiscret(new AlgoFactory({&nodes_, max_nodes_})));
+  SetFaceDiscret(new BRepMesh_FaceDiscret(new AlgoFactory({&nodes_, max_nodes_}, analytic_)));
   return BRepMesh_Context::DiscretizeFaces(range);
 }
 

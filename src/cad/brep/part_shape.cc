@@ -352,6 +352,9 @@ ShapeContent CountContent(const TopoDS_Shape& shape) {
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
     ++content.faces;
   }
+  for (TopExp_Explorer it(shape, TopAbs_EDGE, TopAbs_FACE); it.More(); it.Next()) {
+    ++content.free_curves;
+  }
   return content;
 }
 

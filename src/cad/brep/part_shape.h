@@ -20,6 +20,7 @@ using FaceColorFn = std::function<std::optional<product::Color>(const TopoDS_Fac
 struct ShapeContent {
   int solids{0};
   int faces{0};
+  int free_curves{0};  ///< Edges that bound no face.
 };
 
 [[nodiscard]] ShapeContent CountContent(const TopoDS_Shape& shape);

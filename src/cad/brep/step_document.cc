@@ -1,10 +1,13 @@
 #include "cad/brep/step_document.h"
 
 #include <algorithm>
+#include <istream>
 #include <map>
 #include <memory>
 #include <set>
+#include <streambuf>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,24 +31,42 @@
 #include <TopoDS_TShape.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <fmt/format.h>
 
 #include "base/regular_file.h"
+#include "base/units.h"
 #include "cad/brep/occt_session.h"
+#include "cad/encoding.h"
 #include "cad/scene/placed_parts.h"
 #include "cad/step/identities.h"
+#include "cad/step/step_measure.h"
 #include "cad/step/step_text.h"
 #include "cad/step/text_encoding.h"
 
 namespace hvas::cad {
 namespace {
 
-/** Tells OpenCASCADE what the bytes in strings are: it decodes anything as UTF-8, and spoils what
- is not. As Latin-1 they come through as they are, for CleanName to see to. */
-void SetEncoding(const std::string& text) {
-  Interface_Static::SetCVal("read.step.codepage", IsUtf8(text) ? "UTF8" : "iso8859-1");
+/** A text as a stream, without a copy of it. */
+class TextStream : private std::streambuf, public std::istream {
+ public:
+  explicit TextStream(std::string_view text) : std::istream(this) {
+    char* begin = const_cast<char*>(text.data());  // A stream for reading writes nothing.
+    setg(begin, begin, begin + text.size());
+  }
+};
+
+/** Has OpenCASCADE parse the text, which is UTF-8. The files that it refers to are read later and
+ may be anything: as Latin-1 their bytes come through as they are, for CleanName to see to. */
+IFSelect_ReturnStatus Parse(const std::filesystem::path& file, const StepText& text,
+                            STEPCAFControl_Reader* reader) {
+  TextStream stream(text.text());
+  Interface_Static::SetCVal("read.step.codepage", "UTF8");
+  const IFSelect_ReturnStatus status = reader->ChangeReader().ReadStream(file.c_str(), stream);
+  Interface_Static::SetCVal("read.step.codepage", "iso8859-1");
+  return status;
 }
 
 /** How many parts and subassemblies the file places. To be known before the transfer, which goes
@@ -194,8 +215,7 @@ std::vector<LostFaces> ListLostFaces(const STEPCAFControl_Reader& reader) {
 }
 
 /** The identities of the definitions in the document, by their labels. */
-IdentityFn IndexIdentities(const STEPCAFControl_Reader& reader, std::string step_text) {
-  const StepText text(std::move(step_text));
+IdentityFn IndexIdentities(const STEPCAFControl_Reader& reader, const StepText& text) {
   const std::map<std::uint64_t, product::Identity> identities = ReadIdentities(text);
   if (identities.empty()) {
     return {};
@@ -227,12 +247,32 @@ IdentityFn IndexIdentities(const STEPCAFControl_Reader& reader, std::string step
 
 }  // namespace
 
-Result<CadDocument> ReadStepDocument(const std::filesystem::path& file, std::size_t max_parts,
-                                     const ReadWatch& watch, Diagnostics* diagnostics,
-                                     bool with_entities) {
+std::string ReadStepFile(const std::filesystem::path& file, const ImportOptions& options,
+                         Diagnostics* diagnostics) {
+  std::string bytes = ReadRegularFile(file).value_or(std::string());
+  if (!options.encoding.empty()) {
+    return ToUtf8(bytes, options.encoding);
+  }
+  if (IsUtf8(bytes)) {
+    return bytes;
+  }
+  const std::string encoding = GuessEncoding(bytes);
+  diagnostics->Note("assumed-encoding", file.filename().string(),
+                    fmt::format("the names in the file are not UTF-8; {} is assumed", encoding),
+                    "if names are wrong, give the encoding: --encoding CP1251, GBK, ...");
+  return ToUtf8(bytes, encoding);
+}
+
+void OverrideLengthUnit(const ImportOptions& options, StepText* text) {
+  if (options.length_unit) {
+    text->set_length_scale(*options.length_unit / FindLengthUnit(*text));
+  }
+}
+
+Result<CadDocument> ReadStepDocument(const std::filesystem::path& file, const StepText& text,
+                                     const ImportOptions& options, const ReadWatch& watch,
+                                     Diagnostics* diagnostics, bool with_entities) {
   InitialiseOpenCascade();
-  std::string text = ReadRegularFile(file).value_or(std::string());
-  SetEncoding(text);
   const std::string name = file.filename().string();
   STEPCAFControl_Reader reader;
   reader.SetColorMode(true);
@@ -245,11 +285,12 @@ Result<CadDocument> ReadStepDocument(const std::filesystem::path& file, std::siz
   if (watch.progress) {
     watch.progress("read", 0);
   }
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+  if (Parse(file, text, &reader) != IFSelect_RetDone) {
     return Fail(ErrorCode::kUnreadable, "the STEP file is damaged", name,
                 "export the file again from the CAD system");
   }
-  if (const auto checked = CheckPlaced(CountPlacedProducts(reader), max_parts, name); !checked) {
+  if (const auto checked = CheckPlaced(CountPlacedProducts(reader), options.max_parts, name);
+      !checked) {
     return Unexpected(checked.error());
   }
   if (const auto checked = CheckReferredFiles(reader, file); !checked) {
@@ -257,12 +298,16 @@ Result<CadDocument> ReadStepDocument(const std::filesystem::path& file, std::siz
   }
   CadDocument result;
   result.document = MakeDocument();
+  // OpenCASCADE converts lengths to the unit of the document.
+  XCAFDoc_DocumentTool::SetLengthUnit(result.document,
+                                      units::kMetresPerMillimetre / text.length_scale());
   const opencascade::handle<TransferProgress> indicator = new TransferProgress(&watch.progress);
   if (!reader.Transfer(result.document, indicator->Start())) {
     CloseDocument(result.document);
     return Fail(ErrorCode::kUnreadable, "the STEP file has no product that can be read", name,
                 "export the file again from the CAD system");
   }
+  XCAFDoc_DocumentTool::SetLengthUnit(result.document, units::kMetresPerMillimetre);
   ReportMissingFiles(reader, diagnostics);
   if (watch.referred_files != nullptr) {
     *watch.referred_files = ListReferredFiles(reader, file);
@@ -271,8 +316,8 @@ Result<CadDocument> ReadStepDocument(const std::filesystem::path& file, std::siz
     result.entity_of = IndexFaces(reader);
   }
   result.lost_faces = ListLostFaces(reader);
-  result.header = ReadStepHeader(text);
-  result.identity_of = IndexIdentities(reader, std::move(text));
+  result.header = ReadStepHeader(text.text());
+  result.identity_of = IndexIdentities(reader, text);
   return result;
 }
 

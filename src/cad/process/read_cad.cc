@@ -43,11 +43,6 @@ void CheckSize(const Product& product, Diagnostics* diagnostics) {
   }
 }
 
-/** The bytes of a file; empty where they cannot be had. */
-std::string ReadText(const std::filesystem::path& file) {
-  return ReadRegularFile(file).value_or(std::string());
-}
-
 /** A product with the names that it has where the file gives none. */
 Product NameAfter(const std::filesystem::path& file) {
   Product product;
@@ -56,19 +51,10 @@ Product NameAfter(const std::filesystem::path& file) {
   return product;
 }
 
-/** The text of a file that states tolerances; empty where it states none, or cannot be had. */
-std::string ReadToleranceText(const std::filesystem::path& file) {
-  std::string text = ReadText(file);
-  return MayHoldTolerances(text) ? text : std::string();
-}
-
 /** Reads the tolerances into a product; whatever goes wrong with them is no more than a warning. */
-void AddTolerances(std::string text, Product* product, Diagnostics* diagnostics) {
-  if (text.empty()) {
-    return;
-  }
+void AddTolerances(const StepText& text, Product* product, Diagnostics* diagnostics) {
   try {
-    ReadTolerances(std::move(text), product, diagnostics);
+    ReadTolerances(text, product, diagnostics);
   } catch (const std::exception& exception) {
     diagnostics->Warn("tolerances-unread", product->source,
                       fmt::format("the tolerances could not be read: {}", exception.what()),
@@ -76,11 +62,11 @@ void AddTolerances(std::string text, Product* product, Diagnostics* diagnostics)
   }
 }
 
-Result<Product> ReadSolids(const std::filesystem::path& file, const ImportOptions& options,
-                           const ReadWatch& watch, Diagnostics* diagnostics) {
-  std::string tolerance_text = options.with_tolerances ? ReadToleranceText(file) : std::string();
-  const auto document =
-      ReadStepDocument(file, options.max_parts, watch, diagnostics, !tolerance_text.empty());
+Result<Product> ReadSolids(const std::filesystem::path& file, const StepText& text,
+                           const ImportOptions& options, const ReadWatch& watch,
+                           Diagnostics* diagnostics) {
+  const bool with_tolerances = options.with_tolerances && MayHoldTolerances(text.text());
+  const auto document = ReadStepDocument(file, text, options, watch, diagnostics, with_tolerances);
   if (!document) {
     return Unexpected(document.error());
   }
@@ -101,43 +87,52 @@ Result<Product> ReadSolids(const std::filesystem::path& file, const ImportOption
   if (watch.progress) {
     watch.progress("tolerances", 0);
   }
-  AddTolerances(std::move(tolerance_text), &product, diagnostics);
+  if (with_tolerances) {
+    AddTolerances(text, &product, diagnostics);
+  }
   CheckSize(product, diagnostics);
   return product;
+}
+
+/** Whether a product read from surfaces has none, but curves. */
+bool HasCurvesOnly(const Diagnostics& diagnostics) {
+  return std::any_of(diagnostics.items().begin(), diagnostics.items().end(),
+                     [](const Diagnostic& item) { return item.code == "curves-only"; });
 }
 
 /** A file without solids may have triangles in their place. */
 Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions& options,
                          const ReadWatch& watch, Diagnostics* diagnostics) {
+  StepText text(ReadStepFile(file, options, diagnostics));
+  OverrideLengthUnit(options, &text);
   Diagnostics of_solids;
-  Result<Product> solids = ReadSolids(file, options, watch, &of_solids);
-  const bool is_over = solids || solids.error().code == ErrorCode::kUnsupported;
-  std::string text = is_over ? std::string() : ReadText(file);
-  if (is_over || !MayHoldTessellation(text)) {
+  Result<Product> solids = ReadSolids(file, text, options, watch, &of_solids);
+  const bool is_over =
+      solids ? !HasCurvesOnly(of_solids) : solids.error().code == ErrorCode::kUnsupported;
+  if (is_over || !MayHoldTessellation(text.text())) {
     for (const Diagnostic& item : of_solids.items()) {
       diagnostics->Add(item);
     }
     return solids;
   }
   Product product = NameAfter(file);
-  product.header = ReadStepHeader(text);
-  std::string tolerance_text =
-      options.with_tolerances && MayHoldTolerances(text) ? text : std::string();
-  if (const auto read = ReadTessellated(std::move(text), options, watch, &product, diagnostics);
-      !read) {
+  product.header = ReadStepHeader(text.text());
+  if (const auto read = ReadTessellated(text, options, watch, &product, diagnostics); !read) {
     return Unexpected(read.error());
   }
   if (watch.progress) {
     watch.progress("tolerances", 0);
   }
-  AddTolerances(std::move(tolerance_text), &product, diagnostics);
+  if (options.with_tolerances && MayHoldTolerances(text.text())) {
+    AddTolerances(text, &product, diagnostics);
+  }
   CheckSize(product, diagnostics);
   return product;
 }
 
 Result<Product> ReadIges(const std::filesystem::path& file, const ImportOptions& options,
                          const ReadWatch& watch, Diagnostics* diagnostics) {
-  const auto document = ReadIgesDocument(file, options.max_parts, watch, diagnostics);
+  const auto document = ReadIgesDocument(file, options, watch, diagnostics);
   if (!document) {
     return Unexpected(document.error());
   }

@@ -23,8 +23,9 @@ struct ReadWatch {
 
  The result has structure, names (UTF-8), colours (sRGB), materials, mass, faces as analytic
  surfaces, the mesh and the features of every part, in SI, and no mates. What is odd about the file
- goes to `diagnostics` and does not stop the import. Parts without a face are left out; parts
- without a solid have no mass. The density of a part that states none, or an absurd one, is assumed.
+ goes to `diagnostics` and does not stop the import. Parts without a face are left out, but where
+ the file has no faces at all: then curves are shown. Parts without a solid have no mass. The
+ density of a part that states none, or an absurd one, is assumed.
 
  Formats, told apart by content: STEP (AP203, AP214, AP242); IGES 5.3; OBJ, STL, glTF 2, GLB and 3MF
  as cad/mesh_document.h has it; a folder of such meshes (cad/mesh_folder_document.h).

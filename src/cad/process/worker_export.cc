@@ -18,6 +18,7 @@
 #include "cad/brep/iges_document.h"
 #include "cad/brep/step_document.h"
 #include "cad/iges/iges_text.h"
+#include "cad/import_arguments.h"
 #include "cad/limits.h"
 #include "cad/process/move_components.h"
 #include "cad/process/worker_io.h"
@@ -56,9 +57,16 @@ std::string Write(const opencascade::handle<TDocStd_Document>& document, const s
   return "";
 }
 
-Result<CadDocument> ReadStep(const std::filesystem::path& file, std::size_t max_parts,
-                             const ReadWatch& watch, Diagnostics* diagnostics) {
-  return ReadStepDocument(file, max_parts, watch, diagnostics);
+Result<CadDocument> ReadDocument(const std::filesystem::path& file, const ImportOptions& options) {
+  Diagnostics ignored;                 // Reading it for the product has told them.
+  constexpr std::size_t kHead = 4096;  // [bytes] in which a format's mark is looked for.
+  const ReadWatch watch{SendStage, {}, nullptr};
+  if (IsIgesFile(file, ReadFileHead(file, kHead).value_or(std::string()))) {
+    return ReadIgesDocument(file, options, watch, &ignored);
+  }
+  StepText text(ReadStepFile(file, options, &ignored));
+  OverrideLengthUnit(options, &text);
+  return ReadStepDocument(file, text, options, watch, &ignored);
 }
 
 /** Moves parts as a file says: a line each, with a motion and a path.
@@ -85,22 +93,21 @@ std::string Move(const opencascade::handle<TDocStd_Document>& document, const st
 }  // namespace
 
 int WorkerExportStep(const std::vector<std::string>& arguments) {
-  if (arguments.size() != 1 && (arguments.size() != 3 || arguments[1] != "--motions")) {
+  const bool has_motions = arguments.size() > 2 && arguments[1] == "--motions";
+  const std::size_t first_option = has_motions ? 3 : 1;
+  auto options =
+      arguments.empty() ? std::nullopt : ParseArguments(std::span(arguments).subspan(first_option));
+  if (!options) {
     return kWorkerUsage;
   }
+  options->max_parts = kLargestMaxParts;  // Reading it for the product has checked.
   const std::filesystem::path file = arguments.front();
   std::string problem;
   try {
-    Diagnostics ignored;                 // Reading it for the product has told them.
-    constexpr std::size_t kHead = 4096;  // [bytes] in which a format's mark is looked for.
-    const auto read = IsIgesFile(file, ReadFileHead(file, kHead).value_or(std::string()))
-                          ? ReadIgesDocument
-                          : ReadStep;
-    const auto document = read(file, kLargestMaxParts, {SendStage, {}, nullptr},
-                               &ignored);  // Reading it has checked.
-    problem = !document               ? document.error().message
-              : arguments.size() == 3 ? Move(document->document, file.stem().string(), arguments[2])
-                                      : "";
+    const auto document = ReadDocument(file, *options);
+    problem = !document     ? document.error().message
+              : has_motions ? Move(document->document, file.stem().string(), arguments[2])
+                            : "";
     if (problem.empty()) {
       problem = Write(document->document, file.filename().string());
     }

@@ -1,11 +1,11 @@
 #include "cad/process/worker_import.h"
 
-#include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <utility>
 
+#include "cad/import_arguments.h"
 #include "cad/import_result.h"
 #include "cad/input_file.h"
 #include "cad/process/read_cad.h"
@@ -14,58 +14,9 @@
 #include "cad/worker.h"
 
 namespace hvas::cad {
-namespace {
-
-template <typename T>
-bool Parse(const std::string& text, T* value) {
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, *value);
-  return parsed.ec == std::errc() && parsed.ptr == end;
-}
-
-/** The options that the words after the file's name stand for. */
-std::optional<ImportOptions> ParseOptions(const std::vector<std::string>& words) {
-  ImportOptions options;
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    if (words[i] == "--no-tolerances") {
-      options.with_tolerances = false;
-      continue;
-    }
-    if (i + 1 == words.size()) {
-      return std::nullopt;
-    }
-    const std::string& name = words[i++];
-    bool is_good = false;
-    if (name == "--relative-deflection") {
-      is_good = Parse(words[i], &options.relative_deflection);
-    } else if (name == "--min-deflection") {
-      is_good = Parse(words[i], &options.min_deflection);
-    } else if (name == "--max-angle") {
-      is_good = Parse(words[i], &options.max_angle);
-    } else if (name == "--length-unit") {
-      is_good = Parse(words[i], &options.length_unit);
-    } else if (name == "--max-triangles") {
-      is_good = Parse(words[i], &options.max_triangles);
-    } else if (name == "--max-parts") {
-      is_good = Parse(words[i], &options.max_parts);
-    } else if (name == "--max-bytes") {
-      is_good = Parse(words[i], &options.max_bytes);
-    } else if (name == "--threads") {
-      is_good = Parse(words[i], &options.threads);
-    } else if (name == "--skip-part") {
-      is_good = Parse(words[i], &options.skipped_parts.emplace_back());
-    }
-    if (!is_good) {
-      return std::nullopt;
-    }
-  }
-  return options;
-}
-
-}  // namespace
-
 int WorkerImport(const std::vector<std::string>& arguments) {
-  const auto options = arguments.empty() ? std::nullopt : ParseOptions(arguments);
+  const auto options =
+      arguments.empty() ? std::nullopt : ParseArguments(std::span(arguments).subspan(1));
   if (!options) {
     return kWorkerUsage;
   }

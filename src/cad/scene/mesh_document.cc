@@ -59,7 +59,7 @@ Result<void> Read3mfModel(const std::filesystem::path& file, const ImportOptions
     return checked;
   }
   conventions->length_unit = model.length_unit;
-  if (!model.is_unit_known) {
+  if (!model.is_unit_known && !options.length_unit) {
     diagnostics->Warn("assumed-unit", name,
                       "the file names a unit that 3MF does not have; millimetres are assumed",
                       "export the file again in millimetres");
@@ -89,13 +89,16 @@ Result<SceneConventions> FindConventions(const std::filesystem::path& file, Mesh
       break;
     case MeshFormat::kStl:
     case MeshFormat::kObj:
-      conventions.length_unit = options.length_unit;
-      diagnostics->Note("assumed-unit", file.filename().string(),
-                        fmt::format("{} files have no unit; one unit is assumed to be {:.6g} mm",
-                                    NameOf(format), units::ToMm(options.length_unit)),
-                        "give the unit: --unit mm, cm, m, in or ft");
+      conventions.length_unit = units::kMetresPerMillimetre;
+      if (!options.length_unit) {
+        diagnostics->Note(
+            "assumed-unit", file.filename().string(),
+            fmt::format("{} files have no unit; millimetres are assumed", NameOf(format)),
+            "give the unit: --unit mm, cm, m, in or ft");
+      }
       break;
   }
+  conventions.length_unit = options.length_unit.value_or(conventions.length_unit);
   return checked ? Result<SceneConventions>(std::move(conventions)) : Unexpected(checked.error());
 }
 

@@ -16,7 +16,7 @@ namespace hvas::cad {
  Nodes become subassemblies and occurrences, meshes used twice one part; scales and mirrors of a
  node are worked into the part. Objects of an OBJ and solids of an STL are parts when each of them
  is closed, else faces of one part. glTF is in metres with y up and is turned to z up; 3MF states
- its unit; OBJ and STL have none: `options.length_unit` is taken, and noted ("assumed-unit"). Files
+ its unit, but for `options.length_unit`; OBJ and STL have none: note `assumed-unit`. Files
  that it names are read only from its own folder and below.
 
  Errors: kUnreadable (damaged, or without a triangle), kNotFound (a buffer in another file is

@@ -91,7 +91,8 @@ std::optional<Unit> ReadUnit(const StepText& text, std::uint64_t id, int depth) 
       const Quantity quantity = name == "METRE"    ? Quantity::kLength
                                 : name == "RADIAN" ? Quantity::kAngle
                                                    : Quantity::kOther;
-      return Unit{PrefixScale(prefix), quantity};
+      const double scale = quantity == Quantity::kLength ? text.length_scale() : 1;
+      return Unit{scale * PrefixScale(prefix), quantity};
     }
     const bool is_converted = record.name.find("CONVERSION_BASED_UNIT") == 0;
     if (is_converted && record.values.size() > 1) {
@@ -106,15 +107,9 @@ std::optional<Unit> ReadUnit(const StepText& text, std::uint64_t id, int depth) 
   return std::nullopt;
 }
 
-/** The unit of a quantity in the context of a representation. */
-std::optional<Unit> ReadContextUnit(const StepText& text, std::uint64_t representation,
-                                    Quantity quantity) {
-  std::uint64_t context = 0;
-  for (const StepRecord& record : text.Find(representation)) {
-    if (record.values.size() > 2) {
-      context = record.values[2].reference;
-    }
-  }
+/** The unit of a quantity that a context assigns. */
+std::optional<Unit> ReadAssignedUnit(const StepText& text, std::uint64_t context,
+                                     Quantity quantity) {
   for (const StepRecord& record : text.Find(context)) {
     if (record.name != "GLOBAL_UNIT_ASSIGNED_CONTEXT" || record.values.empty()) {
       continue;
@@ -129,12 +124,42 @@ std::optional<Unit> ReadContextUnit(const StepText& text, std::uint64_t represen
   return std::nullopt;
 }
 
+/** The unit of a quantity in the context of a representation. */
+std::optional<Unit> ReadContextUnit(const StepText& text, std::uint64_t representation,
+                                    Quantity quantity) {
+  std::uint64_t context = 0;
+  for (const StepRecord& record : text.Find(representation)) {
+    if (record.values.size() > 2) {
+      context = record.values[2].reference;
+    }
+  }
+  return ReadAssignedUnit(text, context, quantity);
+}
+
+/** The unit where the text names none. */
+Unit MakeDefaultUnit(const StepText& text, Quantity quantity) {
+  const bool is_length = quantity == Quantity::kLength;
+  return {is_length ? units::kMetresPerMillimetre * text.length_scale() : 1, quantity};
+}
+
 }  // namespace
+
+double FindLengthUnit(const StepText& text) {
+  for (const StepText::Statement& statement : text.statements()) {
+    if (statement.body.find("GLOBAL_UNIT_ASSIGNED_CONTEXT") == std::string_view::npos) {
+      continue;
+    }
+    const auto unit = ReadAssignedUnit(text, statement.id, Quantity::kLength);
+    if (unit && unit->scale > 0) {
+      return unit->scale / text.length_scale();
+    }
+  }
+  return units::kMetresPerMillimetre;
+}
 
 double ReadUnitOf(const StepText& text, std::uint64_t representation, Quantity quantity) {
   const std::optional<Unit> unit = ReadContextUnit(text, representation, quantity);
-  const double otherwise = quantity == Quantity::kLength ? units::kMetresPerMillimetre : 1;
-  return unit && unit->scale > 0 ? unit->scale : otherwise;
+  return unit && unit->scale > 0 ? unit->scale : MakeDefaultUnit(text, quantity).scale;
 }
 
 std::optional<StepMeasure> ReadMeasure(const StepText& text, std::uint64_t id,
@@ -148,8 +173,7 @@ std::optional<StepMeasure> ReadMeasure(const StepText& text, std::uint64_t id,
     unit = ReadContextUnit(text, representation, raw->quantity);
   }
   if (!unit) {
-    const bool is_length = raw->quantity == Quantity::kLength;
-    unit = Unit{is_length ? units::kMetresPerMillimetre : 1, raw->quantity};
+    unit = MakeDefaultUnit(text, raw->quantity);
   }
   const double value = raw->number * unit->scale + 0.0;  // Files have -0.
   constexpr double kAbsurd =

@@ -12,7 +12,7 @@ enum class Quantity { kOther, kLength, kAngle };
 
 /** A number with the unit that its entity names, in SI. */
 struct StepMeasure {
-  double value{0};  ///< [m], [rad], or as in the file for kOther.
+  double value{0};  ///< [m], StepText::length_scale() applied; [rad]; or as written for kOther.
   Quantity quantity{Quantity::kOther};
   std::string name;  ///< "nominal value", "upper limit", ...; mostly empty.
 };
@@ -24,8 +24,12 @@ struct StepMeasure {
                                                      std::uint64_t representation);
 
 /** One unit of a quantity in the context of a representation [m or rad]; a millimetre or a radian
- where it names none. */
+ where it names none. StepText::length_scale() is applied. */
 [[nodiscard]] double ReadUnitOf(const StepText& text, std::uint64_t representation,
                                 Quantity quantity);
+
+/** The unit of length of the first context of the text that has one [m], as it is written; a
+ millimetre where there is none. */
+[[nodiscard]] double FindLengthUnit(const StepText& text);
 
 }  // namespace hvas::cad

@@ -48,7 +48,15 @@ class StepText {
   StepText(const StepText&) = delete;
   StepText& operator=(const StepText&) = delete;
 
+  [[nodiscard]] std::string_view text() const { return text_; }
+
   [[nodiscard]] const std::vector<Statement>& statements() const { return statements_; }
+
+  /** How much longer lengths are than the units of the text say: not 1 where the user has given
+   another unit. */
+  [[nodiscard]] double length_scale() const { return length_scale_; }
+
+  void set_length_scale(double scale) { length_scale_ = scale; }
 
   /** Empty where there is no such entity, or where it cannot be read. */
   [[nodiscard]] StepEntity Find(std::uint64_t id) const;
@@ -56,6 +64,7 @@ class StepText {
  private:
   std::string text_;
   std::vector<Statement> statements_;  // By id.
+  double length_scale_{1};
 };
 
 }  // namespace hvas::cad

@@ -1,24 +1,17 @@
 #include "cad/step/text_encoding.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 
-#include <Resource_Unicode.hxx>
-#include <TCollection_ExtendedString.hxx>
+#include "cad/encoding.h"
 
 namespace hvas::cad {
 namespace {
 
 constexpr char32_t kReplacement = 0xFFFD;
-
-// What Windows-1252 has where Latin-1 has control characters; 0 where it has nothing.
-constexpr std::array<char16_t, 32> kWindows{
-    0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
-    0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
-    0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
 
 bool StartsWith(std::string_view text, std::string_view start) {
   return text.substr(0, start.size()) == start;
@@ -105,25 +98,64 @@ bool IsShiftJis(std::string_view bytes) {
   return is_japanese;
 }
 
-std::string ShiftJisToUtf8(std::string_view bytes) {
-  TCollection_ExtendedString text;
-  Resource_Unicode::ConvertSJISToUnicode(std::string(bytes).c_str(), text);
-  std::u16string units;
-  for (int i = 1; i <= text.Length(); ++i) {
-    units.push_back(text.Value(i));
+/** What the runs of bytes beyond ASCII in a text look like. */
+struct Runs {
+  std::size_t longest{0};         // [bytes]
+  std::size_t bytes{0};           // Of all runs.
+  std::size_t cyrillic_bytes{0};  // Of these: letters of Windows-1251.
+  std::size_t pairs{0};           // That are characters of GB 2312, ...
+  std::size_t common_pairs{0};    // ... and of its first level: the common Chinese characters.
+  bool is_paired{true};           // Every run is a sequence of characters of GB 2312.
+};
+
+void AddRun(std::string_view run, Runs* runs) {
+  runs->longest = std::max(runs->longest, run.size());
+  runs->bytes += run.size();
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const std::uint8_t byte = ByteAt(run, i);
+    constexpr std::uint8_t kIo = 0xA8;       // The letter that stands apart, as a capital ...
+    constexpr std::uint8_t kSmallIo = 0xB8;  // ... and small.
+    runs->cyrillic_bytes += byte >= 0xC0 || byte == kIo || byte == kSmallIo ? 1U : 0U;
   }
-  return Utf16ToUtf8(units);
+  runs->is_paired = runs->is_paired && run.size() % 2 == 0;
+  for (std::size_t i = 0; i + 1 < run.size(); i += 2) {
+    const std::uint8_t lead = ByteAt(run, i);
+    const std::uint8_t trail = ByteAt(run, i + 1);
+    const bool is_pair = ((lead >= 0xA1 && lead <= 0xA9) || (lead >= 0xB0 && lead <= 0xF7)) &&
+                         trail >= 0xA1 && trail <= 0xFE;
+    runs->is_paired = runs->is_paired && is_pair;
+    runs->pairs += is_pair ? 1U : 0U;
+    runs->common_pairs += is_pair && lead >= 0xB0 && lead <= 0xD7 ? 1U : 0U;
+  }
 }
 
-std::string WindowsToUtf8(std::string_view bytes) {
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const std::uint8_t byte = ByteAt(bytes, i);
-    const bool is_special = byte >= 0x80 && byte < 0xA0;
-    const char32_t c = is_special ? kWindows.at(byte - 0x80U) : byte;
-    AppendUtf8(c == 0 && byte != 0 ? kReplacement : c, &text);
+Runs FindRuns(std::string_view bytes) {
+  Runs runs;
+  for (std::size_t i = 0; i < bytes.size();) {
+    std::size_t end = i;
+    while (end < bytes.size() && ByteAt(bytes, end) >= 0x80) {
+      ++end;
+    }
+    if (end > i) {
+      AddRun(bytes.substr(i, end - i), &runs);
+    }
+    i = end + 1;
   }
-  return text;
+  return runs;
+}
+
+/** Chinese text: two characters stand together somewhere, which no Latin alphabet would write with
+ four letters beyond ASCII, and most are common ones. Where all bytes are letters of Windows-1251,
+ too, it is Russian: a Chinese character has such bytes in two of three cases. */
+bool IsChinese(const Runs& runs) {
+  return runs.is_paired && runs.longest >= 4 && 4 * runs.common_pairs >= 3 * runs.pairs &&
+         runs.cyrillic_bytes < runs.bytes;
+}
+
+/** Text of another alphabet: three letters beyond ASCII in a row, which languages with the Latin
+ alphabet do not have. */
+bool IsCyrillic(const Runs& runs) {
+  return runs.longest >= 3 && 10 * runs.cyrillic_bytes >= 9 * runs.bytes;
 }
 
 /** Without control characters (they become blanks) and surrounding blanks. */
@@ -171,8 +203,10 @@ bool TakeCodeUnits(std::string_view* text, std::size_t digits, std::string* out)
   return true;
 }
 
-/** Takes one escape from the front of a text. @returns false where there is none. */
-bool TakeEscape(std::string_view* text, std::string* out) {
+/** Takes one escape from the front of a text.
+ @param page  The part of ISO 8859 that "\S\" refers to, from "\PA\" on: "1" to "9".
+ @returns false where there is none. */
+bool TakeEscape(std::string_view* text, char* page, std::string* out) {
   std::string_view rest = *text;
   std::string decoded;
   bool is_escape = false;
@@ -187,7 +221,13 @@ bool TakeEscape(std::string_view* text, std::string* out) {
       is_escape = true;
     }
   } else if (StartsWith(rest, "\\S\\") && rest.size() > 3 && ByteAt(rest, 3) < 0x80) {
-    AppendUtf8(ByteAt(rest, 3) + 0x80U, &decoded);
+    const char byte = static_cast<char>(ByteAt(rest, 3) + 0x80U);
+    decoded = ToUtf8({&byte, 1}, std::string("ISO-8859-") + *page);
+    rest.remove_prefix(4);
+    is_escape = true;
+  } else if (StartsWith(rest, "\\P") && rest.size() > 3 && rest[2] >= 'A' && rest[2] <= 'I' &&
+             rest[3] == '\\') {
+    *page = static_cast<char>('1' + (rest[2] - 'A'));
     rest.remove_prefix(4);
     is_escape = true;
   } else if (StartsWith(rest, "\\\\")) {
@@ -206,8 +246,9 @@ bool TakeEscape(std::string_view* text, std::string* out) {
 
 std::string DecodeStepText(std::string_view text) {
   std::string decoded;
+  char page = '1';
   while (!text.empty()) {
-    if (text.front() == '\\' && TakeEscape(&text, &decoded)) {
+    if (text.front() == '\\' && TakeEscape(&text, &page, &decoded)) {
       continue;
     }
     decoded.push_back(text.front());
@@ -218,6 +259,16 @@ std::string DecodeStepText(std::string_view text) {
 
 bool IsUtf8(std::string_view bytes) {
   for (std::size_t i = 0; i < bytes.size();) {
+    // By definition: ASCII has seven bits, so that the eighth bit of its bytes is not set.
+    constexpr std::uint64_t kBeyondAscii = 0x8080808080808080;
+    std::uint64_t eight = kBeyondAscii;
+    if (i + sizeof(eight) <= bytes.size()) {
+      std::memcpy(&eight, bytes.data() + i, sizeof(eight));
+    }
+    if ((eight & kBeyondAscii) == 0) {
+      i += sizeof(eight);
+      continue;
+    }
     const std::size_t length = SequenceLength(bytes, i);
     if (length == 0) {
       return false;
@@ -227,24 +278,35 @@ bool IsUtf8(std::string_view bytes) {
   return true;
 }
 
-std::string CleanName(std::string_view name) {
-  if (IsUtf8(name)) {
-    return Tidy(std::string(name));
+std::string GuessEncoding(std::string_view bytes) {
+  if (IsUtf8(bytes)) {
+    return "UTF-8";
   }
-  return Tidy(IsShiftJis(name) ? ShiftJisToUtf8(name) : WindowsToUtf8(name));
+  if (IsShiftJis(bytes)) {
+    return "CP932";
+  }
+  const Runs runs = FindRuns(bytes);
+  return IsChinese(runs) ? "GB18030" : IsCyrillic(runs) ? "CP1251" : "CP1252";
+}
+
+std::string CleanName(std::string_view name) {
+  return Tidy(IsUtf8(name) ? std::string(name) : ToUtf8(name, GuessEncoding(name)));
 }
 
 std::string CleanName(std::u16string_view name) {
   const bool is_narrow =
       std::all_of(name.begin(), name.end(), [](char16_t unit) { return unit <= 0xFF; });
-  if (is_narrow) {
-    std::string bytes;
-    for (const char16_t unit : name) {
-      bytes.push_back(static_cast<char>(unit));
-    }
-    return CleanName(bytes);
+  if (!is_narrow) {
+    return Tidy(Utf16ToUtf8(name));
   }
-  return Tidy(Utf16ToUtf8(name));
+  std::string bytes;
+  for (const char16_t unit : name) {
+    bytes.push_back(static_cast<char>(unit));
+  }
+  if (IsUtf8(bytes)) {
+    return Tidy(bytes);
+  }
+  return Tidy(ToUtf8(bytes, IsShiftJis(bytes) ? "CP932" : "CP1252"));
 }
 
 }  // namespace hvas::cad

@@ -14,13 +14,19 @@ namespace hvas::cad {
  Shift-JIS. */
 [[nodiscard]] std::string CleanName(std::u16string_view name);
 
-/** UTF-8 from bytes of an unknown encoding: UTF-8 where they are that; else Shift-JIS where they
- are that and have lead bytes that Latin text does not use (0x81..0x9F); else Windows-1252, which
- has Latin-1 in it. */
+/** The encoding that bytes are most likely of, as cad/encoding.h names it: UTF-8 where they are
+ that, which is certain; else Shift-JIS (CP932) where they are that and have lead bytes that Latin
+ text does not use (0x81..0x9F); Chinese (GB18030) or Russian (CP1251) where letters beyond ASCII
+ stand in a row as in no Latin text; else Windows-1252 (CP1252), which has Latin-1 in it. The more
+ text there is, the better it tells. */
+[[nodiscard]] std::string GuessEncoding(std::string_view bytes);
+
+/** UTF-8 from bytes of an unknown encoding, that of GuessEncoding(). */
 [[nodiscard]] std::string CleanName(std::string_view name);
 
 /** The bytes of a string of ISO 10303-21 with its escapes (section 6.4.3) as UTF-8: \X2\, \X4\,
- \X\hh and \S\c of ISO 8859-1, and doubled backslashes. What is no escape stays as it is. */
+ \X\hh, \S\c of ISO 8859-1 or of the part that \PA\ to \PI\ names, and doubled backslashes. What is
+ no escape stays as it is. */
 [[nodiscard]] std::string DecodeStepText(std::string_view text);
 
 }  // namespace hvas::cad

@@ -668,8 +668,7 @@ bool MayHoldTolerances(std::string_view step_text) {
   });
 }
 
-void ReadTolerances(std::string step_text, Product* product, Diagnostics* diagnostics) {
-  const StepText text(std::move(step_text));
+void ReadTolerances(const StepText& text, Product* product, Diagnostics* diagnostics) {
   ToleranceReader(text, product, diagnostics).Read();
 }
 

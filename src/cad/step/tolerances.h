@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/diagnostics.h"
+#include "cad/step/step_text.h"
 #include "product/product.h"
 
 namespace hvas::cad {
@@ -23,6 +24,6 @@ namespace hvas::cad {
  Values are scaled from the unit that each one names to SI. A diameter that is not that of its
  cylinder within 1 % is taken for one in another unit when inches, metres or their inverses explain
  it ("dimension-unit"). What is damaged is left out and noted; any text is taken. */
-void ReadTolerances(std::string step_text, product::Product* product, Diagnostics* diagnostics);
+void ReadTolerances(const StepText& text, product::Product* product, Diagnostics* diagnostics);
 
 }  // namespace hvas::cad

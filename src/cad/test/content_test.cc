@@ -274,17 +274,26 @@ void ReplaceInFile(const std::filesystem::path& file, const std::string& word,
   std::ofstream(file, std::ios::binary) << content;
 }
 
-/** Imports a plate whose name in the file is given in raw bytes. */
-std::string ReadNameBack(const std::string& bytes) {
+/** Imports a box whose name in the file is given in raw bytes.
+ @param encoding  What the user gives; empty: nothing. */
+std::string ReadNameBack(const std::string& bytes, const std::string& encoding = "",
+                         Diagnostics* diagnostics = nullptr) {
   const TemporaryFolder folder;
   DocumentBuilder builder;
-  builder.AddPart(MakePlate(), "PLACEHOLDER");
+  builder.AddPart(BRepPrimAPI_MakeBox(10, 10, 10).Shape(), "PLACEHOLDER");
   builder.Write(folder / "a.step");
   ReplaceInFile(folder / "a.step", "PLACEHOLDER", bytes);
-  Diagnostics diagnostics;
-  const auto product = ReadCad(folder / "a.step", {}, &diagnostics);
+  ImportOptions options;
+  options.encoding = encoding;
+  Diagnostics ignored;
+  const auto product =
+      ReadCad(folder / "a.step", options, diagnostics != nullptr ? diagnostics : &ignored);
   EXPECT_TRUE(product.has_value());
-  return product && !product->parts.empty() ? product->parts[0].name : "";
+  if (!product || product->parts.empty()) {
+    return "";
+  }
+  EXPECT_EQ(product->parts[0].identity.id, product->parts[0].name) << "read from the text by HVAS";
+  return product->parts[0].name;
 }
 
 TEST(Names, AreReadInEveryEncodingThatFilesUse) {
@@ -293,6 +302,32 @@ TEST(Names, AreReadInEveryEncodingThatFilesUse) {
   EXPECT_EQ(ReadNameBack("Gehäuse"), "Gehäuse");                        // UTF-8.
   EXPECT_EQ(ReadNameBack("Geh\xE4use"), "Gehäuse");                     // Latin-1.
   EXPECT_EQ(ReadNameBack("\x83\x7B\x83\x8B\x83\x67 M3"), "ボルト M3");  // Shift-JIS.
+  EXPECT_EQ(ReadNameBack("\x95\x5C\x96\xCA"), "表面");                  // With a "\" in it.
+  EXPECT_EQ(ReadNameBack("20\xB0, 5 \x80"), "20°, 5 €");                // Windows-1252.
+  EXPECT_EQ(ReadNameBack("\xC4\xE5\xF2\xE0\xEB\xFC 5"), "Деталь 5");    // Windows-1251.
+  EXPECT_EQ(ReadNameBack("\xC1\xE3\xBC\xFE"), "零件");                  // GB 2312.
+  EXPECT_EQ(ReadNameBack("\\PE\\\\S\\4\\S\\U\\S\\b"), "Дет");           // ISO 8859-5.
+  EXPECT_EQ(ReadNameBack("\\X4\\0001F529\\X0\\"), "\xF0\x9F\x94\xA9");
+}
+
+TEST(Names, AreReadInTheEncodingThatTheUserGives) {
+  EXPECT_EQ(ReadNameBack("o\x9C \xB9", "CP1250"), "oś ą");
+  EXPECT_EQ(ReadNameBack("\xBA\xCE\xC7\xB0", "EUC-KR"), "부품");
+  EXPECT_EQ(ReadNameBack("\xD6\xE1", "GBK"), "轴");
+}
+
+TEST(Names, OfAnEncodingThatIsGuessedAreNoted) {
+  for (const auto& [bytes, encoding] :
+       {std::pair("Geh\xE4use", "CP1252"), std::pair("\xC4\xE5\xF2\xE0\xEB\xFC", "CP1251")}) {
+    Diagnostics guessed;
+    (void)ReadNameBack(bytes, "", &guessed);
+    ASSERT_EQ(CountCode(guessed, "assumed-encoding"), 1);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, encoding, guessed.items()[0].message);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--encoding", guessed.items()[0].remedy);
+    Diagnostics given;
+    (void)ReadNameBack(bytes, encoding, &given);
+    EXPECT_EQ(CountCode(given, "assumed-encoding"), 0);
+  }
 }
 
 TEST(CleanName, NeverGivesInvalidUtf8) {
@@ -322,6 +357,32 @@ TEST(Units, OfEveryKindGiveTheSameCube) {
     ASSERT_TRUE(product.has_value());
     EXPECT_NEAR(product->volume(), 8e-6, 1e-9 * 8e-6);
     EXPECT_EQ(product->parts[0].faces.size(), 6u);
+  }
+}
+
+TEST(Units, ThatTheUserGivesTakeThePlaceOfThoseOfTheFile) {
+  const TemporaryFolder folder;
+  for (const char* stated : {"MM", "INCH", "M"}) {
+    DocumentBuilder builder;
+    const TDF_Label cube = builder.AddPart(BRepPrimAPI_MakeBox(25.4, 25.4, 25.4).Shape(), "cube");
+    const TDF_Label pair = builder.AddAssembly("pair");
+    builder.AddComponent(pair, cube, TopLoc_Location(), "a");
+    builder.AddComponent(pair, cube, Translation(50.8, 0, 0), "b");
+    builder.Write(folder / "pair.step", stated);
+    const double number = stated == std::string("MM")  ? 25.4
+                          : stated == std::string("M") ? 0.0254
+                                                       : 1;
+    for (const double unit : {1e-3, 0.0254, 1.0}) {
+      ImportOptions options;
+      options.length_unit = unit;
+      Diagnostics diagnostics;
+      const auto product = ReadCad(folder / "pair.step", options, &diagnostics);
+      ASSERT_TRUE(product) << product.error().ToString();
+      const double side = number * unit;
+      EXPECT_NEAR(product->parts[0].mass.volume / (side * side * side), 1, 1e-9) << stated << unit;
+      ASSERT_EQ(product->occurrences.size(), 2U);
+      EXPECT_NEAR(product->occurrences[1].X_WB.p().x() / side, 2, 1e-9) << stated << unit;
+    }
   }
 }
 

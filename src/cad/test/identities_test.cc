@@ -115,6 +115,7 @@ TEST(DecodeStepText, DecodesTheEscapesOfPart21) {
   EXPECT_EQ(DecodeStepText("\\X4\\0001F600\\X0\\"), "\xF0\x9F\x98\x80");
   EXPECT_EQ(DecodeStepText("M\\X\\FCller"), "Müller");
   EXPECT_EQ(DecodeStepText("M\\S\\|ller"), "Müller");
+  EXPECT_EQ(DecodeStepText("\\PE\\\\S\\4\\S\\U\\S\\b\\PA\\ \\S\\|"), "Дет ü") << "ISO 8859-5";
   EXPECT_EQ(DecodeStepText("a\\\\b"), "a\\b");
   EXPECT_EQ(DecodeStepText("\\X2\\04"), "\\X2\\04") << "no escape stays as it is";
 }

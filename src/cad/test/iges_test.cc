@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
@@ -171,6 +172,26 @@ TEST(ReadIges, ConvertsTheUnitOfTheFile) {
   }
 }
 
+TEST(ReadIges, TakesTheUnitThatTheUserGivesForThatOfTheFile) {
+  const TemporaryFolder folder;
+  WriteAssembly(folder / "rig.igs", Form::kSolids);
+  std::vector<double> sizes;
+  for (const double unit : {1e-3, 0.0254, 0.3048}) {
+    ImportOptions options;
+    options.length_unit = unit;
+    Diagnostics diagnostics;
+    const auto product = ReadCad(folder / "rig.igs", options, &diagnostics);
+    ASSERT_TRUE(product) << product.error().ToString();
+    sizes.push_back(product->box_W.size().norm());
+  }
+  EXPECT_NEAR(sizes[1] / sizes[0], 25.4, 1e-3);
+  EXPECT_NEAR(sizes[2] / sizes[0], 304.8, 1e-2);
+  ImportOptions options;
+  options.length_unit = 0.003;
+  Diagnostics diagnostics;
+  EXPECT_FALSE(ReadCad(folder / "rig.igs", options, &diagnostics));
+}
+
 TEST(ReadIges, X2TheHeaderNamesAuthorCompanyAndSystem) {
   const TemporaryFolder folder;
   WriteAssembly(folder / "rig.igs", Form::kSolids);
@@ -220,6 +241,17 @@ TEST(ReadIges, SurfacesThatDoNotCloseAreAPartWithoutASolidAndAWarning) {
       EXPECT_NE(item.message.find("4 edges"), std::string::npos) << item.message;
     }
   }
+}
+
+TEST(ReadIges, CurvesAloneAreShown) {
+  const TemporaryFolder folder;
+  WriteShape(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(40, 0, 0)).Shape(),
+             folder / "line.igs", Form::kSolids);
+  Diagnostics diagnostics;
+  const Product product = ImportIges(folder / "line.igs", &diagnostics);
+  ASSERT_EQ(product.parts.size(), 1u);
+  EXPECT_EQ(product.parts[0].solid_count, 0);
+  EXPECT_EQ(CountCode(diagnostics, "curves-only"), 1);
 }
 
 TEST(ReadIges, GivesTheSameAsStepForTheSameShapes) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
@@ -14,6 +15,8 @@
 #include <BRep_Builder.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
+#include <gp_Ax2.hxx>
+#include <gp_Circ.hxx>
 #include <gtest/gtest.h>
 
 #include "base/test/temporary_folder.h"
@@ -280,17 +283,48 @@ TEST(ReadCadErrors, NameTheFileAndTheRemedy) {
   EXPECT_EQ(ErrorOf(folder / ".").code, ErrorCode::kUnreadable);
 }
 
-TEST(ReadCadErrors, AnAssemblyOfCurvesHasNoSolid) {
+TEST(ReadCad, CurvesAloneAreShownAsThinTubesWithoutMass) {
   const TemporaryFolder folder;
   DocumentBuilder builder;
-  const TDF_Label curve =
-      builder.AddPart(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(9, 0, 0)).Shape(), "datum");
+  const TDF_Label line =
+      builder.AddPart(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(40, 0, 0)).Shape(), "line");
+  const TDF_Label ring = builder.AddPart(
+      BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(gp_Pnt(), gp_Dir(0, 0, 1)), 30)).Shape(), "ring");
   const TDF_Label root = builder.AddAssembly("curves");
-  builder.AddComponent(root, curve, Translation(0, 0, 0), "datum");
+  builder.AddComponent(root, line, Translation(0, 100, 0), "line");
+  builder.AddComponent(root, ring, Translation(0, 0, 0), "ring");
   builder.Write(folder / "curves.step");
-  const Error error = ErrorOf(folder / "curves.step");
-  EXPECT_EQ(error.code, ErrorCode::kUnreadable);
-  EXPECT_NE(error.message.find("no solid"), std::string::npos);
+  Diagnostics diagnostics;
+  const Product product = ImportOrDie(folder / "curves.step", &diagnostics);
+  ASSERT_EQ(product.occurrences.size(), 2u);
+  EXPECT_EQ(CountCode(diagnostics, "curves-only"), 2);
+  EXPECT_EQ(CountCode(diagnostics, "surfaces-only"), 1);
+  for (const Part& part : product.parts) {
+    EXPECT_EQ(part.solid_count, 0);
+    EXPECT_EQ(part.mass.mass, 0);
+    ASSERT_EQ(part.faces.size(), 1u);
+    EXPECT_EQ(part.faces[0].triangle_count, part.display_mesh.triangles.size());
+    double six_volumes = 0;  // Positive where the triangles face outwards.
+    for (const auto& t : part.mesh.triangles) {
+      const auto& v = part.mesh.vertices;
+      six_volumes += v[t[0]].dot(v[t[1]].cross(v[t[2]]));
+    }
+    // A tube with three sides has the length of its curve times 3 sqrt(3) / 4 r^2; chords are
+    // shorter than a circle.
+    const bool is_line = part.name == "line";
+    const double diagonal = is_line ? 0.04 : 0.06 * std::sqrt(2);
+    const double length = is_line ? 0.04 : 0.06 * std::numbers::pi;
+    const double section = 0.75 * std::sqrt(3) * 1e-6 * diagonal * diagonal;
+    EXPECT_NEAR(six_volumes / 6 / (length * section), 1, is_line ? 1e-6 : 0.05) << part.name;
+  }
+}
+
+TEST(ReadCadErrors, AFileOfPointsHasNoSolid) {
+  const TemporaryFolder folder;
+  DocumentBuilder builder;
+  builder.AddPart(BRepBuilderAPI_MakeVertex(gp_Pnt(1, 2, 3)).Shape(), "datum");
+  builder.Write(folder / "points.step");
+  EXPECT_EQ(ErrorOf(folder / "points.step").code, ErrorCode::kUnreadable);
 }
 
 TEST(ReadCad, LeavesCurvesOutAndKeepsSurfacesWithoutMass) {

@@ -85,7 +85,7 @@ TEST(Tessellated, ReadsFacesUnitsColoursAndPlacesOfAnAssembly) {
   Product product;
   product.name = "file";
   Diagnostics diagnostics;
-  ASSERT_TRUE(ReadTessellated(MakeStep(10), {}, {}, &product, &diagnostics));
+  ASSERT_TRUE(ReadTessellated(StepText(MakeStep(10)), {}, {}, &product, &diagnostics));
   EXPECT_EQ(product.name, "Pair");
   ASSERT_EQ(product.parts.size(), 1U);
   const product::Part& part = product.parts[0];
@@ -112,7 +112,7 @@ TEST(Tessellated, ReadsFacesUnitsColoursAndPlacesOfAnAssembly) {
 TEST(Tessellated, FitsASurfaceWhereTheOneGivenIsNotThatOfTheTriangles) {
   Product product;
   Diagnostics diagnostics;
-  ASSERT_TRUE(ReadTessellated(MakeStep(12), {}, {}, &product, &diagnostics));
+  ASSERT_TRUE(ReadTessellated(StepText(MakeStep(12)), {}, {}, &product, &diagnostics));
   const auto& faces = product.parts.at(0).faces;
   const auto side = std::find_if(faces.begin(), faces.end(),
                                  [](const product::Face& f) { return f.entity == 12; });
@@ -132,7 +132,7 @@ TEST(Tessellated, IsWhatAFileWithoutSolidsIsReadBy) {
 int CountDeep(const std::string& step) {
   Product product;
   Diagnostics diagnostics;
-  EXPECT_TRUE(ReadTessellated(step, {}, {}, &product, &diagnostics));
+  EXPECT_TRUE(ReadTessellated(StepText(step), {}, {}, &product, &diagnostics));
   return testing::CountCode(diagnostics, "limit-depth");
 }
 
@@ -180,7 +180,7 @@ TEST(Tessellated, TakesAnyText) {
     text.resize(trial % 3 == 0 ? random.NextBits() % text.size() : text.size());
     Product product;
     Diagnostics diagnostics;
-    if (ReadTessellated(std::move(text), {}, {}, &product, &diagnostics)) {
+    if (ReadTessellated(StepText(std::move(text)), {}, {}, &product, &diagnostics)) {
       ++read;
       for (const product::Occurrence& occurrence : product.occurrences) {
         EXPECT_LT(occurrence.part.index(), product.parts.size());

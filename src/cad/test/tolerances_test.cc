@@ -104,7 +104,7 @@ const product::FaceId kCylinderFace(1);
 
 Part ReadPart(const std::string& text, Diagnostics* diagnostics) {
   Product product = MakeProduct();
-  ReadTolerances(text, &product, diagnostics);
+  ReadTolerances(StepText(text), &product, diagnostics);
   return product.parts[0];
 }
 

@@ -45,9 +45,9 @@ struct Use {
 
 class TessellationReader {
  public:
-  TessellationReader(std::string text, const ImportOptions& options, const ReadWatch& watch,
+  TessellationReader(const StepText& text, const ImportOptions& options, const ReadWatch& watch,
                      Product* product, Diagnostics* diagnostics)
-      : text_(std::move(text)),
+      : text_(text),
         options_(options),
         watch_(watch),
         product_(product),
@@ -73,7 +73,7 @@ class TessellationReader {
   [[nodiscard]] const std::vector<Vec3>& PointsOf(Id coordinates);
   [[nodiscard]] std::optional<Color> ColorOf(Id item) const;
 
-  StepText text_;
+  const StepText& text_;
   const ImportOptions& options_;
   const ReadWatch& watch_;
   Product* product_;
@@ -494,9 +494,9 @@ bool MayHoldTessellation(std::string_view step_text) {
          step_text.find("TRIANGULATED_") != std::string_view::npos;
 }
 
-Result<void> ReadTessellated(std::string step_text, const ImportOptions& options,
+Result<void> ReadTessellated(const StepText& text, const ImportOptions& options,
                              const ReadWatch& watch, Product* product, Diagnostics* diagnostics) {
-  return TessellationReader(std::move(step_text), options, watch, product, diagnostics).Read();
+  return TessellationReader(text, options, watch, product, diagnostics).Read();
 }
 
 }  // namespace hvas::cad

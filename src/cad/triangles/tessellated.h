@@ -6,6 +6,7 @@
 #include "base/diagnostics.h"
 #include "base/result.h"
 #include "cad/process/read_cad.h"
+#include "cad/step/step_text.h"
 #include "product/product.h"
 
 namespace hvas::cad {
@@ -20,7 +21,7 @@ namespace hvas::cad {
 
  @param product  Has its name and source.
  Errors: kUnreadable when there is no triangle. */
-[[nodiscard]] Result<void> ReadTessellated(std::string step_text, const ImportOptions& options,
+[[nodiscard]] Result<void> ReadTessellated(const StepText& text, const ImportOptions& options,
                                            const ReadWatch& watch, product::Product* product,
                                            Diagnostics* diagnostics);
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "contact/shape.h"
@@ -274,6 +278,75 @@ inline ShapeSource Frame(const Vec3& half, const Eigen::Vector2d& window) {
   }
   plane(8, Vec3(0, 0, -h), -Vec3::UnitZ());
   plane(9, Vec3(0, 0, h), Vec3::UnitZ());
+  return source;
+}
+
+/** Triangles of a simple outline that turns left, by cutting off ears. */
+inline std::vector<std::array<std::uint32_t, 3>> Triangulate(
+    const std::vector<Eigen::Vector2d>& outline) {
+  const auto turn = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const Eigen::Vector2d u = outline[b] - outline[a];
+    const Eigen::Vector2d v = outline[c] - outline[a];
+    return u.x() * v.y() - u.y() * v.x();
+  };
+  std::vector<std::uint32_t> left(outline.size());
+  std::iota(left.begin(), left.end(), 0U);
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::size_t i = 0; left.size() > 2; i = i + 1 < left.size() ? i + 1 : 0) {
+    const std::uint32_t a = left[(i + left.size() - 1) % left.size()];
+    const std::uint32_t b = left[i];
+    const std::uint32_t c = left[(i + 1) % left.size()];
+    const bool is_ear =
+        turn(a, b, c) > 0 && std::none_of(left.begin(), left.end(), [&](std::uint32_t p) {
+          return p != a && p != b && p != c && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 &&
+                 turn(c, a, p) >= 0;
+        });
+    if (is_ear || left.size() == 3) {
+      triangles.push_back({a, b, c});
+      left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+      i = 0;
+    }
+  }
+  return triangles;
+}
+
+/** A prism along x from -half_length to half_length, over an outline (y, z) that turns left. Faces:
+ one over each edge of the outline, then -x and +x. */
+inline ShapeSource Prism(const std::vector<Eigen::Vector2d>& outline, double half_length) {
+  ShapeSource source;
+  const auto vertex = [&](std::size_t k, double x) {
+    const Eigen::Vector2d& p = outline[k % outline.size()];
+    source.vertices.emplace_back(x, p.x(), p.y());
+    return static_cast<std::uint32_t>(source.vertices.size() - 1);
+  };
+  const auto face = [&source](const Vec3& p, const Vec3& n) {
+    source.faces.push_back({spatial::SurfaceKind::kPlane, p, n, 0, 0, 1});
+    return static_cast<std::uint32_t>(source.faces.size() - 1);
+  };
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Eigen::Vector2d edge = outline[(k + 1) % outline.size()] - outline[k];
+    const std::uint32_t f =
+        face(Vec3(0, outline[k].x(), outline[k].y()), Vec3(0, edge.y(), -edge.x()).normalized());
+    const std::uint32_t a = vertex(k, -half_length);
+    const std::uint32_t b = vertex(k + 1, -half_length);
+    const std::uint32_t c = vertex(k + 1, half_length);
+    const std::uint32_t d = vertex(k, half_length);
+    source.triangles.push_back({a, b, c});
+    source.triangles.push_back({a, c, d});
+    source.triangle_face.insert(source.triangle_face.end(), 2, f);
+  }
+  for (const double side : {-1.0, 1.0}) {
+    const std::uint32_t f = face(side * half_length * Vec3::UnitX(), side * Vec3::UnitX());
+    const auto first = static_cast<std::uint32_t>(source.vertices.size());
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      (void)vertex(k, side * half_length);
+    }
+    for (const auto& [a, b, c] : Triangulate(outline)) {
+      source.triangles.push_back(side > 0 ? std::array{first + a, first + b, first + c}
+                                          : std::array{first + a, first + c, first + b});
+      source.triangle_face.push_back(f);
+    }
+  }
   return source;
 }
 

@@ -329,5 +329,58 @@ TEST(FitForce, RefusesPlacesThatDoNotAscend) {
   EXPECT_FALSE(FitForce::Make(p));
 }
 
+/** A tongue in a slot of 12 mm in a part of 36 mm, 20 mm deep and 30 mm broad. */
+FitForceParameters MakeFlat(double clearance_um, double roughness_um, std::uint64_t seed) {
+  FitForceParameters p;
+  p.nominal_diameter = p.shaft_diameter = 0.012;
+  p.hole_diameter = 0.012 + units::FromUm(clearance_um);
+  p.hub_diameter = 0.036;
+  p.breadth = 0.03;
+  p.length = 0.02;
+  p.roughness = units::FromUm(roughness_um);
+  p.seed = seed;
+  return p;
+}
+
+TEST(FitForce, FlatWallsResistInProportionToTheirDepth) {
+  const FitForce fit = *FitForce::Make(MakeFlat(-20, 0, 0));
+  const double pressure = 20e-6 * 210e9 / (1 - 0.3 * 0.3) / 0.036;
+  for (const double depth : {0.0, 1e-3, 7e-3, 20e-3}) {
+    const double force = 0.15 * 2 * 0.03 * depth * pressure;
+    EXPECT_NEAR(fit.CalcAxialResistance(depth), force, 1e-9 * force + 1e-9);
+    EXPECT_NEAR(fit.CalcReleaseForce(depth), force, 1e-9 * force + 1e-9);
+    EXPECT_EQ(fit.CalcTorque(depth), 0);
+  }
+  EXPECT_NEAR(fit.CalcPressure(0.01), pressure, 1e-6 * pressure);
+}
+
+TEST(FitForce, FlatWallsOfRoughSurfacesSumUpTheirPressure) {
+  for (const double clearance_um : {-10.0, 0.0, 4.0}) {
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+      const FitForce fit = *FitForce::Make(MakeFlat(clearance_um, 6.3, seed));
+      constexpr int kSteps = 20000;
+      double sum = 0;
+      double last = 0;
+      for (int i = 0; i < kSteps; ++i) {
+        sum += fit.CalcPressure((i + 0.5) * 0.02 / kSteps) * 2 * 0.03 * 0.02 / kSteps;
+        const double force = fit.CalcAxialResistance((i + 1) * 0.02 / kSteps);
+        EXPECT_GE(force, last - 1e-9) << "but for rounding";
+        last = force;
+      }
+      EXPECT_NEAR(fit.CalcNormalForce(0.02), sum, 1e-5 * sum + 1e-9);
+    }
+  }
+}
+
+TEST(FitForce, FlatWallsPushBackByTheirPressureOverOneWall) {
+  const FitForce fit = *FitForce::Make(MakeFlat(10, 0, 0));
+  // A tongue that is pressed into one wall by x: the pressure of an interference of 2 x.
+  const double x = 1e-6;
+  const FitForce pressed = *FitForce::Make(MakeFlat(units::ToUm(-2 * x), 0, 0));
+  const double force = pressed.CalcPressure(0.01) * 0.03 * 0.02;
+  EXPECT_NEAR(fit.CalcRadialStiffness(0.02) * x, force, 1e-6 * force);
+  EXPECT_NEAR(fit.CalcRadialPlay(0.02), 5e-6, 1e-12);
+}
+
 }  // namespace
 }  // namespace hvas::fits

@@ -205,5 +205,58 @@ TEST(PressFit, RefusesWhatIsNoJointAndNamesIt) {
   EXPECT_EQ(CalcPressFit(loose)->margin_tresca(), std::numeric_limits<double>::infinity());
 }
 
+/** A tongue of 12 mm pressed by 20 um between walls of 10 mm and 14 mm, 20 mm deep and 30 mm broad.
+ */
+PressFitParameters MakeFlatFit() {
+  PressFitParameters p = MakeFit(12, 36, 0, 20, 20, 0.15, 70, 0.33);
+  p.breadth = 0.03;
+  return p;
+}
+
+TEST(PressFit, FlatWallsArePressedAsSlabsInPlaneStrain) {
+  const PressFit fit = *CalcPressFit(MakeFlatFit());
+  const double aluminium = 70e9 / (1 - 0.33 * 0.33);
+  const double steel = 210e9 / (1 - 0.3 * 0.3);
+  const double pressure = 20e-6 / (0.012 / steel + 0.024 / aluminium);
+  EXPECT_NEAR(fit.pressure, pressure, 1e-9 * pressure);
+  EXPECT_NEAR(fit.outline, 0.06, 1e-15);
+  EXPECT_NEAR(fit.press_in_force, 0.15 * 2 * 0.03 * 0.02 * pressure, 1e-9 * fit.press_in_force);
+  EXPECT_EQ(fit.torque, 0);
+}
+
+// An independent way to the same pressure: the split of the interference with the least energy.
+TEST(PressFit, FlatWallsShareTheInterferenceWithTheLeastEnergy) {
+  const PressFitParameters p = MakeFlatFit();
+  const double walls = 70e9 / (1 - 0.33 * 0.33) / 0.024;  // [Pa/m]
+  const double tongue = 210e9 / (1 - 0.3 * 0.3) / 0.012;
+  const auto energy = [&](double x) {
+    return walls * (p.interference - x) * (p.interference - x) + tongue * x * x;
+  };
+  double low = 0;
+  double high = p.interference;
+  for (int i = 0; i < 200; ++i) {
+    const double a = low + (high - low) / 3;
+    const double b = high - (high - low) / 3;
+    (energy(a) < energy(b) ? high : low) = energy(a) < energy(b) ? b : a;
+  }
+  const PressFit fit = *CalcPressFit(p);
+  EXPECT_NEAR(fit.shaft_contraction, low, 1e-6 * p.interference);
+  EXPECT_NEAR(fit.shaft_contraction + fit.hub_expansion, p.interference, 1e-15);
+  EXPECT_NEAR(fit.pressure, tongue * low, 1e-6 * fit.pressure);
+}
+
+TEST(PressFit, FlatWallsThatAreRigidOrHalfAsFarApartGiveTheLimits) {
+  PressFitParameters p = MakeFlatFit();
+  p.hub.youngs_modulus = 1e20;
+  const double steel = 210e9 / (1 - 0.3 * 0.3);
+  EXPECT_NEAR(CalcPressFit(p)->pressure, 20e-6 * steel / 0.012, 10);
+  // Sizes and interference scaled together leave the pressure, as in any linear body.
+  PressFitParameters small = MakeFlatFit();
+  for (double* length : {&small.joint_diameter, &small.hub_diameter, &small.interference}) {
+    *length *= 0.5;
+  }
+  EXPECT_NEAR(CalcPressFit(small)->pressure, CalcPressFit(MakeFlatFit())->pressure, 1);
+}
+
 }  // namespace
 }  // namespace hvas::fits

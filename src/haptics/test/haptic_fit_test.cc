@@ -124,6 +124,92 @@ TEST(Insertion, AxialForceIsTheFitsResistance) {
   }
 }
 
+/** The fit of a tongue of 30 mm by 40 mm, 50 mm deep, with this clearance of its width [m]. */
+std::shared_ptr<const fits::FitForce> MakeFlatFit(double clearance) {
+  fits::FitForceParameters p;
+  p.nominal_diameter = p.shaft_diameter = 30e-3;
+  p.hole_diameter = 30e-3 + clearance;
+  p.hub_diameter = 60e-3;
+  p.breadth = 40e-3;
+  p.length = kLength;
+  p.roughness = 0;
+  return std::make_shared<const fits::FitForce>(*fits::FitForce::Make(p));
+}
+
+/** The rig's axis mate as that of a tongue whose walls are apart along `across_W`. */
+HeldMate MakeTongueMate(const HeldMate& axis, std::shared_ptr<const fits::FitForce> fit,
+                        const Vec3& across_W) {
+  HeldMate mate = axis;
+  mate.capture.kind = product::MateKind::kPrismatic;
+  mate.capture.reach = mate.breadth = 40e-3;
+  mate.radius = 15e-3;
+  Mat3 R;
+  R << Vec3::UnitZ(), across_W.cross(Vec3::UnitZ()), across_W;
+  mate.X_WM = mate.X_BN = Pose(Quat(R), Vec3::Zero());
+  mate.fit = std::move(fit);
+  return mate;
+}
+
+// A block in a pocket, between two pairs of walls: pressed in, it resists with what slabs between
+// walls give, mu 2 b l p of each pair.
+TEST(Insertion, N4PressedBlockResistsWithTheClosedFormOfItsWalls) {
+  Rig rig(nullptr, Above(10e-3, 2e-3));
+  const HeldMate axis = rig.part.mates[0];
+  rig.part.mates = {MakeTongueMate(axis, MakeFlatFit(-3e-6), Vec3::UnitX()),
+                    MakeTongueMate(axis, MakeFlatFit(-1e-6), Vec3::UnitY()), rig.part.mates[1]};
+  rig.Take();
+  Insert(&rig);
+  const auto& samples = rig.hand->samples;
+  int compared = 0;
+  double worst = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const TickOutput& out = samples[i].out;
+    const double depth = out.insertion_depth;
+    if (out.state != HoldState::kMating || CalcRise(samples, i) > -1e-3 || depth < 2e-3) {
+      continue;
+    }
+    // 210 GPa / (1 - 0.3^2) over slabs of 30 mm and 30 mm, friction 0.15.
+    const double expected = 0.15 * 2 * 40e-3 * depth * (210e9 / 0.91) * 4e-6 / 60e-3;
+    ++compared;
+    worst = std::max(worst, std::abs(out.axial_true / expected - 1));
+  }
+  EXPECT_LT(worst, 0.02);
+  EXPECT_GT(compared, 1000);
+  EXPECT_EQ(rig.hand->last().state, HoldState::kSeated);
+  EXPECT_LT(CalcLargestJump(samples), kJumpLimit);
+}
+
+// A tongue with play is held by nothing within it, and by all the coupling can show beyond; drawn
+// against one wall, it has all of its play to the other side.
+TEST(Insertion, N4TongueRattlesWithinItsClearance) {
+  for (const double shift : {0.0, 1.0}) {
+    const auto fit = MakeFlatFit(40e-6);
+    Rig rig(nullptr, Above(10e-3));
+    HeldMate mate = MakeTongueMate(rig.part.mates[0], fit, Vec3::UnitX());
+    mate.shift = shift;
+    rig.part.mates = {mate, MakeTongueMate(rig.part.mates[0], MakeFlatFit(0), Vec3::UnitY()),
+                      rig.part.mates[1]};
+    rig.Take();
+    InsertHalfWay(&rig);
+    const double low = shift > 0 ? -40e-6 : -20e-6;
+    const double high = shift > 0 ? 0 : 20e-6;
+    const double k = rig.options.coupling.k_lin;
+    const auto check = [&](double x) {
+      const double f = k * std::max({0.0, x - high, low - x});
+      EXPECT_NEAR(std::abs(rig.hand->last().F_felt_W.f.x()), f, 0.03 * f + 4e-3) << x;
+    };
+    rig.hand->MoveSoftly(Vec3(-15e-6, 0, 0), 0.3);
+    rig.hand->Wait(0.5);
+    check(-15e-6);
+    rig.hand->MoveSoftly(Vec3(1.015e-3, 0, 0), 0.3);
+    rig.hand->Wait(0.5);
+    check(1e-3);
+    rig.hand->MoveSoftly(Vec3(-2e-3, 0, 0), 0.3);
+    rig.hand->Wait(0.5);
+    check(-1e-3);
+  }
+}
+
 // W4, W10: a clearance fit is felt as friction of the side that touches only, 0 to 0.3 N for a hand
 // 2 mm beside the axis, and not at all on it.
 TEST(Insertion, W4ClearanceFitIsLight) {

@@ -123,7 +123,7 @@ TEST(CalcMateGeometry, AgreesWithRecognition) {
       const Vec3 held = X_WB.q() * (mate.X_BN.q() * Vec3(0, 0, sense));
       EXPECT_NEAR((spatial::RotationFromVector(g.tilt_W) * held - g.axis_W).norm(), 0, 1e-13);
       // The offset is across the axis, or along the normal, and ends on the held axis.
-      if (kind != MateKind::kFaceFace) {
+      if (mates::HoldsAcross(kind)) {
         EXPECT_NEAR(g.offset_W.dot(g.axis_W), 0, 1e-15);
         EXPECT_NEAR((g.p_WQ - g.offset_W - mate.X_WM.p()).cross(g.axis_W).norm(), 0, 1e-13);
         EXPECT_NEAR((g.p_WQ - X_WB * mate.X_BN.p()).cross(held).norm(), 0, 1e-13);

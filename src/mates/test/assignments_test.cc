@@ -1,7 +1,11 @@
 #include "mates/assignments.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -280,6 +284,85 @@ TEST_F(Assignments, CommandLineTakesAMateANameOrAll) {
 TEST(FindAssignmentFile, StandsBesideTheProduct) {
   EXPECT_EQ(FindAssignmentFile("a/pump.step"), "a/pump.hvas.json");
   EXPECT_EQ(FindAssignmentFile("a/pump.v2.stp"), "a/pump.v2.hvas.json");
+}
+
+/** A bed with a slot of 12 mm, a slide in it, and a pin of the bed's in the slide. */
+Product MakeSlide() {
+  Product product;
+  product::Part* bed = testing::AddPart(&product, "bed");
+  testing::AddRectangle(bed, Vec3(0, -6e-3, 0), Vec3::UnitY(), 4e-3, 20e-3);
+  testing::AddRectangle(bed, Vec3(0, 6e-3, 0), -Vec3::UnitY(), 4e-3, 20e-3);
+  testing::AddCylinder(bed, FeatureKind::kHole, Vec3(0.1, 0, 0), Vec3::UnitZ(), 3e-3, 0, 0.01);
+  product::Part* slide = testing::AddPart(&product, "slide");
+  testing::AddRectangle(slide, Vec3(0, -6e-3, 0), -Vec3::UnitY(), 4e-3, 20e-3);
+  testing::AddRectangle(slide, Vec3(0, 6e-3, 0), Vec3::UnitY(), 4e-3, 20e-3);
+  testing::AddCylinder(slide, FeatureKind::kShaft, Vec3(0.1, 0, 0), Vec3::UnitZ(), 3e-3, 0, 0.01);
+  testing::AddOccurrence(&product, product::PartId(0), Pose());
+  testing::AddOccurrence(&product, product::PartId(1), Pose());
+  Diagnostics diagnostics;
+  Infer(&product, &diagnostics);
+  return product;
+}
+
+const product::Mate& SlotOf(const Product& product) {
+  return *std::find_if(product.mates.begin(), product.mates.end(), [](const product::Mate& mate) {
+    return mate.kind == product::MateKind::kPrismatic;
+  });
+}
+
+TEST_F(Assignments, PrismaticFitIsSelectedByItsKeyOrByNamesWithItsWidth) {
+  const std::string key = SlotOf(MakeSlide()).key;
+  for (const std::string& which :
+       {R"("mate": ")" + key + R"(")",
+        std::string(R"("hole": "bed", "shaft": "slide", "width_mm": 12)")}) {
+    product_ = MakeSlide();
+    ASSERT_EQ(product_.mates.size(), 2U);
+    const Result<int> count =
+        ApplyEntries("{" + which +
+                     R"(, "fit": "H7/p6", "hole_width_mm": 12.004, "shaft_rz_um": 1.6,
+                        "friction": 0.1})");
+    ASSERT_TRUE(count.has_value()) << count.error().ToString();
+    EXPECT_EQ(*count, 1) << "the pin keeps its fit";
+    const product::Mate& mate = SlotOf(product_);
+    EXPECT_EQ(mate.fit->code, "H7/p6");
+    EXPECT_EQ(mate.fit->kind, FitKind::kInterference);
+    EXPECT_NEAR(mate.fit->nominal_diameter, 12e-3, 1e-12);
+    EXPECT_FALSE(mate.fit->is_proposed);
+    ASSERT_EQ(mate.conditions.hole_diameters.size(), 1U);
+    EXPECT_NEAR(mate.conditions.hole_diameters[0].diameter, 12.004e-3, 1e-12);
+    EXPECT_EQ(mate.conditions.friction, 0.1);
+  }
+}
+
+TEST_F(Assignments, WrongEntriesOfPrismaticFitsAreRefusedWithLineAndRemedy) {
+  product_ = MakeSlide();
+  const std::string slot = R"("mate": ")" + SlotOf(product_).key + R"(")";
+  for (const auto& [bad, remedy] : std::vector<std::pair<std::string, std::string>>{
+           {slot + R"(, "hole_diameter_mm": 12)", "hole_width_mm"},
+           {slot + R"(, "fit": "thread")", "fit of widths"},
+           {slot + R"(, "hole_width_mm": 13)", "in mm"},
+           {slot + R"(, "width_mm": 12, "fit": "H7/g6")", "\"mate\": \"KEY\" alone"},
+           {R"("hole": "bed", "shaft": "slide", "diameter_mm": 6, "hole_width_mm": 12)", "widths"},
+           {R"("hole": "bed", "shaft": "slide", "width_mm": 20, "fit": "H7/g6")", "hvas inspect"},
+           {R"("hole": "bed", "shaft": "slide", "width_mm": 0, "fit": "H7/g6")", "write"}}) {
+    const Result<int> count =
+        ApplyText("{\"format\": \"hvas-assignments-2\", \"fits\": [\n{" + bad + "}]}");
+    ASSERT_FALSE(count.has_value()) << bad;
+    EXPECT_NE(count.error().where.find("product.hvas.json:2"), std::string::npos)
+        << count.error().ToString();
+    EXPECT_NE(count.error().remedy.find(remedy), std::string::npos) << count.error().ToString();
+  }
+}
+
+TEST_F(Assignments, TheOptionSetsPrismaticFitsLikeOthers) {
+  product_ = MakeSlide();
+  ASSERT_TRUE(AssignFit(&product_, "slide=H7/h6").has_value());
+  EXPECT_EQ(SlotOf(product_).fit->code, "H7/h6");
+  EXPECT_EQ(product_.mates[0].fit->code, "H7/h6");
+  const auto thread =
+      AssignFit(&product_, "m" + std::to_string(SlotOf(product_).id.value()) + "=thread");
+  ASSERT_FALSE(thread.has_value());
+  EXPECT_NE(thread.error().where.find("--fit"), std::string::npos);
 }
 
 }  // namespace

@@ -272,7 +272,7 @@ TEST(Infer, BoltThroughAPlateIntoItsNutIsAThreadOnlyInTheNut) {
   for (const Mate& mate : product.mates) {
     if (mate.kind == MateKind::kAxisHole) {
       const bool in_nut = mate.a.occurrence.index() == 2;
-      EXPECT_EQ(mate.fit->kind, in_nut ? FitKind::kThread : FitKind::kClearance);
+      EXPECT_EQ(mate.fit->kind, in_nut ? FitKind::kThread : FitKind::kPassage);
     }
   }
 }

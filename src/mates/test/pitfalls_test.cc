@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -103,6 +104,50 @@ TEST(PitfallB, AFilletAndTheEndsOfASlotAreNoHolesButASplitClampIs) {
   EXPECT_EQ(product.mates[1].a.occurrence.index(), 3U);
 }
 
+/** The ends of teeth on a cylinder about z, each over 6 degrees. */
+void AddTeeth(Product* product, const std::string& name, int count, double radius, double outward) {
+  std::vector<Arc> arcs;
+  for (int i = 0; i < count; ++i) {
+    arcs.push_back({2 * std::numbers::pi * i / count, std::numbers::pi / 30, outward});
+  }
+  AddArcs(product, name, radius, arcs, 0, 4e-3);
+}
+
+TEST(PitfallB, AHornOnTheTeethOfItsServoTurnsAboutThemAndAGearInABoreDoesNot) {
+  struct Case {
+    int hole_teeth;  // 0: smooth.
+    double hole_mm;
+    int shaft_teeth;
+    double shaft_mm;
+    bool is_mated;
+  };
+
+  for (const Case& c : {Case{25, 2.475, 25, 2.45, true}, Case{24, 2.475, 25, 2.45, false},
+                        Case{25, 3.0, 0, 3.0, true}, Case{25, 3.2, 0, 3.0, false},
+                        Case{0, 2.3, 25, 2.45, true}, Case{0, 20.05, 25, 20.0, false}}) {
+    Product product;
+    const Arc whole{0, 2 * std::numbers::pi, 1};
+    if (c.hole_teeth > 0) {
+      AddTeeth(&product, "horn", c.hole_teeth, 1e-3 * c.hole_mm, -1);
+    } else {
+      AddArcs(&product, "horn", 1e-3 * c.hole_mm, {{0, whole.sweep, -1}}, 0, 4e-3);
+    }
+    if (c.shaft_teeth > 0) {
+      AddTeeth(&product, "servo", c.shaft_teeth, 1e-3 * c.shaft_mm, 1);
+    } else {
+      AddArcs(&product, "servo", 1e-3 * c.shaft_mm, {whole}, 0, 4e-3);
+    }
+    AddInPlace(&product);
+    InferInto(&product);
+    ASSERT_EQ(product.mates.size(), c.is_mated ? 1U : 0U)
+        << c.hole_teeth << " in " << c.shaft_teeth;
+    if (c.is_mated) {
+      EXPECT_EQ(product.mates[0].fit->kind, FitKind::kInsert);
+      EXPECT_EQ(product.joints[0].free_rotations, 1);
+    }
+  }
+}
+
 TEST(PitfallD, HolesInLineAreAnAlignmentUntilABoltPassesBoth) {
   Product product;
   AddRound(&product, "upper", FeatureKind::kHole, 2.75e-3, 0, 5e-3);
@@ -186,8 +231,85 @@ INSTANTIATE_TEST_SUITE_P(
                       Tapped{"part 7", "plate", 1.5e-3, 1.25e-3, kPlain},
                       Tapped{"part 7", "plate", 10e-3, 9.9e-3, product::ThreadKind::kNominal},
                       Tapped{"M3 screw", "plate", 1.5e-3, 1.52e-3, product::ThreadKind::kModelled},
-                      Tapped{"M3 screw", "heat-set insert", 1.5e-3, 1.6e-3, kPlain},
-                      Tapped{"threaded insert", "plate", 2.3e-3, 2.29e-3, kPlain}));
+                      Tapped{"M3 screw", "heat-set insert", 1.5e-3, 1.6e-3, kPlain}));
+
+/** A shaft and a hole of radii in mm by their names. */
+Product MakeShaftInHole(const char* shaft_name, double shaft_mm, const char* hole_name,
+                        double hole_mm) {
+  Product product;
+  AddRound(&product, hole_name, FeatureKind::kHole, 1e-3 * hole_mm, 0, 6e-3);
+  AddRound(&product, shaft_name, FeatureKind::kShaft, 1e-3 * shaft_mm, -2e-3, 5e-3);
+  AddInPlace(&product);
+  return product;
+}
+
+TEST(PitfallF, WhatIsMeltedInGivesOrPassesHasNoFitOfIso286) {
+  struct Case {
+    const char* shaft;
+    double shaft_mm;
+    const char* hole;
+    double hole_mm;
+    FitKind kind;
+  };
+
+  for (const Case& c : {Case{"threaded insert", 2.3, "plate", 2.29, FitKind::kInsert},
+                        Case{"heat-set M3", 2.3, "plate", 2.0, FitKind::kInsert},
+                        Case{"Heatset insert", 2.3, "plate", 2.3, FitKind::kInsert},
+                        Case{"heat set M3", 2.3, "plate", 2.35, FitKind::kInsert},
+                        Case{"heat set M3", 2.3, "plate", 2.8, FitKind::kPassage},
+                        Case{"cable 3x0.75", 3.0, "gland", 3.0, FitKind::kInsert},
+                        Case{"rod", 3.0, "cable clip", 2.9, FitKind::kInsert},
+                        Case{"hose", 3.0, "plate", 3.5, FitKind::kPassage},
+                        Case{"M3 screw", 1.5, "plate", 1.7, FitKind::kPassage},
+                        Case{"M3 screw", 1.5, "washer", 1.6, FitKind::kPassage},
+                        Case{"pin", 1.5, "plate", 1.505, FitKind::kClearance},
+                        Case{"pin", 1.5, "plate", 1.495, FitKind::kInterference}}) {
+    Product product = MakeShaftInHole(c.shaft, c.shaft_mm, c.hole, c.hole_mm);
+    const Diagnostics diagnostics = InferInto(&product);
+    ASSERT_EQ(product.mates.size(), 1U) << c.shaft;
+    ASSERT_TRUE(product.mates[0].fit.has_value());
+    EXPECT_EQ(product.mates[0].fit->kind, c.kind) << c.shaft << " in " << c.hole;
+    EXPECT_EQ(product.mates[0].fit->code.empty(), !product::IsIsoFit(c.kind)) << c.shaft;
+    EXPECT_EQ(CountCode(diagnostics, "drawn-interference"), c.kind == FitKind::kInterference);
+  }
+}
+
+TEST(PitfallF, ANamelessHollowPartInATooSmallHoleIsAnInsertAndASolidOneAThread) {
+  for (const double bore_mm : {1.25, 0.0}) {
+    Product product = MakeShaftInHole("part 7", 2.3, "plate", 2.0);
+    if (bore_mm > 0) {
+      AddCylinder(&product.parts[1], FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(),
+                  1e-3 * bore_mm, -2e-3, 5e-3);
+    }
+    InferInto(&product);
+    ASSERT_EQ(product.mates.size(), 1U);
+    EXPECT_EQ(product.mates[0].fit->kind, bore_mm > 0 ? FitKind::kInsert : FitKind::kThread);
+  }
+}
+
+TEST(PitfallF, APinMuchSmallerThanItsHoleIsNoMateAndACoarseClearanceHoleIs) {
+  // ISO 273, coarse: 1.3 for M1, 2.6 for M2, 3.6 for M3, 12 for M10.
+  for (const auto& [shaft_mm, hole_mm, expected] :
+       {std::tuple(0.5, 1.0, 0U), std::tuple(0.25, 0.5, 0U), std::tuple(0.4, 0.65, 0U),
+        std::tuple(0.5, 0.65, 1U), std::tuple(1.0, 1.3, 1U), std::tuple(1.5, 1.8, 1U),
+        std::tuple(5.0, 6.0, 1U)}) {
+    Product product = MakeShaftInHole("pin", shaft_mm, "plate", hole_mm);
+    InferInto(&product);
+    EXPECT_EQ(product.mates.size(), expected) << shaft_mm;
+  }
+}
+
+TEST(PitfallE, AShortPilotCentresAFlangeAndTheWideHoleForTheShaftDoesNot) {
+  Product product;
+  Part* flange = AddRound(&product, "flange", FeatureKind::kHole, 11e-3, 0, 2e-3);
+  AddCylinder(flange, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 3e-3, 2e-3, 8e-3);
+  Part* motor = AddRound(&product, "motor", FeatureKind::kShaft, 11e-3, -20e-3, 2e-3);
+  AddCylinder(motor, FeatureKind::kShaft, Vec3::Zero(), Vec3::UnitZ(), 2.5e-3, 2e-3, 24e-3);
+  AddInPlace(&product);
+  InferInto(&product);
+  ASSERT_EQ(CountMates(product, MateKind::kAxisHole), 1);
+  EXPECT_DOUBLE_EQ(product.mates[0].shaft_radius, 11e-3);
+}
 
 /** A hexagon of flats about z, outside (+1) or as a socket (-1). */
 void AddHexagon(Part* part, double across, double sense, double low, double high) {

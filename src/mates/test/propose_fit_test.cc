@@ -89,7 +89,7 @@ TEST(ProposeFit, AScrewIsNeverPressedInEvenWithANutBehindIt) {
   EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kThread);
   evidence.shaft_part = FastenerKind::kNut;  // An insert in its pocket.
   evidence.nut_on_shaft = false;
-  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kThread);
+  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kInsert);
 }
 
 }  // namespace

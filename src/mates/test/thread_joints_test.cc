@@ -67,5 +67,22 @@ TEST(ThreadJoints, AScrewInPlasticAndOneNamedSoCutTheirThreads) {
   EXPECT_EQ(in_plastic[0].kind, ThreadJointKind::kSelfTapping);
 }
 
+TEST(ThreadJoints, OnlyAMaterialThatIsAPlasticAsAWholeWordMakesAScrewSelfTapping) {
+  for (const auto& [material, expected] :
+       {std::pair("PLA", ThreadJointKind::kSelfTapping),
+        std::pair("PETG black", ThreadJointKind::kSelfTapping),
+        std::pair("Polypropylene", ThreadJointKind::kSelfTapping),
+        std::pair("Steel plate", ThreadJointKind::kThreaded),
+        std::pair("Plated", ThreadJointKind::kThreaded),
+        std::pair("pompa", ThreadJointKind::kThreaded),
+        std::pair("", ThreadJointKind::kThreaded)}) {
+    Product product = MakeScrewIn(2.5e-3, "Screw M3x12", "housing");
+    product.parts[0].material.name = material;
+    const auto joints = FindIn(std::move(product));
+    ASSERT_EQ(joints.size(), 1U) << material;
+    EXPECT_EQ(joints[0].kind, expected) << material;
+  }
+}
+
 }  // namespace
 }  // namespace hvas::mates

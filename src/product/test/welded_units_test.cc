@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@
 #include "product/product_io.h"
 #include "product/test/flat_face.h"
 #include "product/validate.h"
+#include "product/variants.h"
 
 namespace hvas::product {
 namespace {
@@ -271,6 +273,29 @@ TEST(WeldedUnits, SolidAndShellOfOneScrewAreOnePartWithThePathOfTheScrew) {
   }
 }
 
+TEST(WeldedUnits, HeadAndThreadOfOneScrewAreOnePartAndBoltAndNutOfOneNodeAreTwo) {
+  for (const auto& [first, second, count] :
+       {std::tuple("head", "Thread M3", 1u), std::tuple("SOLID", "thread_2", 1u),
+        std::tuple("bolt", "nut", 2u), std::tuple("screw", "washer", 2u)}) {
+    Builder b;
+    const SubassemblyId node = b.AddNode("bolt M3x10");
+    b.Place(b.AddPart(first, MakeBox({6e-3, 6e-3, 3e-3})), Pose(Vec3(0, 0, 6.5e-3)), node);
+    b.Place(b.AddPart(second, MakeBox({3e-3, 3e-3, 10e-3})), Pose(), node);
+    Weld(&b.product());
+    EXPECT_EQ(b.product().occurrences.size(), count) << first << ", " << second;
+  }
+}
+
+TEST(WeldedUnits, AThreadSurfaceInAScrewOfAFlatFileIsPartOfItAndALabelInAHousingIsNot) {
+  for (const auto& [solid, count] : {std::pair("screw M3", 1u), std::pair("housing", 2u)}) {
+    Builder b;
+    b.Place(b.AddPart(solid, MakeBox({6e-3, 6e-3, 10e-3})), Pose());
+    b.Place(b.AddPart("surface model", MakeSheet(3e-3)), Pose());
+    Weld(&b.product());
+    EXPECT_EQ(b.product().occurrences.size(), count) << solid;
+  }
+}
+
 TEST(WeldedUnits, MassOfAWeldIsThatOfItsBodiesByTheParallelAxisTheorem) {
   Builder b;
   const SubassemblyId node = b.AddNode("servo");
@@ -459,6 +484,90 @@ TEST(WeldedUnits, WhatIsNamedStaysApartByUnitMemberOrAll) {
   ASSERT_FALSE(welded.has_value());
   EXPECT_EQ(welded.error().where, "rig.hvas.json:3");
   EXPECT_NE(welded.error().message.find("cup"), std::string::npos);
+}
+
+TEST(WeldedUnits, AHornInTheNodeOfItsServoStaysApartWithItsScrewAndAnEnclosedOneDoesNot) {
+  for (const bool is_enclosed : {false, true}) {
+    Builder b;
+    const SubassemblyId node = b.AddNode("SG90 v3");
+    b.Place(b.AddPart("SOLID", MakeBox({20e-3, 12e-3, 20e-3},
+                                       is_enclosed ? Vec3(16e-3, 10e-3, 16e-3) : Vec3::Zero())),
+            Pose(), node);
+    b.Place(b.AddPart("gear", MakeBox({6e-3, 6e-3, 2e-3})), Pose(Vec3(0, 0, 11e-3)), node);
+    const Pose X_WH(Vec3(0, 0, is_enclosed ? 0 : 13e-3));
+    b.Place(b.AddPart("Horn", MakeRing(1.2e-3, 3e-3, 2e-3)), X_WH, node);
+    b.Place(b.AddPart("screw M2x6", MakeRing(0.2e-3, 1e-3, 6e-3)), X_WH, node);
+    Weld(&b.product());
+    const Product& product = b.product();
+    ASSERT_EQ(product.occurrences.size(), is_enclosed ? 1u : 3u);
+    EXPECT_EQ(product.occurrences[0].name, "SG90 v3");
+    if (!is_enclosed) {
+      EXPECT_EQ(product.occurrences[0].bodies.size(), 2u);
+      EXPECT_EQ(product.occurrences[1].name, "Horn");
+    }
+  }
+}
+
+TEST(WeldedUnits, APartOfAServoWithARowOfHolesIsItsHornAndOneWithFourIsNot) {
+  for (const int holes : {4, 6}) {
+    Builder b;
+    const SubassemblyId node = b.AddNode("Micro Servo 9g");
+    b.Place(b.AddPart("body 1", MakeBox({20e-3, 12e-3, 20e-3})), Pose(), node);
+    b.Place(b.AddPart("body 2", MakeBox({6e-3, 6e-3, 2e-3})), Pose(Vec3(0, 0, 11e-3)), node);
+    Part horn = MakeBox({30e-3, 6e-3, 2e-3});
+    horn.forms.emplace_back();
+    horn.forms.back().kind = FormKind::kHolePattern;
+    horn.forms.back().count = holes;
+    b.Place(b.AddPart("body 3", horn), Pose(Vec3(0, 0, 13e-3)), node);
+    Weld(&b.product());
+    EXPECT_EQ(b.product().occurrences.size(), holes < 5 ? 1u : 2u);
+  }
+}
+
+TEST(WeldedUnits, VariantsAtOnePlaceAreLeftOutWithAWarningAndWhatIsDrawnIntoAPartIsNot) {
+  // Two lengths of one bar at one end; a bar in a block; two bars that overlap by half.
+  const auto place = [](const Vec3& size, const Vec3& p, const Vec3& other, const Vec3& q) {
+    Builder b;
+    b.Place(b.AddPart("bar", MakeBox(size)), kTurned * Pose(p));
+    b.Place(b.AddPart("other bar", MakeBox(other)), kTurned * Pose(q));
+    return b;
+  };
+  const Vec3 bar(4e-3, 4e-3, 20e-3);
+  Builder lengths = place(bar, Vec3::Zero(), {4e-3, 4e-3, 12e-3}, {0, 0, 4e-3});
+  Product apart = lengths.product();
+  const Diagnostics told = Weld(&lengths.product());
+  ASSERT_EQ(lengths.product().occurrences.size(), 1u);
+  EXPECT_EQ(lengths.product().occurrences[0].path, "rig/bar");
+  EXPECT_EQ(lengths.product().occurrences[0].bodies,
+            (std::vector<std::string>{"rig/bar", "rig/other bar"}));
+  ASSERT_EQ(told.items().size(), 1u);
+  EXPECT_EQ(told.items()[0].code, "variant-part");
+  EXPECT_EQ(told.items()[0].severity, Severity::kWarning);
+  EXPECT_EQ(told.items()[0].entity, "rig/other bar");
+  EXPECT_NE(told.items()[0].message.find("rig/bar"), std::string::npos);
+  EXPECT_TRUE(Weld(&apart, {{"other bar", {}}}).items().empty());
+  EXPECT_EQ(apart.occurrences.size(), 2u);
+
+  for (Builder b :
+       {place({20e-3, 20e-3, 20e-3}, Vec3::Zero(), {12e-3, 12e-3, 14e-3}, {0, 0, 3e-3}),
+        place(bar, Vec3::Zero(), bar, {0, 0, 8e-3}), place(bar, Vec3::Zero(), bar, {0, 2e-3, 0})}) {
+    EXPECT_TRUE(Weld(&b.product()).items().empty());
+    EXPECT_EQ(b.product().occurrences.size(), 2u);
+  }
+  // Nearly the same box, with no face in common.
+  Builder alike = place(bar, Vec3::Zero(), {4.1e-3, 4.1e-3, 20.2e-3}, Vec3::Zero());
+  Weld(&alike.product());
+  EXPECT_EQ(alike.product().occurrences.size(), 1u);
+}
+
+TEST(Variants, SharedVolumeIsThatOfOverlappingBoxesWithinALineOfTheGrid) {
+  Builder b;
+  b.Place(b.AddPart("a", MakeBox({10e-3, 20e-3, 30e-3})), kTurned);
+  b.Place(b.AddPart("b", MakeBox({10e-3, 20e-3, 30e-3})), kTurned * Pose(Vec3(4e-3, 5e-3, 6e-3)));
+  const SharedVolume volume = CalcSharedVolume(b.product(), OccurrenceId(0), OccurrenceId(1));
+  EXPECT_NEAR(volume.first, 6e-6, 0.05 * 6e-6);
+  EXPECT_NEAR(volume.second, 6e-6, 0.05 * 6e-6);
+  EXPECT_NEAR(volume.both, 6e-3 * 15e-3 * 24e-3, 0.05 * 6e-3 * 15e-3 * 24e-3);
 }
 
 TEST(WeldedUnits, BodiesSurviveSerialisation) {

@@ -187,7 +187,7 @@ TEST(Reader, ReadsARecordOfSchemaTwo) {
   EXPECT_TRUE(reader->ForEachFrame({}, [](const Frame&) { return true; }).has_value());
 }
 
-// And of this one, by which a later program shows that it still reads it.
+// Ticks that are compressed byte by byte, with commands and attachments.
 TEST(Reader, ReadsARecordOfSchemaThree) {
   Result<Reader> reader = Reader::Open(HVAS_RECORD_OF_SCHEMA_3);
   ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
@@ -196,6 +196,17 @@ TEST(Reader, ReadsARecordOfSchemaThree) {
   EXPECT_EQ(reader->Verify().value(), "c35f3f7da5b8d74220b70b324954ab13");
   EXPECT_EQ(reader->ReadCommands().value().front().kind, "begin");
   EXPECT_FALSE(reader->ReadAttachment("product").value().empty());
+}
+
+// With seals.
+TEST(Reader, ReadsARecordOfSchemaFour) {
+  Result<Reader> reader = Reader::Open(HVAS_RECORD_OF_SCHEMA_4);
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_TRUE(reader->is_complete());
+  EXPECT_EQ(reader->schema(), 4);
+  EXPECT_EQ(reader->Verify().value(), "e9308775532cd94515ad627472e58d03");
+  EXPECT_EQ(reader->ReadTicks({}).value().size(), 300u);
+  EXPECT_EQ(reader->ReadCommands().value().front().kind, "begin");
 }
 
 TEST(Reader, ReadsASessionWhileItIsRecorded) {

@@ -21,7 +21,7 @@ haptics::MateFaces CollectOfHole(const contact::ShapeSource& source) {
   const product::Part& part = product.parts[id.index()];
   for (const product::Feature& feature : part.features) {
     if (feature.kind == FeatureKind::kHole) {
-      return CollectMateFaces(part, feature);
+      return CollectMateFaces(part, feature.faces);
     }
   }
   ADD_FAILURE() << "no hole";
@@ -58,7 +58,7 @@ TEST(CollectMateFacesTest, NeighboursOfABoxFaceAreTheFourAroundIt) {
   const auto id =
       testing::AddPart(&product, "box", contact::testing::Block(Vec3(5e-3, 6e-3, 7e-3)));
   for (const product::Feature& feature : product.parts[id.index()].features) {
-    const haptics::MateFaces faces = CollectMateFaces(product.parts[id.index()], feature);
+    const haptics::MateFaces faces = CollectMateFaces(product.parts[id.index()], feature.faces);
     ASSERT_EQ(faces.mating.size(), 1u);
     EXPECT_EQ(faces.with_neighbours.size(), 5u);
     const std::uint32_t opposite = faces.mating[0] ^ 1u;

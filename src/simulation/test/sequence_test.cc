@@ -37,7 +37,7 @@ struct Planned {
     const auto faces = [this](const product::Connector& side) {
       const product::Part& part = product.part_of(side.occurrence);
       return std::make_shared<const haptics::MateFaces>(
-          CollectMateFaces(part, part.features[side.feature.index()]));
+          CollectMateFaces(part, part.features[side.feature.index()].faces));
     };
     for (const product::Mate& mate : product.mates) {
       input.faces_a.push_back(faces(mate.a));
@@ -343,6 +343,16 @@ TEST(SequenceTest, PartThatHoldsAnotherOneGoesInBeforeIt) {  // connected assemb
   EXPECT_EQ(neighbours[2], std::vector<OccurrenceId>{OccurrenceId(1)});
 }
 
+TEST(SequenceTest, PartThatHangsOnAnotherOneAloneGoesInWithIt) {
+  // The pendant cannot come out before the lid, and nothing but the lid holds it.
+  const Planned planned(testing::PendantUnderLid());
+  EXPECT_TRUE(planned.sequence.gaps.empty());
+  ASSERT_EQ(planned.order(), (Names{"lid", "pendant", "lid", "cup", "lid"}));
+  EXPECT_EQ(planned.sequence.steps[0].kind, SequenceStep::Kind::kBase);
+  EXPECT_EQ(planned.sequence.steps[2].kind, SequenceStep::Kind::kPark);
+  EXPECT_EQ(planned.sequence.steps[4].members, std::vector<OccurrenceId>{OccurrenceId(2)});
+}
+
 TEST(SequenceTest, PartThatTouchesNothingHasNoNeighbours) {
   Product product;
   product.name = "apart";
@@ -374,6 +384,7 @@ TEST(CutPartsTest, PartsBetweenOthersAreFound) {
   EXPECT_EQ(ListCutParts(ids({0, 1, 2, 3, 4, 5}), neighbours), ids({1, 2}));
   EXPECT_EQ(ListCutParts(ids({4, 3, 2, 1}), neighbours), ids({2}));
   EXPECT_EQ(ListCutParts(ids({3, 4, 2}), neighbours), ids({}));
+  EXPECT_EQ(ListConnected(OccurrenceId(3), ids({4, 3, 1, 0, 5}), neighbours), ids({4, 3}));
   EXPECT_TRUE(AreConnected(ids({0, 1, 2}), neighbours));
   EXPECT_FALSE(AreConnected(ids({0, 2}), neighbours));
 }

@@ -132,6 +132,22 @@ Product CoinUnderLid() {
   return product;
 }
 
+Product PendantUnderLid() {
+  constexpr double kRim = 25e-3;
+  constexpr double kLength = 10e-3;
+  Product product;
+  product.name = "box";
+  const PartId cup = AddPart(&product, "cup", contact::testing::Cup(10e-3, 15e-3, 5e-3, kRim));
+  const PartId lid = AddPart(&product, "lid", contact::testing::Shaft(15e-3, 4e-3, kDeviation));
+  const PartId pendant =
+      AddPart(&product, "pendant", contact::testing::Shaft(4e-3, kLength, kDeviation));
+  Place(&product, cup, "cup");
+  Place(&product, lid, "lid", Pose(Vec3(0, 0, kRim)));
+  Place(&product, pendant, "pendant", Pose(Vec3(1e-3, 0, kRim - kLength)));
+  Complete(&product);
+  return product;
+}
+
 namespace {
 
 Product MakeTrap(bool has_cap) {

@@ -37,6 +37,10 @@ Product PegInBlock(const Pose& X_WP = Pose());
 /** A cup, a coin that lies loose on its floor, and a lid that lies on the rim. */
 Product CoinUnderLid();
 
+/** A cup, a lid on its rim, and a pendant that hangs under the lid, in the cup, where it touches
+ nothing else. */
+Product PendantUnderLid();
+
 /** A ring between two flanges that turn it into a captive, with 1 mm of play to either side. */
 Product CaptiveRing();
 

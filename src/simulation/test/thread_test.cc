@@ -83,7 +83,8 @@ TEST(ThreadTest, WidenedFacesLeaveOutWhatThePartsRestOn) {
       IsDrawnThread(product.mates[0]) ? product.mates[0] : product.mates[1];
   const auto widened = [&](const product::Connector& side) {
     const product::Part& part = product.part_of(side.occurrence);
-    const haptics::MateFaces faces = CollectMateFaces(part, part.features[side.feature.index()]);
+    const haptics::MateFaces faces =
+        CollectMateFaces(part, part.features[side.feature.index()].faces);
     return *WidenForThread(product, thread, side, faces);
   };
   // Faces as listed above. The hole: itself and the bottom, not the top; the thread: itself and its

@@ -110,6 +110,7 @@ TEST(TrapTest, GuidedPegStopsAtAThirdPartAndTheHandFeelsIt) {  // N3
     EXPECT_GT(trial.guided.ticks_on_clamp, 1000);
     EXPECT_NEAR(trial.guided.insertion, kDepthAtClamp, 20e-6);
     EXPECT_LT(trial.guided.deepest, 25e-6);
+    EXPECT_EQ(peg.passage.depth, 0);
     EXPECT_GT(trial.guided.lowest_on_clamp, testing::kBlockHeight - kDepthAtClamp - 20e-6);
     EXPECT_GT(trial.guided.force_on_clamp, 4.0);  // [N]; what a hand tries first
   }
@@ -136,6 +137,10 @@ TEST(TrapTest, WithoutCollisionTheGuidedPegGoesThroughTheThirdPart) {  // as bot
   ASSERT_EQ(trial.results.size(), 3U);
   EXPECT_TRUE(trial.results[2].is_seated) << trial.results[2].reason;
   EXPECT_EQ(trial.guided.ticks_on_clamp, 0);
+  // What it went through is found without the ticks.
+  EXPECT_EQ(trial.results[2].passage.through, kClamp);
+  EXPECT_GT(trial.results[2].passage.depth, 0.5e-3);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "went through trap/clamp", trial.results[2].note);
   EXPECT_GT(trial.guided.insertion, testing::kBlockHeight - testing::kFloor - 0.5e-3);
 }
 

@@ -4,7 +4,7 @@ import type { Diagnostic, Mate } from "../protocol/messages";
 import { mateKey } from "../model/fit_mates";
 import { chooseCardMate, select } from "../model/view_state";
 import { canSteer, store, studio, view } from "./app_state";
-import { t } from "./i18n";
+import { number, t } from "./i18n";
 import { Icon } from "./icons";
 import { isInPlace } from "./progress";
 
@@ -15,6 +15,12 @@ function stateOf(mate: Mate): "open" | "done" | "active" {
     return "active";
   }
   return isInPlace(mate.a) && isInPlace(mate.b) ? "done" : "open";
+}
+
+/** "Concentric", "Slot 12 mm". */
+function kindText(mate: Mate): string {
+  const width = mate.kind === "prismatic" && mate.fit !== null ? ` ${number(mate.fit.diameter_mm)} mm` : "";
+  return t(`mates.${mate.kind}`) + width;
 }
 
 /** The parts whose mates are shown: the selection, else what is held or expected; none: all mates. */
@@ -69,7 +75,7 @@ export function ConstraintList() {
               >
                 <i class="state-dot" role="img" aria-label={t(`mates.${state}`)} />
                 <span class="constraint-text">
-                  <span class="constraint-kind">{t(`mates.${mate.kind}`)}</span> {partners(mate, parts)}
+                  <span class="constraint-kind">{kindText(mate)}</span> {partners(mate, parts)}
                 </span>
                 {mate.fit ? <span class="badge">{mate.fit.code}</span> : null}
               </button>

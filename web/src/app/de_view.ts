@@ -2,6 +2,12 @@
 import type { enView } from "./en_view";
 
 export const deView: Record<keyof typeof enView, string> = {
+  "cube.front": "Vorne",
+  "cube.back": "Hinten",
+  "cube.left": "Links",
+  "cube.right": "Rechts",
+  "cube.top": "Oben",
+  "cube.bottom": "Unten",
   "vr.take": "Nach einem Teil greifen und abdrücken, oder Finger schließen.",
   "vr.takeExpected": "Als Nächstes: {expected}. Danach greifen und abdrücken, oder Finger schließen.",
   "vr.depth": "Tiefe",

@@ -1,5 +1,11 @@
 /** English of VR, the workshop and the view. */
 export const enView = {
+  "cube.front": "Front",
+  "cube.back": "Back",
+  "cube.left": "Left",
+  "cube.right": "Right",
+  "cube.top": "Top",
+  "cube.bottom": "Bottom",
   "vr.take": "Reach for a part and press the trigger, or pinch.",
   "vr.takeExpected": "Next: {expected}. Reach for it and press the trigger, or pinch.",
   "vr.depth": "Depth",

@@ -2,7 +2,7 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { firstMate, isFitCode, mateKey, matesWithFit } from "../model/fit_mates";
+import { canHaveFit, firstMate, isFitCode, mateKey, matesWithFit } from "../model/fit_mates";
 import { liveNumbers } from "../model/hints";
 import { chooseCardMate, chosenCardMate } from "../model/view_state";
 import type { Fit, Mate } from "../protocol/messages";
@@ -159,7 +159,9 @@ export function FitCard({ parts }: { parts: readonly number[] }) {
         </h3>
         {fit === null ? null : (
           <p class="quiet" title={fit.reason}>
-            ⌀ {number(fit.diameter_mm)} mm
+            {mate.kind === "prismatic"
+              ? t("fit.width", { mm: number(fit.diameter_mm) })
+              : `⌀ ${number(fit.diameter_mm)} mm`}
           </p>
         )}
         <dl class="facts">
@@ -171,7 +173,7 @@ export function FitCard({ parts }: { parts: readonly number[] }) {
           {told !== null ? <dd>{told.along}</dd> : null}
           <FitForces parts={parts} />
         </dl>
-        {canSteer() && mate.kind === "axis_hole" ? <FitChoice mate={mate} key={mateKey(mate)} /> : null}
+        {canSteer() && canHaveFit(mate) ? <FitChoice mate={mate} key={mateKey(mate)} /> : null}
       </div>
     </section>
   );

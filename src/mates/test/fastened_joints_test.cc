@@ -1,0 +1,96 @@
+#include "mates/fastened_joints.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "mates/infer.h"
+#include "mates/test/test_product.h"
+
+namespace hvas::mates {
+namespace {
+
+using product::FeatureKind;
+using product::Part;
+using product::PartId;
+using product::Product;
+using spatial::Pose;
+using testing::AddCylinder;
+using testing::AddOccurrence;
+using testing::AddPart;
+using testing::AddRectangle;
+
+const Pose kPlace(Quat(Eigen::AngleAxisd(0.4, Vec3(1, 2, 2) / 3)), Vec3(0.1, 0.2, 0.3));
+
+/** A flange on a motor, face on face, with a pilot of 22 mm or none, and screws at the given
+ * points. */
+Product MakeFlange(const std::vector<Vec3>& points, bool has_pilot, const char* screw_name) {
+  Product product;
+  AddPart(&product, "flange");
+  AddPart(&product, "motor");
+  Part* flange = &product.parts[0];
+  Part* motor = &product.parts[1];
+  AddRectangle(flange, Vec3::Zero(), -Vec3::UnitZ(), 40e-3, 40e-3);
+  AddRectangle(motor, Vec3::Zero(), Vec3::UnitZ(), 40e-3, 40e-3);
+  for (const Vec3& p : points) {
+    AddCylinder(flange, FeatureKind::kHole, p, Vec3::UnitZ(), 1.7e-3, 0, 5e-3);
+    AddCylinder(motor, FeatureKind::kHole, p, Vec3::UnitZ(), 1.25e-3, -8e-3, 0);
+  }
+  if (has_pilot) {
+    AddCylinder(flange, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 11e-3, 0, 5e-3);
+    AddCylinder(motor, FeatureKind::kShaft, Vec3::Zero(), Vec3::UnitZ(), 11e-3, 0, 2e-3);
+  }
+  Part* screw = AddPart(&product, screw_name);
+  AddCylinder(screw, FeatureKind::kShaft, Vec3::Zero(), Vec3::UnitZ(), 1.5e-3, -6e-3, 5e-3);
+  AddOccurrence(&product, PartId(0), kPlace);
+  AddOccurrence(&product, PartId(1), kPlace);
+  for (const Vec3& p : points) {
+    AddOccurrence(&product, PartId(2), kPlace * Pose(p));
+  }
+  Diagnostics diagnostics;
+  Infer(&product, &diagnostics);
+  return product;
+}
+
+constexpr double kQuarter = 15.5e-3;  // Half the distance of a NEMA 17's holes [m].
+const std::vector<Vec3> kSquare{{kQuarter, kQuarter, 0},
+                                {-kQuarter, kQuarter, 0},
+                                {-kQuarter, -kQuarter, 0},
+                                {kQuarter, -kQuarter, 0}};
+
+TEST(FastenedJoints, PilotAndBoltCircleOfAFlangeOnAMotorAreOneJointWithoutFreedom) {
+  for (const bool has_pilot : {true, false}) {
+    const Product product = MakeFlange(kSquare, has_pilot, "screw M3x10");
+    const auto joints = FindFastenedJoints(product);
+    ASSERT_EQ(joints.size(), 1U);
+    EXPECT_EQ(joints[0].a.index(), 0U);
+    EXPECT_EQ(joints[0].b.index(), 1U);
+    EXPECT_EQ(joints[0].fasteners.size(), 4U);
+    EXPECT_NEAR(joints[0].diameter, 3e-3, 1e-12);
+    EXPECT_NEAR(joints[0].circle_diameter, 2 * std::sqrt(2.0) * kQuarter, 1e-9);
+    EXPECT_EQ(joints[0].pilot.has_value(), has_pilot);
+    EXPECT_EQ(joints[0].free_translations, 0);
+    EXPECT_EQ(joints[0].free_rotations, 0);
+  }
+}
+
+TEST(FastenedJoints, OneScrewOnAFaceLeavesATurnAndFourOffACircleHaveNone) {
+  const auto one = FindFastenedJoints(MakeFlange({kSquare[0]}, false, "screw M3x10"));
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_EQ(one[0].free_translations, 0);
+  EXPECT_EQ(one[0].free_rotations, 1);
+  EXPECT_EQ(one[0].circle_diameter, 0);
+  std::vector<Vec3> points = kSquare;
+  points[0] *= 1.2;
+  const auto off = FindFastenedJoints(MakeFlange(points, true, "screw M3x10"));
+  ASSERT_EQ(off.size(), 1U);
+  EXPECT_EQ(off[0].circle_diameter, 0);
+}
+
+TEST(FastenedJoints, ASingleShaftInTwoPartsIsNoFastenerAndTwoPinsAre) {
+  EXPECT_TRUE(FindFastenedJoints(MakeFlange({kSquare[0]}, false, "axle")).empty());
+  EXPECT_EQ(FindFastenedJoints(MakeFlange({kSquare[0], kSquare[2]}, false, "pin")).size(), 1U);
+}
+
+}  // namespace
+}  // namespace hvas::mates

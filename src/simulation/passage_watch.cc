@@ -1,0 +1,84 @@
+#include "simulation/passage_watch.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace hvas::simulation {
+namespace {
+
+using product::OccurrenceId;
+
+constexpr double kLeastDepth = 0.1e-3;  // [m]; parts that touch may lie so deep in one another
+
+}  // namespace
+
+PassageWatch::PassageWatch(const Model& model) : model_(model), passages_(model.bodies.size()) {
+  for (const Body& body : model.bodies) {
+    scene_.Add(body.shape, body.X_WB_goal);
+  }
+}
+
+void PassageWatch::Look(const PhysicsSide& physics, std::size_t hand) {
+  const haptics::HeldPart* held = physics.held(hand);
+  const haptics::TickOutput& tick = physics.tick(hand);
+  if (held == nullptr || tick.occurrence != held->occurrence) {
+    return;
+  }
+  PlaceOthers(physics);
+  LookAt(held->occurrence, held->occurrence, tick.X_WD);
+  for (const haptics::HeldMember& member : held->members) {
+    LookAt(held->occurrence, member.occurrence, tick.X_WD * member.X_BS);
+  }
+}
+
+void PassageWatch::PlaceOthers(const PhysicsSide& physics) {
+  for (const Body& body : model_.bodies) {
+    const contact::BodyId id(body.occurrence.index());
+    const bool is_placed = physics.placement(body.occurrence) == Placement::kPlaced;
+    if (is_placed != scene_.is_enabled(id)) {
+      scene_.SetPose(id, physics.pose(body.occurrence));
+      scene_.SetEnabled(id, is_placed);
+    }
+  }
+}
+
+void PassageWatch::LookAt(OccurrenceId leader, OccurrenceId id, const spatial::Pose& X_WB) {
+  Query(id, X_WB);
+  std::vector<Passage> met;
+  for (const contact::Contact& contact : workspace_.contacts()) {
+    if (contact.body.is_valid() && contact.distance < -kLeastDepth) {
+      met.push_back({OccurrenceId(contact.body.index()), -contact.distance});
+    }
+  }
+  Passage& deepest = passages_[leader.index()];
+  for (const Passage& passage : met) {
+    if (passage.depth > deepest.depth) {
+      const double beyond = passage.depth - FindDrawnDepth(id, passage.through);
+      deepest = beyond > deepest.depth ? Passage{passage.through, beyond} : deepest;
+    }
+  }
+}
+
+void PassageWatch::Query(OccurrenceId id, const spatial::Pose& X_WB) {
+  contact::QueryOptions query;
+  query.margin = -kLeastDepth;
+  query.self = contact::BodyId(id.index());
+  scene_.Query(*model_.bodies[id.index()].shape, X_WB, query, &workspace_);
+}
+
+double PassageWatch::FindDrawnDepth(OccurrenceId id, OccurrenceId other) {
+  const auto [entry, is_new] = drawn_depths_.try_emplace(std::minmax(id, other), 0.0);
+  if (is_new) {
+    for (std::size_t i = 0; i < scene_.size(); ++i) {
+      scene_.SetEnabled(contact::BodyId(i), i == other.index());
+    }
+    scene_.SetPose(contact::BodyId(other.index()), model_.bodies[other.index()].X_WB_goal);
+    Query(id, model_.bodies[id.index()].X_WB_goal);
+    for (const contact::Contact& contact : workspace_.contacts()) {
+      entry->second = std::max(entry->second, -contact.distance);
+    }
+  }
+  return entry->second;
+}
+
+}  // namespace hvas::simulation
