@@ -308,7 +308,11 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       }
     }
     const Refined r = RefineActual(*field.shape, field.offsets, p_F, hit, filter);
-    if (!r.is_valid || r.distance >= margin_) {
+    // So deep inside, the field knows no face: for a sample of faces that something else answers
+    // for, what it answers for may be all around, as the thread of a screw around the rim of its
+    // core hole.
+    const bool is_answered_for = r.face == kNoFace && filter.bits != 0;
+    if (!r.is_valid || r.distance >= margin_ || is_answered_for) {
       continue;
     }
     const Vec3 towards = R_back * r.gradient;  // In the sampled shape's frame.
