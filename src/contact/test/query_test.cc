@@ -241,6 +241,23 @@ TEST_F(QueryTest, IgnoredFacesLeaveTheOthers) {
   EXPECT_NEAR(Deepest(scene, *dowel, Pose(Vec3(2e-6, 0, 8e-3))), -7e-6, kHalfMicrometre);
 }
 
+TEST_F(QueryTest, AThreadDrawnAtItsOuterDiameterIsNotMetByTheRimOfItsCoreHole) {
+  const auto core = Build(testing::Cup(4.2e-3, 20e-3, 5e-3, 20e-3));
+  const auto thread = Build(testing::Shaft(5e-3, 20e-3));
+  Scene scene;
+  const BodyId body = scene.Add(core, {});
+  const std::vector<std::uint32_t> held{0, 1, 2};
+  const std::vector<std::uint32_t> hole{2, 3};
+  const IgnoredPair pair{body, held, hole};
+  options_.ignored = {&pair, 1};
+  for (int i = 1; i < 60; ++i) {
+    const Quat q = spatial::RotationFromVector({0, 0, 0.11 * i});
+    EXPECT_EQ(Deepest(scene, *thread, Pose(q, Vec3(0, 0, 6e-3 + 0.23e-3 * i))),
+              std::numeric_limits<double>::infinity())
+        << i;
+  }
+}
+
 TEST_F(QueryTest, SkipsDisabledBodiesAndItself) {
   const auto block = Build(testing::Block({10e-3, 10e-3, 10e-3}));
   Scene scene;
