@@ -56,6 +56,13 @@ std::array<double, 2> SlotOffsets(const product::Product& product, const Mate& m
   return {drawn_gap + excess - tongue - play, drawn_gap - excess - tongue - play};
 }
 
+/** Cosine of the angle between across and the normals of the walls: that of a dovetail's flanks,
+ else one. Offsets are along the normals, sizes across. */
+double FlankCosine(const product::Product& product, const product::Connector& side) {
+  const product::Feature& wall = product.part_of(side.occurrence).features[side.feature.index()];
+  return std::abs(wall.axis_B.dot(side.X_BM.q() * Vec3::UnitZ()));
+}
+
 /** The hole's offsets at equal steps of z over the overlap, for a shaft that is `shaft` larger. */
 std::vector<double> HoleStations(const Mate& mate, const fits::FitForce& fit, double shaft,
                                  bool is_mouth_high) {
@@ -159,7 +166,7 @@ class Collector {
     if (!(overlap.high > overlap.low) || !hole_faces.IsFree(bore)) {
       return;
     }
-    const double offset = ShaftOffset(mate, &fit);
+    const double offset = ShaftOffset(mate, &fit, 1);
     const std::vector<double> stations = HoleStations(mate, fit, offset, IsMouthHigh(input_, mate));
     if (IsTooLarge({offset}) || IsTooLarge(stations)) {
       WarnTooLarge(mate, diagnostics);
@@ -176,8 +183,11 @@ class Collector {
     if (!slot_faces.IsFree(FacesOf(product, mate.a))) {
       return;
     }
-    const double offset = ShaftOffset(mate, fit);
-    const auto [low, high] = SlotOffsets(product, mate, fit, offset);
+    const double cosine = FlankCosine(product, mate.a);
+    const double offset = ShaftOffset(mate, fit, cosine);
+    auto [low, high] = SlotOffsets(product, mate, fit, offset / cosine);
+    low *= cosine;
+    high *= cosine;
     if (IsTooLarge({offset, low, high})) {
       WarnTooLarge(mate, diagnostics);
       return;
@@ -225,13 +235,14 @@ class Collector {
   /** How far the shaft's or tongue's faces move: to their size, or as an earlier mate has moved
    * them.
    */
-  [[nodiscard]] double ShaftOffset(const Mate& mate, const fits::FitForce* fit) const {
+  [[nodiscard]] double ShaftOffset(const Mate& mate, const fits::FitForce* fit,
+                                   double cosine) const {
     const PartFaces& faces = faces_[mate.b.occurrence.index()];
     const std::vector<product::FaceId> side = FacesOf(*input_.product, mate.b);
     if (!faces.IsFree(side)) {
       return faces.offsets[side.front().index()].uniform;
     }
-    return fit != nullptr ? 0.5 * fit->shaft_diameter() - mate.shaft_radius : 0.0;
+    return fit != nullptr ? cosine * (0.5 * fit->shaft_diameter() - mate.shaft_radius) : 0.0;
   }
 
   void GiveShaft(const Mate& mate, double offset) {

@@ -3,6 +3,8 @@
 #include "simulation/actual_faces.h"
 
 #include <algorithm>
+#include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -86,6 +88,59 @@ TEST(ActualFaces, StayAsDrawnWhereTheyAreAlsoAThread) {
   const auto model = CompilePeg(std::move(product), 1);
   for (const Body& body : model->bodies) {
     EXPECT_EQ(body.faces, nullptr);
+  }
+}
+
+/** A slot of 10 mm, 8 mm deep, and a tongue in it that is drawn as wide, less `clearance`, and
+ `shift` beside the middle; the fit of its width. */
+std::shared_ptr<const Model> CompileTongue(const std::string& code, double clearance,
+                                           double shift) {
+  product::Product product;
+  product.name = "rig";
+  const double y = 5e-3 - 0.5 * clearance;
+  const auto slot = testing::AddPart(&product, "slot",
+                                     contact::testing::Prism({{-15e-3, -4e-3},
+                                                              {15e-3, -4e-3},
+                                                              {15e-3, 8e-3},
+                                                              {5e-3, 8e-3},
+                                                              {5e-3, 0},
+                                                              {-5e-3, 0},
+                                                              {-5e-3, 8e-3},
+                                                              {-15e-3, 8e-3}},
+                                                             15e-3));
+  const auto tongue =
+      testing::AddPart(&product, "tongue",
+                       contact::testing::Prism({{-y, 0}, {y, 0}, {y, 16e-3}, {-y, 16e-3}}, 15e-3));
+  testing::Place(&product, slot, "slot");
+  testing::Place(&product, tongue, "tongue", spatial::Pose(Vec3(0, shift, 0)));
+  testing::Complete(&product);
+  for (product::Mate& mate : product.mates) {
+    if (mate.kind == product::MateKind::kPrismatic) {
+      mate.fit->code = code;
+    }
+  }
+  return CompilePeg(std::move(product), 1);
+}
+
+TEST(ActualFaces, WallsLeaveATongueThePlayOfItsFitWhereItIsDrawn) {
+  constexpr std::uint32_t kSlotHigh = 3;  // Walls of the slot and sides of the tongue.
+  constexpr std::uint32_t kSlotLow = 5;
+  constexpr std::uint32_t kTongueHigh = 1;
+  constexpr std::uint32_t kTongueLow = 3;
+  for (const auto& [code, clearance, shift] :
+       {std::tuple("H7/g6", 0.0, 0.0), std::tuple("H9/d9", 0.2e-3, 0.0),
+        std::tuple("H9/d9", 0.2e-3, 0.1e-3), std::tuple("H7/p6", -20e-6, 0.0)}) {
+    const auto model = CompileTongue(code, clearance, shift);
+    const auto fit = FitOf(*model);
+    ASSERT_NE(fit, nullptr);
+    const auto offset = [&](std::size_t body, std::uint32_t face) {
+      return model->bodies[body].faces->At(face, Vec3::Zero()).offset;
+    };
+    const double high = 0.5 * clearance - shift - offset(0, kSlotHigh) - offset(1, kTongueHigh);
+    const double low = 0.5 * clearance + shift - offset(0, kSlotLow) - offset(1, kTongueLow);
+    const double play = std::max(5e-6, fit->CalcRadialPlay(fit->length()));
+    EXPECT_NEAR(high + low, 2 * play, 1e-9) << code;
+    EXPECT_NEAR(low - high, 2 * std::min(shift, play), 1e-9) << code;
   }
 }
 
