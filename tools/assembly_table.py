@@ -9,8 +9,9 @@ than --limit seconds of processor time is ended by SIGTERM, and what it did unti
 table has the parts that are not in their places with every seed alike. --write keeps all answers as JSON.
 
 Columns: left out and give way count the pairs of parts that lie in one another as drawn; beyond drawn is the deepest that a
-part in the hand lay in another one, less what the two do as drawn. import is the processor time of `hvas inspect`, preparation that of `hvas assemble` besides its run; memory is the
-peak of all processes. Exit status 1 when a product that can be read gives no answer.
+part in the hand lay in another one, less what the two do as drawn. Import is the processor time of `hvas inspect`,
+preparation that of `hvas assemble` besides its run; memory is the peak of all processes. Exit status 1 when a product that
+can be read gives no answer.
 """
 
 import argparse
