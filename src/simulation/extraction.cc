@@ -12,6 +12,8 @@
 #include "base/units.h"
 #include "mates/mate_kind.h"
 #include "mates/place_bodies.h"
+#include "simulation/narrow_hole.h"
+#include "simulation/way_directions.h"
 
 namespace hvas::simulation {
 namespace {
@@ -28,42 +30,6 @@ constexpr double kMostRelief = 2 * contact::FaceOffsets::kLargest;  // [m] of tw
 constexpr int kReliefRounds = 8;  // In each, the deepest contacts of a query give way: a choice.
 constexpr double kShortestStep = 0.25e-3;  // [m] between looks along a way
 constexpr double kLongestStep = 2e-3;      // [m]; longer ones could pass through a thin wall.
-constexpr double kParallel = 1e-3;         // sine or cosine that counts as zero
-
-/** Adds a direction if none that is known is within a milliradian of it. */
-void AddDirection(const Vec3& d, std::vector<Vec3>* directions) {
-  if (std::none_of(directions->begin(), directions->end(),
-                   [&](const Vec3& known) { return known.dot(d) > 1 - kParallel * kParallel; })) {
-    directions->push_back(d);
-  }
-}
-
-/** Lists the normals of the planes of a part that have most area, as lines in its frame: the
- directions in which it was drawn, however it lies in the product. */
-std::vector<Vec3> ListPlaneLines(const product::Part& part) {
-  constexpr std::size_t kMost = 3;             // Lines: those of a box. A choice.
-  std::vector<std::pair<double, Vec3>> lines;  // Area [m^2] and direction.
-  for (const product::Feature& feature : part.features) {
-    if (feature.kind != product::FeatureKind::kPlane) {
-      continue;
-    }
-    const auto known = std::find_if(lines.begin(), lines.end(), [&](const auto& line) {
-      return std::abs(line.second.dot(feature.axis_B)) > 1 - kParallel * kParallel;
-    });
-    if (known != lines.end()) {
-      known->first += feature.area;
-    } else {
-      lines.emplace_back(feature.area, feature.axis_B);
-    }
-  }
-  std::stable_sort(lines.begin(), lines.end(),
-                   [](const auto& x, const auto& y) { return x.first > y.first; });
-  std::vector<Vec3> directions;
-  for (std::size_t i = 0; i < std::min(kMost, lines.size()); ++i) {
-    directions.push_back(lines[i].second);
-  }
-  return directions;
-}
 
 }  // namespace
 
@@ -184,17 +150,7 @@ std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
                         Vec3(0, 0, -1)}) {
     add(d);
   }
-  // Along the edges of two faces that are held: out of a slot, whichever way it was drawn.
-  constexpr std::size_t kMostNormals = 8;  // A choice: those of a prism and its ends.
-  for (std::size_t i = 0; i < std::min(kMostNormals, normals.size()); ++i) {
-    for (std::size_t k = i + 1; k < std::min(kMostNormals, normals.size()); ++k) {
-      const Vec3 edge = normals[i].cross(normals[k]);
-      if (edge.norm() > kParallel) {
-        add(edge.normalized());
-        add(-edge.normalized());
-      }
-    }
-  }
+  AddEdges(normals, &directions);
   for (const OccurrenceId id : unit) {
     for (const Vec3& line_B : plane_lines_[id.index()]) {
       const Vec3 line_W = product_.occurrences[id.index()].X_WB.q() * line_B;
@@ -202,9 +158,7 @@ std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
       add(-line_W);
     }
   }
-  // From above is how people assemble: try the upward ways out first.
-  std::stable_sort(directions.begin(), directions.end(),
-                   [](const Vec3& x, const Vec3& y) { return x.z() > y.z() + 1e-9; });
+  SortUpwardFirst(&directions);
   return directions;
 }
 
@@ -576,47 +530,6 @@ std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& di
   return std::nullopt;
 }
 
-std::string Extraction::ExplainTooWide(OccurrenceId id, OccurrenceId other,
-                                       const Vec3& direction) const {
-  constexpr double kCollinear = 20e-6;  // [m] between axes that count as one
-  if (!other.is_valid()) {
-    return {};
-  }
-  const product::Pose& X_WB = product_.occurrences[id.index()].X_WB;
-  const product::Pose& X_WO = product_.occurrences[other.index()].X_WB;
-  std::string text;
-  double least = 0;  // The narrowest place tells it best.
-  for (const product::Feature& own : product_.part_of(id).features) {
-    const Vec3 axis_W = X_WB.q() * own.axis_B;
-    if (std::abs(axis_W.dot(direction)) < 1 - kParallel) {
-      continue;
-    }
-    for (const product::Feature& its : product_.part_of(other).features) {
-      const bool is_pair =
-          (own.kind == product::FeatureKind::kShaft && its.kind == product::FeatureKind::kHole) ||
-          (own.kind == product::FeatureKind::kHole && its.kind == product::FeatureKind::kShaft);
-      const Vec3 between = X_WO * its.origin_B - X_WB * own.origin_B;
-      const bool is_own_shaft = own.kind == product::FeatureKind::kShaft;
-      const double excess = is_own_shaft ? own.radius - its.radius : its.radius - own.radius;
-      if (!is_pair || excess < kDepthTolerance - 1e-9 ||
-          between.cross(axis_W).norm() > kCollinear ||
-          std::abs((X_WO.q() * its.axis_B).dot(axis_W)) < 1 - kParallel ||
-          (least > 0 && excess > least)) {
-        continue;
-      }
-      least = excess;
-      const double own_mm = units::ToMm(2 * own.radius);
-      const double its_mm = units::ToMm(2 * its.radius);
-      text = is_own_shaft
-                 ? fmt::format("its diameter of {:.3f} mm does not pass the hole of {:.3f} mm",
-                               own_mm, its_mm)
-                 : fmt::format("its hole of {:.3f} mm does not pass the diameter of {:.3f} mm",
-                               own_mm, its_mm);
-    }
-  }
-  return text;
-}
-
 SequenceStep Extraction::MakeStep(const Unit& unit, const Vec3& direction) const {
   SequenceStep step;
   step.occurrence = unit.front();
@@ -699,7 +612,8 @@ std::string Extraction::ExplainStuck(OccurrenceId id) const {
 
 std::string Extraction::ExplainObstacle(OccurrenceId id, const Obstacle& obstacle,
                                         const Vec3& direction) const {
-  const std::string why = ExplainTooWide(id, obstacle.occurrence, direction);
+  const std::string why =
+      ExplainTooWide(product_, id, obstacle.occurrence, direction, kDepthTolerance);
   return fmt::format("meets {} after {:.1f} mm along its best way out{}{}",
                      Describe(obstacle.occurrence), units::ToMm(obstacle.travelled),
                      why.empty() ? "" : ", as drawn: ", why);
@@ -738,41 +652,10 @@ std::vector<Vec3> Extraction::CollectContactNormals(OccurrenceId id) {
 }
 
 std::vector<Vec3> Extraction::ListContactDirections(OccurrenceId id) {
-  constexpr std::size_t kMost = 24;  // directions
-  constexpr double kLeast = 0.05;    // sine of the angle between normals that have an edge
   SetUnit({id}, true);
   const std::vector<Vec3> normals = CollectContactNormals(id);
   SetUnit({id}, false);
-  std::vector<Vec3> directions;
-  const auto add = [&](const Vec3& d) {
-    const double length = d.norm();
-    const bool is_free =
-        length > kLeast && std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) {
-          return n.dot(d) >= -kParallel * length;
-        });
-    const bool is_known = std::any_of(directions.begin(), directions.end(), [&](const Vec3& known) {
-      return known.dot(d) > (1 - kParallel * kParallel) * length;
-    });
-    if (is_free && !is_known && directions.size() < kMost) {
-      directions.push_back(d / length);
-    }
-  };
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& n : normals) {
-    sum += n;
-  }
-  add(sum);
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    add(normals[i]);
-    for (std::size_t k = i + 1; k < normals.size(); ++k) {
-      add(normals[i] + normals[k]);
-      add(normals[i].cross(normals[k]));
-      add(normals[k].cross(normals[i]));
-    }
-  }
-  std::stable_sort(directions.begin(), directions.end(),
-                   [](const Vec3& x, const Vec3& y) { return x.z() > y.z() + 1e-9; });
-  return directions;
+  return ListFreeDirections(normals);
 }
 
 std::vector<Obstacle> Extraction::ListObstacles(const Unit& unit, const Vec3& direction,

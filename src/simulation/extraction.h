@@ -181,10 +181,6 @@ class Extraction {
                                                     double from,
                                                     std::span<const contact::BodyId> excepted);
   [[nodiscard]] std::optional<SequenceStep> TryRemove(const Unit& unit, Memory* memory);
-  /** Where a shaft of one part would have to pass a smaller hole of the other: says so, with both
-   diameters. Else empty. */
-  [[nodiscard]] std::string ExplainTooWide(product::OccurrenceId id, product::OccurrenceId other,
-                                           const Vec3& direction) const;
 
   const SequenceInput& input_;
   const product::Product& product_;

@@ -1,0 +1,52 @@
+#include "simulation/narrow_hole.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "simulation/way_directions.h"
+
+namespace hvas::simulation {
+
+std::string ExplainTooWide(const product::Product& product, product::OccurrenceId id,
+                           product::OccurrenceId other, const Vec3& direction, double least) {
+  constexpr double kCollinear = 20e-6;  // [m] between axes that count as one
+  if (!other.is_valid()) {
+    return {};
+  }
+  const product::Pose& X_WB = product.occurrences[id.index()].X_WB;
+  const product::Pose& X_WO = product.occurrences[other.index()].X_WB;
+  std::string text;
+  double narrowest = 0;  // The narrowest place tells it best.
+  for (const product::Feature& own : product.part_of(id).features) {
+    const Vec3 axis_W = X_WB.q() * own.axis_B;
+    if (std::abs(axis_W.dot(direction)) < 1 - kParallel) {
+      continue;
+    }
+    for (const product::Feature& its : product.part_of(other).features) {
+      const bool is_pair =
+          (own.kind == product::FeatureKind::kShaft && its.kind == product::FeatureKind::kHole) ||
+          (own.kind == product::FeatureKind::kHole && its.kind == product::FeatureKind::kShaft);
+      const Vec3 between = X_WO * its.origin_B - X_WB * own.origin_B;
+      const bool is_own_shaft = own.kind == product::FeatureKind::kShaft;
+      const double excess = is_own_shaft ? own.radius - its.radius : its.radius - own.radius;
+      if (!is_pair || excess < least - 1e-9 || between.cross(axis_W).norm() > kCollinear ||
+          std::abs((X_WO.q() * its.axis_B).dot(axis_W)) < 1 - kParallel ||
+          (narrowest > 0 && excess > narrowest)) {
+        continue;
+      }
+      narrowest = excess;
+      const double own_mm = units::ToMm(2 * own.radius);
+      const double its_mm = units::ToMm(2 * its.radius);
+      text = is_own_shaft
+                 ? fmt::format("its diameter of {:.3f} mm does not pass the hole of {:.3f} mm",
+                               own_mm, its_mm)
+                 : fmt::format("its hole of {:.3f} mm does not pass the diameter of {:.3f} mm",
+                               own_mm, its_mm);
+    }
+  }
+  return text;
+}
+
+}  // namespace hvas::simulation
