@@ -13,6 +13,10 @@
 namespace hvas::simulation {
 namespace {
 
+// [m] at each wall, or of radius, where the fit leaves no play and answers for the force: contact
+// just lets the inner part pass. Half of what faces that give way leave.
+constexpr double kRoom = 5e-6;
+
 using product::Mate;
 using product::OccurrenceId;
 
@@ -46,7 +50,6 @@ bool IsMouthHigh(const ActualFacesInput& input, const Mate& mate) {
  pass. */
 std::array<double, 2> SlotOffsets(const product::Product& product, const Mate& mate,
                                   const fits::FitForce* fit, double tongue) {
-  constexpr double kRoom = 5e-6;  // [m] at each wall: half of what faces that give way leave.
   const double drawn_gap = mate.hole_radius - mate.shaft_radius;
   const double play =
       std::max(kRoom, fit != nullptr ? fit->CalcRadialPlay(fit->length()) : drawn_gap);
@@ -146,7 +149,6 @@ class Collector {
   /** Widens a hole that is drawn narrower than the shaft that is pressed into it, so that the end
    of the shaft passes its mouth: the fit answers for the force. */
   void LetPass(const Mate& mate) {
-    constexpr double kRoom = 5e-6;  // [m]: half of what faces that give way leave, as at a tongue.
     const double narrower = mate.shaft_radius - mate.hole_radius;
     if (narrower <= 0 || narrower + kRoom > contact::FaceOffsets::kLargest) {
       return;
