@@ -5,7 +5,7 @@ import { Studio } from "../src/model/studio";
 import { buildTree, filterTree, groupAround } from "../src/model/tree";
 import { decodeView, encodeView, takeToken, withToken, type SharedView } from "../src/model/view_link";
 import { isolate, makeViewState, select, setHidden } from "../src/model/view_state";
-import type { Scene } from "../src/protocol/messages";
+import type { HandSetup, Scene } from "../src/protocol/messages";
 import { makePart } from "./toy_part";
 
 const scene: Scene = {
@@ -37,6 +37,11 @@ const scene: Scene = {
   ],
   diagnostics: [],
 };
+
+function handWith(address: string, condition: string): HandSetup {
+  const device = { address, name: address, model: "", serial: "", is_emulated: false, has_force: true, has_torque: false };
+  return { hand: 0, device: { ...device, max_force_n: null, scale: null, notes: [] }, condition, lease: null };
+}
 
 describe("a click on a part, by subassemblies", () => {
   it("selects the one that it stands in, then the one around that up to the product, and begins anew", () => {
@@ -221,6 +226,11 @@ describe("the session", () => {
     FakeWorker.last.say({ event: "device", hand: 1, condition: "lost", text: "is disconnected; connect it again" });
     expect(store.deviceTroubles.value.get(1)).toMatch(/connect it again/);
     FakeWorker.last.say({ event: "device", hand: 1, condition: "ready", text: "is ready" });
+    expect(store.deviceTroubles.value.size).toBe(0);
+    FakeWorker.last.say({ event: "device", hand: 0, condition: "fault", text: "renders no force" });
+    FakeWorker.last.say({ event: "hands", hands: [handWith("emulated:0", "fault")] });
+    expect(store.deviceTroubles.value.get(0)).toBe("renders no force");
+    FakeWorker.last.say({ event: "hands", hands: [handWith("pointer", "ready")] });
     expect(store.deviceTroubles.value.size).toBe(0);
     FakeWorker.last.say({ event: "recording", on: true, id: "r1", name: "First", t_s: 0 });
     expect(store.recording.value?.name).toBe("First");

@@ -46,3 +46,12 @@ export function withTrouble(
   }
   return after;
 }
+
+/** The troubles that last: a hand that is gone, or has another device that is ready, has none. */
+export function lastingTroubles(
+  troubles: ReadonlyMap<number, string>,
+  hands: readonly HandSetup[],
+): ReadonlyMap<number, string> {
+  const isTroubled = (hand: number) => hands.some((each) => each.hand === hand && each.condition !== "ready");
+  return new Map([...troubles].filter(([hand]) => isTroubled(hand)));
+}

@@ -7,7 +7,7 @@ import type { HandInput } from "../protocol/frames";
 import type { Client, Command, CommandResults, Role, Scene, ServerError, ServerEvent } from "../protocol/messages";
 import { CollisionCounter } from "./collisions";
 import { addToLog, countLimits, isAlarm, kAlarms, kRunsLength, runOf, tell, type Told } from "./event_log";
-import { withTrouble } from "./hands";
+import { lastingTroubles, withTrouble } from "./hands";
 import { isSameHeld, summarize } from "./held";
 import { ProductOpening } from "./product_opening";
 import { Recordings } from "./recordings";
@@ -246,6 +246,7 @@ export class Studio {
         break;
       case "hands":
         store.hands.value = event.hands;
+        store.deviceTroubles.value = lastingTroubles(store.deviceTroubles.value, event.hands);
         break;
       case "device":
         store.deviceTroubles.value = withTrouble(store.deviceTroubles.value, event);
