@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "cad/encoding.h"
 #include "mates/assignments.h"
+#include "mates/flexible_parts.h"
 #include "mates/infer.h"
 #include "mates/side_file.h"
 #include "mates/stated_fits.h"
@@ -50,20 +51,27 @@ bool HasSideFile(const OpenOptions& options) {
       std::filesystem::symlink_status(mates::FindAssignmentFile(options.file), error));
 }
 
-/** What the options and the side file do not want welded. */
-Result<std::vector<product::KeptApart>> ListKeptApart(const OpenOptions& options) {
-  std::vector<product::KeptApart> apart;
+/** What the options and the side file say about parts, beside mates. */
+struct PartStatements {
+  std::vector<product::KeptApart> apart;  // Not to be welded.
+  std::vector<mates::StatedFlexible> flexible;
+};
+
+Result<PartStatements> ReadPartStatements(const OpenOptions& options) {
+  PartStatements statements;
   for (const std::string& name : options.apart) {
-    apart.push_back({name, {}});
+    statements.apart.push_back({name, {}});
   }
   if (HasSideFile(options)) {
-    const auto side_file = mates::ReadSideFile(mates::FindAssignmentFile(options.file));
+    auto side_file = mates::ReadSideFile(mates::FindAssignmentFile(options.file));
     if (!side_file) {
       return Unexpected(side_file.error());
     }
-    apart.insert(apart.end(), side_file->apart.begin(), side_file->apart.end());
+    statements.apart.insert(statements.apart.end(), side_file->apart.begin(),
+                            side_file->apart.end());
+    statements.flexible = std::move(side_file->flexible);
   }
-  return apart;
+  return statements;
 }
 
 /** @param inferred  What inference finds in the drawn poses. */
@@ -82,12 +90,18 @@ Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnos
   if (!product) {
     return product;
   }
-  const auto apart = ListKeptApart(options);
-  if (!apart) {
-    return Unexpected(apart.error());
+  const auto stated = ReadPartStatements(options);
+  if (!stated) {
+    return Unexpected(stated.error());
   }
-  if (const auto welded = product::WeldUnits(*apart, &*product, diagnostics, watch); !welded) {
+  if (const auto welded = product::WeldUnits(stated->apart, &*product, diagnostics, watch);
+      !welded) {
     return Unexpected(welded.error());
+  }
+  if (const auto set =
+          mates::SetFlexibleParts(stated->flexible, options.rigid, &*product, diagnostics);
+      !set) {
+    return Unexpected(set.error());
   }
   if (const auto done = mates::Infer(&*product, inferred, watch); !done) {
     return Unexpected(done.error());
@@ -159,6 +173,7 @@ Result<void> AddAccessories(const OpenOptions& options, Product* product, WorkWa
     open.file = file;
     open.apart.clear();
     open.length_unit.reset();  // It is that of the product's file.
+    open.rigid.clear();
     const auto accessory = OpenWithin(open, watch, diagnostics, diagnostics);
     if (!accessory) {
       return Unexpected(accessory.error());

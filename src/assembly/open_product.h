@@ -32,6 +32,7 @@ struct OpenOptions {
   std::filesystem::path file;      ///< STEP, IGES, a mesh file or a folder of meshes.
   std::vector<std::string> fits;   ///< "AXIS=FIT", as mates::AssignFit takes them.
   std::vector<std::string> apart;  ///< What is not to be welded (product::KeptApart); "all".
+  std::vector<std::string> rigid;  ///< What may not give (mates::SetFlexibleParts); "all".
   std::vector<std::string> tools;  ///< CAD files of tools that lie on the table (X16).
   /** CAD files of fixtures: "FILE" as drawn, or "FILE@X,Y,Z" or "FILE@X,Y,Z,ANGLE" [mm, deg], which
    moves them in W and turns them about z before. */

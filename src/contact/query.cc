@@ -85,6 +85,23 @@ bool IsScreened(const Placed& sampled, const Placed& field, const Hit& hit,
   });
 }
 
+bool IsAllowed(std::span<const std::uint32_t> faces, std::uint32_t face) {
+  return faces.empty() || std::binary_search(faces.begin(), faces.end(), face);
+}
+
+// How deep a sample may lie in a face, where it may at all. A sample on an edge is of every face
+// that meets there.
+template <bool kIsReverse>
+double AllowedDepth(const Allowance& allowance, const SampleFaces& sample, std::uint32_t face) {
+  const auto own = kIsReverse ? allowance.scene_faces : allowance.held_faces;
+  const auto other = kIsReverse ? allowance.held_faces : allowance.scene_faces;
+  const bool is_own =
+      std::any_of(sample.faces.begin(), sample.faces.end(),
+                  [&own](std::uint32_t f) { return f != kNoFace && IsAllowed(own, f); });
+  // Far inside, the field does not know which face is the nearest.
+  return is_own && (face == kNoFace || IsAllowed(other, face)) ? allowance.depth : 0;
+}
+
 // What single precision says of a hit on one face, with both faces as made; to kScreened.
 double ScreenedDistance(const Placed& sampled, const Shell& shell, const Placed& field,
                         const Hit& hit, const Vec3& p_F, const Vec3& towards) {
@@ -195,6 +212,7 @@ void BodyQuery::Body(std::size_t i, const Placed& scene) noexcept {
   const NearBody& near = work_->bodies[i];
   ++work_->stats.bodies_tested;
   const bool has_ignored = SetMasks(near.body, 0xff);
+  allowance_ = FindAllowance(near.body);
   Samples<false>(held_, held_.shape->shell, scene, has_ignored, near);
   Samples<true>(scene, scene.shape->features, held_, has_ignored, near);
   work_->layer.Add(layer_, scene.R_WC, scene.p_WC);
@@ -202,6 +220,12 @@ void BodyQuery::Body(std::size_t i, const Placed& scene) noexcept {
   if (has_ignored) {
     SetMasks(near.body, 0);
   }
+}
+
+const Allowance* BodyQuery::FindAllowance(BodyId id) const noexcept {
+  const auto found = std::find_if(options_.allowances.begin(), options_.allowances.end(),
+                                  [id](const Allowance& a) { return a.body == id; });
+  return found == options_.allowances.end() ? nullptr : &*found;
 }
 
 bool BodyQuery::BoxesTouch(const RelativePose& X_SH, const Placed& scene) const noexcept {
@@ -269,6 +293,9 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   contact.sparsity = 8.0F * static_cast<float>(choice.stride) / static_cast<float>(choice.points);
   FaceFilter filter;
   filter.limit = margin_;
+  const auto allowed_depth = [this](const SampleFaces& sample, std::uint32_t face) {
+    return allowance_ != nullptr ? AllowedDepth<kIsReverse>(*allowance_, sample, face) : 0;
+  };
   const std::uint32_t step = Stride(hits.count);
   std::uint32_t at = 0;
   for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
@@ -291,10 +318,11 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
                           static_cast<double>(hit.gradient[1]),
                           static_cast<double>(hit.gradient[2]));
       const Vec3 towards = R_back * gradient;
-      const double distance = ScreenedDistance(sampled, shell, field, hit, p_F, towards);
+      const double unallowed = ScreenedDistance(sampled, shell, field, hit, p_F, towards);
+      const double distance = unallowed + allowed_depth(faces, hit.face);
       if (distance >= margin_ + kScreened ||
           (!Faces(faces, shell.facing[hit.point], towards, &own_face) &&
-           distance > deep + kScreened)) {
+           unallowed > deep + kScreened)) {
         continue;
       }
       const Vec3& nhat_S = kIsReverse ? towards : gradient;
@@ -308,11 +336,12 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       }
     }
     const Refined r = RefineActual(*field.shape, field.offsets, p_F, hit, filter);
+    contact.allowance = allowed_depth(faces, r.face);
     // So deep inside, the field knows no face: for a sample of faces that something else answers
     // for, what it answers for may be all around, as the thread of a screw around the rim of its
     // core hole.
     const bool is_answered_for = r.face == kNoFace && filter.bits != 0;
-    if (!r.is_valid || r.distance >= margin_ || is_answered_for) {
+    if (!r.is_valid || r.distance + contact.allowance >= margin_ || is_answered_for) {
       continue;
     }
     const Vec3 towards = R_back * r.gradient;  // In the sampled shape's frame.
@@ -321,10 +350,11 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     if (is_face_at_edge && r.distance > deep) {
       continue;
     }
-    if (!Faces(faces, shell.facing[hit.point], towards, &own_face) && r.distance > deep) {
+    if (!Faces(faces, shell.facing[hit.point], towards, &own_face) &&
+        (r.distance > deep || r.is_continued)) {
       continue;
     }
-    contact.distance = r.distance;
+    contact.distance = r.distance + contact.allowance;
     contact.gradient = r.gradient;
     contact.is_exact = r.is_exact;
     contact.point = hit.point;

@@ -111,6 +111,8 @@ class BodyQuery {
  private:
   [[nodiscard]] bool BoxesTouch(const RelativePose& X_SH, const Placed& scene) const noexcept;
   bool SetMasks(BodyId id, std::uint8_t keep) noexcept;
+  /** Finds what is allowed with a body; null where nothing is. */
+  [[nodiscard]] const Allowance* FindAllowance(BodyId id) const noexcept;
   void CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
                      std::uint32_t* first, std::uint32_t* count) noexcept;
   /** The margin for the field of the part as drawn in single precision. */
@@ -132,8 +134,9 @@ class BodyQuery {
   double stop_distance_;
   Kernel kernel_;
   QueryWorkspace::Data* work_;
-  ContactLayer layer_;  // Of the body at hand, in its centred frame.
-  double share_{0};     // Points for each shell of each body.
+  const Allowance* allowance_{nullptr};  // Of the body at hand.
+  ContactLayer layer_;                   // Of the body at hand, in its centred frame.
+  double share_{0};                      // Points for each shell of each body.
   bool is_stopped_{false};
 };
 

@@ -20,7 +20,8 @@ struct RawContact {
   std::uint32_t scene_face{0};
   bool is_reverse{false};  ///< The sample is the scene body's, the field the held shape's.
   bool is_exact{false};
-  float sparsity{1};  ///< Samples of the shell for each one that was tested here.
+  double allowance{0};  ///< What `distance` has more than the shapes' [m]; see Allowance.
+  float sparsity{1};    ///< Samples of the shell for each one that was tested here.
 };
 
 /** Reduces a stream of contacts to a few that span it. Contacts are grouped by body, scene face and

@@ -268,6 +268,7 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
     result.gradient = exact.gradient;
     result.face = feature.face;
     result.is_exact = true;
+    result.is_continued = true;
     return result;
   }
   const Refined result = FromFeature(shape, closest, feature, p, field);

@@ -18,6 +18,9 @@ struct Refined {
   std::uint32_t other_face{kNoFace};  ///< When an edge is closest: the other face there.
   bool is_exact{false};
   bool is_valid{true};  ///< False when everything near is ignored.
+  /** The face is continued beyond its edge with an ignored one, in material: it counts only for
+   what looks at it. */
+  bool is_continued{false};
 };
 
 /** Says which faces to leave out: those with mask[face] & bits. Null: none. What lies no nearer

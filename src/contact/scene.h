@@ -39,6 +39,16 @@ struct IgnoredPair {
   std::span<const std::uint32_t> scene_faces;  ///< Sorted.
 };
 
+/** How deep the faces of two bodies may lie in one another before contact begins: by as much as
+ they are drawn into each other, or as one of them gives. All other faces of the two have contact.
+ */
+struct Allowance {
+  BodyId body;
+  double depth{0};                             ///< [m], >= 0.
+  std::span<const std::uint32_t> held_faces;   ///< Sorted; empty: all.
+  std::span<const std::uint32_t> scene_faces;  ///< Sorted; empty: all.
+};
+
 /** Edges as real parts have them: not sharp. Drawn ones catch on one another by what contacts give
  way under load, and where they pass each other closely, seem to be met. */
 struct BrokenEdges {
@@ -49,6 +59,7 @@ struct BrokenEdges {
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
   std::span<const IgnoredPair> ignored{};
+  std::span<const Allowance> allowances{};            ///< The first one of a body counts.
   std::array<std::span<const BodyId>, 2> left_out{};  ///< Lists of bodies that are not asked.
   /** The held part's faces as made; null: those of `self`, and if there is none, as drawn. */
   const FaceOffsets* held_offsets{nullptr};

@@ -143,7 +143,7 @@ void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
   const std::uint32_t face = contact->is_reverse ? contact->held_face : contact->scene_face;
   const auto evaluate = [&](State* s) {
     const Refined r = RefineAlone(*field.shape, field.offsets, X_FS * s->p, {});
-    s->distance = r.distance;
+    s->distance = r.distance + contact->allowance;
     s->gradient = X_FS.R.transpose() * r.gradient;
     return r.is_exact && r.face == face;
   };

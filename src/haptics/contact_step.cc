@@ -103,12 +103,14 @@ ContactStep::HeldShape ContactStep::MakeHeldShape(const HeldPart& part, std::siz
   if (member == 0) {
     held.shape = part.shape.get();
     held.X_WS = X_WB;
+    held.query.allowances = part.allowances;
     held.query.left_out[0] = part.left_out;
     held.query.self = part.body;
   } else {
     const HeldMember& other = part.members[member - 1];
     held.shape = other.shape.get();
     held.X_WS = X_WB * other.X_BS;
+    held.query.allowances = other.allowances;
     held.query.left_out[0] = other.left_out;
     held.query.self = other.body;
   }

@@ -47,8 +47,9 @@ struct HeldMember {
   product::OccurrenceId occurrence;
   contact::BodyId body;
   std::shared_ptr<const contact::Shape> shape;
-  spatial::Pose X_BS;                     ///< Pose in the frame of the part in the hand.
-  std::vector<contact::BodyId> left_out;  ///< The rest of the subassembly, and what it overlaps.
+  spatial::Pose X_BS;                          ///< Pose in the frame of the part in the hand.
+  std::vector<contact::BodyId> left_out;       ///< The rest of the subassembly.
+  std::vector<contact::Allowance> allowances;  ///< What it may overlap; spans of the model.
 };
 
 /** A fastener in its place that the part in the hand, a tool, can turn by contact with it (X16). It
@@ -78,9 +79,10 @@ struct HeldPart {
   bool starts_in_place{false};       ///< It is taken out: X_WB_start is its place.
   std::vector<HeldMate> mates;
   bool lacks_partners{false};  ///< What it should have been put to is not there: it never seats.
-  std::vector<contact::BodyId> left_out;  ///< Lie in it as drawn, or move with it: no contact.
-  std::vector<HeldMember> members;        ///< Other parts of a subassembly.
-  std::vector<contact::BodyId> bodies;    ///< All that is in the hand: `body`, and the members'.
+  std::vector<contact::BodyId> left_out;       ///< They move with it: no contact.
+  std::vector<contact::Allowance> allowances;  ///< What it may overlap; spans of the model.
+  std::vector<HeldMember> members;             ///< Other parts of a subassembly.
+  std::vector<contact::BodyId> bodies;  ///< All that is in the hand: `body`, and the members'.
   fits::FrictionSurface surface{fits::FrictionSurface::kUnknown};
   std::vector<HeldDrive> drives;   ///< Fasteners that it fits, where it is a tool.
   bool falls_when_dropped{false};  ///< Let go anywhere but in its place, it is a free body.

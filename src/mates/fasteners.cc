@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "product/axis_features.h"
-#include "product/words.h"
+#include "product/flexible.h"
 
 namespace hvas::mates {
 namespace {
@@ -108,11 +108,8 @@ bool IsHollow(const Product& product, const product::Connector& shaft) {
 
 /** What gives when something goes through it, or goes through something, by its name. */
 bool IsFlexible(const Product& product, OccurrenceId id) {
-  constexpr std::array<std::string_view, 12> kWords{"cable",       "wire",     "kabel", "leitung",
-                                                    "hose",        "schlauch", "clip",  "zip tie",
-                                                    "kabelbinder", "grommet",  "strap", "rope"};
-  return product::HasOneOf(product::FoldName(product.part_of(id).name), kWords) ||
-         product::HasOneOf(product::FoldName(product.occurrences[id.index()].name), kWords);
+  return product::FindFlexibleKind(product.part_of(id).name).has_value() ||
+         product::FindFlexibleKind(product.occurrences[id.index()].name).has_value();
 }
 
 }  // namespace
@@ -179,6 +176,7 @@ FitEvidence MakeFitEvidence(const Product& product, const product::Mate& mate,
       IsFlexible(product, mate.a.occurrence) || IsFlexible(product, mate.b.occurrence);
   evidence.hole_thread = thread_of(mate.a);
   evidence.shaft_thread = thread_of(mate.b);
+  evidence.shaft_is_pin = product::IsPinName(product.part_of(mate.b.occurrence).name);
   return evidence;
 }
 

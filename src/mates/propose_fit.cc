@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fits/iso286.h"
+#include "fits/threads.h"
 
 namespace hvas::mates {
 namespace {
@@ -105,6 +106,18 @@ std::optional<std::string> FindThreadReason(const FitEvidence& evidence, double 
   return std::nullopt;
 }
 
+/** Whether a shaft without a name is drawn into its hole as a thread is: at the outer diameter in a
+ hole for its core, and not by the little that a pin is pressed. */
+bool IsThreadInterference(double diameter, double interference) {
+  constexpr double kLeastShare = 0.325;  // Of the pitch: halfway to the pitch diameter (ISO 724).
+  constexpr double kForming = 0.1;       // Of d: what tapping screws cut is more.
+  if (interference <= kThreadInterference * diameter || diameter > kLargestDrawnThread) {
+    return false;
+  }
+  const fits::Thread* thread = fits::FindThread(diameter, 0);
+  return interference > (thread != nullptr ? kLeastShare * thread->pitch : kForming * diameter);
+}
+
 }  // namespace
 
 Fit ProposeFit(const FitEvidence& evidence) {
@@ -135,7 +148,7 @@ Fit ProposeFit(const FitEvidence& evidence) {
       evidence.shaft_part == FastenerKind::kScrew) {
     return {FitKind::kPassage, "", nominal, true, "a screw in a through hole"};
   }
-  if (-clearance > kThreadInterference * d && d <= kLargestDrawnThread) {
+  if (!evidence.shaft_is_pin && IsThreadInterference(d, -clearance)) {
     if (evidence.is_hollow) {
       return {FitKind::kInsert, "", d, true,
               "drawn interference of " + Describe(-clearance) + " of a hollow part is an insert's"};

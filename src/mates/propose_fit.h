@@ -21,6 +21,7 @@ struct FitEvidence {
   bool may_pass{false};  ///< A round shaft may go through a hole without a fit; a width has one.
   product::ThreadKind hole_thread{product::ThreadKind::kNone};
   product::ThreadKind shaft_thread{product::ThreadKind::kNone};
+  bool shaft_is_pin{false};  ///< The shaft has the name of a pin.
 };
 
 /** Proposes a fit where the file does not give one, by the first row that holds:
@@ -38,14 +39,16 @@ struct FitEvidence {
  | play of a proposed code, or less | nut or insert as the shaft | insert |
  | more play than the widest code | a shaft that may pass | passage |
  | hole not smaller | a screw that may pass | passage |
- | interference above 1.5 % of d, d <= 12 mm | hollow shaft | insert |
- | interference above 1.5 % of d, d <= 12 mm | any | thread |
+ | interference of a thread's depth, d <= 12 mm | hollow shaft | insert |
+ | interference of a thread's depth, d <= 12 mm | any but a pin by its name | thread |
  | interference above 1 um (radius) | none | the lightest press fit of H7/p6, r6, s6 |
  | equal within 1 um | any | H7/g6 |
  | clearance | any | the tightest of H7/g6, H8/f7, H9/d9, H11/c11 that may have it |
 
- The code is empty for threads, inserts and passages, and where ISO 286 has none for the size. The
- nominal diameter is the drawn hole's, that of the shaft for threads and inserts. */
+ An interference is of a thread's depth above 1.5 % of d and a fourth of that size's thread, or 10 %
+ of d where there is no such size. The code is empty for threads, inserts and passages, and where
+ ISO 286 has none for the size. The nominal diameter is the drawn hole's, that of the shaft for
+ threads and inserts. */
 [[nodiscard]] product::Fit ProposeFit(const FitEvidence& evidence);
 
 }  // namespace hvas::mates

@@ -47,6 +47,7 @@ constexpr double kHottest_c = 1500;
 constexpr double kLargestDistance_mm = 100'000;
 constexpr double kLargestAngle_deg = 180;
 constexpr double kLargestCompliance_um = 1000;  // [um/N]: softer than any solid part.
+constexpr double kLargestGive_mm = 1000;        // [mm]: what gives more is no part to put in.
 constexpr double kMostFaces = 4294967294;
 constexpr std::size_t kMostPlaces = 1000;  // of a measured diameter: one each 0.1 mm of 100 mm
 
@@ -61,6 +62,11 @@ constexpr SideFileKey Note() {
 constexpr SideFileKey Number(std::string_view name, double low, double high,
                              bool is_low_excluded = false) {
   return {name, Type::kNumber, false, low, high, is_low_excluded, false, {}};
+}
+
+constexpr SideFileKey Needed(SideFileKey key) {
+  key.is_required = true;
+  return key;
 }
 
 constexpr SideFileKey Diameter(std::string_view name) {
@@ -88,7 +94,8 @@ constexpr std::array kDocumentKeys{
     Choice("format", kFormats, true),   Note(),
     Of(Type::kList, "fits", false),     Of(Type::kList, "mates", false),
     Of(Type::kList, "removed", false),  Of(Type::kList, "relations", false),
-    Of(Type::kList, "contacts", false), Of(Type::kList, "apart", false)};
+    Of(Type::kList, "contacts", false), Of(Type::kList, "apart", false),
+    Of(Type::kList, "flexible", false)};
 
 constexpr std::array kFitKeys{Text("mate"),
                               Text("hole"),
@@ -129,6 +136,9 @@ constexpr std::array kContactKeys{Text("a", true),
                                   Note()};
 
 constexpr std::array kApartKeys{Text("unit", true), Note()};
+
+constexpr std::array kFlexibleKeys{Text("part", true),
+                                   Needed(Number("allowance_mm", 0, kLargestGive_mm)), Note()};
 
 /** One object of the file with its place in it. */
 struct Place {
@@ -436,6 +446,15 @@ Result<product::KeptApart> ReadApart(const ordered_json& item, const Place& plac
   return product::KeptApart{TextAt(item, "unit"), place.Where()};
 }
 
+Result<StatedFlexible> ReadFlexible(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kFlexible, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  return StatedFlexible{TextAt(item, "part"),
+                        NumberAt(item, "allowance_mm", units::kMetresPerMillimetre).value_or(0),
+                        place.Where()};
+}
+
 /** Reads the list under `key`, if it is there; `name` is what its entries are called. */
 template <typename Entry, typename Read>
 Result<void> ReadList(const Place& top, const char* key, const char* name, Read read,
@@ -490,6 +509,8 @@ std::span<const SideFileKey> KeysOf(SideFileObject object) {
       return kContactKeys;
     case SideFileObject::kApart:
       return kApartKeys;
+    case SideFileObject::kFlexible:
+      return kFlexibleKeys;
     case SideFileObject::kRemoved:
       break;
   }
@@ -544,6 +565,9 @@ Result<SideFile> ParseSideFile(std::string_view text, const std::filesystem::pat
   }
   if (read) {
     read = ReadList(top, "apart", "apart", ReadApart, &result.apart);
+  }
+  if (read) {
+    read = ReadList(top, "flexible", "flexible", ReadFlexible, &result.flexible);
   }
   if (!read) {
     return Unexpected(read.error());

@@ -21,7 +21,17 @@ namespace hvas::mates {
 inline constexpr std::string_view kSideFileFormat = "hvas-assignments-2";
 
 /** The kinds of objects in the file. */
-enum class SideFileObject { kDocument, kFit, kMate, kSide, kRemoved, kRelation, kContact, kApart };
+enum class SideFileObject {
+  kDocument,
+  kFit,
+  kMate,
+  kSide,
+  kRemoved,
+  kRelation,
+  kContact,
+  kApart,
+  kFlexible
+};
 
 enum class SideFileType {
   kText,
@@ -99,6 +109,13 @@ struct StatedContact {
   std::string where;
 };
 
+/** "flexible": how far a part may give where it meets another one on its way. */
+struct StatedFlexible {
+  std::string part;     ///< Occurrences of this name or path.
+  double allowance{0};  ///< [m]; 0: it is rigid.
+  std::string where;
+};
+
 struct SideFile {
   std::filesystem::path path;
   std::vector<FitEntry> fits;
@@ -107,6 +124,7 @@ struct SideFile {
   std::vector<StatedRelation> relations;
   std::vector<StatedContact> contacts;
   std::vector<product::KeptApart> apart;  ///< What is not to be welded.
+  std::vector<StatedFlexible> flexible;
 };
 
 /** Where a CAD file's side file stands: "pump.step" has "pump.hvas.json" beside it. */

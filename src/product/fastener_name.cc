@@ -233,4 +233,17 @@ FastenerKind ClassifyName(std::string_view name) {
                                                               : FastenerKind::kNone;
 }
 
+bool IsPinName(std::string_view name) {
+  static constexpr std::array<std::string_view, 13> kWords{
+      "pin",       "dowel",   "dowelpin", "stift", "passstift", "zylinderstift", "spannstift",
+      "springpin", "rollpin", "goupille", "spina", "axle",      "achse"};
+  // Standards of parallel pins, taper pins and slotted spring pins.
+  static constexpr std::array<std::string_view, 6> kStandards{"iso 2338", "iso 8734", "iso 8752",
+                                                              "din 7",    "din 6325", "din 1481"};
+  const std::string text = FoldName(name);
+  // A standard counts before words and sizes: "m6" behind it is a tolerance class.
+  return HasOneOf(text, kStandards) ||
+         (ClassifyName(name) == FastenerKind::kNone && HasOneOf(text, kWords));
+}
+
 }  // namespace hvas::product

@@ -13,6 +13,9 @@ enum class FastenerKind { kNone, kScrew, kNut };
  kNone: "nut holder", "screw hole", "M4 spacer". Letters' case does not matter. */
 [[nodiscard]] FastenerKind ClassifyName(std::string_view name);
 
+/** Whether a name is that of a pin that is pressed in: "Dowel pin 3x10", "Stift". */
+[[nodiscard]] bool IsPinName(std::string_view name);
+
 /** A thread's size; `pitch` is 0 where it is not known. */
 struct ThreadSize {
   double diameter{0};  ///< Nominal (major) [m].

@@ -8,6 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "product/contact_pair.h"
+#include "product/flexible.h"
 #include "product/identity.h"
 #include "product/ids.h"
 #include "product/relation.h"
@@ -337,6 +338,7 @@ struct Product {
   FileHeader header{};                       ///< Where the file has one.
   std::vector<Relation> relations{};         ///< Stated by the user (docs/side-file.md).
   std::vector<ContactPair> contact_pairs{};  ///< Stated by the user.
+  std::vector<FlexiblePart> flexible{};      ///< Parts that may give; not serialised.
 
   [[nodiscard]] const Part& part_of(OccurrenceId id) const {
     return parts[occurrences[id.index()].part.index()];

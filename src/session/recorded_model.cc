@@ -17,6 +17,7 @@ constexpr const char* kSeed = "seed";
 constexpr const char* kPairs = "pairs";
 constexpr const char* kSteps = "steps";
 constexpr const char* kFingerprint = "fingerprint";
+constexpr const char* kFlexible = "flexible";  // Pairs of occurrence and allowance [m].
 
 /** Of what the ticks see of a model: equal models have equal ones. */
 std::string CalcFingerprint(const simulation::Model& model) {
@@ -35,6 +36,12 @@ std::string CalcFingerprint(const simulation::Model& model) {
   for (const simulation::DrawnOverlap& overlap : model.sequence.overlaps) {
     digest.AddInt(overlap.a.value());
     digest.AddInt(overlap.b.value());
+    digest.AddDouble(overlap.allowed);
+  }
+  for (const simulation::GivingPair& give : model.sequence.gives) {
+    digest.AddInt(give.flexible.value());
+    digest.AddInt(give.other.value());
+    digest.AddDouble(give.depth);
   }
   for (const simulation::FaceRelief& relief : model.sequence.reliefs) {
     digest.AddInt(relief.occurrence.value());
@@ -43,6 +50,37 @@ std::string CalcFingerprint(const simulation::Model& model) {
   }
   digest.AddDouble(model.table_z);
   return digest.Hex();
+}
+
+Json MakeFlexibleJson(const product::Product& product) {
+  Json list = Json::array();
+  for (const product::FlexiblePart& part : product.flexible) {
+    list.push_back({part.occurrence.value(), part.allowance, static_cast<int>(part.kind)});
+  }
+  return list;
+}
+
+/** Takes the flexible parts of a record into its product; false where they are none. Older records
+ have no list. */
+bool ReadFlexible(const Json& json, product::Product* product) {
+  if (!json.contains(kFlexible)) {
+    return true;
+  }
+  const Json& list = json[kFlexible];
+  for (const Json& entry : list) {
+    const bool is_entry =
+        entry.is_array() && entry.size() == 3 && entry[0].is_number_unsigned() &&
+        entry[0].get<std::uint64_t>() < product->occurrences.size() && entry[1].is_number() &&
+        entry[2].is_number_unsigned() &&
+        entry[2].get<std::uint64_t>() <= static_cast<std::uint64_t>(product::FlexibleKind::kCable);
+    if (!is_entry) {
+      return false;
+    }
+    product->flexible.push_back({product::OccurrenceId(entry[0].get<std::uint32_t>()),
+                                 static_cast<product::FlexibleKind>(entry[2].get<int>()),
+                                 entry[1].get<double>(), "the record"});
+  }
+  return list.is_array();
 }
 
 std::optional<fits::PairChoice> FindPairChoice(const std::string& name) {
@@ -78,6 +116,7 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
   const Json json{{kSeed, model.seed},
                   {kPairs, fits::ToString(model.pairs)},
                   {kSteps, MakeStepsJson(model.sequence.steps)},
+                  {kFlexible, MakeFlexibleJson(*model.product)},
                   {kFingerprint, CalcFingerprint(model)}};
   const std::string text = json.dump();
   const auto bytes = std::as_bytes(std::span(text));
@@ -146,6 +185,9 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
                          : std::nullopt;
   if (!pairs) {
     fields.Refuse(kPairs);
+  }
+  if (json.is_object() && !ReadFlexible(json, &*product)) {
+    fields.Refuse(kFlexible);
   }
   if (!fields.refused().empty()) {
     return Fail(ErrorCode::kUnreadable,

@@ -136,17 +136,24 @@ std::string AssemblyRun::ExplainUntouched(OccurrenceId id) const {
              : "it is not connected with the base as drawn, nor is what it touches";
 }
 
-std::string AssemblyRun::ExplainPassage(OccurrenceId id) const {
+std::string AssemblyRun::ExplainPassage(const PartResult& result) const {
   constexpr double kTold = 0.2e-3;  // [m]; less is what clearances and stretched contacts leave
-  const Passage& passage = passages_.passage(id);
-  return passage.depth > kTold ? fmt::format("went through {}, {:.2f} mm deeper than drawn",
-                                             PathOf(passage.through), units::ToMm(passage.depth))
-                               : std::string();
+  const Passage& passage = result.passage;
+  double given = 0;
+  for (const PartAllowance& allowance : result.allowances) {
+    const bool is_met = allowance.own == passage.through || allowance.other == passage.through;
+    given = is_met && allowance.kind == PartAllowance::Kind::kGive ? allowance.depth : given;
+  }
+  return passage.depth > given + kTold
+             ? fmt::format("went through {}, {:.2f} mm deeper than drawn", PathOf(passage.through),
+                           units::ToMm(passage.depth))
+             : std::string();
 }
 
-std::string AssemblyRun::MakeNote(OccurrenceId id) const {
+std::string AssemblyRun::MakeNote(const PartResult& result) const {
   std::string note;
-  for (const std::string& item : {DescribeOverlaps(id), ExplainUntouched(id), ExplainPassage(id)}) {
+  for (const std::string& item : {DescribeAllowances(result.allowances),
+                                  ExplainUntouched(result.occurrence), ExplainPassage(result)}) {
     note += (note.empty() || item.empty() ? "" : "; ") + item;
   }
   return note;
@@ -160,8 +167,9 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   AddHold(step.occurrence);
   const std::string reason = FinishTurn(step, worker, was_seated);
   result.reason = reason;
-  result.note = MakeNote(step.occurrence);
+  result.allowances = was_seated ? ListPartAllowances(step) : std::vector<PartAllowance>();
   result.passage = passages_.passage(step.occurrence);
+  result.note = MakeNote(result);
   int mates = 0;
   for (const product::MateId id : model.mates_of[step.occurrence.index()]) {
     const product::Mate& mate = model.product->mates[id.index()];
@@ -328,7 +336,7 @@ bool AssemblyRun::DoNext(const SequenceStep& step) {
     physics().PlaceInFixture(step.occurrence);
     has_touched_[step.occurrence.index()] = true;
     Update(step.occurrence);
-    ResultOf(step.occurrence).note = MakeNote(step.occurrence);
+    ResultOf(step.occurrence).note = MakeNote(ResultOf(step.occurrence));
     return true;
   }
   const bool is_refused = worker->person != nullptr && step.kind == SequenceStep::Kind::kInsert &&

@@ -78,10 +78,11 @@ class AssemblyRun final : public PartRun {
                                        bool was_seated);
   /** Explains why a part touches nothing when it gets to its place; empty where it does. */
   [[nodiscard]] std::string ExplainUntouched(product::OccurrenceId id) const;
-  /** Explains what a part went through on its way; empty where that is nothing. */
-  [[nodiscard]] std::string ExplainPassage(product::OccurrenceId id) const;
+  /** Explains what a part went through on its way, beyond what the two are allowed; empty where
+   that is nothing. */
+  [[nodiscard]] std::string ExplainPassage(const PartResult& result) const;
   /** What is odd about a part's place. */
-  [[nodiscard]] std::string MakeNote(product::OccurrenceId id) const;
+  [[nodiscard]] std::string MakeNote(const PartResult& result) const;
   /** A step that has failed and is to be tried again now; null: none.
    @param is_at_end  All steps have had their turn. */
   [[nodiscard]] const SequenceStep* FindStepToRepeat(bool is_at_end) const;

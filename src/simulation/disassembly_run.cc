@@ -68,7 +68,7 @@ void DisassemblyRun::Finish(const Removal& removal, const std::string& reason) {
   AddHold(id);
   Update(id);
   ResultOf(id).reason = reason;
-  ResultOf(id).note = DescribeOverlaps(id);
+  ResultOf(id).note = DescribeAllowances(ListPartAllowances(removal.step));
   for (const OccurrenceId member : removal.step.members) {
     Update(member);
     ResultOf(member).reason = reason.empty() ? reason : "its subassembly " + reason;

@@ -13,6 +13,7 @@
 #include "mates/mate_kind.h"
 #include "mates/place_bodies.h"
 #include "simulation/narrow_hole.h"
+#include "simulation/overlap_search.h"
 #include "simulation/way_directions.h"
 
 namespace hvas::simulation {
@@ -22,14 +23,9 @@ using product::Mate;
 using product::MateKind;
 using product::OccurrenceId;
 
-constexpr double kDepthTolerance = 50e-6;  // [m]; drawn surfaces may touch this deep
-constexpr double kReliefFrom = 5e-6;       // [m]; contact gives way by this much by itself
-constexpr double kReliefRoom = 10e-6;      // [m] that is left between faces that give way: a choice
-constexpr double kWayRelief = kDepthTolerance + 10e-6;              // [m]; a way is free with less
-constexpr double kMostRelief = 2 * contact::FaceOffsets::kLargest;  // [m] of two faces
-constexpr int kReliefRounds = 8;  // In each, the deepest contacts of a query give way: a choice.
-constexpr double kShortestStep = 0.25e-3;  // [m] between looks along a way
-constexpr double kLongestStep = 2e-3;      // [m]; longer ones could pass through a thin wall.
+constexpr double kWayRelief = kDepthTolerance + 10e-6;  // [m]; a way is free with less
+constexpr double kShortestStep = 0.25e-3;               // [m] between looks along a way
+constexpr double kLongestStep = 2e-3;  // [m]; longer ones could pass through a thin wall.
 
 }  // namespace
 
@@ -39,7 +35,9 @@ Extraction::Extraction(const SequenceInput& input, const Sequence* known)
       is_present_(product_.occurrences.size(), true),
       is_in_unit_(product_.occurrences.size(), false),
       mates_of_(product_.occurrences.size()),
-      memories_(product_.occurrences.size()) {
+      memories_(product_.occurrences.size()),
+      giving_memories_(product_.occurrences.size()),
+      reliefs_(input) {
   std::map<product::PartId, std::vector<Vec3>> lines_of_part;
   for (const product::Occurrence& occurrence : product_.occurrences) {
     const auto [entry, is_new] = lines_of_part.try_emplace(occurrence.part);
@@ -69,28 +67,18 @@ Extraction::Extraction(const SequenceInput& input, const Sequence* known)
   for (const product::Occurrence& occurrence : product_.occurrences) {
     boxes_.push_back(spatial::Transform(occurrence.X_WB, product_.part_of(occurrence.id).box_B));
   }
-  overlapped_.resize(product_.occurrences.size());
   if (known == nullptr) {
-    FindOverlaps(kMostRelief);
-    RelieveDrawn();
-    FindOverlaps(kDepthTolerance);
-    return;
+    OverlapSearch search(
+        input, [this](OccurrenceId id) { return CollectIgnored(id); }, &reliefs_);
+    overlaps_ = search.Find();
+  } else {
+    overlaps_ = known->overlaps;
+    gives_ = known->gives;
+    reliefs_.Restore(known->reliefs);
   }
-  for (const DrawnOverlap& overlap : known->overlaps) {
-    LeaveOut(overlap);
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    allowances_.push_back(ListAllowances(overlaps_, gives_, occurrence.id));
   }
-  std::set<OccurrenceId> parts;
-  for (const FaceRelief& relief : known->reliefs) {
-    reliefs_[{relief.occurrence, relief.face}] = relief.depth;
-    parts.insert(relief.occurrence);
-  }
-  GiveOffsets(parts);
-}
-
-void Extraction::LeaveOut(const DrawnOverlap& overlap) {
-  overlaps_.push_back(overlap);
-  overlapped_[overlap.a.index()].emplace_back(overlap.b.index());
-  overlapped_[overlap.b.index()].emplace_back(overlap.a.index());
 }
 
 void Extraction::SetPresent(const Unit& unit, bool is_present) {
@@ -184,7 +172,7 @@ bool Extraction::MatesAllow(const Unit& unit, const Vec3& direction) const {
   return std::all_of(unit.begin(), unit.end(), [&](OccurrenceId id) {
     const std::vector<MateView>& views = mates_of_[id.index()];
     return std::all_of(views.begin(), views.end(), [&](const MateView& view) {
-      return !IsAround(view.other) || IsAllowed(view, direction);
+      return !IsAround(view.other) || IsAllowed(view, direction) || MayPass(view, id);
     });
   });
 }
@@ -284,156 +272,8 @@ std::vector<contact::IgnoredPair> Extraction::CollectIgnored(OccurrenceId id) co
   return ignored;
 }
 
-void Extraction::FindOverlaps(double depth) {
-  for (const product::Occurrence& occurrence : product_.occurrences) {
-    const contact::BodyId self(occurrence.id.index());
-    const std::vector<contact::IgnoredPair> ignored = CollectIgnored(occurrence.id);
-    contact::QueryOptions query;
-    query.margin = -depth;
-    query.ignored = ignored;
-    query.self = self;
-    // A query reports a limited number of contacts: ask again without those found until none is
-    // left.
-    for (bool is_clear = false; !is_clear;) {
-      const std::vector<contact::BodyId> left_out = overlapped_[self.index()];
-      query.left_out[0] = left_out;
-      input_.scene->Query(input_.scene->shape(self), occurrence.X_WB, query, &workspace_);
-      std::map<contact::BodyId, double> depths;
-      for (const contact::Contact& contact : workspace_.contacts()) {
-        if (contact.body.is_valid() && contact.distance < -depth) {
-          double& deepest = depths[contact.body];
-          deepest = std::max(deepest, -contact.distance);
-        }
-      }
-      is_clear = depths.empty();
-      for (const auto& [body, deepest] : depths) {
-        LeaveOut({occurrence.id, OccurrenceId(body.index()), deepest});
-      }
-    }
-  }
-}
-
-void Extraction::RelieveDrawn() {
-  if (input_.shapes.empty()) {
-    return;
-  }
-  for (int round = 0; round < kReliefRounds; ++round) {
-    std::set<OccurrenceId> parts;
-    for (const product::Occurrence& occurrence : product_.occurrences) {
-      const std::vector<contact::IgnoredPair> ignored = CollectIgnored(occurrence.id);
-      contact::QueryOptions query;
-      query.margin = -kReliefFrom;
-      query.ignored = ignored;
-      query.left_out[0] = overlapped_[occurrence.id.index()];
-      query.self = contact::BodyId(occurrence.id.index());
-      input_.scene->Query(input_.scene->shape(query.self), occurrence.X_WB, query, &workspace_);
-      for (const contact::Contact& contact : workspace_.contacts()) {
-        NoteRelieved(occurrence.id, contact);
-      }
-      std::map<Face, double> depths;
-      AddContacts(occurrence.id, kMostRelief, &depths);
-      parts.merge(Relieve(depths));
-    }
-    if (parts.empty()) {
-      return;
-    }
-    GiveOffsets(parts);
-  }
-}
-
-void Extraction::NoteRelieved(OccurrenceId self, const contact::Contact& contact) {
-  if (!contact.body.is_valid() || contact.distance >= -kDepthTolerance) {
-    return;
-  }
-  const OccurrenceId other(contact.body.index());
-  const auto found =
-      std::find_if(relieved_.begin(), relieved_.end(), [&](const DrawnOverlap& known) {
-        return (known.a == self && known.b == other) || (known.a == other && known.b == self);
-      });
-  if (found == relieved_.end()) {
-    relieved_.push_back({self, other, -contact.distance});
-  } else {
-    found->depth = std::max(found->depth, -contact.distance);
-  }
-}
-
-void Extraction::AddContacts(OccurrenceId self, double most, std::map<Face, double>* depths) const {
-  for (const contact::Contact& contact : workspace_.contacts()) {
-    if (!contact.body.is_valid() || contact.distance >= -kReliefFrom || contact.distance < -most) {
-      continue;
-    }
-    const double half = 0.5 * (kReliefRoom - contact.distance);
-    for (const Face& face : {Face{self, contact.held_face},
-                             Face{OccurrenceId(contact.body.index()), contact.scene_face}}) {
-      if (face.face < product_.part_of(face.occurrence).faces.size()) {
-        double& depth = (*depths)[face];
-        depth = std::max(depth, half);
-      }
-    }
-  }
-}
-
-std::set<OccurrenceId> Extraction::Relieve(const std::map<Face, double>& depths) {
-  std::set<OccurrenceId> parts;
-  for (const auto& [face, depth] : depths) {
-    double& relief = reliefs_[face];
-    const double before = relief;
-    relief = std::min(relief + depth, contact::FaceOffsets::kLargest);
-    if (relief > before) {
-      parts.insert(face.occurrence);
-    }
-  }
-  return parts;
-}
-
-void Extraction::GiveOffsets(const std::set<OccurrenceId>& parts) {
-  for (const OccurrenceId id : parts) {
-    std::vector<contact::FaceOffset> offsets(product_.part_of(id).faces.size());
-    for (auto entry = reliefs_.lower_bound({id, 0});
-         entry != reliefs_.end() && entry->first.occurrence == id; ++entry) {
-      offsets[entry->first.face].uniform = -entry->second;
-    }
-    // Offsets within the largest one are never refused.
-    if (auto made = contact::FaceOffsets::Make(input_.shapes[id.index()], offsets)) {
-      input_.scene->SetOffsets(contact::BodyId(id.index()), std::move(*made));
-    }
-  }
-}
-
-std::vector<FaceRelief> Extraction::ListReliefs() const {
-  std::vector<FaceRelief> list;
-  for (const auto& [face, depth] : reliefs_) {
-    list.push_back({face.occurrence, face.face, depth});
-  }
-  return list;
-}
-
-bool Extraction::LeaveOutRelieved(const Unit& parts) {
-  const auto is_among = [&parts](OccurrenceId id) {
-    return std::find(parts.begin(), parts.end(), id) != parts.end();
-  };
-  const auto is_blocked_by = [this](OccurrenceId id, OccurrenceId other) {
-    const std::vector<Attempt>& attempts = memories_[id.index()].attempts;
-    return std::any_of(attempts.begin(), attempts.end(), [other](const Attempt& attempt) {
-      return attempt.blocker && attempt.blocker->occurrence == other;
-    });
-  };
-  const auto kept =
-      std::stable_partition(relieved_.begin(), relieved_.end(), [&](const DrawnOverlap& pair) {
-        return !is_among(pair.a) || !is_among(pair.b) ||
-               (!is_blocked_by(pair.a, pair.b) && !is_blocked_by(pair.b, pair.a));
-      });
-  const bool has_any = kept != relieved_.end();
-  std::for_each(kept, relieved_.end(), [this](const DrawnOverlap& pair) { LeaveOut(pair); });
-  relieved_.erase(kept, relieved_.end());
-  if (has_any) {
-    Forget(parts);
-  }
-  return has_any;
-}
-
 bool Extraction::RelieveWays(const std::vector<SequenceStep>& steps) {
-  const std::map<Face, double> before = reliefs_;
+  const FaceReliefs::Depths before = reliefs_.depths();
   Unit all;
   for (const product::Occurrence& occurrence : product_.occurrences) {
     all.push_back(occurrence.id);
@@ -450,19 +290,20 @@ bool Extraction::RelieveWays(const std::vector<SequenceStep>& steps) {
     }
     SetPresent(unit, step.kind != SequenceStep::Kind::kPark);
   }
-  return reliefs_ != before;
+  return reliefs_.depths() != before;
 }
 
 void Extraction::RelieveWay(const Unit& unit, const Vec3& direction) {
   const std::vector<Member> members = ListMembers(unit);
   const double step = CalcStep(unit);
   const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
-  std::map<Face, double> deepest;
+  FaceReliefs::Depths deepest;
   for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
     for (const Member& member : members) {
       contact::QueryOptions query;
       query.margin = -kReliefFrom;
       query.ignored = member.ignored;
+      query.allowances = member.allowances;
       query.left_out[0] = member.left_out;
       query.self = contact::BodyId(member.id.index());
       const product::Pose& X_WB = product_.occurrences[member.id.index()].X_WB;
@@ -470,17 +311,46 @@ void Extraction::RelieveWay(const Unit& unit, const Vec3& direction) {
       const contact::Shape& shape = input_.scene->shape(query.self);
       if (!input_.scene->IsFree(shape, X, kReliefFrom, query, &workspace_)) {
         input_.scene->Query(shape, X, query, &workspace_);
-        AddContacts(member.id, kWayRelief, &deepest);
+        for (const contact::Contact& contact : workspace_.contacts()) {
+          if (contact.distance >= -kWayRelief) {
+            reliefs_.AddContact(member.id, contact, &deepest);
+          }
+        }
       }
     }
   }
-  (void)Relieve(deepest);
+  (void)reliefs_.Add(deepest);
+}
+
+std::vector<contact::Allowance> Extraction::CollectAllowances(OccurrenceId id) const {
+  if (!is_giving_) {
+    return allowances_[id.index()];
+  }
+  // By how far the two may give, where that is more.
+  std::vector<contact::Allowance> allowances;
+  for (const product::Occurrence& other : product_.occurrences) {
+    const double depth =
+        std::max(input_.give_limits[id.index()], input_.give_limits[other.id.index()]);
+    if (depth > 0 && IsAround(other.id)) {
+      allowances.push_back({contact::BodyId(other.id.index()), depth, {}, {}});
+    }
+  }
+  for (const contact::Allowance& drawn : allowances_[id.index()]) {
+    const auto given = std::find_if(allowances.begin(), allowances.end(),
+                                    [&](const auto& other) { return other.body == drawn.body; });
+    if (given == allowances.end()) {
+      allowances.push_back(drawn);
+    } else {
+      given->depth = std::max(given->depth, drawn.depth);
+    }
+  }
+  return allowances;
 }
 
 std::vector<Extraction::Member> Extraction::ListMembers(const Unit& unit) const {
   std::vector<Member> members;
   for (const OccurrenceId id : unit) {
-    Member member{id, CollectIgnored(id), overlapped_[id.index()]};
+    Member member{id, CollectIgnored(id), CollectAllowances(id), {}};
     for (const OccurrenceId other : unit) {
       member.left_out.emplace_back(other.index());
     }
@@ -514,6 +384,7 @@ std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& di
       contact::QueryOptions query;
       query.margin = -kDepthTolerance;
       query.ignored = member.ignored;
+      query.allowances = member.allowances;
       query.left_out[0] = member.left_out;
       query.left_out[1] = excepted;
       query.self = contact::BodyId(member.id.index());
@@ -612,11 +483,24 @@ std::string Extraction::ExplainStuck(OccurrenceId id) const {
 
 std::string Extraction::ExplainObstacle(OccurrenceId id, const Obstacle& obstacle,
                                         const Vec3& direction) const {
-  const std::string why =
-      ExplainTooWide(product_, id, obstacle.occurrence, direction, kDepthTolerance);
+  std::string why = ExplainTooWide(product_, id, obstacle.occurrence, direction, kDepthTolerance);
+  why = why.empty() ? ExplainOverlap(id, obstacle.occurrence) : why;
   return fmt::format("meets {} after {:.1f} mm along its best way out{}{}",
                      Describe(obstacle.occurrence), units::ToMm(obstacle.travelled),
                      why.empty() ? "" : ", as drawn: ", why);
+}
+
+std::string Extraction::ExplainOverlap(OccurrenceId id, OccurrenceId other) const {
+  const auto overlap = std::find_if(overlaps_.begin(), overlaps_.end(),
+                                    [&](const DrawnOverlap& o) { return o.Joins(id, other); });
+  if (overlap == overlaps_.end()) {
+    return {};
+  }
+  return overlap->answer == DrawnOverlap::Answer::kNone
+             ? fmt::format("it runs {:.3f} mm deep through its material, with no opening for it",
+                           units::ToMm(overlap->depth))
+             : fmt::format("the two overlap by {:.3f} mm, and the way would need more",
+                           units::ToMm(overlap->depth));
 }
 
 std::vector<Vec3> Extraction::ListDirections(const Unit& unit) {
@@ -635,7 +519,7 @@ std::vector<Vec3> Extraction::CollectContactNormals(OccurrenceId id) {
   contact::QueryOptions query;
   query.margin = kNear;
   query.ignored = ignored;
-  query.left_out[0] = overlapped_[id.index()];
+  query.allowances = allowances_[id.index()];
   query.self = contact::BodyId(id.index());
   input_.scene->Query(input_.scene->shape(query.self), product_.occurrences[id.index()].X_WB, query,
                       &workspace_);
@@ -737,9 +621,116 @@ std::optional<SequenceStep> Extraction::TryRemoveOne(Unit* rest, const Unit& sta
   return std::nullopt;
 }
 
+bool Extraction::MayPass(const MateView& view, OccurrenceId id) const {
+  const bool is_wall =
+      view.mate->kind == MateKind::kFaceFace || view.mate->kind == MateKind::kPrismatic;
+  return is_giving_ && is_wall &&
+         std::max(input_.give_limits[id.index()], input_.give_limits[view.other.index()]) > 0;
+}
+
+bool Extraction::MayGive(OccurrenceId id) const {
+  const auto gives = [this](OccurrenceId other) {
+    return input_.give_limits[other.index()] > 0 && is_present_[other.index()];
+  };
+  if (input_.give_limits.empty() || gives(id)) {
+    return !input_.give_limits.empty();
+  }
+  // What a part that gives may be in the way of: its box reaches this one on some way out.
+  return std::any_of(memories_[id.index()].attempts.begin(), memories_[id.index()].attempts.end(),
+                     [&gives](const Attempt& attempt) {
+                       return attempt.blocker && attempt.blocker->occurrence.is_valid() &&
+                              gives(attempt.blocker->occurrence);
+                     });
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveGiving(Unit* rest, const Unit& deferred) {
+  for (const bool is_deferred : {false, true}) {
+    for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
+      const OccurrenceId id = (*rest)[i];
+      if (!MayGive(id) || std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred) {
+        continue;
+      }
+      is_giving_ = true;
+      std::optional<SequenceStep> step = TryRemove({id}, &giving_memories_[id.index()]);
+      is_giving_ = false;
+      if (step) {
+        NoteGives(id, step->extraction_W);
+        rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
+        return step;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
+  std::map<contact::BodyId, double> deepest;
+  const Unit unit{id};
+  SetUnit(unit, true);
+  const std::vector<Member> members = ListMembers(unit);
+  const double step = CalcStep(unit);
+  const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
+  for (int i = 0; i <= last; ++i) {
+    contact::QueryOptions query;
+    query.margin = -kDepthTolerance;
+    query.ignored = members[0].ignored;
+    query.allowances = members[0].allowances;
+    query.self = contact::BodyId(id.index());
+    const product::Pose& X_WB = product_.occurrences[id.index()].X_WB;
+    input_.scene->Query(input_.scene->shape(query.self),
+                        {X_WB.q(), X_WB.p() + i * step * direction}, query, &workspace_);
+    for (const contact::Contact& contact : workspace_.contacts()) {
+      double& depth = deepest[contact.body];
+      depth = std::max(depth, -contact.distance);
+    }
+  }
+  SetUnit(unit, false);
+  for (const auto& [body, depth] : deepest) {
+    const OccurrenceId other(body.index());
+    const bool is_own = input_.give_limits[id.index()] >= input_.give_limits[other.index()];
+    gives_.push_back({is_own ? id : other, is_own ? other : id, depth});
+    allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
+    allowances_[other.index()] = ListAllowances(overlaps_, gives_, other);
+  }
+}
+
+bool Extraction::AllowBeyondDrawn(const Unit& parts) {
+  constexpr double kBeyond = 0.5e-3;  // [m] more than drawn, as faces can give way: a choice.
+  const auto is_among = [&parts](OccurrenceId id) {
+    return std::find(parts.begin(), parts.end(), id) != parts.end();
+  };
+  const auto is_blocked_by = [this](OccurrenceId id, OccurrenceId other) {
+    const std::vector<Attempt>& attempts = memories_[id.index()].attempts;
+    return std::any_of(attempts.begin(), attempts.end(), [other](const Attempt& attempt) {
+      return attempt.blocker && attempt.blocker->occurrence == other;
+    });
+  };
+  std::set<OccurrenceId> changed;
+  for (DrawnOverlap& overlap : overlaps_) {
+    const bool may_pass = !overlap.is_beyond && overlap.answer != DrawnOverlap::Answer::kNone;
+    if (may_pass && is_among(overlap.a) && is_among(overlap.b) &&
+        (is_blocked_by(overlap.a, overlap.b) || is_blocked_by(overlap.b, overlap.a))) {
+      overlap.is_beyond = true;
+      overlap.answer = DrawnOverlap::Answer::kAllowance;
+      overlap.allowed = std::max(overlap.allowed, overlap.depth) + kBeyond;
+      overlap.passing_a.clear();
+      overlap.passing_b.clear();
+      changed.insert({overlap.a, overlap.b});
+    }
+  }
+  for (const OccurrenceId id : changed) {
+    allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
+  }
+  if (!changed.empty()) {
+    Forget(parts);
+  }
+  return !changed.empty();
+}
+
 void Extraction::Forget(const Unit& parts) {
   for (const OccurrenceId id : parts) {
     memories_[id.index()] = {};
+    giving_memories_[id.index()] = {};
   }
   unit_memories_.clear();
 }

@@ -1,15 +1,13 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "contact/face_offsets.h"
 #include "contact/scene.h"
+#include "simulation/face_reliefs.h"
 #include "simulation/sequence.h"
 
 namespace hvas::simulation {
@@ -33,8 +31,11 @@ class Extraction {
    @param known  Has the overlaps and reliefs found before; null: they are found here. */
   Extraction(const SequenceInput& input, const Sequence* known);
 
-  /** Pairs of parts that interpenetrate as drawn; contact between them is omitted. */
+  /** Pairs of parts that interpenetrate as drawn, and what lets them pass one another. */
   [[nodiscard]] const std::vector<DrawnOverlap>& overlaps() const { return overlaps_; }
+
+  /** Parts that gave on ways that TryRemoveGiving found. */
+  [[nodiscard]] const std::vector<GivingPair>& gives() const { return gives_; }
 
   /** Lets the faces give way that parts meet on their ways by less than what a way is free with.
    The scene has the parts as made. Presence of parts changes. Returns false where there is none. */
@@ -42,10 +43,7 @@ class Extraction {
 
   /** Faces that give way: where parts lie in one another as drawn by up to half a millimetre, and
    those of RelieveWays(). */
-  [[nodiscard]] std::vector<FaceRelief> ListReliefs() const;
-
-  /** Pairs of parts that lie in one another as drawn and whose faces give way there. */
-  [[nodiscard]] const std::vector<DrawnOverlap>& relieved() const { return relieved_; }
+  [[nodiscard]] std::vector<FaceRelief> ListReliefs() const { return reliefs_.List(); }
 
   [[nodiscard]] bool is_present(product::OccurrenceId id) const { return is_present_[id.index()]; }
 
@@ -90,11 +88,18 @@ class Extraction {
    @param staying  Sorted; parts that are not tried. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveOne(Unit* rest, const Unit& staying = {});
 
-  /** Leaves out the contact between those of these parts that lie in one another as drawn, where
-   faces that give way do not suffice to let them out. Returns false where there are none. */
-  bool LeaveOutRelieved(const Unit& parts);
+  /** Takes out the first of these parts that can go where it, or what is in its way, gives by no
+   more than SequenceInput::give_limits has, and erases it from them.
+   @param deferred  Sorted; parts that are tried after all others. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveGiving(Unit* rest, const Unit& deferred);
 
-  /** Forgets what TryRemoveOne has tried with these parts, and TryRemove with any unit. */
+  /** Allows those of these parts that overlap as drawn, and block one another's ways, half a
+   millimetre more than the drawn depth, with all their faces. Returns false where there are none.
+   */
+  bool AllowBeyondDrawn(const Unit& parts);
+
+  /** Forgets what TryRemoveOne and TryRemoveGiving have tried with these parts, and TryRemove with
+   any unit. */
   void Forget(const Unit& parts);
 
   /** Explains why TryRemoveOne did not find a way out for a part. */
@@ -119,6 +124,7 @@ class Extraction {
   struct Member {
     product::OccurrenceId id;
     std::vector<contact::IgnoredPair> ignored;
+    std::vector<contact::Allowance> allowances;
     std::vector<contact::BodyId> left_out;
   };
 
@@ -133,30 +139,18 @@ class Extraction {
     std::ptrdiff_t mates_around{-1};
   };
 
-  struct Face {
-    product::OccurrenceId occurrence;
-    std::uint32_t face{0};
-
-    auto operator<=>(const Face&) const = default;
-  };
-
-  /** Finds the parts that lie in one another deeper than this [m]. */
-  void FindOverlaps(double depth);
-  void LeaveOut(const DrawnOverlap& overlap);
-  /** Lets faces give way where parts lie in one another as drawn, as far as faces can. */
-  void RelieveDrawn();
-  /** Adds the faces of the contacts of the last query, both with half of their depth, at most
-   `most` [m]. */
-  void AddContacts(product::OccurrenceId self, double most, std::map<Face, double>* depths) const;
-  /** Lets faces give way by these depths [m]; returns the parts whose faces do. */
-  std::set<product::OccurrenceId> Relieve(const std::map<Face, double>& depths);
   /** Lets the faces give way that a unit meets on its way out. */
   void RelieveWay(const Unit& unit, const Vec3& direction);
-  void NoteRelieved(product::OccurrenceId self, const contact::Contact& contact);
   [[nodiscard]] std::vector<Member> ListMembers(const Unit& unit) const;
   /** Distance between looks along a way [m]. */
   [[nodiscard]] double CalcStep(const Unit& unit) const;
-  void GiveOffsets(const std::set<product::OccurrenceId>& parts);
+  [[nodiscard]] std::vector<contact::Allowance> CollectAllowances(product::OccurrenceId id) const;
+  /** Whether a part that gives gets past a face that it touches in its place. */
+  [[nodiscard]] bool MayPass(const MateView& view, product::OccurrenceId id) const;
+  /** Whether a part gives, or one that was found in its way. */
+  [[nodiscard]] bool MayGive(product::OccurrenceId id) const;
+  /** Notes how far a part, or what it passes, gives on its way out. */
+  void NoteGives(product::OccurrenceId id, const Vec3& direction);
 
   [[nodiscard]] bool IsAround(product::OccurrenceId id) const {
     return is_present_[id.index()] && !is_in_unit_[id.index()];
@@ -181,6 +175,9 @@ class Extraction {
                                                     double from,
                                                     std::span<const contact::BodyId> excepted);
   [[nodiscard]] std::optional<SequenceStep> TryRemove(const Unit& unit, Memory* memory);
+  /** Where two parts lie in one another as drawn: says by how much. Else empty. */
+  [[nodiscard]] std::string ExplainOverlap(product::OccurrenceId id,
+                                           product::OccurrenceId other) const;
 
   const SequenceInput& input_;
   const product::Product& product_;
@@ -190,11 +187,13 @@ class Extraction {
   std::vector<std::vector<Vec3>> plane_lines_;  // By occurrence, in its frame.
   std::vector<spatial::Box> boxes_;
   std::vector<DrawnOverlap> overlaps_;
-  std::vector<std::vector<contact::BodyId>> overlapped_;  // by occurrence
-  std::vector<Memory> memories_;                          // by occurrence
+  std::vector<GivingPair> gives_;
+  std::vector<std::vector<contact::Allowance>> allowances_;  // by occurrence
+  std::vector<Memory> memories_;                             // by occurrence
+  std::vector<Memory> giving_memories_;                      // by occurrence
   std::map<Unit, Memory> unit_memories_;
-  std::map<Face, double> reliefs_;      // [m]
-  std::vector<DrawnOverlap> relieved_;  // Pairs whose faces give way as drawn.
+  FaceReliefs reliefs_;
+  bool is_giving_{false};  // Parts give as far as they may.
   contact::QueryWorkspace workspace_;
 };
 

@@ -50,6 +50,18 @@ product::Mate TurnToStep(const product::Product& product, const product::Mate& m
   return mate.kind == MateKind::kPrismatic ? mates::TurnToWay(product, mate, q_DW * way_W) : mate;
 }
 
+/** All bodies that move in a step; empty for a part alone. */
+std::vector<contact::BodyId> ListTogetherBodies(const SequenceStep& step) {
+  std::vector<contact::BodyId> bodies;
+  if (!step.members.empty()) {
+    bodies.emplace_back(step.occurrence.index());
+    for (const OccurrenceId member : step.members) {
+      bodies.emplace_back(member.index());
+    }
+  }
+  return bodies;
+}
+
 }  // namespace
 
 bool IsStop(const product::Mate& mate, const Vec3& axis_W, const Vec3& insertion_W) {
@@ -80,7 +92,8 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
       is_on_table ? is_table_group : step.members.empty() && !held->starts_in_place;
   held->X_WB_start = lies_on_table ? CalcPoseAboveTable(step) : state.X_WB;
   held->insertion_W = -step.extraction_W;
-  held->left_out = ListLeftOut(id, step);
+  held->left_out = ListTogetherBodies(step);
+  held->allowances = ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
   AddMembers(step, held.get());
   held->bodies = {held->body};
   for (const haptics::HeldMember& member : held->members) {
@@ -204,7 +217,8 @@ void HeldPartMaker::AddMembers(const SequenceStep& step, haptics::HeldPart* held
     member.body = contact::BodyId(id.index());
     member.shape = model_.bodies[id.index()].shape;
     member.X_BS = X_BW * model_.bodies[id.index()].X_WB_goal;
-    member.left_out = ListLeftOut(id, step);
+    member.left_out = ListTogetherBodies(step);
+    member.allowances = ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
     held->members.push_back(std::move(member));
   }
 }
@@ -256,23 +270,6 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
     entry.placed_faces = is_a ? compiled.faces_b : compiled.faces_a;
     held->mates.push_back(std::move(entry));
   }
-}
-
-std::vector<contact::BodyId> HeldPartMaker::ListLeftOut(OccurrenceId id,
-                                                        const SequenceStep& step) const {
-  std::vector<contact::BodyId> bodies;
-  for (const DrawnOverlap& overlap : model_.sequence.overlaps) {
-    if (overlap.a == id || overlap.b == id) {
-      bodies.emplace_back((overlap.a == id ? overlap.b : overlap.a).index());
-    }
-  }
-  if (!step.members.empty()) {
-    bodies.emplace_back(step.occurrence.index());
-    for (const OccurrenceId member : step.members) {
-      bodies.emplace_back(member.index());
-    }
-  }
-  return bodies;
 }
 
 spatial::Pose HeldPartMaker::CalcPoseAboveTable(const SequenceStep& step) const {

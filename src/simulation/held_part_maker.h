@@ -51,8 +51,6 @@ class HeldPartMaker {
                   const std::vector<product::OccurrenceId>* target, haptics::HeldPart* held) const;
   void AddTablePlaces(const SequenceStep& step, haptics::HeldPart* held);
   [[nodiscard]] spatial::Pose CalcPlace(const haptics::HeldPart& held) const;
-  [[nodiscard]] std::vector<contact::BodyId> ListLeftOut(product::OccurrenceId id,
-                                                         const SequenceStep& step) const;
   [[nodiscard]] spatial::Pose CalcPoseAboveTable(const SequenceStep& step) const;
 
   const Model& model_;

@@ -258,6 +258,12 @@ SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene) {
   input.scene = scene;
   input.tools = model.accessories.tools;
   input.fixtures = model.accessories.fixtures;
+  if (!model.product->flexible.empty()) {
+    input.give_limits.assign(model.bodies.size(), 0);
+    for (const product::FlexiblePart& part : model.product->flexible) {
+      input.give_limits[part.occurrence.index()] = part.allowance;
+    }
+  }
   for (const Body& body : model.bodies) {
     (void)scene->Add(body.shape, body.X_WB_goal);
     input.shapes.push_back(body.shape);

@@ -102,32 +102,83 @@ PersonTask PartRun::MakeTask(const SequenceStep& step) const {
   return task;
 }
 
-std::string PartRun::DescribeOverlaps(OccurrenceId id, const std::vector<DrawnOverlap>& overlaps,
-                                      const std::string& consequence) const {
-  const DrawnOverlap* deepest = nullptr;
-  int count = 0;
-  for (const DrawnOverlap& overlap : overlaps) {
-    if (overlap.a == id || overlap.b == id) {
-      ++count;
-      deepest = deepest == nullptr || overlap.depth > deepest->depth ? &overlap : deepest;
+std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step) const {
+  std::vector<OccurrenceId> moved{step.occurrence};
+  moved.insert(moved.end(), step.members.begin(), step.members.end());
+  const auto is_moved = [&moved](OccurrenceId id) {
+    return std::find(moved.begin(), moved.end(), id) != moved.end();
+  };
+  const auto is_met = [&](OccurrenceId own, OccurrenceId other) {
+    return is_moved(own) && !is_moved(other) && physics().placement(other) == Placement::kPlaced;
+  };
+  std::vector<PartAllowance> allowances;
+  for (const DrawnOverlap& overlap : model().sequence.overlaps) {
+    if (is_met(overlap.a, overlap.b)) {
+      allowances.push_back({PartAllowance::Kind::kDrawn,
+                            overlap.a,
+                            overlap.b,
+                            overlap.depth,
+                            overlap.is_beyond,
+                            overlap.faces_a,
+                            overlap.faces_b,
+                            {}});
+    } else if (is_met(overlap.b, overlap.a)) {
+      allowances.push_back({PartAllowance::Kind::kDrawn,
+                            overlap.b,
+                            overlap.a,
+                            overlap.depth,
+                            overlap.is_beyond,
+                            overlap.faces_b,
+                            overlap.faces_a,
+                            {}});
     }
   }
-  if (deepest == nullptr) {
-    return {};
+  for (const GivingPair& give : model().sequence.gives) {
+    const bool is_own = is_met(give.flexible, give.other);
+    if (is_own || is_met(give.other, give.flexible)) {
+      allowances.push_back({PartAllowance::Kind::kGive,
+                            is_own ? give.flexible : give.other,
+                            is_own ? give.other : give.flexible,
+                            give.depth,
+                            false,
+                            {},
+                            {},
+                            give.flexible});
+    }
   }
-  const OccurrenceId other = deepest->a == id ? deepest->b : deepest->a;
-  return fmt::format("overlaps {}{} as drawn, by {:.3f} mm: {}", PathOf(other),
-                     count > 1 ? fmt::format(" and {} more", count - 1) : "",
-                     units::ToMm(deepest->depth), consequence);
+  return allowances;
 }
 
-std::string PartRun::DescribeOverlaps(OccurrenceId id) const {
-  const Sequence& sequence = model().sequence;
-  const std::string left_out =
-      DescribeOverlaps(id, sequence.overlaps, "contact between them is left out");
-  const std::string relieved =
-      DescribeOverlaps(id, sequence.relieved, "their faces give way there by that much");
-  return left_out + (left_out.empty() || relieved.empty() ? "" : "; ") + relieved;
+std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowances) const {
+  std::string text;
+  for (const PartAllowance::Kind kind : {PartAllowance::Kind::kDrawn, PartAllowance::Kind::kGive}) {
+    const PartAllowance* deepest = nullptr;
+    int count = 0;
+    for (const PartAllowance& allowance : allowances) {
+      if (allowance.kind == kind) {
+        ++count;
+        deepest = deepest == nullptr || allowance.depth > deepest->depth ? &allowance : deepest;
+      }
+    }
+    if (deepest == nullptr) {
+      continue;
+    }
+    const std::string more = count > 1 ? fmt::format(" and {} more", count - 1) : "";
+    text += text.empty() ? "" : "; ";
+    if (kind == PartAllowance::Kind::kDrawn) {
+      const bool is_beyond = std::any_of(allowances.begin(), allowances.end(),
+                                         [](const PartAllowance& a) { return a.is_beyond; });
+      text += fmt::format("only by an allowance{}: it lies {:.3f} mm in {}{} as drawn",
+                          is_beyond ? " of up to 0.5 mm more than drawn" : "",
+                          units::ToMm(deepest->depth), PathOf(deepest->other), more);
+      continue;
+    }
+    const product::FlexiblePart* part = FindFlexible(*model().product, deepest->flexible);
+    text += fmt::format("goes in by giving {:.2f} mm ({}{})", units::ToMm(deepest->depth),
+                        part == nullptr ? "part" : product::ToString(part->kind),
+                        deepest->flexible == deepest->own ? "" : ": " + PathOf(deepest->flexible));
+  }
+  return text;
 }
 
 std::size_t PartRun::CountNeighboursInPlace(const SequenceStep& step) const {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -14,23 +15,42 @@
 
 namespace hvas::simulation {
 
+/** What a part needs to get to its place beyond what the drawing leaves free: without it there
+ is no way. */
+struct PartAllowance {
+  enum class Kind : std::uint8_t {
+    kDrawn,  ///< The two lie in one another as drawn.
+    kGive,   ///< One of the two gives.
+  };
+
+  Kind kind{Kind::kDrawn};
+  product::OccurrenceId own;               ///< The part, or the member of its subassembly.
+  product::OccurrenceId other;             ///< The part that was in its place before.
+  double depth{0};                         ///< [m]
+  bool is_beyond{false};                   ///< kDrawn: contact begins deeper than drawn.
+  std::vector<std::uint32_t> own_faces;    ///< kDrawn: the faces that overlap.
+  std::vector<std::uint32_t> other_faces;  ///< kDrawn: those of the other part.
+  product::OccurrenceId flexible;          ///< kGive: the one that gives.
+};
+
 /** How one part fared. */
 struct PartResult {
   product::OccurrenceId occurrence;
   bool is_seated{false};
-  std::string reason;   ///< Why not, when it is not seated.
-  std::string note;     ///< What was odd about it although it is; may be empty.
-  double time{0};       ///< Time from taking it up to letting go [s].
-  double path{0};       ///< [m]
-  double peak_true{0};  ///< [N]
-  double peak_felt{0};  ///< [N]
-  double fit_true{0};   ///< Largest axial force of its fits, true [N].
-  double fit_felt{0};   ///< Largest axial force of its fits, as felt [N].
-  double deepest{0};    ///< Deepest penetration met [m].
-  Passage passage;      ///< What it passed through, beyond what is drawn.
-  double insertion{0};  ///< Longest that a mate's shaft was in its hole [m].
-  std::size_t hand{0};  ///< That let go of it last.
-  int mates{0};         ///< Mates with parts that were in place.
+  std::string reason;                     ///< Why not, when it is not seated.
+  std::string note;                       ///< What was odd about it although it is; may be empty.
+  std::vector<PartAllowance> allowances;  ///< It is in its place only by these.
+  double time{0};                         ///< Time from taking it up to letting go [s].
+  double path{0};                         ///< [m]
+  double peak_true{0};                    ///< [N]
+  double peak_felt{0};                    ///< [N]
+  double fit_true{0};                     ///< Largest axial force of its fits, true [N].
+  double fit_felt{0};                     ///< Largest axial force of its fits, as felt [N].
+  double deepest{0};                      ///< Deepest penetration met [m].
+  Passage passage;                        ///< What it passed through, beyond what is drawn.
+  double insertion{0};                    ///< Longest that a mate's shaft was in its hole [m].
+  std::size_t hand{0};                    ///< That let go of it last.
+  int mates{0};                           ///< Mates with parts that were in place.
   /** It was put into a fixture, or had a mate with a part in its place, or touched one, when it got
    to its own place. */
   bool has_touched{false};
@@ -104,7 +124,10 @@ class PartRun : public Sink {
   /** Sets where a part is now in its result. */
   void Update(product::OccurrenceId id);
   [[nodiscard]] const std::string& PathOf(product::OccurrenceId id) const;
-  [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id) const;
+  /** Lists what moves in a step is allowed with the parts that are in their places. */
+  [[nodiscard]] std::vector<PartAllowance> ListPartAllowances(const SequenceStep& step) const;
+  /** Names the deepest allowance of each kind, with its depth. */
+  [[nodiscard]] std::string DescribeAllowances(const std::vector<PartAllowance>& allowances) const;
   /** Counts the parts in their place that hold what moves in a step, where it is to go. */
   [[nodiscard]] std::size_t CountNeighboursInPlace(const SequenceStep& step) const;
   /** Names the part that was pressed hardest in a hold, with the force. */
@@ -121,11 +144,6 @@ class PartRun : public Sink {
   bool is_done_{false};
 
  private:
-  /** Names the deepest of those overlaps that a part has, and what follows from them. */
-  [[nodiscard]] std::string DescribeOverlaps(product::OccurrenceId id,
-                                             const std::vector<DrawnOverlap>& overlaps,
-                                             const std::string& consequence) const;
-
   Simulation* simulation_;
   Sink* downstream_;
   double lift_height_{0.05};

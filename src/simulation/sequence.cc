@@ -235,7 +235,11 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
     removed->push_back(std::move(*step));
     return;
   }
-  if (extraction_.LeaveOutRelieved(*rest)) {
+  if (std::optional<SequenceStep> giving = extraction_.TryRemoveGiving(rest, connecting)) {
+    removed->push_back(std::move(*giving));
+    return;
+  }
+  if (extraction_.AllowBeyondDrawn(*rest)) {
     graph->reset();
     return;
   }
@@ -285,7 +289,7 @@ Sequence Planner::Plan() {
   }
   PlanLevel(std::move(all), &sequence);
   sequence.overlaps = extraction_.overlaps();
-  sequence.relieved = extraction_.relieved();
+  sequence.gives = extraction_.gives();
   sequence.reliefs = extraction_.ListReliefs();
   return sequence;
 }
@@ -304,6 +308,32 @@ const SequenceStep* FindInsertion(const Sequence& sequence, OccurrenceId id) {
   return found == sequence.steps.end() ? nullptr : &*found;
 }
 
+std::vector<contact::Allowance> ListAllowances(std::span<const DrawnOverlap> overlaps,
+                                               std::span<const GivingPair> gives, OccurrenceId id) {
+  constexpr double kRoom = 60e-6;  // [m] that is left to a part that gives: a choice.
+  std::vector<contact::Allowance> allowances;
+  for (const GivingPair& give : gives) {
+    if (give.flexible == id || give.other == id) {
+      const OccurrenceId other = give.flexible == id ? give.other : give.flexible;
+      double depth = give.depth + kRoom;
+      for (const DrawnOverlap& overlap : overlaps) {
+        depth = overlap.Joins(id, other) ? std::max(depth, overlap.allowed) : depth;
+      }
+      allowances.push_back({contact::BodyId(other.index()), depth, {}, {}});
+    }
+  }
+  for (const DrawnOverlap& overlap : overlaps) {
+    if (overlap.answer == DrawnOverlap::Answer::kAllowance &&
+        (overlap.a == id || overlap.b == id)) {
+      const bool is_a = overlap.a == id;
+      allowances.push_back({contact::BodyId((is_a ? overlap.b : overlap.a).index()),
+                            overlap.allowed, is_a ? overlap.passing_a : overlap.passing_b,
+                            is_a ? overlap.passing_b : overlap.passing_a});
+    }
+  }
+  return allowances;
+}
+
 OccurrenceId FindBase(const Sequence& sequence) {
   const auto base =
       std::find_if(sequence.steps.rbegin(), sequence.steps.rend(),
@@ -316,7 +346,7 @@ Result<Sequence> Reorder(const product::Product& product, const Sequence& sequen
   Sequence result;
   result.gaps = sequence.gaps;
   result.overlaps = sequence.overlaps;
-  result.relieved = sequence.relieved;
+  result.gives = sequence.gives;
   result.reliefs = sequence.reliefs;
   result.neighbours = sequence.neighbours;
   // Subassemblies are put together before the product's base is in the fixture; they stay there.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -29,12 +31,41 @@ struct SequenceStep {
   Vec3 offset_W{Vec3::Zero()};  ///< kPark: from the drawn place to the shelf [m].
 };
 
-/** Two parts that lie in one another as drawn, beyond what a mate between them explains. Contact
- between the two is left out: the drawing, not the hand, has put them there. */
+/** Two parts that lie in one another as drawn, deeper than 50 um and beyond what a mate between
+ them explains. */
 struct DrawnOverlap {
+  /** What lets the parts pass one another; no deeper than drawn, and nowhere else. */
+  enum class Answer : std::uint8_t {
+    kRelief,     ///< The faces that overlap give way, each by half of the depth.
+    kAllowance,  ///< Contact of the faces that overlap, and of those next to them, begins deeper.
+    kNone,       ///< No face looks at one of the other part: one part runs through the other.
+  };
+
   product::OccurrenceId a;
   product::OccurrenceId b;
   double depth{0};  ///< [m]
+  Answer answer{Answer::kNone};
+  double allowed{0};                     ///< kAllowance: contact begins this deep [m].
+  bool is_beyond{false};                 ///< More is allowed than drawn: no way was found without.
+  std::vector<std::uint32_t> faces_a;    ///< Faces of a that overlap; sorted.
+  std::vector<std::uint32_t> faces_b;    ///< Faces of b.
+  std::vector<std::uint32_t> passing_a;  ///< kAllowance: faces of a that may pass; sorted.
+  std::vector<std::uint32_t> passing_b;  ///< Faces of b.
+
+  [[nodiscard]] bool Joins(product::OccurrenceId x, product::OccurrenceId y) const {
+    return (a == x && b == y) || (a == y && b == x);
+  }
+};
+
+/** A part that gives while it passes another one: a snap hook, a retaining ring, an O-ring. */
+struct GivingPair {
+  product::OccurrenceId flexible;
+  product::OccurrenceId other;
+  double depth{0};  ///< How far it gives on the way [m].
+
+  [[nodiscard]] bool Joins(product::OccurrenceId x, product::OccurrenceId y) const {
+    return (flexible == x && other == y) || (flexible == y && other == x);
+  }
 };
 
 /** How far a face gives way where it lies in another part as drawn, or would on its way in. */
@@ -54,14 +85,20 @@ struct Sequence {
   std::vector<SequenceStep> steps;  ///< Steps in the order of assembly.
   std::vector<SequenceGap> gaps;
   std::vector<DrawnOverlap> overlaps;
-  std::vector<DrawnOverlap> relieved;  ///< Overlaps that have contact: faces give way there.
-  std::vector<FaceRelief> reliefs;     ///< Reliefs of faces, one of each.
-  Neighbours neighbours;               ///< Neighbours of all parts in the assembled product.
+  std::vector<FaceRelief> reliefs;  ///< Reliefs of faces, one of each.
+  std::vector<GivingPair> gives;    ///< Parts that give on their way, one of each pair.
+  Neighbours neighbours;            ///< Neighbours of all parts in the assembled product.
 };
 
 /** The move by which a part goes to its place, alone or with what moves with it; null where it has
  none: it is put into a fixture, or cannot be brought in. */
 [[nodiscard]] const SequenceStep* FindInsertion(const Sequence& sequence, product::OccurrenceId id);
+
+/** What a part is allowed with others: by overlaps as drawn, and by parts that give. One for each
+ other part; the spans are those of the arguments. */
+[[nodiscard]] std::vector<contact::Allowance> ListAllowances(std::span<const DrawnOverlap> overlaps,
+                                                             std::span<const GivingPair> gives,
+                                                             product::OccurrenceId id);
 
 /** The part that stays in the fixture. */
 [[nodiscard]] product::OccurrenceId FindBase(const Sequence& sequence);
@@ -74,6 +111,8 @@ struct SequenceInput {
   std::vector<std::shared_ptr<const haptics::MateFaces>> faces_b;
   /** Indexed by OccurrenceId; empty: no face gives way. */
   std::vector<std::shared_ptr<const contact::Shape>> shapes;
+  /** How far each part may give to pass others [m], by OccurrenceId; empty: all are rigid. */
+  std::vector<double> give_limits;
   std::vector<product::OccurrenceId> tools;     ///< They are not there.
   std::vector<product::OccurrenceId> fixtures;  ///< They stay where they are.
   std::function<void(double fraction)> progress;

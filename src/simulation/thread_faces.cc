@@ -18,29 +18,36 @@ bool IsDrawnThread(const product::Mate& mate) {
   return has_kind && mate.shaft_radius > mate.hole_radius + kDrawnOverlap;
 }
 
+std::vector<std::uint32_t> ListPassing(const product::Product& product, product::OccurrenceId own,
+                                       product::OccurrenceId other,
+                                       const haptics::MateFaces& faces) {
+  std::set<std::uint32_t> stops;
+  for (const product::Mate& mate : product.mates) {
+    const bool joins_both = (mate.a.occurrence == own && mate.b.occurrence == other) ||
+                            (mate.a.occurrence == other && mate.b.occurrence == own);
+    if (mates::HoldsAcross(mate.kind) || !joins_both) {
+      continue;
+    }
+    const product::Connector& side = mate.a.occurrence == own ? mate.a : mate.b;
+    for (const product::FaceId id : product::FacesOf(product, side)) {
+      stops.insert(id.value());
+    }
+  }
+  std::vector<std::uint32_t> passing;
+  std::copy_if(faces.with_neighbours.begin(), faces.with_neighbours.end(),
+               std::back_inserter(passing),
+               [&stops](std::uint32_t face) { return stops.count(face) == 0; });
+  return passing;
+}
+
 std::shared_ptr<const haptics::MateFaces> WidenForThread(const product::Product& product,
                                                          const product::Mate& mate,
                                                          const product::Connector& side,
                                                          const haptics::MateFaces& faces) {
-  const auto joins_same_parts = [&mate](const product::Mate& other) {
-    return (other.a.occurrence == mate.a.occurrence && other.b.occurrence == mate.b.occurrence) ||
-           (other.a.occurrence == mate.b.occurrence && other.b.occurrence == mate.a.occurrence);
-  };
-  std::set<std::uint32_t> stops;
-  for (const product::Mate& other : product.mates) {
-    if (mates::HoldsAcross(other.kind) || !joins_same_parts(other)) {
-      continue;
-    }
-    const product::Connector& own = other.a.occurrence == side.occurrence ? other.a : other.b;
-    for (const product::FaceId id : product::FacesOf(product, own)) {
-      stops.insert(id.value());
-    }
-  }
+  const product::OccurrenceId other =
+      mate.a.occurrence == side.occurrence ? mate.b.occurrence : mate.a.occurrence;
   auto wide = std::make_shared<haptics::MateFaces>(faces);
-  wide->mating.clear();
-  std::copy_if(faces.with_neighbours.begin(), faces.with_neighbours.end(),
-               std::back_inserter(wide->mating),
-               [&stops](std::uint32_t face) { return stops.count(face) == 0; });
+  wide->mating = ListPassing(product, side.occurrence, other, faces);
   return wide;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "haptics/held_part.h"
 #include "product/product.h"
@@ -10,6 +12,14 @@ namespace hvas::simulation {
 /** True where a mate is a thread whose screw is drawn wider than its hole, at the outer diameter in
  a hole of the core's; or an insert that is drawn wider than its bore. */
 [[nodiscard]] bool IsDrawnThread(const product::Mate& mate);
+
+/** Lists those of some faces, and of all next to them, that may overlap while two parts pass one
+ another: tips, chamfers and mouths. What the parts rest on each other with is none of them.
+ @param own  The part whose faces these are. @returns sorted indices. */
+[[nodiscard]] std::vector<std::uint32_t> ListPassing(const product::Product& product,
+                                                     product::OccurrenceId own,
+                                                     product::OccurrenceId other,
+                                                     const haptics::MateFaces& faces);
 
 /** What a thread takes out of contact on one side of its mate: its faces and all next to them,
  tips, chamfers and mouths, as these overlap when they pass one another. Not what the two parts rest

@@ -8,12 +8,14 @@
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
 #include "base/units.h"
+#include "mates/drawn_volumes.h"
 
 namespace hvas::app {
 namespace {
 
 using assembly::RunOutcome;
 using simulation::Model;
+using simulation::PartAllowance;
 using simulation::PartResult;
 
 std::size_t CountSeated(const RunOutcome& outcome) {
@@ -27,6 +29,34 @@ std::size_t CountUntouched(const RunOutcome& outcome) {
   return static_cast<std::size_t>(
       std::count_if(outcome.parts.begin(), outcome.parts.end(),
                     [](const PartResult& part) { return part.is_seated && !part.has_touched; }));
+}
+
+/** Counts the parts in their place that had no way there but by an allowance. */
+std::size_t CountByAllowance(const RunOutcome& outcome) {
+  return static_cast<std::size_t>(std::count_if(
+      outcome.parts.begin(), outcome.parts.end(),
+      [](const PartResult& part) { return part.is_seated && !part.allowances.empty(); }));
+}
+
+nlohmann::ordered_json ToJson(const Model& model, const PartAllowance& allowance) {
+  constexpr double kPerCubicMetre_mm3 = 1e9;  // [mm3] in a cubic metre.
+  const bool is_drawn = allowance.kind == PartAllowance::Kind::kDrawn;
+  nlohmann::ordered_json json{{"kind", is_drawn ? "drawn_overlap" : "gives"},
+                              {"with", PathOf(model, allowance.other)},
+                              {"depth_mm", units::ToMm(allowance.depth)},
+                              {"is_beyond_drawn", allowance.is_beyond}};
+  if (is_drawn) {
+    json["volume_mm3"] =
+        kPerCubicMetre_mm3 *
+        mates::MeasureSharedVolume(*model.product, allowance.own, allowance.other).volume;
+    json["faces"] = allowance.own_faces;
+    json["other_faces"] = allowance.other_faces;
+  } else {
+    const product::FlexiblePart* part = FindFlexible(*model.product, allowance.flexible);
+    json["flexible"] = PathOf(model, allowance.flexible);
+    json["flexible_kind"] = ToString(part != nullptr ? part->kind : product::FlexibleKind::kStated);
+  }
+  return json;
 }
 
 nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
@@ -45,6 +75,10 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
        {"arrival_urad", 1e6 * part.arrival_angle},
        {"pose_error_um", units::ToUm(part.pose_error)},
        {"pose_error_urad", 1e6 * part.pose_error_angle}});
+  json["allowances"] = nlohmann::ordered_json::array();
+  for (const PartAllowance& allowance : part.allowances) {
+    json["allowances"].push_back(ToJson(model, allowance));
+  }
   return json;
 }
 
@@ -87,6 +121,7 @@ void PrintAssemblyJson(const Model& model, const SessionReport& report) {
   const RunOutcome& outcome = report.run;
   nlohmann::ordered_json json = MakeRunJson(model, report);
   json["seated"] = CountSeated(outcome);
+  json["by_allowance"] = CountByAllowance(outcome);
   json["untouched"] = CountUntouched(outcome);
   json["parts"] = nlohmann::ordered_json::array();
   for (const PartResult& part : outcome.parts) {
@@ -98,8 +133,10 @@ void PrintAssemblyJson(const Model& model, const SessionReport& report) {
 void PrintAssemblyTable(const Model& model, const SessionReport& report) {
   const RunOutcome& outcome = report.run;
   PrintParts(model, outcome);
+  const std::size_t allowed = CountByAllowance(outcome);
   const std::size_t untouched = CountUntouched(outcome);
-  const std::string apart =
+  std::string apart = allowed > 0 ? fmt::format(", {} of them only by an allowance", allowed) : "";
+  apart +=
       untouched > 0 ? fmt::format(", {} of them touching no part that was there", untouched) : "";
   PrintRun(
       model, report,

@@ -34,7 +34,7 @@ Result<void> KeepLists(const std::filesystem::path& file, nlohmann::ordered_json
     return Unexpected(read.error());
   }
   const auto old = nlohmann::ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
-  for (const char* list : {"mates", "removed", "relations", "contacts"}) {
+  for (const char* list : {"mates", "removed", "relations", "contacts", "apart", "flexible"}) {
     if (old.is_object() && old.contains(list)) {
       (*document)[list] = old[list];
     }

@@ -55,6 +55,10 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options) {
                       "Name or path of a unit, or of one of its bodies, that is not to be welded "
                       "into one body, or of copies of a part that are not to be left out; all: of "
                       "everything; may be repeated");
+  command->add_option("--rigid", options->rigid,
+                      "Name or path of a part that may not give on its way although its name, its "
+                      "material or its form indicates that it is flexible; all: no part that is "
+                      "not under \"flexible\" in the side file; may be repeated");
   command
       ->add_option("--time-limit", options->limits.time,
                    "Time limit for opening and preparing the file [s]")

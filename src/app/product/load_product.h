@@ -22,8 +22,8 @@ struct LoadOptions : assembly::OpenOptions {
   bool is_cache_used{true};  ///< Keeps and takes what was read and prepared on disk.
 };
 
-/** Adds --strict, --quiet, --no-cache, --unit, --encoding, --apart, --time-limit, --memory-limit
- and
+/** Adds --strict, --quiet, --no-cache, --unit, --encoding, --apart, --rigid, --time-limit,
+ --memory-limit and
  --max-parts to a command. */
 void AddLoadOptions(CLI::App* command, LoadOptions* options);
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/product/joint_forms.h"
+#include "app/product/overlaps_report.h"
 #include "app/product/relations_report.h"
 #include "base/units.h"
 #include "mates/infer.h"
@@ -468,6 +469,9 @@ Json ToJson(const Product& product, const Diagnostics& diagnostics, const Select
   if (selection.Has(Section::kFits)) {
     json["fits"] = GroupFits(product, selection);
     AddJointForms(product, selection, &json);
+  }
+  if (selection.Has(Section::kOverlaps)) {
+    AddOverlaps(product, selection, &json);
   }
   if (selection.Has(Section::kTolerances)) {
     const auto without_id = [](auto convert) {

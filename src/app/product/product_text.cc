@@ -16,6 +16,7 @@
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
 #include "app/product/joint_forms.h"
+#include "app/product/overlaps_report.h"
 #include "app/product/product_json.h"
 #include "app/product/relations_report.h"
 #include "base/units.h"
@@ -566,6 +567,9 @@ void PrintText(const Product& product, const Diagnostics& diagnostics, const Sel
   if (selection.Has(Section::kFits)) {
     PrintFits(product, selection, is_all);
     PrintJointForms(product, selection, is_all);
+  }
+  if (selection.Has(Section::kOverlaps)) {
+    PrintOverlaps(product, selection, is_all);
   }
   if (selection.Has(Section::kTolerances)) {
     PrintTolerances(product, selection, is_all);

@@ -18,6 +18,7 @@ enum class Section {
   kMates,
   kJoints,
   kFits,
+  kOverlaps,
   kTolerances,
   kDiagnostics,
   kIdentity,  ///< The first of the sections that are shown only where they are asked for.
@@ -25,9 +26,9 @@ enum class Section {
   kSurfaces,
 };
 
-inline constexpr std::array<std::string_view, 12> kSectionNames{
-    "tree", "parts",      "features",    "faces",    "mates",     "joints",
-    "fits", "tolerances", "diagnostics", "identity", "relations", "surfaces"};
+inline constexpr std::array<std::string_view, 13> kSectionNames{
+    "tree",     "parts",      "features",    "faces",    "mates",     "joints",  "fits",
+    "overlaps", "tolerances", "diagnostics", "identity", "relations", "surfaces"};
 
 /** What a person asks to see; empty lists ask for everything. */
 struct SelectionOptions {

@@ -57,6 +57,24 @@ TEST(ProposeFit, FollowsItsTable) {
   EXPECT_FALSE(propose(5, 5).reason.empty());
 }
 
+TEST(ProposeFit, PinInAHoleThatIsSlightlySmallerIsPressed) {
+  FitEvidence evidence;
+  evidence.hole_radius = 1.45e-3;
+  evidence.shaft_radius = 1.5e-3;
+  // 2.9 mm is above the pitch diameter of M3 (2.675 mm, ISO 724): no thread is drawn so.
+  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kInterference);
+  evidence.hole_radius = 1.25e-3;
+  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kThread);
+  evidence.shaft_is_pin = true;
+  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kInterference);
+  for (const char* name : {"Dowel Pin 3x10", "ISO 2338 - 4 m6 x 20", "pin_2", "Zylinderstift"}) {
+    EXPECT_TRUE(product::IsPinName(name)) << name;
+  }
+  for (const char* name : {"spindle", "pinion", "DIN 912", "pin header M3 screw", "DIN 71412"}) {
+    EXPECT_FALSE(product::IsPinName(name)) << name;
+  }
+}
+
 TEST(ProposeFit, ThreadsCountWhateverTheSizes) {
   const auto propose = [](double hole_mm, double shaft_mm, product::ThreadKind hole,
                           product::ThreadKind shaft, FastenerKind part = FastenerKind::kNone) {

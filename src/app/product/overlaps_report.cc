@@ -1,0 +1,118 @@
+#include "app/product/overlaps_report.h"
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/output/text_layout.h"
+#include "app/output/text_table.h"
+#include "base/units.h"
+#include "mates/drawn_volumes.h"
+#include "product/flexible.h"
+
+namespace hvas::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using mates::SharedVolume;
+using product::FlexiblePart;
+using product::Product;
+using units::ToMm;
+
+constexpr double kPerCubicMetre_mm3 = 1e9;  // [mm3] in a cubic metre.
+
+std::vector<SharedVolume> ListShared(const Product& product, const Selection& selection) {
+  std::vector<SharedVolume> list = mates::ListSharedVolumes(product);
+  std::erase_if(list, [&](const SharedVolume& shared) {
+    return !selection.Has(shared.a) && !selection.Has(shared.b);
+  });
+  return list;
+}
+
+/** What is made of an overlap: "pin 3 mm in hole 2.9 mm: press fit as drawn, 100 um". */
+std::string Describe(const Product& product, const SharedVolume& shared) {
+  if (!shared.mate.is_valid()) {
+    return "an overlap: what goes in last needs an allowance of this depth";
+  }
+  const product::Mate& mate = product.mates[shared.mate.index()];
+  const bool is_thread = shared.cause == SharedVolume::Cause::kThread;
+  return fmt::format("{} {:.4g} mm in hole {:.4g} mm: {} as drawn, {:.4g} um",
+                     is_thread ? "thread" : "pin", ToMm(2 * mate.shaft_radius),
+                     ToMm(2 * mate.hole_radius), is_thread ? "threaded joint" : "press fit",
+                     2 * units::ToUm(shared.depth));
+}
+
+void PrintShared(const Product& product, const std::vector<SharedVolume>& list, bool is_all) {
+  fmt::print("\nOverlaps as drawn\n");
+  TextTable table({"parts", "depth\nmm", "volume\nmm3"}, 1);
+  ListLimit limit(is_all);
+  for (const SharedVolume& shared : list) {
+    if (limit.Next()) {
+      table.Add({fmt::format("{}, {}", Shorten(product.occurrences[shared.a.index()].path, 24),
+                             Shorten(product.occurrences[shared.b.index()].path, 24)),
+                 fmt::format("{:.3f}", ToMm(shared.depth)),
+                 fmt::format("{:.3g}", kPerCubicMetre_mm3 * shared.volume)},
+                Describe(product, shared));
+    }
+  }
+  fmt::print("{}", table.ToText(2));
+  limit.PrintRest();
+}
+
+void PrintFlexible(const Product& product, const std::vector<FlexiblePart>& parts, bool is_all) {
+  fmt::print("\nParts that may give on a way, each by as much as it says\n");
+  TextTable table({"part", "mm", "kind", "by"}, 1);
+  ListLimit limit(is_all);
+  for (const FlexiblePart& part : parts) {
+    if (limit.Next()) {
+      table.Add({Shorten(product.occurrences[part.occurrence.index()].path, 36),
+                 fmt::format("{:.2f}", ToMm(part.allowance)), ToString(part.kind),
+                 Shorten(part.reason, 24)});
+    }
+  }
+  fmt::print("{}", table.ToText(2));
+  limit.PrintRest();
+}
+
+std::vector<FlexiblePart> ListFlexible(const Product& product, const Selection& selection) {
+  std::vector<FlexiblePart> parts = product.flexible;
+  std::erase_if(parts, [&](const FlexiblePart& part) { return !selection.Has(part.occurrence); });
+  return parts;
+}
+
+}  // namespace
+
+void AddOverlaps(const Product& product, const Selection& selection, Json* json) {
+  Json& overlaps = (*json)["overlaps"] = Json::array();
+  for (const SharedVolume& shared : ListShared(product, selection)) {
+    overlaps.push_back({{"a", shared.a.value()},
+                        {"b", shared.b.value()},
+                        {"depth_mm", ToMm(shared.depth)},
+                        {"volume_mm3", kPerCubicMetre_mm3 * shared.volume},
+                        {"cause", ToString(shared.cause)},
+                        {"mate", shared.mate.is_valid() ? Json(shared.mate.value()) : Json()},
+                        {"description", Describe(product, shared)}});
+  }
+  Json& flexible = (*json)["flexible_parts"] = Json::array();
+  for (const FlexiblePart& part : ListFlexible(product, selection)) {
+    flexible.push_back({{"occurrence", part.occurrence.value()},
+                        {"kind", ToString(part.kind)},
+                        {"allowance_mm", ToMm(part.allowance)},
+                        {"reason", part.reason}});
+  }
+}
+
+void PrintOverlaps(const Product& product, const Selection& selection, bool is_all) {
+  const std::vector<SharedVolume> shared = ListShared(product, selection);
+  if (!shared.empty()) {
+    PrintShared(product, shared, is_all);
+  }
+  const std::vector<FlexiblePart> flexible = ListFlexible(product, selection);
+  if (!flexible.empty()) {
+    PrintFlexible(product, flexible, is_all);
+  }
+}
+
+}  // namespace hvas::app

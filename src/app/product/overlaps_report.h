@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/product/selection.h"
+#include "product/product.h"
+
+/** What shares space as drawn, and what may give, in `hvas inspect` (section `overlaps`). */
+namespace hvas::app {
+
+/** Adds "overlaps" and "flexible_parts". */
+void AddOverlaps(const product::Product& product, const Selection& selection,
+                 nlohmann::ordered_json* json);
+
+/** Prints both for people, as far as there are any. */
+void PrintOverlaps(const product::Product& product, const Selection& selection, bool is_all);
+
+}  // namespace hvas::app

@@ -1,0 +1,229 @@
+#include "product/flexible.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "product/product.h"
+#include "product/words.h"
+
+namespace hvas::product {
+namespace {
+
+struct FlexibleWord {
+  std::string_view word;
+  FlexibleKind kind;
+};
+
+// Names in English, German, French, Spanish and Italian. The first one that is found counts.
+constexpr std::array<FlexibleWord, 50> kFlexibleWords{{
+    {"o ring", FlexibleKind::kORing},
+    {"or ring", FlexibleKind::kORing},
+    {"din 3771", FlexibleKind::kORing},
+    {"iso 3601", FlexibleKind::kORing},
+    {"joint torique", FlexibleKind::kORing},
+    {"circlip", FlexibleKind::kRetainingRing},
+    {"retaining ring", FlexibleKind::kRetainingRing},
+    {"snap ring", FlexibleKind::kRetainingRing},
+    {"seeger", FlexibleKind::kRetainingRing},
+    {"seegerring", FlexibleKind::kRetainingRing},
+    {"sicherungsring", FlexibleKind::kRetainingRing},
+    {"sprengring", FlexibleKind::kRetainingRing},
+    {"sicherungsscheibe", FlexibleKind::kRetainingRing},
+    {"e clip", FlexibleKind::kRetainingRing},
+    {"din 471", FlexibleKind::kRetainingRing},
+    {"din 472", FlexibleKind::kRetainingRing},
+    {"din 6799", FlexibleKind::kRetainingRing},
+    {"din 7993", FlexibleKind::kRetainingRing},
+    {"snap hook", FlexibleKind::kSnapHook},
+    {"snap fit", FlexibleKind::kSnapHook},
+    {"snap in", FlexibleKind::kSnapHook},
+    {"schnapphaken", FlexibleKind::kSnapHook},
+    {"latch", FlexibleKind::kSnapHook},
+    {"clip", FlexibleKind::kSnapHook},
+    {"gasket", FlexibleKind::kGasket},
+    {"dichtung", FlexibleKind::kGasket},
+    {"flachdichtung", FlexibleKind::kGasket},
+    {"dichtring", FlexibleKind::kGasket},
+    {"guarnizione", FlexibleKind::kGasket},
+    {"grommet", FlexibleKind::kGasket},
+    {"seal", FlexibleKind::kGasket},
+    {"spring", FlexibleKind::kSpring},
+    {"druckfeder", FlexibleKind::kSpring},
+    {"zugfeder", FlexibleKind::kSpring},
+    {"ressort", FlexibleKind::kSpring},
+    {"cable", FlexibleKind::kCable},
+    {"kabel", FlexibleKind::kCable},
+    {"wire", FlexibleKind::kCable},
+    {"leitung", FlexibleKind::kCable},
+    {"hose", FlexibleKind::kCable},
+    {"schlauch", FlexibleKind::kCable},
+    {"belt", FlexibleKind::kCable},
+    {"zahnriemen", FlexibleKind::kCable},
+    {"riemen", FlexibleKind::kCable},
+    {"zip tie", FlexibleKind::kCable},
+    {"cable tie", FlexibleKind::kCable},
+    {"kabelbinder", FlexibleKind::kCable},
+    {"strap", FlexibleKind::kCable},
+    {"rope", FlexibleKind::kCable},
+    {"rubber band", FlexibleKind::kCable},
+}};
+
+// What such a word stands before, where it is something stiff: "cable holder", "spring pin".
+constexpr std::array<std::string_view, 33> kStiffThings{
+    "holder", "mount",  "bracket", "plate",  "cover",  "housing", "groove", "tensioner", "pulley",
+    "guide",  "chain",  "duct",    "gland",  "seat",   "pin",     "washer", "sleeve",    "frame",
+    "case",   "box",    "screw",   "bolt",   "halter", "block",   "body",   "clamp",     "channel",
+    "tray",   "runner", "post",    "collar", "plug",   "drum"};
+
+constexpr std::array<std::string_view, 13> kElasticMaterials{
+    "rubber", "gummi", "nbr", "fkm",  "viton",   "silicon rubber", "silicone",
+    "epdm",   "tpu",   "tpe", "foam", "neopren", "elastomer"};
+
+/** Whether a word stands in a folded name, and not just before the name of something stiff. */
+bool IsNamed(std::string_view folded, const std::vector<Word>& words, std::string_view flexible) {
+  const auto is_stiff = [](const std::string& text) { return HasOneOf(text, kStiffThings); };
+  for (std::size_t first = 0; first < words.size(); ++first) {
+    for (std::size_t last = first; last < std::min(first + 3, words.size()); ++last) {
+      const std::size_t begin = words[first].begin;
+      const std::string_view run = folded.substr(begin, words[last].end - begin);
+      if (HasWord(run, flexible)) {
+        if (last + 1 == words.size() || !is_stiff(words[last + 1].text)) {
+          return true;
+        }
+        break;
+      }
+    }
+  }
+  return false;
+}
+
+double LeastExtent(const Part& part) {
+  return part.box_B.size().minCoeff();
+}
+
+double LargestExtent(const Part& part) {
+  return part.box_B.size().maxCoeff();
+}
+
+/** A ring of round section: its faces are tori about one axis. */
+bool IsORing(const Part& part) {
+  return !part.faces.empty() &&
+         std::all_of(part.faces.begin(), part.faces.end(), [](const Face& face) {
+           return face.surface.kind == SurfaceKind::kTorus && face.surface.outward > 0;
+         });
+}
+
+/** A flat ring that is open: a hole and a rim about one axis that cover most of the turn. */
+bool IsOpenRing(const Part& part) {
+  constexpr double kLeast = 1.2 * std::numbers::pi;  // 216 degrees: less holds no shaft. A choice.
+  constexpr double kMost = 1.97 * std::numbers::pi;  // 355 degrees: less is open. A choice.
+  constexpr double kFlat = 0.15;  // Thickness over diameter; DIN 471 has at most 0.13.
+  if (LeastExtent(part) > kFlat * LargestExtent(part)) {
+    return false;
+  }
+  const auto has_open = [&part](FeatureKind kind) {
+    return std::any_of(part.features.begin(), part.features.end(), [&](const Feature& feature) {
+      return feature.kind == kind && feature.coverage > kLeast && feature.coverage < kMost &&
+             2 * feature.radius > 0.5 * LargestExtent(part);
+    });
+  };
+  return has_open(FeatureKind::kHole) && has_open(FeatureKind::kShaft);
+}
+
+/** The default allowances, with their sources, are in docs/algorithms/flexible.md [m]. */
+double CalcAllowance(FlexibleKind kind, const Part& part) {
+  constexpr double kMostStretch = 0.25;      // Of an O-ring's inner diameter, to each side.
+  constexpr double kRingOpening = 0.05;      // Of the ring's diameter, to each side.
+  constexpr double kLeastOpening = 0.3e-3;   // [m]: rings below 6 mm open by more.
+  constexpr double kUndercut = 0.05;         // Of the length of a part with hooks.
+  constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
+  constexpr double kSqueeze = 0.5;           // Of the thickness of a gasket.
+  constexpr double kCoil = 0.25;             // Of the diameter of a spring.
+  switch (kind) {
+    case FlexibleKind::kORing:
+      return std::min(LeastExtent(part),
+                      kMostStretch * (LargestExtent(part) - 2 * LeastExtent(part)));
+    case FlexibleKind::kRetainingRing:
+      return std::max(kLeastOpening, kRingOpening * LargestExtent(part));
+    case FlexibleKind::kSnapHook:
+      return std::min(kLargestUndercut, kUndercut * LargestExtent(part));
+    case FlexibleKind::kGasket:
+      return kSqueeze * LeastExtent(part);
+    case FlexibleKind::kSpring:
+      return kCoil * LeastExtent(part);
+    case FlexibleKind::kCable:
+      return LeastExtent(part);
+    case FlexibleKind::kStated:
+      break;
+  }
+  return 0;
+}
+
+std::optional<FlexiblePart> MakeFlexible(FlexibleKind kind, const Part& part, std::string reason) {
+  const double allowance = CalcAllowance(kind, part);
+  if (!(allowance > 0) || !std::isfinite(allowance)) {
+    return std::nullopt;
+  }
+  return FlexiblePart{{}, kind, allowance, std::move(reason)};
+}
+
+}  // namespace
+
+const char* ToString(FlexibleKind kind) {
+  switch (kind) {
+    case FlexibleKind::kORing:
+      return "O-ring";
+    case FlexibleKind::kRetainingRing:
+      return "retaining ring";
+    case FlexibleKind::kSnapHook:
+      return "snap hook";
+    case FlexibleKind::kGasket:
+      return "gasket";
+    case FlexibleKind::kSpring:
+      return "spring";
+    case FlexibleKind::kCable:
+      return "cable";
+    case FlexibleKind::kStated:
+      break;
+  }
+  return "stated";
+}
+
+std::optional<FlexibleKind> FindFlexibleKind(std::string_view name) {
+  const std::string folded = FoldName(name);
+  const std::vector<Word> words = SplitWords(folded);
+  const auto* const found =
+      std::find_if(kFlexibleWords.begin(), kFlexibleWords.end(),
+                   [&](const FlexibleWord& entry) { return IsNamed(folded, words, entry.word); });
+  return found == kFlexibleWords.end() ? std::nullopt : std::optional(found->kind);
+}
+
+std::optional<FlexiblePart> ClassifyFlexible(const Part& part) {
+  if (const auto kind = FindFlexibleKind(part.name)) {
+    return MakeFlexible(*kind, part, "its name");
+  }
+  if (HasOneOf(FoldName(part.material.name), kElasticMaterials)) {
+    return MakeFlexible(IsORing(part) ? FlexibleKind::kORing : FlexibleKind::kGasket, part,
+                        "its material " + part.material.name);
+  }
+  if (IsORing(part)) {
+    return MakeFlexible(FlexibleKind::kORing, part, "its form, a ring of round section");
+  }
+  if (IsOpenRing(part)) {
+    return MakeFlexible(FlexibleKind::kRetainingRing, part, "its form, an open flat ring");
+  }
+  return std::nullopt;
+}
+
+const FlexiblePart* FindFlexible(const Product& product, OccurrenceId id) {
+  const auto found = std::find_if(product.flexible.begin(), product.flexible.end(),
+                                  [id](const FlexiblePart& part) { return part.occurrence == id; });
+  return found == product.flexible.end() ? nullptr : &*found;
+}
+
+}  // namespace hvas::product

@@ -1,0 +1,276 @@
+// Parts that lie in one another as drawn, and parts that give: what lets them pass one another, and
+// what does not. X17, N10.
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "simulation/test/session.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using ::testing::IsSubstring;
+using testing::OccurrenceId;
+using testing::Pose;
+using testing::Product;
+using Answer = DrawnOverlap::Answer;
+
+/** A square part about z: half widths over heights, the material on the left as in Lathe. Each
+ flat is a face of its own. */
+contact::ShapeSource Square(const std::vector<Eigen::Vector2d>& profile) {
+  contact::ShapeSource source;
+  const auto corner = [](const Eigen::Vector2d& wz, int i) {
+    constexpr int kX[] = {1, -1, -1, 1};
+    constexpr int kY[] = {1, 1, -1, -1};
+    return Vec3(kX[i % 4] * wz.x(), kY[i % 4] * wz.x(), wz.y());
+  };
+  for (std::size_t k = 0; k + 1 < profile.size(); ++k) {
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 p[] = {corner(profile[k], i), corner(profile[k], i + 1),
+                        corner(profile[k + 1], i + 1), corner(profile[k + 1], i)};
+      const auto first = static_cast<std::uint32_t>(source.vertices.size());
+      const auto face = static_cast<std::uint32_t>(source.faces.size());
+      source.vertices.insert(source.vertices.end(), std::begin(p), std::end(p));
+      Vec3 normal = Vec3::Zero();
+      for (const std::array<std::uint32_t, 3>& t :
+           {std::array<std::uint32_t, 3>{0, 1, 2}, std::array<std::uint32_t, 3>{0, 2, 3}}) {
+        const Vec3 n = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
+        if (n.norm() > 1e-12) {
+          normal += n;
+          source.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+          source.triangle_face.push_back(face);
+        }
+      }
+      source.faces.push_back({spatial::SurfaceKind::kPlane, p[0], normal.normalized(), 0, 0, 1});
+    }
+  }
+  return source;
+}
+
+constexpr double kHalf = 10e-3;  // Half width of the pocket.
+
+/** A square pocket 15 mm deep with a block in it that is wider by `overlap` on each side.
+ @param lip  How far a lip reaches over the pocket's opening [m]; 0: none. */
+Product BlockInPocket(double overlap, double lip) {
+  Product product;
+  product.name = "pocket";
+  const double open = kHalf - lip;
+  std::vector<Eigen::Vector2d> profile{{0, 0}, {15e-3, 0}, {15e-3, 25e-3}, {open, 25e-3}};
+  if (lip > 0) {
+    profile.insert(profile.end(), {{open, 20e-3}, {kHalf, 20e-3}});
+  }
+  profile.insert(profile.end(), {{kHalf, 5e-3}, {0, 5e-3}});
+  const auto pocket = testing::AddPart(&product, "pocket", Square(profile));
+  const double half = kHalf + overlap;
+  const auto block =
+      testing::AddPart(&product, "block", Square({{0, 0}, {half, 0}, {half, 8e-3}, {0, 8e-3}}));
+  testing::Place(&product, pocket, "pocket");
+  testing::Place(&product, block, "block", Pose(Vec3(0, 0, 5e-3)));
+  testing::Complete(&product);
+  return product;
+}
+
+/** As BlockInPocket without a lip, but the pocket's walls lean in to its opening by `narrowing`
+ * [m]. */
+Product TaperedPocket(double overlap, double narrowing) {
+  Product product;
+  product.name = "tapered";
+  const double open = kHalf - narrowing;
+  const auto pocket = testing::AddPart(&product, "pocket",
+                                       Square({{0, 0},
+                                               {15e-3, 0},
+                                               {15e-3, 25e-3},
+                                               {open, 25e-3},
+                                               {kHalf, 13e-3},
+                                               {kHalf, 5e-3},
+                                               {0, 5e-3}}));
+  const double half = kHalf + overlap;
+  const auto block =
+      testing::AddPart(&product, "block", Square({{0, 0}, {half, 0}, {half, 8e-3}, {0, 8e-3}}));
+  testing::Place(&product, pocket, "pocket");
+  testing::Place(&product, block, "block", Pose(Vec3(0, 0, 5e-3)));
+  testing::Complete(&product);
+  return product;
+}
+
+std::shared_ptr<const Model> CompileProduct(Product product) {
+  Diagnostics diagnostics;
+  auto model =
+      Compile(std::make_shared<Product>(std::move(product)), testing::FastOptions(), &diagnostics);
+  EXPECT_TRUE(model.has_value());
+  return model ? *model : nullptr;
+}
+
+PartResult Assemble(const std::shared_ptr<const Model>& model) {
+  testing::Session session(model);
+  (void)RunLockstep(session.MakeExecution(60));
+  return session.run.results().back();
+}
+
+TEST(OverlapTest, BlockThatOverlapsItsPocketGoesInByAnAllowanceOfTheDrawnDepth) {
+  // Faces can give way by half a millimetre; what is deeper is allowed where the two overlap.
+  for (const double depth : {0.1e-3, 0.8e-3}) {
+    const auto model = CompileProduct(BlockInPocket(depth, 0));
+    const Sequence& sequence = model->sequence;
+    ASSERT_EQ(sequence.overlaps.size(), 1U) << depth;
+    const DrawnOverlap& overlap = sequence.overlaps[0];
+    EXPECT_EQ(overlap.answer, depth < 0.5e-3 ? Answer::kRelief : Answer::kAllowance);
+    EXPECT_NEAR(overlap.depth, depth, 5e-6);
+    EXPECT_TRUE(sequence.gaps.empty()) << sequence.gaps[0].reason;
+    // The walls of the pocket, in the profile's order four faces each, and the block's sides.
+    const bool is_pocket_a = overlap.a == OccurrenceId(0);
+    const auto& of_pocket = is_pocket_a ? overlap.faces_a : overlap.faces_b;
+    const auto& of_block = is_pocket_a ? overlap.faces_b : overlap.faces_a;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      EXPECT_TRUE(std::binary_search(of_pocket.begin(), of_pocket.end(), 12 + i)) << i;
+      EXPECT_TRUE(std::binary_search(of_block.begin(), of_block.end(), 4 + i)) << i;
+    }
+    EXPECT_FALSE(std::binary_search(of_pocket.begin(), of_pocket.end(), 8U));  // Its top.
+    const PartResult block = Assemble(model);
+    EXPECT_TRUE(block.is_seated) << block.reason;
+    ASSERT_EQ(block.allowances.size(), 1U);
+    EXPECT_EQ(block.allowances[0].kind, PartAllowance::Kind::kDrawn);
+    EXPECT_EQ(block.allowances[0].other, OccurrenceId(0));
+    EXPECT_NEAR(block.allowances[0].depth, depth, 5e-6);
+    EXPECT_PRED_FORMAT2(IsSubstring, "only by an allowance", block.note);
+  }
+}
+
+TEST(OverlapTest, OverlapAsDrawnDoesNotLetAPartThroughALipThatNeedsMore) {
+  const auto model = CompileProduct(BlockInPocket(0.1e-3, 3e-3));
+  ASSERT_EQ(model->sequence.gaps.size(), 1U);
+  EXPECT_EQ(model->sequence.gaps[0].occurrence, OccurrenceId(1));
+  EXPECT_PRED_FORMAT2(IsSubstring, "meets pocket/pocket", model->sequence.gaps[0].reason);
+  EXPECT_PRED_FORMAT2(IsSubstring, "overlap by 0.100 mm, and the way would need more",
+                      model->sequence.gaps[0].reason);
+}
+
+TEST(OverlapTest, LipThatNeedsNoMoreThanTheDrawnDepthIsNotWhereItIsDrawn) {
+  // A lip of 0.4 mm beside an overlap of 0.4 mm: nowhere else than drawn.
+  const auto model = CompileProduct(BlockInPocket(0.4e-3, 0.4e-3));
+  ASSERT_EQ(model->sequence.gaps.size(), 1U);
+}
+
+TEST(OverlapTest, WayThatNeedsALittleMoreThanTheDrawnDepthIsTakenAndThatIsSaid) {
+  const auto model = CompileProduct(TaperedPocket(0.6e-3, 0.4e-3));
+  ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
+  ASSERT_EQ(model->sequence.overlaps.size(), 1U);
+  EXPECT_TRUE(model->sequence.overlaps[0].is_beyond);
+  const PartResult block = Assemble(model);
+  EXPECT_TRUE(block.is_seated) << block.reason;
+  ASSERT_EQ(block.allowances.size(), 1U);
+  EXPECT_TRUE(block.allowances[0].is_beyond);
+  EXPECT_PRED_FORMAT2(IsSubstring, "0.5 mm more than drawn", block.note);
+  EXPECT_FALSE(CompileProduct(BlockInPocket(0.6e-3, 0))->sequence.overlaps[0].is_beyond);
+  // Half a millimetre more, and not 0.6.
+  EXPECT_EQ(CompileProduct(TaperedPocket(0.1e-3, 0.6e-3))->sequence.gaps.size(), 1U);
+}
+
+TEST(OverlapTest, PegThroughAClosedWallIsRefused) {
+  for (const double thickness : {0.6e-3, 2e-3, 5e-3}) {
+    Product product;
+    product.name = "closed";
+    const auto wall = testing::AddPart(
+        &product, "wall", contact::testing::Block(Vec3(30e-3, 30e-3, 0.5 * thickness)));
+    const auto peg = testing::AddPart(&product, "peg", contact::testing::Shaft(3e-3, 20e-3, 20e-6));
+    testing::Place(&product, wall, "wall");
+    testing::Place(&product, peg, "peg", Pose(Vec3(0, 0, -10e-3)));
+    testing::Complete(&product);
+    ASSERT_TRUE(product.mates.empty());
+    const auto model = CompileProduct(std::move(product));
+    ASSERT_EQ(model->sequence.overlaps.size(), 1U) << thickness;
+    EXPECT_EQ(model->sequence.overlaps[0].answer, Answer::kNone);
+    ASSERT_EQ(model->sequence.gaps.size(), 1U) << thickness;
+    EXPECT_PRED_FORMAT2(IsSubstring, "with no opening for it", model->sequence.gaps[0].reason);
+  }
+}
+
+TEST(OverlapTest, PressFitIsNoAllowance) {
+  Product product;
+  product.name = "press";
+  const auto bush =
+      testing::AddPart(&product, "bush", contact::testing::Bushing(5e-3, 12e-3, 20e-3, 20e-6));
+  const auto pin =
+      testing::AddPart(&product, "pin", contact::testing::Shaft(5.025e-3, 30e-3, 20e-6));
+  testing::Place(&product, bush, "bush");
+  testing::Place(&product, pin, "pin", Pose(Vec3(0, 0, -5e-3)));
+  testing::Complete(&product);
+  ASSERT_EQ(product.mates.size(), 1U);
+  EXPECT_EQ(product.mates[0].fit->kind, product::FitKind::kInterference);
+  const auto model = CompileProduct(std::move(product));
+  EXPECT_TRUE(model->sequence.overlaps.empty());
+  EXPECT_TRUE(model->sequence.gaps.empty());
+}
+
+constexpr double kGroove = 4.5e-3;  // Radius of the groove, and of the ring's hole.
+constexpr double kLand = 5e-3;      // Radius of the shaft beside the groove.
+
+/** A shaft with a groove between its end and a flange, and a ring in the groove. */
+Product RingInGroove(double limit) {
+  using contact::testing::CylinderZ;
+  using contact::testing::PlaneAt;
+  Product product;
+  product.name = "axle";
+  const auto shaft = testing::AddPart(
+      &product, "shaft",
+      contact::testing::Lathe({{{{0, 0}, {10e-3, 0}}, PlaneAt(0, -1)},
+                               {{{10e-3, 0}, {10e-3, 8e-3}}, CylinderZ(10e-3, 1)},
+                               {{{10e-3, 8e-3}, {kLand, 8e-3}}, PlaneAt(8e-3, 1)},
+                               {{{kLand, 8e-3}, {kLand, 12e-3}}, CylinderZ(kLand, 1)},
+                               {{{kLand, 12e-3}, {kGroove, 12e-3}}, PlaneAt(12e-3, 1)},
+                               {{{kGroove, 12e-3}, {kGroove, 13.2e-3}}, CylinderZ(kGroove, 1)},
+                               {{{kGroove, 13.2e-3}, {kLand, 13.2e-3}}, PlaneAt(13.2e-3, -1)},
+                               {{{kLand, 13.2e-3}, {kLand, 16e-3}}, CylinderZ(kLand, 1)},
+                               {{{kLand, 16e-3}, {0, 16e-3}}, PlaneAt(16e-3, 1)}},
+                              64));
+  const auto ring =
+      testing::AddPart(&product, "ring", contact::testing::Bushing(kGroove, 7e-3, 1e-3, 20e-6));
+  testing::Place(&product, shaft, "shaft");
+  testing::Place(&product, ring, "ring", Pose(Vec3(0, 0, 12.1e-3)));
+  testing::Complete(&product);
+  if (limit > 0) {
+    product.flexible.push_back(
+        {OccurrenceId(1), product::FlexibleKind::kRetainingRing, limit, "a test"});
+  }
+  return product;
+}
+
+TEST(GiveTest, RingGoesOverALandByGivingAsMuchAsItHasTo) {
+  const auto model = CompileProduct(RingInGroove(0.6e-3));
+  ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
+  ASSERT_EQ(model->sequence.gives.size(), 1U);
+  const GivingPair& give = model->sequence.gives[0];
+  EXPECT_EQ(give.flexible, OccurrenceId(1));
+  EXPECT_EQ(give.other, OccurrenceId(0));
+  EXPECT_NEAR(give.depth, kLand - kGroove, 50e-6);
+  const PartResult ring = Assemble(model);
+  EXPECT_TRUE(ring.is_seated) << ring.reason;
+  ASSERT_EQ(ring.allowances.size(), 1U);
+  EXPECT_EQ(ring.allowances[0].kind, PartAllowance::Kind::kGive);
+  EXPECT_NEAR(ring.allowances[0].depth, 0.5e-3, 50e-6);
+  EXPECT_PRED_FORMAT2(IsSubstring, "goes in by giving 0.", ring.note);
+  EXPECT_PRED_FORMAT2(IsSubstring, " mm (retaining ring)", ring.note);
+}
+
+TEST(GiveTest, RingThatMayGiveTooLittleOrNotAtAllStaysOut) {
+  for (const double limit : {0.0, 0.4e-3}) {
+    const auto model = CompileProduct(RingInGroove(limit));
+    ASSERT_EQ(model->sequence.gaps.size(), 1U) << limit;
+    EXPECT_EQ(model->sequence.gaps[0].occurrence, OccurrenceId(1));
+    EXPECT_TRUE(model->sequence.gives.empty());
+  }
+}
+
+TEST(GiveTest, PartThatNeedsNoGiveHasNone) {
+  Product product = testing::PegInBlock();
+  product.flexible.push_back({OccurrenceId(1), product::FlexibleKind::kSnapHook, 1e-3, "a test"});
+  const auto model = CompileProduct(std::move(product));
+  EXPECT_TRUE(model->sequence.gaps.empty());
+  EXPECT_TRUE(model->sequence.gives.empty());
+}
+
+}  // namespace
+}  // namespace hvas::simulation
