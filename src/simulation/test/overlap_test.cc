@@ -169,6 +169,85 @@ TEST(OverlapTest, WayThatNeedsALittleMoreThanTheDrawnDepthIsTakenAndThatIsSaid) 
   EXPECT_EQ(CompileProduct(TaperedPocket(0.1e-3, 0.6e-3))->sequence.gaps.size(), 1U);
 }
 
+/** A part of flat faces. */
+class FlatPart {
+ public:
+  /** Adds a face of quads, each counterclockwise as seen from outside. */
+  void AddFace(const std::vector<std::array<Vec3, 4>>& quads) {
+    const auto face = static_cast<std::uint32_t>(source_.faces.size());
+    for (const std::array<Vec3, 4>& p : quads) {
+      const auto first = static_cast<std::uint32_t>(source_.vertices.size());
+      source_.vertices.insert(source_.vertices.end(), p.begin(), p.end());
+      source_.triangles.push_back({first, first + 1, first + 2});
+      source_.triangles.push_back({first, first + 2, first + 3});
+      source_.triangle_face.insert(source_.triangle_face.end(), 2, face);
+    }
+    const std::array<Vec3, 4>& p = quads.front();
+    const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+    source_.faces.push_back({spatial::SurfaceKind::kPlane, p[0], normal, 0, 0, 1});
+  }
+
+  /** Adds the sides between two rectangles, `from` to `to`, which go round counterclockwise about
+   the way from one to the other. */
+  void AddSides(const std::array<Vec3, 4>& from, const std::array<Vec3, 4>& to) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t k = (i + 1) % 4;
+      AddFace({{from[i], from[k], to[k], to[i]}});
+    }
+  }
+
+  /** Adds a plane ring between two rectangles that go round counterclockwise as seen from outside.
+   */
+  void AddRing(const std::array<Vec3, 4>& outer, const std::array<Vec3, 4>& inner) {
+    std::vector<std::array<Vec3, 4>> quads;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t k = (i + 1) % 4;
+      quads.push_back({outer[i], outer[k], inner[k], inner[i]});
+    }
+    AddFace(quads);
+  }
+
+  [[nodiscard]] const contact::ShapeSource& source() const { return source_; }
+
+ private:
+  contact::ShapeSource source_;
+};
+
+std::array<Vec3, 4> Reversed(const std::array<Vec3, 4>& p) {
+  return {p[3], p[2], p[1], p[0]};
+}
+
+TEST(OverlapTest, OpenBoxThatFillsItsCaseDoesNotOverlapIt) {
+  // A drawer 92 mm wide and 32 mm high, with walls of 3 mm, in a case open at both ends along y.
+  const auto at_z = [](double x, double y, double z) {
+    return std::array<Vec3, 4>{Vec3(-x, -y, z), Vec3(x, -y, z), Vec3(x, y, z), Vec3(-x, y, z)};
+  };
+  const auto at_y = [](double x, double y, double z) {  // Counterclockwise as seen from -y.
+    return std::array<Vec3, 4>{Vec3(-x, y, -z), Vec3(x, y, -z), Vec3(x, y, z), Vec3(-x, y, z)};
+  };
+  FlatPart drawer;
+  drawer.AddFace({Reversed(at_z(46e-3, 38e-3, -16e-3))});
+  drawer.AddSides(at_z(46e-3, 38e-3, -16e-3), at_z(46e-3, 38e-3, 16e-3));
+  drawer.AddRing(at_z(46e-3, 38e-3, 16e-3), at_z(43e-3, 35e-3, 16e-3));
+  drawer.AddSides(Reversed(at_z(43e-3, 35e-3, -13e-3)), Reversed(at_z(43e-3, 35e-3, 16e-3)));
+  drawer.AddFace({at_z(43e-3, 35e-3, -13e-3)});
+  FlatPart around;
+  around.AddSides(Reversed(at_y(50e-3, -40e-3, 20e-3)), Reversed(at_y(50e-3, 40e-3, 20e-3)));
+  around.AddRing(at_y(50e-3, -40e-3, 20e-3), at_y(46e-3, -40e-3, 16e-3));
+  around.AddSides(at_y(46e-3, -40e-3, 16e-3), at_y(46e-3, 40e-3, 16e-3));
+  around.AddRing(Reversed(at_y(50e-3, 40e-3, 20e-3)), Reversed(at_y(46e-3, 40e-3, 16e-3)));
+  Product product;
+  product.name = "cabinet";
+  testing::Place(&product, testing::AddPart(&product, "case", around.source()), "case");
+  testing::Place(&product, testing::AddPart(&product, "drawer", drawer.source()), "drawer");
+  testing::Complete(&product);
+  const auto model = CompileProduct(std::move(product));
+  EXPECT_TRUE(model->sequence.overlaps.empty());
+  ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
+  const PartResult inserted = Assemble(model);
+  EXPECT_TRUE(inserted.is_seated) << inserted.reason;
+}
+
 TEST(OverlapTest, PegThroughAClosedWallIsRefused) {
   for (const double thickness : {0.6e-3, 2e-3, 5e-3}) {
     Product product;
