@@ -108,8 +108,11 @@ bool IsHollow(const Product& product, const product::Connector& shaft) {
 
 /** What gives when something goes through it, or goes through something, by its name. */
 bool IsFlexible(const Product& product, OccurrenceId id) {
-  return product::FindFlexibleKind(product.part_of(id).name).has_value() ||
-         product::FindFlexibleKind(product.occurrences[id.index()].name).has_value();
+  const auto is_bent = [](std::string_view name) {
+    const auto kind = product::FindFlexibleKind(name);
+    return kind == product::FlexibleKind::kCable || kind == product::FlexibleKind::kSnapHook;
+  };
+  return is_bent(product.part_of(id).name) || is_bent(product.occurrences[id.index()].name);
 }
 
 }  // namespace

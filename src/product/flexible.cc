@@ -20,7 +20,7 @@ struct FlexibleWord {
 };
 
 // Names in English, German, French, Spanish and Italian. The first one that is found counts.
-constexpr std::array<FlexibleWord, 50> kFlexibleWords{{
+constexpr std::array<FlexibleWord, 51> kFlexibleWords{{
     {"o ring", FlexibleKind::kORing},
     {"or ring", FlexibleKind::kORing},
     {"din 3771", FlexibleKind::kORing},
@@ -45,12 +45,13 @@ constexpr std::array<FlexibleWord, 50> kFlexibleWords{{
     {"schnapphaken", FlexibleKind::kSnapHook},
     {"latch", FlexibleKind::kSnapHook},
     {"clip", FlexibleKind::kSnapHook},
+    {"snap", FlexibleKind::kSnapHook},
+    {"grommet", FlexibleKind::kSnapHook},
     {"gasket", FlexibleKind::kGasket},
     {"dichtung", FlexibleKind::kGasket},
     {"flachdichtung", FlexibleKind::kGasket},
     {"dichtring", FlexibleKind::kGasket},
     {"guarnizione", FlexibleKind::kGasket},
-    {"grommet", FlexibleKind::kGasket},
     {"seal", FlexibleKind::kGasket},
     {"spring", FlexibleKind::kSpring},
     {"druckfeder", FlexibleKind::kSpring},
@@ -74,11 +75,17 @@ constexpr std::array<FlexibleWord, 50> kFlexibleWords{{
 }};
 
 // What such a word stands before, where it is something stiff: "cable holder", "spring pin".
-constexpr std::array<std::string_view, 33> kStiffThings{
-    "holder", "mount",  "bracket", "plate",  "cover",  "housing", "groove", "tensioner", "pulley",
-    "guide",  "chain",  "duct",    "gland",  "seat",   "pin",     "washer", "sleeve",    "frame",
-    "case",   "box",    "screw",   "bolt",   "halter", "block",   "body",   "clamp",     "channel",
-    "tray",   "runner", "post",    "collar", "plug",   "drum"};
+constexpr std::array<std::string_view, 45> kStiffThings{
+    "holder", "mount",    "bracket", "plate",     "cover",  "housing",  "groove", "tensioner",
+    "pulley", "guide",    "chain",   "duct",      "gland",  "seat",     "pin",    "washer",
+    "sleeve", "frame",    "case",    "box",       "screw",  "bolt",     "halter", "block",
+    "body",   "clamp",    "channel", "tray",      "runner", "post",     "collar", "plug",
+    "drum",   "nipple",   "fitting", "connector", "wheel",  "terminal", "lug",    "socket",
+    "flange", "coupling", "adapter", "barb",      "end"};
+
+// Open rings that are clamped flat, not opened: spring lock washers.
+constexpr std::array<std::string_view, 6> kWasherWords{"washer",    "lockwasher", "scheibe",
+                                                       "federring", "rondelle",   "rosetta"};
 
 constexpr std::array<std::string_view, 13> kElasticMaterials{
     "rubber", "gummi", "nbr", "fkm",  "viton",   "silicon rubber", "silicone",
@@ -143,6 +150,7 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
   constexpr double kUndercut = 0.05;         // Of the length of a part with hooks.
   constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
   constexpr double kSqueeze = 0.5;           // Of the thickness of a gasket.
+  constexpr double kMostBend = 5e-3;         // [m]: a choice.
   constexpr double kCoil = 0.25;             // Of the diameter of a spring.
   switch (kind) {
     case FlexibleKind::kORing:
@@ -157,7 +165,7 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
     case FlexibleKind::kSpring:
       return kCoil * LeastExtent(part);
     case FlexibleKind::kCable:
-      return LeastExtent(part);
+      return std::min(LeastExtent(part), kMostBend);
     case FlexibleKind::kStated:
       break;
   }
@@ -214,7 +222,7 @@ std::optional<FlexiblePart> ClassifyFlexible(const Part& part) {
   if (IsORing(part)) {
     return MakeFlexible(FlexibleKind::kORing, part, "its form, a ring of round section");
   }
-  if (IsOpenRing(part)) {
+  if (IsOpenRing(part) && !HasOneOf(FoldName(part.name), kWasherWords)) {
     return MakeFlexible(FlexibleKind::kRetainingRing, part, "its form, an open flat ring");
   }
   return std::nullopt;

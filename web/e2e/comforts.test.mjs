@@ -117,8 +117,8 @@ describe("what one sets up", () => {
     const { page } = await openPage(browser, studio.operator);
     await waitForPicture(page);
     const drawn = (id) => page.evaluate((o) => window.hvas.room.part(o), id);
-    const before = await drawn(2);
     const drawnAtRest = () => waitForStill(page, () => drawn(2));
+    const before = await drawnAtRest();
     await page.keyboard.press("j");
     const together = await drawnAtRest();
     await page.getByTestId("apart-next").click();
@@ -126,7 +126,8 @@ describe("what one sets up", () => {
     assert.ok(out[2] - together[2] > 0.02, `the shaft has come out upwards: ${together[2]} to ${out[2]} m`);
     await takePicture(page, "apart");
     await page.keyboard.press("j");
-    assert.deepEqual(await drawnAtRest(), before);
+    const after = await drawnAtRest();  // what lies on the table comes to rest within nanometres
+    assert.ok(Math.hypot(...after.map((v, k) => v - before[k])) < 1e-6, `the shaft lies where it lay: ${before} and ${after}`);
     await waitForState(page, ({ placements }) => placements[2] === "loose");
     await page.context().close();
   }));

@@ -33,8 +33,9 @@ TEST(FlexibleTest, NamesAndMaterialsTellWhatGives) {
   EXPECT_EQ(kind_of("Compression Spring"), "spring");
   EXPECT_EQ(kind_of("GT2 belt"), "cable");
   EXPECT_EQ(kind_of("foot", "NBR 70"), "gasket");
-  for (const char* name : {"monitoring unit", "eclipse", "belt pulley", "spring pin", "cable chain",
-                           "spring washer", "housing", "hydraulic block", "latch plate"}) {
+  for (const char* name :
+       {"monitoring unit", "eclipse", "belt pulley", "spring pin", "cable chain", "spring washer",
+        "hose nipple", "housing", "hydraulic block", "latch plate"}) {
     EXPECT_EQ(kind_of(name), "rigid") << name;
   }
 }

@@ -185,7 +185,8 @@ TEST(KilledRecorder, LeavesWhatCanBeReadFromAFolderThatMayNotBeWritten) {
     SCOPED_TRACE(has_journal);
     const TemporaryFile file("killed read-only %.hvas");
     // Without its journal, a file is whole only between two moves of the journal into it.
-    const std::int64_t added = RecordAndKill({file.path()}, 2500, {}, 2500);
+    const std::int64_t added =
+        RecordAndKill({file.path()}, 2500, std::chrono::microseconds(500), 2500);
     if (!has_journal) {
       std::filesystem::remove(file.path().string() + "-wal");
     }
