@@ -202,9 +202,7 @@ const product::Mate* FindInterference(const Product& product, OccurrenceId a, Oc
   const product::Mate* widest = nullptr;
   double most = kInterference;
   for (const product::Mate& mate : product.mates) {
-    const bool joins = (mate.a.occurrence == a && mate.b.occurrence == b) ||
-                       (mate.a.occurrence == b && mate.b.occurrence == a);
-    if (joins && mate.fit && mate.shaft_radius - mate.hole_radius > most) {
+    if (mate.Joins(a, b) && mate.fit && mate.shaft_radius - mate.hole_radius > most) {
       most = mate.shaft_radius - mate.hole_radius;
       widest = &mate;
     }

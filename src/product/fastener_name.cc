@@ -75,23 +75,16 @@ template <std::size_t kCount, std::size_t kEnds>
 bool HasFastenerWord(std::string_view text, const std::vector<Word>& words,
                      const std::array<std::string_view, kCount>& fasteners,
                      const std::array<std::string_view, kEnds>& ends) {
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string_view word = words[i].text;
-    const bool is_fastener =
-        std::any_of(ends.begin(), ends.end(),
-                    [word](std::string_view end) { return word.ends_with(end); }) ||
-        std::any_of(fasteners.begin(), fasteners.end(), [&](std::string_view fastener) {
-          // A fastener of two words ends with this one.
-          const std::size_t begin = fastener.find(' ') != std::string_view::npos && i > 0
-                                        ? words[i - 1].begin
-                                        : words[i].begin;
-          return HasWord(text.substr(begin, words[i].end - begin), fastener);
-        });
-    if (is_fastener && (i + 1 == words.size() || !HasOneOf(words[i + 1].text, kOtherThings))) {
-      return true;
-    }
-  }
-  return false;
+  const auto is_named = [&](std::string_view fastener) {
+    return NamesThing(text, words, fastener, kOtherThings);
+  };
+  const auto is_compound = [&](const Word& word) {
+    return std::any_of(ends.begin(), ends.end(), [&word, &is_named](std::string_view end) {
+      return word.text.ends_with(end) && is_named(word.text);
+    });
+  };
+  return std::any_of(fasteners.begin(), fasteners.end(), is_named) ||
+         std::any_of(words.begin(), words.end(), is_compound);
 }
 
 /** "Heat-set insert", "insert M3", "Insert"; not "foam insert". */

@@ -91,24 +91,6 @@ constexpr std::array<std::string_view, 13> kElasticMaterials{
     "rubber", "gummi", "nbr", "fkm",  "viton",   "silicon rubber", "silicone",
     "epdm",   "tpu",   "tpe", "foam", "neopren", "elastomer"};
 
-/** Whether a word stands in a folded name, and not just before the name of something stiff. */
-bool IsNamed(std::string_view folded, const std::vector<Word>& words, std::string_view flexible) {
-  const auto is_stiff = [](const std::string& text) { return HasOneOf(text, kStiffThings); };
-  for (std::size_t first = 0; first < words.size(); ++first) {
-    for (std::size_t last = first; last < std::min(first + 3, words.size()); ++last) {
-      const std::size_t begin = words[first].begin;
-      const std::string_view run = folded.substr(begin, words[last].end - begin);
-      if (HasWord(run, flexible)) {
-        if (last + 1 == words.size() || !is_stiff(words[last + 1].text)) {
-          return true;
-        }
-        break;
-      }
-    }
-  }
-  return false;
-}
-
 double LeastExtent(const Part& part) {
   return part.box_B.size().minCoeff();
 }
@@ -206,8 +188,9 @@ std::optional<FlexibleKind> FindFlexibleKind(std::string_view name) {
   const std::string folded = FoldName(name);
   const std::vector<Word> words = SplitWords(folded);
   const auto* const found =
-      std::find_if(kFlexibleWords.begin(), kFlexibleWords.end(),
-                   [&](const FlexibleWord& entry) { return IsNamed(folded, words, entry.word); });
+      std::find_if(kFlexibleWords.begin(), kFlexibleWords.end(), [&](const FlexibleWord& entry) {
+        return NamesThing(folded, words, entry.word, kStiffThings);
+      });
   return found == kFlexibleWords.end() ? std::nullopt : std::optional(found->kind);
 }
 

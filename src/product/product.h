@@ -296,6 +296,10 @@ struct Mate {
   MateOrigin origin{MateOrigin::kInferred};
   double confidence{1};  ///< 0..1; how sure it is that this pair is meant to be mated.
   std::string evidence;  ///< What it was inferred from, in a few words.
+
+  [[nodiscard]] bool Joins(OccurrenceId x, OccurrenceId y) const {
+    return (a.occurrence == x && b.occurrence == y) || (a.occurrence == y && b.occurrence == x);
+  }
 };
 
 /** All that ties two parts (X2, layer L): their mates, and what they leave free. */

@@ -92,4 +92,25 @@ bool HasWord(std::string_view folded, std::string_view word) {
   return false;
 }
 
+bool NamesThing(std::string_view folded, const std::vector<Word>& words, std::string_view word,
+                std::span<const std::string_view> others) {
+  constexpr std::size_t kMostWords = 3;  // "o ring" in "O-Ring", "iso 3601": a choice.
+  const auto is_other = [others](const std::string& text) {
+    return std::any_of(others.begin(), others.end(),
+                       [&text](std::string_view other) { return HasWord(text, other); });
+  };
+  for (std::size_t first = 0; first < words.size(); ++first) {
+    const std::size_t begin = words[first].begin;
+    std::size_t last = first;
+    const std::size_t end = std::min(first + kMostWords, words.size());
+    while (last < end && !HasWord(folded.substr(begin, words[last].end - begin), word)) {
+      ++last;
+    }
+    if (last < end && (last + 1 == words.size() || !is_other(words[last + 1].text))) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace hvas::product

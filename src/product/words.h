@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,12 @@ struct Word {
  "nuts_2" and not in "minute", "din 912" in "din912" and not in "din 9120". A plural s and digits
  may follow letters. A blank in the word stands for any separators, or none. */
 [[nodiscard]] bool HasWord(std::string_view folded, std::string_view word);
+
+/** Whether a word names the thing itself, and not what it belongs to: it stands in a folded name,
+ and not just before one of `others`. "nut" does in "hex nut", not in "nut holder".
+ @param words  Those of the name, by SplitWords. */
+[[nodiscard]] bool NamesThing(std::string_view folded, const std::vector<Word>& words,
+                              std::string_view word, std::span<const std::string_view> others);
 
 /** Whether a folded name has one of the words. */
 template <std::size_t kCount>

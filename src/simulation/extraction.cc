@@ -300,14 +300,8 @@ void Extraction::RelieveWay(const Unit& unit, const Vec3& direction) {
   FaceReliefs::Depths deepest;
   for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
     for (const Member& member : members) {
-      contact::QueryOptions query;
-      query.margin = -kReliefFrom;
-      query.ignored = member.ignored;
-      query.allowances = member.allowances;
-      query.left_out[0] = member.left_out;
-      query.self = contact::BodyId(member.id.index());
-      const product::Pose& X_WB = product_.occurrences[member.id.index()].X_WB;
-      const spatial::Pose X(X_WB.q(), X_WB.p() + i * step * direction);
+      const contact::QueryOptions query = MakeQuery(member, kReliefFrom);
+      const spatial::Pose X = CalcPoseAlong(member.id, i * step * direction);
       const contact::Shape& shape = input_.scene->shape(query.self);
       if (!input_.scene->IsFree(shape, X, kReliefFrom, query, &workspace_)) {
         input_.scene->Query(shape, X, query, &workspace_);
@@ -359,6 +353,21 @@ std::vector<Extraction::Member> Extraction::ListMembers(const Unit& unit) const 
   return members;
 }
 
+contact::QueryOptions Extraction::MakeQuery(const Member& member, double depth) {
+  contact::QueryOptions query;
+  query.margin = -depth;
+  query.ignored = member.ignored;
+  query.allowances = member.allowances;
+  query.left_out[0] = member.left_out;
+  query.self = contact::BodyId(member.id.index());
+  return query;
+}
+
+spatial::Pose Extraction::CalcPoseAlong(OccurrenceId id, const Vec3& travel_W) const {
+  const product::Pose& X_WB = product_.occurrences[id.index()].X_WB;
+  return {X_WB.q(), X_WB.p() + travel_W};
+}
+
 double Extraction::CalcStep(const Unit& unit) const {
   double step = kLongestStep;
   for (const OccurrenceId id : unit) {
@@ -381,15 +390,9 @@ std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& di
       return Obstacle{OccurrenceId(), s, {}};  // No way is found any more.
     }
     for (const Member& member : members) {
-      contact::QueryOptions query;
-      query.margin = -kDepthTolerance;
-      query.ignored = member.ignored;
-      query.allowances = member.allowances;
-      query.left_out[0] = member.left_out;
+      contact::QueryOptions query = MakeQuery(member, kDepthTolerance);
       query.left_out[1] = excepted;
-      query.self = contact::BodyId(member.id.index());
-      const product::Pose& X_WB = product_.occurrences[member.id.index()].X_WB;
-      const spatial::Pose X(X_WB.q(), X_WB.p() + s * direction);
+      const spatial::Pose X = CalcPoseAlong(member.id, s * direction);
       if (!input_.scene->IsFree(input_.scene->shape(query.self), X, kDepthTolerance, query,
                                 &workspace_)) {
         const auto contacts = workspace_.contacts();
@@ -635,7 +638,7 @@ bool Extraction::MayGive(OccurrenceId id) const {
   if (input_.give_limits.empty() || gives(id)) {
     return !input_.give_limits.empty();
   }
-  // What a part that gives may be in the way of: its box reaches this one on some way out.
+  // A rigid part may pass where what was in its way gives.
   return std::any_of(memories_[id.index()].attempts.begin(), memories_[id.index()].attempts.end(),
                      [&gives](const Attempt& attempt) {
                        return attempt.blocker && attempt.blocker->occurrence.is_valid() &&
@@ -671,14 +674,9 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
   const double step = CalcStep(unit);
   const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
   for (int i = 0; i <= last; ++i) {
-    contact::QueryOptions query;
-    query.margin = -kDepthTolerance;
-    query.ignored = members[0].ignored;
-    query.allowances = members[0].allowances;
-    query.self = contact::BodyId(id.index());
-    const product::Pose& X_WB = product_.occurrences[id.index()].X_WB;
-    input_.scene->Query(input_.scene->shape(query.self),
-                        {X_WB.q(), X_WB.p() + i * step * direction}, query, &workspace_);
+    const contact::QueryOptions query = MakeQuery(members[0], kDepthTolerance);
+    input_.scene->Query(input_.scene->shape(query.self), CalcPoseAlong(id, i * step * direction),
+                        query, &workspace_);
     for (const contact::Contact& contact : workspace_.contacts()) {
       double& depth = deepest[contact.body];
       depth = std::max(depth, -contact.distance);
@@ -695,7 +693,6 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
 }
 
 bool Extraction::AllowBeyondDrawn(const Unit& parts) {
-  constexpr double kBeyond = 0.5e-3;  // [m] more than drawn, as faces can give way: a choice.
   const auto is_among = [&parts](OccurrenceId id) {
     return std::find(parts.begin(), parts.end(), id) != parts.end();
   };
@@ -712,7 +709,7 @@ bool Extraction::AllowBeyondDrawn(const Unit& parts) {
         (is_blocked_by(overlap.a, overlap.b) || is_blocked_by(overlap.b, overlap.a))) {
       overlap.is_beyond = true;
       overlap.answer = DrawnOverlap::Answer::kAllowance;
-      overlap.allowed = std::max(overlap.allowed, overlap.depth) + kBeyond;
+      overlap.allowed = std::max(overlap.allowed, overlap.depth) + kBeyondDrawn;
       overlap.passing_a.clear();
       overlap.passing_b.clear();
       changed.insert({overlap.a, overlap.b});

@@ -142,6 +142,10 @@ class Extraction {
   /** Lets the faces give way that a unit meets on its way out. */
   void RelieveWay(const Unit& unit, const Vec3& direction);
   [[nodiscard]] std::vector<Member> ListMembers(const Unit& unit) const;
+  /** The query for what a member meets deeper than `depth` [m]; spans of the member. */
+  [[nodiscard]] static contact::QueryOptions MakeQuery(const Member& member, double depth);
+  /** Where a part is when it has moved from its drawn pose by `travel_W` [m]. */
+  [[nodiscard]] spatial::Pose CalcPoseAlong(product::OccurrenceId id, const Vec3& travel_W) const;
   /** Distance between looks along a way [m]. */
   [[nodiscard]] double CalcStep(const Unit& unit) const;
   [[nodiscard]] std::vector<contact::Allowance> CollectAllowances(product::OccurrenceId id) const;

@@ -113,23 +113,15 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
   };
   std::vector<PartAllowance> allowances;
   for (const DrawnOverlap& overlap : model().sequence.overlaps) {
-    if (is_met(overlap.a, overlap.b)) {
+    const bool is_a = is_met(overlap.a, overlap.b);
+    if (is_a || is_met(overlap.b, overlap.a)) {
       allowances.push_back({PartAllowance::Kind::kDrawn,
-                            overlap.a,
-                            overlap.b,
+                            is_a ? overlap.a : overlap.b,
+                            is_a ? overlap.b : overlap.a,
                             overlap.depth,
                             overlap.is_beyond,
-                            overlap.faces_a,
-                            overlap.faces_b,
-                            {}});
-    } else if (is_met(overlap.b, overlap.a)) {
-      allowances.push_back({PartAllowance::Kind::kDrawn,
-                            overlap.b,
-                            overlap.a,
-                            overlap.depth,
-                            overlap.is_beyond,
-                            overlap.faces_b,
-                            overlap.faces_a,
+                            is_a ? overlap.faces_a : overlap.faces_b,
+                            is_a ? overlap.faces_b : overlap.faces_a,
                             {}});
     }
   }
@@ -168,8 +160,10 @@ std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowa
     if (kind == PartAllowance::Kind::kDrawn) {
       const bool is_beyond = std::any_of(allowances.begin(), allowances.end(),
                                          [](const PartAllowance& a) { return a.is_beyond; });
-      text += fmt::format("only by an allowance{}: it lies {:.3f} mm in {}{} as drawn",
-                          is_beyond ? " of up to 0.5 mm more than drawn" : "",
+      const std::string beyond =
+          is_beyond ? fmt::format(" of up to {:.1f} mm more than drawn", units::ToMm(kBeyondDrawn))
+                    : "";
+      text += fmt::format("only by an allowance{}: it lies {:.3f} mm in {}{} as drawn", beyond,
                           units::ToMm(deepest->depth), PathOf(deepest->other), more);
       continue;
     }

@@ -31,6 +31,10 @@ struct SequenceStep {
   Vec3 offset_W{Vec3::Zero()};  ///< kPark: from the drawn place to the shelf [m].
 };
 
+/** What pairs that block one another are allowed beyond the drawn depth, as far as faces can give
+ way [m]: a choice. */
+inline constexpr double kBeyondDrawn = 0.5e-3;
+
 /** Two parts that lie in one another as drawn, deeper than 50 um and beyond what a mate between
  them explains. */
 struct DrawnOverlap {
@@ -62,10 +66,6 @@ struct GivingPair {
   product::OccurrenceId flexible;
   product::OccurrenceId other;
   double depth{0};  ///< How far it gives on the way [m].
-
-  [[nodiscard]] bool Joins(product::OccurrenceId x, product::OccurrenceId y) const {
-    return (flexible == x && other == y) || (flexible == y && other == x);
-  }
 };
 
 /** How far a face gives way where it lies in another part as drawn, or would on its way in. */

@@ -23,9 +23,7 @@ std::vector<std::uint32_t> ListPassing(const product::Product& product, product:
                                        const haptics::MateFaces& faces) {
   std::set<std::uint32_t> stops;
   for (const product::Mate& mate : product.mates) {
-    const bool joins_both = (mate.a.occurrence == own && mate.b.occurrence == other) ||
-                            (mate.a.occurrence == other && mate.b.occurrence == own);
-    if (mates::HoldsAcross(mate.kind) || !joins_both) {
+    if (mates::HoldsAcross(mate.kind) || !mate.Joins(own, other)) {
       continue;
     }
     const product::Connector& side = mate.a.occurrence == own ? mate.a : mate.b;

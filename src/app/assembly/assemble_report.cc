@@ -39,16 +39,14 @@ std::size_t CountByAllowance(const RunOutcome& outcome) {
 }
 
 nlohmann::ordered_json ToJson(const Model& model, const PartAllowance& allowance) {
-  constexpr double kPerCubicMetre_mm3 = 1e9;  // [mm3] in a cubic metre.
   const bool is_drawn = allowance.kind == PartAllowance::Kind::kDrawn;
   nlohmann::ordered_json json{{"kind", is_drawn ? "drawn_overlap" : "gives"},
                               {"with", PathOf(model, allowance.other)},
                               {"depth_mm", units::ToMm(allowance.depth)},
                               {"is_beyond_drawn", allowance.is_beyond}};
   if (is_drawn) {
-    json["volume_mm3"] =
-        kPerCubicMetre_mm3 *
-        mates::MeasureSharedVolume(*model.product, allowance.own, allowance.other).volume;
+    json["volume_mm3"] = units::ToMm3(
+        mates::MeasureSharedVolume(*model.product, allowance.own, allowance.other).volume);
     json["faces"] = allowance.own_faces;
     json["other_faces"] = allowance.other_faces;
   } else {

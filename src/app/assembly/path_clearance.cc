@@ -29,10 +29,8 @@ Json PointMm(const Vec3& p) {
 }
 
 bool HasMate(const Product& product, OccurrenceId a, OccurrenceId b) {
-  return std::any_of(product.mates.begin(), product.mates.end(), [&](const product::Mate& mate) {
-    return (mate.a.occurrence == a && mate.b.occurrence == b) ||
-           (mate.a.occurrence == b && mate.b.occurrence == a);
-  });
+  return std::any_of(product.mates.begin(), product.mates.end(),
+                     [&](const product::Mate& mate) { return mate.Joins(a, b); });
 }
 
 }  // namespace

@@ -23,8 +23,7 @@ struct LoadOptions : assembly::OpenOptions {
 };
 
 /** Adds --strict, --quiet, --no-cache, --unit, --encoding, --apart, --rigid, --time-limit,
- --memory-limit and
- --max-parts to a command. */
+ --memory-limit and --max-parts to a command. */
 void AddLoadOptions(CLI::App* command, LoadOptions* options);
 
 /** Adds --fixture to a command. */

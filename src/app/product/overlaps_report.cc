@@ -21,8 +21,6 @@ using product::FlexiblePart;
 using product::Product;
 using units::ToMm;
 
-constexpr double kPerCubicMetre_mm3 = 1e9;  // [mm3] in a cubic metre.
-
 std::vector<SharedVolume> ListShared(const Product& product, const Selection& selection) {
   std::vector<SharedVolume> list = mates::ListSharedVolumes(product);
   std::erase_if(list, [&](const SharedVolume& shared) {
@@ -53,7 +51,7 @@ void PrintShared(const Product& product, const std::vector<SharedVolume>& list, 
       table.Add({fmt::format("{}, {}", Shorten(product.occurrences[shared.a.index()].path, 24),
                              Shorten(product.occurrences[shared.b.index()].path, 24)),
                  fmt::format("{:.3f}", ToMm(shared.depth)),
-                 fmt::format("{:.3g}", kPerCubicMetre_mm3 * shared.volume)},
+                 fmt::format("{:.3g}", units::ToMm3(shared.volume))},
                 Describe(product, shared));
     }
   }
@@ -90,7 +88,7 @@ void AddOverlaps(const Product& product, const Selection& selection, Json* json)
     overlaps.push_back({{"a", shared.a.value()},
                         {"b", shared.b.value()},
                         {"depth_mm", ToMm(shared.depth)},
-                        {"volume_mm3", kPerCubicMetre_mm3 * shared.volume},
+                        {"volume_mm3", units::ToMm3(shared.volume)},
                         {"cause", ToString(shared.cause)},
                         {"mate", shared.mate.is_valid() ? Json(shared.mate.value()) : Json()},
                         {"description", Describe(product, shared)}});

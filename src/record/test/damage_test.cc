@@ -25,6 +25,12 @@ namespace {
 
 constexpr std::int64_t kNoEnd = std::numeric_limits<std::int64_t>::max();
 
+[[noreturn]] void WaitToBeKilled() {
+  for (;;) {
+    ::pause();
+  }
+}
+
 // Runs a recording child, kills it once it has added `kill_after` ticks, and returns how many it
 // had added by then. The child waits after `most` ticks: it is killed while it writes nothing.
 std::int64_t RecordAndKill(const RecorderOptions& options, std::int64_t kill_after,
@@ -47,8 +53,8 @@ std::int64_t RecordAndKill(const RecorderOptions& options, std::int64_t kill_aft
       if ((*recorder)->AddTick(tick)) {
         added->store(i + 1);
       }
-      while (i + 1 >= most) {
-        ::pause();
+      if (i + 1 >= most) {
+        WaitToBeKilled();
       }
       if (pause.count() > 0) {
         std::this_thread::sleep_for(pause);
@@ -321,8 +327,9 @@ void Tamper(const std::filesystem::path& path, const char* sql) {
 
 class DamagedRecord : public ::testing::Test {
  protected:
-  DamagedRecord() : file("damaged.hvas") {
-    const auto recorder = Recorder::Create({file.path()}, {{"seed", "7"}, {"condition", "hybrid"}});
+  DamagedRecord() : file_("damaged.hvas") {
+    const auto recorder =
+        Recorder::Create({file_.path()}, {{"seed", "7"}, {"condition", "hybrid"}});
     for (int i = 0; i < 2300; ++i) {  // Five chunks, of half a second each but the last.
       (*recorder)->AddTick(MakeTick(i));
     }
@@ -335,12 +342,12 @@ class DamagedRecord : public ::testing::Test {
     EXPECT_TRUE((*recorder)->Finish().has_value());
   }
 
-  TemporaryFile file;
+  TemporaryFile file_;
 };
 
 TEST_F(DamagedRecord, ChunkIsFoundAndWhatIsBeforeItCanBeRead) {
-  Tamper(file.path(), "UPDATE chunk SET ticks = zeroblob(length(ticks)) WHERE id = 3");
-  Reader reader = Reader::Open(file.path()).value();
+  Tamper(file_.path(), "UPDATE chunk SET ticks = zeroblob(length(ticks)) WHERE id = 3");
+  Reader reader = Reader::Open(file_.path()).value();
   int visited = 0;
   const Result<void> done =
       reader.ForEachTick({}, [&](const TickRecord&) { return ++visited > 0; });
@@ -364,31 +371,31 @@ TEST_F(DamagedRecord, FlippedByteInTheFileIsFound) {
   // All over the tick data, past the first pages. A byte of a page that nothing is kept in does not
   // matter; there are few.
   constexpr int kPlaces = 40;
-  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file.path()));
+  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file_.path()));
   int found = 0;
   for (int i = 0; i < kPlaces; ++i) {
     const std::streamoff at = size / 4 + i * (size / 2) / kPlaces;
-    FlipBit(file.path(), at);
-    auto reader = Reader::Open(file.path());
+    FlipBit(file_.path(), at);
+    auto reader = Reader::Open(file_.path());
     found += !reader || !reader->Verify() ? 1 : 0;
-    FlipBit(file.path(), at);
+    FlipBit(file_.path(), at);
   }
   EXPECT_GE(found, kPlaces - kPlaces / 8) << "of " << kPlaces;
-  EXPECT_TRUE(Reader::Open(file.path())->Verify().has_value()) << "as it was before";
+  EXPECT_TRUE(Reader::Open(file_.path())->Verify().has_value()) << "as it was before";
 }
 
 TEST_F(DamagedRecord, EventIsFound) {
-  Tamper(file.path(), "UPDATE event SET json = '{}' WHERE id = 2");
-  const auto events = Reader::Open(file.path())->ReadEvents();
+  Tamper(file_.path(), "UPDATE event SET json = '{}' WHERE id = 2");
+  const auto events = Reader::Open(file_.path())->ReadEvents();
   ASSERT_FALSE(events.has_value());
   EXPECT_NE(events.error().message.find("Event 2"), std::string::npos);
 }
 
 TEST_F(DamagedRecord, CommandFrameAndAttachmentAreFound) {
-  Tamper(file.path(), "UPDATE command SET number = 7 WHERE id = 3");
-  Tamper(file.path(), "UPDATE frame SET bytes = zeroblob(length(bytes)) WHERE id = 1");
-  Tamper(file.path(), "UPDATE attachment SET bytes = zeroblob(length(bytes))");
-  Reader reader = Reader::Open(file.path()).value();
+  Tamper(file_.path(), "UPDATE command SET number = 7 WHERE id = 3");
+  Tamper(file_.path(), "UPDATE frame SET bytes = zeroblob(length(bytes)) WHERE id = 1");
+  Tamper(file_.path(), "UPDATE attachment SET bytes = zeroblob(length(bytes))");
+  Reader reader = Reader::Open(file_.path()).value();
   EXPECT_NE(reader.ReadCommands().error().message.find("Command 3"), std::string::npos);
   const auto frames = reader.ForEachFrame({}, [](const Frame&) { return true; });
   EXPECT_NE(frames.error().message.find("Frame 1"), std::string::npos);
@@ -433,7 +440,7 @@ TEST_F(DamagedRecord, WhateverIsGoneOrOtherwiseIsFoundAndNamed) {
   const TemporaryFile copy("copy.hvas");
   for (const Case& tampered : kCases) {
     SCOPED_TRACE(tampered.sql);
-    std::filesystem::copy_file(file.path(), copy.path(),
+    std::filesystem::copy_file(file_.path(), copy.path(),
                                std::filesystem::copy_options::overwrite_existing);
     ASSERT_TRUE(Reader::Open(copy.path())->Verify().has_value());
     Tamper(copy.path(), tampered.sql);
@@ -446,8 +453,8 @@ TEST_F(DamagedRecord, WhateverIsGoneOrOtherwiseIsFoundAndNamed) {
 }
 
 TEST_F(DamagedRecord, NewerLayoutIsRefusedWithItsNumber) {
-  Tamper(file.path(), "UPDATE schema_version SET version = 99");
-  const auto reader = Reader::Open(file.path());
+  Tamper(file_.path(), "UPDATE schema_version SET version = 99");
+  const auto reader = Reader::Open(file_.path());
   ASSERT_FALSE(reader.has_value());
   EXPECT_EQ(reader.error().code, ErrorCode::kUnsupported);
   EXPECT_NE(reader.error().message.find("99"), std::string::npos);

@@ -18,50 +18,78 @@ using testing::Pose;
 using testing::Product;
 using Answer = DrawnOverlap::Answer;
 
+/** A part of flat faces. */
+class FlatPart {
+ public:
+  /** Adds a face of quads, each counterclockwise as seen from outside. Quads may be triangles. */
+  void AddFace(const std::vector<std::array<Vec3, 4>>& quads) {
+    constexpr double kLeast = 1e-12;  // [m^2]: less is no triangle.
+    const auto face = static_cast<std::uint32_t>(source_.faces.size());
+    Vec3 normal = Vec3::Zero();
+    for (const std::array<Vec3, 4>& p : quads) {
+      const auto first = static_cast<std::uint32_t>(source_.vertices.size());
+      source_.vertices.insert(source_.vertices.end(), p.begin(), p.end());
+      for (const std::uint32_t i : {1U, 2U}) {
+        const Vec3 n = (p[i] - p[0]).cross(p[i + 1] - p[0]);
+        if (n.norm() > kLeast) {
+          normal += n;
+          source_.triangles.push_back({first, first + i, first + i + 1});
+          source_.triangle_face.push_back(face);
+        }
+      }
+    }
+    source_.faces.push_back(
+        {spatial::SurfaceKind::kPlane, quads[0][0], normal.normalized(), 0, 0, 1});
+  }
+
+  /** Adds the sides between two rectangles, `from` to `to`, which go round counterclockwise about
+   the way from one to the other. */
+  void AddSides(const std::array<Vec3, 4>& from, const std::array<Vec3, 4>& to) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t k = (i + 1) % 4;
+      AddFace({{from[i], from[k], to[k], to[i]}});
+    }
+  }
+
+  /** Adds a plane ring between two rectangles that go round counterclockwise as seen from outside.
+   */
+  void AddRing(const std::array<Vec3, 4>& outer, const std::array<Vec3, 4>& inner) {
+    std::vector<std::array<Vec3, 4>> quads;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t k = (i + 1) % 4;
+      quads.push_back({outer[i], outer[k], inner[k], inner[i]});
+    }
+    AddFace(quads);
+  }
+
+  [[nodiscard]] const contact::ShapeSource& source() const { return source_; }
+
+ private:
+  contact::ShapeSource source_;
+};
+
 /** A square part about z: half widths over heights, the material on the left as in Lathe. Each
  flat is a face of its own. */
 contact::ShapeSource Square(const std::vector<Eigen::Vector2d>& profile) {
-  contact::ShapeSource source;
-  const auto corner = [](const Eigen::Vector2d& wz, int i) {
-    constexpr int kX[] = {1, -1, -1, 1};
-    constexpr int kY[] = {1, 1, -1, -1};
-    return Vec3(kX[i % 4] * wz.x(), kY[i % 4] * wz.x(), wz.y());
+  const auto corners = [](const Eigen::Vector2d& wz) {
+    const double w = wz.x();
+    return std::array<Vec3, 4>{Vec3(w, -w, wz.y()), Vec3(w, w, wz.y()), Vec3(-w, w, wz.y()),
+                               Vec3(-w, -w, wz.y())};
   };
+  FlatPart part;
   for (std::size_t k = 0; k + 1 < profile.size(); ++k) {
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 p[] = {corner(profile[k], i), corner(profile[k], i + 1),
-                        corner(profile[k + 1], i + 1), corner(profile[k + 1], i)};
-      const auto first = static_cast<std::uint32_t>(source.vertices.size());
-      const auto face = static_cast<std::uint32_t>(source.faces.size());
-      source.vertices.insert(source.vertices.end(), std::begin(p), std::end(p));
-      Vec3 normal = Vec3::Zero();
-      for (const std::array<std::uint32_t, 3>& t :
-           {std::array<std::uint32_t, 3>{0, 1, 2}, std::array<std::uint32_t, 3>{0, 2, 3}}) {
-        const Vec3 n = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
-        if (n.norm() > 1e-12) {
-          normal += n;
-          source.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-          source.triangle_face.push_back(face);
-        }
-      }
-      source.faces.push_back({spatial::SurfaceKind::kPlane, p[0], normal.normalized(), 0, 0, 1});
-    }
+    part.AddSides(corners(profile[k]), corners(profile[k + 1]));
   }
-  return source;
+  return part.source();
 }
 
 constexpr double kHalf = 10e-3;  // Half width of the pocket.
 
-/** A square pocket 15 mm deep with a block in it that is wider by `overlap` on each side.
- @param lip  How far a lip reaches over the pocket's opening [m]; 0: none. */
-Product BlockInPocket(double overlap, double lip) {
+/** A pocket, and a block in it that is wider than kHalf by `overlap` on each side.
+ @param profile  The pocket's, up to its inner wall; its floor is 5 mm high. */
+Product PocketWithBlock(std::vector<Eigen::Vector2d> profile, double overlap) {
   Product product;
   product.name = "pocket";
-  const double open = kHalf - lip;
-  std::vector<Eigen::Vector2d> profile{{0, 0}, {15e-3, 0}, {15e-3, 25e-3}, {open, 25e-3}};
-  if (lip > 0) {
-    profile.insert(profile.end(), {{open, 20e-3}, {kHalf, 20e-3}});
-  }
   profile.insert(profile.end(), {{kHalf, 5e-3}, {0, 5e-3}});
   const auto pocket = testing::AddPart(&product, "pocket", Square(profile));
   const double half = kHalf + overlap;
@@ -73,27 +101,20 @@ Product BlockInPocket(double overlap, double lip) {
   return product;
 }
 
-/** As BlockInPocket without a lip, but the pocket's walls lean in to its opening by `narrowing`
- * [m]. */
+/** @param lip  How far a lip reaches over the pocket's opening [m]; 0: none. */
+Product BlockInPocket(double overlap, double lip) {
+  const double open = kHalf - lip;
+  std::vector<Eigen::Vector2d> profile{{0, 0}, {15e-3, 0}, {15e-3, 25e-3}, {open, 25e-3}};
+  if (lip > 0) {
+    profile.insert(profile.end(), {{open, 20e-3}, {kHalf, 20e-3}});
+  }
+  return PocketWithBlock(profile, overlap);
+}
+
+/** @param narrowing  How far the pocket's walls lean in to its opening [m]. */
 Product TaperedPocket(double overlap, double narrowing) {
-  Product product;
-  product.name = "tapered";
-  const double open = kHalf - narrowing;
-  const auto pocket = testing::AddPart(&product, "pocket",
-                                       Square({{0, 0},
-                                               {15e-3, 0},
-                                               {15e-3, 25e-3},
-                                               {open, 25e-3},
-                                               {kHalf, 13e-3},
-                                               {kHalf, 5e-3},
-                                               {0, 5e-3}}));
-  const double half = kHalf + overlap;
-  const auto block =
-      testing::AddPart(&product, "block", Square({{0, 0}, {half, 0}, {half, 8e-3}, {0, 8e-3}}));
-  testing::Place(&product, pocket, "pocket");
-  testing::Place(&product, block, "block", Pose(Vec3(0, 0, 5e-3)));
-  testing::Complete(&product);
-  return product;
+  return PocketWithBlock(
+      {{0, 0}, {15e-3, 0}, {15e-3, 25e-3}, {kHalf - narrowing, 25e-3}, {kHalf, 13e-3}}, overlap);
 }
 
 std::shared_ptr<const Model> CompileProduct(Product product) {
@@ -168,50 +189,6 @@ TEST(OverlapTest, WayThatNeedsALittleMoreThanTheDrawnDepthIsTakenAndThatIsSaid) 
   // Half a millimetre more, and not 0.6.
   EXPECT_EQ(CompileProduct(TaperedPocket(0.1e-3, 0.6e-3))->sequence.gaps.size(), 1U);
 }
-
-/** A part of flat faces. */
-class FlatPart {
- public:
-  /** Adds a face of quads, each counterclockwise as seen from outside. */
-  void AddFace(const std::vector<std::array<Vec3, 4>>& quads) {
-    const auto face = static_cast<std::uint32_t>(source_.faces.size());
-    for (const std::array<Vec3, 4>& p : quads) {
-      const auto first = static_cast<std::uint32_t>(source_.vertices.size());
-      source_.vertices.insert(source_.vertices.end(), p.begin(), p.end());
-      source_.triangles.push_back({first, first + 1, first + 2});
-      source_.triangles.push_back({first, first + 2, first + 3});
-      source_.triangle_face.insert(source_.triangle_face.end(), 2, face);
-    }
-    const std::array<Vec3, 4>& p = quads.front();
-    const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
-    source_.faces.push_back({spatial::SurfaceKind::kPlane, p[0], normal, 0, 0, 1});
-  }
-
-  /** Adds the sides between two rectangles, `from` to `to`, which go round counterclockwise about
-   the way from one to the other. */
-  void AddSides(const std::array<Vec3, 4>& from, const std::array<Vec3, 4>& to) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::size_t k = (i + 1) % 4;
-      AddFace({{from[i], from[k], to[k], to[i]}});
-    }
-  }
-
-  /** Adds a plane ring between two rectangles that go round counterclockwise as seen from outside.
-   */
-  void AddRing(const std::array<Vec3, 4>& outer, const std::array<Vec3, 4>& inner) {
-    std::vector<std::array<Vec3, 4>> quads;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::size_t k = (i + 1) % 4;
-      quads.push_back({outer[i], outer[k], inner[k], inner[i]});
-    }
-    AddFace(quads);
-  }
-
-  [[nodiscard]] const contact::ShapeSource& source() const { return source_; }
-
- private:
-  contact::ShapeSource source_;
-};
 
 std::array<Vec3, 4> Reversed(const std::array<Vec3, 4>& p) {
   return {p[3], p[2], p[1], p[0]};
