@@ -1,16 +1,21 @@
 #!/usr/bin/env python3
-"""Remembers which tests passed: passed_tests.py BUILD_FOLDER list | add NAME...
+"""Remembers which tests passed.
 
-`list` prints the names of tests that passed before with the same program, and the same of all else
-that they read: the libraries that they load and DATA; those of label `e2e` or `web` also the programs
-hvas and hvas-cad; those of label `web` also the folder web/. `add` notes that tests have passed. What
-has passed is forgotten with the build folder.
+    passed_tests.py BUILD_FOLDER unchanged       tests that passed as they are
+    passed_tests.py BUILD_FOLDER passed LABELS   tests of these labels that passed before some change
+    passed_tests.py BUILD_FOLDER add NAME...     notes that tests have passed as they are
+
+Each prints or takes names of tests; LABELS is a pattern of which a whole label is to match. A test is as it was when its
+program is, and all else that it reads: the libraries that it loads and DATA; for those of label `e2e`
+or `web` also the programs hvas and hvas-cad; for those of label `web` or `client` also the folder web/.
+What has passed is forgotten with the build folder.
 """
 
 import functools
 import hashlib
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -40,34 +45,49 @@ def digest_files(paths):
 
 
 def read_tests(build):
-    """Mark of each test by its name: what decides how it ends."""
+    """The tests of a build folder, as ctest describes them."""
     command = ["ctest", "--test-dir", build, "--show-only=json-v1"]
-    tests = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["tests"]
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["tests"]
+
+
+def list_labels(test):
+    return next((p["value"] for p in test["properties"] if p["name"] == "LABELS"), [])
+
+
+def mark_tests(build, tests):
+    """Mark of each test by its name: what decides how it ends."""
     libraries = digest_files(sorted(build.glob("src/**/*.so")))
     programs = [path for path in (build / "src/app/hvas", build / "src/cad/hvas-cad") if path.is_file()]
     marks = {}
     for test in tests:
-        labels = next((p["value"] for p in test["properties"] if p["name"] == "LABELS"), [])
+        labels = list_labels(test)
         own = [pathlib.Path(word) for word in test.get("command", []) if word.startswith(str(ROOT))]
         parts = [test["name"], *test.get("command", []), libraries, digest_folders(*DATA)]
         parts += [digest_file(path) for path in own if path.is_file()]
         if "e2e" in labels or "web" in labels:
             parts += [digest_file(path) for path in programs]
-        if "web" in labels:
+        if "web" in labels or "client" in labels:
             parts.append(digest_folders("web"))
         marks[test["name"]] = hashlib.sha256("\n".join(parts).encode()).hexdigest()
     return marks
 
 
 def main():
-    if len(sys.argv) < 3 or sys.argv[2] not in ("list", "add"):
-        print(__doc__.splitlines()[0], file=sys.stderr)
+    if len(sys.argv) < 3 or sys.argv[2] not in ("unchanged", "passed", "add"):
+        print(__doc__, file=sys.stderr)
         return 2
-    build = pathlib.Path(sys.argv[1]).resolve()
-    marks, folder = read_tests(build), build / "passed"
+    build, action, words = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], sys.argv[3:]
+    tests, folder = read_tests(build), build / "passed"
     folder.mkdir(exist_ok=True)
-    if sys.argv[2] == "add":
-        for name in sys.argv[3:]:
+    if action == "passed":
+        labels = re.compile("|".join(words))
+        matching = [test["name"] for test in tests if any(map(labels.fullmatch, list_labels(test)))]
+        print("\n".join(name for name in matching if (folder / name).exists()))
+        return 0
+    marks = mark_tests(build, tests)
+    if action == "add":
+        for name in words:
+            (folder / name).touch()
             (folder / marks[name]).touch()
     else:
         print("\n".join(name for name, mark in marks.items() if (folder / mark).exists()))
