@@ -5,9 +5,9 @@
     passed_tests.py BUILD_FOLDER passed LABELS   tests of these labels that passed before some change
     passed_tests.py BUILD_FOLDER add NAME...     notes that tests have passed as they are
 
-Each prints or takes names of tests; LABELS is a pattern of which a whole label is to match. A test is as it was when its
-program is, and all else that it reads: the libraries that it loads and DATA; for those of label `e2e`
-or `web` also the programs hvas and hvas-cad; for those of label `web` or `client` also the folder web/.
+Each prints or takes names of tests; LABELS is a pattern of which a whole label is to match. A test is as
+it was when its program is, and all else that it reads: the libraries that it loads, hvas-cad and DATA;
+hvas where its program, command or environment names it; the folder web/ for labels `web` and `client`.
 What has passed is forgotten with the build folder.
 """
 
@@ -54,19 +54,26 @@ def list_labels(test):
     return next((p["value"] for p in test["properties"] if p["name"] == "LABELS"), [])
 
 
+def starts(test, own, program):
+    """Whether the path of a program is in a test's command, environment or own programs."""
+    words = [word for p in test["properties"] if p["name"] == "ENVIRONMENT" for word in p["value"]]
+    return any(str(program) in word for word in [*test.get("command", []), *words]) or any(
+        str(program).encode() in path.read_bytes() for path in own)
+
+
 def mark_tests(build, tests):
     """Mark of each test by its name: what decides how it ends."""
     libraries = digest_files(sorted(build.glob("src/**/*.so")))
-    programs = [path for path in (build / "src/app/hvas", build / "src/cad/hvas-cad") if path.is_file()]
+    program, reader = build / "src/app/hvas", build / "src/cad/hvas-cad"
     marks = {}
     for test in tests:
-        labels = list_labels(test)
         own = [pathlib.Path(word) for word in test.get("command", []) if word.startswith(str(ROOT))]
+        own = [path for path in own if path.is_file()]
         parts = [test["name"], *test.get("command", []), libraries, digest_folders(*DATA)]
-        parts += [digest_file(path) for path in own if path.is_file()]
-        if "e2e" in labels or "web" in labels:
-            parts += [digest_file(path) for path in programs]
-        if "web" in labels or "client" in labels:
+        parts += [digest_file(path) for path in own]
+        parts += [digest_file(path) for path in (reader,) if path.is_file()]
+        parts += [digest_file(path) for path in (program,) if path.is_file() and starts(test, own, path)]
+        if {"web", "client"} & set(list_labels(test)):
             parts.append(digest_folders("web"))
         marks[test["name"]] = hashlib.sha256("\n".join(parts).encode()).hexdigest()
     return marks

@@ -17,7 +17,8 @@
 namespace hvas::haptics {
 
 /** Faces that a captured mate answers for. The neighbours are the faces that share an edge with the
- mating faces: a shaft's rim passes the rim of its hole at no distance at all. Sorted. */
+ mating faces, or end in their plane: a shaft's rim passes the rim of its hole, and a tooth of a
+ horn the rim of the plate that it slides onto, at no distance at all. Sorted. */
 struct MateFaces {
   std::vector<std::uint32_t> mating;
   std::vector<std::uint32_t> with_neighbours;

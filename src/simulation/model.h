@@ -116,7 +116,9 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
 /** The world of dynamics in which a model's loose parts lie. */
 [[nodiscard]] dynamics::WorldOptions TableOptions(const Model& model);
 
-/** Faces of a mate's side and the faces that share an edge with them. */
+/** Faces of a mate's side and their neighbours: the faces that share an edge with them, and those
+ that reach the plane of a plane one within 10 um, as the flanks of teeth that end in its corners.
+ */
 [[nodiscard]] haptics::MateFaces CollectMateFaces(const product::Part& part,
                                                   const std::vector<product::FaceId>& mating);
 

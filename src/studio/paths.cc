@@ -105,7 +105,7 @@ PathLog::HeldPath PathLog::PathOf(OccurrenceId id) const {
   if (found == holds_.end()) {
     return {};
   }
-  HeldPath held = found->second;
+  HeldPath held = static_cast<const HeldPath&>(found->second);
   held.path.push_back(found->second.newest);
   return held;
 }

@@ -67,6 +67,36 @@ TEST(CollectMateFacesTest, NeighboursOfABoxFaceAreTheFourAroundIt) {
   }
 }
 
+TEST(CollectMateFacesTest, FlankThatReachesAPlaneInOnePointIsItsNeighbour) {
+  const auto neighbours_of_top = [](double gap) {
+    constexpr double kTop = 7e-3;
+    contact::ShapeSource source = contact::testing::Block(Vec3(5e-3, 6e-3, kTop));
+    const auto first = static_cast<std::uint32_t>(source.vertices.size());
+    const auto flank = static_cast<std::uint32_t>(source.faces.size());
+    source.vertices.insert(
+        source.vertices.end(),
+        {Vec3(5e-3, 0, kTop - gap), Vec3(5e-3, -1e-3, 1e-3), Vec3(5e-3, 1e-3, 1e-3)});
+    source.triangles.push_back({first, first + 1, first + 2});
+    source.triangle_face.push_back(flank);
+    source.faces.push_back(
+        {spatial::SurfaceKind::kPlane, Vec3(5e-3, 0, 0), Vec3::UnitX(), 0, 0, 1});
+    Product product;
+    const auto id = testing::AddPart(&product, "tooth", source);
+    const product::Part& part = product.parts[id.index()];
+    for (std::uint32_t f = 0; f < part.faces.size(); ++f) {
+      if (part.faces[f].surface.axis.z() > 0.9) {
+        const Faces faces = CollectMateFaces(part, {FaceId(f)}).with_neighbours;
+        return std::binary_search(faces.begin(), faces.end(), flank);
+      }
+    }
+    ADD_FAILURE() << "no top";
+    return false;
+  };
+  EXPECT_TRUE(neighbours_of_top(0));
+  EXPECT_TRUE(neighbours_of_top(3e-6));
+  EXPECT_FALSE(neighbours_of_top(50e-6));
+}
+
 TEST(CompileTest, PartsLieApartOnTheTableBelowTheProduct) {
   const Model& model = *testing::PegInBlockModel();
   ASSERT_EQ(model.bodies.size(), 2u);
