@@ -26,6 +26,8 @@ struct Message {
   static constexpr int kText = 1;
   static constexpr int kBinary = 2;
   static constexpr int kClose = 8;
+  static constexpr int kPing = 9;
+  static constexpr int kPong = 10;
   int opcode{0};
   std::string bytes;
 };

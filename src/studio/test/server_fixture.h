@@ -117,6 +117,9 @@ class ServerTest : public ::testing::Test {
       if (!message) {
         break;
       }
+      if (message->opcode == Message::kPing) {  // Who does not answer is disconnected.
+        client->SendMessage(Message::kPong, message->bytes);
+      }
       if (message->opcode == Message::kText) {
         Json json = Json::parse(message->bytes);
         if (fits(json)) {
