@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -189,7 +190,11 @@ std::optional<FlexibleKind> FindFlexibleKind(std::string_view name) {
   const std::vector<Word> words = SplitWords(folded);
   const auto* const found =
       std::find_if(kFlexibleWords.begin(), kFlexibleWords.end(), [&](const FlexibleWord& entry) {
-        return NamesThing(folded, words, entry.word, kStiffThings);
+        // "Snap cover", "snap frame": they hold by hooks of their own.
+        const bool is_snap =
+            entry.kind == FlexibleKind::kSnapHook && entry.word.starts_with("snap");
+        return NamesThing(folded, words, entry.word,
+                          is_snap ? std::span<const std::string_view>() : kStiffThings);
       });
   return found == kFlexibleWords.end() ? std::nullopt : std::optional(found->kind);
 }

@@ -29,6 +29,8 @@ TEST(FlexibleTest, NamesAndMaterialsTellWhatGives) {
     EXPECT_EQ(kind_of(name), "retaining ring") << name;
   }
   EXPECT_EQ(kind_of("cable clip"), "snap hook");
+  EXPECT_EQ(kind_of("Snap cover"), "snap hook");
+  EXPECT_EQ(kind_of("clip holder"), "rigid");
   EXPECT_EQ(kind_of("Flachdichtung"), "gasket");
   EXPECT_EQ(kind_of("Compression Spring"), "spring");
   EXPECT_EQ(kind_of("GT2 belt"), "cable");
