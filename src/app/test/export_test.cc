@@ -295,7 +295,7 @@ void ExpectPoses(const json& expected, const json& occurrences) {
   }
 }
 
-TEST(ExportPoses, ComeBackFromStepAndJson) {
+TEST(ExportPosesReleaseTest, ComeBackFromStepAndJson) {
   for (const char* name : {"gear_pump", "frame_500"}) {  // With subassemblies used many times.
     SCOPED_TRACE(name);
     const TemporaryFolder folder;

@@ -106,7 +106,7 @@ TEST(GreedyFileTest, ThousandsOfPartsAtOnePlaceAreOpenedWhenTheyAreAllowed) {
                       (*duplicate)["message"].template get<std::string>());
 }
 
-TEST(GreedyFileTest, PartsThatAreMatedForTooLongOrTakeTooMuchAreNamedWithTheRemedy) {
+TEST(GreedyFileReleaseTest, PartsThatAreMatedForTooLongOrTakeTooMuchAreNamedWithTheRemedy) {
   // Each a little beside the other, so that each pair has to be looked at.
   const TemporaryFolder folder;
   const std::string file =

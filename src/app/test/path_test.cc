@@ -134,7 +134,9 @@ TEST_F(PathCommandTest, X13TurnOfTheRoundShaftAboutItsAxisSweepsTheShaft) {  // 
   EXPECT_EQ(ReadText(In("turn.glb")).substr(0, 4), "glTF");
 }
 
-TEST_F(PathCommandTest, X13StraightWaySweepsItsSectionTimesTheWay) {  // translation
+using PathCommandReleaseTest = PathCommandTest;
+
+TEST_F(PathCommandReleaseTest, X13StraightWaySweepsItsSectionTimesTheWay) {  // translation
   const auto volume_after = [&](const std::string& way_mm) {
     return RunHvasJson(ForShaft(
         {"--translate", "0,0," + way_mm, "--swept", "--resolution-mm", "1.5", "--force"},
