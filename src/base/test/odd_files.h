@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,7 +42,9 @@ inline std::vector<OddFile> MakeOddFiles(const std::filesystem::path& folder,
   address.sun_family = AF_UNIX;
   name.copy(address.sun_path, sizeof(address.sun_path) - 1);
   const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  ::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
+  if (::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+    throw std::runtime_error("no socket can be made in " + socket.parent_path().string());
+  }
   ::close(descriptor);
   fs::current_path(before);
   fs::create_symlink("/dev/zero", place("a device"));
