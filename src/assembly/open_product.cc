@@ -187,7 +187,7 @@ Result<void> AddAccessories(const OpenOptions& options, Product* product, WorkWa
   for (const auto& [files, kind] : {std::pair(&options.tools, product::AccessoryKind::kTool),
                                     std::pair(&options.bench, product::AccessoryKind::kBench)}) {
     for (const std::string& file : *files) {
-      if (const auto added = add(file, kind, nullptr); !added) {
+      if (auto added = add(file, kind, nullptr); !added) {
         return added;
       }
     }
@@ -197,7 +197,7 @@ Result<void> AddAccessories(const OpenOptions& options, Product* product, WorkWa
     if (!place) {
       return Unexpected(place.error());
     }
-    const auto added = add(place->file, product::AccessoryKind::kFixture, &place->X_WA);
+    auto added = add(place->file, product::AccessoryKind::kFixture, &place->X_WA);
     if (!added) {
       return added;
     }

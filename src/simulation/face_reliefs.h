@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "contact/scene.h"
@@ -22,7 +23,10 @@ class FaceReliefs {
     product::OccurrenceId occurrence;
     std::uint32_t face{0};
 
-    auto operator<=>(const Face&) const = default;
+    bool operator==(const Face&) const = default;
+    bool operator<(const Face& other) const {
+      return std::tie(occurrence, face) < std::tie(other.occurrence, other.face);
+    }
   };
 
   using Depths = std::map<Face, double>;  ///< [m]

@@ -219,10 +219,7 @@ void OverlapSearch::Examine(OccurrenceId a, OccurrenceId b) {
 
 std::vector<std::uint32_t> OverlapSearch::Widen(OccurrenceId own, OccurrenceId other,
                                                 const std::vector<std::uint32_t>& faces) const {
-  std::vector<product::FaceId> ids;
-  for (const std::uint32_t face : faces) {
-    ids.emplace_back(face);
-  }
+  const std::vector<product::FaceId> ids(faces.begin(), faces.end());
   std::vector<std::uint32_t> wide =
       ListPassing(*input_.product, own, other, CollectMateFaces(input_.product->part_of(own), ids));
   for (const std::uint32_t face : faces) {

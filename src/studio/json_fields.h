@@ -91,9 +91,10 @@ class FirstError {
     }
   }
 
+  /** `fields`, which are moved from, or the first error. */
   template <typename Fields>
-  [[nodiscard]] Result<Fields> Or(Fields fields) const {
-    return error_ ? Result<Fields>(Unexpected(*error_)) : Result<Fields>(std::move(fields));
+  [[nodiscard]] Result<Fields> Or(Fields* fields) const {
+    return error_ ? Result<Fields>(Unexpected(*error_)) : Result<Fields>(std::move(*fields));
   }
 
  private:

@@ -227,7 +227,7 @@ def cpp_struct(schema, name, about, constants, item, lines):
               "  FirstError first;"]
     for field in fields_of(item):
         lines += cpp_reader(schema, field)
-    lines += ["  return first.Or(std::move(fields));", "}", ""]
+    lines += ["  return first.Or(&fields);", "}", ""]
 
 
 def cpp_enums(schema, lines):

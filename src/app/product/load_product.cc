@@ -97,7 +97,7 @@ std::optional<std::filesystem::path> CacheDirectory(const LoadOptions& options) 
 namespace {
 
 assembly::OpenOptions MakeOpenOptions(const LoadOptions& options) {
-  assembly::OpenOptions open = options;
+  assembly::OpenOptions open = static_cast<const assembly::OpenOptions&>(options);
   open.cache_directory = CacheDirectory(options);
   if (open.progress == nullptr && !options.is_quiet && IsWatched()) {
     open.progress = ShowProgress;

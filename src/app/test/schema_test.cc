@@ -28,6 +28,11 @@ using testing::ReadSchema;
 using testing::RunHvasJson;
 using testing::Validate;
 
+/** A pointer to the member `key` of what `at` points to. */
+std::string Below(const std::string& at, const std::string& key) {
+  return at + "/" + key;
+}
+
 /** What a property asks for, through its reference. */
 json Resolve(const json& schema, json property) {
   if (property.contains("$ref")) {
@@ -96,7 +101,7 @@ void ListOpenObjects(const json& schema, const std::string& at, std::vector<std:
   }
   if (schema.is_structured()) {
     for (const auto& [key, inner] : schema.items()) {
-      ListOpenObjects(inner, at + "/" + key, open);
+      ListOpenObjects(inner, Below(at, key), open);
     }
   }
 }
@@ -130,6 +135,7 @@ TEST(SideFileSchema, HasTheKeysTypesAndRangesOfTheReader) {
 // The compiler names the sources that lack a kind of mate; this test names the other files.
 TEST(Schemas, HaveAllKindsOfMates) {
   std::vector<std::string> kinds;
+  kinds.reserve(std::size(product::kMateKinds));
   for (const product::MateKind kind : product::kMateKinds) {
     kinds.emplace_back(ToString(kind));
   }
@@ -175,12 +181,14 @@ TEST(SideFileSchema, SaysTheSameAsTheReaderOnGoodAndBadFiles) {
   }
   expect(true, "mates", "{\"a\": " + a + ", \"b\": " + a + ", \"kind\": \"cone_seat\"}");
   expect(true, "mates", R"({"a": {"occurrence": "x", "feature": 0}, "b": )" + a + "}");
-  for (const std::string& entry : std::vector<std::string>{
-           "{\"a\": " + a + "}", "{\"a\": " + a + ", \"b\": " + a + ", \"kind\": \"weld\"}",
-           R"({"a": {"occurrence": "x"}, "b": )" + a + "}",
-           R"({"a": {"occurrence": "x", "face": 1, "feature": 2}, "b": )" + a + "}",
-           R"({"a": {"occurrence": "x", "face": -1}, "b": )" + a + "}",
-           R"({"a": {"occurrence": "x", "face": 1.5}, "b": )" + a + "}"}) {
+  const std::vector<std::string> refused_mates{
+      "{\"a\": " + a + "}",
+      "{\"a\": " + a + ", \"b\": " + a + ", \"kind\": \"weld\"}",
+      R"({"a": {"occurrence": "x"}, "b": )" + a + "}",
+      R"({"a": {"occurrence": "x", "face": 1, "feature": 2}, "b": )" + a + "}",
+      R"({"a": {"occurrence": "x", "face": -1}, "b": )" + a + "}",
+      R"({"a": {"occurrence": "x", "face": 1.5}, "b": )" + a + "}"};
+  for (const std::string& entry : refused_mates) {
     expect(false, "mates", entry);
   }
   expect(true, "removed", R"({"mate": "0123456789", "note": "n"})");
@@ -299,7 +307,7 @@ void ExpectNoNegativeZero(const json& value, const std::string& at) {
   }
   if (value.is_structured()) {
     for (const auto& [key, item] : value.items()) {
-      ExpectNoNegativeZero(item, at + "/" + key);
+      ExpectNoNegativeZero(item, Below(at, key));
     }
   }
 }

@@ -37,7 +37,7 @@ class Watch final : public Sink {
 
 /** A session with the simulated person. */
 struct Session {
-  explicit Session(std::shared_ptr<const Model> model, std::uint64_t seed = 1,
+  explicit Session(const std::shared_ptr<const Model>& model, std::uint64_t seed = 1,
                    const haptics::TickOptions& options = {}, const PersonOptions& habits = {})
       : simulation(model, options),
         person(habits, seed, StartOfHand(*model)),

@@ -50,7 +50,7 @@ class HubTest : public ::testing::Test {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
   }
 
-  ~HubTest() override { bench_.Stop(); }
+  void TearDown() override { bench_.Stop(); }
 
   std::string Join(Role role, FakeLink* link) { return hub_.Join(role, link).value_or(""); }
 

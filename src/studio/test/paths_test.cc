@@ -106,7 +106,7 @@ class PathCommandTest : public ::testing::Test {
     viewer_ = hub_.Join(Role::kViewer, &texts_).value_or("");
   }
 
-  ~PathCommandTest() override { bench_.Stop(); }
+  void TearDown() override { bench_.Stop(); }
 
   /** The answer that comes at once; null when there is none. */
   Json Ask(Json command) {

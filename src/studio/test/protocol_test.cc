@@ -44,7 +44,7 @@ class ProtocolTest : public ::testing::Test {
     (void)*hub_.Join(Role::kOperator, &other_link_);
   }
 
-  ~ProtocolTest() override { bench_.Stop(); }
+  void TearDown() override { bench_.Stop(); }
 
   /** @returns the result, or null where the command was refused. */
   Json Do(Json command) { return DoAs(steers_, &link_, std::move(command)); }

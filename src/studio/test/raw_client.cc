@@ -106,7 +106,7 @@ bool RawClient::Send(std::string_view bytes) {
 bool RawClient::Send(const Request& request) {
   std::string text = request.method + " " + request.target + " HTTP/1.1\r\n";
   for (const auto& [name, value] : request.headers) {
-    text += name + ": " + value + "\r\n";
+    text.append(name).append(": ").append(value).append("\r\n");
   }
   if (!request.body.empty()) {
     text += "Content-Length: " + std::to_string(request.body.size()) + "\r\n";

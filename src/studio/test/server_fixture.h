@@ -42,9 +42,9 @@ class ServerTest : public ::testing::Test {
     }
   }
 
-  ~ServerTest() override { End(); }
-
   void SetUp() override { ASSERT_TRUE(started_); }
+
+  void TearDown() override { End(); }
 
   void End() {
     if (server_ != nullptr) {

@@ -67,7 +67,7 @@ class StudyDeskTest : public ::testing::Test {
     Open(false);
   }
 
-  ~StudyDeskTest() override { bench_.Stop(); }
+  void TearDown() override { bench_.Stop(); }
 
   void Open(bool has_person, const std::string& text = kProtocol,
             const std::string& name = "study") {
