@@ -24,6 +24,7 @@ class FaceReliefs {
     std::uint32_t face{0};
 
     bool operator==(const Face&) const = default;
+
     bool operator<(const Face& other) const {
       return std::tie(occurrence, face) < std::tie(other.occurrence, other.face);
     }

@@ -157,7 +157,7 @@ Body CollectBody(const TopoDS_Shape& shape, const gp_Pnt& centre, bool is_thread
   body.loose_count = loose.size();
   for (const TopoDS_Shape& face : loose) {
     builder.Add(body.shape, face);
-    body.measure.face_areas_mm2.push_back(MeasureArea(face));
+    body.measure.face_areas_mm2.push_back(MeasureArea(TopoDS::Face(face)));
   }
   return body;
 }

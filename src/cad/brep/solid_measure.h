@@ -4,6 +4,7 @@
 
 #include "spatial/pose.h"
 
+class TopoDS_Face;
 class TopoDS_Shape;
 class gp_Pnt;
 
@@ -20,14 +21,13 @@ struct SolidMeasure {
   void Negate();
 };
 
-/** Measures a solid (a shell, any shape with faces) about a point. Exact on planes and, to
- rounding, on other analytic faces between lines and conics; to 1e-7 on others, where the fixed
- quadrature of OpenCASCADE is off by as much as 1e-4. Several faces at a time where it is threaded;
- they are added up in their order, so that it makes no difference. */
+/** Measures a solid (a shell, any shape with faces) about a point, as exactly as IntegrateFace
+ does. Several faces at a time where it is threaded; they are added up in their order, so that it
+ makes no difference. */
 [[nodiscard]] SolidMeasure MeasureSolid(const TopoDS_Shape& solid, const gp_Pnt& about,
                                         bool is_threaded = false);
 
 /** The area of a face [mm^2]. */
-[[nodiscard]] double MeasureArea(const TopoDS_Shape& face);
+[[nodiscard]] double MeasureArea(const TopoDS_Face& face);
 
 }  // namespace hvas::cad

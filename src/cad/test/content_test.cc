@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
@@ -24,6 +26,7 @@
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
+#include <gp.hxx>
 #include <gp_Ax2.hxx>
 #include <gtest/gtest.h>
 
@@ -240,6 +243,33 @@ TEST(MeasureSolid, GivesVolumeCentreAndInertiaOfSolidsAnywhere) {
   }
   EXPECT_NEAR(MeasureSolid(MakePlate().Reversed(), gp_Pnt(1, 2, 3)).volume_mm3,
               -(60 * 40 * 10 - std::numbers::pi * 25 * 10), 1e-6);
+}
+
+// Two pipes of one radius that cross have four cylindrical faces between ellipses, which are
+// splines in the parameters: 16/3 r^3, 16 r^2, and by their squares, as by slices of 4 (r^2 - z^2),
+// the moments.
+TEST(MeasureSolid, IsExactBetweenCurvesThatAreSplines) {
+  const double r = 3;
+  const gp_Pnt at(50, -20, 30);
+  const auto make_pipe = [&](const gp_Dir& axis) {
+    return BRepPrimAPI_MakeCylinder(gp_Ax2(at.Translated(gp_Vec(axis) * -10), axis), r, 20).Shape();
+  };
+  const TopoDS_Shape solid = BRepAlgoAPI_Common(make_pipe(gp::DX()), make_pipe(gp::DY())).Shape();
+  for (const gp_Pnt& about : {at, gp_Pnt(51, -18, 33)}) {
+    const SolidMeasure measure = MeasureSolid(solid, about);
+    const double volume = 16.0 / 3 * r * r * r;
+    const Vec3 d(at.X() - about.X(), at.Y() - about.Y(), at.Z() - about.Z());
+    EXPECT_NEAR(measure.volume_mm3, volume, 1e-6 * volume);
+    EXPECT_LT((measure.first_mm4 - volume * d).norm(), 1e-5 * volume);
+    const double area =
+        std::accumulate(measure.face_areas_mm2.begin(), measure.face_areas_mm2.end(), 0.0);
+    EXPECT_NEAR(area, 16 * r * r, 1e-6 * area);
+    const double zz = 16.0 / 15 * std::pow(r, 5);
+    const double xx = 64.0 / 45 * std::pow(r, 5);
+    const Mat3 own = Vec3(xx + zz, xx + zz, 2 * xx).asDiagonal();
+    const Mat3 inertia = own + volume * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+    EXPECT_LT((measure.inertia_mm5 - inertia).norm(), 1e-6 * inertia.norm());
+  }
 }
 
 TEST(ForEachIndex, DoesAllOnceAndHandsOnTheFirstFailure) {

@@ -419,7 +419,7 @@ TEST_F(HubTest, CommandsOnPartsThatAreNotThereAreErrors) {
   const Json face{{"occurrence", 0}, {"face", 0}};
   const Json none{{"occurrence", 99}, {"face", 0}};
   const Json no_face{{"occurrence", 0}, {"face", 999}};
-  for (Json command :
+  for (const Json& command :
        {Json{{"command", "take"}, {"occurrence", 99}},
         Json{{"command", "assign_fit"}, {"mate", 99}, {"fit", "H7/g6"}},
         Json{{"command", "assign_fit"}, {"mate", 0}, {"fit", "nonsense"}},
