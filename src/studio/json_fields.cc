@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "studio/event_json.h"
+#include "studio/hand_rack.h"
 
 namespace hvas::studio {
 namespace {

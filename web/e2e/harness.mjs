@@ -436,6 +436,8 @@ async function moveMouseTo(page, p_W) {
 
 /** Selects a part that is in its place, and draws it out upwards; the button stays down. */
 export async function takeOutByMouse(page, occurrence, goal, height = 0.12) {
+  await waitForRest(page, occurrence);
+  await waitForView(page);
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   await page.mouse.click(at.x, at.y);
   await page.waitForFunction((id) => window.hvas.state().selected.includes(id), occurrence);

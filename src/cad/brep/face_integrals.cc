@@ -52,7 +52,7 @@ struct GaussRule {
 };
 
 const GaussRule& RuleOf(int count) {
-  constexpr int kMost = 16;
+  constexpr int kMost = 16;  // A choice: splines of degree 6, others err a little.
   static const std::vector<GaussRule> rules = [] {
     std::vector<GaussRule> made;
     made.reserve(kMost);
