@@ -11,8 +11,9 @@
 namespace hvas::record {
 
 /** 1: ticks of one hand. 2: ticks of both, with all that the device told. 3: compressed, with
- commands, attachments and frames. 4: with seals. 5: ticks are predicted (tick_coding.h). */
-inline constexpr std::int64_t kSchemaVersion = 5;
+ commands, attachments and frames. 4: with seals. 5: ticks are predicted (tick_coding.h). 6: in
+ the steps of their quantities. */
+inline constexpr std::int64_t kSchemaVersion = 6;
 
 /** Bytes of a tick in a file: its fields in order, little-endian, without gaps. */
 inline constexpr std::size_t kPackedTickSize = 454;

@@ -128,7 +128,7 @@ Result<std::vector<std::byte>> Reader::UnpackChunk(const Statement& row) const {
     const auto ticks = static_cast<std::size_t>(count);
     packed = schema_ < 3   ? std::vector<std::byte>(block.begin(), block.end())
              : schema_ < 5 ? DecompressTicks(block, size, ticks)
-                           : DecodeTicks(block, ticks);
+                           : DecodeTicks(block, ticks, schema_);
   }
   if (packed.empty() || packed.size() != static_cast<std::size_t>(count) * size) {
     return Damaged(fmt::format("Chunk {}", row.ReadInt(0)));

@@ -11,6 +11,7 @@
 #include "base/check.h"
 #include "record/packing.h"
 #include "record/range_coder.h"
+#include "spatial/rounding.h"
 
 namespace hvas::record {
 namespace {
@@ -23,12 +24,15 @@ constexpr std::size_t kTrackedPose = 16;
 constexpr std::size_t kDisplayedPose = 23;
 constexpr std::size_t kTrueWrench = 30;
 constexpr std::size_t kFeltWrench = 36;
+constexpr std::size_t kDepth = 45;
 constexpr std::size_t kDeepest = 46;
+constexpr std::size_t kContacts = 47;
 constexpr std::size_t kContactDistance = 53;
 constexpr std::size_t kHand = 61;
 constexpr std::size_t kColumns = 71;
 
 constexpr std::size_t kNumbersOfTwist = 6;  // Of a wrench, too.
+constexpr std::size_t kNumbersOfContact = 7;
 constexpr std::size_t kHands = 2;           // As many as a session has at most.
 
 using Row = std::array<std::uint64_t, kColumns>;  // The bits of a tick's numbers.
@@ -36,6 +40,7 @@ using Row = std::array<std::uint64_t, kColumns>;  // The bits of a tick's number
 struct Layout {
   std::array<PackedNumber, kColumns> columns;
   std::array<std::size_t, kColumns> order;  // In which columns are coded.
+  std::array<double, kColumns> steps{};     // Of which the numbers are multiples; 0: of none.
 
   Layout() {
     const std::vector<PackedNumber> numbers = ListPackedNumbers();
@@ -53,6 +58,28 @@ struct Layout {
           order.begin() + static_cast<std::ptrdiff_t>(at)) {
         order[at++] = column;
       }
+    }
+    SetSteps();
+  }
+
+  void SetSteps() {
+    const auto set = [this](std::size_t from, std::size_t count, double step) {
+      std::fill_n(steps.begin() + static_cast<std::ptrdiff_t>(from), count, step);
+    };
+    for (const std::size_t pose : {kDevicePose, kTrackedPose, kDisplayedPose}) {
+      set(pose, 3, spatial::kLengthStep);
+      set(pose + 3, 4, spatial::kQuaternionStep);
+    }
+    set(kDeviceTwist, kNumbersOfTwist, spatial::kVelocityStep);
+    for (const std::size_t wrench : {kTrueWrench, kFeltWrench}) {
+      set(wrench, 3, spatial::kTorqueStep);
+      set(wrench + 3, 3, spatial::kForceStep);
+    }
+    set(kDepth, 1, spatial::kLengthStep);
+    set(kDeepest, 1, spatial::kLengthStep);
+    for (std::size_t i = 0; i < TickRecord::kContacts; ++i) {
+      set(kContacts + i * kNumbersOfContact, kNumbersOfContact - 1, kContactStep);
+      set(kContacts + (i + 1) * kNumbersOfContact - 1, 1, spatial::kLengthStep);
     }
   }
 
@@ -94,6 +121,63 @@ std::uint64_t FromRank(PackedNumber type, std::uint64_t rank) {
   }
   return (rank & sign) != 0 ? rank & ~sign : ~rank & (sign | (sign - 1));
 }
+
+// Multiples of a step as numbers that grow as they do, and back. What is beyond 2^53 steps is taken
+// for infinite, and what is no number for zero.
+constexpr double kMostSteps = 0x1p53;
+constexpr std::uint64_t kRankOfZero = std::uint64_t{1} << 63;
+
+std::uint64_t ToStepRank(double step, double value) {
+  if (std::isnan(value)) {
+    return kRankOfZero;
+  }
+  const double steps = std::nearbyint(std::clamp(value / step, -kMostSteps, kMostSteps));
+  return kRankOfZero + static_cast<std::uint64_t>(static_cast<std::int64_t>(steps));
+}
+
+double FromStepRank(double step, std::uint64_t rank) {
+  const auto steps = static_cast<double>(static_cast<std::int64_t>(rank - kRankOfZero));
+  return std::abs(steps) < kMostSteps
+             ? steps * step
+             : std::copysign(std::numeric_limits<double>::infinity(), steps);
+}
+
+// Whether a number comes back from its steps bit for bit; a negative zero does not.
+bool IsOfSteps(PackedNumber type, double step, std::uint64_t bits) {
+  return ToBits(type, FromStepRank(step, ToStepRank(step, ToDouble(type, bits)))) == bits;
+}
+
+bool IsOfSteps(const Layout& layout, const Row& row) {
+  for (std::size_t column = 0; column < kColumns; ++column) {
+    const double step = layout.steps[column];
+    if (step > 0 && !IsOfSteps(layout.columns[column], step, row[column])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// How the numbers of a column are counted: in steps, or as representable numbers.
+struct Scale {
+  PackedNumber type;
+  double step;  // 0: all that can be represented.
+
+  [[nodiscard]] unsigned width() const {
+    return step > 0 ? 64 : static_cast<unsigned>(8 * SizeOf(type));
+  }
+
+  [[nodiscard]] std::uint64_t RankOfBits(std::uint64_t bits) const {
+    return step > 0 ? RankOf(ToDouble(type, bits)) : ToRank(type, bits);
+  }
+
+  [[nodiscard]] std::uint64_t RankOf(double value) const {
+    return step > 0 ? ToStepRank(step, value) : ToRank(type, ToBits(type, value));
+  }
+
+  [[nodiscard]] std::uint64_t BitsOf(std::uint64_t rank) const {
+    return step > 0 ? ToBits(type, FromStepRank(step, rank)) : FromRank(type, rank);
+  }
+};
 
 // The last values of a column and their backward differences, by which polynomials go on.
 class Series {
@@ -205,17 +289,24 @@ int LengthOf(std::uint64_t miss) {
 template <typename Coder>
 class TickCoder {
  public:
-  explicit TickCoder(Coder* coder) : coder_(*coder) {}
+  TickCoder(Coder* coder, std::int64_t schema) : coder_(*coder), has_steps_(schema >= 6) {}
 
   // Codes a tick, or fills it.
   void Code(Row* row) {
     const Layout& layout = Layout::Get();
+    bool is_odd = false;
+    if (has_steps_) {
+      is_odd = !IsOfSteps(layout, *row);  // What a decoder says is overwritten.
+      coder_.Code(&is_odd_, &is_odd);
+    }
     for (const std::size_t column : layout.order) {
       if (column == kTime) {
         hand_ = static_cast<std::size_t>((*row)[kHand] % kHands);
       }
       Expect(column, *row);
-      CodeNumber(column, layout.columns[column], &(*row)[column]);
+      const bool is_stepped = has_steps_ && !is_odd;
+      CodeNumber(column, {layout.columns[column], is_stepped ? layout.steps[column] : 0},
+                 &(*row)[column]);
     }
     has_row_[hand_] = true;
     rows_[hand_] = *row;
@@ -277,32 +368,32 @@ class TickCoder {
   }
 
   // The ranks of all predictions of a column. Those that are not finite give way to the last value.
-  std::array<std::uint64_t, kPredictions> Predict(const Column& column, PackedNumber type) const {
+  std::array<std::uint64_t, kPredictions> Predict(const Column& column, const Scale& scale) const {
     std::array<std::uint64_t, kPredictions> ranks;
-    const std::uint64_t last = ToRank(type, column.last);
+    const std::uint64_t last = scale.RankOfBits(column.last);
     ranks.fill(last);
-    if (!IsReal(type)) {
-      ranks[1] = 2 * last - ToRank(type, column.before_last);
+    if (!IsReal(scale.type)) {
+      ranks[1] = 2 * last - scale.RankOfBits(column.before_last);
       return ranks;
     }
     for (std::size_t k = 1; k < kPredictions; ++k) {
       const double value = k < kOwn ? column.own.Extrapolate(k + 1)
                                     : column.expected + column.excess.Extrapolate(k - kOwn);
       if (std::isfinite(value)) {
-        ranks[k] = ToRank(type, ToBits(type, value));
+        ranks[k] = scale.RankOf(value);
       }
     }
     return ranks;
   }
 
-  void CodeNumber(std::size_t number, PackedNumber type, std::uint64_t* bits) {
+  void CodeNumber(std::size_t number, const Scale& scale, std::uint64_t* bits) {
     Column& column = columns_[hand_][number];
-    const std::size_t count = IsReal(type) ? kPredictions : 2;
-    const auto ranks = Predict(column, type);
+    const std::size_t count = IsReal(scale.type) ? kPredictions : 2;
+    const auto ranks = Predict(column, scale);
     const auto begin = column.misses.begin();
     const auto best = static_cast<std::size_t>(
         std::min_element(begin, begin + static_cast<std::ptrdiff_t>(count)) - begin);
-    const unsigned width = static_cast<unsigned>(8 * SizeOf(type));
+    const unsigned width = scale.width();
     const std::uint64_t mask = ~std::uint64_t{0} >> (64 - width);
     // Errors to both sides, small ones first.
     const auto miss_of = [&](std::uint64_t rank, std::uint64_t predicted) {
@@ -310,11 +401,11 @@ class TickCoder {
       const bool is_below = (error >> (width - 1)) != 0;
       return ((error << 1) ^ (is_below ? mask : 0)) & mask;
     };
-    std::uint64_t miss = miss_of(ToRank(type, *bits), ranks[best]);
+    std::uint64_t miss = miss_of(scale.RankOfBits(*bits), ranks[best]);
     CodeMiss(&models_[hand_][number], &miss);
     const std::uint64_t error = (miss >> 1) ^ ((miss & 1) != 0 ? mask : 0);
     const std::uint64_t rank = (ranks[best] + error) & mask;
-    *bits = FromRank(type, rank);
+    *bits = scale.BitsOf(rank);
     for (std::size_t k = 0; k < count; ++k) {
       constexpr std::uint32_t kUnit = 64;   // Of a bit.
       constexpr std::uint32_t kMemory = 8;  // Ticks that count most: a choice.
@@ -323,8 +414,8 @@ class TickCoder {
     }
     column.before_last = column.last;
     column.last = *bits;
-    if (IsReal(type)) {
-      const double value = ToDouble(type, *bits);
+    if (IsReal(scale.type)) {
+      const double value = ToDouble(scale.type, *bits);
       column.own.Add(value);
       column.excess.Add(value - column.expected);
     }
@@ -353,6 +444,8 @@ class TickCoder {
   }
 
   Coder& coder_;
+  bool has_steps_;
+  BitModel is_odd_;  // A tick with numbers that are no multiples of their steps.
   std::size_t hand_{0};
   std::array<std::array<Column, kColumns>, kHands> columns_{};
   std::array<std::array<MissModel, kColumns>, kHands> models_{};
@@ -371,7 +464,7 @@ std::vector<std::byte> EncodeTicks(std::span<const std::byte> packed) {
   HVAS_DEMAND(count < 1U << kBitsOfCount);
   RangeEncoder encoder;
   encoder.CodeBits(kBitsOfCount, &count);
-  TickCoder<RangeEncoder> coder(&encoder);
+  TickCoder<RangeEncoder> coder(&encoder, kSchemaVersion);
   for (const std::byte* from = packed.data(); from != packed.data() + packed.size();) {
     Row row{};
     for (std::size_t column = 0; column < kColumns; ++column) {
@@ -383,7 +476,8 @@ std::vector<std::byte> EncodeTicks(std::span<const std::byte> packed) {
   return encoder.Finish();
 }
 
-std::vector<std::byte> DecodeTicks(std::span<const std::byte> block, std::size_t count) {
+std::vector<std::byte> DecodeTicks(std::span<const std::byte> block, std::size_t count,
+                                   std::int64_t schema) {
   const Layout& layout = Layout::Get();
   RangeDecoder decoder(block);
   std::uint64_t encoded = 0;
@@ -392,7 +486,7 @@ std::vector<std::byte> DecodeTicks(std::span<const std::byte> block, std::size_t
     return {};
   }
   std::vector<std::byte> packed(count * kPackedTickSize);
-  TickCoder<RangeDecoder> coder(&decoder);
+  TickCoder<RangeDecoder> coder(&decoder, schema);
   for (std::byte* to = packed.data(); to != packed.data() + packed.size();) {
     Row row{};
     coder.Code(&row);

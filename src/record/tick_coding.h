@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,8 +13,9 @@ namespace hvas::record {
  @pre a whole number of ticks. */
 [[nodiscard]] std::vector<std::byte> EncodeTicks(std::span<const std::byte> packed);
 
-/** The packed ticks; empty where the block is not one of `count` ticks. Takes any bytes. */
+/** The packed ticks; empty where the block is not one of `count` ticks. Takes any bytes.
+ @param schema  Of the file, 5 or newer. */
 [[nodiscard]] std::vector<std::byte> DecodeTicks(std::span<const std::byte> block,
-                                                 std::size_t count);
+                                                 std::size_t count, std::int64_t schema);
 
 }  // namespace hvas::record

@@ -13,6 +13,9 @@ namespace hvas::record {
 
 inline constexpr std::uint32_t kNoOccurrence = std::numeric_limits<std::uint32_t>::max();
 
+/** Of which a contact's place [m] and normal are multiples: a picture shows no micrometre. */
+inline constexpr double kContactStep = 0x1p-20;
+
 /** One contact of a tick, in single precision: for display and statistics, not for replay. */
 struct ContactRecord {
   Eigen::Vector3f p_WC{Eigen::Vector3f::Zero()};    ///< [m]
@@ -59,6 +62,10 @@ struct TickRecord {
   std::uint8_t effort_level{0};   ///< What the tick left out to be in time; 0: nothing.
   std::uint32_t commands{0};      ///< Obeyed before it, of all since the stretch began.
 };
+
+/** The tick in the steps of a record (spatial/rounding.h): all that has a unit but times, grips and
+ what is counted. */
+[[nodiscard]] TickRecord Rounded(const TickRecord& tick) noexcept;
 
 /** Something that happened, with what is worth knowing about it. */
 struct Event {

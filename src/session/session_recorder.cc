@@ -88,7 +88,7 @@ record::TickRecord MakeTickRecord(std::size_t hand, const device::DeviceState& d
     tick.contacts[0].distance = static_cast<float>(out.deepest);
   }
   tick.commands = commands;
-  return tick;
+  return record::Rounded(tick);
 }
 
 SessionRecorder::SessionRecorder(record::Recorder* recorder, const simulation::Model& model)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "spatial/rounding.h"
 
 namespace hvas::simulation {
 namespace {
@@ -105,6 +106,8 @@ class HapticLoop {
     HandInLoop& hand = hands_[i];
     device::DeviceState device = hand.person->Step(MakeInput(&hand, t_ns_, period_ns_));
     device.t_ns = t_ns_;
+    device.X_DH = spatial::Rounded(device.X_DH);
+    device.V_DH = spatial::Rounded(device.V_DH);
     const std::int64_t start_ns = ThreadCpuNs();
     hand.last = haptics_.Tick(i, device);
     const std::int64_t compute_ns = ThreadCpuNs() - start_ns;

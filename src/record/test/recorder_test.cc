@@ -209,6 +209,15 @@ TEST(Reader, ReadsARecordOfSchemaFour) {
   EXPECT_EQ(reader->ReadCommands().value().front().kind, "begin");
 }
 
+// Its ticks are not in steps.
+TEST(Reader, ReadsARecordOfSchemaFive) {
+  Result<Reader> reader = Reader::Open(HVAS_RECORD_OF_SCHEMA_5);
+  ASSERT_TRUE(reader.has_value()) << reader.error().ToString();
+  EXPECT_EQ(reader->schema(), 5);
+  EXPECT_EQ(reader->Verify().value(), "e9308775532cd94515ad627472e58d03");
+  EXPECT_EQ(reader->ReadTicks({}).value().size(), 300u);
+}
+
 TEST(Reader, ReadsASessionWhileItIsRecorded) {
   const TemporaryFile file("live.hvas");
   const std::unique_ptr<Recorder> recorder = MakeRecorder({file.path(), true});

@@ -90,9 +90,9 @@ TEST(TickCoding, BringsTicksBackBitForBit) {
     for (const std::size_t count : {std::size_t{1}, kTicksOfBlock}) {
       const std::vector<std::byte> packed = PackTicks(make, count);
       const std::vector<std::byte> block = EncodeTicks(packed);
-      EXPECT_EQ(DecodeTicks(block, count), packed);
-      EXPECT_TRUE(DecodeTicks(block, count - 1).empty());
-      EXPECT_TRUE(DecodeTicks(block, count + 1).empty());
+      EXPECT_EQ(DecodeTicks(block, count, kSchemaVersion), packed);
+      EXPECT_TRUE(DecodeTicks(block, count - 1, kSchemaVersion).empty());
+      EXPECT_TRUE(DecodeTicks(block, count + 1, kSchemaVersion).empty());
     }
   }
 }
@@ -103,6 +103,26 @@ TEST(TickCoding, TakesATenthOfTheBytesWhereTheHandMovesSmoothly) {
     EXPECT_LT(EncodeTicks(packed).size(), packed.size() / 10);
     EXPECT_LT(3 * EncodeTicks(packed).size(), Compress(packed).size());
   }
+}
+
+// A tick in the steps of a record takes less than half of one that is not, and comes back as well.
+TEST(TickCoding, TakesLittleWhereTicksAreRounded) {
+  const auto make_rounded = [](std::int64_t number) { return Rounded(MakeMoving(number)); };
+  const std::vector<std::byte> packed = PackTicks(make_rounded);
+  const std::vector<std::byte> block = EncodeTicks(packed);
+  EXPECT_EQ(DecodeTicks(block, kTicksOfBlock, kSchemaVersion), packed);
+  EXPECT_LT(2 * block.size(), EncodeTicks(PackTicks(&MakeMoving)).size());
+}
+
+// Numbers that are not finite are none of a step, and neither are those of a hand that is not
+// rounded: each tick is coded as it is.
+TEST(TickCoding, BringsRoundedAndOtherTicksBackInTurns) {
+  const auto make = [](std::int64_t number) {
+    const TickRecord tick = number % 7 == 0 ? MakeOdd(number) : MakeSecond(number);
+    return number % 3 == 0 ? tick : Rounded(tick);
+  };
+  const std::vector<std::byte> packed = PackTicks(make);
+  EXPECT_EQ(DecodeTicks(EncodeTicks(packed), kTicksOfBlock, kSchemaVersion), packed);
 }
 
 // What has no pattern takes hardly more than its bytes.
@@ -116,13 +136,13 @@ TEST(TickCoding, TakesAnyBytes) {
   const std::vector<std::byte> block = EncodeTicks(packed);
   for (int i = 0; i < 300; ++i) {
     const std::vector<std::byte> noise = MakeBytes(i, static_cast<std::size_t>(i));
-    const std::size_t size = DecodeTicks(noise, 20).size();
+    const std::size_t size = DecodeTicks(noise, 20, kSchemaVersion).size();
     EXPECT_TRUE(size == 0 || size == packed.size());
     std::vector<std::byte> damaged = block;
     damaged[static_cast<std::size_t>(i) % damaged.size()] ^= std::byte{1};
-    EXPECT_NE(DecodeTicks(damaged, 20), packed);
+    EXPECT_NE(DecodeTicks(damaged, 20, kSchemaVersion), packed);
     const auto cut = std::span(block).first(static_cast<std::size_t>(i) % block.size());
-    EXPECT_TRUE(DecodeTicks(cut, 20).empty());
+    EXPECT_TRUE(DecodeTicks(cut, 20, kSchemaVersion).empty());
   }
 }
 
