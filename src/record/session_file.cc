@@ -17,7 +17,8 @@ namespace {
 
 // Half a second at most is missing on disk (docs/record.md). A page is SQLite's usual one.
 constexpr std::int64_t kCommitPeriodNs = kNsPerSecond / 2;
-constexpr std::int64_t kPageSize = 4096;
+constexpr std::int64_t kPageSize =
+    16384;  // A chunk of half a second takes a fifth of a page: little of one is left empty.
 // How often the journal's content is moved into the file itself: often enough that a file without
 // its journal has nearly all, and seldom enough that a run in virtual time does not wait for the
 // disk.

@@ -31,9 +31,9 @@ constexpr std::size_t kContactDistance = 53;
 constexpr std::size_t kHand = 61;
 constexpr std::size_t kColumns = 71;
 
-constexpr std::size_t kNumbersOfTwist = 6;  // Of a wrench, too.
-constexpr std::size_t kNumbersOfContact = 7;
-constexpr std::size_t kHands = 2;           // As many as a session has at most.
+constexpr std::size_t kNumbersOfTwist = 6;    // Of a wrench, too.
+constexpr std::size_t kNumbersOfContact = 7;  // Place, normal and distance, as packed.
+constexpr std::size_t kHands = 2;             // As many as a session has at most.
 
 using Row = std::array<std::uint64_t, kColumns>;  // The bits of a tick's numbers.
 

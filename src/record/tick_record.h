@@ -13,7 +13,7 @@ namespace hvas::record {
 
 inline constexpr std::uint32_t kNoOccurrence = std::numeric_limits<std::uint32_t>::max();
 
-/** Of which a contact's place [m] and normal are multiples: a picture shows no micrometre. */
+/** The place [m] and the normal of a contact are multiples of it: no picture shows a micrometre. */
 inline constexpr double kContactStep = 0x1p-20;
 
 /** One contact of a tick, in single precision: for display and statistics, not for replay. */

@@ -10,7 +10,7 @@
 namespace hvas::spatial {
 
 inline constexpr double kLengthStep = 0x1p-30;      ///< 0.93 nm [m].
-inline constexpr double kQuaternionStep = 0x1p-30;  ///< Of each of the four numbers.
+inline constexpr double kQuaternionStep = 0x1p-30;  ///< Each of the four numbers.
 inline constexpr double kVelocityStep = 0x1p-24;    ///< 60 nm/s [m/s], and [rad/s].
 inline constexpr double kForceStep = 0x1p-17;       ///< 7.6 uN [N].
 inline constexpr double kTorqueStep = 0x1p-21;      ///< 0.48 uN m [N m].

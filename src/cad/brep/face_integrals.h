@@ -11,9 +11,9 @@ namespace hvas::cad {
 
 /** Integrals over a face and over the cone from a point to it. In millimetres, like the shapes. */
 struct FaceIntegrals {
-  double area_mm2{0};              ///< [mm^2]
-  double volume_mm3{0};            ///< Volume of the cone; negative where the face looks at the point.
-  Vec3 first_mm4{Vec3::Zero()};    ///< Integral of the position from the point over the cone [mm^4].
+  double area_mm2{0};    ///< [mm^2]
+  double volume_mm3{0};  ///< Volume of the cone; negative where the face looks at the point.
+  Vec3 first_mm4{Vec3::Zero()};  ///< Integral of the position from the point over the cone [mm^4].
   Mat3 inertia_mm5{Mat3::Zero()};  ///< Inertia of the cone about the point, at density 1 [mm^5].
 };
 
