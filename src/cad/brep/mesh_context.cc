@@ -112,7 +112,7 @@ class PlaneAlgo : public IMeshTools_MeshAlgo {
     using Many = BRepMesh_DelaunayNodeInsertionMeshAlgo<
         BRepMesh_DefaultRangeSplitter,
         BRepMesh_CustomDelaunayBaseMeshAlgo<BRepMesh_DelabellaBaseMeshAlgo>>;
-    constexpr int kMany = 5000;  // A tenth of a second by the first way. A choice.
+    constexpr int kMany = 100;  // Below it the two ways take as long (bench/import_bench).
     Handle(IMeshTools_MeshAlgo) algo;
     if (CountPoints(face) > kMany) {
       algo = new Many;

@@ -28,6 +28,7 @@ namespace {
 constexpr double kDisplayDeflection = 1e-3;     // Of the diagonal.
 constexpr double kDisplayAngle = 0.35;          // [rad], 20 degrees: round to the eye. A choice.
 constexpr double kCoarser = 4;                  // From one try to the next.
+constexpr double kAngleInterior = 2;            // Of that of edges, as OpenCASCADE has it.
 constexpr std::size_t kMostPieceNodes = 20000;  // Of one face that was cut: a choice.
 constexpr int kRetries = 3;                     // 4^3: 64 times coarser, then it is refused.
 
@@ -64,7 +65,7 @@ Meshed MeshOnce(const TopoDS_Shape& shape, const MeshLevel& level, const MeshEff
     parameters.AngleInterior = 1;
   }
   if (analytic != nullptr) {
-    parameters.AngleInterior = parameters.Angle;
+    parameters.AngleInterior = kAngleInterior * parameters.Angle;
   }
   const opencascade::handle<MeshContext> context =
       new MeshContext(analytic, parameters.Deflection, effort.max_nodes);
