@@ -98,7 +98,7 @@ Result<void> Reader::ReadMeta() {
   if (!rows) {
     return Unexpected(rows.error());
   }
-  const Result<void> done = ForEachRow(&*rows, [this](const Statement& row) -> Result<bool> {
+  Result<void> done = ForEachRow(&*rows, [this](const Statement& row) -> Result<bool> {
     meta_[row.ReadText(0)] = row.ReadText(1);
     return true;
   });

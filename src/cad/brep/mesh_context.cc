@@ -3,7 +3,12 @@
 #include <algorithm>
 
 #include <BRepMesh_BoundaryParamsRangeSplitter.hxx>
+// The last of these headers uses the other two without including them.
+// clang-format off
+#include <BRepMesh_DataStructureOfDelaun.hxx>
+#include <BRepMesh_Delaun.hxx>
 #include <BRepMesh_CustomDelaunayBaseMeshAlgo.hxx>
+// clang-format on
 #include <BRepMesh_DefaultRangeSplitter.hxx>
 #include <BRepMesh_DelabellaBaseMeshAlgo.hxx>
 #include <BRepMesh_DelaunayBaseMeshAlgo.hxx>

@@ -79,8 +79,8 @@ TickRecord MakeOdd(std::int64_t number) {
 
 /** Two hands take turns. */
 TickRecord MakeSecond(std::int64_t number) {
-  TickRecord tick =
-      number % 2 == 0 ? MakeMoving(number / 2) : MakeMoving(kTicksOfBlock - number / 2);
+  TickRecord tick = number % 2 == 0 ? MakeMoving(number / 2)
+                                    : MakeMoving(std::int64_t{kTicksOfBlock} - number / 2);
   tick.hand = static_cast<std::uint8_t>(number % 2);
   return tick;
 }
