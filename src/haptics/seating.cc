@@ -54,13 +54,22 @@ bool Seating::HasArrived(const DisplayedPart& displayed, const TrackedPart& trac
   // Along the way in, and across an axis but for its play, a part is home or it is not; where only
   // planes or nothing at all hold it, it is set straight over the last bit, if nothing is there.
   const double along = std::abs(d.dot(part.insertion_W));
-  const double across = (d - d.dot(part.insertion_W) * part.insertion_W).norm();
-  const double beyond_play = std::max(0.0, across - mates.CalcAxisPlay(part));
-  const double tight = mates.axis() != nullptr ? std::hypot(along, beyond_play) : along;
+  const double tight =
+      mates.axis() != nullptr ? std::hypot(along, CalcBeyondPlay(displayed)) : along;
   if (is_guided && tight > guidance.seat_distance) {
     return false;
   }
   return IsWayHomeFree(displayed);
+}
+
+double Seating::CalcBeyondPlay(const DisplayedPart& displayed) const noexcept {
+  const HeldPart& part = *displayed.part;
+  const MateGuide& mates = guidance_.mates();
+  const Vec3& p_WM = part.mates[mates.axis_index()].X_WM.p();
+  const Vec3 p_BM = part.X_WB_goal.Inverse() * p_WM;  // Of the part in its place.
+  const Vec3 d = displayed.X_WD * p_BM - p_WM;
+  const double across = (d - d.dot(part.insertion_W) * part.insertion_W).norm();
+  return std::max(0.0, across - mates.CalcAxisPlay(part));
 }
 
 bool Seating::IsWayHomeFree(const DisplayedPart& displayed) noexcept {

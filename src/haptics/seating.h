@@ -50,6 +50,9 @@ class Seating {
   [[nodiscard]] static Remainder CalcRemainder(const DisplayedPart& displayed) noexcept;
 
  private:
+  /** How far the part is across its axis beyond the play, in the hole: a long part that leans in it
+   is further off elsewhere [m]. @pre The mates hold an axis. */
+  [[nodiscard]] double CalcBeyondPlay(const DisplayedPart& displayed) const noexcept;
   /** The straight way from here into the part's place is free. */
   [[nodiscard]] bool IsWayHomeFree(const DisplayedPart& displayed) noexcept;
   /** The part was taken up in its place, and the hand leads it outwards: it may bounce there, and
