@@ -167,6 +167,24 @@ TEST(SeatsTest, X8BlockGoesIntoItsWindowHoweverTheClearanceIsDrawn) {
   }
 }
 
+/** A pole of 0.4 m, 4.6 mm above the floor of a hole that is 25 mm deep, with 0.2 mm of play:
+ nothing ends its way in where it is drawn, and it leans by millimetres at its upper end. */
+Product PoleInHole() {
+  Product product;
+  product.name = "rig";
+  const auto base =
+      testing::AddPart(&product, "base", contact::testing::Cup(4.1e-3, 40e-3, 5e-3, 35e-3));
+  const auto pole = testing::AddPart(&product, "pole", contact::testing::Shaft(4e-3, 0.4));
+  testing::Place(&product, base, "base");
+  testing::Place(&product, pole, "pole", Pose(Vec3(0, 0, 9.6e-3)));
+  testing::Complete(&product);
+  return product;
+}
+
+TEST(SeatsTest, ALongPoleIsHomeWhereItIsInItsHole) {
+  ExpectAssembles(PoleInHole());
+}
+
 /** A part with a groove along x, and what is in it with this clearance of its widths. */
 struct Groove {
   const char* name;
