@@ -294,8 +294,8 @@ constexpr const char* kLimits = "limits";
 constexpr const char* kRendersFits = "renders_fits";          // Only where they are not.
 constexpr const char* kFinishDistance = "finish_distance_m";  // Only where parts are moved home.
 constexpr const char* kAttractsInFits = "attracts_in_fits";   // Only where it does.
-constexpr const char* kPaperK_r = "paper_k_r";                // Only where it is not the usual one.
-constexpr const char* kPaperK_s = "paper_k_s";
+constexpr const char* kPaperKOfInterference = "paper_k_r";    // Only where it is not the usual one.
+constexpr const char* kPaperKOfTransition = "paper_k_s";
 
 }  // namespace
 
@@ -317,8 +317,8 @@ Json MakeTickOptionsJson(const haptics::TickOptions& options) {
     maker(kAttractsInFits, copy.guidance.attracts_in_fits);
   }
   if (copy.paper_factors != haptics::PaperFactors()) {
-    maker(kPaperK_r, copy.paper_factors.interference);
-    maker(kPaperK_s, copy.paper_factors.transition);
+    maker(kPaperKOfInterference, copy.paper_factors.interference);
+    maker(kPaperKOfTransition, copy.paper_factors.transition);
   }
   return json;
 }
@@ -339,9 +339,9 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   if (fields.has(kAttractsInFits)) {
     fields(kAttractsInFits, options.guidance.attracts_in_fits);
   }
-  if (fields.has(kPaperK_r) || fields.has(kPaperK_s)) {
-    fields(kPaperK_r, options.paper_factors.interference);
-    fields(kPaperK_s, options.paper_factors.transition);
+  if (fields.has(kPaperKOfInterference) || fields.has(kPaperKOfTransition)) {
+    fields(kPaperKOfInterference, options.paper_factors.interference);
+    fields(kPaperKOfTransition, options.paper_factors.transition);
   }
   const std::string refused = fields.refused().empty() ? FindUnsound(&options) : fields.refused();
   if (!refused.empty()) {

@@ -90,8 +90,8 @@ void MoveEmulatedHand(device::EmulatedDevice* device, double t_s) {
   hand.X_DR = spatial::Pose(Vec3(0.5 * kDepth * (1 - std::cos(kTurn * t_s)) * down_D));
   hand.V_DR.v = 0.5 * kDepth * kTurn * std::sin(kTurn * t_s) * down_D;
   // The button is held so much of each 2 s, so that both ways are seen.
-  constexpr double kHeld_s = 1.8;
-  hand.buttons = std::fmod(t_s, 2) < kHeld_s ? 1 : 0;
+  constexpr double kHoldTime = 1.8;
+  hand.buttons = std::fmod(t_s, 2) < kHoldTime ? 1 : 0;
   device->SetHand(hand);
 }
 

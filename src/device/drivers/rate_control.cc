@@ -8,7 +8,7 @@ namespace {
 // A cubic with so much of a straight line, fine in the middle and whole at the edge: a choice, not
 // measured.
 constexpr double kLinearShare = 0.3;
-constexpr double kMaxStep_s = 0.05;  // after a pause nothing leaps
+constexpr double kMaxStepTime = 0.05;  // after a pause nothing leaps
 
 Vec3 SpeedShare(const Vec3& deflection) noexcept {
   const double norm = deflection.norm();
@@ -23,7 +23,7 @@ double RateControl::Response(double norm) noexcept {
 }
 
 void RateControl::Step(const Deflection& deflection, double dt) noexcept {
-  const double step = std::clamp(dt, 0.0, kMaxStep_s);
+  const double step = std::clamp(dt, 0.0, kMaxStepTime);
   const spatial::Twist wanted{kMaxTurnRate * SpeedShare(deflection.turn),
                               kMaxSpeed * SpeedShare(deflection.move)};
   const Vec3 p = (X_DH_.p() + step * wanted.v).cwiseMax(-half_).cwiseMin(half_);

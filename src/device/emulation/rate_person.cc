@@ -5,7 +5,7 @@
 namespace hvas::device {
 namespace {
 
-constexpr double kClose_s = 0.1;  // the way that is left is covered in about this time
+constexpr double kCloseTime = 0.1;  // the way that is left is covered in about this time
 
 /** The norm of a deflection that has this share of the largest speed, found by halving. */
 double DeflectionFor(double share) {
@@ -21,7 +21,7 @@ double DeflectionFor(double share) {
 
 Vec3 Towards(const Vec3& way, double max_speed) {
   const double length = way.norm();
-  const double share = std::min(1.0, length / kClose_s / max_speed);
+  const double share = std::min(1.0, length / kCloseTime / max_speed);
   constexpr double kLeast = 1e-3;  // below it the stick is let go of
   return share > kLeast ? Vec3(DeflectionFor(share) / length * way) : Vec3::Zero();
 }

@@ -9,12 +9,12 @@ namespace {
 using testing::PegInBlockModel;
 using testing::Session;
 
-constexpr int kLimit_s = 4;  // long enough to take the peg up and, in time, to put it in
+constexpr int kRealTime = 4;  // long enough to take the peg up and, in time, to put it in
 
 TEST(RealtimeTest, X4ThreeLoopsShareASession) {  // meant for the thread sanitizer
   Session session(PegInBlockModel());
   int physics_steps = 0;
-  Execution execution = session.MakeExecution(kLimit_s);
+  Execution execution = session.MakeExecution(kRealTime);
   execution.advance = [&] {
     ++physics_steps;
     session.run.Advance();
@@ -26,7 +26,7 @@ TEST(RealtimeTest, X4ThreeLoopsShareASession) {  // meant for the thread sanitiz
   EXPECT_EQ(report.wake_up.count(), report.ticks);
   EXPECT_LE(report.late_wake_ups, report.ticks);
   EXPECT_LE(report.overruns, report.ticks);
-  EXPECT_TRUE(session.run.is_done() || report.session_ns >= kLimit_s * 1'000'000'000L);
+  EXPECT_TRUE(session.run.is_done() || report.session_ns >= kRealTime * 1'000'000'000L);
   EXPECT_EQ(report.session_ns, static_cast<std::int64_t>(report.ticks) * 1'000'000);
   // Deadlines are absolute: session time is never ahead of the clock.
   EXPECT_GE(report.wall_ns, report.session_ns - 1'000'000);
@@ -59,7 +59,7 @@ class TicksOfHands final : public Sink {
 };
 
 TEST(RealtimeTest, X3TwoHandsShareASession) {  // X4; meant for the thread sanitizer
-  const auto model = PegInBlockModel();
+  const auto& model = PegInBlockModel();
   Simulation simulation(model, haptics::TickOptions(), haptics::TickOptions());
   SimulatedPerson left({}, 1, StartOfHand(*model));
   SimulatedPerson right({}, 2, StartOfHand(*model));

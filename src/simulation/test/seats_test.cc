@@ -23,7 +23,7 @@ using spatial::Surface;
 using spatial::SurfaceKind;
 using testing::Session;
 
-constexpr double kSeatLimit_s = 120;
+constexpr double kSeatTime = 120;  // [s]
 constexpr int kSeatSegments = 64;
 
 /** A round plate with a hole of 3.4 mm that opens in a countersink of 90 degrees, and a screw whose
@@ -133,7 +133,7 @@ void ExpectAssembles(Product product) {
   ASSERT_TRUE(model.has_value());
   for (const std::uint64_t seed : {1, 2}) {
     Session session(*model, seed);
-    (void)RunLockstep(session.MakeExecution(kSeatLimit_s));
+    (void)RunLockstep(session.MakeExecution(kSeatTime));
     ASSERT_TRUE(session.run.is_done());
     ASSERT_EQ(session.run.results().size(), count);
     for (const PartResult& part : session.run.results()) {

@@ -17,13 +17,13 @@ using spatial::Pose;
 using testing::PegInBlockModel;
 using testing::Session;
 
-constexpr double kLimit_s = 120;
+constexpr double kSessionTime = 120;  // [s]
 const OccurrenceId kPeg(1);
 
 TEST(SessionTest, PegGoesIntoItsBlockExactly) {  // N10, X9
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     Session session(PegInBlockModel(), seed);
-    const ExecutionReport report = RunLockstep(session.MakeExecution(kLimit_s));
+    const ExecutionReport report = RunLockstep(session.MakeExecution(kSessionTime));
     ASSERT_TRUE(session.run.is_done());
     ASSERT_EQ(session.run.results().size(), 2u);
     for (const PartResult& part : session.run.results()) {
@@ -47,7 +47,7 @@ TEST(SessionTest, PegGoesIntoItsBlockExactly) {  // N10, X9
 TEST(SessionTest, ForceNeverJumpsAndNothingSinksIn) {  // N6
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     Session session(PegInBlockModel(), seed);
-    (void)RunLockstep(session.MakeExecution(kLimit_s));
+    (void)RunLockstep(session.MakeExecution(kSessionTime));
     EXPECT_LE(session.watch.largest_jump, 0.5)
         << "seed " << seed << " at " << session.watch.t_of_jump_ns << " ns";
     EXPECT_LE(session.watch.deepest, 50e-6) << "seed " << seed;
@@ -59,7 +59,7 @@ TEST(SessionTest, EqualSeedsGiveEqualBitsAndOthersDoNot) {
   std::vector<std::string> hashes;
   for (const std::uint64_t seed : {1, 1, 2}) {
     Session session(PegInBlockModel(), seed);
-    (void)RunLockstep(session.MakeExecution(kLimit_s));
+    (void)RunLockstep(session.MakeExecution(kSessionTime));
     hashes.push_back(session.watch.Hex());
   }
   EXPECT_EQ(hashes[0], hashes[1]);
@@ -68,7 +68,7 @@ TEST(SessionTest, EqualSeedsGiveEqualBitsAndOthersDoNot) {
 
 TEST(SessionTest, StatesFollowOneAnotherUpToSeated) {
   Session session(PegInBlockModel());
-  (void)RunLockstep(session.MakeExecution(kLimit_s));
+  (void)RunLockstep(session.MakeExecution(kSessionTime));
   using Kind = SimulationEvent::Kind;
   const auto& events = session.watch.events;
   const auto of_kind = [&events](Kind kind) {
@@ -107,7 +107,7 @@ TEST(SessionTest, X14ConditionsOfTheExperimentRunToTheirEnd) {
     haptics::TickOptions options;
     options.condition = condition;
     Session session(PegInBlockModel(), 1, options);
-    (void)RunLockstep(session.MakeExecution(kLimit_s));
+    (void)RunLockstep(session.MakeExecution(kSessionTime));
     ASSERT_TRUE(session.run.is_done());
     const PartResult& peg = session.run.results()[1];
     EXPECT_TRUE(peg.is_seated || !peg.reason.empty());
@@ -144,7 +144,7 @@ TEST(SessionTest, PartThatCannotGoInIsBroughtBackWithAReason) {  // N10
   PersonOptions habits;
   habits.patience_s = 5;
   Session session(model, 1, {}, habits);
-  (void)RunLockstep(session.MakeExecution(kLimit_s));
+  (void)RunLockstep(session.MakeExecution(kSessionTime));
   ASSERT_TRUE(session.run.is_done());
   const PartResult& peg = session.run.results()[1];
   EXPECT_FALSE(peg.is_seated);
@@ -161,7 +161,7 @@ TEST(SessionTest, CaptivePartIsAResultWithItsReason) {
   const auto model = *Compile(std::make_shared<product::Product>(testing::CaptiveRing()),
                               testing::FastOptions(), &diagnostics);
   Session session(model);
-  (void)RunLockstep(session.MakeExecution(kLimit_s));
+  (void)RunLockstep(session.MakeExecution(kSessionTime));
   ASSERT_EQ(session.run.results().size(), 2u);
   EXPECT_TRUE(session.run.results()[0].is_seated);
   EXPECT_FALSE(session.run.results()[1].is_seated);
@@ -313,7 +313,7 @@ TEST(SessionTest, X14WhoMissesWhereNothingStopsThePartLooksAndComesAgain) {  // 
   hasty.aim_error *= 4;
   constexpr std::uint64_t kMissesAtFirst = 5;
   Session session(testing::PegInBlockModel(), kMissesAtFirst, options, hasty);
-  (void)RunLockstep(session.MakeExecution(kLimit_s));
+  (void)RunLockstep(session.MakeExecution(kSessionTime));
   EXPECT_EQ(session.simulation.physics().placement(testing::OccurrenceId(1)), Placement::kPlaced);
   EXPECT_GT(session.person.searches(), 0);
 }

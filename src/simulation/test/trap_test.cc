@@ -17,7 +17,7 @@ using testing::Session;
 
 const product::OccurrenceId kTrappedPeg(1);
 const product::OccurrenceId kClamp(2);
-constexpr double kTrapLimit_s = 90;
+constexpr double kTrapTime = 90;  // [s]
 // How far the peg is in its bore when the collar meets the clamp.
 constexpr double kDepthAtClamp =
     testing::kBlockHeight - (testing::kClampHeight - testing::kCollarHeight);
@@ -76,7 +76,7 @@ void Try(haptics::Condition condition, std::uint64_t seed, Trial* trial,
   habits.patience_s = 6;  // Long enough to press as hard as it will, and to search once.
   Session session(model, seed, options, habits);
   AssemblyRun run(&session.simulation, &session.person, &trial->guided);
-  (void)RunLockstep(run.MakeExecution(&session.person, kTrapLimit_s));
+  (void)RunLockstep(run.MakeExecution(&session.person, kTrapTime));
   EXPECT_TRUE(run.is_done());
   trial->results = run.results();
 }
@@ -88,7 +88,7 @@ TEST(TrapTest, GoesTogetherWhenTheClampComesLast) {  // The trap is in the order
   ASSERT_TRUE(model.has_value());
   EXPECT_EQ((*model)->sequence.steps.back().occurrence, kClamp);
   Session session(*model);
-  (void)RunLockstep(session.MakeExecution(kTrapLimit_s));
+  (void)RunLockstep(session.MakeExecution(kTrapTime));
   for (const PartResult& part : session.run.results()) {
     EXPECT_TRUE(part.is_seated) << part.reason;
   }

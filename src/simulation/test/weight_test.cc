@@ -13,7 +13,7 @@ using product::Product;
 using spatial::Pose;
 using testing::Session;
 
-constexpr double kWeightLimit_s = 300;
+constexpr double kWeightTime = 300;  // [s]
 
 /** Poses of a product in which its part goes in from above, from the side and from below. */
 std::array<Pose, 3> ListWaysIn() {
@@ -68,7 +68,7 @@ void ExpectInPlace(const Product& product) {
       Compile(std::make_shared<Product>(product), testing::FastOptions(), &diagnostics);
   ASSERT_TRUE(model.has_value());
   Session session(*model);
-  (void)RunLockstep(session.MakeExecution(kWeightLimit_s));
+  (void)RunLockstep(session.MakeExecution(kWeightTime));
   ASSERT_TRUE(session.run.is_done());
   for (const PartResult& part : session.run.results()) {
     EXPECT_TRUE(part.is_seated) << part.reason;
