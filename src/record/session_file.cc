@@ -15,10 +15,11 @@
 namespace hvas::record {
 namespace {
 
-// Half a second at most is missing on disk (docs/record.md). A page is SQLite's usual one.
+// Half a second at most is missing on disk (docs/record.md).
 constexpr std::int64_t kCommitPeriodNs = kNsPerSecond / 2;
-constexpr std::int64_t kPageSize =
-    16384;  // A chunk of half a second takes a fifth of a page: little of one is left empty.
+// A chunk of half a second takes a fifth of a page, so that little of it is left empty; of SQLite's
+// usual page, of 4 kB, a quarter was.
+constexpr std::int64_t kPageSize = 16384;
 // How often the journal's content is moved into the file itself: often enough that a file without
 // its journal has nearly all, and seldom enough that a run in virtual time does not wait for the
 // disk.
