@@ -19,8 +19,8 @@ using testing::Stretch;
 
 class ReplayTest : public ::testing::Test {
  protected:
-  hvas::testing::TemporaryFolder folder;
-  const std::filesystem::path file = folder / "session";
+  hvas::testing::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "session";
 };
 
 void ExpectExact(const Result<ReplayReport>& report) {
@@ -31,14 +31,14 @@ void ExpectExact(const Result<ReplayReport>& report) {
 }
 
 TEST_F(ReplayTest, SessionInVirtualTimeComesOutBitForBit) {  // N7
-  const auto model = PegInBlockModel();
-  const auto recorder = MakeRecorder(file);
+  const auto& model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file_);
   SessionRecorder sink(recorder.get(), *model);
   Stretch stretch(model, 1, &sink);
   sink.Begin(stretch.simulation.get());
   const auto ran = RunLockstep(stretch.MakeExecution(60));
   ASSERT_TRUE(recorder->Finish().has_value());
-  const auto report = ReplayFile(file);
+  const auto report = ReplayFile(file_);
   ExpectExact(report);
   EXPECT_EQ(report->stretches, 1);
   EXPECT_EQ(report->ticks, static_cast<std::int64_t>(ran.ticks));
@@ -75,21 +75,21 @@ void CopyBetweenSteps(const std::filesystem::path& from, const std::filesystem::
 }
 
 TEST_F(ReplayTest, RecordOfBeforeTheStepsComesOutBitForBit) {
-  const auto model = PegInBlockModel();
-  const auto recorder = MakeRecorder(file);
+  const auto& model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file_);
   SessionRecorder sink(recorder.get(), *model);
   Stretch stretch(model, 1, &sink);
   sink.Begin(stretch.simulation.get());
   (void)RunLockstep(stretch.MakeExecution(60));
   ASSERT_TRUE(recorder->Finish().has_value());
-  const std::filesystem::path older = folder / "older";
-  CopyBetweenSteps(file, older);
+  const std::filesystem::path older = folder_ / "older";
+  CopyBetweenSteps(file_, older);
   ExpectExact(ReplayFile(older));
 }
 
 /** Puts the peg into the carrier on the table, carries both and lets them fall; records it. */
 std::vector<simulation::PartState> RecordTableSubassembly(const std::filesystem::path& file) {
-  const auto model = simulation::testing::PegInCarrierInCupModel();
+  const auto& model = simulation::testing::PegInCarrierInCupModel();
   const auto recorder = MakeRecorder(file);
   SessionRecorder sink(recorder.get(), *model);
   simulation::Simulation simulation(model, haptics::TickOptions());
@@ -118,18 +118,18 @@ std::vector<simulation::PartState> RecordTableSubassembly(const std::filesystem:
 }
 
 TEST_F(ReplayTest, X1SubassemblyOfTheTableComesOutBitForBit) {
-  const std::vector<simulation::PartState> parts = RecordTableSubassembly(file);
+  const std::vector<simulation::PartState> parts = RecordTableSubassembly(file_);
   EXPECT_EQ(parts[2].leader, product::OccurrenceId(1));
   EXPECT_EQ(parts[1].leader, product::OccurrenceId(1));
-  const auto report = ReplayFile(file);
+  const auto report = ReplayFile(file_);
   ExpectExact(report);
   ASSERT_EQ(report->parts.size(), 2u) << "the peg was held, then the carrier with it";
 }
 
 TEST_F(ReplayTest, SessionOfBothHandsInRealTimeComesOutBitForBit) {
   // Physics on a thread of its own, late when it likes; forces stopped for a while by another one.
-  const auto model = PegInBlockModel();
-  const auto recorder = MakeRecorder(file, true);
+  const auto& model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file_, true);
   SessionRecorder sink(recorder.get(), *model);
   Stretch stretch(model, 2, &sink);
   sink.Begin(stretch.simulation.get());
@@ -148,7 +148,7 @@ TEST_F(ReplayTest, SessionOfBothHandsInRealTimeComesOutBitForBit) {
   somebody.join();
   ASSERT_TRUE(recorder->Finish().has_value());
   ASSERT_EQ(recorder->dropped_ticks(), 0u);  // the ring holds more than this run has
-  const auto report = ReplayFile(file);
+  const auto report = ReplayFile(file_);
   ExpectExact(report);
   EXPECT_EQ(report->ticks, 2 * static_cast<std::int64_t>(ran.ticks));
   EXPECT_FALSE(report->parts.empty());
@@ -157,7 +157,7 @@ TEST_F(ReplayTest, SessionOfBothHandsInRealTimeComesOutBitForBit) {
 /** Three runs that follow one another, each from where the parts were then; the first one ends with
  the peg in the hand, half in its bore. */
 std::int64_t RecordStretches(const std::filesystem::path& file) {
-  const auto model = PegInBlockModel();
+  const auto& model = PegInBlockModel();
   const auto recorder = MakeRecorder(file);
   SessionRecorder sink(recorder.get(), *model);
   std::int64_t ticks = 0;
@@ -180,12 +180,12 @@ std::int64_t RecordStretches(const std::filesystem::path& file) {
 }
 
 TEST_F(ReplayTest, StretchesOfOneSessionComeOutBitForBit) {
-  const std::int64_t ticks = RecordStretches(file);
-  const auto report = ReplayFile(file);
+  const std::int64_t ticks = RecordStretches(file_);
+  const auto report = ReplayFile(file_);
   ExpectExact(report);
   EXPECT_EQ(report->stretches, 3);
   EXPECT_EQ(report->ticks, ticks);
-  const auto all = record::Reader::Open(file)->ReadTicks({});
+  const auto all = record::Reader::Open(file_)->ReadTicks({});
   for (std::size_t i = 1; i < all->size(); ++i) {
     const std::int64_t step_ns = (*all)[i].t_ns - (*all)[i - 1].t_ns;
     ASSERT_TRUE(step_ns == 1'000'000 || (step_ns == 0 && (*all)[i].hand == 1))
@@ -213,8 +213,8 @@ class Loser final : public simulation::Sink {
 };
 
 TEST_F(ReplayTest, GoesAsFarAsNoTickIsMissingAndOnWithTheNextStretch) {
-  const auto model = PegInBlockModel();
-  const auto recorder = MakeRecorder(file);
+  const auto& model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file_);
   SessionRecorder sink(recorder.get(), *model);
   Loser loser(&sink, 700'000'000);
   for (int i = 0; i < 2; ++i) {
@@ -223,7 +223,7 @@ TEST_F(ReplayTest, GoesAsFarAsNoTickIsMissingAndOnWithTheNextStretch) {
     (void)RunLockstep(stretch.MakeExecution(1));
   }
   ASSERT_TRUE(recorder->Finish().has_value());
-  const auto report = ReplayFile(file);
+  const auto report = ReplayFile(file_);
   ASSERT_TRUE(report.has_value());
   EXPECT_EQ(report->ticks, 700 + 1000);
   EXPECT_EQ(report->different_ticks, 0);
@@ -232,8 +232,8 @@ TEST_F(ReplayTest, GoesAsFarAsNoTickIsMissingAndOnWithTheNextStretch) {
 }
 
 TEST_F(ReplayTest, X14OtherParametersComeOutOtherwise) {  // N4
-  const auto model = PegInBlockModel();
-  const auto recorder = MakeRecorder(file);
+  const auto& model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file_);
   SessionRecorder sink(recorder.get(), *model);
   Stretch stretch(model, 1, &sink);
   sink.Begin(stretch.simulation.get());
@@ -241,7 +241,7 @@ TEST_F(ReplayTest, X14OtherParametersComeOutOtherwise) {  // N4
   ASSERT_TRUE(recorder->Finish().has_value());
   ReplayOptions options;
   options.condition = haptics::Condition::kCollision;
-  const auto alone = ReplayFile(file, options);
+  const auto alone = ReplayFile(file_, options);
   ASSERT_TRUE(alone.has_value());
   EXPECT_GT(alone->different_ticks, 0);
   EXPECT_GT(alone->largest_felt_difference, 0.01);
@@ -251,7 +251,7 @@ TEST_F(ReplayTest, X14OtherParametersComeOutOtherwise) {  // N4
   EXPECT_FALSE(alone->parts[0].replayed.is_seated) << "without mates nothing finds its seat";
   options = {};
   options.condition = haptics::Condition::kHybrid;  // as it was
-  ExpectExact(ReplayFile(file, options));
+  ExpectExact(ReplayFile(file_, options));
 }
 
 TEST_F(ReplayTest, OlderRecordsAreRefusedWithTheirLayout) {
@@ -271,19 +271,19 @@ TEST_F(ReplayTest, OlderRecordsAreRefusedWithTheirLayout) {
 }
 
 TEST_F(ReplayTest, MissingCommandIsNamed) {
-  const auto recorder = MakeRecorder(file);
-  const auto model = PegInBlockModel();
+  const auto recorder = MakeRecorder(file_);
+  const auto& model = PegInBlockModel();
   AttachModel(*model, recorder.get());
   simulation::Simulation simulation(model, haptics::TickOptions());
   recorder->AddCommand({0, 0, kBeginKind,
                         MakeBeginningJson({{simulation.options()}, simulation.physics().parts()})});
   recorder->AddTick(MakeTickRecord(0, {}, {}, 1));
   ASSERT_TRUE(recorder->Finish().has_value());
-  const auto report = ReplayFile(file);
+  const auto report = ReplayFile(file_);
   ASSERT_FALSE(report.has_value());
   EXPECT_EQ(report.error().code, ErrorCode::kUnreadable);
   EXPECT_NE(report.error().message.find("command 1"), std::string::npos);
-  EXPECT_EQ(report.error().where, file.string());
+  EXPECT_EQ(report.error().where, file_.string());
 }
 
 /** All paths to values that are no objects or arrays. */
@@ -321,12 +321,12 @@ void Forge(const std::filesystem::path& from, const std::filesystem::path& to,
 }
 
 TEST_F(ReplayTest, NoValueOfACommandEndsTheProgram) {
-  RecordStretches(file);
-  const auto commands = record::Reader::Open(file)->ReadCommands().value();
+  RecordStretches(file_);
+  const auto commands = record::Reader::Open(file_)->ReadCommands().value();
   ASSERT_GE(commands.size(), 2u);
-  const std::vector<Json> kValues{
+  const std::vector<Json> values{
       nullptr, "x", "nan", "inf", -1, 1e308, 0, 18446744073709551615ull, Json::array()};
-  auto reader = record::Reader::Open(file);
+  auto reader = record::Reader::Open(file_);
   Diagnostics diagnostics;
   const auto model = LoadModel(&*reader, simulation::testing::FastOptions(), &diagnostics);
   ASSERT_TRUE(model.has_value());
@@ -339,11 +339,11 @@ TEST_F(ReplayTest, NoValueOfACommandEndsTheProgram) {
     for (const Json::json_pointer& leaf : leaves) {
       auto forged = commands;
       Json json = sound;
-      json[leaf] = kValues[static_cast<std::size_t>(tried) % kValues.size()];
+      json[leaf] = values[static_cast<std::size_t>(tried) % values.size()];
       forged[which].json = json.dump();
       SCOPED_TRACE(leaf.to_string() + " = " + json[leaf].dump());
-      const auto copy = folder / std::to_string(++tried);
-      Forge(file, copy, forged);
+      const auto copy = folder_ / std::to_string(++tried);
+      Forge(file_, copy, forged);
       auto record = record::Reader::Open(copy);
       ASSERT_TRUE(record.has_value());
       const auto report = Replay(&*record, *model, {});
