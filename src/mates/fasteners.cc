@@ -110,7 +110,8 @@ bool IsHollow(const Product& product, const product::Connector& shaft) {
 bool IsFlexible(const Product& product, OccurrenceId id) {
   const auto is_bent = [](std::string_view name) {
     const auto kind = product::FindFlexibleKind(name);
-    return kind == product::FlexibleKind::kCable || kind == product::FlexibleKind::kSnapHook;
+    return kind == product::FlexibleKind::kCable || kind == product::FlexibleKind::kSnapHook ||
+           kind == product::FlexibleKind::kRubber;
   };
   return is_bent(product.part_of(id).name) || is_bent(product.occurrences[id.index()].name);
 }

@@ -81,6 +81,19 @@ std::vector<Triangle2> Flatten(const Part& part, const Feature& feature, const P
   return triangles;
 }
 
+/** Whether a cylinder is none that goes around: the ends of teeth, the round end of a slot. */
+bool IsPartial(const Feature& feature) {
+  return product::IsToothed(feature) || product::IsRoundEnd(feature);
+}
+
+/** Whether two cylinders are whole ones, or round ends on the same side of their axes: a tongue in
+ its slot. What is round lies in the end of a slot by chance. Arcs in one frame. */
+bool DoEndsFit(const Vec3& arc_a, const Vec3& arc_b) {
+  constexpr double kSameSide = 0.95;  // Cosine: 18 degrees. A choice.
+  return (arc_a.isZero() && arc_b.isZero()) ||
+         arc_a.dot(arc_b) > kSameSide * arc_a.norm() * arc_b.norm();
+}
+
 Pose MakePlaneFrame(const Feature& plane) {
   return {spatial::FrameFromZ(plane.axis_B), plane.origin_B};
 }
@@ -123,12 +136,17 @@ const PairSearch::SearchPart& PairSearch::Prepare(PartId id) {
   for (std::size_t i = 0; i < part.features.size(); ++i) {
     const Feature& feature = part.features[i];
     const bool turns = product::IsCylinder(feature.kind) || product::IsCone(feature.kind);
-    if (turns && feature.coverage < limits_.coverage && feature.faces.size() < 2) {
-      continue;  // Fillets and slot ends. Features of several arcs hold a shaft between them.
+    constexpr double kOneArc = 0.5;  // Half a turn in one piece has 2/pi, in several less.
+    const Vec3 arc_B = product::IsRoundEnd(feature) ? product::CalcArcDirection(part, feature)
+                                                    : Vec3(Vec3::Zero());
+    const bool is_end = arc_B.norm() > kOneArc;
+    if (turns && !is_end && feature.coverage < limits_.coverage && feature.faces.size() < 2) {
+      continue;  // Fillets. Features of several arcs hold a shaft between them.
     }
     const Box box = CalcFeatureBox(part, feature);
     if (!box.is_empty()) {
-      search.features.push_back({FeatureId(i), feature.kind, &feature, box});
+      search.features.push_back(
+          {FeatureId(i), feature.kind, &feature, box, is_end ? arc_B : Vec3(Vec3::Zero())});
     }
   }
   return search;
@@ -183,7 +201,7 @@ void PairSearch::Search(PartId id_a, PartId id_b, const Pose& X_AB, PairHits* hi
       features_a.push_back(&feature);
     }
     if (feature.kind == FeatureKind::kHole && feature.box.Overlaps(close_to_holes) &&
-        !product::IsToothed(*feature.feature)) {
+        !IsPartial(*feature.feature)) {
       holes_a.push_back(&feature);
     }
   }
@@ -198,7 +216,7 @@ void PairSearch::Search(PartId id_a, PartId id_b, const Pose& X_AB, PairHits* hi
       features_b.push_back(moved);
     }
     if (feature.kind == FeatureKind::kHole && moved.box.Overlaps(close_to_holes) &&
-        !product::IsToothed(*feature.feature)) {
+        !IsPartial(*feature.feature)) {
       holes_b.push_back(moved);
     }
   }
@@ -331,7 +349,8 @@ void PairSearch::TestPair(const Context& context, const SearchFeature& a, const 
     AxisHit hit{is_first, seat_id, body_id};
     const Part& hole_part = is_first ? context.a : context.b;
     const Part& shaft_part = is_first ? context.b : context.a;
-    if (DoTeethFit(seat, body) && DoEngage(seat, body, X_SB, limits_, context.scale, &hit) &&
+    if (DoEndsFit(a.arc_B, context.X_AB.q() * b.own->arc_B) && DoTeethFit(seat, body) &&
+        DoEngage(seat, body, X_SB, limits_, context.scale, &hit) &&
         !IsAround(hole_part, seat, shaft_part, body, X_SB, hit,
                   limits_.axis_distance * context.scale)) {
       hits->axes.push_back(hit);

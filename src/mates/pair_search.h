@@ -85,6 +85,7 @@ class PairSearch {
     product::FeatureKind kind{product::FeatureKind::kPlane};
     const product::Feature* feature{nullptr};
     spatial::Box box;
+    Vec3 arc_B{Vec3::Zero()};  ///< Middle of a round end; of all others zero.
   };
 
   struct SearchPart {

@@ -18,6 +18,9 @@ constexpr double kLeastCoverage = units::FromDeg(200);
 constexpr double kLargestGap = units::FromDeg(160);  // What 200 deg in one piece leave.
 constexpr double kLeastSum = units::FromDeg(60);     // Of several arcs.
 constexpr double kShortestArc = units::FromDeg(20);  // That guides; the tips of teeth do not.
+// Half a turn: what ends a slot or a tongue between its two walls, within the deviation of meshes.
+constexpr double kHalfTurn = units::FromDeg(180);
+constexpr double kHalfTurnSlack = units::FromDeg(2);
 constexpr double kSameDirection = 1e-3;              // Same direction or half angle [rad].
 
 using Arc = std::pair<double, double>;  // Start and length [rad].
@@ -291,9 +294,26 @@ void RemoveShielded(double tolerance, std::vector<Feature>* features) {
                   features->end());
 }
 
+/** Whether faces cover half a turn in one piece. */
+bool IsHalfTurn(const std::vector<AxisFace>& faces) {
+  std::vector<const AxisFace*> pointers;
+  for (const AxisFace& face : faces) {
+    pointers.push_back(&face);
+  }
+  const Coverage coverage = CalcCoverage(pointers);
+  return std::abs(coverage.sum - kHalfTurn) < kHalfTurnSlack &&
+         std::abs(coverage.largest_gap - kHalfTurn) < kHalfTurnSlack;
+}
+
+/** Features that hold nothing by themselves. */
+struct PartialFeatures {
+  std::vector<Feature> toothed;
+  std::vector<Feature> half_turns;
+};
+
 std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double tolerance,
                                       RecognitionLimits* limits,
-                                      std::vector<Feature>* toothed = nullptr) {
+                                      PartialFeatures* partial = nullptr) {
   std::vector<Feature> found;
   for (AxisGroup& group : GroupFaces(part, kind, tolerance)) {
     std::sort(group.faces.begin(), group.faces.end(), [](const AxisFace& a, const AxisFace& b) {
@@ -307,12 +327,15 @@ std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double
       }
       const bool is_limited = run.size() > kMostFaces;
       const double gap = run.size() > 1 ? CalcLeastGap(run) : units::kTurn;
-      const bool is_toothed = toothed != nullptr && AreTeeth(run);
+      const bool is_toothed = partial != nullptr && AreTeeth(run);
+      const bool is_half = partial != nullptr && !is_limited && IsHalfTurn(run);
       Feature feature = MakeFeature(part, group.surface, std::move(run));
       if (feature.coverage >= kLeastCoverage || gap <= kLargestGap) {
         found.push_back(std::move(feature));
       } else if (is_toothed) {
-        toothed->push_back(std::move(feature));
+        partial->toothed.push_back(std::move(feature));
+      } else if (is_half) {
+        partial->half_turns.push_back(std::move(feature));
       } else if (is_limited) {
         limits->Add("more than 64 faces on one axis");
       }
@@ -334,6 +357,43 @@ std::vector<Feature> FindAxisFeatures(const Part& part, SurfaceKind kind, double
   return found;
 }
 
+/** Keeps the half turns that end a slot or a tongue: one of the same radius and sense looks the
+ other way, and the line between their axes is the middle of both. */
+void KeepRoundEnds(const Part& part, double tolerance, std::vector<Feature>* half_turns) {
+  constexpr double kAlong = 0.99;  // Cosine of what a middle may lie beside the line: 8 degrees.
+  std::vector<Vec3> middles;
+  middles.reserve(half_turns->size());
+  for (const Feature& feature : *half_turns) {
+    middles.push_back(CalcArcDirection(part, feature).normalized());
+  }
+  const auto has_partner = [&](std::size_t i) {
+    const Feature& own = (*half_turns)[i];
+    for (std::size_t k = 0; k < half_turns->size(); ++k) {
+      const Feature& other = (*half_turns)[k];
+      const Vec3 offset = own.origin_B - other.origin_B;
+      const Vec3 away = offset - offset.dot(own.axis_B) * own.axis_B;
+      const double common =
+          std::min(own.span_high, other.span_high - offset.dot(own.axis_B)) -
+          std::max(own.span_low, other.span_low - offset.dot(own.axis_B));
+      if (other.kind == own.kind && IsParallel(own.axis_B, other.axis_B) &&
+          std::abs(own.radius - other.radius) < tolerance && away.norm() > tolerance &&
+          common > 0.5 * (own.span_high - own.span_low) &&
+          middles[i].dot(away.normalized()) > kAlong &&
+          middles[k].dot(-away.normalized()) > kAlong) {
+        return true;
+      }
+    }
+    return false;
+  };
+  std::vector<Feature> ends;
+  for (std::size_t i = 0; i < half_turns->size(); ++i) {
+    if (has_partner(i)) {
+      ends.push_back((*half_turns)[i]);
+    }
+  }
+  *half_turns = std::move(ends);
+}
+
 }  // namespace
 
 Vec3 Canonical(const Vec3& axis) {
@@ -350,9 +410,39 @@ double DistanceToAxis(const Vec3& p, const Vec3& origin, const Vec3& axis) {
   return (p - origin).cross(axis).norm();
 }
 
+Vec3 CalcArcDirection(const Part& part, const Feature& feature) {
+  double area = 0;
+  Vec3 sum = Vec3::Zero();
+  for (const FaceId id : feature.faces) {
+    const Face& face = part.faces[id.index()];
+    for (std::uint32_t i = 0; i < face.triangle_count; ++i) {
+      const auto& [a, b, c] = part.mesh.triangles[face.first_triangle + i];
+      const Vec3& p = part.mesh.vertices[a];
+      const Vec3& q = part.mesh.vertices[b];
+      const Vec3& r = part.mesh.vertices[c];
+      const double piece = 0.5 * (q - p).cross(r - p).norm();
+      const Vec3 from_origin = (p + q + r) / 3 - feature.origin_B;
+      const Vec3 radial = from_origin - from_origin.dot(feature.axis_B) * feature.axis_B;
+      area += piece;
+      sum += piece * radial.normalized();
+    }
+  }
+  return area > 0 ? Vec3(sum / area) : Vec3::Zero();
+}
+
+bool IsRoundEnd(const Feature& feature) {
+  return IsCylinder(feature.kind) && std::abs(feature.coverage - kHalfTurn) < kHalfTurnSlack;
+}
+
 std::vector<Feature> FindCylinders(const Part& part, double tolerance, RecognitionLimits* limits,
-                                   std::vector<Feature>* toothed) {
-  return FindAxisFeatures(part, SurfaceKind::kCylinder, tolerance, limits, toothed);
+                                   std::vector<Feature>* partial) {
+  PartialFeatures found;
+  std::vector<Feature> whole =
+      FindAxisFeatures(part, SurfaceKind::kCylinder, tolerance, limits, &found);
+  *partial = std::move(found.toothed);
+  KeepRoundEnds(part, tolerance, &found.half_turns);
+  partial->insert(partial->end(), found.half_turns.begin(), found.half_turns.end());
+  return whole;
 }
 
 bool IsToothed(const Feature& feature) {

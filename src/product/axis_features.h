@@ -21,14 +21,23 @@ namespace hvas::product {
  are left out that a narrower bore, or a thicker shaft, of the same axis stands before (the bottoms
  of splines). By their first face.
  @param tolerance Of radii and positions [m]. @param limits Gets the limits that were reached.
- @param toothed Gets those that only the ends of teeth lie on: splines, gears, knurls. */
+ @param partial Gets those that hold nothing by themselves: cylinders that only the ends of teeth
+ lie on (splines, gears, knurls), then the round ends of slots and tongues. */
 [[nodiscard]] std::vector<Feature> FindCylinders(const Part& part, double tolerance,
                                                  RecognitionLimits* limits,
-                                                 std::vector<Feature>* toothed);
+                                                 std::vector<Feature>* partial);
 
 /** Whether a hole or shaft consists of the ends of teeth alone: twelve or more short arcs, which
  leave gaps. */
 [[nodiscard]] bool IsToothed(const Feature& feature);
+
+/** Whether a cylinder covers half a turn: the round end of a slot, or of what lies in one, as a
+ parallel key of form A in its seat (DIN 6885). */
+[[nodiscard]] bool IsRoundEnd(const Feature& feature);
+
+/** The mean of the unit vectors from the axis of a cylinder to its faces, in B: the middle of the
+ arc; 2/pi long for half a turn, zero for a whole one. */
+[[nodiscard]] Vec3 CalcArcDirection(const Part& part, const Feature& feature);
 
 /** Conical seats and tapers by the same rule: conical faces of one axis, apex, half angle and
  sense. */

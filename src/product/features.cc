@@ -232,17 +232,18 @@ void BuildFeatures(Part* part, Diagnostics* diagnostics) {
   const double tolerance = Tolerance(*part);
   const FaceAdjacency adjacency(*part, tolerance);
   RecognitionLimits limits;
-  std::vector<Feature> toothed;
+  std::vector<Feature> partial;
   for (auto&& found :
-       {FindCylinders(*part, tolerance, &limits, &toothed), FindPlanes(*part, tolerance),
+       {FindCylinders(*part, tolerance, &limits, &partial), FindPlanes(*part, tolerance),
         FindCones(*part, tolerance, &limits), FindSpheres(*part, adjacency, tolerance)}) {
     part->features.insert(part->features.end(), found.begin(), found.end());
   }
   AddInnerConstraints(part, tolerance);
   MarkThreads(part, tolerance, &limits);
   part->forms = FindForms(*part, adjacency, tolerance, &limits);
-  // Teeth make no forms and no threads: they only tell where a hub sits on its shaft.
-  part->features.insert(part->features.end(), toothed.begin(), toothed.end());
+  // Teeth and round ends make no forms and no threads: they only tell where a hub sits on its
+  // shaft, and a key in its seat.
+  part->features.insert(part->features.end(), partial.begin(), partial.end());
   if (diagnostics != nullptr && !limits.items().empty()) {
     diagnostics->Note("limit-features", part->name,
                       fmt::format("features beyond the limits of recognition are left out: {}",

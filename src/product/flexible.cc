@@ -21,7 +21,7 @@ struct FlexibleWord {
 };
 
 // Names in English, German, French, Spanish and Italian. The first one that is found counts.
-constexpr std::array<FlexibleWord, 51> kFlexibleWords{{
+constexpr std::array<FlexibleWord, 59> kFlexibleWords{{
     {"o ring", FlexibleKind::kORing},
     {"or ring", FlexibleKind::kORing},
     {"din 3771", FlexibleKind::kORing},
@@ -47,7 +47,15 @@ constexpr std::array<FlexibleWord, 51> kFlexibleWords{{
     {"latch", FlexibleKind::kSnapHook},
     {"clip", FlexibleKind::kSnapHook},
     {"snap", FlexibleKind::kSnapHook},
-    {"grommet", FlexibleKind::kSnapHook},
+    {"grommet", FlexibleKind::kRubber},
+    {"tyre", FlexibleKind::kRubber},
+    {"tire", FlexibleKind::kRubber},
+    {"reifen", FlexibleKind::kRubber},
+    {"pneu", FlexibleKind::kRubber},
+    {"bellows", FlexibleKind::kRubber},
+    {"faltenbalg", FlexibleKind::kRubber},
+    {"dust boot", FlexibleKind::kRubber},
+    {"durchfuhrungstulle", FlexibleKind::kRubber},
     {"gasket", FlexibleKind::kGasket},
     {"dichtung", FlexibleKind::kGasket},
     {"flachdichtung", FlexibleKind::kGasket},
@@ -128,11 +136,12 @@ bool IsOpenRing(const Part& part) {
 /** The default allowances, with their sources, are in docs/algorithms/flexible.md [m]. */
 double CalcAllowance(FlexibleKind kind, const Part& part) {
   constexpr double kMostStretch = 0.25;      // Of an O-ring's inner diameter, to each side.
-  constexpr double kRingOpening = 0.05;      // Of the ring's diameter, to each side.
+  constexpr double kRingOpening = 0.1;       // Of the ring's diameter, to each side.
   constexpr double kLeastOpening = 0.3e-3;   // [m]: rings below 6 mm open by more.
   constexpr double kUndercut = 0.05;         // Of the length of a part with hooks.
   constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
   constexpr double kSqueeze = 0.5;           // Of the thickness of a gasket.
+  constexpr double kElongation = 0.15;       // Of the longest side of a part of rubber.
   constexpr double kMostBend = 5e-3;         // [m]: a choice.
   constexpr double kCoil = 0.25;             // Of the diameter of a spring.
   switch (kind) {
@@ -145,6 +154,8 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
       return std::min(kLargestUndercut, kUndercut * LargestExtent(part));
     case FlexibleKind::kGasket:
       return kSqueeze * LeastExtent(part);
+    case FlexibleKind::kRubber:
+      return std::min(LeastExtent(part), kElongation * LargestExtent(part));
     case FlexibleKind::kSpring:
       return kCoil * LeastExtent(part);
     case FlexibleKind::kCable:
@@ -175,6 +186,8 @@ const char* ToString(FlexibleKind kind) {
       return "snap hook";
     case FlexibleKind::kGasket:
       return "gasket";
+    case FlexibleKind::kRubber:
+      return "rubber";
     case FlexibleKind::kSpring:
       return "spring";
     case FlexibleKind::kCable:
@@ -203,9 +216,12 @@ std::optional<FlexiblePart> ClassifyFlexible(const Part& part) {
   if (const auto kind = FindFlexibleKind(part.name)) {
     return MakeFlexible(*kind, part, "its name");
   }
+  const FlexibleKind of_rubber = IsORing(part) ? FlexibleKind::kORing : FlexibleKind::kRubber;
   if (HasOneOf(FoldName(part.material.name), kElasticMaterials)) {
-    return MakeFlexible(IsORing(part) ? FlexibleKind::kORing : FlexibleKind::kGasket, part,
-                        "its material " + part.material.name);
+    return MakeFlexible(of_rubber, part, "its material " + part.material.name);
+  }
+  if (HasOneOf(FoldName(part.name), kElasticMaterials)) {
+    return MakeFlexible(of_rubber, part, "the material in its name");
   }
   if (IsORing(part)) {
     return MakeFlexible(FlexibleKind::kORing, part, "its form, a ring of round section");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "simulation/extraction.h"
 #include "simulation/table_subassembly.h"
 
 namespace hvas::simulation {
@@ -243,6 +244,21 @@ AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
   return free;
 }
 
+SequenceStep AssemblyRun::PlanAgain(const SequenceStep& step) const {
+  contact::Scene scene;
+  const SequenceInput input = MakeSequenceInput(model(), &scene);
+  Extraction extraction(input, &model().sequence);
+  Unit moved{step.occurrence};
+  moved.insert(moved.end(), step.members.begin(), step.members.end());
+  for (const Body& body : model().bodies) {
+    scene.SetOffsets(contact::BodyId(body.occurrence.index()), body.faces);
+    extraction.SetPresent({body.occurrence},
+                          physics().placement(body.occurrence) == Placement::kPlaced);
+  }
+  extraction.SetPresent(moved, true);
+  return extraction.TryRemove(moved).value_or(step);
+}
+
 bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
   // Of a subassembly only that moves which has got into it.
   SequenceStep possible = step;
@@ -250,6 +266,10 @@ bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
                 [this](OccurrenceId id) { return physics().placement(id) == Placement::kLoose; });
   if (IsSinglePart(step) && LeaderOf(step.occurrence).is_valid()) {
     possible = MakeTableStep(model(), physics().parts(), step.occurrence, TakeExtent::kWhole);
+  }
+  const bool is_repeated = turns_[IndexOf(step)].is_finished;
+  if (worker->person != nullptr && is_repeated && step.kind == SequenceStep::Kind::kInsert) {
+    possible = PlanAgain(possible);
   }
   for (std::size_t hand = 0; hand < hand_count(); ++hand) {
     if (worker->person == nullptr || hand == worker->hand) {

@@ -95,6 +95,9 @@ class AssemblyRun final : public PartRun {
   /** Around the part in its place and on its way there, where it engages. */
   [[nodiscard]] spatial::Box WayIn(const SequenceStep& step) const;
   [[nodiscard]] bool CanGoOnBeside(const SequenceStep& step, const Worker& busy) const;
+  /** A way in among what is in its place now, for a part or subassembly whose planned way was made
+   for another state; the planned one where there is none. */
+  [[nodiscard]] SequenceStep PlanAgain(const SequenceStep& step) const;
   /** False when the worker could not take it on now. */
   bool Begin(const SequenceStep& step, Worker* worker);
   void FinishAll();

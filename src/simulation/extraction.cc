@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "mates/mate_kind.h"
 #include "mates/place_bodies.h"
+#include "simulation/giving_width.h"
 #include "simulation/narrow_hole.h"
 #include "simulation/overlap_search.h"
 #include "simulation/way_directions.h"
@@ -147,6 +148,14 @@ std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
     }
   }
   SortUpwardFirst(&directions);
+  // What lies on a face is lifted off it rather than pushed along it: washers of a stack.
+  const auto count_rubbed = [&normals](const Vec3& d) {
+    return std::count_if(normals.begin(), normals.end(),
+                         [&d](const Vec3& n) { return std::abs(n.dot(d)) <= kParallel; });
+  };
+  std::stable_sort(directions.begin(), directions.end(), [&](const Vec3& a, const Vec3& b) {
+    return count_rubbed(a) < count_rubbed(b);
+  });
   return directions;
 }
 
@@ -441,7 +450,10 @@ std::optional<SequenceStep> Extraction::TryRemove(const Unit& unit, Memory* memo
         tried.push_back(*known);
         continue;
       }
-      const std::optional<Obstacle> blocker = FindBlocker(unit, direction, 0, {});
+      std::optional<Obstacle> blocker = FindBlocker(unit, direction, 0, {});
+      if (!blocker && is_giving_) {
+        blocker = FindTooWide(unit.front(), direction);
+      }
       if (!blocker) {
         step = MakeStep(unit, direction);
         break;
@@ -666,10 +678,9 @@ std::optional<SequenceStep> Extraction::TryRemoveGiving(Unit* rest, const Unit& 
   return std::nullopt;
 }
 
-void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
-  std::map<contact::BodyId, double> deepest;
+std::map<OccurrenceId, double> Extraction::MeasureGives(OccurrenceId id, const Vec3& direction) {
+  std::map<OccurrenceId, double> deepest;
   const Unit unit{id};
-  SetUnit(unit, true);
   const std::vector<Member> members = ListMembers(unit);
   const double step = CalcStep(unit);
   const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
@@ -678,13 +689,34 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
     input_.scene->Query(input_.scene->shape(query.self), CalcPoseAlong(id, i * step * direction),
                         query, &workspace_);
     for (const contact::Contact& contact : workspace_.contacts()) {
-      double& depth = deepest[contact.body];
-      depth = std::max(depth, -contact.distance);
+      if (contact.body.is_valid()) {
+        double& depth = deepest[OccurrenceId(contact.body.index())];
+        depth = std::max(depth, -contact.distance);
+      }
     }
   }
-  SetUnit(unit, false);
-  for (const auto& [body, depth] : deepest) {
-    const OccurrenceId other(body.index());
+  return deepest;
+}
+
+std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& direction) {
+  is_giving_ = false;  // What the way meets without giving.
+  const std::map<OccurrenceId, double> met = MeasureGives(id, direction);
+  is_giving_ = true;
+  for (const auto& [other, depth] : met) {
+    const double limit =
+        std::max(input_.give_limits[id.index()], input_.give_limits[other.index()]);
+    if (limit > 0 && CalcGivingWidth(product_, id, other, direction, limit) > limit) {
+      return Obstacle{other, 0, {}};
+    }
+  }
+  return std::nullopt;
+}
+
+void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
+  SetUnit({id}, true);
+  const std::map<OccurrenceId, double> deepest = MeasureGives(id, direction);
+  SetUnit({id}, false);
+  for (const auto& [other, depth] : deepest) {
     const bool is_own = input_.give_limits[id.index()] >= input_.give_limits[other.index()];
     gives_.push_back({is_own ? id : other, is_own ? other : id, depth});
     allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
@@ -722,6 +754,14 @@ bool Extraction::AllowBeyondDrawn(const Unit& parts) {
     Forget(parts);
   }
   return !changed.empty();
+}
+
+void Extraction::Restart() {
+  gives_.clear();
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    Forget({occurrence.id});
+    allowances_[occurrence.id.index()] = ListAllowances(overlaps_, gives_, occurrence.id);
+  }
 }
 
 void Extraction::Forget(const Unit& parts) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,7 +55,8 @@ class Extraction {
 
   [[nodiscard]] std::string Describe(product::OccurrenceId id) const;
 
-  /** Lists the directions that are worth a try for parts that are present, upward ones first. */
+  /** Lists the directions that are worth a try for parts that are present: those that rub along the
+   fewest mated faces first, of these the upward ones. */
   [[nodiscard]] std::vector<Vec3> ListDirections(const Unit& unit);
 
   /** Lists directions that the contacts of a part as drawn leave free: along the normals of touched
@@ -89,7 +91,7 @@ class Extraction {
   [[nodiscard]] std::optional<SequenceStep> TryRemoveOne(Unit* rest, const Unit& staying = {});
 
   /** Takes out the first of these parts that can go where it, or what is in its way, gives by no
-   more than SequenceInput::give_limits has, and erases it from them.
+   more than SequenceInput::give_limits has, in depth and in width (giving_width.h), and erases it from them.
    @param deferred  Sorted; parts that are tried after all others. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveGiving(Unit* rest, const Unit& deferred);
 
@@ -97,6 +99,9 @@ class Extraction {
    millimetre more than the drawn depth, with all their faces. Returns false where there are none.
    */
   bool AllowBeyondDrawn(const Unit& parts);
+
+  /** Forgets what was tried, and what was found to give: the parts are taken apart once more. */
+  void Restart();
 
   /** Forgets what TryRemoveOne and TryRemoveGiving have tried with these parts, and TryRemove with
    any unit. */
@@ -153,6 +158,13 @@ class Extraction {
   [[nodiscard]] bool MayPass(const MateView& view, product::OccurrenceId id) const;
   /** Whether a part gives, or one that was found in its way. */
   [[nodiscard]] bool MayGive(product::OccurrenceId id) const;
+  /** How deep a part lies on its way out in what it meets there [m]. @pre It is in the unit. */
+  [[nodiscard]] std::map<product::OccurrenceId, double> MeasureGives(product::OccurrenceId id,
+                                                                     const Vec3& direction);
+  /** Finds what is in the way of a part on more of its width than the two may give: a wall that it
+   would have to go through. @pre It is in the unit, and parts give. */
+  [[nodiscard]] std::optional<Obstacle> FindTooWide(product::OccurrenceId id,
+                                                    const Vec3& direction);
   /** Notes how far a part, or what it passes, gives on its way out. */
   void NoteGives(product::OccurrenceId id, const Vec3& direction);
 

@@ -426,12 +426,23 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
     return entry;
   };
   model->mates_of.resize(product->occurrences.size());
+  const std::vector<mates::FastenerKind> fasteners = mates::ClassifyOccurrences(*product);
   for (const product::Mate& mate : product->mates) {
     ModelMate compiled;
     compiled.id = mate.id;
     compiled.faces_a = faces(mate.a);
     compiled.faces_b = faces(mate.b);
-    if (IsDrawnThread(mate)) {
+    const bool is_nut = mate.fit && mate.fit->kind == product::FitKind::kThread &&
+                        fasteners[mate.a.occurrence.index()] == mates::FastenerKind::kNut;
+    const std::vector<product::FaceId> locking =
+        is_nut ? ListLockingFaces(*product, mate) : std::vector<product::FaceId>();
+    if (!locking.empty()) {
+      std::vector<product::FaceId> all = FacesOf(*product, mate.a);
+      all.insert(all.end(), locking.begin(), locking.end());
+      compiled.faces_a = std::make_shared<haptics::MateFaces>(
+          CollectMateFaces(product->part_of(mate.a.occurrence), all));
+    }
+    if (IsDrawnThread(mate) || !locking.empty()) {
       compiled.faces_a = WidenForThread(*product, mate, mate.a, *compiled.faces_a);
       compiled.faces_b = WidenForThread(*product, mate, mate.b, *compiled.faces_b);
     }

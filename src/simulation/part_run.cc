@@ -7,6 +7,8 @@
 
 #include "base/units.h"
 #include "mates/mate_kind.h"
+#include "product/flexible.h"
+#include "simulation/giving_width.h"
 
 namespace hvas::simulation {
 
@@ -128,10 +130,18 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
   for (const GivingPair& give : model().sequence.gives) {
     const bool is_own = is_met(give.flexible, give.other);
     if (is_own || is_met(give.other, give.flexible)) {
+      const OccurrenceId own = is_own ? give.flexible : give.other;
+      const OccurrenceId other = is_own ? give.other : give.flexible;
+      const product::FlexiblePart* part =
+          product::FindFlexible(*model().product, give.flexible);
+      const double width =
+          part == nullptr ? 0
+                          : CalcGivingWidth(*model().product, own, other, step.extraction_W,
+                                            part->allowance);
       allowances.push_back({PartAllowance::Kind::kGive,
-                            is_own ? give.flexible : give.other,
-                            is_own ? give.other : give.flexible,
-                            give.depth,
+                            own,
+                            other,
+                            std::max(width, give.depth),
                             false,
                             {},
                             {},

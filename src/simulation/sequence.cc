@@ -287,7 +287,28 @@ Sequence Planner::Plan() {
       all.push_back(occurrence.id);
     }
   }
-  PlanLevel(std::move(all), &sequence);
+  // A part that is given up late was there when others came out: what it held, or stood in the way
+  // of. The order is found once more without it from the beginning, until none is given up.
+  constexpr int kMostRounds = 5;  // The last one counts with what it gave up: a choice.
+  for (int round = 1; round <= kMostRounds && !input_.stop.stop_requested(); ++round) {
+    const std::size_t given_up = sequence.gaps.size();
+    sequence.steps.clear();
+    planned_ = 0;
+    extraction_.Restart();
+    extraction_.SetPresent(all, true);
+    PlanLevel(all, &sequence);
+    if (sequence.gaps.size() == given_up) {
+      break;
+    }
+    std::erase_if(all, [&](OccurrenceId id) {
+      const bool is_gap = std::any_of(sequence.gaps.begin(), sequence.gaps.end(),
+                                      [id](const SequenceGap& gap) { return gap.occurrence == id; });
+      if (is_gap) {
+        extraction_.SetPresent({id}, false);
+      }
+      return is_gap;
+    });
+  }
   sequence.overlaps = extraction_.overlaps();
   sequence.gives = extraction_.gives();
   sequence.reliefs = extraction_.ListReliefs();

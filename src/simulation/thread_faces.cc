@@ -4,6 +4,7 @@
 #include <set>
 
 #include "mates/mate_kind.h"
+#include "product/axis_features.h"
 
 namespace hvas::simulation {
 namespace {
@@ -16,6 +17,24 @@ bool IsDrawnThread(const product::Mate& mate) {
   const bool has_kind = mate.fit && (mate.fit->kind == product::FitKind::kThread ||
                                      mate.fit->kind == product::FitKind::kInsert);
   return has_kind && mate.shaft_radius > mate.hole_radius + kDrawnOverlap;
+}
+
+std::vector<product::FaceId> ListLockingFaces(const product::Product& product,
+                                              const product::Mate& mate) {
+  constexpr double kNarrowest = 0.7;  // Of the screw's radius: 0.78 in nuts of ISO 7040. A choice.
+  const product::Part& part = product.part_of(mate.a.occurrence);
+  const product::Feature& thread = part.features[mate.a.feature.index()];
+  constexpr double kOnAxis = 50e-6;  // [m]: rings are drawn less exactly than threads. A choice.
+  std::vector<product::FaceId> faces;
+  for (const product::Feature& feature : part.features) {
+    if (feature.kind == product::FeatureKind::kHole && feature.radius < mate.hole_radius &&
+        feature.radius > kNarrowest * mate.shaft_radius &&
+        product::IsParallel(feature.axis_B, thread.axis_B) &&
+        product::DistanceToAxis(feature.origin_B, thread.origin_B, thread.axis_B) < kOnAxis) {
+      faces.insert(faces.end(), feature.faces.begin(), feature.faces.end());
+    }
+  }
+  return faces;
 }
 
 std::vector<std::uint32_t> ListPassing(const product::Product& product, product::OccurrenceId own,

@@ -13,6 +13,12 @@ namespace hvas::simulation {
  a hole of the core's; or an insert that is drawn wider than its bore. */
 [[nodiscard]] bool IsDrawnThread(const product::Mate& mate);
 
+/** Lists the faces of holes of a nut that are narrower than its thread, on the same axis: the ring of
+ plastic or the bent slots that lock it, which a screw is drawn in.
+ @param mate  A thread whose hole is the nut's. */
+[[nodiscard]] std::vector<product::FaceId> ListLockingFaces(const product::Product& product,
+                                                            const product::Mate& mate);
+
 /** Lists those of some faces, and of all next to them, that may overlap while two parts pass one
  another: tips, chamfers and mouths. What the parts rest on each other with is none of them.
  @param own  The part whose faces these are. @returns sorted indices. */

@@ -98,6 +98,57 @@ bool IsShiftJis(std::string_view bytes) {
   return is_japanese;
 }
 
+bool IsAsciiLetter(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+
+bool IsLowerLetter(char c) {
+  return c >= 'a' && c <= 'z';
+}
+
+/** Whether the byte at `i`, which is beyond ASCII, is an accented letter of code page 850 amidst
+ letters (e with an acute accent may end a word) where Windows-1252 has neither a letter nor an
+ apostrophe or dash. */
+bool IsDosLetter(std::string_view bytes, std::size_t i) {
+  constexpr std::string_view kSmall = "\x81\x82\x83\x84\x85\x86\x87\x88\x89\x8B\x8D\x93\x94";
+  constexpr std::string_view kCapital = "\x80\x8F\x90";
+  constexpr char kSmallAcuteE = '\x82';
+  const char before = i > 0 ? bytes[i - 1] : ' ';
+  const char after = i + 1 < bytes.size() ? bytes[i + 1] : ' ';
+  const bool is_amidst =
+      IsAsciiLetter(before) && (bytes[i] == kSmallAcuteE || IsAsciiLetter(after));
+  // Small letters stand beside small ones; behind a lead byte of Shift-JIS stands anything.
+  const bool is_small = kSmall.find(bytes[i]) != std::string_view::npos &&
+                        (IsLowerLetter(before) || IsLowerLetter(after));
+  return is_amidst && (is_small || kCapital.find(bytes[i]) != std::string_view::npos);
+}
+
+/** Latin text of DOS: every byte beyond ASCII is a letter of it, and no word has more than one of
+ them to two others, which tells them from the lead bytes of Shift-JIS. */
+bool IsDosLatin(std::string_view bytes) {
+  std::size_t letters = 0;  // Of a word.
+  std::size_t accented = 0;
+  bool has_accents = false;
+  for (std::size_t i = 0; i <= bytes.size(); ++i) {
+    const bool is_beyond = i < bytes.size() && ByteAt(bytes, i) >= 0x80;
+    if (is_beyond && !IsDosLetter(bytes, i)) {
+      return false;
+    }
+    if (is_beyond) {
+      ++accented;
+    } else if (i < bytes.size() && IsAsciiLetter(bytes[i])) {
+      ++letters;
+    } else if (letters < 2 * accented) {
+      return false;
+    } else {
+      has_accents = has_accents || accented > 0;
+      letters = 0;
+      accented = 0;
+    }
+  }
+  return has_accents;
+}
+
 /** What the runs of bytes beyond ASCII in a text look like. */
 struct Runs {
   std::size_t longest{0};         // [bytes]
@@ -242,6 +293,38 @@ bool TakeEscape(std::string_view* text, char* page, std::string* out) {
   return is_escape;
 }
 
+/** Whether UTF-8 has a control character of ISO 8859-1 (U+0080 to U+009F): no name has one, but raw
+ bytes of a code page become them where they are taken for ISO 8859-1. */
+bool HasControlsBeyondAscii(std::string_view utf8) {
+  for (std::size_t i = 0; i + 1 < utf8.size(); ++i) {
+    if (ByteAt(utf8, i) == 0xC2 && ByteAt(utf8, i + 1) < 0xA0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** UTF-8 as ISO 8859-1; empty where a character is not in it. */
+std::string NarrowUtf8(std::string_view utf8) {
+  std::string bytes;
+  for (std::size_t i = 0; i < utf8.size(); ++i) {
+    const std::uint8_t byte = ByteAt(utf8, i);
+    if (byte < 0x80) {
+      bytes.push_back(static_cast<char>(byte));
+    } else if (byte <= 0xC3 && i + 1 < utf8.size()) {
+      bytes.push_back(static_cast<char>(((byte & 0x03U) << 6U) | (ByteAt(utf8, ++i) & 0x3FU)));
+    } else {
+      return {};
+    }
+  }
+  return bytes;
+}
+
+/** UTF-8 from the bytes of one name that nobody decoded. */
+std::string DecodeRaw(std::string_view bytes) {
+  return Tidy(ToUtf8(bytes, IsDosLatin(bytes) ? "CP850" : IsShiftJis(bytes) ? "CP932" : "CP1252"));
+}
+
 }  // namespace
 
 std::string DecodeStepText(std::string_view text) {
@@ -282,6 +365,9 @@ std::string GuessEncoding(std::string_view bytes) {
   if (IsUtf8(bytes)) {
     return "UTF-8";
   }
+  if (IsDosLatin(bytes)) {
+    return "CP850";
+  }
   if (IsShiftJis(bytes)) {
     return "CP932";
   }
@@ -290,7 +376,11 @@ std::string GuessEncoding(std::string_view bytes) {
 }
 
 std::string CleanName(std::string_view name) {
-  return Tidy(IsUtf8(name) ? std::string(name) : ToUtf8(name, GuessEncoding(name)));
+  if (!IsUtf8(name)) {
+    return Tidy(ToUtf8(name, GuessEncoding(name)));
+  }
+  const std::string raw = HasControlsBeyondAscii(name) ? NarrowUtf8(name) : std::string();
+  return raw.empty() ? Tidy(std::string(name)) : DecodeRaw(raw);
 }
 
 std::string CleanName(std::u16string_view name) {
@@ -303,10 +393,7 @@ std::string CleanName(std::u16string_view name) {
   for (const char16_t unit : name) {
     bytes.push_back(static_cast<char>(unit));
   }
-  if (IsUtf8(bytes)) {
-    return Tidy(bytes);
-  }
-  return Tidy(ToUtf8(bytes, IsShiftJis(bytes) ? "CP932" : "CP1252"));
+  return IsUtf8(bytes) ? Tidy(bytes) : DecodeRaw(bytes);
 }
 
 }  // namespace hvas::cad

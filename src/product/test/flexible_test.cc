@@ -34,7 +34,10 @@ TEST(FlexibleTest, NamesAndMaterialsTellWhatGives) {
   EXPECT_EQ(kind_of("Flachdichtung"), "gasket");
   EXPECT_EQ(kind_of("Compression Spring"), "spring");
   EXPECT_EQ(kind_of("GT2 belt"), "cable");
-  EXPECT_EQ(kind_of("foot", "NBR 70"), "gasket");
+  EXPECT_EQ(kind_of("foot", "NBR 70"), "rubber");
+  EXPECT_EQ(kind_of("rubber foot"), "rubber");
+  EXPECT_EQ(kind_of("Tyre 80"), "rubber");
+  EXPECT_EQ(kind_of("grommet 8 mm"), "rubber");
   for (const char* name :
        {"monitoring unit", "eclipse", "belt pulley", "spring pin", "cable chain", "spring washer",
         "hose nipple", "housing", "hydraulic block", "latch plate"}) {
@@ -43,15 +46,17 @@ TEST(FlexibleTest, NamesAndMaterialsTellWhatGives) {
 }
 
 TEST(FlexibleTest, AllowanceFollowsTheKindAndTheSize) {
-  // docs/algorithms/flexible.md: section of an O-ring; a twentieth of a ring; half of a gasket.
+  // docs/algorithms/flexible.md: section of an O-ring; a tenth of a ring; half of a gasket.
   const auto allowance = [](const std::string& name, const Vec3& size) {
     return ClassifyFlexible(Named(name, size))->allowance;
   };
   EXPECT_DOUBLE_EQ(allowance("O-ring", Vec3(20e-3, 20e-3, 2e-3)), 2e-3);
   EXPECT_DOUBLE_EQ(allowance("O-ring", Vec3(6e-3, 6e-3, 1.5e-3)), 0.75e-3);
-  EXPECT_DOUBLE_EQ(allowance("circlip", Vec3(23e-3, 23e-3, 1.2e-3)), 1.15e-3);
-  EXPECT_DOUBLE_EQ(allowance("circlip", Vec3(4e-3, 4e-3, 0.5e-3)), 0.3e-3);
+  EXPECT_DOUBLE_EQ(allowance("circlip", Vec3(23e-3, 23e-3, 1.2e-3)), 2.3e-3);
+  EXPECT_DOUBLE_EQ(allowance("circlip", Vec3(2.5e-3, 2.5e-3, 0.3e-3)), 0.3e-3);
   EXPECT_DOUBLE_EQ(allowance("gasket", Vec3(40e-3, 30e-3, 1e-3)), 0.5e-3);
+  EXPECT_DOUBLE_EQ(allowance("rubber tyre", Vec3(80e-3, 80e-3, 16e-3)), 12e-3);
+  EXPECT_DOUBLE_EQ(allowance("rubber sheet", Vec3(80e-3, 80e-3, 2e-3)), 2e-3);
   EXPECT_DOUBLE_EQ(allowance("snap hook", Vec3(20e-3, 5e-3, 5e-3)), 1e-3);
   EXPECT_DOUBLE_EQ(allowance("snap hook", Vec3(90e-3, 5e-3, 5e-3)), 2e-3);
 }
