@@ -226,7 +226,8 @@ void Explain(const Product& product, SharedVolume* shared) {
   constexpr double kRing = 0.3;  // Of the screw's radius: a choice.
   const product::Mate* thread =
       mate == nullptr ? FindThread(product, shared->a, shared->b) : nullptr;
-  if (thread != nullptr && shared->depth < kRing * thread->shaft_radius) {
+  if (thread != nullptr && shared->depth > kTouching &&
+      shared->depth < kRing * thread->shaft_radius) {
     shared->mate = thread->id;
     shared->cause = SharedVolume::Cause::kThread;
     return;

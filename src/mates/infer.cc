@@ -72,8 +72,8 @@ class Inference {
       const Pair& pair = pairs_[i];
       const std::size_t end = i + 1 < pairs_.size() ? pairs_[i + 1].first_axis : axis_hits_.size();
       const bool is_nut =
-          end > pair.first_axis && fasteners_[axis_hits_[pair.first_axis].hole_occurrence.index()] ==
-                                       FastenerKind::kNut;
+          end > pair.first_axis &&
+          fasteners_[axis_hits_[pair.first_axis].hole_occurrence.index()] == FastenerKind::kNut;
       const std::vector<const PlacedAxisHit*> working =
           rules.ChooseWorking(pair.first_axis, end, is_nut);
       for (const PlacedAxisHit* hit : working) {

@@ -21,7 +21,7 @@ constexpr double kShortestArc = units::FromDeg(20);  // That guides; the tips of
 // Half a turn: what ends a slot or a tongue between its two walls, within the deviation of meshes.
 constexpr double kHalfTurn = units::FromDeg(180);
 constexpr double kHalfTurnSlack = units::FromDeg(2);
-constexpr double kSameDirection = 1e-3;              // Same direction or half angle [rad].
+constexpr double kSameDirection = 1e-3;  // Same direction or half angle [rad].
 
 using Arc = std::pair<double, double>;  // Start and length [rad].
 
@@ -372,9 +372,8 @@ void KeepRoundEnds(const Part& part, double tolerance, std::vector<Feature>* hal
       const Feature& other = (*half_turns)[k];
       const Vec3 offset = own.origin_B - other.origin_B;
       const Vec3 away = offset - offset.dot(own.axis_B) * own.axis_B;
-      const double common =
-          std::min(own.span_high, other.span_high - offset.dot(own.axis_B)) -
-          std::max(own.span_low, other.span_low - offset.dot(own.axis_B));
+      const double common = std::min(own.span_high, other.span_high - offset.dot(own.axis_B)) -
+                            std::max(own.span_low, other.span_low - offset.dot(own.axis_B));
       if (other.kind == own.kind && IsParallel(own.axis_B, other.axis_B) &&
           std::abs(own.radius - other.radius) < tolerance && away.norm() > tolerance &&
           common > 0.5 * (own.span_high - own.span_low) &&

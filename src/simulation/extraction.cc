@@ -153,9 +153,8 @@ std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
     return std::count_if(normals.begin(), normals.end(),
                          [&d](const Vec3& n) { return std::abs(n.dot(d)) <= kParallel; });
   };
-  std::stable_sort(directions.begin(), directions.end(), [&](const Vec3& a, const Vec3& b) {
-    return count_rubbed(a) < count_rubbed(b);
-  });
+  std::stable_sort(directions.begin(), directions.end(),
+                   [&](const Vec3& a, const Vec3& b) { return count_rubbed(a) < count_rubbed(b); });
   return directions;
 }
 

@@ -91,7 +91,8 @@ class Extraction {
   [[nodiscard]] std::optional<SequenceStep> TryRemoveOne(Unit* rest, const Unit& staying = {});
 
   /** Takes out the first of these parts that can go where it, or what is in its way, gives by no
-   more than SequenceInput::give_limits has, in depth and in width (giving_width.h), and erases it from them.
+   more than SequenceInput::give_limits has, in depth and in width (giving_width.h), and erases it
+   from them.
    @param deferred  Sorted; parts that are tried after all others. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveGiving(Unit* rest, const Unit& deferred);
 

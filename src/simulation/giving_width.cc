@@ -19,8 +19,7 @@ using Triangle = std::array<Vec3, 3>;  // In a frame with z along the way.
 constexpr double kCellsPerLimit = 10;     // A choice: the width is good to a fifth of the limit.
 constexpr double kMostCellsAcross = 600;  // A choice: 360,000 cells take some milliseconds.
 
-std::vector<Triangle> Project(const product::Product& product, OccurrenceId id,
-                              const Mat3& R_FW) {
+std::vector<Triangle> Project(const product::Product& product, OccurrenceId id, const Mat3& R_FW) {
   const spatial::Pose& X_WB = product.occurrences[id.index()].X_WB;
   const product::Part& part = product.part_of(id);
   const Mat3 R_FB = R_FW * X_WB.R();
@@ -100,8 +99,7 @@ double CalcDeepestCell(const Grid& grid, const std::vector<bool>& is_blocked) {
   constexpr int kAcross = 4;
   std::vector<int> distance(grid.size(), 0);
   const auto at = [&](int column, int row) {
-    const bool is_inside =
-        column >= 0 && column < grid.columns && row >= 0 && row < grid.rows;
+    const bool is_inside = column >= 0 && column < grid.columns && row >= 0 && row < grid.rows;
     return is_inside ? distance[grid.At(column, row)] : 0;
   };
   int deepest = 0;

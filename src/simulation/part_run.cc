@@ -132,12 +132,10 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
     if (is_own || is_met(give.other, give.flexible)) {
       const OccurrenceId own = is_own ? give.flexible : give.other;
       const OccurrenceId other = is_own ? give.other : give.flexible;
-      const product::FlexiblePart* part =
-          product::FindFlexible(*model().product, give.flexible);
-      const double width =
-          part == nullptr ? 0
-                          : CalcGivingWidth(*model().product, own, other, step.extraction_W,
-                                            part->allowance);
+      const product::FlexiblePart* part = product::FindFlexible(*model().product, give.flexible);
+      const double width = part == nullptr ? 0
+                                           : CalcGivingWidth(*model().product, own, other,
+                                                             step.extraction_W, part->allowance);
       allowances.push_back({PartAllowance::Kind::kGive,
                             own,
                             other,

@@ -301,8 +301,9 @@ Sequence Planner::Plan() {
       break;
     }
     std::erase_if(all, [&](OccurrenceId id) {
-      const bool is_gap = std::any_of(sequence.gaps.begin(), sequence.gaps.end(),
-                                      [id](const SequenceGap& gap) { return gap.occurrence == id; });
+      const bool is_gap =
+          std::any_of(sequence.gaps.begin(), sequence.gaps.end(),
+                      [id](const SequenceGap& gap) { return gap.occurrence == id; });
       if (is_gap) {
         extraction_.SetPresent({id}, false);
       }

@@ -13,8 +13,8 @@ namespace hvas::simulation {
  a hole of the core's; or an insert that is drawn wider than its bore. */
 [[nodiscard]] bool IsDrawnThread(const product::Mate& mate);
 
-/** Lists the faces of holes of a nut that are narrower than its thread, on the same axis: the ring of
- plastic or the bent slots that lock it, which a screw is drawn in.
+/** Lists the faces of holes of a nut that are narrower than its thread, on the same axis: the ring
+ of plastic or the bent slots that lock it, which a screw is drawn in.
  @param mate  A thread whose hole is the nut's. */
 [[nodiscard]] std::vector<product::FaceId> ListLockingFaces(const product::Product& product,
                                                             const product::Mate& mate);

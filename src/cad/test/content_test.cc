@@ -329,18 +329,18 @@ std::string ReadNameBack(const std::string& bytes, const std::string& encoding =
 TEST(Names, AreReadInEveryEncodingThatFilesUse) {
   EXPECT_EQ(ReadNameBack("Geh\\X\\E4use"), "Gehäuse");
   EXPECT_EQ(ReadNameBack("\\X2\\041F04400438\\X0\\ 2"), "При 2");
-  EXPECT_EQ(ReadNameBack("Gehäuse"), "Gehäuse");                        // UTF-8.
-  EXPECT_EQ(ReadNameBack("Geh\xE4use"), "Gehäuse");                     // Latin-1.
-  EXPECT_EQ(ReadNameBack("\x83\x7B\x83\x8B\x83\x67 M3"), "ボルト M3");  // Shift-JIS.
-  EXPECT_EQ(ReadNameBack("\x95\x5C\x96\xCA"), "表面");                  // With a "\" in it.
-  EXPECT_EQ(ReadNameBack("20\xB0, 5 \x80"), "20°, 5 €");                // Windows-1252.
-  EXPECT_EQ(ReadNameBack("\xC4\xE5\xF2\xE0\xEB\xFC 5"), "Деталь 5");    // Windows-1251.
-  EXPECT_EQ(ReadNameBack("\xC1\xE3\xBC\xFE"), "零件");                  // GB 2312.
+  EXPECT_EQ(ReadNameBack("Gehäuse"), "Gehäuse");                          // UTF-8.
+  EXPECT_EQ(ReadNameBack("Geh\xE4use"), "Gehäuse");                       // Latin-1.
+  EXPECT_EQ(ReadNameBack("\x83\x7B\x83\x8B\x83\x67 M3"), "ボルト M3");    // Shift-JIS.
+  EXPECT_EQ(ReadNameBack("\x95\x5C\x96\xCA"), "表面");                    // With a "\" in it.
+  EXPECT_EQ(ReadNameBack("20\xB0, 5 \x80"), "20°, 5 €");                  // Windows-1252.
+  EXPECT_EQ(ReadNameBack("\xC4\xE5\xF2\xE0\xEB\xFC 5"), "Деталь 5");      // Windows-1251.
+  EXPECT_EQ(ReadNameBack("\xC1\xE3\xBC\xFE"), "零件");                    // GB 2312.
   EXPECT_EQ(ReadNameBack("Tower Pro_Pe\\X\\87a:1"), "Tower Pro_Peça:1");  // DOS.
-  EXPECT_EQ(ReadNameBack("Geh\x84use"), "Gehäuse");                        // DOS.
-  EXPECT_EQ(ReadNameBack("Men\x92s \x93plate\x94"), "Men’s “plate”");       // Windows-1252.
-  EXPECT_EQ(ReadNameBack("A\x83\x41\x83\x43"), "Aアイ");                // Shift-JIS.
-  EXPECT_EQ(ReadNameBack("\\PE\\\\S\\4\\S\\U\\S\\b"), "Дет");           // ISO 8859-5.
+  EXPECT_EQ(ReadNameBack("Geh\x84use"), "Gehäuse");                       // DOS.
+  EXPECT_EQ(ReadNameBack("Men\x92s \x93plate\x94"), "Men’s “plate”");     // Windows-1252.
+  EXPECT_EQ(ReadNameBack("A\x83\x41\x83\x43"), "Aアイ");                  // Shift-JIS.
+  EXPECT_EQ(ReadNameBack("\\PE\\\\S\\4\\S\\U\\S\\b"), "Дет");             // ISO 8859-5.
   EXPECT_EQ(ReadNameBack("\\X4\\0001F529\\X0\\"), "\xF0\x9F\x94\xA9");
 }
 

@@ -6,54 +6,16 @@
 
 #include <gtest/gtest.h>
 
+#include "product/axis_features.h"
 #include "product/hole_patterns.h"
+#include "product/test/round_face.h"
 
 namespace hvas::product {
 namespace {
 
-/** Appends a face whose triangles start at the part's last triangle so far. */
-Face& StartFace(Part* part, const Surface& surface) {
-  Face face;
-  face.surface = surface;
-  face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
-  part->faces.push_back(face);
-  return part->faces.back();
-}
-
-void AddQuad(Part* part, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  Face& face = part->faces.back();
-  const auto first = static_cast<std::uint32_t>(part->mesh.vertices.size());
-  for (const Vec3& p : {a, b, c, d}) {
-    part->mesh.vertices.push_back(p);
-    face.box_B.Add(p);
-    part->box_B.Add(p);
-  }
-  part->mesh.triangles.push_back({first, first + 1, first + 2});
-  part->mesh.triangles.push_back({first, first + 2, first + 3});
-  face.triangle_count += 2;
-  face.area += 0.5 * ((b - a).cross(c - a).norm() + (c - a).cross(d - a).norm());
-}
-
-/** A cylindrical face about the axis through (x, 0, 0) along z, from angle `from` on. */
-void AddCylinder(Part* part, double x, double radius, double outward, double from, double sweep,
-                 double low, double high) {
-  Surface surface;
-  surface.kind = SurfaceKind::kCylinder;
-  surface.origin = {x, 0, 0.123};
-  surface.axis = part->faces.size() % 2 == 0 ? Vec3(0, 0, 1) : Vec3(0, 0, -1);
-  surface.radius = radius;
-  surface.outward = outward;
-  StartFace(part, surface);
-  constexpr int kSteps = 24;
-  for (int i = 0; i < kSteps; ++i) {
-    const double a = from + sweep * i / kSteps;
-    const double b = from + sweep * (i + 1) / kSteps;
-    const Vec3 pa(x + radius * std::cos(a), radius * std::sin(a), 0);
-    const Vec3 pb(x + radius * std::cos(b), radius * std::sin(b), 0);
-    AddQuad(part, pa + Vec3(0, 0, low), pb + Vec3(0, 0, low), pb + Vec3(0, 0, high),
-            pa + Vec3(0, 0, high));
-  }
-}
+using testing::AddQuad;
+using testing::AddRoundFace;
+using testing::StartFace;
 
 /** A square of the plane z = height that faces up or down. */
 void AddSquare(Part* part, double x, double height, double side, double up) {
@@ -67,9 +29,9 @@ void AddSquare(Part* part, double x, double height, double side, double up) {
 
 TEST(BuildFeatures, MergesHalvesAndQuartersIntoOneHole) {
   Part part;
-  AddCylinder(&part, 0, 0.005, -1, 0, std::numbers::pi, 0, 0.01);
-  AddCylinder(&part, 0, 0.005, -1, std::numbers::pi, 0.5 * std::numbers::pi, 0, 0.01);
-  AddCylinder(&part, 0, 0.005, -1, 1.5 * std::numbers::pi, 0.5 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, -1, 0, std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, -1, std::numbers::pi, 0.5 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, -1, 1.5 * std::numbers::pi, 0.5 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 1u);
   const Feature& hole = part.features[0];
@@ -82,9 +44,9 @@ TEST(BuildFeatures, MergesHalvesAndQuartersIntoOneHole) {
 
 TEST(BuildFeatures, JoinsFacesThatTouchAlongTheAxisAndSplitsAtAGap) {
   Part part;
-  AddCylinder(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0, 0.01);
-  AddCylinder(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0.01, 0.03);
-  AddCylinder(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0.031, 0.04);
+  AddRoundFace(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0.01, 0.03);
+  AddRoundFace(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0.031, 0.04);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 2u);
   EXPECT_NEAR(part.features[0].span_high - part.features[0].span_low, 0.03, 1e-12);
@@ -96,21 +58,58 @@ TEST(BuildFeatures, JoinsFacesThatTouchAlongTheAxisAndSplitsAtAGap) {
 
 TEST(BuildFeatures, KeepsHolesAndShaftsOfOneAxisApart) {
   Part part;
-  AddCylinder(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
-  AddCylinder(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0, 0.01);
-  AddCylinder(&part, 0, 0.00501, 1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, 1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.00501, 1, 0, 2 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   EXPECT_EQ(part.features.size(), 3u);
 }
 
 TEST(BuildFeatures, DropsFilletsAndKeepsABoreOpenedByASlit) {
   Part part;
-  AddCylinder(&part, 0, 0.005, 1, 0, 0.5 * std::numbers::pi, 0, 0.01);  // A fillet.
-  AddCylinder(&part, 0.1, 0.005, -1, 0, std::numbers::pi, 0, 0.01);     // One end of a slot.
-  AddCylinder(&part, 0.2, 0.005, -1, 0.1, 1.8 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, 1, 0, 0.5 * std::numbers::pi, 0, 0.01);  // A fillet.
+  AddRoundFace(&part, 0.1, 0.005, -1, 0, std::numbers::pi, 0, 0.01);     // One end of a slot.
+  AddRoundFace(&part, 0.2, 0.005, -1, 0.1, 1.8 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 1u);
   EXPECT_NEAR(part.features[0].coverage, 1.8 * std::numbers::pi, 1e-9);
+}
+
+TEST(BuildFeatures, KeepsTheRoundEndsOfASlotBehindAllOthers) {
+  constexpr double kHalf = std::numbers::pi;
+  for (const double outward : {-1.0, 1.0}) {
+    Part part;
+    AddRoundFace(&part, 0.03, 0.005, outward, -0.5 * kHalf, kHalf, 0, 0.01);
+    AddRoundFace(&part, -0.03, 0.005, outward, 0.5 * kHalf, kHalf, 0, 0.01);
+    AddRoundFace(&part, -0.1, 0.002, -1, 0, 2 * kHalf, 0, 0.01);
+    BuildFeatures(&part);
+    ASSERT_EQ(part.features.size(), 3U);
+    EXPECT_FALSE(IsRoundEnd(part.features[0]));
+    for (const std::size_t i : {1U, 2U}) {
+      const Feature& end = part.features[i];
+      EXPECT_TRUE(IsRoundEnd(end));
+      EXPECT_EQ(end.kind, outward > 0 ? FeatureKind::kShaft : FeatureKind::kHole);
+      const Vec3 arc = CalcArcDirection(part, end);
+      EXPECT_NEAR(arc.norm(), 2 / kHalf, 2e-3);
+      EXPECT_GT(arc.x() * end.origin_B.x(), 0) << "away from the other end";
+    }
+  }
+}
+
+TEST(BuildFeatures, DropsHalfTurnsThatEndNoSlot) {
+  constexpr double kHalf = std::numbers::pi;
+  const auto count = [](double from, double radius, double outward) {
+    Part part;
+    AddRoundFace(&part, 0.03, 0.005, 1, -0.5 * kHalf, kHalf, 0, 0.01);
+    AddRoundFace(&part, -0.03, radius, outward, from, kHalf, 0, 0.01);
+    BuildFeatures(&part);
+    return part.features.size();
+  };
+  EXPECT_EQ(count(0.5 * kHalf, 0.005, 1), 2U);
+  EXPECT_EQ(count(-0.5 * kHalf, 0.005, 1), 0U) << "both look the same way";
+  EXPECT_EQ(count(0, 0.005, 1), 0U) << "across";
+  EXPECT_EQ(count(0.5 * kHalf, 0.006, 1), 0U) << "of another radius";
+  EXPECT_EQ(count(0.5 * kHalf, 0.005, -1), 0U) << "of another sense";
 }
 
 TEST(BuildFeatures, KeepsArcsThatHoldAPinTogetherAndDropsThoseThatDoNot) {
@@ -118,8 +117,8 @@ TEST(BuildFeatures, KeepsArcsThatHoldAPinTogetherAndDropsThoseThatDoNot) {
     Part part;
     double low = 0;
     for (const auto& [from_deg, sweep_deg] : arcs_deg) {
-      AddCylinder(&part, 0, 0.005, 1, from_deg * std::numbers::pi / 180,
-                  sweep_deg * std::numbers::pi / 180, low, low + 0.01);
+      AddRoundFace(&part, 0, 0.005, 1, from_deg * std::numbers::pi / 180,
+                   sweep_deg * std::numbers::pi / 180, low, low + 0.01);
       low += gap;
     }
     BuildFeatures(&part);
@@ -139,9 +138,9 @@ TEST(BuildFeatures, KeepsArcsThatHoldAPinTogetherAndDropsThoseThatDoNot) {
 TEST(BuildFeatures, ABoreStandsBeforeTheBottomsOfItsSplines) {
   Part part;
   for (const double turn : {0.0, 0.5, 1.0, 1.5}) {
-    AddCylinder(&part, 0, 0.005, -1, turn * std::numbers::pi, 0.25 * std::numbers::pi, 0, 0.01);
-    AddCylinder(&part, 0, 0.006, -1, (turn + 0.25) * std::numbers::pi, 0.25 * std::numbers::pi, 0,
-                0.01);
+    AddRoundFace(&part, 0, 0.005, -1, turn * std::numbers::pi, 0.25 * std::numbers::pi, 0, 0.01);
+    AddRoundFace(&part, 0, 0.006, -1, (turn + 0.25) * std::numbers::pi, 0.25 * std::numbers::pi, 0,
+                 0.01);
   }
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 1u);
@@ -199,7 +198,7 @@ TEST(BuildFeatures, OrdersHolesAndShaftsThenPlanesThenCones) {
   Part part;
   AddCone(&part, 0.5, -1, 0, 2 * std::numbers::pi, 0.002, 0.004);
   AddSquare(&part, 0, 0.02, 0.01, 1);
-  AddCylinder(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 3u);
   EXPECT_EQ(part.features[0].kind, FeatureKind::kHole);
@@ -226,8 +225,8 @@ TEST(BuildFeatures, MergesPadsOfOnePlaneOnly) {
 TEST(BuildFeatures, TiesAHoleToThePlaneItIsDrilledInto) {
   Part part;
   AddSquare(&part, -0.05, 0, 0.1, -1);
-  AddCylinder(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
-  AddCylinder(&part, 0.03, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
+  AddRoundFace(&part, 0.03, 0.005, -1, 0, 2 * std::numbers::pi, 0, 0.01);
   BuildFeatures(&part);
   ASSERT_EQ(part.features.size(), 3u);  // Holes first.
   EXPECT_EQ(part.features[2].kind, FeatureKind::kPlane);
@@ -271,7 +270,7 @@ TEST(Features, FacesOnOneAxisBeyondTheLimitAreReported) {
   for (const int count : {64, 65}) {
     Part part;
     for (int i = 0; i < count; ++i) {  // Lands along a bore, all on one side.
-      AddCylinder(&part, 0, 5e-3, -1, 0.02 * i, 0.01, 0, 10e-3);
+      AddRoundFace(&part, 0, 5e-3, -1, 0.02 * i, 0.01, 0, 10e-3);
     }
     EXPECT_EQ(ListNotes(part).size(), count > 64 ? 1u : 0u) << count;
   }
@@ -281,7 +280,7 @@ TEST(Features, AxesBeyondTheLimitOfThreadsAreReported) {
   for (const int count : {300, 301}) {
     Part part;
     for (int i = 0; i < count; ++i) {
-      AddCylinder(&part, 10e-3 * i, 2e-3, -1, 0, 2 * std::numbers::pi, 0, 5e-3);
+      AddRoundFace(&part, 10e-3 * i, 2e-3, -1, 0, 2 * std::numbers::pi, 0, 5e-3);
     }
     EXPECT_EQ(ListNotes(part).size(), count > 300 ? 1u : 0u) << count;
   }

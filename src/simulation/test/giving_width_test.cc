@@ -13,8 +13,8 @@ using testing::OccurrenceId;
 using testing::Pose;
 using testing::Product;
 
-constexpr double kLimit = 2e-3;          // [m]
-constexpr double kCell = kLimit / 10;    // [m]
+constexpr double kLimit = 2e-3;        // [m]
+constexpr double kCell = kLimit / 10;  // [m]
 const Vec3 kUp = Vec3::UnitZ();
 
 /** The width that the second of two parts has to give to go out past the first. */
