@@ -21,13 +21,14 @@ struct FlexibleWord {
 };
 
 // Names in English, German, French, Spanish and Italian. The first one that is found counts.
-constexpr std::array<FlexibleWord, 59> kFlexibleWords{{
+constexpr std::array<FlexibleWord, 66> kFlexibleWords{{
     {"o ring", FlexibleKind::kORing},
     {"or ring", FlexibleKind::kORing},
     {"din 3771", FlexibleKind::kORing},
     {"iso 3601", FlexibleKind::kORing},
     {"joint torique", FlexibleKind::kORing},
     {"circlip", FlexibleKind::kRetainingRing},
+    {"e ring", FlexibleKind::kRetainingRing},
     {"retaining ring", FlexibleKind::kRetainingRing},
     {"snap ring", FlexibleKind::kRetainingRing},
     {"seeger", FlexibleKind::kRetainingRing},
@@ -56,6 +57,12 @@ constexpr std::array<FlexibleWord, 59> kFlexibleWords{{
     {"faltenbalg", FlexibleKind::kRubber},
     {"dust boot", FlexibleKind::kRubber},
     {"durchfuhrungstulle", FlexibleKind::kRubber},
+    {"rivet", FlexibleKind::kRivet},
+    {"niet", FlexibleKind::kRivet},
+    {"blindniet", FlexibleKind::kRivet},
+    {"rivetto", FlexibleKind::kRivet},
+    {"remache", FlexibleKind::kRivet},
+    {"din 7337", FlexibleKind::kRivet},
     {"gasket", FlexibleKind::kGasket},
     {"dichtung", FlexibleKind::kGasket},
     {"flachdichtung", FlexibleKind::kGasket},
@@ -84,13 +91,13 @@ constexpr std::array<FlexibleWord, 59> kFlexibleWords{{
 }};
 
 // What such a word stands before, where it is something stiff: "cable holder", "spring pin".
-constexpr std::array<std::string_view, 45> kStiffThings{
-    "holder", "mount",    "bracket", "plate",     "cover",  "housing",  "groove", "tensioner",
-    "pulley", "guide",    "chain",   "duct",      "gland",  "seat",     "pin",    "washer",
-    "sleeve", "frame",    "case",    "box",       "screw",  "bolt",     "halter", "block",
-    "body",   "clamp",    "channel", "tray",      "runner", "post",     "collar", "plug",
-    "drum",   "nipple",   "fitting", "connector", "wheel",  "terminal", "lug",    "socket",
-    "flange", "coupling", "adapter", "barb",      "end"};
+constexpr std::array<std::string_view, 46> kStiffThings{
+    "nut",       "holder", "mount",    "bracket", "plate",     "cover",  "housing",  "groove",
+    "tensioner", "pulley", "guide",    "chain",   "duct",      "gland",  "seat",     "pin",
+    "washer",    "sleeve", "frame",    "case",    "box",       "screw",  "bolt",     "halter",
+    "block",     "body",   "clamp",    "channel", "tray",      "runner", "post",     "collar",
+    "plug",      "drum",   "nipple",   "fitting", "connector", "wheel",  "terminal", "lug",
+    "socket",    "flange", "coupling", "adapter", "barb",      "end"};
 
 // Open rings that are clamped flat, not opened: spring lock washers.
 constexpr std::array<std::string_view, 6> kWasherWords{"washer",    "lockwasher", "scheibe",
@@ -124,10 +131,11 @@ bool IsOpenRing(const Part& part) {
   if (LeastExtent(part) > kFlat * LargestExtent(part)) {
     return false;
   }
+  constexpr double kWidestBand = 0.3;  // The least bore over the diameter: DIN 6799 has 0.36 on.
   const auto has_open = [&part](FeatureKind kind) {
     return std::any_of(part.features.begin(), part.features.end(), [&](const Feature& feature) {
       return feature.kind == kind && feature.coverage > kLeast && feature.coverage < kMost &&
-             2 * feature.radius > 0.5 * LargestExtent(part);
+             2 * feature.radius > kWidestBand * LargestExtent(part);
     });
   };
   return has_open(FeatureKind::kHole) && has_open(FeatureKind::kShaft);
@@ -142,6 +150,7 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
   constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
   constexpr double kSqueeze = 0.5;           // Of the thickness of a gasket.
   constexpr double kElongation = 0.15;       // Of the longest side of a part of rubber.
+  constexpr double kHead = 0.3;              // Of the longest side of a rivet.
   constexpr double kMostBend = 5e-3;         // [m]: a choice.
   constexpr double kCoil = 0.25;             // Of the diameter of a spring.
   switch (kind) {
@@ -160,6 +169,8 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
       return kCoil * LeastExtent(part);
     case FlexibleKind::kCable:
       return std::min(LeastExtent(part), kMostBend);
+    case FlexibleKind::kRivet:
+      return kHead * LargestExtent(part);
     case FlexibleKind::kStated:
       break;
   }
@@ -192,6 +203,8 @@ const char* ToString(FlexibleKind kind) {
       return "spring";
     case FlexibleKind::kCable:
       return "cable";
+    case FlexibleKind::kRivet:
+      return "rivet";
     case FlexibleKind::kStated:
       break;
   }

@@ -22,6 +22,7 @@ enum class FlexibleKind {  // Records keep the numbers.
   kSpring,
   kCable,   ///< It bends: cables, hoses, belts.
   kRubber,  ///< It is stretched: grommets, tyres, and what is of rubber.
+  kRivet,   ///< Its second head is formed in its place.
 };
 
 [[nodiscard]] const char* ToString(FlexibleKind kind);

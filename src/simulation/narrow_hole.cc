@@ -1,5 +1,6 @@
 #include "simulation/narrow_hole.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -8,6 +9,19 @@
 #include "simulation/way_directions.h"
 
 namespace hvas::simulation {
+
+namespace {
+
+/** The lower end of a hole or shaft along a direction [m], from the origin of W. */
+double CalcLowEnd(const product::Pose& X_WB, const product::Feature& feature,
+                  const Vec3& direction) {
+  const Vec3 axis_W = X_WB.q() * feature.axis_B;
+  const double origin = direction.dot(X_WB * feature.origin_B);
+  const double along = direction.dot(axis_W);
+  return origin + std::min(along * feature.span_low, along * feature.span_high);
+}
+
+}  // namespace
 
 std::string ExplainTooWide(const product::Product& product, product::OccurrenceId id,
                            product::OccurrenceId other, const Vec3& direction, double least) {
@@ -34,6 +48,12 @@ std::string ExplainTooWide(const product::Product& product, product::OccurrenceI
       if (!is_pair || excess < least - 1e-9 || between.cross(axis_W).norm() > kCollinear ||
           std::abs((X_WO.q() * its.axis_B).dot(axis_W)) < 1 - kParallel ||
           (narrowest > 0 && excess > narrowest)) {
+        continue;
+      }
+      // What lies behind the part is not in its way.
+      const double own_low = CalcLowEnd(X_WB, own, direction);
+      const double its_high = -CalcLowEnd(X_WO, its, -direction);
+      if (its_high < own_low + least) {
         continue;
       }
       narrowest = excess;

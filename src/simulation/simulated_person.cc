@@ -34,6 +34,7 @@ constexpr double kYieldTime = 0.3;          // [s]; the wrist gives way to what 
 constexpr double kYieldReach = 2e-3;        // [m], no further than this
 constexpr double kYieldTurn = 0.05;         // [rad]
 constexpr double kSearchPitch = 0.5e-3;     // [m] of radius a try
+constexpr double kEyePitch = 0.25;          // Of the error of a close look, the same by eye
 constexpr double kLearnTime = 0.3;          // [s] in which a weight is learned
 constexpr double kSwings = 5e-3;            // [m] from its hand; no weight stretches it further
 constexpr double kSeenBeside = 1e-3;        // [m] beside the hand, where a part is seen to hang so
@@ -375,9 +376,11 @@ void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
   Vec3 aside = input.X_WD * task_.p_BG - task_.X_WG_goal.p() - search_offset_;
   aside -= aside.dot(d) * d;
   const Vec3 turned = spatial::RotationBetween(task_.X_WG_goal.q(), input.X_WD.q());
+  // It knows the mean of all its looks.
+  const double of_mean = 1 / std::sqrt(static_cast<double>(std::max(1, search_count_.load())));
   for (int k = 0; k < 3; ++k) {
-    aim_offset_[k] -= aside[k] + options_.eye_error * random_.Normal();
-    aim_turn_[k] -= turned[k] + options_.eye_error_angle * random_.Normal();
+    aim_offset_[k] -= aside[k] + of_mean * options_.eye_error * random_.Normal();
+    aim_turn_[k] -= turned[k] + of_mean * options_.eye_error_angle * random_.Normal();
   }
 }
 
@@ -407,7 +410,10 @@ void SimulatedPerson::StartSearch(const Vec3& d, double travel, bool is_by_eye) 
     aim_turn_[k] = options_.aim_error_angle * random_.Normal();
   }
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
-  const double radius = kSearchPitch * std::sqrt(static_cast<double>(search_count_));
+  // Whoever looks tries where it saw the place, no further beside it than it may have seen wrong.
+  const double pitch = is_by_eye ? kEyePitch * options_.eye_error : kSearchPitch;
+  const int beside = search_count_.load() - (is_by_eye ? 1 : 0);
+  const double radius = pitch * std::sqrt(static_cast<double>(beside));
   const double angle = golden * search_count_ + random_.Uniform(0, 0.5);
   search_offset_ =
       spatial::FrameFromZ(d) * Vec3(radius * std::cos(angle), radius * std::sin(angle), 0);

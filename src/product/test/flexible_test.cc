@@ -31,6 +31,9 @@ TEST(FlexibleTest, NamesAndMaterialsTellWhatGives) {
   EXPECT_EQ(kind_of("cable clip"), "snap hook");
   EXPECT_EQ(kind_of("Snap cover"), "snap hook");
   EXPECT_EQ(kind_of("clip holder"), "rigid");
+  EXPECT_EQ(kind_of("Blind rivet 3.2x8"), "rivet");
+  EXPECT_EQ(kind_of("rivet nut M4"), "rigid");
+  EXPECT_EQ(kind_of("E-Ring 4"), "retaining ring");
   EXPECT_EQ(kind_of("Flachdichtung"), "gasket");
   EXPECT_EQ(kind_of("Compression Spring"), "spring");
   EXPECT_EQ(kind_of("GT2 belt"), "cable");
