@@ -222,7 +222,7 @@ const product::Mate* FindThread(const Product& product, OccurrenceId a, Occurren
 /** What of the space between two parts a mate explains. */
 void Explain(const Product& product, SharedVolume* shared) {
   const product::Mate* mate = FindInterference(product, shared->a, shared->b);
-  // The ring that locks a nut is narrower than its thread: by 0.22 of the radius in ISO 7040.
+  // The ring that locks a nut is narrower than its thread: in ISO 7040 by 0.22 of the radius.
   constexpr double kRing = 0.3;  // Of the screw's radius: a choice.
   const product::Mate* thread =
       mate == nullptr ? FindThread(product, shared->a, shared->b) : nullptr;

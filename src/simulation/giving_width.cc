@@ -95,8 +95,8 @@ void Rasterise(const Grid& grid, const Triangle& triangle, const Visit& visit) {
 /** The largest distance of a blocked cell from one that is not, in cells: by the weights 3 and 4 of
  a step beside and across (Borgefors, Computer Vision, Graphics, and Image Processing 34, 1986). */
 double CalcDeepestCell(const Grid& grid, const std::vector<bool>& is_blocked) {
-  constexpr int kBeside = 3;
-  constexpr int kAcross = 4;
+  constexpr int kBeside = 3;  // Borgefors: the weight of a step beside ...
+  constexpr int kAcross = 4;  // ... and of one across.
   std::vector<int> distance(grid.size(), 0);
   const auto at = [&](int column, int row) {
     const bool is_inside = column >= 0 && column < grid.columns && row >= 0 && row < grid.rows;

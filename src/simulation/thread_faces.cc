@@ -21,7 +21,8 @@ bool IsDrawnThread(const product::Mate& mate) {
 
 std::vector<product::FaceId> ListLockingFaces(const product::Product& product,
                                               const product::Mate& mate) {
-  constexpr double kNarrowest = 0.7;  // Of the screw's radius: 0.78 in nuts of ISO 7040. A choice.
+  constexpr double kNarrowest =
+      0.7;  // Of the screw's radius; nuts of ISO 7040 have 0.78. A choice.
   const product::Part& part = product.part_of(mate.a.occurrence);
   const product::Feature& thread = part.features[mate.a.feature.index()];
   constexpr double kOnAxis = 50e-6;  // [m]: rings are drawn less exactly than threads. A choice.
