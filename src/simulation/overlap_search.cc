@@ -169,6 +169,13 @@ std::vector<OverlapSearch::Meeting> OverlapSearch::ListMeetings(OccurrenceId sel
   return meetings;
 }
 
+void OverlapSearch::InsertKnown(OccurrenceId id, std::uint32_t face,
+                                std::vector<std::uint32_t>* faces) const {
+  if (face < input_.product->part_of(id).faces.size()) {
+    Insert(face, faces);
+  }
+}
+
 void OverlapSearch::Examine(OccurrenceId a, OccurrenceId b) {
   std::vector<Meeting> meetings = ListMeetings(a, b);
   for (const Meeting& meeting : ListMeetings(b, a)) {
@@ -196,13 +203,8 @@ void OverlapSearch::Examine(OccurrenceId a, OccurrenceId b) {
     if (allowed > 0 && meeting.depth > allowed + kDepthTolerance) {
       continue;  // It runs through: this has no allowance.
     }
-    const auto insert = [&](OccurrenceId id, std::uint32_t face, std::vector<std::uint32_t>* to) {
-      if (face < input_.product->part_of(id).faces.size()) {
-        Insert(face, to);
-      }
-    };
-    insert(a, meeting.own, is_swapped ? &overlap.faces_b : &overlap.faces_a);
-    insert(b, meeting.other, is_swapped ? &overlap.faces_a : &overlap.faces_b);
+    InsertKnown(a, meeting.own, is_swapped ? &overlap.faces_b : &overlap.faces_a);
+    InsertKnown(b, meeting.other, is_swapped ? &overlap.faces_a : &overlap.faces_b);
   }
   overlap.answer = allowed > 0 ? DrawnOverlap::Answer::kAllowance : DrawnOverlap::Answer::kNone;
   if (along == 0) {
@@ -283,8 +285,8 @@ void OverlapSearch::NoteRelieved(OccurrenceId self, const contact::Contact& cont
   overlap.answer = DrawnOverlap::Answer::kRelief;
   overlap.depth = std::max(overlap.depth, along);
   const bool is_swapped = overlap.a != self;
-  Insert(contact.held_face, is_swapped ? &overlap.faces_b : &overlap.faces_a);
-  Insert(contact.scene_face, is_swapped ? &overlap.faces_a : &overlap.faces_b);
+  InsertKnown(self, contact.held_face, is_swapped ? &overlap.faces_b : &overlap.faces_a);
+  InsertKnown(other, contact.scene_face, is_swapped ? &overlap.faces_a : &overlap.faces_b);
 }
 
 }  // namespace hvas::simulation

@@ -42,6 +42,9 @@ class OverlapSearch {
   /** Lets faces give way where parts lie in one another by no more than faces can. */
   void Relieve();
   void NoteRelieved(product::OccurrenceId self, const contact::Contact& contact, double along);
+  /** Inserts a face of a part, where contact knows which one it is: deep inside it does not. */
+  void InsertKnown(product::OccurrenceId id, std::uint32_t face,
+                   std::vector<std::uint32_t>* faces) const;
   /** Finds out which faces of a pair overlap, and what they allow. */
   void Examine(product::OccurrenceId a, product::OccurrenceId b);
   [[nodiscard]] std::vector<Meeting> ListMeetings(product::OccurrenceId self,

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
 #include "simulation/test/session.h"
 #include "simulation/test/small_products.h"
 
@@ -129,6 +130,38 @@ PartResult Assemble(const std::shared_ptr<const Model>& model) {
   testing::Session session(model);
   (void)RunLockstep(session.MakeExecution(60));
   return session.run.results().back();
+}
+
+TEST(OverlapTest, SmallPartsThatCrossHaveFacesThatAreThere) {
+  // Contact knows no face further inside than some cells of its field, which are small here.
+  Random random(20);
+  int overlapping = 0;
+  for (int draw = 0; draw < 25; ++draw) {
+    SCOPED_TRACE(draw);
+    Product product;
+    product.name = "crossing";
+    for (const char* name : {"first", "second", "third"}) {
+      const Vec3 half(random.Uniform(0.3e-3, 3e-3), random.Uniform(0.3e-3, 3e-3),
+                      random.Uniform(0.3e-3, 3e-3));
+      const auto part = testing::AddPart(&product, name, contact::testing::Block(half));
+      const Vec3 turn(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1));
+      const Vec3 p(random.Uniform(-2e-3, 2e-3), random.Uniform(-2e-3, 2e-3), 0);
+      testing::Place(&product, part, name, Pose(spatial::RotationFromVector(turn), p));
+    }
+    testing::Complete(&product);
+    const auto model = CompileProduct(std::move(product));
+    ASSERT_NE(model, nullptr);
+    for (const DrawnOverlap& overlap : model->sequence.overlaps) {
+      ++overlapping;
+      for (const auto& [id, faces] :
+           {std::pair(overlap.a, overlap.faces_a), std::pair(overlap.b, overlap.faces_b)}) {
+        for (const std::uint32_t face : faces) {
+          EXPECT_LT(face, model->product->part_of(id).faces.size());
+        }
+      }
+    }
+  }
+  EXPECT_GT(overlapping, 20);
 }
 
 TEST(OverlapTest, BlockThatOverlapsItsPocketGoesInByAnAllowanceOfTheDrawnDepth) {
