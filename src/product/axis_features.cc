@@ -129,6 +129,13 @@ Coverage CalcCoverage(const std::vector<const AxisFace*>& faces, double shortest
   return coverage;
 }
 
+std::vector<const AxisFace*> PointTo(const std::vector<AxisFace>& faces) {
+  std::vector<const AxisFace*> pointers(faces.size());
+  std::transform(faces.begin(), faces.end(), pointers.begin(),
+                 [](const AxisFace& face) { return &face; });
+  return pointers;
+}
+
 constexpr std::size_t kMostFaces = 64;  // Beyond that it is a pattern of some kind, no bore.
 
 /** The smallest of the largest gaps at any station along the axis [rad]. */
@@ -162,10 +169,7 @@ bool AreTeeth(const std::vector<AxisFace>& faces) {
   if (faces.size() < kLeastTeeth || faces.size() > kMostTeeth) {
     return false;
   }
-  std::vector<const AxisFace*> pointers;
-  for (const AxisFace& face : faces) {
-    pointers.push_back(&face);
-  }
+  const std::vector<const AxisFace*> pointers = PointTo(faces);
   const std::vector<Arc> arcs = MergeArcs(pointers);
   const bool are_short = std::all_of(arcs.begin(), arcs.end(),
                                      [](const Arc& arc) { return arc.second < kShortestArc; });
@@ -296,10 +300,7 @@ void RemoveShielded(double tolerance, std::vector<Feature>* features) {
 
 /** Whether faces cover half a turn in one piece. */
 bool IsHalfTurn(const std::vector<AxisFace>& faces) {
-  std::vector<const AxisFace*> pointers;
-  for (const AxisFace& face : faces) {
-    pointers.push_back(&face);
-  }
+  const std::vector<const AxisFace*> pointers = PointTo(faces);
   const Coverage coverage = CalcCoverage(pointers);
   return std::abs(coverage.sum - kHalfTurn) < kHalfTurnSlack &&
          std::abs(coverage.largest_gap - kHalfTurn) < kHalfTurnSlack;
