@@ -124,8 +124,8 @@ bool AxisRules::IsLoosePassage(const PlacedAxisHit& hit) const {
   });
 }
 
-std::vector<const PlacedAxisHit*> AxisRules::ChooseWorking(std::size_t begin, std::size_t end,
-                                                           bool is_nut) const {
+std::vector<const PlacedAxisHit*> AxisRules::ChooseWorking(std::size_t begin,
+                                                           std::size_t end) const {
   std::vector<std::vector<const PlacedAxisHit*>> groups;
   for (std::size_t i = begin; i < end && MayGoOn(watch_); ++i) {
     const PlacedAxisHit& hit = hits_[i];
@@ -149,9 +149,8 @@ std::vector<const PlacedAxisHit*> AxisRules::ChooseWorking(std::size_t begin, st
     // A pin passes several bores of one part, one behind the other: the knuckles of a hinge, the
     // ears of a clevis.
     for (const PlacedAxisHit* hit : group) {
-      const double looser = hit->play() - chosen[first]->play();
-      const double limit = limits_.axis_distance * hit->scale;
-      const bool is_alike = is_nut ? looser < limit : std::abs(looser) < limit;
+      const bool is_alike =
+          std::abs(hit->play() - chosen[first]->play()) < limits_.axis_distance * hit->scale;
       if (is_alike && std::none_of(chosen.begin() + static_cast<std::ptrdiff_t>(first),
                                    chosen.end(), [&](const PlacedAxisHit* other) {
                                      return CalcSharedLength(*other, *hit) > 0;

@@ -49,11 +49,9 @@ class AxisRules {
   /** Keeps of the hits [begin, end), which belong to one pair of parts, the working ones of each
    axis: none where a third part (a bushing) lies between, nor for a wide passage around a shaft
    that another part guides; the tightest of the long engagements, and those as tight as it that lie
-   before or behind it.
-   @param is_nut  The holes are a nut's: tighter ones count, too, as the ring of plastic that locks
-   it. */
-  [[nodiscard]] std::vector<const PlacedAxisHit*> ChooseWorking(std::size_t begin, std::size_t end,
-                                                                bool is_nut = false) const;
+   before or behind it. */
+  [[nodiscard]] std::vector<const PlacedAxisHit*> ChooseWorking(std::size_t begin,
+                                                                std::size_t end) const;
 
   /** True where nothing engages in both holes. */
   [[nodiscard]] bool IsUnbolted(const PlacedHoleHit& holes) const;

@@ -71,11 +71,7 @@ class Inference {
     for (std::size_t i = 0; i < pairs_.size() && MayGoOn(watch_); ++i) {
       const Pair& pair = pairs_[i];
       const std::size_t end = i + 1 < pairs_.size() ? pairs_[i + 1].first_axis : axis_hits_.size();
-      const bool is_nut =
-          end > pair.first_axis &&
-          fasteners_[axis_hits_[pair.first_axis].hole_occurrence.index()] == FastenerKind::kNut;
-      const std::vector<const PlacedAxisHit*> working =
-          rules.ChooseWorking(pair.first_axis, end, is_nut);
+      const std::vector<const PlacedAxisHit*> working = rules.ChooseWorking(pair.first_axis, end);
       for (const PlacedAxisHit* hit : working) {
         Add(MateKind::kAxisHole, hit->hole_occurrence, hit->hole, hit->shaft_occurrence,
             hit->shaft);

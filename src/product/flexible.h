@@ -13,12 +13,13 @@ namespace hvas::product {
 struct Part;
 struct Product;
 
-enum class FlexibleKind {  // Records keep the numbers.
-  kStated,                 ///< The user says so.
-  kORing,                  ///< It is stretched over a land, and squeezed in its groove.
-  kRetainingRing,          ///< It is opened or closed by the depth of its groove.
-  kSnapHook,               ///< It bends by its undercut.
-  kGasket,                 ///< It is squeezed: seals.
+/** What gives, and how. Records have the numbers: new kinds come last. */
+enum class FlexibleKind {
+  kStated,         ///< The user says so.
+  kORing,          ///< It is stretched over a land, and squeezed in its groove.
+  kRetainingRing,  ///< It is opened or closed by the depth of its groove.
+  kSnapHook,       ///< It bends by its undercut.
+  kGasket,         ///< It is squeezed: seals.
   kSpring,
   kCable,   ///< It bends: cables, hoses, belts.
   kRubber,  ///< It is stretched: grommets, tyres, and what is of rubber.

@@ -13,6 +13,7 @@
 #include "product/features.h"
 #include "product/product_io.h"
 #include "product/test/flat_face.h"
+#include "product/test/round_face.h"
 #include "product/validate.h"
 #include "product/variants.h"
 
@@ -67,9 +68,7 @@ Part MakeBox(const Vec3& size, const Vec3& cavity = Vec3::Zero()) {
 
 /** A face of revolution about z, as quads between two circles. */
 void AddRevolved(const Surface& surface, double r0, double z0, double r1, double z1, Part* part) {
-  Face face;
-  face.surface = surface;
-  face.first_triangle = static_cast<std::uint32_t>(part->mesh.triangles.size());
+  testing::StartFace(part, surface);
   constexpr int kSteps = 48;
   for (int i = 0; i < kSteps; ++i) {
     const double a = kTurn * i / kSteps;
@@ -77,18 +76,9 @@ void AddRevolved(const Surface& surface, double r0, double z0, double r1, double
     const auto at = [](double r, double angle, double z) {
       return Vec3(r * std::cos(angle), r * std::sin(angle), z);
     };
-    const auto first = static_cast<std::uint32_t>(part->mesh.vertices.size());
-    for (const Vec3& p : {at(r0, a, z0), at(r0, b, z0), at(r1, b, z1), at(r1, a, z1)}) {
-      part->mesh.vertices.push_back(p);
-      face.box_B.Add(p);
-      part->box_B.Add(p);
-    }
-    part->mesh.triangles.push_back({first, first + 1, first + 2});
-    part->mesh.triangles.push_back({first, first + 2, first + 3});
-    face.triangle_count += 2;
+    testing::AddQuad(part, at(r0, a, z0), at(r0, b, z0), at(r1, b, z1), at(r1, a, z1));
   }
-  face.area = std::numbers::pi * (r0 + r1) * std::hypot(r1 - r0, z1 - z0);
-  part->faces.push_back(face);
+  part->faces.back().area = std::numbers::pi * (r0 + r1) * std::hypot(r1 - r0, z1 - z0);
 }
 
 Surface MakeSurface(SurfaceKind kind, double radius, double outward) {
