@@ -162,9 +162,12 @@ def list_missed(product):
         a, b = (mate["hole"], mate["shaft"]) if "hole" in mate else (mate["a"], mate["b"])
         item = product.occurrences[a["occurrence"]]
         feature = product.feature(a)
-        known[frozenset((a["occurrence"], b["occurrence"]))].append(
-            (mate["kind"], add(rotate(item["rotation_wxyz"], feature["origin_mm"]), item["position_mm"]),
-             rotate(item["rotation_wxyz"], feature["axis"])))
+        features = [feature]
+        if "opposite" in a:  # The other wall of a prismatic mate.
+            features.append(product.features[item["part"]][a["opposite"]])
+        known[frozenset((a["occurrence"], b["occurrence"]))] += [
+            (mate["kind"], add(rotate(item["rotation_wxyz"], each["origin_mm"]), item["position_mm"]),
+             rotate(item["rotation_wxyz"], each["axis"])) for each in features]
     boxes = {occurrence: product.box(occurrence) for occurrence in product.occurrences}
     for a, b in itertools.combinations(sorted(product.occurrences), 2):
         if any(boxes[a][0][k] - WIDE_GAP_MM > boxes[b][1][k] or boxes[b][0][k] - WIDE_GAP_MM > boxes[a][1][k]
@@ -213,7 +216,7 @@ def compare(product, a, b, one, other, known):
         if across > 0.7 * max(reach) + 0.3 * min(reach):
             return None
         for kind, p, u in known:
-            if kind == "face_face" and abs(dot(u, one[2])) > 0.999 and abs(dot(u, add(p, one[1], -1))) < WIDE_GAP_MM:
+            if kind in ("face_face", "prismatic") and abs(dot(u, one[2])) > 0.999 and abs(dot(u, add(p, one[1], -1))) < WIDE_GAP_MM:
                 return None
         angle = math.degrees(math.acos(min(1.0, -dot(one[2], other[2]))))
         reason = f"normals {angle:.2f} deg off" if angle > ANGLE_DEG else (

@@ -107,6 +107,13 @@ bool IsHollow(const Product& product, const product::Connector& shaft) {
 }
 
 /** What gives when something goes through it, or goes through something, by its name. */
+bool IsRivet(const Product& product, OccurrenceId id) {
+  const auto is_rivet = [](std::string_view name) {
+    return product::FindFlexibleKind(name) == product::FlexibleKind::kRivet;
+  };
+  return is_rivet(product.part_of(id).name) || is_rivet(product.occurrences[id.index()].name);
+}
+
 bool IsFlexible(const Product& product, OccurrenceId id) {
   const auto is_bent = [](std::string_view name) {
     const auto kind = product::FindFlexibleKind(name);
@@ -178,6 +185,7 @@ FitEvidence MakeFitEvidence(const Product& product, const product::Mate& mate,
   evidence.is_hollow = IsHollow(product, mate.b);
   evidence.is_flexible =
       IsFlexible(product, mate.a.occurrence) || IsFlexible(product, mate.b.occurrence);
+  evidence.is_rivet = IsRivet(product, mate.b.occurrence);
   evidence.hole_thread = thread_of(mate.a);
   evidence.shaft_thread = thread_of(mate.b);
   evidence.shaft_is_pin = product::IsPinName(product.part_of(mate.b.occurrence).name);

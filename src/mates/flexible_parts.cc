@@ -38,6 +38,10 @@ Result<std::vector<OccurrenceId>> ListCalled(const Product& product, const std::
   return called;
 }
 
+FlexiblePart MakeRigid(OccurrenceId id) {
+  return {id, product::FlexibleKind::kStated, 0, "stated"};
+}
+
 void Note(const Product& product, const std::map<OccurrenceId, FlexiblePart>& parts,
           Diagnostics* diagnostics) {
   std::map<PartId, std::pair<const FlexiblePart*, int>> by_part;
@@ -70,7 +74,9 @@ Result<void> SetFlexibleParts(const std::vector<StatedFlexible>& stated,
     if (is_new && !is_all_rigid) {
       entry->second = product::ClassifyFlexible(product->parts[occurrence.part.index()]);
     }
-    if (entry->second) {
+    if (is_all_rigid) {
+      parts[occurrence.id] = MakeRigid(occurrence.id);
+    } else if (entry->second) {
       FlexiblePart part = *entry->second;
       part.occurrence = occurrence.id;
       parts[occurrence.id] = std::move(part);
@@ -85,10 +91,11 @@ Result<void> SetFlexibleParts(const std::vector<StatedFlexible>& stated,
       return Unexpected(called.error());
     }
     for (const OccurrenceId id : *called) {
-      parts.erase(id);
+      parts[id] = MakeRigid(id);
     }
   }
   std::map<OccurrenceId, FlexiblePart> noted = parts;
+  std::erase_if(noted, [](const auto& entry) { return entry.second.allowance == 0; });
   for (const StatedFlexible& entry : stated) {
     const auto called = ListCalled(*product, entry.part, entry.where);
     if (!called) {
@@ -97,10 +104,8 @@ Result<void> SetFlexibleParts(const std::vector<StatedFlexible>& stated,
     for (const OccurrenceId id : *called) {
       noted.erase(id);
       const auto kind = parts.count(id) > 0 ? parts[id].kind : product::FlexibleKind::kStated;
-      parts.erase(id);
-      if (entry.allowance > 0) {
-        parts[id] = {id, kind, entry.allowance, "the side file"};
-      }
+      parts[id] = entry.allowance > 0 ? FlexiblePart{id, kind, entry.allowance, "the side file"}
+                                      : MakeRigid(id);
     }
   }
   Note(*product, noted, diagnostics);

@@ -12,7 +12,7 @@ namespace hvas::mates {
 
 /** Sets the parts of a product that may give: those that are recognised
  (product::ClassifyFlexible), with the allowances that are stated over them. What is stated with an
- allowance of zero, or is among `rigid`, does not give. Notes each part that is recognised.
+ allowance of zero, or is among `rigid`, gets one of zero. Notes each part that is recognised.
  Errors: kNotFound for a name that nothing in the product has.
  @param rigid  Names or paths of occurrences; "all": nothing but what is stated gives. */
 [[nodiscard]] Result<void> SetFlexibleParts(const std::vector<StatedFlexible>& stated,

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "mates/limits.h"
 #include "mates/propose_fit.h"
 #include "product/mesh_ray.h"
 
@@ -433,14 +434,21 @@ Mate TurnToWay(const Product& product, const Mate& mate, const Vec3& way_W) {
   R_WM.col(2) = across_W;
   Mate turned = mate;
   SetFrame(product, Pose(Quat(R_WM), X_WM.p()), &turned);
-  const Span slot = SpanOf(product, mate, mate.a, X_WM.p(), R_WM.col(0));
-  const Span tongue = SpanOf(product, mate, mate.b, X_WM.p(), R_WM.col(0));
+  const auto span_of = [&](const Connector& side, int axis) {
+    return SpanOf(product, mate, side, X_WM.p(), R_WM.col(axis));
+  };
+  const Span slot = span_of(mate.a, 0);
+  const Span tongue = span_of(mate.b, 0);
   turned.hole_low = slot.low;
   turned.hole_high = slot.high;
   turned.shaft_low = tongue.low;
   turned.shaft_high = tongue.high;
-  turned.overlap = std::max(0.0, Intersect(slot, tongue).length());
-  turned.breadth = turned.overlap > 0 ? mate.overlap * mate.breadth / turned.overlap : 0.0;
+  // Walls that only touch end to end do not stand beside each other.
+  const double engaged = Intersect(slot, tongue).length();
+  const double beside = Intersect(span_of(mate.a, 1), span_of(mate.b, 1)).length();
+  const bool is_engaged = std::min(engaged, beside) > InferenceLimits().axial_overlap;
+  turned.overlap = is_engaged ? engaged : 0.0;
+  turned.breadth = is_engaged ? mate.overlap * mate.breadth / engaged : 0.0;
   return turned;
 }
 

@@ -144,6 +144,9 @@ Fit ProposeFit(const FitEvidence& evidence) {
     return {FitKind::kPassage, "", nominal, true,
             "drawn clearance of " + Describe(clearance) + " is more than that of " + choice.code};
   }
+  if (clearance >= -2 * kEqual && evidence.may_pass && evidence.is_rivet) {
+    return {FitKind::kPassage, "", nominal, true, "a rivet, which fills its hole when it is set"};
+  }
   if (clearance >= -2 * kEqual && evidence.may_pass &&
       evidence.shaft_part == FastenerKind::kScrew) {
     return {FitKind::kPassage, "", nominal, true, "a screw in a through hole"};

@@ -17,6 +17,7 @@ struct FitEvidence {
   bool nut_on_shaft{false};  ///< A nut sits on the same shaft: other holes are through holes.
   bool is_flexible{false};   ///< A cable, hose or clip: what gives has no fit.
   bool is_toothed{false};    ///< A hub on the teeth of a shaft, such as a horn on its spline.
+  bool is_rivet{false};      ///< The shaft has the name of a rivet.
   bool is_hollow{false};     ///< The shaft has a bore all along: a ring, bushing or insert.
   bool may_pass{false};  ///< A round shaft may go through a hole without a fit; a width has one.
   product::ThreadKind hole_thread{product::ThreadKind::kNone};
@@ -38,7 +39,7 @@ struct FitEvidence {
  | hole not larger | flexible | insert |
  | play of a proposed code, or less | nut or insert as the shaft | insert |
  | more play than the widest code | a shaft that may pass | passage |
- | hole not smaller | a screw that may pass | passage |
+ | hole not smaller | a rivet or a screw that may pass | passage |
  | interference of a thread's depth, d <= 12 mm | hollow shaft | insert |
  | interference of a thread's depth, d <= 12 mm | any but a pin by its name | thread |
  | interference above 1 um (radius) | none | the lightest press fit of H7/p6, r6, s6 |

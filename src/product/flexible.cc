@@ -146,7 +146,7 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
   constexpr double kMostStretch = 0.25;      // Of an O-ring's inner diameter, to each side.
   constexpr double kRingOpening = 0.1;       // Of the ring's diameter, to each side.
   constexpr double kLeastOpening = 0.3e-3;   // [m]: rings below 6 mm open by more.
-  constexpr double kUndercut = 0.05;         // Of the length of a part with hooks.
+  constexpr double kUndercut = 0.1;          // Of the length of a part with hooks, or of a clip.
   constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
   constexpr double kSqueeze = 0.5;           // Of the thickness of a gasket.
   constexpr double kElongation = 0.15;       // Of the longest side of a part of rubber.
@@ -171,6 +171,7 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
       return std::min(LeastExtent(part), kMostBend);
     case FlexibleKind::kRivet:
       return kHead * LargestExtent(part);
+    case FlexibleKind::kForm:
     case FlexibleKind::kStated:
       break;
   }
@@ -205,6 +206,8 @@ const char* ToString(FlexibleKind kind) {
       return "cable";
     case FlexibleKind::kRivet:
       return "rivet";
+    case FlexibleKind::kForm:
+      return "a wall that bends";
     case FlexibleKind::kStated:
       break;
   }

@@ -24,15 +24,16 @@ enum class FlexibleKind {
   kCable,   ///< It bends: cables, hoses, belts.
   kRubber,  ///< It is stretched: grommets, tyres, and what is of rubber.
   kRivet,   ///< Its second head is formed in its place.
+  kForm,  ///< A wall or an arm of it bends: found where a way needs it (no part is classified so).
 };
 
 [[nodiscard]] const char* ToString(FlexibleKind kind);
 
-/** A part that may give. */
+/** A part that may give, or is stated to be rigid. */
 struct FlexiblePart {
   OccurrenceId occurrence;
   FlexibleKind kind{FlexibleKind::kStated};
-  double allowance{0};  ///< How far it may give where it meets another part [m].
+  double allowance{0};  ///< How far it may give where it meets another part [m]; 0: it is rigid.
   std::string reason;   ///< What says so, in a few words.
 };
 
@@ -43,7 +44,7 @@ struct FlexiblePart {
  kind; its occurrence is left open. None where a part is rigid. */
 [[nodiscard]] std::optional<FlexiblePart> ClassifyFlexible(const Part& part);
 
-/** What is known of a part that gives; null where the part is rigid. */
+/** What is known or stated of how a part gives; null where nothing is. */
 [[nodiscard]] const FlexiblePart* FindFlexible(const Product& product, OccurrenceId id);
 
 }  // namespace hvas::product

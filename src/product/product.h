@@ -342,7 +342,8 @@ struct Product {
   FileHeader header{};                       ///< Where the file has one.
   std::vector<Relation> relations{};         ///< Stated by the user (docs/side-file.md).
   std::vector<ContactPair> contact_pairs{};  ///< Stated by the user.
-  std::vector<FlexiblePart> flexible{};      ///< Parts that may give; not serialised.
+  std::vector<FlexiblePart>
+      flexible{};  ///< Parts that may give, or are stated to be rigid; not serialised.
 
   [[nodiscard]] const Part& part_of(OccurrenceId id) const {
     return parts[occurrences[id.index()].part.index()];

@@ -72,7 +72,7 @@ bool ReadFlexible(const Json& json, product::Product* product) {
         entry.is_array() && entry.size() == 3 && entry[0].is_number_unsigned() &&
         entry[0].get<std::uint64_t>() < product->occurrences.size() && entry[1].is_number() &&
         entry[2].is_number_unsigned() &&
-        entry[2].get<std::uint64_t>() <= static_cast<std::uint64_t>(product::FlexibleKind::kRivet);
+        entry[2].get<std::uint64_t>() <= static_cast<std::uint64_t>(product::FlexibleKind::kForm);
     if (!is_entry) {
       return false;
     }

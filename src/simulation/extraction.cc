@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "base/units.h"
 #include "mates/mate_kind.h"
 #include "mates/place_bodies.h"
+#include "simulation/bending_form.h"
 #include "simulation/giving_width.h"
 #include "simulation/narrow_hole.h"
 #include "simulation/overlap_search.h"
@@ -27,6 +29,9 @@ using product::OccurrenceId;
 constexpr double kWayRelief = kDepthTolerance + 10e-6;  // [m]; a way is free with less
 constexpr double kShortestStep = 0.25e-3;               // [m] between looks along a way
 constexpr double kLongestStep = 2e-3;  // [m]; longer ones could pass through a thin wall.
+// What a wall or an arm that no name tells of may be bent aside at most: as a named snap hook.
+constexpr double kUndercut = 0.05;         // Of the longest side of the smaller part.
+constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
 
 }  // namespace
 
@@ -38,7 +43,8 @@ Extraction::Extraction(const SequenceInput& input, const Sequence* known)
       mates_of_(product_.occurrences.size()),
       memories_(product_.occurrences.size()),
       giving_memories_(product_.occurrences.size()),
-      reliefs_(input) {
+      reliefs_(input),
+      bending_memories_(product_.occurrences.size()) {
   std::map<product::PartId, std::vector<Vec3>> lines_of_part;
   for (const product::Occurrence& occurrence : product_.occurrences) {
     const auto [entry, is_new] = lines_of_part.try_emplace(occurrence.part);
@@ -180,7 +186,7 @@ bool Extraction::MatesAllow(const Unit& unit, const Vec3& direction) const {
   return std::all_of(unit.begin(), unit.end(), [&](OccurrenceId id) {
     const std::vector<MateView>& views = mates_of_[id.index()];
     return std::all_of(views.begin(), views.end(), [&](const MateView& view) {
-      return !IsAround(view.other) || IsAllowed(view, direction) || MayPass(view, id);
+      return !IsAround(view.other) || IsAllowed(view, direction) || MayPass(view, id, direction);
     });
   });
 }
@@ -251,7 +257,8 @@ double Extraction::CalcEngagement(const Unit& unit, const Vec3& direction) const
         is_guided = true;
         farthest = std::max(farthest, CalcWallTravel(view, id, direction));
       }
-      if (!IsAround(view.other) || mate.kind != MateKind::kAxisHole) {
+      if (!IsAround(view.other) || mate.kind != MateKind::kAxisHole ||
+          std::abs(view.axis_W.dot(direction)) <= kParallel) {
         continue;
       }
       is_guided = true;
@@ -265,10 +272,12 @@ double Extraction::CalcEngagement(const Unit& unit, const Vec3& direction) const
   return is_guided ? farthest : std::min(CalcExitDistance(unit, direction), 20e-3);
 }
 
-std::vector<contact::IgnoredPair> Extraction::CollectIgnored(OccurrenceId id) const {
+std::vector<contact::IgnoredPair> Extraction::CollectIgnored(OccurrenceId id,
+                                                             const Vec3& direction) const {
   std::vector<contact::IgnoredPair> ignored;
   for (const MateView& view : mates_of_[id.index()]) {
-    if (!IsAround(view.other) || !mates::HasFit(view.mate->kind)) {
+    if (!IsAround(view.other) || !mates::HasFit(view.mate->kind) ||
+        IsAcrossOpenAxis(view, direction)) {
       continue;
     }
     const auto& own = (view.is_a ? input_.faces_a : input_.faces_b)[view.mate->id.index()];
@@ -302,7 +311,7 @@ bool Extraction::RelieveWays(const std::vector<SequenceStep>& steps) {
 }
 
 void Extraction::RelieveWay(const Unit& unit, const Vec3& direction) {
-  const std::vector<Member> members = ListMembers(unit);
+  const std::vector<Member> members = ListMembers(unit, direction);
   const double step = CalcStep(unit);
   const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
   FaceReliefs::Depths deepest;
@@ -325,14 +334,13 @@ void Extraction::RelieveWay(const Unit& unit, const Vec3& direction) {
 }
 
 std::vector<contact::Allowance> Extraction::CollectAllowances(OccurrenceId id) const {
-  if (!is_giving_) {
+  if (giving_ == Giving::kNone) {
     return allowances_[id.index()];
   }
   // By how far the two may give, where that is more.
   std::vector<contact::Allowance> allowances;
   for (const product::Occurrence& other : product_.occurrences) {
-    const double depth =
-        std::max(input_.give_limits[id.index()], input_.give_limits[other.id.index()]);
+    const double depth = CalcGiveLimit(id, other.id);
     if (depth > 0 && IsAround(other.id)) {
       allowances.push_back({contact::BodyId(other.id.index()), depth, {}, {}});
     }
@@ -349,10 +357,11 @@ std::vector<contact::Allowance> Extraction::CollectAllowances(OccurrenceId id) c
   return allowances;
 }
 
-std::vector<Extraction::Member> Extraction::ListMembers(const Unit& unit) const {
+std::vector<Extraction::Member> Extraction::ListMembers(const Unit& unit,
+                                                        const Vec3& direction) const {
   std::vector<Member> members;
   for (const OccurrenceId id : unit) {
-    Member member{id, CollectIgnored(id), CollectAllowances(id), {}};
+    Member member{id, CollectIgnored(id, direction), CollectAllowances(id), {}};
     for (const OccurrenceId other : unit) {
       member.left_out.emplace_back(other.index());
     }
@@ -388,7 +397,7 @@ double Extraction::CalcStep(const Unit& unit) const {
 std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& direction,
                                                 double from,
                                                 std::span<const contact::BodyId> excepted) {
-  const std::vector<Member> members = ListMembers(unit);
+  const std::vector<Member> members = ListMembers(unit, direction);
   const double step = CalcStep(unit);
   const double exit = CalcExitDistance(unit, direction);
   const int last = static_cast<int>(exit / step);
@@ -450,7 +459,7 @@ std::optional<SequenceStep> Extraction::TryRemove(const Unit& unit, Memory* memo
         continue;
       }
       std::optional<Obstacle> blocker = FindBlocker(unit, direction, 0, {});
-      if (!blocker && is_giving_) {
+      if (!blocker && giving_ != Giving::kNone) {
         blocker = FindTooWide(unit.front(), direction);
       }
       if (!blocker) {
@@ -635,11 +644,43 @@ std::optional<SequenceStep> Extraction::TryRemoveOne(Unit* rest, const Unit& sta
   return std::nullopt;
 }
 
-bool Extraction::MayPass(const MateView& view, OccurrenceId id) const {
+bool Extraction::IsAcrossOpenAxis(const MateView& view, const Vec3& direction) const {
+  // A clip has to hold on to its shaft, and to open: choices.
+  constexpr double kLeastCoverage = 90 * std::numbers::pi / 180;
+  constexpr double kMostCoverage = 330 * std::numbers::pi / 180;
+  const product::Connector& hole = view.mate->a;
+  if (view.mate->kind != MateKind::kAxisHole || direction == Vec3::Zero() ||
+      std::abs(view.axis_W.dot(direction)) > kParallel) {
+    return false;
+  }
+  const double coverage = product_.part_of(hole.occurrence).features[hole.feature.index()].coverage;
+  return coverage >= kLeastCoverage && coverage <= kMostCoverage;
+}
+
+bool Extraction::MayPass(const MateView& view, OccurrenceId id, const Vec3& direction) const {
   const bool is_wall =
       view.mate->kind == MateKind::kFaceFace || view.mate->kind == MateKind::kPrismatic;
-  return is_giving_ && is_wall &&
-         std::max(input_.give_limits[id.index()], input_.give_limits[view.other.index()]) > 0;
+  return giving_ != Giving::kNone && CalcGiveLimit(id, view.other) > 0 &&
+         (is_wall || IsAcrossOpenAxis(view, direction));
+}
+
+bool Extraction::IsStatedRigid(OccurrenceId id) const {
+  const product::FlexiblePart* stated = FindFlexible(product_, id);
+  return stated != nullptr && stated->allowance == 0;
+}
+
+double Extraction::CalcGiveLimit(OccurrenceId id, OccurrenceId other) const {
+  const double known = input_.give_limits.empty() ? 0.0
+                                                  : std::max(input_.give_limits[id.index()],
+                                                             input_.give_limits[other.index()]);
+  if (giving_ != Giving::kByForm || (IsStatedRigid(id) && IsStatedRigid(other))) {
+    return giving_ == Giving::kNone ? 0 : known;
+  }
+  const auto longest = [this](OccurrenceId part) {
+    return product_.part_of(part).box_B.size().maxCoeff();
+  };
+  return std::max(known,
+                  std::min(kLargestUndercut, kUndercut * std::min(longest(id), longest(other))));
 }
 
 bool Extraction::MayGive(OccurrenceId id) const {
@@ -657,16 +698,19 @@ bool Extraction::MayGive(OccurrenceId id) const {
                      });
 }
 
-std::optional<SequenceStep> Extraction::TryRemoveGiving(Unit* rest, const Unit& deferred) {
+std::optional<SequenceStep> Extraction::TryRemoveWith(Giving giving, Unit* rest,
+                                                      const Unit& deferred) {
+  std::vector<Memory>& memories = giving == Giving::kByForm ? bending_memories_ : giving_memories_;
   for (const bool is_deferred : {false, true}) {
     for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
       const OccurrenceId id = (*rest)[i];
-      if (!MayGive(id) || std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred) {
+      if ((giving == Giving::kAsKnown && !MayGive(id)) ||
+          std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred) {
         continue;
       }
-      is_giving_ = true;
-      std::optional<SequenceStep> step = TryRemove({id}, &giving_memories_[id.index()]);
-      is_giving_ = false;
+      giving_ = giving;
+      std::optional<SequenceStep> step = TryRemove({id}, &memories[id.index()]);
+      giving_ = Giving::kNone;
       if (step) {
         NoteGives(id, step->extraction_W);
         rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
@@ -677,10 +721,20 @@ std::optional<SequenceStep> Extraction::TryRemoveGiving(Unit* rest, const Unit& 
   return std::nullopt;
 }
 
-std::map<OccurrenceId, double> Extraction::MeasureGives(OccurrenceId id, const Vec3& direction) {
-  std::map<OccurrenceId, double> deepest;
+std::optional<SequenceStep> Extraction::TryRemoveGiving(Unit* rest, const Unit& deferred) {
+  return TryRemoveWith(Giving::kAsKnown, rest, deferred);
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveBending(Unit* rest, const Unit& deferred) {
+  return TryRemoveWith(Giving::kByForm, rest, deferred);
+}
+
+std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(OccurrenceId id,
+                                                                        const Vec3& direction) {
+  constexpr double kAcross = 0.5;  // Normals within 30 degrees of across the way: a choice.
+  std::map<OccurrenceId, Meeting> meetings;
   const Unit unit{id};
-  const std::vector<Member> members = ListMembers(unit);
+  const std::vector<Member> members = ListMembers(unit, direction);
   const double step = CalcStep(unit);
   const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
   for (int i = 0; i <= last; ++i) {
@@ -688,23 +742,70 @@ std::map<OccurrenceId, double> Extraction::MeasureGives(OccurrenceId id, const V
     input_.scene->Query(input_.scene->shape(query.self), CalcPoseAlong(id, i * step * direction),
                         query, &workspace_);
     for (const contact::Contact& contact : workspace_.contacts()) {
-      if (contact.body.is_valid()) {
-        double& depth = deepest[OccurrenceId(contact.body.index())];
-        depth = std::max(depth, -contact.distance);
+      if (!contact.body.is_valid()) {
+        continue;
+      }
+      Meeting& meeting = meetings[OccurrenceId(contact.body.index())];
+      meeting.depth = std::max(meeting.depth, -contact.distance);
+      if (std::abs(contact.nhat_W.dot(direction)) < kAcross &&
+          contact.distance < meeting.sideways.distance) {
+        meeting.sideways = contact;
+        meeting.travelled = i * step;
       }
     }
   }
-  return deepest;
+  return meetings;
+}
+
+std::optional<OccurrenceId> Extraction::FindWhatBends(OccurrenceId id, OccurrenceId other,
+                                                      const Meeting& meeting, const Vec3& direction,
+                                                      double width) const {
+  if (!(meeting.sideways.distance < 0)) {
+    return std::nullopt;  // It would have to be pushed through, not aside.
+  }
+  const Vec3& p_W = meeting.sideways.p_WC;
+  const Vec3& nhat_W = meeting.sideways.nhat_W;
+  const Vec3 aside_W = (nhat_W - nhat_W.dot(direction) * direction).normalized();
+  const Vec3 travel_W = meeting.travelled * direction;
+  // The part that bends is looked at as drawn, and so is the one that it must have room beside.
+  const auto calc_strain = [&](OccurrenceId part, OccurrenceId beside, const Vec3& moved_W,
+                               const Vec3& inward_W) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    if (IsStatedRigid(part)) {
+      return kNone;
+    }
+    const auto bending =
+        simulation::FindBending(product_, part, p_W - moved_W, inward_W, direction, width);
+    const Vec3 moved_beside_W = travel_W - moved_W;
+    return bending && HasRoomToBend(product_, beside, bending->p_back_W + moved_W - moved_beside_W,
+                                    inward_W, width)
+               ? bending->strain
+               : kNone;
+  };
+  // Past the middle of a thin wall, the nearest way out of it leads on: both sides are looked at.
+  const auto calc_least = [&](OccurrenceId part, OccurrenceId beside, const Vec3& moved_W) {
+    return std::min(calc_strain(part, beside, moved_W, aside_W),
+                    calc_strain(part, beside, moved_W, -aside_W));
+  };
+  const double own = calc_least(id, other, travel_W);
+  const double others = calc_least(other, id, Vec3::Zero());
+  return std::min(own, others) > kBearableStrain ? std::nullopt
+                                                 : std::optional(own <= others ? id : other);
 }
 
 std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& direction) {
-  is_giving_ = false;  // What the way meets without giving.
-  const std::map<OccurrenceId, double> met = MeasureGives(id, direction);
-  is_giving_ = true;
-  for (const auto& [other, depth] : met) {
-    const double limit =
-        std::max(input_.give_limits[id.index()], input_.give_limits[other.index()]);
-    if (limit > 0 && CalcGivingWidth(product_, id, other, direction, limit) > limit) {
+  const Giving giving = std::exchange(giving_, Giving::kNone);  // What is met without giving.
+  const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
+  giving_ = giving;
+  for (const auto& [other, meeting] : meetings) {
+    const double limit = CalcGiveLimit(id, other);
+    if (!(limit > 0)) {
+      continue;
+    }
+    const double width = CalcGivingWidth(product_, id, other, direction, limit);
+    const bool may_bend =
+        giving_ != Giving::kByForm || FindWhatBends(id, other, meeting, direction, width);
+    if (width > limit || !may_bend) {
       return Obstacle{other, 0, {}};
     }
   }
@@ -713,11 +814,26 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
 
 void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
   SetUnit({id}, true);
-  const std::map<OccurrenceId, double> deepest = MeasureGives(id, direction);
+  const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
   SetUnit({id}, false);
-  for (const auto& [other, depth] : deepest) {
-    const bool is_own = input_.give_limits[id.index()] >= input_.give_limits[other.index()];
-    gives_.push_back({is_own ? id : other, is_own ? other : id, depth});
+  for (const auto& [other, meeting] : meetings) {
+    GivingPair give{id, other, meeting.depth};
+    const product::FlexiblePart* own = FindFlexible(product_, id);
+    const product::FlexiblePart* others = FindFlexible(product_, other);
+    const auto limit_of = [](const product::FlexiblePart* part) {
+      return part == nullptr ? 0.0 : part->allowance;
+    };
+    const double limit = std::max(limit_of(own), limit_of(others));
+    give.width =
+        CalcGivingWidth(product_, id, other, direction, limit > 0 ? limit : kLargestUndercut);
+    const auto bending = FindWhatBends(id, other, meeting, direction, give.width);
+    const bool is_known = limit > 0 && give.width <= limit;
+    const bool is_own = is_known || !bending ? limit_of(own) >= limit_of(others) : *bending == id;
+    give.kind = !is_known ? product::FlexibleKind::kForm : is_own ? own->kind : others->kind;
+    if (!is_own) {
+      std::swap(give.flexible, give.other);
+    }
+    gives_.push_back(give);
     allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
     allowances_[other.index()] = ListAllowances(overlaps_, gives_, other);
   }
@@ -767,6 +883,7 @@ void Extraction::Forget(const Unit& parts) {
   for (const OccurrenceId id : parts) {
     memories_[id.index()] = {};
     giving_memories_[id.index()] = {};
+    bending_memories_[id.index()] = {};
   }
   unit_memories_.clear();
 }

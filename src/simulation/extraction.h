@@ -96,6 +96,13 @@ class Extraction {
    @param deferred  Sorted; parts that are tried after all others. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveGiving(Unit* rest, const Unit& deferred);
 
+  /** Takes out the first of these parts that can go where a wall or an arm bends aside, of it or of
+   what is in its way, by no more than its form bears (bending_form.h), and erases it from them: a
+   last resort, for hooks and beads that no name tells of. Parts that are stated to be rigid do not
+   bend.
+   @param deferred  Sorted; parts that are tried after all others. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveBending(Unit* rest, const Unit& deferred);
+
   /** Allows those of these parts that overlap as drawn, and block one another's ways, half a
    millimetre more than the drawn depth, with all their faces. Returns false where there are none.
    */
@@ -139,6 +146,22 @@ class Extraction {
     std::optional<Obstacle> blocker;  // none: the mates forbid it
   };
 
+  /** How far parts may give where they meet. */
+  enum class Giving : std::uint8_t {
+    kNone,
+    kAsKnown,  ///< By what SequenceInput::give_limits has.
+    kByForm,   ///< By what a wall that bends may at most.
+  };
+
+  /** What a part meets of another one on its way out. */
+  struct Meeting {
+    double depth{0};  ///< Largest depth of contact [m].
+    /** The deepest contact whose normal is across the way, at the drawn place of the other part;
+     its distance is 0 where there is none. */
+    contact::Contact sideways{};
+    double travelled{0};  ///< Where on the way it is [m].
+  };
+
   /** What was tried last, so that it is tried again only when something has changed. */
   struct Memory {
     std::vector<Attempt> attempts;
@@ -147,7 +170,8 @@ class Extraction {
 
   /** Lets the faces give way that a unit meets on its way out. */
   void RelieveWay(const Unit& unit, const Vec3& direction);
-  [[nodiscard]] std::vector<Member> ListMembers(const Unit& unit) const;
+  /** The parts of a unit that goes along a direction, with what contact leaves out. */
+  [[nodiscard]] std::vector<Member> ListMembers(const Unit& unit, const Vec3& direction) const;
   /** The query for what a member meets deeper than `depth` [m]; spans of the member. */
   [[nodiscard]] static contact::QueryOptions MakeQuery(const Member& member, double depth);
   /** Where a part is when it has moved from its drawn pose by `travel_W` [m]. */
@@ -155,15 +179,29 @@ class Extraction {
   /** Distance between looks along a way [m]. */
   [[nodiscard]] double CalcStep(const Unit& unit) const;
   [[nodiscard]] std::vector<contact::Allowance> CollectAllowances(product::OccurrenceId id) const;
-  /** Whether a part that gives gets past a face that it touches in its place. */
-  [[nodiscard]] bool MayPass(const MateView& view, product::OccurrenceId id) const;
+  /** Whether a part that gives gets past a face that it touches in its place, or off a shaft that
+   it does not go all the way round. */
+  [[nodiscard]] bool MayPass(const MateView& view, product::OccurrenceId id,
+                             const Vec3& direction) const;
   /** Whether a part gives, or one that was found in its way. */
   [[nodiscard]] bool MayGive(product::OccurrenceId id) const;
-  /** How deep a part lies on its way out in what it meets there [m]. @pre It is in the unit. */
-  [[nodiscard]] std::map<product::OccurrenceId, double> MeasureGives(product::OccurrenceId id,
-                                                                     const Vec3& direction);
-  /** Finds what is in the way of a part on more of its width than the two may give: a wall that it
-   would have to go through. @pre It is in the unit, and parts give. */
+  /** How far two parts may give when they pass one another [m]. */
+  [[nodiscard]] double CalcGiveLimit(product::OccurrenceId id, product::OccurrenceId other) const;
+  [[nodiscard]] bool IsStatedRigid(product::OccurrenceId id) const;
+  /** Takes out the first part of `rest` that can go while parts give. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveWith(Giving giving, Unit* rest,
+                                                          const Unit& deferred);
+  /** What a part meets on its way out. @pre It is in the unit. */
+  [[nodiscard]] std::map<product::OccurrenceId, Meeting> MeasureMeetings(product::OccurrenceId id,
+                                                                         const Vec3& direction);
+  /** Which of two parts bends when they meet; none where neither bears it. */
+  [[nodiscard]] std::optional<product::OccurrenceId> FindWhatBends(product::OccurrenceId id,
+                                                                   product::OccurrenceId other,
+                                                                   const Meeting& meeting,
+                                                                   const Vec3& direction,
+                                                                   double width) const;
+  /** Finds what is in the way of a part on more of its width than the two may give, a wall that it
+   would have to go through, or what does not bend. @pre It is in the unit, and parts give. */
   [[nodiscard]] std::optional<Obstacle> FindTooWide(product::OccurrenceId id,
                                                     const Vec3& direction);
   /** Notes how far a part, or what it passes, gives on its way out. */
@@ -174,7 +212,12 @@ class Extraction {
   }
 
   void SetUnit(const Unit& unit, bool is_in_unit);
-  [[nodiscard]] std::vector<contact::IgnoredPair> CollectIgnored(product::OccurrenceId id) const;
+  /** Faces of the mates of a part that fits answer for. Those of an axis that the part leaves
+   across it have contact. */
+  [[nodiscard]] std::vector<contact::IgnoredPair> CollectIgnored(
+      product::OccurrenceId id, const Vec3& direction = Vec3::Zero()) const;
+  /** Whether a direction is across the axis of a mate, whose hole is open to a side. */
+  [[nodiscard]] bool IsAcrossOpenAxis(const MateView& view, const Vec3& direction) const;
   [[nodiscard]] SequenceStep MakeStep(const Unit& unit, const Vec3& direction) const;
   /** Normals of the faces that a part touches, out of them. */
   [[nodiscard]] std::vector<Vec3> CollectContactNormals(product::OccurrenceId id);
@@ -210,7 +253,8 @@ class Extraction {
   std::vector<Memory> giving_memories_;                      // by occurrence
   std::map<Unit, Memory> unit_memories_;
   FaceReliefs reliefs_;
-  bool is_giving_{false};  // Parts give as far as they may.
+  std::vector<Memory> bending_memories_;  // by occurrence
+  Giving giving_{Giving::kNone};
   contact::QueryWorkspace workspace_;
 };
 

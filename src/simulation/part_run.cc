@@ -8,7 +8,6 @@
 #include "base/units.h"
 #include "mates/mate_kind.h"
 #include "product/flexible.h"
-#include "simulation/giving_width.h"
 
 namespace hvas::simulation {
 
@@ -124,6 +123,7 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
                             overlap.is_beyond,
                             is_a ? overlap.faces_a : overlap.faces_b,
                             is_a ? overlap.faces_b : overlap.faces_a,
+                            {},
                             {}});
     }
   }
@@ -132,18 +132,15 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
     if (is_own || is_met(give.other, give.flexible)) {
       const OccurrenceId own = is_own ? give.flexible : give.other;
       const OccurrenceId other = is_own ? give.other : give.flexible;
-      const product::FlexiblePart* part = product::FindFlexible(*model().product, give.flexible);
-      const double width = part == nullptr ? 0
-                                           : CalcGivingWidth(*model().product, own, other,
-                                                             step.extraction_W, part->allowance);
       allowances.push_back({PartAllowance::Kind::kGive,
                             own,
                             other,
-                            std::max(width, give.depth),
+                            std::max(give.width, give.depth),
                             false,
                             {},
                             {},
-                            give.flexible});
+                            give.flexible,
+                            give.kind});
     }
   }
   return allowances;
@@ -175,9 +172,8 @@ std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowa
                           units::ToMm(deepest->depth), PathOf(deepest->other), more);
       continue;
     }
-    const product::FlexiblePart* part = FindFlexible(*model().product, deepest->flexible);
     text += fmt::format("goes in by giving {:.2f} mm ({}{})", units::ToMm(deepest->depth),
-                        part == nullptr ? "part" : product::ToString(part->kind),
+                        product::ToString(deepest->flexible_kind),
                         deepest->flexible == deepest->own ? "" : ": " + PathOf(deepest->flexible));
   }
   return text;

@@ -31,6 +31,7 @@ struct PartAllowance {
   std::vector<std::uint32_t> own_faces;    ///< kDrawn: the faces that overlap.
   std::vector<std::uint32_t> other_faces;  ///< kDrawn: those of the other part.
   product::OccurrenceId flexible;          ///< kGive: the one that gives.
+  product::FlexibleKind flexible_kind{product::FlexibleKind::kStated};  ///< kGive: why it may.
 };
 
 /** How one part fared. */

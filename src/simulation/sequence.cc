@@ -247,9 +247,14 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
     graph->emplace(&extraction_, *rest);
   }
   (*graph)->Keep(*rest);
-  if (!TakeOutBody(&**graph, rest, removed, sequence)) {
-    GiveUpOne(&**graph, rest, sequence);
+  if (TakeOutBody(&**graph, rest, removed, sequence)) {
+    return;
   }
+  if (std::optional<SequenceStep> bending = extraction_.TryRemoveBending(rest, connecting)) {
+    removed->push_back(std::move(*bending));
+    return;
+  }
+  GiveUpOne(&**graph, rest, sequence);
 }
 
 void Planner::PlanLevel(Unit rest, Sequence* sequence) {

@@ -65,7 +65,9 @@ struct DrawnOverlap {
 struct GivingPair {
   product::OccurrenceId flexible;
   product::OccurrenceId other;
-  double depth{0};  ///< How far it gives on the way [m].
+  double depth{0};  ///< Depth of contact on the way [m].
+  double width{0};  ///< How far it gives sideways [m] (CalcGivingWidth).
+  product::FlexibleKind kind{product::FlexibleKind::kStated};  ///< Why it may.
 };
 
 /** How far a face gives way where it lies in another part as drawn, or would on its way in. */

@@ -50,9 +50,8 @@ nlohmann::ordered_json ToJson(const Model& model, const PartAllowance& allowance
     json["faces"] = allowance.own_faces;
     json["other_faces"] = allowance.other_faces;
   } else {
-    const product::FlexiblePart* part = FindFlexible(*model.product, allowance.flexible);
     json["flexible"] = PathOf(model, allowance.flexible);
-    json["flexible_kind"] = ToString(part != nullptr ? part->kind : product::FlexibleKind::kStated);
+    json["flexible_kind"] = ToString(allowance.flexible_kind);
   }
   return json;
 }

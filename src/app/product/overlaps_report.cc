@@ -76,7 +76,9 @@ void PrintFlexible(const Product& product, const std::vector<FlexiblePart>& part
 
 std::vector<FlexiblePart> ListFlexible(const Product& product, const Selection& selection) {
   std::vector<FlexiblePart> parts = product.flexible;
-  std::erase_if(parts, [&](const FlexiblePart& part) { return !selection.Has(part.occurrence); });
+  std::erase_if(parts, [&](const FlexiblePart& part) {
+    return part.allowance == 0 || !selection.Has(part.occurrence);
+  });
   return parts;
 }
 

@@ -50,9 +50,9 @@ TEST(FlexiblePartsTest, RecognisedPartsGiveUnlessTheyAreSaidToBeRigid) {
   ASSERT_EQ(diagnostics.items().size(), 1U);  // One for equal parts.
   EXPECT_EQ(diagnostics.items()[0].code, "flexible-part");
   ASSERT_TRUE(SetFlexibleParts({}, {"O-ring 2"}, &product, &diagnostics));
-  EXPECT_EQ(List(product), (Pairs{{1, 2e-3}}));
+  EXPECT_EQ(List(product), (Pairs{{1, 2e-3}, {2, 0}}));
   ASSERT_TRUE(SetFlexibleParts({}, {"all"}, &product, &diagnostics));
-  EXPECT_TRUE(product.flexible.empty());
+  EXPECT_EQ(List(product), (Pairs{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));  // Also what has no name.
 }
 
 TEST(FlexiblePartsTest, StatedAllowancesHoldOverRecognisedOnes) {
@@ -60,10 +60,10 @@ TEST(FlexiblePartsTest, StatedAllowancesHoldOverRecognisedOnes) {
   Diagnostics diagnostics;
   ASSERT_TRUE(SetFlexibleParts({{"bracket", 0.4e-3, "here"}, {"O-ring 2", 0, "here"}}, {}, &product,
                                &diagnostics));
-  EXPECT_EQ(List(product), (Pairs{{1, 2e-3}, {3, 0.4e-3}}));
-  EXPECT_EQ(product.flexible[1].kind, product::FlexibleKind::kStated);
+  EXPECT_EQ(List(product), (Pairs{{1, 2e-3}, {2, 0}, {3, 0.4e-3}}));
+  EXPECT_EQ(product.flexible[2].kind, product::FlexibleKind::kStated);
   ASSERT_TRUE(SetFlexibleParts({{"O-ring", 0.5e-3, "here"}}, {"all"}, &product, &diagnostics));
-  EXPECT_EQ(List(product), (Pairs{{1, 0.5e-3}}));
+  EXPECT_EQ(List(product), (Pairs{{0, 0}, {1, 0.5e-3}, {2, 0}, {3, 0}}));
 }
 
 TEST(FlexiblePartsTest, NameThatNothingHasIsAnErrorThatNamesIt) {

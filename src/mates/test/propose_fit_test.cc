@@ -57,6 +57,15 @@ TEST(ProposeFit, FollowsItsTable) {
   EXPECT_FALSE(propose(5, 5).reason.empty());
 }
 
+TEST(ProposeFit, ARivetPassesThroughHolesThatAreDrawnEqual) {
+  FitEvidence evidence;
+  evidence.hole_radius = evidence.shaft_radius = 2e-3;
+  evidence.may_pass = true;
+  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kClearance);
+  evidence.is_rivet = true;
+  EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kPassage);
+}
+
 TEST(ProposeFit, PinInAHoleThatIsSlightlySmallerIsPressed) {
   FitEvidence evidence;
   evidence.hole_radius = 1.45e-3;

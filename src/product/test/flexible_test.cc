@@ -60,7 +60,8 @@ TEST(FlexibleTest, AllowanceFollowsTheKindAndTheSize) {
   EXPECT_DOUBLE_EQ(allowance("gasket", Vec3(40e-3, 30e-3, 1e-3)), 0.5e-3);
   EXPECT_DOUBLE_EQ(allowance("rubber tyre", Vec3(80e-3, 80e-3, 16e-3)), 12e-3);
   EXPECT_DOUBLE_EQ(allowance("rubber sheet", Vec3(80e-3, 80e-3, 2e-3)), 2e-3);
-  EXPECT_DOUBLE_EQ(allowance("snap hook", Vec3(20e-3, 5e-3, 5e-3)), 1e-3);
+  EXPECT_DOUBLE_EQ(allowance("snap hook", Vec3(20e-3, 5e-3, 5e-3)), 2e-3);
+  EXPECT_DOUBLE_EQ(allowance("rod clip", Vec3(14e-3, 5e-3, 5e-3)), 1.4e-3);
   EXPECT_DOUBLE_EQ(allowance("snap hook", Vec3(90e-3, 5e-3, 5e-3)), 2e-3);
 }
 

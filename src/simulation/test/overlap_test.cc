@@ -118,6 +118,14 @@ Product TaperedPocket(double overlap, double narrowing) {
       {{0, 0}, {15e-3, 0}, {15e-3, 25e-3}, {kHalf - narrowing, 25e-3}, {kHalf, 13e-3}}, overlap);
 }
 
+/** States all parts of a product to be rigid. */
+Product StateRigid(Product product) {
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    product.flexible.push_back({occurrence.id, product::FlexibleKind::kStated, 0, "a test"});
+  }
+  return product;
+}
+
 std::shared_ptr<const Model> CompileProduct(Product product) {
   Diagnostics diagnostics;
   auto model =
@@ -219,8 +227,8 @@ TEST(OverlapTest, WayThatNeedsALittleMoreThanTheDrawnDepthIsTakenAndThatIsSaid) 
   EXPECT_TRUE(block.allowances[0].is_beyond);
   EXPECT_PRED_FORMAT2(IsSubstring, "0.5 mm more than drawn", block.note);
   EXPECT_FALSE(CompileProduct(BlockInPocket(0.6e-3, 0))->sequence.overlaps[0].is_beyond);
-  // Half a millimetre more, and not 0.6.
-  EXPECT_EQ(CompileProduct(TaperedPocket(0.1e-3, 0.6e-3))->sequence.gaps.size(), 1U);
+  // Half a millimetre more, and not 0.6, where the walls do not bend.
+  EXPECT_EQ(CompileProduct(StateRigid(TaperedPocket(0.1e-3, 0.6e-3)))->sequence.gaps.size(), 1U);
 }
 
 std::array<Vec3, 4> Reversed(const std::array<Vec3, 4>& p) {
@@ -351,6 +359,61 @@ TEST(GiveTest, RingThatMayGiveTooLittleOrNotAtAllStaysOut) {
     EXPECT_EQ(model->sequence.gaps[0].occurrence, OccurrenceId(1));
     EXPECT_TRUE(model->sequence.gives.empty());
   }
+}
+
+/** A neck with a bead, and a cap with a lip below it, 0.25 mm narrower; no name tells of a snap. */
+Product CapOnBead(double outer_radius) {
+  using contact::testing::CylinderZ;
+  using contact::testing::PlaneAt;
+  Product product;
+  product.name = "bottle";
+  const auto neck = testing::AddPart(
+      &product, "neck",
+      contact::testing::Lathe({{{{0, 0}, {10e-3, 0}}, PlaneAt(0, -1)},
+                               {{{10e-3, 0}, {10e-3, 12e-3}}, CylinderZ(10e-3, 1)},
+                               {{{10e-3, 12e-3}, {10.3e-3, 12e-3}}, PlaneAt(12e-3, -1)},
+                               {{{10.3e-3, 12e-3}, {10.3e-3, 13e-3}}, CylinderZ(10.3e-3, 1)},
+                               {{{10.3e-3, 13e-3}, {10e-3, 13e-3}}, PlaneAt(13e-3, 1)},
+                               {{{10e-3, 13e-3}, {10e-3, 17e-3}}, CylinderZ(10e-3, 1)},
+                               {{{10e-3, 17e-3}, {0, 17e-3}}, PlaneAt(17e-3, 1)}},
+                              64));
+  const double r = outer_radius;
+  const auto cap = testing::AddPart(
+      &product, "cap",
+      contact::testing::Lathe({{{{0, 17e-3}, {10.4e-3, 17e-3}}, PlaneAt(17e-3, -1)},
+                               {{{10.4e-3, 17e-3}, {10.4e-3, 11e-3}}, CylinderZ(10.4e-3, -1)},
+                               {{{10.4e-3, 11e-3}, {10.05e-3, 11e-3}}, PlaneAt(11e-3, 1)},
+                               {{{10.05e-3, 11e-3}, {10.05e-3, 10e-3}}, CylinderZ(10.05e-3, -1)},
+                               {{{10.05e-3, 10e-3}, {r, 10e-3}}, PlaneAt(10e-3, -1)},
+                               {{{r, 10e-3}, {r, 19e-3}}, CylinderZ(r, 1)},
+                               {{{r, 19e-3}, {0, 19e-3}}, PlaneAt(19e-3, 1)}},
+                              64));
+  testing::Place(&product, neck, "neck");
+  testing::Place(&product, cap, "cap");
+  testing::Complete(&product);
+  return product;
+}
+
+TEST(GiveTest, AWallThatBendsSnapsOverABeadWithoutANameThatTellsOfIt) {
+  const auto model = CompileProduct(CapOnBead(11.6e-3));
+  ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
+  ASSERT_EQ(model->sequence.gives.size(), 1U);
+  EXPECT_EQ(model->sequence.gives[0].kind, product::FlexibleKind::kForm);
+  EXPECT_EQ(model->sequence.gives[0].flexible, OccurrenceId(1));
+  EXPECT_NEAR(model->sequence.gives[0].width, 0.25e-3, 0.1e-3);
+  const PartResult cap = Assemble(model);
+  EXPECT_TRUE(cap.is_seated) << cap.reason;
+  EXPECT_EQ(cap.allowances.size(), 1U);
+  EXPECT_PRED_FORMAT2(IsSubstring, " mm (a wall that bends)", cap.note);
+}
+
+TEST(GiveTest, AWallThatIsThickOrStatedToBeRigidDoesNotBend) {
+  const auto thick = CompileProduct(CapOnBead(16e-3));
+  EXPECT_EQ(thick->sequence.gaps.size(), 1U);
+  EXPECT_TRUE(thick->sequence.gives.empty());
+  const auto rigid = CompileProduct(StateRigid(CapOnBead(11.6e-3)));
+  EXPECT_EQ(rigid->sequence.gaps.size(), 1U);
+  EXPECT_TRUE(rigid->sequence.gives.empty());
 }
 
 TEST(GiveTest, PartThatNeedsNoGiveHasNone) {
