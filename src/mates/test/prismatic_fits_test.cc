@@ -410,8 +410,8 @@ TEST(PrismaticFits, LegsThatTouchAPlateSideBySideAreNone) {
   Product product;
   AddBlock(testing::AddPart(&product, "plate"), Vec3(20e-3, 8e-3, 0), -1e-3, 1e-3);
   Part* rod = testing::AddPart(&product, "bent rod");
-  testing::AddRectangle(rod, Vec3(-5e-3, 0, 1e-3), -Vec3::UnitZ(), 10e-3, 6e-3);
-  testing::AddRectangle(rod, Vec3(5e-3, 0, -1e-3), Vec3::UnitZ(), 10e-3, 6e-3);
+  testing::AddRectangle(rod, Vec3(-5e-3, 0, 1e-3), -Vec3::UnitZ(), 5e-3, 3e-3);
+  testing::AddRectangle(rod, Vec3(5e-3, 0, -1e-3), Vec3::UnitZ(), 5e-3, 3e-3);
   testing::AddOccurrence(&product, product::PartId(0), spatial::Pose());
   testing::AddOccurrence(&product, product::PartId(1), spatial::Pose());
   Diagnostics diagnostics;
