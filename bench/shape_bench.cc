@@ -6,22 +6,27 @@
                                                                    parts too.
  */
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "base/digest.h"
 #include "base/file_cache.h"
 #include "base/test/temporary_folder.h"
 #include "base/units.h"
 #include "cad/import.h"
 #include "contact/shape.h"
 #include "contact/shape_cache.h"
+#include "contact/shape_io.h"
 #include "simulation/shapes.h"
 
 namespace {
@@ -45,6 +50,7 @@ struct Row {
   double build_cpu{0}, build_wall{0}, load_cpu{0}, load_wall{0};  // [s]
   ShapeMemory memory;
   std::size_t points{0};
+  std::uint64_t digest{0};  // Of the shapes' bytes, in their order.
 
   Row& operator+=(const Row& other) {
     parts += other.parts;
@@ -56,6 +62,8 @@ struct Row {
     load_wall += other.load_wall;
     memory += other.memory;
     points += other.points;
+    const std::array both{digest, other.digest};
+    digest = hvas::Checksum64(std::as_bytes(std::span(both)));
     return *this;
   }
 };
@@ -95,6 +103,7 @@ bool MeasurePart(const ShapeSource& source, const ShapeOptions& options, Row* ro
   row->area = CalcArea(source);
   row->memory = shape->CalcMemory();
   row->points = shape->point_count();
+  row->digest = hvas::Checksum64(hvas::contact::SerialiseShape(*shape));
   return true;
 }
 
@@ -105,22 +114,23 @@ std::string ToText(const std::string& name, double voxel, const Row& r) {
   return fmt::format(
       "{:28.28s} {:>6s} {:5d} {:8d} {:9.0f} {:8.1f} {:8.1f} {:7.3f} {:8.2f} {:6.2f} {:8.3f} "
       "{:7.2f} "
-      "{:7.2f} {:7.2f} {:7.2f} {:7.2f} {:7d}",
+      "{:7.2f} {:7.2f} {:7.2f} {:7.2f} {:7d} {:016x}",
       name, voxel > 0 ? fmt::format("{:.2f}", hvas::units::ToMm(voxel)) : "chosen", r.parts,
       r.triangles, area_mm2, 1e3 * r.build_cpu, 1e3 * r.build_wall, each * r.build_cpu,
       1e3 * r.load_cpu, 100 * r.load_cpu / std::max(r.build_cpu, 1e-9),
       1e-3 * static_cast<double>(r.memory.total()) / area_mm2, mb(r.memory.total()),
-      mb(r.memory.field), mb(r.memory.tables), mb(r.memory.mesh), mb(r.memory.shell), r.points);
+      mb(r.memory.field), mb(r.memory.tables), mb(r.memory.mesh), mb(r.memory.shell), r.points,
+      r.digest);
 }
 
 std::string ToJson(const std::string& name, double voxel, const Row& r) {
   return fmt::format(
       R"({{"name": "{}", "voxel_mm": {}, "parts": {}, "triangles": {}, "area_mm2": {:.6g}, )"
       R"("build_cpu_s": {:.6g}, "build_wall_s": {:.6g}, "load_cpu_s": {:.6g}, "load_wall_s": {:.6g}, )"
-      R"("field_bytes": {}, "tables_bytes": {}, "mesh_bytes": {}, "shell_bytes": {}, "points": {}}})",
+      R"("field_bytes": {}, "tables_bytes": {}, "mesh_bytes": {}, "shell_bytes": {}, "points": {}, "digest": "{:016x}"}})",
       name, hvas::units::ToMm(voxel), r.parts, r.triangles, 1e6 * r.area, r.build_cpu, r.build_wall,
       r.load_cpu, r.load_wall, r.memory.field, r.memory.tables, r.memory.mesh, r.memory.shell,
-      r.points);
+      r.points, r.digest);
 }
 
 struct Arguments {
@@ -176,9 +186,9 @@ int main(int argc, char** argv) {
     fmt::print(
         "{:28s} {:>6s} {:>5s} {:>8s} {:>9s} {:>8s} {:>8s} {:>7s} {:>8s} {:>6s} {:>8s} {:>7s} "
         "{:>7s} "
-        "{:>7s} {:>7s} {:>7s} {:>7s}\n",
+        "{:>7s} {:>7s} {:>7s} {:>7s} {:>16s}\n",
         "file", "voxel", "parts", "tri", "area_mm2", "cpu_ms", "wall_ms", "s/part", "load_ms",
-        "load_%", "kB/mm2", "MB", "field", "tables", "mesh", "shell", "points");
+        "load_%", "kB/mm2", "MB", "field", "tables", "mesh", "shell", "points", "digest");
   }
   std::vector<double> voxels{arguments.voxel};
   if (!arguments.is_given_only) {

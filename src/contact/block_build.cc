@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace hvas::contact {
 namespace {
@@ -18,6 +19,9 @@ Vec3 GridPoint(int n, int side) {
 // when that one is ignored or when the part as made differs from the drawing.
 constexpr double kFaceMarginVoxels = 0.25;
 constexpr double kLeastFaceMargin = 100e-6;  // [m]
+
+const double kOctantRadius =
+    4 * kHalfDiagonal;  // Of the ball around an octant of a block, in voxels.
 
 constexpr double kDeepestContact = 200e-6;  // [m]: the depth of exact zones (contact.md, "Zones").
 
@@ -87,7 +91,11 @@ BlockBuilder::BlockBuilder(const Shape::Data& data, const NearSearch& search)
       h_(data.voxel),
       exact_depth_(CalcExactDepth(data.voxel)),
       block_reach_(CalcBlockReach(data.voxel)),
-      face_margin_(std::max(kFaceMarginVoxels * data.voxel, kLeastFaceMargin)) {}
+      face_margin_(std::max(kFaceMarginVoxels * data.voxel, kLeastFaceMargin)) {
+  for (const double deviation : data.exact.deviation) {
+    most_deviation_ = std::max(most_deviation_, 2 * deviation + 1e-9);
+  }
+}
 
 Vec3 BlockBuilder::CentreOf(const Index3& zone) const {
   return block_->origin + h_ * (2.0 * Vec3(zone[0], zone[1], zone[2]) + Vec3::Ones());
@@ -97,18 +105,58 @@ Zone* BlockBuilder::ZoneOf(const Index3& zone) const {
   return &block_->zones[static_cast<std::size_t>(zone[2] * 16 + zone[1] * 4 + zone[0])];
 }
 
-void BlockBuilder::Build(const NearList& list, Block* block) {
+void BlockBuilder::Build(const NearSet& near, Block* block) {
   block_ = block;
-  hint_ = list.front().triangle;
+  hint_ = near.list.front().triangle;
   const Vec3 middle = block->origin + Vec3::Constant(4 * h_);
-  if (!TryExact(list, middle, 4 * h_, {0, 0, 0}, 4)) {
+  if (!TryExact(near.list, middle, 4 * h_, {0, 0, 0}, 4)) {
+    search_.FilterOctants(near, middle - Vec3::Constant(2 * h_), middle + Vec3::Constant(2 * h_),
+                          kOctantRadius * h_, 0xff, &begun_, &octants_);
+    if (IsFar(middle)) {
+      return;
+    }
     for (int o = 0; o < 8; ++o) {
-      const Vec3 centre = middle + 2 * h_ * Corner(o);
-      search_.Filter(list, centre, 4 * kHalfDiagonal * h_, &octant_);
-      BuildOctant({2 * (o & 1), 2 * ((o >> 1) & 1), 2 * (o >> 2)}, &octant_);
+      BuildOctant({2 * (o & 1), 2 * ((o >> 1) & 1), 2 * (o >> 2)},
+                  &octants_[static_cast<std::size_t>(o)]);
     }
   }
   block->face = block->is_near ? FindOnlyFace() : kNoFace;
+}
+
+// Many blocks that a ball around them says nothing about are found to be too far away by balls
+// around their octants. The side of such a block is that of its last zone, where it is clear: at a
+// gap of the mesh, or where faces coincide, it is not.
+bool BlockBuilder::IsFar(const Vec3& middle) {
+  if (!data_.mesh.is_closed) {
+    return false;
+  }
+  const auto is_octant_far = [&](std::size_t o) {
+    const Vec3 centre = middle + 2 * h_ * Corner(static_cast<int>(o));
+    const NearSet& octant = octants_[o];
+    return search_.Find(octant.list, centre, 0, octant.least.triangle).distance >
+           (block_reach_ + kOctantRadius * h_) * kSlack + most_deviation_;
+  };
+  const auto nearest = std::min_element(
+      octants_.begin(), octants_.end(),
+      [](const NearSet& a, const NearSet& b) { return a.least.distance < b.least.distance; });
+  if (!is_octant_far(static_cast<std::size_t>(nearest - octants_.begin()))) {
+    return false;
+  }
+  for (std::size_t o = 0; o < octants_.size(); ++o) {
+    if (!is_octant_far(o)) {
+      return false;
+    }
+  }
+  const auto side_at = [&](double from_middle) {
+    const Vec3 p = middle + Vec3::Constant(from_middle * h_);
+    return search_.FindSide(octants_[7].list, p, NearSearch::kAnywhere, octants_[7].least.triangle);
+  };
+  const std::optional<bool> side = side_at(3);  // In the middle of the last zone.
+  if (!side || side != side_at(4)) {
+    return false;
+  }
+  block_->is_inside = *side;
+  return true;
 }
 
 // The face that gives all distances of the block as they are, where there is one.
@@ -140,38 +188,44 @@ std::int16_t BlockBuilder::ToUnits(double phi) const {
   return static_cast<std::int16_t>(std::lrint(std::clamp(phi / quantum, -32767.0, 32767.0)));
 }
 
-void BlockBuilder::BuildOctant(const Index3& low, NearList* octant) {
+void BlockBuilder::BuildOctant(const Index3& low, NearSet* octant) {
   const Vec3 centre = CentreOf(low) + Vec3::Constant(h_);
-  DropFarFaces(centre, 2 * h_, octant);
-  if (TryExact(*octant, centre, 2 * h_, low, 2)) {
+  DropFarFaces(centre, 2 * h_, &octant->list);
+  if (TryExact(octant->list, centre, 2 * h_, low, 2)) {
     return;
   }
+  octant->least = LeastOf(octant->list);
+  search_.BeginOctants(*octant, CentreOf(low), CentreOf({low[0] + 1, low[1] + 1, low[2] + 1}),
+                       2 * kHalfDiagonal * h_, 0xff, &begun_);
   for (int z = 0; z < 8; ++z) {
-    BuildZone({low[0] + (z & 1), low[1] + ((z >> 1) & 1), low[2] + (z >> 2)}, *octant);
+    BuildZone({low[0] + (z & 1), low[1] + ((z >> 1) & 1), low[2] + (z >> 2)},
+              begun_[static_cast<std::size_t>(z)]);
   }
 }
 
-void BlockBuilder::BuildZone(const Index3& zone, const NearList& octant) {
+void BlockBuilder::BuildZone(const Index3& zone, const BegunFilter& begun) {
   const Vec3 centre = CentreOf(zone);
   const double radius = 2 * kHalfDiagonal * h_;
   // Zones follow each other: what was closest to one is near the next.
-  search_.Filter(octant, centre, radius, &list_);
-  const Nearest nearest = search_.FindSigned(list_, centre, 0, hint_);
+  const Nearest nearest = search_.FindSignedInBoxed(begun.list, centre, hint_);
   hint_ = nearest.triangle;
-  if (std::abs(nearest.distance) > kBandVoxels * h_ * kSlack + radius) {
+  const double distance = std::abs(nearest.distance);
+  if (distance > kBandVoxels * h_ * kSlack + radius) {
     FillFarZone(zone, nearest.distance);
     return;
   }
-  if (std::abs(nearest.distance) <= exact_depth_ + radius) {
-    DropFarFaces(centre, h_, &list_);
-    if (TryExact(list_, centre, h_, zone, 1)) {
+  NearList* list = &zone_.list;
+  if (distance <= exact_depth_ + radius) {
+    search_.End(centre, radius, begun, &zone_);
+    DropFarFaces(centre, h_, list);
+    if (TryExact(*list, centre, h_, zone, 1)) {
       return;
     }
-    DecideZone(centre, ZoneOf(zone));
+    DecideZone(centre, *list, ZoneOf(zone));
   } else {
     ZoneOf(zone)->code = zone::kFar | data_.mesh.face[hint_];
   }
-  FillNodes(zone, centre);
+  FillNodes(zone, centre, begun.list);
 }
 
 // Where one analytic face alone can be closest in a cube of zones, its surface gives all distances:
@@ -255,7 +309,7 @@ void BlockBuilder::DropFarFaces(const Vec3& centre, double half, NearList* list)
 }
 
 // Takes out the triangles that a look from the zone's centre tells not to be the closest of their
-// face to any point of it, and gives the others their distances from there.
+// face to any point of it, and gives the others their distances from there and their points_.
 void BlockBuilder::DropHidden(const Vec3& centre, NearList* list) {
   const FewFaces<kMostFaces> few(data_.mesh, *list);
   const double radius = 2 * kHalfDiagonal * h_;
@@ -263,7 +317,7 @@ void BlockBuilder::DropHidden(const Vec3& centre, NearList* list) {
   std::array<double, kMostFaces> least{};
   least.fill(std::numeric_limits<double>::infinity());
   for (NearTriangle& entry : *list) {
-    points_.push_back(data_.mesh.ClosestOn(entry.triangle, centre));
+    points_.push_back(search_.ClosestOn(entry.triangle, centre));
     entry.distance = (points_.back().q - centre).norm();
     double& face_least = least[few.IndexOf(data_.mesh.face[entry.triangle])];
     face_least = std::min(face_least, entry.distance);
@@ -273,7 +327,8 @@ void BlockBuilder::DropHidden(const Vec3& centre, NearList* list) {
     const NearTriangle entry = (*list)[i];
     const double limit =
         (least[few.IndexOf(data_.mesh.face[entry.triangle])] + 2 * radius) * kSlack;
-    if (search_.CanBeClosest(entry.triangle, points_[i], centre, radius, limit)) {
+    if (search_.CalcLeastLimit(entry.triangle, points_[i], centre, radius, limit) <= limit) {
+      points_[kept] = points_[i];
       (*list)[kept++] = entry;
     }
   }
@@ -283,51 +338,55 @@ void BlockBuilder::DropHidden(const Vec3& centre, NearList* list) {
 // Of each face, keeps the triangles that may be its closest somewhere in the zone, with their
 // distances from its centre, nearest first. Cubes of half the zone are looked at one by one.
 void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) {
-  constexpr int kCubes =
-      2;  // In each direction. With 3, lists are 2 % shorter and take twice as long.
+  // Two in each direction. With three, lists are 2 % shorter and take twice as long.
+  constexpr std::size_t kCubes = 8;
   const Mesh& mesh = data_.mesh;
   const FewFaces<kMostFaces> few(mesh, *list);
   if (few.count == 0 || list->size() <= few.count) {
     for (NearTriangle& entry : *list) {
-      entry.distance = (mesh.ClosestOn(entry.triangle, centre).q - centre).norm();
+      entry.distance = (search_.ClosestOn(entry.triangle, centre).q - centre).norm();
     }
-    std::sort(list->begin(), list->end(), IsNearer);
+    std::sort(list->begin(), list->end(), IsNearer());
     return;
   }
   DropHidden(centre, list);
   candidates_.clear();
   std::array<double, kMostFaces> first{};  // The least distance of each face from the centre.
   first.fill(std::numeric_limits<double>::infinity());
-  for (const NearTriangle& entry : *list) {
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const NearTriangle& entry = (*list)[i];
     const std::size_t face = few.IndexOf(mesh.face[entry.triangle]);
-    candidates_.push_back({entry, face});
+    const Vec3 way = points_[i].q - centre;
+    const unsigned side =
+        (way.x() > 0 ? 1U : 0U) | (way.y() > 0 ? 2U : 0U) | (way.z() > 0 ? 4U : 0U);
+    candidates_.push_back({entry, face, side});
     first[face] = std::min(first[face], entry.distance);
   }
-  const auto waiting = [&] {  // Those before it are kept.
-    return std::partition(candidates_.begin(), candidates_.end(),
-                          [](const Candidate& candidate) { return candidate.is_kept; });
-  };
-  const double radius = 2 * kHalfDiagonal * h_ / kCubes;
-  auto undecided = candidates_.begin();
-  for (int o = 0; o < kCubes * kCubes * kCubes && undecided != candidates_.end(); ++o) {
-    const Vec3 c =
-        centre + 2 * h_ / kCubes * (GridPoint(o, kCubes) - Vec3::Constant(0.5 * (kCubes - 1)));
-    const double offset = (c - centre).norm();
-    std::array<double, kMostFaces> least{};  // The distance of each face from c, once it is needed.
-    least.fill(-1);
-    for (auto candidate = undecided; candidate != candidates_.end(); ++candidate) {
-      const double from_centre = first[candidate->face];
-      candidate->is_kept = MayBeClosest(*candidate, c, radius,
-                                        {std::max(0.0, from_centre - offset), from_centre + offset},
-                                        &least[candidate->face]);
-    }
-    undecided = waiting();
+  const double radius = 2 * kHalfDiagonal * h_ / 2;
+  std::array<Vec3, kCubes> cubes;
+  for (std::size_t o = 0; o < kCubes; ++o) {
+    cubes[o] = centre + 0.5 * h_ * Corner(static_cast<int>(o));
+  }
+  const double offset = (cubes[0] - centre).norm();
+  // The distance of each face from each cube's centre, once it is needed.
+  std::array<std::array<double, kMostFaces>, kCubes> least{};
+  for (auto& of_cube : least) {
+    of_cube.fill(-1);
   }
   list->clear();
-  for (auto candidate = candidates_.begin(); candidate != undecided; ++candidate) {
-    list->push_back(candidate->entry);
+  for (const Candidate& candidate : candidates_) {
+    const double from_centre = first[candidate.face];
+    const Bounds bounds{std::max(0.0, from_centre - offset), from_centre + offset};
+    // What may be the closest is so most often in the cube on its own side.
+    for (const unsigned turn : {0U, 1U, 2U, 4U, 3U, 5U, 6U, 7U}) {
+      const std::size_t o = candidate.side ^ turn;
+      if (MayBeClosest(candidate, cubes[o], radius, bounds, &least[o][candidate.face])) {
+        list->push_back(candidate.entry);
+        break;
+      }
+    }
   }
-  std::sort(list->begin(), list->end(), IsNearer);
+  std::sort(list->begin(), list->end(), IsNearer());
 }
 
 // Whether a candidate may be the closest of its face to some point of a ball. How far the face is
@@ -340,28 +399,29 @@ bool BlockBuilder::MayBeClosest(const Candidate& candidate, const Vec3& c, doubl
   if (!search_.MayReach(triangle, c, most)) {
     return false;
   }
-  const TrianglePoint point = data_.mesh.ClosestOn(triangle, c);
-  if (!search_.CanBeClosest(triangle, point, c, radius, most)) {
+  const TrianglePoint point = search_.ClosestOn(triangle, c);
+  const double needed = search_.CalcLeastLimit(triangle, point, c, radius, most);
+  if (needed > most) {
     return false;
   }
-  if (*least >= 0 || search_.CanBeClosest(triangle, point, c, radius, limit_of(bounds.low))) {
+  if (*least >= 0 || needed <= limit_of(bounds.low)) {
     return true;
   }
   *least = (point.q - c).norm();
   for (const Candidate& other : candidates_) {
     if (other.face == candidate.face && search_.MayReach(other.entry.triangle, c, *least)) {
-      *least = std::min(*least, (data_.mesh.ClosestOn(other.entry.triangle, c).q - c).norm());
+      *least = std::min(*least, (search_.ClosestOn(other.entry.triangle, c).q - c).norm());
     }
   }
-  return search_.CanBeClosest(triangle, point, c, radius, limit_of(*least));
+  return needed <= limit_of(*least);
 }
 
-void BlockBuilder::DecideZone(const Vec3& centre, Zone* out) {
-  if (IsSmooth()) {
+void BlockBuilder::DecideZone(const Vec3& centre, const NearList& list, Zone* out) {
+  if (IsSmooth(list)) {
     out->code = zone::kSmooth | data_.mesh.face[hint_];
     return;
   }
-  kept_ = list_;
+  kept_ = list;
   KeepClosest(centre, &kept_);
   NearList& listed = block_->listed;
   out->code = zone::kList;
@@ -371,8 +431,8 @@ void BlockBuilder::DecideZone(const Vec3& centre, Zone* out) {
 }
 
 // Freeform faces that go over into each other without an edge have no distance but the field's.
-bool BlockBuilder::IsSmooth() const {
-  return std::all_of(list_.begin(), list_.end(), [&](const NearTriangle& entry) {
+bool BlockBuilder::IsSmooth(const NearList& list) const {
+  return std::all_of(list.begin(), list.end(), [&](const NearTriangle& entry) {
     const auto& kinds = data_.mesh.edge_kind[entry.triangle];
     return data_.exact.faces[data_.mesh.face[entry.triangle]].kind ==
                spatial::SurfaceKind::kFreeform &&
@@ -395,22 +455,31 @@ void BlockBuilder::FillFarZone(const Index3& zone, double distance) {
 }
 
 // Nodes on a zone's upper sides are filled by the next zone in the block.
-void BlockBuilder::FillNodes(const Index3& zone, const Vec3& centre) {
+void BlockBuilder::FillNodes(const Index3& zone, const Vec3& centre, const BoxedList& list) {
   // What is listed has the closest triangle to each point of the zone.
   const bool is_listed = (ZoneOf(zone)->code & ~zone::kPayload) == zone::kList;
-  Index3 end{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    end[k] = 2 * zone[k] + (zone[k] == 3 ? 3 : 2);
+  NodeGrid grid;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grid.count[axis] = zone[axis] == 3 ? 3 : 2;
+    for (std::size_t i = 0; i < 3; ++i) {
+      grid.at[axis][i] = block_->origin[static_cast<int>(axis)] +
+                         h_ * static_cast<double>(2 * zone[axis] + static_cast<int>(i));
+    }
   }
-  for (int k = 2 * zone[2]; k < end[2]; ++k) {
-    for (int j = 2 * zone[1]; j < end[1]; ++j) {
-      for (int i = 2 * zone[0]; i < end[0]; ++i) {
-        const Vec3 p = block_->origin + h_ * Vec3(i, j, k);
-        const double offset = (p - centre).norm();
-        const Nearest nearest = is_listed ? search_.FindSignedInSorted(kept_, p, offset, hint_)
-                                          : search_.FindSigned(list_, p, offset, hint_);
+  if (!is_listed) {
+    search_.FilterNodes(list, hint_, grid, &nodes_);
+  }
+  std::size_t node = 0;
+  for (std::size_t k = 0; k < grid.count[2]; ++k) {
+    for (std::size_t j = 0; j < grid.count[1]; ++j) {
+      for (std::size_t i = 0; i < grid.count[0]; ++i, ++node) {
+        const Vec3 p = grid.NodeAt(i, j, k);
+        const Nearest nearest =
+            is_listed ? search_.FindSignedInSorted(kept_, p, (p - centre).norm(), hint_)
+                      : search_.FindSignedInBoxed(nodes_[node], p, hint_);
         hint_ = nearest.triangle;
-        SetNode(i, j, k, nearest.distance);
+        SetNode(2 * zone[0] + static_cast<int>(i), 2 * zone[1] + static_cast<int>(j),
+                2 * zone[2] + static_cast<int>(k), nearest.distance);
       }
     }
   }

@@ -44,8 +44,8 @@ class BlockBuilder {
   BlockBuilder(const Shape::Data& data, const NearSearch& search);
 
   /** Fills a new block, which has its place and origin.
-   @param list  What may be closest within it; not empty. */
-  void Build(const NearList& list, Block* block);
+   @param near  What may be closest within it; not empty. */
+  void Build(const NearSet& near, Block* block);
 
  private:
   using Index3 = std::array<int, 3>;
@@ -54,7 +54,7 @@ class BlockBuilder {
   struct Candidate {
     NearTriangle entry{kNoFace, 0};
     std::size_t face{0};  // Its number among the faces of the list.
-    bool is_kept{false};
+    unsigned side{0};     // The octant of the zone that its point closest to the centre is in.
   };
 
   // Of the distance of a face from a point [m].
@@ -63,8 +63,9 @@ class BlockBuilder {
     double high;
   };
 
-  void BuildOctant(const Index3& low, NearList* octant);
-  void BuildZone(const Index3& zone, const NearList& octant);
+  [[nodiscard]] bool IsFar(const Vec3& middle);
+  void BuildOctant(const Index3& low, NearSet* octant);
+  void BuildZone(const Index3& zone, const BegunFilter& begun);
   bool TryExact(const NearList& list, const Vec3& centre, double half, const Index3& low,
                 int zones);
   bool AgreesWithFace(const NearList& list, const Vec3& centre, double half);
@@ -74,12 +75,12 @@ class BlockBuilder {
   [[nodiscard]] bool MayBeClosest(const Candidate& candidate, const Vec3& c, double radius,
                                   const Bounds& bounds, double* least) const;
   void FillFarZone(const Index3& zone, double distance);
-  void FillNodes(const Index3& zone, const Vec3& centre);
+  void FillNodes(const Index3& zone, const Vec3& centre, const BoxedList& list);
   void SetNode(int i, int j, int k, double phi);
   [[nodiscard]] std::int16_t ToUnits(double phi) const;
   [[nodiscard]] std::uint32_t FindOnlyFace() const;
-  void DecideZone(const Vec3& centre, Zone* out);
-  [[nodiscard]] bool IsSmooth() const;
+  void DecideZone(const Vec3& centre, const NearList& list, Zone* out);
+  [[nodiscard]] bool IsSmooth(const NearList& list) const;
   [[nodiscard]] Vec3 CentreOf(const Index3& zone) const;
   [[nodiscard]] Zone* ZoneOf(const Index3& zone) const;
 
@@ -89,10 +90,13 @@ class BlockBuilder {
   double exact_depth_;
   double block_reach_;
   double face_margin_;
+  double most_deviation_{0};
   Block* block_{nullptr};
-  NearList octant_;
-  NearList list_;  // Of the zone at hand.
-  NearList kept_;  // What is listed of it.
+  std::array<NearSet, 8> octants_;    // Of the block.
+  std::array<BegunFilter, 8> begun_;  // Of the block's octants, then of the octant's zones.
+  NearSet zone_;                      // What is near the zone at hand.
+  std::array<BoxedList, NodeGrid::kMost> nodes_;  // What may be closest to each node of it.
+  NearList kept_;                                 // What is listed of the zone at hand.
   std::vector<TrianglePoint> points_;
   std::vector<Candidate> candidates_;
   std::uint32_t hint_{kNoFace};

@@ -61,7 +61,7 @@ struct Region {
   int width{1};  // A power of two.
   Vec3 centre{Vec3::Zero()};
   double radius{0};  // Of the ball around it.
-  NearList list;
+  NearSet near;
 };
 
 // Calls work(cell) for those of the region's cells that the grid has.
@@ -90,7 +90,10 @@ class Octree {
     while (whole.width < std::max({grid_.count[0], grid_.count[1], grid_.count[2]})) {
       whole.width *= 2;
     }
-    Narrow(search_.MakeFullList(), &whole);
+    whole.centre = grid_.CentreOf(whole.low, whole.width);
+    whole.radius = kHalfDiagonal * grid_.side * whole.width;
+    search_.Filter(search_.MakeFullList(), whole.centre, whole.radius, &whole.near.list);
+    whole.near.least = LeastOf(whole.near.list);
     std::vector<Region> regions;
     if (!settle(whole)) {
       Descend(whole, std::max(1, whole.width / kAcross), settle,
@@ -102,32 +105,42 @@ class Octree {
   // Calls leaf(region) for the regions of `width` cells in another one, depth first.
   template <typename Settle, typename Leaf>
   void Descend(const Region& region, int width, const Settle& settle, const Leaf& leaf) const {
+    std::array<BegunFilter, 8> begun;
+    Descend(region, width, settle, leaf, &begun);
+  }
+
+ private:
+  template <typename Settle, typename Leaf>
+  void Descend(const Region& region, int width, const Settle& settle, const Leaf& leaf,
+               std::array<BegunFilter, 8>* begun) const {
     if (region.width <= width) {
       leaf(region);
       return;
     }
-    Region octant;
-    octant.width = region.width / 2;
+    const int half = region.width / 2;
+    const auto low_of = [&](int i) {
+      return Index3{region.low[0] + half * (i & 1), region.low[1] + half * ((i >> 1) & 1),
+                    region.low[2] + half * (i >> 2)};
+    };
+    unsigned wanted = 0;
     for (int i = 0; i < 8; ++i) {
-      octant.low = {region.low[0] + octant.width * (i & 1),
-                    region.low[1] + octant.width * ((i >> 1) & 1),
-                    region.low[2] + octant.width * (i >> 2)};
-      if (!grid_.Has(octant.low)) {
+      wanted |= grid_.Has(low_of(i)) ? 1U << static_cast<unsigned>(i) : 0U;
+    }
+    const double radius = kHalfDiagonal * grid_.side * half;
+    std::array<NearSet, 8> near;
+    search_.FilterOctants(region.near, grid_.CentreOf(low_of(0), half),
+                          grid_.CentreOf(low_of(7), half), radius, wanted, begun, &near);
+    for (int i = 0; i < 8; ++i) {
+      if ((wanted >> static_cast<unsigned>(i) & 1U) == 0) {
         continue;
       }
-      Narrow(region.list, &octant);
+      const Index3 low = low_of(i);
+      const Region octant{low, half, grid_.CentreOf(low, half), radius,
+                          std::move(near[static_cast<std::size_t>(i)])};
       if (!settle(octant)) {
-        Descend(octant, width, settle, leaf);
+        Descend(octant, width, settle, leaf, begun);
       }
     }
-  }
-
- private:
-  // Gives a region its list, cut down from that of a larger one.
-  void Narrow(const NearList& list, Region* region) const {
-    region->centre = grid_.CentreOf(region->low, region->width);
-    region->radius = kHalfDiagonal * grid_.side * region->width;
-    search_.Filter(list, region->centre, region->radius, &region->list);
   }
 
   const NearSearch& search_;
@@ -282,7 +295,7 @@ class Layer {
     for (std::size_t i = begin; i < exact.list_begin[list + 1]; ++i) {
       list_.push_back({exact.listed[i], distances_[i]});
     }
-    std::sort(list_.begin(), list_.end(), IsNearer);
+    std::sort(list_.begin(), list_.end(), IsNearer());
     const double most = static_cast<double>((1U << exact.distance_bits) - 1U);
     for (std::size_t i = 0; i < list_.size(); ++i) {
       const double units = std::floor(list_[i].distance * (1 - 1e-9) / exact.distance_unit);
@@ -313,11 +326,11 @@ void BuildBlocks(const NearSearch& search, const ShapeOptions& options, Shape::D
   auto& top = data->field.top;
   top.assign(grid.size(), kTopOutside);
   const auto settle = [&](const Region& region) {
-    const NearTriangle least = LeastOf(region.list);
+    const NearTriangle& least = region.near.least;
     if (least.distance <= CalcBlockReach(data->voxel) + region.radius) {
       return false;
     }
-    if (search.FindSigned(region.list, region.centre, 0, least.triangle).distance < 0) {
+    if (search.FindSigned(region.near.list, region.centre, 0, least.triangle).distance < 0) {
       ForEachCell(grid, region, [&](const Index3& cell) { top[grid.IndexOf(cell)] = kTopInside; });
     }
     return true;
@@ -342,7 +355,7 @@ void BuildBlocks(const NearSearch& search, const ShapeOptions& options, Shape::D
       const std::size_t index = grid.IndexOf(cell.low);
       block.top = static_cast<std::int32_t>(index);
       block.origin = cell.centre - Vec3::Constant(0.5 * grid.side);
-      builder.Build(cell.list, &block);
+      builder.Build(cell.near, &block);
       if (!block.is_near) {
         top[index] = block.is_inside ? kTopInside : kTopOutside;
         blocks.pop_back();
@@ -355,6 +368,71 @@ void BuildBlocks(const NearSearch& search, const ShapeOptions& options, Shape::D
   });
   layer.Finish();
 }
+
+// Fills a piece of the coarse grid. One for each thread.
+class CoarseFiller {
+ public:
+  CoarseFiller(const NearSearch& search, const Grid& grid, std::vector<float>* coarse)
+      : search_(search), grid_(grid), coarse_(*coarse) {}
+
+  // Fills the nodes in a region of four cells a side at most: those of each octant together.
+  void Fill(const Region& region) {
+    const int side = std::max(1, region.width / 2);
+    const int last = region.width / side - 1;
+    const auto low_of = [&](int i) {
+      return Index3{region.low[0] + side * std::min(i & 1, last),
+                    region.low[1] + side * std::min((i >> 1) & 1, last),
+                    region.low[2] + side * std::min(i >> 2, last)};
+    };
+    search_.BeginOctants(region.near, grid_.CentreOf(low_of(0), side),
+                         grid_.CentreOf(low_of(7), side), kHalfDiagonal * grid_.side * side, 0xff,
+                         &begun_);
+    for (int i = 0; i < 8; ++i) {
+      const Index3 low = low_of(i);
+      if (grid_.Has(low)) {
+        hint_ = search_
+                    .FindLeast(grid_.CentreOf(low, side), kHalfDiagonal * grid_.side * side,
+                               begun_[static_cast<std::size_t>(i)])
+                    .triangle;
+        FillOctant(low, side, begun_[static_cast<std::size_t>(i)].list);
+      }
+    }
+  }
+
+ private:
+  void FillOctant(const Index3& low, int side, const BoxedList& list) {
+    NodeGrid nodes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      nodes.count[axis] = static_cast<std::size_t>(std::min(side, grid_.count[axis] - low[axis]));
+      for (int i = 0; i < 3; ++i) {
+        Index3 at = low;
+        at[axis] += i;
+        nodes.at[axis][static_cast<std::size_t>(i)] = grid_.CentreOf(at, 1)[static_cast<int>(axis)];
+      }
+    }
+    search_.FilterNodes(list, hint_, nodes, &lists_);
+    std::size_t node = 0;
+    for (std::size_t k = 0; k < nodes.count[2]; ++k) {
+      for (std::size_t j = 0; j < nodes.count[1]; ++j) {
+        for (std::size_t i = 0; i < nodes.count[0]; ++i, ++node) {
+          const Nearest nearest =
+              search_.FindSignedInBoxed(lists_[node], nodes.NodeAt(i, j, k), hint_);
+          hint_ = nearest.triangle;
+          const Index3 at{low[0] + static_cast<int>(i), low[1] + static_cast<int>(j),
+                          low[2] + static_cast<int>(k)};
+          coarse_[grid_.IndexOf(at)] = static_cast<float>(nearest.distance);
+        }
+      }
+    }
+  }
+
+  const NearSearch& search_;
+  const Grid& grid_;
+  std::vector<float>& coarse_;
+  std::array<BegunFilter, 8> begun_;
+  std::array<BoxedList, NodeGrid::kMost> lists_;
+  std::uint32_t hint_{kNoFace};
+};
 
 void BuildCoarse(const NearSearch& search, const ShapeOptions& options, Shape::Data* data) {
   FieldView& view = data->field.view;
@@ -377,15 +455,8 @@ void BuildCoarse(const NearSearch& search, const ShapeOptions& options, Shape::D
   const Octree octree(search, grid);
   const std::vector<Region> regions = octree.Divide(settle);
   ForEachIndex(regions.size(), options.threads, [&](std::size_t i) {
-    octree.Descend(regions[i], 2, settle, [&](const Region& region) {
-      std::uint32_t hint = LeastOf(region.list).triangle;
-      ForEachCell(grid, region, [&](const Index3& at) {
-        const Vec3 p = grid.CentreOf(at, 1);
-        const Nearest nearest = search.FindSigned(region.list, p, (p - region.centre).norm(), hint);
-        hint = nearest.triangle;
-        coarse[grid.IndexOf(at)] = static_cast<float>(nearest.distance);
-      });
-    });
+    CoarseFiller filler(search, grid, &coarse);
+    octree.Descend(regions[i], 4, settle, [&](const Region& region) { filler.Fill(region); });
   });
 }
 

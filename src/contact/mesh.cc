@@ -195,58 +195,26 @@ void ClassifyVertices(Mesh* mesh) {
 
 TrianglePoint CalcClosestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b,
                                     const Vec3& c) noexcept {
-  // In plain numbers, as most of the time of building a shape is spent here. Everything follows
-  // from the dot products of the sides ab, ac with ap, bp, cp.
-  const double ab_x = b.x() - a.x();
-  const double ab_y = b.y() - a.y();
-  const double ab_z = b.z() - a.z();
-  const double ac_x = c.x() - a.x();
-  const double ac_y = c.y() - a.y();
-  const double ac_z = c.z() - a.z();
-  const double ap_x = p.x() - a.x();
-  const double ap_y = p.y() - a.y();
-  const double ap_z = p.z() - a.z();
-  const double ab_ab = ab_x * ab_x + ab_y * ab_y + ab_z * ab_z;
-  const double ab_ac = ab_x * ac_x + ab_y * ac_y + ab_z * ac_z;
-  const double ac_ac = ac_x * ac_x + ac_y * ac_y + ac_z * ac_z;
-  const double d1 = ab_x * ap_x + ab_y * ap_y + ab_z * ap_z;
-  const double d2 = ac_x * ap_x + ac_y * ap_y + ac_z * ap_z;
-  const auto at = [&](double s, double t, TriangleFeature feature) {
-    return TrianglePoint{
-        Vec3(a.x() + s * ab_x + t * ac_x, a.y() + s * ab_y + t * ac_y, a.z() + s * ab_z + t * ac_z),
-        feature};
-  };
-  if (d1 <= 0 && d2 <= 0) {
-    return {a, TriangleFeature::kCorner0};
-  }
-  const double d3 = d1 - ab_ab;
-  const double d4 = d2 - ab_ac;
-  if (d3 >= 0 && d4 <= d3) {
-    return {b, TriangleFeature::kCorner1};
-  }
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-    return at(d1 / (d1 - d3), 0, TriangleFeature::kEdge0);
-  }
-  const double d5 = d1 - ab_ac;
-  const double d6 = d2 - ac_ac;
-  if (d6 >= 0 && d5 <= d6) {
-    return {c, TriangleFeature::kCorner2};
-  }
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-    return at(0, d2 / (d2 - d6), TriangleFeature::kEdge2);
-  }
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double s = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return at(1 - s, s, TriangleFeature::kEdge1);
-  }
-  const double sum = va + vb + vc;
-  if (!(sum > 0)) {
-    return {a, TriangleFeature::kCorner0};  // No area.
-  }
-  return at(vb / sum, vc / sum, TriangleFeature::kInside);
+  return CalcClosestOnTriangle(p, MakeTriangleSides(a, b, c), [&](std::size_t k) -> const Vec3& {
+    return k == 0 ? a : k == 1 ? b : c;
+  });
+}
+
+TriangleSides MakeTriangleSides(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  TriangleSides t;
+  t.a_x = a.x();
+  t.a_y = a.y();
+  t.a_z = a.z();
+  t.ab_x = b.x() - a.x();
+  t.ab_y = b.y() - a.y();
+  t.ab_z = b.z() - a.z();
+  t.ac_x = c.x() - a.x();
+  t.ac_y = c.y() - a.y();
+  t.ac_z = c.z() - a.z();
+  t.ab_ab = t.ab_x * t.ab_x + t.ab_y * t.ab_y + t.ab_z * t.ab_z;
+  t.ab_ac = t.ab_x * t.ac_x + t.ab_y * t.ac_y + t.ab_z * t.ac_z;
+  t.ac_ac = t.ac_x * t.ac_x + t.ac_y * t.ac_y + t.ac_z * t.ac_z;
+  return t;
 }
 
 Vec3 Mesh::Pseudonormal(std::uint32_t triangle, TriangleFeature feature) const noexcept {

@@ -12,10 +12,22 @@ namespace {
 
 constexpr double kRounding = 1e-13;  // [m]: the rounding of a double at some hundred metres.
 
+// What is further from a ball's centre than this is nowhere in the ball the closest, `least` being
+// the distance of something.
+double CalcLimit(double least, double radius) {
+  return (least + 2 * radius) * kSlack + kRounding;
+}
+
+Vec3 CentreOfOctant(const Vec3& low, const Vec3& high, std::size_t k) {
+  return {(k & 1U) != 0 ? high.x() : low.x(), (k & 2U) != 0 ? high.y() : low.y(),
+          (k & 4U) != 0 ? high.z() : low.z()};
+}
+
 }  // namespace
 
 NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
   boxes_.reserve(mesh.triangles.size());
+  sides_.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
     spatial::Box box;
     for (const std::uint32_t v : t) {
@@ -23,6 +35,8 @@ NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
     }
     const Vec3 c = box.centre();
     const Vec3 half = 0.5 * box.size();
+    sides_.push_back(
+        MakeTriangleSides(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
     boxes_.push_back({{c.x(), c.y(), c.z()}, {half.x(), half.y(), half.z()}, half.norm()});
   }
   FindRimBends();
@@ -105,8 +119,8 @@ void NearSearch::FindSurroundings() {
 
 // The closest point of a rim lies between the ends of the edge as the point itself does, but for
 // what the rim turns there.
-bool NearSearch::CanRimBeClosest(std::uint32_t triangle, std::size_t k, const Vec3& c,
-                                 double radius, double limit) const {
+double NearSearch::CalcLeastLimitOfRim(std::uint32_t triangle, std::size_t k, const Vec3& c,
+                                       double radius, double most) const {
   const std::uint32_t start = mesh_.triangles[triangle][k];
   const std::uint32_t end = mesh_.triangles[triangle][(k + 1) % 3];
   const Vec3 from_start = c - mesh_.vertices[start];
@@ -115,40 +129,41 @@ bool NearSearch::CanRimBeClosest(std::uint32_t triangle, std::size_t k, const Ve
   const double along = from_start.dot(edge) / length;
   const double beyond = std::max({0.0, -along, along - length});
   const double distance = (from_start - std::clamp(along, 0.0, length) / length * edge).norm();
-  if (distance > limit) {
-    return false;
+  if (distance > most) {
+    return kAnywhere;
   }
   const double bend = rim_bend_[along < 0 ? start : end];
-  return beyond <= (radius + bend * (distance + radius)) * kSlack + kRounding;
+  return beyond <= (radius + bend * (distance + radius)) * kSlack + kRounding ? distance
+                                                                              : kAnywhere;
 }
 
 // A point's closest one on a face is the foot of the normal in a triangle, or on an edge or corner
 // between triangles whose normals it lies between, or on the face's rim. In the first two cases the
 // point is not far beside the triangle.
-bool NearSearch::CanBeClosest(std::uint32_t triangle, const TrianglePoint& point, const Vec3& c,
-                              double radius, double limit) const {
+double NearSearch::CalcLeastLimit(std::uint32_t triangle, const TrianglePoint& point, const Vec3& c,
+                                  double radius, double most) const {
   constexpr double kCornerBend = 2;  // At a corner the way may lean more than at an edge.
   const Vec3 way = c - point.q;
   const double distance = way.norm();
-  if (distance > limit) {
-    return false;
+  if (distance > most) {
+    return kAnywhere;
   }
   const Surroundings& around = surroundings_[triangle];
-  if (point.feature == TriangleFeature::kInside ||
-      around.bend == std::numeric_limits<double>::infinity()) {
-    return true;
+  if (point.feature == TriangleFeature::kInside || around.bend == kAnywhere) {
+    return distance;
   }
   const double height = std::abs(way.dot(mesh_.NormalOf(triangle)));
   const double beside = std::sqrt(std::max(0.0, distance * distance - height * height));
   if (beside <= (radius + kCornerBend * around.bend * (height + radius)) * kSlack + kRounding) {
-    return true;
+    return distance;
   }
+  double limit = kAnywhere;
   for (std::size_t k = 0; k < 3; ++k) {
-    if ((around.rims >> k & 1U) != 0 && CanRimBeClosest(triangle, k, c, radius, limit)) {
-      return true;
+    if ((around.rims >> k & 1U) != 0) {
+      limit = std::min(limit, CalcLeastLimitOfRim(triangle, k, c, radius, most));
     }
   }
-  return false;
+  return std::max(distance, limit);
 }
 
 NearList NearSearch::MakeFullList() const {
@@ -162,77 +177,272 @@ NearList NearSearch::MakeFullList() const {
 // First by the triangles' boxes; then by their distance where the box is large against `radius`, so
 // says little.
 void NearSearch::Filter(const NearList& list, const Vec3& c, double radius, NearList* out) const {
-  const auto calc_exact = [&](std::uint32_t triangle) {
-    return (mesh_.ClosestOn(triangle, c).q - c).norm();
-  };
-  const auto limit_of = [&](double least) { return (least + 2 * radius) * kSlack + kRounding; };
+  BegunFilter begun;
   // What was nearest to the larger region's centre is near this one.
-  double least = calc_exact(LeastOf(list).triangle);
-  double limit = limit_of(least);
-  const double first_limit = limit * limit;
-  out->resize(list.size());
-  NearTriangle lowest{kNoFace, std::numeric_limits<double>::infinity()};
+  begun.first = LeastOf(list).triangle;
+  begun.least = CalcDistance(begun.first, c);
+  begun.lowest = kAnywhere;
+  const double limit = CalcLimit(begun.least, radius);
+  begun.list.resize(list.size());
   std::size_t count = 0;
   for (const NearTriangle& candidate : list) {
-    const NearTriangle entry{candidate.triangle, boxes_[candidate.triangle].CalcSquaredDistance(c)};
-    (*out)[count] = entry;
-    count += entry.distance <= first_limit ? 1 : 0;
-    lowest = entry.distance < lowest.distance ? entry : lowest;
+    const TriangleBox& box = boxes_[candidate.triangle];
+    const double squared = box.CalcSquaredDistance(c);
+    begun.list[count] = {candidate.triangle, static_cast<float>(box.radius), squared};
+    begun.lowest = std::min(begun.lowest, squared);
+    count += squared <= limit * limit ? 1 : 0;
   }
-  out->resize(count);
-  least = std::min(least, calc_exact(lowest.triangle));
-  limit = limit_of(least);
+  begun.list.resize(count);
+  NearSet set;
+  End(c, radius, begun, &set);
+  *out = std::move(set.list);
+}
+
+void NearSearch::FilterOctants(const NearSet& set, const Vec3& low, const Vec3& high, double radius,
+                               unsigned wanted, std::array<BegunFilter, 8>* begun,
+                               std::array<NearSet, 8>* out) const {
+  BeginOctants(set, low, high, radius, wanted, begun);
+  for (std::size_t k = 0; k < 8; ++k) {
+    (*out)[k].list.clear();
+    if ((wanted >> k & 1U) != 0) {
+      End(CentreOfOctant(low, high, k), radius, (*begun)[k], &(*out)[k]);
+    }
+  }
+}
+
+// The squared distances of the octants' centres from a box are sums of two numbers in x, two in y
+// and two in z.
+void NearSearch::BeginOctants(const NearSet& set, const Vec3& low, const Vec3& high, double radius,
+                              unsigned wanted, std::array<BegunFilter, 8>* out) const {
+  std::array<double, 8> limit_squared{};
+  std::array<BoxedTriangle*, 8> end{};
+  for (std::size_t k = 0; k < 8; ++k) {
+    BegunFilter& octant = (*out)[k];
+    octant.first = set.least.triangle;
+    limit_squared[k] = -1;
+    const bool is_wanted = (wanted >> k & 1U) != 0;
+    // One more than may be kept is written.
+    octant.list.resize(is_wanted ? set.list.size() + 1 : 1);
+    end[k] = octant.list.data();
+    if (is_wanted) {
+      octant.least = CalcDistance(octant.first, CentreOfOctant(low, high, k));
+      const double limit = CalcLimit(octant.least, radius);
+      limit_squared[k] = limit * limit;
+    }
+  }
+  const Pair x(low.x(), high.x());
+  const Pair y(low.y(), high.y());
+  const Pair z(low.z(), high.z());
+  std::array<Pair, 4> lowest{Pair(kAnywhere), Pair(kAnywhere), Pair(kAnywhere), Pair(kAnywhere)};
+  for (const NearTriangle& entry : set.list) {
+    const std::uint32_t triangle = entry.triangle;
+    const TriangleBox& box = boxes_[triangle];
+    const auto box_radius = static_cast<float>(box.radius);
+    const Pair xx = box.CalcSquaredAlong(0, x);
+    const Pair yy = box.CalcSquaredAlong(1, y);
+    const Pair zz = box.CalcSquaredAlong(2, z);
+    const Pair xy_low = xx + Pair(yy.low());
+    const Pair xy_high = xx + Pair(yy.high());
+    const std::array sums{xy_low + Pair(zz.low()), xy_high + Pair(zz.low()),
+                          xy_low + Pair(zz.high()), xy_high + Pair(zz.high())};
+    for (std::size_t pair = 0; pair < 4; ++pair) {
+      const std::size_t k = 2 * pair;
+      lowest[pair] = Least(lowest[pair], sums[pair]);
+      *end[k] = {triangle, box_radius, sums[pair].low()};
+      end[k] += sums[pair].low() <= limit_squared[k] ? 1 : 0;
+      *end[k + 1] = {triangle, box_radius, sums[pair].high()};
+      end[k + 1] += sums[pair].high() <= limit_squared[k + 1] ? 1 : 0;
+    }
+  }
+  for (std::size_t k = 0; k < 8; ++k) {
+    BegunFilter& octant = (*out)[k];
+    octant.list.resize(static_cast<std::size_t>(end[k] - octant.list.data()));
+    octant.lowest = k % 2 == 0 ? lowest[k / 2].low() : lowest[k / 2].high();
+  }
+}
+
+// Where the box of a triangle is large against `radius`, it says little: then the distance decides.
+void NearSearch::End(const Vec3& c, double radius, const BegunFilter& begun, NearSet* out) const {
+  const double small = 0.5 * radius * (1 - 1e-6);  // Single precision tells no more.
+  double least = begun.least;
+  const auto lowest =
+      std::find_if(begun.list.begin(), begun.list.end(),
+                   [&](const BoxedTriangle& entry) { return entry.squared == begun.lowest; });
+  if (lowest->triangle != begun.first) {
+    least = std::min(least, CalcDistance(lowest->triangle, c));
+  }
+  double limit = CalcLimit(least, radius);
+  NearList& list = out->list;
+  list.resize(begun.list.size());
   std::size_t kept = 0;
-  for (const NearTriangle& entry : *out) {
-    if (entry.distance > limit * limit) {
+  for (const BoxedTriangle& entry : begun.list) {
+    if (entry.squared > limit * limit) {
       continue;
     }
-    double distance = std::sqrt(entry.distance);
-    if (boxes_[entry.triangle].radius > 0.5 * radius) {
-      distance = calc_exact(entry.triangle);
+    list[kept] = {entry.triangle, entry.squared};
+    if (static_cast<double>(entry.radius) > small && boxes_[entry.triangle].radius > 0.5 * radius) {
+      const double distance = CalcDistance(entry.triangle, c);
+      if (distance > limit) {
+        continue;
+      }
       if (distance < least) {
         least = distance;
-        limit = limit_of(least);
+        limit = CalcLimit(least, radius);
       }
+      list[kept].distance = -distance;  // Not squared.
     }
-    if (distance <= limit) {
-      (*out)[kept++] = {entry.triangle, distance};
+    ++kept;
+  }
+  list.resize(kept);
+  // The limit has sunk on the way.
+  out->least = {kNoFace, kAnywhere};
+  kept = 0;
+  for (NearTriangle entry : list) {
+    entry.distance = entry.distance > 0 ? std::sqrt(entry.distance) : -entry.distance;
+    list[kept] = entry;
+    if (entry.distance <= limit) {
+      out->least = entry.distance < out->least.distance ? entry : out->least;
+      ++kept;
     }
   }
-  out->resize(kept);
-  std::erase_if(*out, [&](const NearTriangle& entry) { return entry.distance > limit; });
+  list.resize(kept);
 }
+
+NearTriangle NearSearch::FindLeast(const Vec3& c, double radius, const BegunFilter& begun) const {
+  const double small = 0.5 * radius * (1 - 1e-6);  // Single precision tells no more.
+  const double limit = CalcLimit(begun.least, radius);
+  NearTriangle least{kNoFace, kAnywhere};
+  double most = limit * limit;
+  for (const BoxedTriangle& entry : begun.list) {
+    if (entry.squared > most) {
+      continue;
+    }
+    const bool is_large =
+        static_cast<double>(entry.radius) > small && boxes_[entry.triangle].radius > 0.5 * radius;
+    const double distance = is_large ? CalcDistance(entry.triangle, c) : std::sqrt(entry.squared);
+    if (distance < least.distance) {
+      least = {entry.triangle, distance};
+      most = std::min(most, distance * distance * kSlack);
+    }
+  }
+  return least;
+}
+
+// As for octants, but each node has a list of its own at once: what is no further away than
+// `first`.
+void NearSearch::FilterNodes(const BoxedList& list, std::uint32_t first, const NodeGrid& grid,
+                             std::array<BoxedList, NodeGrid::kMost>* out) const {
+  std::array<double, NodeGrid::kMost + 1> limit_squared{};
+  std::array<BoxedTriangle*, NodeGrid::kMost + 1> end{};
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < grid.count[2]; ++k) {
+    for (std::size_t j = 0; j < grid.count[1]; ++j) {
+      for (std::size_t i = 0; i < grid.count[0]; ++i, ++n) {
+        const double limit = CalcLimit(CalcDistance(first, grid.NodeAt(i, j, k)), 0);
+        limit_squared[n] = limit * limit;
+        (*out)[n].resize(list.size() + 1);  // One more than may be kept is written.
+        end[n] = (*out)[n].data();
+      }
+    }
+  }
+  const Pair x(grid.at[0][0], grid.at[0][1]);
+  const Pair y(grid.at[1][0], grid.at[1][1]);
+  const Pair z(grid.at[2][0], grid.at[2][1]);
+  for (const BoxedTriangle& entry : list) {
+    const TriangleBox& box = boxes_[entry.triangle];
+    const Pair xx = box.CalcSquaredAlong(0, x);
+    const Pair yy = box.CalcSquaredAlong(1, y);
+    const Pair zz = box.CalcSquaredAlong(2, z);
+    const auto third = [&](std::size_t axis) {
+      return grid.count[axis] > 2 ? box.CalcSquaredAlong(axis, Pair(grid.at[axis][2])).low() : 0;
+    };
+    const double xx_third = third(0);
+    const std::array all_yy{yy.low(), yy.high(), third(1)};
+    const std::array all_zz{zz.low(), zz.high(), third(2)};
+    const auto put = [&](std::size_t node, double squared) {
+      *end[node] = {entry.triangle, entry.radius, squared};
+      end[node] += squared <= limit_squared[node] ? 1 : 0;
+    };
+    std::size_t node = 0;
+    for (std::size_t k = 0; k < grid.count[2]; ++k) {
+      for (std::size_t j = 0; j < grid.count[1]; ++j) {
+        const Pair squared = xx + Pair(all_yy[j]) + Pair(all_zz[k]);
+        put(node, squared.low());
+        if (grid.count[0] > 1) {
+          put(node + 1, squared.high());
+        }
+        if (grid.count[0] > 2) {
+          put(node + 2, xx_third + all_yy[j] + all_zz[k]);
+        }
+        node += grid.count[0];
+      }
+    }
+  }
+  for (std::size_t node = 0; node < n; ++node) {
+    (*out)[node].resize(static_cast<std::size_t>(end[node] - (*out)[node].data()));
+  }
+}
+
+// Looks at one triangle after the other for the closest one to p.
+class NearSearch::Search {
+ public:
+  Search(const NearSearch& of, const Vec3& p, std::uint32_t hint) : of_(of), p_(p) { Look(hint); }
+
+  void Look(std::uint32_t triangle) {
+    const TrianglePoint point = of_.ClosestOn(triangle, p_);
+    const double found = (point.q - p_).squaredNorm();
+    if (found < squared_) {
+      squared_ = found;
+      nearest_ = {std::sqrt(found), triangle, point};
+      limit_ = nearest_.distance * kSlack + kRounding;
+      limit_squared_ = limit_ * limit_;
+    }
+  }
+
+  [[nodiscard]] const Nearest& nearest() const { return nearest_; }
+
+  // What is further away than this is not the closest.
+  [[nodiscard]] double limit() const { return limit_; }
+
+  [[nodiscard]] double limit_squared() const { return limit_squared_; }
+
+ private:
+  const NearSearch& of_;
+  const Vec3& p_;
+  double squared_{std::numeric_limits<double>::infinity()};
+  double limit_{squared_};
+  double limit_squared_{squared_};
+  Nearest nearest_;
+};
 
 template <bool is_sorted>
 Nearest NearSearch::FindIn(const NearList& list, const Vec3& p, double offset,
                            std::uint32_t hint) const {
-  double squared = std::numeric_limits<double>::infinity();
-  double limit = squared;
-  double limit_squared = squared;
-  Nearest nearest;
-  const auto look = [&](std::uint32_t triangle) {
-    const TrianglePoint point = mesh_.ClosestOn(triangle, p);
-    const double found = (point.q - p).squaredNorm();
-    if (found < squared) {
-      squared = found;
-      nearest = {std::sqrt(found), triangle, point};
-      limit = nearest.distance * kSlack + kRounding;
-      limit_squared = limit * limit;
-    }
-  };
-  look(hint);
+  Search search(*this, p, hint);
   for (const NearTriangle& entry : list) {
-    if (entry.distance - offset > limit) {
+    if (entry.distance - offset > search.limit()) {
       if constexpr (is_sorted) {
         break;
       }
       continue;
     }
-    if (entry.triangle != hint && boxes_[entry.triangle].CalcSquaredDistance(p) <= limit_squared) {
-      look(entry.triangle);
+    if (entry.triangle != hint &&
+        boxes_[entry.triangle].CalcSquaredDistance(p) <= search.limit_squared()) {
+      search.Look(entry.triangle);
     }
   }
-  return nearest;
+  return search.nearest();
+}
+
+Nearest NearSearch::FindSignedInBoxed(const BoxedList& list, const Vec3& p,
+                                      std::uint32_t hint) const {
+  Search search(*this, p, hint);
+  for (const BoxedTriangle& entry : list) {
+    if (entry.squared <= search.limit_squared() && entry.triangle != hint) {
+      search.Look(entry.triangle);
+    }
+  }
+  return GiveSign(p, search.nearest());
 }
 
 Nearest NearSearch::Find(const NearList& list, const Vec3& p, double offset,
@@ -248,6 +458,28 @@ Nearest NearSearch::FindSigned(const NearList& list, const Vec3& p, double offse
 Nearest NearSearch::FindSignedInSorted(const NearList& list, const Vec3& p, double offset,
                                        std::uint32_t hint) const {
   return GiveSign(p, FindIn<true>(list, p, offset, hint));
+}
+
+std::optional<bool> NearSearch::FindSide(const NearList& list, const Vec3& p, double offset,
+                                         std::uint32_t hint) const {
+  const double distance = FindIn<false>(list, p, offset, hint).distance;
+  const double limit = distance * kSlack + kRounding;
+  std::optional<bool> is_inside;
+  for (const NearTriangle& entry : list) {
+    if (entry.distance - offset > limit || !MayReach(entry.triangle, p, limit)) {
+      continue;
+    }
+    const TrianglePoint point = ClosestOn(entry.triangle, p);
+    const double found = (point.q - p).norm();
+    if (found <= limit) {
+      const bool is_so = GiveSign(p, {found, entry.triangle, point}).distance < 0;
+      if (is_inside && *is_inside != is_so) {
+        return std::nullopt;
+      }
+      is_inside = is_so;
+    }
+  }
+  return is_inside;
 }
 
 Nearest NearSearch::GiveSign(const Vec3& p, Nearest nearest) const {

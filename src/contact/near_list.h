@@ -1,12 +1,19 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <new>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "contact/mesh.h"
+#include "contact/pair.h"
 
 namespace hvas::contact {
 
@@ -19,12 +26,76 @@ struct NearTriangle {
 /** Bounds of distances are widened by this factor against rounding. */
 inline constexpr double kSlack = 1 + 1e-9;
 
-using NearList = std::vector<NearTriangle>;
+/** Leaves new elements as they are, so that a list that is written anyway costs nothing to make
+ longer. */
+template <typename T>
+struct UnsetAllocator : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = UnsetAllocator<U>;
+  };
 
-/** An order of entries by distance. */
-[[nodiscard]] inline bool IsNearer(const NearTriangle& a, const NearTriangle& b) {
-  return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
-}
+  UnsetAllocator() = default;
+
+  template <typename U>
+  explicit UnsetAllocator(const UnsetAllocator<U>& /*other*/) noexcept {}
+
+  template <typename U, typename... Arguments>
+  void construct(U* p, Arguments&&... arguments) {
+    if constexpr (sizeof...(Arguments) == 0) {
+      ::new (static_cast<void*>(p)) U;
+    } else {
+      ::new (static_cast<void*>(p)) U(std::forward<Arguments>(arguments)...);
+    }
+  }
+};
+
+template <typename T>
+using UnsetVector = std::vector<T, UnsetAllocator<T>>;
+
+using NearList = UnsetVector<NearTriangle>;
+
+/** An order of entries by distance; a type, so that sorting by it is one loop. */
+struct IsNearer {
+  [[nodiscard]] bool operator()(const NearTriangle& a, const NearTriangle& b) const {
+    return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
+  }
+};
+
+/** A list, and its entry of the least distance: the first one of several. */
+struct NearSet {
+  NearList list;
+  NearTriangle least{kNoFace, 0};
+};
+
+/** A triangle of which no more is known than how far its box is from some point. */
+struct BoxedTriangle {
+  std::uint32_t triangle;
+  float radius;    ///< That of a ball around it [m], to single precision.
+  double squared;  ///< Of the distance of its box [m^2].
+};
+
+using BoxedList = UnsetVector<BoxedTriangle>;
+
+/** What may be left of a list in a ball: not looked at but for the triangles' boxes. */
+struct BegunFilter {
+  BoxedList list;                ///< With distances from the ball's centre.
+  double lowest{0};              ///< The least squared distance of them.
+  std::uint32_t first{kNoFace};  ///< A triangle of it.
+  double least{0};               ///< Its distance from the ball's centre.
+};
+
+/** The nodes of two by two by two cells at most: their coordinates along each axis. */
+struct NodeGrid {
+  static constexpr std::size_t kMost = 27;
+
+  std::array<std::array<double, 3>, 3> at{};
+  std::array<std::size_t, 3> count{};
+
+  [[nodiscard]] Vec3 NodeAt(std::size_t i, std::size_t j, std::size_t k) const {
+    return {at[0][i], at[1][j], at[2][k]};
+  }
+};
 
 struct Nearest {
   double distance{0};  ///< Signed where so said.
@@ -48,39 +119,87 @@ class NearSearch {
    with lower bounds of their distances from c. @pre the list is not empty. */
   void Filter(const NearList& list, const Vec3& c, double radius, NearList* out) const;
 
+  /** Does so for the eight octants of a cube at once.
+   @param low,high  The centres of the first and of the last octant.
+   @param wanted  Bit k: octant k (x first) is wanted; the others become empty.
+   @param begun  Room for what is in between. */
+  void FilterOctants(const NearSet& set, const Vec3& low, const Vec3& high, double radius,
+                     unsigned wanted, std::array<BegunFilter, 8>* begun,
+                     std::array<NearSet, 8>* out) const;
+
+  /** Begins to do so. */
+  void BeginOctants(const NearSet& set, const Vec3& low, const Vec3& high, double radius,
+                    unsigned wanted, std::array<BegunFilter, 8>* out) const;
+
+  /** Finds what may be closest to each node of a small grid, x first.
+   @param first  A triangle that is near.  @param out  Longer ones are as good. */
+  void FilterNodes(const BoxedList& list, std::uint32_t first, const NodeGrid& grid,
+                   std::array<BoxedList, NodeGrid::kMost>* out) const;
+
+  /** The entry of the least distance that End would leave. */
+  [[nodiscard]] NearTriangle FindLeast(const Vec3& c, double radius,
+                                       const BegunFilter& begun) const;
+
+  /** Ends a filter that was begun: what it leaves is what Filter would. */
+  void End(const Vec3& c, double radius, const BegunFilter& begun, NearSet* out) const;
+
   /** The closest triangle to p, from a list with lower bounds of the distances to a point that p is
    `offset` away from (kAnywhere: unknown). Begins with the triangle `hint`. Not signed. */
   [[nodiscard]] Nearest Find(const NearList& list, const Vec3& p, double offset,
                              std::uint32_t hint) const;
+
+  /** Does what Mesh::ClosestOn does, with what was made ready for it. */
+  [[nodiscard]] TrianglePoint ClosestOn(std::uint32_t triangle, const Vec3& p) const {
+    return CalcClosestOnTriangle(p, sides_[triangle], [&](std::size_t k) -> const Vec3& {
+      return mesh_.vertices[mesh_.triangles[triangle][k]];
+    });
+  }
 
   /** False where the triangle's box is further from p than `distance`. */
   [[nodiscard]] bool MayReach(std::uint32_t triangle, const Vec3& p, double distance) const {
     return boxes_[triangle].CalcSquaredDistance(p) <= distance * distance;
   }
 
-  /** False where no point within `radius` of c has, of the triangle's face, its closest point in
-   the triangle. @param point  The triangle's closest point to c.
-   @param limit  No point of the face that is further from c than this can be the closest. */
-  [[nodiscard]] bool CanBeClosest(std::uint32_t triangle, const TrianglePoint& point, const Vec3& c,
-                                  double radius, double limit) const;
+  /** The least limit with which some point within `radius` of c may have, of the triangle's face,
+   its closest point in the triangle; infinite where that is more than `most`. With a limit, no
+   point of the face is looked at that is further from c.
+   @param point  The triangle's closest point to c. */
+  [[nodiscard]] double CalcLeastLimit(std::uint32_t triangle, const TrianglePoint& point,
+                                      const Vec3& c, double radius, double most) const;
 
   /** The distance with its sign: negative inside. */
   [[nodiscard]] Nearest FindSigned(const NearList& list, const Vec3& p, double offset,
                                    std::uint32_t hint) const;
 
-  /** Finds that in a list that is sorted by IsNearer. */
+  /** True inside; nothing where triangles that are as close as the closest one, as those of faces
+   that coincide, say different things. @param offset  As of Find.
+   @param hint  A triangle that is near. */
+  [[nodiscard]] std::optional<bool> FindSide(const NearList& list, const Vec3& p, double offset,
+                                             std::uint32_t hint) const;
+
+  /** Finds the distance with its sign at the point that the list has distances from. */
+  [[nodiscard]] Nearest FindSignedInBoxed(const BoxedList& list, const Vec3& p,
+                                          std::uint32_t hint) const;
+
+  /** Finds it in a list that is sorted by IsNearer. */
   [[nodiscard]] Nearest FindSignedInSorted(const NearList& list, const Vec3& p, double offset,
                                            std::uint32_t hint) const;
 
  private:
+  class Search;
+
   template <bool is_sorted>
   [[nodiscard]] Nearest FindIn(const NearList& list, const Vec3& p, double offset,
                                std::uint32_t hint) const;
   [[nodiscard]] Nearest GiveSign(const Vec3& p, Nearest nearest) const;
 
+  [[nodiscard]] double CalcDistance(std::uint32_t triangle, const Vec3& p) const {
+    return (ClosestOn(triangle, p).q - p).norm();
+  }
+
   // A box around a triangle: tells most that are too far away at a tenth of the exact distance's
-  // cost.
-  struct TriangleBox {
+  // cost. In a line of the cache of its own.
+  struct alignas(64) TriangleBox {
     double centre[3];
     double half[3];
     double radius;  // Of a sphere around it.
@@ -90,6 +209,12 @@ class NearSearch {
       const double y = std::max(std::abs(p.y() - centre[1]) - half[1], 0.0);
       const double z = std::max(std::abs(p.z() - centre[2]) - half[2], 0.0);
       return x * x + y * y + z * z;
+    }
+
+    // What one axis adds to that, at two places.
+    [[nodiscard, gnu::always_inline]] Pair CalcSquaredAlong(std::size_t axis, Pair p) const {
+      const Pair beyond = ((p - Pair(centre[axis])).Abs() - Pair(half[axis])).Positive();
+      return beyond * beyond;
     }
   };
 
@@ -101,11 +226,12 @@ class NearSearch {
 
   void FindSurroundings();
   void FindRimBends();
-  [[nodiscard]] bool CanRimBeClosest(std::uint32_t triangle, std::size_t k, const Vec3& c,
-                                     double radius, double limit) const;
+  [[nodiscard]] double CalcLeastLimitOfRim(std::uint32_t triangle, std::size_t k, const Vec3& c,
+                                           double radius, double most) const;
 
   const Mesh& mesh_;
   std::vector<TriangleBox> boxes_;
+  std::vector<TriangleSides> sides_;
   std::vector<Surroundings> surroundings_;
   std::vector<double> rim_bend_;  // Of each vertex: tangent of a rim's turn; infinite: unknown.
 };
