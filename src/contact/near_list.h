@@ -72,14 +72,14 @@ struct NearSet {
 struct BoxedTriangle {
   std::uint32_t triangle;
   float radius;    ///< That of a ball around it [m], to single precision.
-  double squared;  ///< Of the distance of its box [m^2].
+  double squared;  ///< Square of the distance of its box [m^2].
 };
 
 using BoxedList = UnsetVector<BoxedTriangle>;
 
 /** What may be left of a list in a ball: not looked at but for the triangles' boxes. */
 struct BegunFilter {
-  BoxedList list;                ///< With distances from the ball's centre.
+  BoxedList list;                ///< Triangles, with distances from the ball's centre.
   double lowest{0};              ///< The least squared distance of them.
   std::uint32_t first{kNoFace};  ///< A triangle of it.
   double least{0};               ///< Its distance from the ball's centre.
@@ -87,7 +87,7 @@ struct BegunFilter {
 
 /** The nodes of two by two by two cells at most: their coordinates along each axis. */
 struct NodeGrid {
-  static constexpr std::size_t kMost = 27;
+  static constexpr std::size_t kMost = 27;  // Three nodes along each of three axes.
 
   std::array<std::array<double, 3>, 3> at{};
   std::array<std::size_t, 3> count{};

@@ -60,12 +60,19 @@ Json MakeStepJson(const SequenceStep& step) {
   for (const product::OccurrenceId id : step.members) {
     members.push_back(id.value());
   }
-  return {{"kind", kStepKinds.at(static_cast<std::size_t>(step.kind))},
-          {"occurrence", step.occurrence.value()},
-          {"members", std::move(members)},
-          {"extraction_W", MakeJson(step.extraction_W)},
-          {"engage_distance_m", MakeJson(step.engage_distance)},
-          {"offset_W_m", MakeJson(step.offset_W)}};
+  Json json{{"kind", kStepKinds.at(static_cast<std::size_t>(step.kind))},
+            {"occurrence", step.occurrence.value()},
+            {"members", std::move(members)},
+            {"extraction_W", MakeJson(step.extraction_W)},
+            {"engage_distance_m", MakeJson(step.engage_distance)},
+            {"offset_W_m", MakeJson(step.offset_W)}};
+  if (!step.way.empty()) {
+    Json& way = json["way"] = Json::array();
+    for (const spatial::Pose& X_WB : step.way) {
+      way.push_back({{"X_WB", MakeJson(X_WB)}});
+    }
+  }
+  return json;
 }
 
 SequenceStep ReadStep(JsonFields* fields, std::size_t part_count) {
@@ -81,6 +88,16 @@ SequenceStep ReadStep(JsonFields* fields, std::size_t part_count) {
       break;
     }
     step.members.emplace_back(member.get<std::size_t>());
+  }
+  if (fields->has("way")) {
+    for (const Json& pose : fields->Array("way")) {
+      JsonFields inner(pose);
+      inner("X_WB", step.way.emplace_back());
+      fields->Take(inner);
+    }
+    if (step.way.size() < 2) {
+      fields->Refuse("way");
+    }
   }
   return step;
 }

@@ -222,6 +222,9 @@ spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
   const Vec3 way = step.engage_distance * step.extraction_W;
   spatial::Box box = place;
   box.Add(spatial::Box{place.low + way, place.high + way});
+  for (const spatial::Pose& X_WB : step.way) {
+    box.Add(spatial::Transform(X_WB, body.shape->box_B()));
+  }
   return box.Expanded(kRoom);
 }
 

@@ -103,6 +103,20 @@ class Extraction {
    @param deferred  Sorted; parts that are tried after all others. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveBending(Unit* rest, const Unit& deferred);
 
+  /** Takes out the first of these parts that can go along a way of several pieces, or one that
+   turns, and erases it from them. Parts that are held by more than clearance as drawn are not
+   tried, and all searches together take no more looks than kMostLooks.
+   @param deferred  Sorted; parts that are tried after all others. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveTurning(Unit* rest, const Unit& deferred);
+
+  /** How many looks at a part, in all, the search for ways that turn takes: some minutes. A choice.
+   */
+  static constexpr std::uint64_t kMostLooks = 4'000'000;
+
+  /** What the search for ways that turn found of a part that it did not take out; empty where it
+   did not look. */
+  [[nodiscard]] std::string ExplainTurning(product::OccurrenceId id) const;
+
   /** Allows those of these parts that overlap as drawn, and block one another's ways, half a
    millimetre more than the drawn depth, with all their faces. Returns false where there are none.
    */
@@ -149,8 +163,8 @@ class Extraction {
   /** How far parts may give where they meet. */
   enum class Giving : std::uint8_t {
     kNone,
-    kAsKnown,  ///< By what SequenceInput::give_limits has.
-    kByForm,   ///< By what a wall that bends may at most.
+    kAsKnown,  ///< They give by what SequenceInput::give_limits has.
+    kByForm,   ///< They give by what a wall that bends may at most.
   };
 
   /** What a part meets of another one on its way out. */
@@ -254,6 +268,23 @@ class Extraction {
   std::map<Unit, Memory> unit_memories_;
   FaceReliefs reliefs_;
   std::vector<Memory> bending_memories_;  // by occurrence
+
+  /** A search for a way that turns that found none. */
+  struct Search {
+    std::uint64_t looks{0};
+    std::vector<bool> is_present;  // What was there, by occurrence.
+    double gone{0};                // The farthest that it got [m].
+    product::OccurrenceId stopped_by;
+  };
+
+  /** Searches for a way that turns, with as many looks at most. */
+  [[nodiscard]] std::optional<SequenceStep> FindTurningWay(product::OccurrenceId id,
+                                                           std::uint64_t budget);
+  /** Whether a mate holds a part by more than clearance: ways along it alone are true. */
+  [[nodiscard]] bool IsHeldFirmly(product::OccurrenceId id) const;
+
+  std::vector<Search> searches_;  // By occurrence.
+  std::uint64_t looks_{0};
   Giving giving_{Giving::kNone};
   contact::QueryWorkspace workspace_;
 };

@@ -62,6 +62,10 @@ std::vector<contact::BodyId> ListTogetherBodies(const SequenceStep& step) {
   return bodies;
 }
 
+std::shared_ptr<const haptics::MateFaces> WithoutNeighbours(const haptics::MateFaces& faces) {
+  return std::make_shared<haptics::MateFaces>(haptics::MateFaces{faces.mating, faces.mating});
+}
+
 }  // namespace
 
 bool IsStop(const product::Mate& mate, const Vec3& axis_W, const Vec3& insertion_W) {
@@ -268,6 +272,11 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
     entry.body = contact::BodyId(other.index());
     entry.held_faces = is_a ? compiled.faces_a : compiled.faces_b;
     entry.placed_faces = is_a ? compiled.faces_b : compiled.faces_a;
+    if (!step.way.empty()) {
+      // On a way that turns, what borders on the faces of a mate may be what is in the way.
+      entry.held_faces = WithoutNeighbours(*entry.held_faces);
+      entry.placed_faces = WithoutNeighbours(*entry.placed_faces);
+    }
     held->mates.push_back(std::move(entry));
   }
 }

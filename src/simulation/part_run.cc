@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "mates/mate_kind.h"
 #include "product/flexible.h"
+#include "simulation/turning_way.h"
 
 namespace hvas::simulation {
 
@@ -78,7 +79,7 @@ bool PartRun::IsGuidedByPlanes(const SequenceStep& step) const {
          std::none_of(step.members.begin(), step.members.end(), has_axis);
 }
 
-PersonTask PartRun::MakeTask(const SequenceStep& step) const {
+PersonTask PartRun::MakeTask(const SequenceStep& step) {
   const Model& model = this->model();
   const Body& body = model.bodies[step.occurrence.index()];
   const spatial::Pose X_BG(CombineMass(model, step).p_BoBcm_B);
@@ -96,6 +97,12 @@ PersonTask PartRun::MakeTask(const SequenceStep& step) const {
   }
   task.extraction_W = step.extraction_W;
   task.engage_distance = step.engage_distance;
+  if (!step.way.empty()) {
+    ways_.push_back(MakeGripWay(step.way, X_BG.p(), body.shape->box_B()));
+    task.way = &ways_.back();
+    task.extraction_W = task.way->outward_W();
+    task.engage_distance = task.way->length();
+  }
   task.is_guided_by_planes = !task.takes_out && IsGuidedByPlanes(step);
   task.centre_W = model.centre_W;
   task.transfer_radius = model.transfer_radius;

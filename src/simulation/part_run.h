@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
@@ -136,7 +137,7 @@ class PartRun : public Sink {
   /** Whether no mate with a part in its place but planes guides what moves in a step. */
   [[nodiscard]] bool IsGuidedByPlanes(const SequenceStep& step) const;
   /** The task of a person who puts in or takes out what moves in a step. */
-  [[nodiscard]] PersonTask MakeTask(const SequenceStep& step) const;
+  [[nodiscard]] PersonTask MakeTask(const SequenceStep& step);
 
   std::array<haptics::HoldState, 2> states_{};           ///< One for each hand.
   std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
@@ -148,6 +149,7 @@ class PartRun : public Sink {
   Simulation* simulation_;
   Sink* downstream_;
   double lift_height_{0.05};
+  std::deque<GripWay> ways_;  // Of the tasks that were made.
 };
 
 /** Where a person stands who has all parts on the table in front: the first pose of the hand. */

@@ -179,7 +179,7 @@ bool Planner::TakeOutBody(BlockingGraph* graph, Unit* rest, std::vector<Sequence
 void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, Sequence* sequence) {
   const OccurrenceId blocker = graph->FindGreatestBlocker();
   const OccurrenceId id = blocker.is_valid() ? blocker : rest->front();
-  std::string reason = extraction_.ExplainStuck(id);
+  std::string reason = extraction_.ExplainStuck(id) + extraction_.ExplainTurning(id);
   if (graph->is_limited()) {
     reason += fmt::format("; of the ways of parts that might come out together, only {} were tried",
                           BlockingGraph::kMostWays);
@@ -248,6 +248,10 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
   }
   (*graph)->Keep(*rest);
   if (TakeOutBody(&**graph, rest, removed, sequence)) {
+    return;
+  }
+  if (std::optional<SequenceStep> turning = extraction_.TryRemoveTurning(rest, connecting)) {
+    removed->push_back(std::move(*turning));
     return;
   }
   if (std::optional<SequenceStep> bending = extraction_.TryRemoveBending(rest, connecting)) {

@@ -12,6 +12,7 @@
 #include "haptics/held_part.h"
 #include "product/product.h"
 #include "simulation/neighbours.h"
+#include "spatial/pose.h"
 
 namespace hvas::simulation {
 
@@ -27,6 +28,9 @@ struct SequenceStep {
   product::OccurrenceId occurrence;            ///< The part, or the base of the subassembly.
   std::vector<product::OccurrenceId> members;  ///< What else moves with it (X3).
   Vec3 extraction_W{Vec3::UnitZ()};            ///< Unit; the way out. The way in is the reverse.
+  /** Where the way is not straight: poses X_WB of the part from its place outward, evenly from one
+   to the next; the last piece is straight, and goes on. Then extraction_W is the first piece's. */
+  std::vector<spatial::Pose> way{};
   double engage_distance{0};    ///< Distance from the goal until nothing is engaged [m].
   Vec3 offset_W{Vec3::Zero()};  ///< kPark: from the drawn place to the shelf [m].
 };

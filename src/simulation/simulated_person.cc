@@ -48,7 +48,10 @@ constexpr double kTurned = 0.05;            // [rad]; as good as turned
 constexpr double kTurning = 0.02;           // [rad/s]; slower than that, the hand does not turn
 constexpr double kCalmTime = 0.2;           // [s]; what swings is only still for a moment
 constexpr double kMostWait = 1.5;    // [s] for a hand to come, and what it holds to hang still
-constexpr double kSenseTime = 0.08;  // [s] in which it notices how fast its hand is
+constexpr double kLeadOnWay = 1e-3;  // [m] that the hand goes before the part on a way that bends
+constexpr double kLeadWhenStuck = 2e-3;  // [m/s] more of it while the part is stuck
+constexpr double kLeastOfTravel = 0.2;   // Of the travel: where less of it is distance, it turns.
+constexpr double kSenseTime = 0.08;      // [s] in which it notices how fast its hand is
 
 void LimitLength(double most, Vec3* v) {
   *v *= std::min(1.0, most / std::max(v->norm(), most));
@@ -170,13 +173,38 @@ Vec3 SimulatedPerson::CalcPointAside(double distance) const noexcept {
   return task_.centre_W + distance * (CalcLifted() - task_.centre_W).normalized();
 }
 
+spatial::Pose SimulatedPerson::WayAt(double travel) const noexcept {
+  return task_.way != nullptr ? task_.way->At(travel)
+                              : spatial::Pose(task_.X_WG_goal.q(),
+                                              task_.X_WG_goal.p() + travel * task_.extraction_W);
+}
+
+double SimulatedPerson::TravelOf(const spatial::Pose& X_WG) const noexcept {
+  return task_.way != nullptr ? task_.way->CalcTravel(X_WG, travel_)
+                              : (X_WG.p() - task_.X_WG_goal.p()).dot(task_.extraction_W);
+}
+
+Vec3 SimulatedPerson::OutwardOfWay() const noexcept {
+  if (task_.way == nullptr) {
+    return task_.extraction_W;
+  }
+  const Vec3 v_W = task_.way->RateAt(travel_).v;
+  return v_W.norm() > kLeastOfTravel ? Vec3(v_W.normalized()) : task_.extraction_W;
+}
+
+double SimulatedPerson::CalcOutwardSpeed(const OperatorInput& input) const noexcept {
+  return task_.way != nullptr ? task_.way->CalcSpeed({V_H_.w, MotionOf(input)}, travel_)
+                              : MotionOf(input).dot(task_.extraction_W);
+}
+
 double SimulatedPerson::CalcWayToSphere() const noexcept {
-  const Vec3 from_centre = task_.X_WG_goal.p() - task_.centre_W;
+  const double length = task_.way != nullptr ? task_.way->length() : 0;
+  const Vec3 from_centre = WayAt(length).p() - task_.centre_W;
   const double b = from_centre.dot(task_.extraction_W);
   const double discriminant =
       b * b - from_centre.squaredNorm() + task_.transfer_radius * task_.transfer_radius;
   return std::max(task_.engage_distance + 2 * kStandOff,
-                  -b + std::sqrt(std::max(0.0, discriminant)));
+                  length - b + std::sqrt(std::max(0.0, discriminant)));
 }
 
 void SimulatedPerson::PlanCarry() noexcept {
@@ -184,14 +212,13 @@ void SimulatedPerson::PlanCarry() noexcept {
   AddReach(CalcLifted(), task_.X_WG_start.q(), options_.carry_speed, false);
   AddReach(CalcPointAside(task_.transfer_radius), task_.X_WG_start.q(), options_.carry_speed,
            false);
-  AddReach(task_.X_WG_goal.p() + CalcWayToSphere() * task_.extraction_W, task_.X_WG_goal.q(),
-           options_.carry_speed, true);
+  const spatial::Pose X_WG = WayAt(CalcWayToSphere());
+  AddReach(X_WG.p(), X_WG.q(), options_.carry_speed, true);
 }
 
 void SimulatedPerson::PlanPutDown() noexcept {
   const Vec3& d = task_.extraction_W;
-  const double travel = (p_ref_ - task_.X_WG_goal.p()).dot(d);
-  const double way = std::max(0.0, CalcWayToSphere() - travel);
+  const double way = std::max(0.0, CalcWayToSphere() - TravelOf({q_ref_, p_ref_}));
   const Quat& q = task_.X_WG_start.q();
   StartReaches(Phase::kPutDown);
   AddReach(p_ref_ + way * d, q_ref_, options_.carry_speed, false);
@@ -214,21 +241,25 @@ void SimulatedPerson::PlanReturn() noexcept {
 }
 
 void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
-  const Vec3& d = task_.extraction_W;
-  const double hand_travel = (X_WH_.p() - task_.X_WG_goal.p()).dot(d);
+  const Vec3 d = OutwardOfWay();
+  const double hand_travel = TravelOf(X_WH_);
   if (input.hears_seated) {
     phase_ = Phase::kSettle;
     phase_time_s_ = 0;
     return;
   }
-  const double seen_travel = (input.X_WD * task_.p_BG - task_.X_WG_goal.p()).dot(d);
+  const double seen_travel = TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG});
   if (input.sees_part && seen_travel <= task_.turn_back) {
     phase_ = Phase::kRest;
     phase_time_s_ = 0;
     return;
   }
   if (phase_time_s_ > CalcPatience()) {
-    PlanReturn();
+    if (task_.way != nullptr) {
+      BeginWithdraw(hand_travel, options_.first_push);  // It has to turn its way out again.
+    } else {
+      PlanReturn();
+    }
     return;
   }
   // Where no mate guides it and it has missed once, it looks, lays the part on with a light touch,
@@ -251,7 +282,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     }
   } else {
     // The arm's spring turns the lead into a force.
-    const double speed = -MotionOf(input).dot(d);
+    const double speed = -CalcOutwardSpeed(input);
     const double wanted_speed = is_careful ? kCarefulSpeed : options_.insert_speed;
     const bool is_slow = speed < kSlowShare * wanted_speed;
     AdjustPush(CalcAddedForce(input), speed, wanted_speed, is_careful && !is_inside);
@@ -278,9 +309,9 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
       Rock(d, is_slow);
     }
   }
-  p_ref_ = task_.X_WG_goal.p() + travel_ * d + hold_offset_W_ + aim_offset_ + search_offset_ +
-           yield_offset_;
-  q_ref_ = spatial::RotationFromVector(aim_turn_ + yield_turn_ + rocking_) * task_.X_WG_goal.q();
+  const spatial::Pose X_WG = WayAt(travel_);
+  p_ref_ = X_WG.p() + hold_offset_W_ + aim_offset_ + search_offset_ + yield_offset_;
+  q_ref_ = spatial::RotationFromVector(aim_turn_ + yield_turn_ + rocking_) * X_WG.q();
 }
 
 const Vec3& SimulatedPerson::MotionOf(const OperatorInput& input) const noexcept {
@@ -325,8 +356,7 @@ void SimulatedPerson::BeginWithdraw(double travel, double push) noexcept {
 }
 
 void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
-  const Vec3& d = task_.extraction_W;
-  const double hand_travel = (X_WH_.p() - task_.X_WG_goal.p()).dot(d);
+  const double hand_travel = TravelOf(X_WH_);
   const bool is_out = hand_travel > task_.engage_distance + 2 * kStandOff;
   const bool is_too_long = phase_time_s_ > CalcPatience();
   if (task_.takes_out && is_out) {
@@ -343,10 +373,17 @@ void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
     PlanReturn();
     return;
   }
-  const double speed = MotionOf(input).dot(d);
+  const double speed = CalcOutwardSpeed(input);
   stuck_time_s_ = speed < kStillSpeed ? stuck_time_s_ + dt_ : 0;
   AdjustPush(input.F_H_D.f.norm(), speed, options_.insert_speed, false);
   travel_ = std::min(travel_ + options_.insert_speed * dt_, hand_travel + LeadOf(input));
+  if (task_.way != nullptr) {
+    const spatial::Pose X_WG = WayAt(travel_);
+    p_ref_ = X_WG.p();
+    q_ref_ = X_WG.q();
+    return;
+  }
+  const Vec3& d = task_.extraction_W;
   const Vec3 along = p_ref_ - task_.X_WG_goal.p();
   p_ref_ += (travel_ - along.dot(d)) * d;
 }
@@ -372,10 +409,13 @@ void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
 }
 
 void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
-  const Vec3& d = task_.extraction_W;
-  Vec3 aside = input.X_WD * task_.p_BG - task_.X_WG_goal.p() - search_offset_;
+  const Vec3 d = OutwardOfWay();
+  const spatial::Pose X_WG = task_.way != nullptr
+                                 ? WayAt(TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG}))
+                                 : task_.X_WG_goal;
+  Vec3 aside = input.X_WD * task_.p_BG - X_WG.p() - search_offset_;
   aside -= aside.dot(d) * d;
-  const Vec3 turned = spatial::RotationBetween(task_.X_WG_goal.q(), input.X_WD.q());
+  const Vec3 turned = spatial::RotationBetween(X_WG.q(), input.X_WD.q());
   // It knows the mean of all its looks.
   const double of_mean = 1 / std::sqrt(static_cast<double>(std::max(1, search_count_.load())));
   for (int k = 0; k < 3; ++k) {
@@ -431,7 +471,9 @@ Vec3 SimulatedPerson::Tremor() noexcept {
 
 double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
   // The arm is as stiff as it is where the hand really is.
-  return input.workspace.scale * push_ / options_.stiffness;
+  const double lead = input.workspace.scale * push_ / options_.stiffness;
+  // Around a corner it does not pull before the part is there, unless it is stuck.
+  return task_.way != nullptr ? std::min(lead, kLeadOnWay + kLeadWhenStuck * stuck_time_s_) : lead;
 }
 
 void SimulatedPerson::LearnLoad(const spatial::Wrench& F_H_W) noexcept {
@@ -479,13 +521,12 @@ void SimulatedPerson::BeginApproach(const OperatorInput& input) noexcept {
   hold_offset_W_ = is_at_device_ ? Vec3(grip_offset_W_.dot(d) * d - grip_offset_W_) : Vec3::Zero();
   travel_ = task_.engage_distance + kStandOff;
   StartReaches(Phase::kApproach);
-  AddReach(CalcApproachEnd(), spatial::RotationFromVector(aim_turn_) * task_.X_WG_goal.q(),
+  AddReach(CalcApproachEnd(), spatial::RotationFromVector(aim_turn_) * WayAt(travel_).q(),
            options_.approach_speed, false);
 }
 
 Vec3 SimulatedPerson::CalcApproachEnd() const noexcept {
-  const double travel = task_.engage_distance + kStandOff;
-  return task_.X_WG_goal.p() + travel * task_.extraction_W + hold_offset_W_ + aim_offset_;
+  return WayAt(task_.engage_distance + kStandOff).p() + hold_offset_W_ + aim_offset_;
 }
 
 void SimulatedPerson::CorrectHold(const OperatorInput& input) noexcept {
@@ -571,7 +612,7 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
     case Phase::kRest:
       p_ref_ += (X_WH_.p() - p_ref_) * (dt_ / kSlackTime);
       if (phase_time_s_ > kRestTime) {
-        BeginWithdraw((p_ref_ - task_.X_WG_goal.p()).dot(task_.extraction_W), 0);
+        BeginWithdraw(TravelOf({q_ref_, p_ref_}), 0);
       }
       break;
     case Phase::kWithdraw:

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "base/ring.h"
+#include "simulation/grip_way.h"
 #include "simulation/operator.h"
 
 namespace hvas::simulation {
@@ -18,9 +19,11 @@ struct PersonTask {
   spatial::Pose X_WG_goal;  ///< Grip frame of the part in its place.
   /** The part is in its place: it is drawn out and put down at X_WG_start. */
   bool takes_out{false};
-  Vec3 p_BG{Vec3::Zero()};  ///< The grip in the part.
-  Vec3 extraction_W{Vec3::UnitZ()};
-  double engage_distance{0};  ///< [m] from the goal, where insertion begins.
+  Vec3 p_BG{Vec3::Zero()};           ///< The grip in the part.
+  Vec3 extraction_W{Vec3::UnitZ()};  ///< Unit; the way out, that of the last piece of `way`.
+  double engage_distance{0};         ///< [m] from the goal, where insertion begins.
+  /** The way of the grip where it is not straight; outlives the task. Null: straight. */
+  const GripWay* way{nullptr};
   /** Only planes guide it: what they leave free the eye has to find. */
   bool is_guided_by_planes{false};
   /** [m] from the goal, where it stops, rests, draws the part out again and brings it back;
@@ -163,6 +166,14 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] Vec3 CalcPointAside(double distance) const noexcept;
   /** Distance from the goal at which the way in crosses the sphere on which nothing is met [m]. */
   [[nodiscard]] double CalcWayToSphere() const noexcept;
+  /** Where the way has the grip, so far from the goal. */
+  [[nodiscard]] spatial::Pose WayAt(double travel) const noexcept;
+  /** How far from the goal along the way a grip is [m]. */
+  [[nodiscard]] double TravelOf(const spatial::Pose& X_WG) const noexcept;
+  /** The direction outward of the way, there where the reference is. */
+  [[nodiscard]] Vec3 OutwardOfWay() const noexcept;
+  /** How fast what moves at the hand goes outward along the way, as far as it can tell [m/s]. */
+  [[nodiscard]] double CalcOutwardSpeed(const OperatorInput& input) const noexcept;
   void BeginWithdraw(double travel, double push) noexcept;
   void BeginApproach(const OperatorInput& input) noexcept;
   void BeginInsert() noexcept;

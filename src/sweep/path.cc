@@ -122,6 +122,10 @@ double CalcLargestMove(const Pose& from, const Pose& to, const Box& box_B) {
   return CalcLargestMove(from, to, CornersOf(box_B));
 }
 
+double CalcLongestWay(const Pose& from, const Pose& to, const Box& box_B) {
+  return CalcLongestWay(FindScrew(from.Inverse() * to), CornersOf(box_B));
+}
+
 double CalcLength(const Path& path, const Vec3& p_BQ) {
   double length = 0;
   for (std::size_t i = 1; i < path.size(); ++i) {

@@ -31,6 +31,11 @@ using Path = std::vector<spatial::Pose>;
 [[nodiscard]] double CalcLargestMove(const spatial::Pose& from, const spatial::Pose& to,
                                      const spatial::Box& box_B);
 
+/** The longest way of a point of a box along the screw from one pose to another [m]; a corner has
+ it. */
+[[nodiscard]] double CalcLongestWay(const spatial::Pose& from, const spatial::Pose& to,
+                                    const spatial::Box& box_B);
+
 /** Way of a point of B [m], with arcs as the chords between the poses. */
 [[nodiscard]] double CalcLength(const Path& path, const Vec3& p_BQ);
 

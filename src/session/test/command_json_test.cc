@@ -225,6 +225,25 @@ TEST(CommandJson, BringsACommandBackFromWhatHasChanged) {
   EXPECT_TRUE(std::signbit(back->parts[17].X_WB.p().x()));
 }
 
+TEST(CommandJson, BringsBackAWayThatTurns) {
+  Numbers numbers;
+  const std::vector<PartState> before = MakeParts(&numbers, 5);
+  GivenCommand given;
+  given.kind = simulation::TickCommand::Kind::kTake;
+  given.step.occurrence = product::OccurrenceId(3);
+  given.step.way = {numbers.Place(), numbers.Place(), numbers.Place()};
+  given.parts = before;
+  const auto back = ParseCommand(MakeCommand(given, before), before, 2);
+  ASSERT_TRUE(back.has_value()) << back.error().ToString();
+  ASSERT_EQ(back->step.way.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    ExpectEqual(back->step.way[i], given.step.way[i]);
+  }
+  given.step.way.resize(1);
+  EXPECT_FALSE(ParseCommand(MakeCommand(given, before), before, 2).has_value())
+      << "a way has two poses at least";
+}
+
 TEST(CommandJson, X1BringsBackWhatIsTogether) {
   Numbers numbers;
   const std::vector<PartState> before = MakeParts(&numbers, 5);

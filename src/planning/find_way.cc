@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "planning/check_way.h"
+#include "planning/moves.h"
+#include "planning/push_search.h"
+#include "planning/shorten_way.h"
+#include "planning/tree_search.h"
+#include "planning/way.h"
+
+namespace hvas::planning {
+namespace {
+
+using spatial::Pose;
+
+// Choices. Pushes find what they find soon, or not at all: a bayonet, a stepped channel and a hook
+// among the pairs of the tests take 1,000 to 20,000 queries. Towards a goal pose they are fewer:
+// what they reach is where the tree begins, without which Twistycool takes ten times as many
+// queries.
+constexpr std::uint64_t kQueriesOfPushesToGoal = 6'000;
+constexpr std::uint64_t kQueriesOfPushes = 60'000;
+constexpr std::uint64_t kShareOfPushes = 4;  // Of the budget: at most one in so many queries.
+constexpr double kShareOfShortening = 0.3;
+
+Result<void> CheckProblem(const WayProblem& problem, Probe* probe) {
+  const auto is_free = [&](const Pose& X_WB) {
+    return probe->Query(X_WB, 2 * std::abs(problem.tolerance)) >= -problem.tolerance;
+  };
+  if (!is_free(problem.X_WB_start)) {
+    return Fail(ErrorCode::kInvalid, "the part is deeper in others at its start than the tolerance",
+                "", "raise the tolerance or allow the overlap");
+  }
+  if (problem.X_WB_goal && !is_free(*problem.X_WB_goal)) {
+    return Fail(ErrorCode::kInvalid, "the part is deeper in others at its goal than the tolerance",
+                "", "raise the tolerance or allow the overlap");
+  }
+  return {};
+}
+
+std::optional<sweep::Path> SearchStraight(Probe* probe, const std::vector<Vec3>& directions,
+                                          double step) {
+  const WayProblem& problem = probe->problem();
+  const Pose& X = problem.X_WB_start;
+  if (problem.X_WB_goal) {
+    return IsScrewFree(probe, X, *problem.X_WB_goal, step)
+               ? std::optional<sweep::Path>({X, *problem.X_WB_goal})
+               : std::nullopt;
+  }
+  for (const Vec3& direction : directions) {
+    const double exit = probe->CalcExit(X, direction) + 1e-6;
+    // From near to far: what is blocked mostly is so at once.
+    const double stride = std::max(probe->size() / 200, step);
+    bool is_free = true;
+    for (double s = stride; s < exit && is_free; s += stride) {
+      is_free = probe->IsFree(Pose(X.q(), Vec3(X.p() + s * direction)));
+    }
+    const sweep::Path path{X, Pose(X.q(), Vec3(X.p() + exit * direction))};
+    if (is_free && CheckWay(probe, path, step).is_free) {
+      return path;
+    }
+  }
+  return std::nullopt;
+}
+
+void DescribeFailure(SearchState* state, WaySearch* search) {
+  Probe& probe = *state->probe;
+  search->farthest = state->tree.ListPath(state->best);
+  search->distance_to_go = std::max(0.0, state->best_to_go);
+  probe.Query(search->farthest.back(), std::max(2 * std::abs(probe.tolerance()), probe.grain()));
+  search->stops = ListStops(probe.contacts(), std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+
+const char* NameOf(WayMethod method) {
+  switch (method) {
+    case WayMethod::kStraight:
+      return "straight";
+    case WayMethod::kPushes:
+      return "pushes";
+    case WayMethod::kTree:
+      return "tree";
+  }
+  return "";
+}
+
+Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) {
+  if (problem.scene == nullptr || problem.part == nullptr) {
+    return Fail(ErrorCode::kInvalid, "the problem has no scene or no part", "", "");
+  }
+  Probe probe(problem, options);
+  if (const auto valid = CheckProblem(problem, &probe); !valid) {
+    return Unexpected(valid.error());
+  }
+  const double step = CheckStepOf(problem.tolerance);
+  const std::vector<Vec3> directions = ListDirections(&probe);
+  SearchState state(&probe);
+  WaySearch search;
+  WayMethod method = WayMethod::kStraight;
+  std::optional<sweep::Path> path = SearchStraight(&probe, directions, step);
+  std::vector<ScrewAxis> axes;
+  if (!path) {
+    method = WayMethod::kPushes;
+    axes = ListAxes(&probe);
+    const std::uint64_t budget =
+        std::min(problem.X_WB_goal ? kQueriesOfPushesToGoal : kQueriesOfPushes,
+                 options.budget / kShareOfPushes);
+    path = SearchByPushes(&state, directions, axes, budget);
+    std::size_t edge = 0;
+    if (path) {
+      path = RepairWay(&probe, *path, step, &edge);
+    }
+  }
+  if (!path) {
+    method = WayMethod::kTree;
+    path = SearchByTree(&state, directions, axes, options);
+  }
+  search.is_stopped = options.stop.stop_requested();
+  search.is_budget_over = probe.queries() >= options.budget;
+  if (!path) {
+    DescribeFailure(&state, &search);
+    search.queries = probe.queries();
+    return search;
+  }
+  probe.Extend(options.budget);
+  if (options.has_to_shorten && method != WayMethod::kStraight) {
+    const auto budget =
+        static_cast<std::uint64_t>(kShareOfShortening * static_cast<double>(options.budget));
+    path = ShortenWay(&probe, *path, step, options.seed, budget);
+  }
+  double deepest = std::numeric_limits<double>::infinity();
+  for (const Pose& X_WB : *path) {
+    deepest = std::min(deepest, probe.Query(X_WB, std::abs(problem.tolerance)));
+  }
+  search.queries = probe.queries();
+  search.way = Way{std::move(*path), deepest, method};
+  return search;
+}
+
+}  // namespace hvas::planning

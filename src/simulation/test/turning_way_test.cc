@@ -1,0 +1,111 @@
+// Parts that have to turn on their way in.
+
+#include "simulation/turning_way.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "planning/test/pairs.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using planning::testing::CellSolid;
+using testing::OccurrenceId;
+using testing::Pose;
+using testing::Product;
+
+/** The solid with the triangles of each face together, as parts have them. */
+contact::ShapeSource MakeSource(const CellSolid& solid) {
+  const contact::ShapeSource made = solid.Make();
+  contact::ShapeSource sorted = made;
+  sorted.triangles.clear();
+  sorted.triangle_face.clear();
+  for (std::uint32_t face = 0; face < made.faces.size(); ++face) {
+    for (std::size_t t = 0; t < made.triangles.size(); ++t) {
+      if (made.triangle_face[t] == face) {
+        sorted.triangles.push_back(made.triangles[t]);
+        sorted.triangle_face.push_back(face);
+      }
+    }
+  }
+  return sorted;
+}
+
+/** A key whose bit lies across the slot of a plate, below it: it has to turn by a quarter. */
+Product KeyInPlate() {
+  Product product;
+  product.name = "lock";
+  CellSolid plate({std::vector{-20e-3, -6e-3, -2.2e-3, 2.2e-3, 6e-3, 20e-3},
+                   {-20e-3, -2.2e-3, -1.8e-3, 1.8e-3, 2.2e-3, 20e-3},
+                   {0, 4e-3}});
+  plate.Set(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+  plate.Set(Vec3(-6e-3, -1.8e-3, -1), Vec3(6e-3, 1.8e-3, 1), false);
+  plate.Set(Vec3(-2.2e-3, -2.2e-3, -1), Vec3(2.2e-3, 2.2e-3, 1), false);
+  CellSolid key({std::vector{-4e-3, -1e-3, 1e-3, 4e-3},
+                 {-5e-3, -4e-3, -1e-3, 1e-3, 4e-3, 5e-3},
+                 {-2.3e-3, -0.3e-3, 12e-3, 16e-3}});
+  key.Set(Vec3(-1e-3, -1, -1), Vec3(1e-3, 1, -0.3e-3));     // Bit.
+  key.Set(Vec3(-1e-3, -1e-3, -1), Vec3(1e-3, 1e-3, 1));     // Shaft.
+  key.Set(Vec3(-4e-3, -4e-3, 12e-3), Vec3(4e-3, 4e-3, 1));  // Handle.
+  testing::Place(&product, testing::AddPart(&product, "plate", MakeSource(plate)), "plate");
+  testing::Place(&product, testing::AddPart(&product, "key", MakeSource(key)), "key");
+  testing::Complete(&product);
+  return product;
+}
+
+TEST(TurningWayTest, AKeyIsTurnedBeforeItComesOutAndThePersonPutsItIn) {
+  Diagnostics diagnostics;
+  const auto compiled =
+      Compile(std::make_shared<Product>(KeyInPlate()), testing::FastOptions(), &diagnostics);
+  ASSERT_TRUE(compiled.has_value());
+  const auto& model = *compiled;
+  ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
+  const SequenceStep* step = FindInsertion(model->sequence, OccurrenceId(1));
+  ASSERT_NE(step, nullptr);
+  ASSERT_GE(step->way.size(), 2U);
+  const Pose& in = step->way.front();
+  const Pose& out = step->way.back();
+  EXPECT_LT((in.p() - model->bodies[1].X_WB_goal.p()).norm(), 1e-12);
+  EXPECT_NEAR(spatial::RotationBetween(in.q(), out.q()).norm(), 0.5 * std::numbers::pi, 0.3);
+  testing::Session session(model);
+  (void)RunLockstep(session.MakeExecution(120));
+  const PartResult key = session.run.results().back();
+  EXPECT_TRUE(key.is_seated) << key.reason;
+  EXPECT_LT(key.passage.depth, 0.2e-3);
+}
+
+TEST(TurningWayTest, TheLastPieceLeadsPastAllOthers) {
+  const spatial::Box box_B{Vec3(-1e-3, -1e-3, -1e-3), Vec3(1e-3, 1e-3, 1e-3)};
+  const sweep::Path path{Pose(), Pose(Vec3(0, 0, 5e-3))};
+  const spatial::Box above{Vec3(-5e-3, -5e-3, 20e-3), Vec3(5e-3, 5e-3, 30e-3)};
+  const auto step = MakeTurningStep(OccurrenceId(1), path, box_B, std::array{above});
+  ASSERT_TRUE(step);
+  const Vec3 last = step->way.back().p() - step->way[step->way.size() - 2].p();
+  EXPECT_LT((last - Vec3(0, 0, -10e-3)).norm(), 1e-12);
+  EXPECT_NEAR(step->extraction_W.z(), 1, 1e-6);
+  // Walls on all sides leave no way to go on.
+  const spatial::Box below{Vec3(-1, -1, -30e-3), Vec3(1, 1, -20e-3)};
+  const spatial::Box over{Vec3(-1, -1, 20e-3), Vec3(1, 1, 30e-3)};
+  const spatial::Box left{Vec3(-30e-3, -1, -1), Vec3(-20e-3, 1, 1)};
+  const spatial::Box right{Vec3(20e-3, -1, -1), Vec3(30e-3, 1, 1)};
+  const spatial::Box front{Vec3(-1, -30e-3, -1), Vec3(1, -20e-3, 1)};
+  const spatial::Box back{Vec3(-1, 20e-3, -1), Vec3(1, 30e-3, 1)};
+  EXPECT_FALSE(MakeTurningStep(OccurrenceId(1), path, box_B,
+                               std::array{below, over, left, right, front, back}));
+}
+
+TEST(TurningWayTest, TheGripGoesWithItsPart) {
+  const Vec3 p_BG(2e-3, 0, 1e-3);
+  const spatial::Box box_B{Vec3(-1e-3, -1e-3, -1e-3), Vec3(1e-3, 1e-3, 1e-3)};
+  const Quat half(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));
+  const GripWay way = MakeGripWay({Pose(), Pose(half, Vec3(0, 0, 5e-3))}, p_BG, box_B);
+  EXPECT_LT((way.At(0).p() - p_BG).norm(), 1e-12);
+  EXPECT_LT((way.At(way.length()).p() - (half * p_BG + Vec3(0, 0, 5e-3))).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace hvas::simulation
