@@ -1,0 +1,207 @@
+// Ways on which parts give: docs/algorithms/flexible.md.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "simulation/bending_form.h"
+#include "simulation/extraction.h"
+#include "simulation/giving_width.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::MateKind;
+using product::OccurrenceId;
+
+// What a wall or an arm that no name tells of may be bent aside at most: as a named snap hook.
+constexpr double kUndercut = 0.05;         // Of the longest side of the smaller part.
+constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
+
+}  // namespace
+
+bool Extraction::MayPass(const MateView& view, OccurrenceId id, const Vec3& direction) const {
+  const bool is_wall =
+      view.mate->kind == MateKind::kFaceFace || view.mate->kind == MateKind::kPrismatic;
+  return giving_ != Giving::kNone && CalcGiveLimit(id, view.other) > 0 &&
+         (is_wall || IsAcrossOpenAxis(view, direction));
+}
+
+bool Extraction::IsStatedRigid(OccurrenceId id) const {
+  const product::FlexiblePart* stated = FindFlexible(product_, id);
+  return stated != nullptr && stated->allowance == 0;
+}
+
+double Extraction::CalcGiveLimit(OccurrenceId id, OccurrenceId other) const {
+  const double known = input_.give_limits.empty() ? 0.0
+                                                  : std::max(input_.give_limits[id.index()],
+                                                             input_.give_limits[other.index()]);
+  if (giving_ != Giving::kByForm || (IsStatedRigid(id) && IsStatedRigid(other))) {
+    return giving_ == Giving::kNone ? 0 : known;
+  }
+  const auto longest = [this](OccurrenceId part) {
+    return product_.part_of(part).box_B.size().maxCoeff();
+  };
+  return std::max(known,
+                  std::min(kLargestUndercut, kUndercut * std::min(longest(id), longest(other))));
+}
+
+bool Extraction::MayGive(OccurrenceId id) const {
+  const auto gives = [this](OccurrenceId other) {
+    return input_.give_limits[other.index()] > 0 && is_present_[other.index()];
+  };
+  if (input_.give_limits.empty() || gives(id)) {
+    return !input_.give_limits.empty();
+  }
+  // A rigid part may pass where what was in its way gives.
+  return std::any_of(memories_[id.index()].attempts.begin(), memories_[id.index()].attempts.end(),
+                     [&gives](const Attempt& attempt) {
+                       return attempt.blocker && attempt.blocker->occurrence.is_valid() &&
+                              gives(attempt.blocker->occurrence);
+                     });
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveWith(Giving giving, Unit* rest,
+                                                      const Unit& deferred) {
+  std::vector<Memory>& memories = giving == Giving::kByForm ? bending_memories_ : giving_memories_;
+  for (const bool is_deferred : {false, true}) {
+    for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
+      const OccurrenceId id = (*rest)[i];
+      if ((giving == Giving::kAsKnown && !MayGive(id)) ||
+          std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred) {
+        continue;
+      }
+      giving_ = giving;
+      std::optional<SequenceStep> step = TryRemove({id}, &memories[id.index()]);
+      giving_ = Giving::kNone;
+      if (step) {
+        NoteGives(id, step->extraction_W);
+        rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
+        return step;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveGiving(Unit* rest, const Unit& deferred) {
+  return TryRemoveWith(Giving::kAsKnown, rest, deferred);
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveBending(Unit* rest, const Unit& deferred) {
+  return TryRemoveWith(Giving::kByForm, rest, deferred);
+}
+
+std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(OccurrenceId id,
+                                                                        const Vec3& direction) {
+  constexpr double kAcross = 0.5;  // Normals within 30 degrees of across the way: a choice.
+  std::map<OccurrenceId, Meeting> meetings;
+  const Unit unit{id};
+  const std::vector<Member> members = ListMembers(unit, direction);
+  const double step = CalcStep(unit);
+  const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
+  for (int i = 0; i <= last; ++i) {
+    const contact::QueryOptions query = MakeQuery(members[0], kDepthTolerance);
+    input_.scene->Query(input_.scene->shape(query.self), CalcPoseAlong(id, i * step * direction),
+                        query, &workspace_);
+    for (const contact::Contact& contact : workspace_.contacts()) {
+      if (!contact.body.is_valid()) {
+        continue;
+      }
+      Meeting& meeting = meetings[OccurrenceId(contact.body.index())];
+      meeting.depth = std::max(meeting.depth, -contact.distance);
+      if (std::abs(contact.nhat_W.dot(direction)) < kAcross &&
+          contact.distance < meeting.sideways.distance) {
+        meeting.sideways = contact;
+        meeting.travelled = i * step;
+      }
+    }
+  }
+  return meetings;
+}
+
+std::optional<OccurrenceId> Extraction::FindWhatBends(OccurrenceId id, OccurrenceId other,
+                                                      const Meeting& meeting, const Vec3& direction,
+                                                      double width) const {
+  if (!(meeting.sideways.distance < 0)) {
+    return std::nullopt;  // It would have to be pushed through, not aside.
+  }
+  const Vec3& p_W = meeting.sideways.p_WC;
+  const Vec3& nhat_W = meeting.sideways.nhat_W;
+  const Vec3 aside_W = (nhat_W - nhat_W.dot(direction) * direction).normalized();
+  const Vec3 travel_W = meeting.travelled * direction;
+  // The part that bends is looked at as drawn, and so is the one that it must have room beside.
+  const auto calc_strain = [&](OccurrenceId part, OccurrenceId beside, const Vec3& moved_W,
+                               const Vec3& inward_W) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    if (IsStatedRigid(part)) {
+      return kNone;
+    }
+    const auto bending =
+        simulation::FindBending(product_, part, p_W - moved_W, inward_W, direction, width);
+    const Vec3 moved_beside_W = travel_W - moved_W;
+    return bending && HasRoomToBend(product_, beside, bending->p_back_W + moved_W - moved_beside_W,
+                                    inward_W, width)
+               ? bending->strain
+               : kNone;
+  };
+  // Past the middle of a thin wall, the nearest way out of it leads on: both sides are looked at.
+  const auto calc_least = [&](OccurrenceId part, OccurrenceId beside, const Vec3& moved_W) {
+    return std::min(calc_strain(part, beside, moved_W, aside_W),
+                    calc_strain(part, beside, moved_W, -aside_W));
+  };
+  const double own = calc_least(id, other, travel_W);
+  const double others = calc_least(other, id, Vec3::Zero());
+  return std::min(own, others) > kBearableStrain ? std::nullopt
+                                                 : std::optional(own <= others ? id : other);
+}
+
+std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& direction) {
+  const Giving giving = std::exchange(giving_, Giving::kNone);  // What is met without giving.
+  const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
+  giving_ = giving;
+  for (const auto& [other, meeting] : meetings) {
+    const double limit = CalcGiveLimit(id, other);
+    if (!(limit > 0)) {
+      continue;
+    }
+    const double width = CalcGivingWidth(product_, id, other, direction, limit);
+    const bool may_bend =
+        giving_ != Giving::kByForm || FindWhatBends(id, other, meeting, direction, width);
+    if (width > limit || !may_bend) {
+      return Obstacle{other, 0, {}};
+    }
+  }
+  return std::nullopt;
+}
+
+void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
+  SetUnit({id}, true);
+  const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
+  SetUnit({id}, false);
+  for (const auto& [other, meeting] : meetings) {
+    GivingPair give{id, other, meeting.depth};
+    const product::FlexiblePart* own = FindFlexible(product_, id);
+    const product::FlexiblePart* others = FindFlexible(product_, other);
+    const auto limit_of = [](const product::FlexiblePart* part) {
+      return part == nullptr ? 0.0 : part->allowance;
+    };
+    const double limit = std::max(limit_of(own), limit_of(others));
+    give.width =
+        CalcGivingWidth(product_, id, other, direction, limit > 0 ? limit : kLargestUndercut);
+    const auto bending = FindWhatBends(id, other, meeting, direction, give.width);
+    const bool is_known = limit > 0 && give.width <= limit;
+    const bool is_own = is_known || !bending ? limit_of(own) >= limit_of(others) : *bending == id;
+    give.kind = !is_known ? product::FlexibleKind::kForm : is_own ? own->kind : others->kind;
+    if (!is_own) {
+      std::swap(give.flexible, give.other);
+    }
+    gives_.push_back(give);
+    allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
+    allowances_[other.index()] = ListAllowances(overlaps_, gives_, other);
+  }
+}
+
+}  // namespace hvas::simulation

@@ -1,0 +1,116 @@
+// Ways of several pieces, and ways that turn: docs/algorithms/planning.md.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "mates/mate_kind.h"
+#include "planning/way.h"
+#include "simulation/extraction.h"
+#include "simulation/turning_way.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::MateKind;
+using product::OccurrenceId;
+
+}  // namespace
+
+bool Extraction::IsHeldFirmly(OccurrenceId id) const {
+  const std::vector<MateView>& views = mates_of_[id.index()];
+  return std::any_of(views.begin(), views.end(), [&](const MateView& view) {
+    const bool has_fit = mates::HasFit(view.mate->kind) && IsAround(view.other);
+    return has_fit && view.mate->fit && view.mate->fit->kind != product::FitKind::kClearance &&
+           view.mate->fit->kind != product::FitKind::kPassage;
+  });
+}
+
+std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uint64_t budget) {
+  planning::WayProblem problem;
+  problem.scene = input_.scene;
+  problem.part = input_.shapes[id.index()];
+  problem.self = contact::BodyId(id.index());
+  problem.X_WB_start = product_.occurrences[id.index()].X_WB;
+  problem.allowances = allowances_[id.index()];
+  problem.tolerance = kDepthTolerance;
+  problem.directions_W = ListDirections({id});
+  for (const MateView& view : mates_of_[id.index()]) {
+    if (view.mate->kind == MateKind::kAxisHole && IsAround(view.other)) {
+      const product::Connector& hole = view.mate->a;
+      const spatial::Pose X_WM = product_.occurrences[hole.occurrence.index()].X_WB * hole.X_BM;
+      problem.axes.push_back({X_WM.p(), view.axis_W, 0});
+    }
+  }
+  planning::WayOptions options;
+  options.budget = budget;
+  options.stop = input_.stop;
+  const auto found = planning::FindWay(problem, options);
+  Search& search = searches_[id.index()];
+  search.is_present = is_present_;
+  search.looks = budget;
+  if (!found) {
+    looks_ += 1;
+    return std::nullopt;  // It lies in others as drawn, deeper than a way may.
+  }
+  looks_ += found->queries;
+  if (!found->way) {
+    search.gone =
+        found->farthest.empty() ? 0 : (found->farthest.back().p() - problem.X_WB_start.p()).norm();
+    search.stopped_by =
+        found->stops.empty() ? OccurrenceId() : OccurrenceId(found->stops[0].body.index());
+    return std::nullopt;
+  }
+  std::vector<spatial::Box> others;
+  for (const product::Occurrence& other : product_.occurrences) {
+    if (is_present_[other.id.index()] && other.id != id) {
+      others.push_back(boxes_[other.id.index()]);
+    }
+  }
+  return MakeTurningStep(id, found->way->path, problem.part->box_B(), others);
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit& deferred) {
+  if (input_.shapes.empty()) {
+    return std::nullopt;
+  }
+  // Most ways are found soon: all parts are looked at briefly before one is looked at for long.
+  constexpr std::array<std::uint64_t, 3> kBudgets{5'000, 50'000, 500'000};  // Choices.
+  for (const std::uint64_t budget : kBudgets) {
+    for (const bool is_deferred : {false, true}) {
+      for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
+        const OccurrenceId id = (*rest)[i];
+        const Search& before = searches_[id.index()];
+        if (std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred ||
+            (before.looks >= budget && before.is_present == is_present_) || IsHeldFirmly(id) ||
+            looks_ >= kMostLooks || input_.stop.stop_requested()) {
+          continue;
+        }
+        if (auto step = FindTurningWay(id, std::min(budget, kMostLooks - looks_))) {
+          SetPresent({id}, false);
+          rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
+          return step;
+        }
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string Extraction::ExplainTurning(OccurrenceId id) const {
+  const Search& search = searches_[id.index()];
+  if (search.looks == 0) {
+    return {};
+  }
+  const std::string by =
+      search.stopped_by.is_valid() ? ", where " + Describe(search.stopped_by) + " stops it" : "";
+  return fmt::format("; no way that turns was found with {} looks: the farthest goes {:.1f} mm{}{}",
+                     search.looks, units::ToMm(search.gone), by,
+                     looks_ >= kMostLooks ? "; the search was ended" : "");
+}
+
+}  // namespace hvas::simulation
