@@ -111,7 +111,7 @@ class Extraction {
 
   /** How many looks at a part, in all, the search for ways that turn takes: some minutes. A choice.
    */
-  static constexpr std::uint64_t kMostLooks = 4'000'000;
+  static constexpr std::uint64_t kMostLooks = 1'000'000;
 
   /** What the search for ways that turn found of a part that it did not take out; empty where it
    did not look. */

@@ -79,7 +79,7 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit&
     return std::nullopt;
   }
   // Most ways are found soon: all parts are looked at briefly before one is looked at for long.
-  constexpr std::array<std::uint64_t, 3> kBudgets{5'000, 50'000, 500'000};  // Choices.
+  constexpr std::array<std::uint64_t, 3> kBudgets{5'000, 20'000, 60'000};  // Choices.
   for (const std::uint64_t budget : kBudgets) {
     for (const bool is_deferred : {false, true}) {
       for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
