@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
       planning::WayOptions options;
       options.seed = static_cast<std::uint64_t>(seed);
       options.budget = budget;
-      options.has_to_shorten = has_shortening;
+      options.has_to_improve = has_shortening;
       std::stop_source stop;
       options.stop = stop.get_token();
       const auto start = std::chrono::steady_clock::now();

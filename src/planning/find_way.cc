@@ -8,6 +8,7 @@
 #include "planning/shorten_way.h"
 #include "planning/tree_search.h"
 #include "planning/way.h"
+#include "planning/widen_way.h"
 
 namespace hvas::planning {
 namespace {
@@ -20,8 +21,10 @@ using spatial::Pose;
 // queries.
 constexpr std::uint64_t kQueriesOfPushesToGoal = 6'000;
 constexpr std::uint64_t kQueriesOfPushes = 60'000;
-constexpr std::uint64_t kShareOfPushes = 4;  // Of the budget: at most one in so many queries.
+constexpr std::uint64_t kShareOfPushes = 2;  // Of the budget: at most one in so many queries.
 constexpr double kShareOfShortening = 0.3;
+constexpr double kShareOfWidening = 0.3;
+constexpr std::uint64_t kLeastOfImproving = 10'000;  // Queries, for either: a choice.
 
 Result<void> CheckProblem(const WayProblem& problem, Probe* probe) {
   const auto is_free = [&](const Pose& X_WB) {
@@ -117,23 +120,28 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
     path = SearchByTree(&state, directions, axes, options);
   }
   search.is_stopped = options.stop.stop_requested();
-  search.is_budget_over = probe.queries() >= options.budget;
+  search.is_budget_over = probe.is_over() && !search.is_stopped;
   if (!path) {
     DescribeFailure(&state, &search);
     search.queries = probe.queries();
+    search.points = probe.points();
     return search;
   }
-  probe.Extend(options.budget);
-  if (options.has_to_shorten && method != WayMethod::kStraight) {
-    const auto budget =
-        static_cast<std::uint64_t>(kShareOfShortening * static_cast<double>(options.budget));
-    path = ShortenWay(&probe, *path, step, options.seed, budget);
+  probe.Extend(options.budget + 2 * kLeastOfImproving);
+  if (options.has_to_improve && method != WayMethod::kStraight) {
+    const auto share_of = [&options](double share) {
+      return kLeastOfImproving +
+             static_cast<std::uint64_t>(share * static_cast<double>(options.budget));
+    };
+    path = ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
+    path = WidenWay(&probe, *path, step, share_of(kShareOfWidening));
   }
   double deepest = std::numeric_limits<double>::infinity();
   for (const Pose& X_WB : *path) {
     deepest = std::min(deepest, probe.Query(X_WB, std::abs(problem.tolerance)));
   }
   search.queries = probe.queries();
+  search.points = probe.points();
   search.way = Way{std::move(*path), deepest, method};
   return search;
 }

@@ -64,8 +64,10 @@ bool Probe::IsFree(const Pose& X_WB) {
     return Query(X_WB, -problem_.tolerance) >= -problem_.tolerance;
   }
   CountQuery();
-  return problem_.scene->IsFree(*problem_.part, X_WB, problem_.tolerance, MakeOptions(),
-                                &workspace_);
+  const bool is_free =
+      problem_.scene->IsFree(*problem_.part, X_WB, problem_.tolerance, MakeOptions(), &workspace_);
+  points_ += workspace_.stats().points_tested;
+  return is_free;
 }
 
 double Probe::Query(const Pose& X_WB, double margin) {
@@ -73,6 +75,7 @@ double Probe::Query(const Pose& X_WB, double margin) {
   contact::QueryOptions options = MakeOptions();
   options.margin = margin;
   problem_.scene->Query(*problem_.part, X_WB, options, &workspace_);
+  points_ += workspace_.stats().points_tested;
   return std::min(workspace_.deepest(), margin);
 }
 

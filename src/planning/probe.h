@@ -75,8 +75,11 @@ class Probe {
 
   [[nodiscard]] std::uint64_t queries() const { return queries_; }
 
+  [[nodiscard]] std::uint64_t points() const { return points_; }
+
   [[nodiscard]] bool is_over() const {
-    return queries_ >= budget_ || options_.stop.stop_requested();
+    return queries_ >= budget_ || points_ >= options_.point_budget ||
+           options_.stop.stop_requested();
   }
 
   void Extend(std::uint64_t queries) { budget_ = queries_ + queries; }
@@ -94,6 +97,7 @@ class Probe {
   Vec3 centre_B_;
   double size_{0}, reach_{0}, gyration_{0}, grain_{0};
   std::uint64_t queries_{0};
+  std::uint64_t points_{0};
   std::uint64_t budget_;
 };
 

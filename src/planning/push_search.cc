@@ -19,6 +19,14 @@ constexpr int kDeepest = 6;      // Pushes, one after the other: a choice.
 // be.
 constexpr double kFirstSteps = 4;
 constexpr double kMostTurns = 60;  // Of a thread: a choice.
+constexpr int kRankOfTurns = 2;    // Turns count as so many pushes more than straight ones.
+// Of the part's size: a way along an axis is open where it leads so much further than before a
+// turn.
+constexpr double kOpening = 0.03;
+// Turns whose openings are looked for: pushes before one, and its least length, of the part's size.
+// Choices.
+constexpr int kDeepestOpening = 1;
+constexpr double kLeastTurn = 0.15;
 
 struct PushMove {
   std::optional<Vec3> direction;
@@ -27,11 +35,12 @@ struct PushMove {
 };
 
 struct Waiting {
-  int rank;  // Pushes so far; poses on the way of one count as one more.
+  int rank;  // Pushes so far; turns, and poses on the way of a push, count as more.
   std::size_t order;
   std::size_t node;
   int depth;
-  int last;  // The move that led here; -1 for none.
+  int last;    // The move that led here; -1 for none.
+  bool turns;  // Whether it is to be turned, or to go straight.
 
   bool operator<(const Waiting& o) const {
     return std::pair(rank, order) > std::pair(o.rank, o.order);
@@ -54,7 +63,7 @@ class PushSearch {
 
   std::optional<sweep::Path> Run(std::uint64_t budget) {
     const std::uint64_t last = probe_.queries() + budget;
-    waiting_.push({0, 0, 0, 0, -1});
+    Wait({0, 0, 0, 0, -1, false});
     if (IsThere(&state_, 0)) {
       return state_.tree.ListPath(0);
     }
@@ -65,7 +74,9 @@ class PushSearch {
         continue;
       }
       for (int m = 0; m < static_cast<int>(moves_.size()) && probe_.queries() < last; ++m) {
-        const std::size_t there = m == from.last ? PoseTree::kNone : PushOn(from, m);
+        const bool is_straight = moves_[static_cast<std::size_t>(m)].direction.has_value();
+        const bool is_due = m != from.last && is_straight != from.turns;
+        const std::size_t there = is_due ? PushOn(from, m) : PoseTree::kNone;
         if (there != PoseTree::kNone) {
           return state_.tree.ListPath(there);
         }
@@ -75,6 +86,15 @@ class PushSearch {
   }
 
  private:
+  // Straight pieces are tried before turns.
+  void Wait(Waiting waiting) {
+    waiting.order = ++order_;
+    waiting_.push(waiting);
+    waiting.turns = true;
+    waiting.rank += kRankOfTurns;
+    waiting_.push(waiting);
+  }
+
   void AddStraight(const std::vector<Vec3>& directions, std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       moves_.push_back({directions[i], {}, 1});
@@ -102,6 +122,7 @@ class PushSearch {
       const Push push = PushPart(&probe_, X, MakePushAbout(probe_, move.axis, move.sign), options);
       whole.path.insert(whole.path.end(), push.path.begin(), push.path.end());
       whole.is_blocked = push.is_blocked;
+      whole.length += push.length;
       if (push.path.empty()) {
         break;
       }
@@ -117,11 +138,41 @@ class PushSearch {
     return whole;
   }
 
+  // Lists the poses of a turn at which the part may go along the axis, other than before the turn,
+  // as a key does at the slot of its hole: the middle of each range of them.
+  std::vector<std::size_t> ListOpenings(const Pose& from, const Push& turn, const Vec3& axis_W) {
+    std::vector<std::size_t> openings;
+    for (const double sign : {1.0, -1.0}) {
+      const Vec3 along = sign * axis_W;
+      PushOptions options = MakePushOptions(probe_, 0.5 * probe_.size());
+      options.first_step = kFirstSteps * options.least_step;
+      const Push before =
+          PushPart(&probe_, from, MakePushBy(probe_, {Vec3::Zero(), along}), options);
+      if (!before.is_blocked) {
+        continue;
+      }
+      const Vec3 further = (before.length + kOpening * probe_.size()) * along;
+      std::size_t first = turn.path.size();
+      for (std::size_t i = 0; i < turn.path.size(); ++i) {
+        const Pose& X = turn.path[i];
+        const bool is_open = probe_.IsFree(Pose(X.q(), Vec3(X.p() + further)));
+        first = is_open ? std::min(first, i) : first;
+        const bool ends = !is_open || i + 1 == turn.path.size();
+        if (ends && first < turn.path.size()) {
+          openings.push_back((first + (is_open ? i : i - 1)) / 2);
+          first = turn.path.size();
+        }
+      }
+    }
+    return openings;
+  }
+
   // @returns a node that is where the part has to go; kNone if there is none.
   std::size_t PushOn(const Waiting& from, int m) {
     const PushMove& move = moves_[static_cast<std::size_t>(m)];
     const Pose X = state_.tree.node(from.node).X_WB;
     Push push;
+    std::vector<std::size_t> openings;
     if (move.direction) {
       const double exit = probe_.CalcExit(X, *move.direction);
       const bool has_goal = probe_.problem().X_WB_goal.has_value();
@@ -132,11 +183,15 @@ class PushSearch {
       push = PushPart(&probe_, X, MakePushBy(probe_, {Vec3::Zero(), *move.direction}), options);
     } else {
       push = PushAbout(X, move);
+      if (from.depth <= kDeepestOpening && push.length > kLeastTurn * probe_.size()) {
+        openings = ListOpenings(X, push, move.axis.axis_W);
+      }
     }
-    return AddPoses(from, m, push);
+    return AddPoses(from, m, push, openings);
   }
 
-  std::size_t AddPoses(const Waiting& from, int m, const Push& push) {
+  std::size_t AddPoses(const Waiting& from, int m, const Push& push,
+                       const std::vector<std::size_t>& openings) {
     std::size_t parent = from.node;
     sweep::Path via;
     double since = 0;
@@ -146,8 +201,9 @@ class PushSearch {
       via.push_back(X);
       since += probe_.CalcLength(probe_.CalcDisplacement(last, X));
       last = X;
+      const bool is_opening = std::find(openings.begin(), openings.end(), i) != openings.end();
       const bool is_end = i + 1 == push.path.size();
-      if (!is_end && since < kApart * probe_.size()) {
+      if (!is_end && !is_opening && since < kApart * probe_.size()) {
         continue;
       }
       since = 0;
@@ -159,8 +215,8 @@ class PushSearch {
         return parent;
       }
       if (is_new) {
-        const int rank = from.rank + (is_end ? 1 : 3);
-        waiting_.push({rank, ++order_, parent, from.depth + 1, is_end ? m : -1});
+        const int rank = from.rank + (is_opening ? 0 : is_end ? 1 : 3);
+        Wait({rank, 0, parent, from.depth + 1, is_end ? m : -1, false});
       }
     }
     return PoseTree::kNone;

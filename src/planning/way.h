@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -41,10 +42,12 @@ struct WayProblem {
 
 struct WayOptions {
   std::uint64_t seed{1};  ///< Any number: a choice.
-  /** How many contact queries (a choice: minutes) the search may take; what shortens and checks the
+  /** How many contact queries (a choice: minutes) the search may take; what improves and checks the
    way comes on top, with at most as many again. */
   std::uint64_t budget{4'000'000};
-  bool has_to_shorten{true};
+  /** How many sample points they may test, so that fine shapes do not take longer than others. */
+  std::uint64_t point_budget{std::numeric_limits<std::uint64_t>::max()};
+  bool has_to_improve{true};  ///< The way is shortened, and moved to where it is clear of others.
   std::stop_token stop;
   std::function<void(double fraction)>
       progress;  ///< Gets the share of the budget; called by the calling thread.
@@ -75,6 +78,7 @@ struct StoppingFaces {
 struct WaySearch {
   std::optional<Way> way;
   std::uint64_t queries{0};  ///< Contact queries of all kinds.
+  std::uint64_t points{0};   ///< Sample points that they tested: a measure of the time.
   /** The way to the pose nearest to the goal, or farthest from the start, where no way is found. */
   sweep::Path farthest;
   double distance_to_go{

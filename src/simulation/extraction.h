@@ -105,13 +105,18 @@ class Extraction {
 
   /** Takes out the first of these parts that can go along a way of several pieces, or one that
    turns, and erases it from them. Parts that are held by more than clearance as drawn are not
-   tried, and all searches together take no more looks than kMostLooks.
+   tried, and all searches together take no more looks than kMostLooks, at no more points than
+   kMostPoints.
    @param deferred  Sorted; parts that are tried after all others. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveTurning(Unit* rest, const Unit& deferred);
 
   /** How many looks at a part, in all, the search for ways that turn takes: some minutes. A choice.
    */
   static constexpr std::uint64_t kMostLooks = 1'000'000;
+  /** How many sample points they test, about 3 million a second: in all, and for one part. Choices,
+   as a person waits. */
+  static constexpr std::uint64_t kMostPoints = 200'000'000;
+  static constexpr std::uint64_t kMostPointsOfOne = 60'000'000;
 
   /** What the search for ways that turn found of a part that it did not take out; empty where it
    did not look. */
@@ -284,7 +289,13 @@ class Extraction {
   [[nodiscard]] bool IsHeldFirmly(product::OccurrenceId id) const;
 
   std::vector<Search> searches_;  // By occurrence.
+
+  [[nodiscard]] bool IsSearchOver() const {
+    return looks_ >= kMostLooks || points_looked_at_ >= kMostPoints;
+  }
+
   std::uint64_t looks_{0};
+  std::uint64_t points_looked_at_{0};
   Giving giving_{Giving::kNone};
   contact::QueryWorkspace workspace_;
 };

@@ -1,7 +1,6 @@
 // Ways of several pieces, and ways that turn: docs/algorithms/planning.md.
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -48,6 +47,7 @@ std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uin
   }
   planning::WayOptions options;
   options.budget = budget;
+  options.point_budget = std::min(kMostPointsOfOne, kMostPoints - points_looked_at_);
   options.stop = input_.stop;
   const auto found = planning::FindWay(problem, options);
   Search& search = searches_[id.index()];
@@ -58,6 +58,7 @@ std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uin
     return std::nullopt;  // It lies in others as drawn, deeper than a way may.
   }
   looks_ += found->queries;
+  points_looked_at_ += found->points;
   if (!found->way) {
     search.gone =
         found->farthest.empty() ? 0 : (found->farthest.back().p() - problem.X_WB_start.p()).norm();
@@ -75,19 +76,19 @@ std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uin
 }
 
 std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit& deferred) {
-  if (input_.shapes.empty()) {
+  if (input_.shapes.empty() || input_.way_looks == 0) {
     return std::nullopt;
   }
   // Most ways are found soon: all parts are looked at briefly before one is looked at for long.
-  constexpr std::array<std::uint64_t, 3> kBudgets{5'000, 20'000, 60'000};  // Choices.
-  for (const std::uint64_t budget : kBudgets) {
+  constexpr std::uint64_t kBriefly = 6;  // One in so many looks: a choice.
+  for (const std::uint64_t budget : {input_.way_looks / kBriefly, input_.way_looks}) {
     for (const bool is_deferred : {false, true}) {
       for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
         const OccurrenceId id = (*rest)[i];
         const Search& before = searches_[id.index()];
         if (std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred ||
             (before.looks >= budget && before.is_present == is_present_) || IsHeldFirmly(id) ||
-            looks_ >= kMostLooks || input_.stop.stop_requested()) {
+            IsSearchOver() || input_.stop.stop_requested()) {
           continue;
         }
         if (auto step = FindTurningWay(id, std::min(budget, kMostLooks - looks_))) {
@@ -110,7 +111,7 @@ std::string Extraction::ExplainTurning(OccurrenceId id) const {
       search.stopped_by.is_valid() ? ", where " + Describe(search.stopped_by) + " stops it" : "";
   return fmt::format("; no way that turns was found with {} looks: the farthest goes {:.1f} mm{}{}",
                      search.looks, units::ToMm(search.gone), by,
-                     looks_ >= kMostLooks ? "; the search was ended" : "");
+                     IsSearchOver() ? "; the search was ended" : "");
 }
 
 }  // namespace hvas::simulation

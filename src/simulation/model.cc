@@ -455,6 +455,7 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
 
   contact::Scene scene;
   SequenceInput input = MakeSequenceInput(*model, &scene);
+  input.way_looks = options.way_looks;
   input.progress = [&report](double fraction) { report("order of assembly", fraction); };
   input.stop = options.shape.stop;
   model->sequence = PlanSequence(input);

@@ -106,6 +106,10 @@ struct Sequence {
                                                              std::span<const GivingPair> gives,
                                                              product::OccurrenceId id);
 
+/** How many looks at a part the search for ways that turn takes: of the pairs of the tests, those
+ that have such a way are found with a tenth to a half of it. */
+inline constexpr std::uint64_t kWayLooks = 60'000;
+
 /** The part that stays in the fixture. */
 [[nodiscard]] product::OccurrenceId FindBase(const Sequence& sequence);
 
@@ -119,6 +123,8 @@ struct SequenceInput {
   std::vector<std::shared_ptr<const contact::Shape>> shapes;
   /** How far each part may give to pass others [m], by OccurrenceId; empty: all are rigid. */
   std::vector<double> give_limits;
+  /** How many looks at a part the search for ways that turn may take; 0: none are searched for. */
+  std::uint64_t way_looks{kWayLooks};
   std::vector<product::OccurrenceId> tools;     ///< They are not there.
   std::vector<product::OccurrenceId> fixtures;  ///< They stay where they are.
   std::function<void(double fraction)> progress;

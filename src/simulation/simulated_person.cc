@@ -25,6 +25,9 @@ constexpr double kLeadIn = 1e-3;            // [m] of travel until it is inside
 constexpr double kLookTime = 0.4;           // [s]
 constexpr double kCarefulSpeed = 0.012;     // [m/s]; what hits the hole tilted, wedges in it
 constexpr double kRockingRate = 3;          // [Hz]
+constexpr double kTwistingRate = 0.8;       // [Hz]
+constexpr double kTwistTime = 0.3;          // [s] in which the eye corrects how it is turned
+constexpr double kMostTwistLag = 0.01;      // [rad] of the hand behind its intent
 constexpr double kRocking = 0.02;           // [rad]; harder the longer it sticks
 constexpr double kMostRocking = 0.12;       // [rad]
 constexpr double kRockingTime = 6;          // [s]
@@ -264,8 +267,9 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   }
   // Where no mate guides it and it has missed once, it looks, lays the part on with a light touch,
   // and gives way inside.
-  const bool is_by_eye = input.sees_part && (!is_guided_ || task_.is_guided_by_planes);
-  const bool is_careful = is_by_eye && search_count_ > 0;
+  const bool has_more_to_meet = task_.is_guided_by_planes || task_.way != nullptr;
+  const bool is_by_eye = input.sees_part && (!is_guided_ || has_more_to_meet);
+  const bool is_careful = is_by_eye && (search_count_ > 0 || HasSlotToFind());
   const bool is_watched = is_by_eye || (is_at_device_ && input.sees_part);
   const double travel = is_watched ? seen_travel : hand_travel;
   const bool is_inside = is_by_eye && travel < task_.engage_distance - kLeadIn;
@@ -275,7 +279,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     look_time_s_ = kLookTime;
     stuck_time_s_ = 0;
     push_ = options_.first_push;
-  } else if (is_careful && look_time_s_ > 0) {
+  } else if ((is_careful || task_.way != nullptr) && is_by_eye && look_time_s_ > 0) {
     look_time_s_ -= dt_;
     if (look_time_s_ <= 0) {
       LookClosely(input);
@@ -305,7 +309,12 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     } else if (stuck_time_s_ > (is_careful && is_inside ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
     } else if (is_careful && is_inside) {
-      YieldToTouch(d);
+      if (HasSlotToFind()) {
+        CorrectTwist(input, d);
+      }
+      if (task_.way == nullptr || is_slow) {
+        YieldToTouch(d);  // On a way that turns, what comes behind the hand meets nothing yet.
+      }
       Rock(d, is_slow);
     }
   }
@@ -393,34 +402,64 @@ void SimulatedPerson::YieldToTouch(const Vec3& d) noexcept {
   // where the axis is.
   const Vec3 held_back = X_WH_.p() - p_ref_;
   yield_offset_ += dt_ / kYieldTime * (held_back - held_back.dot(d) * d);
-  yield_turn_ += dt_ / kYieldTime * spatial::RotationBetween(q_ref_, X_WH_.q());
+  Vec3 turned_back = spatial::RotationBetween(q_ref_, X_WH_.q());
+  if (HasSlotToFind()) {
+    turned_back -= turned_back.dot(d) * d;  // The eye says how far it has to turn in its hole.
+  }
+  yield_turn_ += dt_ / kYieldTime * turned_back;
   LimitLength(kYieldReach, &yield_offset_);
   LimitLength(kYieldTurn, &yield_turn_);
 }
 
+bool SimulatedPerson::HasSlotToFind() const noexcept {
+  return is_guided_ && task_.way != nullptr;
+}
+
+void SimulatedPerson::CorrectTwist(const OperatorInput& input, const Vec3& d) noexcept {
+  const Quat& q_wanted = WayAt(TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG})).q();
+  const Vec3 turned =
+      spatial::RotationBetween(q_wanted, input.X_WD.q()) + seen_turn_error_ - rocking_;
+  aim_turn_ -= dt_ / kTwistTime * turned.dot(d) * d;
+}
+
 void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
   // A part that wedges, tilted, comes free where it stands upright: to and fro, and slowly round.
-  rocking_angle_ += is_slow ? dt_ * 2 * std::numbers::pi * kRockingRate : 0;
+  const bool is_twisting = HasSlotToFind();
+  const double rate = is_twisting ? kTwistingRate : kRockingRate;
+  rocking_angle_ += is_slow ? dt_ * 2 * std::numbers::pi * rate : 0;
   const double strength = std::min(kMostRocking, kRocking * (1 + 2 * stuck_time_s_));
   const double tilt = is_slow ? strength * std::sin(rocking_angle_) : 0;
   const double round = kRockingTurn * rocking_angle_;
-  const Vec3 wanted = tilt * (spatial::FrameFromZ(d) * Vec3(std::cos(round), std::sin(round), 0));
-  rocking_ += dt_ / kRockingLag * (wanted - rocking_);
+  // In its hole it is upright: what has to find a slot there is twisted.
+  const Vec3 axis = is_twisting ? Vec3::UnitZ() : Vec3(std::cos(round), std::sin(round), 0);
+  const Vec3 wanted = tilt * (spatial::FrameFromZ(d) * axis);
+  const Vec3 step = dt_ / kRockingLag * (wanted - rocking_);
+  // A light touch: what the part meets on its way round holds the hand up.
+  const bool is_held_up = is_twisting &&
+                          spatial::RotationBetween(X_WH_.q(), q_ref_).dot(step) > 0 &&
+                          spatial::RotationBetween(X_WH_.q(), q_ref_).norm() > kMostTwistLag;
+  if (!is_held_up) {
+    rocking_ += step;
+  }
 }
 
 void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
   const Vec3 d = OutwardOfWay();
-  const spatial::Pose X_WG = task_.way != nullptr
-                                 ? WayAt(TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG}))
-                                 : task_.X_WG_goal;
+  const double seen_travel = TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG});
+  // Where nothing is engaged yet the part is where the hand wants it, but for what it errs by.
+  const bool is_free = task_.way != nullptr && !is_guided_ && seen_travel > task_.engage_distance;
+  const spatial::Pose X_WG =
+      task_.way == nullptr ? task_.X_WG_goal : WayAt(is_free ? travel_ : seen_travel);
   Vec3 aside = input.X_WD * task_.p_BG - X_WG.p() - search_offset_;
-  aside -= aside.dot(d) * d;
+  // How far it is on its way, and how it hangs at the hand, it feels.
+  aside -= (is_free ? grip_offset_W_ : aside).dot(d) * d;
   const Vec3 turned = spatial::RotationBetween(X_WG.q(), input.X_WD.q());
   // It knows the mean of all its looks.
   const double of_mean = 1 / std::sqrt(static_cast<double>(std::max(1, search_count_.load())));
   for (int k = 0; k < 3; ++k) {
     aim_offset_[k] -= aside[k] + of_mean * options_.eye_error * random_.Normal();
-    aim_turn_[k] -= turned[k] + of_mean * options_.eye_error_angle * random_.Normal();
+    seen_turn_error_[k] = of_mean * options_.eye_error_angle * random_.Normal();
+    aim_turn_[k] -= turned[k] + seen_turn_error_[k];
   }
 }
 
@@ -471,9 +510,16 @@ Vec3 SimulatedPerson::Tremor() noexcept {
 
 double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
   // The arm is as stiff as it is where the hand really is.
-  const double lead = input.workspace.scale * push_ / options_.stiffness;
-  // Around a corner it does not pull before the part is there, unless it is stuck.
-  return task_.way != nullptr ? std::min(lead, kLeadOnWay + kLeadWhenStuck * stuck_time_s_) : lead;
+  if (task_.way == nullptr) {
+    return input.workspace.scale * push_ / options_.stiffness;
+  }
+  // Where the way turns, the wrist is what is stiff. Around a corner the hand does not pull before
+  // the part is there, unless it is stuck.
+  const spatial::Twist rate = task_.way->RateAt(travel_);
+  const double stiffness =
+      options_.stiffness * rate.v.squaredNorm() + options_.turn_stiffness * rate.w.squaredNorm();
+  return std::min(input.workspace.scale * push_ / stiffness,
+                  kLeadOnWay + kLeadWhenStuck * stuck_time_s_);
 }
 
 void SimulatedPerson::LearnLoad(const spatial::Wrench& F_H_W) noexcept {
@@ -553,7 +599,7 @@ void SimulatedPerson::BeginInsert() noexcept {
   yield_offset_.setZero();
   yield_turn_.setZero();
   rocking_.setZero();
-  look_time_s_ = 0;
+  look_time_s_ = task_.way != nullptr ? kLookTime : 0;  // Where it has to turn, it looks first.
   is_backing_off_ = false;
   is_outside_ = false;
 }

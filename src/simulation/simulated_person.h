@@ -202,6 +202,10 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void Rock(const Vec3& d, bool is_slow) noexcept;
   /** Gives way across the way in, and in how it is turned, to what holds the hand back. */
   void YieldToTouch(const Vec3& d) noexcept;
+  /** Whether the part is in a hole on a way that turns: it has to be turned right to go on. */
+  [[nodiscard]] bool HasSlotToFind() const noexcept;
+  /** Corrects, little by little, how far the part is turned about the way in, by what it sees. */
+  void CorrectTwist(const OperatorInput& input, const Vec3& d) noexcept;
   /** Corrects where it believes the part to be by what it sees. */
   void LookClosely(const OperatorInput& input) noexcept;
   /** Backs off from so far before its place, to try again. */
@@ -237,6 +241,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   Vec3 v_part_W_{Vec3::Zero()};    ///< [m/s]
   Vec3 aim_offset_{Vec3::Zero()};  ///< Error of where the hand believes this part to be.
   Vec3 aim_turn_{Vec3::Zero()};
+  Vec3 seen_turn_error_{Vec3::Zero()};  ///< Error of the last close look [rad].
 
   static constexpr int kMaxReaches = 6;  ///< The longest plan has four.
   Reach reaches_[kMaxReaches];

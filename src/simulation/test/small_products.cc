@@ -223,6 +223,7 @@ Product CaptiveRing() {
 CompileOptions FastOptions() {
   CompileOptions options;
   options.threads = 2;
+  options.way_looks = 0;
   return options;
 }
 

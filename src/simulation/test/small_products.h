@@ -65,7 +65,7 @@ const std::shared_ptr<const Model>& PegInCarrierInCupModel();
 /** The model of PegInBlock, compiled once in a program. */
 const std::shared_ptr<const Model>& PegInBlockModel();
 
-/** Shapes as coarse as small parts allow, for speed. */
+/** No search for ways that turn, for speed. */
 CompileOptions FastOptions();
 
 }  // namespace hvas::simulation::testing

@@ -59,8 +59,7 @@ Product KeyInPlate() {
 
 TEST(TurningWayTest, AKeyIsTurnedBeforeItComesOutAndThePersonPutsItIn) {
   Diagnostics diagnostics;
-  const auto compiled =
-      Compile(std::make_shared<Product>(KeyInPlate()), testing::FastOptions(), &diagnostics);
+  const auto compiled = Compile(std::make_shared<Product>(KeyInPlate()), {}, &diagnostics);
   ASSERT_TRUE(compiled.has_value());
   const auto& model = *compiled;
   ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
