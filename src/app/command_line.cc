@@ -14,6 +14,7 @@
 #include "app/assembly/assemble.h"
 #include "app/assembly/disassemble.h"
 #include "app/assembly/path.h"
+#include "app/assembly/plan.h"
 #include "app/command_tree.h"
 #include "app/completion.h"
 #include "app/devices/devices.h"
@@ -139,7 +140,7 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
 void SetGroups(CLI::App* app) {
   static const std::vector<std::pair<const char*, std::vector<const char*>>> kGroups{
       {"Inspect and convert CAD files", {"inspect", "mate", "export", "path", "tool"}},
-      {"Assemble", {"studio", "assemble", "disassemble", "replay", "report"}},
+      {"Assemble", {"studio", "plan", "assemble", "disassemble", "replay", "report"}},
       {"Calculate fits", {"fit"}},
       {"Run studies with participants", {"study"}},
       {"This machine", {"devices", "doctor"}},
@@ -174,6 +175,7 @@ std::unique_ptr<CLI::App> MakeCommandLine(int* status) {
   AddPath(app.get(), status);
   AddTool(app.get(), status);
   AddStudio(app.get(), status);
+  AddPlan(app.get(), status);
   AddAssemble(app.get(), status);
   AddDisassemble(app.get(), status);
   AddReplay(app.get(), status);

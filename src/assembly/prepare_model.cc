@@ -14,6 +14,8 @@ simulation::CompileOptions MakeCompileOptions(const PrepareOptions& options) {
   compile.seed = options.seed;
   compile.pairs = options.pairs;
   compile.first_parts = options.first_parts;
+  compile.base = options.base;
+  compile.steps = options.steps;
   compile.shape_cache = options.shape_cache;
   compile.progress = options.progress;
   compile.shape.stop = options.stop;

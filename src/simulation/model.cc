@@ -11,6 +11,7 @@
 
 #include "base/units.h"
 #include "dynamics/world.h"
+#include "mates/assignments.h"
 #include "mates/fasteners.h"
 #include "mates/place_bodies.h"
 #include "mates/prismatic_fits.h"
@@ -456,6 +457,19 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   contact::Scene scene;
   SequenceInput input = MakeSequenceInput(*model, &scene);
   input.way_looks = options.way_looks;
+  if (!options.base.empty()) {
+    const auto base = mates::FindOccurrence(*product, options.base);
+    if (!base) {
+      return Unexpected(base.error());
+    }
+    if (model->bodies[base->index()].role != BodyRole::kPart) {
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("{} is no part of the product, and cannot be its base",
+                              product->occurrences[base->index()].path),
+                  product->source, "name another part as the base");
+    }
+    input.base = *base;
+  }
   input.progress = [&report](double fraction) { report("order of assembly", fraction); };
   input.stop = options.shape.stop;
   model->sequence = PlanSequence(input);

@@ -64,6 +64,7 @@ struct CompileOptions {
   /** Parts that come first, as Reorder() takes them; the others follow in the order that is found.
    */
   std::vector<std::string> first_parts;
+  std::string base;  ///< Name, path or id of the part that stays in the fixture; empty: found.
   /** The whole order of assembly, as a record keeps it, in place of the one that is found; empty:
    that one. */
   std::vector<SequenceStep> steps;
@@ -96,7 +97,7 @@ struct Model {
 
 /** Builds shapes, fits, the order of assembly and the layout of the parts on the table.
  Errors: kInvalid when the product has no parts or a shape cannot be built; those of Reorder();
- kCancelled after a stop. */
+ kNotFound where no part is called as the base; kCancelled after a stop. */
 Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
                                              const CompileOptions& options,
                                              Diagnostics* diagnostics);

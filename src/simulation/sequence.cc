@@ -26,6 +26,8 @@ class Planner {
   Sequence Plan();
 
  private:
+  /** The part of these, sorted by size, that stays in the fixture. */
+  [[nodiscard]] OccurrenceId ChooseBase(const Unit& rest) const;
   /** Takes apart the parts given, with nothing else there; appends the steps that put them
    together, those of subassemblies first. */
   void PlanLevel(Unit parts, Sequence* sequence);
@@ -261,11 +263,40 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
   GiveUpOne(&**graph, rest, sequence);
 }
 
+OccurrenceId Planner::ChooseBase(const Unit& rest) const {
+  if (std::find(rest.begin(), rest.end(), input_.base) != rest.end()) {
+    return input_.base;
+  }
+  // What most is joined to, where the largest is joined to little: a propeller's motor. Choices.
+  constexpr std::size_t kTimesAsMany = 3;
+  constexpr double kLeastSize = 0.1;  // Share of the largest one's volume.
+  const auto count_joined = [&](OccurrenceId id) {
+    const std::vector<OccurrenceId>& others = neighbours_[id.index()];
+    return static_cast<std::size_t>(
+        std::count_if(others.begin(), others.end(), [&rest](OccurrenceId other) {
+          return std::find(rest.begin(), rest.end(), other) != rest.end();
+        }));
+  };
+  const OccurrenceId largest = rest.back();
+  OccurrenceId base = largest;
+  std::size_t most = kTimesAsMany * std::max<std::size_t>(1, count_joined(largest));
+  for (const OccurrenceId id : rest) {
+    const std::size_t joined = count_joined(id);
+    if (joined >= most && extraction_.SizeOf(id) >= kLeastSize * extraction_.SizeOf(largest)) {
+      base = id;
+      most = joined;
+    }
+  }
+  return base;
+}
+
 void Planner::PlanLevel(Unit rest, Sequence* sequence) {
-  // Small parts come off first (they go in last); the largest is the base and stays.
+  // Small parts come off first (they go in last); the base stays.
   std::stable_sort(rest.begin(), rest.end(), [this](OccurrenceId x, OccurrenceId y) {
     return extraction_.SizeOf(x) < extraction_.SizeOf(y);
   });
+  const auto staying = std::find(rest.begin(), rest.end(), ChooseBase(rest));
+  std::rotate(staying, staying + 1, rest.end());
   extraction_.Forget(rest);
   std::vector<SequenceStep> removed;
   std::optional<BlockingGraph> graph;

@@ -56,10 +56,16 @@ void AddAssemble(CLI::App* app, int* status) {
   command->add_option("file", options->load.file, "STEP, IGES or mesh file, or a folder of meshes")
       ->required();
   command
-      ->add_option("--order", options->order,
+      ->add_option("--order", options->order.first_parts,
                    "Parts to assemble first, by name, path or id (o12), separated by commas; the "
                    "others follow in the order that HVAS finds")
       ->delimiter(',');
+  AddBaseOption(command, &options->order.base);
+  command
+      ->add_option("--plan", options->order.plan,
+                   "A plan that hvas plan has written with -o: its order and its ways are followed")
+      ->excludes("--order")
+      ->excludes("--base");
   AddFitAndDeviceOptions(command, options.get());
   command
       ->add_option(
@@ -78,6 +84,7 @@ void AddAssemble(CLI::App* app, int* status) {
       "Examples:\n"
       "  hvas assemble products/gear_pump.step\n"
       "  hvas assemble products/bushing.step --fit shaft=H7/p6 --record press.hvasrec\n"
+      "  hvas plan pump.step -o plan.json && hvas assemble pump.step --plan plan.json\n"
       "  hvas assemble pump.step --device forcedimension --realtime\n"
       "  hvas assemble pump.step --device emulated:openhaptics:touch_x\n"
       "  hvas assemble pump.step --device emulated:openhaptics --second-device emulated:haply\n"

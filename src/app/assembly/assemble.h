@@ -12,8 +12,8 @@ class App;
 namespace hvas::app {
 
 struct AssembleOptions : RunCommandOptions {
-  std::vector<std::string> order;  ///< Parts to begin with, by name, path or id.
-  std::string second_device;       ///< Address for the other hand; empty: there is no other hand.
+  OrderChoice order;
+  std::string second_device;  ///< Address for the other hand; empty: there is no other hand.
 };
 
 /** Lays the parts of a product out on a table and lets a simulated person, or two, or whoever has

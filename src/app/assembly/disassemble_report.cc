@@ -37,18 +37,6 @@ std::size_t CountOut(const SessionReport& report) {
                     [](const PartResult& part) { return part.reason.empty(); }));
 }
 
-/** "+z" along an axis of the world, else the components. */
-std::string DescribeDirection(const Vec3& direction) {
-  constexpr double kAlong = 1 - 1e-6;  // Cosine that counts as along an axis: 0.1 degrees.
-  constexpr const char* kNames[] = {"x", "y", "z"};
-  for (int k = 0; k < 3; ++k) {
-    if (std::abs(direction[k]) > kAlong) {
-      return fmt::format("{}{}", direction[k] > 0 ? "+" : "-", kNames[k]);
-    }
-  }
-  return fmt::format("{:.2f} {:.2f} {:.2f}", direction.x(), direction.y(), direction.z());
-}
-
 std::string DescribeWaiting(const Model& model, const Removal& removal) {
   constexpr std::size_t kNamed = 4;  // So many names tell what is in the way.
   std::string text;

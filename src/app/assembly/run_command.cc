@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/assembly/plan_file.h"
 #include "app/assembly/rendering_options.h"
 #include "app/assembly/run_report.h"
 #include "app/output/progress.h"
@@ -25,7 +26,7 @@ using simulation::Model;
 using simulation::PartResult;
 
 Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
-                                               const std::vector<std::string>& first_parts,
+                                               const OrderChoice& order,
                                                const std::stop_token& stop,
                                                PreparationProgress* progress,
                                                Diagnostics* diagnostics) {
@@ -50,7 +51,15 @@ Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
   assembly::PrepareOptions prepare;
   prepare.seed = options.run.seed;
   prepare.pairs = options.pairs;
-  prepare.first_parts = first_parts;
+  prepare.first_parts = order.first_parts;
+  prepare.base = order.base;
+  if (!order.plan.empty()) {
+    auto steps = ReadPlan(order.plan, *product);
+    if (!steps) {
+      return Unexpected(steps.error());
+    }
+    prepare.steps = std::move(*steps);
+  }
   prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
   prepare.stop = stop;
   prepare.progress = note;
@@ -93,7 +102,7 @@ bool IsShown(const RunCommandOptions& options) {
 }
 
 Result<std::shared_ptr<const Model>> PrepareRun(const RunCommandOptions& options,
-                                                const std::vector<std::string>& first_parts,
+                                                const OrderChoice& order,
                                                 const std::stop_token& stop,
                                                 PreparationProgress* progress) {
   if (!options.run.record.empty()) {
@@ -104,7 +113,7 @@ Result<std::shared_ptr<const Model>> PrepareRun(const RunCommandOptions& options
   }
   Diagnostics diagnostics;
   progress->start_ns = MonotonicNs();
-  auto model = MakeModel(options, first_parts, stop, progress, &diagnostics);
+  auto model = MakeModel(options, order, stop, progress, &diagnostics);
   if (!model) {
     return model;
   }
@@ -164,6 +173,12 @@ SessionReport MakeSessionReport(const RunCommandOptions& options, assembly::RunO
   report.is_realtime = options.run.is_realtime;
   report.force_map = options.run.force_map;
   return report;
+}
+
+void AddBaseOption(CLI::App* command, std::string* base) {
+  command->add_option("--base", *base,
+                      "The part that stays in the fixture, by name, path or id (o12); without it, "
+                      "the largest part, or the one that most others are joined to");
 }
 
 void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options) {

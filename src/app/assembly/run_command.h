@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -44,16 +45,22 @@ struct PreparationProgress {
   std::optional<std::size_t> parts;  ///< Occurrences of the product, once it is read.
 };
 
+/** What the user wishes of the order of assembly. */
+struct OrderChoice {
+  std::vector<std::string> first_parts;  ///< As in assembly::PrepareOptions.
+  std::string base;                      ///< As there.
+  std::filesystem::path plan;            ///< A plan of `hvas plan`; empty: none.
+};
+
 /** Whether progress is shown. */
 [[nodiscard]] bool IsShown(const RunCommandOptions& options);
 
 /** Checks that the record can be written, opens the file and prepares its model.
- @param first_parts  As in assembly::PrepareOptions.
  @param stop  Ends the preparation: kCancelled.
  @param progress  Says how far it came, also after an error. */
 [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> PrepareRun(
-    const RunCommandOptions& options, const std::vector<std::string>& first_parts,
-    const std::stop_token& stop, PreparationProgress* progress);
+    const RunCommandOptions& options, const OrderChoice& order, const std::stop_token& stop,
+    PreparationProgress* progress);
 
 /** Reports a preparation that failed; with --json, where it was stopped or reached a limit, also
  how far it came (preparation.schema.json). @returns the exit status for it. */
@@ -68,6 +75,9 @@ int ReportUnprepared(const RunCommandOptions& options, const PreparationProgress
 [[nodiscard]] SessionReport MakeSessionReport(const RunCommandOptions& options,
                                               assembly::RunOutcome outcome,
                                               std::int64_t preparation_ns);
+
+/** Adds --base to a command. */
+void AddBaseOption(CLI::App* command, std::string* base);
 
 /** Adds --seed, --fit, --condition, --force-map and --device to a command. */
 void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options);

@@ -79,6 +79,7 @@ TEST(Width, OfAssemblyAndPathIs80) {
   ExpectWithin80({"assemble", ProductFile("bushing"), "--record", record});
   ExpectWithin80({"assemble", ProductFile("bushing"), "--limit", "5"});
   ExpectWithin80({"disassemble", ProductFile("gear_pump"), "--part", "oil seal"});
+  ExpectWithin80({"plan", ProductFile("gear_pump")});
   ExpectWithin80({"disassemble", ProductFile("bushing"), "--limit", "5"});
   ExpectWithin80({"tool", ProductFile("gear_pump")});
   const std::string way = (folder / "way.csv").string();

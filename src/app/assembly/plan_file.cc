@@ -1,0 +1,126 @@
+#include "app/assembly/plan_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/regular_file.h"
+#include "session/command_json.h"
+
+namespace hvas::app {
+namespace {
+
+// 500 parts with ways of 1,000 poses each have a tenth of this.
+constexpr std::size_t kLargestPlan = 1'000'000'000;
+
+using product::OccurrenceId;
+using simulation::SequenceStep;
+
+constexpr double kBeyondAll = 1e4;  // [m]: farther than any product, and no overflow on the way.
+
+/** Follows a plan in thought: parts are taken up, put in and set aside as a session does it. */
+class PlanCheck {
+ public:
+  explicit PlanCheck(std::size_t part_count) : states_(part_count, State::kLoose) {}
+
+  /** @returns whether the step can come next. */
+  [[nodiscard]] bool Follow(const SequenceStep& step) {
+    const bool is_sound = std::abs(step.extraction_W.norm() - 1) < 1e-6 &&
+                          step.engage_distance >= 0 && step.engage_distance < kBeyondAll &&
+                          step.offset_W.norm() < kBeyondAll;
+    const bool has_sound_way =
+        std::all_of(step.way.begin(), step.way.end(), [](const spatial::Pose& X_WB) {
+          return X_WB.p().norm() < kBeyondAll && std::abs(X_WB.q().norm() - 1) < 1e-6;
+        });
+    if (!is_sound || !has_sound_way) {
+      return false;
+    }
+    switch (step.kind) {
+      case SequenceStep::Kind::kBase:
+        return step.members.empty() && Move(step, State::kLoose, State::kPlaced);
+      case SequenceStep::Kind::kInsert:
+        return Move(step, step.members.empty() ? State::kLoose : State::kParked, State::kPlaced);
+      case SequenceStep::Kind::kPark:
+        return Move(step, State::kPlaced, State::kParked);
+      case SequenceStep::Kind::kRemove:
+        return false;  // A person's own wish, and no plan's.
+    }
+    return false;
+  }
+
+ private:
+  enum class State : std::uint8_t { kLoose, kPlaced, kParked };
+
+  bool Move(const SequenceStep& step, State from, State to) {
+    std::vector<OccurrenceId> parts = step.members;
+    parts.push_back(step.occurrence);
+    for (const OccurrenceId part : parts) {
+      if (states_[part.index()] != from) {
+        return false;
+      }
+      states_[part.index()] = to;
+    }
+    return true;
+  }
+
+  std::vector<State> states_;
+};
+
+}  // namespace
+
+nlohmann::ordered_json MakeFollowedPlan(const product::Product& product,
+                                        const std::vector<simulation::SequenceStep>& steps) {
+  nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    parts.push_back(occurrence.path);
+  }
+  return {{"parts", std::move(parts)}, {"steps", session::MakeStepsJson(steps)}};
+}
+
+Result<std::vector<simulation::SequenceStep>> ReadPlan(const std::filesystem::path& file,
+                                                       const product::Product& product) {
+  const auto text = ReadRegularFile(file, kLargestPlan);
+  if (!text) {
+    return Unexpected(text.error());
+  }
+  constexpr const char* kRemedy = "write it with hvas plan FILE -o plan.json";
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  const bool is_plan = json.is_object() && json.contains("followed") &&
+                       json["followed"].is_object() && json["followed"].contains("parts") &&
+                       json["followed"]["parts"].is_array() && json["followed"].contains("steps");
+  if (!is_plan) {
+    return Fail(ErrorCode::kUnreadable, "this is no plan of an assembly", file.string(), kRemedy);
+  }
+  const auto& parts = json["followed"]["parts"];
+  bool is_same = parts.size() == product.occurrences.size();
+  for (std::size_t i = 0; is_same && i < parts.size(); ++i) {
+    is_same = parts[i].is_string() && parts[i].get<std::string>() == product.occurrences[i].path;
+  }
+  if (!is_same) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("the plan is of a product with other parts than {}", product.source),
+                file.string(), kRemedy);
+  }
+  auto steps = session::ParseSteps(json["followed"]["steps"], product.occurrences.size());
+  if (!steps) {
+    return Fail(steps.error().code, steps.error().message, file.string(), kRemedy);
+  }
+  if (steps->empty() || steps->front().kind != SequenceStep::Kind::kBase) {
+    return Fail(ErrorCode::kUnreadable, "the plan does not begin with a base", file.string(),
+                kRemedy);
+  }
+  PlanCheck check(parts.size());
+  for (std::size_t i = 0; i < steps->size(); ++i) {
+    if (!check.Follow((*steps)[i])) {
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("step {} of the plan cannot come where it stands", i + 1),
+                  file.string(), kRemedy);
+    }
+  }
+  return steps;
+}
+
+}  // namespace hvas::app

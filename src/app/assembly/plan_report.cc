@@ -1,0 +1,290 @@
+#include "app/assembly/plan_report.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/assembly/plan_file.h"
+#include "app/assembly/run_report.h"
+#include "app/output/text_layout.h"
+#include "app/output/text_table.h"
+#include "base/units.h"
+#include "pages/html_page.h"
+
+namespace hvas::app {
+namespace {
+
+using pages::Escape;
+using pages::MakeTile;
+using product::OccurrenceId;
+using simulation::FoundOrder;
+using simulation::FreeMove;
+using simulation::Obstacle;
+using simulation::OrderCounts;
+using simulation::OrderedWay;
+
+/** What has to come before what: a move, and a part that would stand in its planned way. */
+struct Arrow {
+  std::size_t first;
+  std::size_t then;
+  const Obstacle* obstacle;  // Null: the move goes only as planned.
+  bool is_certain;           // It stands in every way of the move.
+};
+
+std::vector<Arrow> ListArrows(const assembly::OrderPlan& plan) {
+  std::vector<Arrow> arrows;
+  for (std::size_t m = 0; m < plan.rules.moves.size(); ++m) {
+    const FreeMove& move = plan.rules.moves[m];
+    for (const std::size_t other : move.ways.front().moves) {
+      const bool is_certain =
+          std::all_of(move.ways.begin(), move.ways.end(), [other](const OrderedWay& way) {
+            return std::binary_search(way.moves.begin(), way.moves.end(), other);
+          });
+      const std::vector<OccurrenceId>& parts = plan.rules.moves[other].parts;
+      const std::vector<Obstacle>& obstacles = move.ways.front().obstacles;
+      const auto found = std::find_if(obstacles.begin(), obstacles.end(), [&](const Obstacle& o) {
+        return std::find(parts.begin(), parts.end(), o.occurrence) != parts.end();
+      });
+      arrows.push_back({m, other, found == obstacles.end() ? nullptr : &*found, is_certain});
+    }
+  }
+  return arrows;
+}
+
+std::string DescribeReason(const PlanReport& report, const Arrow& arrow) {
+  const FreeMove& move = report.plan->rules.moves[arrow.first];
+  if (arrow.obstacle == nullptr) {
+    return move.ways.front().step.way.empty() ? "parts give on its way, which was found without it"
+                                              : "its way turns, and was found without it";
+  }
+  const std::string& other = PathOf(*report.model, arrow.obstacle->occurrence);
+  return arrow.obstacle->mate.is_valid()
+             ? fmt::format("a mate with {} leaves it no way in", other)
+             : fmt::format("it would meet {} {:.1f} mm before its place", other,
+                           units::ToMm(arrow.obstacle->travelled));
+}
+
+nlohmann::ordered_json MakeIds(const std::vector<OccurrenceId>& ids) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const OccurrenceId id : ids) {
+    json.push_back(id.value());
+  }
+  return json;
+}
+
+nlohmann::ordered_json ToJson(const OrderCounts& counts) {
+  return {{"turns", counts.turns},
+          {"direction_changes", counts.direction_changes},
+          {"tool_changes", counts.tool_changes},
+          {"loose", counts.loose}};
+}
+
+/** Leading parts of the moves, as an order has them. */
+std::vector<OccurrenceId> ListLeaders(const assembly::OrderPlan& plan, const FoundOrder& order) {
+  std::vector<OccurrenceId> leaders;
+  for (const std::size_t move : order.moves) {
+    leaders.push_back(plan.rules.moves[move].parts.front());
+  }
+  return leaders;
+}
+
+nlohmann::ordered_json ToJson(const PlanReport& report, const FoundOrder& order) {
+  nlohmann::ordered_json json{{"cost", order.cost}};
+  json.update(ToJson(order.counts));
+  json["parts"] = MakeIds(ListLeaders(*report.plan, order));
+  return json;
+}
+
+const FoundOrder& BestOf(const assembly::OrderPlan& plan) {
+  return plan.search.orders.empty() ? plan.search.planned : plan.search.orders.front();
+}
+
+nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
+  const assembly::OrderPlan& plan = *report.plan;
+  const FoundOrder& best = BestOf(plan);
+  nlohmann::ordered_json moves = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < best.moves.size(); ++i) {
+    const std::size_t m = best.moves[i];
+    const FreeMove& move = plan.rules.moves[m];
+    const simulation::SequenceStep& step = move.ways[best.ways[i]].step;
+    const Vec3 direction = step.extraction_W + Vec3::Zero();  // A zero has no sign for people.
+    nlohmann::ordered_json json{{"id", step.occurrence.value()},
+                                {"name", PathOf(*report.model, step.occurrence)},
+                                {"members", MakeIds(step.members)},
+                                {"out", {direction.x(), direction.y(), direction.z()}},
+                                {"engaged_mm", units::ToMm(step.engage_distance)},
+                                {"turns", !step.way.empty()},
+                                {"ways", move.ways.size()}};
+    if (!plan.tools[m].empty()) {
+      json["tool"] = plan.tools[m];
+    }
+    moves.push_back(std::move(json));
+  }
+  return moves;
+}
+
+nlohmann::ordered_json MakeArrowsJson(const PlanReport& report) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Arrow& arrow : ListArrows(*report.plan)) {
+    const auto leader = [&](std::size_t move) {
+      return report.plan->rules.moves[move].parts.front().value();
+    };
+    json.push_back({{"first", leader(arrow.first)},
+                    {"then", leader(arrow.then)},
+                    {"certain", arrow.is_certain},
+                    {"reason", DescribeReason(report, arrow)}});
+  }
+  return json;
+}
+
+std::string DescribeCounts(const OrderCounts& counts, double cost) {
+  return fmt::format(
+      "cost {:g}: {} turns of the product, {} changes of direction, {} of tool, {} "
+      "parts that nothing holds",
+      cost, counts.turns, counts.direction_changes, counts.tool_changes, counts.loose);
+}
+
+std::string DescribeSearch(const assembly::OrderPlan& plan) {
+  return fmt::format("{} orders found with {} tries{}", plan.search.orders.size(),
+                     plan.search.tries, plan.search.is_ended_early ? ", ended early" : "");
+}
+
+}  // namespace
+
+nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
+  const simulation::Model& model = *report.model;
+  const assembly::OrderPlan& plan = *report.plan;
+  nlohmann::ordered_json json{{"product", model.product->name},
+                              {"source", model.product->source},
+                              {"seed", model.seed},
+                              {"preparation_s", report.preparation_s},
+                              {"planning_s", report.planning_s},
+                              {"base", PathOf(model, simulation::FindBase(model.sequence))},
+                              {"moves", MakeMovesJson(report)},
+                              {"arrows", MakeArrowsJson(report)},
+                              {"weights",
+                               {{"turn", report.weights.turn},
+                                {"direction_change", report.weights.direction_change},
+                                {"tool_change", report.weights.tool_change},
+                                {"loose", report.weights.loose}}}};
+  json["orders"] = nlohmann::ordered_json::array();
+  for (const FoundOrder& order : plan.search.orders) {
+    json["orders"].push_back(ToJson(report, order));
+  }
+  json["planned"] = ToJson(report, plan.search.planned);
+  json["search"] = {{"tries", plan.search.tries},
+                    {"width", plan.search.width},
+                    {"ended_early", plan.search.is_ended_early}};
+  json["left_out"] = nlohmann::ordered_json::array();
+  for (const simulation::SequenceGap& gap : model.sequence.gaps) {
+    json["left_out"].push_back({{"id", gap.occurrence.value()},
+                                {"name", PathOf(model, gap.occurrence)},
+                                {"reason", gap.reason}});
+  }
+  json["followed"] =
+      MakeFollowedPlan(*model.product, simulation::ListSteps(plan.rules, BestOf(plan)));
+  return json;
+}
+
+void PrintPlanTable(const PlanReport& report) {
+  const simulation::Model& model = *report.model;
+  const assembly::OrderPlan& plan = *report.plan;
+  const FoundOrder& best = BestOf(plan);
+  TextTable table({"  #", "part", "way", "tool"}, 2);
+  table.Add({"  0", PathOf(model, simulation::FindBase(model.sequence)), "base", ""});
+  const std::vector<Arrow> arrows = ListArrows(plan);
+  for (std::size_t i = 0; i < best.moves.size(); ++i) {
+    const std::size_t m = best.moves[i];
+    const simulation::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
+    std::string below;
+    const auto first =
+        std::find_if(arrows.begin(), arrows.end(), [m](const Arrow& a) { return a.first == m; });
+    if (first != arrows.end()) {
+      const auto count = std::count_if(arrows.begin(), arrows.end(),
+                                       [m](const Arrow& arrow) { return arrow.first == m; });
+      below =
+          fmt::format("before {}: {}", PathOf(model, plan.rules.moves[first->then].parts.front()),
+                      DescribeReason(report, *first));
+      below += count > 1 ? fmt::format("; and before {} more", count - 1) : "";
+    }
+    const std::string way = step.way.empty() ? DescribeDirection(step.extraction_W) : "turns";
+    const std::string members =
+        step.members.empty() ? "" : fmt::format(" and {} more", step.members.size());
+    table.Add(
+        {fmt::format("{:3}", i + 1), PathOf(model, step.occurrence) + members, way, plan.tools[m]},
+        below);
+  }
+  fmt::print("{}\n", table.ToText());
+  fmt::print("Best order: {}.\n", DescribeCounts(best.counts, best.cost));
+  fmt::print("As first found: {}.\n",
+             DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
+  for (std::size_t i = 1; i < plan.search.orders.size(); ++i) {
+    fmt::print("Alternative {}: {}.\n", i,
+               DescribeCounts(plan.search.orders[i].counts, plan.search.orders[i].cost));
+  }
+  for (const simulation::SequenceGap& gap : model.sequence.gaps) {
+    fmt::print("LEFT OUT: {}: {}\n", PathOf(model, gap.occurrence), gap.reason);
+  }
+  fmt::print("{}; preparation {:.1f} s, planning {:.1f} s.\n", DescribeSearch(plan),
+             report.preparation_s, report.planning_s);
+}
+
+std::string MakePlanPage(const PlanReport& report) {
+  const simulation::Model& model = *report.model;
+  const assembly::OrderPlan& plan = *report.plan;
+  const FoundOrder& best = BestOf(plan);
+  const std::vector<Arrow> arrows = ListArrows(plan);
+  std::string body = fmt::format(
+      "<h1>{}: plan of the assembly</h1>\n<ul class=\"tiles\">{}{}{}{}{}</ul>\n",
+      Escape(model.product->name), MakeTile("moves", fmt::format("{}", best.moves.size())),
+      MakeTile("left out", fmt::format("{}", model.sequence.gaps.size())),
+      MakeTile("turns of the product", fmt::format("{}", best.counts.turns)),
+      MakeTile("changes of direction", fmt::format("{}", best.counts.direction_changes)),
+      MakeTile("changes of tool", fmt::format("{}", best.counts.tool_changes)));
+  body +=
+      "<h2>Order</h2>\n<div class=\"scroll\"><table><tr><th>#</th><th class=\"l\">part</th>"
+      "<th class=\"l\">way out</th><th class=\"l\">tool</th><th class=\"l\">has to come "
+      "before</th></tr>\n";
+  body += fmt::format(
+      "<tr><td>0</td><td class=\"l\">{}</td><td class=\"l\">base</td><td></td><td></td></tr>\n",
+      Escape(PathOf(model, simulation::FindBase(model.sequence))));
+  for (std::size_t i = 0; i < best.moves.size(); ++i) {
+    const std::size_t m = best.moves[i];
+    const simulation::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
+    std::string before;
+    for (const Arrow& arrow : arrows) {
+      if (arrow.first == m && arrow.obstacle != nullptr) {
+        before += fmt::format(
+            "{}{}<span class=\"soft\">, {}{}</span>", before.empty() ? "" : "<br>",
+            Escape(PathOf(model, plan.rules.moves[arrow.then].parts.front())),
+            Escape(DescribeReason(report, arrow)), arrow.is_certain ? "" : ", on this way");
+      }
+    }
+    body += fmt::format(
+        "<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
+        "<td class=\"l\">{}</td></tr>\n",
+        i + 1, Escape(PathOf(model, step.occurrence)),
+        step.way.empty() ? DescribeDirection(step.extraction_W) : "turns", Escape(plan.tools[m]),
+        before);
+  }
+  body += "</table></div>\n<h2>Orders compared</h2>\n<ul>\n";
+  for (const FoundOrder& order : plan.search.orders) {
+    body += fmt::format("<li>{}</li>\n", DescribeCounts(order.counts, order.cost));
+  }
+  body += fmt::format("<li>{} <span class=\"soft\">(as first found)</span></li>\n</ul>\n",
+                      DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
+  if (!model.sequence.gaps.empty()) {
+    body += "<h2>Left out</h2>\n<ul>\n";
+    for (const simulation::SequenceGap& gap : model.sequence.gaps) {
+      body += fmt::format("<li class=\"bad\">{}: {}</li>\n", Escape(PathOf(model, gap.occurrence)),
+                          Escape(gap.reason));
+    }
+    body += "</ul>\n";
+  }
+  body += fmt::format("<p class=\"soft\">{}. No order is proved to be the best.</p>\n",
+                      DescribeSearch(plan));
+  return pages::MakeHtmlPage(model.product->name + ": plan of the assembly", body);
+}
+
+}  // namespace hvas::app

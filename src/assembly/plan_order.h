@@ -1,0 +1,43 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "simulation/model.h"
+#include "simulation/order_search.h"
+
+namespace hvas::assembly {
+
+struct PlanOptions {
+  simulation::OrderWeights weights;
+  std::vector<std::pair<std::string, std::string>> before;  ///< Pairs of parts: first, then.
+  /** Parts that have to come in this order, by name, path or id; the others anywhere. */
+  std::vector<std::string> order;
+  std::size_t most_orders{5};
+  bool gives_front{false};
+  std::optional<std::chrono::duration<double>> time;  ///< The search ends after that.
+  std::function<void(const std::string& stage, double fraction)> progress;  ///< May be null.
+  std::stop_token stop;
+};
+
+/** Orders of assembly of a model. */
+struct OrderPlan {
+  simulation::OrderRules rules;
+  simulation::OrderSearch search;
+  std::vector<std::string> tools;  ///< The tool of each move; empty: none.
+};
+
+/** Finds orders of assembly of low cost.
+ Errors: kNotFound and kInvalid for a name that does not mean one part that moves; kInvalid where
+ what the user wishes contradicts what stands in the way, with the parts that wait for each other.
+ @param model  As PrepareModel gives it. */
+[[nodiscard]] Result<OrderPlan> PlanOrder(const simulation::Model& model,
+                                          const PlanOptions& options);
+
+}  // namespace hvas::assembly

@@ -1,0 +1,167 @@
+#include "simulation/order_rules.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace hvas::simulation {
+namespace {
+
+using product::OccurrenceId;
+
+// The ways of one move that are kept: more have never been of use in an order. A choice.
+constexpr std::size_t kMostWaysOfMove = 8;
+
+class RuleFinder {
+ public:
+  RuleFinder(const Model& model, const OrderRuleOptions& options)
+      : model_(model),
+        options_(options),
+        input_(MakeSequenceInput(model, &scene_)),
+        extraction_(input_, &model.sequence) {}
+
+  OrderRules Find() {
+    SplitSteps();
+    ShowAll();
+    for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
+      FindWays(m);
+      FindHolders(m);
+      if (options_.progress) {
+        options_.progress(static_cast<double>(m + 1) / static_cast<double>(rules_.moves.size()));
+      }
+    }
+    return std::move(rules_);
+  }
+
+ private:
+  /** What is put together by itself comes first, as Reorder() has it; the rest may change. */
+  void SplitSteps() {
+    const std::vector<SequenceStep>& steps = model_.sequence.steps;
+    const auto last_park = std::find_if(steps.rbegin(), steps.rend(), [](const SequenceStep& step) {
+      return step.kind == SequenceStep::Kind::kPark;
+    });
+    for (auto step = steps.begin(); step != steps.end(); ++step) {
+      if (step < last_park.base() || step->kind != SequenceStep::Kind::kInsert) {
+        rules_.first.push_back(*step);
+        continue;
+      }
+      FreeMove move;
+      move.parts = step->members;
+      move.parts.insert(move.parts.begin(), step->occurrence);
+      for (const OccurrenceId part : move.parts) {
+        move_of_[part] = rules_.moves.size();
+      }
+      move.ways.push_back({*step, {}, {}});
+      rules_.moves.push_back(std::move(move));
+    }
+  }
+
+  void ShowAll() {
+    for (const Body& body : model_.bodies) {
+      extraction_.SetPresent({body.occurrence}, false);
+    }
+    extraction_.SetPresent(input_.fixtures, true);
+    extraction_.SetPresent({FindBase(model_.sequence)}, true);
+    for (const FreeMove& move : rules_.moves) {
+      extraction_.SetPresent(move.parts, true);
+    }
+  }
+
+  /** Finds what stands in a way. @returns false where what never moves does. */
+  bool FindObstacles(std::size_t m, OrderedWay* way) {
+    const OccurrenceId base = FindBase(model_.sequence);
+    way->obstacles = extraction_.ListObstacles(rules_.moves[m].parts, way->step.extraction_W, base);
+    for (const Obstacle& obstacle : way->obstacles) {
+      const auto found = move_of_.find(obstacle.occurrence);
+      if (found == move_of_.end()) {
+        return false;
+      }
+      way->moves.push_back(found->second);
+    }
+    std::sort(way->moves.begin(), way->moves.end());
+    way->moves.erase(std::unique(way->moves.begin(), way->moves.end()), way->moves.end());
+    return true;
+  }
+
+  void Bind(std::size_t m) {
+    FreeMove& move = rules_.moves[m];
+    move.is_bound = true;
+    OrderedWay& way = move.ways.front();
+    way.obstacles.clear();
+    way.moves.clear();
+    for (std::size_t later = m + 1; later < rules_.moves.size(); ++later) {
+      way.moves.push_back(later);
+    }
+  }
+
+  void FindWays(std::size_t m) {
+    FreeMove& move = rules_.moves[m];
+    OrderedWay& planned = move.ways.front();
+    const bool is_straight = planned.step.way.empty();
+    // A way on which parts give meets what gives.
+    if (!is_straight || !FindObstacles(m, &planned) ||
+        (!planned.moves.empty() && planned.moves.front() < m)) {
+      Bind(m);
+      return;
+    }
+    if (planned.moves.empty()) {
+      return;  // No other way can be freer.
+    }
+    const SequenceStep step = planned.step;  // More ways move the planned one in memory.
+    for (const Vec3& direction : extraction_.ListDirections(move.parts)) {
+      if (move.ways.size() == kMostWaysOfMove || options_.stop.stop_requested()) {
+        break;
+      }
+      OrderedWay way;
+      way.step = step;
+      way.step.extraction_W = direction;
+      const bool is_known = direction.dot(step.extraction_W) > 1 - 1e-9;
+      if (is_known || !FindObstacles(m, &way)) {
+        continue;
+      }
+      // What another way needs as well is of no use.
+      const bool is_of_use =
+          std::none_of(move.ways.begin(), move.ways.end(), [&way](const OrderedWay& other) {
+            return std::includes(way.moves.begin(), way.moves.end(), other.moves.begin(),
+                                 other.moves.end());
+          });
+      if (is_of_use) {
+        way.step.engage_distance = extraction_.CalcEngageDistance(move.parts, direction);
+        move.ways.push_back(std::move(way));
+      }
+    }
+  }
+
+  void FindHolders(std::size_t m) {
+    FreeMove& move = rules_.moves[m];
+    for (const OccurrenceId part : move.parts) {
+      for (const OccurrenceId neighbour : model_.sequence.neighbours[part.index()]) {
+        const auto found = move_of_.find(neighbour);
+        if (found == move_of_.end()) {
+          move.is_held_by_base = move.is_held_by_base || extraction_.is_present(neighbour);
+        } else if (found->second != m) {
+          move.neighbours.push_back(found->second);
+        }
+      }
+    }
+    std::sort(move.neighbours.begin(), move.neighbours.end());
+    move.neighbours.erase(std::unique(move.neighbours.begin(), move.neighbours.end()),
+                          move.neighbours.end());
+  }
+
+  const Model& model_;
+  const OrderRuleOptions& options_;
+  contact::Scene scene_;
+  SequenceInput input_;
+  Extraction extraction_;
+  OrderRules rules_;
+  std::map<OccurrenceId, std::size_t> move_of_;
+};
+
+}  // namespace
+
+OrderRules FindOrderRules(const Model& model, const OrderRuleOptions& options) {
+  return RuleFinder(model, options).Find();
+}
+
+}  // namespace hvas::simulation

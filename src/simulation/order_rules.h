@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "simulation/extraction.h"
+#include "simulation/model.h"
+
+namespace hvas::simulation {
+
+/** A straight way out of a move's parts with all others in their place, and what stands in it. */
+struct OrderedWay {
+  SequenceStep step;                ///< The move by this way.
+  std::vector<Obstacle> obstacles;  ///< One of each part that stands in it.
+  std::vector<std::size_t> moves;   ///< The moves that these parts belong to; sorted.
+};
+
+/** A move of the order of assembly, and the ways by which it may go. */
+struct FreeMove {
+  Unit parts;                    ///< The leading part first.
+  std::vector<OrderedWay> ways;  ///< The planned one first; no way that what never moves closes.
+  /** It goes only as planned, after what came before it: on a way that turns, or on which parts
+   give. */
+  bool is_bound{false};
+  std::vector<std::size_t> neighbours;  ///< Moves whose parts hold this one; sorted.
+  bool is_held_by_base{false};          ///< The base, or a fixture, holds it.
+};
+
+/** What of an order of assembly may change: a move may come when nothing stands in one of its ways.
+ Wilson and Latombe (Artificial Intelligence 71(2), 1994) call such rules AND/OR precedence. */
+struct OrderRules {
+  std::vector<SequenceStep> first;  ///< What is put together by itself, and the base.
+  std::vector<FreeMove> moves;      ///< Moves in the planned order.
+};
+
+struct OrderRuleOptions {
+  std::function<void(double fraction)> progress;  ///< Called by the calling thread; may be null.
+  std::stop_token stop;  ///< Ends the search for ways: the rest have the planned one alone.
+};
+
+/** Finds the rules of a model's order: for each move that puts a part, or parts together, into the
+ product, the straight ways that its mates leave free, and what stands in each. Deterministic. */
+[[nodiscard]] OrderRules FindOrderRules(const Model& model, const OrderRuleOptions& options);
+
+}  // namespace hvas::simulation

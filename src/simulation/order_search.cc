@@ -1,0 +1,420 @@
+#include "simulation/order_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "simulation/neighbours.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::OccurrenceId;
+
+// A part comes from below where its way out points below the horizon by more than this: 6 degrees.
+// A choice.
+constexpr double kBelow = -0.1;
+constexpr double kSameWay = 0.985;  // Cosine: 10 degrees, which a hand does not notice. A choice.
+constexpr std::size_t kWidest = 4096;  // Orders at once: some 100 MB for a product of 500 parts.
+constexpr std::size_t kWidening = 4;   // A round is so much wider than the last: a choice.
+
+/** A set of moves. */
+class MoveSet {
+ public:
+  explicit MoveSet(std::size_t count) : words_((count + 63) / 64) {}
+
+  void Set(std::size_t i) { words_[i / 64] |= 1ULL << (i % 64); }
+
+  void Clear(std::size_t i) { words_[i / 64] &= ~(1ULL << (i % 64)); }
+
+  [[nodiscard]] bool Has(std::size_t i) const { return (words_[i / 64] >> (i % 64) & 1U) != 0; }
+
+  [[nodiscard]] bool Meets(const MoveSet& other) const {
+    for (std::size_t k = 0; k < words_.size(); ++k) {
+      if ((words_[k] & other.words_[k]) != 0) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  auto operator<=>(const MoveSet&) const = default;
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
+/** The six sides that may be upwards. */
+constexpr int kSides = 6;
+
+Vec3 SideAt(int side) {
+  Vec3 up = Vec3::Zero();
+  up[side / 2] = side % 2 == 0 ? 1 : -1;
+  return up;
+}
+
+/** The sides that may be upwards when a part comes in by a way, one bit each. */
+unsigned ListSides(const Vec3& extraction_W) {
+  unsigned sides = 0;
+  for (int side = 0; side < kSides; ++side) {
+    sides |= SideAt(side).dot(extraction_W) > kBelow ? 1U << static_cast<unsigned>(side) : 0U;
+  }
+  return sides;
+}
+
+unsigned SideOf(const Vec3& up_W) {
+  for (int side = 0; side < kSides; ++side) {
+    if (SideAt(side).dot(up_W) > kSameWay) {
+      return 1U << static_cast<unsigned>(side);
+    }
+  }
+  return ListSides(up_W);
+}
+
+/** A product that is partly taken apart. */
+struct State {
+  MoveSet present;
+  std::vector<std::pair<std::size_t, std::size_t>> removed;  // Moves and their ways.
+  unsigned sides{(1U << kSides) - 1};  // That may be upwards since the product was last turned.
+  Vec3 last_W{Vec3::Zero()};           // The way of the last one; zero: none.
+  std::string_view tool;               // The last one that was needed; empty: none.
+  OrderCounts counts;
+  double cost{0};
+};
+
+struct Candidate {
+  std::size_t state;
+  std::size_t move;
+  std::size_t way;
+  OrderCounts counts;
+  double cost;
+};
+
+class BeamSearch {
+ public:
+  BeamSearch(const OrderRules& rules, const OrderSearchOptions& options)
+      : rules_(rules), options_(options), wanted_(rules.moves.size(), MoveSet(rules.moves.size())) {
+    for (const FreeMove& move : rules.moves) {
+      std::vector<MoveSet>& sets = obstacles_.emplace_back();
+      for (const OrderedWay& way : move.ways) {
+        MoveSet& set = sets.emplace_back(rules.moves.size());
+        for (const std::size_t other : way.moves) {
+          set.Set(other);
+        }
+      }
+    }
+    for (const OrderWish& wish : options.wishes) {
+      wanted_[wish.first].Set(wish.then);  // What comes first goes last.
+    }
+    MakeGraph();
+  }
+
+  OrderSearch Find() {
+    OrderSearch search;
+    search.planned = MakePlanned();
+    for (std::size_t width = 1; width <= kWidest && !IsOver(); width *= kWidening) {
+      search.width = width;
+      const std::uint64_t before = tries_;
+      if (!Run(width, &search) || options_.most_tries - tries_ < kWidening * (tries_ - before)) {
+        break;
+      }
+    }
+    search.tries = tries_;
+    search.is_ended_early = IsStopped();
+    search.orders = TakeBest();
+    return search;
+  }
+
+ private:
+  /** Moves as a graph of what holds what, for ListCutParts: 0 is the base, then the moves. */
+  void MakeGraph() {
+    holders_.resize(rules_.moves.size() + 1);
+    const auto join = [this](std::size_t a, std::size_t b) {
+      holders_[a].emplace_back(b);
+      holders_[b].emplace_back(a);
+    };
+    for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
+      if (rules_.moves[m].is_held_by_base) {
+        join(0, m + 1);
+      }
+      for (const std::size_t other : rules_.moves[m].neighbours) {
+        if (other > m) {
+          join(other + 1, m + 1);
+        }
+      }
+    }
+    for (std::vector<OccurrenceId>& holders : holders_) {
+      std::sort(holders.begin(), holders.end());
+      holders.erase(std::unique(holders.begin(), holders.end()), holders.end());
+    }
+  }
+
+  [[nodiscard]] bool IsStopped() const {
+    return options_.stop.stop_requested() ||
+           (options_.deadline && std::chrono::steady_clock::now() > *options_.deadline);
+  }
+
+  [[nodiscard]] bool IsOver() const { return tries_ >= options_.most_tries || IsStopped(); }
+
+  [[nodiscard]] std::string_view ToolOf(std::size_t move) const {
+    return options_.tools.empty() ? std::string_view() : std::string_view(options_.tools[move]);
+  }
+
+  FoundOrder MakePlanned() const {
+    FoundOrder order;
+    for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
+      order.moves.push_back(m);
+    }
+    order.ways.assign(order.moves.size(), 0);
+    return Count(std::move(order));
+  }
+
+  FoundOrder Count(FoundOrder order) const {
+    order.counts = CountOrder(rules_, options_.tools, options_.up_W, order);
+    order.cost = CalcCost(order.counts, options_.weights);
+    return order;
+  }
+
+  /** The first way of a move with nothing in it, of those that go on in the last direction if there
+   is one; none where all are blocked. */
+  [[nodiscard]] std::optional<std::size_t> FindWay(const State& state, std::size_t move) const {
+    if (state.present.Meets(wanted_[move])) {
+      return std::nullopt;
+    }
+    std::optional<std::size_t> first;
+    const std::vector<OrderedWay>& ways = rules_.moves[move].ways;
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+      if (state.present.Meets(obstacles_[move][w])) {
+        continue;
+      }
+      if (ways[w].step.extraction_W.dot(state.last_W) > kSameWay) {
+        return w;
+      }
+      first = first ? first : w;
+    }
+    return first;
+  }
+
+  /** Moves without which others would hang in the air. */
+  [[nodiscard]] std::vector<OccurrenceId> ListCarrying(const State& state) const {
+    std::vector<OccurrenceId> nodes{OccurrenceId(0)};
+    for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
+      if (state.present.Has(m)) {
+        nodes.emplace_back(m + 1);
+      }
+    }
+    return ListCutParts(nodes, holders_);
+  }
+
+  [[nodiscard]] OrderCounts CountWith(const State& state, std::size_t move, std::size_t way,
+                                      bool is_carrying) const {
+    OrderCounts counts = state.counts;
+    const Vec3& out_W = rules_.moves[move].ways[way].step.extraction_W;
+    counts.turns += (state.sides & ListSides(out_W)) == 0 ? 1 : 0;
+    counts.direction_changes +=
+        state.last_W != Vec3::Zero() && out_W.dot(state.last_W) < kSameWay ? 1 : 0;
+    const std::string_view tool = ToolOf(move);
+    counts.tool_changes += !tool.empty() && !state.tool.empty() && tool != state.tool ? 1 : 0;
+    counts.loose += is_carrying ? 1 : 0;
+    return counts;
+  }
+
+  void ListCandidates(const State& state, std::size_t index, std::vector<Candidate>* candidates) {
+    const std::vector<OccurrenceId> carrying = ListCarrying(state);
+    for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
+      if (!state.present.Has(m)) {
+        continue;
+      }
+      ++tries_;
+      const std::optional<std::size_t> way = FindWay(state, m);
+      if (!way) {
+        continue;
+      }
+      const bool is_carrying =
+          std::binary_search(carrying.begin(), carrying.end(), OccurrenceId(m + 1));
+      const OrderCounts counts = CountWith(state, m, *way, is_carrying);
+      candidates->push_back({index, m, *way, counts, CalcCost(counts, options_.weights)});
+    }
+  }
+
+  [[nodiscard]] State Remove(const State& state, const Candidate& candidate) const {
+    State next = state;
+    const Vec3& out_W = rules_.moves[candidate.move].ways[candidate.way].step.extraction_W;
+    next.present.Clear(candidate.move);
+    next.removed.emplace_back(candidate.move, candidate.way);
+    const unsigned sides = ListSides(out_W);
+    next.sides = (state.sides & sides) == 0 ? sides : state.sides & sides;
+    next.last_W = out_W;
+    next.tool = ToolOf(candidate.move).empty() ? state.tool : ToolOf(candidate.move);
+    next.counts = candidate.counts;
+    next.cost = candidate.cost;
+    return next;
+  }
+
+  /** One round of the search. @returns false where it found no order, or was ended. */
+  bool Run(std::size_t width, OrderSearch* search) {
+    const std::size_t count = rules_.moves.size();
+    State start{MoveSet(count), {}, (1U << kSides) - 1, Vec3::Zero(), {}, {}, 0};
+    for (std::size_t m = 0; m < count; ++m) {
+      start.present.Set(m);
+    }
+    std::vector<State> beam{std::move(start)};
+    for (std::size_t removed = 0; removed < count; ++removed) {
+      if (IsOver() && !found_.empty()) {
+        return false;
+      }
+      std::vector<Candidate> candidates;
+      for (std::size_t i = 0; i < beam.size(); ++i) {
+        ListCandidates(beam[i], i, &candidates);
+      }
+      if (candidates.empty()) {
+        for (std::size_t m = 0; m < count; ++m) {
+          if (beam.front().present.Has(m)) {
+            search->stuck.push_back(m);
+          }
+        }
+        return false;
+      }
+      // What was planned to come late goes first, where the cost is the same.
+      std::stable_sort(candidates.begin(), candidates.end(),
+                       [](const Candidate& a, const Candidate& b) {
+                         return std::tuple(a.cost, b.move) < std::tuple(b.cost, a.move);
+                       });
+      std::vector<State> next;
+      std::set<std::tuple<MoveSet, unsigned, std::array<double, 3>, std::string_view>> known;
+      for (const Candidate& candidate : candidates) {
+        State state = Remove(beam[candidate.state], candidate);
+        const std::array<double, 3> last{state.last_W.x(), state.last_W.y(), state.last_W.z()};
+        if (known.emplace(state.present, state.sides, last, state.tool).second) {
+          next.push_back(std::move(state));
+        }
+        if (next.size() == width) {
+          break;
+        }
+      }
+      beam = std::move(next);
+      Report();
+    }
+    for (const State& state : beam) {
+      Keep(state);
+    }
+    return true;
+  }
+
+  void Report() const {
+    if (options_.progress) {
+      options_.progress(static_cast<double>(std::min(tries_, options_.most_tries)) /
+                        static_cast<double>(options_.most_tries));
+    }
+  }
+
+  void Keep(const State& state) {
+    FoundOrder order;
+    for (auto removed = state.removed.rbegin(); removed != state.removed.rend(); ++removed) {
+      order.moves.push_back(removed->first);
+      order.ways.push_back(removed->second);
+    }
+    order = Count(std::move(order));
+    auto key = std::pair(order.cost, order.moves);
+    found_.emplace(std::move(key), std::move(order));
+  }
+
+  [[nodiscard]] std::vector<FoundOrder> TakeBest() {
+    std::vector<FoundOrder> best;
+    std::vector<OrderCounts> counts;
+    for (auto& [key, order] : found_) {
+      const OrderCounts& c = order.counts;
+      const bool is_beaten =
+          std::any_of(counts.begin(), counts.end(), [&c](const OrderCounts& other) {
+            return other.turns <= c.turns && other.direction_changes <= c.direction_changes &&
+                   other.tool_changes <= c.tool_changes && other.loose <= c.loose;
+          });
+      if (options_.gives_front ? !is_beaten : best.size() < options_.most_orders) {
+        counts.push_back(c);
+        best.push_back(std::move(order));
+      }
+    }
+    return best;
+  }
+
+  const OrderRules& rules_;
+  const OrderSearchOptions& options_;
+  std::vector<std::vector<MoveSet>> obstacles_;  // By move and way.
+  std::vector<MoveSet> wanted_;                  // What has to be gone before each goes.
+  Neighbours holders_;
+  std::map<std::pair<double, std::vector<std::size_t>>, FoundOrder> found_;
+  std::uint64_t tries_{0};
+};
+
+}  // namespace
+
+double CalcCost(const OrderCounts& counts, const OrderWeights& weights) {
+  return weights.turn * counts.turns + weights.direction_change * counts.direction_changes +
+         weights.tool_change * counts.tool_changes + weights.loose * counts.loose;
+}
+
+OrderSearch FindOrders(const OrderRules& rules, const OrderSearchOptions& options) {
+  return BeamSearch(rules, options).Find();
+}
+
+OrderCounts CountOrder(const OrderRules& rules, const std::vector<std::string>& tools,
+                       const Vec3& up_W, const FoundOrder& order) {
+  OrderCounts counts;
+  unsigned sides = SideOf(up_W);
+  Vec3 last_W = Vec3::Zero();
+  std::string_view tool;
+  std::vector<bool> is_there(rules.moves.size(), false);
+  for (std::size_t i = 0; i < order.moves.size(); ++i) {
+    const std::size_t m = order.moves[i];
+    const FreeMove& move = rules.moves[m];
+    const Vec3& out_W = move.ways[order.ways[i]].step.extraction_W;
+    const unsigned own = ListSides(out_W);
+    counts.turns += (sides & own) == 0 ? 1 : 0;
+    sides = (sides & own) == 0 ? own : sides & own;
+    counts.direction_changes += last_W != Vec3::Zero() && out_W.dot(last_W) < kSameWay ? 1 : 0;
+    last_W = out_W;
+    const std::string_view own_tool =
+        tools.empty() ? std::string_view() : std::string_view(tools[m]);
+    counts.tool_changes += !own_tool.empty() && !tool.empty() && own_tool != tool ? 1 : 0;
+    tool = own_tool.empty() ? tool : own_tool;
+    const bool is_held =
+        move.is_held_by_base || std::any_of(move.neighbours.begin(), move.neighbours.end(),
+                                            [&](std::size_t other) { return is_there[other]; });
+    counts.loose += is_held ? 0 : 1;
+    is_there[m] = true;
+  }
+  return counts;
+}
+
+std::vector<std::size_t> ListBlocking(const OrderRules& rules,
+                                      const std::vector<std::size_t>& before, std::size_t move) {
+  std::vector<std::size_t> least;
+  bool is_first = true;
+  for (const OrderedWay& way : rules.moves[move].ways) {
+    std::vector<std::size_t> blocking;
+    for (const std::size_t other : before) {
+      if (std::binary_search(way.moves.begin(), way.moves.end(), other)) {
+        blocking.push_back(other);
+      }
+    }
+    if (is_first || blocking.size() < least.size()) {
+      least = std::move(blocking);
+    }
+    is_first = false;
+  }
+  return least;
+}
+
+std::vector<SequenceStep> ListSteps(const OrderRules& rules, const FoundOrder& order) {
+  std::vector<SequenceStep> steps = rules.first;
+  for (std::size_t i = 0; i < order.moves.size(); ++i) {
+    steps.push_back(rules.moves[order.moves[i]].ways[order.ways[i]].step);
+  }
+  return steps;
+}
+
+}  // namespace hvas::simulation
