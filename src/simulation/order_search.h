@@ -59,7 +59,7 @@ struct OrderSearchOptions {
 /** An order of all moves. */
 struct FoundOrder {
   std::vector<std::size_t> moves;  ///< The order in which they come.
-  std::vector<std::size_t> ways;   ///< By which of its ways each goes; as `moves`.
+  std::vector<std::size_t> ways;   ///< The number of the way by which each goes.
   OrderCounts counts;
   double cost{0};
 };
@@ -69,7 +69,7 @@ struct OrderSearch {
   FoundOrder planned;              ///< The order that the planner found, for comparison.
   std::uint64_t tries{0};          ///< Moves that were tried.
   std::size_t width{0};            ///< So many orders were followed at once, at last.
-  bool is_ended_early{false};      ///< By the deadline or a stop: more may be found.
+  bool is_ended_early{false};      ///< A deadline or a stop ended it: more may be found.
   /** Where the wishes contradict what stands in the way: moves that wait for each other. */
   std::vector<std::size_t> stuck;
 };

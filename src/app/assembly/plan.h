@@ -17,7 +17,7 @@ struct PlanCommandOptions : RunCommandOptions {
   assembly::PlanOptions plan;
   OrderChoice order;
   std::vector<std::string> before;  ///< Names by two: the first part before the second.
-  double time_s{0};                 ///< For the search; 0: until its tries are over.
+  double time_s{0};                 ///< The search ends after it; 0: when its tries are over.
   std::filesystem::path output;     ///< .json or .html; empty: none.
   bool is_replaced{false};          ///< The output may replace a file.
 };

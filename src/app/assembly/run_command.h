@@ -47,8 +47,8 @@ struct PreparationProgress {
 
 /** What the user wishes of the order of assembly. */
 struct OrderChoice {
-  std::vector<std::string> first_parts;  ///< As in assembly::PrepareOptions.
-  std::string base;                      ///< As there.
+  std::vector<std::string> first_parts;  ///< PrepareOptions::first_parts.
+  std::string base;                      ///< PrepareOptions::base.
   std::filesystem::path plan;            ///< A plan of `hvas plan`; empty: none.
 };
 
