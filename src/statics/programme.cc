@@ -112,7 +112,7 @@ void Programme::Data::MeasureBodies() {
   const double g = problem.g_W.norm();
   double heaviest = 0;
   for (const StaticBody& body : problem.bodies) {
-    heaviest = std::max(heaviest, body.mass * g);
+    heaviest = body.is_fixed ? heaviest : std::max(heaviest, body.mass * g);
   }
   first_row.assign(count, -1);
   weight.assign(count, 0);
@@ -430,10 +430,15 @@ Result<Equilibrium> Programme::Solve(const std::vector<bool>& is_held) {
     }
   }
   found.stands = held <= kNoHold;
-  if (found.stands) {
-    return found;
+  if (!found.stands) {
+    AddProof(is_held, &found);
   }
+  return found;
+}
 
+void Programme::AddProof(const std::vector<bool>& is_held, Equilibrium* found) {
+  const Data& data = *data_;
+  const std::size_t count = data.problem.bodies.size();
   const std::vector<Vec6> motions = data.ReadMotions();
   std::vector<std::size_t> parents(count);
   std::iota(parents.begin(), parents.end(), std::size_t{0});
@@ -474,13 +479,12 @@ Result<Equilibrium> Programme::Solve(const std::vector<bool>& is_held) {
     for (const int body : groups[root]) {
       const auto i = static_cast<std::size_t>(body);
       const double scale = lightest / data.weight[i];
-      found.moves[i] = true;
-      found.motions_W[i] = {scale / data.size[i] * motions[i].tail<3>(),
-                            scale * motions[i].head<3>()};
+      found->moves[i] = true;
+      found->motions_W[i] = {scale / data.size[i] * motions[i].tail<3>(),
+                             scale * motions[i].head<3>()};
     }
     groups_.push_back(groups[root]);
   }
-  return found;
 }
 
 }  // namespace hvas::statics

@@ -31,6 +31,10 @@ class Programme {
 
  private:
   struct Data;
+
+  /** Adds the bodies that move in the proof that the last answer does not stand. */
+  void AddProof(const std::vector<bool>& is_held, Equilibrium* found);
+
   std::unique_ptr<Data> data_;
   std::vector<std::vector<int>> groups_;
   std::vector<double> hold_sizes_;
