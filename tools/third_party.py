@@ -22,6 +22,8 @@ LIBRARIES = {
     "zlib1g-dev": ("zlib", "Zlib", None),
     "libeigen3-dev": ("Eigen", "MPL-2.0", None),
     "libbullet-dev": ("Bullet", "Zlib", None),
+    "coinor-libclp-dev": ("CLP", "EPL-1.0", None),
+    "coinor-libcoinutils-dev": ("CoinUtils", "EPL-1.0", None),
     "libsqlite3-dev": ("SQLite", "public domain", None),
     "libfmt-dev": ("fmt", "MIT with exception", None),
     "libexpected-dev": ("expected", "CC0-1.0", None),
@@ -64,7 +66,7 @@ others of the same interface; of the rest, parts are compiled into it. This file
 def packages():
     """The development packages of packages.txt that end up in the program, OpenCASCADE's as one."""
     lines = (ROOT / "packages.txt").read_text().split("\n")
-    names = {line for line in lines if re.fullmatch(r"(lib[^ ]*|[^ ]*json[^ ]*|zlib1g)-dev", line)}
+    names = {line for line in lines if re.fullmatch(r"(lib[^ ]*|coinor-[^ ]*|[^ ]*json[^ ]*|zlib1g)-dev", line)}
     return {PARTS.get(name, name) for name in names - NOT_SHIPPED}
 
 

@@ -22,6 +22,7 @@ OUTSIDE = {
     "zlib": (r"zlib\.h", r"ZLIB::"),
     "nlohmann": (r"nlohmann/", r"nlohmann_json"),
     "Bullet": (r"bt[A-Z]|LinearMath/|BulletDynamics/|BulletCollision/", r"hvas_bullet|\$\{HVAS_BULLET"),
+    "CLP": (r"Clp[A-Z]\w*\.hpp|Coin[A-Z]\w*\.hpp", r"hvas_clp|\$\{HVAS_CLP|\$\{HVAS_Clp"),
     "sqlite3": (r"sqlite3\.h", r"SQLite::"),
     "zstd": (r"zstd\.h", r"\$\{HVAS_ZSTD"),
     "HDF5": (r"hdf5\.h", r"\$\{HVAS_HDF5"),
