@@ -1,7 +1,10 @@
 /** Statics of the states of assembly of products: for each prefix of the order of assembly, whether
  the parts stand, what falls, and the fewest to hold; with the times of contacts and programmes.
 
-   statics_bench [--states] FILE...   A line for each product; with --states, for each state too.
+   statics_bench [--states] [--loose] [--over | --aside] FILE...
+
+ A line for each product; with --states, for each state too; with --loose, no screw is tight; with
+ --over, gravity is along +z, with --aside along +x.
  */
 #include <algorithm>
 #include <chrono>
@@ -31,9 +34,9 @@ std::string ListNames(const hvas::simulation::Model& model, const std::vector<Oc
   return names;
 }
 
-bool Measure(const std::string& file, bool has_states) {
-  hvas::assembly::PrepareOptions prepare;
-  const auto loaded = hvas::bench::LoadModel(file, prepare);
+bool Measure(const std::string& file, bool has_states,
+             const hvas::simulation::StateStaticsOptions& options) {
+  const auto loaded = hvas::bench::LoadModel(file);
   if (!loaded) {
     fmt::print(stderr, "{}\n", loaded.error().ToString());
     return false;
@@ -56,7 +59,7 @@ bool Measure(const std::string& file, bool has_states) {
       is_in_place[id.index()] = true;
     }
     begin = std::chrono::steady_clock::now();
-    const auto found = statics.CalcStability(is_in_place);
+    const auto found = statics.CalcStability(is_in_place, options);
     const double time = CalcSeconds(begin);
     if (!found) {
       fmt::print(stderr, "{}\n", found.error().ToString());
@@ -90,11 +93,18 @@ int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   bool has_states = false;
   bool is_good = true;
+  hvas::simulation::StateStaticsOptions options;
   for (const std::string& argument : arguments) {
     if (argument == "--states") {
       has_states = true;
+    } else if (argument == "--loose") {
+      options.are_screws_tight = false;
+    } else if (argument == "--over") {
+      options.ghat_W = hvas::Vec3::UnitZ();
+    } else if (argument == "--aside") {
+      options.ghat_W = hvas::Vec3::UnitX();
     } else {
-      is_good = Measure(argument, has_states) && is_good;
+      is_good = Measure(argument, has_states, options) && is_good;
     }
   }
   return is_good ? 0 : 1;

@@ -256,7 +256,7 @@ TEST(StateStatics, OneObjectDecidesOnAllStates) {
 }
 
 TEST(StateStatics, RefusesAStateOfOtherParts) {
-  const auto model = testing::PegInBlockModel();
+  const auto& model = testing::PegInBlockModel();
   EXPECT_EQ(CalcStability(*model, {true}).error().code, ErrorCode::kInvalid);
   StateStaticsOptions options;
   options.ghat_W = Vec3(0, 0, -9.81);

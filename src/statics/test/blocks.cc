@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+
+#include "base/random.h"
 
 namespace hvas::statics::testing {
 
@@ -16,15 +17,15 @@ void AddRectangle(StaticProblem* problem, int a, int b, double x_low, double x_h
 }
 
 StaticProblem MakeRandom(std::uint32_t seed, int body_count) {
-  std::mt19937 random(seed);
-  const auto draw = [&](double low, double high) {
-    return low + (high - low) * static_cast<double>(random()) / static_cast<double>(random.max());
-  };
-  const auto draw_point = [&](double size) {
-    return Vec3(draw(-size, size), draw(-size, size), draw(-size, size));
+  Random random(seed);
+  const auto draw = [&random](double low, double high) { return random.Uniform(low, high); };
+  const auto draw_point = [&draw](double size) {
+    const double x = draw(-size, size);  // In this order with each compiler.
+    const double y = draw(-size, size);
+    return Vec3(x, y, draw(-size, size));
   };
   const auto draw_body = [&](int lowest) {
-    return lowest + static_cast<int>(random() % static_cast<unsigned>(body_count - lowest));
+    return static_cast<int>(std::floor(draw(lowest, body_count)));
   };
   StaticProblem problem;
   for (int i = 0; i < body_count; ++i) {

@@ -3,11 +3,11 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
 #include "statics/test/blocks.h"
 
 namespace hvas::statics {
@@ -254,10 +254,10 @@ TEST(StaticEquilibrium, RandomCasesHaveForcesOrAProof) {
 
 TEST(StaticEquilibrium, ContactsInsideTheHullOfOthersChangeNothing) {
   StaticProblem problem = BlockOnSlope(std::atan(0.3) * (1 - kNear), 0.4, 0.3);
-  std::mt19937 random(7);
+  Random random(7);
   for (int i = 0; i < 500; ++i) {
-    const double x = 0.1 * (static_cast<double>(random()) / 4294967296.0 - 0.5);
-    const double y = 0.08 * (static_cast<double>(random()) / 4294967296.0 - 0.5);
+    const double x = random.Uniform(-0.05, 0.05);
+    const double y = random.Uniform(-0.04, 0.04);
     problem.contacts.push_back({0, kGround, Vec3(x, y, 0), Vec3::UnitZ(), 0.3});
   }
   EXPECT_EQ(ListSpanningContacts(problem.contacts), std::vector<int>({0, 1, 2, 3}));
