@@ -26,10 +26,19 @@ struct PlanOptions {
   std::stop_token stop;
 };
 
+/** The statics of an order: what has to be held after each of its moves, under gravity along -Z,
+ with the base in the fixture (docs/algorithms/statics.md). */
+struct OrderStatics {
+  std::vector<std::vector<product::OccurrenceId>> holds;  ///< The parts to hold, by place of move.
+  int held_states{0};  ///< After so many moves, something has to be held.
+};
+
 /** Orders of assembly of a model. */
 struct OrderPlan {
   simulation::OrderRules rules;
-  simulation::OrderSearch search;
+  simulation::OrderSearch search;  ///< Orders of equal cost stand by how little has to be held.
+  /** Statics of the first of search.orders: as many as 400 states allow, one at least. */
+  std::vector<OrderStatics> statics;
   std::vector<std::string> tools;  ///< The tool of each move; empty: none.
 };
 

@@ -92,6 +92,11 @@ std::vector<OccurrenceId> ListLeaders(const assembly::OrderPlan& plan, const Fou
 nlohmann::ordered_json ToJson(const PlanReport& report, const FoundOrder& order) {
   nlohmann::ordered_json json{{"cost", order.cost}};
   json.update(ToJson(order.counts));
+  const std::vector<FoundOrder>& orders = report.plan->search.orders;
+  const auto place = static_cast<std::size_t>(&order - orders.data());
+  if (place < orders.size() && place < report.plan->statics.size()) {
+    json["held_states"] = report.plan->statics[place].held_states;
+  }
   json["parts"] = MakeIds(ListLeaders(*report.plan, order));
   return json;
 }
@@ -119,6 +124,9 @@ nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
     if (!plan.tools[m].empty()) {
       json["tool"] = plan.tools[m];
     }
+    if (!plan.statics.empty()) {
+      json["holds"] = MakeIds(plan.statics.front().holds[i]);
+    }
     moves.push_back(std::move(json));
   }
   return moves;
@@ -143,6 +151,22 @@ std::string DescribeCounts(const OrderCounts& counts, double cost) {
       "cost {:g}: {} turns of the product, {} changes of direction, {} of tool, {} "
       "parts that nothing holds",
       cost, counts.turns, counts.direction_changes, counts.tool_changes, counts.loose);
+}
+
+/** The paths of a few parts. */
+std::string DescribeParts(const simulation::Model& model, const std::vector<OccurrenceId>& parts) {
+  constexpr std::size_t kNamed = 3;  // As many as fit into a line or two: a choice.
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kNamed, parts.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + PathOf(model, parts[i]);
+  }
+  return parts.size() > kNamed ? text + fmt::format(" and {} more", parts.size() - kNamed) : text;
+}
+
+std::string DescribeHolds(const assembly::OrderPlan& plan, std::size_t order) {
+  return order < plan.statics.size()
+             ? fmt::format(", something to hold after {} moves", plan.statics[order].held_states)
+             : std::string();
 }
 
 std::string DescribeSearch(const assembly::OrderPlan& plan) {
@@ -208,6 +232,10 @@ void PrintPlanTable(const PlanReport& report) {
                       DescribeReason(report, *first));
       below += count > 1 ? fmt::format("; and before {} more", count - 1) : "";
     }
+    if (!plan.statics.empty() && !plan.statics.front().holds[i].empty()) {
+      below += below.empty() ? "" : "; ";
+      below += "hold " + DescribeParts(model, plan.statics.front().holds[i]);
+    }
     const std::string way = step.way.empty() ? DescribeDirection(step.extraction_W) : "turns";
     const std::string members =
         step.members.empty() ? "" : fmt::format(" and {} more", step.members.size());
@@ -216,12 +244,13 @@ void PrintPlanTable(const PlanReport& report) {
         below);
   }
   fmt::print("{}\n", table.ToText());
-  fmt::print("Best order: {}.\n", DescribeCounts(best.counts, best.cost));
+  fmt::print("Best order: {}{}.\n", DescribeCounts(best.counts, best.cost), DescribeHolds(plan, 0));
   fmt::print("As first found: {}.\n",
              DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
   for (std::size_t i = 1; i < plan.search.orders.size(); ++i) {
-    fmt::print("Alternative {}: {}.\n", i,
-               DescribeCounts(plan.search.orders[i].counts, plan.search.orders[i].cost));
+    fmt::print("Alternative {}: {}{}.\n", i,
+               DescribeCounts(plan.search.orders[i].counts, plan.search.orders[i].cost),
+               DescribeHolds(plan, i));
   }
   for (const simulation::SequenceGap& gap : model.sequence.gaps) {
     fmt::print("LEFT OUT: {}: {}\n", PathOf(model, gap.occurrence), gap.reason);
@@ -244,10 +273,12 @@ std::string MakePlanPage(const PlanReport& report) {
       MakeTile("changes of tool", fmt::format("{}", best.counts.tool_changes)));
   body +=
       "<h2>Order</h2>\n<div class=\"scroll\"><table><tr><th>#</th><th class=\"l\">part</th>"
-      "<th class=\"l\">way out</th><th class=\"l\">tool</th><th class=\"l\">has to come "
+      "<th class=\"l\">way out</th><th class=\"l\">tool</th><th class=\"l\">to hold after "
+      "it</th><th class=\"l\">has to come "
       "before</th></tr>\n";
   body += fmt::format(
-      "<tr><td>0</td><td class=\"l\">{}</td><td class=\"l\">base</td><td></td><td></td></tr>\n",
+      "<tr><td>0</td><td class=\"l\">{}</td><td "
+      "class=\"l\">base</td><td></td><td></td><td></td></tr>\n",
       Escape(PathOf(model, simulation::FindBase(model.sequence))));
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
     const std::size_t m = best.moves[i];
@@ -263,14 +294,17 @@ std::string MakePlanPage(const PlanReport& report) {
     }
     body += fmt::format(
         "<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
-        "<td class=\"l\">{}</td></tr>\n",
+        "<td class=\"l\">{}</td><td class=\"l\">{}</td></tr>\n",
         i + 1, Escape(PathOf(model, step.occurrence)),
         step.way.empty() ? DescribeDirection(step.extraction_W) : "turns", Escape(plan.tools[m]),
+        plan.statics.empty() ? "" : Escape(DescribeParts(model, plan.statics.front().holds[i])),
         before);
   }
   body += "</table></div>\n<h2>Orders compared</h2>\n<ul>\n";
-  for (const FoundOrder& order : plan.search.orders) {
-    body += fmt::format("<li>{}</li>\n", DescribeCounts(order.counts, order.cost));
+  for (std::size_t i = 0; i < plan.search.orders.size(); ++i) {
+    const FoundOrder& order = plan.search.orders[i];
+    body += fmt::format("<li>{}{}</li>\n", DescribeCounts(order.counts, order.cost),
+                        DescribeHolds(plan, i));
   }
   body += fmt::format("<li>{} <span class=\"soft\">(as first found)</span></li>\n</ul>\n",
                       DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
