@@ -134,7 +134,7 @@ class Extraction {
 
   /** Takes a part out where contact with `others` begins `clearance` deeper [m] than drawn, as if
    the part, or they, were smaller by that all over; nothing lies in them deeper than that. What the
-   two block of one another, seen along the way, is no wider than twice that (giving_width.h): a
+   two block of one another, seen along the way, is no wider than that (giving_width.h): a
    thin wall is not passed. Nothing is noted of what was met. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveCleared(product::OccurrenceId id,
                                                              const Unit& others, double clearance);

@@ -171,14 +171,11 @@ std::optional<OccurrenceId> Extraction::FindWhatBends(OccurrenceId id, Occurrenc
 }
 
 double Extraction::CalcWidestGiven(OccurrenceId id, double limit) const {
-  // What is smaller by the clearance leaves it on both sides; the grid of the width is good to
-  // two cells, of which there are 600 across.
-  constexpr double kSides = 2;
+  // The grid of the width is good to two cells, of which there are 600 across.
   constexpr double kTwoCells = 1.0 / 300;
   const double longest = product_.part_of(id).box_B.size().maxCoeff();
-  return giving_ == Giving::kByClearance
-             ? kSides * limit + 2 * kDepthTolerance + kTwoCells * longest
-             : limit;
+  return giving_ == Giving::kByClearance ? limit + 2 * kDepthTolerance + kTwoCells * longest
+                                         : limit;
 }
 
 std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& direction) {

@@ -405,6 +405,10 @@ bool IsHeldByContacts(const product::Product& product, const contact::Scene& sce
   return DoRowsHold(rows, free);
 }
 
+double FindInnerRadius(const product::Part& part) {
+  return FindInnerBall(part).radius;
+}
+
 Cage FindCage(const product::Product& product, OccurrenceId id,
               std::span<const OccurrenceId> others, double allowed) {
   constexpr double kMostCellsAcross = 96;  // A choice: a million cells take a tenth of a second.

@@ -29,6 +29,10 @@ namespace hvas::simulation {
                                     product::OccurrenceId id,
                                     std::span<const contact::IgnoredPair> ignored);
 
+/** Radius of a large ball inside of a part [m]: half of how thick it is where it is thickest, or
+ less. */
+[[nodiscard]] double FindInnerRadius(const product::Part& part);
+
 /** What encloses a part. */
 struct Cage {
   bool is_closed{false};

@@ -37,6 +37,12 @@ struct StraightWay {
   bool is_hard{false};  // A mate forbids it that clearance does not open.
 };
 
+/** A way out that was found. */
+struct WayOut {
+  SequenceStep step;
+  bool does_give{false};  // Parts give on it, or bend.
+};
+
 class GapExplainer {
  public:
   GapExplainer(const Model& model, OccurrenceId id, const GapReasonOptions& options)
@@ -60,11 +66,11 @@ class GapExplainer {
   [[nodiscard]] std::optional<Unit> FindEarlier() const;
   /** Leaves those that do not come out while the part is there. */
   void KeepWhatStays();
-  /** Takes the parts of a step out, along its own way. */
+  /** Takes the parts of a step out, along its own way, or a single part along any straight one. */
   [[nodiscard]] bool TakeOut(const SequenceStep& step);
   [[nodiscard]] bool IsWayFree(const SequenceStep& step) const;
   /** Looks for a way out of a part, as the planner of the order does; it stays where it is. */
-  [[nodiscard]] std::optional<SequenceStep> FindWayOut(OccurrenceId id, bool may_turn);
+  [[nodiscard]] std::optional<WayOut> FindWayOut(OccurrenceId id, bool may_turn);
   void MeasureWays();
   [[nodiscard]] StraightWay MeasureWay(const Vec3& direction_W);
   void Prove();
@@ -72,8 +78,10 @@ class GapExplainer {
   void TryOthers();
   /** Tries what comes of it when others are put in later, or not at all. */
   void TryWithout(const Unit& others);
-  /** Whether all of these come out while the part is there, in any order. */
-  [[nodiscard]] bool DoComeOut(Unit others);
+  /** Whether all of these come out while the part is there, in any order; notes how. */
+  [[nodiscard]] bool DoComeOut(Unit others, GapChange* change);
+  /** How thick the thinnest of these and of the part is where it is thickest [m]. */
+  [[nodiscard]] double FindThickness(const Unit& others) const;
   void TryClearance(const Unit& others);
   void TryFlexible(OccurrenceId gives);
   /** The least amount that lets the part out, to the resolution, and the way; none: not even the
@@ -180,7 +188,8 @@ bool GapExplainer::TakeOut(const SequenceStep& step) {
     extraction_->SetPresent(unit, false);
     return true;
   }
-  return false;
+  Unit rest{step.occurrence, step.occurrence};  // The last one is never tried.
+  return unit.size() == 1 && extraction_->TryRemoveOne(&rest).has_value();
 }
 
 void GapExplainer::KeepWhatStays() {
@@ -199,23 +208,25 @@ void GapExplainer::KeepWhatStays() {
   std::erase_if(reason_.present, [&is_there](OccurrenceId id) { return !is_there(id); });
 }
 
-std::optional<SequenceStep> GapExplainer::FindWayOut(OccurrenceId id, bool may_turn) {
+std::optional<WayOut> GapExplainer::FindWayOut(OccurrenceId id, bool may_turn) {
   Unit rest{id, id};  // The last one is never tried.
   extraction_->Forget({id});
   std::optional<SequenceStep> step = extraction_->TryRemoveOne(&rest);
   bool does_give = false;
   if (!step && !input_.give_limits.empty()) {
     step = extraction_->TryRemoveWithLimits(id);
+    does_give = step.has_value();
   }
   if (!step && may_turn) {
     step = extraction_->TryRemoveTurning(&rest, {});
   }
+  bool does_bend = false;
   if (!step) {
     step = extraction_->TryRemoveBending(&rest, {});
-    does_give = step.has_value();
+    does_bend = step.has_value();
   }
   extraction_->SetPresent({id}, true);
-  if (does_give) {  // What was found to give is not to count for the next look.
+  if (does_bend) {  // What was found to give is not to count for the next look.
     std::vector<bool> is_present;
     for (const product::Occurrence& occurrence : product_.occurrences) {
       is_present.push_back(extraction_->is_present(occurrence.id));
@@ -225,7 +236,7 @@ std::optional<SequenceStep> GapExplainer::FindWayOut(OccurrenceId id, bool may_t
       extraction_->SetPresent({occurrence.id}, is_present[occurrence.id.index()]);
     }
   }
-  return step;
+  return step ? std::optional(WayOut{std::move(*step), does_give || does_bend}) : std::nullopt;
 }
 
 StraightWay GapExplainer::MeasureWay(const Vec3& direction_W) {
@@ -368,11 +379,13 @@ Unit GapExplainer::ListCandidates() const {
   return candidates;
 }
 
-bool GapExplainer::DoComeOut(Unit others) {
+bool GapExplainer::DoComeOut(Unit others, GapChange* change) {
   for (bool is_moving = true; is_moving && !others.empty() && !IsOver();) {
     is_moving = false;
     for (std::size_t i = 0; i < others.size() && !is_moving; ++i) {
-      if (FindWayOut(others[i], true)) {
+      if (const std::optional<WayOut> way = FindWayOut(others[i], true)) {
+        change->do_others_turn = change->do_others_turn || !way->step.way.empty();
+        change->do_others_give = change->do_others_give || way->does_give;
         extraction_->SetPresent({others[i]}, false);
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
         is_moving = true;
@@ -388,18 +401,19 @@ void GapExplainer::TryWithout(const Unit& others) {
   leave_out.parts = others;
   Restart();
   extraction_->SetPresent(others, false);
-  const std::optional<SequenceStep> step = FindWayOut(reason_.occurrence, true);
+  const std::optional<WayOut> way = FindWayOut(reason_.occurrence, true);
   GapChange order = leave_out;
   order.kind = GapChangeKind::kOrder;
-  if (step) {
+  if (way) {
     for (GapChange* change : {&leave_out, &order}) {
-      change->direction_W = step->extraction_W;
-      change->does_turn = !step->way.empty();
+      change->direction_W = way->step.extraction_W;
+      change->does_turn = !way->step.way.empty();
+      change->does_give = way->does_give;
     }
     leave_out.has_worked = true;
     order.does_go_without = true;
     extraction_->SetPresent(others, true);
-    order.has_worked = !Contains(others, base_) && DoComeOut(others);
+    order.has_worked = !Contains(others, base_) && DoComeOut(others, &order);
   }
   // The part that stands in the fixture cannot come later than what is put into it.
   if (!Contains(others, base_)) {
@@ -459,13 +473,23 @@ bool GapExplainer::Bisect(double largest, const Try& try_amount, GapChange* chan
   return true;
 }
 
+double GapExplainer::FindThickness(const Unit& others) const {
+  double radius = FindInnerRadius(product_.part_of(reason_.occurrence));
+  for (const OccurrenceId other : others) {
+    radius = std::min(radius, FindInnerRadius(product_.part_of(other)));
+  }
+  return 2 * radius;
+}
+
 void GapExplainer::TryClearance(const Unit& others) {
+  // Half of the part, or of what stops it, has to be left where it is thickest: a choice.
+  constexpr double kMostOfThickness = 0.25;
   GapChange change;
   change.kind = GapChangeKind::kClearance;
   change.parts = others;
   Restart();
   change.has_worked = Bisect(
-      options_.largest_clearance,
+      std::min(options_.largest_clearance, kMostOfThickness * FindThickness(others)),
       [&](double amount) {
         return extraction_->TryRemoveCleared(reason_.occurrence, others, amount);
       },
@@ -474,6 +498,8 @@ void GapExplainer::TryClearance(const Unit& others) {
 }
 
 void GapExplainer::TryFlexible(OccurrenceId gives) {
+  // What gives by as much as it is thick would go through what it meets: a rod through a plate.
+  constexpr double kMostOfThickness = 0.9;
   GapChange change;
   change.kind = GapChangeKind::kFlexible;
   change.parts = {gives};
@@ -481,8 +507,9 @@ void GapExplainer::TryFlexible(OccurrenceId gives) {
   if (input_.give_limits.empty()) {
     input_.give_limits.assign(product_.occurrences.size(), 0);
   }
+  const Unit stopping = ways_.empty() ? Unit() : ways_.front().others;
   change.has_worked = Bisect(
-      options_.largest_give,
+      std::min(options_.largest_give, kMostOfThickness * FindThickness(stopping)),
       [&](double amount) {
         const std::vector<double>& known = give_limits_;
         input_.give_limits[gives.index()] =
@@ -527,13 +554,15 @@ GapReason GapExplainer::Explain() {
   }
   ReportProgress(0.1);
   if (!IsOver()) {
-    reason_.has_way = FindWayOut(id, is_order_given).has_value();
+    const std::optional<WayOut> way = FindWayOut(id, is_order_given);
+    reason_.has_way = way.has_value();
+    reason_.direction_W = way ? way->step.extraction_W : Vec3::Zero();
   }
-  MeasureWays();
-  ReportProgress(0.3);
   if (reason_.has_way || IsOver()) {
     return std::move(reason_);
   }
+  MeasureWays();
+  ReportProgress(0.3);
   Prove();
   ReportProgress(0.4);
   TryOthers();

@@ -39,8 +39,11 @@ struct GapChange {
    was tried. Worked out to GapReasonOptions::resolution. */
   double amount{0};
   Vec3 direction_W{
-      Vec3::Zero()};      ///< Where it has worked: the way out; a way that turns: its start.
-  bool does_turn{false};  ///< The way that was found turns.
+      Vec3::Zero()};           ///< Where it has worked: the way out; a way that turns: its start.
+  bool does_turn{false};       ///< The way that was found turns.
+  bool does_give{false};       ///< Parts give on the way, as stated, or walls bend.
+  bool do_others_turn{false};  ///< kOrder: one of the others has a way that turns.
+  bool do_others_give{false};  ///< kOrder: one of the others gives on its way, or bends.
   /** kOrder: it goes in without the others, which then do not go in any more. */
   bool does_go_without{false};
 };
@@ -49,8 +52,7 @@ struct GapChange {
 struct GapReason {
   product::OccurrenceId occurrence;
   Unit present;  ///< Parts that are there when it has to go in, and cannot come out before it.
-  /** There is a way after all: the search of the order came to this part while others were there.
-   */
+  /** There is a way after all: out along direction_W, while only `present` is there. */
   bool has_way{false};
   Vec3 direction_W{Vec3::Zero()};  ///< Unit; the best straight way out; zero: none was looked at.
   double travelled{0};             ///< How far the part gets along it [m].

@@ -150,8 +150,10 @@ std::string DescribeGapChange(const Model& model, const GapReason& reason,
   switch (change.kind) {
     case GapChangeKind::kOrder:
       if (change.has_worked) {
-        return fmt::format("order: it goes in before {}, which go{} in after it{}", parts,
-                           change.parts.size() == 1 ? "es" : "", along);
+        return fmt::format("order: it goes in before {}, which go{} in after it{}{}{}", parts,
+                           change.parts.size() == 1 ? "es" : "",
+                           change.do_others_turn ? " by a way that turns" : "",
+                           change.do_others_give ? " where parts give" : "", along);
       }
       return change.does_go_without
                  ? fmt::format("order: it goes in before {}, which then {} not go in any more",
@@ -186,9 +188,10 @@ std::string DescribeGapChange(const Model& model, const GapReason& reason,
 std::vector<std::string> FormatGapReason(const Model& model, const GapReason& reason) {
   std::vector<std::string> lines;
   if (reason.has_way) {
-    lines.push_back(
-        "it has a way in while the parts are there that cannot come out before it: the search for "
-        "an order did not get there");
+    lines.push_back(fmt::format(
+        "it has a way in, out along {}, while {} parts are there that cannot come out before it: "
+        "the search for an order did not get there",
+        DescribeDirection(reason.direction_W), reason.present.size()));
     return lines;
   }
   lines.push_back(DescribeWay(model, reason));

@@ -59,10 +59,13 @@ nlohmann::ordered_json ToJson(const Model& model, const GapReason& reason,
   if (change.kind == GapChangeKind::kOrder) {
     json["goes_without_them"] = change.does_go_without;
     json["they_go_in_after_it"] = change.has_worked;
+    json["they_turn"] = change.do_others_turn;
+    json["they_give"] = change.do_others_give;
   }
   if (change.has_worked) {
     json["out_W"] = ToJson(change.direction_W);
     json["turns"] = change.does_turn;
+    json["gives"] = change.does_give;
   }
   json["text"] = simulation::DescribeGapChange(model, reason, change);
   return json;
