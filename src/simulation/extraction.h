@@ -139,7 +139,8 @@ class Extraction {
   [[nodiscard]] std::optional<SequenceStep> TryRemoveCleared(product::OccurrenceId id,
                                                              const Unit& others, double clearance);
 
-  /** Takes a part out as TryRemoveGiving does; nothing is noted of what was met. */
+  /** Takes a part out as TryRemoveGiving does, where neither part has to go through the other with
+   its whole width, as a thin rod through a plate; nothing is noted of what was met. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveWithLimits(product::OccurrenceId id);
 
   /** Lists the faces that a part meets deeper than a way is free with, all along a straight way
@@ -201,6 +202,7 @@ class Extraction {
     kNone,
     kAsKnown,      ///< They give by what SequenceInput::give_limits has.
     kByForm,       ///< They give by what a wall that bends may at most.
+    kByLimits,     ///< They give so, but what is blocked is not the outline of one of the two.
     kByClearance,  ///< Parts of TryRemoveCleared are smaller all over.
   };
 
@@ -247,8 +249,9 @@ class Extraction {
   void VisitContacts(
       product::OccurrenceId id, const Vec3& direction,
       const std::function<void(const contact::Contact& contact, double travelled)>& visit);
-  /** The width that may be blocked where a depth is given [m]. */
-  [[nodiscard]] double CalcWidestGiven(product::OccurrenceId id, double limit) const;
+  /** The width that two parts may block of one another where a depth is given [m]. */
+  [[nodiscard]] double CalcWidestGiven(product::OccurrenceId id, product::OccurrenceId other,
+                                       const Vec3& direction, double limit) const;
   /** What a part meets on its way out. @pre It is in the unit. */
   [[nodiscard]] std::map<product::OccurrenceId, Meeting> MeasureMeetings(product::OccurrenceId id,
                                                                          const Vec3& direction);

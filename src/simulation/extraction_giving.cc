@@ -170,12 +170,26 @@ std::optional<OccurrenceId> Extraction::FindWhatBends(OccurrenceId id, Occurrenc
                                                  : std::optional(own <= others ? id : other);
 }
 
-double Extraction::CalcWidestGiven(OccurrenceId id, double limit) const {
+double Extraction::CalcWidestGiven(OccurrenceId id, OccurrenceId other, const Vec3& direction,
+                                   double limit) const {
+  if (giving_ != Giving::kByClearance && giving_ != Giving::kByLimits) {
+    return limit;
+  }
   // The grid of the width is good to two cells, of which there are 600 across.
   constexpr double kTwoCells = 1.0 / 300;
   const double longest = product_.part_of(id).box_B.size().maxCoeff();
-  return giving_ == Giving::kByClearance ? limit + 2 * kDepthTolerance + kTwoCells * longest
-                                         : limit;
+  const double room =
+      giving_ == Giving::kByClearance ? 2 * kDepthTolerance + kTwoCells * longest : 0;
+  // What a part blocks of itself, seen along the way, is its outline.
+  constexpr double kMostOfOutline = 0.75;    // More goes through, and not past: a choice.
+  constexpr double kOutlineAccuracy = 0.05;  // Of the longest side: cells are a tenth. A choice.
+  const auto calc_outline = [&](OccurrenceId part) {
+    const double side = product_.part_of(part).box_B.size().maxCoeff();
+    return CalcGivingWidth(product_, part, part, direction,
+                           std::max(limit, kOutlineAccuracy * side));
+  };
+  const double narrowest = std::min(calc_outline(id), calc_outline(other));
+  return std::min(limit + room, kMostOfOutline * narrowest);
 }
 
 std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& direction) {
@@ -190,7 +204,8 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
     const double width = CalcGivingWidth(product_, id, other, direction, limit);
     const bool may_bend =
         giving_ != Giving::kByForm || FindWhatBends(id, other, meeting, direction, width);
-    if (width > CalcWidestGiven(id, limit) || !may_bend) {
+    const bool is_too_wide = width > 0 && width > CalcWidestGiven(id, other, direction, limit);
+    if (is_too_wide || !may_bend) {
       return Obstacle{other, 0, {}};
     }
   }

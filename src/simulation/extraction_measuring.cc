@@ -29,7 +29,7 @@ std::optional<SequenceStep> Extraction::TryRemoveCleared(OccurrenceId id, const 
 
 std::optional<SequenceStep> Extraction::TryRemoveWithLimits(OccurrenceId id) {
   Memory memory;
-  giving_ = Giving::kAsKnown;
+  giving_ = Giving::kByLimits;
   std::optional<SequenceStep> step = TryRemove({id}, &memory);
   giving_ = Giving::kNone;
   return step;

@@ -69,8 +69,15 @@ class GapExplainer {
   /** Takes the parts of a step out, along its own way, or a single part along any straight one. */
   [[nodiscard]] bool TakeOut(const SequenceStep& step);
   [[nodiscard]] bool IsWayFree(const SequenceStep& step) const;
+
+  /** How a way may be, besides straight. */
+  struct Freedom {
+    bool may_turn{false};
+    bool may_bend{false};  // Walls may that no name tells of.
+  };
+
   /** Looks for a way out of a part, as the planner of the order does; it stays where it is. */
-  [[nodiscard]] std::optional<WayOut> FindWayOut(OccurrenceId id, bool may_turn);
+  [[nodiscard]] std::optional<WayOut> FindWayOut(OccurrenceId id, const Freedom& freedom);
   void MeasureWays();
   [[nodiscard]] StraightWay MeasureWay(const Vec3& direction_W);
   void Prove();
@@ -80,7 +87,8 @@ class GapExplainer {
   void TryWithout(const Unit& others);
   /** Whether all of these come out while the part is there, in any order; notes how. */
   [[nodiscard]] bool DoComeOut(Unit others, GapChange* change);
-  /** How thick the thinnest of these and of the part is where it is thickest [m]. */
+  /** How thick the part is where it is thickest, or the thinnest of others where that is more [m].
+   */
   [[nodiscard]] double FindThickness(const Unit& others) const;
   void TryClearance(const Unit& others);
   void TryFlexible(OccurrenceId gives);
@@ -184,7 +192,7 @@ bool GapExplainer::TakeOut(const SequenceStep& step) {
       model_.sequence.gives.begin(), model_.sequence.gives.end(), [&](const GivingPair& give) {
         return give.flexible == step.occurrence || give.other == step.occurrence;
       });
-  if (may_give && unit.size() == 1 && FindWayOut(step.occurrence, false)) {
+  if (may_give && unit.size() == 1 && FindWayOut(step.occurrence, {false, true})) {
     extraction_->SetPresent(unit, false);
     return true;
   }
@@ -208,7 +216,7 @@ void GapExplainer::KeepWhatStays() {
   std::erase_if(reason_.present, [&is_there](OccurrenceId id) { return !is_there(id); });
 }
 
-std::optional<WayOut> GapExplainer::FindWayOut(OccurrenceId id, bool may_turn) {
+std::optional<WayOut> GapExplainer::FindWayOut(OccurrenceId id, const Freedom& freedom) {
   Unit rest{id, id};  // The last one is never tried.
   extraction_->Forget({id});
   std::optional<SequenceStep> step = extraction_->TryRemoveOne(&rest);
@@ -217,11 +225,11 @@ std::optional<WayOut> GapExplainer::FindWayOut(OccurrenceId id, bool may_turn) {
     step = extraction_->TryRemoveWithLimits(id);
     does_give = step.has_value();
   }
-  if (!step && may_turn) {
+  if (!step && freedom.may_turn) {
     step = extraction_->TryRemoveTurning(&rest, {});
   }
   bool does_bend = false;
-  if (!step) {
+  if (!step && freedom.may_bend) {
     step = extraction_->TryRemoveBending(&rest, {});
     does_bend = step.has_value();
   }
@@ -383,7 +391,7 @@ bool GapExplainer::DoComeOut(Unit others, GapChange* change) {
   for (bool is_moving = true; is_moving && !others.empty() && !IsOver();) {
     is_moving = false;
     for (std::size_t i = 0; i < others.size() && !is_moving; ++i) {
-      if (const std::optional<WayOut> way = FindWayOut(others[i], true)) {
+      if (const std::optional<WayOut> way = FindWayOut(others[i], {true, false})) {
         change->do_others_turn = change->do_others_turn || !way->step.way.empty();
         change->do_others_give = change->do_others_give || way->does_give;
         extraction_->SetPresent({others[i]}, false);
@@ -401,7 +409,7 @@ void GapExplainer::TryWithout(const Unit& others) {
   leave_out.parts = others;
   Restart();
   extraction_->SetPresent(others, false);
-  const std::optional<WayOut> way = FindWayOut(reason_.occurrence, true);
+  const std::optional<WayOut> way = FindWayOut(reason_.occurrence, {true, true});
   GapChange order = leave_out;
   order.kind = GapChangeKind::kOrder;
   if (way) {
@@ -474,15 +482,15 @@ bool GapExplainer::Bisect(double largest, const Try& try_amount, GapChange* chan
 }
 
 double GapExplainer::FindThickness(const Unit& others) const {
-  double radius = FindInnerRadius(product_.part_of(reason_.occurrence));
+  double radius = std::numeric_limits<double>::infinity();
   for (const OccurrenceId other : others) {
     radius = std::min(radius, FindInnerRadius(product_.part_of(other)));
   }
-  return 2 * radius;
+  return 2 * std::max(radius, FindInnerRadius(product_.part_of(reason_.occurrence)));
 }
 
 void GapExplainer::TryClearance(const Unit& others) {
-  // Half of the part, or of what stops it, has to be left where it is thickest: a choice.
+  // Half of the part, or of what stops it, is left where it is thickest: a choice.
   constexpr double kMostOfThickness = 0.25;
   GapChange change;
   change.kind = GapChangeKind::kClearance;
@@ -498,8 +506,6 @@ void GapExplainer::TryClearance(const Unit& others) {
 }
 
 void GapExplainer::TryFlexible(OccurrenceId gives) {
-  // What gives by as much as it is thick would go through what it meets: a rod through a plate.
-  constexpr double kMostOfThickness = 0.9;
   GapChange change;
   change.kind = GapChangeKind::kFlexible;
   change.parts = {gives};
@@ -507,9 +513,8 @@ void GapExplainer::TryFlexible(OccurrenceId gives) {
   if (input_.give_limits.empty()) {
     input_.give_limits.assign(product_.occurrences.size(), 0);
   }
-  const Unit stopping = ways_.empty() ? Unit() : ways_.front().others;
   change.has_worked = Bisect(
-      std::min(options_.largest_give, kMostOfThickness * FindThickness(stopping)),
+      options_.largest_give,
       [&](double amount) {
         const std::vector<double>& known = give_limits_;
         input_.give_limits[gives.index()] =
@@ -554,7 +559,7 @@ GapReason GapExplainer::Explain() {
   }
   ReportProgress(0.1);
   if (!IsOver()) {
-    const std::optional<WayOut> way = FindWayOut(id, is_order_given);
+    const std::optional<WayOut> way = FindWayOut(id, {is_order_given, true});
     reason_.has_way = way.has_value();
     reason_.direction_W = way ? way->step.extraction_W : Vec3::Zero();
   }
