@@ -12,7 +12,7 @@ using simulation::GapReason;
 using simulation::MetFaces;
 using simulation::Model;
 
-nlohmann::ordered_json ToJson(const Vec3& direction_W) {
+nlohmann::ordered_json ListElements(const Vec3& direction_W) {
   return nlohmann::ordered_json::array({direction_W.x(), direction_W.y(), direction_W.z()});
 }
 
@@ -63,7 +63,7 @@ nlohmann::ordered_json ToJson(const Model& model, const GapReason& reason,
     json["they_give"] = change.do_others_give;
   }
   if (change.has_worked) {
-    json["out_W"] = ToJson(change.direction_W);
+    json["out_W"] = ListElements(change.direction_W);
     json["turns"] = change.does_turn;
     json["gives"] = change.does_give;
   }
@@ -79,7 +79,7 @@ nlohmann::ordered_json MakeGapReasonJson(const Model& model, const GapReason& re
                               {"has_way", reason.has_way},
                               {"present", ListPaths(model, reason.present)}};
   if (reason.direction_W != Vec3::Zero()) {
-    json["best_way"] = {{"out_W", ToJson(reason.direction_W)},
+    json["best_way"] = {{"out_W", ListElements(reason.direction_W)},
                         {"travelled_mm", units::ToMm(reason.travelled)},
                         {"length_mm", units::ToMm(reason.way_length)}};
     json["best_way"]["stops"] = nlohmann::ordered_json::array();
