@@ -159,6 +159,27 @@ void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan)
   plan->statics = std::move(statics);
 }
 
+/** Explains why parts are left out. */
+void AddReasons(const Model& model, const PlanOptions& options, OrderPlan* plan) {
+  const std::vector<simulation::SequenceGap>& gaps = model.sequence.gaps;
+  const std::size_t count = std::min(options.most_reasons, gaps.size());
+  for (std::size_t i = 0; i < count && !options.stop.stop_requested(); ++i) {
+    simulation::GapReasonOptions reason_options;
+    reason_options.stop = options.stop;
+    reason_options.progress = [&](double fraction) {
+      if (options.progress) {
+        options.progress("why parts are left out",
+                         (static_cast<double>(i) + fraction) / static_cast<double>(count));
+      }
+    };
+    auto reason = simulation::ExplainGap(model, gaps[i].occurrence, reason_options);
+    if (!reason) {
+      return;
+    }
+    plan->reasons.push_back(std::move(*reason));
+  }
+}
+
 }  // namespace
 
 Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
@@ -200,6 +221,7 @@ Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
     return Unexpected(ExplainStuck(model, plan.rules, *wishes, plan.search.stuck));
   }
   AddStatics(model, options, &plan);
+  AddReasons(model, options, &plan);
   return plan;
 }
 

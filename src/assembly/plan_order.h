@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "simulation/gap_reason.h"
 #include "simulation/model.h"
 #include "simulation/order_search.h"
 
@@ -19,6 +20,7 @@ struct PlanOptions {
   std::vector<std::pair<std::string, std::string>> before;  ///< Pairs of parts: first, then.
   /** Parts that have to come in this order, by name, path or id; the others anywhere. */
   std::vector<std::string> order;
+  std::size_t most_reasons{10};  ///< So many parts that are left out are looked into.
   std::size_t most_orders{5};
   bool gives_front{false};
   std::optional<std::chrono::duration<double>> time;  ///< The search ends after that.
@@ -40,6 +42,8 @@ struct OrderPlan {
   /** Statics of the first of search.orders: as many as 400 states allow, one at least. */
   std::vector<OrderStatics> statics;
   std::vector<std::string> tools;  ///< The tool of each move; empty: none.
+  /** Why parts are left out: of the first of Sequence::gaps, as many as PlanOptions allows. */
+  std::vector<simulation::GapReason> reasons;
 };
 
 /** Finds orders of assembly of low cost.

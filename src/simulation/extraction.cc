@@ -336,7 +336,9 @@ std::vector<contact::Allowance> Extraction::CollectAllowances(OccurrenceId id) c
   // By how far the two may give, where that is more.
   std::vector<contact::Allowance> allowances;
   for (const product::Occurrence& other : product_.occurrences) {
-    const double depth = CalcGiveLimit(id, other.id);
+    const double limit = CalcGiveLimit(id, other.id);
+    // A clearance is meant to the surface: what a way is free with counts as a part of it.
+    const double depth = giving_ == Giving::kByClearance ? limit - kDepthTolerance : limit;
     if (depth > 0 && IsAround(other.id)) {
       allowances.push_back({contact::BodyId(other.id.index()), depth, {}, {}});
     }
@@ -346,6 +348,8 @@ std::vector<contact::Allowance> Extraction::CollectAllowances(OccurrenceId id) c
                                     [&](const auto& other) { return other.body == drawn.body; });
     if (given == allowances.end()) {
       allowances.push_back(drawn);
+    } else if (giving_ == Giving::kByClearance && drawn.depth > given->depth) {
+      *given = drawn;  // Faces that do not overlap as drawn get no more than the clearance.
     } else {
       given->depth = std::max(given->depth, drawn.depth);
     }
@@ -403,6 +407,7 @@ std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& di
       return Obstacle{OccurrenceId(), s, {}};  // No way is found any more.
     }
     for (const Member& member : members) {
+      ++straight_looks_;
       contact::QueryOptions query = MakeQuery(member, kDepthTolerance);
       query.left_out[1] = excepted;
       const spatial::Pose X = CalcPoseAlong(member.id, s * direction);

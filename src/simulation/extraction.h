@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -21,6 +22,15 @@ struct Obstacle {
   product::OccurrenceId occurrence;  ///< Invalid: the table.
   double travelled{0};               ///< Length of the way before it is met [m].
   product::MateId mate;              ///< Mate that forbids the direction; invalid: contact.
+};
+
+/** Two faces that meet on a way, deeper than a way is free with. */
+struct MetFaces {
+  std::uint32_t own_face{contact::kNoFace};  ///< kNoFace: inside, where contact does not know it.
+  product::OccurrenceId other;               ///< Invalid: the table.
+  std::uint32_t other_face{contact::kNoFace};
+  double depth{0};      ///< The largest depth of contact on the way [m].
+  double travelled{0};  ///< Length of the way before they meet [m].
 };
 
 /** Finds the straight ways along which parts can be drawn out of a product while others are in
@@ -122,6 +132,28 @@ class Extraction {
    did not look. */
   [[nodiscard]] std::string ExplainTurning(product::OccurrenceId id) const;
 
+  /** Takes a part out where contact with `others` begins `clearance` deeper [m] than drawn, as if
+   the part, or they, were smaller by that all over; nothing lies in them deeper than that. What the
+   two block of one another, seen along the way, is no wider than that (giving_width.h): a
+   thin wall is not passed. Nothing is noted of what was met. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveCleared(product::OccurrenceId id,
+                                                             const Unit& others, double clearance);
+
+  /** Takes a part out as TryRemoveGiving does, where neither part has to go through the other with
+   its whole width, as a thin rod through a plate; nothing is noted of what was met. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveWithLimits(product::OccurrenceId id);
+
+  /** Lists the faces that a part meets deeper than a way is free with, all along a straight way
+   out, by what allowances let pass less; the deepest first. */
+  [[nodiscard]] std::vector<MetFaces> MeasureFaces(product::OccurrenceId id, const Vec3& direction);
+
+  /** Lists the mates with parts present that forbid a direction. */
+  [[nodiscard]] std::vector<product::MateId> ListForbidding(product::OccurrenceId id,
+                                                            const Vec3& direction) const;
+
+  /** How many looks at parts all calls have taken so far. */
+  [[nodiscard]] std::uint64_t looks() const { return looks_ + straight_looks_; }
+
   /** Allows those of these parts that overlap as drawn, and block one another's ways, half a
    millimetre more than the drawn depth, with all their faces. Returns false where there are none.
    */
@@ -168,8 +200,10 @@ class Extraction {
   /** How far parts may give where they meet. */
   enum class Giving : std::uint8_t {
     kNone,
-    kAsKnown,  ///< They give by what SequenceInput::give_limits has.
-    kByForm,   ///< They give by what a wall that bends may at most.
+    kAsKnown,      ///< They give by what SequenceInput::give_limits has.
+    kByForm,       ///< They give by what a wall that bends may at most.
+    kByLimits,     ///< They give so, but what is blocked is not the outline of one of the two.
+    kByClearance,  ///< Parts of TryRemoveCleared are smaller all over.
   };
 
   /** What a part meets of another one on its way out. */
@@ -210,6 +244,14 @@ class Extraction {
   /** Takes out the first part of `rest` that can go while parts give. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveWith(Giving giving, Unit* rest,
                                                           const Unit& deferred);
+  /** Calls `visit` with all contacts deeper than a way is free with, at each look along a straight
+   way out. @pre The part is in the unit. */
+  void VisitContacts(
+      product::OccurrenceId id, const Vec3& direction,
+      const std::function<void(const contact::Contact& contact, double travelled)>& visit);
+  /** The width that two parts may block of one another where a depth is given [m]. */
+  [[nodiscard]] double CalcWidestGiven(product::OccurrenceId id, product::OccurrenceId other,
+                                       const Vec3& direction, double limit) const;
   /** What a part meets on its way out. @pre It is in the unit. */
   [[nodiscard]] std::map<product::OccurrenceId, Meeting> MeasureMeetings(product::OccurrenceId id,
                                                                          const Vec3& direction);
@@ -294,8 +336,11 @@ class Extraction {
     return looks_ >= kMostLooks || points_looked_at_ >= kMostPoints;
   }
 
-  std::uint64_t looks_{0};
+  std::uint64_t looks_{0};  // Of searches for ways that turn.
+  std::uint64_t straight_looks_{0};
   std::uint64_t points_looked_at_{0};
+  double clearance_{0};           // Of kByClearance [m].
+  std::vector<bool> is_cleared_;  // Of kByClearance, by occurrence.
   Giving giving_{Giving::kNone};
   contact::QueryWorkspace workspace_;
 };

@@ -35,6 +35,9 @@ bool Extraction::IsStatedRigid(OccurrenceId id) const {
 }
 
 double Extraction::CalcGiveLimit(OccurrenceId id, OccurrenceId other) const {
+  if (giving_ == Giving::kByClearance) {
+    return is_cleared_[other.index()] ? clearance_ : 0;
+  }
   const double known = input_.give_limits.empty() ? 0.0
                                                   : std::max(input_.give_limits[id.index()],
                                                              input_.give_limits[other.index()]);
@@ -94,31 +97,40 @@ std::optional<SequenceStep> Extraction::TryRemoveBending(Unit* rest, const Unit&
   return TryRemoveWith(Giving::kByForm, rest, deferred);
 }
 
-std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(OccurrenceId id,
-                                                                        const Vec3& direction) {
-  constexpr double kAcross = 0.5;  // Normals within 30 degrees of across the way: a choice.
-  std::map<OccurrenceId, Meeting> meetings;
+void Extraction::VisitContacts(
+    OccurrenceId id, const Vec3& direction,
+    const std::function<void(const contact::Contact&, double travelled)>& visit) {
   const Unit unit{id};
   const std::vector<Member> members = ListMembers(unit, direction);
   const double step = CalcStep(unit);
   const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
-  for (int i = 0; i <= last; ++i) {
+  for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
+    ++straight_looks_;
     const contact::QueryOptions query = MakeQuery(members[0], kDepthTolerance);
     input_.scene->Query(input_.scene->shape(query.self), CalcPoseAlong(id, i * step * direction),
                         query, &workspace_);
     for (const contact::Contact& contact : workspace_.contacts()) {
-      if (!contact.body.is_valid()) {
-        continue;
-      }
-      Meeting& meeting = meetings[OccurrenceId(contact.body.index())];
-      meeting.depth = std::max(meeting.depth, -contact.distance);
-      if (std::abs(contact.nhat_W.dot(direction)) < kAcross &&
-          contact.distance < meeting.sideways.distance) {
-        meeting.sideways = contact;
-        meeting.travelled = i * step;
-      }
+      visit(contact, i * step);
     }
   }
+}
+
+std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(OccurrenceId id,
+                                                                        const Vec3& direction) {
+  constexpr double kAcross = 0.5;  // Normals within 30 degrees of across the way: a choice.
+  std::map<OccurrenceId, Meeting> meetings;
+  VisitContacts(id, direction, [&](const contact::Contact& contact, double travelled) {
+    if (!contact.body.is_valid()) {
+      return;
+    }
+    Meeting& meeting = meetings[OccurrenceId(contact.body.index())];
+    meeting.depth = std::max(meeting.depth, -contact.distance);
+    if (std::abs(contact.nhat_W.dot(direction)) < kAcross &&
+        contact.distance < meeting.sideways.distance) {
+      meeting.sideways = contact;
+      meeting.travelled = travelled;
+    }
+  });
   return meetings;
 }
 
@@ -158,6 +170,28 @@ std::optional<OccurrenceId> Extraction::FindWhatBends(OccurrenceId id, Occurrenc
                                                  : std::optional(own <= others ? id : other);
 }
 
+double Extraction::CalcWidestGiven(OccurrenceId id, OccurrenceId other, const Vec3& direction,
+                                   double limit) const {
+  if (giving_ != Giving::kByClearance && giving_ != Giving::kByLimits) {
+    return limit;
+  }
+  // The grid of the width is good to two cells, of which there are 600 across.
+  constexpr double kTwoCells = 1.0 / 300;
+  const double longest = product_.part_of(id).box_B.size().maxCoeff();
+  const double room =
+      giving_ == Giving::kByClearance ? 2 * kDepthTolerance + kTwoCells * longest : 0;
+  // What a part blocks of itself, seen along the way, is its outline.
+  constexpr double kMostOfOutline = 0.75;    // More goes through, and not past: a choice.
+  constexpr double kOutlineAccuracy = 0.05;  // Of the longest side: cells are a tenth. A choice.
+  const auto calc_outline = [&](OccurrenceId part) {
+    const double side = product_.part_of(part).box_B.size().maxCoeff();
+    return CalcGivingWidth(product_, part, part, direction,
+                           std::max(limit, kOutlineAccuracy * side));
+  };
+  const double narrowest = std::min(calc_outline(id), calc_outline(other));
+  return std::min(limit + room, kMostOfOutline * narrowest);
+}
+
 std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& direction) {
   const Giving giving = std::exchange(giving_, Giving::kNone);  // What is met without giving.
   const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
@@ -170,7 +204,8 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
     const double width = CalcGivingWidth(product_, id, other, direction, limit);
     const bool may_bend =
         giving_ != Giving::kByForm || FindWhatBends(id, other, meeting, direction, width);
-    if (width > limit || !may_bend) {
+    const bool is_too_wide = width > 0 && width > CalcWidestGiven(id, other, direction, limit);
+    if (is_too_wide || !may_bend) {
       return Obstacle{other, 0, {}};
     }
   }

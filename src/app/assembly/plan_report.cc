@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/assembly/gap_reason_json.h"
 #include "app/assembly/plan_file.h"
 #include "app/assembly/run_report.h"
 #include "app/output/text_layout.h"
@@ -163,6 +164,13 @@ std::string DescribeParts(const simulation::Model& model, const std::vector<Occu
   return parts.size() > kNamed ? text + fmt::format(" and {} more", parts.size() - kNamed) : text;
 }
 
+/** Why a part is left out, in sentences; empty where it was not looked into. */
+std::vector<std::string> ListReasonLines(const PlanReport& report, std::size_t gap) {
+  return gap < report.plan->reasons.size()
+             ? simulation::FormatGapReason(*report.model, report.plan->reasons[gap])
+             : std::vector<std::string>();
+}
+
 std::string DescribeHolds(const assembly::OrderPlan& plan, std::size_t order) {
   return order < plan.statics.size()
              ? fmt::format(", something to hold after {} moves", plan.statics[order].held_states)
@@ -201,10 +209,14 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
                     {"width", plan.search.width},
                     {"ended_early", plan.search.is_ended_early}};
   json["left_out"] = nlohmann::ordered_json::array();
-  for (const simulation::SequenceGap& gap : model.sequence.gaps) {
+  for (std::size_t i = 0; i < model.sequence.gaps.size(); ++i) {
+    const simulation::SequenceGap& gap = model.sequence.gaps[i];
     json["left_out"].push_back({{"id", gap.occurrence.value()},
                                 {"name", PathOf(model, gap.occurrence)},
                                 {"reason", gap.reason}});
+    if (i < plan.reasons.size()) {
+      json["left_out"].back()["why"] = MakeGapReasonJson(model, plan.reasons[i]);
+    }
   }
   json["followed"] =
       MakeFollowedPlan(*model.product, simulation::ListSteps(plan.rules, BestOf(plan)));
@@ -252,8 +264,12 @@ void PrintPlanTable(const PlanReport& report) {
                DescribeCounts(plan.search.orders[i].counts, plan.search.orders[i].cost),
                DescribeHolds(plan, i));
   }
-  for (const simulation::SequenceGap& gap : model.sequence.gaps) {
-    fmt::print("LEFT OUT: {}: {}\n", PathOf(model, gap.occurrence), gap.reason);
+  for (std::size_t i = 0; i < model.sequence.gaps.size(); ++i) {
+    const simulation::SequenceGap& gap = model.sequence.gaps[i];
+    fmt::print("{}", Indent("LEFT OUT: " + PathOf(model, gap.occurrence) + ": " + gap.reason, 0));
+    for (const std::string& line : ListReasonLines(report, i)) {
+      fmt::print("{}", Indent(line, 2));
+    }
   }
   fmt::print("{}; preparation {:.1f} s, planning {:.1f} s.\n", DescribeSearch(plan),
              report.preparation_s, report.planning_s);
@@ -310,9 +326,14 @@ std::string MakePlanPage(const PlanReport& report) {
                       DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
   if (!model.sequence.gaps.empty()) {
     body += "<h2>Left out</h2>\n<ul>\n";
-    for (const simulation::SequenceGap& gap : model.sequence.gaps) {
-      body += fmt::format("<li class=\"bad\">{}: {}</li>\n", Escape(PathOf(model, gap.occurrence)),
-                          Escape(gap.reason));
+    for (std::size_t i = 0; i < model.sequence.gaps.size(); ++i) {
+      const simulation::SequenceGap& gap = model.sequence.gaps[i];
+      body += fmt::format("<li><span class=\"bad\">{}</span>: {}",
+                          Escape(PathOf(model, gap.occurrence)), Escape(gap.reason));
+      for (const std::string& line : ListReasonLines(report, i)) {
+        body += "<br>" + Escape(line);
+      }
+      body += "</li>\n";
     }
     body += "</ul>\n";
   }

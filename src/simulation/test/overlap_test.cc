@@ -118,14 +118,6 @@ Product TaperedPocket(double overlap, double narrowing) {
       {{0, 0}, {15e-3, 0}, {15e-3, 25e-3}, {kHalf - narrowing, 25e-3}, {kHalf, 13e-3}}, overlap);
 }
 
-/** States all parts of a product to be rigid. */
-Product StateRigid(Product product) {
-  for (const product::Occurrence& occurrence : product.occurrences) {
-    product.flexible.push_back({occurrence.id, product::FlexibleKind::kStated, 0, "a test"});
-  }
-  return product;
-}
-
 std::shared_ptr<const Model> CompileProduct(Product product) {
   Diagnostics diagnostics;
   auto model =
@@ -228,7 +220,8 @@ TEST(OverlapTest, WayThatNeedsALittleMoreThanTheDrawnDepthIsTakenAndThatIsSaid) 
   EXPECT_PRED_FORMAT2(IsSubstring, "0.5 mm more than drawn", block.note);
   EXPECT_FALSE(CompileProduct(BlockInPocket(0.6e-3, 0))->sequence.overlaps[0].is_beyond);
   // Half a millimetre more, and not 0.6, where the walls do not bend.
-  EXPECT_EQ(CompileProduct(StateRigid(TaperedPocket(0.1e-3, 0.6e-3)))->sequence.gaps.size(), 1U);
+  EXPECT_EQ(
+      CompileProduct(testing::StateRigid(TaperedPocket(0.1e-3, 0.6e-3)))->sequence.gaps.size(), 1U);
 }
 
 std::array<Vec3, 4> Reversed(const std::array<Vec3, 4>& p) {
@@ -361,41 +354,8 @@ TEST(GiveTest, RingThatMayGiveTooLittleOrNotAtAllStaysOut) {
   }
 }
 
-/** A neck with a bead, and a cap with a lip below it, 0.25 mm narrower; no name tells of a snap. */
-Product CapOnBead(double outer_radius) {
-  using contact::testing::CylinderZ;
-  using contact::testing::PlaneAt;
-  Product product;
-  product.name = "bottle";
-  const auto neck = testing::AddPart(
-      &product, "neck",
-      contact::testing::Lathe({{{{0, 0}, {10e-3, 0}}, PlaneAt(0, -1)},
-                               {{{10e-3, 0}, {10e-3, 12e-3}}, CylinderZ(10e-3, 1)},
-                               {{{10e-3, 12e-3}, {10.3e-3, 12e-3}}, PlaneAt(12e-3, -1)},
-                               {{{10.3e-3, 12e-3}, {10.3e-3, 13e-3}}, CylinderZ(10.3e-3, 1)},
-                               {{{10.3e-3, 13e-3}, {10e-3, 13e-3}}, PlaneAt(13e-3, 1)},
-                               {{{10e-3, 13e-3}, {10e-3, 17e-3}}, CylinderZ(10e-3, 1)},
-                               {{{10e-3, 17e-3}, {0, 17e-3}}, PlaneAt(17e-3, 1)}},
-                              64));
-  const double r = outer_radius;
-  const auto cap = testing::AddPart(
-      &product, "cap",
-      contact::testing::Lathe({{{{0, 17e-3}, {10.4e-3, 17e-3}}, PlaneAt(17e-3, -1)},
-                               {{{10.4e-3, 17e-3}, {10.4e-3, 11e-3}}, CylinderZ(10.4e-3, -1)},
-                               {{{10.4e-3, 11e-3}, {10.05e-3, 11e-3}}, PlaneAt(11e-3, 1)},
-                               {{{10.05e-3, 11e-3}, {10.05e-3, 10e-3}}, CylinderZ(10.05e-3, -1)},
-                               {{{10.05e-3, 10e-3}, {r, 10e-3}}, PlaneAt(10e-3, -1)},
-                               {{{r, 10e-3}, {r, 19e-3}}, CylinderZ(r, 1)},
-                               {{{r, 19e-3}, {0, 19e-3}}, PlaneAt(19e-3, 1)}},
-                              64));
-  testing::Place(&product, neck, "neck");
-  testing::Place(&product, cap, "cap");
-  testing::Complete(&product);
-  return product;
-}
-
 TEST(GiveTest, AWallThatBendsSnapsOverABeadWithoutANameThatTellsOfIt) {
-  const auto model = CompileProduct(CapOnBead(11.6e-3));
+  const auto model = CompileProduct(testing::CapOnBead(11.6e-3));
   ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
   ASSERT_EQ(model->sequence.gives.size(), 1U);
   EXPECT_EQ(model->sequence.gives[0].kind, product::FlexibleKind::kForm);
@@ -408,10 +368,10 @@ TEST(GiveTest, AWallThatBendsSnapsOverABeadWithoutANameThatTellsOfIt) {
 }
 
 TEST(GiveTest, AWallThatIsThickOrStatedToBeRigidDoesNotBend) {
-  const auto thick = CompileProduct(CapOnBead(16e-3));
+  const auto thick = CompileProduct(testing::CapOnBead(16e-3));
   EXPECT_EQ(thick->sequence.gaps.size(), 1U);
   EXPECT_TRUE(thick->sequence.gives.empty());
-  const auto rigid = CompileProduct(StateRigid(CapOnBead(11.6e-3)));
+  const auto rigid = CompileProduct(testing::StateRigid(testing::CapOnBead(11.6e-3)));
   EXPECT_EQ(rigid->sequence.gaps.size(), 1U);
   EXPECT_TRUE(rigid->sequence.gives.empty());
 }

@@ -220,6 +220,45 @@ Product CaptiveRing() {
   return product;
 }
 
+Product CapOnBead(double outer_radius) {
+  using contact::testing::CylinderZ;
+  using contact::testing::PlaneAt;
+  Product product;
+  product.name = "bottle";
+  const auto neck = AddPart(
+      &product, "neck",
+      contact::testing::Lathe({{{{0, 0}, {10e-3, 0}}, PlaneAt(0, -1)},
+                               {{{10e-3, 0}, {10e-3, 12e-3}}, CylinderZ(10e-3, 1)},
+                               {{{10e-3, 12e-3}, {10.3e-3, 12e-3}}, PlaneAt(12e-3, -1)},
+                               {{{10.3e-3, 12e-3}, {10.3e-3, 13e-3}}, CylinderZ(10.3e-3, 1)},
+                               {{{10.3e-3, 13e-3}, {10e-3, 13e-3}}, PlaneAt(13e-3, 1)},
+                               {{{10e-3, 13e-3}, {10e-3, 17e-3}}, CylinderZ(10e-3, 1)},
+                               {{{10e-3, 17e-3}, {0, 17e-3}}, PlaneAt(17e-3, 1)}},
+                              64));
+  const double r = outer_radius;
+  const auto cap = AddPart(
+      &product, "cap",
+      contact::testing::Lathe({{{{0, 17e-3}, {10.4e-3, 17e-3}}, PlaneAt(17e-3, -1)},
+                               {{{10.4e-3, 17e-3}, {10.4e-3, 11e-3}}, CylinderZ(10.4e-3, -1)},
+                               {{{10.4e-3, 11e-3}, {10.05e-3, 11e-3}}, PlaneAt(11e-3, 1)},
+                               {{{10.05e-3, 11e-3}, {10.05e-3, 10e-3}}, CylinderZ(10.05e-3, -1)},
+                               {{{10.05e-3, 10e-3}, {r, 10e-3}}, PlaneAt(10e-3, -1)},
+                               {{{r, 10e-3}, {r, 19e-3}}, CylinderZ(r, 1)},
+                               {{{r, 19e-3}, {0, 19e-3}}, PlaneAt(19e-3, 1)}},
+                              64));
+  Place(&product, neck, "neck");
+  Place(&product, cap, "cap");
+  Complete(&product);
+  return product;
+}
+
+Product StateRigid(Product product) {
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    product.flexible.push_back({occurrence.id, product::FlexibleKind::kStated, 0, "a test"});
+  }
+  return product;
+}
+
 CompileOptions FastOptions() {
   CompileOptions options;
   options.threads = 2;

@@ -59,6 +59,13 @@ Product CappedCollarUnderClamp();
  the floor. Carrier and peg can be put together on the table and go in as one body. */
 Product PegInCarrierInCup();
 
+/** A neck with a bead, and a cap with a lip below it, 0.25 mm narrower; no name tells of a snap.
+ @param outer_radius  The cap's: its wall is as thick as from 10.4 mm to it. */
+Product CapOnBead(double outer_radius);
+
+/** States all parts of a product to be rigid. */
+Product StateRigid(Product product);
+
 /** The model of PegInCarrierInCup, compiled once in a program. */
 const std::shared_ptr<const Model>& PegInCarrierInCupModel();
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "simulation/gap_reason.h"
+
+namespace hvas::app {
+
+/** Why a part cannot be brought in, and what would let it in, as commands print it. Every number's
+ name ends in its unit; directions are unit vectors in W. */
+[[nodiscard]] nlohmann::ordered_json MakeGapReasonJson(const simulation::Model& model,
+                                                       const simulation::GapReason& reason);
+
+}  // namespace hvas::app

@@ -1,0 +1,626 @@
+#include "simulation/gap_reason.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "planning/check_way.h"
+#include "simulation/gap_proof.h"
+#include "simulation/giving_width.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::MateKind;
+using product::OccurrenceId;
+
+bool Contains(const Unit& unit, OccurrenceId id) {
+  return std::find(unit.begin(), unit.end(), id) != unit.end();
+}
+
+Unit UnitOf(const SequenceStep& step) {
+  Unit unit{step.occurrence};
+  unit.insert(unit.end(), step.members.begin(), step.members.end());
+  return unit;
+}
+
+/** A straight way out, and what is met on it. */
+struct StraightWay {
+  Vec3 direction_W{Vec3::UnitZ()};
+  std::vector<product::MateId> mates;  // They forbid it.
+  std::vector<MetFaces> stops;
+  Unit others;          // Parts met, in the order in which they are met.
+  double travelled{0};  // Before the first of them [m].
+  double need{0};       // The largest depth or width of what is met [m].
+  bool is_hard{false};  // A mate forbids it that clearance does not open.
+};
+
+/** A way out that was found. */
+struct WayOut {
+  SequenceStep step;
+  bool does_give{false};  // Parts give on it, or bend.
+};
+
+class GapExplainer {
+ public:
+  GapExplainer(const Model& model, OccurrenceId id, const GapReasonOptions& options)
+      : model_(model),
+        product_(*model.product),
+        options_(options),
+        input_(MakeSequenceInput(model, &scene_)),
+        give_limits_(input_.give_limits) {
+    reason_.occurrence = id;
+    input_.way_looks = options.way_looks;
+    input_.stop = options.stop;
+    Restart();
+  }
+
+  GapReason Explain();
+
+ private:
+  /** Begins anew with the parts of reason_.present, what is explained, and the fixtures. */
+  void Restart();
+  /** The parts that are there when the step of the part comes; none where it has no step. */
+  [[nodiscard]] std::optional<Unit> FindEarlier() const;
+  /** Leaves those that do not come out while the part is there. */
+  void KeepWhatStays();
+  /** Takes the parts of a step out, along its own way, or a single part along any straight one. */
+  [[nodiscard]] bool TakeOut(const SequenceStep& step);
+  [[nodiscard]] bool IsWayFree(const SequenceStep& step) const;
+
+  /** How a way may be, besides straight. */
+  struct Freedom {
+    bool may_turn{false};
+    bool may_bend{false};  // Walls may that no name tells of.
+  };
+
+  /** Looks for a way out of a part, as the planner of the order does; it stays where it is. */
+  [[nodiscard]] std::optional<WayOut> FindWayOut(OccurrenceId id, const Freedom& freedom);
+  void MeasureWays();
+  [[nodiscard]] StraightWay MeasureWay(const Vec3& direction_W);
+  void Prove();
+  [[nodiscard]] Unit ListCandidates() const;
+  void TryOthers();
+  /** Tries what comes of it when others are put in later, or not at all. */
+  void TryWithout(const Unit& others);
+  /** Whether all of these come out while the part is there, in any order; notes how. */
+  [[nodiscard]] bool DoComeOut(Unit others, GapChange* change);
+  /** How thick the part is where it is thickest, or the thinnest of others where that is more [m].
+   */
+  [[nodiscard]] double FindThickness(const Unit& others) const;
+  void TryClearance(const Unit& others);
+  void TryFlexible(OccurrenceId gives);
+  /** The least amount that lets the part out, to the resolution, and the way; none: not even the
+   largest does. */
+  template <typename Try>
+  [[nodiscard]] bool Bisect(double largest, const Try& try_amount, GapChange* change);
+  [[nodiscard]] bool IsOver();
+
+  void ReportProgress(double fraction) const {
+    if (options_.progress) {
+      options_.progress(fraction);
+    }
+  }
+
+  const Model& model_;
+  const product::Product& product_;
+  const GapReasonOptions& options_;
+  contact::Scene scene_;
+  SequenceInput input_;
+  const std::vector<double> give_limits_;
+  std::optional<Extraction> extraction_;
+  std::uint64_t looks_before_{0};  // Of extractions that are gone.
+  std::vector<StraightWay> ways_;  // The best first.
+  OccurrenceId base_;              // Of the parts that are there.
+  GapReason reason_;
+};
+
+void GapExplainer::Restart() {
+  looks_before_ += extraction_ ? extraction_->looks() : 0;
+  input_.give_limits = give_limits_;
+  extraction_.emplace(input_, &model_.sequence);
+  Unit all;
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    all.push_back(occurrence.id);
+  }
+  extraction_->SetPresent(all, false);
+  extraction_->SetPresent(input_.fixtures, true);
+  extraction_->SetPresent(reason_.present, true);
+  extraction_->SetPresent({reason_.occurrence}, true);
+}
+
+bool GapExplainer::IsOver() {
+  reason_.looks = looks_before_ + extraction_->looks();
+  reason_.is_limit_reached = reason_.is_limit_reached || reason_.looks >= options_.looks;
+  reason_.is_stopped = reason_.is_stopped || options_.stop.stop_requested();
+  return reason_.is_limit_reached || reason_.is_stopped;
+}
+
+std::optional<Unit> GapExplainer::FindEarlier() const {
+  Unit present;
+  for (const SequenceStep& step : model_.sequence.steps) {
+    const Unit unit = UnitOf(step);
+    switch (step.kind) {
+      case SequenceStep::Kind::kBase:
+        present = {step.occurrence};
+        break;
+      case SequenceStep::Kind::kInsert:
+        if (step.occurrence == reason_.occurrence) {
+          return present;
+        }
+        present.insert(present.end(), unit.begin(), unit.end());
+        break;
+      case SequenceStep::Kind::kPark:
+        present.clear();
+        break;
+      case SequenceStep::Kind::kRemove:
+        std::erase_if(present, [&unit](OccurrenceId part) { return Contains(unit, part); });
+        break;
+    }
+  }
+  return std::nullopt;
+}
+
+bool GapExplainer::IsWayFree(const SequenceStep& step) const {
+  planning::WayProblem problem;
+  const std::vector<contact::Allowance> allowances =
+      ListAllowances(model_.sequence.overlaps, model_.sequence.gives, step.occurrence);
+  problem.scene = &scene_;
+  problem.part = input_.shapes[step.occurrence.index()];
+  problem.self = contact::BodyId(step.occurrence.index());
+  problem.X_WB_start = product_.occurrences[step.occurrence.index()].X_WB;
+  problem.allowances = allowances;
+  problem.tolerance = kDepthTolerance;
+  return planning::CheckWay(problem, step.way, planning::CheckStepOf(problem.tolerance)).is_free;
+}
+
+bool GapExplainer::TakeOut(const SequenceStep& step) {
+  const Unit unit = UnitOf(step);
+  if (!step.way.empty()) {
+    if (!IsWayFree(step)) {
+      return false;
+    }
+    extraction_->SetPresent(unit, false);
+    return true;
+  }
+  if (extraction_->TryRemoveAlong(unit, step.extraction_W)) {
+    return true;
+  }
+  const bool may_give = std::any_of(
+      model_.sequence.gives.begin(), model_.sequence.gives.end(), [&](const GivingPair& give) {
+        return give.flexible == step.occurrence || give.other == step.occurrence;
+      });
+  if (may_give && unit.size() == 1 && FindWayOut(step.occurrence, {false, true})) {
+    extraction_->SetPresent(unit, false);
+    return true;
+  }
+  Unit rest{step.occurrence, step.occurrence};  // The last one is never tried.
+  return unit.size() == 1 && extraction_->TryRemoveOne(&rest).has_value();
+}
+
+void GapExplainer::KeepWhatStays() {
+  const std::vector<SequenceStep>& steps = model_.sequence.steps;
+  const auto is_there = [this](OccurrenceId id) { return extraction_->is_present(id); };
+  for (bool is_moving = true; is_moving && !IsOver();) {
+    is_moving = false;
+    for (auto step = steps.rbegin(); step != steps.rend() && !IsOver(); ++step) {
+      const Unit unit = UnitOf(*step);
+      const bool is_all_there = std::all_of(unit.begin(), unit.end(), is_there);
+      if (step->kind == SequenceStep::Kind::kInsert && is_all_there && TakeOut(*step)) {
+        is_moving = true;
+      }
+    }
+  }
+  std::erase_if(reason_.present, [&is_there](OccurrenceId id) { return !is_there(id); });
+}
+
+std::optional<WayOut> GapExplainer::FindWayOut(OccurrenceId id, const Freedom& freedom) {
+  Unit rest{id, id};  // The last one is never tried.
+  extraction_->Forget({id});
+  std::optional<SequenceStep> step = extraction_->TryRemoveOne(&rest);
+  bool does_give = false;
+  if (!step && !input_.give_limits.empty()) {
+    step = extraction_->TryRemoveWithLimits(id);
+    does_give = step.has_value();
+  }
+  if (!step && freedom.may_turn) {
+    step = extraction_->TryRemoveTurning(&rest, {});
+  }
+  bool does_bend = false;
+  if (!step && freedom.may_bend) {
+    step = extraction_->TryRemoveBending(&rest, {});
+    does_bend = step.has_value();
+  }
+  extraction_->SetPresent({id}, true);
+  if (does_bend) {  // What was found to give is not to count for the next look.
+    std::vector<bool> is_present;
+    for (const product::Occurrence& occurrence : product_.occurrences) {
+      is_present.push_back(extraction_->is_present(occurrence.id));
+    }
+    Restart();
+    for (const product::Occurrence& occurrence : product_.occurrences) {
+      extraction_->SetPresent({occurrence.id}, is_present[occurrence.id.index()]);
+    }
+  }
+  return step ? std::optional(WayOut{std::move(*step), does_give || does_bend}) : std::nullopt;
+}
+
+StraightWay GapExplainer::MeasureWay(const Vec3& direction_W) {
+  StraightWay way;
+  const OccurrenceId id = reason_.occurrence;
+  way.direction_W = direction_W;
+  way.mates = extraction_->ListForbidding(id, direction_W);
+  way.is_hard = std::any_of(way.mates.begin(), way.mates.end(), [this](product::MateId mate) {
+    const MateKind kind = product_.mates[mate.index()].kind;
+    return kind != MateKind::kFaceFace && kind != MateKind::kPrismatic;
+  });
+  if (way.is_hard) {
+    return way;
+  }
+  way.stops = extraction_->MeasureFaces(id, direction_W);
+  way.travelled = extraction_->CalcWayLength({id}, direction_W);
+  for (const MetFaces& stop : way.stops) {
+    way.travelled = std::min(way.travelled, stop.travelled);
+    way.need = std::max(way.need, stop.depth);
+    if (stop.other.is_valid() && !Contains(way.others, stop.other)) {
+      way.others.push_back(stop.other);
+      way.need = std::max(way.need, CalcGivingWidth(product_, id, stop.other, direction_W,
+                                                    options_.largest_clearance));
+    }
+  }
+  way.travelled = way.mates.empty() ? way.travelled : 0;
+  return way;
+}
+
+void GapExplainer::MeasureWays() {
+  const OccurrenceId id = reason_.occurrence;
+  std::vector<Vec3> directions = extraction_->ListDirections({id});
+  for (const Vec3& direction : extraction_->ListContactDirections(id)) {
+    const bool is_known =
+        std::any_of(directions.begin(), directions.end(),
+                    [&direction](const Vec3& known) { return known.dot(direction) > 1 - 1e-6; });
+    if (!is_known) {
+      directions.push_back(direction);
+    }
+  }
+  for (const Vec3& direction : directions) {
+    if (IsOver()) {
+      break;
+    }
+    ways_.push_back(MeasureWay(direction));
+  }
+  constexpr double kSame = 20e-6;  // [m]: needs that differ by less are one, as widths are coarse.
+  std::stable_sort(ways_.begin(), ways_.end(), [](const StraightWay& a, const StraightWay& b) {
+    const auto rank = [](const StraightWay& way) {
+      return std::tuple(way.is_hard, !way.mates.empty(), std::floor(way.need / kSame),
+                        -way.travelled);
+    };
+    return rank(a) < rank(b);
+  });
+  if (!ways_.empty()) {
+    const StraightWay& best = ways_.front();
+    reason_.direction_W = best.direction_W;
+    reason_.travelled = best.travelled;
+    reason_.way_length = extraction_->CalcWayLength({id}, best.direction_W);
+    reason_.stops = best.stops;
+    reason_.mates = best.mates;
+  }
+}
+
+void GapExplainer::Prove() {
+  const OccurrenceId id = reason_.occurrence;
+  double allowed = 0;
+  for (const DrawnOverlap& overlap : model_.sequence.overlaps) {
+    const bool is_own = overlap.a == id || overlap.b == id;
+    allowed = is_own ? std::max({allowed, overlap.depth, overlap.allowed}) : allowed;
+  }
+  Unit others = reason_.present;
+  others.insert(others.end(), input_.fixtures.begin(), input_.fixtures.end());
+  const Cage cage = FindCage(product_, id, others, allowed);
+  if (cage.is_closed) {
+    reason_.proof = GapProof::kCaged;
+    reason_.caged_radius = cage.radius;
+    return;
+  }
+  std::vector<contact::IgnoredPair> threads;
+  for (const ModelMate& mate : model_.mates) {
+    const product::Mate& drawn = product_.mates[mate.id.index()];
+    const bool is_thread = drawn.fit && drawn.fit->kind == product::FitKind::kThread;
+    const bool is_a = drawn.a.occurrence == id;
+    if (!is_thread || (!is_a && drawn.b.occurrence != id)) {
+      continue;
+    }
+    const contact::BodyId body((is_a ? drawn.b : drawn.a).occurrence.index());
+    const haptics::MateFaces& own = is_a ? *mate.faces_a : *mate.faces_b;
+    const haptics::MateFaces& its = is_a ? *mate.faces_b : *mate.faces_a;
+    threads.push_back({body, own.with_neighbours, its.with_neighbours});
+  }
+  // A proof that a look along a straight way contradicts is none: faces that end where they touch.
+  constexpr double kMoved = 1e-4;  // [m]: less than a step of a way.
+  const bool does_move = std::any_of(ways_.begin(), ways_.end(), [](const StraightWay& way) {
+    const bool is_open = way.mates.empty() && way.travelled > kMoved;
+    const auto is_deep = [](const MetFaces& stop) { return stop.travelled <= 2e-3 + kMoved; };
+    return is_open && std::none_of(way.stops.begin(), way.stops.end(), is_deep);
+  });
+  if (!does_move && IsHeldByContacts(product_, scene_, id, threads)) {
+    reason_.proof = GapProof::kHeld;
+  }
+}
+
+Unit GapExplainer::ListCandidates() const {
+  Unit candidates;
+  std::map<OccurrenceId, std::size_t> counts;
+  const auto add = [&](OccurrenceId id) {
+    if (Contains(reason_.present, id) && !Contains(candidates, id)) {
+      candidates.push_back(id);
+    }
+  };
+  if (!ways_.empty()) {
+    for (const OccurrenceId id : ways_.front().others) {
+      add(id);
+    }
+  }
+  for (const StraightWay& way : ways_) {
+    for (const OccurrenceId id : way.others) {
+      ++counts[id];
+    }
+    for (const product::MateId mate : way.mates) {
+      const product::Mate& forbids = product_.mates[mate.index()];
+      const bool is_a = forbids.a.occurrence == reason_.occurrence;
+      ++counts[is_a ? forbids.b.occurrence : forbids.a.occurrence];
+    }
+  }
+  std::vector<std::pair<std::size_t, OccurrenceId>> ranked;
+  for (const auto& [id, count] : counts) {
+    ranked.emplace_back(count, id);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [count, id] : ranked) {
+    add(id);
+  }
+  if (candidates.size() > options_.most_others) {
+    candidates.resize(options_.most_others);
+  }
+  return candidates;
+}
+
+bool GapExplainer::DoComeOut(Unit others, GapChange* change) {
+  for (bool is_moving = true; is_moving && !others.empty() && !IsOver();) {
+    is_moving = false;
+    for (std::size_t i = 0; i < others.size() && !is_moving; ++i) {
+      if (const std::optional<WayOut> way = FindWayOut(others[i], {true, false})) {
+        change->do_others_turn = change->do_others_turn || !way->step.way.empty();
+        change->do_others_give = change->do_others_give || way->does_give;
+        extraction_->SetPresent({others[i]}, false);
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+        is_moving = true;
+      }
+    }
+  }
+  return others.empty();
+}
+
+void GapExplainer::TryWithout(const Unit& others) {
+  GapChange leave_out;
+  leave_out.kind = GapChangeKind::kLeaveOut;
+  leave_out.parts = others;
+  Restart();
+  extraction_->SetPresent(others, false);
+  const std::optional<WayOut> way = FindWayOut(reason_.occurrence, {true, true});
+  GapChange order = leave_out;
+  order.kind = GapChangeKind::kOrder;
+  if (way) {
+    for (GapChange* change : {&leave_out, &order}) {
+      change->direction_W = way->step.extraction_W;
+      change->does_turn = !way->step.way.empty();
+      change->does_give = way->does_give;
+    }
+    leave_out.has_worked = true;
+    order.does_go_without = true;
+    extraction_->SetPresent(others, true);
+    order.has_worked = !Contains(others, base_) && DoComeOut(others, &order);
+  }
+  // The part that stands in the fixture cannot come later than what is put into it.
+  if (!Contains(others, base_)) {
+    reason_.changes.push_back(std::move(order));
+  }
+  reason_.changes.push_back(std::move(leave_out));
+}
+
+void GapExplainer::TryOthers() {
+  const Unit candidates = ListCandidates();
+  bool has_worked = false;
+  for (std::size_t i = 0; i < candidates.size() && !IsOver(); ++i) {
+    TryWithout({candidates[i]});
+    has_worked = has_worked || reason_.changes.back().has_worked;
+    ReportProgress(0.4 + 0.3 * static_cast<double>(i + 1) / static_cast<double>(candidates.size()));
+  }
+  if (has_worked || IsOver()) {
+    return;
+  }
+  // None alone: all of those that stand in one straight way, the fewest.
+  const StraightWay* fewest = nullptr;
+  for (const StraightWay& way : ways_) {
+    const bool is_open = way.mates.empty() && way.others.size() > 1 &&
+                         std::all_of(way.others.begin(), way.others.end(), [this](OccurrenceId id) {
+                           return Contains(reason_.present, id);
+                         });
+    if (is_open && (fewest == nullptr || way.others.size() < fewest->others.size())) {
+      fewest = &way;
+    }
+  }
+  if (fewest != nullptr) {
+    TryWithout(Unit(fewest->others));
+  }
+}
+
+template <typename Try>
+bool GapExplainer::Bisect(double largest, const Try& try_amount, GapChange* change) {
+  const auto does_work = [&](double amount) {
+    const std::optional<SequenceStep> step = try_amount(amount);
+    extraction_->SetPresent({reason_.occurrence}, true);
+    if (step) {
+      change->direction_W = step->extraction_W;
+    }
+    return step.has_value();
+  };
+  change->amount = largest;
+  if (!does_work(largest)) {
+    return false;
+  }
+  double too_little = 0;
+  double enough = largest;
+  while (enough - too_little > options_.resolution && !IsOver()) {
+    const double middle = 0.5 * (too_little + enough);
+    (does_work(middle) ? enough : too_little) = middle;
+  }
+  change->amount = enough;
+  return true;
+}
+
+double GapExplainer::FindThickness(const Unit& others) const {
+  double radius = std::numeric_limits<double>::infinity();
+  for (const OccurrenceId other : others) {
+    radius = std::min(radius, FindInnerRadius(product_.part_of(other)));
+  }
+  return 2 * std::max(radius, FindInnerRadius(product_.part_of(reason_.occurrence)));
+}
+
+void GapExplainer::TryClearance(const Unit& others) {
+  // Half of the part, or of what stops it, is left where it is thickest: a choice.
+  constexpr double kMostOfThickness = 0.25;
+  GapChange change;
+  change.kind = GapChangeKind::kClearance;
+  change.parts = others;
+  Restart();
+  change.has_worked = Bisect(
+      std::min(options_.largest_clearance, kMostOfThickness * FindThickness(others)),
+      [&](double amount) {
+        return extraction_->TryRemoveCleared(reason_.occurrence, others, amount);
+      },
+      &change);
+  reason_.changes.push_back(std::move(change));
+}
+
+void GapExplainer::TryFlexible(OccurrenceId gives) {
+  GapChange change;
+  change.kind = GapChangeKind::kFlexible;
+  change.parts = {gives};
+  Restart();
+  if (input_.give_limits.empty()) {
+    input_.give_limits.assign(product_.occurrences.size(), 0);
+  }
+  change.has_worked = Bisect(
+      options_.largest_give,
+      [&](double amount) {
+        const std::vector<double>& known = give_limits_;
+        input_.give_limits[gives.index()] =
+            std::max(amount, known.empty() ? 0.0 : known[gives.index()]);
+        return extraction_->TryRemoveWithLimits(reason_.occurrence);
+      },
+      &change);
+  reason_.changes.push_back(std::move(change));
+}
+
+GapReason GapExplainer::Explain() {
+  const OccurrenceId id = reason_.occurrence;
+  bool is_order_given = true;
+  if (options_.present) {
+    reason_.present = *options_.present;
+  } else if (std::optional<Unit> earlier = FindEarlier()) {
+    reason_.present = std::move(*earlier);
+  } else {
+    is_order_given = false;
+    Unit gone = input_.tools;
+    for (const SequenceGap& gap : model_.sequence.gaps) {
+      if (gap.occurrence == id) {
+        break;
+      }
+      gone.push_back(gap.occurrence);
+    }
+    for (const product::Occurrence& occurrence : product_.occurrences) {
+      if (!Contains(gone, occurrence.id) && !Contains(input_.fixtures, occurrence.id)) {
+        reason_.present.push_back(occurrence.id);
+      }
+    }
+  }
+  std::erase(reason_.present, id);
+  base_ = FindBase(model_.sequence);
+  if (!Contains(reason_.present, base_)) {  // A subassembly: its base comes first.
+    base_ = reason_.present.empty() ? OccurrenceId() : reason_.present.front();
+  }
+  Restart();
+  if (!is_order_given) {
+    KeepWhatStays();
+    Restart();
+  }
+  ReportProgress(0.1);
+  if (!IsOver()) {
+    const std::optional<WayOut> way = FindWayOut(id, {is_order_given, true});
+    reason_.has_way = way.has_value();
+    reason_.direction_W = way ? way->step.extraction_W : Vec3::Zero();
+  }
+  if (reason_.has_way || IsOver()) {
+    return std::move(reason_);
+  }
+  MeasureWays();
+  ReportProgress(0.3);
+  Prove();
+  ReportProgress(0.4);
+  TryOthers();
+  // What is met on the best way; where that is not enough, on all.
+  Unit stopping = ways_.empty() ? Unit() : ways_.front().others;
+  const auto has_room_worked = [this] { return reason_.changes.back().has_worked; };
+  if (!stopping.empty() && !IsOver()) {
+    TryClearance(stopping);
+    Unit all = stopping;
+    for (const StraightWay& way : ways_) {
+      for (const OccurrenceId other : way.others) {
+        if (!Contains(all, other)) {
+          all.push_back(other);
+        }
+      }
+    }
+    if (!has_room_worked() && all.size() > stopping.size() && !IsOver()) {
+      TryClearance(all);
+    }
+  }
+  ReportProgress(0.8);
+  Unit giving{id};
+  for (const OccurrenceId other : stopping) {
+    if (giving.size() <= options_.most_others) {
+      giving.push_back(other);
+    }
+  }
+  for (std::size_t i = 0; i < giving.size() && !IsOver(); ++i) {
+    TryFlexible(giving[i]);
+  }
+  std::stable_sort(
+      reason_.changes.begin(), reason_.changes.end(), [](const GapChange& a, const GapChange& b) {
+        const auto rank = [](const GapChange& change) {
+          return std::tuple(!change.has_worked, change.kind, change.parts.size(), change.amount);
+        };
+        return rank(a) < rank(b);
+      });
+  (void)IsOver();
+  ReportProgress(1);
+  return std::move(reason_);
+}
+
+}  // namespace
+
+Result<GapReason> ExplainGap(const Model& model, OccurrenceId id, const GapReasonOptions& options) {
+  if (!id.is_valid() || id.index() >= model.bodies.size()) {
+    return Fail(ErrorCode::kNotFound, "the model has no such part", model.product->source);
+  }
+  if (model.bodies[id.index()].role != BodyRole::kPart) {
+    return Fail(ErrorCode::kNotFound, "tools and fixtures are not put in by the assembly",
+                model.product->occurrences[id.index()].path);
+  }
+  return GapExplainer(model, id, options).Explain();
+}
+
+}  // namespace hvas::simulation
