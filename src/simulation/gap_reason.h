@@ -85,7 +85,7 @@ struct GapReasonOptions {
   std::uint64_t way_looks{kWayLooks / 6};
   double largest_clearance{
       2e-3};                   ///< The largest on each side [m]: more is another design. A choice.
-  double largest_give{2e-3};   ///< [m]: as a named snap hook may at most (flexible.md).
+  double largest_give{5e-3};   ///< The largest that a part may give [m]: as cables may at most.
   double resolution{10e-6};    ///< Step of clearances and of how far a part gives [m]: a choice.
   std::size_t most_others{6};  ///< How many parts are tried to be put in later: a choice.
   /** Parts that are there when it has to go in. None: those of the steps before its own; where it
