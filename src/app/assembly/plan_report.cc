@@ -177,6 +177,10 @@ std::string DescribeHolds(const assembly::OrderPlan& plan, std::size_t order) {
              : std::string();
 }
 
+void PrintOrder(const std::string& name, const FoundOrder& order, const std::string& more) {
+  fmt::print("{}", Wrap(name + DescribeCounts(order.counts, order.cost) + more + ".", 0));
+}
+
 std::string DescribeSearch(const assembly::OrderPlan& plan) {
   return fmt::format("{} orders found with {} tries{}", plan.search.orders.size(),
                      plan.search.tries, plan.search.is_ended_early ? ", ended early" : "");
@@ -256,23 +260,21 @@ void PrintPlanTable(const PlanReport& report) {
         below);
   }
   fmt::print("{}\n", table.ToText());
-  fmt::print("Best order: {}{}.\n", DescribeCounts(best.counts, best.cost), DescribeHolds(plan, 0));
-  fmt::print("As first found: {}.\n",
-             DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
+  PrintOrder("Best order: ", best, DescribeHolds(plan, 0));
+  PrintOrder("As first found: ", plan.search.planned, "");
   for (std::size_t i = 1; i < plan.search.orders.size(); ++i) {
-    fmt::print("Alternative {}: {}{}.\n", i,
-               DescribeCounts(plan.search.orders[i].counts, plan.search.orders[i].cost),
-               DescribeHolds(plan, i));
+    PrintOrder(fmt::format("Alternative {}: ", i), plan.search.orders[i], DescribeHolds(plan, i));
   }
   for (std::size_t i = 0; i < model.sequence.gaps.size(); ++i) {
     const simulation::SequenceGap& gap = model.sequence.gaps[i];
-    fmt::print("{}", Indent("LEFT OUT: " + PathOf(model, gap.occurrence) + ": " + gap.reason, 0));
+    fmt::print("{}", Wrap("LEFT OUT: " + PathOf(model, gap.occurrence) + ": " + gap.reason, 0));
     for (const std::string& line : ListReasonLines(report, i)) {
-      fmt::print("{}", Indent(line, 2));
+      fmt::print("{}", Wrap(line, 2));
     }
   }
-  fmt::print("{}; preparation {:.1f} s, planning {:.1f} s.\n", DescribeSearch(plan),
-             report.preparation_s, report.planning_s);
+  fmt::print("{}", Wrap(fmt::format("{}; preparation {:.1f} s, planning {:.1f} s.",
+                                    DescribeSearch(plan), report.preparation_s, report.planning_s),
+                        0));
 }
 
 std::string MakePlanPage(const PlanReport& report) {
