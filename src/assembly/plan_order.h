@@ -31,8 +31,12 @@ struct PlanOptions {
 /** The statics of an order: what has to be held after each of its moves, under gravity along -Z,
  with the base in the fixture (docs/algorithms/statics.md). */
 struct OrderStatics {
-  std::vector<std::vector<product::OccurrenceId>> holds;  ///< The parts to hold, by place of move.
-  int held_states{0};  ///< After so many moves, something has to be held.
+  /** The parts to hold, by place of move; none where the state was not looked at: of large products
+   only every few states are, and the last. */
+  std::vector<std::optional<std::vector<product::OccurrenceId>>> holds;
+  int looked_at{0};    ///< So many states were looked at.
+  int held_states{0};  ///< In so many of these something has to be held.
+};                     ///< After so many moves, something has to be held.
 };
 
 /** Orders of assembly of a model. */

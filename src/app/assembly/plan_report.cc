@@ -97,6 +97,7 @@ nlohmann::ordered_json ToJson(const PlanReport& report, const FoundOrder& order)
   const auto place = static_cast<std::size_t>(&order - orders.data());
   if (place < orders.size() && place < report.plan->statics.size()) {
     json["held_states"] = report.plan->statics[place].held_states;
+    json["states_looked_at"] = report.plan->statics[place].looked_at;
   }
   json["parts"] = MakeIds(ListLeaders(*report.plan, order));
   return json;
@@ -104,6 +105,13 @@ nlohmann::ordered_json ToJson(const PlanReport& report, const FoundOrder& order)
 
 const FoundOrder& BestOf(const assembly::OrderPlan& plan) {
   return plan.search.orders.empty() ? plan.search.planned : plan.search.orders.front();
+}
+
+/** What has to be held after a move of the best order; none where it was not looked at. */
+const std::optional<std::vector<OccurrenceId>>& HoldsAfter(const assembly::OrderPlan& plan,
+                                                           std::size_t place) {
+  static const std::optional<std::vector<OccurrenceId>> kNone;
+  return plan.statics.empty() ? kNone : plan.statics.front().holds[place];
 }
 
 nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
@@ -125,8 +133,8 @@ nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
     if (!plan.tools[m].empty()) {
       json["tool"] = plan.tools[m];
     }
-    if (!plan.statics.empty()) {
-      json["holds"] = MakeIds(plan.statics.front().holds[i]);
+    if (const auto& holds = HoldsAfter(plan, i)) {
+      json["holds"] = MakeIds(*holds);
     }
     moves.push_back(std::move(json));
   }
@@ -173,7 +181,8 @@ std::vector<std::string> ListReasonLines(const PlanReport& report, std::size_t g
 
 std::string DescribeHolds(const assembly::OrderPlan& plan, std::size_t order) {
   return order < plan.statics.size()
-             ? fmt::format(", something to hold after {} moves", plan.statics[order].held_states)
+             ? fmt::format(", something to hold in {} of {} states",
+                           plan.statics[order].held_states, plan.statics[order].looked_at)
              : std::string();
 }
 
@@ -248,9 +257,9 @@ void PrintPlanTable(const PlanReport& report) {
                       DescribeReason(report, *first));
       below += count > 1 ? fmt::format("; and before {} more", count - 1) : "";
     }
-    if (!plan.statics.empty() && !plan.statics.front().holds[i].empty()) {
+    if (const auto& holds = HoldsAfter(plan, i); holds && !holds->empty()) {
       below += below.empty() ? "" : "; ";
-      below += "hold " + DescribeParts(model, plan.statics.front().holds[i]);
+      below += "hold " + DescribeParts(model, *holds);
     }
     const std::string way = step.way.empty() ? DescribeDirection(step.extraction_W) : "turns";
     const std::string members =
@@ -315,8 +324,7 @@ std::string MakePlanPage(const PlanReport& report) {
         "<td class=\"l\">{}</td><td class=\"l\">{}</td></tr>\n",
         i + 1, Escape(PathOf(model, step.occurrence)),
         step.way.empty() ? DescribeDirection(step.extraction_W) : "turns", Escape(plan.tools[m]),
-        plan.statics.empty() ? "" : Escape(DescribeParts(model, plan.statics.front().holds[i])),
-        before);
+        HoldsAfter(plan, i) ? Escape(DescribeParts(model, *HoldsAfter(plan, i))) : "", before);
   }
   body += "</table></div>\n<h2>Orders compared</h2>\n<ul>\n";
   for (std::size_t i = 0; i < plan.search.orders.size(); ++i) {
