@@ -20,8 +20,8 @@ struct PlanOptions {
   std::vector<std::pair<std::string, std::string>> before;  ///< Pairs of parts: first, then.
   /** Parts that have to come in this order, by name, path or id; the others anywhere. */
   std::vector<std::string> order;
-  std::size_t most_reasons{10};  ///< So many parts that are left out are looked into.
-  std::size_t most_orders{5};
+  std::size_t most_reasons{10};  ///< How many parts that are left out are looked into: a choice.
+  std::size_t most_orders{5};    ///< A choice, as a reader compares so many.
   bool gives_front{false};
   std::optional<std::chrono::duration<double>> time;  ///< The search ends after that.
   std::function<void(const std::string& stage, double fraction)> progress;  ///< May be null.
@@ -31,12 +31,11 @@ struct PlanOptions {
 /** The statics of an order: what has to be held after each of its moves, under gravity along -Z,
  with the base in the fixture (docs/algorithms/statics.md). */
 struct OrderStatics {
-  /** The parts to hold, by place of move; none where the state was not looked at: of large products
+  /** The parts to hold, by place of move; none where the state was not looked at: in large products
    only every few states are, and the last. */
   std::vector<std::optional<std::vector<product::OccurrenceId>>> holds;
-  int looked_at{0};    ///< So many states were looked at.
-  int held_states{0};  ///< In so many of these something has to be held.
-};                     ///< After so many moves, something has to be held.
+  int looked_at{0};    ///< How many states were looked at.
+  int held_states{0};  ///< How many of these need something to be held.
 };
 
 /** Orders of assembly of a model. */

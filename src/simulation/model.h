@@ -71,7 +71,7 @@ struct CompileOptions {
   contact::ShapeOptions shape;                       ///< Its `stop` ends all of the preparation.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
   unsigned threads{0};                               ///< That build shapes; 0: one a core.
-  std::uint64_t way_looks{kWayLooks};                ///< Limits the search for ways that turn, for each part.
+  std::uint64_t way_looks{kWayLooks};  ///< Limits the search for ways that turn, for each part.
   std::function<void(const std::string& stage, double fraction)> progress;
 };
 
