@@ -89,8 +89,7 @@ int RunPlan(const PlanCommandOptions& options) {
 }
 
 void AddPlan(CLI::App* app, int* status) {
-  CLI::App* command = app->add_subcommand(
-      "plan", "Find orders of assembly of low cost, and what has to come before what");
+  CLI::App* command = app->add_subcommand("plan", "Find orders of assembly of low cost");
   const auto options = std::make_shared<PlanCommandOptions>();
   command->add_option("file", options->load.file, "STEP, IGES or mesh file, or a folder of meshes")
       ->required();

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -69,6 +71,18 @@ class PlanCheck {
   std::vector<State> states_;
 };
 
+/** A step without signs of zeros, which people would wonder at. */
+SequenceStep WithoutSignedZeros(SequenceStep step) {
+  step.extraction_W += Vec3::Zero();
+  step.offset_W += Vec3::Zero();
+  for (spatial::Pose& X_WB : step.way) {
+    const Quat& q = X_WB.q();
+    X_WB = {Quat(q.w() + 0.0, q.x() + 0.0, q.y() + 0.0, q.z() + 0.0),
+            Vec3(X_WB.p() + Vec3::Zero())};
+  }
+  return step;
+}
+
 }  // namespace
 
 nlohmann::ordered_json MakeFollowedPlan(const product::Product& product,
@@ -77,7 +91,9 @@ nlohmann::ordered_json MakeFollowedPlan(const product::Product& product,
   for (const product::Occurrence& occurrence : product.occurrences) {
     parts.push_back(occurrence.path);
   }
-  return {{"parts", std::move(parts)}, {"steps", session::MakeStepsJson(steps)}};
+  std::vector<SequenceStep> plain;
+  std::transform(steps.begin(), steps.end(), std::back_inserter(plain), WithoutSignedZeros);
+  return {{"parts", std::move(parts)}, {"steps", session::MakeStepsJson(plain)}};
 }
 
 Result<std::vector<simulation::SequenceStep>> ReadPlan(const std::filesystem::path& file,

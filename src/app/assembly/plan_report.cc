@@ -31,6 +31,7 @@ struct Arrow {
   std::size_t then;
   const Obstacle* obstacle;  // Null: the move goes only as planned.
   bool is_certain;           // It stands in every way of the move.
+  bool is_implied{false};    // Two other arrows say the same.
 };
 
 std::vector<Arrow> ListArrows(const assembly::OrderPlan& plan) {
@@ -49,6 +50,17 @@ std::vector<Arrow> ListArrows(const assembly::OrderPlan& plan) {
       });
       arrows.push_back({m, other, found == obstacles.end() ? nullptr : &*found, is_certain});
     }
+  }
+  std::vector<std::vector<std::size_t>> after(plan.rules.moves.size());
+  for (const Arrow& arrow : arrows) {
+    after[arrow.first].push_back(arrow.then);
+  }
+  for (Arrow& arrow : arrows) {
+    const std::vector<std::size_t>& others = after[arrow.first];
+    arrow.is_implied = std::any_of(others.begin(), others.end(), [&](std::size_t between) {
+      const std::vector<std::size_t>& next = after[between];
+      return std::find(next.begin(), next.end(), arrow.then) != next.end();
+    });
   }
   return arrows;
 }
@@ -150,6 +162,7 @@ nlohmann::ordered_json MakeArrowsJson(const PlanReport& report) {
     json.push_back({{"first", leader(arrow.first)},
                     {"then", leader(arrow.then)},
                     {"certain", arrow.is_certain},
+                    {"implied", arrow.is_implied},
                     {"reason", DescribeReason(report, arrow)}});
   }
   return json;
@@ -247,11 +260,12 @@ void PrintPlanTable(const PlanReport& report) {
     const std::size_t m = best.moves[i];
     const simulation::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
     std::string below;
-    const auto first =
-        std::find_if(arrows.begin(), arrows.end(), [m](const Arrow& a) { return a.first == m; });
+    const auto first = std::find_if(arrows.begin(), arrows.end(),
+                                    [m](const Arrow& a) { return a.first == m && !a.is_implied; });
     if (first != arrows.end()) {
-      const auto count = std::count_if(arrows.begin(), arrows.end(),
-                                       [m](const Arrow& arrow) { return arrow.first == m; });
+      const auto count = std::count_if(arrows.begin(), arrows.end(), [m](const Arrow& a) {
+        return a.first == m && !a.is_implied;
+      });
       below =
           fmt::format("before {}: {}", PathOf(model, plan.rules.moves[first->then].parts.front()),
                       DescribeReason(report, *first));
@@ -312,11 +326,14 @@ std::string MakePlanPage(const PlanReport& report) {
     const simulation::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
     std::string before;
     for (const Arrow& arrow : arrows) {
-      if (arrow.first == m && arrow.obstacle != nullptr) {
+      if (arrow.first == m && arrow.obstacle != nullptr && !arrow.is_implied) {
         before += fmt::format(
             "{}{}<span class=\"soft\">, {}{}</span>", before.empty() ? "" : "<br>",
             Escape(PathOf(model, plan.rules.moves[arrow.then].parts.front())),
-            Escape(DescribeReason(report, arrow)), arrow.is_certain ? "" : ", on this way");
+            arrow.obstacle->mate.is_valid() ? "a mate leaves no way in"
+                                            : fmt::format("met {:.1f} mm before the place",
+                                                          units::ToMm(arrow.obstacle->travelled)),
+            arrow.is_certain ? "" : ", on this way");
       }
     }
     body += fmt::format(

@@ -251,6 +251,7 @@ class JsonRuns {
     Add({"assemble", bushing, "--no-cache", "--time-limit", "0.001"}, "preparation", 1);
     Add({"disassemble", bushing, "--no-cache", "--time-limit", "0.001"}, "preparation", 1);
     Add({"disassemble", bushing}, "disassemble");
+    Add({"plan", bushing, "--no-cache", "--time-limit", "0.001"}, "preparation", 1);
     Add({"plan", bushing}, "plan");
     Add({"plan", ProductFile("gear_pump"), "--front"}, "plan");
     Add({"disassemble", bushing, "--limit", "5"}, "disassemble", 2);
