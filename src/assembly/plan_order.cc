@@ -135,7 +135,7 @@ void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan)
   const simulation::StateStatics states(model);
   std::vector<simulation::FoundOrder>& orders = plan->search.orders;
   // The first order of so many moves, more of fewer: a choice.
-  constexpr std::size_t kMostStates = 400;
+  constexpr std::size_t kMostStates = 300;
   std::size_t states_left = kMostStates;
   for (std::size_t i = 0; i < orders.size(); ++i) {
     if (i > 0 && states_left < orders[i].moves.size()) {

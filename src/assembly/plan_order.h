@@ -42,7 +42,7 @@ struct OrderStatics {
 struct OrderPlan {
   simulation::OrderRules rules;
   simulation::OrderSearch search;  ///< Orders of equal cost stand by how little has to be held.
-  /** Statics of the first of search.orders: as many as 400 states allow, one at least. */
+  /** Statics of the first of search.orders: as many as 300 moves allow, one at least. */
   std::vector<OrderStatics> statics;
   std::vector<std::string> tools;  ///< The tool of each move; empty: none.
   /** Why parts are left out: of the first of Sequence::gaps, as many as PlanOptions allows. */
