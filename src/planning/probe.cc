@@ -123,6 +123,13 @@ Displacement Probe::CalcDisplacement(const Pose& from, const Pose& to) const {
   return {spatial::RotationBetween(from.q(), to.q()), to * centre_B_ - from * centre_B_};
 }
 
+Eigen::Matrix<double, 6, 1> Probe::RowOf(const contact::Contact& contact,
+                                         const Vec3& centre_W) const {
+  Eigen::Matrix<double, 6, 1> row;
+  row << contact.nhat_W, (contact.p_WC - centre_W).cross(contact.nhat_W) / gyration_;
+  return row;
+}
+
 double Probe::CalcLength(const Displacement& d) const {
   return std::sqrt(d.v_W.squaredNorm() + gyration_ * gyration_ * d.w_W.squaredNorm());
 }

@@ -37,9 +37,7 @@ void PushOut::Add(std::span<const contact::Contact> contacts, double target) {
   const Vec6 at = d_;
   for (std::size_t i = 0; i < n; ++i) {
     Plane plane;
-    const Vec3& normal = contacts[i].nhat_W;
-    plane.row.head<3>() = normal;
-    plane.row.tail<3>() = (contacts[i].p_WC - centre_W).cross(normal) / probe_.gyration();
+    plane.row = probe_.RowOf(contacts[i], centre_W);
     plane.wanted = target - contacts[i].distance + plane.row.dot(at);
     plane.weight = plane.row.squaredNorm();
     plane.force = 0;

@@ -24,20 +24,6 @@ constexpr int kHalvings = 3;  // Of a move that does not help: a choice.
 constexpr double kStayBetween = 0.05;
 constexpr double kMostMove = 0.5;  // Of kClear: a pose moves no further at once, as planes turn.
 
-sweep::Path Divide(const Probe& probe, const sweep::Path& path) {
-  sweep::Path divided{path.front()};
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const double length = probe.CalcLength(probe.CalcDisplacement(path[i - 1], path[i]));
-    const int pieces =
-        std::max(1, static_cast<int>(std::ceil(length / (kMovedApart * probe.size()))));
-    for (int k = 1; k < pieces; ++k) {
-      divided.push_back(sweep::Interpolate(path[i - 1], path[i], static_cast<double>(k) / pieces));
-    }
-    divided.push_back(path[i]);
-  }
-  return divided;
-}
-
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using FacePair = std::tuple<contact::BodyId, std::uint32_t, std::uint32_t>;
@@ -72,8 +58,7 @@ Nearness Measure(const Probe& probe, const Pose& X_WB, const Displacement& to_mi
   right << kStayBetween * to_middle.v_W, kStayBetween * g * to_middle.w_W;
   for (const contact::Contact& c : probe.contacts()) {
     const double weight = 1.0 / pairs[FacesOf(c)].first;
-    Vec6 row;
-    row << c.nhat_W, (c.p_WC - centre_W).cross(c.nhat_W) / g;
+    const Vec6 row = probe.RowOf(c, centre_W);
     normal += weight * row * row.transpose();
     right += weight * (clear - c.distance) * row;
   }
@@ -86,7 +71,8 @@ Nearness Measure(const Probe& probe, const Pose& X_WB, const Displacement& to_mi
 }  // namespace
 
 sweep::Path WidenWay(Probe* probe, const sweep::Path& path, double step, std::uint64_t budget) {
-  sweep::Path way = Divide(*probe, path);
+  sweep::Path way =
+      sweep::Resample(path, probe->problem().part->box_B(), kMovedApart * probe->size());
   const double clear = kClear * probe->size();
   const std::uint64_t last = probe->queries() + budget;
   const auto is_over = [&] { return probe->queries() >= last || probe->is_over(); };

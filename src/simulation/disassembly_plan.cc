@@ -126,9 +126,7 @@ void DisassemblyPlanner::AddRemoval(SequenceStep step, DisassemblyPlan* plan) {
   for (const Body& body : model_.bodies) {
     is_in_place.push_back(extraction_.is_present(body.occurrence));
   }
-  Unit unit = step.members;
-  unit.push_back(step.occurrence);
-  removal.way_length = extraction_.CalcWayLength(unit, step.extraction_W);
+  removal.way_length = extraction_.CalcWayLength(UnitOf(step), step.extraction_W);
   removal.breakaway = CalcBreakaway(model_, step, is_in_place);
   removal.step = std::move(step);
   plan->removals.push_back(std::move(removal));
@@ -148,8 +146,7 @@ bool DisassemblyPlanner::TakeOutSubassembly(Unit* rest, DisassemblyPlan* plan) {
     if (park.kind != SequenceStep::Kind::kPark) {
       continue;
     }
-    Unit unit = park.members;
-    unit.insert(unit.begin(), park.occurrence);
+    const Unit unit = UnitOf(park);
     const bool is_there = std::all_of(unit.begin(), unit.end(), [rest](OccurrenceId id) {
       return std::find(rest->begin(), rest->end(), id) != rest->end();
     });
@@ -192,9 +189,8 @@ void DisassemblyPlanner::PlanAll(DisassemblyPlan* plan) {
   TakeApart(in_place_, plan);
   ShowAll();
   for (Removal& removal : plan->removals) {
-    Unit unit = removal.step.members;
-    unit.insert(unit.begin(), removal.step.occurrence);
-    removal.waits_for = extraction_.ListObstacles(unit, removal.step.extraction_W, {});
+    removal.waits_for =
+        extraction_.ListObstacles(UnitOf(removal.step), removal.step.extraction_W, {});
   }
 }
 

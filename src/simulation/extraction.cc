@@ -30,6 +30,12 @@ constexpr double kLongestStep = 2e-3;  // [m]; longer ones could pass through a 
 
 }  // namespace
 
+Unit UnitOf(const SequenceStep& step) {
+  Unit unit{step.occurrence};
+  unit.insert(unit.end(), step.members.begin(), step.members.end());
+  return unit;
+}
+
 Extraction::Extraction(const SequenceInput& input, const Sequence* known)
     : input_(input),
       product_(*input.product),
@@ -294,8 +300,7 @@ bool Extraction::RelieveWays(const std::vector<SequenceStep>& steps) {
   SetPresent(all, false);
   SetPresent(input_.fixtures, true);
   for (const SequenceStep& step : steps) {
-    Unit unit{step.occurrence};
-    unit.insert(unit.end(), step.members.begin(), step.members.end());
+    const Unit unit = UnitOf(step);
     if (step.kind == SequenceStep::Kind::kInsert && step.way.empty()) {
       SetUnit(unit, true);
       RelieveWay(unit, step.extraction_W);

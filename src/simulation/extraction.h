@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact/scene.h"
+#include "planning/way.h"
 #include "simulation/face_reliefs.h"
 #include "simulation/sequence.h"
 
@@ -16,6 +17,9 @@ namespace hvas::simulation {
 
 /** Parts that move as one: a single part, or what is there of a subassembly. The first leads. */
 using Unit = std::vector<product::OccurrenceId>;
+
+/** The parts that move in a step, the leading one first. */
+[[nodiscard]] Unit UnitOf(const SequenceStep& step);
 
 /** A part that stands in the way of a unit along a direction. */
 struct Obstacle {
@@ -150,6 +154,10 @@ class Extraction {
   /** Lists the mates with parts present that forbid a direction. */
   [[nodiscard]] std::vector<product::MateId> ListForbidding(product::OccurrenceId id,
                                                             const Vec3& direction) const;
+
+  /** Whether a way of poses X_WB of a part meets nothing that is there, deeper than it may. */
+  [[nodiscard]] bool IsWayFree(product::OccurrenceId id,
+                               const std::vector<spatial::Pose>& way) const;
 
   /** How many looks at parts all calls have taken so far. */
   [[nodiscard]] std::uint64_t looks() const { return looks_ + straight_looks_; }
@@ -324,6 +332,8 @@ class Extraction {
     product::OccurrenceId stopped_by;
   };
 
+  /** A part among those that are there, with what it is allowed. */
+  [[nodiscard]] planning::WayProblem MakeWayProblem(product::OccurrenceId id) const;
   /** Searches for a way that turns, with as many looks at most. */
   [[nodiscard]] std::optional<SequenceStep> FindTurningWay(product::OccurrenceId id,
                                                            std::uint64_t budget);

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "mates/mate_kind.h"
+#include "planning/check_way.h"
 #include "planning/way.h"
 #include "simulation/extraction.h"
 #include "simulation/turning_way.h"
@@ -29,7 +30,7 @@ bool Extraction::IsHeldFirmly(OccurrenceId id) const {
   });
 }
 
-std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uint64_t budget) {
+planning::WayProblem Extraction::MakeWayProblem(OccurrenceId id) const {
   planning::WayProblem problem;
   problem.scene = input_.scene;
   problem.part = input_.shapes[id.index()];
@@ -37,6 +38,16 @@ std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uin
   problem.X_WB_start = product_.occurrences[id.index()].X_WB;
   problem.allowances = allowances_[id.index()];
   problem.tolerance = kDepthTolerance;
+  return problem;
+}
+
+bool Extraction::IsWayFree(OccurrenceId id, const sweep::Path& way) const {
+  const planning::WayProblem problem = MakeWayProblem(id);
+  return planning::CheckWay(problem, way, planning::CheckStepOf(problem.tolerance)).is_free;
+}
+
+std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uint64_t budget) {
+  planning::WayProblem problem = MakeWayProblem(id);
   problem.directions_W = ListDirections({id});
   for (const MateView& view : mates_of_[id.index()]) {
     if (view.mate->kind == MateKind::kAxisHole && IsAround(view.other)) {

@@ -6,7 +6,6 @@
 #include <map>
 #include <utility>
 
-#include "planning/check_way.h"
 #include "simulation/gap_proof.h"
 #include "simulation/giving_width.h"
 
@@ -18,12 +17,6 @@ using product::OccurrenceId;
 
 bool Contains(const Unit& unit, OccurrenceId id) {
   return std::find(unit.begin(), unit.end(), id) != unit.end();
-}
-
-Unit UnitOf(const SequenceStep& step) {
-  Unit unit{step.occurrence};
-  unit.insert(unit.end(), step.members.begin(), step.members.end());
-  return unit;
 }
 
 /** A straight way out, and what is met on it. */
@@ -68,7 +61,6 @@ class GapExplainer {
   void KeepWhatStays();
   /** Takes the parts of a step out, along its own way, or a single part along any straight one. */
   [[nodiscard]] bool TakeOut(const SequenceStep& step);
-  [[nodiscard]] bool IsWayFree(const SequenceStep& step) const;
 
   /** How a way may be, besides straight. */
   struct Freedom {
@@ -163,23 +155,10 @@ std::optional<Unit> GapExplainer::FindEarlier() const {
   return std::nullopt;
 }
 
-bool GapExplainer::IsWayFree(const SequenceStep& step) const {
-  planning::WayProblem problem;
-  const std::vector<contact::Allowance> allowances =
-      ListAllowances(model_.sequence.overlaps, model_.sequence.gives, step.occurrence);
-  problem.scene = &scene_;
-  problem.part = input_.shapes[step.occurrence.index()];
-  problem.self = contact::BodyId(step.occurrence.index());
-  problem.X_WB_start = product_.occurrences[step.occurrence.index()].X_WB;
-  problem.allowances = allowances;
-  problem.tolerance = kDepthTolerance;
-  return planning::CheckWay(problem, step.way, planning::CheckStepOf(problem.tolerance)).is_free;
-}
-
 bool GapExplainer::TakeOut(const SequenceStep& step) {
   const Unit unit = UnitOf(step);
   if (!step.way.empty()) {
-    if (!IsWayFree(step)) {
+    if (!extraction_->IsWayFree(step.occurrence, step.way)) {
       return false;
     }
     extraction_->SetPresent(unit, false);

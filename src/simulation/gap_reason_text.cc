@@ -30,17 +30,6 @@ std::string JoinPaths(const Model& model, const Unit& unit) {
   return text;
 }
 
-std::string DescribeDirection(const Vec3& direction_W) {
-  constexpr double kAlong = 1 - 1e-6;  // Cosine of a milliradian.
-  for (int k = 0; k < 3; ++k) {
-    if (std::abs(direction_W[k]) > kAlong) {
-      return std::string(direction_W[k] > 0 ? "+" : "-") + "xyz"[k];
-    }
-  }
-  return fmt::format("({:.3f}, {:.3f}, {:.3f})", direction_W.x() + 0.0, direction_W.y() + 0.0,
-                     direction_W.z() + 0.0);
-}
-
 std::string DescribeWay(const Model& model, const GapReason& reason) {
   if (reason.stops.empty() && !reason.mates.empty()) {
     Unit partners;

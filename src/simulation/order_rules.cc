@@ -46,8 +46,7 @@ class RuleFinder {
         continue;
       }
       FreeMove move;
-      move.parts = step->members;
-      move.parts.insert(move.parts.begin(), step->occurrence);
+      move.parts = UnitOf(*step);
       for (const OccurrenceId part : move.parts) {
         move_of_[part] = rules_.moves.size();
       }

@@ -75,22 +75,55 @@ unsigned SideOf(const Vec3& up_W) {
   return ListSides(up_W);
 }
 
+/** Counts what makes an order worse, move by move: from its beginning or from its end. */
+class OrderCounter {
+ public:
+  /** @param sides  The sides that may be upwards at first, one bit each. */
+  explicit OrderCounter(unsigned sides) : sides_(sides) {}
+
+  /** @param tool  The tool of the move; it outlives this object. Empty: none. */
+  void Add(const Vec3& extraction_W, std::string_view tool, bool is_loose) {
+    const unsigned own = ListSides(extraction_W);
+    counts_.turns += (sides_ & own) == 0 ? 1 : 0;
+    sides_ = (sides_ & own) == 0 ? own : sides_ & own;
+    counts_.direction_changes +=
+        last_W_ != Vec3::Zero() && extraction_W.dot(last_W_) < kSameWay ? 1 : 0;
+    last_W_ = extraction_W;
+    counts_.tool_changes += !tool.empty() && !tool_.empty() && tool != tool_ ? 1 : 0;
+    tool_ = tool.empty() ? tool_ : tool;
+    counts_.loose += is_loose ? 1 : 0;
+  }
+
+  [[nodiscard]] const OrderCounts& counts() const { return counts_; }
+
+  [[nodiscard]] const Vec3& last_W() const { return last_W_; }
+
+  /** What later moves count by, but for the counts so far. */
+  [[nodiscard]] auto Key() const {
+    return std::tuple(sides_, std::array{last_W_.x(), last_W_.y(), last_W_.z()}, tool_);
+  }
+
+ private:
+  unsigned sides_;             // That may be upwards since the product was last turned.
+  Vec3 last_W_{Vec3::Zero()};  // The way of the last move; zero: none.
+  std::string_view tool_;      // The last one that was needed; empty: none.
+  OrderCounts counts_;
+};
+
+constexpr unsigned kAllSides = (1U << kSides) - 1;  // One bit a side.
+
 /** A product that is partly taken apart. */
 struct State {
   MoveSet present;
   std::vector<std::pair<std::size_t, std::size_t>> removed;  // Moves and their ways.
-  unsigned sides{(1U << kSides) - 1};  // That may be upwards since the product was last turned.
-  Vec3 last_W{Vec3::Zero()};           // The way of the last one; zero: none.
-  std::string_view tool;               // The last one that was needed; empty: none.
-  OrderCounts counts;
-  double cost{0};
+  OrderCounter counter{kAllSides};
 };
 
 struct Candidate {
   std::size_t state;
   std::size_t move;
   std::size_t way;
-  OrderCounts counts;
+  OrderCounter counter;
   double cost;
 };
 
@@ -191,7 +224,7 @@ class BeamSearch {
       if (state.present.Meets(obstacles_[move][w])) {
         continue;
       }
-      if (ways[w].step.extraction_W.dot(state.last_W) > kSameWay) {
+      if (ways[w].step.extraction_W.dot(state.counter.last_W()) > kSameWay) {
         return w;
       }
       first = first ? first : w;
@@ -210,19 +243,6 @@ class BeamSearch {
     return ListCutParts(nodes, holders_);
   }
 
-  [[nodiscard]] OrderCounts CountWith(const State& state, std::size_t move, std::size_t way,
-                                      bool is_carrying) const {
-    OrderCounts counts = state.counts;
-    const Vec3& out_W = rules_.moves[move].ways[way].step.extraction_W;
-    counts.turns += (state.sides & ListSides(out_W)) == 0 ? 1 : 0;
-    counts.direction_changes +=
-        state.last_W != Vec3::Zero() && out_W.dot(state.last_W) < kSameWay ? 1 : 0;
-    const std::string_view tool = ToolOf(move);
-    counts.tool_changes += !tool.empty() && !state.tool.empty() && tool != state.tool ? 1 : 0;
-    counts.loose += is_carrying ? 1 : 0;
-    return counts;
-  }
-
   void ListCandidates(const State& state, std::size_t index, std::vector<Candidate>* candidates) {
     const std::vector<OccurrenceId> carrying = ListCarrying(state);
     for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
@@ -236,29 +256,25 @@ class BeamSearch {
       }
       const bool is_carrying =
           std::binary_search(carrying.begin(), carrying.end(), OccurrenceId(m + 1));
-      const OrderCounts counts = CountWith(state, m, *way, is_carrying);
-      candidates->push_back({index, m, *way, counts, CalcCost(counts, options_.weights)});
+      OrderCounter counter = state.counter;
+      counter.Add(rules_.moves[m].ways[*way].step.extraction_W, ToolOf(m), is_carrying);
+      const double cost = CalcCost(counter.counts(), options_.weights);
+      candidates->push_back({index, m, *way, counter, cost});
     }
   }
 
-  [[nodiscard]] State Remove(const State& state, const Candidate& candidate) const {
+  [[nodiscard]] static State Remove(const State& state, const Candidate& candidate) {
     State next = state;
-    const Vec3& out_W = rules_.moves[candidate.move].ways[candidate.way].step.extraction_W;
     next.present.Clear(candidate.move);
     next.removed.emplace_back(candidate.move, candidate.way);
-    const unsigned sides = ListSides(out_W);
-    next.sides = (state.sides & sides) == 0 ? sides : state.sides & sides;
-    next.last_W = out_W;
-    next.tool = ToolOf(candidate.move).empty() ? state.tool : ToolOf(candidate.move);
-    next.counts = candidate.counts;
-    next.cost = candidate.cost;
+    next.counter = candidate.counter;
     return next;
   }
 
   /** One round of the search. @returns false where it found no order, or was ended. */
   bool Run(std::size_t width, OrderSearch* search) {
     const std::size_t count = rules_.moves.size();
-    State start{MoveSet(count), {}, (1U << kSides) - 1, Vec3::Zero(), {}, {}, 0};
+    State start{MoveSet(count), {}};
     for (std::size_t m = 0; m < count; ++m) {
       start.present.Set(m);
     }
@@ -285,11 +301,10 @@ class BeamSearch {
                          return std::tuple(a.cost, b.move) < std::tuple(b.cost, a.move);
                        });
       std::vector<State> next;
-      std::set<std::tuple<MoveSet, unsigned, std::array<double, 3>, std::string_view>> known;
+      std::set<std::pair<MoveSet, decltype(std::declval<OrderCounter>().Key())>> known;
       for (const Candidate& candidate : candidates) {
         State state = Remove(beam[candidate.state], candidate);
-        const std::array<double, 3> last{state.last_W.x(), state.last_W.y(), state.last_W.z()};
-        if (known.emplace(state.present, state.sides, last, state.tool).second) {
+        if (known.emplace(state.present, state.counter.Key()).second) {
           next.push_back(std::move(state));
         }
         if (next.size() == width) {
@@ -363,31 +378,19 @@ OrderSearch FindOrders(const OrderRules& rules, const OrderSearchOptions& option
 
 OrderCounts CountOrder(const OrderRules& rules, const std::vector<std::string>& tools,
                        const Vec3& up_W, const FoundOrder& order) {
-  OrderCounts counts;
-  unsigned sides = SideOf(up_W);
-  Vec3 last_W = Vec3::Zero();
-  std::string_view tool;
+  OrderCounter counter(SideOf(up_W));
   std::vector<bool> is_there(rules.moves.size(), false);
   for (std::size_t i = 0; i < order.moves.size(); ++i) {
     const std::size_t m = order.moves[i];
     const FreeMove& move = rules.moves[m];
-    const Vec3& out_W = move.ways[order.ways[i]].step.extraction_W;
-    const unsigned own = ListSides(out_W);
-    counts.turns += (sides & own) == 0 ? 1 : 0;
-    sides = (sides & own) == 0 ? own : sides & own;
-    counts.direction_changes += last_W != Vec3::Zero() && out_W.dot(last_W) < kSameWay ? 1 : 0;
-    last_W = out_W;
-    const std::string_view own_tool =
-        tools.empty() ? std::string_view() : std::string_view(tools[m]);
-    counts.tool_changes += !own_tool.empty() && !tool.empty() && own_tool != tool ? 1 : 0;
-    tool = own_tool.empty() ? tool : own_tool;
     const bool is_held =
         move.is_held_by_base || std::any_of(move.neighbours.begin(), move.neighbours.end(),
                                             [&](std::size_t other) { return is_there[other]; });
-    counts.loose += is_held ? 0 : 1;
+    const std::string_view tool = tools.empty() ? std::string_view() : std::string_view(tools[m]);
+    counter.Add(move.ways[order.ways[i]].step.extraction_W, tool, !is_held);
     is_there[m] = true;
   }
-  return counts;
+  return counter.counts();
 }
 
 std::vector<std::size_t> ListBlocking(const OrderRules& rules,

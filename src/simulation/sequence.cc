@@ -1,6 +1,7 @@
 #include "simulation/sequence.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -401,6 +402,17 @@ OccurrenceId FindBase(const Sequence& sequence) {
       std::find_if(sequence.steps.rbegin(), sequence.steps.rend(),
                    [](const SequenceStep& step) { return step.kind == SequenceStep::Kind::kBase; });
   return base == sequence.steps.rend() ? OccurrenceId() : base->occurrence;
+}
+
+std::string DescribeDirection(const Vec3& direction_W) {
+  constexpr double kAlong = 1 - 1e-6;  // Cosine that counts as along an axis: 0.1 degrees.
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(direction_W[k]) > kAlong) {
+      return fmt::format("{}{}", direction_W[k] > 0 ? "+" : "-", kNames[k]);
+    }
+  }
+  return fmt::format("{:.2f} {:.2f} {:.2f}", direction_W.x(), direction_W.y(), direction_W.z());
 }
 
 Result<Sequence> Reorder(const product::Product& product, const Sequence& sequence,

@@ -138,6 +138,9 @@ struct SequenceInput {
  turn. Deterministic. Disables bodies of the scene as it goes. */
 [[nodiscard]] Sequence PlanSequence(const SequenceInput& input);
 
+/** Describes a direction for people: "+z" along an axis of W, else the components. */
+[[nodiscard]] std::string DescribeDirection(const Vec3& direction_W);
+
 /** Re-orders: parts named (or given by path or index "o12") first, in the order given; the others
  follow in the order found. Subassemblies that are put together first stay first.
  Errors: kNotFound for a name that matches nothing that can be moved. */

@@ -187,6 +187,10 @@ double SimulatedPerson::TravelOf(const spatial::Pose& X_WG) const noexcept {
                               : (X_WG.p() - task_.X_WG_goal.p()).dot(task_.extraction_W);
 }
 
+double SimulatedPerson::SeenTravel(const OperatorInput& input) const noexcept {
+  return TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG});
+}
+
 Vec3 SimulatedPerson::OutwardOfWay() const noexcept {
   if (task_.way == nullptr) {
     return task_.extraction_W;
@@ -251,7 +255,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     phase_time_s_ = 0;
     return;
   }
-  const double seen_travel = TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG});
+  const double seen_travel = SeenTravel(input);
   if (input.sees_part && seen_travel <= task_.turn_back) {
     phase_ = Phase::kRest;
     phase_time_s_ = 0;
@@ -416,7 +420,7 @@ bool SimulatedPerson::HasSlotToFind() const noexcept {
 }
 
 void SimulatedPerson::CorrectTwist(const OperatorInput& input, const Vec3& d) noexcept {
-  const Quat& q_wanted = WayAt(TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG})).q();
+  const Quat& q_wanted = WayAt(SeenTravel(input)).q();
   const Vec3 turned =
       spatial::RotationBetween(q_wanted, input.X_WD.q()) + seen_turn_error_ - rocking_;
   aim_turn_ -= dt_ / kTwistTime * turned.dot(d) * d;
@@ -435,9 +439,8 @@ void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
   const Vec3 wanted = tilt * (spatial::FrameFromZ(d) * axis);
   const Vec3 step = dt_ / kRockingLag * (wanted - rocking_);
   // A light touch: what the part meets on its way round holds the hand up.
-  const bool is_held_up = is_twisting &&
-                          spatial::RotationBetween(X_WH_.q(), q_ref_).dot(step) > 0 &&
-                          spatial::RotationBetween(X_WH_.q(), q_ref_).norm() > kMostTwistLag;
+  const Vec3 lag = spatial::RotationBetween(X_WH_.q(), q_ref_);
+  const bool is_held_up = is_twisting && lag.dot(step) > 0 && lag.norm() > kMostTwistLag;
   if (!is_held_up) {
     rocking_ += step;
   }
@@ -445,7 +448,7 @@ void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
 
 void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
   const Vec3 d = OutwardOfWay();
-  const double seen_travel = TravelOf({input.X_WD.q(), input.X_WD * task_.p_BG});
+  const double seen_travel = SeenTravel(input);
   // Where nothing is engaged yet the part is where the hand wants it, but for what it errs by.
   const bool is_free = task_.way != nullptr && !is_guided_ && seen_travel > task_.engage_distance;
   const spatial::Pose X_WG =

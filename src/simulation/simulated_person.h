@@ -170,6 +170,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] spatial::Pose WayAt(double travel) const noexcept;
   /** How far from the goal along the way a grip is [m]. */
   [[nodiscard]] double TravelOf(const spatial::Pose& X_WG) const noexcept;
+  /** The travel at which the part is seen [m]. */
+  [[nodiscard]] double SeenTravel(const OperatorInput& input) const noexcept;
   /** The direction outward of the way, there where the reference is. */
   [[nodiscard]] Vec3 OutwardOfWay() const noexcept;
   /** How fast what moves at the hand goes outward along the way, as far as it can tell [m/s]. */

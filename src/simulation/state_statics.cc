@@ -422,32 +422,35 @@ Result<StateStability> StateStatics::CalcStability(const std::vector<bool>& is_i
     }
   }
 
-  auto equilibrium = statics::SolveEquilibrium(problem);
-  if (!equilibrium) {
-    return Unexpected(equilibrium.error());
-  }
   StateStability stability;
-  stability.stands = equilibrium->stands;
-  stability.is_least_proven = equilibrium->stands;
+  statics::Equilibrium equilibrium;
+  if (options.finds_least_holds) {
+    auto holds = statics::FindLeastHolds(problem);
+    if (!holds) {
+      return Unexpected(holds.error());
+    }
+    equilibrium = std::move(holds->unheld);
+    for (const int body : holds->bodies) {
+      stability.holds.push_back(occurrence_of[static_cast<std::size_t>(body)]);
+    }
+    stability.least = holds->least;
+    stability.is_least_proven = holds->is_proven;
+  } else {
+    auto found = statics::SolveEquilibrium(problem);
+    if (!found) {
+      return Unexpected(found.error());
+    }
+    equilibrium = std::move(*found);
+    stability.is_least_proven = equilibrium.stands;
+  }
+  stability.stands = equilibrium.stands;
   stability.contact_count = problem.contacts.size();
   stability.joint_count = problem.joints.size();
   for (std::size_t i = 0; i < occurrence_of.size(); ++i) {
-    if (equilibrium->moves[i]) {
+    if (equilibrium.moves[i]) {
       stability.moving.push_back(occurrence_of[i]);
     }
   }
-  if (stability.stands || !options.finds_least_holds) {
-    return stability;
-  }
-  auto holds = statics::FindLeastHolds(problem);
-  if (!holds) {
-    return Unexpected(holds.error());
-  }
-  for (const int body : holds->bodies) {
-    stability.holds.push_back(occurrence_of[static_cast<std::size_t>(body)]);
-  }
-  stability.least = holds->least;
-  stability.is_least_proven = holds->is_proven;
   return stability;
 }
 

@@ -169,6 +169,9 @@ Result<LeastHolds> FindLeastHolds(const StaticProblem& problem, const StaticOpti
     if (!answer) {
       return Unexpected(answer.error());
     }
+    if (chosen.empty()) {
+      holds.unheld = *answer;
+    }
     if (answer->stands) {
       std::sort(chosen.begin(), chosen.end());
       holds.bodies = std::move(chosen);

@@ -14,6 +14,7 @@ struct LeastHolds {
   int least{0};             ///< It is proved that fewer than these do not suffice.
   bool is_proven{false};    ///< `bodies` are as few as `least`.
   int programmes{0};        ///< Linear programmes that were solved.
+  Equilibrium unheld;       ///< The answer where nothing is held, as SolveEquilibrium() gives it.
 };
 
 /** Finds the least number of bodies that have to be held. A hold takes any wrench.

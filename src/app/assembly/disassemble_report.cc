@@ -122,7 +122,7 @@ void PrintDisassemblyTable(const Model& model, const DisassemblyPlan& plan,
     }
     const std::string waiting = DescribeWaiting(model, *removal);
     const std::string gap = waiting.empty() || part.note.empty() ? "" : "; ";
-    table.Add({number, name, DescribeDirection(removal->step.extraction_W),
+    table.Add({number, name, simulation::DescribeDirection(removal->step.extraction_W),
                fmt::format("{:.1f}", units::ToMm(removal->way_length)),
                fmt::format("{:.1f}", removal->breakaway), fmt::format("{:.1f}", part.fit_true),
                fmt::format("{:.1f}", part.peak_true), fmt::format("{:.2f}", part.peak_felt),

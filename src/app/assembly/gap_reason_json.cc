@@ -13,7 +13,8 @@ using simulation::MetFaces;
 using simulation::Model;
 
 nlohmann::ordered_json ListElements(const Vec3& direction_W) {
-  return nlohmann::ordered_json::array({direction_W.x(), direction_W.y(), direction_W.z()});
+  const Vec3 plain_W = direction_W + Vec3::Zero();  // A zero has no sign for people.
+  return nlohmann::ordered_json::array({plain_W.x(), plain_W.y(), plain_W.z()});
 }
 
 nlohmann::ordered_json ListPaths(const Model& model, const simulation::Unit& unit) {

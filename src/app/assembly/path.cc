@@ -18,6 +18,7 @@
 #include "app/assembly/path_clearance.h"
 #include "app/assembly/poses.h"
 #include "app/output/json_flag.h"
+#include "app/output/new_file.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/product/load_product.h"
@@ -82,13 +83,7 @@ Result<void> Check(const PathOptions& options) {
                     ? "choose a file name with one of these extensions"
                     : "choose a file name with one of these extensions, or add --swept");
   }
-  std::error_code error;
-  if (!options.is_forced &&
-      std::filesystem::exists(std::filesystem::symlink_status(options.output, error))) {
-    return Fail(ErrorCode::kInvalid, "the file exists already", options.output.string(),
-                "choose another name, or replace it with --force");
-  }
-  return {};
+  return CheckNewFile(options.output, options.is_forced);
 }
 
 Result<TimedPath> FindPath(const PathOptions& options, const Product& product,

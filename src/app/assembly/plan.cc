@@ -9,6 +9,7 @@
 #include "app/assembly/plan_report.h"
 #include "app/end_watch.h"
 #include "app/output/json_flag.h"
+#include "app/output/new_file.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/recording/page_file.h"
@@ -21,15 +22,16 @@ namespace {
 constexpr int kNotAllPlanned = 2;  // The exit status where a part is left out.
 
 Result<void> CheckOutput(const PlanCommandOptions& options) {
-  if (options.output.empty() || options.output.extension() != ".json") {
-    return options.output.empty() ? Result<void>()
-                                  : CheckPageFile(options.output, options.is_replaced);
+  if (options.output.empty()) {
+    return {};
   }
-  if (std::filesystem::exists(options.output) && !options.is_replaced) {
-    return Fail(ErrorCode::kInvalid, "this file is there already", options.output.string(),
-                "choose another name, or replace it with --force");
+  const std::filesystem::path ending = options.output.extension();
+  if (ending != ".json" && ending != ".html" && ending != ".pdf") {
+    return Fail(ErrorCode::kInvalid,
+                "the file name has no extension of a format that can be written",
+                options.output.string(), "use the extension .json, .html or .pdf");
   }
-  return {};
+  return CheckNewFile(options.output, options.is_replaced);
 }
 
 Result<void> WriteOutput(const PlanCommandOptions& options, const PlanReport& report) {

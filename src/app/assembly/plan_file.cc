@@ -1,8 +1,6 @@
 #include "app/assembly/plan_file.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -11,6 +9,7 @@
 
 #include "base/regular_file.h"
 #include "session/command_json.h"
+#include "simulation/step_check.h"
 
 namespace hvas::app {
 namespace {
@@ -18,58 +17,7 @@ namespace {
 // 500 parts with ways of 1,000 poses each have a tenth of this.
 constexpr std::size_t kLargestPlan = 1'000'000'000;
 
-using product::OccurrenceId;
 using simulation::SequenceStep;
-
-constexpr double kBeyondAll = 1e4;  // [m]: farther than any product, and no overflow on the way.
-
-/** Follows a plan in thought: parts are taken up, put in and set aside as a session does it. */
-class PlanCheck {
- public:
-  explicit PlanCheck(std::size_t part_count) : states_(part_count, State::kLoose) {}
-
-  /** @returns whether the step can come next. */
-  [[nodiscard]] bool Follow(const SequenceStep& step) {
-    const bool is_sound = std::abs(step.extraction_W.norm() - 1) < 1e-6 &&
-                          step.engage_distance >= 0 && step.engage_distance < kBeyondAll &&
-                          step.offset_W.norm() < kBeyondAll;
-    const bool has_sound_way =
-        std::all_of(step.way.begin(), step.way.end(), [](const spatial::Pose& X_WB) {
-          return X_WB.p().norm() < kBeyondAll && std::abs(X_WB.q().norm() - 1) < 1e-6;
-        });
-    if (!is_sound || !has_sound_way) {
-      return false;
-    }
-    switch (step.kind) {
-      case SequenceStep::Kind::kBase:
-        return step.members.empty() && Move(step, State::kLoose, State::kPlaced);
-      case SequenceStep::Kind::kInsert:
-        return Move(step, step.members.empty() ? State::kLoose : State::kParked, State::kPlaced);
-      case SequenceStep::Kind::kPark:
-        return Move(step, State::kPlaced, State::kParked);
-      case SequenceStep::Kind::kRemove:
-        return false;  // A person's own wish, and no plan's.
-    }
-    return false;
-  }
-
- private:
-  enum class State : std::uint8_t { kLoose, kPlaced, kParked };
-
-  bool Move(const SequenceStep& step, State from, State to) {
-    std::vector<OccurrenceId> parts = step.members;
-    parts.push_back(step.occurrence);
-    for (const OccurrenceId part : parts) {
-      if (states_[part.index()] != from) {
-        return false;
-      }
-      states_[part.index()] = to;
-    }
-    return true;
-  }
-
-  std::vector<State> states_;
-};
 
 /** A step without signs of zeros, which people would wonder at. */
 SequenceStep WithoutSignedZeros(SequenceStep step) {
@@ -124,17 +72,8 @@ Result<std::vector<simulation::SequenceStep>> ReadPlan(const std::filesystem::pa
   if (!steps) {
     return Fail(steps.error().code, steps.error().message, file.string(), kRemedy);
   }
-  if (steps->empty() || steps->front().kind != SequenceStep::Kind::kBase) {
-    return Fail(ErrorCode::kUnreadable, "the plan does not begin with a base", file.string(),
-                kRemedy);
-  }
-  PlanCheck check(parts.size());
-  for (std::size_t i = 0; i < steps->size(); ++i) {
-    if (!check.Follow((*steps)[i])) {
-      return Fail(ErrorCode::kInvalid,
-                  fmt::format("step {} of the plan cannot come where it stands", i + 1),
-                  file.string(), kRemedy);
-    }
+  if (const auto checked = simulation::CheckSteps(*steps, parts.size()); !checked) {
+    return Fail(checked.error().code, checked.error().message, file.string(), kRemedy);
   }
   return steps;
 }

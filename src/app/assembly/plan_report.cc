@@ -1,6 +1,7 @@
 #include "app/assembly/plan_report.h"
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
@@ -208,6 +209,100 @@ std::string DescribeSearch(const assembly::OrderPlan& plan) {
                      plan.search.tries, plan.search.is_ended_early ? ", ended early" : "");
 }
 
+/** A move of the best order as tables show it. */
+struct MoveRow {
+  std::string part;  // The leading part, and how many move with it.
+  std::string way;
+  std::string tool;           // Empty: none.
+  std::string holds;          // What has to be held after it; empty: nothing, or not known.
+  std::vector<Arrow> arrows;  // What it has to come before, but for what others imply.
+};
+
+std::vector<MoveRow> ListRows(const PlanReport& report) {
+  const simulation::Model& model = *report.model;
+  const assembly::OrderPlan& plan = *report.plan;
+  const FoundOrder& best = BestOf(plan);
+  const std::vector<Arrow> arrows = ListArrows(plan);
+  std::vector<MoveRow> rows;
+  for (std::size_t i = 0; i < best.moves.size(); ++i) {
+    const std::size_t m = best.moves[i];
+    const simulation::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
+    MoveRow& row = rows.emplace_back();
+    row.part = PathOf(model, step.occurrence);
+    row.part += step.members.empty() ? "" : fmt::format(" and {} more", step.members.size());
+    row.way = step.way.empty() ? simulation::DescribeDirection(step.extraction_W) : "turns";
+    row.tool = plan.tools[m];
+    const auto& holds = HoldsAfter(plan, i);
+    row.holds = holds ? DescribeParts(model, *holds) : "";
+    std::copy_if(arrows.begin(), arrows.end(), std::back_inserter(row.arrows),
+                 [m](const Arrow& arrow) { return arrow.first == m && !arrow.is_implied; });
+  }
+  return rows;
+}
+
+/** The leading part of what comes after a move. */
+const std::string& PathOfLater(const PlanReport& report, const Arrow& arrow) {
+  return PathOf(*report.model, report.plan->rules.moves[arrow.then].parts.front());
+}
+
+std::string MakeOrderTable(const PlanReport& report) {
+  std::string html =
+      "<h2>Order</h2>\n<div class=\"scroll\"><table><tr><th>#</th><th class=\"l\">part</th>"
+      "<th class=\"l\">way out</th><th class=\"l\">tool</th><th class=\"l\">to hold after it</th>"
+      "<th class=\"l\">has to come before</th></tr>\n";
+  html += fmt::format(
+      "<tr><td>0</td><td class=\"l\">{}</td><td "
+      "class=\"l\">base</td><td></td><td></td><td></td></tr>\n",
+      Escape(PathOf(*report.model, simulation::FindBase(report.model->sequence))));
+  int number = 0;
+  for (const MoveRow& row : ListRows(report)) {
+    std::string before;
+    for (const Arrow& arrow : row.arrows) {
+      if (arrow.obstacle == nullptr) {
+        continue;
+      }
+      before += fmt::format("{}{}<span class=\"soft\">, {}{}</span>", before.empty() ? "" : "<br>",
+                            Escape(PathOfLater(report, arrow)),
+                            arrow.obstacle->mate.is_valid()
+                                ? "a mate leaves no way in"
+                                : fmt::format("met {:.1f} mm before the place",
+                                              units::ToMm(arrow.obstacle->travelled)),
+                            arrow.is_certain ? "" : ", on this way");
+    }
+    html += fmt::format(
+        "<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
+        "<td class=\"l\">{}</td><td class=\"l\">{}</td></tr>\n",
+        ++number, Escape(row.part), row.way, Escape(row.tool), Escape(row.holds), before);
+  }
+  return html + "</table></div>\n";
+}
+
+std::string MakeComparison(const assembly::OrderPlan& plan) {
+  std::string html = "<h2>Orders compared</h2>\n<ul>\n";
+  for (std::size_t i = 0; i < plan.search.orders.size(); ++i) {
+    const FoundOrder& order = plan.search.orders[i];
+    html += fmt::format("<li>{}{}</li>\n", DescribeCounts(order.counts, order.cost),
+                        DescribeHolds(plan, i));
+  }
+  return html + fmt::format("<li>{} <span class=\"soft\">(as first found)</span></li>\n</ul>\n",
+                            DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
+}
+
+/** What is left out, and why; empty where nothing is. */
+std::string MakeLeftOut(const PlanReport& report) {
+  const std::vector<simulation::SequenceGap>& gaps = report.model->sequence.gaps;
+  std::string html;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    html += fmt::format("<li><span class=\"bad\">{}</span>: {}",
+                        Escape(PathOf(*report.model, gaps[i].occurrence)), Escape(gaps[i].reason));
+    for (const std::string& line : ListReasonLines(report, i)) {
+      html += "<br>" + Escape(line);
+    }
+    html += "</li>\n";
+  }
+  return html.empty() ? html : "<h2>Left out</h2>\n<ul>\n" + html + "</ul>\n";
+}
+
 }  // namespace
 
 nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
@@ -252,38 +347,25 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
 void PrintPlanTable(const PlanReport& report) {
   const simulation::Model& model = *report.model;
   const assembly::OrderPlan& plan = *report.plan;
-  const FoundOrder& best = BestOf(plan);
   TextTable table({"  #", "part", "way", "tool"}, 2);
   table.Add({"  0", PathOf(model, simulation::FindBase(model.sequence)), "base", ""});
-  const std::vector<Arrow> arrows = ListArrows(plan);
-  for (std::size_t i = 0; i < best.moves.size(); ++i) {
-    const std::size_t m = best.moves[i];
-    const simulation::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
+  int number = 0;
+  for (const MoveRow& row : ListRows(report)) {
     std::string below;
-    const auto first = std::find_if(arrows.begin(), arrows.end(),
-                                    [m](const Arrow& a) { return a.first == m && !a.is_implied; });
-    if (first != arrows.end()) {
-      const auto count = std::count_if(arrows.begin(), arrows.end(), [m](const Arrow& a) {
-        return a.first == m && !a.is_implied;
-      });
+    if (!row.arrows.empty()) {
+      const Arrow& first = row.arrows.front();
       below =
-          fmt::format("before {}: {}", PathOf(model, plan.rules.moves[first->then].parts.front()),
-                      DescribeReason(report, *first));
-      below += count > 1 ? fmt::format("; and before {} more", count - 1) : "";
+          fmt::format("before {}: {}", PathOfLater(report, first), DescribeReason(report, first));
+      below +=
+          row.arrows.size() > 1 ? fmt::format("; and before {} more", row.arrows.size() - 1) : "";
     }
-    if (const auto& holds = HoldsAfter(plan, i); holds && !holds->empty()) {
-      below += below.empty() ? "" : "; ";
-      below += "hold " + DescribeParts(model, *holds);
+    if (!row.holds.empty()) {
+      below += (below.empty() ? "hold " : "; hold ") + row.holds;
     }
-    const std::string way = step.way.empty() ? DescribeDirection(step.extraction_W) : "turns";
-    const std::string members =
-        step.members.empty() ? "" : fmt::format(" and {} more", step.members.size());
-    table.Add(
-        {fmt::format("{:3}", i + 1), PathOf(model, step.occurrence) + members, way, plan.tools[m]},
-        below);
+    table.Add({fmt::format("{:3}", ++number), row.part, row.way, row.tool}, below);
   }
   fmt::print("{}\n", table.ToText());
-  PrintOrder("Best order: ", best, DescribeHolds(plan, 0));
+  PrintOrder("Best order: ", BestOf(plan), DescribeHolds(plan, 0));
   PrintOrder("As first found: ", plan.search.planned, "");
   for (std::size_t i = 1; i < plan.search.orders.size(); ++i) {
     PrintOrder(fmt::format("Alternative {}: ", i), plan.search.orders[i], DescribeHolds(plan, i));
@@ -304,7 +386,6 @@ std::string MakePlanPage(const PlanReport& report) {
   const simulation::Model& model = *report.model;
   const assembly::OrderPlan& plan = *report.plan;
   const FoundOrder& best = BestOf(plan);
-  const std::vector<Arrow> arrows = ListArrows(plan);
   std::string body = fmt::format(
       "<h1>{}: plan of the assembly</h1>\n<ul class=\"tiles\">{}{}{}{}{}</ul>\n",
       Escape(model.product->name), MakeTile("moves", fmt::format("{}", best.moves.size())),
@@ -312,58 +393,7 @@ std::string MakePlanPage(const PlanReport& report) {
       MakeTile("turns of the product", fmt::format("{}", best.counts.turns)),
       MakeTile("changes of direction", fmt::format("{}", best.counts.direction_changes)),
       MakeTile("changes of tool", fmt::format("{}", best.counts.tool_changes)));
-  body +=
-      "<h2>Order</h2>\n<div class=\"scroll\"><table><tr><th>#</th><th class=\"l\">part</th>"
-      "<th class=\"l\">way out</th><th class=\"l\">tool</th><th class=\"l\">to hold after "
-      "it</th><th class=\"l\">has to come "
-      "before</th></tr>\n";
-  body += fmt::format(
-      "<tr><td>0</td><td class=\"l\">{}</td><td "
-      "class=\"l\">base</td><td></td><td></td><td></td></tr>\n",
-      Escape(PathOf(model, simulation::FindBase(model.sequence))));
-  for (std::size_t i = 0; i < best.moves.size(); ++i) {
-    const std::size_t m = best.moves[i];
-    const simulation::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
-    std::string before;
-    for (const Arrow& arrow : arrows) {
-      if (arrow.first == m && arrow.obstacle != nullptr && !arrow.is_implied) {
-        before += fmt::format(
-            "{}{}<span class=\"soft\">, {}{}</span>", before.empty() ? "" : "<br>",
-            Escape(PathOf(model, plan.rules.moves[arrow.then].parts.front())),
-            arrow.obstacle->mate.is_valid() ? "a mate leaves no way in"
-                                            : fmt::format("met {:.1f} mm before the place",
-                                                          units::ToMm(arrow.obstacle->travelled)),
-            arrow.is_certain ? "" : ", on this way");
-      }
-    }
-    body += fmt::format(
-        "<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
-        "<td class=\"l\">{}</td><td class=\"l\">{}</td></tr>\n",
-        i + 1, Escape(PathOf(model, step.occurrence)),
-        step.way.empty() ? DescribeDirection(step.extraction_W) : "turns", Escape(plan.tools[m]),
-        HoldsAfter(plan, i) ? Escape(DescribeParts(model, *HoldsAfter(plan, i))) : "", before);
-  }
-  body += "</table></div>\n<h2>Orders compared</h2>\n<ul>\n";
-  for (std::size_t i = 0; i < plan.search.orders.size(); ++i) {
-    const FoundOrder& order = plan.search.orders[i];
-    body += fmt::format("<li>{}{}</li>\n", DescribeCounts(order.counts, order.cost),
-                        DescribeHolds(plan, i));
-  }
-  body += fmt::format("<li>{} <span class=\"soft\">(as first found)</span></li>\n</ul>\n",
-                      DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
-  if (!model.sequence.gaps.empty()) {
-    body += "<h2>Left out</h2>\n<ul>\n";
-    for (std::size_t i = 0; i < model.sequence.gaps.size(); ++i) {
-      const simulation::SequenceGap& gap = model.sequence.gaps[i];
-      body += fmt::format("<li><span class=\"bad\">{}</span>: {}",
-                          Escape(PathOf(model, gap.occurrence)), Escape(gap.reason));
-      for (const std::string& line : ListReasonLines(report, i)) {
-        body += "<br>" + Escape(line);
-      }
-      body += "</li>\n";
-    }
-    body += "</ul>\n";
-  }
+  body += MakeOrderTable(report) + MakeComparison(plan) + MakeLeftOut(report);
   body += fmt::format("<p class=\"soft\">{}. No order is proved to be the best.</p>\n",
                       DescribeSearch(plan));
   return pages::MakeHtmlPage(model.product->name + ": plan of the assembly", body);

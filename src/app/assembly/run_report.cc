@@ -122,17 +122,6 @@ nlohmann::ordered_json MakeHoldJson(const simulation::PartResult& part) {
           {"deepest_um", units::ToUm(part.deepest)}};
 }
 
-std::string DescribeDirection(const Vec3& direction) {
-  constexpr double kAlong = 1 - 1e-6;  // Cosine that counts as along an axis: 0.1 degrees.
-  constexpr const char* kNames[] = {"x", "y", "z"};
-  for (int k = 0; k < 3; ++k) {
-    if (std::abs(direction[k]) > kAlong) {
-      return fmt::format("{}{}", direction[k] > 0 ? "+" : "-", kNames[k]);
-    }
-  }
-  return fmt::format("{:.2f} {:.2f} {:.2f}", direction.x(), direction.y(), direction.z());
-}
-
 nlohmann::ordered_json MakeRunJson(const Model& model, const SessionReport& report) {
   const RunOutcome& outcome = report.run;
   nlohmann::ordered_json json;

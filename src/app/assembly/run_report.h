@@ -27,9 +27,6 @@ struct SessionReport {
 /** Path of a part; "empty hand" where there is none. */
 [[nodiscard]] const std::string& PathOf(const simulation::Model& model, product::OccurrenceId id);
 
-/** "+z" along an axis of the world, else the components. */
-[[nodiscard]] std::string DescribeDirection(const Vec3& direction);
-
 /** The product, the hands and the times of a run. Every number's name ends in its unit. */
 [[nodiscard]] nlohmann::ordered_json MakeRunJson(const simulation::Model& model,
                                                  const SessionReport& report);

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/assembly/poses.h"
+#include "app/output/new_file.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/product/load_product.h"
@@ -71,12 +72,7 @@ Result<void> Check(const ExportOptions& options, const std::string& format) {
   if (std::filesystem::equivalent(options.load.file, options.output, error)) {
     return Fail(ErrorCode::kInvalid, "the output is the input file", name, "choose another name");
   }
-  if (!options.is_forced &&
-      std::filesystem::exists(std::filesystem::symlink_status(options.output, error))) {
-    return Fail(ErrorCode::kInvalid, "the file exists already", name,
-                "choose another name, or replace it with --force");
-  }
-  return {};
+  return CheckNewFile(options.output, options.is_forced);
 }
 
 Result<void> WriteStep(const ExportOptions& options, const Product& product,

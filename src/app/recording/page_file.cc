@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <spawn.h>
 
+#include "app/output/new_file.h"
 #include "base/atomic_file.h"
 #include "base/scratch_folder.h"
 
@@ -77,12 +78,7 @@ Result<void> CheckPageFile(const std::filesystem::path& file, bool is_forced) {
                 "the file name has no extension of a format that can be written", file.string(),
                 "use the extension .html or .pdf");
   }
-  std::error_code ignored;
-  if (!is_forced && std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
-    return Fail(ErrorCode::kInvalid, "the file exists already", file.string(),
-                "choose another name, or replace it with --force");
-  }
-  return {};
+  return CheckNewFile(file, is_forced);
 }
 
 Result<void> WritePage(const std::filesystem::path& file, std::string_view page) {

@@ -88,23 +88,26 @@ Product PegBehindNarrowHole(double hole_radius, const Pose& X_WP = Pose()) {
   return product;
 }
 
-/** A closed hollow block, and a ball in it that touches nothing but the floor. */
-Product BallInCavity() {
+/** A solid of revolution with a closed cavity around its axis. */
+contact::ShapeSource MakeHollow(double outside, double height, double inside, double low,
+                                double high, double deviation) {
   using contact::testing::CylinderZ;
   using contact::testing::PlaneAt;
-  constexpr double kOutside = 12e-3;
-  constexpr double kInside = 9e-3;
+  return contact::testing::Lathe({{{{0, 0}, {outside, 0}}, PlaneAt(0, -1)},
+                                  {{{outside, 0}, {outside, height}}, CylinderZ(outside, 1)},
+                                  {{{outside, height}, {0, height}}, PlaneAt(height, 1)},
+                                  {{{0, high}, {inside, high}}, PlaneAt(high, -1)},
+                                  {{{inside, high}, {inside, low}}, CylinderZ(inside, -1)},
+                                  {{{inside, low}, {0, low}}, PlaneAt(low, 1)}},
+                                 contact::testing::Segments(outside, deviation));
+}
+
+/** A closed hollow block, and a ball in it that touches nothing but the floor. */
+Product BallInCavity() {
   Product product;
   product.name = "rattle";
-  const auto block = testing::AddPart(
-      &product, "block",
-      contact::testing::Lathe({{{{0, 0}, {kOutside, 0}}, PlaneAt(0, -1)},
-                               {{{kOutside, 0}, {kOutside, 24e-3}}, CylinderZ(kOutside, 1)},
-                               {{{kOutside, 24e-3}, {0, 24e-3}}, PlaneAt(24e-3, 1)},
-                               {{{0, 21e-3}, {kInside, 21e-3}}, PlaneAt(21e-3, -1)},
-                               {{{kInside, 21e-3}, {kInside, 3e-3}}, CylinderZ(kInside, -1)},
-                               {{{kInside, 3e-3}, {0, 3e-3}}, PlaneAt(3e-3, 1)}},
-                              contact::testing::Segments(kOutside, 20e-6)));
+  const auto block =
+      testing::AddPart(&product, "block", MakeHollow(12e-3, 24e-3, 9e-3, 3e-3, 21e-3, 20e-6));
   const auto ball = testing::AddPart(&product, "ball", contact::testing::Ball(4e-3, 20e-6));
   testing::Place(&product, block, "block");
   testing::Place(&product, ball, "ball", Pose(Vec3(1e-3, 0, 7e-3)));
@@ -243,21 +246,11 @@ TEST(GapReasonTest, CapThatIsThickSnapsOverABeadWhereItMayGiveByTheBead) {
 }
 
 TEST(GapReasonTest, DiscThatFillsAClosedSlotIsHeldThoughItTurns) {
-  using contact::testing::CylinderZ;
-  using contact::testing::PlaneAt;
   constexpr double kInside = 10e-3;
-  constexpr double kOutside = 15e-3;
   Product product;
   product.name = "held";
-  const auto block = testing::AddPart(
-      &product, "block",
-      contact::testing::Lathe({{{{0, 0}, {kOutside, 0}}, PlaneAt(0, -1)},
-                               {{{kOutside, 0}, {kOutside, 11e-3}}, CylinderZ(kOutside, 1)},
-                               {{{kOutside, 11e-3}, {0, 11e-3}}, PlaneAt(11e-3, 1)},
-                               {{{0, 6e-3}, {kInside, 6e-3}}, PlaneAt(6e-3, -1)},
-                               {{{kInside, 6e-3}, {kInside, 5e-3}}, CylinderZ(kInside, -1)},
-                               {{{kInside, 5e-3}, {0, 5e-3}}, PlaneAt(5e-3, 1)}},
-                              contact::testing::Segments(kOutside, 5e-6)));
+  const auto block =
+      testing::AddPart(&product, "block", MakeHollow(15e-3, 11e-3, kInside, 5e-3, 6e-3, 5e-6));
   const auto disc =
       testing::AddPart(&product, "disc", contact::testing::Shaft(kInside, 1e-3, 5e-6));
   testing::Place(&product, block, "block");
