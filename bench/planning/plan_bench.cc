@@ -48,7 +48,10 @@ int main(int argc, char** argv) {
   double spacing = 0;
   int peer_seeds = 0;
   app.add_option("folder", folder, "folder with ompl/ and factory/")->required();
-  app.add_option("problems", names, "Twistycool, alpha-1.5, ..., nut:m16_tight, free:m16_tight");
+  app.add_option("problems", names,
+                 "Twistycool, alpha-1.5, ..., nut:m16_tight, free:m16_tight, pair:FOLDER");
+  bool has_surfaces = true;
+  app.add_flag("!--triangles", has_surfaces, "take the meshes of pairs as they are");
   app.add_option("--seeds", seeds, "seeds of each problem");
   app.add_option("--first-seed", first_seed, "the first of them");
   app.add_option("--limit", limit, "seconds of a run");
@@ -62,7 +65,8 @@ int main(int argc, char** argv) {
     const bool is_nut = name.rfind("nut:", 0) == 0;
     const bool is_free_nut = name.rfind("free:", 0) == 0;
     auto puzzle =
-        is_nut || is_free_nut
+        name.rfind("pair:", 0) == 0 ? bench::LoadPair(name.substr(5), has_surfaces, spacing)
+        : is_nut || is_free_nut
             ? bench::LoadNut(folder + "/factory", name.substr(name.find(':') + 1), is_nut, spacing)
             : bench::LoadPuzzle(folder + "/ompl/" + name + ".cfg", spacing);
     if (!puzzle) {

@@ -152,7 +152,7 @@ Result<TriangleMesh> ReadMesh(const std::filesystem::path& file, double unit) {
 
 Result<std::shared_ptr<const contact::Shape>> MakeShape(const TriangleMesh& mesh,
                                                         const std::string& name, double spacing,
-                                                        double voxel) {
+                                                        double voxel, bool has_surfaces = true) {
   cad::TriangleSoup soup;
   soup.vertices = mesh.vertices;
   soup.triangles = mesh.triangles;
@@ -167,7 +167,7 @@ Result<std::shared_ptr<const contact::Shape>> MakeShape(const TriangleMesh& mesh
   source.triangles = std::move(part.mesh.triangles);
   source.triangle_face.resize(source.triangles.size());
   for (std::size_t f = 0; f < part.faces.size(); ++f) {
-    source.faces.push_back(part.faces[f].surface);
+    source.faces.push_back(has_surfaces ? part.faces[f].surface : spatial::Surface());
     std::fill_n(source.triangle_face.begin() + part.faces[f].first_triangle,
                 part.faces[f].triangle_count, static_cast<std::uint32_t>(f));
   }
@@ -191,12 +191,12 @@ Result<std::shared_ptr<const contact::Shape>> MakeShape(const TriangleMesh& mesh
   return shape;
 }
 
-Result<void> MakeShapes(Puzzle* puzzle, double spacing, double voxel) {
-  auto part = MakeShape(puzzle->part, puzzle->name + " part", spacing, voxel);
+Result<void> MakeShapes(Puzzle* puzzle, double spacing, double voxel, bool has_surfaces = true) {
+  auto part = MakeShape(puzzle->part, puzzle->name + " part", spacing, voxel, has_surfaces);
   if (!part) {
     return Unexpected(part.error());
   }
-  auto around = MakeShape(puzzle->around, puzzle->name + " around", spacing, voxel);
+  auto around = MakeShape(puzzle->around, puzzle->name + " around", spacing, voxel, has_surfaces);
   if (!around) {
     return Unexpected(around.error());
   }
@@ -337,6 +337,30 @@ Result<Puzzle> LoadNut(const std::string& folder, const std::string& size, bool 
   if (has_axis) {
     puzzle.axes.push_back({Vec3::Zero(), Vec3::UnitZ(), pitch});
   }
+  return puzzle;
+}
+
+Result<Puzzle> LoadPair(const std::string& folder, bool has_surfaces, double spacing) {
+  auto part = ReadMesh(folder + "/0.obj", 1e-3);
+  auto around = ReadMesh(folder + "/1.obj", 1e-3);
+  if (!part || !around) {
+    return Unexpected(!part ? part.error() : around.error());
+  }
+  Puzzle puzzle;
+  puzzle.name = std::filesystem::path(folder).filename().string();
+  puzzle.part = std::move(*part);
+  puzzle.around = std::move(*around);
+  if (const auto made = MakeShapes(&puzzle, spacing, 0, has_surfaces); !made) {
+    return Unexpected(made.error());
+  }
+  contact::Scene scene;
+  (void)scene.Add(puzzle.around_shape, spatial::Pose());
+  contact::QueryWorkspace workspace;
+  contact::QueryOptions options;
+  options.margin = 1e-3;
+  scene.Query(*puzzle.part_shape, puzzle.X_WB_start, options, &workspace);
+  std::cerr << fmt::format("    least gap {:.1f} um; FCL: {}\n", 1e6 * workspace.deepest(),
+                           FclPair(puzzle).Collides(puzzle.X_WB_start) ? "collides" : "free");
   return puzzle;
 }
 

@@ -39,4 +39,9 @@ struct Puzzle {
 [[nodiscard]] Result<Puzzle> LoadNut(const std::string& folder, const std::string& size,
                                      bool has_axis, double spacing);
 
+/** Reads two meshes as they are assembled, in millimetres: FOLDER/0.obj is to come out of
+ FOLDER/1.obj.
+ @param has_surfaces  Whether surfaces are fitted to the triangles. */
+[[nodiscard]] Result<Puzzle> LoadPair(const std::string& folder, bool has_surfaces, double spacing);
+
 }  // namespace hvas::bench

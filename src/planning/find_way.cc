@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "planning/check_way.h"
+#include "planning/free_motion.h"
 #include "planning/moves.h"
 #include "planning/push_search.h"
 #include "planning/shorten_way.h"
@@ -21,6 +22,7 @@ using spatial::Pose;
 // queries.
 constexpr std::uint64_t kQueriesOfPushesToGoal = 6'000;
 constexpr std::uint64_t kQueriesOfPushes = 60'000;
+constexpr std::uint64_t kQueriesOfFreeMotion = 6'000;  // Sixty turns take fewer: a choice.
 constexpr std::uint64_t kShareOfPushes = 2;  // Of the budget: at most one in so many queries.
 constexpr double kShareOfShortening = 0.3;
 constexpr double kShareOfWidening = 0.3;
@@ -80,6 +82,8 @@ const char* NameOf(WayMethod method) {
   switch (method) {
     case WayMethod::kStraight:
       return "straight";
+    case WayMethod::kFreeMotion:
+      return "free motion";
     case WayMethod::kPushes:
       return "pushes";
     case WayMethod::kTree:
@@ -102,6 +106,13 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
   WaySearch search;
   WayMethod method = WayMethod::kStraight;
   std::optional<sweep::Path> path = SearchStraight(&probe, directions, step);
+  std::optional<Way> free_motion;
+  if (!path) {
+    method = WayMethod::kFreeMotion;
+    free_motion =
+        FindFreeMotion(&probe, options, std::min(kQueriesOfFreeMotion, options.budget), step);
+    path = free_motion ? std::optional(free_motion->path) : std::nullopt;
+  }
   std::vector<ScrewAxis> axes;
   if (!path) {
     method = WayMethod::kPushes;
@@ -128,7 +139,8 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
     return search;
   }
   probe.Extend(options.budget + 2 * kLeastOfImproving);
-  if (options.has_to_improve && method != WayMethod::kStraight) {
+  const bool is_found_clear = method == WayMethod::kStraight || method == WayMethod::kFreeMotion;
+  if (options.has_to_improve && !is_found_clear) {
     const auto share_of = [&options](double share) {
       return kLeastOfImproving +
              static_cast<std::uint64_t>(share * static_cast<double>(options.budget));
@@ -142,7 +154,9 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
   }
   search.queries = probe.queries();
   search.points = probe.points();
-  search.way = Way{std::move(*path), deepest, method};
+  search.way =
+      Way{std::move(*path), deepest, method,
+          free_motion && method == WayMethod::kFreeMotion ? free_motion->screw : FreeScrew()};
   return search;
 }
 

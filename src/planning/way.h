@@ -23,6 +23,24 @@ struct ScrewAxis {
   double pitch{0};             ///< What a whole turn goes along the axis [m]; 0: a rotation.
 };
 
+/** A point at which the part is near another body, whichever of the two it is a sample of. */
+struct NearPoint {
+  Vec3 p_W{Vec3::Zero()};
+  Vec3 nhat_W{Vec3::UnitZ()};  ///< Unit: moving the part along it separates them.
+  double distance{0};          ///< Signed gap [m].
+  contact::BodyId body;
+  bool is_of_part{false};                ///< Whether it lies on the part, or on the body.
+  std::uint32_t face{contact::kNoFace};  ///< Face of the other one that is nearest.
+};
+
+/** A screw that the faces around a part leave it. */
+struct FreeScrew {
+  ScrewAxis axis;
+  double turn{0};                 ///< Turn about the axis on the way out [rad], >= 0.
+  std::vector<NearPoint> flanks;  ///< What leaves it, with the part in the middle of its play.
+  std::vector<NearPoint> passed;  ///< What it passes so on its way.
+};
+
 /** A rigid part among others, and where it has to go. What is pointed to outlives the search. */
 struct WayProblem {
   const contact::Scene* scene{
@@ -54,9 +72,10 @@ struct WayOptions {
 };
 
 enum class WayMethod {
-  kStraight,  ///< One straight piece.
-  kPushes,    ///< Pushes along given or found directions and axes, which slide along contacts.
-  kTree,      ///< Tree search.
+  kStraight,    ///< One straight piece.
+  kFreeMotion,  ///< The screw that the faces around the part leave it.
+  kPushes,      ///< Pushes along given or found directions and axes, which slide along contacts.
+  kTree,        ///< Tree search.
 };
 
 /** A way from the start to where the part has to go. Between poses the part moves along a screw. */
@@ -66,6 +85,7 @@ struct Way {
    penetration [m]. Between them it is as CheckWay() bounds it. */
   double deepest{0};
   WayMethod method{WayMethod::kStraight};
+  FreeScrew screw{};  ///< kFreeMotion: which one.
 };
 
 /** What the part met where it got no further. */

@@ -52,6 +52,9 @@ class Extraction {
   /** Parts that gave on ways that TryRemoveGiving found. */
   [[nodiscard]] const std::vector<GivingPair>& gives() const { return gives_; }
 
+  /** Pairs that were taken apart along a screw that no mate describes. */
+  [[nodiscard]] const std::vector<ScrewPair>& screws() const { return screws_; }
+
   /** Lets the faces give way that parts meet on their ways by less than what a way is free with.
    The scene has the parts as made. Presence of parts changes. Returns false where there is none. */
   bool RelieveWays(const std::vector<SequenceStep>& steps);
@@ -317,6 +320,7 @@ class Extraction {
   std::vector<spatial::Box> boxes_;
   std::vector<DrawnOverlap> overlaps_;
   std::vector<GivingPair> gives_;
+  std::vector<ScrewPair> screws_;
   std::vector<std::vector<contact::Allowance>> allowances_;  // by occurrence
   std::vector<Memory> memories_;                             // by occurrence
   std::vector<Memory> giving_memories_;                      // by occurrence

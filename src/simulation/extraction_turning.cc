@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -26,7 +27,8 @@ bool Extraction::IsHeldFirmly(OccurrenceId id) const {
   return std::any_of(views.begin(), views.end(), [&](const MateView& view) {
     const bool has_fit = mates::HasFit(view.mate->kind) && IsAround(view.other);
     return has_fit && view.mate->fit && view.mate->fit->kind != product::FitKind::kClearance &&
-           view.mate->fit->kind != product::FitKind::kPassage;
+           view.mate->fit->kind != product::FitKind::kPassage &&
+           view.mate->fit->kind != product::FitKind::kThread;
   });
 }
 
@@ -76,6 +78,11 @@ std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uin
     search.stopped_by =
         found->stops.empty() ? OccurrenceId() : OccurrenceId(found->stops[0].body.index());
     return std::nullopt;
+  }
+  if (found->way->method == planning::WayMethod::kFreeMotion) {
+    if (auto pair = FindScrewPair(id, found->way->screw)) {
+      screws_.push_back(std::move(*pair));
+    }
   }
   std::vector<spatial::Box> others;
   for (const product::Occurrence& other : product_.occurrences) {

@@ -371,12 +371,16 @@ haptics::MateFaces CollectMateFaces(const product::Part& part,
   return faces;
 }
 
-Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
-                                             const CompileOptions& options,
-                                             Diagnostics* diagnostics) {
-  if (product->occurrences.empty()) {
-    return Fail(ErrorCode::kInvalid, "the product has no parts", product->source);
-  }
+namespace {
+
+using PartShapes = std::vector<std::shared_ptr<const contact::Shape>>;
+
+/** Compiles a product whose parts have their shapes.
+ @param screws  Gets the pairs that come apart along a screw that no mate describes; where there are
+ any, the result is null. Null: they are not asked for. */
+Result<std::shared_ptr<const Model>> CompileWithShapes(
+    const std::shared_ptr<const product::Product>& product, const PartShapes& shapes,
+    const CompileOptions& options, std::vector<ScrewPair>* screws, Diagnostics* diagnostics) {
   const auto report = [&options](const std::string& stage, double fraction) {
     if (options.progress) {
       options.progress(stage, fraction);
@@ -389,21 +393,9 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   model->product = product;
   model->seed = options.seed;
   model->pairs = options.pairs;
-  report("contact shapes", 0);
-  const auto shapes =
-      BuildShapes(*product, {options.shape, options.shape_cache.get(), options.threads,
-                             [&report](double fraction) { report("contact shapes", fraction); }});
-  if (!shapes) {
-    return Unexpected(shapes.error());
-  }
-  const auto problem =
-      options.shape_cache != nullptr ? options.shape_cache->TakeProblem() : std::nullopt;
-  if (problem) {
-    diagnostics->Warn("shape-cache", problem->where, problem->message, problem->remedy);
-  }
   for (const product::Occurrence& occurrence : product->occurrences) {
     model->bodies.push_back({occurrence.id,
-                             (*shapes)[occurrence.part.index()],
+                             shapes[occurrence.part.index()],
                              MakeMass(product->part_of(occurrence.id)),
                              occurrence.X_WB,
                              occurrence.X_WB,
@@ -476,6 +468,10 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   if (input.stop.stop_requested()) {
     return cancelled();
   }
+  if (screws != nullptr && !model->sequence.screws.empty()) {
+    *screws = model->sequence.screws;
+    return std::shared_ptr<const Model>();
+  }
   report("layout", 0);
   if (const auto laid_out = LayOut(model.get()); !laid_out) {
     return Unexpected(laid_out.error());
@@ -492,6 +488,42 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   ReportModelLimits(*model, diagnostics);
   report("ready", 1);
   return std::shared_ptr<const Model>(std::move(model));
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
+                                             const CompileOptions& options,
+                                             Diagnostics* diagnostics) {
+  if (product->occurrences.empty()) {
+    return Fail(ErrorCode::kInvalid, "the product has no parts", product->source);
+  }
+  const auto report = [&options](const std::string& stage, double fraction) {
+    if (options.progress) {
+      options.progress(stage, fraction);
+    }
+  };
+  report("contact shapes", 0);
+  const auto shapes =
+      BuildShapes(*product, {options.shape, options.shape_cache.get(), options.threads,
+                             [&report](double fraction) { report("contact shapes", fraction); }});
+  if (!shapes) {
+    return Unexpected(shapes.error());
+  }
+  const auto problem =
+      options.shape_cache != nullptr ? options.shape_cache->TakeProblem() : std::nullopt;
+  if (problem) {
+    diagnostics->Warn("shape-cache", problem->where, problem->message, problem->remedy);
+  }
+  std::vector<ScrewPair> screws;
+  auto model = CompileWithShapes(product, *shapes, options, &screws, diagnostics);
+  if (!model || *model != nullptr) {
+    return model;
+  }
+  // What was found to be a screw is one from now on, and the order is made with it.
+  const auto with_screws = AddScrewMates(*product, screws);
+  return CompileWithShapes(with_screws != nullptr ? with_screws : product, *shapes, options,
+                           nullptr, diagnostics);
 }
 
 std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,

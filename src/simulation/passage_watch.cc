@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "simulation/thread_faces.h"
+
 namespace hvas::simulation {
 namespace {
 
@@ -14,6 +16,18 @@ constexpr double kLeastDepth = 0.1e-3;  // [m]; parts that touch may lie so deep
 // bore (WeightTest).
 constexpr double kLeastDepthOfSize = 3e-4;
 
+/** A thread whose flanks are drawn: it is screwed in, for which going straight along it stands. */
+bool IsModelledThread(const product::Product& product, const product::Mate& mate) {
+  if (!mate.fit || mate.fit->kind != product::FitKind::kThread || !IsDrawnThread(mate)) {
+    return false;
+  }
+  const auto is_modelled = [&product](const product::Connector& side) {
+    return product.part_of(side.occurrence).features[side.feature.index()].thread ==
+           product::ThreadKind::kModelled;
+  };
+  return is_modelled(mate.a) && is_modelled(mate.b);
+}
+
 /** Depth from which on a part passes through another [m]. */
 double LeastDepthOf(const product::Part& part) {
   return std::max(kLeastDepth, kLeastDepthOfSize * part.box_B.size().norm());
@@ -21,9 +35,19 @@ double LeastDepthOf(const product::Part& part) {
 
 }  // namespace
 
-PassageWatch::PassageWatch(const Model& model) : model_(model), passages_(model.bodies.size()) {
+PassageWatch::PassageWatch(const Model& model)
+    : model_(model), threads_(model.bodies.size()), passages_(model.bodies.size()) {
   for (const Body& body : model.bodies) {
     scene_.Add(body.shape, body.X_WB_goal);
+  }
+  for (const product::Mate& mate : model.product->mates) {
+    if (IsModelledThread(*model.product, mate)) {
+      const std::size_t a = mate.a.occurrence.index();
+      const std::size_t b = mate.b.occurrence.index();
+      const ModelMate& faces = model.mates[mate.id.index()];
+      threads_[a].push_back({contact::BodyId(b), faces.faces_a->mating, faces.faces_b->mating});
+      threads_[b].push_back({contact::BodyId(a), faces.faces_b->mating, faces.faces_a->mating});
+    }
   }
 }
 
@@ -73,6 +97,7 @@ void PassageWatch::Query(OccurrenceId id, const spatial::Pose& X_WB) {
   contact::QueryOptions query;
   query.margin = -LeastDepthOf(model_.product->part_of(id));
   query.self = contact::BodyId(id.index());
+  query.ignored = threads_[id.index()];
   scene_.Query(*model_.bodies[id.index()].shape, X_WB, query, &workspace_);
 }
 

@@ -16,8 +16,9 @@ struct Passage {
 };
 
 /** Looks, independently of the ticks, whether a part passes through others: on all faces as drawn
- of all parts in their places, with no pair of parts or faces left out and none giving way. What two
- parts lie in one another in their drawn places is no passage. A distance field knows depths up to
+ of all parts in their places, with none giving way. No pair of parts or faces is left out but the
+ modelled flanks of a thread, along which going straight stands for a screw. What two parts lie in
+ one another in their drawn places is no passage. A distance field knows depths up to
  its band: what is deeper counts as that. Physics thread. */
 class PassageWatch {
  public:
@@ -43,7 +44,8 @@ class PassageWatch {
   contact::Scene scene_;
   contact::QueryWorkspace workspace_;
   std::map<std::pair<product::OccurrenceId, product::OccurrenceId>, double> drawn_depths_;
-  std::vector<Passage> passages_;  ///< Passages, indexed by OccurrenceId.
+  std::vector<std::vector<contact::IgnoredPair>> threads_;  ///< Threads of each occurrence.
+  std::vector<Passage> passages_;                           ///< Passages, indexed by OccurrenceId.
 };
 
 }  // namespace hvas::simulation

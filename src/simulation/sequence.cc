@@ -353,6 +353,7 @@ Sequence Planner::Plan() {
   }
   sequence.overlaps = extraction_.overlaps();
   sequence.gives = extraction_.gives();
+  sequence.screws = extraction_.screws();
   sequence.reliefs = extraction_.ListReliefs();
   return sequence;
 }

@@ -12,6 +12,7 @@
 #include "haptics/held_part.h"
 #include "product/product.h"
 #include "simulation/neighbours.h"
+#include "simulation/screw_mates.h"
 #include "spatial/pose.h"
 
 namespace hvas::simulation {
@@ -93,6 +94,7 @@ struct Sequence {
   std::vector<DrawnOverlap> overlaps;
   std::vector<FaceRelief> reliefs;  ///< Reliefs of faces, one of each.
   std::vector<GivingPair> gives;    ///< Parts that give on their way, one of each pair.
+  std::vector<ScrewPair> screws;    ///< Pairs that come apart along a screw that no mate describes.
   Neighbours neighbours;            ///< Neighbours of all parts in the assembled product.
 };
 

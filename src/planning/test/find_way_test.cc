@@ -117,6 +117,26 @@ TEST(FindWayTest, BentRodLeavesTwoWalls) {
   ExpectWay(testing::MakeCornerRod(200e-6), 400'000);
 }
 
+TEST(FindWayTest, ANutComesOffAlongTheScrewThatItsFlanksLeave) {
+  const Pair pair = testing::MakeNut(200e-6);
+  for (int frame = 0; frame < 2; ++frame) {
+    const Pose X_WA = frame == 0 ? Pose() : Askew(frame);
+    const Placed placed(pair, X_WA);
+    const WaySearch found = Find(placed.problem, 1, 20'000);
+    ASSERT_TRUE(found.way.has_value()) << "frame " << frame << ", to go " << found.distance_to_go;
+    ASSERT_EQ(found.way->method, WayMethod::kFreeMotion);
+    EXPECT_TRUE(IsOut(placed.problem, found.way->path.back()));
+    const double step = CheckStepOf(placed.problem.tolerance);
+    EXPECT_GE(MeasureDensely(placed.problem, found.way->path, step),
+              -placed.problem.tolerance - 0.5 * step);
+    const FreeScrew& screw = found.way->screw;
+    EXPECT_NEAR(screw.axis.pitch, 2e-3, 0.05e-3) << "right-handed";
+    EXPECT_GT(std::abs(screw.axis.axis_W.dot(X_WA.R().col(2))), std::cos(0.02));
+    EXPECT_LT((screw.axis.p_WQ - X_WA.p()).cross(screw.axis.axis_W).norm(), 0.1e-3);
+    EXPECT_GT(screw.flanks.size(), 100U);
+  }
+}
+
 TEST(FindWayTest, CaptivePartHasNoWayAndSaysWhatStopsIt) {
   const Placed placed(testing::MakeCaptive(100e-6), Askew(2));
   const WaySearch found = Find(placed.problem, 1, 30'000);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "planning/test/pairs.h"
+#include "simulation/screw_mates.h"
 #include "simulation/test/small_products.h"
 
 namespace hvas::simulation {
@@ -75,6 +76,78 @@ TEST(TurningWayTest, AKeyIsTurnedBeforeItComesOutAndThePersonPutsItIn) {
   const PartResult key = session.run.results().back();
   EXPECT_TRUE(key.is_seated) << key.reason;
   EXPECT_LT(key.passage.depth, 0.2e-3);
+}
+
+/** A bolt without a mate, and a nut on it: freeform faces in both. */
+Product NutOnBolt(double gap) {
+  constexpr double kMinor = 6.2e-3, kMajor = 8e-3, kPitch = 2e-3;  // [m]
+  Product product;
+  product.name = "screwed";
+  testing::Place(
+      &product,
+      testing::AddPart(&product, "bolt",
+                       planning::testing::MakeThread(kMinor, kMajor, kPitch, 0, 7e-3, 0)),
+      "bolt");
+  testing::Place(&product,
+                 testing::AddPart(&product, "nut",
+                                  planning::testing::MakeThread(kMinor + gap, kMajor + gap, kPitch,
+                                                                2e-3, 5e-3, 12e-3)),
+                 "nut");
+  testing::Complete(&product);
+  return product;
+}
+
+TEST(ScrewMatesTest, PartsThatComeApartAlongAScrewAreAThreadedJointAndGoIn) {
+  Diagnostics diagnostics;
+  const auto product = std::make_shared<Product>(NutOnBolt(0.2e-3));
+  ASSERT_TRUE(product->mates.empty());
+  const auto compiled = Compile(product, {}, &diagnostics);
+  ASSERT_TRUE(compiled.has_value());
+  const auto& model = *compiled;
+  ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
+  ASSERT_EQ(model->product->mates.size(), 1U);
+  const product::Mate& mate = model->product->mates[0];
+  ASSERT_TRUE(mate.fit.has_value());
+  EXPECT_EQ(mate.fit->kind, product::FitKind::kThread);
+  EXPECT_EQ(model->product->occurrences[mate.a.occurrence.index()].name, "nut");
+  EXPECT_GT(mate.shaft_radius, mate.hole_radius);
+  const product::Feature& hole =
+      model->product->part_of(mate.a.occurrence).features[mate.a.feature.index()];
+  EXPECT_NEAR(hole.thread_pitch, 2e-3, 0.03e-3);
+  testing::Session session(model);
+  (void)RunLockstep(session.MakeExecution(120));
+  const PartResult& last = session.run.results().back();
+  EXPECT_TRUE(last.is_seated) << last.reason;
+  EXPECT_LT(last.passage.depth, 0.2e-3);
+}
+
+TEST(ScrewMatesTest, ATurnThatDoesNotLeadOutIsNoScrew) {
+  planning::FreeScrew screw;
+  screw.axis.pitch = 0;
+  screw.turn = 1;
+  for (int k = 0; k < 40; ++k) {
+    planning::NearPoint flank;
+    const double angle = 0.5 * k;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    flank.p_W = 5e-3 * out + Vec3(0, 0, 0.1e-3 * k);
+    flank.nhat_W = out;
+    flank.body = contact::BodyId(1);
+    flank.is_of_part = k % 2 == 0;
+    flank.face = 0;
+    screw.flanks.push_back(flank);
+  }
+  EXPECT_FALSE(FindScrewPair(OccurrenceId(0), screw).has_value()) << "a bayonet";
+  screw.axis.pitch = 25e-3;
+  const auto pair = FindScrewPair(OccurrenceId(0), screw);
+  EXPECT_FALSE(pair.has_value()) << "no play between core and outer radius";
+  for (std::size_t k = 0; k < screw.flanks.size(); k += 4) {
+    screw.flanks[k].p_W.head<2>() *= 0.8;
+  }
+  const auto deep = FindScrewPair(OccurrenceId(0), screw);
+  ASSERT_TRUE(deep.has_value());
+  EXPECT_EQ(deep->hole, OccurrenceId(0)) << "what pushes it outwards is a shaft in it";
+  EXPECT_NEAR(deep->core_radius, 4e-3, 1e-9);
+  EXPECT_NEAR(deep->outer_radius, 5e-3, 1e-9);
 }
 
 TEST(TurningWayTest, TheLastPieceLeadsPastAllOthers) {
