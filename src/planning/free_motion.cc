@@ -41,6 +41,7 @@ constexpr double kShareOfTolerance = 0.6;  // Poses no deeper than that are left
 constexpr double kShareOfEstimate = 0.5;   // Of a new estimate of the motion in the next: a choice.
 constexpr double kLeastMotionAhead = 0.3;  // Of a step; less is no way ahead.
 constexpr double kSecant = 0.15;  // Of the part's size: the way by which the motion is improved.
+constexpr double kLooksOfExit = 200;  // Looks along a straight exit of the part's size: a choice.
 constexpr std::size_t kLooksAlong = 16;  // Places of the way at which faces are noted: a choice.
 constexpr double kExitsApart =
     0.1;  // Of the part's size: places from which straight exits are tried.
@@ -123,11 +124,13 @@ class FreeMotion {
 
   // Looks further until the part has enough around it.
   bool FindNear(const Pose& X_WB) {
-    const double least = std::max(kLeastNear * probe_.size(), 2 * std::abs(probe_.tolerance()));
-    for (near_ = least; near_ < kMostNear * probe_.size() && !IsOver(); near_ *= kNearer) {
+    near_ = std::max(kLeastNear * probe_.size(), 2 * std::abs(probe_.tolerance()));
+    while (near_ < kMostNear * probe_.size() && !IsOver()) {
       near_points_.Find(X_WB, near_);
-      if (near_points_.list().size() >= kLeastContacts && EstimateMotion(X_WB)) {
-        near_ *= kNearer;  // The part moves to and fro in its play.
+      const bool is_enough =
+          near_points_.list().size() >= kLeastContacts && EstimateMotion(X_WB).has_value();
+      near_ *= kNearer;  // Where it is enough, too: the part moves to and fro in its play.
+      if (is_enough) {
         near_points_.Find(X_WB, near_);
         return true;
       }
@@ -202,7 +205,7 @@ class FreeMotion {
     const Pose X_wanted = probe_.Move(X_WB, wanted);
     const Pose X_middle = FindMiddle(X_wanted, ToMotion(wanted).normalized());
     for (const Pose& X : {X_middle, X_wanted}) {
-      const std::optional<Pose> made = PushFree(X);
+      std::optional<Pose> made = PushFree(X);
       if (!made) {
         continue;
       }
@@ -270,9 +273,9 @@ class FreeMotion {
     const double sign = d.v_W.dot(along) < 0 ? -1 : 1;
     const Vec3 direction = sign * along.normalized();
     const double exit = probe_.CalcExit(X_WB, direction) + 1e-6;
-    const double stride = probe_.size() / 200;
-    for (double s = stride; s < exit + stride; s += stride) {
-      const Pose X(X_WB.q(), Vec3(X_WB.p() + std::min(s, exit) * direction));
+    const auto looks = static_cast<int>(std::ceil(exit * kLooksOfExit / probe_.size()));
+    for (int i = 1; i <= looks; ++i) {
+      const Pose X(X_WB.q(), Vec3(X_WB.p() + i * exit / looks * direction));
       if (IsOver() || !probe_.IsFree(X)) {
         return std::nullopt;
       }

@@ -50,6 +50,7 @@ contact::BodyId FindOther(const std::vector<planning::NearPoint>& flanks) {
 
 std::vector<FaceId> ToFaces(const std::set<std::uint32_t>& numbers) {
   std::vector<FaceId> faces;
+  faces.reserve(numbers.size());
   for (const std::uint32_t number : numbers) {
     faces.emplace_back(number);
   }
