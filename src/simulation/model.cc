@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -516,14 +517,15 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
     diagnostics->Warn("shape-cache", problem->where, problem->message, problem->remedy);
   }
   std::vector<ScrewPair> screws;
-  auto model = CompileWithShapes(product, *shapes, options, &screws, diagnostics);
+  const std::shared_ptr<const product::Product> drawn = std::move(product);
+  auto model = CompileWithShapes(drawn, *shapes, options, &screws, diagnostics);
   if (!model || *model != nullptr) {
     return model;
   }
   // What was found to be a screw is one from now on, and the order is made with it.
-  const auto with_screws = AddScrewMates(*product, screws);
-  return CompileWithShapes(with_screws != nullptr ? with_screws : product, *shapes, options,
-                           nullptr, diagnostics);
+  const auto with_screws = AddScrewMates(*drawn, screws);
+  return CompileWithShapes(with_screws != nullptr ? with_screws : drawn, *shapes, options, nullptr,
+                           diagnostics);
 }
 
 std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,
