@@ -26,6 +26,9 @@ constexpr std::uint64_t kQueriesOfFreeMotion = 6'000;  // Sixty turns take fewer
 constexpr std::uint64_t kShareOfPushes = 2;  // Of the budget: at most one in so many queries.
 constexpr double kShareOfShortening = 0.3;
 constexpr double kShareOfWidening = 0.3;
+// Of the length of a free motion, at least, where it is a thread's: threads keep 0.95 and more, a
+// key that turned below its plate 0.1.
+constexpr double kShareThatThreadsKeep = 0.8;
 constexpr std::uint64_t kLeastOfImproving = 10'000;  // Queries, for either: a choice.
 
 Result<void> CheckProblem(const WayProblem& problem, Probe* probe) {
@@ -106,12 +109,14 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
   WaySearch search;
   WayMethod method = WayMethod::kStraight;
   std::optional<sweep::Path> path = SearchStraight(&probe, directions, step);
-  std::optional<Way> free_motion;
+  FreeScrew screw;
   if (!path) {
     method = WayMethod::kFreeMotion;
-    free_motion =
-        FindFreeMotion(&probe, options, std::min(kQueriesOfFreeMotion, options.budget), step);
-    path = free_motion ? std::optional(free_motion->path) : std::nullopt;
+    const std::uint64_t budget = std::min(kQueriesOfFreeMotion, options.budget);
+    if (auto found = FindFreeMotion(&probe, options, budget, step)) {
+      path = std::move(found->path);
+      screw = std::move(found->screw);
+    }
   }
   std::vector<ScrewAxis> axes;
   if (!path) {
@@ -139,14 +144,21 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
     return search;
   }
   probe.Extend(options.budget + 2 * kLeastOfImproving);
-  const bool is_found_clear = method == WayMethod::kStraight || method == WayMethod::kFreeMotion;
-  if (options.has_to_improve && !is_found_clear) {
+  if (options.has_to_improve && method != WayMethod::kStraight) {
     const auto share_of = [&options](double share) {
       return kLeastOfImproving +
              static_cast<std::uint64_t>(share * static_cast<double>(options.budget));
     };
-    path = ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
-    path = WidenWay(&probe, *path, step, share_of(kShareOfWidening));
+    sweep::Path shorter =
+        ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
+    // A thread has no shorter way, and the middle of its play is clear. What has one is no thread.
+    const bool is_thread =
+        screw.turn > 0 && CalcWayLength(probe, shorter) >
+                              kShareThatThreadsKeep * CalcWayLength(probe, *path);
+    if (!is_thread) {
+      screw = FreeScrew();
+      path = WidenWay(&probe, shorter, step, share_of(kShareOfWidening));
+    }
   }
   double deepest = std::numeric_limits<double>::infinity();
   for (const Pose& X_WB : *path) {
@@ -154,9 +166,7 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
   }
   search.queries = probe.queries();
   search.points = probe.points();
-  search.way =
-      Way{std::move(*path), deepest, method,
-          free_motion && method == WayMethod::kFreeMotion ? free_motion->screw : FreeScrew()};
+  search.way = Way{std::move(*path), deepest, method, std::move(screw)};
   return search;
 }
 

@@ -41,7 +41,6 @@ constexpr double kShareOfTolerance = 0.6;  // Poses no deeper than that are left
 constexpr double kShareOfEstimate = 0.5;   // Of a new estimate of the motion in the next: a choice.
 constexpr double kLeastMotionAhead = 0.3;  // Of a step; less is no way ahead.
 constexpr double kSecant = 0.15;  // Of the part's size: the way by which the motion is improved.
-constexpr double kLooksOfExit = 200;  // Looks along a straight exit of the part's size: a choice.
 constexpr std::size_t kLooksAlong = 16;  // Places of the way at which faces are noted: a choice.
 constexpr double kExitsApart =
     0.1;  // Of the part's size: places from which straight exits are tried.
@@ -49,28 +48,15 @@ constexpr double kExitsApart =
 // Of a way that was found, whatever its search took: fifty turns take fewer.
 constexpr std::uint64_t kMostQueriesOfMending = 200'000;
 
-/** Velocity of a rigid body as a screw: of the point of the body at W's origin, and the turn. */
-struct Twist {
-  Vec3 w_W, v0_W;
+/** By how much a body moves about its centre, at a velocity whose v_W is that at W's origin. */
+Displacement MoveAlong(const spatial::Twist& V_W, const Vec3& centre_W, double length) {
+  return {Vec3(length * V_W.w), Vec3(length * (V_W.v + V_W.w.cross(centre_W)))};
+}
 
-  [[nodiscard]] Displacement At(const Vec3& centre_W, double length) const {
-    return {Vec3(length * w_W), Vec3(length * (v0_W + w_W.cross(centre_W)))};
-  }
-};
-
-/** The twist that takes a body from one pose to another in a unit of time. Source: logarithm of a
- rigid motion; Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation, 1994,
- appendix A. */
-Twist FindTwist(const Pose& from, const Pose& to) {
-  const Pose G = to * from.Inverse();
-  const Vec3 w = spatial::RotationBetween(Quat::Identity(), G.q());
-  const double angle = w.norm();
-  constexpr double kNoTurn = 1e-9;  // [rad]: what rounding leaves.
-  if (angle < kNoTurn) {
-    return {Vec3::Zero(), G.p()};
-  }
-  const double k = (1 - 0.5 * angle / std::tan(0.5 * angle)) / (angle * angle);
-  return {w, Vec3(G.p() - 0.5 * w.cross(G.p()) + k * w.cross(Vec3(w.cross(G.p()))))};
+/** The velocity that takes a body from one pose to another in a unit of time, likewise. */
+spatial::Twist FindTwist(const Pose& from, const Pose& to) {
+  const sweep::Screw screw = sweep::FindScrew(to * from.Inverse());
+  return {screw.turn, Vec3(screw.along + screw.p_AQ.cross(screw.turn))};
 }
 
 class FreeMotion {
@@ -105,15 +91,13 @@ class FreeMotion {
   [[nodiscard]] Vec3 CentreOf(const Pose& X_WB) const { return X_WB * probe_.centre_B(); }
 
   // The twist has a length of one in the metric of the search, at the pose.
-  [[nodiscard]] Twist ToTwist(const Pose& X_WB, const Vec6& motion) const {
+  [[nodiscard]] spatial::Twist ToTwist(const Pose& X_WB, const Vec6& motion) const {
     const Vec3 w = motion.tail<3>() / probe_.gyration();
     return {w, Vec3(motion.head<3>() - w.cross(CentreOf(X_WB)))};
   }
 
   [[nodiscard]] Vec6 RowOf(const NearPoint& c, const Vec3& centre_W) const {
-    Vec6 row;
-    row << c.nhat_W, (c.p_W - centre_W).cross(c.nhat_W) / probe_.gyration();
-    return row;
+    return probe_.RowOf(c.nhat_W, c.p_W, centre_W);
   }
 
   [[nodiscard]] Vec6 ToMotion(const Displacement& d) const {
@@ -200,8 +184,9 @@ class FreeMotion {
   }
 
   // One step along the motion, into the middle where much is near. None where it is blocked.
-  [[nodiscard]] std::optional<Pose> Step(const Pose& X_WB, const Twist& twist, double length) {
-    const Displacement wanted = twist.At(CentreOf(X_WB), length);
+  [[nodiscard]] std::optional<Pose> Step(const Pose& X_WB, const spatial::Twist& twist,
+                                         double length) {
+    const Displacement wanted = MoveAlong(twist, CentreOf(X_WB), length);
     const Pose X_wanted = probe_.Move(X_WB, wanted);
     const Pose X_middle = FindMiddle(X_wanted, ToMotion(wanted).normalized());
     for (const Pose& X : {X_middle, X_wanted}) {
@@ -267,25 +252,18 @@ class FreeMotion {
   }
 
   // Straight along the axis, in either sense, where that leads out.
-  [[nodiscard]] std::optional<Pose> FindExit(const Pose& X_WB, const Twist& twist) {
-    const Displacement d = twist.At(CentreOf(X_WB), 1);
+  [[nodiscard]] std::optional<Pose> FindExit(const Pose& X_WB, const spatial::Twist& twist) {
+    const Displacement d = MoveAlong(twist, CentreOf(X_WB), 1);
     const Vec3 along = d.w_W.norm() * probe_.gyration() > 0.2 ? d.w_W : d.v_W;
     const double sign = d.v_W.dot(along) < 0 ? -1 : 1;
     const Vec3 direction = sign * along.normalized();
     const double exit = probe_.CalcExit(X_WB, direction) + 1e-6;
-    const auto looks = static_cast<int>(std::ceil(exit * kLooksOfExit / probe_.size()));
-    for (int i = 1; i <= looks; ++i) {
-      const Pose X(X_WB.q(), Vec3(X_WB.p() + i * exit / looks * direction));
-      if (IsOver() || !probe_.IsFree(X)) {
-        return std::nullopt;
-      }
-    }
     const Pose out(X_WB.q(), Vec3(X_WB.p() + exit * direction));
     const double step = CheckStepOf(probe_.tolerance());
     return IsScrewFree(&probe_, X_WB, out, step) ? std::optional<Pose>(out) : std::nullopt;
   }
 
-  [[nodiscard]] std::optional<sweep::Path> Follow(const Pose& start, Twist twist) {
+  [[nodiscard]] std::optional<sweep::Path> Follow(const Pose& start, spatial::Twist twist) {
     sweep::Path path{start};
     double step = 0.25 * kLargestMotionStep * probe_.size();
     double since_exit = 0;
@@ -318,7 +296,7 @@ class FreeMotion {
   }
 
   // The motion as it went: corrections into the middle have mended what was estimated.
-  void Improve(const sweep::Path& path, Twist* twist) {
+  void Improve(const sweep::Path& path, spatial::Twist* twist) {
     const Pose& X = path.back();
     double length = 0;
     std::size_t i = path.size() - 1;
@@ -329,9 +307,9 @@ class FreeMotion {
     if (length < 0.5 * kSecant * probe_.size()) {
       return;
     }
-    const Twist gone = FindTwist(path[i], X);
-    const Vec6 before = ToMotion(twist->At(CentreOf(X), 1)).normalized();
-    const Vec6 now = ToMotion(gone.At(CentreOf(X), 1)).normalized();
+    const spatial::Twist gone = FindTwist(path[i], X);
+    const Vec6 before = ToMotion(MoveAlong(*twist, CentreOf(X), 1)).normalized();
+    const Vec6 now = ToMotion(MoveAlong(gone, CentreOf(X), 1)).normalized();
     *twist = ToTwist(X, Vec6(before + kShareOfEstimate * (now - before)).normalized());
   }
 
@@ -341,9 +319,9 @@ class FreeMotion {
     const std::size_t last = path.size() > 3 ? path.size() - 2 : path.size() - 1;
     Vec6 sum = Vec6::Zero();
     for (std::size_t i = 1; i < last; ++i) {
-      const Twist twist = FindTwist(path[i], path[i + 1]);
-      sum.head<3>() += twist.v0_W;
-      sum.tail<3>() += twist.w_W;
+      const spatial::Twist twist = FindTwist(path[i], path[i + 1]);
+      sum.head<3>() += twist.v;
+      sum.tail<3>() += twist.w;
     }
     const Vec3 w = sum.tail<3>();
     screw.turn = w.norm();
@@ -353,14 +331,14 @@ class FreeMotion {
       screw.axis.p_WQ = w.cross(v0) / w.squaredNorm();
       screw.axis.pitch = 2 * std::numbers::pi * v0.dot(w) / w.squaredNorm();
     }
-    const Twist along{screw.axis.axis_W,
-                      Vec3(screw.axis.pitch / (2 * std::numbers::pi) * screw.axis.axis_W +
-                           screw.axis.p_WQ.cross(screw.axis.axis_W))};
+    const spatial::Twist along{screw.axis.axis_W,
+                               Vec3(screw.axis.pitch / (2 * std::numbers::pi) * screw.axis.axis_W +
+                                    screw.axis.p_WQ.cross(screw.axis.axis_W))};
     const std::size_t stride = std::max<std::size_t>(1, last / kLooksAlong);
     for (std::size_t i = std::min<std::size_t>(1, last); i <= last; i += stride) {
       near_points_.Find(path[i], near_);
       const Vec3 centre_W = CentreOf(path[i]);
-      const Vec6 unit = ToMotion(along.At(centre_W, 1)).normalized();
+      const Vec6 unit = ToMotion(MoveAlong(along, centre_W, 1)).normalized();
       for (const NearPoint& point : near_points_.list()) {
         if (std::abs(RowOf(point, centre_W).normalized().dot(unit)) < kMostRate) {
           (i == 1 ? screw.flanks : screw.passed).push_back(point);

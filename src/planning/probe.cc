@@ -123,10 +123,9 @@ Displacement Probe::CalcDisplacement(const Pose& from, const Pose& to) const {
   return {spatial::RotationBetween(from.q(), to.q()), to * centre_B_ - from * centre_B_};
 }
 
-Eigen::Matrix<double, 6, 1> Probe::RowOf(const contact::Contact& contact,
-                                         const Vec3& centre_W) const {
-  Eigen::Matrix<double, 6, 1> row;
-  row << contact.nhat_W, (contact.p_WC - centre_W).cross(contact.nhat_W) / gyration_;
+Vec6 Probe::RowOf(const Vec3& nhat_W, const Vec3& p_WC, const Vec3& centre_W) const {
+  Vec6 row;
+  row << nhat_W, (p_WC - centre_W).cross(nhat_W) / gyration_;
   return row;
 }
 

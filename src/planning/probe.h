@@ -46,10 +46,9 @@ class Probe {
     return d.v_W.norm() + reach_ * d.w_W.norm();
   }
 
-  /** A contact as a row for displacements (v_W, gyration w_W) about the part's centre: the product
-   is by how much they separate it [m]. */
-  [[nodiscard]] Eigen::Matrix<double, 6, 1> RowOf(const contact::Contact& contact,
-                                                  const Vec3& centre_W) const;
+  /** A contact at a point with a normal as a row for displacements (v_W, gyration w_W) about the
+   part's centre: the product is by how much they separate it [m]. */
+  [[nodiscard]] Vec6 RowOf(const Vec3& nhat_W, const Vec3& p_WC, const Vec3& centre_W) const;
 
   /** Length of a displacement in the metric of the search: turns count by the radius of gyration.
    */

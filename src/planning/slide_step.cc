@@ -37,7 +37,7 @@ void PushOut::Add(std::span<const contact::Contact> contacts, double target) {
   const Vec6 at = d_;
   for (std::size_t i = 0; i < n; ++i) {
     Plane plane;
-    plane.row = probe_.RowOf(contacts[i], centre_W);
+    plane.row = probe_.RowOf(contacts[i].nhat_W, contacts[i].p_WC, centre_W);
     plane.wanted = target - contacts[i].distance + plane.row.dot(at);
     plane.weight = plane.row.squaredNorm();
     plane.force = 0;

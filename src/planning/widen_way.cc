@@ -24,8 +24,6 @@ constexpr int kHalvings = 3;  // Of a move that does not help: a choice.
 constexpr double kStayBetween = 0.05;
 constexpr double kMostMove = 0.5;  // Of kClear: a pose moves no further at once, as planes turn.
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
 using FacePair = std::tuple<contact::BodyId, std::uint32_t, std::uint32_t>;
 
 FacePair FacesOf(const contact::Contact& c) {
@@ -58,7 +56,7 @@ Nearness Measure(const Probe& probe, const Pose& X_WB, const Displacement& to_mi
   right << kStayBetween * to_middle.v_W, kStayBetween * g * to_middle.w_W;
   for (const contact::Contact& c : probe.contacts()) {
     const double weight = 1.0 / pairs[FacesOf(c)].first;
-    const Vec6 row = probe.RowOf(c, centre_W);
+    const Vec6 row = probe.RowOf(c.nhat_W, c.p_WC, centre_W);
     normal += weight * row * row.transpose();
     right += weight * (clear - c.distance) * row;
   }

@@ -16,7 +16,6 @@ namespace hvas::simulation {
 namespace {
 
 using product::OccurrenceId;
-using Vec6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kZero = 1e-6;  // Of products of unit vectors: what rounding leaves. A choice.
 

@@ -377,11 +377,12 @@ namespace {
 using PartShapes = std::vector<std::shared_ptr<const contact::Shape>>;
 
 /** Compiles a product whose parts have their shapes.
- @param screws  Gets the pairs that come apart along a screw that no mate describes; where there are
- any, the result is null. Null: they are not asked for. */
+ @param with_screws  Gets the product with mates for the pairs that come apart along a screw that no
+ mate describes; where there are any, the result is null. Null: they are not asked for. */
 Result<std::shared_ptr<const Model>> CompileWithShapes(
     const std::shared_ptr<const product::Product>& product, const PartShapes& shapes,
-    const CompileOptions& options, std::vector<ScrewPair>* screws, Diagnostics* diagnostics) {
+    const CompileOptions& options, std::shared_ptr<const product::Product>* with_screws,
+    Diagnostics* diagnostics) {
   const auto report = [&options](const std::string& stage, double fraction) {
     if (options.progress) {
       options.progress(stage, fraction);
@@ -469,9 +470,11 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
   if (input.stop.stop_requested()) {
     return cancelled();
   }
-  if (screws != nullptr && !model->sequence.screws.empty()) {
-    *screws = model->sequence.screws;
-    return std::shared_ptr<const Model>();
+  if (with_screws != nullptr && !model->sequence.screws.empty()) {
+    *with_screws = AddScrewMates(*product, model->sequence.screws);
+    if (*with_screws != nullptr) {
+      return std::shared_ptr<const Model>();
+    }
   }
   report("layout", 0);
   if (const auto laid_out = LayOut(model.get()); !laid_out) {
@@ -516,16 +519,14 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   if (problem) {
     diagnostics->Warn("shape-cache", problem->where, problem->message, problem->remedy);
   }
-  std::vector<ScrewPair> screws;
   const std::shared_ptr<const product::Product> drawn = std::move(product);
-  auto model = CompileWithShapes(drawn, *shapes, options, &screws, diagnostics);
-  if (!model || *model != nullptr) {
+  std::shared_ptr<const product::Product> with_screws;
+  auto model = CompileWithShapes(drawn, *shapes, options, &with_screws, diagnostics);
+  if (with_screws == nullptr) {
     return model;
   }
   // What was found to be a screw is one from now on, and the order is made with it.
-  const auto with_screws = AddScrewMates(*drawn, screws);
-  return CompileWithShapes(with_screws != nullptr ? with_screws : drawn, *shapes, options, nullptr,
-                           diagnostics);
+  return CompileWithShapes(with_screws, *shapes, options, nullptr, diagnostics);
 }
 
 std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,

@@ -87,8 +87,17 @@ Feature MakeFeature(const product::Product& product, const ScrewPair& pair, Occu
   return feature;
 }
 
+/** Adds a feature to an occurrence's part, unless another occurrence has brought it. */
 FeatureId AddFeature(product::Product* product, OccurrenceId id, Feature feature) {
   product::Part& part = product->parts[product->occurrences[id.index()].part.index()];
+  const auto known =
+      std::find_if(part.features.begin(), part.features.end(), [&feature](const Feature& other) {
+        return other.kind == feature.kind && other.thread == feature.thread &&
+               other.faces == feature.faces;
+      });
+  if (known != part.features.end()) {
+    return FeatureId(static_cast<std::size_t>(known - part.features.begin()));
+  }
   part.features.push_back(std::move(feature));
   return FeatureId(part.features.size() - 1);
 }
@@ -131,8 +140,10 @@ bool AddScrewMate(const ScrewPair& pair, product::Product* product) {
       AddFeature(product, pair.shaft,
                  MakeFeature(*product, pair, pair.shaft, FeatureKind::kShaft, pair.shaft_faces));
   auto mate = mates::MakeMate(*product, {pair.hole, {}, hole}, {pair.shaft, {}, shaft});
-  if (!mate || mate->id.index() < product->mates.size()) {
-    return false;
+  const std::vector<std::string>& removed = product->removed_mates;
+  if (!mate || mate->id.index() < product->mates.size() ||
+      std::find(removed.begin(), removed.end(), mate->key) != removed.end()) {
+    return false;  // It is there already, or the user does not want it.
   }
   mate->hole_radius = pair.core_radius;
   mate->shaft_radius = pair.outer_radius;

@@ -10,31 +10,6 @@ namespace {
 using spatial::Box;
 using spatial::Pose;
 
-/** A screw: turns by |turn| about the axis along it through a point, and goes along by `along`. */
-struct Screw {
-  Vec3 turn{Vec3::Zero()};
-  Vec3 p_AQ{Vec3::Zero()};
-  Vec3 along{Vec3::Zero()};
-};
-
-/** The screw that takes frame A to B, in A. */
-Screw FindScrew(const Pose& X_AB) {
-  constexpr double kNoTurn = 1e-9;  // [rad]; its axis would be too far away to be told
-  Screw screw;
-  screw.turn = spatial::RotationVector(X_AB.q());
-  const double angle = screw.turn.norm();
-  if (angle < kNoTurn) {
-    screw.turn.setZero();
-    screw.along = X_AB.p();
-    return screw;
-  }
-  const Vec3 axis = screw.turn / angle;
-  screw.along = axis.dot(X_AB.p()) * axis;
-  const Vec3 across = X_AB.p() - screw.along;
-  screw.p_AQ = 0.5 * (across + axis.cross(across) / std::tan(0.5 * angle));
-  return screw;
-}
-
 Pose Along(const Screw& screw, double fraction) {
   const Quat q = spatial::RotationFromVector(Vec3(fraction * screw.turn));
   return {q, Vec3(screw.p_AQ - q * screw.p_AQ + fraction * screw.along)};
@@ -72,6 +47,23 @@ double CalcLargestMove(const Pose& from, const Pose& to, const std::vector<Vec3>
 }
 
 }  // namespace
+
+Screw FindScrew(const Pose& X_AB) {
+  constexpr double kNoTurn = 1e-9;  // [rad]; its axis would be too far away to be told
+  Screw screw;
+  screw.turn = spatial::RotationVector(X_AB.q());
+  const double angle = screw.turn.norm();
+  if (angle < kNoTurn) {
+    screw.turn.setZero();
+    screw.along = X_AB.p();
+    return screw;
+  }
+  const Vec3 axis = screw.turn / angle;
+  screw.along = axis.dot(X_AB.p()) * axis;
+  const Vec3 across = X_AB.p() - screw.along;
+  screw.p_AQ = 0.5 * (across + axis.cross(across) / std::tan(0.5 * angle));
+  return screw;
+}
 
 Path MakeTranslation(const Pose& X_WB, const Vec3& d_W) {
   return {X_WB, Pose(X_WB.q(), X_WB.p() + d_W)};

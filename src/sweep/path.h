@@ -11,6 +11,18 @@ namespace hvas::sweep {
  straight where it does not turn, along an arc where it only turns. */
 using Path = std::vector<spatial::Pose>;
 
+/** A screw: turns by |turn| [rad] about the axis along it through a point, and goes along by
+ `along` [m]. */
+struct Screw {
+  Vec3 turn{Vec3::Zero()};
+  Vec3 p_AQ{Vec3::Zero()};
+  Vec3 along{Vec3::Zero()};
+};
+
+/** The screw that takes frame A to B, in A; the shorter way round.
+ Source: Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation, 2.3.2. */
+[[nodiscard]] Screw FindScrew(const spatial::Pose& X_AB);
+
 /** Straight on by d_W [m]. */
 [[nodiscard]] Path MakeTranslation(const spatial::Pose& X_WB, const Vec3& d_W);
 

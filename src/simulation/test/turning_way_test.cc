@@ -121,6 +121,26 @@ TEST(ScrewMatesTest, PartsThatComeApartAlongAScrewAreAThreadedJointAndGoIn) {
   EXPECT_LT(last.passage.depth, 0.2e-3);
 }
 
+TEST(ScrewMatesTest, AMateThatTheUserHasRemovedIsNotMadeAgain) {
+  Product product = NutOnBolt(0.2e-3);
+  ScrewPair pair;
+  pair.hole = OccurrenceId(1);
+  pair.shaft = OccurrenceId(0);
+  pair.axis.pitch = 2e-3;
+  pair.turn = 8;
+  pair.core_radius = 6.4e-3;
+  pair.outer_radius = 8e-3;
+  pair.hole_faces = {product::FaceId(0)};
+  pair.shaft_faces = {product::FaceId(0)};
+  const auto with = AddScrewMates(product, {pair});
+  ASSERT_NE(with, nullptr);
+  ASSERT_EQ(with->mates.size(), 1U);
+  EXPECT_EQ(AddScrewMates(*with, {pair})->parts[1].features.size(), with->parts[1].features.size())
+      << "one feature, however often it is found";
+  product.removed_mates = {with->mates[0].key};
+  EXPECT_EQ(AddScrewMates(product, {pair}), nullptr);
+}
+
 TEST(ScrewMatesTest, ATurnThatDoesNotLeadOutIsNoScrew) {
   planning::FreeScrew screw;
   screw.axis.pitch = 0;
