@@ -42,10 +42,11 @@ EnergyCredit Guidance::AddTo(const DisplayedPart& displayed, double weight, doub
     fit_rows_.Reset();
     return {};
   }
-  // A tool has no place of its own to be attracted to.
-  const EnergyCredit credit = displayed.part->drives.empty()
-                                  ? AddAttraction(displayed, *axis, soft_start, solver)
-                                  : EnergyCredit();
+  // A tool has no place of its own to be attracted to, and a way that turns or bends does not lead
+  // straight to it.
+  const bool attracts = displayed.part->drives.empty() && !displayed.part->has_bent_way;
+  const EnergyCredit credit =
+      attracts ? AddAttraction(displayed, *axis, soft_start, solver) : EnergyCredit();
   if (guide_.is_aligned() && options_.renders_fits) {
     AddFits(displayed, *axis, weight, solver);
   } else {

@@ -77,7 +77,8 @@ struct HeldPart {
   spatial::Pose X_WB_start;          ///< Where it is taken up, unless it moves.
   spatial::Pose X_WB_goal;           ///< Its place in the product.
   Vec3 insertion_W{-Vec3::UnitZ()};  ///< Unit, the way in.
-  bool starts_in_place{false};       ///< It is taken out: X_WB_start is its place.
+  bool has_bent_way{false};     ///< Its way bends or turns: nothing draws it straight to its place.
+  bool starts_in_place{false};  ///< It is taken out: X_WB_start is its place.
   std::vector<HeldMate> mates;
   bool lacks_partners{false};  ///< What it should have been put to is not there: it never seats.
   std::vector<contact::BodyId> left_out;       ///< They move with it: no contact.

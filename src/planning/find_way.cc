@@ -153,8 +153,8 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
         ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
     // A thread has no shorter way, and the middle of its play is clear. What has one is no thread.
     const bool is_thread =
-        screw.turn > 0 && CalcWayLength(probe, shorter) >
-                              kShareThatThreadsKeep * CalcWayLength(probe, *path);
+        screw.turn > 0 &&
+        CalcWayLength(probe, shorter) > kShareThatThreadsKeep * CalcWayLength(probe, *path);
     if (!is_thread) {
       screw = FreeScrew();
       path = WidenWay(&probe, shorter, step, share_of(kShareOfWidening));

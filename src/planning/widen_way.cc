@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Cholesky>
 
@@ -18,8 +19,9 @@ using spatial::Pose;
 constexpr double kClear = 0.02;       // Of the part's size: farther than this from others is clear.
 constexpr double kMovedApart = 0.04;  // Of the part's size: the poses that are moved.
 constexpr int kWideningSweeps =
-    6;                        // Over all poses; further ones gain less than a tenth: a choice.
-constexpr int kHalvings = 3;  // Of a move that does not help: a choice.
+    6;                         // Over all poses; further ones gain less than a tenth: a choice.
+constexpr int kDivisions = 2;  // Of the screws beside narrow places: 1 % of the part then.
+constexpr int kHalvings = 3;   // Of a move that does not help: a choice.
 // Weight of staying between the neighbours, beside that of a pair of faces: choices.
 constexpr double kStayBetween = 0.05;
 constexpr double kMostMove = 0.5;  // Of kClear: a pose moves no further at once, as planes turn.
@@ -66,45 +68,109 @@ Nearness Measure(const Probe& probe, const Pose& X_WB, const Displacement& to_mi
   return nearness;
 }
 
+class Widening {
+ public:
+  Widening(Probe* probe, double step, std::uint64_t budget, sweep::Path way)
+      : probe_(*probe), step_(step), last_(probe->queries() + budget), way_(std::move(way)) {}
+
+  [[nodiscard]] bool IsFree() {
+    for (std::size_t i = 1; i < way_.size(); ++i) {
+      if (!IsScrewFree(i)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void Sweep() {
+    for (std::size_t i = 1; i + 1 < way_.size() && !IsOver(); ++i) {
+      MovePose(i);
+    }
+  }
+
+  /** Divides the screws beside poses that are nearer to others than half of what is clear: around
+   a corner, poses far from each other cannot move apart. */
+  void Divide() {
+    std::vector<double> distances;
+    for (const Pose& X_WB : way_) {
+      if (IsOver()) {
+        return;
+      }
+      distances.push_back(probe_.Query(X_WB, clear_));
+    }
+    sweep::Path divided{way_.front()};
+    for (std::size_t i = 1; i < way_.size(); ++i) {
+      if (std::min(distances[i - 1], distances[i]) < 0.5 * clear_ && !IsOver()) {
+        const Pose middle = sweep::Interpolate(way_[i - 1], way_[i], 0.5);
+        if (IsBetween(way_[i - 1], middle, way_[i])) {
+          divided.push_back(middle);
+        }
+      }
+      divided.push_back(way_[i]);
+    }
+    way_ = std::move(divided);
+  }
+
+  [[nodiscard]] sweep::Path&& TakeWay() { return std::move(way_); }
+
+ private:
+  [[nodiscard]] bool IsOver() const { return probe_.queries() >= last_ || probe_.is_over(); }
+
+  [[nodiscard]] bool IsScrewFree(std::size_t i) {
+    return !IsOver() && planning::IsScrewFree(&probe_, way_[i - 1], way_[i], step_);
+  }
+
+  [[nodiscard]] bool IsBetween(const Pose& from, const Pose& X_WB, const Pose& to) {
+    return planning::IsScrewFree(&probe_, from, X_WB, step_) &&
+           planning::IsScrewFree(&probe_, X_WB, to, step_);
+  }
+
+  void MovePose(std::size_t i) {
+    const double distance = probe_.Query(way_[i], clear_);
+    if (distance >= clear_) {
+      return;
+    }
+    const Pose middle = sweep::Interpolate(way_[i - 1], way_[i + 1], 0.5);
+    const Nearness before = Measure(probe_, way_[i], probe_.CalcDisplacement(way_[i], middle));
+    Displacement d = before.clearing;
+    for (int halving = 0; halving < kHalvings && !IsOver(); ++halving) {
+      const Pose moved = probe_.Move(way_[i], d);
+      const double least = probe_.Query(moved, clear_);
+      const bool is_clearer = least >= std::min(distance, 0.0) &&
+                              Measure(probe_, moved, {}).shortfall < before.shortfall;
+      if (is_clearer && IsBetween(way_[i - 1], moved, way_[i + 1])) {
+        way_[i] = moved;
+        return;
+      }
+      d = {Vec3(0.5 * d.w_W), Vec3(0.5 * d.v_W)};
+    }
+  }
+
+  Probe& probe_;
+  double step_;
+  std::uint64_t last_;
+  sweep::Path way_;
+  double clear_{kClear * probe_.size()};
+};
+
 }  // namespace
 
 sweep::Path WidenWay(Probe* probe, const sweep::Path& path, double step, std::uint64_t budget) {
-  sweep::Path way =
-      sweep::Resample(path, probe->problem().part->box_B(), kMovedApart * probe->size());
-  const double clear = kClear * probe->size();
-  const std::uint64_t last = probe->queries() + budget;
-  const auto is_over = [&] { return probe->queries() >= last || probe->is_over(); };
-  // A divided screw is sampled at other places than the whole.
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    if (is_over() || !IsScrewFree(probe, way[i - 1], way[i], step)) {
-      return path;
+  Widening widening(
+      probe, step, budget,
+      sweep::Resample(path, probe->problem().part->box_B(), kMovedApart * probe->size()));
+  if (!widening.IsFree()) {  // A divided screw is sampled at other places than the whole.
+    return path;
+  }
+  for (int division = 0; division <= kDivisions; ++division) {
+    if (division > 0) {
+      widening.Divide();
+    }
+    for (int sweep = 0; sweep < kWideningSweeps; ++sweep) {
+      widening.Sweep();
     }
   }
-  for (int sweep = 0; sweep < kWideningSweeps; ++sweep) {
-    for (std::size_t i = 1; i + 1 < way.size() && !is_over(); ++i) {
-      const double distance = probe->Query(way[i], clear);
-      if (distance >= clear) {
-        continue;
-      }
-      const Pose middle = sweep::Interpolate(way[i - 1], way[i + 1], 0.5);
-      const Displacement to_middle = probe->CalcDisplacement(way[i], middle);
-      const Nearness before = Measure(*probe, way[i], to_middle);
-      Displacement d = before.clearing;
-      for (int halving = 0; halving < kHalvings && !is_over(); ++halving) {
-        const Pose moved = probe->Move(way[i], d);
-        const double least = probe->Query(moved, clear);
-        const bool is_clearer = least >= std::min(distance, 0.0) &&
-                                Measure(*probe, moved, {}).shortfall < before.shortfall;
-        if (is_clearer && IsScrewFree(probe, way[i - 1], moved, step) &&
-            IsScrewFree(probe, moved, way[i + 1], step)) {
-          way[i] = moved;
-          break;
-        }
-        d = {Vec3(0.5 * d.w_W), Vec3(0.5 * d.v_W)};
-      }
-    }
-  }
-  return way;
+  return widening.TakeWay();
 }
 
 }  // namespace hvas::planning

@@ -96,6 +96,7 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
       is_on_table ? is_table_group : step.members.empty() && !held->starts_in_place;
   held->X_WB_start = lies_on_table ? CalcPoseAboveTable(step) : state.X_WB;
   held->insertion_W = -step.extraction_W;
+  held->has_bent_way = !step.way.empty();
   held->left_out = ListTogetherBodies(step);
   held->allowances = ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
   AddMembers(step, held.get());
@@ -142,6 +143,7 @@ void HeldPartMaker::AddTablePlaces(const SequenceStep& step, haptics::HeldPart* 
     there->mates.clear();
     there->lacks_partners = false;
     there->insertion_W = place.insertion_W;
+    there->has_bent_way = false;
     there->X_WB_goal = place.X_WB_goal;
     there->starts_in_place = place.starts_in_place;
     there->target = GroupOf(place.target);

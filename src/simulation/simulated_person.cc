@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace hvas::simulation {
@@ -26,32 +27,36 @@ constexpr double kLookTime = 0.4;           // [s]
 constexpr double kCarefulSpeed = 0.012;     // [m/s]; what hits the hole tilted, wedges in it
 constexpr double kRockingRate = 3;          // [Hz]
 constexpr double kTwistingRate = 0.8;       // [Hz]
-constexpr double kTwistTime = 0.3;          // [s] in which the eye corrects how it is turned
-constexpr double kMostTwistLag = 0.01;      // [rad] of the hand behind its intent
-constexpr double kRocking = 0.02;           // [rad]; harder the longer it sticks
-constexpr double kMostRocking = 0.12;       // [rad]
-constexpr double kRockingTime = 6;          // [s]
-constexpr double kRockingTurn = 0.12;       // of a turn about the way in, for each of rocking
-constexpr double kRockingLag = 0.02;        // [s]
-constexpr double kYieldTime = 0.3;          // [s]; the wrist gives way to what it feels
-constexpr double kYieldReach = 2e-3;        // [m], no further than this
-constexpr double kYieldTurn = 0.05;         // [rad]
-constexpr double kSearchPitch = 0.5e-3;     // [m] of radius a try
-constexpr double kEyePitch = 0.25;          // Of the error of a close look, the same by eye
-constexpr double kLearnTime = 0.3;          // [s] in which a weight is learned
-constexpr double kSwings = 5e-3;            // [m] from its hand; no weight stretches it further
-constexpr double kSeenBeside = 1e-3;        // [m] beside the hand, where a part is seen to hang so
-constexpr double kCorrectTime = 0.15;       // [s] in which the hand corrects that
-constexpr double kAtHand = 0.002;           // [m]; close enough to take something up
-constexpr double kFollows = 0.5e-3;         // [m]; a part that meets nothing is as near to its hand
-constexpr double kCalm = 0.02;              // [m/s]; slow enough for it
-constexpr double kMostLag = 0.05;           // [m]; the mind does not run ahead of the hand
-constexpr double kMostTurnLag = 0.3;        // [rad]
-constexpr double kTurned = 0.05;            // [rad]; as good as turned
-constexpr double kTurning = 0.02;           // [rad/s]; slower than that, the hand does not turn
-constexpr double kCalmTime = 0.2;           // [s]; what swings is only still for a moment
-constexpr double kMostWait = 1.5;    // [s] for a hand to come, and what it holds to hang still
+constexpr double kFollowTime =
+    0.3;                           // [s] in which the eye corrects where the part is beside its way
+constexpr double kMostAim = 4e-3;  // [m], by no more than this
+constexpr double kMostAimTurn = 0.2;     // [rad]
+constexpr double kMostTwistLag = 0.01;   // [rad] of the hand behind its intent
+constexpr double kRocking = 0.02;        // [rad]; harder the longer it sticks
+constexpr double kMostRocking = 0.12;    // [rad]
+constexpr double kRockingTime = 6;       // [s]
+constexpr double kRockingTurn = 0.12;    // of a turn about the way in, for each of rocking
+constexpr double kRockingLag = 0.02;     // [s]
+constexpr double kYieldTime = 0.3;       // [s]; the wrist gives way to what it feels
+constexpr double kYieldReach = 2e-3;     // [m], no further than this
+constexpr double kYieldTurn = 0.05;      // [rad]
+constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
+constexpr double kEyePitch = 0.25;       // Of the error of a close look, the same by eye
+constexpr double kLearnTime = 0.3;       // [s] in which a weight is learned
+constexpr double kSwings = 5e-3;         // [m] from its hand; no weight stretches it further
+constexpr double kSeenBeside = 1e-3;     // [m] beside the hand, where a part is seen to hang so
+constexpr double kCorrectTime = 0.15;    // [s] in which the hand corrects that
+constexpr double kAtHand = 0.002;        // [m]; close enough to take something up
+constexpr double kFollows = 0.5e-3;      // [m]; a part that meets nothing is as near to its hand
+constexpr double kCalm = 0.02;           // [m/s]; slow enough for it
+constexpr double kMostLag = 0.05;        // [m]; the mind does not run ahead of the hand
+constexpr double kMostTurnLag = 0.3;     // [rad]
+constexpr double kTurned = 0.05;         // [rad]; as good as turned
+constexpr double kTurning = 0.02;        // [rad/s]; slower than that, the hand does not turn
+constexpr double kCalmTime = 0.2;        // [s]; what swings is only still for a moment
+constexpr double kMostWait = 1.5;        // [s] for a hand to come, and what it holds to hang still
 constexpr double kLeadOnWay = 1e-3;  // [m] that the hand goes before the part on a way that bends
+constexpr double kNearer = 0.05e-3;  // [m] of travel that count as coming on
 constexpr double kLeadWhenStuck = 2e-3;  // [m/s] more of it while the part is stuck
 constexpr double kLeastOfTravel = 0.2;   // Of the travel: where less of it is distance, it turns.
 constexpr double kSenseTime = 0.08;      // [s] in which it notices how fast its hand is
@@ -278,6 +283,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   const double travel = is_watched ? seen_travel : hand_travel;
   const bool is_inside = is_by_eye && travel < task_.engage_distance - kLeadIn;
   if (is_backing_off_) {
+    nearest_travel_ = std::numeric_limits<double>::infinity();
     travel_ += options_.insert_speed * dt_;
     is_backing_off_ = travel < back_off_to_ && hand_travel < back_off_to_ + 3 * kBackOff;
     look_time_s_ = kLookTime;
@@ -295,6 +301,10 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     const bool is_slow = speed < kSlowShare * wanted_speed;
     AdjustPush(CalcAddedForce(input), speed, wanted_speed, is_careful && !is_inside);
     push_ = is_careful ? std::min(push_, options_.careful_push) : push_;
+    const bool is_rocking = is_guided_ || task_.way == nullptr;
+    if (task_.way != nullptr && is_by_eye && travel < task_.engage_distance) {
+      FollowWayByEye(input, d);
+    }
     const double lead = LeadOf(input);
     travel_ = std::max(travel_ - wanted_speed * dt_, hand_travel - lead);
     // The device may give way where the part does not: the eye tells.
@@ -304,18 +314,16 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
         is_left_behind ? std::max(travel_, hand_travel + stretch - options_.most_stretch) : travel_;
     // It follows a hand that is pushed back, but not one that leaves.
     travel_ = std::min(travel_, task_.engage_distance + kStandOff + 3 * kBackOff);
-    const bool is_stuck =
-        is_left_behind || (speed < kStillSpeed && (is_careful || IsPressing(input)));
+    const bool is_coming = HasSlotToFind() ? IsNearer(travel) : speed >= kStillSpeed;
+    const bool is_stuck = is_left_behind || (!is_coming && (is_careful || IsPressing(input)));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
     if (input.sees_part && seen_travel < -kStandOff) {
       StartSearch(d, travel, false);  // Beyond its place, where nothing stops it: it was missed.
       back_off_to_ = task_.engage_distance + kStandOff;
-    } else if (stuck_time_s_ > (is_careful && is_inside ? kRockingTime : kStuckBeforeSearch)) {
+    } else if (stuck_time_s_ >
+               (is_careful && is_inside && is_rocking ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
     } else if (is_careful && is_inside) {
-      if (HasSlotToFind()) {
-        CorrectTwist(input, d);
-      }
       if (task_.way == nullptr || is_slow) {
         YieldToTouch(d);  // On a way that turns, what comes behind the hand meets nothing yet.
       }
@@ -330,6 +338,15 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
 const Vec3& SimulatedPerson::MotionOf(const OperatorInput& input) const noexcept {
   // A device, or a soft coupling, lets the hand come on while the part stands: the eye tells.
   return input.sees_part && (is_at_device_ || !is_guided_) ? v_part_W_ : V_H_.v;
+}
+
+bool SimulatedPerson::IsNearer(double travel) noexcept {
+  // What rocks and twists moves to and fro.
+  if (travel > nearest_travel_ - kNearer) {
+    return false;
+  }
+  nearest_travel_ = travel;
+  return true;
 }
 
 double SimulatedPerson::CalcPatience() const noexcept {
@@ -419,11 +436,24 @@ bool SimulatedPerson::HasSlotToFind() const noexcept {
   return is_guided_ && task_.way != nullptr;
 }
 
-void SimulatedPerson::CorrectTwist(const OperatorInput& input, const Vec3& d) noexcept {
-  const Quat& q_wanted = WayAt(SeenTravel(input)).q();
-  const Vec3 turned =
-      spatial::RotationBetween(q_wanted, input.X_WD.q()) + seen_turn_error_ - rocking_;
-  aim_turn_ -= dt_ / kTwistTime * turned.dot(d) * d;
+void SimulatedPerson::FollowWayByEye(const OperatorInput& input, const Vec3& d) noexcept {
+  const double travel = SeenTravel(input);
+  const spatial::Pose X_WG = WayAt(travel);
+  Vec3 aside = input.X_WD * task_.p_BG - X_WG.p() + seen_error_ - yield_offset_;
+  Vec3 turned = spatial::RotationBetween(X_WG.q(), input.X_WD.q()) + seen_turn_error_ - rocking_ -
+                yield_turn_;
+  const spatial::Twist rate = task_.way->RateAt(travel);
+  const double ahead = task_.way->CalcSpeed({turned, aside}, travel);  // Its push sees to that.
+  aside -= ahead * rate.v;
+  turned -= ahead * rate.w;
+  if (is_guided_) {  // The mate holds it across its axis.
+    aside = aside.dot(d) * d;
+    turned = turned.dot(d) * d;
+  }
+  aim_offset_ -= dt_ / kFollowTime * aside;
+  aim_turn_ -= dt_ / kFollowTime * turned;
+  LimitLength(kMostAim, &aim_offset_);
+  LimitLength(kMostAimTurn, &aim_turn_);
 }
 
 void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
@@ -457,10 +487,14 @@ void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
   // How far it is on its way, and how it hangs at the hand, it feels.
   aside -= (is_free ? grip_offset_W_ : aside).dot(d) * d;
   const Vec3 turned = spatial::RotationBetween(X_WG.q(), input.X_WD.q());
+  if (task_.way != nullptr) {
+    aim_offset_ -= aim_offset_.dot(d) * d;
+  }
   // It knows the mean of all its looks.
   const double of_mean = 1 / std::sqrt(static_cast<double>(std::max(1, search_count_.load())));
   for (int k = 0; k < 3; ++k) {
-    aim_offset_[k] -= aside[k] + of_mean * options_.eye_error * random_.Normal();
+    seen_error_[k] = of_mean * options_.eye_error * random_.Normal();
+    aim_offset_[k] -= aside[k] + seen_error_[k];
     seen_turn_error_[k] = of_mean * options_.eye_error_angle * random_.Normal();
     aim_turn_[k] -= turned[k] + seen_turn_error_[k];
   }
@@ -602,6 +636,7 @@ void SimulatedPerson::BeginInsert() noexcept {
   yield_offset_.setZero();
   yield_turn_.setZero();
   rocking_.setZero();
+  nearest_travel_ = std::numeric_limits<double>::infinity();
   look_time_s_ = task_.way != nullptr ? kLookTime : 0;  // Where it has to turn, it looks first.
   is_backing_off_ = false;
   is_outside_ = false;

@@ -204,10 +204,13 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void Rock(const Vec3& d, bool is_slow) noexcept;
   /** Gives way across the way in, and in how it is turned, to what holds the hand back. */
   void YieldToTouch(const Vec3& d) noexcept;
+  /** Whether the part is further in than it ever was on this try. */
+  [[nodiscard]] bool IsNearer(double travel) noexcept;
   /** Whether the part is in a hole on a way that turns: it has to be turned right to go on. */
   [[nodiscard]] bool HasSlotToFind() const noexcept;
-  /** Corrects, little by little, how far the part is turned about the way in, by what it sees. */
-  void CorrectTwist(const OperatorInput& input, const Vec3& d) noexcept;
+  /** Corrects, little by little, how far the part is beside its way, by what it sees; where a mate
+   guides it, along and about the axis alone. */
+  void FollowWayByEye(const OperatorInput& input, const Vec3& d) noexcept;
   /** Corrects where it believes the part to be by what it sees. */
   void LookClosely(const OperatorInput& input) noexcept;
   /** Backs off from so far before its place, to try again. */
@@ -243,7 +246,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   Vec3 v_part_W_{Vec3::Zero()};    ///< [m/s]
   Vec3 aim_offset_{Vec3::Zero()};  ///< Error of where the hand believes this part to be.
   Vec3 aim_turn_{Vec3::Zero()};
-  Vec3 seen_turn_error_{Vec3::Zero()};  ///< Error of the last close look [rad].
+  Vec3 seen_error_{Vec3::Zero()};       ///< Error of the last close look [m].
+  Vec3 seen_turn_error_{Vec3::Zero()};  ///< Likewise [rad].
 
   static constexpr int kMaxReaches = 6;  ///< The longest plan has four.
   Reach reaches_[kMaxReaches];
@@ -255,9 +259,10 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   double calm_s_{0};      ///< Part of that time without motion.
   double swinging_s_{0};  ///< Time to wait until what swings counts as still.
 
-  double travel_{0};       ///< Reference distance still to go along the way in [m].
-  double push_{0};         ///< Force that the hand is ready to press with [N].
-  double back_off_to_{0};  ///< Distance to go at which it tries again [m].
+  double travel_{0};          ///< Reference distance still to go along the way in [m].
+  double push_{0};            ///< Force that the hand is ready to press with [N].
+  double back_off_to_{0};     ///< Distance to go at which it tries again [m].
+  double nearest_travel_{0};  ///< Of this try [m].
   double stuck_time_s_{0};
   Vec3 search_offset_{Vec3::Zero()};
   Vec3 yield_offset_{Vec3::Zero()};  ///< What touch has corrected, of place [m] and turn [rad].
