@@ -28,9 +28,9 @@ constexpr double kCarefulSpeed = 0.012;     // [m/s]; what hits the hole tilted,
 constexpr double kRockingRate = 3;          // [Hz]
 constexpr double kTwistingRate = 0.8;       // [Hz]
 constexpr double kFollowTime =
-    0.3;                           // [s] in which the eye corrects where the part is beside its way
-constexpr double kMostAim = 4e-3;  // [m], by no more than this
-constexpr double kMostAimTurn = 0.2;     // [rad]
+    0.3;  // [s] in which the eye corrects where the part is beside its way
+constexpr double kFollowReach = 1e-3;    // [m], by no more than this
+constexpr double kFollowTurn = 0.1;      // [rad]
 constexpr double kMostTwistLag = 0.01;   // [rad] of the hand behind its intent
 constexpr double kRocking = 0.02;        // [rad]; harder the longer it sticks
 constexpr double kMostRocking = 0.12;    // [rad]
@@ -331,8 +331,10 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     }
   }
   const spatial::Pose X_WG = WayAt(travel_);
-  p_ref_ = X_WG.p() + hold_offset_W_ + aim_offset_ + search_offset_ + yield_offset_;
-  q_ref_ = spatial::RotationFromVector(aim_turn_ + yield_turn_ + rocking_) * X_WG.q();
+  p_ref_ =
+      X_WG.p() + hold_offset_W_ + aim_offset_ + search_offset_ + yield_offset_ + follow_offset_;
+  q_ref_ =
+      spatial::RotationFromVector(aim_turn_ + yield_turn_ + follow_turn_ + rocking_) * X_WG.q();
 }
 
 const Vec3& SimulatedPerson::MotionOf(const OperatorInput& input) const noexcept {
@@ -351,7 +353,8 @@ bool SimulatedPerson::IsNearer(double travel) noexcept {
 
 double SimulatedPerson::CalcPatience() const noexcept {
   // A long way in takes its time.
-  return std::max(options_.patience_s, 3 * task_.engage_distance / options_.insert_speed);
+  const double slowest = task_.way != nullptr ? kCarefulSpeed : options_.insert_speed;
+  return std::max(options_.patience_s, 3 * task_.engage_distance / slowest);
 }
 
 double SimulatedPerson::PushLimit() const noexcept {
@@ -450,10 +453,10 @@ void SimulatedPerson::FollowWayByEye(const OperatorInput& input, const Vec3& d) 
     aside = aside.dot(d) * d;
     turned = turned.dot(d) * d;
   }
-  aim_offset_ -= dt_ / kFollowTime * aside;
-  aim_turn_ -= dt_ / kFollowTime * turned;
-  LimitLength(kMostAim, &aim_offset_);
-  LimitLength(kMostAimTurn, &aim_turn_);
+  follow_offset_ -= dt_ / kFollowTime * aside;
+  follow_turn_ -= dt_ / kFollowTime * turned;
+  LimitLength(kFollowReach, &follow_offset_);
+  LimitLength(kFollowTurn, &follow_turn_);
 }
 
 void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
@@ -487,9 +490,11 @@ void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
   // How far it is on its way, and how it hangs at the hand, it feels.
   aside -= (is_free ? grip_offset_W_ : aside).dot(d) * d;
   const Vec3 turned = spatial::RotationBetween(X_WG.q(), input.X_WD.q());
-  if (task_.way != nullptr) {
+  if (task_.way != nullptr && !is_free) {
     aim_offset_ -= aim_offset_.dot(d) * d;
   }
+  follow_offset_.setZero();
+  follow_turn_.setZero();
   // It knows the mean of all its looks.
   const double of_mean = 1 / std::sqrt(static_cast<double>(std::max(1, search_count_.load())));
   for (int k = 0; k < 3; ++k) {
@@ -513,8 +518,12 @@ void SimulatedPerson::StartSearch(const Vec3& d, double travel, bool is_by_eye) 
   aim_turn_ += yield_turn_;
   yield_offset_.setZero();
   yield_turn_.setZero();
-  if (is_by_eye && !is_first && travel < task_.engage_distance - kBackOff) {
-    back_off_to_ = travel + kLoosen;  // It sticks in the hole: a little back, and straighter.
+  follow_offset_.setZero();
+  follow_turn_.setZero();
+  const bool has_way = task_.way != nullptr;
+  if (is_by_eye && (!is_first || has_way) && travel < task_.engage_distance - kBackOff) {
+    // It sticks in the hole: a little back, and straighter; on a way that turns each time further.
+    back_off_to_ = travel + kLoosen * (has_way ? search_count_.load() : 1);
     return;
   }
   // Missed: back off and try beside, on a spiral of golden angles.
@@ -635,6 +644,8 @@ void SimulatedPerson::BeginInsert() noexcept {
   search_offset_.setZero();
   yield_offset_.setZero();
   yield_turn_.setZero();
+  follow_offset_.setZero();
+  follow_turn_.setZero();
   rocking_.setZero();
   nearest_travel_ = std::numeric_limits<double>::infinity();
   look_time_s_ = task_.way != nullptr ? kLookTime : 0;  // Where it has to turn, it looks first.

@@ -246,6 +246,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   Vec3 v_part_W_{Vec3::Zero()};    ///< [m/s]
   Vec3 aim_offset_{Vec3::Zero()};  ///< Error of where the hand believes this part to be.
   Vec3 aim_turn_{Vec3::Zero()};
+  Vec3 follow_offset_{Vec3::Zero()};    ///< By which the eye corrects the part on its way [m].
+  Vec3 follow_turn_{Vec3::Zero()};      ///< Likewise [rad].
   Vec3 seen_error_{Vec3::Zero()};       ///< Error of the last close look [m].
   Vec3 seen_turn_error_{Vec3::Zero()};  ///< Likewise [rad].
 
