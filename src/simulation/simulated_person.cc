@@ -284,6 +284,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   const bool is_inside = is_by_eye && travel < task_.engage_distance - kLeadIn;
   if (is_backing_off_) {
     nearest_travel_ = std::numeric_limits<double>::infinity();
+    since_nearer_s_ = 0;
     travel_ += options_.insert_speed * dt_;
     is_backing_off_ = travel < back_off_to_ && hand_travel < back_off_to_ + 3 * kBackOff;
     look_time_s_ = kLookTime;
@@ -314,14 +315,16 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
         is_left_behind ? std::max(travel_, hand_travel + stretch - options_.most_stretch) : travel_;
     // It follows a hand that is pushed back, but not one that leaves.
     travel_ = std::min(travel_, task_.engage_distance + kStandOff + 3 * kBackOff);
-    const bool is_coming = HasSlotToFind() ? IsNearer(travel) : speed >= kStillSpeed;
+    since_nearer_s_ = task_.way == nullptr || IsNearer(travel) ? 0 : since_nearer_s_ + dt_;
+    const bool is_coming = HasSlotToFind() ? since_nearer_s_ == 0 : speed >= kStillSpeed;
     const bool is_stuck = is_left_behind || (!is_coming && (is_careful || IsPressing(input)));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
     if (input.sees_part && seen_travel < -kStandOff) {
       StartSearch(d, travel, false);  // Beyond its place, where nothing stops it: it was missed.
       back_off_to_ = task_.engage_distance + kStandOff;
-    } else if (stuck_time_s_ >
-               (is_careful && is_inside && is_rocking ? kRockingTime : kStuckBeforeSearch)) {
+    } else if (since_nearer_s_ > kRockingTime ||
+               stuck_time_s_ >
+                   (is_careful && is_inside && is_rocking ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
     } else if (is_careful && is_inside) {
       if (task_.way == nullptr || is_slow) {
@@ -648,6 +651,7 @@ void SimulatedPerson::BeginInsert() noexcept {
   follow_turn_.setZero();
   rocking_.setZero();
   nearest_travel_ = std::numeric_limits<double>::infinity();
+  since_nearer_s_ = 0;
   look_time_s_ = task_.way != nullptr ? kLookTime : 0;  // Where it has to turn, it looks first.
   is_backing_off_ = false;
   is_outside_ = false;

@@ -265,6 +265,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   double push_{0};            ///< Force that the hand is ready to press with [N].
   double back_off_to_{0};     ///< Distance to go at which it tries again [m].
   double nearest_travel_{0};  ///< Of this try [m].
+  double since_nearer_s_{0};  ///< Time for which it has not become less, on a way that turns.
   double stuck_time_s_{0};
   Vec3 search_offset_{Vec3::Zero()};
   Vec3 yield_offset_{Vec3::Zero()};  ///< What touch has corrected, of place [m] and turn [rad].
