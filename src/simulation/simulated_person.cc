@@ -39,6 +39,7 @@ constexpr double kRockingTurn = 0.12;    // of a turn about the way in, for each
 constexpr double kRockingLag = 0.02;     // [s]
 constexpr double kYieldTime = 0.3;       // [s]; the wrist gives way to what it feels
 constexpr double kYieldReach = 2e-3;     // [m], no further than this
+constexpr double kErrorsOfEye = 3;       // Standard deviations of what it sees
 constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kEyePitch = 0.25;       // Of the error of a close look, the same by eye
@@ -434,7 +435,9 @@ void SimulatedPerson::YieldToTouch(const Vec3& d) noexcept {
     turned_back -= turned_back.dot(d) * d;  // The eye says how far it has to turn in its hole.
   }
   yield_turn_ += dt_ / kYieldTime * turned_back;
-  LimitLength(kYieldReach, &yield_offset_);
+  // Whoever sees the way gives way no further than it may have seen wrong.
+  const bool is_by_eye = task_.way != nullptr && !is_guided_;
+  LimitLength(is_by_eye ? kErrorsOfEye * options_.eye_error : kYieldReach, &yield_offset_);
   LimitLength(kYieldTurn, &yield_turn_);
 }
 
