@@ -58,6 +58,7 @@ constexpr double kCalmTime = 0.2;        // [s]; what swings is only still for a
 constexpr double kMostWait = 1.5;        // [s] for a hand to come, and what it holds to hang still
 constexpr double kLeadOnWay = 1e-3;  // [m] that the hand goes before the part on a way that bends
 constexpr double kNearer = 0.05e-3;  // [m] of travel that count as coming on
+constexpr double kNotNearer = 2;     // [s] until whoever sees the way tries anew
 constexpr double kLeadWhenStuck = 2e-3;  // [m/s] more of it while the part is stuck
 constexpr double kLeastOfTravel = 0.2;   // Of the travel: where less of it is distance, it turns.
 constexpr double kSenseTime = 0.08;      // [s] in which it notices how fast its hand is
@@ -323,7 +324,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     if (input.sees_part && seen_travel < -kStandOff) {
       StartSearch(d, travel, false);  // Beyond its place, where nothing stops it: it was missed.
       back_off_to_ = task_.engage_distance + kStandOff;
-    } else if (since_nearer_s_ > kRockingTime ||
+    } else if (since_nearer_s_ > (is_guided_ ? kRockingTime : kNotNearer) ||
                stuck_time_s_ >
                    (is_careful && is_inside && is_rocking ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
