@@ -457,7 +457,6 @@ void SimulatedPerson::FollowWayByEye(const OperatorInput& input, const Vec3& d) 
   aside -= ahead * rate.v;
   turned -= ahead * rate.w;
   if (is_guided_) {  // The mate holds it across its axis.
-    aside = aside.dot(d) * d;
     turned = turned.dot(d) * d;
   }
   follow_offset_ -= dt_ / kFollowTime * aside;
