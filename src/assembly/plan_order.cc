@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "mates/assignments.h"
-#include "simulation/fastener_tool.h"
 #include "simulation/state_statics.h"
 
 namespace hvas::assembly {
@@ -207,14 +206,9 @@ Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
   if (!wishes) {
     return Unexpected(wishes.error());
   }
-  const std::vector<std::string> tools = simulation::NameTools(*model.product);
-  for (const simulation::FreeMove& move : plan.rules.moves) {
-    plan.tools.push_back(move.parts.size() == 1 ? tools[move.parts.front().index()] : "");
-  }
   simulation::OrderSearchOptions search;
   search.weights = options.weights;
   search.wishes = *wishes;
-  search.tools = plan.tools;
   search.most_orders = options.most_orders;
   search.gives_front = options.gives_front;
   search.progress = report("order of least cost");

@@ -44,7 +44,6 @@ struct OrderPlan {
   simulation::OrderSearch search;  ///< Orders of equal cost stand by how little has to be held.
   /** Statics of the first of search.orders: as many as 300 moves allow, one at least. */
   std::vector<OrderStatics> statics;
-  std::vector<std::string> tools;  ///< The tool of each move; empty: none.
   /** Why parts are left out: of the first of Sequence::gaps, as many as PlanOptions allows. */
   std::vector<simulation::GapReason> reasons;
 };

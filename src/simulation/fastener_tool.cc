@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -31,28 +32,26 @@ std::string NameTool(const DriveForm& drive) {
   return {};
 }
 
-std::string NameTool(const product::Part& part, bool is_nut) {
+FastenerTool FindTool(const product::Part& part, bool is_nut) {
   product::RecognitionLimits limits;
-  const std::vector<DriveForm> drives = product::FindDriveForms(part, kFlatTolerance, &limits);
+  std::vector<DriveForm> drives = product::FindDriveForms(part, kFlatTolerance, &limits);
+  if (drives.empty()) {
+    return {is_nut ? "spanner" : "screwdriver", std::nullopt};
+  }
   // A screw is turned at a recess in its head, if it has one; a nut at its outside.
   const auto wanted = std::find_if(drives.begin(), drives.end(), [is_nut](const DriveForm& drive) {
     return drive.is_recess != is_nut;
   });
-  if (wanted != drives.end()) {
-    return NameTool(*wanted);
-  }
-  if (!drives.empty()) {
-    return NameTool(drives.front());
-  }
-  return is_nut ? "spanner" : "screwdriver";
+  DriveForm& drive = wanted != drives.end() ? *wanted : drives.front();
+  return {NameTool(drive), std::move(drive)};
 }
 
 }  // namespace
 
-std::vector<std::string> NameTools(const product::Product& product) {
+std::vector<FastenerTool> FindTools(const product::Product& product) {
   const std::vector<FastenerKind> kinds = mates::ClassifyOccurrences(product);
-  std::map<product::PartId, std::string> known;
-  std::vector<std::string> tools(product.occurrences.size());
+  std::map<product::PartId, FastenerTool> known;
+  std::vector<FastenerTool> tools(product.occurrences.size());
   for (const product::Occurrence& occurrence : product.occurrences) {
     const FastenerKind kind = kinds[occurrence.id.index()];
     if (kind != FastenerKind::kScrew && kind != FastenerKind::kNut) {
@@ -60,11 +59,19 @@ std::vector<std::string> NameTools(const product::Product& product) {
     }
     const auto [entry, is_new] = known.try_emplace(occurrence.part);
     if (is_new) {
-      entry->second = NameTool(product.parts[occurrence.part.index()], kind == FastenerKind::kNut);
+      entry->second = FindTool(product.parts[occurrence.part.index()], kind == FastenerKind::kNut);
     }
     tools[occurrence.id.index()] = entry->second;
   }
   return tools;
+}
+
+std::vector<std::string> NameTools(const product::Product& product) {
+  std::vector<std::string> names;
+  for (FastenerTool& tool : FindTools(product)) {
+    names.push_back(std::move(tool.name));
+  }
+  return names;
 }
 
 }  // namespace hvas::simulation

@@ -4,6 +4,9 @@
 #include <map>
 #include <utility>
 
+#include "simulation/fastener_tool.h"
+#include "simulation/tool_space.h"
+
 namespace hvas::simulation {
 namespace {
 
@@ -18,7 +21,8 @@ class RuleFinder {
       : model_(model),
         options_(options),
         input_(MakeSequenceInput(model, &scene_)),
-        extraction_(input_, &model.sequence) {}
+        extraction_(input_, &model.sequence),
+        tools_(FindTools(*model.product)) {}
 
   OrderRules Find() {
     SplitSteps();
@@ -26,6 +30,7 @@ class RuleFinder {
     for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
       FindWays(m);
       FindHolders(m);
+      FindToolSpace(m);
       if (options_.progress) {
         options_.progress(static_cast<double>(m + 1) / static_cast<double>(rules_.moves.size()));
       }
@@ -148,11 +153,44 @@ class RuleFinder {
                           move.neighbours.end());
   }
 
+  void FindToolSpace(std::size_t m) {
+    FreeMove& move = rules_.moves[m];
+    const SequenceStep& step = move.ways.front().step;
+    const FastenerTool& tool = tools_[step.occurrence.index()];
+    if (move.parts.size() != 1 || tool.name.empty()) {
+      return;
+    }
+    move.tool = tool.name;
+    if (!tool.drive) {
+      return;
+    }
+    const product::Product& product = *model_.product;
+    const ToolSpace space =
+        MakeToolSpace(*tool.drive, product.occurrences[step.occurrence.index()].X_WB,
+                      step.extraction_W, step.engage_distance);
+    for (const product::Occurrence& other : product.occurrences) {
+      if (other.id == step.occurrence || !extraction_.is_present(other.id) ||
+          !IsInToolSpace(space, product.part_of(other.id), other.X_WB)) {
+        continue;
+      }
+      move.in_tool_space.push_back(other.id);
+      const auto found = move_of_.find(other.id);
+      if (found != move_of_.end()) {
+        move.moves_in_tool_space.push_back(found->second);
+      }
+    }
+    std::sort(move.moves_in_tool_space.begin(), move.moves_in_tool_space.end());
+    move.moves_in_tool_space.erase(
+        std::unique(move.moves_in_tool_space.begin(), move.moves_in_tool_space.end()),
+        move.moves_in_tool_space.end());
+  }
+
   const Model& model_;
   const OrderRuleOptions& options_;
   contact::Scene scene_;
   SequenceInput input_;
   Extraction extraction_;
+  std::vector<FastenerTool> tools_;  // By occurrence.
   OrderRules rules_;
   std::map<OccurrenceId, std::size_t> move_of_;
 };

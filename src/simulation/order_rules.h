@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "simulation/extraction.h"
@@ -24,8 +25,12 @@ struct FreeMove {
   /** It goes only as planned, after what came before it: on a way that turns, or on which parts
    give. */
   bool is_bound{false};
-  std::vector<std::size_t> neighbours;  ///< Moves whose parts hold this one; sorted.
-  bool is_held_by_base{false};          ///< The base, or a fixture, holds it.
+  std::string tool;  ///< Of a fastener, as NameTools gives it; empty: none is needed.
+  /** What stands in the space of the tool while it turns the fastener in (tool_space.h). */
+  std::vector<product::OccurrenceId> in_tool_space;
+  std::vector<std::size_t> moves_in_tool_space;  ///< The moves that they belong to; sorted.
+  std::vector<std::size_t> neighbours;           ///< Moves whose parts hold this one; sorted.
+  bool is_held_by_base{false};                   ///< The base, or a fixture, holds it.
 };
 
 /** What of an order of assembly may change: a move may come when nothing stands in one of its ways.

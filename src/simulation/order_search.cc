@@ -82,7 +82,7 @@ class OrderCounter {
   explicit OrderCounter(unsigned sides) : sides_(sides) {}
 
   /** @param tool  The tool of the move; it outlives this object. Empty: none. */
-  void Add(const Vec3& extraction_W, std::string_view tool, bool is_loose) {
+  void Add(const Vec3& extraction_W, std::string_view tool, bool is_loose, bool is_cramped) {
     const unsigned own = ListSides(extraction_W);
     counts_.turns += (sides_ & own) == 0 ? 1 : 0;
     sides_ = (sides_ & own) == 0 ? own : sides_ & own;
@@ -92,6 +92,7 @@ class OrderCounter {
     counts_.tool_changes += !tool.empty() && !tool_.empty() && tool != tool_ ? 1 : 0;
     tool_ = tool.empty() ? tool_ : tool;
     counts_.loose += is_loose ? 1 : 0;
+    counts_.cramped += is_cramped ? 1 : 0;
   }
 
   [[nodiscard]] const OrderCounts& counts() const { return counts_; }
@@ -138,6 +139,12 @@ class BeamSearch {
         for (const std::size_t other : way.moves) {
           set.Set(other);
         }
+      }
+    }
+    for (const FreeMove& move : rules.moves) {
+      MoveSet& set = in_tool_space_.emplace_back(rules.moves.size());
+      for (const std::size_t other : move.moves_in_tool_space) {
+        set.Set(other);
       }
     }
     for (const OrderWish& wish : options.wishes) {
@@ -193,10 +200,6 @@ class BeamSearch {
 
   [[nodiscard]] bool IsOver() const { return tries_ >= options_.most_tries || IsStopped(); }
 
-  [[nodiscard]] std::string_view ToolOf(std::size_t move) const {
-    return options_.tools.empty() ? std::string_view() : std::string_view(options_.tools[move]);
-  }
-
   FoundOrder MakePlanned() const {
     FoundOrder order;
     for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
@@ -207,7 +210,7 @@ class BeamSearch {
   }
 
   FoundOrder Count(FoundOrder order) const {
-    order.counts = CountOrder(rules_, options_.tools, options_.up_W, order);
+    order.counts = CountOrder(rules_, options_.up_W, order);
     order.cost = CalcCost(order.counts, options_.weights);
     return order;
   }
@@ -257,7 +260,8 @@ class BeamSearch {
       const bool is_carrying =
           std::binary_search(carrying.begin(), carrying.end(), OccurrenceId(m + 1));
       OrderCounter counter = state.counter;
-      counter.Add(rules_.moves[m].ways[*way].step.extraction_W, ToolOf(m), is_carrying);
+      counter.Add(rules_.moves[m].ways[*way].step.extraction_W, rules_.moves[m].tool, is_carrying,
+                  state.present.Meets(in_tool_space_[m]));
       const double cost = CalcCost(counter.counts(), options_.weights);
       candidates->push_back({index, m, *way, counter, cost});
     }
@@ -346,7 +350,8 @@ class BeamSearch {
       const bool is_beaten =
           std::any_of(counts.begin(), counts.end(), [&c](const OrderCounts& other) {
             return other.turns <= c.turns && other.direction_changes <= c.direction_changes &&
-                   other.tool_changes <= c.tool_changes && other.loose <= c.loose;
+                   other.tool_changes <= c.tool_changes && other.loose <= c.loose &&
+                   other.cramped <= c.cramped;
           });
       if (options_.gives_front ? !is_beaten : best.size() < options_.most_orders) {
         counts.push_back(c);
@@ -359,6 +364,7 @@ class BeamSearch {
   const OrderRules& rules_;
   const OrderSearchOptions& options_;
   std::vector<std::vector<MoveSet>> obstacles_;  // By move and way.
+  std::vector<MoveSet> in_tool_space_;           // By move.
   std::vector<MoveSet> wanted_;                  // What has to be gone before each goes.
   Neighbours holders_;
   std::map<std::pair<double, std::vector<std::size_t>>, FoundOrder> found_;
@@ -369,15 +375,15 @@ class BeamSearch {
 
 double CalcCost(const OrderCounts& counts, const OrderWeights& weights) {
   return weights.turn * counts.turns + weights.direction_change * counts.direction_changes +
-         weights.tool_change * counts.tool_changes + weights.loose * counts.loose;
+         weights.tool_change * counts.tool_changes + weights.loose * counts.loose +
+         weights.cramped * counts.cramped;
 }
 
 OrderSearch FindOrders(const OrderRules& rules, const OrderSearchOptions& options) {
   return BeamSearch(rules, options).Find();
 }
 
-OrderCounts CountOrder(const OrderRules& rules, const std::vector<std::string>& tools,
-                       const Vec3& up_W, const FoundOrder& order) {
+OrderCounts CountOrder(const OrderRules& rules, const Vec3& up_W, const FoundOrder& order) {
   OrderCounter counter(SideOf(up_W));
   std::vector<bool> is_there(rules.moves.size(), false);
   for (std::size_t i = 0; i < order.moves.size(); ++i) {
@@ -386,11 +392,24 @@ OrderCounts CountOrder(const OrderRules& rules, const std::vector<std::string>& 
     const bool is_held =
         move.is_held_by_base || std::any_of(move.neighbours.begin(), move.neighbours.end(),
                                             [&](std::size_t other) { return is_there[other]; });
-    const std::string_view tool = tools.empty() ? std::string_view() : std::string_view(tools[m]);
-    counter.Add(move.ways[order.ways[i]].step.extraction_W, tool, !is_held);
+    const bool is_cramped =
+        std::any_of(move.moves_in_tool_space.begin(), move.moves_in_tool_space.end(),
+                    [&](std::size_t other) { return is_there[other]; });
+    counter.Add(move.ways[order.ways[i]].step.extraction_W, move.tool, !is_held, is_cramped);
     is_there[m] = true;
   }
   return counter.counts();
+}
+
+std::vector<OccurrenceId> ListInToolSpace(const OrderRules& rules, const FoundOrder& order,
+                                          std::size_t place) {
+  std::vector<OccurrenceId> there = rules.moves[order.moves[place]].in_tool_space;
+  for (std::size_t later = place + 1; later < order.moves.size(); ++later) {
+    for (const OccurrenceId part : rules.moves[order.moves[later]].parts) {
+      std::erase(there, part);
+    }
+  }
+  return there;
 }
 
 std::vector<std::size_t> ListBlocking(const OrderRules& rules,

@@ -20,6 +20,7 @@ struct OrderCounts {
   int direction_changes{0};  ///< A part comes from another direction than the one before it.
   int tool_changes{0};       ///< A part needs another tool than the last one that needed one.
   int loose{0};              ///< Nothing holds a part when it comes, and it has to be held.
+  int cramped{0};  ///< A fastener comes when parts stand where its tool turns, of those that move.
 
   bool operator==(const OrderCounts&) const = default;
 };
@@ -32,6 +33,7 @@ struct OrderWeights {
   double direction_change{1};
   double tool_change{2};
   double loose{5};
+  double cramped{10};  ///< A fastener that its usual tool does not reach may not go in at all.
 };
 
 [[nodiscard]] double CalcCost(const OrderCounts& counts, const OrderWeights& weights);
@@ -45,10 +47,9 @@ struct OrderWish {
 struct OrderSearchOptions {
   OrderWeights weights;
   std::vector<OrderWish> wishes;
-  std::vector<std::string> tools;  ///< The tool of each move; empty: none is needed.
-  Vec3 up_W{Vec3::UnitZ()};        ///< Unit; the product stands so at the beginning.
-  std::size_t most_orders{5};      ///< How many of the best orders are given.
-  bool gives_front{false};  ///< All orders found of which none is better in everything (Pareto).
+  Vec3 up_W{Vec3::UnitZ()};    ///< Unit; the product stands so at the beginning.
+  std::size_t most_orders{5};  ///< How many of the best orders are given.
+  bool gives_front{false};     ///< All orders found of which none is better in everything (Pareto).
   /** How many moves are tried in all: the search looks ever more widely until then. */
   std::uint64_t most_tries{20'000'000};
   std::optional<std::chrono::steady_clock::time_point> deadline;  ///< Ends it before that.
@@ -81,8 +82,14 @@ struct OrderSearch {
 [[nodiscard]] OrderSearch FindOrders(const OrderRules& rules, const OrderSearchOptions& options);
 
 /** What an order counts. @param up_W  Unit; the product stands so at the beginning. */
-[[nodiscard]] OrderCounts CountOrder(const OrderRules& rules, const std::vector<std::string>& tools,
-                                     const Vec3& up_W, const FoundOrder& order);
+[[nodiscard]] OrderCounts CountOrder(const OrderRules& rules, const Vec3& up_W,
+                                     const FoundOrder& order);
+
+/** What stands in the space of a fastener's tool when it comes at a place in an order: parts of
+ moves before it, and those that never move. */
+[[nodiscard]] std::vector<product::OccurrenceId> ListInToolSpace(const OrderRules& rules,
+                                                                 const FoundOrder& order,
+                                                                 std::size_t place);
 
 /** Why a move cannot come at a place in an order: the moves that stand in each of its ways by then.
  Empty where it can. */

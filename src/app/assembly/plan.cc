@@ -119,6 +119,10 @@ void AddPlan(CLI::App* app, int* status) {
       ->add_option("--loose-cost", weights.loose, "Cost of a part that nothing holds when it comes")
       ->capture_default_str();
   command
+      ->add_option("--cramped-cost", weights.cramped,
+                   "Cost of a fastener that comes when parts stand where its tool turns")
+      ->capture_default_str();
+  command
       ->add_option("--orders", options->plan.most_orders, "How many of the best orders are given")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

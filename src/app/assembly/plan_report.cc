@@ -91,7 +91,8 @@ nlohmann::ordered_json ToJson(const OrderCounts& counts) {
   return {{"turns", counts.turns},
           {"direction_changes", counts.direction_changes},
           {"tool_changes", counts.tool_changes},
-          {"loose", counts.loose}};
+          {"loose", counts.loose},
+          {"cramped", counts.cramped}};
 }
 
 /** Leading parts of the moves, as an order has them. */
@@ -143,8 +144,9 @@ nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
                                 {"engaged_mm", units::ToMm(step.engage_distance)},
                                 {"turns", !step.way.empty()},
                                 {"ways", move.ways.size()}};
-    if (!plan.tools[m].empty()) {
-      json["tool"] = plan.tools[m];
+    if (!move.tool.empty()) {
+      json["tool"] = move.tool;
+      json["in_tool_space"] = MakeIds(simulation::ListInToolSpace(plan.rules, best, i));
     }
     if (const auto& holds = HoldsAfter(plan, i)) {
       json["holds"] = MakeIds(*holds);
@@ -172,8 +174,9 @@ nlohmann::ordered_json MakeArrowsJson(const PlanReport& report) {
 std::string DescribeCounts(const OrderCounts& counts, double cost) {
   return fmt::format(
       "cost {:g}: {} turns of the product, {} changes of direction, {} of tool, {} "
-      "parts that nothing holds",
-      cost, counts.turns, counts.direction_changes, counts.tool_changes, counts.loose);
+      "parts that nothing holds, {} fasteners whose tool has less room than in other orders",
+      cost, counts.turns, counts.direction_changes, counts.tool_changes, counts.loose,
+      counts.cramped);
 }
 
 /** The paths of a few parts. */
@@ -214,6 +217,7 @@ struct MoveRow {
   std::string part;  // The leading part, and how many move with it.
   std::string way;
   std::string tool;           // Empty: none.
+  std::string in_tool_space;  // What stands where the tool turns; empty: nothing.
   std::string holds;          // What has to be held after it; empty: nothing, or not known.
   std::vector<Arrow> arrows;  // What it has to come before, but for what others imply.
 };
@@ -231,7 +235,8 @@ std::vector<MoveRow> ListRows(const PlanReport& report) {
     row.part = PathOf(model, step.occurrence);
     row.part += step.members.empty() ? "" : fmt::format(" and {} more", step.members.size());
     row.way = step.way.empty() ? simulation::DescribeDirection(step.extraction_W) : "turns";
-    row.tool = plan.tools[m];
+    row.tool = plan.rules.moves[m].tool;
+    row.in_tool_space = DescribeParts(model, simulation::ListInToolSpace(plan.rules, best, i));
     const auto& holds = HoldsAfter(plan, i);
     row.holds = holds ? DescribeParts(model, *holds) : "";
     std::copy_if(arrows.begin(), arrows.end(), std::back_inserter(row.arrows),
@@ -269,10 +274,14 @@ std::string MakeOrderTable(const PlanReport& report) {
                                               units::ToMm(arrow.obstacle->travelled)),
                             arrow.is_certain ? "" : ", on this way");
     }
+    const std::string tool = row.in_tool_space.empty()
+                                 ? Escape(row.tool)
+                                 : fmt::format("{}<span class=\"soft\">, no room beside {}</span>",
+                                               Escape(row.tool), Escape(row.in_tool_space));
     html += fmt::format(
         "<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
         "<td class=\"l\">{}</td><td class=\"l\">{}</td></tr>\n",
-        ++number, Escape(row.part), row.way, Escape(row.tool), Escape(row.holds), before);
+        ++number, Escape(row.part), row.way, tool, Escape(row.holds), before);
   }
   return html + "</table></div>\n";
 }
@@ -320,7 +329,8 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
                                {{"turn", report.weights.turn},
                                 {"direction_change", report.weights.direction_change},
                                 {"tool_change", report.weights.tool_change},
-                                {"loose", report.weights.loose}}}};
+                                {"loose", report.weights.loose},
+                                {"cramped", report.weights.cramped}}}};
   json["orders"] = nlohmann::ordered_json::array();
   for (const FoundOrder& order : plan.search.orders) {
     json["orders"].push_back(ToJson(report, order));
@@ -361,6 +371,10 @@ void PrintPlanTable(const PlanReport& report) {
     }
     if (!row.holds.empty()) {
       below += (below.empty() ? "hold " : "; hold ") + row.holds;
+    }
+    if (!row.in_tool_space.empty()) {
+      below +=
+          fmt::format("{}where its tool turns: {}", below.empty() ? "" : "; ", row.in_tool_space);
     }
     table.Add({fmt::format("{:3}", ++number), row.part, row.way, row.tool}, below);
   }

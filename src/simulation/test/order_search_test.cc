@@ -83,7 +83,7 @@ void SearchAll(const OrderRules& rules, const OrderWeights& weights, std::size_t
                FoundOrder* order, double* least) {
   if (depth == rules.moves.size()) {
     if (IsPossible(rules, *order)) {
-      *least = std::min(*least, CalcCost(CountOrder(rules, {}, Vec3::UnitZ(), *order), weights));
+      *least = std::min(*least, CalcCost(CountOrder(rules, Vec3::UnitZ(), *order), weights));
     }
     return;
   }
