@@ -97,12 +97,33 @@ Error ExplainStuck(const Model& model, const OrderRules& rules,
           "leave out one of these wishes"};
 }
 
+/** The side that is upwards when each move comes: as drawn where that may be, else the one of the
+ possible ones on which the base stands best. */
+std::vector<Vec3> ChooseUpSides(const Model& model, const OrderRules& rules,
+                                const simulation::FoundOrder& order) {
+  const OccurrenceId base = simulation::FindBase(model.sequence);
+  std::vector<Vec3> chosen;
+  for (const std::vector<Vec3>& sides : simulation::ListUpSides(rules, order)) {
+    if (std::find(sides.begin(), sides.end(), Vec3::UnitZ()) != sides.end()) {
+      chosen.emplace_back(Vec3::UnitZ());
+      continue;
+    }
+    chosen.push_back(
+        *std::max_element(sides.begin(), sides.end(), [&](const Vec3& a, const Vec3& b) {
+          return simulation::CalcStandingMargin(model, base, Vec3(-a)) <
+                 simulation::CalcStandingMargin(model, base, Vec3(-b));
+        }));
+  }
+  return chosen;
+}
+
 /** What has to be held after each move of an order; none after a stop, or where it is not known. */
 std::optional<OrderStatics> CalcStatics(const Model& model, const simulation::StateStatics& states,
                                         const OrderRules& rules,
                                         const simulation::FoundOrder& order,
                                         const std::stop_token& stop) {
   OrderStatics statics;
+  statics.up_W = ChooseUpSides(model, rules, order);
   std::vector<bool> is_in_place(model.bodies.size(), false);
   is_in_place[simulation::FindBase(model.sequence).index()] = true;
   // A state of 500 parts that falls takes a second, one of 40 some milliseconds.
@@ -116,7 +137,9 @@ std::optional<OrderStatics> CalcStatics(const Model& model, const simulation::St
     if ((order.moves.size() - 1 - i) % stride != 0) {
       continue;
     }
-    const auto state = states.CalcStability(is_in_place);
+    simulation::StateStaticsOptions state_options;
+    state_options.ghat_W = -statics.up_W[i];
+    const auto state = states.CalcStability(is_in_place, state_options);
     if (!state || stop.stop_requested()) {
       return std::nullopt;
     }
@@ -223,6 +246,10 @@ Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
     return Unexpected(ExplainStuck(model, plan.rules, *wishes, plan.search.stuck));
   }
   AddStatics(model, options, &plan);
+  if (!plan.statics.empty() && !plan.statics.front().up_W.empty()) {
+    plan.standing_margin = simulation::CalcStandingMargin(
+        model, simulation::FindBase(model.sequence), Vec3(-plan.statics.front().up_W.front()));
+  }
   AddReasons(model, options, &plan);
   return plan;
 }

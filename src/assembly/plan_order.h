@@ -28,14 +28,15 @@ struct PlanOptions {
   std::stop_token stop;
 };
 
-/** The statics of an order: what has to be held after each of its moves, under gravity along -Z,
- with the base in the fixture (docs/algorithms/statics.md). */
+/** The statics of an order: what has to be held after each of its moves, under gravity, with the
+ base in the fixture (docs/algorithms/statics.md). */
 struct OrderStatics {
   /** The parts to hold, by place of move; none where the state was not looked at: in large products
    only every few states are, and the last. */
   std::vector<std::optional<std::vector<product::OccurrenceId>>> holds;
-  int looked_at{0};    ///< How many states were looked at.
-  int held_states{0};  ///< How many of these need something to be held.
+  int looked_at{0};        ///< How many states were looked at.
+  int held_states{0};      ///< How many of these need something to be held.
+  std::vector<Vec3> up_W;  ///< Unit, by place of move: the side of the product that is upwards.
 };
 
 /** Orders of assembly of a model. */
@@ -44,6 +45,9 @@ struct OrderPlan {
   simulation::OrderSearch search;  ///< Orders of equal cost stand by how little has to be held.
   /** Statics of the first of search.orders: as many as 300 moves allow, one at least. */
   std::vector<OrderStatics> statics;
+  /** How far a table with the base on it, as the fixture holds it first in the best order, may be
+   inclined before the base tips [rad]; not above zero where it does not stand by itself. */
+  double standing_margin{0};
   /** Why parts are left out: of the first of Sequence::gaps, as many as PlanOptions allows. */
   std::vector<simulation::GapReason> reasons;
 };

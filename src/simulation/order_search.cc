@@ -50,6 +50,7 @@ class MoveSet {
 
 /** The six sides that may be upwards. */
 constexpr int kSides = 6;
+constexpr unsigned kAllSides = (1U << kSides) - 1;  // One bit a side.
 
 Vec3 SideAt(int side) {
   Vec3 up = Vec3::Zero();
@@ -66,21 +67,9 @@ unsigned ListSides(const Vec3& extraction_W) {
   return sides;
 }
 
-unsigned SideOf(const Vec3& up_W) {
-  for (int side = 0; side < kSides; ++side) {
-    if (SideAt(side).dot(up_W) > kSameWay) {
-      return 1U << static_cast<unsigned>(side);
-    }
-  }
-  return ListSides(up_W);
-}
-
 /** Counts what makes an order worse, move by move: from its beginning or from its end. */
 class OrderCounter {
  public:
-  /** @param sides  The sides that may be upwards at first, one bit each. */
-  explicit OrderCounter(unsigned sides) : sides_(sides) {}
-
   /** @param tool  The tool of the move; it outlives this object. Empty: none. */
   void Add(const Vec3& extraction_W, std::string_view tool, bool is_loose, bool is_cramped) {
     const unsigned own = ListSides(extraction_W);
@@ -105,19 +94,17 @@ class OrderCounter {
   }
 
  private:
-  unsigned sides_;             // That may be upwards since the product was last turned.
+  unsigned sides_{kAllSides};  // That may be upwards since the product was last turned, a bit each.
   Vec3 last_W_{Vec3::Zero()};  // The way of the last move; zero: none.
   std::string_view tool_;      // The last one that was needed; empty: none.
   OrderCounts counts_;
 };
 
-constexpr unsigned kAllSides = (1U << kSides) - 1;  // One bit a side.
-
 /** A product that is partly taken apart. */
 struct State {
   MoveSet present;
   std::vector<std::pair<std::size_t, std::size_t>> removed;  // Moves and their ways.
-  OrderCounter counter{kAllSides};
+  OrderCounter counter;
 };
 
 struct Candidate {
@@ -210,7 +197,7 @@ class BeamSearch {
   }
 
   FoundOrder Count(FoundOrder order) const {
-    order.counts = CountOrder(rules_, options_.up_W, order);
+    order.counts = CountOrder(rules_, order);
     order.cost = CalcCost(order.counts, options_.weights);
     return order;
   }
@@ -278,7 +265,7 @@ class BeamSearch {
   /** One round of the search. @returns false where it found no order, or was ended. */
   bool Run(std::size_t width, OrderSearch* search) {
     const std::size_t count = rules_.moves.size();
-    State start{MoveSet(count), {}};
+    State start{MoveSet(count), {}, {}};
     for (std::size_t m = 0; m < count; ++m) {
       start.present.Set(m);
     }
@@ -383,8 +370,8 @@ OrderSearch FindOrders(const OrderRules& rules, const OrderSearchOptions& option
   return BeamSearch(rules, options).Find();
 }
 
-OrderCounts CountOrder(const OrderRules& rules, const Vec3& up_W, const FoundOrder& order) {
-  OrderCounter counter(SideOf(up_W));
+OrderCounts CountOrder(const OrderRules& rules, const FoundOrder& order) {
+  OrderCounter counter;
   std::vector<bool> is_there(rules.moves.size(), false);
   for (std::size_t i = 0; i < order.moves.size(); ++i) {
     const std::size_t m = order.moves[i];
@@ -399,6 +386,33 @@ OrderCounts CountOrder(const OrderRules& rules, const Vec3& up_W, const FoundOrd
     is_there[m] = true;
   }
   return counter.counts();
+}
+
+std::vector<std::vector<Vec3>> ListUpSides(const OrderRules& rules, const FoundOrder& order) {
+  std::vector<std::vector<Vec3>> ups(order.moves.size());
+  std::size_t first = 0;
+  unsigned sides = kAllSides;
+  const auto close = [&](std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      for (int side = 0; side < kSides; ++side) {
+        if ((sides >> static_cast<unsigned>(side) & 1U) != 0) {
+          ups[i].push_back(SideAt(side));
+        }
+      }
+    }
+    first = end;
+  };
+  for (std::size_t i = 0; i < order.moves.size(); ++i) {
+    const unsigned own =
+        ListSides(rules.moves[order.moves[i]].ways[order.ways[i]].step.extraction_W);
+    if ((sides & own) == 0) {
+      close(i);
+      sides = kAllSides;
+    }
+    sides &= own;
+  }
+  close(order.moves.size());
+  return ups;
 }
 
 std::vector<OccurrenceId> ListInToolSpace(const OrderRules& rules, const FoundOrder& order,

@@ -47,7 +47,6 @@ struct OrderWish {
 struct OrderSearchOptions {
   OrderWeights weights;
   std::vector<OrderWish> wishes;
-  Vec3 up_W{Vec3::UnitZ()};    ///< Unit; the product stands so at the beginning.
   std::size_t most_orders{5};  ///< How many of the best orders are given.
   bool gives_front{false};     ///< All orders found of which none is better in everything (Pareto).
   /** How many moves are tried in all: the search looks ever more widely until then. */
@@ -81,9 +80,14 @@ struct OrderSearch {
  same orders. */
 [[nodiscard]] OrderSearch FindOrders(const OrderRules& rules, const OrderSearchOptions& options);
 
-/** What an order counts. @param up_W  Unit; the product stands so at the beginning. */
-[[nodiscard]] OrderCounts CountOrder(const OrderRules& rules, const Vec3& up_W,
-                                     const FoundOrder& order);
+/** What an order counts. */
+[[nodiscard]] OrderCounts CountOrder(const OrderRules& rules, const FoundOrder& order);
+
+/** The sides of the product that may be upwards when each move of an order comes: unit vectors
+ along the axes. They change as seldom as can be, by OrderCounts::turns times; the fixture may hold
+ the product with any of the first ones upwards. */
+[[nodiscard]] std::vector<std::vector<Vec3>> ListUpSides(const OrderRules& rules,
+                                                         const FoundOrder& order);
 
 /** What stands in the space of a fastener's tool when it comes at a place in an order: parts of
  moves before it, and those that never move. */

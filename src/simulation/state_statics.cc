@@ -72,8 +72,6 @@ constexpr double kSameDirection = 0.99985;
 // Share of a part's extent within which its points are on the table, for facets of round edges. A
 // choice.
 constexpr double kOnTable = 1e-5;
-// Angles whose difference is below this are equal [rad]; a choice.
-constexpr double kSameMargin = 1e-3;
 
 double FindStaticFriction(const product::Product& product, OccurrenceId a, OccurrenceId b) {
   for (const product::ContactPair& pair : product.contact_pairs) {
@@ -459,27 +457,10 @@ Result<StateStability> CalcStability(const Model& model, const std::vector<bool>
   return StateStatics(model).CalcStability(is_in_place, options);
 }
 
-Standing ChooseStanding(const Model& model, OccurrenceId base) {
-  const product::Part& part = model.product->part_of(base);
-  const Body& body = model.bodies[base.index()];
-  const Mat3 R_WB = body.X_WB_goal.R();
-  std::vector<Vec3> directions{-Vec3::UnitZ(), Vec3::UnitZ(),  -Vec3::UnitX(),
-                               Vec3::UnitX(),  -Vec3::UnitY(), Vec3::UnitY()};
-  for (const product::Feature& feature : part.features) {
-    if (feature.kind == product::FeatureKind::kPlane) {
-      directions.push_back(R_WB * feature.axis_B);
-    }
-  }
-  Standing best;
-  bool is_first = true;
-  for (const Vec3& ghat_W : directions) {
-    const double margin = CalcMargin(part, body.mass.p_BoBcm_B, R_WB.transpose() * ghat_W);
-    if (is_first || margin > best.margin + kSameMargin) {
-      best = {ghat_W, margin};
-      is_first = false;
-    }
-  }
-  return best;
+double CalcStandingMargin(const Model& model, OccurrenceId part, const Vec3& ghat_W) {
+  const Body& body = model.bodies[part.index()];
+  return CalcMargin(model.product->part_of(part), body.mass.p_BoBcm_B,
+                    body.X_WB_goal.R().transpose() * ghat_W);
 }
 
 }  // namespace hvas::simulation

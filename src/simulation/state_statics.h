@@ -55,17 +55,10 @@ class StateStatics {
                                                    const std::vector<bool>& is_in_place,
                                                    const StateStaticsOptions& options = {});
 
-/** How a part stands on a horizontal table. */
-struct Standing {
-  Vec3 ghat_W{-Vec3::UnitZ()};  ///< Unit direction of gravity, with the part as drawn.
-  /** Angle by which the table may be inclined in any direction before the part tips [rad]; not
-   above zero where it does not stand. */
-  double margin{0};
-};
-
-/** Chooses the direction of gravity in which a part, as drawn, stands on a table with the largest
- margin: of -z, +z, -x, +x, -y, +y, and the outward normals of its plane faces. Of equal ones within
- a milliradian the first counts. */
-[[nodiscard]] Standing ChooseStanding(const Model& model, product::OccurrenceId base);
+/** The angle by which a horizontal table may be inclined in any direction before a part, as drawn
+ and placed on it, tips [rad]; not above zero where it does not stand.
+ @param ghat_W  Unit direction of gravity, with the part as drawn. */
+[[nodiscard]] double CalcStandingMargin(const Model& model, product::OccurrenceId part,
+                                        const Vec3& ghat_W);
 
 }  // namespace hvas::simulation

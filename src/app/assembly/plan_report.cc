@@ -148,6 +148,10 @@ nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
       json["tool"] = move.tool;
       json["in_tool_space"] = MakeIds(simulation::ListInToolSpace(plan.rules, best, i));
     }
+    if (!plan.statics.empty()) {
+      const Vec3 up_W = plan.statics.front().up_W[i] + Vec3::Zero();
+      json["up"] = {up_W.x(), up_W.y(), up_W.z()};
+    }
     if (const auto& holds = HoldsAfter(plan, i)) {
       json["holds"] = MakeIds(*holds);
     }
@@ -196,6 +200,31 @@ std::vector<std::string> ListReasonLines(const PlanReport& report, std::size_t g
              : std::vector<std::string>();
 }
 
+/** How the fixture holds the base at first; empty where that is not known. */
+std::string DescribeFixture(const PlanReport& report) {
+  const assembly::OrderPlan& plan = *report.plan;
+  if (plan.statics.empty() || plan.statics.front().up_W.empty()) {
+    return {};
+  }
+  const std::string margin = plan.standing_margin > 0
+                                 ? fmt::format("it stands by itself, and tips at {:.0f} degrees",
+                                               units::ToDeg(plan.standing_margin))
+                                 : "it does not stand by itself, and has to be held";
+  return fmt::format("Fixture: {} with {} upwards; {}.",
+                     PathOf(*report.model, simulation::FindBase(report.model->sequence)),
+                     simulation::DescribeDirection(plan.statics.front().up_W.front()), margin);
+}
+
+/** The side that is upwards from a move of the best order on, where the product is turned for it;
+ empty where it is not. */
+std::string DescribeTurn(const assembly::OrderPlan& plan, std::size_t place) {
+  if (plan.statics.empty() || place == 0) {
+    return {};
+  }
+  const std::vector<Vec3>& ups = plan.statics.front().up_W;
+  return ups[place] != ups[place - 1] ? simulation::DescribeDirection(ups[place]) : "";
+}
+
 std::string DescribeHolds(const assembly::OrderPlan& plan, std::size_t order) {
   return order < plan.statics.size()
              ? fmt::format(", something to hold in {} of {} states",
@@ -217,6 +246,7 @@ struct MoveRow {
   std::string part;  // The leading part, and how many move with it.
   std::string way;
   std::string tool;           // Empty: none.
+  std::string turned;         // The side that is then upwards; empty: it is not turned before it.
   std::string in_tool_space;  // What stands where the tool turns; empty: nothing.
   std::string holds;          // What has to be held after it; empty: nothing, or not known.
   std::vector<Arrow> arrows;  // What it has to come before, but for what others imply.
@@ -236,6 +266,7 @@ std::vector<MoveRow> ListRows(const PlanReport& report) {
     row.part += step.members.empty() ? "" : fmt::format(" and {} more", step.members.size());
     row.way = step.way.empty() ? simulation::DescribeDirection(step.extraction_W) : "turns";
     row.tool = plan.rules.moves[m].tool;
+    row.turned = DescribeTurn(plan, i);
     row.in_tool_space = DescribeParts(model, simulation::ListInToolSpace(plan.rules, best, i));
     const auto& holds = HoldsAfter(plan, i);
     row.holds = holds ? DescribeParts(model, *holds) : "";
@@ -273,6 +304,12 @@ std::string MakeOrderTable(const PlanReport& report) {
                                 : fmt::format("met {:.1f} mm before the place",
                                               units::ToMm(arrow.obstacle->travelled)),
                             arrow.is_certain ? "" : ", on this way");
+    }
+    if (!row.turned.empty()) {
+      html += fmt::format(
+          "<tr><td></td><td class=\"l\" colspan=\"5\">turn the product, {} "
+          "upwards</td></tr>\n",
+          row.turned);
     }
     const std::string tool = row.in_tool_space.empty()
                                  ? Escape(row.tool)
@@ -331,6 +368,9 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
                                 {"tool_change", report.weights.tool_change},
                                 {"loose", report.weights.loose},
                                 {"cramped", report.weights.cramped}}}};
+  if (!plan.statics.empty()) {
+    json["base_tips_at_deg"] = units::ToDeg(plan.standing_margin);
+  }
   json["orders"] = nlohmann::ordered_json::array();
   for (const FoundOrder& order : plan.search.orders) {
     json["orders"].push_back(ToJson(report, order));
@@ -372,6 +412,10 @@ void PrintPlanTable(const PlanReport& report) {
     if (!row.holds.empty()) {
       below += (below.empty() ? "hold " : "; hold ") + row.holds;
     }
+    if (!row.turned.empty()) {
+      below = fmt::format("turn the product first, {} upwards{}{}", row.turned,
+                          below.empty() ? "" : "; ", below);
+    }
     if (!row.in_tool_space.empty()) {
       below +=
           fmt::format("{}where its tool turns: {}", below.empty() ? "" : "; ", row.in_tool_space);
@@ -379,6 +423,10 @@ void PrintPlanTable(const PlanReport& report) {
     table.Add({fmt::format("{:3}", ++number), row.part, row.way, row.tool}, below);
   }
   fmt::print("{}\n", table.ToText());
+  const std::string fixture = DescribeFixture(report);
+  if (!fixture.empty()) {
+    fmt::print("{}", Wrap(fixture, 0));
+  }
   PrintOrder("Best order: ", BestOf(plan), DescribeHolds(plan, 0));
   PrintOrder("As first found: ", plan.search.planned, "");
   for (std::size_t i = 1; i < plan.search.orders.size(); ++i) {
@@ -407,6 +455,7 @@ std::string MakePlanPage(const PlanReport& report) {
       MakeTile("turns of the product", fmt::format("{}", best.counts.turns)),
       MakeTile("changes of direction", fmt::format("{}", best.counts.direction_changes)),
       MakeTile("changes of tool", fmt::format("{}", best.counts.tool_changes)));
+  body += fmt::format("<p>{}</p>\n", Escape(DescribeFixture(report)));
   body += MakeOrderTable(report) + MakeComparison(plan) + MakeLeftOut(report);
   body += fmt::format("<p class=\"soft\">{}. No order is proved to be the best.</p>\n",
                       DescribeSearch(plan));

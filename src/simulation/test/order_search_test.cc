@@ -83,7 +83,7 @@ void SearchAll(const OrderRules& rules, const OrderWeights& weights, std::size_t
                FoundOrder* order, double* least) {
   if (depth == rules.moves.size()) {
     if (IsPossible(rules, *order)) {
-      *least = std::min(*least, CalcCost(CountOrder(rules, Vec3::UnitZ(), *order), weights));
+      *least = std::min(*least, CalcCost(CountOrder(rules, *order), weights));
     }
     return;
   }
@@ -119,6 +119,25 @@ TEST(OrderSearchTest, FindsTheLeastCostOfAllOrdersOfAFewMoves) {
   }
   // Of two ways that are both free the search takes the first, so that it misses some.
   EXPECT_GE(best, kCases * 8 / 10);
+}
+
+TEST(OrderSearchTest, SidesUpwardsChangeAsOftenAsTurnsAreCounted) {
+  for (int seed = 1; seed <= 20; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    const OrderRules rules = MakeRandomRules(8, &random);
+    const FoundOrder best = FindOrders(rules, {}).orders.front();
+    const auto ups = ListUpSides(rules, best);
+    int turns = 0;
+    for (std::size_t i = 0; i < best.moves.size(); ++i) {
+      ASSERT_FALSE(ups[i].empty());
+      turns += i > 0 && ups[i] != ups[i - 1] ? 1 : 0;
+      const Vec3& out_W = rules.moves[best.moves[i]].ways[best.ways[i]].step.extraction_W;
+      for (const Vec3& up_W : ups[i]) {
+        EXPECT_GE(up_W.dot(out_W), -0.1) << "it comes from below";
+      }
+    }
+    EXPECT_EQ(turns, best.counts.turns) << seed;
+  }
 }
 
 TEST(OrderSearchTest, WishesAreObeyedOrSaidToContradict) {

@@ -263,23 +263,21 @@ TEST(StateStatics, RefusesAStateOfOtherParts) {
   EXPECT_EQ(CalcStability(*model, {true, true}, options).error().code, ErrorCode::kInvalid);
 }
 
-TEST(StandingPose, IsOnTheLargestFaceOfABlock) {
+TEST(StandingMargin, OfABlockIsThatOfItsFace) {
   // Halves 0.1, 0.1, 0.02: on its large face it tips from atan(0.1 / 0.02) on.
   const auto model = CompileProduct(Overhang(-0.05));
-  const Standing standing = ChooseStanding(*model, OccurrenceId(0));
-  EXPECT_LT((standing.ghat_W - -Vec3::UnitZ()).norm(), 1e-12);
-  EXPECT_NEAR(standing.margin, std::atan(5.0), 1e-6);
+  EXPECT_NEAR(CalcStandingMargin(*model, OccurrenceId(0), -Vec3::UnitZ()), std::atan(5.0), 1e-6);
+  EXPECT_NEAR(CalcStandingMargin(*model, OccurrenceId(0), -Vec3::UnitX()), std::atan(0.2), 1e-6);
 }
 
-TEST(StandingPose, IsOnTheFaceOfATurnedPart) {
+TEST(StandingMargin, OfATurnedPartIsThatOfItsFace) {
   const Pose X_WP(spatial::RotationFromVector(Vec3(0.4, 0.3, 0)), Vec3(0.1, 0, 0));
   const auto model = CompileProduct(testing::PegInBlock(X_WP));
-  const Standing standing = ChooseStanding(*model, OccurrenceId(0));
-  const Vec3 axis_W = X_WP.R().col(2);
-  EXPECT_NEAR(std::abs(standing.ghat_W.dot(axis_W)), 1, 1e-9);
+  const double margin = CalcStandingMargin(*model, OccurrenceId(0), Vec3(-X_WP.R().col(2)));
   // A round block of radius 15 mm; its centre, by its bore, is a little below the middle.
-  const double height = std::tan(std::numbers::pi / 2 - standing.margin) * 15e-3;
+  const double height = std::tan(std::numbers::pi / 2 - margin) * 15e-3;
   EXPECT_NEAR(height, model->bodies[0].mass.p_BoBcm_B.z(), 0.1e-3);
+  EXPECT_LE(CalcStandingMargin(*model, OccurrenceId(0), -Vec3::UnitZ()), 1e-6) << "on its edge";
 }
 
 }  // namespace
