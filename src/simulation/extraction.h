@@ -129,11 +129,11 @@ class Extraction {
 
   /** How many looks at a part, in all, the search for ways that turn takes: some minutes. A choice.
    */
-  static constexpr std::uint64_t kMostLooks = 1'000'000;
+  static constexpr std::uint64_t kMostLooks = 3'000'000;
   /** How many sample points they test, about 3 million a second: in all, and for one part. Choices,
    as a person waits. */
-  static constexpr std::uint64_t kMostPoints = 200'000'000;
-  static constexpr std::uint64_t kMostPointsOfOne = 60'000'000;
+  static constexpr std::uint64_t kMostPoints = 300'000'000;
+  static constexpr std::uint64_t kMostPointsOfOne = 250'000'000;
 
   /** What the search for ways that turn found of a part that it did not take out; empty where it
    did not look. */

@@ -97,9 +97,11 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit&
   if (input_.shapes.empty() || input_.way_looks == 0) {
     return std::nullopt;
   }
-  // Most ways are found soon: all parts are looked at briefly before one is looked at for long.
-  constexpr std::uint64_t kBriefly = 6;  // One in so many looks: a choice.
-  for (const std::uint64_t budget : {input_.way_looks / kBriefly, input_.way_looks}) {
+  // Most ways are found soon: all parts are looked at briefly before one is looked at for long. Of
+  // our pairs with ways that turn, two in three are found by the first, all but three by the
+  // second.
+  for (const std::uint64_t most : {std::uint64_t{10'000}, std::uint64_t{60'000}, kWayLooks}) {
+    const std::uint64_t budget = std::min(most, input_.way_looks);
     for (const bool is_deferred : {false, true}) {
       for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
         const OccurrenceId id = (*rest)[i];

@@ -82,7 +82,7 @@ struct GapReasonOptions {
   std::uint64_t looks{kGapLooks};
   /** How many looks the search for ways that turn may take, of one trial; 0: none is searched for.
    As many as the order of assembly takes where it looks briefly. */
-  std::uint64_t way_looks{kWayLooks / 6};
+  std::uint64_t way_looks{10'000};
   double largest_clearance{
       2e-3};                   ///< The largest on each side [m]: more is another design. A choice.
   double largest_give{5e-3};   ///< The largest that a part may give [m]: as cables may at most.
