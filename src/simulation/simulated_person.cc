@@ -254,9 +254,24 @@ void SimulatedPerson::PlanReturn() noexcept {
            options_.approach_speed, false);
 }
 
+Vec3 SimulatedPerson::OffsetBesideWay() const noexcept {
+  return hold_offset_W_ + aim_offset_ + search_offset_ + yield_offset_ + follow_offset_;
+}
+
+Quat SimulatedPerson::TurnBesideWay() const noexcept {
+  return spatial::RotationFromVector(aim_turn_ + yield_turn_ + follow_turn_ + rocking_);
+}
+
+double SimulatedPerson::HandTravel() const noexcept {
+  // Around a corner what the hand aims beside its way would be travel.
+  return task_.way != nullptr
+             ? TravelOf({TurnBesideWay().conjugate() * X_WH_.q(), X_WH_.p() - OffsetBesideWay()})
+             : TravelOf(X_WH_);
+}
+
 void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   const Vec3 d = OutwardOfWay();
-  const double hand_travel = TravelOf(X_WH_);
+  const double hand_travel = HandTravel();
   if (input.hears_seated) {
     phase_ = Phase::kSettle;
     phase_time_s_ = 0;
@@ -336,10 +351,8 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     }
   }
   const spatial::Pose X_WG = WayAt(travel_);
-  p_ref_ =
-      X_WG.p() + hold_offset_W_ + aim_offset_ + search_offset_ + yield_offset_ + follow_offset_;
-  q_ref_ =
-      spatial::RotationFromVector(aim_turn_ + yield_turn_ + follow_turn_ + rocking_) * X_WG.q();
+  p_ref_ = X_WG.p() + OffsetBesideWay();
+  q_ref_ = TurnBesideWay() * X_WG.q();
 }
 
 const Vec3& SimulatedPerson::MotionOf(const OperatorInput& input) const noexcept {

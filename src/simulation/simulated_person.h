@@ -170,6 +170,11 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] spatial::Pose WayAt(double travel) const noexcept;
   /** How far from the goal along the way a grip is [m]. */
   [[nodiscard]] double TravelOf(const spatial::Pose& X_WG) const noexcept;
+  /** By which the hand means to be beside the way: where it aims, searches, yields and corrects. */
+  [[nodiscard]] Vec3 OffsetBesideWay() const noexcept;
+  [[nodiscard]] Quat TurnBesideWay() const noexcept;
+  /** Travel of the hand, without what it means to be beside a way that turns [m]. */
+  [[nodiscard]] double HandTravel() const noexcept;
   /** The travel at which the part is seen [m]. */
   [[nodiscard]] double SeenTravel(const OperatorInput& input) const noexcept;
   /** The direction outward of the way, there where the reference is. */
