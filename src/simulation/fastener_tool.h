@@ -11,7 +11,7 @@ namespace hvas::simulation {
 
 /** What turns a screw, bolt or nut. */
 struct FastenerTool {
-  std::string name;  ///< As NameTools gives it; empty for what is none of these.
+  std::string name;  ///< Its name (NameTools); empty for what is none of these.
   std::optional<product::DriveForm> drive;  ///< The form that takes it up, where one is recognised.
 };
 

@@ -170,7 +170,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] spatial::Pose WayAt(double travel) const noexcept;
   /** How far from the goal along the way a grip is [m]. */
   [[nodiscard]] double TravelOf(const spatial::Pose& X_WG) const noexcept;
-  /** By which the hand means to be beside the way: where it aims, searches, yields and corrects. */
+  /** Where the hand means to be beside the way: what it aims, searches, yields and corrects. */
   [[nodiscard]] Vec3 OffsetBesideWay() const noexcept;
   [[nodiscard]] Quat TurnBesideWay() const noexcept;
   /** Travel of the hand, without what it means to be beside a way that turns [m]. */
@@ -251,7 +251,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   Vec3 v_part_W_{Vec3::Zero()};    ///< [m/s]
   Vec3 aim_offset_{Vec3::Zero()};  ///< Error of where the hand believes this part to be.
   Vec3 aim_turn_{Vec3::Zero()};
-  Vec3 follow_offset_{Vec3::Zero()};    ///< By which the eye corrects the part on its way [m].
+  Vec3 follow_offset_{Vec3::Zero()};    ///< The eye's correction of the part on its way [m].
   Vec3 follow_turn_{Vec3::Zero()};      ///< Likewise [rad].
   Vec3 seen_error_{Vec3::Zero()};       ///< Error of the last close look [m].
   Vec3 seen_turn_error_{Vec3::Zero()};  ///< Likewise [rad].
@@ -269,7 +269,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   double travel_{0};          ///< Reference distance still to go along the way in [m].
   double push_{0};            ///< Force that the hand is ready to press with [N].
   double back_off_to_{0};     ///< Distance to go at which it tries again [m].
-  double nearest_travel_{0};  ///< Of this try [m].
+  double nearest_travel_{0};  ///< The least one of this try [m].
   double since_nearer_s_{0};  ///< Time for which it has not become less, on a way that turns.
   double stuck_time_s_{0};
   Vec3 search_offset_{Vec3::Zero()};

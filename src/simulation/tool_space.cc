@@ -20,7 +20,7 @@ struct KeyArms {
   double width_mm, long_mm, short_mm;
 };
 
-// Source: ISO 2936, standard long arm and short arm.
+// Source: ISO 2936, standard long arm and short arm, from public tables (docs/references.md).
 constexpr std::array<KeyArms, 16> kKeys{{{1.3, 41, 13},
                                          {1.5, 46.5, 15.5},
                                          {2, 52, 18},
@@ -45,7 +45,7 @@ constexpr double kSocketPerWidth = 1.25;
 constexpr double kSocketWall = 3e-3;     // [m]
 constexpr double kSocketLength = 80e-3;  // [m]
 constexpr double kOnFlats = 0.5;         // Of the flats' length that the socket covers: a choice.
-// A screwdriver: choices near those of ISO 8764-1.
+// A screwdriver of usual size: choices.
 constexpr double kBladeLength = 100e-3;   // [m]
 constexpr double kThinnestBlade = 3e-3;   // [m]
 constexpr double kHandleLength = 100e-3;  // [m]
