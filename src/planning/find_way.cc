@@ -29,6 +29,8 @@ constexpr double kShareOfWidening = 0.3;
 // Of the length of a free motion, at least, where it is a thread's: threads keep 0.95 and more, a
 // key that turned below its plate 0.1.
 constexpr double kShareThatThreadsKeep = 0.8;
+// Shortcuts through flanks fail at the first look or two; each look takes milliseconds on a thread.
+constexpr std::uint64_t kQueriesOfThreadCheck = 1'000;
 constexpr std::uint64_t kLeastOfImproving = 10'000;  // Queries, for either: a choice.
 
 Result<void> CheckProblem(const WayProblem& problem, Probe* probe) {
@@ -149,15 +151,19 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
       return kLeastOfImproving +
              static_cast<std::uint64_t>(share * static_cast<double>(options.budget));
     };
-    sweep::Path shorter =
-        ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
     // A thread has no shorter way, and the middle of its play is clear. What has one is no thread.
-    const bool is_thread =
-        screw.turn > 0 &&
-        CalcWayLength(probe, shorter) > kShareThatThreadsKeep * CalcWayLength(probe, *path);
-    if (!is_thread) {
-      screw = FreeScrew();
-      path = WidenWay(&probe, shorter, step, share_of(kShareOfWidening));
+    if (screw.turn > 0) {
+      const double length = CalcWayLength(probe, *path);
+      const sweep::Path shorter =
+          ShortenWay(&probe, *path, step, options.seed, kQueriesOfThreadCheck);
+      if (CalcWayLength(probe, shorter) < kShareThatThreadsKeep * length) {
+        screw = FreeScrew();
+        path = shorter;
+      }
+    }
+    if (!(screw.turn > 0)) {
+      path = ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
+      path = WidenWay(&probe, *path, step, share_of(kShareOfWidening));
     }
   }
   double deepest = std::numeric_limits<double>::infinity();
