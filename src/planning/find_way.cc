@@ -62,8 +62,8 @@ std::optional<sweep::Path> SearchStraight(Probe* probe, const std::vector<Vec3>&
     // From near to far: what is blocked mostly is so at once.
     const double stride = std::max(probe->size() / 200, step);
     bool is_free = true;
-    for (double s = stride; s < exit && is_free; s += stride) {
-      is_free = probe->IsFree(Pose(X.q(), Vec3(X.p() + s * direction)));
+    for (int look = 1; look * stride < exit && is_free; ++look) {
+      is_free = probe->IsFree(Pose(X.q(), Vec3(X.p() + look * stride * direction)));
     }
     const sweep::Path path{X, Pose(X.q(), Vec3(X.p() + exit * direction))};
     if (is_free && CheckWay(probe, path, step).is_free) {

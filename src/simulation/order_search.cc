@@ -42,7 +42,7 @@ class MoveSet {
     return false;
   }
 
-  auto operator<=>(const MoveSet&) const = default;
+  [[nodiscard]] bool operator<(const MoveSet& other) const { return words_ < other.words_; }
 
  private:
   std::vector<std::uint64_t> words_;
