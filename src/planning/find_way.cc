@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "planning/check_way.h"
@@ -26,11 +28,11 @@ constexpr std::uint64_t kQueriesOfFreeMotion = 6'000;  // Sixty turns take fewer
 constexpr std::uint64_t kShareOfPushes = 2;  // Of the budget: at most one in so many queries.
 constexpr double kShareOfShortening = 0.3;
 constexpr double kShareOfWidening = 0.3;
-// Of the length of a free motion, at least, where it is a thread's: threads keep 0.95 and more, a
-// key that turned below its plate 0.1.
-constexpr double kShareThatThreadsKeep = 0.8;
-// Shortcuts through flanks fail at the first look or two; each look takes milliseconds on a thread.
-constexpr std::uint64_t kQueriesOfThreadCheck = 1'000;
+// A thread's motion strays from its screw by less, and goes along it by more, of the part's size:
+// threads stray by 0.0003 to 0.06, a key that turns below its plate by 0.15, and a bayonet does not
+// go along.
+constexpr double kMostFromScrew = 0.1;
+constexpr double kLeastAlongScrew = 0.05;
 constexpr std::uint64_t kLeastOfImproving = 10'000;  // Queries, for either: a choice.
 
 Result<void> CheckProblem(const WayProblem& problem, Probe* probe) {
@@ -71,6 +73,29 @@ std::optional<sweep::Path> SearchStraight(Probe* probe, const std::vector<Vec3>&
     }
   }
   return std::nullopt;
+}
+
+/** How far the poses of a free motion, but for its ends, stray from one screw, as lengths of
+ displacements [m]. */
+double CalcFarthestFromScrew(const Probe& probe, const sweep::Path& path, const ScrewAxis& axis) {
+  double farthest = 0;
+  double angle = 0;
+  for (std::size_t i = 1; i + 2 < path.size(); ++i) {
+    const sweep::Screw step = sweep::FindScrew(path[i + 1] * path[i].Inverse());
+    angle += step.turn.dot(axis.axis_W);
+    const Quat q = spatial::RotationFromVector(Vec3(angle * axis.axis_W));
+    const Pose screw(q, Vec3(axis.p_WQ - q * axis.p_WQ +
+                             axis.pitch * angle / (2 * std::numbers::pi) * axis.axis_W));
+    const Displacement off = probe.CalcDisplacement(screw * path[1], path[i + 1]);
+    farthest = std::max(farthest, probe.CalcLength(off));
+  }
+  return farthest;
+}
+
+bool IsThread(const Probe& probe, const sweep::Path& path, const FreeScrew& screw) {
+  const double along = std::abs(screw.axis.pitch) * screw.turn / (2 * std::numbers::pi);
+  return along > kLeastAlongScrew * probe.size() &&
+         CalcFarthestFromScrew(probe, path, screw.axis) < kMostFromScrew * probe.size();
 }
 
 void DescribeFailure(SearchState* state, WaySearch* search) {
@@ -151,15 +176,9 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
       return kLeastOfImproving +
              static_cast<std::uint64_t>(share * static_cast<double>(options.budget));
     };
-    // A thread has no shorter way, and the middle of its play is clear. What has one is no thread.
-    if (screw.turn > 0) {
-      const double length = CalcWayLength(probe, *path);
-      const sweep::Path shorter =
-          ShortenWay(&probe, *path, step, options.seed, kQueriesOfThreadCheck);
-      if (CalcWayLength(probe, shorter) < kShareThatThreadsKeep * length) {
-        screw = FreeScrew();
-        path = shorter;
-      }
+    // The middle of a thread's play is clear, and it has no shorter way.
+    if (screw.turn > 0 && !IsThread(probe, *path, screw)) {
+      screw = FreeScrew();
     }
     if (!(screw.turn > 0)) {
       path = ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
