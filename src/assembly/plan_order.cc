@@ -103,11 +103,18 @@ std::vector<Vec3> ChooseUpSides(const Model& model, const OrderRules& rules,
                                 const simulation::FoundOrder& order) {
   const OccurrenceId base = simulation::FindBase(model.sequence);
   std::vector<Vec3> chosen;
+  std::vector<Vec3> last;  // The sides for which the base was last looked at.
   for (const std::vector<Vec3>& sides : simulation::ListUpSides(rules, order)) {
     if (std::find(sides.begin(), sides.end(), Vec3::UnitZ()) != sides.end()) {
       chosen.emplace_back(Vec3::UnitZ());
+      last.clear();
       continue;
     }
+    if (sides == last) {
+      chosen.push_back(chosen.back());
+      continue;
+    }
+    last = sides;
     chosen.push_back(
         *std::max_element(sides.begin(), sides.end(), [&](const Vec3& a, const Vec3& b) {
           return simulation::CalcStandingMargin(model, base, Vec3(-a)) <

@@ -83,10 +83,11 @@ double CalcFarthestFromScrew(const Probe& probe, const sweep::Path& path, const 
   for (std::size_t i = 1; i + 2 < path.size(); ++i) {
     const sweep::Screw step = sweep::FindScrew(path[i + 1] * path[i].Inverse());
     angle += step.turn.dot(axis.axis_W);
-    const Quat q = spatial::RotationFromVector(Vec3(angle * axis.axis_W));
-    const Pose screw(q, Vec3(axis.p_WQ - q * axis.p_WQ +
-                             axis.pitch * angle / (2 * std::numbers::pi) * axis.axis_W));
-    const Displacement off = probe.CalcDisplacement(screw * path[1], path[i + 1]);
+    const Pose X_screw =
+        sweep::MoveAlong({Vec3(angle * axis.axis_W), axis.p_WQ,
+                          Vec3(axis.pitch * angle / (2 * std::numbers::pi) * axis.axis_W)},
+                         1);
+    const Displacement off = probe.CalcDisplacement(X_screw * path[1], path[i + 1]);
     farthest = std::max(farthest, probe.CalcLength(off));
   }
   return farthest;
@@ -177,10 +178,8 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
              static_cast<std::uint64_t>(share * static_cast<double>(options.budget));
     };
     // The middle of a thread's play is clear, and it has no shorter way.
-    if (screw.turn > 0 && !IsThread(probe, *path, screw)) {
+    if (!(screw.turn > 0) || !IsThread(probe, *path, screw)) {
       screw = FreeScrew();
-    }
-    if (!(screw.turn > 0)) {
       path = ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
       path = WidenWay(&probe, *path, step, share_of(kShareOfWidening));
     }

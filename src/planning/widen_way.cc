@@ -75,7 +75,7 @@ class Widening {
 
   [[nodiscard]] bool IsFree() {
     for (std::size_t i = 1; i < way_.size(); ++i) {
-      if (!IsScrewFree(i)) {
+      if (IsOver() || !IsScrewFree(&probe_, way_[i - 1], way_[i], step_)) {
         return false;
       }
     }
@@ -116,13 +116,8 @@ class Widening {
  private:
   [[nodiscard]] bool IsOver() const { return probe_.queries() >= last_ || probe_.is_over(); }
 
-  [[nodiscard]] bool IsScrewFree(std::size_t i) {
-    return !IsOver() && planning::IsScrewFree(&probe_, way_[i - 1], way_[i], step_);
-  }
-
   [[nodiscard]] bool IsBetween(const Pose& from, const Pose& X_WB, const Pose& to) {
-    return planning::IsScrewFree(&probe_, from, X_WB, step_) &&
-           planning::IsScrewFree(&probe_, X_WB, to, step_);
+    return IsScrewFree(&probe_, from, X_WB, step_) && IsScrewFree(&probe_, X_WB, to, step_);
   }
 
   void MovePose(std::size_t i) {

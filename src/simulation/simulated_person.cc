@@ -319,7 +319,6 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     const bool is_slow = speed < kSlowShare * wanted_speed;
     AdjustPush(CalcAddedForce(input), speed, wanted_speed, is_careful && !is_inside);
     push_ = is_careful ? std::min(push_, options_.careful_push) : push_;
-    const bool is_rocking = is_guided_ || task_.way == nullptr;
     if (task_.way != nullptr && is_by_eye && travel < task_.engage_distance) {
       FollowWayByEye(input, d);
     }
@@ -341,7 +340,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
       back_off_to_ = task_.engage_distance + kStandOff;
     } else if (since_nearer_s_ > (is_guided_ ? kRockingTime : kNotNearer) ||
                stuck_time_s_ >
-                   (is_careful && is_inside && is_rocking ? kRockingTime : kStuckBeforeSearch)) {
+                   (is_careful && is_inside && !IsLedByEye() ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
     } else if (is_careful && is_inside) {
       if (task_.way == nullptr || is_slow) {
@@ -450,9 +449,12 @@ void SimulatedPerson::YieldToTouch(const Vec3& d) noexcept {
   }
   yield_turn_ += dt_ / kYieldTime * turned_back;
   // Whoever sees the way gives way no further than it may have seen wrong.
-  const bool is_by_eye = task_.way != nullptr && !is_guided_;
-  LimitLength(is_by_eye ? kErrorsOfEye * options_.eye_error : kYieldReach, &yield_offset_);
+  LimitLength(IsLedByEye() ? kErrorsOfEye * options_.eye_error : kYieldReach, &yield_offset_);
   LimitLength(kYieldTurn, &yield_turn_);
+}
+
+bool SimulatedPerson::IsLedByEye() const noexcept {
+  return !is_guided_ && task_.way != nullptr;
 }
 
 bool SimulatedPerson::HasSlotToFind() const noexcept {
@@ -469,7 +471,7 @@ void SimulatedPerson::FollowWayByEye(const OperatorInput& input, const Vec3& d) 
   const double ahead = task_.way->CalcSpeed({turned, aside}, travel);  // Its push sees to that.
   aside -= ahead * rate.v;
   turned -= ahead * rate.w;
-  if (is_guided_) {  // The mate holds it across its axis.
+  if (is_guided_) {  // The mate keeps it upright.
     turned = turned.dot(d) * d;
   }
   follow_offset_ -= dt_ / kFollowTime * aside;
@@ -502,7 +504,7 @@ void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
   const Vec3 d = OutwardOfWay();
   const double seen_travel = SeenTravel(input);
   // Where nothing is engaged yet the part is where the hand wants it, but for what it errs by.
-  const bool is_free = task_.way != nullptr && !is_guided_ && seen_travel > task_.engage_distance;
+  const bool is_free = IsLedByEye() && seen_travel > task_.engage_distance;
   const spatial::Pose X_WG =
       task_.way == nullptr ? task_.X_WG_goal : WayAt(is_free ? travel_ : seen_travel);
   Vec3 aside = input.X_WD * task_.p_BG - X_WG.p() - search_offset_;

@@ -211,10 +211,12 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void YieldToTouch(const Vec3& d) noexcept;
   /** Whether the part is further in than it ever was on this try. */
   [[nodiscard]] bool IsNearer(double travel) noexcept;
+  /** Whether no mate guides the part on a way that turns. */
+  [[nodiscard]] bool IsLedByEye() const noexcept;
   /** Whether the part is in a hole on a way that turns: it has to be turned right to go on. */
   [[nodiscard]] bool HasSlotToFind() const noexcept;
-  /** Corrects, little by little, how far the part is beside its way, by what it sees; where a mate
-   guides it, along and about the axis alone. */
+  /** Corrects, little by little, how far the part is beside its way, by what it sees; what a mate
+   guides is turned about the way alone. */
   void FollowWayByEye(const OperatorInput& input, const Vec3& d) noexcept;
   /** Corrects where it believes the part to be by what it sees. */
   void LookClosely(const OperatorInput& input) noexcept;

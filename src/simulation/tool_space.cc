@@ -148,13 +148,7 @@ ToolSpace MakeToolSpace(const DriveForm& drive, const spatial::Pose& X_WB, const
 bool IsInToolSpace(const ToolSpace& space, const product::Part& part, const spatial::Pose& X_WB) {
   const spatial::Pose X_WQ(Quat::FromTwoVectors(Vec3::UnitZ(), space.axis_W), space.p_WQ);
   const spatial::Pose X_QB = X_WQ.Inverse() * X_WB;
-  std::vector<Vec3> vertices;
-  vertices.reserve(part.mesh.vertices.size());
-  spatial::Box box;
-  for (const Vec3& p_B : part.mesh.vertices) {
-    vertices.push_back(X_QB * p_B);
-    box.Add(vertices.back());
-  }
+  const spatial::Box box = spatial::Transform(X_QB, part.box_B);
   for (const ToolCylinder& cylinder : space.cylinders) {
     const double radius = cylinder.radius - kTouching;
     spatial::Box of_cylinder;
@@ -166,7 +160,7 @@ bool IsInToolSpace(const ToolSpace& space, const product::Part& part, const spat
     for (const auto& triangle : part.mesh.triangles) {
       Polygon polygon;
       for (const std::uint32_t vertex : triangle) {
-        polygon.Add(vertices[vertex]);
+        polygon.Add(X_QB * part.mesh.vertices[vertex]);
       }
       polygon = Clip(Clip(polygon, cylinder.from + kTouching, 1), cylinder.to, -1);
       if (polygon.count > 0 && CalcDistance(polygon) < radius) {

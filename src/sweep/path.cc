@@ -10,11 +10,6 @@ namespace {
 using spatial::Box;
 using spatial::Pose;
 
-Pose Along(const Screw& screw, double fraction) {
-  const Quat q = spatial::RotationFromVector(Vec3(fraction * screw.turn));
-  return {q, Vec3(screw.p_AQ - q * screw.p_AQ + fraction * screw.along)};
-}
-
 std::vector<Vec3> CornersOf(const Box& box) {
   std::vector<Vec3> corners;
   corners.reserve(8);
@@ -65,6 +60,11 @@ Screw FindScrew(const Pose& X_AB) {
   return screw;
 }
 
+Pose MoveAlong(const Screw& screw, double fraction) {
+  const Quat q = spatial::RotationFromVector(Vec3(fraction * screw.turn));
+  return {q, Vec3(screw.p_AQ - q * screw.p_AQ + fraction * screw.along)};
+}
+
 Path MakeTranslation(const Pose& X_WB, const Vec3& d_W) {
   return {X_WB, Pose(X_WB.q(), X_WB.p() + d_W)};
 }
@@ -82,7 +82,7 @@ Path MakeRotation(const Pose& X_WB, const Vec3& p_WQ, const Vec3& axis_W, double
 }
 
 Pose Interpolate(const Pose& from, const Pose& to, double fraction) {
-  return from * Along(FindScrew(from.Inverse() * to), fraction);
+  return from * MoveAlong(FindScrew(from.Inverse() * to), fraction);
 }
 
 Path Resample(const Path& path, const Box& box_B, double step) {
@@ -103,7 +103,7 @@ Path Resample(const Path& path, const Box& box_B, double step) {
     const int steps =
         std::max(1, static_cast<int>(std::ceil(CalcLongestWay(screw, corners) / step)));
     for (int i = 1; i < steps; ++i) {
-      fine.push_back(from * Along(screw, static_cast<double>(i) / steps));
+      fine.push_back(from * MoveAlong(screw, static_cast<double>(i) / steps));
     }
     fine.push_back(X_WB);
   }

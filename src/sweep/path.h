@@ -23,6 +23,9 @@ struct Screw {
  Source: Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation, 2.3.2. */
 [[nodiscard]] Screw FindScrew(const spatial::Pose& X_AB);
 
+/** The displacement of a body that goes this share of a screw, in its frame. */
+[[nodiscard]] spatial::Pose MoveAlong(const Screw& screw, double fraction);
+
 /** Straight on by d_W [m]. */
 [[nodiscard]] Path MakeTranslation(const spatial::Pose& X_WB, const Vec3& d_W);
 

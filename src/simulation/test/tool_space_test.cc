@@ -41,6 +41,10 @@ product::Part MakeBlock(double distance, double height) {
   for (Vec3& p : part.mesh.vertices) {
     p += Vec3(distance - box.low.x(), -box.centre().y(), height - box.centre().z());
   }
+  part.box_B = spatial::Box();
+  for (const Vec3& p : part.mesh.vertices) {
+    part.box_B.Add(p);
+  }
   return part;
 }
 
