@@ -168,6 +168,7 @@ class RuleFinder {
     const ToolSpace space =
         MakeToolSpace(*tool.drive, product.occurrences[step.occurrence.index()].X_WB,
                       step.extraction_W, step.engage_distance);
+    move.tool_of_space = space.tool;
     for (const product::Occurrence& other : product.occurrences) {
       if (other.id == step.occurrence || !extraction_.is_present(other.id) ||
           !IsInToolSpace(space, product.part_of(other.id), other.X_WB)) {

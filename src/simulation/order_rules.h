@@ -25,8 +25,9 @@ struct FreeMove {
   /** It goes only as planned, after what came before it: on a way that turns, or on which parts
    give. */
   bool is_bound{false};
-  std::string tool;  ///< The name of a fastener's tool (NameTools); empty: none is needed.
-  /** What stands in the space of the tool while it turns the fastener in (tool_space.h). */
+  std::string tool;           ///< The name of a fastener's tool (NameTools); empty: none is needed.
+  std::string tool_of_space;  ///< The one whose space was looked at (ToolSpace::tool); or empty.
+  /** What stands in the space of that tool while it turns the fastener in (tool_space.h). */
   std::vector<product::OccurrenceId> in_tool_space;
   std::vector<std::size_t> moves_in_tool_space;  ///< The moves that they belong to; sorted.
   std::vector<std::size_t> neighbours;           ///< Moves whose parts hold this one; sorted.

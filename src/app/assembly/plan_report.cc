@@ -247,7 +247,7 @@ struct MoveRow {
   std::string way;
   std::string tool;           // Empty: none.
   std::string turned;         // The side that is then upwards; empty: it is not turned before it.
-  std::string in_tool_space;  // What stands where the tool turns; empty: nothing.
+  std::string in_tool_space;  // Says what stands where the tool turns; empty: nothing does.
   std::string holds;          // What has to be held after it; empty: nothing, or not known.
   std::vector<Arrow> arrows;  // What it has to come before, but for what others imply.
 };
@@ -267,7 +267,12 @@ std::vector<MoveRow> ListRows(const PlanReport& report) {
     row.way = step.way.empty() ? simulation::DescribeDirection(step.extraction_W) : "turns";
     row.tool = plan.rules.moves[m].tool;
     row.turned = DescribeTurn(plan, i);
-    row.in_tool_space = DescribeParts(model, simulation::ListInToolSpace(plan.rules, best, i));
+    const auto in_tool_space = simulation::ListInToolSpace(plan.rules, best, i);
+    if (!in_tool_space.empty()) {
+      row.in_tool_space =
+          fmt::format("no room for a {} beside {}", plan.rules.moves[m].tool_of_space,
+                      DescribeParts(model, in_tool_space));
+    }
     const auto& holds = HoldsAfter(plan, i);
     row.holds = holds ? DescribeParts(model, *holds) : "";
     std::copy_if(arrows.begin(), arrows.end(), std::back_inserter(row.arrows),
@@ -313,7 +318,7 @@ std::string MakeOrderTable(const PlanReport& report) {
     }
     const std::string tool = row.in_tool_space.empty()
                                  ? Escape(row.tool)
-                                 : fmt::format("{}<span class=\"soft\">, no room beside {}</span>",
+                                 : fmt::format("{}<span class=\"soft\">, {}</span>",
                                                Escape(row.tool), Escape(row.in_tool_space));
     html += fmt::format(
         "<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
@@ -417,8 +422,7 @@ void PrintPlanTable(const PlanReport& report) {
                           below.empty() ? "" : "; ", below);
     }
     if (!row.in_tool_space.empty()) {
-      below +=
-          fmt::format("{}where its tool turns: {}", below.empty() ? "" : "; ", row.in_tool_space);
+      below += (below.empty() ? "" : "; ") + row.in_tool_space;
     }
     table.Add({fmt::format("{:3}", ++number), row.part, row.way, row.tool}, below);
   }
@@ -455,7 +459,8 @@ std::string MakePlanPage(const PlanReport& report) {
       MakeTile("turns of the product", fmt::format("{}", best.counts.turns)),
       MakeTile("changes of direction", fmt::format("{}", best.counts.direction_changes)),
       MakeTile("changes of tool", fmt::format("{}", best.counts.tool_changes)));
-  body += fmt::format("<p>{}</p>\n", Escape(DescribeFixture(report)));
+  const std::string fixture = DescribeFixture(report);
+  body += fixture.empty() ? "" : fmt::format("<p>{}</p>\n", Escape(fixture));
   body += MakeOrderTable(report) + MakeComparison(plan) + MakeLeftOut(report);
   body += fmt::format("<p class=\"soft\">{}. No order is proved to be the best.</p>\n",
                       DescribeSearch(plan));
